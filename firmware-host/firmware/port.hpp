@@ -1,0 +1,43 @@
+/// A UART: byte timing and a transmit buffer that overflows as a real one does.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "skyloop/base/bytes.hpp"
+#include "skyloop/time/gps_time.hpp"
+
+namespace skyloop::firmware {
+
+/// The transmit side of one serial port, 8N1: each byte occupies the line for ten bits.
+class Port {
+public:
+    Port(std::uint32_t baud, std::uint32_t buffer_bytes) : baud_(baud), buffer_bytes_(buffer_bytes) {}
+
+    /// Queues one whole message whose first byte may leave at `ready`; false, and nothing queued, when it does not fit.
+    /// Messages never interleave and leave in the order in which they were queued.
+    bool queue(ByteSpan message, GpsTime ready);
+    /// The bytes whose stop bit has left by `now`. `now` never goes back.
+    Bytes take(GpsTime now);
+    /// When the last queued byte will have left, or nothing.
+    [[nodiscard]] std::optional<GpsTime> drained_at() const;
+    [[nodiscard]] std::uint32_t baud() const { return baud_; }
+    [[nodiscard]] std::size_t pending() const { return pending_; }
+
+private:
+    struct Message {
+        Bytes bytes;
+        GpsTime start;          ///< first start bit
+        std::size_t taken = 0;  ///< bytes that have left
+    };
+    [[nodiscard]] Nanoseconds line_time(std::size_t bytes) const;
+
+    std::uint32_t baud_;
+    std::size_t buffer_bytes_;
+    std::size_t pending_ = 0;
+    GpsTime line_free_{};
+    std::deque<Message> messages_;
+};
+
+}  // namespace skyloop::firmware

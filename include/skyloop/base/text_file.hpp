@@ -1,0 +1,20 @@
+/// Reading whole text files, gzip-compressed or not.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+#include "skyloop/base/result.hpp"
+
+namespace skyloop {
+
+/// Bytes after decompression beyond which a text file is refused.
+inline constexpr std::size_t max_text_file_size = std::size_t{256} << 20;
+
+/// The content of a file, decompressed when it is gzip (known by its content, not its name).
+/// Fails with `outside` when it cannot be opened or read, with `input` when it is larger than `max_size` or its
+/// compressed data is damaged.
+Result<std::string> read_text_file(const std::filesystem::path& path, std::size_t max_size = max_text_file_size);
+
+}  // namespace skyloop

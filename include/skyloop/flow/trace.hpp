@@ -1,0 +1,19 @@
+/// Everything of one epoch, for tests, recordings and displays.
+#pragma once
+
+#include "skyloop/flow/arrivals.hpp"
+#include "skyloop/flow/epoch.hpp"
+#include "skyloop/flow/sky_view.hpp"
+#include "skyloop/flow/truth_state.hpp"
+
+namespace skyloop {
+
+/// All values of one epoch. The receiver is handed `epoch` and nothing else.
+struct Trace {
+    TruthState truth;
+    SkyView sky;
+    Arrivals arrivals;
+    Epoch epoch;
+};
+
+}  // namespace skyloop

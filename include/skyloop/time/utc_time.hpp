@@ -1,0 +1,69 @@
+/// Coordinated universal time, its calendar and its leap seconds.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/time/gps_time.hpp"
+
+namespace skyloop {
+
+/// A UTC instant as a calendar and a clock read it; second 60 is a leap second. It does not subtract from GpsTime.
+struct UtcTime {
+    int year = 1980;
+    unsigned month = 1;   ///< 1 … 12
+    unsigned day = 6;     ///< 1 … 31
+    unsigned hour = 0;
+    unsigned minute = 0;
+    unsigned second = 0;  ///< 0 … 60
+    std::uint32_t nanosecond = 0;
+
+    auto operator<=>(const UtcTime&) const = default;
+    /// Seconds since midnight, fraction included.
+    [[nodiscard]] double seconds_of_day() const;
+};
+
+/// GPST − UTC over time: a table, so that a coming leap second, or a receiver with the wrong one, is data.
+class LeapSeconds {
+public:
+    struct Step {
+        GpsTime from;     ///< first instant at which `offset` holds
+        int offset = 0;   ///< GPST − UTC, s
+    };
+    /// @param steps ascending in time; before the first the offset is 0
+    explicit LeapSeconds(std::vector<Step> steps) : steps_(std::move(steps)) {}
+    /// The leap seconds announced by the IERS since 1980 (Bulletin C; the last is 2016-12-31, offset 18 s).
+    static const LeapSeconds& announced();
+    /// The same offset at all times: what a receiver believes between two almanac pages.
+    static LeapSeconds constant(int offset);
+
+    /// GPST − UTC, s.
+    [[nodiscard]] int offset(GpsTime time) const;
+    [[nodiscard]] const std::vector<Step>& steps() const { return steps_; }
+
+private:
+    std::vector<Step> steps_;
+};
+
+UtcTime to_utc(GpsTime time, const LeapSeconds& leap_seconds);
+GpsTime to_gps_time(const UtcTime& utc, const LeapSeconds& leap_seconds);
+/// The calendar of GPS time itself, without leap seconds, as RINEX epochs are written.
+GpsTime gps_calendar_time(int year, unsigned month, unsigned day, unsigned hour, unsigned minute, double second);
+UtcTime gps_calendar(GpsTime time);
+
+/// Day of year, 1.0 at 1 January 00:00, with fraction.
+double day_of_year(const UtcTime& utc);
+/// Modified Julian date of the day, without fraction.
+std::int64_t modified_julian_day(const UtcTime& utc);
+
+/// Reads ISO 8601 in UTC: 2024-03-05T12:00:00Z, with a fraction of up to nine digits; `T` may be a space and `Z` be left
+/// out. Fails with `usage` and a sentence that quotes the text.
+Result<UtcTime> parse_utc(std::string_view text);
+/// ISO 8601 with `decimals` (0 … 9) digits of fraction and a final Z.
+std::string format_utc(const UtcTime& utc, int decimals = 3);
+
+}  // namespace skyloop

@@ -1,0 +1,34 @@
+/// Bytes to and from the outside world.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "skyloop/base/bytes.hpp"
+
+namespace skyloop {
+
+/// What the other end of a wire is doing.
+struct LineState {
+    bool connected = false;             ///< somebody listens
+    std::optional<std::uint32_t> baud;  ///< the other end's line speed, bit/s; nothing where a wire has no speed
+};
+
+/// One wire. None of its functions waits.
+class Transport {
+public:
+    virtual ~Transport() = default;
+    /// Offers bytes; gives how many were taken. Bytes offered while nobody is connected are taken and lost, as on a wire.
+    virtual std::size_t write(ByteSpan bytes) = 0;
+    /// What has come in since the last call.
+    virtual Bytes read() = 0;
+    virtual LineState line() = 0;
+    /// Tells the wire the receiver's own speed, so that a client that sets none finds the right one.
+    virtual void set_receiver_baud(std::uint32_t) {}
+    /// For people: "/path/to/tty (pty)".
+    [[nodiscard]] virtual std::string description() const = 0;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,167 @@
+#include "skyloop/time/utc_time.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace skyloop {
+namespace {
+
+using namespace std::chrono_literals;
+using Days = std::chrono::sys_days;
+
+constexpr Days gps_epoch = std::chrono::year(1980) / 1 / 6;
+
+// The calendar day as a count, without leap seconds.
+Nanoseconds since_gps_epoch(int year, unsigned month, unsigned day) {
+    const Days days = std::chrono::year(year) / static_cast<int>(month) / static_cast<int>(day);
+    return days - gps_epoch;
+}
+
+UtcTime calendar(Nanoseconds since_epoch) {
+    const auto days = std::chrono::floor<std::chrono::days>(since_epoch);
+    const std::chrono::year_month_day date(gps_epoch + days);
+    const std::chrono::hh_mm_ss clock(since_epoch - days);
+    return {static_cast<int>(date.year()),
+            static_cast<unsigned>(date.month()),
+            static_cast<unsigned>(date.day()),
+            static_cast<unsigned>(clock.hours().count()),
+            static_cast<unsigned>(clock.minutes().count()),
+            static_cast<unsigned>(clock.seconds().count()),
+            static_cast<std::uint32_t>(clock.subseconds().count())};
+}
+
+// First UTC days on which a new offset holds (IERS Bulletin C).
+constexpr std::array<std::array<int, 2>, 18> leap_days{{
+    {1981, 7}, {1982, 7}, {1983, 7}, {1985, 7}, {1988, 1}, {1990, 1}, {1991, 1}, {1992, 7}, {1993, 7},
+    {1994, 7}, {1996, 1}, {1997, 7}, {1999, 1}, {2006, 1}, {2009, 1}, {2012, 7}, {2015, 7}, {2017, 1},
+}};
+
+std::vector<LeapSeconds::Step> announced_steps() {
+    std::vector<LeapSeconds::Step> steps;
+    int offset = 0;
+    for (const auto& [year, month] : leap_days) {
+        ++offset;
+        steps.push_back({GpsTime(since_gps_epoch(year, static_cast<unsigned>(month), 1) + std::chrono::seconds(offset)), offset});
+    }
+    return steps;
+}
+
+bool read_number(std::string_view& text, std::size_t digits, unsigned& value) {
+    if (text.size() < digits) return false;
+    value = 0;
+    for (std::size_t i = 0; i < digits; ++i) {
+        if (text[i] < '0' || text[i] > '9') return false;
+        value = value * 10 + static_cast<unsigned>(text[i] - '0');
+    }
+    text.remove_prefix(digits);
+    return true;
+}
+
+bool read_mark(std::string_view& text, std::string_view marks) {
+    if (text.empty() || marks.find(text.front()) == std::string_view::npos) return false;
+    text.remove_prefix(1);
+    return true;
+}
+
+bool read_fraction(std::string_view& text, std::uint32_t& nanosecond) {
+    if (!read_mark(text, ".,")) return true;
+    std::uint32_t scale = 100'000'000;
+    std::size_t digits = 0;
+    for (; !text.empty() && text.front() >= '0' && text.front() <= '9'; text.remove_prefix(1), ++digits) {
+        nanosecond += static_cast<std::uint32_t>(text.front() - '0') * scale;
+        scale /= 10;
+    }
+    return digits >= 1 && digits <= 9;
+}
+
+bool valid_calendar(const UtcTime& t) {
+    using namespace std::chrono;
+    const bool date = (year(t.year) / static_cast<int>(t.month) / static_cast<int>(t.day)).ok();
+    return date && t.year >= 1980 && t.year < 2200 && t.hour < 24 && t.minute < 60 && t.second <= 60;
+}
+
+}  // namespace
+
+double UtcTime::seconds_of_day() const { return hour * 3600.0 + minute * 60.0 + second + nanosecond * 1e-9; }
+
+const LeapSeconds& LeapSeconds::announced() {
+    static const LeapSeconds table(announced_steps());
+    return table;
+}
+
+LeapSeconds LeapSeconds::constant(int offset) { return LeapSeconds({{GpsTime::min(), offset}}); }
+
+int LeapSeconds::offset(GpsTime time) const {
+    int offset = 0;
+    for (const Step& step : steps_)
+        if (time >= step.from) offset = step.offset;
+    return offset;
+}
+
+UtcTime to_utc(GpsTime time, const LeapSeconds& leap_seconds) {
+    const int offset = leap_seconds.offset(time);
+    // During a leap second the offset is still the old one and the calendar would already show the next day.
+    if (leap_seconds.offset(time + 1s) > offset && time.time_since_epoch() >= 0s) {
+        UtcTime utc = calendar((time - std::chrono::seconds(offset) - 1s).time_since_epoch());
+        const UtcTime next = calendar((time - std::chrono::seconds(offset)).time_since_epoch());
+        if (next.day != utc.day) {
+            utc.second += 1;
+            return utc;
+        }
+    }
+    return calendar((time - std::chrono::seconds(offset)).time_since_epoch());
+}
+
+GpsTime to_gps_time(const UtcTime& utc, const LeapSeconds& leap_seconds) {
+    const Nanoseconds count = since_gps_epoch(utc.year, utc.month, utc.day) + std::chrono::hours(utc.hour) +
+                              std::chrono::minutes(utc.minute) + std::chrono::seconds(utc.second) + Nanoseconds(utc.nanosecond);
+    const GpsTime guess{count};
+    int offset = leap_seconds.offset(guess);
+    // The table is in GPS time, the question in UTC: the answer's own offset decides, and a second of 60 is the old day's.
+    offset = leap_seconds.offset(guess + std::chrono::seconds(offset));
+    if (utc.second == 60) offset = leap_seconds.offset(guess + std::chrono::seconds(offset) - 2s);
+    return guess + std::chrono::seconds(offset);
+}
+
+GpsTime gps_calendar_time(int year, unsigned month, unsigned day, unsigned hour, unsigned minute, double second) {
+    return GpsTime(since_gps_epoch(year, month, day) + std::chrono::hours(hour) + std::chrono::minutes(minute) +
+                   to_nanoseconds(Seconds(second)));
+}
+
+UtcTime gps_calendar(GpsTime time) { return calendar(time.time_since_epoch()); }
+
+double day_of_year(const UtcTime& utc) {
+    const Nanoseconds days = since_gps_epoch(utc.year, utc.month, utc.day) - since_gps_epoch(utc.year, 1, 1);
+    return 1.0 + std::chrono::duration<double>(days).count() / 86400.0 + utc.seconds_of_day() / 86400.0;
+}
+
+std::int64_t modified_julian_day(const UtcTime& utc) {
+    constexpr std::int64_t gps_epoch_mjd = 44244;
+    return gps_epoch_mjd + since_gps_epoch(utc.year, utc.month, utc.day) / std::chrono::days(1);
+}
+
+Result<UtcTime> parse_utc(std::string_view text) {
+    std::string_view rest = text;
+    unsigned year = 0;
+    UtcTime t;
+    const bool read = read_number(rest, 4, year) && read_mark(rest, "-") && read_number(rest, 2, t.month) &&
+                      read_mark(rest, "-") && read_number(rest, 2, t.day) && read_mark(rest, "T ") &&
+                      read_number(rest, 2, t.hour) && read_mark(rest, ":") && read_number(rest, 2, t.minute) &&
+                      read_mark(rest, ":") && read_number(rest, 2, t.second) && read_fraction(rest, t.nanosecond);
+    if (read) read_mark(rest, "Z");
+    t.year = static_cast<int>(year);
+    if (!read || !rest.empty() || !valid_calendar(t))
+        return fail(ErrorCode::usage,
+                    fmt::format("'{}' is not a UTC time; expected ISO 8601 from 1980 on, such as 2024-03-05T12:00:00Z", text));
+    return t;
+}
+
+std::string format_utc(const UtcTime& utc, int decimals) {
+    std::string text = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}", utc.year, utc.month, utc.day, utc.hour, utc.minute, utc.second);
+    if (decimals > 0) text += fmt::format(".{:09}", utc.nanosecond).substr(0, static_cast<std::size_t>(decimals) + 1);
+    return text + "Z";
+}
+
+}  // namespace skyloop

@@ -1,0 +1,35 @@
+# Every foreign package, named with the Debian package that brings it.
+
+# Finds a package by CMake config or module, or stops with the name of the Debian package to install.
+function(skyloop_require package debian)
+    find_package(${package} QUIET ${ARGN})
+    if(NOT ${package}_FOUND)
+        message(FATAL_ERROR "skyloop needs ${package}: apt-get install ${debian}  (or run tools/start, which does)")
+    endif()
+    # Targets that find_package makes are visible only where it was called unless promoted.
+    set(${package}_FOUND TRUE PARENT_SCOPE)
+endfunction()
+
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL TRUE)
+list(APPEND CMAKE_MODULE_PATH /usr/share/cmake/geographiclib)
+skyloop_require(Eigen3 libeigen3-dev CONFIG)
+skyloop_require(GeographicLib libgeographiclib-dev MODULE)
+skyloop_require(tl-expected libexpected-dev CONFIG)
+skyloop_require(tomlplusplus libtomlplusplus-dev CONFIG)
+skyloop_require(nlohmann_json nlohmann-json3-dev CONFIG)
+skyloop_require(CLI11 libcli11-dev CONFIG)
+skyloop_require(fmt libfmt-dev CONFIG)
+skyloop_require(spdlog libspdlog-dev CONFIG)
+skyloop_require(ZLIB zlib1g-dev)
+if(SKYLOOP_TESTS OR SKYLOOP_FUZZ)
+    skyloop_require(GTest libgtest-dev CONFIG)
+endif()
+if(SKYLOOP_BENCH)
+    skyloop_require(benchmark libbenchmark-dev CONFIG)
+endif()
+
+if(NOT TARGET GeographicLib::GeographicLib)
+    add_library(GeographicLib::GeographicLib INTERFACE IMPORTED GLOBAL)
+    target_include_directories(GeographicLib::GeographicLib INTERFACE ${GeographicLib_INCLUDE_DIRS})
+    target_link_libraries(GeographicLib::GeographicLib INTERFACE ${GeographicLib_LIBRARIES})
+endif()
