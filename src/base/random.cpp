@@ -3,6 +3,8 @@
 #include <bit>
 #include <cmath>
 
+#include "skyloop/base/digest.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -15,18 +17,11 @@ std::uint64_t split_mix(std::uint64_t& x) {
     return z ^ (z >> 31);
 }
 
-// FNV-1a, 64 bit: a name as a number.
-std::uint64_t name_hash(std::string_view name) {
-    std::uint64_t hash = 0xcbf29ce484222325u;
-    for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-    return hash;
-}
-
 }  // namespace
 
 RandomStream::RandomStream(std::uint64_t seed, std::string_view name) {
     std::uint64_t x = seed;
-    x = split_mix(x) ^ name_hash(name);
+    x = split_mix(x) ^ fnv1a_64(name);
     for (std::uint64_t& word : state_) word = split_mix(x);
 }
 

@@ -1,0 +1,57 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "commands.hpp"
+#include "data_folders.hpp"
+#include "run_session.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop::host {
+namespace {
+
+std::string utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); }
+
+void print_plan(const Scenario& scenario, const Assembly& assembly) {
+    const Emulator& emulator = *assembly.emulator;
+    const firmware::Receiver& receiver = emulator.receiver();
+    fmt::print("scenario    {}\n", scenario.name);
+    fmt::print("navigation  {}\n", emulator.simulation().navigation().description());
+    if (const auto span = emulator.simulation().navigation().span())
+        fmt::print("            orbits from {} to {}\n", utc_text(span->first), utc_text(span->last));
+    fmt::print("start       {}\n", utc_text(assembly.start));
+    fmt::print("end         {}\n", assembly.end ? utc_text(*assembly.end) : "when stopped");
+    fmt::print("model       {}\n", error_model_name(scenario.model.kind));
+    fmt::print("receiver    {} at {} baud, {:g} Hz\n", receiver.board().name, receiver.baud(),
+               1e9 / static_cast<double>(receiver.settings().navigation_period.count()));
+    for (const std::string& port : scenario.receiver.ports) fmt::print("port        {}\n", port);
+    fmt::print("seed        {}\n", scenario.run.seed);
+}
+
+int check(const RunOptions& options) {
+    const Messages messages(options.verbosity);
+    const auto scenario = scenario_from(options);
+    if (!scenario) return messages.error(scenario.error());
+    RunMode mode;
+    mode.now = wall_clock();
+    mode.now_steady_ns = steady_clock_ns();
+    mode.virtual_time = true;
+    mode.open_ports = false;
+    const auto assembly = assemble(*scenario, data_folders(), mode);
+    if (!assembly) return messages.error(assembly.error());
+    if (const auto ports = check_port_names(*scenario); !ports) return messages.error(ports.error());
+    for (const std::string& warning : assembly->warnings) messages.warning(warning);
+    if (!options.verbosity.quiet) print_plan(*scenario, *assembly);
+    return 0;
+}
+
+}  // namespace
+
+Action add_check_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("check", "Read everything that a run would read, say what is wrong, run nothing");
+    auto options = std::make_shared<RunOptions>();
+    add_run_options(*command, *options);
+    return [options] { return check(*options); };
+}
+
+}  // namespace skyloop::host

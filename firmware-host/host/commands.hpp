@@ -1,0 +1,21 @@
+/// The subcommands: each adds its options to the command line and gives what to do with them.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+namespace skyloop::host {
+
+/// Runs a parsed subcommand; gives the program's exit code.
+using Action = std::function<int()>;
+
+Action add_run_command(CLI::App& app);
+Action add_simulate_command(CLI::App& app);
+Action add_sky_command(CLI::App& app);
+Action add_check_command(CLI::App& app);
+Action add_compare_command(CLI::App& app);
+Action add_boards_command(CLI::App& app);
+
+}  // namespace skyloop::host

@@ -1,0 +1,46 @@
+#include "messages.hpp"
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace skyloop::host {
+
+Messages::Messages(Verbosity verbosity)
+    : verbosity_(verbosity),
+      logger_(std::make_shared<spdlog::logger>("skyloop", std::make_shared<spdlog::sinks::stderr_sink_st>())) {
+    logger_->set_pattern("%v");
+    logger_->set_level(verbosity.quiet ? spdlog::level::warn : verbosity.verbose ? spdlog::level::debug : spdlog::level::info);
+}
+
+void Messages::say(int level, const std::string& text) const {
+    const auto weight = static_cast<spdlog::level::level_enum>(level);
+    const auto word = spdlog::level::to_string_view(weight);
+    const std::string name(word.data(), word.size());
+    if (verbosity_.json) {
+        // Bytes of a file name need not be UTF-8; a message must not fail over them.
+        const nlohmann::json line{{"level", name}, {"message", text}};
+        logger_->log(weight, "{}", line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    } else if (weight >= spdlog::level::warn) {
+        logger_->log(weight, "skyloop: {}{}", weight == spdlog::level::warn ? "warning: " : "", text);
+    } else {
+        logger_->log(weight, "{}", text);
+    }
+    logger_->flush();
+}
+
+void Messages::detail(const std::string& text) const { say(spdlog::level::debug, text); }
+void Messages::info(const std::string& text) const { say(spdlog::level::info, text); }
+void Messages::warning(const std::string& text) const { say(spdlog::level::warn, text); }
+
+int Messages::error(const Error& error) const {
+    std::istringstream lines(error.message);
+    for (std::string line; std::getline(lines, line);) say(spdlog::level::err, line);
+    return exit_code(error);
+}
+
+int exit_code(const Error& error) { return error.code == ErrorCode::outside ? 1 : 2; }
+
+}  // namespace skyloop::host

@@ -1,0 +1,45 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "commands.hpp"
+#include "data_folders.hpp"
+#include "run_session.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop::host {
+namespace {
+
+int run_live(const RunOptions& options) {
+    const Messages messages(options.verbosity);
+    const auto scenario = scenario_from(options);
+    if (!scenario) return messages.error(scenario.error());
+    RunMode mode;
+    mode.virtual_time = std::isinf(scenario->run.speed);
+    mode.now = wall_clock();
+    mode.now_steady_ns = steady_clock_ns();
+    if (!options.record.empty()) mode.record = options.record;
+    auto assembly = assemble(*scenario, data_folders(), mode);
+    if (!assembly) return messages.error(assembly.error());
+
+    RunSession session(messages, *assembly);
+    // Scripts wait for these lines to know the tty: they are said even when quiet.
+    const auto& links = assembly->emulator->links();
+    for (std::size_t i = 0; i < links.size(); ++i)
+        fmt::print(stderr, "port {}: {}\n", i, links[i].transport().description());
+    return session.run(*scenario);
+}
+
+}  // namespace
+
+Action add_run_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("run", "Stream in real time until stopped");
+    auto options = std::make_shared<RunOptions>();
+    add_run_options(*command, *options);
+    command->add_option("--speed", options->speed, "Simulated seconds per second, or max");
+    command->add_option("--record", options->record, "Keep truth, fixes, satellites and bytes in this folder");
+    return [options] { return run_live(*options); };
+}
+
+}  // namespace skyloop::host

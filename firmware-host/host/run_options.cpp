@@ -1,0 +1,174 @@
+#include "run_options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "skyloop/base/spelling.hpp"
+#include "skyloop/scenario/scenario_file.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop::host {
+namespace {
+
+Result<void> apply_place(const RunOptions& options, Scenario& scenario) {
+    if (!options.at.empty() && !options.trajectory.empty())
+        return fail(ErrorCode::usage, "--at and --trajectory both say where the antenna is; expected one of them");
+    if (!options.at.empty()) {
+        const auto place = parse_place(options.at);
+        if (!place) return fail(place.error());
+        scenario.trajectory = FixedSettings{*place};
+    }
+    if (options.trajectory.empty()) return {};
+    const std::filesystem::path file = options.trajectory;
+    if (file.extension() != ".toml")
+        return fail(ErrorCode::usage, fmt::format("--trajectory {}: this version reads waypoints from a .toml file; recorded tracks "
+                                                  "(.csv .gpx .kml .nmea .ubx .ulg .bin) are not in it", options.trajectory));
+    auto trajectory = read_trajectory_file(file);
+    if (!trajectory) return fail(trajectory.error());
+    scenario.trajectory = std::move(*trajectory);
+    return {};
+}
+
+Result<void> apply_time(const RunOptions& options, Scenario& scenario) {
+    if (options.start == "now") {
+        scenario.run.start.reset();
+        scenario.run.start_now = true;
+    } else if (!options.start.empty()) {
+        const auto utc = parse_utc(options.start);
+        if (!utc) return fail(ErrorCode::usage, "--start: " + utc.error().message + ", or now");
+        scenario.run.start = to_gps_time(*utc, LeapSeconds::announced());
+        scenario.run.start_now = false;
+    }
+    if (options.duration) {
+        if (!(*options.duration > 0 && *options.duration < 3.2e9))
+            return fail(ErrorCode::usage, fmt::format("--duration {}: expected a number of seconds above 0", *options.duration));
+        scenario.run.duration = Seconds(*options.duration);
+    }
+    return {};
+}
+
+Result<void> apply_model(const RunOptions& options, Scenario& scenario) {
+    if (options.model.empty()) return {};
+    if (options.model == "modern")
+        return fail(ErrorCode::usage, fmt::format("--model modern: not in this version; expected one of {}", fmt::join(error_model_names(), " ")));
+    const auto kind = error_model_kind(options.model);
+    if (!kind)
+        return fail(ErrorCode::usage, fmt::format("--model {}: unknown; expected one of {}{}", options.model,
+                                                  fmt::join(error_model_names(), " "), did_you_mean(options.model, error_model_names())));
+    scenario.model.kind = *kind;
+    return {};
+}
+
+Result<void> apply_receiver(const RunOptions& options, Scenario& scenario) {
+    if (!options.board.empty()) scenario.receiver.board = options.board;
+    if (!options.ports.empty()) scenario.receiver.ports = options.ports;
+    if (options.rate) {
+        if (!(*options.rate >= 0.01 && *options.rate <= 100))
+            return fail(ErrorCode::usage, fmt::format("--rate {}: expected 0.01 to 100 Hz", *options.rate));
+        scenario.receiver.rate_hz = options.rate;
+    }
+    return {};
+}
+
+Result<void> apply_speed(const RunOptions& options, Scenario& scenario) {
+    if (options.speed.empty()) return {};
+    if (options.speed == "max") {
+        scenario.run.speed = std::numeric_limits<double>::infinity();
+        return {};
+    }
+    double speed = 0;
+    const char* end = options.speed.data() + options.speed.size();
+    const auto [rest, error] = std::from_chars(options.speed.data(), end, speed);
+    if (error != std::errc() || rest != end || !(speed >= 1e-3 && speed <= 1e6))
+        return fail(ErrorCode::usage, fmt::format("--speed {}: expected simulated seconds per second, 0.001 to 1000000, or max", options.speed));
+    scenario.run.speed = speed;
+    return {};
+}
+
+// The options that decide what a run computes, one a line.
+std::string options_text(const RunOptions& o) {
+    std::string text;
+    for (const auto& [name, value] : {std::pair{"at", o.at}, {"trajectory", o.trajectory}, {"start", o.start}, {"model", o.model}, {"board", o.board}})
+        if (!value.empty()) text += fmt::format("\n--{} {}", name, value);
+    if (o.rebase_nav) text += "\n--rebase-nav";
+    if (o.duration) text += fmt::format("\n--duration {}", *o.duration);
+    if (o.rate) text += fmt::format("\n--rate {}", *o.rate);
+    if (o.seed) text += fmt::format("\n--seed {}", *o.seed);
+    return text;
+}
+
+}  // namespace
+
+void add_verbosity_options(CLI::App& command, Verbosity& verbosity) {
+    command.add_flag("--quiet", verbosity.quiet, "Warnings and errors only");
+    command.add_flag("--verbose", verbosity.verbose, "More about what is done");
+    command.add_flag("--log-json", verbosity.json, "Messages as JSON, an object a line");
+}
+
+void add_place_options(CLI::App& command, RunOptions& options) {
+    command.add_option("--at", options.at, "Stand still there: LAT,LON[,HEIGHT] in degrees and metres above the ellipsoid");
+    command.add_option("--nav", options.nav, "RINEX navigation file; repeatable; without it a nominal constellation")->allow_extra_args(false);
+    command.add_flag("--rebase-nav", options.rebase_nav, "Move the navigation data to the start time, keeping its time of day");
+    command.add_option("--start", options.start, "ISO 8601 in UTC, or now");
+}
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+    command.add_option("scenario", options.scenario, "Scenario file (TOML); without it embedded defaults");
+    add_place_options(command, options);
+    command.add_option("--trajectory", options.trajectory, "A .toml file with waypoints");
+    command.add_option("--duration", options.duration, "Seconds");
+    command.add_option("--model", options.model, "ideal constant-sigma satellite-count whole-path refraction baseline");
+    command.add_option("--scene", options.scene, "Buildings (not in this version)");
+    command.add_option("--board", options.board, "Receiver profile, default ublox-m8; see skyloop boards");
+    command.add_option("--rate", options.rate, "Navigation rate at start, Hz");
+    command.add_option("--port", options.ports, "Where the bytes go: pty[:LINK] file:PATH - ; repeatable")->allow_extra_args(false);
+    command.add_option("--seed", options.seed, "Default 1; the same scenario, seed and inputs give the same bytes");
+    command.add_option("--control", options.control, "HTTP control (not in this version)");
+    add_verbosity_options(command, options.verbosity);
+}
+
+Result<Geodetic> parse_place(const std::string& text) {
+    double values[3] = {0, 0, 0};
+    const char* at = text.data();
+    const char* end = at + text.size();
+    int count = 0;
+    for (; count < 3; ++count) {
+        const auto [rest, error] = std::from_chars(at, end, values[count]);
+        if (error != std::errc() || !std::isfinite(values[count])) break;
+        at = rest;
+        if (at == end) break;
+        if (*at != ',') break;
+        ++at;
+    }
+    const std::string asked = fmt::format("--at {}: ", text);
+    if (at != end || count < 1 || count > 2 || text.empty() || text.back() == ',')
+        return fail(ErrorCode::usage, asked + "expected LAT,LON or LAT,LON,HEIGHT in degrees and metres, such as 46.4775,30.7326,77");
+    if (std::abs(values[0]) > 90) return fail(ErrorCode::usage, asked + fmt::format("latitude is {:g}; expected -90 to 90 degrees", values[0]));
+    if (std::abs(values[1]) > 360) return fail(ErrorCode::usage, asked + fmt::format("longitude is {:g}; expected -180 to 180 degrees", values[1]));
+    if (values[2] < -1e4 || values[2] > 1e7)
+        return fail(ErrorCode::usage, asked + fmt::format("height is {:g}; expected metres above the ellipsoid, -10 000 to 10 000 000", values[2]));
+    return Geodetic::degrees(values[0], std::remainder(values[1], 360), values[2]);
+}
+
+Result<Scenario> scenario_from(const RunOptions& options) {
+    if (!options.scene.empty()) return fail(ErrorCode::usage, "--scene: buildings are not in this version");
+    if (!options.control.empty()) return fail(ErrorCode::usage, "--control: live control is not in this version");
+    Scenario scenario;
+    if (!options.scenario.empty()) {
+        auto read = read_scenario_file(options.scenario);
+        if (!read) return fail(read.error());
+        scenario = std::move(*read);
+    }
+    if (!options.nav.empty()) scenario.sky.navigation.assign(options.nav.begin(), options.nav.end());
+    scenario.sky.rebase_navigation |= options.rebase_nav;
+    if (options.seed) scenario.run.seed = *options.seed;
+    scenario.source += options_text(options);
+    for (const auto& apply : {apply_place, apply_time, apply_model, apply_receiver, apply_speed})
+        if (const auto applied = apply(options, scenario); !applied) return fail(applied.error());
+    return scenario;
+}
+
+}  // namespace skyloop::host

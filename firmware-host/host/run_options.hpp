@@ -1,0 +1,41 @@
+/// The options that several subcommands share, and what they change in a scenario.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "messages.hpp"
+#include "skyloop/base/result.hpp"
+#include "skyloop/scenario/scenario.hpp"
+
+namespace skyloop::host {
+
+/// What was typed; empty or absent: the scenario's own.
+struct RunOptions {
+    std::string scenario;
+    std::string at, trajectory, start, model, board, scene, control;
+    std::vector<std::string> nav, ports;
+    bool rebase_nav = false;
+    std::optional<double> duration, rate;
+    std::optional<std::uint64_t> seed;
+    std::string speed;   ///< run only: a number or "max"
+    std::string record;  ///< run: --record, simulate: --out
+    Verbosity verbosity;
+};
+
+void add_verbosity_options(CLI::App& command, Verbosity& verbosity);
+/// --at, --nav, --rebase-nav, --start: where and when.
+void add_place_options(CLI::App& command, RunOptions& options);
+/// Everything that run and simulate share.
+void add_run_options(CLI::App& command, RunOptions& options);
+
+/// The scenario file, or embedded defaults, with the options laid over it.
+Result<Scenario> scenario_from(const RunOptions& options);
+
+/// Reads "LAT,LON" or "LAT,LON,HEIGHT": degrees and metres above the ellipsoid.
+Result<Geodetic> parse_place(const std::string& text);
+
+}  // namespace skyloop::host

@@ -1,0 +1,27 @@
+/// One run of an assembled emulator, from its first message to its exit code.
+#pragma once
+
+#include "messages.hpp"
+#include "run_options.hpp"
+#include "skyloop/emulator/assembly.hpp"
+
+namespace skyloop::host {
+
+/// Says the warnings, runs until the end or a signal, says what happened.
+class RunSession {
+public:
+    /// @param assembly outlives the session
+    RunSession(const Messages& messages, Assembly& assembly);
+    /// Exit code: 0, or 1 when a recording could not be written.
+    int run(const Scenario& scenario);
+
+private:
+    void tell_counts() const;
+    const Messages& messages_;
+    Assembly& assembly_;
+};
+
+/// The wall clock as GPS time: read once, at the start.
+GpsTime wall_clock();
+
+}  // namespace skyloop::host

@@ -1,0 +1,39 @@
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "data_folders.hpp"
+#include "run_session.hpp"
+
+namespace skyloop::host {
+namespace {
+
+int simulate(const RunOptions& options) {
+    const Messages messages(options.verbosity);
+    const auto scenario = scenario_from(options);
+    if (!scenario) return messages.error(scenario.error());
+    if (!scenario->run.duration)
+        return messages.error({ErrorCode::usage, "simulate needs an end: expected --duration SECONDS or run.duration_s in the scenario"});
+    RunMode mode;
+    mode.virtual_time = true;
+    mode.now = wall_clock();
+    mode.now_steady_ns = steady_clock_ns();
+    mode.record = options.record;
+    // A scenario's pty belongs to a live run; only wires asked for here are opened.
+    mode.open_ports = !options.ports.empty();
+    auto assembly = assemble(*scenario, data_folders(), mode);
+    if (!assembly) return messages.error(assembly.error());
+    RunSession session(messages, *assembly);
+    return session.run(*scenario);
+}
+
+}  // namespace
+
+Action add_simulate_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("simulate", "The same pipeline as fast as the machine can, on the virtual clock");
+    auto options = std::make_shared<RunOptions>();
+    add_run_options(*command, *options);
+    command->add_option("--out", options->record, "Folder for the recording")->required();
+    return [options] { return simulate(*options); };
+}
+
+}  // namespace skyloop::host

@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "commands.hpp"
+#include "data_folders.hpp"
+#include "run_session.hpp"
+#include "skyloop/analysis/sky_listing.hpp"
+#include "skyloop/plot/sky_plot.hpp"
+#include "skyloop/plot/track_plot.hpp"
+#include "skyloop/sky/satellite_tracks.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop::host {
+namespace {
+
+struct SkyOptions {
+    RunOptions run;
+    std::string format = "text";
+    std::optional<double> mask_deg;
+    double tracks_h = 0;
+    double step_s = 0;
+};
+
+/// The world of a scenario, without a receiver.
+struct World {
+    std::unique_ptr<Geoid> geoid;
+    Simulation simulation;
+    GpsTime start;
+};
+
+Result<World> make_world(const Scenario& scenario, const Messages& messages) {
+    auto navigation = load_navigation(scenario, wall_clock(), scenario.sky.navigation.empty());
+    if (!navigation) return fail(navigation.error());
+    for (const std::string& warning : navigation->warnings) messages.warning(warning);
+    std::vector<std::string> warnings;
+    auto geoid = find_geoid(data_folders(), warnings);
+    const GpsTime start = navigation->start;
+    Simulation simulation = make_simulation(scenario, std::move(navigation->source), geoid.get(), start);
+    return World{std::move(geoid), std::move(simulation), start};
+}
+
+// Where each satellite was in the hours before, drawn as a thin line behind it.
+std::vector<SkyPlotSatellite> plot_satellites(World& world, const Trace& trace) {
+    constexpr int trail_points = 24;
+    constexpr double trail_step_s = 300;
+    std::vector<SkyPlotSatellite> satellites;
+    for (const SatelliteStatus& s : trace.epoch.fix.satellites) satellites.push_back({s.id, s.azimuth, s.elevation, s.cn0, s.used, true, {}});
+    for (std::size_t i = 0; i < satellites.size(); ++i) satellites[i].healthy = trace.sky.satellites[i].healthy;
+    for (int k = trail_points; k > 0; --k) {
+        TruthState then = trace.truth;
+        then.time = advanced(then.time, Seconds(-trail_step_s * k));
+        const SkyView view = world.simulation.view(then);
+        for (SkyPlotSatellite& s : satellites)
+            for (const SatelliteInView& v : view.satellites)
+                if (v.id == s.id) s.trail.push_back({v.azimuth, v.elevation});
+    }
+    for (SkyPlotSatellite& s : satellites) s.trail.push_back({s.azimuth, s.elevation});
+    return satellites;
+}
+
+std::string sky_svg(World& world, const Trace& trace, Angle mask) {
+    SkyPlot plot;
+    const Geodetic& place = trace.truth.geodetic;
+    plot.title = fmt::format("{:.4f}°, {:.4f}°, {:.0f} m", place.latitude.deg(), place.longitude.deg(), place.height.above_ellipsoid.value());
+    plot.subtitle = fmt::format("{}   {}", format_utc(to_utc(trace.truth.time, LeapSeconds::announced()), 0), world.simulation.navigation().description());
+    plot.mask = mask;
+    plot.satellites = plot_satellites(world, trace);
+    return sky_plot(plot);
+}
+
+int print_tracks(const SkyOptions& options, const World& world) {
+    const double step = options.step_s > 0 ? options.step_s : 300;
+    const auto tracks = satellite_tracks(world.simulation.navigation(), world.start, Seconds(options.tracks_h * 3600), Seconds(step));
+    if (options.format == "svg")
+        fmt::print("{}", track_plot(tracks, fmt::format("Satellite tracks in ECEF over {:g} h from {}", options.tracks_h,
+                                                        format_utc(to_utc(world.start, LeapSeconds::announced()), 0))));
+    else
+        fmt::print("{}", tracks_csv(tracks));
+    return 0;
+}
+
+int show_sky(const SkyOptions& options) {
+    const Messages messages(options.run.verbosity);
+    auto scenario = scenario_from(options.run);
+    if (!scenario) return messages.error(scenario.error());
+    if (options.mask_deg) scenario->sky.elevation_mask = Angle::degrees(*options.mask_deg);
+    if (options.tracks_h > 0 && options.format != "csv" && options.format != "svg" && options.format != "text")
+        return messages.error({ErrorCode::usage, "--tracks comes as --format csv or svg"});
+    auto world = make_world(*scenario, messages);
+    if (!world) return messages.error(world.error());
+    if (options.tracks_h > 0) return print_tracks(options, *world);
+
+    const Angle mask = scenario->sky.elevation_mask;
+    const Trace trace = world->simulation.run(world->start);
+    if (options.format == "svg") {
+        fmt::print("{}", sky_svg(*world, trace, mask));
+        return 0;
+    }
+    const SkyListing listing = sky_listing(trace.truth, trace.sky, mask, {&trace.arrivals, &trace.epoch.fix});
+    fmt::print("{}", options.format == "json" ? sky_json(listing) : options.format == "csv" ? sky_csv(std::span(&listing, 1)) : sky_text(listing));
+    return 0;
+}
+
+}  // namespace
+
+Action add_sky_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("sky", "Which satellites stand where");
+    auto options = std::make_shared<SkyOptions>();
+    command->add_option("scenario", options->run.scenario, "Scenario file (TOML); without it embedded defaults");
+    add_place_options(*command, options->run);
+    command->add_option("--model", options->run.model, "Sensor model that decides which satellites are used");
+    command->add_option("--format", options->format, "text, json, csv or svg")->check(CLI::IsMember({"text", "json", "csv", "svg"}));
+    command->add_option("--mask", options->mask_deg, "Elevation mask, degrees")->check(CLI::Range(0.0, 90.0));
+    command->add_option("--tracks", options->tracks_h, "ECEF tracks of all satellites over so many hours (csv or svg)")->check(CLI::Range(0.01, 24.0 * 14));
+    command->add_option("--step", options->step_s, "Seconds between points of a track, default 300")->check(CLI::Range(1.0, 86400.0));
+    add_verbosity_options(*command, options->run.verbosity);
+    return [options] { return show_sky(*options); };
+}
+
+}  // namespace skyloop::host

@@ -1,0 +1,67 @@
+/// The only place that builds everything.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/emulator/emulator.hpp"
+#include "skyloop/geo/geoid.hpp"
+#include "skyloop/scenario/scenario.hpp"
+
+namespace skyloop {
+
+/// Where the program's own data lies: folders that may hold boards/ and geoids/, the first that has a thing wins.
+struct DataFolders {
+    std::vector<std::filesystem::path> folders;
+};
+
+/// How a run is driven.
+struct RunMode {
+    bool virtual_time = false;                         ///< as fast as possible, on the virtual clock
+    GpsTime now{};                                     ///< the wall clock at start, GPST
+    std::int64_t now_steady_ns = 0;                    ///< the steady clock at that instant
+    std::optional<std::filesystem::path> record;       ///< where to keep the recording
+    bool open_ports = true;                            ///< false: no wires, the recording alone
+};
+
+/// A run ready to go, and what its user should be told first.
+struct Assembly {
+    std::unique_ptr<Geoid> geoid;  ///< outlives the emulator, which looks up undulations in it
+    std::unique_ptr<Emulator> emulator;
+    GpsTime start;
+    std::optional<GpsTime> end;
+    std::string digest;            ///< of everything that decides the bytes: scenario, seed, navigation, board
+    std::vector<std::string> warnings;
+};
+
+/// Takes a scenario apart and gives each part its piece.
+Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, const RunMode& mode);
+
+/// What decides the bytes of a run, as 16 hexadecimal digits: scenario, options, seed, start and navigation files.
+std::string scenario_digest(const Scenario& scenario, GpsTime start);
+
+/// Broadcast orbits for a scenario: its files, or the nominal constellation.
+struct LoadedNavigation {
+    std::unique_ptr<NavigationSource> source;
+    GpsTime start;  ///< of the run
+    std::vector<std::string> warnings;
+};
+Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, bool default_to_now);
+
+/// The trajectory of a scenario, begun at `start`.
+std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, GpsTime start);
+
+/// The world and the sensor model of a scenario. @param geoid may be absent; outlives the simulation
+Simulation make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation, const Geoid* geoid, GpsTime start);
+
+/// Whether every port of a scenario names a wire that this version has; opens none.
+Result<void> check_port_names(const Scenario& scenario);
+
+/// The EGM96 geoid, or nothing and a warning.
+std::unique_ptr<Geoid> find_geoid(const DataFolders& data, std::vector<std::string>& warnings);
+
+}  // namespace skyloop

@@ -1,0 +1,57 @@
+/// How simulated time passes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "skyloop/time/gps_time.hpp"
+
+namespace skyloop {
+
+/// Waits for instants of simulated time. Nothing else in the program reads a clock.
+class Pacer {
+public:
+    virtual ~Pacer() = default;
+    /// Returns at `time` or later and gives how late, never negative; nothing when a signal cut the wait short.
+    virtual std::optional<Nanoseconds> wait_until(GpsTime time) = 0;
+    /// How long the loop may leave the wires alone, in simulated time, while bytes are on their way or none are;
+    /// zero: until the next epoch.
+    [[nodiscard]] virtual Nanoseconds tick(bool bytes_pending) const = 0;
+    /// True when instants pass as fast as they can be computed.
+    [[nodiscard]] bool is_virtual() const { return tick(true) == Nanoseconds(0); }
+    /// Nanoseconds of a clock that never goes back, for the times of recorded bytes.
+    [[nodiscard]] virtual std::int64_t monotonic_ns(GpsTime now) const = 0;
+};
+
+/// Does not wait: a day runs in seconds, and its clock is the simulated one.
+class VirtualPacer : public Pacer {
+public:
+    explicit VirtualPacer(GpsTime start) : start_(start) {}
+    std::optional<Nanoseconds> wait_until(GpsTime) override { return Nanoseconds(0); }
+    [[nodiscard]] Nanoseconds tick(bool) const override { return Nanoseconds(0); }
+    [[nodiscard]] std::int64_t monotonic_ns(GpsTime now) const override { return (now - start_).count(); }
+
+private:
+    GpsTime start_;
+};
+
+/// The steady clock now.
+std::int64_t steady_clock_ns();
+
+/// Maps simulated time to the steady clock, at a chosen rate.
+class RealtimePacer : public Pacer {
+public:
+    /// @param start_steady_ns the steady clock's reading at which `start` is due
+    /// @param speed simulated seconds per second
+    RealtimePacer(GpsTime start, std::int64_t start_steady_ns, double speed);
+    std::optional<Nanoseconds> wait_until(GpsTime time) override;
+    [[nodiscard]] Nanoseconds tick(bool bytes_pending) const override;
+    [[nodiscard]] std::int64_t monotonic_ns(GpsTime now) const override;
+
+private:
+    GpsTime start_;
+    std::int64_t start_ns_;
+    double speed_;
+};
+
+}  // namespace skyloop

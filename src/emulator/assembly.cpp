@@ -1,0 +1,163 @@
+#include "skyloop/emulator/assembly.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "skyloop/base/digest.hpp"
+#include "skyloop/base/spelling.hpp"
+#include "skyloop/base/text_file.hpp"
+#include "skyloop/error_model/model_effects.hpp"
+#include "skyloop/gnss/constants.hpp"
+#include "skyloop/scenario/board_file.hpp"
+#include "skyloop/transport/open_transport.hpp"
+
+namespace skyloop {
+namespace {
+
+template <class... Cases>
+struct Overloaded : Cases... {
+    using Cases::operator()...;
+};
+
+ErrorModelSettings error_model_settings(const Scenario& scenario, const Geoid* geoid) {
+    const ModelSettings& model = scenario.model;
+    ErrorModelSettings settings;
+    settings.kind = model.kind;
+    settings.selection.elevation_mask = scenario.sky.elevation_mask;
+    settings.baseline = model.baseline;
+    settings.constant_sigma = model.constant_sigma;
+    settings.satellite_count = model.satellite_count;
+    settings.whole_path = model.whole_path;
+    settings.refraction = model.refraction;
+    settings.seed = scenario.run.seed;
+    settings.geoid = geoid;
+    return settings;
+}
+
+// Replaces the board's sentences by those that the scenario names.
+Result<void> choose_sentences(firmware::BoardProfile& board, const std::vector<std::string>& names) {
+    if (names.empty()) return {};
+    board.sentences.clear();
+    for (const std::string& name : names) {
+        const auto& known = firmware::nmea_sentence_names;
+        const auto found = std::find(std::begin(known), std::end(known), name);
+        if (found == std::end(known))
+            return fail(ErrorCode::usage, fmt::format("receiver.sentences: '{}' is not a sentence of this version{}", name, did_you_mean(name, known)));
+        board.sentences.push_back({static_cast<firmware::NmeaSentence>(found - std::begin(known)), 1});
+    }
+    return {};
+}
+
+Result<firmware::Receiver> make_receiver(const ReceiverEntry& entry, const DataFolders& data, std::vector<std::string>& warnings) {
+    std::vector<std::filesystem::path> folders;
+    for (const auto& folder : data.folders) folders.push_back(folder / "boards" / "receivers");
+    auto board = find_board(entry.board, folders);
+    if (!board) return fail(board.error());
+    if (entry.baud) board->baud = *entry.baud;
+    if (const auto chosen = choose_sentences(*board, entry.sentences); !chosen) return fail(chosen.error());
+    const double rate = entry.rate_hz.value_or(board->default_rate_hz);
+    if (rate > board->max_rate_hz)
+        warnings.push_back(fmt::format("{:g} Hz is more than {} can do; it runs at {:g} Hz", rate, board->name, board->max_rate_hz));
+    return firmware::Receiver(std::move(*board), rate);
+}
+
+Result<std::vector<Link>> open_links(const ReceiverEntry& entry, std::uint32_t baud) {
+    std::vector<Link> links;
+    const std::vector<std::string> uris = entry.ports.empty() ? std::vector<std::string>{"pty"} : entry.ports;
+    for (const std::string& uri : uris) {
+        auto transport = open_transport(uri);
+        if (!transport) return fail(transport.error());
+        links.emplace_back(std::move(*transport), baud);
+    }
+    return links;
+}
+
+}  // namespace
+
+std::string scenario_digest(const Scenario& scenario, GpsTime start) {
+    std::uint64_t digest = fnv1a_64(scenario.source);
+    digest = fnv1a_64(fmt::format("start {} seed {}", start.time_since_epoch().count(), scenario.run.seed), digest);
+    for (const auto& file : scenario.sky.navigation)
+        if (const auto text = read_text_file(file)) digest = fnv1a_64(*text, digest);
+    return fmt::format("{:016x}", digest);
+}
+
+std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, GpsTime start) {
+    return std::visit(Overloaded{
+                          [](const FixedSettings& fixed) -> std::unique_ptr<Trajectory> { return std::make_unique<FixedPoint>(fixed.at); },
+                          [&](const WaypointSettings& path) -> std::unique_ptr<Trajectory> {
+                              return std::make_unique<Waypoints>(start, path.corners);
+                          },
+                          [&](const CircleSettings& circle) -> std::unique_ptr<Trajectory> {
+                              return std::make_unique<Circle>(start, circle.shape);
+                          },
+                      },
+                      settings);
+}
+
+std::unique_ptr<Geoid> find_geoid(const DataFolders& data, std::vector<std::string>& warnings) {
+    std::string reason = "no data folder";
+    for (const auto& folder : data.folders) {
+        auto geoid = Geoid::open(folder / "geoids" / "egm96-15.pgm");
+        if (geoid) return std::make_unique<Geoid>(std::move(*geoid));
+        if (reason == "no data folder") reason = geoid.error().message;
+    }
+    warnings.push_back(fmt::format("{}; heights above sea level are taken as heights above the ellipsoid", reason));
+    return nullptr;
+}
+
+Simulation make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation, const Geoid* geoid, GpsTime start) {
+    const ErrorModelSettings settings = error_model_settings(scenario, geoid);
+    Simulation::Parts parts;
+    parts.trajectory = make_trajectory(scenario.trajectory, start);
+    parts.effects = model_effects(settings, scenario.atmosphere, scenario.model.link, navigation->klobuchar());
+    parts.error_model = make_error_model(settings);
+    parts.carrier = Hertz(carrier_frequency_l1);
+    parts.navigation = std::move(navigation);
+    return Simulation(std::move(parts));
+}
+
+Result<void> check_port_names(const Scenario& scenario) {
+    for (const std::string& uri : scenario.receiver.ports)
+        if (const auto checked = check_transport_name(uri); !checked) return fail(checked.error());
+    return {};
+}
+
+Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, const RunMode& mode) {
+    Assembly assembly;
+    assembly.warnings = scenario.warnings;
+    auto navigation = load_navigation(scenario, mode.now, scenario.sky.navigation.empty());
+    if (!navigation) return fail(navigation.error());
+    assembly.warnings.insert(assembly.warnings.end(), navigation->warnings.begin(), navigation->warnings.end());
+    assembly.geoid = find_geoid(data, assembly.warnings);
+    assembly.start = navigation->start;
+    if (scenario.run.duration) assembly.end = advanced(assembly.start, *scenario.run.duration);
+    assembly.digest = scenario_digest(scenario, assembly.start);
+
+    auto receiver = make_receiver(scenario.receiver, data, assembly.warnings);
+    if (!receiver) return fail(receiver.error());
+    Emulator::Parts parts{make_simulation(scenario, std::move(navigation->source), assembly.geoid.get(), assembly.start),
+                          std::move(*receiver), {}, nullptr, std::nullopt};
+    if (mode.record) {
+        auto recorder = Recorder::create(*mode.record);
+        if (!recorder) return fail(recorder.error());
+        parts.recorder = std::move(*recorder);
+    }
+    if (mode.open_ports) {
+        auto links = open_links(scenario.receiver, parts.receiver.baud());
+        if (!links) return fail(links.error());
+        parts.links = std::move(*links);
+    }
+    // Last, so that the clock starts when everything else is ready.
+    if (mode.virtual_time)
+        parts.pacer = std::make_unique<VirtualPacer>(assembly.start);
+    else
+        parts.pacer = std::make_unique<RealtimePacer>(
+            // A run that begins now keeps the wall clock's time; what loading took is not to shift it.
+            assembly.start, assembly.start == mode.now ? mode.now_steady_ns : steady_clock_ns(), scenario.run.speed);
+    assembly.emulator = std::make_unique<Emulator>(std::move(parts), assembly.start);
+    return assembly;
+}
+
+}  // namespace skyloop

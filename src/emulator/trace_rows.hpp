@@ -1,0 +1,27 @@
+/// Rows of the output tables (INTERFACE.md section 3).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "skyloop/flow/trace.hpp"
+
+namespace skyloop {
+
+inline constexpr std::string_view fixes_header =
+    "time_utc,gps_week,tow_s,true_lat_deg,true_lon_deg,true_height_m,lat_deg,lon_deg,height_m,east_error_m,north_error_m,"
+    "up_error_m,vel_north_mps,vel_east_mps,vel_down_mps,speed_mps,course_deg,fix_type,satellites_used,satellites_visible,"
+    "gdop,pdop,hdop,vdop,tdop,h_acc_m,v_acc_m\n";
+
+inline constexpr std::string_view satellites_header =
+    "time_utc,satellite,azimuth_deg,elevation_deg,range_m,line_of_sight,paths,excess_path_m,iono_delay_m,tropo_delay_m,"
+    "gas_loss_db,cloud_loss_db,rain_loss_db,cn0_dbhz,pseudorange_m,used\n";
+
+/// The row of fixes.csv of one epoch; without a position its columns are empty.
+std::string fix_row(const Trace& trace);
+
+/// The rows of satellites.csv of one epoch. `pseudorange_m` is what a receiver with a perfect clock and no noise would
+/// measure through the applied delays: sensor models that add errors to the truth measure nothing themselves.
+std::string satellite_rows(const Trace& trace);
+
+}  // namespace skyloop

@@ -1,0 +1,172 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "scenario_keys.hpp"
+
+namespace skyloop {
+namespace {
+
+using Words = std::string_view;
+
+void read_baseline(TableReader& table, ModelSettings& settings) {
+    BaselineParameters& p = settings.baseline;
+    LinkBudgetParameters& link = settings.link;
+    static constexpr std::array<Words, 2> presets{"strict", "calibrated"};
+    if (const auto preset = table.choice("preset", presets))
+        p = *preset == 0 ? BaselineParameters::strict() : BaselineParameters::calibrated();
+    table.quantity("snr_cutoff_dbhz", p.snr_cutoff, {-100, 100});
+    std::int64_t reflections = p.max_reflections;
+    table.integer("max_reflections", reflections, {0, 16});
+    p.max_reflections = static_cast<int>(reflections);
+    table.quantity("reflection_loss_db", link.reflection_loss, {0, 100});
+    static constexpr std::array<Words, 2> powers{"eirp", "received_spec"};
+    if (const auto mode = table.choice("power_mode", powers))
+        link.power_mode = *mode == 0 ? PowerMode::eirp : PowerMode::received_spec;
+    table.quantity("satellite_power_dbw", link.satellite_power, {-200, 200});
+    table.quantity("specified_received_power_dbw", link.specified_received_power, {-300, 0});
+    table.number("thermal_noise_dbw_hz", link.thermal_noise_dbw_hz, {-300, 0});
+    static constexpr std::array<Words, 2> statistics{"sample_std", "rms"};
+    if (const auto statistic = table.choice("statistic", statistics))
+        p.statistic = *statistic == 0 ? UereStatistic::sample_std : UereStatistic::rms;
+    table.number("iono_fraction", p.iono_fraction, {0, 10});
+    table.number("tropo_fraction", p.tropo_fraction, {0, 10});
+    static constexpr std::array<Words, 2> axes{"isotropic", "covariance"};
+    if (const auto axis = table.choice("axes", axes)) p.axes = *axis == 0 ? NoiseAxes::isotropic : NoiseAxes::covariance;
+}
+
+void read_simple_models(TableReader& model, ModelSettings& settings) {
+    model.table("ideal", [](TableReader&) {});
+    model.table("constant-sigma", [&](TableReader& table) {
+        table.quantity("horizontal_sigma_m", settings.constant_sigma.horizontal_sigma, {0, 1e6});
+        table.quantity("vertical_sigma_m", settings.constant_sigma.vertical_sigma, {0, 1e6});
+    });
+    model.table("satellite-count", [&](TableReader& table) {
+        const auto sigma = table.numbers("sigma_m", settings.satellite_count.sigma_m.size());
+        if (!sigma) return;
+        if (*std::min_element(sigma->begin(), sigma->end()) < 0)
+            return table.mistake("sigma_m", "has a negative number; expected standard deviations for 4, 5, 6, 7, 8, 9 or more satellites");
+        std::copy(sigma->begin(), sigma->end(), settings.satellite_count.sigma_m.begin());
+    });
+    model.table("whole-path", [&](TableReader& table) {
+        table.quantity("oxygen_height_m", settings.whole_path.oxygen_height, {0, 1e5});
+        table.quantity("vapour_height_m", settings.whole_path.vapour_height, {0, 1e5});
+        table.number("vapour_g_m3", settings.whole_path.vapour_g_m3, {0, 100});
+    });
+    model.table("refraction", [&](TableReader& table) {
+        table.number("surface_refractivity", settings.refraction.surface_refractivity, {0, 1000});
+        table.quantity("scale_height_m", settings.refraction.scale_height, {100, 1e5});
+        table.number("residual_fraction", settings.refraction.residual_fraction, {0, 10});
+    });
+}
+
+std::optional<ConcentrationMode> read_concentration(TableReader& table) {
+    static constexpr std::array<Words, 3> modes{"mean", "midpoint", "fixed"};
+    const auto mode = table.choice("concentration", modes);
+    if (!mode) return std::nullopt;
+    return std::array{ConcentrationMode::mean, ConcentrationMode::midpoint, ConcentrationMode::fixed}[*mode];
+}
+
+void read_layers(TableReader& atmosphere, AtmosphereParameters& p) {
+    // One word for all layers; a layer's own key goes before it.
+    const auto mode_of_all = read_concentration(atmosphere);
+    if (atmosphere.has("layer")) p.layers.clear();
+    atmosphere.tables("layer", [&](TableReader& table) {
+        AtmosphericLayer layer;
+        if (mode_of_all) layer.concentration = *mode_of_all;
+        table.text("name", layer.name);
+        table.quantity("base_m", layer.base, {-1000, 1e7});
+        table.quantity("top_m", layer.top, {-1000, 1e7});
+        table.number("vapour_g_m3", layer.vapour_g_m3, {0, 100});
+        table.boolean("enabled", layer.enabled);
+        if (const auto mode = read_concentration(table)) layer.concentration = *mode;
+        table.number("fixed_concentration", layer.fixed_concentration, {0, 10});
+        if (layer.top <= layer.base)
+            table.mistake_here(fmt::format("top_m is {:g}; expected more than base_m, {:g}", layer.top.value(), layer.base.value()));
+        p.layers.push_back(layer);
+    });
+    if (mode_of_all && !atmosphere.has("layer")) {
+        p.layers = default_layers();
+        for (AtmosphericLayer& layer : p.layers) layer.concentration = *mode_of_all;
+    }
+}
+
+void read_clouds(TableReader& atmosphere, AtmosphereParameters& p) {
+    const std::vector<CloudDeck>& catalogue = cloud_catalogue();
+    std::vector<Words> kinds;
+    for (const CloudDeck& deck : catalogue) kinds.push_back(deck.kind);
+    atmosphere.tables("cloud", [&](TableReader& table) {
+        const auto kind = table.choice("kind", kinds);
+        if (!table.has("kind")) table.mistake_here("has no kind; expected fog, stratus, … thunderstorm");
+        CloudDeck deck = catalogue[kind.value_or(0)];
+        Metres thickness = deck.top - deck.base;
+        table.quantity("base_m", deck.base, {0, 30000});
+        table.quantity("thickness_m", thickness, {1, 30000});
+        table.number("density_g_m3", deck.density_g_m3, {0, 100});
+        deck.top = deck.base + thickness;
+        p.clouds.push_back(deck);
+    });
+    atmosphere.boolean("clouds_apply_concentration", p.clouds_apply_concentration);
+}
+
+void read_rain(TableReader& atmosphere, AtmosphereParameters& p) {
+    atmosphere.number("rain_mm_h", p.rain.rate_mm_h, {0, 500});
+    atmosphere.quantity("rain_top_m", p.rain.top, {0, 30000});
+    static constexpr std::array<Words, 2> models{"p838", "as_vapour"};
+    if (const auto model = atmosphere.choice("rain_model", models)) p.rain.model = *model == 0 ? RainModel::p838 : RainModel::as_vapour;
+}
+
+void read_environment(TableReader& atmosphere, AtmosphereParameters& p) {
+    std::vector<Words> names;
+    for (const Environment& e : environment_catalogue()) names.push_back(e.name);
+    if (const auto index = atmosphere.choice("environment", names)) p.environment_noise = environment_catalogue()[*index].noise;
+    if (atmosphere.has("environment") && atmosphere.has("environment_noise_db"))
+        atmosphere.mistake("environment_noise_db", "stands beside environment; expected one of the two");
+    atmosphere.quantity("environment_noise_db", p.environment_noise, {0, 100});
+}
+
+void read_ionosphere(TableReader& atmosphere, AtmosphereParameters& p) {
+    static constexpr std::array<Words, 3> sources{"automatic", "header", "constant"};
+    // A number given is a number meant: it switches the broadcast coefficients off unless the source is named as well.
+    if (atmosphere.has("total_electron_content_tecu")) p.tec_source = TecSource::constant;
+    if (const auto source = atmosphere.choice("tec_source", sources))
+        p.tec_source = std::array{TecSource::automatic, TecSource::header, TecSource::constant}[*source];
+    atmosphere.quantity("total_electron_content_tecu", p.total_electron_content, {0, 1000});
+    atmosphere.quantity("ionosphere_loss_db", p.ionosphere_loss, {0, 100});
+    atmosphere.quantity("riometer_absorption_30mhz_db", p.riometer_absorption_30mhz, {0, 100});
+}
+
+}  // namespace
+
+void read_model_keys(TableReader& model, ModelSettings& settings) {
+    static constexpr std::array<Words, 7> names{"ideal", "constant-sigma", "satellite-count", "whole-path", "refraction", "baseline", "modern"};
+    if (const auto kind = model.choice("name", names)) {
+        if (names[*kind] == "modern")
+            model.mistake("name", "the modern model is not in this version; expected baseline or one of the simpler models");
+        else
+            settings.kind = *error_model_kind(names[*kind]);
+    }
+    model.refuse("errors", "belongs to the modern model, which is not in this version");
+    model.table("baseline", [&](TableReader& table) { read_baseline(table, settings); });
+    read_simple_models(model, settings);
+}
+
+void read_atmosphere_keys(TableReader& atmosphere, AtmosphereParameters& p) {
+    atmosphere.quantity("sea_level_temperature_k", p.sea_level_temperature, {100, 400});
+    atmosphere.number("gravity_mps2", p.gravity_mps2, NumberRange::positive());
+    atmosphere.number("molar_mass_kg_per_mol", p.molar_mass_kg_per_mol, NumberRange::positive());
+    atmosphere.number("gas_constant_j_per_mol_k", p.gas_constant, NumberRange::positive());
+    atmosphere.quantity("earth_radius_m", p.earth_radius, {1e6, 1e7});
+    atmosphere.number("oxygen_constant_ghz2", p.oxygen_constant, NumberRange::positive());
+    atmosphere.quantity("zenith_dry_delay_m", p.zenith_dry_delay, {0, 100});
+    atmosphere.number("zenith_dry_decay_per_m", p.zenith_dry_decay_per_m, {0, 1});
+    atmosphere.quantity("zenith_wet_delay_m", p.zenith_wet_delay, {0, 100});
+    read_layers(atmosphere, p);
+    read_clouds(atmosphere, p);
+    read_rain(atmosphere, p);
+    read_environment(atmosphere, p);
+    read_ionosphere(atmosphere, p);
+}
+
+}  // namespace skyloop

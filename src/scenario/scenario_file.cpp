@@ -1,0 +1,158 @@
+#include "skyloop/scenario/scenario_file.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "scenario_keys.hpp"
+#include "skyloop/base/spelling.hpp"
+#include "skyloop/base/text_file.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr double most_years_s = 100 * 366.0 * 86400;  // a run's span stays far inside 64-bit nanoseconds
+
+void read_run_keys(TableReader& run, RunSettings& settings) {
+    std::string start;
+    run.utc("start", start);
+    if (start == "now") {
+        settings.start_now = true;
+    } else if (!start.empty()) {
+        const auto utc = parse_utc(start);
+        if (utc)
+            settings.start = to_gps_time(*utc, LeapSeconds::announced());
+        else
+            run.mistake("start", utc.error().message + ", or \"now\"");
+    }
+    if (run.has("duration_s")) {
+        double duration = 1;
+        run.number("duration_s", duration, {std::numeric_limits<double>::min(), most_years_s});
+        settings.duration = Seconds(duration);
+    }
+    std::int64_t seed = 1;
+    run.integer("seed", seed, NumberRange::not_negative());
+    settings.seed = static_cast<std::uint64_t>(seed);
+    run.number("speed", settings.speed, {1e-3, 1e6});
+}
+
+void read_constellations(TableReader& sky, std::vector<Constellation>& constellations) {
+    std::vector<std::string> names;
+    sky.texts("constellations", names);
+    static constexpr std::array<std::string_view, 7> known{"gps", "galileo", "beidou", "glonass", "qzss", "sbas", "navic"};
+    for (const std::string& name : names) {
+        const auto constellation = constellation_from_name(name);
+        if (constellation)
+            constellations.push_back(*constellation);
+        else
+            sky.mistake("constellations", fmt::format("'{}' is not a constellation{}", name, did_you_mean(name, known)));
+    }
+}
+
+void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesystem::path& folder) {
+    std::vector<std::string> files;
+    sky.text_or_texts("navigation", files);
+    for (const std::string& file : files) settings.navigation.push_back(folder / file);
+    sky.boolean("rebase_navigation", settings.rebase_navigation);
+    read_constellations(sky, settings.constellations);
+    double mask = settings.elevation_mask.deg();
+    sky.number("elevation_mask_deg", mask, {0, 90});
+    settings.elevation_mask = Angle::degrees(mask);
+    static constexpr std::array<std::string_view, 2> rules{"forward", "nearest"};
+    if (const auto rule = sky.choice("ephemeris_rule", rules))
+        settings.ephemeris_rule = *rule == 0 ? EphemerisRule::forward : EphemerisRule::nearest;
+    sky.quantity("ephemeris_validity_s", settings.ephemeris_validity, {1, 14 * 86400.0});
+}
+
+void read_receiver_keys(TableReader& receiver, ReceiverEntry& entry) {
+    receiver.text("board", entry.board);
+    receiver.text_or_texts("port", entry.ports);
+    if (receiver.has("rate_hz")) {
+        double rate = 1;
+        receiver.number("rate_hz", rate, {0.01, 100});
+        entry.rate_hz = rate;
+    }
+    if (receiver.has("baud")) {
+        std::int64_t baud = 9600;
+        receiver.integer("baud", baud, {300, 4e6});
+        entry.baud = static_cast<std::uint32_t>(baud);
+    }
+    receiver.texts("sentences", entry.sentences);
+    receiver.refuse("antenna_offset_m", "a lever arm needs the vehicle's attitude, which this version does not have");
+}
+
+void read_receivers(TableReader& top, Scenario& scenario) {
+    int count = 0;
+    top.tables("receiver", [&](TableReader& receiver) {
+        if (++count > 1) receiver.mistake_here("a second receiver; this version runs one");
+        read_receiver_keys(receiver, scenario.receiver);
+    });
+}
+
+// What INTERFACE names and later versions will read.
+void refuse_later_keys(TableReader& top) {
+    top.refuse("scene", "buildings are not in this version");
+    top.refuse("fault", "faults are not in this version");
+    top.refuse("command", "commands are not in this version");
+    top.refuse("expect", "verdicts are not in this version");
+}
+
+void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
+    top.table("run", [&](TableReader& t) { read_run_keys(t, scenario.run); });
+    top.table("sky", [&](TableReader& t) { read_sky_keys(t, scenario.sky, folder); });
+    read_trajectory_keys(top, scenario);
+    top.table("model", [&](TableReader& t) { read_model_keys(t, scenario.model); });
+    top.table("atmosphere", [&](TableReader& t) { read_atmosphere_keys(t, scenario.atmosphere); });
+    read_receivers(top, scenario);
+    refuse_later_keys(top);
+}
+
+// Parses TOML and reads its top table with `body`; every mistake is a line of the error.
+template <class Body>
+Result<void> read_toml(std::string_view text, const std::filesystem::path& file, Body&& body) {
+    try {
+        const toml::table table = toml::parse(text, file.string());
+        MistakeList mistakes(file.string());
+        TableReader top(table, {}, mistakes);
+        body(top);
+        top.finish();
+        if (!mistakes.empty()) return fail(ErrorCode::input, mistakes.text());
+        return {};
+    } catch (const toml::parse_error& error) {
+        const auto where = error.source().begin;
+        return fail(ErrorCode::input, fmt::format("{}:{}:{}: {}", file.string(), where.line, where.column, error.description()));
+    }
+}
+
+}  // namespace
+
+Result<Scenario> read_scenario(std::string_view text, const std::filesystem::path& file) {
+    Scenario scenario;
+    scenario.name = file.string();
+    scenario.source = text;
+    const auto read = read_toml(text, file, [&](TableReader& top) { read_top_keys(top, scenario, file.parent_path()); });
+    if (!read) return fail(read.error());
+    return scenario;
+}
+
+Result<Scenario> read_scenario_file(const std::filesystem::path& file) {
+    constexpr std::size_t largest = std::size_t{16} << 20;
+    const auto text = read_text_file(file, largest);
+    if (!text) return fail(text.error());
+    return read_scenario(*text, file);
+}
+
+Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& file) {
+    const auto text = read_text_file(file);
+    if (!text) return fail(text.error());
+    Scenario scenario;
+    const auto read = read_toml(*text, file, [&](TableReader& top) {
+        if (!top.has("trajectory")) top.mistake_here("no [trajectory] table in this file");
+        read_trajectory_keys(top, scenario);
+    });
+    if (!read) return fail(read.error());
+    return scenario.trajectory;
+}
+
+}  // namespace skyloop

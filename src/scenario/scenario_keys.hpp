@@ -1,0 +1,15 @@
+/// The keys of each part of a scenario file.
+#pragma once
+
+#include "skyloop/scenario/scenario.hpp"
+#include "table_reader.hpp"
+
+namespace skyloop {
+
+void read_model_keys(TableReader& model, ModelSettings& settings);
+void read_atmosphere_keys(TableReader& atmosphere, AtmosphereParameters& parameters);
+
+/// Reads [frame] and [trajectory] of a file's top table.
+void read_trajectory_keys(TableReader& top, Scenario& scenario);
+
+}  // namespace skyloop

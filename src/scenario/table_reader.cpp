@@ -1,0 +1,224 @@
+#include "table_reader.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "skyloop/base/spelling.hpp"
+
+namespace skyloop {
+namespace {
+
+std::string_view type_words(const toml::node& node) {
+    switch (node.type()) {
+        case toml::node_type::string: return "a text";
+        case toml::node_type::integer: return "a whole number";
+        case toml::node_type::floating_point: return "a number";
+        case toml::node_type::boolean: return "true or false";
+        case toml::node_type::array: return "a list";
+        case toml::node_type::table: return "a table";
+        default: return "a date or time";
+    }
+}
+
+std::string range_words(NumberRange range) {
+    constexpr double most = std::numeric_limits<double>::max();
+    const bool above = range.least > -most;
+    const bool below = range.most < most;
+    if (range.least == std::numeric_limits<double>::min() && !below) return "a number above 0";
+    if (above && below) return fmt::format("a number from {} to {}", range.least, range.most);
+    if (above) return fmt::format("a number of {} or more", range.least);
+    if (below) return fmt::format("a number of {} or less", range.most);
+    return "a finite number";
+}
+
+}  // namespace
+
+void MistakeList::add(const toml::source_region& where, const std::string& sentence) {
+    mistakes_.push_back({where.begin.line, where.begin.column, sentence});
+}
+
+std::string MistakeList::text() const {
+    std::vector<Mistake> sorted = mistakes_;
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Mistake& a, const Mistake& b) {
+        return std::pair(a.line, a.column) < std::pair(b.line, b.column);
+    });
+    std::string lines;
+    for (const Mistake& m : sorted)
+        lines += fmt::format("{}{}:{}:{}: {}", lines.empty() ? "" : "\n", file_, m.line, m.column, m.sentence);
+    return lines;
+}
+
+const toml::node* TableReader::find(std::string_view key) {
+    known_.push_back(key);
+    return table_.get(key);
+}
+
+std::string TableReader::path_of(std::string_view key) const {
+    return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
+void TableReader::mistake(std::string_view key, const std::string& sentence) {
+    const toml::node* node = table_.get(key);
+    mistakes_.add(node ? node->source() : table_.source(), fmt::format("{}: {}", path_of(key), sentence));
+}
+
+void TableReader::wrong_type(std::string_view key, const toml::node& node, std::string_view expected) {
+    mistake(key, fmt::format("is {}; expected {}", type_words(node), expected));
+}
+
+void TableReader::number(std::string_view key, double& value, NumberRange range) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    const auto found = node->value<double>();
+    if (!found || node->is_boolean()) return wrong_type(key, *node, range_words(range));
+    if (!std::isfinite(*found) || *found < range.least || *found > range.most)
+        return mistake(key, fmt::format("is {}; expected {}", *found, range_words(range)));
+    value = *found;
+}
+
+void TableReader::integer(std::string_view key, std::int64_t& value, NumberRange range) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    const auto* found = node->as_integer();
+    if (!found) return wrong_type(key, *node, "a whole number");
+    const auto number = static_cast<double>(found->get());
+    if (number < range.least || number > range.most)
+        return mistake(key, fmt::format("is {}; expected {}", found->get(), range_words(range)));
+    value = found->get();
+}
+
+void TableReader::boolean(std::string_view key, bool& value) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    const auto* found = node->as_boolean();
+    if (!found) return wrong_type(key, *node, "true or false");
+    value = found->get();
+}
+
+void TableReader::text(std::string_view key, std::string& value) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    const auto* found = node->as_string();
+    if (!found) return wrong_type(key, *node, "a text in quotes");
+    value = found->get();
+}
+
+void TableReader::utc(std::string_view key, std::string& value) {
+    const auto* found = table_.get(key) ? table_.get(key)->as_date_time() : nullptr;
+    if (found == nullptr) return text(key, value);
+    known_.push_back(key);
+    const toml::date_time& t = found->get();
+    if (t.offset && t.offset->minutes != 0) return mistake(key, "has an offset from UTC; expected UTC, ending in Z");
+    value = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:09}Z", t.date.year, t.date.month, t.date.day, t.time.hour,
+                        t.time.minute, t.time.second, t.time.nanosecond);
+}
+
+void TableReader::texts(std::string_view key, std::vector<std::string>& values) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    const auto* list = node->as_array();
+    if (!list) return wrong_type(key, *node, "a list of texts");
+    std::vector<std::string> found;
+    for (const toml::node& item : *list) {
+        const auto* word = item.as_string();
+        if (!word) return wrong_type(key, item, "a list of texts");
+        found.push_back(word->get());
+    }
+    values = std::move(found);
+}
+
+void TableReader::text_or_texts(std::string_view key, std::vector<std::string>& values) {
+    const toml::node* node = table_.get(key);
+    if (node == nullptr || !node->is_string()) return texts(key, values);
+    std::string single;
+    text(key, single);
+    values = {single};
+}
+
+std::optional<std::vector<double>> TableReader::numbers(std::string_view key, std::size_t count) {
+    const toml::node* node = find(key);
+    if (!node) return std::nullopt;
+    const std::string expected = fmt::format("a list of {} numbers", count);
+    const auto* list = node->as_array();
+    if (!list) return wrong_type(key, *node, expected), std::nullopt;
+    std::vector<double> values;
+    for (const toml::node& item : *list) {
+        const auto value = item.is_number() ? item.value<double>() : std::nullopt;
+        if (!value || !std::isfinite(*value)) return wrong_type(key, item, expected), std::nullopt;
+        values.push_back(*value);
+    }
+    if (values.size() != count) {
+        mistake(key, fmt::format("has {} numbers; expected {}", values.size(), count));
+        return std::nullopt;
+    }
+    return values;
+}
+
+std::optional<Geodetic> TableReader::place(std::string_view key) {
+    const auto* list = table_.get(key) ? table_.get(key)->as_array() : nullptr;
+    const std::size_t count = list && list->size() == 2 ? 2 : 3;
+    const auto values = numbers(key, count);
+    if (!values) return std::nullopt;
+    const double latitude = (*values)[0];
+    const double longitude = (*values)[1];
+    const double height = count == 3 ? (*values)[2] : 0;
+    if (std::abs(latitude) > 90) return mistake(key, fmt::format("latitude is {}; expected -90 to 90 degrees", latitude)), std::nullopt;
+    if (std::abs(longitude) > 360)
+        return mistake(key, fmt::format("longitude is {}; expected -180 to 180 degrees", longitude)), std::nullopt;
+    if (height < -1e4 || height > 1e7)
+        return mistake(key, fmt::format("height is {}; expected metres above the ellipsoid, -10 000 to 10 000 000", height)), std::nullopt;
+    return Geodetic::degrees(latitude, std::remainder(longitude, 360), height);
+}
+
+std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<const std::string_view> words) {
+    std::string word;
+    text(key, word);
+    if (word.empty()) return std::nullopt;
+    const auto found = std::find(words.begin(), words.end(), word);
+    if (found == words.end()) {
+        mistake(key, fmt::format("is '{}'; expected one of {}{}", word, fmt::join(words, " "), did_you_mean(word, words)));
+        return std::nullopt;
+    }
+    return static_cast<std::size_t>(found - words.begin());
+}
+
+void TableReader::table(std::string_view key, const std::function<void(TableReader&)>& body) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    const auto* inner = node->as_table();
+    if (!inner) return wrong_type(key, *node, "a table");
+    TableReader reader(*inner, path_of(key), mistakes_);
+    body(reader);
+    reader.finish();
+}
+
+void TableReader::tables(std::string_view key, const std::function<void(TableReader&)>& body) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    const auto* list = node->as_array();
+    if (!list) return wrong_type(key, *node, fmt::format("a list of tables, each headed [[{}]]", path_of(key)));
+    for (const toml::node& item : *list) {
+        const auto* inner = item.as_table();
+        if (!inner) return wrong_type(key, item, fmt::format("a list of tables, each headed [[{}]]", path_of(key)));
+        TableReader reader(*inner, path_of(key), mistakes_);
+        body(reader);
+        reader.finish();
+    }
+}
+
+void TableReader::refuse(std::string_view key, const std::string& reason) {
+    if (find(key)) mistake(key, reason);
+}
+
+void TableReader::finish() {
+    for (const auto& [key, node] : table_) {
+        const std::string_view word = key.str();
+        if (std::find(known_.begin(), known_.end(), word) != known_.end()) continue;
+        mistakes_.add(key.source(), fmt::format("{}: unknown key{}", path_of(word), did_you_mean(word, known_)));
+    }
+}
+
+}  // namespace skyloop

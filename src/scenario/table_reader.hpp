@@ -1,0 +1,100 @@
+/// One table of a TOML file, read key by key; what is left over at the end is an unknown key.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skyloop/geo/geodetic.hpp"
+
+namespace skyloop {
+
+/// Where mistakes of one file are collected, a line each.
+class MistakeList {
+public:
+    explicit MistakeList(std::string file) : file_(std::move(file)) {}
+    void add(const toml::source_region& where, const std::string& sentence);
+    [[nodiscard]] bool empty() const { return mistakes_.empty(); }
+    /// All lines, in the order of the file.
+    [[nodiscard]] std::string text() const;
+
+private:
+    struct Mistake {
+        toml::source_index line, column;
+        std::string sentence;
+    };
+    std::string file_;
+    std::vector<Mistake> mistakes_;
+};
+
+/// Which numbers a key takes.
+struct NumberRange {
+    double least = -std::numeric_limits<double>::max();
+    double most = std::numeric_limits<double>::max();
+    static NumberRange positive() { return {std::numeric_limits<double>::min()}; }
+    static NumberRange not_negative() { return {0}; }
+};
+
+/// Reads the keys of one table. A key that is absent leaves the given value as it is; a key of the wrong type or out of
+/// range is a mistake. `finish()` makes every key that nobody asked for a mistake that suggests the nearest known one.
+class TableReader {
+public:
+    TableReader(const toml::table& table, std::string path, MistakeList& mistakes)
+        : table_(table), path_(std::move(path)), mistakes_(mistakes) {}
+
+    void number(std::string_view key, double& value, NumberRange range = {});
+    void boolean(std::string_view key, bool& value);
+    void text(std::string_view key, std::string& value);
+    void texts(std::string_view key, std::vector<std::string>& values);
+    /// A text or a list of texts.
+    void text_or_texts(std::string_view key, std::vector<std::string>& values);
+    void integer(std::string_view key, std::int64_t& value, NumberRange range = {});
+    /// A list of exactly `count` numbers.
+    std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count);
+    /// [latitude, longitude] or [latitude, longitude, height]: degrees, metres above the ellipsoid.
+    std::optional<Geodetic> place(std::string_view key);
+    /// A UTC time as ISO 8601 text, given as a text or as a TOML date and time.
+    void utc(std::string_view key, std::string& value);
+    /// One of the given words; gives its index.
+    std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> words);
+
+    /// A quantity of one unit, kept in `Quantity`.
+    template <class Quantity>
+    void quantity(std::string_view key, Quantity& value, NumberRange range = {}) {
+        double number_value = value.value();
+        number(key, number_value, range);
+        value = Quantity(number_value);
+    }
+
+    /// Reads a sub-table with `body` and finishes it.
+    void table(std::string_view key, const std::function<void(TableReader&)>& body);
+    /// Reads each table of a list with `body` and finishes it.
+    void tables(std::string_view key, const std::function<void(TableReader&)>& body);
+    /// Says why a key that other versions know is refused here.
+    void refuse(std::string_view key, const std::string& reason);
+
+    [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
+    void mistake(std::string_view key, const std::string& sentence);
+    void mistake_here(const std::string& sentence) { mistakes_.add(table_.source(), where() + sentence); }
+    void finish();
+
+private:
+    const toml::node* find(std::string_view key);
+    [[nodiscard]] std::string where() const { return path_.empty() ? std::string() : "[" + path_ + "] "; }
+    [[nodiscard]] std::string path_of(std::string_view key) const;
+    void wrong_type(std::string_view key, const toml::node& node, std::string_view expected);
+
+    const toml::table& table_;
+    std::string path_;
+    MistakeList& mistakes_;
+    std::vector<std::string_view> known_;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "scenario_keys.hpp"
+
+namespace skyloop {
+namespace {
+
+// Reads places that may be given on the Earth or in the coordinates of a game level.
+class PlaceReader {
+public:
+    PlaceReader(std::optional<LevelFrame> level, Scenario& scenario) : level_(std::move(level)), scenario_(scenario) {}
+
+    // `key` = [lat, lon, height], or `key`_level = [x, y, z].
+    std::optional<Geodetic> read(TableReader& table, const std::string& key) {
+        const std::string level_key = key + "_level";
+        const auto on_earth = table.place(key);
+        const auto in_level = table.numbers(level_key, 3);
+        if (on_earth && in_level) table.mistake(level_key, fmt::format("stands beside {}; expected one of the two", key));
+        if (!in_level) return on_earth;
+        if (!level_) {
+            table.mistake(level_key, "needs a [frame] that says where the level lies");
+            return std::nullopt;
+        }
+        const Position<Level> point((*in_level)[0], (*in_level)[1], (*in_level)[2]);
+        if (level_->beyond_reach(point)) warn_beyond_reach(point);
+        return to_geodetic(level_->to_ecef(point));
+    }
+
+private:
+    void warn_beyond_reach(const Position<Level>& point) {
+        const LevelPlacement& placement = level_->placement();
+        scenario_.warnings.push_back(fmt::format(
+            "level point ({:g}, {:g}, {:g}) lies {:.0f} m from the frame's origin; beyond {:.0f} m a plane leaves the curved "
+            "Earth (by {:.1f} m there): anchor the frame nearer",
+            point.vector().x(), point.vector().y(), point.vector().z(),
+            point.vector().head<2>().norm() * placement.unit.value(), placement.reach.value(),
+            point.vector().head<2>().squaredNorm() * std::pow(placement.unit.value(), 2) / (2 * 6371e3)));
+    }
+
+    std::optional<LevelFrame> level_;
+    Scenario& scenario_;
+};
+
+std::optional<LevelFrame> read_frame(TableReader& top) {
+    std::optional<LevelFrame> frame;
+    top.table("frame", [&](TableReader& table) {
+        LevelPlacement placement;
+        const auto origin = table.place("origin");
+        if (!table.has("origin")) table.mistake_here("has no origin; expected origin = [latitude, longitude, height]");
+        if (origin) placement.origin = *origin;
+        double yaw = 0;
+        table.number("yaw_deg", yaw, {-360, 360});
+        placement.yaw = Angle::degrees(yaw);
+        table.quantity("unit_m", placement.unit, {1e-6, 1e6});
+        table.boolean("left_handed", placement.left_handed);
+        table.quantity("reach_m", placement.reach, NumberRange::positive());
+        frame.emplace(placement);
+    });
+    return frame;
+}
+
+void read_fixed(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
+    FixedSettings fixed;
+    if (const auto at = places.read(table, "at"))
+        fixed.at = *at;
+    else if (!table.has("at") && !table.has("at_level"))
+        table.mistake_here("kind \"fixed\" has no place; expected at = [latitude, longitude, height]");
+    trajectory = fixed;
+}
+
+void read_waypoints(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
+    WaypointSettings path;
+    table.tables("waypoint", [&](TableReader& row) {
+        Waypoint corner;
+        if (!path.corners.empty()) corner.speed = path.corners.back().speed;
+        if (const auto at = places.read(row, "at"))
+            corner.place = *at;
+        else if (!row.has("at") && !row.has("at_level"))
+            row.mistake_here("has no place; expected at = [latitude, longitude, height]");
+        row.quantity("speed_mps", corner.speed, {1e-3, 12000});
+        row.quantity("hold_s", corner.hold, {0, 1e7});
+        path.corners.push_back(corner);
+    });
+    if (path.corners.size() < 2)
+        table.mistake_here(fmt::format("kind \"waypoints\" has {} waypoints; expected two or more [[trajectory.waypoint]]",
+                                       path.corners.size()));
+    trajectory = path;
+}
+
+void read_circle(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
+    CircleSettings circle;
+    if (const auto centre = places.read(table, "centre"))
+        circle.shape.centre = *centre;
+    else if (!table.has("centre") && !table.has("centre_level"))
+        table.mistake_here("kind \"circle\" has no centre; expected centre = [latitude, longitude, height]");
+    table.quantity("radius_m", circle.shape.radius, {0.1, 1e6});
+    table.quantity("speed_mps", circle.shape.speed, {-12000, 12000});
+    double azimuth = 0;
+    table.number("start_azimuth_deg", azimuth, {-360, 360});
+    circle.shape.start_azimuth = Angle::degrees(azimuth);
+    trajectory = circle;
+}
+
+}  // namespace
+
+void read_trajectory_keys(TableReader& top, Scenario& scenario) {
+    PlaceReader places(read_frame(top), scenario);
+    top.table("trajectory", [&](TableReader& table) {
+        static constexpr std::array<std::string_view, 5> kinds{"fixed", "waypoints", "circle", "file", "live"};
+        const auto kind = table.choice("kind", kinds);
+        if (!table.has("kind")) table.mistake_here("has no kind; expected kind = \"fixed\", \"waypoints\" or \"circle\"");
+        switch (kind.value_or(kinds.size())) {
+            case 0: return read_fixed(table, places, scenario.trajectory);
+            case 1: return read_waypoints(table, places, scenario.trajectory);
+            case 2: return read_circle(table, places, scenario.trajectory);
+            case 3: table.refuse("path", "recorded trajectories are not in this version"); break;
+            case 4: table.refuse("source", "live trajectories are not in this version"); break;
+            default: return;
+        }
+        table.mistake("kind", "recorded and live trajectories are not in this version; expected fixed, waypoints or circle");
+    });
+}
+
+}  // namespace skyloop

@@ -1,0 +1,174 @@
+"""What a user may type wrongly: one clear line, the right exit code, never a crash or silence."""
+import json
+import os
+import pathlib
+import unittest
+
+from session import SHARED, open_folder, skyloop
+
+# Arguments, exit code, words that the line must hold.
+MISUSES = [
+    (["fly"], 2, ["fly", "expected one of"]),
+    (["siumlate"], 2, ["did you mean 'simulate'"]),
+    (["decode"], 2, ["does not have the command 'decode'"]),
+    (["run", "--at", "91,0"], 2, ["--at 91,0", "latitude is 91", "-90 to 90"]),
+    (["run", "--at", "46"], 2, ["--at 46", "LAT,LON"]),
+    (["run", "--at", "nan,0"], 2, ["--at nan,0"]),
+    (["run", "--at", "46,30,"], 2, ["--at 46,30,"]),
+    (["run", "--model", "modern"], 2, ["--model modern", "not in this version", "baseline"]),
+    (["run", "--model", "basline"], 2, ["did you mean 'baseline'"]),
+    (["run", "--scene", "x.obj"], 2, ["--scene"]),
+    (["run", "--control", "8080"], 2, ["--control"]),
+    (["run", "--trajectory", "x.gpx"], 2, ["--trajectory x.gpx", ".toml"]),
+    (["run", "--port", "serial:/dev/ttyS0"], 2, ["serial"]),
+    (["run", "--port", "pyt:x"], 2, ["did you mean 'pty'"]),
+    (["run", "--port", "pty:/no/such/folder/gps0"], 1, ["/no/such/folder/gps0"]),
+    (["run", "--board", "ublox-m88"], 2, ["ublox-m88", "did you mean"]),
+    (["run", "--nav", "/no/such/file.21n"], 1, ["/no/such/file.21n"]),
+    (["run", "--start", "yesterday"], 2, ["--start", "yesterday"]),
+    (["run", "--start", "2024-02-30T00:00:00Z"], 2, ["2024-02-30"]),
+    (["run", "--duration", "-1"], 2, ["--duration -1"]),
+    (["run", "--duration", "nan"], 2, ["--duration"]),
+    (["run", "--rate", "0"], 2, ["--rate 0"]),
+    (["run", "--speed", "fast"], 2, ["--speed fast"]),
+    (["run", "--rebase-nav"], 2, ["--rebase-nav", "--nav"]),
+    (["run", "--sede", "1"], 2, ["--sede"]),
+    (["simulate", "--out", "x"], 2, ["--duration"]),
+    (["simulate", "--duration", "1"], 2, ["--out"]),
+    (["check", "/no/such/scenario.toml"], 1, ["/no/such/scenario.toml"]),
+    (["sky", "--format", "png"], 2, ["--format", "svg"]),
+    (["boards", "nothing"], 2, ["nothing"]),
+    (["compare", "/no/a.csv", "/no/b.csv"], 1, ["/no/a.csv"]),
+]
+
+SCENARIO_MISTAKES = [
+    ("[run]\nsede = 3\n", ["s.toml:2:1", "run.sede", "did you mean 'seed'"]),
+    ("[model]\nname = \"modern\"\n", ["s.toml:2", "model.name", "not in this version"]),
+    ("[trajectory]\nkind = \"fixed\"\nat = [91, 0, 0]\n", ["s.toml:3", "latitude is 91"]),
+    ("[trajectory]\nkind = \"fixed\"\nat_level = [1, 2, 3]\n", ["s.toml:3", "[frame]"]),
+    ("[[atmosphere.cloud]]\nkind = \"thunderstrom\"\n", ["s.toml:2", "did you mean 'thunderstorm'"]),
+    ("[sky]\nelevation_mask_deg = \"five\"\n", ["s.toml:2", "is a text", "number"]),
+    ("[sky]\nelevation_mask_deg = nan\n", ["s.toml:2", "nan"]),
+    ("[[fault]]\nkind = \"outage\"\n", ["s.toml:1", "faults are not in this version"]),
+    ("[run\n", ["s.toml:1"]),
+    ("[model.baseline]\nstatistic = \"mean\"\n", ["sample_std rms"]),
+    ("[run]\nduration_s = 1e300\n", ["run.duration_s"]),
+    ("[[receiver]]\n[[receiver]]\n", ["s.toml:2", "this version runs one"]),
+]
+
+
+class CommandLineTest(unittest.TestCase):
+    def assert_refused(self, arguments, code, words):
+        done = skyloop(*arguments, check=False)
+        self.assertEqual(done.returncode, code, f"{arguments}: {done.stderr}")
+        for word in words:
+            self.assertIn(word, done.stderr, arguments)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+
+    def test_misuses_are_told_in_one_line(self):
+        for arguments, code, words in MISUSES:
+            with self.subTest(" ".join(arguments)):
+                self.assert_refused(arguments, code, words)
+
+    def test_scenario_mistakes_name_line_and_key(self):
+        with open_folder() as folder:
+            path = pathlib.Path(folder, "s.toml")
+            for text, words in SCENARIO_MISTAKES:
+                with self.subTest(text):
+                    path.write_text(text, encoding="utf-8")
+                    self.assert_refused(["check", path], 2, words)
+
+    def test_every_mistake_of_a_scenario_is_told(self):
+        with open_folder() as folder:
+            path = pathlib.Path(folder, "s.toml")
+            path.write_text("[run]\nsede = 1\n[sky]\nmask = 3\n", encoding="utf-8")
+            done = skyloop("check", path, check=False)
+            self.assertEqual(done.returncode, 2)
+            self.assertEqual(len(done.stderr.splitlines()), 2, done.stderr)
+
+    def test_broken_navigation_files_are_refused_in_one_line(self):
+        broken = {"empty.10n": b"", "binary.10n": bytes(range(256)) * 64, "text.10n": b"hello\nworld\n" * 100,
+                  "damaged.10n.gz": b"\x1f\x8b\x08\x00" + b"\x55" * 200}
+        with open_folder() as folder:
+            for name, content in broken.items():
+                path = pathlib.Path(folder, name)
+                path.write_bytes(content)
+                with self.subTest(name):
+                    self.assert_refused(["check", "--nav", path], 2, [name])
+
+    def test_start_outside_the_data_is_one_warning_and_no_fix(self):
+        navigation = SHARED / "nav/brdc1820.10n"
+        if not navigation.exists():
+            self.skipTest(f"shared data absent: {navigation}")
+        with open_folder() as folder:
+            done = skyloop("simulate", "--nav", navigation, "--start", "2020-01-01T00:00:00Z", "--duration", 5, "--out", folder)
+            warnings = [line for line in done.stderr.splitlines() if "starts outside" in line]
+            self.assertEqual(len(warnings), 1, done.stderr)
+            self.assertIn("2010-06-30", warnings[0])
+            rows = pathlib.Path(folder, "fixes.csv").read_text(encoding="ascii").splitlines()[1:]
+            self.assertEqual(len(rows), 5)
+            for row in rows:
+                self.assertEqual(row.split(",")[17], "none")
+                self.assertEqual(row.split(",")[6], "")
+            rebased = skyloop("simulate", "--nav", navigation, "--start", "2020-01-01T12:00:00Z", "--duration", 5,
+                              "--out", folder, "--rebase-nav")
+            self.assertIn("5 with a fix", rebased.stderr)
+
+    def test_foreign_record_is_dropped_with_a_warning(self):
+        navigation = SHARED / "nav/brdc1820.10n"
+        if not navigation.exists():
+            self.skipTest(f"shared data absent: {navigation}")
+        done = skyloop("check", "--nav", navigation)
+        told = [line for line in done.stderr.splitlines() if "G01" in line and "dropped" in line]
+        self.assertEqual(len(told), 1, done.stderr)
+
+    def test_fewer_than_four_satellites_give_no_fix_and_the_run_goes_on(self):
+        with open_folder() as folder:
+            skyloop("simulate", "--duration", 5, "--start", "2026-01-01T00:00:00Z", "--out", folder, self.narrow_scenario(folder))
+            rows = pathlib.Path(folder, "fixes.csv").read_text(encoding="ascii").splitlines()[1:]
+            self.assertEqual([row.split(",")[17] for row in rows], ["none"] * 5)
+            sent = pathlib.Path(folder, "port0.out").read_text(encoding="ascii")
+            self.assertEqual(sent.count("GGA,"), 5)
+            self.assertIn(",,,,,0,", sent)
+
+    @staticmethod
+    def narrow_scenario(folder):
+        path = pathlib.Path(folder, "narrow.toml")
+        path.write_text("[sky]\nelevation_mask_deg = 75\n", encoding="utf-8")
+        return path
+
+    def test_full_disk_is_told_and_ends_with_1(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("no /dev/full here")
+        with open_folder() as folder:
+            os.symlink("/dev/full", pathlib.Path(folder, "fixes.csv"))
+            done = skyloop("simulate", "--duration", 7200, "--start", "2026-01-01T00:00:00Z", "--out", folder, check=False)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertIn("fixes.csv", done.stderr)
+            self.assertGreater(pathlib.Path(folder, "satellites.csv").stat().st_size, 1000)
+
+    def test_run_json_tells_what_ran(self):
+        with open_folder() as folder:
+            skyloop("simulate", "--duration", 10, "--start", "2026-01-01T00:00:00Z", "--seed", 5, "--out", folder)
+            summary = json.loads(pathlib.Path(folder, "run.json").read_text(encoding="utf-8"))
+        self.assertEqual(summary["seed"], 5)
+        self.assertEqual(summary["epochs"], 10)
+        self.assertEqual(summary["epochs_with_fix"], 10)
+        self.assertRegex(summary["scenario_digest"], "^[0-9a-f]{16}$")
+
+    def test_sky_formats(self):
+        arguments = ["--at", "46.4775,30.7326,77", "--start", "2026-01-01T00:00:00Z"]
+        listing = json.loads(skyloop("sky", *arguments, "--format", "json").stdout)
+        self.assertGreaterEqual(len(listing["satellites"]), 6)
+        csv = skyloop("sky", *arguments, "--format", "csv").stdout.splitlines()
+        self.assertEqual(len(csv), len(listing["satellites"]) + 1)
+        svg = skyloop("sky", *arguments, "--format", "svg").stdout
+        for satellite in listing["satellites"]:
+            self.assertIn(f">{satellite['satellite']}<", svg)
+        tracks = skyloop("sky", *arguments, "--tracks", 46, "--step", 3600, "--format", "csv").stdout.splitlines()
+        self.assertEqual(tracks[0], "time_utc,satellite,x_m,y_m,z_m")
+        self.assertEqual(len(tracks), 1 + 31 * 47)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,53 @@
+"""The same scenario and seed give the same files; another seed gives others."""
+import hashlib
+import pathlib
+import unittest
+
+from session import SHARED, open_folder, skyloop
+
+FILES = ("fixes.csv", "satellites.csv", "port0.out", "port0.times")
+COLUMNS = {
+    "fixes.csv": "time_utc,gps_week,tow_s,true_lat_deg,true_lon_deg,true_height_m,lat_deg,lon_deg,height_m,east_error_m,"
+                 "north_error_m,up_error_m,vel_north_mps,vel_east_mps,vel_down_mps,speed_mps,course_deg,fix_type,"
+                 "satellites_used,satellites_visible,gdop,pdop,hdop,vdop,tdop,h_acc_m,v_acc_m",
+    "satellites.csv": "time_utc,satellite,azimuth_deg,elevation_deg,range_m,line_of_sight,paths,excess_path_m,iono_delay_m,"
+                      "tropo_delay_m,gas_loss_db,cloud_loss_db,rain_loss_db,cn0_dbhz,pseudorange_m,used",
+}
+
+
+def digests(*arguments):
+    """The digest of each file of an hour at 1 Hz, and the text of the tables' first lines."""
+    with open_folder() as folder:
+        skyloop("simulate", "--out", folder, "--duration", 3600, *arguments)
+        content = {name: pathlib.Path(folder, name).read_bytes() for name in FILES}
+    lines = {name: content[name].splitlines() for name in COLUMNS}
+    return {name: hashlib.sha256(data).hexdigest() for name, data in content.items()}, lines
+
+
+class DeterminismTest(unittest.TestCase):
+    def check(self, *arguments):
+        first, lines = digests(*arguments, "--seed", 7)
+        again, _ = digests(*arguments, "--seed", 7)
+        other, _ = digests(*arguments, "--seed", 8)
+        self.assertEqual(first, again)
+        self.assertNotEqual(first["fixes.csv"], other["fixes.csv"])
+        self.assertNotEqual(first["port0.out"], other["port0.out"])
+        self.assertEqual(first["satellites.csv"], other["satellites.csv"], "the noise must not touch the sky")
+        self.assertEqual(len(lines["fixes.csv"]), 3601)
+        for name, columns in COLUMNS.items():
+            self.assertEqual(lines[name][0].decode(), columns)
+            for line in lines[name]:
+                self.assertEqual(line.count(b","), columns.count(","))
+
+    def test_nominal_constellation(self):
+        self.check("--start", "2026-03-01T00:00:00Z")
+
+    def test_real_navigation_data(self):
+        navigation = SHARED / "nav/brdc1820.10n"
+        if not navigation.exists():
+            self.skipTest(f"shared data absent: {navigation}")
+        self.check("--nav", navigation, "--start", "2010-07-01T12:00:00Z", "--at", "46.4775,30.7326,77")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

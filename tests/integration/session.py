@@ -1,0 +1,74 @@
+"""What the integration tests share: the program under test and a running emulator with its tty."""
+import os
+import pathlib
+import re
+import select
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+SKYLOOP = os.environ.get("SKYLOOP", "build/dev/bin/skyloop")
+SHARED = pathlib.Path(os.environ.get("SKYLOOP_SHARED_DATA", "../shared/data"))
+SKIPPED = 77
+
+
+def skip(reason):
+    """Ends the whole test program as skipped."""
+    print(f"skipped: {reason}")
+    sys.exit(SKIPPED)
+
+
+def skyloop(*arguments, check=True):
+    """Runs the program to its end; gives the finished process with its text."""
+    done = subprocess.run([SKYLOOP, *map(str, arguments)], capture_output=True, text=True, timeout=120)
+    if check and done.returncode != 0:
+        raise AssertionError(f"skyloop {' '.join(map(str, arguments))} ended {done.returncode}: {done.stderr}")
+    return done
+
+
+def open_folder():
+    """A temporary folder that other users may enter: gpsd gives up root before it opens the tty."""
+    folder = tempfile.TemporaryDirectory(prefix="skyloop-test-")
+    os.chmod(folder.name, 0o755)
+    return folder
+
+
+class Emulator:
+    """`skyloop run` in the background; `tty` is the path of its first port."""
+
+    def __init__(self, *arguments):
+        self.process = subprocess.Popen([SKYLOOP, "run", *map(str, arguments)], stderr=subprocess.PIPE, text=True)
+        self.log = ""
+        self.tty = self._wait_for_port()
+
+    def _wait_for_port(self, patience=20):
+        end = time.monotonic() + patience
+        while time.monotonic() < end:
+            ready, _, _ = select.select([self.process.stderr], [], [], 0.2)
+            if ready:
+                line = self.process.stderr.readline()
+                self.log += line
+                found = re.match(r"port 0: (\S+) \(pty\)", line)
+                if found:
+                    return found.group(1)
+            if self.process.poll() is not None:
+                raise AssertionError(f"skyloop ended {self.process.returncode}: {self.log}")
+        raise AssertionError(f"no port line within {patience} s: {self.log}")
+
+    def stop(self, by=signal.SIGTERM):
+        """Ends the run; gives the exit code and all that was said on stderr."""
+        if self.process.poll() is None:
+            self.process.send_signal(by)
+        _, rest = self.process.communicate(timeout=20)
+        self.log += rest
+        return self.process.returncode
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.communicate(timeout=20)
