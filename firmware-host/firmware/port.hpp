@@ -15,14 +15,16 @@ class Port {
 public:
     Port(std::uint32_t baud, std::uint32_t buffer_bytes) : baud_(baud), buffer_bytes_(buffer_bytes) {}
 
-    /// Queues one whole message whose first byte may leave at `ready`; false, and nothing queued, when it does not fit.
-    /// Messages never interleave and leave in the order in which they were queued.
+    /// Queues one whole message whose first byte may leave at `ready`; false, and nothing queued, when it does not fit
+    /// beside the bytes that have not left by then. Messages never interleave and leave in the order in which they were
+    /// queued. Which byte leaves when depends on `ready` and the speed alone, not on when take() is called.
     bool queue(ByteSpan message, GpsTime ready);
-    /// The bytes whose stop bit has left by `now`. `now` never goes back.
+    /// The bytes whose stop bit has left by `now`. `now` never goes back, and is not later than the next `ready`.
     Bytes take(GpsTime now);
     /// When the last queued byte will have left, or nothing.
     [[nodiscard]] std::optional<GpsTime> drained_at() const;
     [[nodiscard]] std::uint32_t baud() const { return baud_; }
+    /// Bytes queued and not yet taken.
     [[nodiscard]] std::size_t pending() const { return pending_; }
 
 private:
@@ -32,6 +34,7 @@ private:
         std::size_t taken = 0;  ///< bytes that have left
     };
     [[nodiscard]] Nanoseconds line_time(std::size_t bytes) const;
+    [[nodiscard]] std::size_t departed(const Message& message, GpsTime now) const;
 
     std::uint32_t baud_;
     std::size_t buffer_bytes_;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "firmware/board_profile.hpp"
+#include "firmware/nmea_handler.hpp"
 #include "firmware/port.hpp"
 #include "skyloop/base/bytes.hpp"
 #include "skyloop/flow/epoch.hpp"
@@ -28,7 +29,8 @@ struct ReceiverCounters {
 /// One receiver with one UART. It is mute: it swallows what a client sends and streams its factory sentences.
 class Receiver {
 public:
-    /// @param rate_hz navigation rate at start, at most the board's maximum
+    /// @param rate_hz navigation rate at start, limited to the board's maximum; one that is not above zero gives the
+    ///        board's own. The period is whole milliseconds, as real receivers store it.
     Receiver(BoardProfile board, double rate_hz);
 
     void input(ByteSpan bytes, GpsTime now);
@@ -47,6 +49,7 @@ private:
     BoardProfile board_;
     ReceiverSettings settings_;
     ReceiverCounters counters_;
+    NmeaHandler nmea_;
     Port port_;
 };
 

@@ -20,13 +20,16 @@ struct LineState {
 class Transport {
 public:
     virtual ~Transport() = default;
-    /// Offers bytes; gives how many were taken. Bytes offered while nobody is connected are taken and lost, as on a wire.
+    /// Offers bytes; gives how many were taken. Bytes offered while nobody is connected are taken and lost, as on a
+    /// wire.
     virtual std::size_t write(ByteSpan bytes) = 0;
     /// What has come in since the last call.
     virtual Bytes read() = 0;
     virtual LineState line() = 0;
     /// Tells the wire the receiver's own speed, so that a client that sets none finds the right one.
     virtual void set_receiver_baud(std::uint32_t) {}
+    /// What has gone wrong with the wire since it was opened, in one sentence; empty while nothing has.
+    [[nodiscard]] virtual std::string failure() const { return {}; }
     /// For people: "/path/to/tty (pty)".
     [[nodiscard]] virtual std::string description() const = 0;
 };

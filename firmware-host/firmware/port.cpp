@@ -1,0 +1,57 @@
+#include "firmware/port.hpp"
+
+#include <algorithm>
+
+namespace skyloop::firmware {
+namespace {
+
+constexpr std::int64_t nanoseconds_per_byte_at_1_baud = 10 * std::int64_t{1'000'000'000};  // start, eight data, stop
+
+}  // namespace
+
+// Rounded up: at the end of it the last stop bit has left whole.
+Nanoseconds Port::line_time(std::size_t bytes) const {
+    const std::int64_t total = static_cast<std::int64_t>(bytes) * nanoseconds_per_byte_at_1_baud;
+    return Nanoseconds((total + baud_ - 1) / baud_);
+}
+
+std::size_t Port::departed(const Message& message, GpsTime now) const {
+    if (now < message.start) return 0;
+    const Nanoseconds since = now - message.start;
+    if (since >= line_time(message.bytes.size())) return message.bytes.size();
+    return static_cast<std::size_t>(since.count() * baud_ / nanoseconds_per_byte_at_1_baud);
+}
+
+bool Port::queue(ByteSpan message, GpsTime ready) {
+    std::size_t waiting = 0;
+    for (const Message& m : messages_)
+        waiting += m.bytes.size() - departed(m, ready);
+    if (message.empty() || waiting + message.size() > buffer_bytes_) return message.empty();
+    const GpsTime start = std::max(ready, line_free_);
+    messages_.push_back({{message.begin(), message.end()}, start, 0});
+    line_free_ = start + line_time(message.size());
+    pending_ += message.size();
+    return true;
+}
+
+Bytes Port::take(GpsTime now) {
+    Bytes out;
+    while (!messages_.empty()) {
+        Message& m = messages_.front();
+        const std::size_t gone = std::max(m.taken, departed(m, now));
+        out.insert(out.end(), m.bytes.begin() + static_cast<std::ptrdiff_t>(m.taken),
+                   m.bytes.begin() + static_cast<std::ptrdiff_t>(gone));
+        m.taken = gone;
+        if (gone < m.bytes.size()) break;
+        messages_.pop_front();
+    }
+    pending_ -= out.size();
+    return out;
+}
+
+std::optional<GpsTime> Port::drained_at() const {
+    if (messages_.empty()) return std::nullopt;
+    return line_free_;
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,45 @@
+/// The receiver's bytes into a file or to standard output.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/transport/file_descriptor.hpp"
+#include "skyloop/transport/transport.hpp"
+
+namespace skyloop {
+
+/// A wire in one direction that ends in a file, a pipe or a terminal. It has no speed, and nothing ever comes in.
+///
+/// The first write that fails (a full disk, a closed pipe) ends the file there: later bytes are taken and lost, so that
+/// a run goes on and the file has no gap. failure() then says so.
+class FileTransport : public Transport {
+public:
+    /// Creates the file, or empties the one that is there. Fails with `outside`.
+    static Result<std::unique_ptr<FileTransport>> open(const std::filesystem::path& path);
+    /// Writes to the program's standard output.
+    static std::unique_ptr<FileTransport> standard_output();
+
+    std::size_t write(ByteSpan bytes) override;
+    Bytes read() override { return {}; }
+    LineState line() override { return {failure_.empty(), std::nullopt}; }
+    [[nodiscard]] std::string failure() const override { return failure_; }
+    [[nodiscard]] std::string description() const override { return name_; }
+    /// Bytes lost since the failure.
+    [[nodiscard]] std::uint64_t lost_bytes() const { return lost_bytes_; }
+
+private:
+    FileTransport(FileDescriptor owned, int descriptor, std::string name)
+        : owned_(std::move(owned)), descriptor_(descriptor), name_(std::move(name)) {}
+
+    FileDescriptor owned_;  // none for standard output
+    int descriptor_;
+    std::string name_;
+    std::string failure_;
+    std::uint64_t lost_bytes_ = 0;
+};
+
+}  // namespace skyloop

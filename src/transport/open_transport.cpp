@@ -1,0 +1,45 @@
+#include "skyloop/transport/open_transport.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "skyloop/base/spelling.hpp"
+#include "skyloop/transport/file.hpp"
+#include "skyloop/transport/pty.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::string_view offered = "pty[:LINK], file:PATH or -";
+constexpr std::array<std::string_view, 2> known_schemes{"pty", "file"};
+constexpr std::array<std::string_view, 5> later_schemes{"tcp", "serial", "usbip", "usb", "hid"};
+
+template <class Wire>
+Result<std::unique_ptr<Transport>> as_transport(Result<std::unique_ptr<Wire>> wire) {
+    if (!wire) return fail(wire.error());
+    return std::unique_ptr<Transport>(std::move(*wire));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Transport>> open_transport(std::string_view uri) {
+    if (uri == "-") return std::unique_ptr<Transport>(FileTransport::standard_output());
+    const std::size_t colon = uri.find(':');
+    const std::string_view scheme = uri.substr(0, colon);
+    const bool has_rest = colon != std::string_view::npos;
+    const std::string_view rest = has_rest ? uri.substr(colon + 1) : std::string_view();
+    if (scheme == "pty" && !has_rest) return as_transport(PtyTransport::open());
+    if (scheme == "pty" && !rest.empty()) return as_transport(PtyTransport::open(rest));
+    if (scheme == "file" && !rest.empty()) return as_transport(FileTransport::open(rest));
+    if (std::find(known_schemes.begin(), known_schemes.end(), scheme) != known_schemes.end())
+        return fail(ErrorCode::usage, fmt::format("port '{}': a path is missing; expected {}", uri, offered));
+    if (has_rest && std::find(later_schemes.begin(), later_schemes.end(), scheme) != later_schemes.end())
+        return fail(ErrorCode::usage,
+                    fmt::format("port '{}': {}: is not supported by this version; expected {}", uri, scheme, offered));
+    return fail(ErrorCode::usage, fmt::format("port '{}': no such kind of port{}; expected {}", uri,
+                                              did_you_mean(scheme, known_schemes), offered));
+}
+
+}  // namespace skyloop

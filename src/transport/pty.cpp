@@ -1,0 +1,237 @@
+#include "skyloop/transport/pty.hpp"
+
+// <termios.h> knows no speeds beside its constants and cannot be included together with termios2.
+#include <asm/termbits.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/inotify.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+namespace skyloop {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint32_t initial_baud = 9600;
+
+struct SpeedCode {
+    std::uint32_t baud;
+    tcflag_t code;
+};
+// Clients that know no BOTHER read these back as what they are.
+constexpr std::array<SpeedCode, 10> speed_codes{{{4800, B4800},
+                                                 {9600, B9600},
+                                                 {19200, B19200},
+                                                 {38400, B38400},
+                                                 {57600, B57600},
+                                                 {115200, B115200},
+                                                 {230400, B230400},
+                                                 {460800, B460800},
+                                                 {921600, B921600},
+                                                 {1000000, B1000000}}};
+
+tl::unexpected<Error> refused(const std::string& what) {
+    return fail(ErrorCode::outside, fmt::format("{}: {}", what, std::strerror(errno)));
+}
+
+tcflag_t speed_code(std::uint32_t baud) {
+    for (const SpeedCode& s : speed_codes)
+        if (s.baud == baud) return s.code;
+    return BOTHER;
+}
+
+bool set_speed(int master, std::uint32_t baud) {
+    termios2 settings{};
+    if (::ioctl(master, TCGETS2, &settings) != 0) return false;
+    const tcflag_t code = speed_code(baud);
+    settings.c_cflag &= ~static_cast<tcflag_t>(CBAUD | (CBAUD << IBSHIFT));
+    settings.c_cflag |= code;
+    settings.c_ispeed = settings.c_ospeed = baud;
+    return ::ioctl(master, TCSETS2, &settings) == 0;
+}
+
+// No echo, no line editing, no translation: bytes as on a wire.
+bool set_raw(int master) {
+    termios2 settings{};
+    if (::ioctl(master, TCGETS2, &settings) != 0) return false;
+    settings.c_iflag = 0;
+    settings.c_oflag = 0;
+    settings.c_lflag = 0;
+    settings.c_cflag = (settings.c_cflag & ~static_cast<tcflag_t>(CSIZE | PARENB)) | CS8 | CREAD | CLOCAL;
+    settings.c_cc[VMIN] = 1;
+    settings.c_cc[VTIME] = 0;
+    return ::ioctl(master, TCSETS2, &settings) == 0;
+}
+
+FileDescriptor open_slave(int master) {
+    return FileDescriptor(::ioctl(master, TIOCGPTPEER, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+}
+
+// Once the terminal has been open, "hung up" says that nobody has it open now.
+bool hung_up(int master) {
+    pollfd state{master, 0, 0};
+    ::poll(&state, 1, 0);
+    return (state.revents & POLLHUP) != 0;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PtyTransport>> PtyTransport::open(const std::optional<fs::path>& link) {
+    FileDescriptor master(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+    if (!master.open()) return refused("no pseudo-terminal can be had (/dev/ptmx)");
+    std::array<char, 64> name{};
+    if (::grantpt(master.value()) != 0 || ::unlockpt(master.value()) != 0 ||
+        ::ptsname_r(master.value(), name.data(), name.size()) != 0)
+        return refused("the pseudo-terminal cannot be unlocked");
+    std::unique_ptr<PtyTransport> pty(new PtyTransport(std::move(master), name.data()));
+    if (const auto prepared = pty->prepare(); !prepared) return fail(prepared.error());
+    if (link)
+        if (const auto published = pty->publish(*link); !published) return fail(published.error());
+    return pty;
+}
+
+Result<void> PtyTransport::prepare() {
+    if (!set_raw(master_.value()) || !set_speed(master_.value(), initial_baud)) return refused(terminal_);
+    // A client seldom runs as the same user. Where the node cannot be changed it keeps the rights the system gave it.
+    (void)::chmod(terminal_.c_str(), 0666);
+    // Before its first open a terminal is not "hung up"; after this both cases look alike.
+    if (!open_slave(master_.value()).open()) return refused(terminal_);
+    events_ = FileDescriptor(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
+    watch();
+    return {};
+}
+
+Result<void> PtyTransport::publish(const fs::path& link) {
+    std::error_code error;
+    const fs::path target = fs::absolute(link, error).lexically_normal();
+    const fs::file_status there = fs::symlink_status(target, error);
+    if (fs::exists(there) && !fs::is_symlink(there))
+        return fail(ErrorCode::outside,
+                    fmt::format("{}: is there already and is not a symbolic link; it is left alone", link.string()));
+    if (!fs::is_directory(target.parent_path(), error))
+        return fail(ErrorCode::outside,
+                    fmt::format("{}: the folder {} does not exist", link.string(), target.parent_path().string()));
+    const std::string fresh = fmt::format("{}.{}.new", target.string(), ::getpid());
+    (void)::unlink(fresh.c_str());
+    if (::symlink(terminal_.c_str(), fresh.c_str()) != 0) return refused(link.string() + ": the link cannot be made");
+    if (::rename(fresh.c_str(), target.c_str()) != 0) {
+        const auto error_line = refused(link.string() + ": the link cannot be made");
+        (void)::unlink(fresh.c_str());
+        return error_line;
+    }
+    link_ = target;
+    return {};
+}
+
+PtyTransport::~PtyTransport() {
+    std::error_code error;
+    if (!link_.empty() && fs::read_symlink(link_, error) == terminal_) fs::remove(link_, error);
+}
+
+void PtyTransport::watch() {
+    if (events_.open()) watch_ = ::inotify_add_watch(events_.value(), terminal_.c_str(), IN_OPEN | IN_CLOSE);
+}
+
+// Counts the opens and closes that have been reported; true when a client came that was alone.
+bool PtyTransport::read_events() {
+    bool alone = false;
+    alignas(inotify_event) std::array<char, 4096> buffer;
+    ssize_t size = 0;
+    while (events_.open() && (size = ::read(events_.value(), buffer.data(), buffer.size())) > 0) {
+        for (ssize_t at = 0; at < size;) {
+            inotify_event event{};
+            std::memcpy(&event, buffer.data() + at, sizeof event);
+            at += static_cast<ssize_t>(sizeof event + event.len);
+            if ((event.mask & IN_OPEN) != 0 && !std::exchange(counted_early_, false)) alone |= clients_++ == 0;
+            if ((event.mask & IN_CLOSE) != 0) clients_ = std::max(0, clients_ - 1);
+        }
+    }
+    return alone;
+}
+
+void PtyTransport::follow_clients() {
+    const bool somebody_new = read_events();
+    // The kernel joins equal events that follow each other, so the count may drift; the hang-up state never does.
+    if (hung_up(master_.value())) {
+        clients_ = 0;
+        counted_early_ = false;
+    } else if (clients_ == 0) {
+        clients_ = 1;
+        counted_early_ = true;  // the report of this open is still to come
+    }
+    if ((clients_ == 0 || somebody_new) && unread_possible_) forget_unread();
+}
+
+// Bytes that a client left would reach the next one as if they were fresh. Part of them wait in the driver, part in the
+// line discipline of the clients' side, which only a descriptor of that side can empty.
+void PtyTransport::forget_unread() {
+    (void)::ioctl(master_.value(), TCFLSH, TCOFLUSH);
+    // Our own open and close must not count as a client's.
+    if (watch_ >= 0) (void)::inotify_rm_watch(events_.value(), watch_);
+    if (const FileDescriptor slave = open_slave(master_.value()); slave.open())
+        (void)::ioctl(slave.value(), TCFLSH, TCIFLUSH);
+    watch();
+    unread_possible_ = false;
+}
+
+std::size_t PtyTransport::write(ByteSpan bytes) {
+    follow_clients();
+    if (clients_ == 0) return bytes.size();
+    std::size_t taken = 0;
+    while (taken < bytes.size()) {
+        const ssize_t count = ::write(master_.value(), bytes.data() + taken, bytes.size() - taken);
+        if (count > 0) {
+            taken += static_cast<std::size_t>(count);
+            unread_possible_ = true;
+        } else if (count < 0 && errno == EIO) {
+            return bytes.size();  // the client has just gone, and with it the bytes
+        } else if (count == 0 || errno != EINTR) {
+            break;
+        }
+    }
+    return taken;
+}
+
+Bytes PtyTransport::read() {
+    constexpr std::size_t most = 65536;  // a client that writes without end must not hold us here
+    Bytes all;
+    std::array<std::uint8_t, 4096> piece;
+    while (all.size() < most) {
+        const ssize_t count = ::read(master_.value(), piece.data(), piece.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) break;  // EAGAIN: nothing there; EIO: nobody there
+        all.insert(all.end(), piece.begin(), piece.begin() + count);
+    }
+    return all;
+}
+
+LineState PtyTransport::line() {
+    follow_clients();
+    termios2 settings{};
+    LineState state{clients_ > 0, std::nullopt};
+    if (::ioctl(master_.value(), TCGETS2, &settings) == 0 && settings.c_ospeed != 0) state.baud = settings.c_ospeed;
+    return state;
+}
+
+void PtyTransport::set_receiver_baud(std::uint32_t baud) {
+    if (!speed_set_) speed_set_ = set_speed(master_.value(), baud);
+}
+
+std::string PtyTransport::description() const { return (link_.empty() ? terminal_ : link_.string()) + " (pty)"; }
+
+int PtyTransport::clients() {
+    follow_clients();
+    return clients_;
+}
+
+}  // namespace skyloop
