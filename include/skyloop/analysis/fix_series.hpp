@@ -1,0 +1,63 @@
+/// A series of position fixes read from a file: ours, a receiver's log or a plain table.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/base/units.hpp"
+#include "skyloop/geo/geodetic.hpp"
+#include "skyloop/time/gps_time.hpp"
+
+namespace skyloop {
+
+/// One row of a fix file.
+struct FixSample {
+    std::optional<GpsTime> time;  ///< see FixSeries::dated
+    bool has_fix = false;
+    Geodetic position;              ///< means something only with `has_fix`
+    std::optional<Geodetic> truth;  ///< where the antenna really was, when the file knows
+};
+
+/// The samples of one file, or of a part of it, in the file's order.
+struct FixSeries {
+    std::string name;  ///< for people: the file's name, or a window of it
+    std::vector<FixSample> samples;
+    bool dated = false;                 ///< false: times only tell samples apart, their day is not known
+    std::optional<Seconds> interval;    ///< median time between samples; nothing when the file has no times
+    std::vector<std::string> warnings;  ///< what was skipped or assumed on reading, a sentence each
+
+    /// The samples with a fix.
+    [[nodiscard]] std::size_t fixes() const;
+};
+
+/// Reads a fix file, gzip-compressed or not. The format is known by its content:
+///  - a table with a header line that names latitude, longitude and height: fixes.csv (INTERFACE.md, section 3) or any
+///    other CSV with the usual names; columns in any order, others are ignored;
+///  - a table of numbers without a header: latitude, longitude (degrees), height above the ellipsoid (metres);
+///  - a log with NMEA 0183 sentences: GGA for positions, RMC for the date.
+/// Fails with one sentence that names file and line. UBX logs are refused by name.
+Result<FixSeries> read_fix_series(const std::filesystem::path& path);
+
+/// The same from text already read; `name` stands for the file in messages.
+Result<FixSeries> parse_fix_series(std::string_view text, const std::string& name);
+
+/// Which samples to keep.
+struct Slice {
+    std::size_t offset = 0;  ///< samples left out at the start
+    std::size_t every = 1;   ///< keep one sample of so many, at least 1
+    std::size_t count = 0;   ///< samples to keep at most; 0: all
+};
+
+/// The samples that `slice` keeps. The interval grows with `slice.every`.
+FixSeries slice(const FixSeries& series, const Slice& slice);
+
+/// The series cut into consecutive windows of `length` samples; what is left at the end is dropped. `length` at
+/// least 1.
+std::vector<FixSeries> windows(const FixSeries& series, std::size_t length);
+
+}  // namespace skyloop

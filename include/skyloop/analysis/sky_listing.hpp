@@ -1,0 +1,56 @@
+/// The satellites above a place as a table: for a terminal, as JSON and as CSV.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "skyloop/flow/arrivals.hpp"
+#include "skyloop/flow/fix.hpp"
+#include "skyloop/flow/sky_view.hpp"
+#include "skyloop/flow/truth_state.hpp"
+#include "skyloop/gnss/dop.hpp"
+
+namespace skyloop {
+
+/// One satellite of the listing.
+struct SkyRow {
+    SatelliteInView view;
+    std::optional<DbHz> cn0;
+    bool used = false;
+};
+
+/// The sky at one instant.
+struct SkyListing {
+    GpsTime time;
+    Geodetic place;
+    Angle mask;                ///< elevation mask
+    std::vector<SkyRow> rows;  ///< in the order of the SkyView
+    std::optional<Dop> dop;    ///< of the used satellites; nothing for fewer than four or a singular geometry
+
+    [[nodiscard]] std::size_t used() const;
+};
+
+/// What is known beyond the geometry; either may be absent.
+struct SkyExtras {
+    const Arrivals* arrivals = nullptr;  ///< C/N0 and hidden satellites
+    const Fix* fix = nullptr;            ///< which satellites were used and the DOP
+};
+
+/// The listing of `sky`. Without a fix every healthy satellite at or above `mask` that is not hidden counts as used.
+SkyListing sky_listing(const TruthState& truth, const SkyView& sky, Angle mask, const SkyExtras& extras = {});
+
+/// Doppler shift of the carrier at 1575.42 MHz, D = −ρ̇ f / c; nothing for a system that has no signal there.
+std::optional<Hertz> doppler_l1(const SatelliteInView& satellite);
+
+/// An aligned table with a heading and a DOP line, ending in a newline.
+std::string sky_text(const SkyListing& listing);
+/// One JSON object, indented, ending in a newline.
+std::string sky_json(const SkyListing& listing);
+/// CSV with a header line, a row per satellite and instant:
+/// time_utc,satellite,azimuth_deg,elevation_deg,range_m,range_rate_mps,doppler_hz,cn0_dbhz,healthy,used,toe_gps_week,
+/// toe_tow_s,iode (healthy, used: 1 or 0).
+std::string sky_csv(std::span<const SkyListing> listings);
+
+}  // namespace skyloop

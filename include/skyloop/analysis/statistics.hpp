@@ -1,0 +1,71 @@
+/// Statistics of position errors: moments, radial errors, time correlation and the article's comparison figure.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "skyloop/analysis/fix_series.hpp"
+#include "skyloop/base/result.hpp"
+#include "skyloop/geo/geodetic.hpp"
+
+namespace skyloop {
+
+/// Figures of one series of numbers, in the unit of the series.
+struct SampleStatistics {
+    std::size_t n = 0;
+    double mean = 0;
+    double std = 0;  ///< sample standard deviation (n − 1); 0 for a single value
+    double rms = 0;  ///< about zero
+    double min = 0;
+    double max = 0;
+    double median = 0;  ///< of a horizontal radial error: the CEP
+    double p95 = 0;     ///< 95 % of the values are not larger; linear between order statistics
+};
+
+/// Statistics of `values`; nothing for an empty series.
+std::optional<SampleStatistics> sample_statistics(std::span<const double> values);
+
+/// What errors are measured from.
+enum class ReferenceKind {
+    truth,        ///< the true position of each sample, from the file itself
+    given_point,  ///< one point that the user gave
+    own_mean,     ///< the mean position of the series: biases do not show
+};
+
+/// Position errors of a series, one entry for each sample with a fix; metres in the local frame of the reference.
+struct PositionErrors {
+    ReferenceKind reference = ReferenceKind::own_mean;
+    std::optional<Geodetic> point;  ///< of the reference; nothing with `truth`
+    std::vector<double> east, north, up;
+    std::vector<double> horizontal;  ///< radial, √(E² + N²)
+    std::vector<double> spatial;     ///< radial, √(E² + N² + U²)
+};
+
+/// The errors of all fixes of `series`: about its truth where every fix has one, else about `point` when given, else
+/// about the mean of the series itself.
+PositionErrors position_errors(const FixSeries& series, const std::optional<Geodetic>& point = std::nullopt);
+
+/// The autocorrelation of `values` about their mean at lags 0 … max_lag, normalised to 1 at lag 0 (biased estimator,
+/// divisor n at each lag). Empty for fewer than two values or a constant series.
+std::vector<double> autocorrelation(std::span<const double> values, std::size_t max_lag);
+
+/// The lag, in samples and interpolated, at which the autocorrelation first falls to 1/e; nothing when it does not
+/// within half of the series.
+std::optional<double> correlation_length(std::span<const double> values);
+
+/// How far a candidate's error statistics are from a reference's (MODELS.md section 4, D-17):
+/// D = 50 % · (|mean_c − mean_r| / |mean_r| + |std_c − std_r| / std_r).
+struct ComparisonPercent {
+    double difference = 0;        ///< D, percent; the article's agreement is 100 − D
+    double mean_part = 0;         ///< relative difference of the means, percent
+    double std_part = 0;          ///< relative difference of the standard deviations, percent
+    bool mean_near_zero = false;  ///< |mean_r| < std_r / 4: the relative difference of the means says nothing
+};
+
+/// Nothing when the reference's mean or standard deviation is zero or the candidate is empty.
+std::optional<ComparisonPercent> comparison_percent(const SampleStatistics& candidate,
+                                                    const SampleStatistics& reference);
+
+}  // namespace skyloop

@@ -1,0 +1,104 @@
+#include "skyloop/analysis/fix_series.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "fix_table.hpp"
+#include "nmea_log.hpp"
+#include "skyloop/base/text_file.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::string_view known_formats = "fixes.csv, a table of lat,lon,height or an NMEA log with GGA sentences";
+
+// The median of the times between neighbours, so that a pause in the log does not matter.
+std::optional<Seconds> sampling_interval(const std::vector<FixSample>& samples) {
+    std::vector<Nanoseconds> steps;
+    for (std::size_t i = 1; i < samples.size(); ++i)
+        if (samples[i].time && samples[i - 1].time && *samples[i].time > *samples[i - 1].time)
+            steps.push_back(*samples[i].time - *samples[i - 1].time);
+    if (steps.empty()) return std::nullopt;
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    return Seconds(std::chrono::duration<double>(*middle).count());
+}
+
+bool blank(std::string_view text) { return text.find_first_not_of(" \t\r\n") == std::string_view::npos; }
+
+bool starts_as_ubx(std::string_view text) { return text.starts_with("\xB5\x62"); }
+
+// The place of the first byte that no text file has, or nothing.
+std::optional<std::size_t> first_binary_byte(std::string_view text) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        if ((byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r' && byte != 0x1A) || byte == 0x7F) return i;
+    }
+    return std::nullopt;
+}
+
+Result<FixSeries> parse_by_content(std::string_view text, const std::string& name) {
+    if (blank(text)) return fail(ErrorCode::input, fmt::format("{}: is empty; expected {}", name, known_formats));
+    if (starts_as_ubx(text))
+        return fail(ErrorCode::input,
+                    fmt::format("{}: is a UBX log (it starts with the bytes B5 62), which cannot be read "
+                                "here; expected {}",
+                                name, known_formats));
+    if (has_nmea_sentence(text)) return parse_nmea_log(text, name);
+    if (const auto at = first_binary_byte(text))
+        return fail(ErrorCode::input, fmt::format("{}: is not text: byte {:#04x} at offset {}; expected {}", name,
+                                                  static_cast<unsigned char>(text[*at]), *at, known_formats));
+    return parse_fix_table(text, name);
+}
+
+}  // namespace
+
+std::size_t FixSeries::fixes() const {
+    return static_cast<std::size_t>(
+        std::count_if(samples.begin(), samples.end(), [](const FixSample& s) { return s.has_fix; }));
+}
+
+Result<FixSeries> parse_fix_series(std::string_view text, const std::string& name) {
+    Result<FixSeries> series = parse_by_content(text, name);
+    if (!series) return series;
+    if (series->fixes() == 0) {
+        std::string message =
+            fmt::format("{}: holds no fix in {} rows; expected at least one", name, series->samples.size());
+        for (const std::string& warning : series->warnings)
+            message += "; " + warning;
+        return fail(ErrorCode::input, std::move(message));
+    }
+    series->interval = sampling_interval(series->samples);
+    return series;
+}
+
+Result<FixSeries> read_fix_series(const std::filesystem::path& path) {
+    const Result<std::string> text = read_text_file(path);
+    if (!text) return fail(text.error());
+    return parse_fix_series(*text, path.string());
+}
+
+FixSeries slice(const FixSeries& series, const Slice& slice) {
+    FixSeries part = series;
+    part.samples.clear();
+    const std::size_t step = std::max<std::size_t>(slice.every, 1);
+    for (std::size_t i = slice.offset; i < series.samples.size(); i += step) {
+        if (slice.count != 0 && part.samples.size() == slice.count) break;
+        part.samples.push_back(series.samples[i]);
+    }
+    if (part.interval) part.interval = *part.interval * static_cast<double>(step);
+    return part;
+}
+
+std::vector<FixSeries> windows(const FixSeries& series, std::size_t length) {
+    std::vector<FixSeries> parts;
+    const std::size_t step = std::max<std::size_t>(length, 1);
+    for (std::size_t at = 0; at + step <= series.samples.size(); at += step) {
+        parts.push_back(slice(series, {at, 1, step}));
+        parts.back().name = fmt::format("{} window {}", series.name, parts.size());
+    }
+    return parts;
+}
+
+}  // namespace skyloop

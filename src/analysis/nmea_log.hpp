@@ -1,0 +1,19 @@
+/// Fixes from a log of NMEA 0183 sentences.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "skyloop/analysis/fix_series.hpp"
+
+namespace skyloop {
+
+/// True when something near the start of the text looks like an NMEA sentence ("$GPGGA,").
+bool has_nmea_sentence(std::string_view text);
+
+/// A sample from each GGA sentence whose checksum holds; heights are altitude plus geoid separation. RMC sentences with
+/// status A give the date. Damaged sentences, other sentences and binary data between them are skipped; damaged GGA and
+/// RMC are counted in the warnings. A sentence that passes its checksum and makes no sense is an error with its line.
+Result<FixSeries> parse_nmea_log(std::string_view text, const std::string& name);
+
+}  // namespace skyloop

@@ -1,0 +1,164 @@
+#include "skyloop/analysis/sky_listing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "skyloop/gnss/constants.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop {
+namespace {
+
+const Arrival* arrival_of(const SkyExtras& extras, SatelliteId id) {
+    if (!extras.arrivals) return nullptr;
+    const auto& all = extras.arrivals->satellites;
+    const auto found = std::find_if(all.begin(), all.end(), [id](const Arrival& a) { return a.id == id; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+bool used_in_fix(const Fix& fix, SatelliteId id) {
+    return std::any_of(fix.satellites.begin(), fix.satellites.end(),
+                       [id](const SatelliteStatus& s) { return s.id == id && s.used; });
+}
+
+std::optional<Dop> dop_of_used(const SkyListing& listing) {
+    std::vector<SkyDirection> directions;
+    for (const SkyRow& row : listing.rows)
+        if (row.used) directions.push_back({row.view.azimuth, row.view.elevation});
+    return dilution_of_precision(directions);
+}
+
+std::string time_text(GpsTime time, int decimals) {
+    return format_utc(to_utc(time, LeapSeconds::announced()), decimals);
+}
+
+// 359.96° is shown as 0.0°, not as 360.0°.
+double shown_azimuth(Angle azimuth, double step) {
+    const double degrees = azimuth.deg();
+    return degrees >= 360 - step / 2 ? 0 : degrees;
+}
+
+std::string doppler_cell(const SatelliteInView& satellite, int decimals) {
+    const std::optional<Hertz> doppler = doppler_l1(satellite);
+    return doppler ? fmt::format("{:.{}f}", doppler->value(), decimals) : std::string();
+}
+
+std::string cn0_cell(const std::optional<DbHz>& cn0, int decimals) {
+    return cn0 ? fmt::format("{:.{}f}", cn0->value(), decimals) : std::string();
+}
+
+// A terminal shows what is not known as a dash.
+std::string dashed(std::string cell) { return cell.empty() ? "-" : std::move(cell); }
+
+nlohmann::ordered_json satellite_json(const SkyRow& row) {
+    const SatelliteInView& s = row.view;
+    const WeekAndTow toe = week_and_tow(s.toe);
+    nlohmann::ordered_json json{{"satellite", to_string(s.id)},   {"system", constellation_name(s.id.constellation)},
+                                {"azimuth_deg", s.azimuth.deg()}, {"elevation_deg", s.elevation.deg()},
+                                {"range_m", s.range.value()},     {"range_rate_mps", s.range_rate.value()}};
+    const std::optional<Hertz> doppler = doppler_l1(s);
+    json["doppler_hz"] = doppler ? nlohmann::ordered_json(doppler->value()) : nlohmann::ordered_json(nullptr);
+    json["cn0_dbhz"] = row.cn0 ? nlohmann::ordered_json(row.cn0->value()) : nlohmann::ordered_json(nullptr);
+    json["healthy"] = s.healthy;
+    json["used"] = row.used;
+    json["toe"] = {{"gps_week", toe.week}, {"tow_s", toe.tow_seconds()}};
+    json["iode"] = s.iode;
+    return json;
+}
+
+}  // namespace
+
+std::size_t SkyListing::used() const {
+    return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [](const SkyRow& r) { return r.used; }));
+}
+
+SkyListing sky_listing(const TruthState& truth, const SkyView& sky, Angle mask, const SkyExtras& extras) {
+    SkyListing listing;
+    listing.time = truth.time;
+    listing.place = truth.geodetic;
+    listing.mask = mask;
+    for (const SatelliteInView& satellite : sky.satellites) {
+        SkyRow row{satellite, std::nullopt, satellite.healthy && satellite.elevation >= mask};
+        if (const Arrival* arrival = arrival_of(extras, satellite.id)) {
+            row.cn0 = arrival->cn0;
+            row.used = row.used && arrival->paths > 0;
+        }
+        if (extras.fix) row.used = used_in_fix(*extras.fix, satellite.id);
+        listing.rows.push_back(row);
+    }
+    listing.dop = dop_of_used(listing);
+    if (extras.fix) listing.dop = extras.fix->has_position() ? std::optional(extras.fix->dop) : std::nullopt;
+    return listing;
+}
+
+std::optional<Hertz> doppler_l1(const SatelliteInView& satellite) {
+    const Constellation system = satellite.id.constellation;
+    if (system == Constellation::glonass || system == Constellation::navic) return std::nullopt;
+    return Hertz(-satellite.range_rate.value() * carrier_frequency_l1 / speed_of_light);
+}
+
+std::string sky_text(const SkyListing& listing) {
+    const WeekAndTow gps = week_and_tow(listing.time);
+    std::string text =
+        fmt::format("{}  (GPS week {}, {:.3f} s)  at {:.7f}, {:.7f}, {:.2f} m  mask {:.4g} deg\n",
+                    time_text(listing.time, 3), gps.week, gps.tow_seconds(), listing.place.latitude.deg(),
+                    listing.place.longitude.deg(), listing.place.height.above_ellipsoid.value(), listing.mask.deg());
+    text += fmt::format("{:<10}{:>9}{:>11}{:>12}{:>13}{:>11}{:>10}  {:<10}{}\n", "satellite", "azimuth", "elevation",
+                        "range", "range rate", "Doppler", "C/N0", "health", "used");
+    text +=
+        fmt::format("{:<10}{:>9}{:>11}{:>12}{:>13}{:>11}{:>10}\n", "", "deg", "deg", "km", "m/s", "Hz (L1)", "dB-Hz");
+    for (const SkyRow& row : listing.rows) {
+        const SatelliteInView& s = row.view;
+        text += fmt::format("{:<10}{:>9.1f}{:>11.1f}{:>12.1f}{:>13.1f}{:>11}{:>10}  {:<10}{}\n", to_string(s.id),
+                            shown_azimuth(s.azimuth, 0.1), s.elevation.deg(), s.range.value() / 1000,
+                            s.range_rate.value(), dashed(doppler_cell(s, 0)), dashed(cn0_cell(row.cn0, 1)),
+                            s.healthy ? "healthy" : "unhealthy", row.used ? "yes" : "no");
+    }
+    text += fmt::format("{} above the horizon, {} used", listing.rows.size(), listing.used());
+    if (!listing.dop) return text + "; no DOP: fewer than four used satellites or all in one plane\n";
+    const Dop& d = *listing.dop;
+    return text + fmt::format("; GDOP {:.2f}  PDOP {:.2f}  HDOP {:.2f}  VDOP {:.2f}  TDOP {:.2f}\n", d.gdop, d.pdop,
+                              d.hdop, d.vdop, d.tdop);
+}
+
+std::string sky_json(const SkyListing& listing) {
+    const WeekAndTow gps = week_and_tow(listing.time);
+    nlohmann::ordered_json json{
+        {"time_utc", time_text(listing.time, 3)}, {"gps_week", gps.week}, {"tow_s", gps.tow_seconds()}};
+    json["position"] = {{"lat_deg", listing.place.latitude.deg()},
+                        {"lon_deg", listing.place.longitude.deg()},
+                        {"height_m", listing.place.height.above_ellipsoid.value()}};
+    json["mask_deg"] = listing.mask.deg();
+    json["satellites"] = nlohmann::ordered_json::array();
+    for (const SkyRow& row : listing.rows)
+        json["satellites"].push_back(satellite_json(row));
+    json["visible"] = listing.rows.size();
+    json["used"] = listing.used();
+    json["dop"] = nullptr;
+    if (const auto& d = listing.dop)
+        json["dop"] = {{"gdop", d->gdop}, {"pdop", d->pdop}, {"hdop", d->hdop}, {"vdop", d->vdop}, {"tdop", d->tdop}};
+    return json.dump(2) + "\n";
+}
+
+std::string sky_csv(std::span<const SkyListing> listings) {
+    std::string text =
+        "time_utc,satellite,azimuth_deg,elevation_deg,range_m,range_rate_mps,doppler_hz,cn0_dbhz,healthy,used,"
+        "toe_gps_week,toe_tow_s,iode\n";
+    for (const SkyListing& listing : listings) {
+        const std::string time = time_text(listing.time, 3);
+        for (const SkyRow& row : listing.rows) {
+            const SatelliteInView& s = row.view;
+            const WeekAndTow toe = week_and_tow(s.toe);
+            fmt::format_to(std::back_inserter(text), "{},{},{:.6f},{:.6f},{:.3f},{:.4f},{},{},{:d},{:d},{},{:.3f},{}\n",
+                           time, to_string(s.id), shown_azimuth(s.azimuth, 1e-6), s.elevation.deg(), s.range.value(),
+                           s.range_rate.value(), doppler_cell(s, 3), cn0_cell(row.cn0, 2), s.healthy, row.used,
+                           toe.week, toe.tow_seconds(), s.iode);
+        }
+    }
+    return text;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,152 @@
+#include "skyloop/analysis/statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <numeric>
+
+#include "skyloop/geo/local_frame.hpp"
+
+namespace skyloop {
+namespace {
+
+using Spectrum = std::vector<std::complex<double>>;
+
+// In-place radix-2 Fourier transform; the size is a power of two.
+void transform(Spectrum& a) {
+    const std::size_t n = a.size();
+    for (std::size_t i = 1, j = 0; i < n; ++i) {
+        std::size_t bit = n >> 1;
+        for (; j & bit; bit >>= 1)
+            j ^= bit;
+        j ^= bit;
+        if (i < j) std::swap(a[i], a[j]);
+    }
+    for (std::size_t length = 2; length <= n; length <<= 1) {
+        const std::size_t half = length / 2;
+        Spectrum twiddle(half);
+        for (std::size_t k = 0; k < half; ++k)
+            twiddle[k] = std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(length));
+        for (std::size_t start = 0; start < n; start += length)
+            for (std::size_t k = 0; k < half; ++k) {
+                const std::complex<double> even = a[start + k];
+                const std::complex<double> odd = a[start + k + half] * twiddle[k];
+                a[start + k] = even + odd;
+                a[start + k + half] = even - odd;
+            }
+    }
+}
+
+// Linear between order statistics, as spreadsheets and numpy do.
+double quantile(const std::vector<double>& sorted, double fraction) {
+    const double place = fraction * static_cast<double>(sorted.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const std::size_t above = std::min(below + 1, sorted.size() - 1);
+    return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+Geodetic mean_position(const FixSeries& series) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    std::size_t count = 0;
+    for (const FixSample& sample : series.samples)
+        if (sample.has_fix) {
+            sum += to_ecef(sample.position).vector();
+            ++count;
+        }
+    return to_geodetic(Position<Ecef>(count == 0 ? sum : Eigen::Vector3d(sum / static_cast<double>(count))));
+}
+
+bool every_fix_has_truth(const FixSeries& series) {
+    return std::all_of(series.samples.begin(), series.samples.end(),
+                       [](const FixSample& s) { return !s.has_fix || s.truth.has_value(); });
+}
+
+}  // namespace
+
+std::optional<SampleStatistics> sample_statistics(std::span<const double> values) {
+    if (values.empty()) return std::nullopt;
+    SampleStatistics s;
+    s.n = values.size();
+    const auto n = static_cast<double>(s.n);
+    s.mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+    double about_mean = 0;
+    double about_zero = 0;
+    for (const double v : values) {
+        about_mean += (v - s.mean) * (v - s.mean);
+        about_zero += v * v;
+    }
+    s.std = s.n > 1 ? std::sqrt(about_mean / (n - 1)) : 0;
+    s.rms = std::sqrt(about_zero / n);
+    std::vector<double> sorted(values.begin(), values.end());
+    std::sort(sorted.begin(), sorted.end());
+    s.min = sorted.front();
+    s.max = sorted.back();
+    s.median = quantile(sorted, 0.50);
+    s.p95 = quantile(sorted, 0.95);
+    return s;
+}
+
+PositionErrors position_errors(const FixSeries& series, const std::optional<Geodetic>& point) {
+    PositionErrors errors;
+    if (every_fix_has_truth(series)) {
+        errors.reference = ReferenceKind::truth;
+    } else {
+        errors.reference = point ? ReferenceKind::given_point : ReferenceKind::own_mean;
+        errors.point = point ? *point : mean_position(series);
+    }
+    std::optional<LocalFrame> frame;
+    if (errors.point) frame.emplace(*errors.point);
+    for (const FixSample& sample : series.samples) {
+        if (!sample.has_fix) continue;
+        if (!errors.point) frame.emplace(*sample.truth);
+        const Eigen::Vector3d enu = frame->to_enu(to_ecef(sample.position)).vector();
+        errors.east.push_back(enu.x());
+        errors.north.push_back(enu.y());
+        errors.up.push_back(enu.z());
+        errors.horizontal.push_back(std::hypot(enu.x(), enu.y()));
+        errors.spatial.push_back(enu.norm());
+    }
+    return errors;
+}
+
+// By the Wiener–Khinchin theorem: the sums over all lags cost no more than two Fourier transforms.
+std::vector<double> autocorrelation(std::span<const double> values, std::size_t max_lag) {
+    const std::optional<SampleStatistics> s = sample_statistics(values);
+    if (!s || s->n < 2 || !(s->max > s->min)) return {};
+    std::size_t size = 1;
+    while (size < 2 * values.size())
+        size <<= 1;
+    Spectrum a(size);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        a[i] = values[i] - s->mean;
+    transform(a);
+    for (std::complex<double>& bin : a)
+        bin = std::norm(bin);
+    transform(a);
+    std::vector<double> result(std::min(max_lag + 1, values.size()));
+    for (std::size_t lag = 0; lag < result.size(); ++lag)
+        result[lag] = a[lag].real() / a[0].real();
+    return result;
+}
+
+std::optional<double> correlation_length(std::span<const double> values) {
+    constexpr double level = 1 / std::numbers::e;
+    const std::vector<double> r = autocorrelation(values, values.size() / 2);
+    for (std::size_t lag = 1; lag < r.size(); ++lag)
+        if (r[lag] <= level) return static_cast<double>(lag - 1) + (r[lag - 1] - level) / (r[lag - 1] - r[lag]);
+    return std::nullopt;
+}
+
+std::optional<ComparisonPercent> comparison_percent(const SampleStatistics& candidate,
+                                                    const SampleStatistics& reference) {
+    if (candidate.n == 0 || reference.mean == 0 || reference.std == 0) return std::nullopt;
+    ComparisonPercent result;
+    result.mean_part = 100 * std::abs(candidate.mean - reference.mean) / std::abs(reference.mean);
+    result.std_part = 100 * std::abs(candidate.std - reference.std) / reference.std;
+    result.difference = (result.mean_part + result.std_part) / 2;
+    result.mean_near_zero = std::abs(reference.mean) < reference.std / 4;
+    return result;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,311 @@
+#include "skyloop/analysis/fix_series.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "skyloop/time/utc_time.hpp"
+#include "support/oracle_table.hpp"
+
+namespace skyloop {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+const std::string fixes_header =
+    "time_utc,gps_week,tow_s,true_lat_deg,true_lon_deg,true_height_m,lat_deg,lon_deg,height_m,east_error_m,"
+    "north_error_m,up_error_m,vel_north_mps,vel_east_mps,vel_down_mps,speed_mps,course_deg,fix_type,satellites_used,"
+    "satellites_visible,gdop,pdop,hdop,vdop,tdop,h_acc_m,v_acc_m\n";
+const std::string fix_row =
+    "2010-07-01T12:00:00.000Z,1590,388815.000,46.4775,30.7326,77.0,46.47751,30.73262,78.5,1.5,1.1,1.5,0,0,0,0,0,3d,8,"
+    "11,"
+    "2.1,1.8,1.0,1.5,1.0,2.5,3.5\n";
+const std::string no_fix_row =
+    "2010-07-01T12:00:01.000Z,1590,388816.000,46.4775,30.7326,77.0,,,,,,,,,,,,none,0,11,,,,,,,\n";
+
+// The sentence with its checksum and line end.
+std::string nmea(const std::string& payload) {
+    unsigned sum = 0;
+    for (const char c : payload)
+        sum ^= static_cast<unsigned char>(c);
+    char digits[3];
+    std::snprintf(digits, sizeof digits, "%02X", sum & 0xffu);
+    return "$" + payload + "*" + digits + "\r\n";
+}
+
+std::string message_of(const std::string& text) {
+    const auto series = parse_fix_series(text, "a.csv");
+    return series ? "no error" : series.error().message;
+}
+
+TEST(FixSeries, reads_our_fixes_table_with_truth_and_missing_fixes) {
+    const auto series = parse_fix_series(fixes_header + fix_row + no_fix_row, "fixes.csv");
+    ASSERT_TRUE(series) << series.error().message;
+    ASSERT_EQ(series->samples.size(), 2u);
+    EXPECT_EQ(series->fixes(), 1u);
+    EXPECT_TRUE(series->dated);
+    EXPECT_EQ(series->interval, Seconds(1));
+    const FixSample& first = series->samples[0];
+    EXPECT_TRUE(first.has_fix);
+    EXPECT_NEAR(first.position.latitude.deg(), 46.47751, 1e-12);
+    EXPECT_NEAR(first.position.longitude.deg(), 30.73262, 1e-12);
+    EXPECT_EQ(first.position.height.above_ellipsoid.value(), 78.5);
+    ASSERT_TRUE(first.truth);
+    EXPECT_NEAR(first.truth->latitude.deg(), 46.4775, 1e-12);
+    EXPECT_EQ(first.time, to_gps_time(1590, 388815.0));
+    EXPECT_FALSE(series->samples[1].has_fix);
+    EXPECT_TRUE(series->samples[1].truth);
+}
+
+TEST(FixSeries, finds_columns_by_name_in_any_order_and_style) {
+    const auto series = parse_fix_series(
+        "\xEF\xBB\xBF\"Speed\";\"Altitude (m)\"; Longitude ;LATITUDE;time\n"
+        "0;12.5;-121.9;36.97;2013-02-14 02:43:12\n0;12.6;238.1;36.98;2013-02-14 02:43:14\n",
+        "b.csv");
+    ASSERT_TRUE(series) << series.error().message;
+    ASSERT_EQ(series->samples.size(), 2u);
+    EXPECT_NEAR(series->samples[0].position.latitude.deg(), 36.97, 1e-12);
+    EXPECT_NEAR(series->samples[0].position.longitude.deg(), -121.9, 1e-12);
+    EXPECT_NEAR(series->samples[1].position.longitude.deg(), -121.9, 1e-9);
+    EXPECT_EQ(series->samples[1].position.height.above_ellipsoid.value(), 12.6);
+    EXPECT_FALSE(series->samples[0].truth);
+    EXPECT_EQ(series->interval, Seconds(2));
+}
+
+TEST(FixSeries, reads_rows_of_numbers_as_latitude_longitude_height) {
+    for (const char* text : {"36.97,-121.9,10.5\r\n36.98,-121.8,11.5", "36.97 -121.9  10.5\n\n36.98 -121.8 11.5\n",
+                             "# log\n36.97\t-121.9\t10.5\n36.98\t-121.8\t11.5\n"}) {
+        const auto series = parse_fix_series(text, "c.dlm");
+        ASSERT_TRUE(series) << series.error().message;
+        ASSERT_EQ(series->samples.size(), 2u);
+        EXPECT_NEAR(series->samples[1].position.longitude.deg(), -121.8, 1e-12);
+        EXPECT_EQ(series->samples[1].position.height.above_ellipsoid.value(), 11.5);
+        EXPECT_FALSE(series->interval);
+        EXPECT_FALSE(series->samples[0].time);
+    }
+}
+
+TEST(FixSeries, an_empty_position_without_a_fix_type_is_no_fix) {
+    const auto series = parse_fix_series("lat,lon,alt\n,,\n1,2,3\n", "d.csv");
+    ASSERT_TRUE(series) << series.error().message;
+    EXPECT_FALSE(series->samples[0].has_fix);
+    EXPECT_TRUE(series->samples[1].has_fix);
+}
+
+TEST(FixSeries, seconds_in_a_time_column_give_the_interval_and_no_date) {
+    const auto series =
+        parse_fix_series("time,lat,lon,alt\n100.0,1,2,3\n100.5,1,2,3\n101.0,1,2,3\n160,1,2,3\n", "d.csv");
+    ASSERT_TRUE(series) << series.error().message;
+    EXPECT_FALSE(series->dated);
+    EXPECT_EQ(series->interval, Seconds(0.5));
+}
+
+TEST(FixSeries, errors_name_file_line_and_what_was_found) {
+    EXPECT_THAT(message_of(""), AllOf(HasSubstr("a.csv"), HasSubstr("empty")));
+    EXPECT_THAT(message_of(" \n\n"), HasSubstr("empty"));
+    EXPECT_THAT(message_of("lat,lon,alt\n"), HasSubstr("no fix in 0 rows"));
+    EXPECT_THAT(message_of("1,2,3\n91,2,3\n"),
+                AllOf(HasSubstr("a.csv:2:"), HasSubstr("latitude 91"), HasSubstr("-90 to 90")));
+    EXPECT_THAT(message_of("1,-181,3\n"), AllOf(HasSubstr("a.csv:1:"), HasSubstr("longitude -181")));
+    EXPECT_THAT(message_of("1,2,1e9\n"), HasSubstr("height"));
+    EXPECT_THAT(message_of("1,2,3\nnan,2,3\n"), AllOf(HasSubstr("a.csv:2:"), HasSubstr("'nan'"), HasSubstr("number")));
+    EXPECT_THAT(message_of("inf,2,3\n"), AllOf(HasSubstr("a.csv:1:"), HasSubstr("'inf'")));
+    EXPECT_THAT(message_of("1,2,3\n1,2\n"), AllOf(HasSubstr("a.csv:2:"), HasSubstr("2 cells, expected 3")));
+    EXPECT_THAT(message_of("1,2,3\n1,2,3x\n"), AllOf(HasSubstr("a.csv:2:"), HasSubstr("column 3"), HasSubstr("'3x'")));
+    EXPECT_THAT(message_of("1,2,3,4,5\n"), AllOf(HasSubstr("a.csv:1:"), HasSubstr("5 numbers"), HasSubstr("latitude")));
+    EXPECT_THAT(message_of("lat,lng,speed\n1,2,3\n"),
+                AllOf(HasSubstr("a.csv:1:"), HasSubstr("height"), HasSubstr("lat,lng,speed")));
+    EXPECT_THAT(message_of("time,lat,lon,alt\nyesterday,1,2,3\n"),
+                AllOf(HasSubstr("a.csv:2:"), HasSubstr("'yesterday'")));
+}
+
+TEST(FixSeries, a_fixes_table_with_holes_is_refused) {
+    std::string row = fix_row;
+    row.replace(row.find("46.47751"), 8, "");
+    EXPECT_THAT(message_of(fixes_header + row), AllOf(HasSubstr("a.csv:2:"), HasSubstr("latitude is ''")));
+    EXPECT_THAT(message_of(fixes_header + fix_row.substr(0, 60)),
+                AllOf(HasSubstr("a.csv:2:"), HasSubstr("expected 27")));
+    row = fix_row;
+    row.replace(row.find(",3d,"), 4, ",4d,");
+    EXPECT_THAT(message_of(fixes_header + row), AllOf(HasSubstr("fix_type is '4d'"), HasSubstr("rtk_fixed")));
+    EXPECT_THAT(message_of(fixes_header + no_fix_row), HasSubstr("no fix in 1 rows"));
+}
+
+TEST(FixSeries, ubx_and_other_binary_files_are_refused_by_name) {
+    EXPECT_THAT(message_of("\xB5\x62\x01\x07"), AllOf(HasSubstr("UBX"), HasSubstr("B5 62")));
+    EXPECT_THAT(message_of(std::string("1,2\0,3\n", 7)), AllOf(HasSubstr("not text"), HasSubstr("offset 3")));
+}
+
+TEST(FixSeries, reads_gga_with_dates_from_rmc_across_midnight) {
+    const auto series = parse_fix_series("GPGGA,cut off*00\r\n" +
+                                             nmea("GPGGA,235958.00,4628.650,N,03043.956,W,1,08,1.0,50.5,M,30.5,M,,") +
+                                             nmea("GPRMC,235958.00,A,4628.650,N,03043.956,W,0.0,0.0,311209,,,A") +
+                                             nmea("GPGGA,235959.00,4628.650,S,03043.956,E,1,08,1.0,50.5,M,-30.5,M,,") +
+                                             nmea("GPGGA,000000.00,,,,,0,00,99.9,,M,,M,,") + nmea("GPGSV,1,1,00"),
+                                         "log.nmea");
+    ASSERT_TRUE(series) << series.error().message;
+    ASSERT_EQ(series->samples.size(), 3u);
+    EXPECT_TRUE(series->dated);
+    EXPECT_NEAR(series->samples[0].position.latitude.deg(), 46.4775, 1e-9);
+    EXPECT_NEAR(series->samples[0].position.longitude.deg(), -30.7326, 1e-9);
+    EXPECT_EQ(series->samples[0].position.height.above_ellipsoid.value(), 81.0);
+    EXPECT_NEAR(series->samples[1].position.latitude.deg(), -46.4775, 1e-9);
+    EXPECT_EQ(series->samples[1].position.height.above_ellipsoid.value(), 20.0);
+    EXPECT_FALSE(series->samples[2].has_fix);
+    const auto at = [&](std::size_t i) {
+        return format_utc(to_utc(*series->samples[i].time, LeapSeconds::announced()), 0);
+    };
+    EXPECT_EQ(at(0), "2009-12-31T23:59:58Z");
+    EXPECT_EQ(at(1), "2009-12-31T23:59:59Z");
+    EXPECT_EQ(at(2), "2010-01-01T00:00:00Z");
+    EXPECT_TRUE(series->warnings.empty());
+}
+
+TEST(FixSeries, gga_without_a_date_still_gives_the_interval) {
+    std::string text;
+    for (const char* time : {"235959.50", "000000.00", "000000.50"})
+        text += nmea("GNGGA," + std::string(time) + ",4628.650,N,03043.956,E,1,08,1.0,50.5,M,,M,,");
+    const auto series = parse_fix_series(text, "log.nmea");
+    ASSERT_TRUE(series) << series.error().message;
+    EXPECT_FALSE(series->dated);
+    EXPECT_EQ(series->interval, Seconds(0.5));
+    ASSERT_EQ(series->warnings.size(), 1u);
+    EXPECT_THAT(series->warnings[0], AllOf(HasSubstr("3 fixes without geoid separation"), HasSubstr("log.nmea")));
+}
+
+TEST(FixSeries, damaged_sentences_are_skipped_and_counted) {
+    const std::string good = nmea("GPGGA,120000.00,4628.650,N,03043.956,E,1,08,1.0,50.5,M,30.5,M,,");
+    std::string bad = good;
+    bad[20] = '9';
+    const auto series =
+        parse_fix_series("\x01\x02noise" + good + bad + good.substr(0, good.find('*')) + "\n", "log.nmea");
+    ASSERT_TRUE(series) << series.error().message;
+    EXPECT_EQ(series->samples.size(), 1u);
+    ASSERT_EQ(series->warnings.size(), 2u);
+    EXPECT_THAT(series->warnings[0], HasSubstr("1 GGA or RMC sentences with a wrong checksum"));
+    EXPECT_THAT(series->warnings[1], HasSubstr("1 GGA or RMC sentences without a checksum"));
+    EXPECT_THAT(message_of(bad), AllOf(HasSubstr("no fix in 0 rows"), HasSubstr("wrong checksum")));
+}
+
+TEST(FixSeries, a_sentence_that_passes_its_checksum_must_make_sense) {
+    EXPECT_THAT(message_of("\n" + nmea("GPGGA,120000.00,9128.650,N,03043.956,E,1,08,1.0,50.5,M,30.5,M,,")),
+                AllOf(HasSubstr("a.csv:2:"), HasSubstr("latitude 91.4")));
+    EXPECT_THAT(message_of(nmea("GPGGA,120000.00,4628.650,X,03043.956,E,1,08,1.0,50.5,M,30.5,M,,")),
+                AllOf(HasSubstr("a.csv:1:"), HasSubstr("4628.650,X")));
+    EXPECT_THAT(message_of(nmea("GPGGA,120000.00,nan,N,03043.956,E,1,08,1.0,50.5,M,30.5,M,,")), HasSubstr("'nan,N"));
+    EXPECT_THAT(message_of(nmea("GPGGA,996000.00,4628.650,N,03043.956,E,1,08,1.0,50.5,M,30.5,M,,")),
+                HasSubstr("996000"));
+    EXPECT_THAT(message_of(nmea("GPGGA,120000.00,4628.650,N")), HasSubstr("4 fields"));
+}
+
+TEST(FixSeries, truncation_anywhere_never_crashes) {
+    const std::string table = fixes_header + fix_row + no_fix_row;
+    const std::string log = nmea("GPRMC,120000.00,A,4628.650,N,03043.956,W,0.0,0.0,311209,,,A") +
+                            nmea("GPGGA,120000.00,4628.650,N,03043.956,E,1,08,1.0,50.5,M,30.5,M,,");
+    for (const std::string& whole : {table, log})
+        for (std::size_t length = 0; length < whole.size(); ++length) {
+            const auto series = parse_fix_series(whole.substr(0, length), "cut");
+            EXPECT_TRUE(series || series.error().message.find("cut") != std::string::npos) << length;
+        }
+}
+
+TEST(FixSeries, reads_gzip_and_names_a_missing_file) {
+    const std::string path = testing::TempDir() + "fix_series_test.csv.gz";
+    gzFile file = gzopen(path.c_str(), "wb");
+    ASSERT_TRUE(file);
+    gzputs(file, "36.97,-121.9,10.5\n");
+    gzclose(file);
+    const auto series = read_fix_series(path);
+    ASSERT_TRUE(series) << series.error().message;
+    EXPECT_EQ(series->fixes(), 1u);
+    std::remove(path.c_str());
+    const auto missing = read_fix_series("/nonexistent/fixes.csv");
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().code, ErrorCode::outside);
+    EXPECT_THAT(missing.error().message, HasSubstr("/nonexistent/fixes.csv"));
+}
+
+FixSeries counted_series(std::size_t count) {
+    FixSeries series{"counted", {}, false, Seconds(0.5), {}};
+    for (std::size_t i = 0; i < count; ++i)
+        series.samples.push_back({std::nullopt, true, Geodetic::degrees(0, 0, static_cast<double>(i)), std::nullopt});
+    return series;
+}
+
+double height_at(const FixSeries& series, std::size_t i) {
+    return series.samples.at(i).position.height.above_ellipsoid.value();
+}
+
+TEST(FixSeries, slices_keep_every_nth_sample) {
+    const FixSeries part = slice(counted_series(10), {1, 3, 2});
+    ASSERT_EQ(part.samples.size(), 2u);
+    EXPECT_EQ(height_at(part, 0), 1);
+    EXPECT_EQ(height_at(part, 1), 4);
+    EXPECT_EQ(part.interval, Seconds(1.5));
+    EXPECT_EQ(slice(counted_series(10), {}).samples.size(), 10u);
+    EXPECT_EQ(slice(counted_series(10), {0, 0, 0}).samples.size(), 10u);
+    EXPECT_TRUE(slice(counted_series(10), {10, 1, 0}).samples.empty());
+}
+
+TEST(FixSeries, windows_are_whole_and_consecutive) {
+    const std::vector<FixSeries> parts = windows(counted_series(11), 4);
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_EQ(parts[1].samples.size(), 4u);
+    EXPECT_EQ(height_at(parts[1], 0), 4);
+    EXPECT_EQ(parts[1].name, "counted window 2");
+    EXPECT_TRUE(windows(counted_series(3), 4).empty());
+}
+
+TEST(FixSeries, reads_the_real_lea6_tracks) {
+    SKYLOOP_REQUIRE_SHARED(folder, "receivers/aptos_20130214_lea6");
+    const auto first = read_fix_series(folder / "2013.02.14-024312_ublox1_geodetic.dlm");
+    ASSERT_TRUE(first) << first.error().message;
+    EXPECT_EQ(first->fixes(), 38260u);
+    EXPECT_NEAR(first->samples[0].position.latitude.deg(), 36.9706040, 1e-9);
+    EXPECT_EQ(windows(slice(*first, {0, 2, 0}), 3600).size(), 5u);
+}
+
+TEST(FixSeries, reads_a_real_nmea_log_of_an_indoor_receiver) {
+    SKYLOOP_REQUIRE_SHARED(log, "receivers/indoor_neo6m_20240726/gps_data_20240726_122435.log.gz");
+    const auto series = read_fix_series(log);
+    ASSERT_TRUE(series) << series.error().message;
+    // 3840 epochs of which 3759 have a fix (MEASURED.md).
+    EXPECT_NEAR(static_cast<double>(series->samples.size()), 3840, 2);
+    EXPECT_NEAR(static_cast<double>(series->fixes()), 3759, 2);
+    EXPECT_TRUE(series->dated);
+    EXPECT_EQ(series->interval, Seconds(1));
+    EXPECT_EQ(format_utc(to_utc(*series->samples[0].time, LeapSeconds::announced()), 0), "2024-07-26T11:24:35Z");
+}
+
+TEST(FixSeries, refuses_a_real_ubx_log) {
+    SKYLOOP_REQUIRE_SHARED(log, "receivers/galway_20181015_m8p_static/base-20181015-1654.ubx.gz");
+    const auto series = read_fix_series(log);
+    ASSERT_FALSE(series);
+    EXPECT_THAT(series.error().message, HasSubstr("UBX"));
+}
+
+// Whatever a real serial line has carried is read or refused with the file's name, never worse.
+TEST(FixSeries, takes_every_real_serial_log_without_harm) {
+    SKYLOOP_REQUIRE_SHARED(folder, "serial");
+    std::size_t files = 0, read = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (!entry.is_regular_file()) continue;
+        const auto series = read_fix_series(entry.path());
+        ++files;
+        if (series) {
+            ++read;
+            EXPECT_GT(series->fixes(), 0u) << entry.path();
+        } else {
+            EXPECT_THAT(series.error().message, HasSubstr(entry.path().filename().string()));
+        }
+    }
+    EXPECT_GT(files, 100u);
+    EXPECT_GT(read, 30u);
+}
+
+}  // namespace
+}  // namespace skyloop

@@ -1,0 +1,167 @@
+#include "skyloop/analysis/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "skyloop/base/random.hpp"
+#include "skyloop/geo/local_frame.hpp"
+#include "support/oracle_table.hpp"
+
+namespace skyloop {
+namespace {
+
+std::vector<double> numbers_of(const std::string& text) {
+    std::istringstream in(text);
+    std::vector<double> values;
+    for (double v = 0; in >> v;)
+        values.push_back(v);
+    return values;
+}
+
+// A first-order Gauss-Markov series: its autocorrelation is phi^lag.
+std::vector<double> markov_series(std::size_t n, double phi) {
+    RandomStream random(7, "statistics test");
+    std::vector<double> values;
+    double v = 0;
+    for (std::size_t i = 0; i < n; ++i)
+        values.push_back(v = phi * v + random.normal());
+    return values;
+}
+
+FixSeries offsets(const Geodetic& origin, const std::vector<Eigen::Vector3d>& enu, bool with_truth) {
+    const LocalFrame frame(origin);
+    FixSeries series;
+    series.name = "offsets";
+    for (const Eigen::Vector3d& p : enu) {
+        FixSample sample{std::nullopt, true, to_geodetic(frame.to_ecef(Position<Enu>(p))), std::nullopt};
+        if (with_truth) sample.truth = origin;
+        series.samples.push_back(sample);
+    }
+    return series;
+}
+
+const Geodetic odessa = Geodetic::degrees(46.4775, 30.7326, 77);
+
+TEST(Statistics, agree_with_the_comparison_oracle_in_every_row) {
+    for (const test::OracleRow& row : test::oracle_rows("comparison_metric.csv")) {
+        const auto reference = sample_statistics(numbers_of(row.text("reference_series")));
+        const auto candidate = sample_statistics(numbers_of(row.text("candidate_series")));
+        ASSERT_TRUE(reference && candidate) << row.id();
+        const double tolerance = row.number("tol");
+        // The table prints twelve digits; the tolerance is meant relative where the figure is large.
+        const auto near = [&](double value, const char* column) {
+            const double expected = row.number(column);
+            EXPECT_NEAR(value, expected, tolerance * std::max(1.0, std::abs(expected))) << row.id() << " " << column;
+        };
+        near(reference->mean, "mean_ref");
+        near(reference->std, "std_ref");
+        near(candidate->mean, "mean_cand");
+        near(candidate->std, "std_cand");
+        const auto percent = comparison_percent(*candidate, *reference);
+        ASSERT_TRUE(percent) << row.id();
+        near(percent->difference, "difference_percent");
+        EXPECT_NEAR(percent->difference, (percent->mean_part + percent->std_part) / 2, 1e-9);
+    }
+}
+
+TEST(Statistics, of_a_small_series_are_those_computed_by_hand) {
+    const auto s = sample_statistics(std::vector<double>{4, 1, 3, 2});
+    ASSERT_TRUE(s);
+    EXPECT_EQ(s->n, 4u);
+    EXPECT_DOUBLE_EQ(s->mean, 2.5);
+    EXPECT_DOUBLE_EQ(s->std, std::sqrt(5.0 / 3.0));
+    EXPECT_DOUBLE_EQ(s->rms, std::sqrt(7.5));
+    EXPECT_DOUBLE_EQ(s->min, 1);
+    EXPECT_DOUBLE_EQ(s->max, 4);
+    EXPECT_DOUBLE_EQ(s->median, 2.5);
+    EXPECT_DOUBLE_EQ(s->p95, 3.85);
+    EXPECT_FALSE(sample_statistics({}));
+    EXPECT_EQ(sample_statistics(std::vector<double>{3})->std, 0);
+}
+
+TEST(Statistics, errors_are_about_the_truth_when_every_fix_has_one) {
+    const FixSeries series = offsets(odessa, {{3, 4, 12}, {-3, -4, 0}}, true);
+    const PositionErrors errors = position_errors(series, Geodetic::degrees(0, 0, 0));
+    EXPECT_EQ(errors.reference, ReferenceKind::truth);
+    EXPECT_FALSE(errors.point);
+    ASSERT_EQ(errors.east.size(), 2u);
+    EXPECT_NEAR(errors.east[0], 3, 1e-6);
+    EXPECT_NEAR(errors.north[0], 4, 1e-6);
+    EXPECT_NEAR(errors.up[0], 12, 1e-6);
+    EXPECT_NEAR(errors.horizontal[0], 5, 1e-6);
+    EXPECT_NEAR(errors.spatial[0], 13, 1e-6);
+}
+
+TEST(Statistics, errors_are_about_the_given_point_or_else_the_mean) {
+    FixSeries series = offsets(odessa, {{1, 2, 3}, {3, 2, 1}, {99, 99, 99}}, false);
+    series.samples[2].has_fix = false;
+    const PositionErrors given = position_errors(series, odessa);
+    EXPECT_EQ(given.reference, ReferenceKind::given_point);
+    ASSERT_EQ(given.east.size(), 2u);
+    EXPECT_NEAR(given.east[1], 3, 1e-6);
+    const PositionErrors own = position_errors(series);
+    EXPECT_EQ(own.reference, ReferenceKind::own_mean);
+    ASSERT_TRUE(own.point);
+    EXPECT_NEAR(own.east[0], -1, 1e-6);
+    EXPECT_NEAR(own.east[1], 1, 1e-6);
+    EXPECT_NEAR(own.up[0], 1, 1e-6);
+    EXPECT_TRUE(position_errors(FixSeries{}).east.empty());
+}
+
+TEST(Statistics, autocorrelation_equals_the_sum_over_pairs) {
+    const std::vector<double> values{1, 4, 2, 5, 3, 8, 6};
+    const std::vector<double> r = autocorrelation(values, 4);
+    ASSERT_EQ(r.size(), 5u);
+    const double mean = sample_statistics(values)->mean;
+    const auto covariance = [&](std::size_t lag) {
+        double sum = 0;
+        for (std::size_t i = 0; i + lag < values.size(); ++i)
+            sum += (values[i] - mean) * (values[i + lag] - mean);
+        return sum;
+    };
+    for (std::size_t lag = 0; lag < r.size(); ++lag)
+        EXPECT_NEAR(r[lag], covariance(lag) / covariance(0), 1e-12) << lag;
+    EXPECT_EQ(autocorrelation(values, 100).size(), values.size());
+    EXPECT_TRUE(autocorrelation(std::vector<double>{2, 2, 2}, 2).empty());
+    EXPECT_TRUE(autocorrelation(std::vector<double>{2}, 2).empty());
+}
+
+TEST(Statistics, correlation_length_is_that_of_the_process) {
+    // phi = exp(-1/20): 1/e after 20 samples; white noise falls below 1/e within the first.
+    const auto length = correlation_length(markov_series(200000, std::exp(-1.0 / 20)));
+    ASSERT_TRUE(length);
+    EXPECT_NEAR(*length, 20, 2);
+    const auto white = correlation_length(markov_series(5000, 0));
+    ASSERT_TRUE(white);
+    EXPECT_NEAR(*white, 1 - 1 / std::numbers::e, 0.05);
+    EXPECT_FALSE(correlation_length(std::vector<double>{1, 1, 1, 1}));
+}
+
+TEST(Statistics, percentage_warns_of_a_signed_mean_near_zero_and_refuses_zero) {
+    SampleStatistics reference;
+    reference.n = 100;
+    reference.mean = -0.2;
+    reference.std = 1;
+    SampleStatistics candidate = reference;
+    candidate.mean = 0.1;
+    candidate.std = 1.1;
+    const auto near_zero = comparison_percent(candidate, reference);
+    ASSERT_TRUE(near_zero);
+    EXPECT_TRUE(near_zero->mean_near_zero);
+    EXPECT_NEAR(near_zero->mean_part, 150, 1e-9);
+    EXPECT_NEAR(near_zero->std_part, 10, 1e-9);
+    EXPECT_NEAR(near_zero->difference, 80, 1e-9);
+    reference.mean = -2;
+    EXPECT_FALSE(comparison_percent(candidate, reference)->mean_near_zero);
+    reference.mean = 0;
+    EXPECT_FALSE(comparison_percent(candidate, reference));
+    reference.mean = 1;
+    reference.std = 0;
+    EXPECT_FALSE(comparison_percent(candidate, reference));
+}
+
+}  // namespace
+}  // namespace skyloop
