@@ -5,7 +5,7 @@
 
 namespace skyloop {
 
-std::optional<Dop> dilution_of_precision(std::span<const SkyDirection> satellites) {
+std::optional<Eigen::Matrix4d> cofactor_matrix(std::span<const SkyDirection> satellites) {
     if (satellites.size() < 4) return std::nullopt;
     Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
     for (const SkyDirection& s : satellites) {
@@ -18,6 +18,13 @@ std::optional<Dop> dilution_of_precision(std::span<const SkyDirection> satellite
     if (!decomposition.isInvertible()) return std::nullopt;
     const Eigen::Matrix4d q = decomposition.inverse();
     if (!(q.diagonal().array() > 0).all()) return std::nullopt;
+    return q;
+}
+
+std::optional<Dop> dilution_of_precision(std::span<const SkyDirection> satellites) {
+    const auto cofactors = cofactor_matrix(satellites);
+    if (!cofactors) return std::nullopt;
+    const Eigen::Matrix4d& q = *cofactors;
 
     Dop dop;
     dop.gdop = std::sqrt(q.trace());

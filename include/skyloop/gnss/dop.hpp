@@ -1,6 +1,7 @@
 /// Dilution of precision.
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <span>
 
@@ -18,6 +19,10 @@ struct SkyDirection {
     Angle azimuth;
     Angle elevation;
 };
+
+/// The cofactor matrix Q = (HᵀH)⁻¹ of position and one clock from unit weights, rows east, north, up, clock; H has rows
+/// (cos el sin az, cos el cos az, sin el, 1). Nothing for fewer than four directions or a singular geometry.
+std::optional<Eigen::Matrix4d> cofactor_matrix(std::span<const SkyDirection> satellites);
 
 /// DOP of position and one clock from unit weights: Q = (HᵀH)⁻¹ with rows (cos el sin az, cos el cos az, sin el, 1).
 /// Nothing for fewer than four directions or a singular geometry.

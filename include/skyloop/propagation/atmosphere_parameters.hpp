@@ -58,10 +58,10 @@ struct AtmosphereParameters {
     Kelvin sea_level_temperature{288.15};
     double gravity_mps2 = 9.80665;
     double molar_mass_kg_per_mol = 0.0289644;
-    double gas_constant = 8.314462618;      ///< J/(mol K)
-    Metres earth_radius{6371000};           ///< of the spherical shells
-    double oxygen_constant = 0.277;         ///< GHz²; as printed, 0.227 in the primary source
-    std::vector<AtmosphericLayer> layers;   ///< empty: default_layers()
+    double gas_constant = 8.314462618;     ///< J/(mol K)
+    Metres earth_radius{6371000};          ///< of the spherical shells
+    double oxygen_constant = 0.277;        ///< GHz²; as printed, 0.227 in the primary source
+    std::vector<AtmosphericLayer> layers;  ///< empty: default_layers()
     std::vector<CloudDeck> clouds;
     bool clouds_apply_concentration = false;
     Rain rain;
@@ -70,12 +70,13 @@ struct AtmosphereParameters {
     Tecu total_electron_content{30.86};     ///< vertical
     Decibels ionosphere_loss{0};            ///< constant part of L_iono
     Decibels riometer_absorption_30mhz{0};  ///< zenith absorption at 30 MHz; scaled by (30 MHz/f)²/sin e′
+    Metres ionosphere_base{60000};          ///< where e′ is taken: the ionosphere absorbs at its lower edge
 
-    Metres zenith_dry_delay{2.3};           ///< a of E_z,dry = a exp(−b h)
+    Metres zenith_dry_delay{2.3};  ///< a of E_z,dry = a exp(−b h)
     double zenith_dry_decay_per_m = 0.116e-3;
     Metres zenith_wet_delay{0};
 
-    Decibels environment_noise{1};          ///< over the thermal noise, 1 (countryside) … 40 (industrial area)
+    Decibels environment_noise{1};  ///< over the thermal noise, 1 (countryside) … 40 (industrial area)
 };
 
 /// Troposphere, stratosphere, mesosphere and thermosphere of MODELS.md 3.6.

@@ -1,0 +1,16 @@
+/// Signals in empty space: the start of everything that arrives.
+#pragma once
+
+#include "skyloop/base/units.hpp"
+#include "skyloop/flow/arrivals.hpp"
+#include "skyloop/flow/sky_view.hpp"
+
+namespace skyloop {
+
+/// 20 log10(4π d f / c) (MODELS.md 3.6, L_s).
+Decibels free_space_loss(Metres distance, Hertz carrier);
+
+/// One arrival for each satellite of `sky`, in its order: in line of sight, without delay, weakened by distance alone.
+Arrivals free_space(const SkyView& sky, Hertz carrier);
+
+}  // namespace skyloop

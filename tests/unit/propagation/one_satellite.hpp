@@ -1,0 +1,38 @@
+/// One satellite in one direction, for effects that treat each satellite by itself.
+#pragma once
+
+#include "skyloop/flow/arrivals.hpp"
+#include "skyloop/flow/sky_view.hpp"
+#include "skyloop/flow/truth_state.hpp"
+#include "skyloop/gnss/constants.hpp"
+#include "skyloop/propagation/effect.hpp"
+#include "skyloop/propagation/free_space.hpp"
+
+namespace skyloop::test {
+
+/// A sky with one satellite, what arrives from it, and where the antenna is.
+struct OneSatellite {
+    SkyView sky;
+    TruthState truth;
+    Arrivals arrivals;
+
+    OneSatellite(Angle elevation, Metres range, const Geodetic& place) {
+        SatelliteInView satellite;
+        satellite.id = {Constellation::gps, 1};
+        satellite.elevation = elevation;
+        satellite.range = range;
+        sky.satellites.push_back(satellite);
+        truth.geodetic = place;
+        truth.position = to_ecef(place);
+        truth.time = to_gps_time(2111, 360000.0);
+        arrivals = free_space(sky, Hertz(carrier_frequency_l1));
+    }
+    Arrival& arrival() { return arrivals.satellites.front(); }
+    /// The arrival after `effect`.
+    const Arrival& after(PropagationEffect& effect) {
+        effect.apply(arrivals, sky, truth);
+        return arrival();
+    }
+};
+
+}  // namespace skyloop::test

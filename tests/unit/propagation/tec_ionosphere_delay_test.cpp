@@ -1,0 +1,48 @@
+#include "skyloop/propagation/tec_ionosphere_delay.hpp"
+
+#include <gtest/gtest.h>
+
+#include "skyloop/gnss/atmosphere.hpp"
+#include "support/oracle_table.hpp"
+#include "unit/propagation/one_satellite.hpp"
+
+namespace skyloop {
+namespace {
+
+using test::OneSatellite;
+using test::OracleRow;
+
+TEST(TecDelay, EveryOracleRow) {
+    for (const OracleRow& row : test::oracle_rows("paper_iono_delay.csv")) {
+        SCOPED_TRACE(row.id());
+        const Angle elevation = Angle::degrees(row.number("el_deg"));
+        EXPECT_NEAR(ionosphere_obliquity(elevation), row.number("obliquity"), row.number("tol"));
+        EXPECT_NEAR(tec_delay(Tecu(row.number("tec_tecu")), elevation).value(), row.number("E_iono_m"),
+                    row.number("tol"));
+    }
+}
+
+TEST(TecDelay, DefaultContentDelaysByFiveMetresAtTheZenith) {
+    EXPECT_NEAR(tec_delay(Tecu(30.86), Angle::degrees(90)).value(), 5.0, 0.005);
+}
+
+TEST(TecIonosphereDelay, ConstantContentIsTheSameEverywhere) {
+    TecIonosphereDelay effect(Tecu(20));
+    OneSatellite scene(Angle::degrees(33), Metres(22e6), Geodetic::degrees(-30, 150, 20));
+    EXPECT_EQ(scene.after(effect).iono_delay, tec_delay(Tecu(20), Angle::degrees(33)));
+}
+
+TEST(TecIonosphereDelay, BroadcastContentIsTheVerticalDelayAtThePiercePoint) {
+    const KlobucharCoefficients broadcast{{4.6566e-09, 1.4901e-08, -5.9605e-08, -1.1921e-07},
+                                          {81920.0, 98304.0, -65536.0, -524290.0}};
+    TecIonosphereDelay effect(broadcast);
+    OneSatellite scene(Angle::degrees(20), Metres(22e6), Geodetic::degrees(40, -100, 0));
+    scene.sky.satellites.front().azimuth = Angle::degrees(210);
+    scene.truth.time = to_gps_time(2111, 593100.0);
+    // Row pI001 of iono_klobuchar.csv: vertical 2.4447843077 m.
+    EXPECT_NEAR(effect.vertical_content(scene.sky.satellites.front(), scene.truth).value(), 2.4447843077 / 0.162, 1e-6);
+    EXPECT_NEAR(scene.after(effect).iono_delay.value(), 2.4447843077 * ionosphere_obliquity(Angle::degrees(20)), 1e-6);
+}
+
+}  // namespace
+}  // namespace skyloop
