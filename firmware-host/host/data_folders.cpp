@@ -16,10 +16,4 @@ DataFolders data_folders() {
     return data;
 }
 
-std::vector<std::filesystem::path> board_folders(const DataFolders& data) {
-    std::vector<std::filesystem::path> folders;
-    for (const auto& folder : data.folders) folders.push_back(folder / "boards" / "receivers");
-    return folders;
-}
-
 }  // namespace skyloop::host

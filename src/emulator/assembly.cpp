@@ -50,9 +50,7 @@ Result<void> choose_sentences(firmware::BoardProfile& board, const std::vector<s
 }
 
 Result<firmware::Receiver> make_receiver(const ReceiverEntry& entry, const DataFolders& data, std::vector<std::string>& warnings) {
-    std::vector<std::filesystem::path> folders;
-    for (const auto& folder : data.folders) folders.push_back(folder / "boards" / "receivers");
-    auto board = find_board(entry.board, folders);
+    auto board = find_board(entry.board, board_folders(data));
     if (!board) return fail(board.error());
     if (entry.baud) board->baud = *entry.baud;
     if (const auto chosen = choose_sentences(*board, entry.sentences); !chosen) return fail(chosen.error());
@@ -118,9 +116,15 @@ Simulation make_simulation(const Scenario& scenario, std::unique_ptr<NavigationS
     return Simulation(std::move(parts));
 }
 
+std::vector<std::filesystem::path> board_folders(const DataFolders& data) {
+    std::vector<std::filesystem::path> folders;
+    for (const auto& folder : data.folders) folders.push_back(folder / "boards");
+    return folders;
+}
+
 Result<void> check_port_names(const Scenario& scenario) {
     for (const std::string& uri : scenario.receiver.ports)
-        if (const auto checked = check_transport_name(uri); !checked) return fail(checked.error());
+        if (const auto port = parse_port_uri(uri); !port) return fail(port.error());
     return {};
 }
 

@@ -48,7 +48,8 @@ void Emulator::exchange_bytes() {
         if (parts_.recorder) parts_.recorder->record_input(heard);
     }
     const Bytes sent = receiver.output(now_);
-    for (Link& link : parts_.links) link.send(sent, receiver.baud());
+    const bool at_rest = !receiver.drained_at().has_value();
+    for (Link& link : parts_.links) link.send(sent, receiver.baud(), at_rest);
     if (parts_.recorder) parts_.recorder->record_output(sent, now_, parts_.pacer->monotonic_ns(now_));
 }
 

@@ -24,15 +24,15 @@ Result<std::unique_ptr<Transport>> as_transport(Result<std::unique_ptr<Wire>> wi
 
 }  // namespace
 
-Result<std::unique_ptr<Transport>> open_transport(std::string_view uri) {
-    if (uri == "-") return std::unique_ptr<Transport>(FileTransport::standard_output());
+Result<PortUri> parse_port_uri(std::string_view uri) {
+    if (uri == "-") return PortUri{WireKind::standard_output, {}};
     const std::size_t colon = uri.find(':');
     const std::string_view scheme = uri.substr(0, colon);
     const bool has_rest = colon != std::string_view::npos;
     const std::string_view rest = has_rest ? uri.substr(colon + 1) : std::string_view();
-    if (scheme == "pty" && !has_rest) return as_transport(PtyTransport::open());
-    if (scheme == "pty" && !rest.empty()) return as_transport(PtyTransport::open(rest));
-    if (scheme == "file" && !rest.empty()) return as_transport(FileTransport::open(rest));
+    if (scheme == "pty" && !has_rest) return PortUri{WireKind::pty, {}};
+    if (scheme == "pty" && !rest.empty()) return PortUri{WireKind::pty, std::string(rest)};
+    if (scheme == "file" && !rest.empty()) return PortUri{WireKind::file, std::string(rest)};
     if (std::find(known_schemes.begin(), known_schemes.end(), scheme) != known_schemes.end())
         return fail(ErrorCode::usage, fmt::format("port '{}': a path is missing; expected {}", uri, offered));
     if (has_rest && std::find(later_schemes.begin(), later_schemes.end(), scheme) != later_schemes.end())
@@ -40,6 +40,17 @@ Result<std::unique_ptr<Transport>> open_transport(std::string_view uri) {
                     fmt::format("port '{}': {}: is not supported by this version; expected {}", uri, scheme, offered));
     return fail(ErrorCode::usage, fmt::format("port '{}': no such kind of port{}; expected {}", uri,
                                               did_you_mean(scheme, known_schemes), offered));
+}
+
+Result<std::unique_ptr<Transport>> open_transport(std::string_view uri) {
+    const auto port = parse_port_uri(uri);
+    if (!port) return fail(port.error());
+    switch (port->kind) {
+        case WireKind::pty: return as_transport(port->path.empty() ? PtyTransport::open() : PtyTransport::open(port->path));
+        case WireKind::file: return as_transport(FileTransport::open(port->path));
+        case WireKind::standard_output: break;
+    }
+    return std::unique_ptr<Transport>(FileTransport::standard_output());
 }
 
 }  // namespace skyloop

@@ -19,6 +19,9 @@ struct DataFolders {
     std::vector<std::filesystem::path> folders;
 };
 
+/// Where find_board() is to look.
+std::vector<std::filesystem::path> board_folders(const DataFolders& data);
+
 /// How a run is driven.
 struct RunMode {
     bool virtual_time = false;                         ///< as fast as possible, on the virtual clock

@@ -24,7 +24,8 @@ public:
     Link(std::unique_ptr<Transport> transport, std::uint32_t receiver_baud);
 
     /// Puts on the wire what the receiver has sent. What a slow client does not take is lost, as in an overrun UART.
-    void send(ByteSpan bytes, std::uint32_t receiver_baud);
+    /// @param at_rest the receiver has nothing more to send: the line goes idle after these bytes
+    void send(ByteSpan bytes, std::uint32_t receiver_baud, bool at_rest);
     /// What the client has sent, as the receiver's UART hears it.
     Bytes receive(std::uint32_t receiver_baud);
 
@@ -33,6 +34,9 @@ public:
     [[nodiscard]] bool connected() const { return connected_; }
 
 private:
+    // What the client's UART makes of the bytes at its own speed.
+    Bytes heard_by_client(ByteSpan bytes, std::uint32_t receiver_baud, std::uint32_t client_baud, bool at_rest);
+
     std::unique_ptr<Transport> transport_;
     LineGarbler to_client_;
     LineGarbler to_receiver_;

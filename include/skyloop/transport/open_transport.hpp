@@ -2,12 +2,24 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "skyloop/base/result.hpp"
 #include "skyloop/transport/transport.hpp"
 
 namespace skyloop {
+
+/// The wires of this version.
+enum class WireKind { pty, file, standard_output };
+
+/// A wire as it was asked for, not opened.
+struct PortUri {
+    WireKind kind = WireKind::pty;
+    std::string path;  ///< the link of a pty, or empty; the path of a file
+};
+/// Fails with `usage` and a sentence that quotes the URI.
+Result<PortUri> parse_port_uri(std::string_view uri);
 
 /// Opens `pty`, `pty:LINK`, `file:PATH` or `-` (standard output). Fails with `usage` for anything else, with `outside`
 /// when the system refuses; the sentence names the URI or the path.
