@@ -1,0 +1,67 @@
+/// Recorded broadcast orbits: every record of every satellite, and the rule that picks one.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/gnss/ephemeris.hpp"
+#include "skyloop/gnss/navigation_source.hpp"
+
+namespace skyloop {
+
+/// How a record is chosen (MODELS.md 3.3 and D-02).
+struct EphemerisSelection {
+    EphemerisRule rule = EphemerisRule::nearest;
+    Seconds validity{7200};  ///< largest age: t − toe (forward) or |t − toe| (nearest)
+};
+
+/// The records of one satellite, ascending by toe; of those with the same toe the last one read comes last.
+struct SatelliteRecords {
+    SatelliteId satellite;
+    std::vector<KeplerEphemeris> records;
+};
+
+/// A source of orbits made of recorded ephemerides.
+class NavigationData : public NavigationSource {
+public:
+    /// @param records in any order; repetitions of one (satellite, toe, iode) are kept once, the last of them
+    /// @param description for people: the name of the file or files
+    NavigationData(std::vector<KeplerEphemeris> records, std::optional<KlobucharCoefficients> klobuchar,
+                   std::string description, EphemerisSelection selection = {});
+
+    [[nodiscard]] std::vector<SatelliteId> satellites() const override;
+    /// The record that the rule picks. Forward: the newest healthy one with 0 ≤ time − toe ≤ validity. Nearest: the one
+    /// with the smallest |time − toe| ≤ validity, healthy or not; of two equally near ones the newer.
+    [[nodiscard]] std::optional<KeplerEphemeris> ephemeris(SatelliteId satellite, GpsTime time) const override;
+    [[nodiscard]] std::optional<KlobucharCoefficients> klobuchar() const override { return klobuchar_; }
+    /// From the first toe (forward), or `validity` before it (nearest), to `validity` after the last; nothing when there
+    /// are no records.
+    [[nodiscard]] std::optional<TimeSpan> span() const override;
+    [[nodiscard]] std::string description() const override { return description_; }
+
+    [[nodiscard]] const std::vector<SatelliteRecords>& records() const { return satellites_; }
+    [[nodiscard]] std::size_t record_count() const;
+    [[nodiscard]] const EphemerisSelection& selection() const { return selection_; }
+    /// How many satellites have a record for `time`.
+    [[nodiscard]] std::size_t satellites_at(GpsTime time) const;
+
+private:
+    [[nodiscard]] const KeplerEphemeris* find(const SatelliteRecords& satellite, GpsTime time) const;
+
+    std::vector<SatelliteRecords> satellites_;  // ascending by satellite
+    std::optional<KlobucharCoefficients> klobuchar_;
+    std::string description_;
+    EphemerisSelection selection_;
+};
+
+/// The record moved by `days` whole days: toe and toc keep their time of day, and omega0 takes up the change of the time
+/// of week, so that every ECEF position at the same time of day stays what it was.
+KeplerEphemeris moved_by_days(const KeplerEphemeris& record, std::int64_t days);
+
+/// A copy of `data` moved by the whole number of days that gives the most satellites at `start`; among equals by the one
+/// that leaves the most data after `start`. Fails with `usage` when no move brings data to the time of day of `start`.
+Result<NavigationData> rebased(const NavigationData& data, GpsTime start);
+
+}  // namespace skyloop

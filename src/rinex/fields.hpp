@@ -1,0 +1,45 @@
+/// Lines and fixed-column fields of RINEX text.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace skyloop::rinex {
+
+/// A line without its end, and its number, from 1.
+struct Line {
+    std::string_view text;
+    int number = 0;
+};
+
+/// Goes through the lines of a text; ends may be LF or CR LF, the last one may be missing.
+class LineReader {
+public:
+    explicit LineReader(std::string_view text) : rest_(text) {}
+    std::optional<Line> next();
+    /// The number of the last line given, at least 1.
+    [[nodiscard]] int number() const { return number_ > 0 ? number_ : 1; }
+
+private:
+    std::string_view rest_;
+    int number_ = 0;
+};
+
+/// Columns `first` (from 0) and on, as far as the line goes.
+std::string_view columns(std::string_view line, std::size_t first, std::size_t width);
+/// Without spaces at either end.
+std::string_view trimmed(std::string_view text);
+inline bool is_blank(std::string_view text) { return trimmed(text).empty(); }
+
+/// A real number with exponent D or E of either case, as F, D and E formats write it; 0 when blank; nothing when the field
+/// holds something else, or a value that is not finite.
+std::optional<double> real_field(std::string_view field);
+/// A whole number, 0 when blank.
+std::optional<int> whole_field(std::string_view field);
+
+/// The text in quotation marks, cut to a readable length, without control characters.
+std::string in_quotes(std::string_view text);
+
+}  // namespace skyloop::rinex
