@@ -18,7 +18,8 @@ std::uint64_t split_mix(std::uint64_t& x) {
 // FNV-1a, 64 bit: a name as a number.
 std::uint64_t name_hash(std::string_view name) {
     std::uint64_t hash = 0xcbf29ce484222325u;
-    for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    for (const char c : name)
+        hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
     return hash;
 }
 
@@ -27,7 +28,8 @@ std::uint64_t name_hash(std::string_view name) {
 RandomStream::RandomStream(std::uint64_t seed, std::string_view name) {
     std::uint64_t x = seed;
     x = split_mix(x) ^ name_hash(name);
-    for (std::uint64_t& word : state_) word = split_mix(x);
+    for (std::uint64_t& word : state_)
+        word = split_mix(x);
 }
 
 std::uint64_t RandomStream::bits() {
