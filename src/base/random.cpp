@@ -22,7 +22,8 @@ std::uint64_t split_mix(std::uint64_t& x) {
 RandomStream::RandomStream(std::uint64_t seed, std::string_view name) {
     std::uint64_t x = seed;
     x = split_mix(x) ^ fnv1a_64(name);
-    for (std::uint64_t& word : state_) word = split_mix(x);
+    for (std::uint64_t& word : state_)
+        word = split_mix(x);
 }
 
 std::uint64_t RandomStream::bits() {

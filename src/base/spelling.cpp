@@ -9,8 +9,10 @@ namespace {
 // Optimal string alignment distance: edits of single letters and swaps of neighbours.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-    for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-    for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+    for (std::size_t i = 0; i <= a.size(); ++i)
+        d[i][0] = i;
+    for (std::size_t j = 0; j <= b.size(); ++j)
+        d[0][j] = j;
     for (std::size_t i = 1; i <= a.size(); ++i)
         for (std::size_t j = 1; j <= b.size(); ++j) {
             const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
@@ -26,11 +28,13 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string nearest_word(std::string_view word, std::span<const std::string_view> candidates) {
     constexpr std::size_t longest_word = 100;  // the table is quadratic; nobody means anything by a longer word
     std::string_view best;
-    std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
+    // In a word of three letters two edits leave nothing that was meant.
+    std::size_t best_distance = (word.size() <= 3 ? 1 : std::max<std::size_t>(2, word.size() / 3)) + 1;
     if (word.size() > longest_word) return {};
     for (const std::string_view candidate : candidates) {
         // A word that is the start of a known one, or the other way round, is a likely slip of memory.
-        const bool prefix = word.size() >= 3 && (candidate.starts_with(word) || word.starts_with(candidate));
+        const bool prefix = std::min(word.size(), candidate.size()) >= 3 &&
+                            (candidate.starts_with(word) || word.starts_with(candidate));
         const std::size_t distance = prefix ? 1 : edit_distance(word, candidate);
         if (distance < best_distance) {
             best = candidate;

@@ -54,18 +54,21 @@ Result<std::string> read_text_file(const std::filesystem::path& path, std::size_
             int code = Z_OK;
             const std::string reason = gzerror(reader.get(), &code);
             return code == Z_ERRNO ? fail(ErrorCode::outside, fmt::format("{}: {}", name, std::strerror(errno)))
-                                   : fail(ErrorCode::input, fmt::format("{}: damaged gzip data after {} bytes: {}", name, had, reason));
+                                   : fail(ErrorCode::input,
+                                          fmt::format("{}: damaged gzip data after {} bytes: {}", name, had, reason));
         }
         text.resize(had + static_cast<std::size_t>(got));
         if (text.size() > max_size)
-            return fail(ErrorCode::input, fmt::format("{}: larger than {} MiB, which is no such text file", name, max_size >> 20));
+            return fail(ErrorCode::input,
+                        fmt::format("{}: has more than {} bytes of text, the most that is read", name, max_size));
         if (got == 0) break;
     }
     // gzread reports a stream that ends early only through its error state.
     int code = Z_OK;
     gzerror(reader.get(), &code);
     if (code == Z_BUF_ERROR)
-        return fail(ErrorCode::input, fmt::format("{}: gzip data ends early, after {} bytes of text", name, text.size()));
+        return fail(ErrorCode::input,
+                    fmt::format("{}: gzip data ends early, after {} bytes of text", name, text.size()));
     return text;
 }
 

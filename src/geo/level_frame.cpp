@@ -8,8 +8,8 @@ LevelFrame::LevelFrame(const LevelPlacement& placement) : placement_(placement),
     const double s = std::sin(placement.yaw.rad());
     const double c = std::cos(placement.yaw.rad());
     const double y = placement.left_handed ? 1 : -1;  // Y points to the right of X, or to its left
-    level_to_enu_ << s, y * c, 0,  //
-        c, -y * s, 0,              //
+    level_to_enu_ << s, y * c, 0,                     //
+        c, -y * s, 0,                                 //
         0, 0, 1;
     level_to_enu_ *= placement.unit.value();
 }

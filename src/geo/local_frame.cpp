@@ -10,8 +10,8 @@ LocalFrame::LocalFrame(const Geodetic& origin) : origin_(origin), origin_ecef_(s
     const double cos_lat = std::cos(origin.latitude.rad());
     const double sin_lon = std::sin(origin.longitude.rad());
     const double cos_lon = std::cos(origin.longitude.rad());
-    rotation_ << -sin_lon, cos_lon, 0,                                 //
-        -sin_lat * cos_lon, -sin_lat * sin_lon, cos_lat,               //
+    rotation_ << -sin_lon, cos_lon, 0,                    //
+        -sin_lat * cos_lon, -sin_lat * sin_lon, cos_lat,  //
         cos_lat * cos_lon, cos_lat * sin_lon, sin_lat;
 }
 
@@ -44,8 +44,8 @@ LookAngles LocalFrame::look_angles(const Position<Ecef>& target) const {
     const double horizontal = std::hypot(enu.x(), enu.y());
     double azimuth = std::atan2(enu.x(), enu.y());
     if (azimuth < 0) azimuth += 2 * std::numbers::pi;
-    // A tiny negative angle rounds up to a full turn, which is north again.
-    if (azimuth >= 2 * std::numbers::pi) azimuth = 0;
+    // A tiny negative angle rounds up to a full turn, which is north again; so is minus zero.
+    if (azimuth >= 2 * std::numbers::pi || azimuth == 0) azimuth = 0;
     return {Angle::radians(azimuth), Angle::radians(std::atan2(enu.z(), horizontal)), Metres(enu.norm())};
 }
 

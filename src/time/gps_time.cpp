@@ -34,7 +34,8 @@ GpsTime to_gps_time(std::int64_t week, double tow_seconds) {
 Nanoseconds to_nanoseconds(Seconds span) {
     // Whole seconds apart, so that a long span keeps its nanoseconds.
     const double whole = std::floor(span.value());
-    return std::chrono::seconds(static_cast<std::int64_t>(whole)) + Nanoseconds(std::llround((span.value() - whole) * 1e9));
+    return std::chrono::seconds(static_cast<std::int64_t>(whole)) +
+           Nanoseconds(std::llround((span.value() - whole) * 1e9));
 }
 
 std::int64_t resolve_week(std::int64_t week10, std::int64_t pivot_week) {

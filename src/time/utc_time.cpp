@@ -34,8 +34,24 @@ UtcTime calendar(Nanoseconds since_epoch) {
 
 // First UTC days on which a new offset holds (IERS Bulletin C).
 constexpr std::array<std::array<int, 2>, 18> leap_days{{
-    {1981, 7}, {1982, 7}, {1983, 7}, {1985, 7}, {1988, 1}, {1990, 1}, {1991, 1}, {1992, 7}, {1993, 7},
-    {1994, 7}, {1996, 1}, {1997, 7}, {1999, 1}, {2006, 1}, {2009, 1}, {2012, 7}, {2015, 7}, {2017, 1},
+    {1981, 7},
+    {1982, 7},
+    {1983, 7},
+    {1985, 7},
+    {1988, 1},
+    {1990, 1},
+    {1991, 1},
+    {1992, 7},
+    {1993, 7},
+    {1994, 7},
+    {1996, 1},
+    {1997, 7},
+    {1999, 1},
+    {2006, 1},
+    {2009, 1},
+    {2012, 7},
+    {2015, 7},
+    {2017, 1},
 }};
 
 std::vector<LeapSeconds::Step> announced_steps() {
@@ -43,7 +59,8 @@ std::vector<LeapSeconds::Step> announced_steps() {
     int offset = 0;
     for (const auto& [year, month] : leap_days) {
         ++offset;
-        steps.push_back({GpsTime(since_gps_epoch(year, static_cast<unsigned>(month), 1) + std::chrono::seconds(offset)), offset});
+        steps.push_back(
+            {GpsTime(since_gps_epoch(year, static_cast<unsigned>(month), 1) + std::chrono::seconds(offset)), offset});
     }
     return steps;
 }
@@ -77,9 +94,12 @@ bool read_fraction(std::string_view& text, std::uint32_t& nanosecond) {
 }
 
 bool valid_calendar(const UtcTime& t) {
-    using namespace std::chrono;
-    const bool date = (year(t.year) / static_cast<int>(t.month) / static_cast<int>(t.day)).ok();
-    return date && t.year >= 1980 && t.year < 2200 && t.hour < 24 && t.minute < 60 && t.second <= 60;
+    const std::chrono::year_month_day date =
+        std::chrono::year(t.year) / static_cast<int>(t.month) / static_cast<int>(t.day);
+    if (!date.ok() || Days(date) < gps_epoch || t.year >= 2200) return false;
+    // A leap second can only be the last second of a month (ITU-R TF.460-6).
+    if (t.second == 60) return t.hour == 23 && t.minute == 59 && date == date.year() / date.month() / std::chrono::last;
+    return t.hour < 24 && t.minute < 60 && t.second < 60;
 }
 
 }  // namespace
@@ -94,10 +114,10 @@ const LeapSeconds& LeapSeconds::announced() {
 LeapSeconds LeapSeconds::constant(int offset) { return LeapSeconds({{GpsTime::min(), offset}}); }
 
 int LeapSeconds::offset(GpsTime time) const {
-    int offset = 0;
-    for (const Step& step : steps_)
-        if (time >= step.from) offset = step.offset;
-    return offset;
+    // From the end: nearly every question is about a time after the last step.
+    for (auto step = steps_.rbegin(); step != steps_.rend(); ++step)
+        if (time >= step->from) return step->offset;
+    return 0;
 }
 
 UtcTime to_utc(GpsTime time, const LeapSeconds& leap_seconds) {
@@ -116,13 +136,18 @@ UtcTime to_utc(GpsTime time, const LeapSeconds& leap_seconds) {
 
 GpsTime to_gps_time(const UtcTime& utc, const LeapSeconds& leap_seconds) {
     const Nanoseconds count = since_gps_epoch(utc.year, utc.month, utc.day) + std::chrono::hours(utc.hour) +
-                              std::chrono::minutes(utc.minute) + std::chrono::seconds(utc.second) + Nanoseconds(utc.nanosecond);
-    const GpsTime guess{count};
-    int offset = leap_seconds.offset(guess);
-    // The table is in GPS time, the question in UTC: the answer's own offset decides, and a second of 60 is the old day's.
-    offset = leap_seconds.offset(guess + std::chrono::seconds(offset));
-    if (utc.second == 60) offset = leap_seconds.offset(guess + std::chrono::seconds(offset) - 2s);
-    return guess + std::chrono::seconds(offset);
+                              std::chrono::minutes(utc.minute) + std::chrono::seconds(utc.second) +
+                              Nanoseconds(utc.nanosecond);
+    // The table is in GPS time, the question in UTC: a step holds from the UTC count `from` − its offset. A second of
+    // 60 still belongs to the old day.
+    const Nanoseconds asked = utc.second == 60 ? count - 1s : count;
+    const auto& steps = leap_seconds.steps();
+    for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+        const std::chrono::seconds offset(step->offset);
+        if (step->from == GpsTime::min() || asked >= step->from.time_since_epoch() - offset)
+            return GpsTime(count + offset);
+    }
+    return GpsTime(count);
 }
 
 GpsTime gps_calendar_time(int year, unsigned month, unsigned day, unsigned hour, unsigned minute, double second) {
@@ -153,13 +178,16 @@ Result<UtcTime> parse_utc(std::string_view text) {
     if (read) read_mark(rest, "Z");
     t.year = static_cast<int>(year);
     if (!read || !rest.empty() || !valid_calendar(t))
-        return fail(ErrorCode::usage,
-                    fmt::format("'{}' is not a UTC time; expected ISO 8601 from 1980 on, such as 2024-03-05T12:00:00Z", text));
+        return fail(
+            ErrorCode::usage,
+            fmt::format("'{}' is not a UTC time; expected ISO 8601 from 1980-01-06 on, such as 2024-03-05T12:00:00Z",
+                        text));
     return t;
 }
 
 std::string format_utc(const UtcTime& utc, int decimals) {
-    std::string text = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}", utc.year, utc.month, utc.day, utc.hour, utc.minute, utc.second);
+    std::string text = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}", utc.year, utc.month, utc.day, utc.hour,
+                                   utc.minute, utc.second);
     if (decimals > 0) text += fmt::format(".{:09}", utc.nanosecond).substr(0, static_cast<std::size_t>(decimals) + 1);
     return text + "Z";
 }

@@ -42,7 +42,8 @@ double OracleRow::number(const std::string& column) const {
     const std::string cell = text(column);
     char* end = nullptr;
     const double value = std::strtod(cell.c_str(), &end);
-    EXPECT_TRUE(end != cell.c_str() && *end == '\0') << "oracle row " << id_ << ", column " << column << ": '" << cell << "'";
+    EXPECT_TRUE(end != cell.c_str() && *end == '\0')
+        << "oracle row " << id_ << ", column " << column << ": '" << cell << "'";
     return value;
 }
 
@@ -63,11 +64,13 @@ std::vector<OracleRow> oracle_rows(const std::string& name) {
     while (std::getline(file, line)) {
         const std::vector<std::string> cells = split_csv(line);
         if (cells.size() != header.size()) {
-            ADD_FAILURE() << path << ": a row has " << cells.size() << " cells, expected " << header.size() << ": " << line;
+            ADD_FAILURE() << path << ": a row has " << cells.size() << " cells, expected " << header.size() << ": "
+                          << line;
             continue;
         }
         std::map<std::string, std::string, std::less<>> named;
-        for (std::size_t i = 0; i < cells.size(); ++i) named[header[i]] = cells[i];
+        for (std::size_t i = 0; i < cells.size(); ++i)
+            named[header[i]] = cells[i];
         rows.emplace_back(cells[0], std::move(named));
     }
     EXPECT_FALSE(rows.empty()) << path << " has no rows";

@@ -40,7 +40,7 @@ std::optional<std::filesystem::path> shared_data(const std::string& relative_pat
 }  // namespace skyloop::test
 
 /// Skips the test by name where a file of the shared data is absent; otherwise defines `variable` as its path.
-#define SKYLOOP_REQUIRE_SHARED(variable, relative_path)                                  \
-    const auto variable##_found = ::skyloop::test::shared_data(relative_path);           \
-    if (!variable##_found) GTEST_SKIP() << "shared data absent: " << (relative_path);    \
+#define SKYLOOP_REQUIRE_SHARED(variable, relative_path)                               \
+    const auto variable##_found = ::skyloop::test::shared_data(relative_path);        \
+    if (!variable##_found) GTEST_SKIP() << "shared data absent: " << (relative_path); \
     const std::filesystem::path variable = *variable##_found

@@ -9,9 +9,9 @@ namespace skyloop {
 
 /// What a caller can act on.
 enum class ErrorCode {
-    usage,     ///< the user asked for something that cannot be; exit code 2
-    input,     ///< a file's content is wrong; exit code 2
-    outside,   ///< the outside world refused: no such file, no permission, no device; exit code 1
+    usage,    ///< the user asked for something that cannot be; exit code 2
+    input,    ///< a file's content is wrong; exit code 2
+    outside,  ///< the outside world refused: no such file, no permission, no device; exit code 1
 };
 
 /// A failure: a code to act on and a sentence to read. `message` names file, line, column or option where there is one.

@@ -1,4 +1,5 @@
-/// Numbers that cross a function border carry their unit. There is no unit algebra: formulas take `.value()`, always SI.
+/// Numbers that cross a function border carry their unit. There is no unit algebra: formulas take `.value()`, always
+/// SI.
 #pragma once
 
 #include <compare>

@@ -13,11 +13,11 @@ struct Level {};
 /// Where and how a level lies on the Earth (MODELS.md 3.2; a game engine with centimetres, X forward, Y right, Z up has
 /// unit 0.01 m and is left-handed).
 struct LevelPlacement {
-    Geodetic origin;            ///< where the level's origin is
-    Angle yaw;                  ///< azimuth of the level's X axis, clockwise from true north
-    Metres unit{1.0};           ///< length of one level unit
-    bool left_handed = false;   ///< true: Y points to the right of X; false: to the left
-    Metres reach{4000.0};       ///< horizontal distance to which a plane is good enough for the curved Earth
+    Geodetic origin;           ///< where the level's origin is
+    Angle yaw;                 ///< azimuth of the level's X axis, clockwise from true north
+    Metres unit{1.0};          ///< length of one level unit
+    bool left_handed = false;  ///< true: Y points to the right of X; false: to the left
+    Metres reach{4000.0};      ///< horizontal distance to which a plane is good enough for the curved Earth
 };
 
 /// The game level frame. The level is flat: a point at distance d lies d²/2R above the ellipsoid.

@@ -40,7 +40,7 @@ GpsTime to_gps_time(std::int64_t week, double tow_seconds);
 
 /// The difference a − b as a floating-point number of seconds.
 inline Seconds difference(GpsTime a, GpsTime b) { return Seconds(std::chrono::duration<double>(a - b).count()); }
-/// A span of seconds as whole nanoseconds, rounded to nearest.
+/// A span of seconds as whole nanoseconds, rounded to nearest. It must be finite and shorter than 292 years.
 Nanoseconds to_nanoseconds(Seconds span);
 /// `time` moved by `span`, rounded to the nearest nanosecond.
 inline GpsTime advanced(GpsTime time, Seconds span) { return time + to_nanoseconds(span); }

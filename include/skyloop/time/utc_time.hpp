@@ -15,8 +15,8 @@ namespace skyloop {
 /// A UTC instant as a calendar and a clock read it; second 60 is a leap second. It does not subtract from GpsTime.
 struct UtcTime {
     int year = 1980;
-    unsigned month = 1;   ///< 1 … 12
-    unsigned day = 6;     ///< 1 … 31
+    unsigned month = 1;  ///< 1 … 12
+    unsigned day = 6;    ///< 1 … 31
     unsigned hour = 0;
     unsigned minute = 0;
     unsigned second = 0;  ///< 0 … 60
@@ -31,8 +31,8 @@ struct UtcTime {
 class LeapSeconds {
 public:
     struct Step {
-        GpsTime from;     ///< first instant at which `offset` holds
-        int offset = 0;   ///< GPST − UTC, s
+        GpsTime from;    ///< first instant at which `offset` holds
+        int offset = 0;  ///< GPST − UTC, s
     };
     /// @param steps ascending in time; before the first the offset is 0
     explicit LeapSeconds(std::vector<Step> steps) : steps_(std::move(steps)) {}
@@ -60,10 +60,11 @@ double day_of_year(const UtcTime& utc);
 /// Modified Julian date of the day, without fraction.
 std::int64_t modified_julian_day(const UtcTime& utc);
 
-/// Reads ISO 8601 in UTC: 2024-03-05T12:00:00Z, with a fraction of up to nine digits; `T` may be a space and `Z` be left
-/// out. Fails with `usage` and a sentence that quotes the text.
+/// Reads ISO 8601 in UTC from 1980-01-06 to 2199: 2024-03-05T12:00:00Z, with a fraction of up to nine digits; `T` may
+/// be a space and `Z` be left out. A second of 60 is taken at 23:59 on the last day of a month only. Fails with `usage`
+/// and a sentence that quotes the text.
 Result<UtcTime> parse_utc(std::string_view text);
-/// ISO 8601 with `decimals` (0 … 9) digits of fraction and a final Z.
+/// ISO 8601 with `decimals` (0 … 9) digits of fraction, cut off and not rounded as a clock shows them, and a final Z.
 std::string format_utc(const UtcTime& utc, int decimals = 3);
 
 }  // namespace skyloop
