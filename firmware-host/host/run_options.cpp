@@ -52,12 +52,13 @@ Result<void> apply_time(const RunOptions& options, Scenario& scenario) {
 
 Result<void> apply_model(const RunOptions& options, Scenario& scenario) {
     if (options.model.empty()) return {};
-    if (options.model == "modern")
-        return fail(ErrorCode::usage, fmt::format("--model modern: not in this version; expected one of {}", fmt::join(error_model_names(), " ")));
-    const auto kind = error_model_kind(options.model);
+    std::vector<std::string_view> names;
+    for (const ErrorModelKind kind : error_model_kinds()) names.push_back(error_model_name(kind));
+    const auto kind = error_model_from_name(options.model);
     if (!kind)
-        return fail(ErrorCode::usage, fmt::format("--model {}: unknown; expected one of {}{}", options.model,
-                                                  fmt::join(error_model_names(), " "), did_you_mean(options.model, error_model_names())));
+        return fail(ErrorCode::usage, fmt::format("--model {}: {}; expected one of {}{}", options.model,
+                                                  options.model == "modern" ? "not in this version" : "unknown",
+                                                  fmt::join(names, " "), did_you_mean(options.model, names)));
     scenario.model.kind = *kind;
     return {};
 }

@@ -7,6 +7,7 @@
 #include "data_folders.hpp"
 #include "run_session.hpp"
 #include "skyloop/analysis/sky_listing.hpp"
+#include "skyloop/analysis/tracks_csv.hpp"
 #include "skyloop/plot/sky_plot.hpp"
 #include "skyloop/plot/track_plot.hpp"
 #include "skyloop/sky/satellite_tracks.hpp"
@@ -37,8 +38,9 @@ Result<World> make_world(const Scenario& scenario, const Messages& messages) {
     std::vector<std::string> warnings;
     auto geoid = find_geoid(data_folders(), warnings);
     const GpsTime start = navigation->start;
-    Simulation simulation = make_simulation(scenario, std::move(navigation->source), geoid.get(), start);
-    return World{std::move(geoid), std::move(simulation), start};
+    auto simulation = make_simulation(scenario, std::move(navigation->source), geoid.get(), start);
+    if (!simulation) return fail(simulation.error());
+    return World{std::move(geoid), std::move(*simulation), start};
 }
 
 // Where each satellite was in the hours before, drawn as a thin line behind it.
@@ -72,7 +74,7 @@ std::string sky_svg(World& world, const Trace& trace, Angle mask) {
 
 int print_tracks(const SkyOptions& options, const World& world) {
     const double step = options.step_s > 0 ? options.step_s : 300;
-    const auto tracks = satellite_tracks(world.simulation.navigation(), world.start, Seconds(options.tracks_h * 3600), Seconds(step));
+    const auto tracks = satellite_tracks(world.simulation.navigation(), {world.start, Seconds(options.tracks_h * 3600), Seconds(step)});
     if (options.format == "svg")
         fmt::print("{}", track_plot(tracks, fmt::format("Satellite tracks in ECEF over {:g} h from {}", options.tracks_h,
                                                         format_utc(to_utc(world.start, LeapSeconds::announced()), 0))));

@@ -24,13 +24,21 @@ ErrorModelSettings error_model_settings(const Scenario& scenario, const Geoid* g
     const ModelSettings& model = scenario.model;
     ErrorModelSettings settings;
     settings.kind = model.kind;
-    settings.selection.elevation_mask = scenario.sky.elevation_mask;
+    settings.sensor = {{scenario.sky.elevation_mask}, scenario.run.seed, geoid, LeapSeconds::announced()};
     settings.baseline = model.baseline;
     settings.constant_sigma = model.constant_sigma;
     settings.satellite_count = model.satellite_count;
-    settings.whole_path = model.whole_path;
     settings.refraction = model.refraction;
-    settings.seed = scenario.run.seed;
+    return settings;
+}
+
+EffectSettings effect_settings(const Scenario& scenario, const NavigationSource& navigation, const Geoid* geoid) {
+    EffectSettings settings;
+    settings.atmosphere = scenario.atmosphere;
+    settings.link_budget = scenario.model.link;
+    settings.whole_path = scenario.model.whole_path;
+    settings.refraction = scenario.model.refraction;
+    settings.klobuchar = navigation.klobuchar();
     settings.geoid = geoid;
     return settings;
 }
@@ -105,12 +113,14 @@ std::unique_ptr<Geoid> find_geoid(const DataFolders& data, std::vector<std::stri
     return nullptr;
 }
 
-Simulation make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation, const Geoid* geoid, GpsTime start) {
-    const ErrorModelSettings settings = error_model_settings(scenario, geoid);
+Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation,
+                                   const Geoid* geoid, GpsTime start) {
+    auto effects = effects_for(scenario.model.kind, effect_settings(scenario, *navigation, geoid));
+    if (!effects) return fail(effects.error());
     Simulation::Parts parts;
     parts.trajectory = make_trajectory(scenario.trajectory, start);
-    parts.effects = model_effects(settings, scenario.atmosphere, scenario.model.link, navigation->klobuchar());
-    parts.error_model = make_error_model(settings);
+    parts.effects = std::move(*effects);
+    parts.error_model = make_error_model(error_model_settings(scenario, geoid));
     parts.carrier = Hertz(carrier_frequency_l1);
     parts.navigation = std::move(navigation);
     return Simulation(std::move(parts));
@@ -139,10 +149,11 @@ Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, con
     if (scenario.run.duration) assembly.end = advanced(assembly.start, *scenario.run.duration);
     assembly.digest = scenario_digest(scenario, assembly.start);
 
+    auto simulation = make_simulation(scenario, std::move(navigation->source), assembly.geoid.get(), assembly.start);
+    if (!simulation) return fail(simulation.error());
     auto receiver = make_receiver(scenario.receiver, data, assembly.warnings);
     if (!receiver) return fail(receiver.error());
-    Emulator::Parts parts{make_simulation(scenario, std::move(navigation->source), assembly.geoid.get(), assembly.start),
-                          std::move(*receiver), {}, nullptr, std::nullopt};
+    Emulator::Parts parts{std::move(*simulation), std::move(*receiver), {}, nullptr, std::nullopt};
     if (mode.record) {
         auto recorder = Recorder::create(*mode.record);
         if (!recorder) return fail(recorder.error());

@@ -50,9 +50,12 @@ void read_simple_models(TableReader& model, ModelSettings& settings) {
         std::copy(sigma->begin(), sigma->end(), settings.satellite_count.sigma_m.begin());
     });
     model.table("whole-path", [&](TableReader& table) {
-        table.quantity("oxygen_height_m", settings.whole_path.oxygen_height, {0, 1e5});
-        table.quantity("vapour_height_m", settings.whole_path.vapour_height, {0, 1e5});
-        table.number("vapour_g_m3", settings.whole_path.vapour_g_m3, {0, 100});
+        WholePathParameters& p = settings.whole_path;
+        table.number("oxygen_height_km", p.oxygen_height_km, {0, 100});
+        table.number("vapour_height_km", p.vapour_height_km, {0, 100});
+        table.number("vapour_g_m3", p.vapour_g_m3, {0, 100});
+        table.number("oxygen_db_per_km", p.oxygen_db_per_km, {0, 100});
+        table.number("vapour_db_per_km_per_g_m3", p.vapour_db_per_km_per_g_m3, {0, 100});
     });
     model.table("refraction", [&](TableReader& table) {
         table.number("surface_refractivity", settings.refraction.surface_refractivity, {0, 1000});
@@ -140,13 +143,14 @@ void read_ionosphere(TableReader& atmosphere, AtmosphereParameters& p) {
 }  // namespace
 
 void read_model_keys(TableReader& model, ModelSettings& settings) {
-    static constexpr std::array<Words, 7> names{"ideal", "constant-sigma", "satellite-count", "whole-path", "refraction", "baseline", "modern"};
-    if (const auto kind = model.choice("name", names)) {
-        if (names[*kind] == "modern")
-            model.mistake("name", "the modern model is not in this version; expected baseline or one of the simpler models");
-        else
-            settings.kind = *error_model_kind(names[*kind]);
-    }
+    std::vector<Words> names;
+    for (const ErrorModelKind kind : error_model_kinds()) names.push_back(error_model_name(kind));
+    std::string name;
+    model.text("name", name);
+    if (name == "modern")
+        model.mistake("name", "the modern model is not in this version; expected baseline or one of the simpler models");
+    else if (const auto kind = model.choice("name", names))
+        settings.kind = error_model_kinds()[*kind];
     model.refuse("errors", "belongs to the modern model, which is not in this version");
     model.table("baseline", [&](TableReader& table) { read_baseline(table, settings); });
     read_simple_models(model, settings);

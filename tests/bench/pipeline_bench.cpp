@@ -56,7 +56,8 @@ void epoch(benchmark::State& state, ErrorModelKind kind) {
     auto navigation = load_navigation(scenario, bench_start, true);
     std::vector<std::string> warnings;
     const auto geoid = find_geoid(bench_data(), warnings);
-    Simulation simulation = make_simulation(scenario, std::move(navigation->source), geoid.get(), bench_start);
+    auto made = make_simulation(scenario, std::move(navigation->source), geoid.get(), bench_start);
+    Simulation& simulation = *made;
     GpsTime time = bench_start;
     std::size_t in_view = 0;
     for (auto _ : state) {
@@ -72,8 +73,8 @@ BENCHMARK_CAPTURE(epoch, ideal, ErrorModelKind::ideal);
 void nmea_sentences(benchmark::State& state) {
     const Scenario scenario = open_sky(ErrorModelKind::baseline);
     auto navigation = load_navigation(scenario, bench_start, true);
-    Simulation simulation = make_simulation(scenario, std::move(navigation->source), nullptr, bench_start);
-    const Epoch one = simulation.run(bench_start).epoch;
+    auto simulation = make_simulation(scenario, std::move(navigation->source), nullptr, bench_start);
+    const Epoch one = simulation->run(bench_start).epoch;
     firmware::BoardProfile board;
     board.constellations = {Constellation::gps};
     for (int i = 0; i < 8; ++i) board.sentences.push_back({static_cast<firmware::NmeaSentence>(i), 1});

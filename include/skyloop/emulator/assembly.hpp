@@ -58,8 +58,10 @@ Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, 
 /// The trajectory of a scenario, begun at `start`.
 std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, GpsTime start);
 
-/// The world and the sensor model of a scenario. @param geoid may be absent; outlives the simulation
-Simulation make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation, const Geoid* geoid, GpsTime start);
+/// The world and the sensor model of a scenario. Fails with `input` when they do not fit each other.
+/// @param geoid may be absent; outlives the simulation
+Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation,
+                                   const Geoid* geoid, GpsTime start);
 
 /// Whether every port of a scenario names a wire that this version has; opens none.
 Result<void> check_port_names(const Scenario& scenario);

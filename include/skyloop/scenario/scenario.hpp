@@ -8,10 +8,13 @@
 #include <variant>
 #include <vector>
 
-#include "skyloop/error_model/make_error_model.hpp"
+#include "skyloop/error_model/model_kind.hpp"
+#include "skyloop/error_model/parameters.hpp"
 #include "skyloop/geo/level_frame.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
 #include "skyloop/propagation/atmosphere_parameters.hpp"
+#include "skyloop/propagation/link_budget_parameters.hpp"
+#include "skyloop/propagation/whole_path_parameters.hpp"
 #include "skyloop/trajectory/geometric_paths.hpp"
 
 namespace skyloop {

@@ -1,4 +1,4 @@
-#include "skyloop/analysis/satellite_track.hpp"
+#include "skyloop/analysis/tracks_csv.hpp"
 
 #include <fmt/format.h>
 
