@@ -67,9 +67,23 @@ std::string article_warning(const Comparison& comparison) {
     return {};
 }
 
+// One wild fix outweighs thousands of good ones in a mean and a standard deviation.
+void add_outlier_warnings(Comparison& comparison) {
+    constexpr double wild = 100;  // times the median; of Gaussian errors the largest is not six times
+    for (const SeriesStatistics* series : {&comparison.a, &comparison.b}) {
+        const SampleStatistics& s = series->of(ErrorQuantity::spatial).figures;
+        if (s.max > wild * s.median)
+            comparison.warnings.push_back(
+                fmt::format("{}: the largest 3d error, {:.0f} m, is {:.0f} times the median: an "
+                            "outlier dominates the mean and the standard deviation",
+                            series->name, s.max, s.max / s.median));
+    }
+}
+
 void add_comparison_warnings(Comparison& comparison, const ComparisonOptions& options) {
     if (const std::string warning = article_warning(comparison); !warning.empty())
         comparison.warnings.push_back(warning);
+    add_outlier_warnings(comparison);
     const auto uses_point = [](const SeriesStatistics& s) { return s.reference == ReferenceKind::given_point; };
     if (options.reference && !uses_point(comparison.a) && !uses_point(comparison.b))
         comparison.warnings.push_back("the reference point is not used: both files hold their own truth");

@@ -40,6 +40,12 @@ std::string series_text(std::string_view label, const SeriesStatistics& s) {
                        interval, reference_text(s));
 }
 
+// Three decimals, never a negative zero.
+std::string metres_text(double metres) {
+    constexpr double shown_as_zero = 0.0005;
+    return fmt::format("{:.3f} m", std::abs(metres) < shown_as_zero ? 0.0 : metres);
+}
+
 std::string percent_text(const std::optional<double>& percent) {
     if (!percent) return "-";
     constexpr double shown_as_zero = 0.05;
@@ -71,8 +77,8 @@ std::string figures_text(const Comparison& comparison) {
         std::string heading = heading_of(quantity);
         for (const FigureDifference& d : comparison.differences) {
             if (d.quantity != quantity) continue;
-            text += figure_row(heading, figure_label(quantity, d.figure), fmt::format("{:.3f} m", d.a),
-                               fmt::format("{:.3f} m", d.b), percent_text(d.percent));
+            text += figure_row(heading, figure_label(quantity, d.figure), metres_text(d.a), metres_text(d.b),
+                               percent_text(d.percent));
             heading.clear();
         }
         text += figure_row("", "1/e correlation", correlation_cell(comparison.a.of(quantity)),

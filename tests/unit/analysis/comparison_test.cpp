@@ -89,6 +89,15 @@ TEST(Comparison, warns_of_signed_means_and_of_unlike_references) {
     EXPECT_THAT(compare(a, a, options)->warnings.at(0), HasSubstr("reference point is not used"));
 }
 
+TEST(Comparison, warns_of_a_wild_fix) {
+    FixSeries b = scattered("glitch", 300, 2, true);
+    b.samples[7].position.height.above_ellipsoid += Metres(1000);
+    const auto c = compare(scattered("sim", 300, 2, true), b);
+    ASSERT_TRUE(c) << c.error().message;
+    ASSERT_EQ(c->warnings.size(), 1u);
+    EXPECT_THAT(c->warnings[0], HasSubstr("glitch: the largest 3d error"));
+}
+
 TEST(Comparison, needs_two_fixes_and_a_whole_window) {
     FixSeries one = scattered("one", 1, 2, true);
     const FixSeries many = scattered("many", 100, 2, true);

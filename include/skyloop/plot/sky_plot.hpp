@@ -1,0 +1,48 @@
+/// The sky above a place as a polar picture: north up, the zenith in the middle.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skyloop/analysis/sky_listing.hpp"
+#include "skyloop/gnss/dop.hpp"
+#include "skyloop/gnss/satellite.hpp"
+
+namespace skyloop {
+
+/// One satellite of the picture.
+struct SkyPlotSatellite {
+    SatelliteId id;
+    Angle azimuth;
+    Angle elevation;
+    std::optional<DbHz> cn0;          ///< the size of the mark
+    bool used = true;                 ///< a full mark, else a hollow one
+    bool healthy = true;              ///< else grey and crossed out
+    std::vector<SkyDirection> trail;  ///< where it has been, oldest first; drawn as a thin line
+};
+
+/// Everything that the picture says.
+struct SkyPlot {
+    Geodetic place;
+    GpsTime time;
+    std::optional<Angle> mask;  ///< a dashed circle
+    std::optional<Dop> dop;
+    std::vector<SkyPlotSatellite> satellites;
+    std::string title;  ///< empty: made from the place
+};
+
+/// The picture of a listing, without trails.
+SkyPlot sky_plot(const SkyListing& listing);
+
+/// Size of the picture, pixels, and of the sky in it.
+inline constexpr double sky_plot_width = 640;
+inline constexpr double sky_plot_height = 736;
+inline constexpr double sky_plot_centre_x = 320;
+inline constexpr double sky_plot_centre_y = 358;
+inline constexpr double sky_plot_radius = 248;
+
+/// The picture as an SVG document. Satellites below the horizon are left out.
+std::string sky_plot_svg(const SkyPlot& plot);
+
+}  // namespace skyloop
