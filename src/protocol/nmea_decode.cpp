@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <chrono>
@@ -165,6 +166,29 @@ std::optional<MetresPerSecond> from_knots(std::optional<double> knots) {
     return knots ? std::optional(MetresPerSecond(*knots * 1852.0 / 3600.0)) : std::nullopt;
 }
 
+// Speeds, m/s, that a field of this many decimals may stand for.
+struct SpeedSpan {
+    double low;
+    double high;
+};
+SpeedSpan speed_span(double value, std::string_view field, double unit) {
+    const std::size_t point = field.find('.');
+    const std::size_t decimals = point == std::string_view::npos ? 0 : field.size() - point - 1;
+    const double half_digit = 0.5 * std::pow(10.0, -static_cast<double>(decimals));
+    return {(value - half_digit) * unit, (value + half_digit) * unit};
+}
+
+// Knots and km/h round the same speed differently: it lies where both agree. Where they contradict, knots count.
+std::optional<MetresPerSecond> course_speed(FieldReader& r) {
+    constexpr std::size_t knots_at = 4, kmh_at = 6;
+    const auto knots = r.number(knots_at, "a speed"), kmh = r.number(kmh_at, "a speed");
+    if (!knots || !kmh) return kmh ? std::optional(MetresPerSecond(*kmh / 3.6)) : from_knots(knots);
+    const SpeedSpan a = speed_span(*knots, r.text(knots_at), 1852.0 / 3600.0);
+    const SpeedSpan b = speed_span(*kmh, r.text(kmh_at), 1.0 / 3.6);
+    const double low = std::max({a.low, b.low, 0.0}), high = std::min(a.high, b.high);
+    return low <= high ? std::optional(MetresPerSecond((low + high) / 2)) : from_knots(knots);
+}
+
 Result<NmeaMessage> decode_rmc(FieldReader r) {
     Rmc m;
     m.talker = r.talker();
@@ -182,9 +206,7 @@ Result<NmeaMessage> decode_vtg(FieldReader r) {
     Vtg m;
     m.talker = r.talker();
     m.course = r.degrees(0, "a course");
-    m.speed = from_knots(r.number(4, "a speed"));
-    const auto kmh = r.number(6, "a speed");
-    if (!m.speed && kmh) m.speed = MetresPerSecond(*kmh / 3.6);
+    m.speed = course_speed(r);
     m.mode = r.mode(8);
     return r.finish(std::move(m), 8);
 }

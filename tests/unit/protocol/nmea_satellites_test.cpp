@@ -1,0 +1,75 @@
+#include "skyloop/protocol/nmea_satellites.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace skyloop {
+namespace {
+
+using enum Constellation;
+using enum NmeaVersion;
+constexpr auto strict = NmeaNumbering::strict;
+constexpr auto extended = NmeaNumbering::extended;
+
+struct NumberCase {
+    SatelliteId satellite;
+    NmeaVersion version;
+    NmeaNumbering numbering;
+    std::optional<int> number;
+};
+
+// RECEIVER.md 5.6, first table.
+TEST(NmeaSatelliteNumber, FollowsTheTable) {
+    const NumberCase cases[] = {
+        {{gps, 1}, v4_0, strict, 1},        {{gps, 32}, v4_11, strict, 32},      {{gps, 33}, v4_11, extended, {}},
+        {{gps, 0}, v4_11, strict, {}},      {{sbas, 20}, v4_0, strict, 33},      {{sbas, 38}, v4_10, strict, 51},
+        {{sbas, 51}, v4_0, strict, 64},     {{sbas, 52}, v4_10, strict, {}},     {{sbas, 58}, v4_0, extended, 158},
+        {{galileo, 5}, v4_0, strict, {}},   {{galileo, 5}, v4_0, extended, 305}, {{galileo, 36}, v4_10, strict, 36},
+        {{galileo, 37}, v4_10, strict, {}}, {{beidou, 1}, v2_3, strict, {}},     {{beidou, 37}, v4_0, extended, 437},
+        {{beidou, 63}, v4_11, strict, 63},  {{qzss, 3}, v4_0, strict, {}},       {{qzss, 3}, v4_0, extended, 195},
+        {{qzss, 3}, v4_10, strict, {}},     {{qzss, 3}, v4_10, extended, 195},   {{qzss, 10}, v4_11, strict, 10},
+        {{glonass, 1}, v4_0, strict, 65},   {{glonass, 24}, v4_11, strict, 88},  {{glonass, 33}, v4_11, strict, {}},
+        {{navic, 2}, v4_11, strict, 2},     {{navic, 2}, v4_0, extended, {}},
+    };
+    for (const NumberCase& c : cases)
+        EXPECT_EQ(nmea_satellite_number(c.satellite, c.version, c.numbering), c.number)
+            << to_string(c.satellite) << " version " << static_cast<int>(c.version);
+}
+
+TEST(NmeaSystem, ListsSbasWithGpsAndQzssAloneOnlyIn4_11) {
+    EXPECT_EQ(nmea_system(sbas, v4_11), nmea_system(gps, v4_11));
+    EXPECT_EQ(nmea_system(qzss, v4_10), nmea_system(gps, v4_10));
+    EXPECT_EQ(nmea_system(qzss, v4_11), (NmeaSystem{"GQ", 5, 1}));
+    EXPECT_EQ(nmea_system(glonass, v4_0), (NmeaSystem{"GL", 2, 1}));
+    EXPECT_EQ(nmea_system(galileo, v4_10), (NmeaSystem{"GA", 3, 7}));
+    EXPECT_EQ(nmea_system(beidou, v4_10), (NmeaSystem{"GB", 4, 1}));
+}
+
+TEST(SatelliteFromNmea, InvertsTheNumbers) {
+    int checked = 0;
+    for (const Constellation c : {gps, sbas, galileo, beidou, qzss, glonass, navic})
+        for (int n = 1; n <= 63; ++n)
+            for (const NmeaVersion version : {v2_3, v4_0, v4_10, v4_11})
+                for (const NmeaNumbering numbering : {strict, extended}) {
+                    const SatelliteId satellite{c, n};
+                    const auto number = nmea_satellite_number(satellite, version, numbering);
+                    if (!number) continue;
+                    const NmeaSystem system = nmea_system(c, version);
+                    EXPECT_EQ(satellite_from_nmea(*number, system.talker), satellite) << *number << system.talker;
+                    EXPECT_EQ(satellite_from_nmea(*number, "GN", system.system_id), satellite) << *number;
+                    ++checked;
+                }
+    EXPECT_GT(checked, 800);
+}
+
+TEST(SatelliteFromNmea, KnowsVendorTalkersAndRefusesOtherNumbers) {
+    EXPECT_EQ(satellite_from_nmea(5, "BD"), (SatelliteId{beidou, 5}));
+    EXPECT_EQ(satellite_from_nmea(219, "GP"), (SatelliteId{beidou, 19}));
+    EXPECT_EQ(satellite_from_nmea(0, "GP"), std::nullopt);
+    EXPECT_EQ(satellite_from_nmea(120, "GN"), std::nullopt);
+    EXPECT_EQ(satellite_from_nmea(-3, "GL"), std::nullopt);
+}
+
+}  // namespace
+}  // namespace skyloop
