@@ -49,7 +49,7 @@ int compare_files(const CompareOptions& options) {
     const auto result = compare(*a, *b, wanted);
     if (!result) return messages.error(result.error());
     if (options.format == "svg")
-        fmt::print("{}", scatter_plot({a->name, position_errors(*a, wanted.reference)}, {b->name, position_errors(*b, wanted.reference)}));
+        fmt::print("{}", scatter_plot_svg({a->name, position_errors(*a, wanted.reference)}, {b->name, position_errors(*b, wanted.reference)}));
     else
         fmt::print("{}", options.format == "json" ? comparison_json(*result) : comparison_text(*result));
     return 0;

@@ -43,40 +43,31 @@ Result<World> make_world(const Scenario& scenario, const Messages& messages) {
     return World{std::move(geoid), std::move(*simulation), start};
 }
 
-// Where each satellite was in the hours before, drawn as a thin line behind it.
-std::vector<SkyPlotSatellite> plot_satellites(World& world, const Trace& trace) {
+// Where each satellite was in the two hours before, drawn as a thin line behind it.
+void add_trails(SkyPlot& plot, const World& world, const TruthState& truth) {
     constexpr int trail_points = 24;
     constexpr double trail_step_s = 300;
-    std::vector<SkyPlotSatellite> satellites;
-    for (const SatelliteStatus& s : trace.epoch.fix.satellites) satellites.push_back({s.id, s.azimuth, s.elevation, s.cn0, s.used, true, {}});
-    for (std::size_t i = 0; i < satellites.size(); ++i) satellites[i].healthy = trace.sky.satellites[i].healthy;
-    for (int k = trail_points; k > 0; --k) {
-        TruthState then = trace.truth;
+    for (int k = trail_points; k >= 0; --k) {
+        TruthState then = truth;
         then.time = advanced(then.time, Seconds(-trail_step_s * k));
         const SkyView view = world.simulation.view(then);
-        for (SkyPlotSatellite& s : satellites)
+        for (SkyPlotSatellite& satellite : plot.satellites)
             for (const SatelliteInView& v : view.satellites)
-                if (v.id == s.id) s.trail.push_back({v.azimuth, v.elevation});
+                if (v.id == satellite.id) satellite.trail.push_back({v.azimuth, v.elevation});
     }
-    for (SkyPlotSatellite& s : satellites) s.trail.push_back({s.azimuth, s.elevation});
-    return satellites;
 }
 
-std::string sky_svg(World& world, const Trace& trace, Angle mask) {
-    SkyPlot plot;
-    const Geodetic& place = trace.truth.geodetic;
-    plot.title = fmt::format("{:.4f}°, {:.4f}°, {:.0f} m", place.latitude.deg(), place.longitude.deg(), place.height.above_ellipsoid.value());
-    plot.subtitle = fmt::format("{}   {}", format_utc(to_utc(trace.truth.time, LeapSeconds::announced()), 0), world.simulation.navigation().description());
-    plot.mask = mask;
-    plot.satellites = plot_satellites(world, trace);
-    return sky_plot(plot);
+std::string sky_svg(const SkyListing& listing, const World& world, const TruthState& truth) {
+    SkyPlot plot = sky_plot(listing);
+    add_trails(plot, world, truth);
+    return sky_plot_svg(plot);
 }
 
 int print_tracks(const SkyOptions& options, const World& world) {
     const double step = options.step_s > 0 ? options.step_s : 300;
     const auto tracks = satellite_tracks(world.simulation.navigation(), {world.start, Seconds(options.tracks_h * 3600), Seconds(step)});
     if (options.format == "svg")
-        fmt::print("{}", track_plot(tracks, fmt::format("Satellite tracks in ECEF over {:g} h from {}", options.tracks_h,
+        fmt::print("{}", track_plot_svg(tracks, fmt::format("Satellite tracks in ECEF over {:g} h from {}", options.tracks_h,
                                                         format_utc(to_utc(world.start, LeapSeconds::announced()), 0))));
     else
         fmt::print("{}", tracks_csv(tracks));
@@ -94,14 +85,15 @@ int show_sky(const SkyOptions& options) {
     if (!world) return messages.error(world.error());
     if (options.tracks_h > 0) return print_tracks(options, *world);
 
-    const Angle mask = scenario->sky.elevation_mask;
     const Trace trace = world->simulation.run(world->start);
-    if (options.format == "svg") {
-        fmt::print("{}", sky_svg(*world, trace, mask));
-        return 0;
-    }
-    const SkyListing listing = sky_listing(trace.truth, trace.sky, mask, {&trace.arrivals, &trace.epoch.fix});
-    fmt::print("{}", options.format == "json" ? sky_json(listing) : options.format == "csv" ? sky_csv(std::span(&listing, 1)) : sky_text(listing));
+    const SkyListing listing =
+        sky_listing(trace.truth, trace.sky, scenario->sky.elevation_mask, {&trace.arrivals, &trace.epoch.fix});
+    if (options.format == "svg")
+        fmt::print("{}", sky_svg(listing, *world, trace.truth));
+    else if (options.format == "json")
+        fmt::print("{}", sky_json(listing));
+    else
+        fmt::print("{}", options.format == "csv" ? sky_csv(std::span(&listing, 1)) : sky_text(listing));
     return 0;
 }
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "skyloop/analysis/satellite_track.hpp"
+#include "skyloop/sky/satellite_tracks.hpp"
 #include "skyloop/plot/svg_document.hpp"
 
 namespace skyloop {

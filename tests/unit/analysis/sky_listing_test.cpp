@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "skyloop/analysis/satellite_track.hpp"
+#include "skyloop/analysis/tracks_csv.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
