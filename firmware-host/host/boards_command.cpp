@@ -44,7 +44,8 @@ int show_boards(const BoardOptions& options) {
     }
     const auto names = list_boards(folders);
     if (names.empty())
-        return messages.error({ErrorCode::outside, fmt::format("no boards in {}; set SKYLOOP_DATA_DIR to the folder that holds boards/", fmt::join(folders, " "))});
+        return messages.error({ErrorCode::outside, fmt::format("no boards in {}; SKYLOOP_DATA_DIR may name the folder that holds boards/",
+                                                               folders.front().string())});
     for (const std::string& name : names) {
         const auto board = find_board(name, folders);
         if (!board) return messages.error(board.error());

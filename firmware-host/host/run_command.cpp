@@ -15,6 +15,7 @@ int run_live(const RunOptions& options) {
     const Messages messages(options.verbosity);
     const auto scenario = scenario_from(options);
     if (!scenario) return messages.error(scenario.error());
+    catch_stop_signals();
     RunMode mode;
     mode.virtual_time = std::isinf(scenario->run.speed);
     mode.now = wall_clock();

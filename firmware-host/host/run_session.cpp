@@ -19,15 +19,15 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only
 
 void ask_to_stop(int) { stop_asked = true; }
 
-void catch_signals() {
+}  // namespace
+
+void catch_stop_signals() {
     struct sigaction action {};
     action.sa_handler = ask_to_stop;  // without SA_RESTART, so that a wait ends at once
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
     // A reader that goes away is a wire that is unplugged, not a reason to die.
     signal(SIGPIPE, SIG_IGN);
 }
-
-}  // namespace
 
 GpsTime wall_clock() {
     using namespace std::chrono;
@@ -43,7 +43,6 @@ RunSession::RunSession(const Messages& messages, Assembly& assembly) : messages_
 }
 
 int RunSession::run(const Scenario& scenario) {
-    catch_signals();
     Emulator& emulator = *assembly_.emulator;
     {
         Progress progress(!messages_.verbosity().quiet && !messages_.verbosity().json, assembly_.start, assembly_.end);

@@ -21,6 +21,9 @@ private:
     Assembly& assembly_;
 };
 
+/// From here on SIGINT, SIGTERM and SIGHUP end a run in order. Called before any port is opened, so that none is left.
+void catch_stop_signals();
+
 /// The wall clock as GPS time: read once, at the start.
 GpsTime wall_clock();
 

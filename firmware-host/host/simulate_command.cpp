@@ -13,6 +13,7 @@ int simulate(const RunOptions& options) {
     if (!scenario) return messages.error(scenario.error());
     if (!scenario->run.duration)
         return messages.error({ErrorCode::usage, "simulate needs an end: expected --duration SECONDS or run.duration_s in the scenario"});
+    catch_stop_signals();
     RunMode mode;
     mode.virtual_time = true;
     mode.now = wall_clock();

@@ -7,6 +7,7 @@
 #include "skyloop/base/digest.hpp"
 #include "skyloop/base/spelling.hpp"
 #include "skyloop/base/text_file.hpp"
+#include "skyloop/error_model/make_error_model.hpp"
 #include "skyloop/error_model/model_effects.hpp"
 #include "skyloop/gnss/constants.hpp"
 #include "skyloop/scenario/board_file.hpp"

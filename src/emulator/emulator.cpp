@@ -63,7 +63,7 @@ void Emulator::run_epoch(Nanoseconds lateness) {
     }
 
     ++counts_.epochs;
-    counts_.epochs_with_fix += trace.epoch.fix.has_position() ? 1 : 0;
+    if (trace.epoch.fix.has_position()) ++counts_.epochs_with_fix;
     counts_.lateness.add(lateness);
     if (status_) status_({now_, &trace, lateness});
     next_epoch_ += parts_.receiver.settings().navigation_period;

@@ -1,4 +1,5 @@
 """gpsd from Debian reads our pty: a 3D fix at the right place and time, and the satellites of `skyloop sky`."""
+import datetime
 import json
 import math
 import os
@@ -19,6 +20,14 @@ def free_port():
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]
+
+
+def unrolled(text):
+    """gpsd takes dates before its own release for a week rollover and adds 1024 weeks; this takes them off again."""
+    time_utc = datetime.datetime.strptime(text, "%Y-%m-%dT%H:%M:%S.%fZ")
+    if time_utc > datetime.datetime(2028, 1, 1):
+        time_utc -= datetime.timedelta(weeks=1024)
+    return time_utc.strftime("%Y-%m-%dT%H:%M:%S.%f")[:-3] + "Z"
 
 
 class Gpsd:
@@ -106,10 +115,11 @@ class GpsdTest(unittest.TestCase):
         if not navigation.exists():
             self.skipTest(f"shared data absent: {navigation}")
         fix, sky = self.read_fix_and_sky("--nav", navigation, "--start", START)
-        self.assertTrue(fix["time"].startswith("2010-07-01T12:"), fix["time"])
+        time_utc = unrolled(fix["time"])
+        self.assertTrue(time_utc.startswith("2010-07-01T12:0"), fix["time"])
         self.assertLess(metres_apart(fix["lat"], fix["lon"]), 60)
         self.assertAlmostEqual(fix.get("altHAE", PLACE[2]), PLACE[2], delta=60)
-        self.assert_same_satellites(sky, fix["time"], "--nav", navigation)
+        self.assert_same_satellites(sky, time_utc, "--nav", navigation)
 
     def test_embedded_constellation(self):
         fix, sky = self.read_fix_and_sky("--start", "2026-03-01T00:00:00Z")

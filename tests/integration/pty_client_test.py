@@ -12,7 +12,7 @@ import unittest
 
 from session import Emulator, open_folder
 
-SENTENCE = re.compile(rb"^\$G[NP][A-Z]{3},[\x20-\x7e]*\*[0-9A-F]{2}$")
+SENTENCE = re.compile(rb"^\$G[NPL][A-Z]{3},[\x20-\x7e]*\*[0-9A-F]{2}$")
 
 
 def open_client(path, speed=None):

@@ -9,8 +9,9 @@ import sys
 import tempfile
 import time
 
-SKYLOOP = os.environ.get("SKYLOOP", "build/dev/bin/skyloop")
-SHARED = pathlib.Path(os.environ.get("SKYLOOP_SHARED_DATA", "../shared/data"))
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SKYLOOP = os.environ.get("SKYLOOP", str(ROOT / "build/dev/bin/skyloop"))
+SHARED = pathlib.Path(os.environ.get("SKYLOOP_SHARED_DATA", ROOT / "../shared/data"))
 SKIPPED = 77
 
 
