@@ -2,13 +2,12 @@
 #pragma once
 
 #include <array>
-#include <string_view>
 
 #include "skyloop/base/units.hpp"
 
 namespace skyloop {
 
-/// What all sensor models share.
+/// Which satellites every sensor model may use.
 struct SelectionParameters {
     Angle elevation_mask = Angle::degrees(5);  ///< at or above is used
 };
@@ -22,21 +21,11 @@ enum class NoiseAxes {
     covariance,  ///< σ_uere² Q, rotated to ECEF
 };
 
-/// How the transmitted power is given (MODELS.md D-05).
-enum class PowerMode {
-    eirp,           ///< P_sat − L_s with P_sat the EIRP
-    received_spec,  ///< P_sat − L_s replaced by the specified minimum
-};
-
-/// The article's sensor model.
+/// The article's sensor model: which satellites it uses, and how their delays become the spread of the position. The
+/// powers are in LinkBudgetParameters, the air in AtmosphereParameters.
 struct BaselineParameters {
-    DbHz snr_cutoff{5};  ///< at or above is used
-    int max_reflections = 16;
-    Decibels reflection_loss{3.0103};
-    PowerMode power_mode = PowerMode::eirp;
-    DecibelWatts satellite_power{26.8};         ///< EIRP towards the Earth
-    DecibelWatts specified_received_power{-158.5};
-    double thermal_noise_dbw_hz = -204.0;
+    DbHz snr_cutoff{5};        ///< at or above is used
+    int max_reflections = 16;  ///< a satellite that needs more is invisible
     UereStatistic statistic = UereStatistic::sample_std;
     double iono_fraction = 1.0;   ///< of the ionospheric delay that enters UERE; 0.5 in the calibrated preset
     double tropo_fraction = 1.0;  ///< of the tropospheric delay; 0.1 in the calibrated preset
@@ -58,13 +47,6 @@ struct ConstantSigmaParameters {
 /// Position σ per axis by the number of used satellites: 4, 5, 6, 7, 8, 9 or more.
 struct SatelliteCountParameters {
     std::array<double, 6> sigma_m{12, 8, 5, 4, 3, 2.5};
-};
-
-/// One attenuation for the whole path: (γ_o h_o + γ_w h_w)/sin e; delays and noise as in the baseline.
-struct WholePathParameters {
-    double oxygen_height_km = 5.35;
-    double vapour_height_km = 1.84;
-    double vapour_g_m3 = 7.5;
 };
 
 /// Exponential refractivity N(h) = N₀ exp(−h/H); what remains of the excess path after correction is the error.

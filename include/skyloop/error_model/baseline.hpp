@@ -1,0 +1,33 @@
+/// The article's sensor model: DOP times the spread of the satellites' delays.
+#pragma once
+
+#include <string_view>
+
+#include "skyloop/error_model/error_model.hpp"
+#include "skyloop/error_model/fix_builder.hpp"
+#include "skyloop/error_model/position_noise.hpp"
+#include "skyloop/error_model/uere.hpp"
+
+namespace skyloop {
+
+/// Adds noise of scale E = PDOP·σ_uere to the true position, in ECEF, white from epoch to epoch; velocity and course
+/// follow from the noised positions (MODELS.md 3.5–3.10, D-08 … D-11).
+///
+/// Reported accuracies are HDOP·σ_uere and VDOP·σ_uere.
+class Baseline : public ErrorModel {
+public:
+    /// @param stream name of the random stream
+    Baseline(const BaselineParameters& parameters, const SensorContext& context,
+             std::string_view stream = "baseline.position");
+    Fix fix(const TruthState& truth, const SkyView& sky, const Arrivals& arrivals) override;
+
+private:
+    [[nodiscard]] Displacement<Ecef> position_error(const Fix& fix, const Geodetic& place, const UereScale& scale,
+                                                    const Eigen::Vector3d& normals) const;
+
+    BaselineParameters parameters_;
+    FixBuilder builder_;
+    PositionNoise noise_;
+};
+
+}  // namespace skyloop

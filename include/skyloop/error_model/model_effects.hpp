@@ -1,0 +1,44 @@
+/// What must happen to the signals for each sensor model.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/error_model/model_kind.hpp"
+#include "skyloop/error_model/parameters.hpp"
+#include "skyloop/geo/geoid.hpp"
+#include "skyloop/gnss/navigation_source.hpp"
+#include "skyloop/propagation/atmosphere_parameters.hpp"
+#include "skyloop/propagation/effect.hpp"
+#include "skyloop/propagation/link_budget_parameters.hpp"
+#include "skyloop/propagation/whole_path_parameters.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop {
+
+/// The numbers of all effects; those that the model does not need are not read.
+struct EffectSettings {
+    AtmosphereParameters atmosphere;
+    LinkBudgetParameters link_budget;
+    WholePathParameters whole_path;
+    RefractionParameters refraction;
+    std::optional<KlobucharCoefficients> klobuchar;  ///< of the navigation data
+    const Geoid* geoid = nullptr;                    ///< must outlive the effects; without one heights stay ellipsoidal
+    LeapSeconds leap_seconds = LeapSeconds::announced();
+};
+
+/// The effects of a model in the order of their application; the link budget is the last, and effects of the scene go
+/// before it.
+///
+///     ideal, constant-sigma, satellite-count   link budget in free space
+///     refraction                               excess path of the bent ray, link budget
+///     whole-path                               one attenuation, TEC and Niell delays, link budget
+///     baseline                                 layered attenuation, TEC and Niell delays, link budget
+///
+/// Fails with `input` when the electron content is to come from navigation data that has no coefficients.
+Result<std::vector<std::unique_ptr<PropagationEffect>>> effects_for(ErrorModelKind kind,
+                                                                    const EffectSettings& settings);
+
+}  // namespace skyloop

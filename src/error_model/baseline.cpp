@@ -1,0 +1,44 @@
+#include "skyloop/error_model/baseline.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "skyloop/geo/local_frame.hpp"
+
+namespace skyloop {
+namespace {
+
+// Normal numbers of covariance σ²Q in the local frame (MODELS.md D-10, `covariance`).
+Displacement<Enu> correlated_noise(const Eigen::Matrix4d& cofactors, Metres sigma, const Eigen::Vector3d& normals) {
+    const Eigen::Matrix3d root = cofactors.topLeftCorner<3, 3>().llt().matrixL();
+    return Displacement<Enu>(sigma.value() * (root * normals));
+}
+
+}  // namespace
+
+Baseline::Baseline(const BaselineParameters& parameters, const SensorContext& context, std::string_view stream)
+    : parameters_(parameters),
+      builder_(context, {.snr_cutoff = parameters.snr_cutoff, .max_reflections = parameters.max_reflections}),
+      noise_(context.seed, stream) {}
+
+Fix Baseline::fix(const TruthState& truth, const SkyView& sky, const Arrivals& arrivals) {
+    const Eigen::Vector3d normals = noise_.draw();
+    Fix fix = builder_.start(truth, sky, arrivals);
+    if (!fix.has_position()) return fix;
+    const UereScale scale = uere_scale(fix, arrivals, parameters_);
+    fix.horizontal_accuracy = fix.dop.hdop * scale.sigma_uere;
+    fix.vertical_accuracy = fix.dop.vdop * scale.sigma_uere;
+    builder_.place(fix, truth.position + position_error(fix, truth.geodetic, scale, normals));
+    return fix;
+}
+
+Displacement<Ecef> Baseline::position_error(const Fix& fix, const Geodetic& place, const UereScale& scale,
+                                            const Eigen::Vector3d& normals) const {
+    if (parameters_.axes == NoiseAxes::covariance) {
+        if (const auto cofactors = cofactor_matrix(used_directions(fix.satellites)))
+            return LocalFrame(place).to_ecef(correlated_noise(*cofactors, scale.sigma_uere, normals));
+    }
+    return Displacement<Ecef>(scale.position_error.value() / std::sqrt(3.0) * normals);
+}
+
+}  // namespace skyloop

@@ -1,0 +1,20 @@
+#include "skyloop/error_model/ideal.hpp"
+
+#include "skyloop/geo/local_frame.hpp"
+
+namespace skyloop {
+
+Fix Ideal::fix(const TruthState& truth, const SkyView& sky, const Arrivals& arrivals) {
+    Fix fix = builder_.start(truth, sky, arrivals);
+    if (!fix.has_position()) return fix;
+    builder_.place(fix, truth.position);
+    fix.position = truth.geodetic;
+    const Eigen::Vector3d enu = LocalFrame(truth.geodetic).to_enu(truth.velocity).vector();
+    const GroundMotion motion = ground_motion({enu.y(), enu.x(), -enu.z()});
+    fix.velocity = motion.velocity;
+    fix.speed = motion.speed;
+    fix.course = motion.course;
+    return fix;
+}
+
+}  // namespace skyloop
