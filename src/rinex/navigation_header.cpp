@@ -41,7 +41,7 @@ std::string other_content(int major, char type, char system) {
     if (type != 'N') return fmt::format("file type {}", in_quotes(std::string_view(&type, 1)));
     if (major == 2 || system == 'G' || system == 'J' || system == 'M' || system == ' ') return {};
     if (const auto constellation = constellation_from_letter(system))
-        return fmt::format("a {} navigation file (system '{}')", system_name(*constellation), system);
+        return fmt::format("{} {} navigation file (system '{}')", system == 'S' ? "an" : "a", system_name(*constellation), system);
     return fmt::format("satellite system {}", in_quotes(std::string_view(&system, 1)));
 }
 
