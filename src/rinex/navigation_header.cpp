@@ -81,7 +81,7 @@ public:
         header.version = version;
         header.leap_seconds = leap_seconds_;
         if (alpha_ && beta_) header.klobuchar = KlobucharCoefficients{*alpha_, *beta_};
-        if (alpha_.has_value() != beta_.has_value())
+        if (alpha_.has_value() != beta_.has_value() && warnings_.empty())
             warnings_.push_back(fmt::format("{}: found only one of the two lines of ionosphere coefficients; expected alpha and "
                                             "beta; none used", name_));
         if (first_unknown_)

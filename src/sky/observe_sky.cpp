@@ -36,7 +36,9 @@ SignalPath signal_path(const KeplerEphemeris& ephemeris, const TruthState& truth
 
 std::optional<SatelliteInView> in_view(const KeplerEphemeris& ephemeris, const TruthState& truth, const LocalFrame& local) {
     const SignalPath path = signal_path(ephemeris, truth);
-    const LookAngles look = local.look_angles(path.seen_at);
+    // The usual convention, and that of the reference scenes: directions leave out the Earth's rotation during the light
+    // time. It would turn them by less than 0.0004°.
+    const LookAngles look = local.look_angles(path.transmitter.position);
     if (!(look.elevation.rad() >= 0)) return std::nullopt;
 
     SatelliteInView seen;
