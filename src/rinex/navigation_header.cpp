@@ -41,7 +41,7 @@ std::string other_content(int major, char type, char system) {
     if (type != 'N') return fmt::format("file type {}", in_quotes(std::string_view(&type, 1)));
     if (major == 2 || system == 'G' || system == 'J' || system == 'M' || system == ' ') return {};
     if (const auto constellation = constellation_from_letter(system))
-        return fmt::format("a {} navigation file (system '{}')", system_name(*constellation), system);
+        return fmt::format("{} {} navigation file (system '{}')", system == 'S' ? "an" : "a", system_name(*constellation), system);
     return fmt::format("satellite system {}", in_quotes(std::string_view(&system, 1)));
 }
 
@@ -81,7 +81,7 @@ public:
         header.version = version;
         header.leap_seconds = leap_seconds_;
         if (alpha_ && beta_) header.klobuchar = KlobucharCoefficients{*alpha_, *beta_};
-        if (alpha_.has_value() != beta_.has_value())
+        if (alpha_.has_value() != beta_.has_value() && warnings_.empty())
             warnings_.push_back(fmt::format("{}: found only one of the two lines of ionosphere coefficients; expected alpha and "
                                             "beta; none used", name_));
         if (first_unknown_)

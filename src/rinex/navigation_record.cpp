@@ -115,9 +115,9 @@ private:
     void reference_time(double toe_tow, double week) {
         const std::int64_t toc_week = week_and_tow(eph_.toc).week;
         eph_.toe = to_gps_time(toc_week, toe_tow);
-        constexpr std::chrono::weeks one_week{1};
-        if (eph_.toe - eph_.toc > one_week / 2) eph_.toe -= one_week;
-        if (eph_.toc - eph_.toe > one_week / 2) eph_.toe += one_week;
+        constexpr Nanoseconds week_length = std::chrono::seconds(seconds_per_week);
+        if (eph_.toe - eph_.toc > week_length / 2) eph_.toe -= week_length;
+        if (eph_.toc - eph_.toe > week_length / 2) eph_.toe += week_length;
         if (std::chrono::abs(eph_.toe - eph_.toc) > std::chrono::days(1))
             return defect(3, column_of(3, 0), fmt::format("toe {} s", toe_tow), "toe within a day of the record's epoch");
         if (week_blank()) return;

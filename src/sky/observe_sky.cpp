@@ -6,65 +6,49 @@
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/gnss/constants.hpp"
 #include "skyloop/gnss/orbit.hpp"
+#include "skyloop/sky/light_time.hpp"
 
 namespace skyloop {
 namespace {
 
-// A signal on its way from a satellite to the antenna, in the ECEF frame of the reception instant.
+// A signal on its way from a satellite to the antenna.
 struct SignalPath {
-    SatelliteState transmitter;       // in the frame of the transmission instant
-    Eigen::Vector3d position;         // of the transmitter
-    Eigen::Vector3d velocity;         // of the transmitter, rotated but not carried along
-    Eigen::Vector3d carried;          // d(position)/d(rotation angle)
-    double travel_time = 0;           // s
-    double range = 0;                 // m
+    SatelliteState transmitter;  // at transmission, in the frame of that instant
+    Position<Ecef> seen_at;      // the transmitter's place in the frame of the reception instant
+    Metres range;
+    Seconds travel_time{0.075};
 };
-
-// Turns coordinates into the frame that the Earth's rotation has reached after `angle` (MODELS.md 3.4, Rz).
-Eigen::Vector3d rotated(const Eigen::Vector3d& v, double angle) {
-    const double s = std::sin(angle);
-    const double c = std::cos(angle);
-    return {v.x() * c + v.y() * s, -v.x() * s + v.y() * c, v.z()};
-}
 
 SignalPath signal_path(const KeplerEphemeris& ephemeris, const TruthState& truth) {
     SignalPath path;
-    path.travel_time = 0.075;
     // Each pass shrinks the error by v/c, 1e-5: from 0.1 s of travel time four passes reach the last bit.
     for (int pass = 0; pass < 5; ++pass) {
-        path.transmitter = satellite_state(ephemeris, truth.time, Seconds(-path.travel_time));
-        path.position = rotated(path.transmitter.position.vector(), earth_rotation_rate * path.travel_time);
-        path.range = (path.position - truth.position.vector()).norm();
-        const double travel_time = path.range / speed_of_light;
-        const bool settled = std::abs(travel_time - path.travel_time) < 1e-15;
+        path.transmitter = satellite_state(ephemeris, truth.time, -path.travel_time);
+        path.seen_at = in_reception_frame(path.transmitter.position, path.travel_time);
+        path.range = (path.seen_at - truth.position).length();
+        const Seconds travel_time(path.range.value() / speed_of_light);
+        const bool settled = std::abs((travel_time - path.travel_time).value()) < 1e-15;
         path.travel_time = travel_time;
         if (settled) break;
     }
-    path.velocity = rotated(path.transmitter.velocity.vector(), earth_rotation_rate * path.travel_time);
-    path.carried = {path.position.y(), -path.position.x(), 0};
     return path;
-}
-
-// dρ/dt of ρ = |Rz(ω τ) r_s(t − τ) − r_r(t)| with τ = ρ/c: differentiating both sides and solving for ρ̇.
-double range_rate(const SignalPath& path, const TruthState& truth) {
-    const Eigen::Vector3d direction = (path.position - truth.position.vector()) / path.range;
-    const double approach = direction.dot(path.velocity - truth.velocity.vector());
-    const double delay = direction.dot(path.velocity - earth_rotation_rate * path.carried) / speed_of_light;
-    return approach / (1 + delay);
 }
 
 std::optional<SatelliteInView> in_view(const KeplerEphemeris& ephemeris, const TruthState& truth, const LocalFrame& local) {
     const SignalPath path = signal_path(ephemeris, truth);
-    const LookAngles look = local.look_angles(Position<Ecef>(path.position));
+    // The usual convention, and that of the reference scenes: directions leave out the Earth's rotation during the light
+    // time. It would turn them by less than 0.0004°.
+    const LookAngles look = local.look_angles(path.transmitter.position);
     if (!(look.elevation.rad() >= 0)) return std::nullopt;
 
     SatelliteInView seen;
     seen.id = ephemeris.satellite;
     seen.azimuth = look.azimuth;
     seen.elevation = look.elevation;
-    seen.range = Metres(path.range);
-    seen.range_rate = MetresPerSecond(range_rate(path, truth));
-    seen.travel_time = Seconds(path.travel_time);
+    seen.range = path.range;
+    seen.range_rate = light_time_range_rate({path.transmitter.position, path.transmitter.velocity},
+                                            {truth.position, truth.velocity}, path.travel_time);
+    seen.travel_time = path.travel_time;
     seen.position_at_transmission = path.transmitter.position;
     seen.velocity_at_transmission = path.transmitter.velocity;
     seen.clock_bias = Seconds(path.transmitter.clock_bias);

@@ -1,0 +1,58 @@
+// Any bytes as a navigation file: a clear error or usable records, never a crash, a hang or an orbit that is no number.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "skyloop/geo/geodetic.hpp"
+#include "skyloop/gnss/foreign_records.hpp"
+#include "skyloop/gnss/navigation_data.hpp"
+#include "skyloop/gnss/orbit.hpp"
+#include "skyloop/rinex/navigation_file.hpp"
+#include "skyloop/sky/observe_sky.hpp"
+
+namespace {
+
+void require(bool promise) {
+    if (!promise) std::abort();
+}
+
+bool one_line(std::string_view message) { return !message.empty() && message.find('\n') == std::string_view::npos; }
+
+void check_records(const skyloop::NavigationFile& file) {
+    require(!file.records.empty());
+    for (const skyloop::KeplerEphemeris& record : file.records) {
+        const skyloop::SatelliteState state = satellite_state(record, record.toe);
+        require(state.position.vector().allFinite() && state.velocity.vector().allFinite());
+        require(std::isfinite(state.clock_bias) && std::isfinite(state.clock_drift));
+        require(std::abs((record.toe - record.toc).count()) <= std::int64_t{86'400'000'000'000});
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace skyloop;
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    Result<NavigationFile> file = read_navigation(text, "fuzz.nav");
+    if (!file) {
+        require(file.error().code == ErrorCode::input && one_line(file.error().message));
+        return 0;
+    }
+    for (const std::string& warning : file->warnings) require(one_line(warning));
+    check_records(*file);
+
+    for (const DroppedRecord& dropped : drop_foreign_records(file->records)) require(one_line(dropped.reason));
+    const GpsTime time = file->records.front().toe;
+    const NavigationData orbits(file->records, file->klobuchar, "fuzz.nav");
+    require(orbits.record_count() <= file->records.size());
+    TruthState truth;
+    truth.time = time;
+    truth.geodetic = Geodetic::degrees(46.5, 30.7, 80);
+    truth.position = to_ecef(truth.geodetic);
+    for (const SatelliteInView& seen : observe_sky(truth, orbits).satellites)
+        require(std::isfinite(seen.range.value()) && std::isfinite(seen.range_rate.value()));
+    const Result<NavigationData> moved = rebased(orbits, time + std::chrono::days(1234));
+    require(moved.has_value() && moved->satellites_at(time + std::chrono::days(1234)) >= orbits.satellites_at(time));
+    return 0;
+}

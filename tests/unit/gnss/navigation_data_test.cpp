@@ -1,0 +1,179 @@
+#include "skyloop/gnss/navigation_data.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "skyloop/gnss/orbit.hpp"
+#include "support/oracle_table.hpp"
+
+namespace skyloop::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr SatelliteId g15{Constellation::gps, 15};
+const GpsTime monday = to_gps_time(2111, 86400.0);
+
+KeplerEphemeris plain_record(GpsTime toe, SatelliteId satellite = g15) {
+    KeplerEphemeris e;
+    e.satellite = satellite;
+    e.toe = e.toc = toe;
+    e.sqrt_a = 5153.7;
+    e.e = 0.012;
+    e.i0 = 0.96;
+    e.omega0 = 1.2;
+    e.omega = -2.1;
+    e.omega_dot = -8.1e-9;
+    e.idot = 2e-10;
+    e.m0 = 0.7;
+    e.delta_n = 4.5e-9;
+    e.crs = 30;
+    e.crc = 220;
+    e.iode = 11;
+    return e;
+}
+
+NavigationData data_of(std::vector<KeplerEphemeris> records, EphemerisRule rule = EphemerisRule::nearest) {
+    return NavigationData(std::move(records), std::nullopt, "test data", {.rule = rule});
+}
+
+// An instant given as a total of GPS seconds, to the nanosecond.
+GpsTime total_seconds(double seconds) { return advanced(GpsTime{}, Seconds(seconds)); }
+
+void check_choice(const OracleRow& row, const std::string& column, const std::optional<KeplerEphemeris>& chosen,
+                  const std::vector<KeplerEphemeris>& records) {
+    SCOPED_TRACE(column);
+    const std::string expected = row.text(column);
+    ASSERT_EQ(chosen.has_value(), !expected.empty());
+    if (!chosen) return;
+    if (expected == "tie") {
+        const GpsTime time = total_seconds(row.number("t_gpst_total_s"));
+        const Nanoseconds age = std::chrono::abs(time - chosen->toe);
+        for (const KeplerEphemeris& r : records) EXPECT_LE(age, std::chrono::abs(time - r.toe));
+    } else {
+        EXPECT_EQ(chosen->toe, total_seconds(row.number(column)));
+    }
+}
+
+TEST(NavigationData, ChoosesRecordsAsTheOracle) {
+    for (const OracleRow& row : oracle_rows("ephemeris_selection.csv")) {
+        SCOPED_TRACE(row.id());
+        const SatelliteId satellite = parse_satellite(row.text("sat")).value();
+        std::vector<KeplerEphemeris> records;
+        std::istringstream toes(row.text("toe_list_gpst_total_s"));
+        for (double toe = 0; toes >> toe;) records.push_back(plain_record(total_seconds(toe), satellite));
+        const GpsTime time = total_seconds(row.number("t_gpst_total_s"));
+
+        check_choice(row, "paper_toe", data_of(records, EphemerisRule::forward).ephemeris(satellite, time), records);
+        check_choice(row, "nearest_toe", data_of(records, EphemerisRule::nearest).ephemeris(satellite, time), records);
+    }
+}
+
+TEST(NavigationData, ForwardRulePassesOverUnhealthyRecords) {
+    auto unhealthy = plain_record(monday + 1h);
+    unhealthy.health = 63;
+    const NavigationData data = data_of({plain_record(monday), unhealthy}, EphemerisRule::forward);
+    EXPECT_EQ(data.ephemeris(g15, monday + 90min)->toe, monday);
+    EXPECT_EQ(data.ephemeris(g15, monday + 2h)->toe, monday) << "exactly two hours old is valid";
+    EXPECT_FALSE(data.ephemeris(g15, monday + 2h + 1ns));
+    EXPECT_FALSE(data.ephemeris(g15, monday - 1ns));
+}
+
+TEST(NavigationData, NearestRuleKeepsUnhealthyRecords) {
+    auto unhealthy = plain_record(monday + 1h);
+    unhealthy.health = 63;
+    const NavigationData data = data_of({plain_record(monday), unhealthy});
+    EXPECT_FALSE(data.ephemeris(g15, monday + 90min)->healthy());
+    EXPECT_TRUE(data.ephemeris(g15, monday - 2h));
+    EXPECT_FALSE(data.ephemeris(g15, monday - 2h - 1ns));
+    EXPECT_TRUE(data.ephemeris(g15, monday + 3h));
+    EXPECT_FALSE(data.ephemeris(g15, monday + 3h + 1ns));
+}
+
+TEST(NavigationData, KeepsRepetitionsOnceAndTheLastOfOneToe) {
+    auto reissued = plain_record(monday);
+    reissued.iode = 12;
+    const NavigationData data = data_of({plain_record(monday), plain_record(monday + 2h), plain_record(monday), reissued});
+    EXPECT_EQ(data.record_count(), 3u);
+    EXPECT_EQ(data.ephemeris(g15, monday + 1min)->iode, 12);
+    EXPECT_EQ(data.ephemeris(g15, monday - 1min)->iode, 12) << "from before, too";
+}
+
+TEST(NavigationData, KnowsItsSatellitesAndSpan) {
+    const SatelliteId g02{Constellation::gps, 2};
+    const SatelliteId j01{Constellation::qzss, 1};
+    const std::vector<KeplerEphemeris> records{plain_record(monday + 4h, j01), plain_record(monday, g15), plain_record(monday + 1h, g02)};
+    const NavigationData nearest = data_of(records);
+    EXPECT_EQ(nearest.satellites(), (std::vector<SatelliteId>{g02, g15, j01}));
+    EXPECT_EQ(nearest.span()->first, monday - 2h);
+    EXPECT_EQ(nearest.span()->last, monday + 6h);
+    EXPECT_EQ(data_of(records, EphemerisRule::forward).span()->first, monday);
+    EXPECT_EQ(nearest.satellites_at(monday + 1h), 2u);
+    EXPECT_FALSE(nearest.ephemeris({Constellation::gps, 3}, monday));
+    EXPECT_FALSE(data_of({}).span());
+    EXPECT_TRUE(data_of({}).satellites().empty());
+}
+
+// ECEF positions at one time of day before and after a move.
+double displacement_by_move(const KeplerEphemeris& record, std::int64_t days) {
+    const KeplerEphemeris moved = moved_by_days(record, days);
+    double worst = 0;
+    for (const auto offset : {-2h, 0h, 1h, 2h}) {
+        const GpsTime then = record.toe + offset;
+        const GpsTime now = then + std::chrono::days(days);
+        const Displacement<Ecef> d = satellite_state(moved, now).position - satellite_state(record, then).position;
+        worst = std::max(worst, d.length().value());
+    }
+    return worst;
+}
+
+TEST(Rebase, KeepsEcefPositionsAtTheSameTimeOfDay) {
+    // Two records near the ends of a week, so that moves cross the week's border in both directions.
+    for (const double tow : {3600.0, 302400.0, 604800.0 - 16})
+        for (const std::int64_t days : {-8000, -8, -7, -6, -1, 0, 1, 6, 7, 8, 8000})
+            EXPECT_LT(displacement_by_move(plain_record(to_gps_time(2111, tow)), days), 1e-5) << tow << " s, " << days << " days";
+}
+
+TEST(Rebase, KeepsTimeOfDayAndClock) {
+    KeplerEphemeris record = plain_record(to_gps_time(1590, 345584.0));
+    record.toc = record.toe - 16s;
+    const KeplerEphemeris moved = moved_by_days(record, 5000);
+    EXPECT_EQ(moved.toe - record.toe, Nanoseconds(std::chrono::days(5000)));
+    EXPECT_EQ(moved.toc - record.toc, Nanoseconds(std::chrono::days(5000)));
+    EXPECT_EQ(moved.af0, record.af0);
+}
+
+TEST(Rebase, BringsADayOfDataToTheStart) {
+    std::vector<KeplerEphemeris> records;
+    for (int hour = 0; hour <= 22; hour += 2)
+        for (const int number : {3, 15, 22}) records.push_back(plain_record(monday + std::chrono::hours(hour), {Constellation::gps, number}));
+    // A stray record of the day before must not pull the data to its own day.
+    records.push_back(plain_record(monday - 6h, {Constellation::gps, 3}));
+    const NavigationData data = data_of(records);
+    for (const auto& start : {to_gps_time(2300, 0.0), to_gps_time(2300, 43200.0), to_gps_time(1100, 86399.0), monday + 1h}) {
+        const Result<NavigationData> moved = rebased(data, start);
+        ASSERT_TRUE(moved);
+        EXPECT_EQ(moved->record_count(), data.record_count());
+        EXPECT_EQ(moved->satellites_at(start), 3u);
+        const Nanoseconds shift = moved->span()->first - data.span()->first;
+        EXPECT_EQ(shift % Nanoseconds(std::chrono::days(1)), Nanoseconds(0));
+        EXPECT_EQ(moved->description(), data.description());
+    }
+    EXPECT_EQ(rebased(data, monday + 1h)->span()->first, data.span()->first) << "data of the same day stays";
+}
+
+TEST(Rebase, RefusesATimeOfDayWithoutData) {
+    const NavigationData data = data_of({plain_record(monday + 12h)});
+    EXPECT_TRUE(rebased(data, to_gps_time(2300, 10 * 3600.0)));
+    const Result<NavigationData> refused = rebased(data, to_gps_time(2300, 9 * 3600.0));
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::usage);
+    EXPECT_NE(refused.error().message.find("test data"), std::string::npos);
+    EXPECT_NE(refused.error().message.find("09:00:00"), std::string::npos) << refused.error().message;
+    EXPECT_FALSE(rebased(data_of({}), monday));
+}
+
+}  // namespace
+}  // namespace skyloop::test

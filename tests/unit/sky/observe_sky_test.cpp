@@ -1,0 +1,185 @@
+#include "skyloop/sky/observe_sky.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "skyloop/geo/local_frame.hpp"
+#include "skyloop/gnss/constants.hpp"
+#include "skyloop/gnss/navigation_data.hpp"
+#include "skyloop/gnss/nominal_constellation.hpp"
+#include "skyloop/gnss/orbit.hpp"
+#include "skyloop/rinex/navigation_file.hpp"
+#include "skyloop/sky/light_time.hpp"
+#include "skyloop/time/utc_time.hpp"
+#include "support/oracle_table.hpp"
+
+namespace skyloop::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+TruthState standing_at(const Geodetic& place, GpsTime time) { return {time, to_ecef(place), {}, place}; }
+
+TruthState moving_from(const Geodetic& place, GpsTime time, const Velocity<Enu>& velocity) {
+    return {time, to_ecef(place), LocalFrame(place).to_ecef(velocity), place};
+}
+
+// "2020-06-25T10:07:00" of GPS time.
+GpsTime gps_text(const std::string& text) { return to_gps_time(parse_utc(text).value(), LeapSeconds::constant(0)); }
+
+// The GPS records of one of the scenes' files; files are separated by ';', other systems' files are not read.
+NavigationData scene_data(const std::string& files) {
+    const std::string first = files.substr(0, files.find(';'));
+    const auto file = read_navigation_file(shared_data("oracles/nav/" + first).value());
+    EXPECT_TRUE(file) << file.error().message;
+    return NavigationData(file->records, file->klobuchar, first);
+}
+
+TruthState scene_truth(const OracleRow& row) {
+    const Geodetic place = Geodetic::degrees(row.number("rx_lat_deg"), row.number("rx_lon_deg"), row.number("rx_h_m"));
+    return standing_at(place, gps_text(row.text("gpst")));
+}
+
+TEST(ObserveSky, SeesTheSatellitesOfTheScenes) {
+    SKYLOOP_REQUIRE_SHARED(nav, "oracles/nav");
+    int scenes = 0;
+    for (const OracleRow& row : oracle_rows("scenario_summary.csv")) {
+        SCOPED_TRACE(row.id());
+        const SkyView sky = observe_sky(scene_truth(row), scene_data(row.text("nav_files")));
+        std::vector<std::string> seen;
+        for (const SatelliteInView& s : sky.satellites)
+            if (s.id.constellation == Constellation::gps && s.healthy && s.elevation.deg() >= 5) seen.push_back(to_string(s.id));
+        std::vector<std::string> expected;
+        std::istringstream words(row.text("satellites"));
+        for (std::string word; words >> word;)
+            if (word[0] == 'G') expected.push_back(word);
+        EXPECT_EQ(seen, expected);
+        EXPECT_EQ(static_cast<std::int64_t>(seen.size()), row.integer("n_gps_ge5deg_healthy"));
+        ++scenes;
+    }
+    EXPECT_EQ(scenes, 5);
+}
+
+void check_scene_satellite(const OracleRow& row, const SatelliteInView& seen) {
+    const double metres = row.number("tol_m");
+    const double angle = row.number("tol_deg");
+    EXPECT_NEAR(seen.elevation.deg(), row.number("el_deg"), angle);
+    EXPECT_NEAR(std::remainder(seen.azimuth.deg() - row.number("az_deg"), 360.0), 0, angle);
+    EXPECT_NEAR(seen.position_at_transmission.vector().x(), row.number("sat_x_at_tx_m"), metres);
+    EXPECT_NEAR(seen.position_at_transmission.vector().y(), row.number("sat_y_at_tx_m"), metres);
+    EXPECT_NEAR(seen.position_at_transmission.vector().z(), row.number("sat_z_at_tx_m"), metres);
+    EXPECT_NEAR(seen.range.value(), row.number("geometric_range_m"), metres);
+    EXPECT_NEAR(seen.travel_time.value(), row.number("travel_time_s"), metres / speed_of_light);
+    EXPECT_NEAR(seen.clock_bias.value(), row.number("sat_clk_s"), metres / speed_of_light);
+    EXPECT_EQ(seen.group_delay.value(), row.number("tgd_s"));
+    const double pseudorange = seen.range.value() - speed_of_light * (seen.clock_bias - seen.group_delay).value();
+    EXPECT_NEAR(pseudorange, row.number("pseudorange_clean_m"), metres);
+    EXPECT_NEAR(seen.range_rate.value(), row.number("range_rate_m_s"), row.number("tol_m_s"));
+    EXPECT_EQ(seen.healthy, row.integer("healthy") == 1);
+    EXPECT_EQ(seen.toe, advanced(GpsTime{}, Seconds(row.number("eph_toe_gpst_total_s"))));
+    EXPECT_EQ(seen.iode, row.integer("eph_iode"));
+}
+
+TEST(ObserveSky, AgreesWithTheSatellitesOfTheScenes) {
+    SKYLOOP_REQUIRE_SHARED(nav, "oracles/nav");
+    int checked = 0;
+    std::map<std::string, SkyView> skies;
+    for (const OracleRow& row : oracle_rows("scenario_satellites.csv")) {
+        const SatelliteId id = parse_satellite(row.text("sat")).value();
+        if (id.constellation != Constellation::gps) continue;
+        SCOPED_TRACE(row.id());
+        const auto [entry, first] = skies.try_emplace(row.text("scenario"));
+        if (first) entry->second = observe_sky(scene_truth(row), scene_data(row.text("nav_files")));
+        const auto& seen = entry->second.satellites;
+        const auto found = std::find_if(seen.begin(), seen.end(), [&](const auto& s) { return s.id == id; });
+        ASSERT_NE(found, seen.end());
+        check_scene_satellite(row, *found);
+        ++checked;
+    }
+    EXPECT_EQ(checked, 56);
+}
+
+TEST(ObserveSky, LightTimeIsConsistent) {
+    const NominalConstellation source;
+    const Geodetic place = Geodetic::degrees(-33.9, 151.2, 58);
+    const TruthState truth = standing_at(place, to_gps_time(2304, 216000.123));
+    const SkyView sky = observe_sky(truth, source);
+    ASSERT_GE(sky.satellites.size(), 6u);
+    EXPECT_TRUE(std::is_sorted(sky.satellites.begin(), sky.satellites.end(), [](const auto& a, const auto& b) { return a.id < b.id; }));
+    for (const SatelliteInView& s : sky.satellites) {
+        EXPECT_GE(s.elevation.rad(), 0);
+        EXPECT_NEAR(s.range.value(), speed_of_light * s.travel_time.value(), 1e-7);
+        const auto record = source.ephemeris(s.id, truth.time);
+        const SatelliteState then = satellite_state(*record, truth.time, -s.travel_time);
+        EXPECT_LT((then.position - s.position_at_transmission).length().value(), 1e-6);
+        const Position<Ecef> seen_at = in_reception_frame(s.position_at_transmission, s.travel_time);
+        EXPECT_NEAR((seen_at - truth.position).length().value(), s.range.value(), 1e-7);
+        const LookAngles look = LocalFrame(place).look_angles(s.position_at_transmission);
+        EXPECT_NEAR(look.elevation.rad(), s.elevation.rad(), 1e-12);
+        EXPECT_NEAR(look.azimuth.rad(), s.azimuth.rad(), 1e-12);
+        EXPECT_NEAR(LocalFrame(place).look_angles(seen_at).elevation.deg(), s.elevation.deg(), 4e-4);
+    }
+}
+
+TEST(ObserveSky, RangeRateIsTheDerivativeOfRange) {
+    const NominalConstellation source;
+    const Geodetic place = Geodetic::degrees(46.4775, 30.7326, 77);
+    const GpsTime time = to_gps_time(2304, 216000.0 + 3000);
+    const TruthState truth = moving_from(place, time, Velocity<Enu>(200, -120, 15));
+    const auto shifted = [&](double seconds) {
+        TruthState t = truth;
+        t.time = advanced(time, Seconds(seconds));
+        t.position = Position<Ecef>(truth.position.vector() + seconds * truth.velocity.vector());
+        t.geodetic = to_geodetic(t.position);
+        return observe_sky(t, source);
+    };
+    const SkyView now = observe_sky(truth, source);
+    const SkyView before = shifted(-0.5);
+    const SkyView after = shifted(0.5);
+    ASSERT_EQ(before.satellites.size(), now.satellites.size());
+    ASSERT_EQ(after.satellites.size(), now.satellites.size());
+    for (std::size_t i = 0; i < now.satellites.size(); ++i) {
+        const double derivative = (after.satellites[i].range - before.satellites[i].range).value();
+        EXPECT_NEAR(now.satellites[i].range_rate.value(), derivative, 2e-5) << to_string(now.satellites[i].id);
+    }
+}
+
+TEST(ObserveSky, LeavesOutSatellitesWithoutARecord) {
+    const NominalConstellation nominal;
+    const GpsTime time = to_gps_time(2304, 216000.0);
+    std::vector<KeplerEphemeris> records;
+    for (const SatelliteId id : nominal.satellites()) records.push_back(*nominal.ephemeris(id, time));
+    const TruthState truth = standing_at(Geodetic::degrees(46.4775, 30.7326, 77), time);
+    records[4].health = 1;
+    const NavigationData nearest(records, std::nullopt, "test");
+    const NavigationData forward(records, std::nullopt, "test", {.rule = EphemerisRule::forward});
+    const SkyView all = observe_sky(truth, nominal);
+    EXPECT_EQ(observe_sky(truth, nearest).satellites.size(), all.satellites.size());
+    TruthState late = truth;
+    late.time = time + 3h;
+    EXPECT_TRUE(observe_sky(late, nearest).satellites.empty());
+    late.time = time - 1h;
+    EXPECT_TRUE(observe_sky(late, forward).satellites.empty());
+    for (const SatelliteInView& s : observe_sky(truth, nearest).satellites) EXPECT_EQ(s.healthy, s.id.number != 5);
+    for (const SatelliteInView& s : observe_sky(truth, forward).satellites) EXPECT_NE(s.id.number, 5);
+}
+
+TEST(ObserveSky, HasNoStepAtMidnightOrTheEndOfTheWeek) {
+    const NominalConstellation source;
+    const Geodetic place = Geodetic::degrees(52.52, 13.405, 74);
+    for (const GpsTime border : {to_gps_time(2304, 0.0), to_gps_time(2304, 86400.0), to_gps_time(2048, 0.0)}) {
+        const SkyView before = observe_sky(standing_at(place, border - 1ms), source);
+        const SkyView after = observe_sky(standing_at(place, border), source);
+        ASSERT_EQ(before.satellites.size(), after.satellites.size());
+        for (std::size_t i = 0; i < after.satellites.size(); ++i) {
+            const double step = (after.satellites[i].range - before.satellites[i].range).value();
+            EXPECT_NEAR(step, after.satellites[i].range_rate.value() * 1e-3, 1e-5);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace skyloop::test

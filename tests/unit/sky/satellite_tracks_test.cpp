@@ -1,0 +1,90 @@
+#include "skyloop/sky/satellite_tracks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "skyloop/gnss/navigation_data.hpp"
+#include "skyloop/gnss/nominal_constellation.hpp"
+#include "skyloop/gnss/orbit.hpp"
+#include "skyloop/rinex/navigation_file.hpp"
+#include "support/oracle_table.hpp"
+
+namespace skyloop::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+const NominalConstellation nominal;
+const GpsTime noon = to_gps_time(2304, 216000.0);
+
+TEST(SatelliteTracks, AgreesWithTheOracleOver46Hours) {
+    SKYLOOP_REQUIRE_SHARED(path, "oracles/nav/nav_20200625_eu_MN.rnx");
+    const auto file = read_navigation_file(path);
+    ASSERT_TRUE(file);
+    std::map<std::string, SatelliteTrack> tracks;
+    int checked = 0;
+    for (const OracleRow& row : oracle_rows("orbit_trajectory_46h.csv")) {
+        SCOPED_TRACE(row.id());
+        const GpsTime toe = advanced(GpsTime{}, Seconds(row.number("toe_gpst_total_s")));
+        const auto [track, is_new] = tracks.try_emplace(row.text("sat"));
+        if (is_new) {
+            // One record alone, extrapolated.
+            const auto record = std::find_if(file->records.begin(), file->records.end(), [&](const KeplerEphemeris& e) {
+                return to_string(e.satellite) == row.text("sat") && e.toe == toe && e.iode == row.integer("iode");
+            });
+            ASSERT_NE(record, file->records.end());
+            const NavigationData source({*record}, std::nullopt, "one record");
+            track->second = satellite_tracks(source, {.start = toe, .duration = Seconds(46 * 3600), .step = Seconds(3600)}).at(0);
+            ASSERT_EQ(track->second.points.size(), 47u);
+        }
+        const TrackPoint& point = track->second.points.at(static_cast<std::size_t>(row.integer("hours_since_toe")));
+        EXPECT_EQ(point.time, to_gps_time(row.integer("gps_week"), row.number("gps_tow_s")));
+        const double tolerance = row.number("tol_m");
+        EXPECT_NEAR(point.position.vector().x(), row.number("x_m"), tolerance);
+        EXPECT_NEAR(point.position.vector().y(), row.number("y_m"), tolerance);
+        EXPECT_NEAR(point.position.vector().z(), row.number("z_m"), tolerance);
+        ++checked;
+    }
+    EXPECT_EQ(checked, 94);
+}
+
+TEST(SatelliteTracks, FollowsTheNominalConstellationForHours) {
+    const auto tracks = satellite_tracks(nominal, {.start = noon, .duration = Seconds(46 * 3600), .step = Seconds(600)});
+    ASSERT_EQ(tracks.size(), 31u);
+    for (const SatelliteTrack& track : tracks) {
+        ASSERT_EQ(track.points.size(), 46u * 6 + 1);
+        EXPECT_EQ(track.points.front().time, noon);
+        EXPECT_EQ(track.points.back().time, noon + 46h);
+        for (const TrackPoint& p : track.points) {
+            const SatelliteState state = satellite_state(*nominal.ephemeris(track.satellite, p.time), p.time);
+            ASSERT_LT((p.position - state.position).length().value(), 1e-4);
+        }
+    }
+}
+
+TEST(SatelliteTracks, TakesTheNearestRecordAndGoesOnBeyondTheLast) {
+    const SatelliteId g01{Constellation::gps, 1};
+    KeplerEphemeris first = *nominal.ephemeris(g01, noon);
+    KeplerEphemeris second = *nominal.ephemeris(g01, noon + 2h);
+    second.crc = 1000;  // so that the two can be told apart
+    const NavigationData source({first, second}, std::nullopt, "test");
+    const auto tracks = satellite_tracks(source, {.start = noon - 3h, .duration = Seconds(10 * 3600), .step = Seconds(1800)});
+    ASSERT_EQ(tracks.size(), 1u);
+    ASSERT_EQ(tracks[0].points.size(), 21u);
+    for (const TrackPoint& p : tracks[0].points) {
+        const KeplerEphemeris& expected = p.time < noon + 1h ? first : second;
+        EXPECT_EQ(p.position.vector(), satellite_state(expected, p.time).position.vector()) << (p.time - noon).count();
+    }
+}
+
+TEST(SatelliteTracks, LeavesOutSatellitesWithoutNearRecords) {
+    const NavigationData source({*nominal.ephemeris({Constellation::gps, 1}, noon)}, std::nullopt, "test");
+    EXPECT_TRUE(satellite_tracks(source, {.start = noon + std::chrono::days(30)}).empty());
+    EXPECT_TRUE(satellite_tracks(NavigationData({}, std::nullopt, "none"), {.start = noon}).empty());
+    EXPECT_EQ(satellite_tracks(source, {.start = noon + 24h}).size(), 1u);
+}
+
+}  // namespace
+}  // namespace skyloop::test
