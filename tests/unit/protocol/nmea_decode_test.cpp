@@ -234,7 +234,8 @@ INSTANTIATE_TEST_SUITE_P(Serial, CapturedReceiver,
                                          Capture{"serial/ublox-zed-f9p-nmea.log", {.version = NmeaVersion::v4_10}},
                                          Capture{"serial/ublox-f9p-hpnmea.log", high_precision},
                                          Capture{"serial/neo-m8n.log", {.version = NmeaVersion::v4_0}},
-                                         Capture{"serial/ublox-neo-m8n.log", {.version = NmeaVersion::v4_0}}),
+                                         Capture{"receivers/indoor_neo6m_20240726/gps_data_20240726_122435.log.gz",
+                                                 {.version = NmeaVersion::v2_3}}),
                          [](const auto& capture) {
                              std::string name = capture.param.file;
                              std::replace_if(

@@ -1,0 +1,125 @@
+#include "firmware/receiver.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sample_epochs.hpp"
+#include "skyloop/base/random.hpp"
+#include "skyloop/protocol/nmea_sentence.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+using enum Constellation;
+using testing::EndsWith;
+using testing::StartsWith;
+
+Epoch epoch_at(int index, Nanoseconds period) {
+    Fix fix = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500);
+    fix.time += index * period;
+    add_satellites(fix, gps, 1, 12);
+    return {fix};
+}
+
+TEST(Receiver, RoundsThePeriodToMillisecondsWithinTheBoardsRate) {
+    BoardProfile board = sample_board(NmeaVersion::v4_0, {gps});
+    board.max_rate_hz = 18;
+    board.default_rate_hz = 2;
+    const auto period = [&](double rate) { return Receiver(board, rate).settings().navigation_period; };
+    EXPECT_EQ(period(1), 1s);
+    EXPECT_EQ(period(3), 333ms);
+    EXPECT_EQ(period(18), 56ms);
+    EXPECT_EQ(period(1000), 56ms);
+    EXPECT_EQ(period(0), 500ms);
+    EXPECT_EQ(period(-4), 500ms);
+    EXPECT_EQ(period(std::nan("")), 500ms);
+    EXPECT_EQ(period(1e-9), 65535ms);
+}
+
+TEST(Receiver, BeginsOneLatencyAfterTheEpoch) {
+    BoardProfile board = sample_board(NmeaVersion::v4_0, {gps});
+    board.solution_latency = Seconds(0.07);
+    Receiver receiver(board, 1);
+    const Epoch epoch = epoch_at(0, 1s);
+    receiver.on_epoch(epoch);
+    const GpsTime first = epoch.fix.time + 70ms + 1'041'667ns;
+    EXPECT_TRUE(receiver.output(first - 1ns).empty());
+    EXPECT_EQ(to_string(receiver.output(first)), "$");
+    const std::string rest = to_string(receiver.output(*receiver.drained_at()));
+    EXPECT_THAT(rest, StartsWith("GPRMC,120000.00,A,"));
+    EXPECT_THAT(rest, EndsWith("\r\n"));
+    EXPECT_EQ(receiver.drained_at(), std::nullopt);
+    EXPECT_EQ(receiver.counters().messages_sent, 10U);
+    EXPECT_EQ(receiver.counters().epochs, 1U);
+}
+
+TEST(Receiver, IsMute) {
+    Receiver receiver(sample_board(NmeaVersion::v4_0, {gps}), 1);
+    const GpsTime now = epoch_at(0, 1s).fix.time;
+    receiver.input(to_bytes("\xb5\x62\x0a\x04"), now);
+    receiver.input(to_bytes("$PUBX,00*33\r\n"), now);
+    EXPECT_TRUE(receiver.output(now + 10s).empty());
+    EXPECT_EQ(receiver.counters().bytes_received, 17U);
+}
+
+// 10 Hz at 9600 baud: most of each epoch cannot be sent, and what is sent is whole.
+TEST(Receiver, DropsWholeMessagesWhenTheLineIsTooSlow) {
+    BoardProfile board = sample_board(NmeaVersion::v4_0, {gps});
+    board.transmit_buffer_bytes = 1000;
+    board.overflow_notice = true;
+    Receiver receiver(board, 10);
+    SentenceSplitter splitter;
+    std::size_t sentences = 0, notices = 0;
+    for (int i = 0; i < 100; ++i) {
+        const Epoch epoch = epoch_at(i, 100ms);
+        receiver.on_epoch(epoch);
+        for (const auto& line : splitter.feed(receiver.output(epoch.fix.time + 100ms))) {
+            ASSERT_TRUE(parse_sentence(line)) << line;
+            ++sentences;
+            notices += line == "$GPTXT,01,01,00,txbuf alloc*7F" ? 1U : 0U;
+        }
+    }
+    for (const auto& line : splitter.feed(receiver.output(*receiver.drained_at()))) {
+        ASSERT_TRUE(parse_sentence(line)) << line;
+        ++sentences;
+    }
+    EXPECT_EQ(sentences, receiver.counters().messages_sent);
+    EXPECT_GT(receiver.counters().messages_dropped, 700U);
+    EXPECT_GT(sentences, 100U);
+    EXPECT_GT(notices, 5U);
+}
+
+TEST(Receiver, GivesTheSameBytesByTheSameTimeHoweverOftenItIsPolled) {
+    RandomStream random(9, "receiver polling");
+    for (const std::uint32_t baud : {4800U, 9600U, 115200U}) {
+        BoardProfile board = sample_board(NmeaVersion::v4_10, {gps, glonass});
+        board.baud = baud;
+        board.transmit_buffer_bytes = 1500;
+        Receiver often(board, 5), seldom(board, 5);
+        std::string by_often, by_seldom;
+        for (int i = 0; i < 25; ++i) {
+            const Epoch epoch = epoch_at(i, 200ms);
+            often.on_epoch(epoch);
+            seldom.on_epoch(epoch);
+            const GpsTime end = epoch.fix.time + 200ms;
+            for (GpsTime now = epoch.fix.time; now < end;) {
+                now = std::min(end, now + Nanoseconds(random.bits() % 3'000'000));
+                by_often += to_string(often.output(now));
+                if (now == end || random.uniform() < 0.03) {
+                    by_seldom += to_string(seldom.output(now));
+                    ASSERT_EQ(by_often.size(), by_seldom.size());
+                }
+            }
+        }
+        EXPECT_EQ(by_often, by_seldom);
+        EXPECT_EQ(often.counters().messages_dropped, seldom.counters().messages_dropped);
+        EXPECT_EQ(often.counters().messages_dropped > 0, baud < 115200U);
+    }
+}
+
+}  // namespace
+}  // namespace skyloop::firmware

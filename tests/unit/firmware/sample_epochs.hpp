@@ -1,0 +1,51 @@
+/// Epochs and boards that the tests of the receiver share.
+#pragma once
+
+#include <string>
+
+#include "firmware/board_profile.hpp"
+#include "skyloop/flow/epoch.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop::firmware {
+
+inline Fix sample_fix(const char* utc, double latitude, double longitude, double height_m) {
+    Fix fix;
+    fix.time = to_gps_time(*parse_utc(utc), LeapSeconds::announced());
+    fix.leap_seconds = LeapSeconds::announced().offset(fix.time);
+    fix.type = FixType::fix_3d;
+    fix.position = Geodetic::degrees(latitude, longitude, height_m);
+    fix.geoid_undulation = Metres(21.37);
+    fix.speed = MetresPerSecond(12.5);
+    fix.course = Angle::degrees(77.777);
+    fix.dop = {2.41, 2.02, 1.1, 1.69, 1.31, 0.66, 0.88};
+    fix.horizontal_accuracy = Metres(3.3);
+    fix.vertical_accuracy = Metres(5.04);
+    return fix;
+}
+
+/// `count` satellites from `first` on, spread over the sky; every fourth is not tracked, the others are used.
+inline void add_satellites(Fix& fix, Constellation constellation, int first, int count) {
+    for (int i = 0; i < count; ++i) {
+        const bool tracked = i % 4 != 3;
+        SatelliteStatus s{{constellation, first + i},
+                          Angle::degrees(37.0 * i + 11.4),
+                          Angle::degrees(8.0 + 17.3 * (i % 5)),
+                          std::nullopt,
+                          tracked};
+        if (tracked) s.cn0 = DbHz(31.0 + 2.25 * (i % 7));
+        fix.satellites.push_back(s);
+    }
+}
+
+inline BoardProfile sample_board(NmeaVersion version, std::vector<Constellation> constellations) {
+    BoardProfile board;
+    board.name = "sample";
+    board.constellations = std::move(constellations);
+    board.nmea_version = version;
+    for (int i = 0; i < 8; ++i)
+        board.sentences.push_back({static_cast<NmeaSentence>(i), 1});
+    return board;
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,65 @@
+#include "skyloop/transport/open_transport.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "skyloop/transport/memory.hpp"
+#include "temporary_folder.hpp"
+
+namespace skyloop {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+Error refusal(std::string_view uri) {
+    const auto transport = open_transport(uri);
+    EXPECT_FALSE(transport) << uri;
+    return transport ? Error{} : transport.error();
+}
+
+TEST(OpenTransport, OpensWhatThisVersionHas) {
+    const test::TemporaryFolder folder;
+    EXPECT_EQ(open_transport("-").value()->description(), "standard output");
+    EXPECT_THAT(open_transport("pty").value()->description(), StartsWith("/dev/pts/"));
+    EXPECT_EQ(open_transport("pty:" + (folder / "gps0").string()).value()->description(),
+              (folder / "gps0").string() + " (pty)");
+    EXPECT_THAT(open_transport("file:" + (folder / "a:b").string()).value()->description(), EndsWith("a:b (file)"));
+}
+
+TEST(OpenTransport, RefusesClearly) {
+    EXPECT_EQ(refusal("tcp:2000").message,
+              "port 'tcp:2000': tcp: is not supported by this version; expected pty[:LINK], file:PATH or -");
+    for (const std::string uri : {"serial:/dev/ttyS0@9600", "usbip:3240", "usb:1546:01a8", "hid:10c4:ea80"})
+        EXPECT_THAT(refusal(uri).message, HasSubstr("is not supported by this version")) << uri;
+    EXPECT_THAT(refusal("ptty:gps0").message, HasSubstr("did you mean 'pty'?"));
+    EXPECT_THAT(refusal("gps0").message, HasSubstr("no such kind of port"));
+    EXPECT_THAT(refusal("").message, HasSubstr("no such kind of port"));
+    EXPECT_THAT(refusal("memory").message, HasSubstr("no such kind of port"));
+    EXPECT_THAT(refusal("pty:").message, HasSubstr("a path is missing"));
+    EXPECT_THAT(refusal("file").message, HasSubstr("a path is missing"));
+    EXPECT_THAT(refusal("file:").message, HasSubstr("a path is missing"));
+    EXPECT_EQ(refusal("tcp:2000").code, ErrorCode::usage);
+    EXPECT_EQ(refusal("file:/no/such/folder/x").code, ErrorCode::outside);
+}
+
+TEST(MemoryTransport, KeepsAndFeedsBytes) {
+    MemoryTransport wire;
+    wire.feed(to_bytes("in"));
+    wire.feed(to_bytes("put"));
+    EXPECT_EQ(to_string(wire.read()), "input");
+    EXPECT_TRUE(wire.read().empty());
+    wire.set_room(4);
+    EXPECT_EQ(wire.write(to_bytes("output")), 4U);
+    EXPECT_EQ(wire.write(to_bytes("put")), 0U);
+    wire.set_line({false, 9600});
+    EXPECT_EQ(wire.write(to_bytes("lost")), 4U);
+    EXPECT_EQ(to_string(wire.written()), "outp");
+    EXPECT_EQ(wire.line().baud, 9600U);
+    wire.set_receiver_baud(38400);
+    EXPECT_EQ(wire.receiver_baud(), 38400U);
+}
+
+}  // namespace
+}  // namespace skyloop
