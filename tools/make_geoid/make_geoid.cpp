@@ -69,7 +69,8 @@ Grid read_gtx(const fs::path& path) {
     grid.rows = big_endian(all.subspan(32, 4));
     grid.columns = big_endian(all.subspan(36, 4));
     // The bound keeps the product inside 64 bits.
-    if (std::max(grid.rows, grid.columns) > largest_file || bytes.size() != header_size + grid.rows * grid.columns * 4) throw refuse("its size does not fit its header");
+    if (std::max(grid.rows, grid.columns) > largest_file || bytes.size() != header_size + grid.rows * grid.columns * 4)
+        throw refuse("its size does not fit its header");
     if (south != -90 || grid.rows < 3 || std::abs(row_step * static_cast<double>(grid.rows - 1) - 180) > 1e-6)
         throw refuse("its rows do not reach from pole to pole");
     if (grid.columns < 2 || std::abs(column_step * static_cast<double>(grid.columns) - 360) > 1e-6)

@@ -73,8 +73,9 @@ TEST_F(BuiltGeoid, IsOneValueAtAPoleAndOnTheDateLine) {
     }
     for (double latitude = -89; latitude < 90; latitude += 3.7) {
         EXPECT_EQ(undulation_m(geoid(), latitude, 180), undulation_m(geoid(), latitude, -180));
-        EXPECT_NEAR(undulation_m(geoid(), latitude, 179.99999), undulation_m(geoid(), latitude, -179.99999), 0.01);
-        EXPECT_NEAR(undulation_m(geoid(), latitude, 359.99999), undulation_m(geoid(), latitude, 0.00001), 0.01);
+        // GeographicLib's cubic fit of one cell meets that of the next within centimetres.
+        EXPECT_NEAR(undulation_m(geoid(), latitude, 179.99999), undulation_m(geoid(), latitude, -179.99999), 0.05);
+        EXPECT_NEAR(undulation_m(geoid(), latitude, 359.99999), undulation_m(geoid(), latitude, 0.00001), 0.05);
         EXPECT_NEAR(undulation_m(geoid(), latitude, 250), undulation_m(geoid(), latitude, -110), 1e-6);
     }
 }

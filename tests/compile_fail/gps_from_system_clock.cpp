@@ -1,0 +1,12 @@
+// The wall clock is no GPS time.
+#include <chrono>
+
+#include "skyloop/time/gps_time.hpp"
+
+using namespace skyloop;
+
+GpsTime control(std::chrono::nanoseconds since_epoch) { return GpsTime(since_epoch); }
+
+#ifdef MUST_NOT_COMPILE
+GpsTime bad(std::chrono::system_clock::time_point now) { return now; }
+#endif

@@ -1,0 +1,10 @@
+// A bare number is no length until somebody says so.
+#include "skyloop/base/units.hpp"
+
+using namespace skyloop;
+
+Metres control(double value) { return Metres(value); }
+
+#ifdef MUST_NOT_COMPILE
+Metres bad(double value) { return value; }
+#endif

@@ -1,0 +1,10 @@
+// A velocity of the level is turned into one of the Earth by its frame only.
+#include "skyloop/geo/level_frame.hpp"
+
+using namespace skyloop;
+
+Velocity<Ecef> control(const LevelFrame& frame, const Velocity<Level>& velocity) { return frame.to_ecef(velocity); }
+
+#ifdef MUST_NOT_COMPILE
+Velocity<Ecef> bad(const Velocity<Level>& velocity) { return velocity; }
+#endif
