@@ -150,10 +150,18 @@ void draw_cloud_figures(SvgDocument& svg, const ScatterPanel& panel, double reac
     svg.end_group();
 }
 
-void draw_cloud(SvgDocument& svg, const ScatterPanel& panel, double reach) {
+// The end of a long file name, which tells more than its start; cut between characters.
+std::string shortened(const std::string& name) {
     constexpr std::size_t longest_name = 46;
-    std::string name = panel.cloud.name;
-    if (name.size() > longest_name) name = "…" + name.substr(name.size() - longest_name);
+    if (name.size() <= longest_name) return name;
+    std::size_t start = name.size() - longest_name;
+    while (start < name.size() && (name[start] & 0xC0) == 0x80)
+        ++start;
+    return "…" + name.substr(start);
+}
+
+void draw_cloud(SvgDocument& svg, const ScatterPanel& panel, double reach) {
+    const std::string name = shortened(panel.cloud.name);
     svg.begin_group("cloud", panel.cloud.name);
     svg.circle({panel.left + 6, cloud_top - 16}, 5.5, {.fill = panel.colour});
     svg.text({.at = {panel.left + 18, cloud_top - 16}, .text = name, .size = 13, .bold = true});
