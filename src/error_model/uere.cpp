@@ -16,7 +16,8 @@ Metres uere_spread(std::span<const Metres> errors, UereStatistic statistic) {
     double freedom = n;
     if (statistic == UereStatistic::sample_std) {
         for (const Metres error : errors)
-            centre += error.value() / n;
+            centre += error.value();
+        centre /= n;
         freedom = n - 1;
     }
     if (freedom < 1) return Metres(0);

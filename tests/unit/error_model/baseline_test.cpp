@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "skyloop/geo/local_frame.hpp"
+#include "support/flat_geoid.hpp"
 #include "support/model_sky.hpp"
 
 namespace skyloop {
@@ -33,18 +34,36 @@ TEST(Baseline, ReportsTimeSatellitesDopAndAccuracies) {
     }
 }
 
-// Strict: 6.5 … 12 m, calibrated 1.8 … 2.6 m for an open sky (MODELS.md D-09).
+TEST(Baseline, ReportsTheUndulationOfItsGeoid) {
+    const auto geoid = test::flat_geoid(-12.25);
+    ASSERT_TRUE(geoid) << geoid.error().message;
+    ErrorModelSettings settings;
+    settings.sensor.geoid = &*geoid;
+    ModelRun run(settings);
+    EXPECT_NEAR(run.epoch(baseline_sky, 0).epoch.fix.geoid_undulation.value(), -12.25, 1e-9);
+}
+
+TEST(Baseline, LeapSecondsComeFromTheTable) {
+    ErrorModelSettings settings;
+    settings.sensor.leap_seconds = LeapSeconds::constant(17);
+    ModelRun run(settings);
+    EXPECT_EQ(run.epoch(baseline_sky, 0).epoch.fix.leap_seconds, 17);
+}
+
+// Strict 6.5 … 12 m, calibrated 1.8 … 2.6 m for an open sky and 20 TECU (MODELS.md D-09).
 TEST(Baseline, ErrorScaleOfThePresets) {
-    ModelRun run({});
+    EffectSettings effects;
+    effects.atmosphere.total_electron_content = Tecu(20);
+    ModelRun run({}, effects);
     const Trace trace = run.epoch(baseline_sky, 0);
     const double strict =
         uere_scale(trace.epoch.fix, trace.arrivals, BaselineParameters::strict()).position_error.value();
     EXPECT_GT(strict, 6.5);
-    EXPECT_LT(strict, 16);
+    EXPECT_LT(strict, 12);
     const double calibrated =
         uere_scale(trace.epoch.fix, trace.arrivals, BaselineParameters::calibrated()).position_error.value();
     EXPECT_GT(calibrated, 1.8);
-    EXPECT_LT(calibrated, 3.5);
+    EXPECT_LT(calibrated, 2.6);
 }
 
 TEST(Baseline, FewerThanFourSatellitesGiveNoFix) {

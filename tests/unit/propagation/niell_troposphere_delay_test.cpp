@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "support/flat_geoid.hpp"
 #include "support/oracle_table.hpp"
 #include "unit/propagation/one_satellite.hpp"
 
@@ -37,6 +38,18 @@ TEST(NiellTroposphereDelay, TakesSeasonAndHeightFromTheTruth) {
     NiellTroposphereDelay effect({}, nullptr, LeapSeconds::announced());
     EXPECT_NEAR(scene.after(effect).tropo_delay.value(),
                 slant_delay(zenith_delay({}, site.height), site, Angle::degrees(12)).value(), 1e-9);
+}
+
+TEST(NiellTroposphereDelay, AGeoidTurnsTheHeightIntoThatAboveTheSea) {
+    const auto geoid = test::flat_geoid(27.5);
+    ASSERT_TRUE(geoid) << geoid.error().message;
+    OneSatellite over_ellipsoid(Angle::degrees(7), Metres(24e6), Geodetic::degrees(46.4774, 30.7326, 50 - 27.5));
+    OneSatellite over_sea(Angle::degrees(7), Metres(24e6), Geodetic::degrees(46.4774, 30.7326, 50));
+    NiellTroposphereDelay without({}, nullptr, LeapSeconds::announced());
+    NiellTroposphereDelay with({}, &*geoid, LeapSeconds::announced());
+    const Metres delay = over_sea.after(with).tropo_delay;
+    EXPECT_NEAR(delay.value(), over_ellipsoid.after(without).tropo_delay.value(), 1e-9);
+    EXPECT_GT(delay, over_sea.after(without).tropo_delay + Metres(0.01));
 }
 
 TEST(NiellTroposphereDelay, WetZenithDelayIsMappedByTheWetFunction) {
