@@ -14,7 +14,8 @@
 namespace skyloop {
 namespace {
 
-// Records further apart are not compared: extrapolated for half of it, a good orbit is still right within tens of kilometres.
+// Records further apart are not compared: extrapolated for half of it, a good orbit is still right within tens of
+// kilometres.
 constexpr std::chrono::hours comparable_span{12};
 // How many records before and after are compared; enough to look past several foreign ones in a row.
 constexpr std::size_t comparable_records = 6;
@@ -41,7 +42,8 @@ public:
             if (distance <= same_orbit_m) parent_[root(i)] = root(j);
         });
         size_.assign(records_.size(), 0);
-        for (std::size_t i = 0; i < records_.size(); ++i) ++size_[root(i)];
+        for (std::size_t i = 0; i < records_.size(); ++i)
+            ++size_[root(i)];
     }
 
     // What a record contradicts: the largest other cluster that has a record near in time somewhere else.
@@ -71,7 +73,8 @@ private:
                 if (comparable(*records_[i], *records_[j])) visit(i, j, distance_between(*records_[i], *records_[j]));
     }
     [[nodiscard]] std::size_t root(std::size_t i) const {
-        while (parent_[i] != i) i = parent_[i];
+        while (parent_[i] != i)
+            i = parent_[i];
         return i;
     }
     void note(Contradiction& worst, std::size_t i, std::size_t j, double distance) const {
@@ -103,8 +106,9 @@ std::optional<SatelliteId> owner(const KeplerEphemeris& record, const std::vecto
 std::string foreign_sentence(const KeplerEphemeris& record, double distance, std::optional<SatelliteId> true_owner) {
     std::string toe = format_utc(gps_calendar(record.toe), 0);
     toe.pop_back();  // GPS time carries no Z
-    return fmt::format("{}: record with toe {} lies {:.0f} km from its neighbours{}; dropped", to_string(record.satellite), toe,
-                       distance / 1e3, true_owner ? fmt::format(" (it is the orbit of {})", to_string(*true_owner)) : "");
+    return fmt::format("{}: record with toe {} lies {:.0f} km from its neighbours{}; dropped",
+                       to_string(record.satellite), toe, distance / 1e3,
+                       true_owner ? fmt::format(" (it is the orbit of {})", to_string(*true_owner)) : "");
 }
 
 // The foreign records among those of one satellite.
@@ -126,7 +130,8 @@ void find_foreign(const Clusters& own, const std::vector<KeplerEphemeris>& all,
 
 std::vector<DroppedRecord> drop_foreign_records(std::vector<KeplerEphemeris>& records) {
     std::map<SatelliteId, std::vector<const KeplerEphemeris*>> satellites;
-    for (const KeplerEphemeris& r : records) satellites[r.satellite].push_back(&r);
+    for (const KeplerEphemeris& r : records)
+        satellites[r.satellite].push_back(&r);
 
     std::map<const KeplerEphemeris*, std::string> found;
     for (auto& [satellite, own] : satellites) {

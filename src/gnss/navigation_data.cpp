@@ -54,7 +54,8 @@ NavigationData::NavigationData(std::vector<KeplerEphemeris> records, std::option
 std::vector<SatelliteId> NavigationData::satellites() const {
     std::vector<SatelliteId> ids;
     ids.reserve(satellites_.size());
-    for (const SatelliteRecords& s : satellites_) ids.push_back(s.satellite);
+    for (const SatelliteRecords& s : satellites_)
+        ids.push_back(s.satellite);
     return ids;
 }
 
@@ -100,14 +101,14 @@ std::optional<TimeSpan> NavigationData::span() const {
 
 std::size_t NavigationData::record_count() const {
     std::size_t count = 0;
-    for (const SatelliteRecords& s : satellites_) count += s.records.size();
+    for (const SatelliteRecords& s : satellites_)
+        count += s.records.size();
     return count;
 }
 
 std::size_t NavigationData::satellites_at(GpsTime time) const {
-    return static_cast<std::size_t>(std::count_if(satellites_.begin(), satellites_.end(), [&](const SatelliteRecords& s) {
-        return find(s, time) != nullptr;
-    }));
+    return static_cast<std::size_t>(std::count_if(satellites_.begin(), satellites_.end(),
+                                                  [&](const SatelliteRecords& s) { return find(s, time) != nullptr; }));
 }
 
 KeplerEphemeris moved_by_days(const KeplerEphemeris& record, std::int64_t days) {
@@ -123,8 +124,9 @@ KeplerEphemeris moved_by_days(const KeplerEphemeris& record, std::int64_t days) 
 
 Result<NavigationData> rebased(const NavigationData& data, GpsTime start) {
     const std::optional<TimeSpan> span = data.span();
-    if (!span) return fail(ErrorCode::usage, fmt::format("{}: found no orbits; expected some to move to the start time",
-                                                         data.description()));
+    if (!span)
+        return fail(ErrorCode::usage,
+                    fmt::format("{}: found no orbits; expected some to move to the start time", data.description()));
     // Moving the data by d days is looking at it d days earlier; the earliest look leaves the most data ahead.
     std::int64_t best_days = 0;
     std::size_t best_count = 0;
@@ -135,15 +137,17 @@ Result<NavigationData> rebased(const NavigationData& data, GpsTime start) {
         best_days = days;
     }
     if (best_count == 0)
-        return fail(ErrorCode::usage,
-                    fmt::format("{}: found orbits from {} to {} (GPS time), none at the time of day of the start {}; expected "
-                                "a start time of day that the data covers",
-                                data.description(), format_utc(gps_calendar(span->first), 0),
-                                format_utc(gps_calendar(span->last), 0), format_utc(gps_calendar(start), 0)));
+        return fail(
+            ErrorCode::usage,
+            fmt::format("{}: found orbits from {} to {} (GPS time), none at the time of day of the start {}; expected "
+                        "a start time of day that the data covers",
+                        data.description(), format_utc(gps_calendar(span->first), 0),
+                        format_utc(gps_calendar(span->last), 0), format_utc(gps_calendar(start), 0)));
     std::vector<KeplerEphemeris> records;
     records.reserve(data.record_count());
     for (const SatelliteRecords& s : data.records())
-        for (const KeplerEphemeris& r : s.records) records.push_back(moved_by_days(r, best_days));
+        for (const KeplerEphemeris& r : s.records)
+            records.push_back(moved_by_days(r, best_days));
     return NavigationData(std::move(records), data.klobuchar(), data.description(), data.selection());
 }
 

@@ -20,8 +20,10 @@ std::string_view columns(std::string_view line, std::size_t first, std::size_t w
 }
 
 std::string_view trimmed(std::string_view text) {
-    while (text.starts_with(' ')) text.remove_prefix(1);
-    while (text.ends_with(' ')) text.remove_suffix(1);
+    while (text.starts_with(' '))
+        text.remove_prefix(1);
+    while (text.ends_with(' '))
+        text.remove_suffix(1);
     return text;
 }
 
@@ -31,7 +33,8 @@ std::optional<double> real_field(std::string_view field) {
     if (field.starts_with('+')) field.remove_prefix(1);
     std::array<char, 40> digits{};
     if (field.empty() || field.size() > digits.size()) return std::nullopt;
-    for (std::size_t i = 0; i < field.size(); ++i) digits[i] = field[i] == 'D' || field[i] == 'd' ? 'e' : field[i];
+    for (std::size_t i = 0; i < field.size(); ++i)
+        digits[i] = field[i] == 'D' || field[i] == 'd' ? 'e' : field[i];
     double value = 0;
     const char* end = digits.data() + field.size();
     const auto [stopped, error] = std::from_chars(digits.data(), end, value);
@@ -52,7 +55,8 @@ std::string in_quotes(std::string_view text) {
     constexpr std::size_t longest = 40;
     text = trimmed(text);
     std::string result = "'";
-    for (const char c : text.substr(0, longest)) result += c >= ' ' && c <= '~' ? c : '?';
+    for (const char c : text.substr(0, longest))
+        result += c >= ' ' && c <= '~' ? c : '?';
     return result + (text.size() > longest ? "…'" : "'");
 }
 

@@ -33,8 +33,8 @@ std::string_view columns(std::string_view line, std::size_t first, std::size_t w
 std::string_view trimmed(std::string_view text);
 inline bool is_blank(std::string_view text) { return trimmed(text).empty(); }
 
-/// A real number with exponent D or E of either case, as F, D and E formats write it; 0 when blank; nothing when the field
-/// holds something else, or a value that is not finite.
+/// A real number with exponent D or E of either case, as F, D and E formats write it; 0 when blank; nothing when the
+/// field holds something else, or a value that is not finite.
 std::optional<double> real_field(std::string_view field);
 /// A whole number, 0 when blank.
 std::optional<int> whole_field(std::string_view field);

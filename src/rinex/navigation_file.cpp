@@ -50,13 +50,15 @@ public:
 
 private:
     void advance() {
-        do line_ = lines_.next();
+        do
+            line_ = lines_.next();
         while (line_ && is_blank(line_->text));
     }
     // A line that continues the record at hand.
     [[nodiscard]] bool continues() const { return line_ && !begins_record(line_->text, major_); }
     void skip_record() {
-        do advance();
+        do
+            advance();
         while (continues());
     }
 
@@ -68,7 +70,8 @@ private:
         const std::optional<SatelliteId> satellite = parse_satellite(columns(head.text, 6, 3));
         const std::string_view message = trimmed(columns(head.text, 10, 4));
         advance();
-        if (type == "EPH" && satellite && message == "LNAV" && is_read(*satellite) && line_ && begins_record(line_->text, major_))
+        if (type == "EPH" && satellite && message == "LNAV" && is_read(*satellite) && line_ &&
+            begins_record(line_->text, major_))
             return record();
         if (type == "EPH" && satellite && !is_read(*satellite))
             ++file_.skipped.other_systems[satellite->constellation];
@@ -80,7 +83,8 @@ private:
             ++file_.skipped.messages[std::string(type)];
         else
             defective_.add(sentence(head.number, in_quotes(head.text), "a block header such as '> EPH G02 LNAV'"));
-        while (line_ && !line_->text.starts_with('>')) advance();
+        while (line_ && !line_->text.starts_with('>'))
+            advance();
     }
 
     // GPS coefficients of a version 4 block: epoch and three of them, four, one.
@@ -99,7 +103,8 @@ private:
             tally(file_.skipped.defective, defective_, lines_.number(), "a damaged ionosphere block",
                   "eight coefficients in three lines");
         else if (!file_.klobuchar)
-            file_.klobuchar = {{values[0], values[1], values[2], values[3]}, {values[4], values[5], values[6], values[7]}};
+            file_.klobuchar = {{values[0], values[1], values[2], values[3]},
+                               {values[4], values[5], values[6], values[7]}};
     }
 
     static bool is_read(SatelliteId satellite) {
@@ -125,7 +130,10 @@ private:
     void lnav(SatelliteId satellite, const Line& first) {
         std::array<Line, lnav_lines> lines{first};
         std::size_t count = 1;
-        for (advance(); count < lnav_lines && continues(); advance()) lines[count++] = *line_;
+        // Within a record a blank line is one whose fields are all blank.
+        for (line_ = lines_.next(); count < lnav_lines && continues(); line_ = lines_.next())
+            lines[count++] = *line_;
+        if (line_ && is_blank(line_->text)) advance();
         if (count < lnav_lines)
             return tally(file_.skipped.incomplete, incomplete_, first.number,
                          fmt::format("a record of {} cut off after {} of its lines", to_string(satellite), count),
@@ -161,8 +169,9 @@ private:
         for (const DefectTally* t : {&defective_, &incomplete_, &stray_})
             if (t->count > 0) return fail(ErrorCode::input, t->first + "; no record could be read");
         if (!file_.skipped.other_systems.empty())
-            return fail(ErrorCode::input, sentence(lines_.number(), fmt::format("only records of other systems ({})", other_systems()),
-                                                   "records of GPS or QZSS"));
+            return fail(ErrorCode::input,
+                        sentence(lines_.number(), fmt::format("only records of other systems ({})", other_systems()),
+                                 "records of GPS or QZSS"));
         return fail(ErrorCode::input, sentence(lines_.number(), "the end of the file and no ephemeris",
                                                "records of GPS or QZSS after the header"));
     }
@@ -170,18 +179,19 @@ private:
     void warn() {
         const auto defects = [&](const DefectTally& t, std::string_view what) {
             if (t.count == 0) return;
-            file_.warnings.push_back(fmt::format("{}; {} skipped{}", t.first, what,
-                                                 t.count > 1 ? fmt::format(", and {} more likewise", t.count - 1) : ""));
+            file_.warnings.push_back(
+                fmt::format("{}; {} skipped{}", t.first, what,
+                            t.count > 1 ? fmt::format(", and {} more likewise", t.count - 1) : ""));
         };
         defects(defective_, "record");
         defects(incomplete_, "record");
         defects(stray_, "line");
         if (!file_.skipped.other_systems.empty())
-            file_.warnings.push_back(fmt::format("{}: skipped records of other systems ({}): this version reads GPS and QZSS",
-                                                 name_, other_systems()));
+            file_.warnings.push_back(fmt::format(
+                "{}: skipped records of other systems ({}): this version reads GPS and QZSS", name_, other_systems()));
         if (!file_.skipped.messages.empty())
-            file_.warnings.push_back(fmt::format("{}: skipped other messages ({}): this version reads LNAV ephemerides", name_,
-                                                 messages()));
+            file_.warnings.push_back(
+                fmt::format("{}: skipped other messages ({}): this version reads LNAV ephemerides", name_, messages()));
     }
     [[nodiscard]] std::string messages() const {
         std::vector<std::string> parts;

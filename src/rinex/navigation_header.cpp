@@ -13,10 +13,24 @@ constexpr std::string_view end_label = "END OF HEADER";
 
 // Every label of the navigation headers of RINEX 2.00 to 4.02, so that a misspelt one is noticed.
 constexpr std::array<std::string_view, 18> known_labels{
-    "PGM / RUN BY / DATE", "COMMENT",           "ION ALPHA",          "ION BETA",           "DELTA-UTC: A0,A1,T,W",
-    "LEAP SECONDS",        "CORR TO SYSTEM TIME", "IONOSPHERIC CORR", "TIME SYSTEM CORR",   "REC # / TYPE / VERS",
-    "D-UTC A0,A1,T,W,S,U", "DOI",               "LICENSE OF USE",     "STATION INFORMATION", "MERGED FILE",
-    "MARKER NAME",         "MARKER NUMBER",     "APPROX POSITION XYZ",
+    "PGM / RUN BY / DATE",
+    "COMMENT",
+    "ION ALPHA",
+    "ION BETA",
+    "DELTA-UTC: A0,A1,T,W",
+    "LEAP SECONDS",
+    "CORR TO SYSTEM TIME",
+    "IONOSPHERIC CORR",
+    "TIME SYSTEM CORR",
+    "REC # / TYPE / VERS",
+    "D-UTC A0,A1,T,W,S,U",
+    "DOI",
+    "LICENSE OF USE",
+    "STATION INFORMATION",
+    "MERGED FILE",
+    "MARKER NAME",
+    "MARKER NUMBER",
+    "APPROX POSITION XYZ",
 };
 
 constexpr std::string_view what_is_read = "GPS navigation data (RINEX 2.00-2.12, 3.00-3.05 or 4.00-4.02)";
@@ -28,7 +42,8 @@ tl::unexpected<Error> header_error(std::string_view name, int line, std::string_
 }
 
 bool supported(double version) {
-    return (version >= 2.0 && version < 2.125) || (version >= 3.0 && version < 3.055) || (version >= 4.0 && version < 4.025);
+    return (version >= 2.0 && version < 2.125) || (version >= 3.0 && version < 3.055) ||
+           (version >= 4.0 && version < 4.025);
 }
 
 // What a file of this type holds when it is not what is read, or an empty text.
@@ -41,7 +56,8 @@ std::string other_content(int major, char type, char system) {
     if (type != 'N') return fmt::format("file type {}", in_quotes(std::string_view(&type, 1)));
     if (major == 2 || system == 'G' || system == 'J' || system == 'M' || system == ' ') return {};
     if (const auto constellation = constellation_from_letter(system))
-        return fmt::format("{} {} navigation file (system '{}')", system == 'S' ? "an" : "a", system_name(*constellation), system);
+        return fmt::format("{} {} navigation file (system '{}')", system == 'S' ? "an" : "a",
+                           system_name(*constellation), system);
     return fmt::format("satellite system {}", in_quotes(std::string_view(&system, 1)));
 }
 
@@ -82,12 +98,16 @@ public:
         header.leap_seconds = leap_seconds_;
         if (alpha_ && beta_) header.klobuchar = KlobucharCoefficients{*alpha_, *beta_};
         if (alpha_.has_value() != beta_.has_value() && warnings_.empty())
-            warnings_.push_back(fmt::format("{}: found only one of the two lines of ionosphere coefficients; expected alpha and "
-                                            "beta; none used", name_));
+            warnings_.push_back(
+                fmt::format("{}: found only one of the two lines of ionosphere coefficients; expected alpha and "
+                            "beta; none used",
+                            name_));
         if (first_unknown_)
-            warnings_.push_back(fmt::format("{}:{}: found {} without a known label in columns 61-80; expected a RINEX header "
-                                            "line; {} passed over", name_, first_unknown_->number, in_quotes(first_unknown_->text),
-                                            unknown_ == 1 ? "1 line" : fmt::format("{} lines", unknown_)));
+            warnings_.push_back(
+                fmt::format("{}:{}: found {} without a known label in columns 61-80; expected a RINEX header "
+                            "line; {} passed over",
+                            name_, first_unknown_->number, in_quotes(first_unknown_->text),
+                            unknown_ == 1 ? "1 line" : fmt::format("{} lines", unknown_)));
         header.warnings = std::move(warnings_);
         return header;
     }
@@ -117,8 +137,8 @@ private:
             warn_field(line, 0, columns(line.text, 0, 6), "the number of leap seconds");
     }
     void warn_field(const Line& line, std::size_t column, std::string_view field, std::string_view expected) {
-        warnings_.push_back(fmt::format("{}:{}:{}: found {}; expected {}; line passed over", name_, line.number, column + 1,
-                                        in_quotes(field), expected));
+        warnings_.push_back(fmt::format("{}:{}:{}: found {}; expected {}; line passed over", name_, line.number,
+                                        column + 1, in_quotes(field), expected));
     }
     void unknown(const Line& line) {
         if (is_blank(line.text)) return;
@@ -139,20 +159,28 @@ private:
 
 std::string_view system_name(Constellation constellation) {
     switch (constellation) {
-        case Constellation::gps: return "GPS";
-        case Constellation::sbas: return "SBAS";
-        case Constellation::galileo: return "Galileo";
-        case Constellation::beidou: return "BeiDou";
-        case Constellation::qzss: return "QZSS";
-        case Constellation::glonass: return "GLONASS";
-        case Constellation::navic: return "NavIC";
+        case Constellation::gps:
+            return "GPS";
+        case Constellation::sbas:
+            return "SBAS";
+        case Constellation::galileo:
+            return "Galileo";
+        case Constellation::beidou:
+            return "BeiDou";
+        case Constellation::qzss:
+            return "QZSS";
+        case Constellation::glonass:
+            return "GLONASS";
+        case Constellation::navic:
+            return "NavIC";
     }
     return "unknown";
 }
 
 Result<NavigationHeader> read_header(LineReader& lines, std::string_view name) {
     std::optional<Line> line = lines.next();
-    while (line && is_blank(line->text)) line = lines.next();
+    while (line && is_blank(line->text))
+        line = lines.next();
     if (!line) return header_error(name, lines.number(), "an empty file", what_is_read);
     const Result<double> version = read_version(*line, name);
     if (!version) return fail(version.error());
@@ -164,7 +192,8 @@ Result<NavigationHeader> read_header(LineReader& lines, std::string_view name) {
     }
     const std::optional<Line>& unknown = reading.first_unknown();
     if (unknown)
-        return header_error(name, unknown->number, fmt::format("{} in a header without an end", in_quotes(unknown->text)),
+        return header_error(name, unknown->number,
+                            fmt::format("{} in a header without an end", in_quotes(unknown->text)),
                             "a header line, or 'END OF HEADER' before the records");
     return header_error(name, lines.number(), "the end of the file within the header", "'END OF HEADER' and records");
 }

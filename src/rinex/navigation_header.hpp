@@ -21,7 +21,8 @@ struct NavigationHeader {
     [[nodiscard]] int major() const { return static_cast<int>(version); }
 };
 
-/// Reads up to END OF HEADER. Fails with `input` for other kinds of file, other systems, other versions, or without an end.
+/// Reads up to END OF HEADER. Fails with `input` for other kinds of file, other systems, other versions, or without an
+/// end.
 Result<NavigationHeader> read_header(LineReader& lines, std::string_view name);
 
 /// "GPS", "GLONASS", "BeiDou", …

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::size_t field_width = 19;
 
-// One broadcast number: where it stands and what a satellite can broadcast. The limits are some ten times those that the
-// bits of the message allow (IS-GPS-200, tables 20-I and 20-III); angles may be written 0 … 2π.
+// One broadcast number: where it stands and what a satellite can broadcast. The limits are some ten times those that
+// the bits of the message allow (IS-GPS-200, tables 20-I and 20-III); angles may be written 0 … 2π.
 struct LnavField {
     std::size_t line, column;
     std::string_view name;
@@ -78,7 +78,8 @@ private:
         const std::string_view field = columns(lines_[f.line].text, column, field_width);
         const std::optional<double> value = real_field(field);
         if (!value || (f.required && is_blank(field)))
-            defect(f.line, column, is_blank(field) ? "a blank field" : in_quotes(field), fmt::format("a number, {}", f.name));
+            defect(f.line, column, is_blank(field) ? "a blank field" : in_quotes(field),
+                   fmt::format("a number, {}", f.name));
         else if (*value < f.least || *value > f.most)
             defect(f.line, column, in_quotes(field), fmt::format("{} between {} and {}", f.name, f.least, f.most));
         return value.value_or(0);
@@ -98,7 +99,8 @@ private:
         if (year && major_ == 2) year = *year + (*year >= 80 ? 1900 : 2000);
         const auto month = part(1), day = part(2), hour = part(3), minute = part(4);
         const std::optional<double> second = real_field(columns(text, year_width + 12, text.size()));
-        if (!year || !month || !day || !hour || !minute || !second || !valid(*year, *month, *day, *hour, *minute, *second))
+        if (!year || !month || !day || !hour || !minute || !second ||
+            !valid(*year, *month, *day, *hour, *minute, *second))
             return defect(0, layout_.epoch, in_quotes(text), "a calendar epoch from 1980 to 2099");
         eph_.toc = gps_calendar_time(*year, static_cast<unsigned>(*month), static_cast<unsigned>(*day),
                                      static_cast<unsigned>(*hour), static_cast<unsigned>(*minute), *second);
@@ -119,14 +121,16 @@ private:
         if (eph_.toe - eph_.toc > week_length / 2) eph_.toe -= week_length;
         if (eph_.toc - eph_.toe > week_length / 2) eph_.toe += week_length;
         if (std::chrono::abs(eph_.toe - eph_.toc) > std::chrono::days(1))
-            return defect(3, column_of(3, 0), fmt::format("toe {} s", toe_tow), "toe within a day of the record's epoch");
+            return defect(3, column_of(3, 0), fmt::format("toe {} s", toe_tow),
+                          "toe within a day of the record's epoch");
         if (week_blank()) return;
         const std::int64_t toe_week = week_and_tow(eph_.toe).week;
         const auto stated = static_cast<std::int64_t>(std::llround(week));
         const std::int64_t resolved = stated < 1024 ? resolve_week(stated, toe_week) : stated;
         // Some writers give the week of transmission, which may be a neighbour of that of toe.
         if (std::abs(resolved - toe_week) > 1)
-            defect(5, column_of(5, 2), fmt::format("GPS week {}", stated), fmt::format("week {}, that of the epoch", toe_week));
+            defect(5, column_of(5, 2), fmt::format("GPS week {}", stated),
+                   fmt::format("week {}, that of the epoch", toe_week));
     }
     [[nodiscard]] bool week_blank() const { return is_blank(columns(lines_[5].text, column_of(5, 2), field_width)); }
 
@@ -144,9 +148,7 @@ private:
 
 }  // namespace
 
-bool begins_record(std::string_view line, int major) {
-    return !is_blank(columns(line, 0, major == 2 ? 2 : 1));
-}
+bool begins_record(std::string_view line, int major) { return !is_blank(columns(line, 0, major == 2 ? 2 : 1)); }
 
 std::optional<SatelliteId> record_satellite(std::string_view line, int major) {
     if (major != 2) return parse_satellite(columns(line, 0, 3));

@@ -26,10 +26,10 @@ struct Defect {
 
 /// Where the fields of a version stand.
 struct RecordLayout {
-    std::size_t epoch = 0;       ///< column of the year
-    std::size_t epoch_width = 0; ///< of the whole epoch
-    std::size_t clock = 0;       ///< column of the first clock field
-    std::size_t orbit = 0;       ///< column of the first field of the other lines
+    std::size_t epoch = 0;        ///< column of the year
+    std::size_t epoch_width = 0;  ///< of the whole epoch
+    std::size_t clock = 0;        ///< column of the first clock field
+    std::size_t orbit = 0;        ///< column of the first field of the other lines
 };
 constexpr RecordLayout layout_of_version(int major) {
     return major == 2 ? RecordLayout{3, 19, 22, 3} : RecordLayout{4, 19, 23, 4};

@@ -24,8 +24,8 @@ MetresPerSecond light_time_range_rate(const EcefMotion& transmitter, const EcefM
     const Eigen::Vector3d position = turned_with_earth(transmitter.position.vector(), travel_time);
     const Eigen::Vector3d velocity = turned_with_earth(transmitter.velocity.vector(), travel_time);
     const Eigen::Vector3d direction = (position - receiver.position.vector()).normalized();
-    // With τ = ρ/c the derivative stands on both sides: a longer way is seen from an earlier satellite (velocity) through
-    // more of the Earth's rotation (turn).
+    // With τ = ρ/c the derivative stands on both sides: a longer way is seen from an earlier satellite (velocity)
+    // through more of the Earth's rotation (turn).
     const Eigen::Vector3d turn = earth_rotation_rate * Eigen::Vector3d(position.y(), -position.x(), 0);
     const double own = direction.dot(velocity - receiver.velocity.vector());
     return MetresPerSecond(own / (1 + direction.dot(velocity - turn) / speed_of_light));

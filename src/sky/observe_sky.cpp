@@ -34,10 +34,11 @@ SignalPath signal_path(const KeplerEphemeris& ephemeris, const TruthState& truth
     return path;
 }
 
-std::optional<SatelliteInView> in_view(const KeplerEphemeris& ephemeris, const TruthState& truth, const LocalFrame& local) {
+std::optional<SatelliteInView> in_view(const KeplerEphemeris& ephemeris, const TruthState& truth,
+                                       const LocalFrame& local) {
     const SignalPath path = signal_path(ephemeris, truth);
-    // The usual convention, and that of the reference scenes: directions leave out the Earth's rotation during the light
-    // time. It would turn them by less than 0.0004°.
+    // The usual convention, and that of the reference scenes: directions leave out the Earth's rotation during the
+    // light time. It would turn them by less than 0.0004°.
     const LookAngles look = local.look_angles(path.transmitter.position);
     if (!(look.elevation.rad() >= 0)) return std::nullopt;
 
@@ -68,7 +69,8 @@ SkyView observe_sky(const TruthState& truth, const NavigationSource& source) {
     for (const SatelliteId satellite : source.satellites()) {
         const std::optional<KeplerEphemeris> ephemeris = source.ephemeris(satellite, truth.time);
         if (!ephemeris) continue;
-        if (const std::optional<SatelliteInView> seen = in_view(*ephemeris, truth, local)) sky.satellites.push_back(*seen);
+        if (const std::optional<SatelliteInView> seen = in_view(*ephemeris, truth, local))
+            sky.satellites.push_back(*seen);
     }
     return sky;
 }

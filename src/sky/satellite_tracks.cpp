@@ -28,7 +28,8 @@ TimeSpan record_window(const NavigationSource& source, GpsTime start, GpsTime en
     return {std::max(span->first, start - track_record_reach), std::min(span->last, end + track_record_reach)};
 }
 
-SatelliteTrack extrapolated_track(SatelliteId satellite, const std::vector<KeplerEphemeris>& records, const TrackTimes& times) {
+SatelliteTrack extrapolated_track(SatelliteId satellite, const std::vector<KeplerEphemeris>& records,
+                                  const TrackTimes& times) {
     SatelliteTrack track{satellite, {}};
     const GpsTime end = advanced(times.start, times.duration);
     const Nanoseconds step = to_nanoseconds(times.step);

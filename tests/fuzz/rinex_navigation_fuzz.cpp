@@ -39,10 +39,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         require(file.error().code == ErrorCode::input && one_line(file.error().message));
         return 0;
     }
-    for (const std::string& warning : file->warnings) require(one_line(warning));
+    for (const std::string& warning : file->warnings)
+        require(one_line(warning));
     check_records(*file);
 
-    for (const DroppedRecord& dropped : drop_foreign_records(file->records)) require(one_line(dropped.reason));
+    for (const DroppedRecord& dropped : drop_foreign_records(file->records))
+        require(one_line(dropped.reason));
     const GpsTime time = file->records.front().toe;
     const NavigationData orbits(file->records, file->klobuchar, "fuzz.nav");
     require(orbits.record_count() <= file->records.size());

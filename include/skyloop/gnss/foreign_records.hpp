@@ -15,10 +15,11 @@ struct DroppedRecord {
     std::string reason;
 };
 
-/// Takes the foreign records out of `records`: those marked healthy whose position, half way in time to each neighbouring
-/// record of the same satellite, is not where the neighbours put it. Records hours apart agree within kilometres; a foreign
-/// one is off by hundreds or thousands. The majority of the neighbours decides; where two records stand alone against each
-/// other, the one that repeats the orbit of another satellite goes. Unhealthy records are never dropped.
+/// Takes the foreign records out of `records`: those marked healthy whose position, half way in time to each
+/// neighbouring record of the same satellite, is not where the neighbours put it. Records hours apart agree within
+/// kilometres; a foreign one is off by hundreds or thousands. The majority of the neighbours decides; where two records
+/// stand alone against each other, the one that repeats the orbit of another satellite goes. Unhealthy records are
+/// never dropped.
 std::vector<DroppedRecord> drop_foreign_records(std::vector<KeplerEphemeris>& records);
 
 }  // namespace skyloop

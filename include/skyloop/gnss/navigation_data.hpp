@@ -36,8 +36,8 @@ public:
     /// with the smallest |time − toe| ≤ validity, healthy or not; of two equally near ones the newer.
     [[nodiscard]] std::optional<KeplerEphemeris> ephemeris(SatelliteId satellite, GpsTime time) const override;
     [[nodiscard]] std::optional<KlobucharCoefficients> klobuchar() const override { return klobuchar_; }
-    /// From the first toe (forward), or `validity` before it (nearest), to `validity` after the last; nothing when there
-    /// are no records.
+    /// From the first toe (forward), or `validity` before it (nearest), to `validity` after the last; nothing when
+    /// there are no records.
     [[nodiscard]] std::optional<TimeSpan> span() const override;
     [[nodiscard]] std::string description() const override { return description_; }
 
@@ -56,12 +56,13 @@ private:
     EphemerisSelection selection_;
 };
 
-/// The record moved by `days` whole days: toe and toc keep their time of day, and omega0 takes up the change of the time
-/// of week, so that every ECEF position at the same time of day stays what it was.
+/// The record moved by `days` whole days: toe and toc keep their time of day, and omega0 takes up the change of the
+/// time of week, so that every ECEF position at the same time of day stays what it was.
 KeplerEphemeris moved_by_days(const KeplerEphemeris& record, std::int64_t days);
 
-/// A copy of `data` moved by the whole number of days that gives the most satellites at `start`; among equals by the one
-/// that leaves the most data after `start`. Fails with `usage` when no move brings data to the time of day of `start`.
+/// A copy of `data` moved by the whole number of days that gives the most satellites at `start`; among equals by the
+/// one that leaves the most data after `start`. Fails with `usage` when no move brings data to the time of day of
+/// `start`.
 Result<NavigationData> rebased(const NavigationData& data, GpsTime start);
 
 }  // namespace skyloop

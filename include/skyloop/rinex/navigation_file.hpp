@@ -16,8 +16,9 @@ namespace skyloop {
 
 /// How many records of a file were passed over, by reason.
 struct SkippedRecords {
-    std::map<Constellation, int> other_systems;        ///< of systems other than GPS and QZSS
-    std::map<std::string, int, std::less<>> messages;  ///< version 4: blocks that are not LNAV ephemerides: "CNAV", "STO", …
+    std::map<Constellation, int> other_systems;  ///< of systems other than GPS and QZSS
+    std::map<std::string, int, std::less<>>
+        messages;        ///< version 4: blocks that are not LNAV ephemerides: "CNAV", "STO", …
     int defective = 0;   ///< a field is no number, is needed and blank, or lies outside what a satellite can broadcast
     int incomplete = 0;  ///< lines are missing
 };
@@ -25,9 +26,9 @@ struct SkippedRecords {
 /// What a navigation file holds: the LNAV ephemerides of GPS and QZSS, and what its header says.
 struct NavigationFile {
     double version = 0;
-    std::vector<KeplerEphemeris> records;           ///< in the order of the file, repetitions included
-    std::optional<KlobucharCoefficients> klobuchar; ///< of GPS
-    std::optional<int> leap_seconds;                ///< GPST − UTC, s
+    std::vector<KeplerEphemeris> records;            ///< in the order of the file, repetitions included
+    std::optional<KlobucharCoefficients> klobuchar;  ///< of GPS
+    std::optional<int> leap_seconds;                 ///< GPST − UTC, s
     SkippedRecords skipped;
     std::vector<std::string> warnings;  ///< one line for each kind of thing passed over, naming file and first line
 };

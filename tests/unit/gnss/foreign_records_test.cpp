@@ -36,7 +36,8 @@ KeplerEphemeris foreign(int true_number, int claimed, int hour) {
 
 TEST(ForeignRecords, LeavesGoodOrbitsAlone) {
     std::vector<KeplerEphemeris> records;
-    for (int number = 1; number <= 31; ++number) append(records, records_of(number, 0, 24));
+    for (int number = 1; number <= 31; ++number)
+        append(records, records_of(number, 0, 24));
     EXPECT_TRUE(drop_foreign_records(records).empty());
     EXPECT_EQ(records.size(), 31u * 13);
     std::vector<KeplerEphemeris> none;
@@ -53,7 +54,8 @@ TEST(ForeignRecords, DropsAForeignOneWhereverItStands) {
         EXPECT_EQ(dropped[0].record.toe, day + std::chrono::hours(hour));
         EXPECT_EQ(records.size(), 25u);
         EXPECT_NE(dropped[0].reason.find("G01: record with toe 2022-03-0"), std::string::npos) << dropped[0].reason;
-        EXPECT_NE(dropped[0].reason.find(" km from its neighbours (it is the orbit of G09); dropped"), std::string::npos)
+        EXPECT_NE(dropped[0].reason.find(" km from its neighbours (it is the orbit of G09); dropped"),
+                  std::string::npos)
             << dropped[0].reason;
     }
 }
@@ -64,7 +66,8 @@ TEST(ForeignRecords, DropsSeveralInARowAndAnUnknownOrbit) {
     records[5] = foreign(20, 1, 10);
     const auto dropped = drop_foreign_records(records);
     ASSERT_EQ(dropped.size(), 2u);
-    EXPECT_EQ(dropped[0].reason.find("orbit of"), std::string::npos) << "nobody else has this orbit: " << dropped[0].reason;
+    EXPECT_EQ(dropped[0].reason.find("orbit of"), std::string::npos)
+        << "nobody else has this orbit: " << dropped[0].reason;
     EXPECT_EQ(records.size(), 11u);
 }
 

@@ -51,7 +51,8 @@ void check_choice(const OracleRow& row, const std::string& column, const std::op
     if (expected == "tie") {
         const GpsTime time = total_seconds(row.number("t_gpst_total_s"));
         const Nanoseconds age = std::chrono::abs(time - chosen->toe);
-        for (const KeplerEphemeris& r : records) EXPECT_LE(age, std::chrono::abs(time - r.toe));
+        for (const KeplerEphemeris& r : records)
+            EXPECT_LE(age, std::chrono::abs(time - r.toe));
     } else {
         EXPECT_EQ(chosen->toe, total_seconds(row.number(column)));
     }
@@ -63,7 +64,8 @@ TEST(NavigationData, ChoosesRecordsAsTheOracle) {
         const SatelliteId satellite = parse_satellite(row.text("sat")).value();
         std::vector<KeplerEphemeris> records;
         std::istringstream toes(row.text("toe_list_gpst_total_s"));
-        for (double toe = 0; toes >> toe;) records.push_back(plain_record(total_seconds(toe), satellite));
+        for (double toe = 0; toes >> toe;)
+            records.push_back(plain_record(total_seconds(toe), satellite));
         const GpsTime time = total_seconds(row.number("t_gpst_total_s"));
 
         check_choice(row, "paper_toe", data_of(records, EphemerisRule::forward).ephemeris(satellite, time), records);
@@ -95,7 +97,8 @@ TEST(NavigationData, NearestRuleKeepsUnhealthyRecords) {
 TEST(NavigationData, KeepsRepetitionsOnceAndTheLastOfOneToe) {
     auto reissued = plain_record(monday);
     reissued.iode = 12;
-    const NavigationData data = data_of({plain_record(monday), plain_record(monday + 2h), plain_record(monday), reissued});
+    const NavigationData data =
+        data_of({plain_record(monday), plain_record(monday + 2h), plain_record(monday), reissued});
     EXPECT_EQ(data.record_count(), 3u);
     EXPECT_EQ(data.ephemeris(g15, monday + 1min)->iode, 12);
     EXPECT_EQ(data.ephemeris(g15, monday - 1min)->iode, 12) << "from before, too";
@@ -104,7 +107,8 @@ TEST(NavigationData, KeepsRepetitionsOnceAndTheLastOfOneToe) {
 TEST(NavigationData, KnowsItsSatellitesAndSpan) {
     const SatelliteId g02{Constellation::gps, 2};
     const SatelliteId j01{Constellation::qzss, 1};
-    const std::vector<KeplerEphemeris> records{plain_record(monday + 4h, j01), plain_record(monday, g15), plain_record(monday + 1h, g02)};
+    const std::vector<KeplerEphemeris> records{plain_record(monday + 4h, j01), plain_record(monday, g15),
+                                               plain_record(monday + 1h, g02)};
     const NavigationData nearest = data_of(records);
     EXPECT_EQ(nearest.satellites(), (std::vector<SatelliteId>{g02, g15, j01}));
     EXPECT_EQ(nearest.span()->first, monday - 2h);
@@ -133,7 +137,8 @@ TEST(Rebase, KeepsEcefPositionsAtTheSameTimeOfDay) {
     // Two records near the ends of a week, so that moves cross the week's border in both directions.
     for (const double tow : {3600.0, 302400.0, 604800.0 - 16})
         for (const std::int64_t days : {-8000, -8, -7, -6, -1, 0, 1, 6, 7, 8, 8000})
-            EXPECT_LT(displacement_by_move(plain_record(to_gps_time(2111, tow)), days), 1e-5) << tow << " s, " << days << " days";
+            EXPECT_LT(displacement_by_move(plain_record(to_gps_time(2111, tow)), days), 1e-5)
+                << tow << " s, " << days << " days";
 }
 
 TEST(Rebase, KeepsTimeOfDayAndClock) {
@@ -148,11 +153,13 @@ TEST(Rebase, KeepsTimeOfDayAndClock) {
 TEST(Rebase, BringsADayOfDataToTheStart) {
     std::vector<KeplerEphemeris> records;
     for (int hour = 0; hour <= 22; hour += 2)
-        for (const int number : {3, 15, 22}) records.push_back(plain_record(monday + std::chrono::hours(hour), {Constellation::gps, number}));
+        for (const int number : {3, 15, 22})
+            records.push_back(plain_record(monday + std::chrono::hours(hour), {Constellation::gps, number}));
     // A stray record of the day before must not pull the data to its own day.
     records.push_back(plain_record(monday - 6h, {Constellation::gps, 3}));
     const NavigationData data = data_of(records);
-    for (const auto& start : {to_gps_time(2300, 0.0), to_gps_time(2300, 43200.0), to_gps_time(1100, 86399.0), monday + 1h}) {
+    for (const auto& start :
+         {to_gps_time(2300, 0.0), to_gps_time(2300, 43200.0), to_gps_time(1100, 86399.0), monday + 1h}) {
         const Result<NavigationData> moved = rebased(data, start);
         ASSERT_TRUE(moved);
         EXPECT_EQ(moved->record_count(), data.record_count());

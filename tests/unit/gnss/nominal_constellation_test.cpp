@@ -84,8 +84,8 @@ TEST(NominalConstellation, OwnSatellitesStandMidwayInTheWidestGaps) {
 
 TEST(NominalConstellation, RunsOnSmoothlyFromRecordToRecord) {
     // Ordinary even hours, week ends, before the epoch, and decades away from it.
-    const std::array instants{gps_calendar_time(1985, 3, 4, 6, 0, 0), gps_calendar_time(1993, 7, 1, 0, 0, 0),
-                              gps_calendar_time(2019, 4, 7, 0, 0, 0), gps_calendar_time(2024, 3, 5, 12, 0, 0),
+    const std::array instants{gps_calendar_time(1985, 3, 4, 6, 0, 0),  gps_calendar_time(1993, 7, 1, 0, 0, 0),
+                              gps_calendar_time(2019, 4, 7, 0, 0, 0),  gps_calendar_time(2024, 3, 5, 12, 0, 0),
                               gps_calendar_time(2024, 3, 10, 0, 0, 0), gps_calendar_time(2049, 12, 31, 22, 0, 0)};
     for (const GpsTime t : instants)
         for (const SatelliteId id : nominal.satellites()) {

@@ -60,7 +60,9 @@ int check_orbits(const std::string& table) {
     return checked;
 }
 
-TEST(Orbit, AgreesWithTheBroadcastOrbitOracle) { EXPECT_EQ(check_orbits("orbit_kepler.csv"), shared_oracles_present() ? 56 : 4); }
+TEST(Orbit, AgreesWithTheBroadcastOrbitOracle) {
+    EXPECT_EQ(check_orbits("orbit_kepler.csv"), shared_oracles_present() ? 56 : 4);
+}
 
 TEST(Orbit, AgreesWithTheOracleAcrossTheEndOfTheWeek) {
     EXPECT_EQ(check_orbits("orbit_week_rollover.csv"), shared_oracles_present() ? 3 : 2);
@@ -80,7 +82,8 @@ TEST(Orbit, VelocityIsTheDerivativeOfPosition) {
     const KeplerEphemeris e = oracle_ephemeris(oracle_rows("orbit_kepler.csv").front());
     for (const int minutes : {-110, -30, 0, 45, 115}) {
         const GpsTime t = e.toe + std::chrono::minutes(minutes);
-        const Displacement<Ecef> step = satellite_state(e, t, Seconds(0.5)).position - satellite_state(e, t, Seconds(-0.5)).position;
+        const Displacement<Ecef> step =
+            satellite_state(e, t, Seconds(0.5)).position - satellite_state(e, t, Seconds(-0.5)).position;
         EXPECT_LT((step.vector() - satellite_state(e, t).velocity.vector()).norm(), 1e-4);
     }
 }

@@ -7,8 +7,9 @@
 namespace skyloop::test {
 namespace {
 
-constexpr std::array all_constellations{Constellation::gps,  Constellation::sbas,    Constellation::galileo, Constellation::beidou,
-                                        Constellation::qzss, Constellation::glonass, Constellation::navic};
+constexpr std::array all_constellations{Constellation::gps,    Constellation::sbas, Constellation::galileo,
+                                        Constellation::beidou, Constellation::qzss, Constellation::glonass,
+                                        Constellation::navic};
 
 TEST(Satellite, IsWrittenAsInRinex) {
     EXPECT_EQ(to_string(SatelliteId{Constellation::gps, 7}), "G07");

@@ -26,7 +26,8 @@ Seconds travel_time_between(const Position<Ecef>& transmitter, const Position<Ec
 TEST(LightTime, AgreesWithTheGeometryOracle) {
     for (const OracleRow& row : oracle_rows("geometry_azel_range.csv")) {
         SCOPED_TRACE(row.id());
-        const LocalFrame local(Geodetic::degrees(row.number("rx_lat_deg"), row.number("rx_lon_deg"), row.number("rx_h_m")));
+        const LocalFrame local(
+            Geodetic::degrees(row.number("rx_lat_deg"), row.number("rx_lon_deg"), row.number("rx_h_m")));
         const Position<Ecef> receiver = ecef_of(row, "rx", "_m");
         const Position<Ecef> satellite = ecef_of(row, "sat", "_m");
         const double metres = row.number("tol_m");
@@ -51,7 +52,8 @@ TEST(LightTime, AgreesWithTheDopplerOracle) {
         const Position<Ecef> receiver = ecef_of(row, "rx", "_m");
         const LocalFrame local(to_geodetic(receiver));
         const Velocity<Enu> velocity(row.number("v_east_m_s"), row.number("v_north_m_s"), row.number("v_up_m_s"));
-        const Position<Ecef> satellite(row.number("sat_x_at_tx_m"), row.number("sat_y_at_tx_m"), row.number("sat_z_at_tx_m"));
+        const Position<Ecef> satellite(row.number("sat_x_at_tx_m"), row.number("sat_y_at_tx_m"),
+                                       row.number("sat_z_at_tx_m"));
         const Velocity<Ecef> motion(row.number("sat_vx_m_s"), row.number("sat_vy_m_s"), row.number("sat_vz_m_s"));
         const MetresPerSecond rate = light_time_range_rate({satellite, motion}, {receiver, local.to_ecef(velocity)},
                                                            travel_time_between(satellite, receiver));

@@ -51,7 +51,8 @@ TEST(ObserveSky, SeesTheSatellitesOfTheScenes) {
         const SkyView sky = observe_sky(scene_truth(row), scene_data(row.text("nav_files")));
         std::vector<std::string> seen;
         for (const SatelliteInView& s : sky.satellites)
-            if (s.id.constellation == Constellation::gps && s.healthy && s.elevation.deg() >= 5) seen.push_back(to_string(s.id));
+            if (s.id.constellation == Constellation::gps && s.healthy && s.elevation.deg() >= 5)
+                seen.push_back(to_string(s.id));
         std::vector<std::string> expected;
         std::istringstream words(row.text("satellites"));
         for (std::string word; words >> word;)
@@ -108,7 +109,8 @@ TEST(ObserveSky, LightTimeIsConsistent) {
     const TruthState truth = standing_at(place, to_gps_time(2304, 216000.123));
     const SkyView sky = observe_sky(truth, source);
     ASSERT_GE(sky.satellites.size(), 6u);
-    EXPECT_TRUE(std::is_sorted(sky.satellites.begin(), sky.satellites.end(), [](const auto& a, const auto& b) { return a.id < b.id; }));
+    EXPECT_TRUE(std::is_sorted(sky.satellites.begin(), sky.satellites.end(),
+                               [](const auto& a, const auto& b) { return a.id < b.id; }));
     for (const SatelliteInView& s : sky.satellites) {
         EXPECT_GE(s.elevation.rad(), 0);
         EXPECT_NEAR(s.range.value(), speed_of_light * s.travel_time.value(), 1e-7);
@@ -151,7 +153,8 @@ TEST(ObserveSky, LeavesOutSatellitesWithoutARecord) {
     const NominalConstellation nominal;
     const GpsTime time = to_gps_time(2304, 216000.0);
     std::vector<KeplerEphemeris> records;
-    for (const SatelliteId id : nominal.satellites()) records.push_back(*nominal.ephemeris(id, time));
+    for (const SatelliteId id : nominal.satellites())
+        records.push_back(*nominal.ephemeris(id, time));
     const TruthState truth = standing_at(Geodetic::degrees(46.4775, 30.7326, 77), time);
     records[4].health = 1;
     const NavigationData nearest(records, std::nullopt, "test");
@@ -163,8 +166,10 @@ TEST(ObserveSky, LeavesOutSatellitesWithoutARecord) {
     EXPECT_TRUE(observe_sky(late, nearest).satellites.empty());
     late.time = time - 1h;
     EXPECT_TRUE(observe_sky(late, forward).satellites.empty());
-    for (const SatelliteInView& s : observe_sky(truth, nearest).satellites) EXPECT_EQ(s.healthy, s.id.number != 5);
-    for (const SatelliteInView& s : observe_sky(truth, forward).satellites) EXPECT_NE(s.id.number, 5);
+    for (const SatelliteInView& s : observe_sky(truth, nearest).satellites)
+        EXPECT_EQ(s.healthy, s.id.number != 5);
+    for (const SatelliteInView& s : observe_sky(truth, forward).satellites)
+        EXPECT_NE(s.id.number, 5);
 }
 
 TEST(ObserveSky, HasNoStepAtMidnightOrTheEndOfTheWeek) {

@@ -36,7 +36,8 @@ TEST(SatelliteTracks, AgreesWithTheOracleOver46Hours) {
             });
             ASSERT_NE(record, file->records.end());
             const NavigationData source({*record}, std::nullopt, "one record");
-            track->second = satellite_tracks(source, {.start = toe, .duration = Seconds(46 * 3600), .step = Seconds(3600)}).at(0);
+            track->second =
+                satellite_tracks(source, {.start = toe, .duration = Seconds(46 * 3600), .step = Seconds(3600)}).at(0);
             ASSERT_EQ(track->second.points.size(), 47u);
         }
         const TrackPoint& point = track->second.points.at(static_cast<std::size_t>(row.integer("hours_since_toe")));
@@ -51,7 +52,8 @@ TEST(SatelliteTracks, AgreesWithTheOracleOver46Hours) {
 }
 
 TEST(SatelliteTracks, FollowsTheNominalConstellationForHours) {
-    const auto tracks = satellite_tracks(nominal, {.start = noon, .duration = Seconds(46 * 3600), .step = Seconds(600)});
+    const auto tracks =
+        satellite_tracks(nominal, {.start = noon, .duration = Seconds(46 * 3600), .step = Seconds(600)});
     ASSERT_EQ(tracks.size(), 31u);
     for (const SatelliteTrack& track : tracks) {
         ASSERT_EQ(track.points.size(), 46u * 6 + 1);
@@ -70,7 +72,8 @@ TEST(SatelliteTracks, TakesTheNearestRecordAndGoesOnBeyondTheLast) {
     KeplerEphemeris second = *nominal.ephemeris(g01, noon + 2h);
     second.crc = 1000;  // so that the two can be told apart
     const NavigationData source({first, second}, std::nullopt, "test");
-    const auto tracks = satellite_tracks(source, {.start = noon - 3h, .duration = Seconds(10 * 3600), .step = Seconds(1800)});
+    const auto tracks =
+        satellite_tracks(source, {.start = noon - 3h, .duration = Seconds(10 * 3600), .step = Seconds(1800)});
     ASSERT_EQ(tracks.size(), 1u);
     ASSERT_EQ(tracks[0].points.size(), 21u);
     for (const TrackPoint& p : tracks[0].points) {
