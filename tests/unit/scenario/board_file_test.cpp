@@ -1,0 +1,175 @@
+#include "skyloop/scenario/board_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace skyloop {
+namespace {
+
+namespace fs = std::filesystem;
+using firmware::BoardProfile;
+using firmware::NmeaSentence;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::vector<fs::path> shipped_boards{fs::path(SKYLOOP_SOURCE_DIR) / "boards"};
+
+std::string board_refusal(std::string_view text) {
+    const auto board = read_board(text, "boards/receivers/test.toml");
+    return board ? "accepted" : board.error().message;
+}
+
+std::vector<std::string> sentence_names(const BoardProfile& board) {
+    std::vector<std::string> names;
+    for (const auto& s : board.sentences)
+        names.emplace_back(firmware::nmea_sentence_names[static_cast<std::size_t>(s.sentence)]);
+    return names;
+}
+
+TEST(BoardFile, EveryShippedBoardIsRead) {
+    const auto names = list_boards(shipped_boards);
+    EXPECT_THAT(names, ElementsAre("nmea-generic", "ublox-f9p", "ublox-m10", "ublox-m8", "ublox-m9"));
+    for (const std::string& name : names) {
+        const auto board = find_board(name, shipped_boards);
+        ASSERT_TRUE(board) << board.error().message;
+        EXPECT_EQ(board->name, name);
+        EXPECT_FALSE(board->description.empty());
+        EXPECT_GE(board->sentences.size(), 6U);
+        EXPECT_GE(board->max_rate_hz, board->default_rate_hz);
+    }
+}
+
+// RECEIVER.md 2.4.
+TEST(BoardFile, ShippedBoardsHaveTheMakersFactorySettings) {
+    const auto board = [](std::string_view name) { return find_board(name, shipped_boards).value(); };
+    EXPECT_EQ(board("ublox-m8").baud, 9600U);
+    EXPECT_EQ(board("ublox-m8").nmea_version, NmeaVersion::v4_0);
+    EXPECT_THAT(sentence_names(board("ublox-m8")), ElementsAre("RMC", "VTG", "GGA", "GSA", "GSV", "GLL"));
+    EXPECT_EQ(board("ublox-m9").baud, 38400U);
+    EXPECT_EQ(board("ublox-m9").nmea_version, NmeaVersion::v4_10);
+    EXPECT_EQ(board("ublox-m10").nmea_version, NmeaVersion::v4_11);
+    const auto m10 = board("ublox-m10").constellations;
+    EXPECT_EQ(std::count(m10.begin(), m10.end(), Constellation::glonass), 0);
+    EXPECT_NEAR(board("ublox-f9p").elevation_mask.deg(), 10, 1e-12);
+    EXPECT_EQ(board("nmea-generic").baud, 9600U);
+    EXPECT_EQ(board("nmea-generic").sentences.size(), 8U);
+}
+
+TEST(BoardFile, TheBuildTreeHoldsTheBoards) {
+    const std::vector<fs::path> built{fs::path(SKYLOOP_BINARY_DIR) / "share/skyloop/boards"};
+    EXPECT_EQ(list_boards(built), list_boards(shipped_boards));
+}
+
+TEST(BoardFile, EveryKeyIsRead) {
+    const auto board = read_board(R"(
+description = "all"
+[uart]
+baud = 57600
+transmit_buffer_bytes = 1234
+[navigation]
+constellations = ["galileo", "sbas"]
+default_rate_hz = 4
+max_rate_hz = 7.5
+elevation_mask_deg = 12.5
+solution_latency_s = 0.125
+[nmea]
+version = "2.3"
+main_talker = "GL"
+satellite_numbering = "extended"
+coordinate_decimals = 7
+time_decimals = 3
+max_listed_satellites = 20
+course_min_speed_mps = 0.5
+overflow_notice = true
+sentences = { ZDA = 5, RMC = 1, GSV = 0 }
+)",
+                                  "some/where/mine.toml");
+    ASSERT_TRUE(board) << board.error().message;
+    EXPECT_EQ(board->name, "mine");
+    EXPECT_EQ(board->description, "all");
+    EXPECT_EQ(board->baud, 57600U);
+    EXPECT_EQ(board->transmit_buffer_bytes, 1234U);
+    EXPECT_THAT(board->constellations, ElementsAre(Constellation::galileo, Constellation::sbas));
+    EXPECT_EQ(board->default_rate_hz, 4);
+    EXPECT_EQ(board->max_rate_hz, 7.5);
+    EXPECT_NEAR(board->elevation_mask.deg(), 12.5, 1e-12);
+    EXPECT_EQ(board->solution_latency, Seconds(0.125));
+    EXPECT_EQ(board->nmea_version, NmeaVersion::v2_3);
+    EXPECT_EQ(board->main_talker, "GL");
+    EXPECT_EQ(board->satellite_numbering, NmeaNumbering::extended);
+    EXPECT_EQ(board->coordinate_decimals, 7);
+    EXPECT_EQ(board->time_decimals, 3);
+    EXPECT_EQ(board->max_listed_satellites, 20);
+    EXPECT_EQ(board->course_min_speed, MetresPerSecond(0.5));
+    EXPECT_TRUE(board->overflow_notice);
+    ASSERT_EQ(board->sentences.size(), 2U);
+    EXPECT_EQ(board->sentences[1].sentence, NmeaSentence::zda);
+    EXPECT_EQ(board->sentences[1].every_epochs, 5);
+}
+
+TEST(BoardFile, AnEmptyFileIsADefaultReceiver) {
+    const auto board = read_board("", "empty.toml");
+    ASSERT_TRUE(board);
+    EXPECT_THAT(board->constellations, ElementsAre(Constellation::gps));
+    EXPECT_TRUE(board->sentences.empty());
+}
+
+TEST(BoardFile, RefusesWithFileLineAndColumn) {
+    EXPECT_EQ(board_refusal("[uart]\nbuad = 9600\n"),
+              "boards/receivers/test.toml:2:1: unknown key 'uart.buad'; did you mean 'baud'?");
+    EXPECT_EQ(board_refusal("nmaa = 1"), "boards/receivers/test.toml:1:1: unknown key 'nmaa'; did you mean 'nmea'?");
+    EXPECT_EQ(board_refusal("[uart]\nbaud = 100\n"),
+              "boards/receivers/test.toml:2:8: 'baud' must be a number from 1200 to 8000000");
+    EXPECT_THAT(board_refusal("[uart]\nbaud = 9600.5"), HasSubstr(":2:8: 'baud' must be a whole number"));
+    EXPECT_THAT(board_refusal("[uart]\nbaud = \"9600\""), HasSubstr("'baud' must be a whole number"));
+    EXPECT_THAT(board_refusal("[navigation]\nelevation_mask_deg = nan"), HasSubstr("must be a number from 0 to 90"));
+    EXPECT_THAT(board_refusal("[navigation]\nmax_rate_hz = 5\ndefault_rate_hz = 6"),
+                HasSubstr(":3:19: 'default_rate_hz'"));
+    EXPECT_THAT(
+        board_refusal("[navigation]\nconstellations = [\"gps\", \"galilo\"]"),
+        HasSubstr(
+            ":2:26: 'galilo' is none of gps, sbas, galileo, beidou, qzss, glonass, navic; did you mean 'galileo'?"));
+    EXPECT_THAT(board_refusal("[navigation]\nconstellations = [\"gps\", \"gps\"]"), HasSubstr("'gps' stands in"));
+    EXPECT_THAT(board_refusal("[navigation]\nconstellations = []"), HasSubstr("is empty"));
+    EXPECT_THAT(board_refusal("[navigation]\nconstellations = \"gps\""), HasSubstr("must be a list"));
+    EXPECT_THAT(board_refusal("[navigation]\nconstellations = [1]"), HasSubstr("must hold texts"));
+    EXPECT_THAT(board_refusal("[nmea]\nversion = \"4.1\""), HasSubstr("'4.1' is none of 2.3, 4.0, 4.10, 4.11"));
+    EXPECT_THAT(board_refusal("[nmea]\nversion = 4.1"), HasSubstr("'version' must be a text in quotes"));
+    EXPECT_THAT(board_refusal("[nmea]\nmain_talker = \"XX\""), HasSubstr("'XX' is none of GP, GL"));
+    EXPECT_THAT(board_refusal("[nmea]\noverflow_notice = 1"), HasSubstr("must be true or false"));
+    EXPECT_THAT(board_refusal("[nmea.sentences]\nGAG = 1"),
+                HasSubstr("unknown key 'nmea.sentences.GAG'; did you mean 'GGA'?"));
+    EXPECT_THAT(board_refusal("[nmea]\nsentences = [\"GGA\"]"), HasSubstr("'sentences' must be a table"));
+    EXPECT_THAT(board_refusal("uart = 1"), HasSubstr("'uart' must be a table"));
+}
+
+TEST(BoardFile, RefusesWhatIsNotToml) {
+    EXPECT_THAT(board_refusal("[uart\nbaud = 1"), HasSubstr("boards/receivers/test.toml:1:"));
+    EXPECT_THAT(board_refusal("baud = \n"), HasSubstr("test.toml:1:"));
+    EXPECT_THAT(board_refusal(std::string_view("\x00\xff\x01", 3)), HasSubstr("test.toml:1:"));
+    EXPECT_THAT(board_refusal("a = 1\na = 2"), HasSubstr("test.toml:2:"));
+}
+
+TEST(FindBoard, RefusesUnknownNames) {
+    const auto board = find_board("ublox-m88", shipped_boards);
+    ASSERT_FALSE(board);
+    EXPECT_EQ(board.error().code, ErrorCode::usage);
+    EXPECT_EQ(board.error().message,
+              "board 'ublox-m88' is not known; did you mean 'ublox-m8'?; known are nmea-generic, ublox-f9p, ublox-m10, "
+              "ublox-m8, ublox-m9");
+    EXPECT_FALSE(find_board("../receivers/ublox-m8", shipped_boards));
+    const std::vector<fs::path> nowhere{"/no/such/folder"};
+    EXPECT_THAT(find_board("ublox-m8", nowhere).error().message, HasSubstr("searched: /no/such/folder"));
+    EXPECT_EQ(find_board("/no/such/file.toml", shipped_boards).error().code, ErrorCode::outside);
+}
+
+TEST(FindBoard, ReadsAFileByItsPath) {
+    const auto board = find_board((shipped_boards[0] / "receivers/ublox-m9.toml").string(), {});
+    ASSERT_TRUE(board) << board.error().message;
+    EXPECT_EQ(board->name, "ublox-m9");
+}
+
+}  // namespace
+}  // namespace skyloop
