@@ -127,8 +127,11 @@ Result<Columns> read_header(const TableRow& row) {
     columns.week = column_of(header, "gps_week");
     columns.tow = column_of(header, "tow_s");
     const auto missing = [&](const char* what, Names names) {
+        constexpr std::size_t longest_quote = 120;
+        std::string found = fmt::format("{}", fmt::join(row.cells, ","));
+        if (found.size() > longest_quote) found = found.substr(0, longest_quote) + "...";
         return fail(row.error(fmt::format("no column for the {}; found the header '{}', expected one of {}", what,
-                                          fmt::join(row.cells, ","), fmt::join(names, ", "))));
+                                          found, fmt::join(names, ", "))));
     };
     if (columns.latitude == Columns::none) return missing("latitude", latitude_names);
     if (columns.longitude == Columns::none) return missing("longitude", longitude_names);

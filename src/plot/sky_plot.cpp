@@ -166,44 +166,47 @@ private:
     double y_;
 };
 
-void draw_legend(SvgDocument& svg, const SkyPlot& plot, const std::vector<SkyPlotSatellite>& satellites) {
-    svg.begin_group("legend");
-    LegendRow systems(svg, 672);
+void draw_system_legend(SvgDocument& svg, const SkyPlot& plot, const std::vector<SkyPlotSatellite>& satellites) {
+    LegendRow row(svg, 672);
     std::set<Constellation> present;
     for (const SkyPlotSatellite& s : satellites)
         present.insert(s.id.constellation);
     for (const Constellation c : present) {
-        svg.circle(systems.mark_place(6), 6, {.fill = style::constellation_colour(c)});
-        systems.label(std::string(style::constellation_title(c)), 12);
+        svg.circle(row.mark_place(6), 6, {.fill = style::constellation_colour(c)});
+        row.label(std::string(style::constellation_title(c)), 12);
     }
     if (plot.mask && plot.mask->deg() > 0) {
-        const SvgPoint p = systems.mark_place(0);
+        const SvgPoint p = row.mark_place(0);
         svg.line(p, {p.x + 26, p.y}, {.stroke = style::accent, .width = 1.3, .dash = "5 4"});
-        systems.label(fmt::format("mask {:.3g}°", plot.mask->deg()), 26);
+        row.label(fmt::format("mask {:.3g}°", plot.mask->deg()), 26);
     }
-    LegendRow states(svg, 700);
-    const SkyPlotSatellite used{.id = {Constellation::gps, 1},
-                                .azimuth = {},
-                                .elevation = {},
-                                .cn0 = {},
-                                .used = true,
-                                .healthy = true,
-                                .trail = {}};
-    SkyPlotSatellite other = used;
-    draw_mark(svg, states.mark_place(6), 6, used);
-    states.label("used", 12);
-    other.used = false;
-    draw_mark(svg, states.mark_place(6), 6, other);
-    states.label("not used", 12);
-    other.healthy = false;
-    draw_mark(svg, states.mark_place(6), 6, other);
-    states.label("unhealthy", 12);
-    if (std::any_of(satellites.begin(), satellites.end(), [](const SkyPlotSatellite& s) { return s.cn0.has_value(); }))
-        for (const double cn0 : {20.0, 35.0, 50.0}) {
-            const double r = mark_radius(DbHz(cn0));
-            svg.circle(states.mark_place(r), r, {.fill = style::unhealthy});
-            states.label(cn0 < 50 ? fmt::format("{:.0f}", cn0) : fmt::format("{:.0f} dB-Hz", cn0), 2 * r);
-        }
+}
+
+void draw_state_legend(SvgDocument& svg, bool with_cn0) {
+    constexpr double radius = 6;
+    LegendRow row(svg, 700);
+    SkyPlotSatellite sample;
+    draw_mark(svg, row.mark_place(radius), radius, sample);
+    row.label("used", 2 * radius);
+    sample.used = false;
+    draw_mark(svg, row.mark_place(radius), radius, sample);
+    row.label("not used", 2 * radius);
+    sample.healthy = false;
+    draw_mark(svg, row.mark_place(radius), radius, sample);
+    row.label("unhealthy", 2 * radius);
+    if (!with_cn0) return;
+    for (const double cn0 : {20.0, 35.0, 50.0}) {
+        const double r = mark_radius(DbHz(cn0));
+        svg.circle(row.mark_place(r), r, {.fill = style::unhealthy});
+        row.label(cn0 < 50 ? fmt::format("{:.0f}", cn0) : fmt::format("{:.0f} dB-Hz", cn0), 2 * r);
+    }
+}
+
+void draw_legend(SvgDocument& svg, const SkyPlot& plot, const std::vector<SkyPlotSatellite>& satellites) {
+    svg.begin_group("legend");
+    draw_system_legend(svg, plot, satellites);
+    draw_state_legend(svg, std::any_of(satellites.begin(), satellites.end(),
+                                       [](const SkyPlotSatellite& s) { return s.cn0.has_value(); }));
     svg.end_group();
 }
 

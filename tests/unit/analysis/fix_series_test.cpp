@@ -119,6 +119,7 @@ TEST(FixSeries, errors_name_file_line_and_what_was_found) {
     EXPECT_THAT(message_of("1,2,3,4,5\n"), AllOf(HasSubstr("a.csv:1:"), HasSubstr("5 numbers"), HasSubstr("latitude")));
     EXPECT_THAT(message_of("lat,lng,speed\n1,2,3\n"),
                 AllOf(HasSubstr("a.csv:1:"), HasSubstr("height"), HasSubstr("lat,lng,speed")));
+    EXPECT_LT(message_of("x" + std::string(100000, 'y') + ",z\n").size(), 400u);
     EXPECT_THAT(message_of("time,lat,lon,alt\nyesterday,1,2,3\n"),
                 AllOf(HasSubstr("a.csv:2:"), HasSubstr("'yesterday'")));
 }

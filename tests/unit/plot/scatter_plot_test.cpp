@@ -86,7 +86,7 @@ TEST(ScatterPlot, ellipse_has_the_axes_of_the_cloud_and_holds_95_percent) {
     EXPECT_NEAR(ellipse.azimuth.deg(), 60, 1);
     std::size_t inside = 0;
     for (std::size_t i = 0; i < cloud.errors.east.size(); ++i)
-        inside += std::hypot(cloud.errors.east[i] / ellipse.major, cloud.errors.north[i] / ellipse.minor) <= 1 ? 1u : 0u;
+        if (std::hypot(cloud.errors.east[i] / ellipse.major, cloud.errors.north[i] / ellipse.minor) <= 1) ++inside;
     EXPECT_NEAR(static_cast<double>(inside) / static_cast<double>(east.size()), 0.95, 0.005);
     EXPECT_EQ(error_ellipse_95({}, {}).major, 0);
 }
