@@ -19,7 +19,8 @@ struct BoardOptions {
 
 void print_board(const firmware::BoardProfile& board) {
     std::vector<std::string_view> constellations;
-    for (const Constellation c : board.constellations) constellations.push_back(constellation_name(c));
+    for (const Constellation c : board.constellations)
+        constellations.push_back(constellation_name(c));
     std::vector<std::string> sentences;
     for (const firmware::SentenceRate& s : board.sentences)
         sentences.push_back(fmt::format("{}{}", firmware::nmea_sentence_names[static_cast<std::size_t>(s.sentence)],
@@ -44,8 +45,9 @@ int show_boards(const BoardOptions& options) {
     }
     const auto names = list_boards(folders);
     if (names.empty())
-        return messages.error({ErrorCode::outside, fmt::format("no boards in {}; SKYLOOP_DATA_DIR may name the folder that holds boards/",
-                                                               folders.front().string())});
+        return messages.error(
+            {ErrorCode::outside, fmt::format("no boards in {}; SKYLOOP_DATA_DIR may name the folder that holds boards/",
+                                             folders.front().string())});
     for (const std::string& name : names) {
         const auto board = find_board(name, folders);
         if (!board) return messages.error(board.error());

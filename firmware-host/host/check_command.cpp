@@ -24,7 +24,8 @@ void print_plan(const Scenario& scenario, const Assembly& assembly) {
     fmt::print("model       {}\n", error_model_name(scenario.model.kind));
     fmt::print("receiver    {} at {} baud, {:g} Hz\n", receiver.board().name, receiver.baud(),
                1e9 / static_cast<double>(receiver.settings().navigation_period.count()));
-    for (const std::string& port : scenario.receiver.ports) fmt::print("port        {}\n", port);
+    for (const std::string& port : scenario.receiver.ports)
+        fmt::print("port        {}\n", port);
     fmt::print("seed        {}\n", scenario.run.seed);
 }
 
@@ -40,7 +41,8 @@ int check(const RunOptions& options) {
     const auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
     if (const auto ports = check_port_names(*scenario); !ports) return messages.error(ports.error());
-    for (const std::string& warning : assembly->warnings) messages.warning(warning);
+    for (const std::string& warning : assembly->warnings)
+        messages.warning(warning);
     if (!options.verbosity.quiet) print_plan(*scenario, *assembly);
     return 0;
 }
@@ -48,7 +50,8 @@ int check(const RunOptions& options) {
 }  // namespace
 
 Action add_check_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("check", "Read everything that a run would read, say what is wrong, run nothing");
+    CLI::App* command =
+        app.add_subcommand("check", "Read everything that a run would read, say what is wrong, run nothing");
     auto options = std::make_shared<RunOptions>();
     add_run_options(*command, *options);
     return [options] { return check(*options); };

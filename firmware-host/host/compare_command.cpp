@@ -45,11 +45,13 @@ int compare_files(const CompareOptions& options) {
     const auto b = read_slice(options.b, {options.skip_b, options.every_b, options.count_b});
     if (!b) return messages.error(b.error());
     for (const FixSeries* series : {&*a, &*b})
-        for (const std::string& warning : series->warnings) messages.warning(warning);
+        for (const std::string& warning : series->warnings)
+            messages.warning(warning);
     const auto result = compare(*a, *b, wanted);
     if (!result) return messages.error(result.error());
     if (options.format == "svg")
-        fmt::print("{}", scatter_plot_svg({a->name, position_errors(*a, wanted.reference)}, {b->name, position_errors(*b, wanted.reference)}));
+        fmt::print("{}", scatter_plot_svg({a->name, position_errors(*a, wanted.reference)},
+                                          {b->name, position_errors(*b, wanted.reference)}));
     else
         fmt::print("{}", options.format == "json" ? comparison_json(*result) : comparison_text(*result));
     return 0;
@@ -58,15 +60,19 @@ int compare_files(const CompareOptions& options) {
 }  // namespace
 
 Action add_compare_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("compare", "Statistics of two fix files (CSV or NMEA) and their difference in percent");
+    CLI::App* command =
+        app.add_subcommand("compare", "Statistics of two fix files (CSV or NMEA) and their difference in percent");
     auto options = std::make_shared<CompareOptions>();
     command->add_option("A", options->a, "The candidate, e.g. a simulated fixes.csv")->required();
     command->add_option("B", options->b, "The reference, e.g. a real receiver's log")->required();
-    command->add_option("--reference", options->reference, "The true place LAT,LON,HEIGHT for a file that does not know it; default: its own mean");
+    command->add_option("--reference", options->reference,
+                        "The true place LAT,LON,HEIGHT for a file that does not know it; default: its own mean");
     command->add_option("--series", options->series, "The error whose percentage is told")
         ->check(CLI::IsMember({"east", "north", "up", "horizontal", "3d"}));
-    command->add_option("--format", options->format, "text, json or svg")->check(CLI::IsMember({"text", "json", "svg"}));
-    command->add_option("--window", options->window, "Compare with each window of so many fixes of B, and these with each other");
+    command->add_option("--format", options->format, "text, json or svg")
+        ->check(CLI::IsMember({"text", "json", "svg"}));
+    command->add_option("--window", options->window,
+                        "Compare with each window of so many fixes of B, and these with each other");
     const auto positive = CLI::Range(std::size_t{1}, std::size_t{1'000'000});
     command->add_option("--every-a", options->every_a, "Take every N-th fix of A")->check(positive);
     command->add_option("--every-b", options->every_b, "Take every N-th fix of B")->check(positive);

@@ -16,13 +16,15 @@ namespace {
 using skyloop::host::Action;
 
 constexpr std::array<std::string_view, 6> commands{"run", "simulate", "sky", "check", "compare", "boards"};
-constexpr std::array<std::string_view, 8> later_commands{"devices", "decode", "replay", "scene", "trajectory", "scenario-from", "ctl", "campaign"};
+constexpr std::array<std::string_view, 8> later_commands{"devices",    "decode",        "replay", "scene",
+                                                         "trajectory", "scenario-from", "ctl",    "campaign"};
 
 // CLI11 does not know which words may be meant; this says it in one line.
 int refuse_command(std::string_view word) {
     const bool later = std::find(later_commands.begin(), later_commands.end(), word) != later_commands.end();
-    fmt::print(stderr, "skyloop: {} '{}'; expected one of {}{}\n", later ? "this version does not have the command" : "unknown command",
-               word, fmt::join(commands, " "), later ? std::string() : skyloop::did_you_mean(word, commands));
+    fmt::print(stderr, "skyloop: {} '{}'; expected one of {}{}\n",
+               later ? "this version does not have the command" : "unknown command", word, fmt::join(commands, " "),
+               later ? std::string() : skyloop::did_you_mean(word, commands));
     return 2;
 }
 
@@ -31,23 +33,26 @@ int run_program(int argc, char** argv) {
     app.set_version_flag("--version", "skyloop " SKYLOOP_VERSION);
     app.require_subcommand(1);
     const std::array<Action (*)(CLI::App&), commands.size()> add{
-        skyloop::host::add_run_command,     skyloop::host::add_simulate_command, skyloop::host::add_sky_command,
-        skyloop::host::add_check_command,   skyloop::host::add_compare_command,  skyloop::host::add_boards_command};
+        skyloop::host::add_run_command,   skyloop::host::add_simulate_command, skyloop::host::add_sky_command,
+        skyloop::host::add_check_command, skyloop::host::add_compare_command,  skyloop::host::add_boards_command};
     std::vector<Action> actions;
-    for (const auto add_command : add) actions.push_back(add_command(app));
+    for (const auto add_command : add)
+        actions.push_back(add_command(app));
 
     if (argc < 2) {
         fmt::print("{}", app.help());
         return 2;
     }
     const std::string_view word = argv[1];
-    if (!word.starts_with('-') && std::find(commands.begin(), commands.end(), word) == commands.end()) return refuse_command(word);
+    if (!word.starts_with('-') && std::find(commands.begin(), commands.end(), word) == commands.end())
+        return refuse_command(word);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& wanted) {
         return app.exit(wanted);  // --help and --version
     } catch (const CLI::ParseError& error) {
-        fmt::print(stderr, "skyloop: {}; see skyloop {}--help\n", error.what(), word.starts_with('-') ? "" : std::string(word) + " ");
+        fmt::print(stderr, "skyloop: {}; see skyloop {}--help\n", error.what(),
+                   word.starts_with('-') ? "" : std::string(word) + " ");
         return 2;
     }
     for (std::size_t i = 0; i < commands.size(); ++i)

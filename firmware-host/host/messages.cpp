@@ -12,7 +12,9 @@ Messages::Messages(Verbosity verbosity)
     : verbosity_(verbosity),
       logger_(std::make_shared<spdlog::logger>("skyloop", std::make_shared<spdlog::sinks::stderr_sink_st>())) {
     logger_->set_pattern("%v");
-    logger_->set_level(verbosity.quiet ? spdlog::level::warn : verbosity.verbose ? spdlog::level::debug : spdlog::level::info);
+    logger_->set_level(verbosity.quiet     ? spdlog::level::warn
+                       : verbosity.verbose ? spdlog::level::debug
+                                           : spdlog::level::info);
 }
 
 void Messages::say(int level, const std::string& text) const {
@@ -37,7 +39,8 @@ void Messages::warning(const std::string& text) const { say(spdlog::level::warn,
 
 int Messages::error(const Error& error) const {
     std::istringstream lines(error.message);
-    for (std::string line; std::getline(lines, line);) say(spdlog::level::err, line);
+    for (std::string line; std::getline(lines, line);)
+        say(spdlog::level::err, line);
     return exit_code(error);
 }
 

@@ -14,9 +14,9 @@ namespace skyloop::host {
 
 /// How much is said, and in what form.
 struct Verbosity {
-    bool quiet = false;    ///< warnings and errors only
+    bool quiet = false;  ///< warnings and errors only
     bool verbose = false;
-    bool json = false;     ///< a JSON object a line
+    bool json = false;  ///< a JSON object a line
 };
 
 /// Lines on stderr, each with its weight.

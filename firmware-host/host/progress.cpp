@@ -32,15 +32,20 @@ void Progress::show(const Status& status, const Emulator& emulator) {
     shown_ns_ = now_ns;
 
     const Fix& fix = status.trace->epoch.fix;
-    std::string line = fmt::format("{}  fix {:<4} {:>2}/{:<2} satellites", format_utc(to_utc(status.now, LeapSeconds::announced()), 0),
-                                   fix_type_name(fix.type), fix.satellites_used(), fix.satellites.size());
+    std::string line =
+        fmt::format("{}  fix {:<4} {:>2}/{:<2} satellites", format_utc(to_utc(status.now, LeapSeconds::announced()), 0),
+                    fix_type_name(fix.type), fix.satellites_used(), fix.satellites.size());
     if (fix.has_position()) line += fmt::format("  HDOP {:.2f}", fix.dop.hdop);
-    line += fmt::format("  {:g} Hz  late {:.2f} ms", 1e9 / static_cast<double>(emulator.receiver().settings().navigation_period.count()),
+    line += fmt::format("  {:g} Hz  late {:.2f} ms",
+                        1e9 / static_cast<double>(emulator.receiver().settings().navigation_period.count()),
                         static_cast<double>(status.lateness.count()) * 1e-6);
     std::uint64_t bytes = 0;
-    for (const Link& link : emulator.links()) bytes += link.counters().bytes_out;
+    for (const Link& link : emulator.links())
+        bytes += link.counters().bytes_out;
     if (!emulator.links().empty()) line += "  " + count_text(bytes);
-    if (end_) line += fmt::format("  {:.0f} %", 100 * difference(status.now, start_).value() / difference(*end_, start_).value());
+    if (end_)
+        line +=
+            fmt::format("  {:.0f} %", 100 * difference(status.now, start_).value() / difference(*end_, start_).value());
     std::fprintf(stderr, "\r\033[K%s", line.c_str());
     std::fflush(stderr);
     on_screen_ = true;

@@ -24,8 +24,10 @@ Result<void> apply_place(const RunOptions& options, Scenario& scenario) {
     if (options.trajectory.empty()) return {};
     const std::filesystem::path file = options.trajectory;
     if (file.extension() != ".toml")
-        return fail(ErrorCode::usage, fmt::format("--trajectory {}: this version reads waypoints from a .toml file; recorded tracks "
-                                                  "(.csv .gpx .kml .nmea .ubx .ulg .bin) are not in it", options.trajectory));
+        return fail(ErrorCode::usage,
+                    fmt::format("--trajectory {}: this version reads waypoints from a .toml file; recorded tracks "
+                                "(.csv .gpx .kml .nmea .ubx .ulg .bin) are not in it",
+                                options.trajectory));
     auto trajectory = read_trajectory_file(file);
     if (!trajectory) return fail(trajectory.error());
     scenario.trajectory = std::move(*trajectory);
@@ -44,7 +46,8 @@ Result<void> apply_time(const RunOptions& options, Scenario& scenario) {
     }
     if (options.duration) {
         if (!(*options.duration > 0 && *options.duration < 3.2e9))
-            return fail(ErrorCode::usage, fmt::format("--duration {}: expected a number of seconds above 0", *options.duration));
+            return fail(ErrorCode::usage,
+                        fmt::format("--duration {}: expected a number of seconds above 0", *options.duration));
         scenario.run.duration = Seconds(*options.duration);
     }
     return {};
@@ -53,7 +56,8 @@ Result<void> apply_time(const RunOptions& options, Scenario& scenario) {
 Result<void> apply_model(const RunOptions& options, Scenario& scenario) {
     if (options.model.empty()) return {};
     std::vector<std::string_view> names;
-    for (const ErrorModelKind kind : error_model_kinds()) names.push_back(error_model_name(kind));
+    for (const ErrorModelKind kind : error_model_kinds())
+        names.push_back(error_model_name(kind));
     const auto kind = error_model_from_name(options.model);
     if (!kind)
         return fail(ErrorCode::usage, fmt::format("--model {}: {}; expected one of {}{}", options.model,
@@ -84,7 +88,9 @@ Result<void> apply_speed(const RunOptions& options, Scenario& scenario) {
     const char* end = options.speed.data() + options.speed.size();
     const auto [rest, error] = std::from_chars(options.speed.data(), end, speed);
     if (error != std::errc() || rest != end || !(speed >= 1e-3 && speed <= 1e6))
-        return fail(ErrorCode::usage, fmt::format("--speed {}: expected simulated seconds per second, 0.001 to 1000000, or max", options.speed));
+        return fail(
+            ErrorCode::usage,
+            fmt::format("--speed {}: expected simulated seconds per second, 0.001 to 1000000, or max", options.speed));
     scenario.run.speed = speed;
     return {};
 }
@@ -92,7 +98,11 @@ Result<void> apply_speed(const RunOptions& options, Scenario& scenario) {
 // The options that decide what a run computes, one a line.
 std::string options_text(const RunOptions& o) {
     std::string text;
-    for (const auto& [name, value] : {std::pair{"at", o.at}, {"trajectory", o.trajectory}, {"start", o.start}, {"model", o.model}, {"board", o.board}})
+    for (const auto& [name, value] : {std::pair{"at", o.at},
+                                      {"trajectory", o.trajectory},
+                                      {"start", o.start},
+                                      {"model", o.model},
+                                      {"board", o.board}})
         if (!value.empty()) text += fmt::format("\n--{} {}", name, value);
     if (o.rebase_nav) text += "\n--rebase-nav";
     if (o.duration) text += fmt::format("\n--duration {}", *o.duration);
@@ -110,9 +120,12 @@ void add_verbosity_options(CLI::App& command, Verbosity& verbosity) {
 }
 
 void add_place_options(CLI::App& command, RunOptions& options) {
-    command.add_option("--at", options.at, "Stand still there: LAT,LON[,HEIGHT] in degrees and metres above the ellipsoid");
-    command.add_option("--nav", options.nav, "RINEX navigation file; repeatable; without it a nominal constellation")->allow_extra_args(false);
-    command.add_flag("--rebase-nav", options.rebase_nav, "Move the navigation data to the start time, keeping its time of day");
+    command.add_option("--at", options.at,
+                       "Stand still there: LAT,LON[,HEIGHT] in degrees and metres above the ellipsoid");
+    command.add_option("--nav", options.nav, "RINEX navigation file; repeatable; without it a nominal constellation")
+        ->allow_extra_args(false);
+    command.add_flag("--rebase-nav", options.rebase_nav,
+                     "Move the navigation data to the start time, keeping its time of day");
     command.add_option("--start", options.start, "ISO 8601 in UTC, or now");
 }
 
@@ -125,7 +138,8 @@ void add_run_options(CLI::App& command, RunOptions& options) {
     command.add_option("--scene", options.scene, "Buildings (not in this version)");
     command.add_option("--board", options.board, "Receiver profile, default ublox-m8; see skyloop boards");
     command.add_option("--rate", options.rate, "Navigation rate at start, Hz");
-    command.add_option("--port", options.ports, "Where the bytes go: pty[:LINK] file:PATH - ; repeatable")->allow_extra_args(false);
+    command.add_option("--port", options.ports, "Where the bytes go: pty[:LINK] file:PATH - ; repeatable")
+        ->allow_extra_args(false);
     command.add_option("--seed", options.seed, "Default 1; the same scenario, seed and inputs give the same bytes");
     command.add_option("--control", options.control, "HTTP control (not in this version)");
     add_verbosity_options(command, options.verbosity);
@@ -146,11 +160,17 @@ Result<Geodetic> parse_place(const std::string& text) {
     }
     const std::string asked = fmt::format("--at {}: ", text);
     if (at != end || count < 1 || count > 2 || text.empty() || text.back() == ',')
-        return fail(ErrorCode::usage, asked + "expected LAT,LON or LAT,LON,HEIGHT in degrees and metres, such as 46.4775,30.7326,77");
-    if (std::abs(values[0]) > 90) return fail(ErrorCode::usage, asked + fmt::format("latitude is {:g}; expected -90 to 90 degrees", values[0]));
-    if (std::abs(values[1]) > 360) return fail(ErrorCode::usage, asked + fmt::format("longitude is {:g}; expected -180 to 180 degrees", values[1]));
+        return fail(ErrorCode::usage,
+                    asked + "expected LAT,LON or LAT,LON,HEIGHT in degrees and metres, such as 46.4775,30.7326,77");
+    if (std::abs(values[0]) > 90)
+        return fail(ErrorCode::usage, asked + fmt::format("latitude is {:g}; expected -90 to 90 degrees", values[0]));
+    if (std::abs(values[1]) > 360)
+        return fail(ErrorCode::usage,
+                    asked + fmt::format("longitude is {:g}; expected -180 to 180 degrees", values[1]));
     if (values[2] < -1e4 || values[2] > 1e7)
-        return fail(ErrorCode::usage, asked + fmt::format("height is {:g}; expected metres above the ellipsoid, -10 000 to 10 000 000", values[2]));
+        return fail(ErrorCode::usage,
+                    asked + fmt::format("height is {:g}; expected metres above the ellipsoid, -10 000 to 10 000 000",
+                                        values[2]));
     return Geodetic::degrees(values[0], std::remainder(values[1], 360), values[2]);
 }
 

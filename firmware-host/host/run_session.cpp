@@ -24,7 +24,8 @@ void ask_to_stop(int) { stop_asked = true; }
 void catch_stop_signals() {
     struct sigaction action {};
     action.sa_handler = ask_to_stop;  // without SA_RESTART, so that a wait ends at once
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        sigaction(signal, &action, nullptr);
     // A reader that goes away is a wire that is unplugged, not a reason to die.
     signal(SIGPIPE, SIG_IGN);
 }
@@ -39,7 +40,8 @@ GpsTime wall_clock() {
 }
 
 RunSession::RunSession(const Messages& messages, Assembly& assembly) : messages_(messages), assembly_(assembly) {
-    for (const std::string& warning : assembly.warnings) messages.warning(warning);
+    for (const std::string& warning : assembly.warnings)
+        messages.warning(warning);
 }
 
 int RunSession::run(const Scenario& scenario) {
@@ -63,17 +65,22 @@ void RunSession::tell_counts() const {
                                emulator.receiver().counters().messages_sent));
     for (std::size_t i = 0; i < emulator.links().size(); ++i) {
         const LinkCounters& wire = emulator.links()[i].counters();
-        messages_.info(fmt::format("port {}: {} bytes out, {} in, {} while nobody listened", i, wire.bytes_out, wire.bytes_in, wire.bytes_unheard));
+        messages_.info(fmt::format("port {}: {} bytes out, {} in, {} while nobody listened", i, wire.bytes_out,
+                                   wire.bytes_in, wire.bytes_unheard));
         if (wire.bytes_garbled > 0)
-            messages_.warning(fmt::format("port {}: {} bytes went out garbled: the client's line speed was not {} baud", i,
-                                          wire.bytes_garbled, emulator.receiver().baud()));
-        if (wire.bytes_lost > 0) messages_.warning(fmt::format("port {}: {} bytes were lost: the client read too slowly", i, wire.bytes_lost));
+            messages_.warning(fmt::format("port {}: {} bytes went out garbled: the client's line speed was not {} baud",
+                                          i, wire.bytes_garbled, emulator.receiver().baud()));
+        if (wire.bytes_lost > 0)
+            messages_.warning(
+                fmt::format("port {}: {} bytes were lost: the client read too slowly", i, wire.bytes_lost));
     }
     if (const std::uint64_t dropped = emulator.receiver().counters().messages_dropped; dropped > 0)
-        messages_.warning(fmt::format("{} messages did not fit the receiver's transmit buffer: {} baud is too slow for this output",
-                                      dropped, emulator.receiver().baud()));
+        messages_.warning(
+            fmt::format("{} messages did not fit the receiver's transmit buffer: {} baud is too slow for this output",
+                        dropped, emulator.receiver().baud()));
     if (counts.lateness.largest() > Nanoseconds(0))
-        messages_.info(fmt::format("epochs came {:.3f} ms late on average, {:.3f} ms at worst", counts.lateness.mean_ms(),
+        messages_.info(fmt::format("epochs came {:.3f} ms late on average, {:.3f} ms at worst",
+                                   counts.lateness.mean_ms(),
                                    static_cast<double>(counts.lateness.largest().count()) * 1e-6));
 }
 

@@ -12,7 +12,8 @@ int simulate(const RunOptions& options) {
     const auto scenario = scenario_from(options);
     if (!scenario) return messages.error(scenario.error());
     if (!scenario->run.duration)
-        return messages.error({ErrorCode::usage, "simulate needs an end: expected --duration SECONDS or run.duration_s in the scenario"});
+        return messages.error(
+            {ErrorCode::usage, "simulate needs an end: expected --duration SECONDS or run.duration_s in the scenario"});
     catch_stop_signals();
     RunMode mode;
     mode.virtual_time = true;
@@ -30,7 +31,8 @@ int simulate(const RunOptions& options) {
 }  // namespace
 
 Action add_simulate_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("simulate", "The same pipeline as fast as the machine can, on the virtual clock");
+    CLI::App* command =
+        app.add_subcommand("simulate", "The same pipeline as fast as the machine can, on the virtual clock");
     auto options = std::make_shared<RunOptions>();
     add_run_options(*command, *options);
     command->add_option("--out", options->record, "Folder for the recording")->required();

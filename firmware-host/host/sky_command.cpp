@@ -34,7 +34,8 @@ struct World {
 Result<World> make_world(const Scenario& scenario, const Messages& messages) {
     auto navigation = load_navigation(scenario, wall_clock(), scenario.sky.navigation.empty());
     if (!navigation) return fail(navigation.error());
-    for (const std::string& warning : navigation->warnings) messages.warning(warning);
+    for (const std::string& warning : navigation->warnings)
+        messages.warning(warning);
     std::vector<std::string> warnings;
     auto geoid = find_geoid(data_folders(), warnings);
     const GpsTime start = navigation->start;
@@ -65,10 +66,12 @@ std::string sky_svg(const SkyListing& listing, const World& world, const TruthSt
 
 int print_tracks(const SkyOptions& options, const World& world) {
     const double step = options.step_s > 0 ? options.step_s : 300;
-    const auto tracks = satellite_tracks(world.simulation.navigation(), {world.start, Seconds(options.tracks_h * 3600), Seconds(step)});
+    const auto tracks =
+        satellite_tracks(world.simulation.navigation(), {world.start, Seconds(options.tracks_h * 3600), Seconds(step)});
     if (options.format == "svg")
-        fmt::print("{}", track_plot_svg(tracks, fmt::format("Satellite tracks in ECEF over {:g} h from {}", options.tracks_h,
-                                                        format_utc(to_utc(world.start, LeapSeconds::announced()), 0))));
+        fmt::print("{}",
+                   track_plot_svg(tracks, fmt::format("Satellite tracks in ECEF over {:g} h from {}", options.tracks_h,
+                                                      format_utc(to_utc(world.start, LeapSeconds::announced()), 0))));
     else
         fmt::print("{}", tracks_csv(tracks));
     return 0;
@@ -105,10 +108,13 @@ Action add_sky_command(CLI::App& app) {
     command->add_option("scenario", options->run.scenario, "Scenario file (TOML); without it embedded defaults");
     add_place_options(*command, options->run);
     command->add_option("--model", options->run.model, "Sensor model that decides which satellites are used");
-    command->add_option("--format", options->format, "text, json, csv or svg")->check(CLI::IsMember({"text", "json", "csv", "svg"}));
+    command->add_option("--format", options->format, "text, json, csv or svg")
+        ->check(CLI::IsMember({"text", "json", "csv", "svg"}));
     command->add_option("--mask", options->mask_deg, "Elevation mask, degrees")->check(CLI::Range(0.0, 90.0));
-    command->add_option("--tracks", options->tracks_h, "ECEF tracks of all satellites over so many hours (csv or svg)")->check(CLI::Range(0.01, 24.0 * 14));
-    command->add_option("--step", options->step_s, "Seconds between points of a track, default 300")->check(CLI::Range(1.0, 86400.0));
+    command->add_option("--tracks", options->tracks_h, "ECEF tracks of all satellites over so many hours (csv or svg)")
+        ->check(CLI::Range(0.01, 24.0 * 14));
+    command->add_option("--step", options->step_s, "Seconds between points of a track, default 300")
+        ->check(CLI::Range(1.0, 86400.0));
     add_verbosity_options(*command, options->run.verbosity);
     return [options] { return show_sky(*options); };
 }

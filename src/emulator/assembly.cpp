@@ -52,20 +52,23 @@ Result<void> choose_sentences(firmware::BoardProfile& board, const std::vector<s
         const auto& known = firmware::nmea_sentence_names;
         const auto found = std::find(std::begin(known), std::end(known), name);
         if (found == std::end(known))
-            return fail(ErrorCode::usage, fmt::format("receiver.sentences: '{}' is not a sentence of this version{}", name, did_you_mean(name, known)));
+            return fail(ErrorCode::usage, fmt::format("receiver.sentences: '{}' is not a sentence of this version{}",
+                                                      name, did_you_mean(name, known)));
         board.sentences.push_back({static_cast<firmware::NmeaSentence>(found - std::begin(known)), 1});
     }
     return {};
 }
 
-Result<firmware::Receiver> make_receiver(const ReceiverEntry& entry, const DataFolders& data, std::vector<std::string>& warnings) {
+Result<firmware::Receiver> make_receiver(const ReceiverEntry& entry, const DataFolders& data,
+                                         std::vector<std::string>& warnings) {
     auto board = find_board(entry.board, board_folders(data));
     if (!board) return fail(board.error());
     if (entry.baud) board->baud = *entry.baud;
     if (const auto chosen = choose_sentences(*board, entry.sentences); !chosen) return fail(chosen.error());
     const double rate = entry.rate_hz.value_or(board->default_rate_hz);
     if (rate > board->max_rate_hz)
-        warnings.push_back(fmt::format("{:g} Hz is more than {} can do; it runs at {:g} Hz", rate, board->name, board->max_rate_hz));
+        warnings.push_back(
+            fmt::format("{:g} Hz is more than {} can do; it runs at {:g} Hz", rate, board->name, board->max_rate_hz));
     return firmware::Receiver(std::move(*board), rate);
 }
 
@@ -92,7 +95,9 @@ std::string scenario_digest(const Scenario& scenario, GpsTime start) {
 
 std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, GpsTime start) {
     return std::visit(Overloaded{
-                          [](const FixedSettings& fixed) -> std::unique_ptr<Trajectory> { return std::make_unique<FixedPoint>(fixed.at); },
+                          [](const FixedSettings& fixed) -> std::unique_ptr<Trajectory> {
+                              return std::make_unique<FixedPoint>(fixed.at);
+                          },
                           [&](const WaypointSettings& path) -> std::unique_ptr<Trajectory> {
                               return std::make_unique<Waypoints>(start, path.corners);
                           },
@@ -129,7 +134,8 @@ Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<Nav
 
 std::vector<std::filesystem::path> board_folders(const DataFolders& data) {
     std::vector<std::filesystem::path> folders;
-    for (const auto& folder : data.folders) folders.push_back(folder / "boards");
+    for (const auto& folder : data.folders)
+        folders.push_back(folder / "boards");
     return folders;
 }
 

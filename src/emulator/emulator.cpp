@@ -16,7 +16,9 @@ GpsTime first_epoch(GpsTime start, Nanoseconds period) {
 }  // namespace
 
 Emulator::Emulator(Parts parts, GpsTime start)
-    : parts_(std::move(parts)), now_(start), next_epoch_(first_epoch(start, parts_.receiver.settings().navigation_period)) {}
+    : parts_(std::move(parts)),
+      now_(start),
+      next_epoch_(first_epoch(start, parts_.receiver.settings().navigation_period)) {}
 
 GpsTime Emulator::next_instant(GpsTime end) const {
     GpsTime next = std::min(end, next_epoch_);
@@ -49,7 +51,8 @@ void Emulator::exchange_bytes() {
     }
     const Bytes sent = receiver.output(now_);
     const bool at_rest = !receiver.drained_at().has_value();
-    for (Link& link : parts_.links) link.send(sent, receiver.baud(), at_rest);
+    for (Link& link : parts_.links)
+        link.send(sent, receiver.baud(), at_rest);
     if (parts_.recorder) parts_.recorder->record_output(sent, now_, parts_.pacer->monotonic_ns(now_));
 }
 

@@ -3,7 +3,9 @@
 namespace skyloop {
 
 Link::Link(std::unique_ptr<Transport> transport, std::uint32_t receiver_baud)
-    : transport_(std::move(transport)), to_client_(receiver_baud, receiver_baud), to_receiver_(receiver_baud, receiver_baud) {
+    : transport_(std::move(transport)),
+      to_client_(receiver_baud, receiver_baud),
+      to_receiver_(receiver_baud, receiver_baud) {
     transport_->set_receiver_baud(receiver_baud);
 }
 

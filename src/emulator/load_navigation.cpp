@@ -28,7 +28,8 @@ Result<ReadRecords> read_all(const std::vector<std::filesystem::path>& files, st
         if (!all.klobuchar) all.klobuchar = file->klobuchar;
         all.description += (all.description.empty() ? "" : " ") + path.filename().string();
     }
-    for (const DroppedRecord& dropped : drop_foreign_records(all.records)) warnings.push_back(dropped.reason);
+    for (const DroppedRecord& dropped : drop_foreign_records(all.records))
+        warnings.push_back(dropped.reason);
     return all;
 }
 
@@ -41,7 +42,8 @@ void keep_constellations(std::vector<KeplerEphemeris>& records, const std::vecto
 
 EphemerisSelection selection_of(const Scenario& scenario) {
     // The article takes the record of the hour that has begun; every other model takes the nearest.
-    const EphemerisRule own = scenario.model.kind == ErrorModelKind::baseline ? EphemerisRule::forward : EphemerisRule::nearest;
+    const EphemerisRule own =
+        scenario.model.kind == ErrorModelKind::baseline ? EphemerisRule::forward : EphemerisRule::nearest;
     return {scenario.sky.ephemeris_rule.value_or(own), scenario.sky.ephemeris_validity};
 }
 
@@ -64,15 +66,17 @@ void warn_outside(const Scenario& scenario, const LoadedNavigation& loaded, std:
     if (!span) return;
     const GpsTime end = scenario.run.duration ? advanced(loaded.start, *scenario.run.duration) : loaded.start;
     if (loaded.start >= span->first && end <= span->last) return;
-    warnings.push_back(fmt::format("the run {} the navigation data, which spans {}: no fix there; --start moves the run, --rebase-nav the data",
-                                   loaded.start < span->first || loaded.start > span->last ? "starts outside" : "outlasts",
-                                   span_text(*span)));
+    warnings.push_back(fmt::format(
+        "the run {} the navigation data, which spans {}: no fix there; --start moves the run, --rebase-nav the data",
+        loaded.start < span->first || loaded.start > span->last ? "starts outside" : "outlasts", span_text(*span)));
 }
 
 Result<LoadedNavigation> load_nominal(const Scenario& scenario, GpsTime now, bool default_to_now) {
     const auto& wanted = scenario.sky.constellations;
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), Constellation::gps) == wanted.end())
-        return fail(ErrorCode::usage, "sky.constellations leaves out gps, but the nominal constellation is GPS; give navigation data with --nav");
+        return fail(
+            ErrorCode::usage,
+            "sky.constellations leaves out gps, but the nominal constellation is GPS; give navigation data with --nav");
     if (scenario.sky.rebase_navigation)
         return fail(ErrorCode::usage, "--rebase-nav moves navigation data, but there is none; give it with --nav");
     LoadedNavigation loaded{std::make_unique<NominalConstellation>(), {}, {}};
@@ -89,7 +93,8 @@ Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, 
     if (!all) return fail(all.error());
     keep_constellations(all->records, scenario.sky.constellations);
     if (all->records.empty())
-        return fail(ErrorCode::input, fmt::format("{}: no record of the wanted constellations is left", all->description));
+        return fail(ErrorCode::input,
+                    fmt::format("{}: no record of the wanted constellations is left", all->description));
 
     NavigationData data(std::move(all->records), all->klobuchar, all->description, selection_of(scenario));
     loaded.start = start_of(scenario, data, now, default_to_now);

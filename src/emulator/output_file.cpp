@@ -41,7 +41,9 @@ void OutputFile::write(std::string_view text) {
     if (buffer_.size() >= piece) flush();
 }
 
-void OutputFile::write(ByteSpan bytes) { write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size())); }
+void OutputFile::write(ByteSpan bytes) {
+    write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
 
 void OutputFile::flush() {
     std::size_t done = 0;
@@ -50,8 +52,9 @@ void OutputFile::flush() {
         if (wrote >= 0)
             done += static_cast<std::size_t>(wrote);
         else if (errno != EINTR)
-            failure_ = Error{ErrorCode::outside, fmt::format("{}: cannot be written: {}; what was written before is kept",
-                                                             path_.string(), std::strerror(errno))};
+            failure_ =
+                Error{ErrorCode::outside, fmt::format("{}: cannot be written: {}; what was written before is kept",
+                                                      path_.string(), std::strerror(errno))};
     }
     buffer_.clear();
 }

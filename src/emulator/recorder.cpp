@@ -11,7 +11,9 @@ namespace skyloop {
 Result<Recorder> Recorder::create(const std::filesystem::path& folder) {
     std::error_code reason;
     std::filesystem::create_directories(folder, reason);
-    if (reason) return fail(ErrorCode::outside, fmt::format("{}: cannot be made a folder: {}", folder.string(), reason.message()));
+    if (reason)
+        return fail(ErrorCode::outside,
+                    fmt::format("{}: cannot be made a folder: {}", folder.string(), reason.message()));
     Recorder recorder;
     recorder.folder_ = folder;
     const std::pair<OutputFile*, const char*> files[] = {{&recorder.fixes_, "fixes.csv"},
@@ -55,7 +57,8 @@ void Recorder::record_summary(const std::string& content) {
 }
 
 void Recorder::flush() {
-    for (OutputFile* file : {&fixes_, &satellites_, &bytes_out_, &bytes_in_, &times_}) file->flush();
+    for (OutputFile* file : {&fixes_, &satellites_, &bytes_out_, &bytes_in_, &times_})
+        file->flush();
 }
 
 std::optional<Error> Recorder::failure() const {

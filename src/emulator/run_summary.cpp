@@ -15,9 +15,12 @@ Json lateness_json(const LatenessHistogram& lateness) {
     Json bins = Json::array();
     for (std::size_t i = 0; i < lateness.counts().size(); ++i) {
         const bool last = i == LatenessHistogram::bounds_ms.size();
-        bins.push_back({{"below_ms", last ? Json(nullptr) : Json(LatenessHistogram::bounds_ms[i])}, {"epochs", lateness.counts()[i]}});
+        bins.push_back({{"below_ms", last ? Json(nullptr) : Json(LatenessHistogram::bounds_ms[i])},
+                        {"epochs", lateness.counts()[i]}});
     }
-    return {{"mean_ms", lateness.mean_ms()}, {"largest_ms", static_cast<double>(lateness.largest().count()) * 1e-6}, {"histogram", bins}};
+    return {{"mean_ms", lateness.mean_ms()},
+            {"largest_ms", static_cast<double>(lateness.largest().count()) * 1e-6},
+            {"histogram", bins}};
 }
 
 Json ports_json(const std::vector<Link>& links) {

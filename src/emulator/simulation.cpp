@@ -12,7 +12,8 @@ Trace Simulation::run(GpsTime time) {
     trace.truth = parts_.trajectory->at(time);
     trace.sky = view(trace.truth);
     trace.arrivals = free_space(trace.sky, parts_.carrier);
-    for (const auto& effect : parts_.effects) effect->apply(trace.arrivals, trace.sky, trace.truth);
+    for (const auto& effect : parts_.effects)
+        effect->apply(trace.arrivals, trace.sky, trace.truth);
     trace.epoch.fix = parts_.error_model->fix(trace.truth, trace.sky, trace.arrivals);
     return trace;
 }

@@ -9,8 +9,10 @@
 namespace skyloop {
 
 inline constexpr std::string_view fixes_header =
-    "time_utc,gps_week,tow_s,true_lat_deg,true_lon_deg,true_height_m,lat_deg,lon_deg,height_m,east_error_m,north_error_m,"
-    "up_error_m,vel_north_mps,vel_east_mps,vel_down_mps,speed_mps,course_deg,fix_type,satellites_used,satellites_visible,"
+    "time_utc,gps_week,tow_s,true_lat_deg,true_lon_deg,true_height_m,lat_deg,lon_deg,height_m,east_error_m,north_error_"
+    "m,"
+    "up_error_m,vel_north_mps,vel_east_mps,vel_down_mps,speed_mps,course_deg,fix_type,satellites_used,satellites_"
+    "visible,"
     "gdop,pdop,hdop,vdop,tdop,h_acc_m,v_acc_m\n";
 
 inline constexpr std::string_view satellites_header =

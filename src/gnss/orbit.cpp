@@ -11,7 +11,8 @@ namespace {
 double eccentric_anomaly(double mean_anomaly, double eccentricity) {
     double anomaly = mean_anomaly + eccentricity * std::sin(mean_anomaly);
     for (int i = 0; i < 20; ++i) {
-        const double step = (anomaly - eccentricity * std::sin(anomaly) - mean_anomaly) / (1 - eccentricity * std::cos(anomaly));
+        const double step =
+            (anomaly - eccentricity * std::sin(anomaly) - mean_anomaly) / (1 - eccentricity * std::cos(anomaly));
         anomaly -= step;
         if (std::abs(step) < 1e-14) break;
     }

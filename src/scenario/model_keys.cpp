@@ -33,7 +33,8 @@ void read_baseline(TableReader& table, ModelSettings& settings) {
     table.number("iono_fraction", p.iono_fraction, {0, 10});
     table.number("tropo_fraction", p.tropo_fraction, {0, 10});
     static constexpr std::array<Words, 2> axes{"isotropic", "covariance"};
-    if (const auto axis = table.choice("axes", axes)) p.axes = *axis == 0 ? NoiseAxes::isotropic : NoiseAxes::covariance;
+    if (const auto axis = table.choice("axes", axes))
+        p.axes = *axis == 0 ? NoiseAxes::isotropic : NoiseAxes::covariance;
 }
 
 void read_simple_models(TableReader& model, ModelSettings& settings) {
@@ -46,7 +47,9 @@ void read_simple_models(TableReader& model, ModelSettings& settings) {
         const auto sigma = table.numbers("sigma_m", settings.satellite_count.sigma_m.size());
         if (!sigma) return;
         if (*std::min_element(sigma->begin(), sigma->end()) < 0)
-            return table.mistake("sigma_m", "has a negative number; expected standard deviations for 4, 5, 6, 7, 8, 9 or more satellites");
+            return table.mistake(
+                "sigma_m",
+                "has a negative number; expected standard deviations for 4, 5, 6, 7, 8, 9 or more satellites");
         std::copy(sigma->begin(), sigma->end(), settings.satellite_count.sigma_m.begin());
     });
     model.table("whole-path", [&](TableReader& table) {
@@ -86,19 +89,22 @@ void read_layers(TableReader& atmosphere, AtmosphereParameters& p) {
         if (const auto mode = read_concentration(table)) layer.concentration = *mode;
         table.number("fixed_concentration", layer.fixed_concentration, {0, 10});
         if (layer.top <= layer.base)
-            table.mistake_here(fmt::format("top_m is {:g}; expected more than base_m, {:g}", layer.top.value(), layer.base.value()));
+            table.mistake_here(
+                fmt::format("top_m is {:g}; expected more than base_m, {:g}", layer.top.value(), layer.base.value()));
         p.layers.push_back(layer);
     });
     if (mode_of_all && !atmosphere.has("layer")) {
         p.layers = default_layers();
-        for (AtmosphericLayer& layer : p.layers) layer.concentration = *mode_of_all;
+        for (AtmosphericLayer& layer : p.layers)
+            layer.concentration = *mode_of_all;
     }
 }
 
 void read_clouds(TableReader& atmosphere, AtmosphereParameters& p) {
     const std::vector<CloudDeck>& catalogue = cloud_catalogue();
     std::vector<Words> kinds;
-    for (const CloudDeck& deck : catalogue) kinds.push_back(deck.kind);
+    for (const CloudDeck& deck : catalogue)
+        kinds.push_back(deck.kind);
     atmosphere.tables("cloud", [&](TableReader& table) {
         const auto kind = table.choice("kind", kinds);
         if (!table.has("kind")) table.mistake_here("has no kind; expected fog, stratus, … thunderstorm");
@@ -117,13 +123,16 @@ void read_rain(TableReader& atmosphere, AtmosphereParameters& p) {
     atmosphere.number("rain_mm_h", p.rain.rate_mm_h, {0, 500});
     atmosphere.quantity("rain_top_m", p.rain.top, {0, 30000});
     static constexpr std::array<Words, 2> models{"p838", "as_vapour"};
-    if (const auto model = atmosphere.choice("rain_model", models)) p.rain.model = *model == 0 ? RainModel::p838 : RainModel::as_vapour;
+    if (const auto model = atmosphere.choice("rain_model", models))
+        p.rain.model = *model == 0 ? RainModel::p838 : RainModel::as_vapour;
 }
 
 void read_environment(TableReader& atmosphere, AtmosphereParameters& p) {
     std::vector<Words> names;
-    for (const Environment& e : environment_catalogue()) names.push_back(e.name);
-    if (const auto index = atmosphere.choice("environment", names)) p.environment_noise = environment_catalogue()[*index].noise;
+    for (const Environment& e : environment_catalogue())
+        names.push_back(e.name);
+    if (const auto index = atmosphere.choice("environment", names))
+        p.environment_noise = environment_catalogue()[*index].noise;
     if (atmosphere.has("environment") && atmosphere.has("environment_noise_db"))
         atmosphere.mistake("environment_noise_db", "stands beside environment; expected one of the two");
     atmosphere.quantity("environment_noise_db", p.environment_noise, {0, 100});
@@ -144,11 +153,13 @@ void read_ionosphere(TableReader& atmosphere, AtmosphereParameters& p) {
 
 void read_model_keys(TableReader& model, ModelSettings& settings) {
     std::vector<Words> names;
-    for (const ErrorModelKind kind : error_model_kinds()) names.push_back(error_model_name(kind));
+    for (const ErrorModelKind kind : error_model_kinds())
+        names.push_back(error_model_name(kind));
     std::string name;
     model.text("name", name);
     if (name == "modern")
-        model.mistake("name", "the modern model is not in this version; expected baseline or one of the simpler models");
+        model.mistake("name",
+                      "the modern model is not in this version; expected baseline or one of the simpler models");
     else if (const auto kind = model.choice("name", names))
         settings.kind = error_model_kinds()[*kind];
     model.refuse("errors", "belongs to the modern model, which is not in this version");

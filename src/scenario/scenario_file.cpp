@@ -40,20 +40,23 @@ void read_run_keys(TableReader& run, RunSettings& settings) {
 void read_constellations(TableReader& sky, std::vector<Constellation>& constellations) {
     std::vector<std::string> names;
     sky.texts("constellations", names);
-    static constexpr std::array<std::string_view, 7> known{"gps", "galileo", "beidou", "glonass", "qzss", "sbas", "navic"};
+    static constexpr std::array<std::string_view, 7> known{"gps",  "galileo", "beidou", "glonass",
+                                                           "qzss", "sbas",    "navic"};
     for (const std::string& name : names) {
         const auto constellation = constellation_from_name(name);
         if (constellation)
             constellations.push_back(*constellation);
         else
-            sky.mistake("constellations", fmt::format("'{}' is not a constellation{}", name, did_you_mean(name, known)));
+            sky.mistake("constellations",
+                        fmt::format("'{}' is not a constellation{}", name, did_you_mean(name, known)));
     }
 }
 
 void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesystem::path& folder) {
     std::vector<std::string> files;
     sky.text_or_texts("navigation", files);
-    for (const std::string& file : files) settings.navigation.push_back(folder / file);
+    for (const std::string& file : files)
+        settings.navigation.push_back(folder / file);
     sky.boolean("rebase_navigation", settings.rebase_navigation);
     read_constellations(sky, settings.constellations);
     double mask = settings.elevation_mask.deg();
@@ -121,7 +124,8 @@ Result<void> read_toml(std::string_view text, const std::filesystem::path& file,
         return {};
     } catch (const toml::parse_error& error) {
         const auto where = error.source().begin;
-        return fail(ErrorCode::input, fmt::format("{}:{}:{}: {}", file.string(), where.line, where.column, error.description()));
+        return fail(ErrorCode::input,
+                    fmt::format("{}:{}:{}: {}", file.string(), where.line, where.column, error.description()));
     }
 }
 
@@ -131,7 +135,8 @@ Result<Scenario> read_scenario(std::string_view text, const std::filesystem::pat
     Scenario scenario;
     scenario.name = file.string();
     scenario.source = text;
-    const auto read = read_toml(text, file, [&](TableReader& top) { read_top_keys(top, scenario, file.parent_path()); });
+    const auto read =
+        read_toml(text, file, [&](TableReader& top) { read_top_keys(top, scenario, file.parent_path()); });
     if (!read) return fail(read.error());
     return scenario;
 }

@@ -13,13 +13,20 @@ namespace {
 
 std::string_view type_words(const toml::node& node) {
     switch (node.type()) {
-        case toml::node_type::string: return "a text";
-        case toml::node_type::integer: return "a whole number";
-        case toml::node_type::floating_point: return "a number";
-        case toml::node_type::boolean: return "true or false";
-        case toml::node_type::array: return "a list";
-        case toml::node_type::table: return "a table";
-        default: return "a date or time";
+        case toml::node_type::string:
+            return "a text";
+        case toml::node_type::integer:
+            return "a whole number";
+        case toml::node_type::floating_point:
+            return "a number";
+        case toml::node_type::boolean:
+            return "true or false";
+        case toml::node_type::array:
+            return "a list";
+        case toml::node_type::table:
+            return "a table";
+        default:
+            return "a date or time";
     }
 }
 
@@ -112,8 +119,8 @@ void TableReader::utc(std::string_view key, std::string& value) {
     known_.push_back(key);
     const toml::date_time& t = found->get();
     if (t.offset && t.offset->minutes != 0) return mistake(key, "has an offset from UTC; expected UTC, ending in Z");
-    value = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:09}Z", t.date.year, t.date.month, t.date.day, t.time.hour,
-                        t.time.minute, t.time.second, t.time.nanosecond);
+    value = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:09}Z", t.date.year, t.date.month, t.date.day,
+                        t.time.hour, t.time.minute, t.time.second, t.time.nanosecond);
 }
 
 void TableReader::texts(std::string_view key, std::vector<std::string>& values) {
@@ -165,11 +172,14 @@ std::optional<Geodetic> TableReader::place(std::string_view key) {
     const double latitude = (*values)[0];
     const double longitude = (*values)[1];
     const double height = count == 3 ? (*values)[2] : 0;
-    if (std::abs(latitude) > 90) return mistake(key, fmt::format("latitude is {}; expected -90 to 90 degrees", latitude)), std::nullopt;
+    if (std::abs(latitude) > 90)
+        return mistake(key, fmt::format("latitude is {}; expected -90 to 90 degrees", latitude)), std::nullopt;
     if (std::abs(longitude) > 360)
         return mistake(key, fmt::format("longitude is {}; expected -180 to 180 degrees", longitude)), std::nullopt;
     if (height < -1e4 || height > 1e7)
-        return mistake(key, fmt::format("height is {}; expected metres above the ellipsoid, -10 000 to 10 000 000", height)), std::nullopt;
+        return mistake(key,
+                       fmt::format("height is {}; expected metres above the ellipsoid, -10 000 to 10 000 000", height)),
+               std::nullopt;
     return Geodetic::degrees(latitude, std::remainder(longitude, 360), height);
 }
 
@@ -179,7 +189,8 @@ std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<c
     if (word.empty()) return std::nullopt;
     const auto found = std::find(words.begin(), words.end(), word);
     if (found == words.end()) {
-        mistake(key, fmt::format("is '{}'; expected one of {}{}", word, fmt::join(words, " "), did_you_mean(word, words)));
+        mistake(key,
+                fmt::format("is '{}'; expected one of {}{}", word, fmt::join(words, " "), did_you_mean(word, words)));
         return std::nullopt;
     }
     return static_cast<std::size_t>(found - words.begin());

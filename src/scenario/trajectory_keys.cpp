@@ -18,7 +18,8 @@ public:
         const std::string level_key = key + "_level";
         const auto on_earth = table.place(key);
         const auto in_level = table.numbers(level_key, 3);
-        if (on_earth && in_level) table.mistake(level_key, fmt::format("stands beside {}; expected one of the two", key));
+        if (on_earth && in_level)
+            table.mistake(level_key, fmt::format("stands beside {}; expected one of the two", key));
         if (!in_level) return on_earth;
         if (!level_) {
             table.mistake(level_key, "needs a [frame] that says where the level lies");
@@ -32,12 +33,13 @@ public:
 private:
     void warn_beyond_reach(const Position<Level>& point) {
         const LevelPlacement& placement = level_->placement();
-        scenario_.warnings.push_back(fmt::format(
-            "level point ({:g}, {:g}, {:g}) lies {:.0f} m from the frame's origin; beyond {:.0f} m a plane leaves the curved "
-            "Earth (by {:.1f} m there): anchor the frame nearer",
-            point.vector().x(), point.vector().y(), point.vector().z(),
-            point.vector().head<2>().norm() * placement.unit.value(), placement.reach.value(),
-            point.vector().head<2>().squaredNorm() * std::pow(placement.unit.value(), 2) / (2 * 6371e3)));
+        scenario_.warnings.push_back(
+            fmt::format("level point ({:g}, {:g}, {:g}) lies {:.0f} m from the frame's origin; beyond {:.0f} m a plane "
+                        "leaves the curved "
+                        "Earth (by {:.1f} m there): anchor the frame nearer",
+                        point.vector().x(), point.vector().y(), point.vector().z(),
+                        point.vector().head<2>().norm() * placement.unit.value(), placement.reach.value(),
+                        point.vector().head<2>().squaredNorm() * std::pow(placement.unit.value(), 2) / (2 * 6371e3)));
     }
 
     std::optional<LevelFrame> level_;
@@ -85,8 +87,8 @@ void read_waypoints(TableReader& table, PlaceReader& places, TrajectorySettings&
         path.corners.push_back(corner);
     });
     if (path.corners.size() < 2)
-        table.mistake_here(fmt::format("kind \"waypoints\" has {} waypoints; expected two or more [[trajectory.waypoint]]",
-                                       path.corners.size()));
+        table.mistake_here(fmt::format(
+            "kind \"waypoints\" has {} waypoints; expected two or more [[trajectory.waypoint]]", path.corners.size()));
     trajectory = path;
 }
 
@@ -111,16 +113,26 @@ void read_trajectory_keys(TableReader& top, Scenario& scenario) {
     top.table("trajectory", [&](TableReader& table) {
         static constexpr std::array<std::string_view, 5> kinds{"fixed", "waypoints", "circle", "file", "live"};
         const auto kind = table.choice("kind", kinds);
-        if (!table.has("kind")) table.mistake_here("has no kind; expected kind = \"fixed\", \"waypoints\" or \"circle\"");
+        if (!table.has("kind"))
+            table.mistake_here("has no kind; expected kind = \"fixed\", \"waypoints\" or \"circle\"");
         switch (kind.value_or(kinds.size())) {
-            case 0: return read_fixed(table, places, scenario.trajectory);
-            case 1: return read_waypoints(table, places, scenario.trajectory);
-            case 2: return read_circle(table, places, scenario.trajectory);
-            case 3: table.refuse("path", "recorded trajectories are not in this version"); break;
-            case 4: table.refuse("source", "live trajectories are not in this version"); break;
-            default: return;
+            case 0:
+                return read_fixed(table, places, scenario.trajectory);
+            case 1:
+                return read_waypoints(table, places, scenario.trajectory);
+            case 2:
+                return read_circle(table, places, scenario.trajectory);
+            case 3:
+                table.refuse("path", "recorded trajectories are not in this version");
+                break;
+            case 4:
+                table.refuse("source", "live trajectories are not in this version");
+                break;
+            default:
+                return;
         }
-        table.mistake("kind", "recorded and live trajectories are not in this version; expected fixed, waypoints or circle");
+        table.mistake("kind",
+                      "recorded and live trajectories are not in this version; expected fixed, waypoints or circle");
     });
 }
 

@@ -15,8 +15,8 @@ namespace {
 TruthState state_at(GpsTime time, const Geodetic& place, const Eigen::Vector3d& motion) {
     const CurvatureRadii radii = curvature_radii(place.latitude);
     const double height = place.height.above_ellipsoid.value();
-    const Velocity<Enu> velocity(motion.x() * (1 + height / radii.prime_vertical), motion.y() * (1 + height / radii.meridian),
-                                 motion.z());
+    const Velocity<Enu> velocity(motion.x() * (1 + height / radii.prime_vertical),
+                                 motion.y() * (1 + height / radii.meridian), motion.z());
     TruthState state;
     state.time = time;
     state.geodetic = place;
@@ -39,7 +39,8 @@ Waypoints::Waypoints(GpsTime start, std::vector<Waypoint> corners) : start_(star
     double clock = 0;
     for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
         const GeodesicLeg leg = geodesic_between(corners[i].place, corners[i + 1].place);
-        const double climb = (corners[i + 1].place.height.above_ellipsoid - corners[i].place.height.above_ellipsoid).value();
+        const double climb =
+            (corners[i + 1].place.height.above_ellipsoid - corners[i].place.height.above_ellipsoid).value();
         // A leg straight up or down has no length over ground: its speed is then the climb's.
         const double way = leg.length.value() > 1e-3 ? leg.length.value() : std::abs(climb);
         clock += corners[i].hold.value();

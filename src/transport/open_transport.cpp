@@ -46,9 +46,12 @@ Result<std::unique_ptr<Transport>> open_transport(std::string_view uri) {
     const auto port = parse_port_uri(uri);
     if (!port) return fail(port.error());
     switch (port->kind) {
-        case WireKind::pty: return as_transport(port->path.empty() ? PtyTransport::open() : PtyTransport::open(port->path));
-        case WireKind::file: return as_transport(FileTransport::open(port->path));
-        case WireKind::standard_output: break;
+        case WireKind::pty:
+            return as_transport(port->path.empty() ? PtyTransport::open() : PtyTransport::open(port->path));
+        case WireKind::file:
+            return as_transport(FileTransport::open(port->path));
+        case WireKind::standard_output:
+            break;
     }
     return std::unique_ptr<Transport>(FileTransport::standard_output());
 }

@@ -65,7 +65,8 @@ void epoch(benchmark::State& state, ErrorModelKind kind) {
         in_view = simulation.run(time).sky.satellites.size();
     }
     state.counters["in_view"] = static_cast<double>(in_view);
-    state.counters["epochs/s"] = benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+    state.counters["epochs/s"] =
+        benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 BENCHMARK_CAPTURE(epoch, baseline, ErrorModelKind::baseline);
 BENCHMARK_CAPTURE(epoch, ideal, ErrorModelKind::ideal);
@@ -77,11 +78,13 @@ void nmea_sentences(benchmark::State& state) {
     const Epoch one = simulation->run(bench_start).epoch;
     firmware::BoardProfile board;
     board.constellations = {Constellation::gps};
-    for (int i = 0; i < 8; ++i) board.sentences.push_back({static_cast<firmware::NmeaSentence>(i), 1});
+    for (int i = 0; i < 8; ++i)
+        board.sentences.push_back({static_cast<firmware::NmeaSentence>(i), 1});
     firmware::NmeaHandler handler(board);
     std::uint64_t count = 0;
     std::uint64_t index = 0;
-    for (auto _ : state) count += handler.sentences(one, index++).size();
+    for (auto _ : state)
+        count += handler.sentences(one, index++).size();
     state.counters["sentences/s"] = benchmark::Counter(static_cast<double>(count), benchmark::Counter::kIsRate);
 }
 BENCHMARK(nmea_sentences);

@@ -24,11 +24,11 @@ std::vector<std::filesystem::path> board_folders(const DataFolders& data);
 
 /// How a run is driven.
 struct RunMode {
-    bool virtual_time = false;                         ///< as fast as possible, on the virtual clock
-    GpsTime now{};                                     ///< the wall clock at start, GPST
-    std::int64_t now_steady_ns = 0;                    ///< the steady clock at that instant
-    std::optional<std::filesystem::path> record;       ///< where to keep the recording
-    bool open_ports = true;                            ///< false: no wires, the recording alone
+    bool virtual_time = false;                    ///< as fast as possible, on the virtual clock
+    GpsTime now{};                                ///< the wall clock at start, GPST
+    std::int64_t now_steady_ns = 0;               ///< the steady clock at that instant
+    std::optional<std::filesystem::path> record;  ///< where to keep the recording
+    bool open_ports = true;                       ///< false: no wires, the recording alone
 };
 
 /// A run ready to go, and what its user should be told first.
@@ -37,7 +37,7 @@ struct Assembly {
     std::unique_ptr<Emulator> emulator;
     GpsTime start;
     std::optional<GpsTime> end;
-    std::string digest;            ///< of everything that decides the bytes: scenario, seed, navigation, board
+    std::string digest;  ///< of everything that decides the bytes: scenario, seed, navigation, board
     std::vector<std::string> warnings;
 };
 

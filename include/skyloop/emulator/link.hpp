@@ -11,10 +11,10 @@ namespace skyloop {
 
 /// What has crossed one wire.
 struct LinkCounters {
-    std::uint64_t bytes_out = 0;       ///< taken by the wire while a client listened
-    std::uint64_t bytes_unheard = 0;   ///< sent while nobody listened
-    std::uint64_t bytes_lost = 0;      ///< the client did not read in time
-    std::uint64_t bytes_garbled = 0;   ///< sent at another speed than the client's
+    std::uint64_t bytes_out = 0;      ///< taken by the wire while a client listened
+    std::uint64_t bytes_unheard = 0;  ///< sent while nobody listened
+    std::uint64_t bytes_lost = 0;     ///< the client did not read in time
+    std::uint64_t bytes_garbled = 0;  ///< sent at another speed than the client's
     std::uint64_t bytes_in = 0;
 };
 

@@ -13,9 +13,9 @@ namespace skyloop {
 struct Arrival {
     SatelliteId id;
     bool line_of_sight = true;
-    int paths = 1;           ///< rays that arrive; 0: the satellite is hidden
-    int reflections = 0;     ///< of the shortest path
-    Metres excess_path;      ///< of the shortest path over the direct one
+    int paths = 1;        ///< rays that arrive; 0: the satellite is hidden
+    int reflections = 0;  ///< of the shortest path
+    Metres excess_path;   ///< of the shortest path over the direct one
     Metres iono_delay;
     Metres tropo_delay;
     Decibels free_space_loss;

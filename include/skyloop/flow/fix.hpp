@@ -18,14 +18,22 @@ enum class FixType { none, dead_reckoning, fix_2d, fix_3d, dgnss, rtk_float, rtk
 /// "none", "2d", "3d", … as in fixes.csv.
 constexpr std::string_view fix_type_name(FixType type) {
     switch (type) {
-        case FixType::none: return "none";
-        case FixType::dead_reckoning: return "dead_reckoning";
-        case FixType::fix_2d: return "2d";
-        case FixType::fix_3d: return "3d";
-        case FixType::dgnss: return "dgnss";
-        case FixType::rtk_float: return "rtk_float";
-        case FixType::rtk_fixed: return "rtk_fixed";
-        case FixType::time_only: return "time_only";
+        case FixType::none:
+            return "none";
+        case FixType::dead_reckoning:
+            return "dead_reckoning";
+        case FixType::fix_2d:
+            return "2d";
+        case FixType::fix_3d:
+            return "3d";
+        case FixType::dgnss:
+            return "dgnss";
+        case FixType::rtk_float:
+            return "rtk_float";
+        case FixType::rtk_fixed:
+            return "rtk_fixed";
+        case FixType::time_only:
+            return "time_only";
     }
     return "none";
 }
@@ -48,12 +56,12 @@ struct SatelliteStatus {
 struct Fix {
     GpsTime time;
     FixType type = FixType::none;
-    int leap_seconds = 18;    ///< GPST − UTC that the receiver believes, s
+    int leap_seconds = 18;  ///< GPST − UTC that the receiver believes, s
     Geodetic position;
     Metres geoid_undulation;  ///< of the receiver's own geoid at `position`
     VelocityNed velocity;
-    MetresPerSecond speed;    ///< over ground
-    Angle course;             ///< 0 … 360°
+    MetresPerSecond speed;  ///< over ground
+    Angle course;           ///< 0 … 360°
     Dop dop;
     Metres horizontal_accuracy;  ///< 1 σ estimate, horizontal
     Metres vertical_accuracy;
@@ -62,7 +70,8 @@ struct Fix {
     [[nodiscard]] bool has_position() const { return type != FixType::none && type != FixType::time_only; }
     [[nodiscard]] int satellites_used() const {
         int count = 0;
-        for (const SatelliteStatus& s : satellites) count += s.used ? 1 : 0;
+        for (const SatelliteStatus& s : satellites)
+            count += s.used ? 1 : 0;
         return count;
     }
 };

@@ -12,15 +12,15 @@ namespace skyloop {
 /// One satellite above the horizon, seen with light time and Earth rotation.
 struct SatelliteInView {
     SatelliteId id;
-    Angle azimuth;                              ///< 0 … 360°
+    Angle azimuth;  ///< 0 … 360°
     Angle elevation;
-    Metres range;                               ///< geometric, in the frame of the reception instant
-    MetresPerSecond range_rate;                 ///< derivative of the light-time range, receiver motion included
+    Metres range;                ///< geometric, in the frame of the reception instant
+    MetresPerSecond range_rate;  ///< derivative of the light-time range, receiver motion included
     Seconds travel_time;
-    Position<Ecef> position_at_transmission;    ///< in the ECEF frame of the transmission instant
+    Position<Ecef> position_at_transmission;  ///< in the ECEF frame of the transmission instant
     Velocity<Ecef> velocity_at_transmission;
-    Seconds clock_bias;                         ///< satellite clock − GPST, relativity included
-    double clock_drift = 0;                     ///< s/s
+    Seconds clock_bias;      ///< satellite clock − GPST, relativity included
+    double clock_drift = 0;  ///< s/s
     Seconds group_delay;
     GpsTime toe;
     int iode = 0;

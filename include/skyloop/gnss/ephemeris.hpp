@@ -12,7 +12,7 @@ struct KeplerEphemeris {
     GpsTime toe;  ///< reference time of the orbit
     GpsTime toc;  ///< reference time of the clock
 
-    double sqrt_a = 0;     ///< √m
+    double sqrt_a = 0;  ///< √m
     double e = 0;
     double i0 = 0;
     double idot = 0;       ///< rad/s
@@ -20,7 +20,7 @@ struct KeplerEphemeris {
     double omega = 0;      ///< argument of perigee
     double omega_dot = 0;  ///< rad/s
     double m0 = 0;
-    double delta_n = 0;    ///< rad/s
+    double delta_n = 0;                                           ///< rad/s
     double cuc = 0, cus = 0, crc = 0, crs = 0, cic = 0, cis = 0;  ///< rad, rad, m, m, rad, rad
 
     double af0 = 0, af1 = 0, af2 = 0;  ///< s, s/s, s/s²
@@ -28,8 +28,8 @@ struct KeplerEphemeris {
 
     int iode = 0;
     int iodc = 0;
-    int health = 0;        ///< 0: healthy
-    double accuracy_m = 0; ///< user range accuracy, m
+    int health = 0;         ///< 0: healthy
+    double accuracy_m = 0;  ///< user range accuracy, m
     double fit_interval_h = 0;
     [[nodiscard]] bool healthy() const { return health == 0; }
 };

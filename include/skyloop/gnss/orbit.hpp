@@ -10,9 +10,9 @@ namespace skyloop {
 struct SatelliteState {
     Position<Ecef> position;
     Velocity<Ecef> velocity;
-    double clock_bias = 0;        ///< satellite clock − GPST, s, relativity included, group delay not
-    double clock_drift = 0;       ///< s/s, relativity included
-    double relativistic_bias = 0; ///< the eccentricity term alone, s
+    double clock_bias = 0;         ///< satellite clock − GPST, s, relativity included, group delay not
+    double clock_drift = 0;        ///< s/s, relativity included
+    double relativistic_bias = 0;  ///< the eccentricity term alone, s
 };
 
 /// Orbit and clock by the user algorithm of IS-GPS-200 (20.3.3.4.3.1 and 20.3.3.3.3.1), velocity by its derivative

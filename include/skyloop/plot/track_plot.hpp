@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
-#include "skyloop/sky/satellite_tracks.hpp"
 #include "skyloop/plot/svg_document.hpp"
+#include "skyloop/sky/satellite_tracks.hpp"
 
 namespace skyloop {
 

@@ -20,11 +20,11 @@
 namespace skyloop {
 
 struct RunSettings {
-    std::optional<GpsTime> start;       ///< nothing: now, or the first epoch of the navigation data
+    std::optional<GpsTime> start;  ///< nothing: now, or the first epoch of the navigation data
     bool start_now = false;
-    std::optional<Seconds> duration;    ///< nothing: until stopped
+    std::optional<Seconds> duration;  ///< nothing: until stopped
     std::uint64_t seed = 1;
-    double speed = 1;                   ///< simulated seconds per second
+    double speed = 1;  ///< simulated seconds per second
 };
 
 struct SkySettings {
@@ -32,7 +32,7 @@ struct SkySettings {
     bool rebase_navigation = false;                 ///< move the data to the start time, keeping its time of day
     std::vector<Constellation> constellations;      ///< empty: all in the data
     Angle elevation_mask = Angle::degrees(5);
-    std::optional<EphemerisRule> ephemeris_rule;    ///< nothing: the model's own rule
+    std::optional<EphemerisRule> ephemeris_rule;  ///< nothing: the model's own rule
     Seconds ephemeris_validity{7200};
 };
 
@@ -62,22 +62,22 @@ struct ModelSettings {
 /// One emulated receiver and its wires.
 struct ReceiverEntry {
     std::string board = "ublox-m8";
-    std::vector<std::string> ports;           ///< URIs; empty: one pty
-    std::optional<double> rate_hz;            ///< nothing: the board's
-    std::optional<std::uint32_t> baud;        ///< nothing: the board's
-    std::vector<std::string> sentences;       ///< empty: the board's
+    std::vector<std::string> ports;      ///< URIs; empty: one pty
+    std::optional<double> rate_hz;       ///< nothing: the board's
+    std::optional<std::uint32_t> baud;   ///< nothing: the board's
+    std::vector<std::string> sentences;  ///< empty: the board's
 };
 
 struct Scenario {
     std::string name = "embedded defaults";
-    std::string source;                       ///< the text it was read from and the options laid over it, for a digest
+    std::string source;  ///< the text it was read from and the options laid over it, for a digest
     RunSettings run;
     SkySettings sky;
     TrajectorySettings trajectory = FixedSettings{};
     ModelSettings model;
     AtmosphereParameters atmosphere;
     ReceiverEntry receiver;
-    std::vector<std::string> warnings;        ///< what a reader should be told, e.g. a level that is too large for a plane
+    std::vector<std::string> warnings;  ///< what a reader should be told, e.g. a level that is too large for a plane
 };
 
 }  // namespace skyloop

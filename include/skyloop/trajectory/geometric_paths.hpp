@@ -41,9 +41,9 @@ private:
         Waypoint from;
         Geodetic to;
         Angle azimuth;
-        double length = 0;    ///< over ground, m
-        double departs = 0;   ///< s after the start
-        double arrives = 0;   ///< s after the start
+        double length = 0;   ///< over ground, m
+        double departs = 0;  ///< s after the start
+        double arrives = 0;  ///< s after the start
     };
     GpsTime start_;
     std::vector<Leg> legs_;

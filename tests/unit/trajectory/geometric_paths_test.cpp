@@ -33,7 +33,8 @@ TEST(Waypoints, RunsItsLegsAtTheirSpeedsAndHolds) {
     const Geodetic a = Geodetic::degrees(47, 8, 400);
     const Geodetic b = Geodetic::degrees(47.01, 8, 500);
     const Geodetic c = Geodetic::degrees(47.01, 8.02, 500);
-    const Waypoints path(path_start, {{a, MetresPerSecond(20), Seconds(5)}, {b, MetresPerSecond(10), Seconds(3)}, {c, {}, {}}});
+    const Waypoints path(path_start,
+                         {{a, MetresPerSecond(20), Seconds(5)}, {b, MetresPerSecond(10), Seconds(3)}, {c, {}, {}}});
     EXPECT_EQ(path.at(advanced(path_start, Seconds(4))).velocity.vector().norm(), 0);
     const LocalFrame frame(a);
     const TruthState moving = path.at(advanced(path_start, Seconds(10)));
@@ -41,7 +42,8 @@ TEST(Waypoints, RunsItsLegsAtTheirSpeedsAndHolds) {
     EXPECT_NEAR(v.y(), 20, 0.01);
     EXPECT_NEAR(std::hypot(v.x(), v.y()), 20, 0.01);
     EXPECT_GT(v.z(), 1);
-    for (const double t : {10.0, 40.0, 80.0, 150.0}) expect_consistent(path, advanced(path_start, Seconds(t)));
+    for (const double t : {10.0, 40.0, 80.0, 150.0})
+        expect_consistent(path, advanced(path_start, Seconds(t)));
     const TruthState end = path.at(advanced(path_start, path.duration() + Seconds(100)));
     EXPECT_NEAR(end.geodetic.longitude.deg(), 8.02, 1e-9);
     EXPECT_EQ(end.velocity.vector().norm(), 0);
