@@ -42,8 +42,10 @@ public:
             if (distance <= same_orbit_m) parent_[root(i)] = root(j);
         });
         size_.assign(records_.size(), 0);
-        for (std::size_t i = 0; i < records_.size(); ++i)
-            ++size_[root(i)];
+        for (std::size_t i = 0; i < records_.size(); ++i) {
+            parent_[i] = root(i);
+            ++size_[parent_[i]];
+        }
     }
 
     // What a record contradicts: the largest other cluster that has a record near in time somewhere else.
@@ -55,13 +57,13 @@ public:
     [[nodiscard]] std::vector<Contradiction> contradictions() const {
         std::vector<Contradiction> worst(records_.size());
         for_each_pair([&](std::size_t i, std::size_t j, double distance) {
-            if (root(i) == root(j)) return;
+            if (parent_[i] == parent_[j]) return;
             note(worst[i], i, j, distance);
             note(worst[j], j, i, distance);
         });
         return worst;
     }
-    [[nodiscard]] std::size_t cluster_size(std::size_t i) const { return size_[root(i)]; }
+    [[nodiscard]] std::size_t cluster_size(std::size_t i) const { return size_[parent_[i]]; }
     [[nodiscard]] const KeplerEphemeris& record(std::size_t i) const { return *records_[i]; }
     [[nodiscard]] std::size_t size() const { return records_.size(); }
 
@@ -85,20 +87,32 @@ private:
     }
 
     std::vector<const KeplerEphemeris*> records_;
-    std::vector<std::size_t> parent_;
+    std::vector<std::size_t> parent_;  // after construction: the root of each record's cluster
     std::vector<std::size_t> size_;
 };
 
+// Records of each satellite, ascending by toe.
+using RecordsBySatellite = std::map<SatelliteId, std::vector<const KeplerEphemeris*>>;
+
+const KeplerEphemeris& nearest_record(const std::vector<const KeplerEphemeris*>& records, GpsTime time) {
+    const auto next = std::lower_bound(records.begin(), records.end(), time,
+                                       [](const KeplerEphemeris* r, GpsTime t) { return r->toe < t; });
+    if (next == records.end()) return *records.back();
+    if (next == records.begin() || (*next)->toe - time < time - (*(next - 1))->toe) return **next;
+    return **(next - 1);
+}
+
 // The satellite, other than its own, whose orbit the record describes.
-std::optional<SatelliteId> owner(const KeplerEphemeris& record, const std::vector<KeplerEphemeris>& all) {
+std::optional<SatelliteId> owner(const KeplerEphemeris& record, const RecordsBySatellite& all) {
     std::optional<SatelliteId> nearest;
     double smallest = same_orbit_m;
-    for (const KeplerEphemeris& other : all) {
-        if (other.satellite == record.satellite || !comparable(record, other)) continue;
+    for (const auto& [satellite, records] : all) {
+        const KeplerEphemeris& other = nearest_record(records, record.toe);
+        if (satellite == record.satellite || !comparable(record, other)) continue;
         const double distance = distance_between(record, other);
         if (distance >= smallest) continue;
         smallest = distance;
-        nearest = other.satellite;
+        nearest = satellite;
     }
     return nearest;
 }
@@ -112,7 +126,7 @@ std::string foreign_sentence(const KeplerEphemeris& record, double distance, std
 }
 
 // The foreign records among those of one satellite.
-void find_foreign(const Clusters& own, const std::vector<KeplerEphemeris>& all,
+void find_foreign(const Clusters& own, const RecordsBySatellite& all,
                   std::map<const KeplerEphemeris*, std::string>& found) {
     const std::vector<Clusters::Contradiction> contradictions = own.contradictions();
     for (std::size_t i = 0; i < own.size(); ++i) {
@@ -134,10 +148,8 @@ std::vector<DroppedRecord> drop_foreign_records(std::vector<KeplerEphemeris>& re
         satellites[r.satellite].push_back(&r);
 
     std::map<const KeplerEphemeris*, std::string> found;
-    for (auto& [satellite, own] : satellites) {
-        std::stable_sort(own.begin(), own.end(), [](const auto* a, const auto* b) { return a->toe < b->toe; });
-        find_foreign(Clusters(own), records, found);
-    }
+    for (const auto& [satellite, own] : satellites)
+        find_foreign(Clusters(own), satellites, found);
 
     std::vector<DroppedRecord> dropped;
     std::vector<KeplerEphemeris> kept;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <tuple>
 
 #include "skyloop/gnss/constants.hpp"
@@ -15,21 +16,26 @@ namespace {
 
 constexpr std::chrono::days one_day{1};
 
-bool toe_before(const KeplerEphemeris& record, GpsTime time) { return record.toe < time; }
 bool time_before_toe(GpsTime time, const KeplerEphemeris& record) { return time < record.toe; }
 
-std::vector<SatelliteRecords> by_satellite(std::vector<KeplerEphemeris> records) {
-    std::stable_sort(records.begin(), records.end(), [](const KeplerEphemeris& a, const KeplerEphemeris& b) {
-        return std::tie(a.satellite, a.toe) < std::tie(b.satellite, b.toe);
+std::vector<SatelliteRecords> by_satellite(const std::vector<KeplerEphemeris>& records) {
+    std::vector<std::size_t> order(records.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto issue = [&](std::size_t i) { return std::tie(records[i].satellite, records[i].toe, records[i].iode); };
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return issue(a) != issue(b) ? issue(a) < issue(b) : a > b; });
+    order.erase(
+        std::unique(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return issue(a) == issue(b); }),
+        order.end());
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return std::tie(records[a].satellite, records[a].toe, a) < std::tie(records[b].satellite, records[b].toe, b);
     });
+
     std::vector<SatelliteRecords> satellites;
-    for (KeplerEphemeris& record : records) {
-        if (satellites.empty() || satellites.back().satellite != record.satellite)
-            satellites.push_back({record.satellite, {}});
-        std::vector<KeplerEphemeris>& own = satellites.back().records;
-        const auto same_toe = std::lower_bound(own.begin(), own.end(), record.toe, toe_before);
-        own.erase(std::remove_if(same_toe, own.end(), [&](const auto& r) { return r.iode == record.iode; }), own.end());
-        own.push_back(std::move(record));
+    for (const std::size_t i : order) {
+        if (satellites.empty() || satellites.back().satellite != records[i].satellite)
+            satellites.push_back({records[i].satellite, {}});
+        satellites.back().records.push_back(records[i]);
     }
     return satellites;
 }
@@ -44,9 +50,10 @@ std::int64_t floor_days(Nanoseconds span) { return std::chrono::floor<std::chron
 
 }  // namespace
 
-NavigationData::NavigationData(std::vector<KeplerEphemeris> records, std::optional<KlobucharCoefficients> klobuchar,
-                               std::string description, EphemerisSelection selection)
-    : satellites_(by_satellite(std::move(records))),
+NavigationData::NavigationData(const std::vector<KeplerEphemeris>& records,
+                               std::optional<KlobucharCoefficients> klobuchar, std::string description,
+                               EphemerisSelection selection)
+    : satellites_(by_satellite(records)),
       klobuchar_(klobuchar),
       description_(std::move(description)),
       selection_(selection) {}
@@ -148,7 +155,7 @@ Result<NavigationData> rebased(const NavigationData& data, GpsTime start) {
     for (const SatelliteRecords& s : data.records())
         for (const KeplerEphemeris& r : s.records)
             records.push_back(moved_by_days(r, best_days));
-    return NavigationData(std::move(records), data.klobuchar(), data.description(), data.selection());
+    return NavigationData(records, data.klobuchar(), data.description(), data.selection());
 }
 
 }  // namespace skyloop

@@ -28,7 +28,7 @@ class NavigationData : public NavigationSource {
 public:
     /// @param records in any order; repetitions of one (satellite, toe, iode) are kept once, the last of them
     /// @param description for people: the name of the file or files
-    NavigationData(std::vector<KeplerEphemeris> records, std::optional<KlobucharCoefficients> klobuchar,
+    NavigationData(const std::vector<KeplerEphemeris>& records, std::optional<KlobucharCoefficients> klobuchar,
                    std::string description, EphemerisSelection selection = {});
 
     [[nodiscard]] std::vector<SatelliteId> satellites() const override;
