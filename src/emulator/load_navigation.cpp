@@ -56,6 +56,15 @@ GpsTime start_of(const Scenario& scenario, const NavigationSource& source, GpsTi
     return span->first;
 }
 
+// Nanoseconds since 1980 end in 2272; every computation of a run stays well before that.
+Result<void> check_end(const Scenario& scenario, GpsTime start) {
+    constexpr GpsTime latest_end{std::chrono::days(270 * 365)};
+    if (!scenario.run.duration || difference(latest_end, start) > *scenario.run.duration) return {};
+    return fail(ErrorCode::usage,
+                fmt::format("a run of {:g} s from {} does not end before 2249; expected a shorter one",
+                            scenario.run.duration->value(), format_utc(to_utc(start, LeapSeconds::announced()), 0)));
+}
+
 std::string span_text(const TimeSpan& span) {
     const LeapSeconds& leap = LeapSeconds::announced();
     return fmt::format("{} to {}", format_utc(to_utc(span.first, leap), 0), format_utc(to_utc(span.last, leap), 0));
@@ -81,6 +90,7 @@ Result<LoadedNavigation> load_nominal(const Scenario& scenario, GpsTime now, boo
         return fail(ErrorCode::usage, "--rebase-nav moves navigation data, but there is none; give it with --nav");
     LoadedNavigation loaded{std::make_unique<NominalConstellation>(), {}, {}};
     loaded.start = start_of(scenario, *loaded.source, now, default_to_now);
+    if (const auto ends = check_end(scenario, loaded.start); !ends) return fail(ends.error());
     return loaded;
 }
 
@@ -98,6 +108,7 @@ Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, 
 
     NavigationData data(std::move(all->records), all->klobuchar, all->description, selection_of(scenario));
     loaded.start = start_of(scenario, data, now, default_to_now);
+    if (const auto ends = check_end(scenario, loaded.start); !ends) return fail(ends.error());
     if (scenario.sky.rebase_navigation) {
         auto moved = rebased(data, loaded.start);
         if (!moved) return fail(moved.error());

@@ -29,6 +29,7 @@ private:
     struct Mistake {
         toml::source_index line, column;
         std::string sentence;
+        bool operator==(const Mistake&) const = default;
     };
     std::string file_;
     std::vector<Mistake> mistakes_;
@@ -61,7 +62,7 @@ public:
     /// [latitude, longitude] or [latitude, longitude, height]: degrees, metres above the ellipsoid.
     std::optional<Geodetic> place(std::string_view key);
     /// A UTC time as ISO 8601 text, given as a text or as a TOML date and time.
-    void utc(std::string_view key, std::string& value);
+    std::optional<std::string> utc(std::string_view key);
     /// One of the given words; gives its index.
     std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> words);
 
@@ -94,7 +95,7 @@ private:
     const toml::table& table_;
     std::string path_;
     MistakeList& mistakes_;
-    std::vector<std::string_view> known_;
+    std::vector<std::string> known_;  // copies: a caller may compose a key
 };
 
 }  // namespace skyloop
