@@ -1,11 +1,10 @@
 #include "skyloop/emulator/pacer.hpp"
 
 #include <sys/prctl.h>
-#include <time.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <ctime>
 
 namespace skyloop {
 namespace {

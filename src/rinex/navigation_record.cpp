@@ -99,18 +99,21 @@ private:
         if (year && major_ == 2) year = *year + (*year >= 80 ? 1900 : 2000);
         const auto month = part(1), day = part(2), hour = part(3), minute = part(4);
         const std::optional<double> second = real_field(columns(text, year_width + 12, text.size()));
-        if (!year || !month || !day || !hour || !minute || !second ||
-            !valid(*year, *month, *day, *hour, *minute, *second))
+        if (!year || !month || !day || !hour || !minute || !second || !valid_date(*year, *month, *day) ||
+            !valid_clock(*hour, *minute, *second))
             return defect(0, layout_.epoch, in_quotes(text), "a calendar epoch from 1980 to 2099");
         eph_.toc = gps_calendar_time(*year, static_cast<unsigned>(*month), static_cast<unsigned>(*day),
                                      static_cast<unsigned>(*hour), static_cast<unsigned>(*minute), *second);
     }
 
-    static bool valid(int year, int month, int day, int hour, int minute, double second) {
-        using namespace std::chrono;
-        if (month < 1 || day < 1 || hour < 0 || hour > 24 || minute < 0 || minute > 60) return false;
-        const bool date = (std::chrono::year(year) / month / day).ok();
-        return date && year >= 1980 && year < 2100 && second >= 0 && second <= 60;
+    static bool valid_date(int year, int month, int day) {
+        if (month < 1 || day < 1 || year < 1980 || year >= 2100) return false;
+        return (std::chrono::year(year) / month / day).ok();
+    }
+
+    // Some writers round up to hour 24, minute 60 or second 60.
+    static bool valid_clock(int hour, int minute, double second) {
+        return hour >= 0 && hour <= 24 && minute >= 0 && minute <= 60 && second >= 0 && second <= 60;
     }
 
     // toe is the instant with that time of week that lies nearest to the clock's epoch; the week must tell of the same.

@@ -68,6 +68,30 @@ TEST(Orbit, AgreesWithTheOracleAcrossTheEndOfTheWeek) {
     EXPECT_EQ(check_orbits("orbit_week_rollover.csv"), shared_oracles_present() ? 3 : 2);
 }
 
+// An almanac is an ephemeris without corrections whose node, too, is that of the start of the week.
+TEST(Orbit, AgreesWithTheAlmanacOracle) {
+    for (const OracleRow& row : oracle_rows("orbit_almanac.csv")) {
+        SCOPED_TRACE(row.id());
+        KeplerEphemeris e;
+        e.satellite = parse_satellite(row.text("sat")).value();
+        e.toe = e.toc = to_gps_time(row.integer("week"), row.number("toa_s"));
+        e.sqrt_a = row.number("sqrtA");
+        e.e = row.number("e");
+        e.i0 = row.number("i_rad");
+        e.omega0 = row.number("OMEGA0_week_rad");
+        e.omega_dot = row.number("OMEGADOT_rad_s");
+        e.omega = row.number("omega_rad");
+        e.m0 = row.number("M0_rad");
+        e.af0 = row.number("af0_s");
+        e.af1 = row.number("af1_s_s");
+        const SatelliteState state = satellite_state(e, to_gps_time(row.integer("t_gps_week"), row.number("t_gps_tow_s")));
+        EXPECT_NEAR(state.position.vector().x(), row.number("x_m"), row.number("tol_m"));
+        EXPECT_NEAR(state.position.vector().y(), row.number("y_m"), row.number("tol_m"));
+        EXPECT_NEAR(state.position.vector().z(), row.number("z_m"), row.number("tol_m"));
+        EXPECT_NEAR(state.clock_bias - state.relativistic_bias, row.number("clk_s"), 1e-15);
+    }
+}
+
 TEST(Orbit, OffsetMovesTimeBelowANanosecond) {
     const KeplerEphemeris e = oracle_ephemeris(oracle_rows("orbit_kepler.csv").front());
     const SatelliteState now = satellite_state(e, e.toe);
