@@ -30,15 +30,15 @@ std::string_view type_words(const toml::node& node) {
     }
 }
 
-std::string range_words(NumberRange range) {
+std::string range_words(NumberRange range, std::string_view noun = "a number") {
     constexpr double most = std::numeric_limits<double>::max();
     const bool above = range.least > -most;
     const bool below = range.most < most;
-    if (range.least == std::numeric_limits<double>::min() && !below) return "a number above 0";
-    if (above && below) return fmt::format("a number from {} to {}", range.least, range.most);
-    if (above) return fmt::format("a number of {} or more", range.least);
-    if (below) return fmt::format("a number of {} or less", range.most);
-    return "a finite number";
+    if (range.least == std::numeric_limits<double>::min() && !below) return fmt::format("{} above 0", noun);
+    if (above && below) return fmt::format("{} from {} to {}", noun, range.least, range.most);
+    if (above) return fmt::format("{} of {} or more", noun, range.least);
+    if (below) return fmt::format("{} of {} or less", noun, range.most);
+    return noun == "a number" ? "a finite number" : std::string(noun);
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ std::string MistakeList::text() const {
 }
 
 const toml::node* TableReader::find(std::string_view key) {
-    known_.push_back(key);
+    known_.emplace_back(key);
     return table_.get(key);
 }
 
@@ -72,8 +72,12 @@ void TableReader::mistake(std::string_view key, const std::string& sentence) {
     mistakes_.add(node ? node->source() : table_.source(), fmt::format("{}: {}", path_of(key), sentence));
 }
 
+void TableReader::mistake_at(const toml::node& node, std::string_view key, const std::string& sentence) {
+    mistakes_.add(node.source(), fmt::format("{}: {}", path_of(key), sentence));
+}
+
 void TableReader::wrong_type(std::string_view key, const toml::node& node, std::string_view expected) {
-    mistake(key, fmt::format("is {}; expected {}", type_words(node), expected));
+    mistake_at(node, key, fmt::format("is {}; expected {}", type_words(node), expected));
 }
 
 void TableReader::number(std::string_view key, double& value, NumberRange range) {
@@ -86,15 +90,16 @@ void TableReader::number(std::string_view key, double& value, NumberRange range)
     value = *found;
 }
 
-void TableReader::integer(std::string_view key, std::int64_t& value, NumberRange range) {
+std::optional<std::int64_t> TableReader::whole_number(std::string_view key, NumberRange range) {
     const toml::node* node = find(key);
-    if (!node) return;
+    if (!node) return std::nullopt;
     const auto* found = node->as_integer();
-    if (!found) return wrong_type(key, *node, "a whole number");
+    const std::string expected = range_words(range, "a whole number");
+    if (!found) return wrong_type(key, *node, expected), std::nullopt;
     const auto number = static_cast<double>(found->get());
     if (number < range.least || number > range.most)
-        return mistake(key, fmt::format("is {}; expected {}", found->get(), range_words(range)));
-    value = found->get();
+        return mistake(key, fmt::format("is {}; expected {}", found->get(), expected)), std::nullopt;
+    return found->get();
 }
 
 void TableReader::boolean(std::string_view key, bool& value) {
@@ -116,7 +121,7 @@ void TableReader::text(std::string_view key, std::string& value) {
 void TableReader::utc(std::string_view key, std::string& value) {
     const auto* found = table_.get(key) ? table_.get(key)->as_date_time() : nullptr;
     if (found == nullptr) return text(key, value);
-    known_.push_back(key);
+    known_.emplace_back(key);
     const toml::date_time& t = found->get();
     if (t.offset && t.offset->minutes != 0) return mistake(key, "has an offset from UTC; expected UTC, ending in Z");
     value = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:09}Z", t.date.year, t.date.month, t.date.day,
@@ -184,9 +189,10 @@ std::optional<Geodetic> TableReader::place(std::string_view key) {
 }
 
 std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<const std::string_view> words) {
+    const toml::node* node = find(key);
     std::string word;
     text(key, word);
-    if (word.empty()) return std::nullopt;
+    if (!node || !node->is_string()) return std::nullopt;
     const auto found = std::find(words.begin(), words.end(), word);
     if (found == words.end()) {
         mistake(key,
@@ -194,6 +200,34 @@ std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<c
         return std::nullopt;
     }
     return static_cast<std::size_t>(found - words.begin());
+}
+
+std::optional<std::vector<std::size_t>> TableReader::choices(std::string_view key,
+                                                             std::span<const std::string_view> words) {
+    const toml::node* node = find(key);
+    if (!node) return std::nullopt;
+    const std::string expected = fmt::format("a list of some of {}", fmt::join(words, " "));
+    const auto* list = node->as_array();
+    if (!list) return wrong_type(key, *node, expected), std::nullopt;
+    std::vector<std::size_t> found;
+    for (const toml::node& item : *list) {
+        const auto* word = item.as_string();
+        if (!word)
+            return mistake_at(item, key, fmt::format("holds {}; expected {}", type_words(item), expected)),
+                   std::nullopt;
+        const auto known = std::find(words.begin(), words.end(), word->get());
+        if (known == words.end())
+            return mistake_at(item, key,
+                              fmt::format("holds '{}'; expected {}{}", word->get(), expected,
+                                          did_you_mean(word->get(), words))),
+                   std::nullopt;
+        const auto index = static_cast<std::size_t>(known - words.begin());
+        if (std::find(found.begin(), found.end(), index) != found.end())
+            return mistake_at(item, key, fmt::format("holds '{}' twice; expected it once", word->get())), std::nullopt;
+        found.push_back(index);
+    }
+    if (found.empty()) return mistake(key, fmt::format("is an empty list; expected {}", expected)), std::nullopt;
+    return found;
 }
 
 void TableReader::table(std::string_view key, const std::function<void(TableReader&)>& body) {
@@ -225,10 +259,26 @@ void TableReader::refuse(std::string_view key, const std::string& reason) {
 }
 
 void TableReader::finish() {
+    const std::vector<std::string_view> known(known_.begin(), known_.end());
     for (const auto& [key, node] : table_) {
         const std::string_view word = key.str();
-        if (std::find(known_.begin(), known_.end(), word) != known_.end()) continue;
-        mistakes_.add(key.source(), fmt::format("{}: unknown key{}", path_of(word), did_you_mean(word, known_)));
+        if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+        mistakes_.add(key.source(), fmt::format("{}: unknown key{}", path_of(word), did_you_mean(word, known)));
+    }
+}
+
+Result<void> read_toml(std::string_view text, const std::string& file, const std::function<void(TableReader&)>& body) {
+    try {
+        const toml::table table = toml::parse(text, file);
+        MistakeList mistakes(file);
+        TableReader top(table, {}, mistakes);
+        body(top);
+        top.finish();
+        if (!mistakes.empty()) return fail(ErrorCode::input, mistakes.text());
+        return {};
+    } catch (const toml::parse_error& error) {
+        const auto where = error.source().begin;
+        return fail(ErrorCode::input, fmt::format("{}:{}:{}: {}", file, where.line, where.column, error.description()));
     }
 }
 
