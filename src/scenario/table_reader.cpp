@@ -30,16 +30,16 @@ std::string_view type_words(const toml::node& node) {
     }
 }
 
-std::string range_words(NumberRange range) {
+std::string range_words(NumberRange range, std::string_view noun = "a number") {
     constexpr double most = std::numeric_limits<double>::max();
     const bool above = range.least > -most;
     const bool below = range.most < most;
     if (range.least == NumberRange::positive().least)
-        return below ? fmt::format("a number above 0, up to {}", range.most) : "a number above 0";
-    if (above && below) return fmt::format("a number from {} to {}", range.least, range.most);
-    if (above) return fmt::format("a number of {} or more", range.least);
-    if (below) return fmt::format("a number of {} or less", range.most);
-    return "a finite number";
+        return below ? fmt::format("{} above 0, up to {}", noun, range.most) : fmt::format("{} above 0", noun);
+    if (above && below) return fmt::format("{} from {} to {}", noun, range.least, range.most);
+    if (above) return fmt::format("{} of {} or more", noun, range.least);
+    if (below) return fmt::format("{} of {} or less", noun, range.most);
+    return noun == "a number" ? "a finite number" : std::string(noun);
 }
 
 // Keys and texts of a file may hold anything and be of any length; a mistake stays one line that can be read.
@@ -89,8 +89,12 @@ void TableReader::mistake(std::string_view key, const std::string& sentence) {
     mistakes_.add(node ? node->source() : table_.source(), fmt::format("{}: {}", path_of(key), sentence));
 }
 
+void TableReader::mistake_at(const toml::node& node, std::string_view key, const std::string& sentence) {
+    mistakes_.add(node.source(), fmt::format("{}: {}", path_of(key), sentence));
+}
+
 void TableReader::wrong_type(std::string_view key, const toml::node& node, std::string_view expected) {
-    mistake(key, fmt::format("is {}; expected {}", type_words(node), expected));
+    mistake_at(node, key, fmt::format("is {}; expected {}", type_words(node), expected));
 }
 
 void TableReader::number(std::string_view key, double& value, NumberRange range) {
@@ -103,15 +107,16 @@ void TableReader::number(std::string_view key, double& value, NumberRange range)
     value = *found;
 }
 
-void TableReader::integer(std::string_view key, std::int64_t& value, NumberRange range) {
+std::optional<std::int64_t> TableReader::whole_number(std::string_view key, NumberRange range) {
     const toml::node* node = find(key);
-    if (!node) return;
+    if (!node) return std::nullopt;
     const auto* found = node->as_integer();
-    if (!found) return wrong_type(key, *node, "a whole number");
+    const std::string expected = range_words(range, "a whole number");
+    if (!found) return wrong_type(key, *node, expected), std::nullopt;
     const auto number = static_cast<double>(found->get());
     if (number < range.least || number > range.most)
-        return mistake(key, fmt::format("is {}; expected {}", found->get(), range_words(range)));
-    value = found->get();
+        return mistake(key, fmt::format("is {}; expected {}", found->get(), expected)), std::nullopt;
+    return found->get();
 }
 
 void TableReader::boolean(std::string_view key, bool& value) {
@@ -151,7 +156,7 @@ void TableReader::texts(std::string_view key, std::vector<std::string>& values) 
     std::vector<std::string> found;
     for (const toml::node& item : *list) {
         const auto* word = item.as_string();
-        if (!word) return mistake(key, fmt::format("holds {}; expected a list of texts", type_words(item)));
+        if (!word) return mistake_at(item, key, fmt::format("holds {}; expected a list of texts", type_words(item)));
         found.push_back(word->get());
     }
     if (found.empty()) return mistake(key, "is an empty list; expected at least one text");
@@ -175,9 +180,11 @@ std::optional<std::vector<double>> TableReader::numbers(std::string_view key, st
     std::vector<double> values;
     for (const toml::node& item : *list) {
         const auto value = item.is_number() ? item.value<double>() : std::nullopt;
-        if (!value) return mistake(key, fmt::format("holds {}; expected {}", type_words(item), expected)), std::nullopt;
+        if (!value)
+            return mistake_at(item, key, fmt::format("holds {}; expected {}", type_words(item), expected)),
+                   std::nullopt;
         if (!std::isfinite(*value))
-            return mistake(key, fmt::format("holds {}; expected {}", *value, expected)), std::nullopt;
+            return mistake_at(item, key, fmt::format("holds {}; expected {}", *value, expected)), std::nullopt;
         values.push_back(*value);
     }
     if (values.size() != count) {
@@ -220,6 +227,34 @@ std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<c
     return static_cast<std::size_t>(found - words.begin());
 }
 
+std::optional<std::vector<std::size_t>> TableReader::choices(std::string_view key,
+                                                             std::span<const std::string_view> words) {
+    const toml::node* node = find(key);
+    if (!node) return std::nullopt;
+    const std::string expected = fmt::format("a list of some of {}", fmt::join(words, " "));
+    const auto* list = node->as_array();
+    if (!list) return wrong_type(key, *node, expected), std::nullopt;
+    std::vector<std::size_t> found;
+    for (const toml::node& item : *list) {
+        const auto* word = item.as_string();
+        if (!word)
+            return mistake_at(item, key, fmt::format("holds {}; expected {}", type_words(item), expected)),
+                   std::nullopt;
+        const auto known = std::find(words.begin(), words.end(), word->get());
+        if (known == words.end())
+            return mistake_at(item, key,
+                              fmt::format("holds '{}'; expected {}{}", word->get(), expected,
+                                          did_you_mean(word->get(), words))),
+                   std::nullopt;
+        const auto index = static_cast<std::size_t>(known - words.begin());
+        if (std::find(found.begin(), found.end(), index) != found.end())
+            return mistake_at(item, key, fmt::format("holds '{}' twice; expected it once", word->get())), std::nullopt;
+        found.push_back(index);
+    }
+    if (found.empty()) return mistake(key, fmt::format("is an empty list; expected {}", expected)), std::nullopt;
+    return found;
+}
+
 void TableReader::table(std::string_view key, const std::function<void(TableReader&)>& body) {
     const toml::node* node = find(key);
     if (!node) return;
@@ -251,11 +286,27 @@ void TableReader::refuse(std::string_view key, const std::string& reason) {
 }
 
 void TableReader::finish() {
-    const std::vector<std::string_view> words(known_.begin(), known_.end());
+    const std::vector<std::string_view> known(known_.begin(), known_.end());
     for (const auto& [key, node] : table_) {
         const std::string_view word = key.str();
-        if (std::find(known_.begin(), known_.end(), word) != known_.end()) continue;
-        mistakes_.add(key.source(), fmt::format("{}: unknown key{}", path_of(word), did_you_mean(word, words)));
+        if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+        mistakes_.add(key.source(), fmt::format("{}: unknown key{}", path_of(word), did_you_mean(word, known)));
+    }
+}
+
+Result<void> read_toml(std::string_view text, const std::string& file, const std::function<void(TableReader&)>& body) {
+    try {
+        const toml::table table = toml::parse(text, file);
+        MistakeList mistakes(file);
+        TableReader top(table, {}, mistakes);
+        body(top);
+        top.finish();
+        if (!mistakes.empty()) return fail(ErrorCode::input, mistakes.text());
+        return {};
+    } catch (const toml::parse_error& error) {
+        const auto where = error.source().begin;
+        return fail(ErrorCode::input,
+                    fmt::format("{}:{}:{}: {}", file, where.line, where.column, on_one_line(error.description())));
     }
 }
 
