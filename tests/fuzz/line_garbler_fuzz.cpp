@@ -15,10 +15,7 @@ void require(bool promise) {
 
 constexpr std::uint32_t bauds[] = {1200, 4800, 9600, 9900, 19200, 38400, 57600, 115200, 230400, 460800, 921600};
 
-Bytes joined(Bytes first, const Bytes& second) {
-    first.insert(first.end(), second.begin(), second.end());
-    return first;
-}
+void append(Bytes& heard, const Bytes& more) { heard.insert(heard.end(), more.begin(), more.end()); }
 
 }  // namespace
 
@@ -30,9 +27,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::size_t cut = sent.empty() ? 0 : data[2] % (sent.size() + 1);
 
     LineGarbler whole(sender, listener), parts(sender, listener);
-    const Bytes at_once = joined(whole.pass(sent), whole.idle());
+    Bytes at_once = whole.pass(sent);
+    append(at_once, whole.idle());
     Bytes in_parts = parts.pass(sent.first(cut));
-    in_parts = joined(joined(in_parts, parts.pass(sent.subspan(cut))), parts.idle());
+    append(in_parts, parts.pass(sent.subspan(cut)));
+    append(in_parts, parts.idle());
     require(at_once == in_parts);
     require(whole.framing_errors() == parts.framing_errors());
     // A listener hears at most a byte in each ten of its own bits, and the last one into the rest of the line.
