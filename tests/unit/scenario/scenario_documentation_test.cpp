@@ -4,7 +4,6 @@
 
 #include <fstream>
 #include <map>
-#include <regex>
 #include <set>
 #include <sstream>
 
@@ -23,43 +22,55 @@ std::vector<std::string> document_lines() {
     return lines;
 }
 
+bool is_key(std::string_view word) {
+    return !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string_view::npos;
+}
+
+// The texts that stand between an `opening` and the next `closing`.
+std::vector<std::string> between(std::string_view text, char opening, char closing) {
+    std::vector<std::string> found;
+    for (std::size_t at = text.find(opening); at != std::string_view::npos; at = text.find(opening, at)) {
+        const std::size_t end = text.find(closing, at + 1);
+        if (end == std::string_view::npos) break;
+        found.emplace_back(text.substr(at + 1, end - at - 1));
+        at = end + 1;
+    }
+    return found;
+}
+
 // The words of a text in `backquotes` that look like keys.
-std::vector<std::string> quoted_keys(const std::string& text) {
-    static const std::regex quoted("`([a-z][a-z0-9_]*)`");
-    std::vector<std::string> keys;
-    for (std::sregex_iterator match(text.begin(), text.end(), quoted), end; match != end; ++match)
-        keys.push_back((*match)[1]);
+std::vector<std::string> quoted_keys(std::string_view text) {
+    std::vector<std::string> keys = between(text, '`', '`');
+    std::erase_if(keys, [](const std::string& word) { return !is_key(word); });
     return keys;
+}
+
+// "[run]" of "## [run]", "[trajectory]" and "[frame]" of "## [trajectory] and [frame]"; brackets as they stand.
+std::vector<std::string> headings_of(const std::string& line) {
+    std::vector<std::string> headings;
+    std::istringstream words(line.substr(2));
+    for (std::string word; words >> word;)
+        if (word.starts_with('[')) headings.push_back(word);
+    return headings;
 }
 
 // Keys by the heading of the table under which a scenario holds them: "[run]", "[model.baseline]", "[[receiver]]".
 std::map<std::string, std::set<std::string>> documented_keys() {
-    static const std::regex section("^## (\\[+[a-z]+\\]+)( and (\\[[a-z]+\\]))?");
-    static const std::regex paragraph("^`(\\[+[a-z.-]+\\]+)`");
     std::map<std::string, std::set<std::string>> keys;
-    std::string heading, second;
-    bool table_before = false;
+    std::vector<std::string> headings{"none"};
+    std::size_t tables = 0;
     for (const std::string& line : document_lines()) {
-        std::smatch match;
-        if (std::regex_search(line, match, section)) {
-            heading = match[1];
-            second = match[3];
-            table_before = false;
-            continue;
-        }
-        if (std::regex_search(line, match, paragraph)) heading = match[1];
-        if (line.starts_with("| key ")) {
-            // Two tables under one heading: the second one is of the second part.
-            if (table_before && !second.empty()) heading = second, second.clear();
-            table_before = true;
-        }
+        if (line.starts_with("## [")) headings = headings_of(line), tables = 0;
+        if (line.starts_with("`[")) headings = {between(line, '`', '`').at(0)};
+        // Two tables under one heading: the second one is of the second part.
+        if (line.starts_with("| key ") && ++tables > 1 && headings.size() > 1) headings.erase(headings.begin());
+        const std::string& heading = headings.front();
         const bool row = line.starts_with("| `");
-        if (row)
-            for (const std::string& key : quoted_keys(line.substr(0, line.find('|', 1))))
-                keys[heading].insert(key);
         // Paragraphs list keys with their defaults in running text: those of the models, layers and clouds.
-        if (!row && (heading.starts_with("[model.") || heading.starts_with("[[atmosphere.")) && !line.starts_with("|"))
-            for (const std::string& key : quoted_keys(line))
+        const bool listing =
+            !line.starts_with('|') && (heading.starts_with("[model.") || heading.starts_with("[[atmosphere."));
+        if (row || listing)
+            for (const std::string& key : quoted_keys(row ? line.substr(0, line.find('|', 1)) : line))
                 keys[heading].insert(key);
     }
     return keys;
@@ -110,12 +121,11 @@ TEST(ScenarioDocumentation, NamesEveryKeyThatTheReaderKnows) {
     std::string document;
     for (const std::string& line : document_lines())
         document += line + "\n";
-    static const std::regex assignment("^([a-z][a-z0-9_]*) = ");
     std::istringstream text{std::string(test::every_key_text)};
     for (std::string line; std::getline(text, line);) {
-        std::smatch match;
-        if (!std::regex_search(line, match, assignment)) continue;
-        EXPECT_NE(document.find("`" + match[1].str() + "`"), std::string::npos) << match[1];
+        const std::string key = line.substr(0, line.find(" = "));
+        if (!is_key(key)) continue;
+        EXPECT_NE(document.find("`" + key + "`"), std::string::npos) << key;
     }
 }
 
