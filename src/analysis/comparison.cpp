@@ -23,9 +23,11 @@ bool is_radial(ErrorQuantity quantity) {
     return quantity == ErrorQuantity::horizontal || quantity == ErrorQuantity::spatial;
 }
 
-// A relative difference of means says something only where the reference's mean is clear of zero.
-bool comparable(std::string_view figure, const SampleStatistics& b) {
-    return figure != "mean" || std::abs(b.mean) >= b.std / 4;
+// A relative difference says something only where the reference is clear of zero: a mean beside its deviation, any other
+// figure beside the size of the errors.
+bool comparable(std::string_view figure, double of_b, const SampleStatistics& b) {
+    if (figure == "mean") return std::abs(b.mean) >= b.std / 4;
+    return std::abs(of_b) > b.rms * 1e-2;
 }
 
 std::vector<FigureDifference> figure_differences(const SeriesStatistics& a, const SeriesStatistics& b) {
@@ -47,7 +49,7 @@ std::vector<FigureDifference> figure_differences(const SeriesStatistics& a, cons
             if (figure.radial_only && !is_radial(quantity)) continue;
             const SampleStatistics& of_b = b.of(quantity).figures;
             FigureDifference d{quantity, figure.name, a.of(quantity).figures.*figure.value, of_b.*figure.value, {}};
-            if (d.b != 0 && comparable(figure.name, of_b)) d.percent = 100 * (d.a - d.b) / std::abs(d.b);
+            if (d.b != 0 && comparable(figure.name, d.b, of_b)) d.percent = 100 * (d.a - d.b) / std::abs(d.b);
             differences.push_back(d);
         }
     return differences;

@@ -16,11 +16,15 @@ struct SignalPath {
     SatelliteState transmitter;  // at transmission, in the frame of that instant
     Position<Ecef> seen_at;      // the transmitter's place in the frame of the reception instant
     Metres range;
-    Seconds travel_time{0.075};
+    Seconds travel_time;
 };
+
+// About what a signal takes from a navigation satellite: 67 to 90 ms.
+constexpr Seconds usual_travel_time(0.075);
 
 SignalPath signal_path(const KeplerEphemeris& ephemeris, const TruthState& truth) {
     SignalPath path;
+    path.travel_time = usual_travel_time;
     // Each pass shrinks the error by v/c, 1e-5: from 0.1 s of travel time four passes reach the last bit.
     for (int pass = 0; pass < 5; ++pass) {
         path.transmitter = satellite_state(ephemeris, truth.time, -path.travel_time);
@@ -36,6 +40,11 @@ SignalPath signal_path(const KeplerEphemeris& ephemeris, const TruthState& truth
 
 std::optional<SatelliteInView> in_view(const KeplerEphemeris& ephemeris, const TruthState& truth,
                                        const LocalFrame& local) {
+    // Half of the satellites stand far below the horizon, and one look without light time tells so: in a tenth of a
+    // second a satellite moves by less than a kilometre.
+    const SatelliteState rough = satellite_state(ephemeris, truth.time, -usual_travel_time);
+    if (local.to_enu(rough.position).vector().z() < -1000) return std::nullopt;
+
     const SignalPath path = signal_path(ephemeris, truth);
     // The usual convention, and that of the reference scenes: directions leave out the Earth's rotation during the
     // light time. It would turn them by less than 0.0004°.
