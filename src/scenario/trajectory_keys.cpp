@@ -27,7 +27,14 @@ public:
         }
         const Position<Level> point((*in_level)[0], (*in_level)[1], (*in_level)[2]);
         if (level_->beyond_reach(point)) warn_beyond_reach(point);
-        return to_geodetic(level_->to_ecef(point));
+        const Geodetic place = to_geodetic(level_->to_ecef(point));
+        const auto checked =
+            place_from_degrees(place.latitude.deg(), place.longitude.deg(), place.height.above_ellipsoid.value());
+        if (!checked) {
+            table.mistake(level_key, checked.error());
+            return std::nullopt;
+        }
+        return place;
     }
 
 private:
