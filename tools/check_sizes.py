@@ -7,7 +7,6 @@ not by a compiler: good enough for code that clang-format has laid out.
 """
 
 import re
-import sys
 from pathlib import Path
 
 import source_tree
@@ -165,18 +164,11 @@ class Checker:
                                    f"at most {PARAMETERS}")
 
 
-def main(arguments):
-    root = Path(arguments[1] if len(arguments) > 1 else Path(__file__).parent.parent).resolve()
+def check(root):
     checker = Checker(root)
     errors = checker.run()
-    for error in errors:
-        print(error)
-    if checker.count == 0:
-        print(f"{root}: nothing to check")
-        return 1
-    print(f"check_sizes: {checker.count} files, {len(errors)} violations")
-    return 1 if errors else 0
+    return checker.count, errors
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv))
+    source_tree.report("check_sizes", check)

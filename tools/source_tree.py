@@ -2,6 +2,7 @@
 
 import os
 import re
+import sys
 from pathlib import Path
 
 CPP = {".cpp", ".hpp", ".h"}
@@ -22,6 +23,19 @@ def files(root, folders=None):
 
 def cpp_files(root, folders=None):
     return [path for path in files(root, folders) if path.suffix in CPP]
+
+
+def report(program, check):
+    """Ends the program: `check(root)` gives how many files it read and the errors it found; root is the first argument."""
+    root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent.parent).resolve()
+    count, errors = check(root)
+    for error in errors:
+        print(error)
+    if count == 0:
+        print(f"{root}: no sources to check")
+        sys.exit(1)
+    print(f"{program}: {count} files, {len(errors)} violations")
+    sys.exit(1 if errors else 0)
 
 
 TOKENS = re.compile(
