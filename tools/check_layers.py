@@ -6,6 +6,7 @@ package stays behind its fence. Public headers show only the standard library, E
 """
 
 import re
+import sys
 from pathlib import Path
 
 import source_tree
@@ -169,5 +170,9 @@ def check(root):
     return len(checker.edges), errors
 
 
+def main(arguments):
+    return source_tree.report("check_layers", arguments, check)
+
+
 if __name__ == "__main__":
-    source_tree.report("check_layers", check)
+    sys.exit(main(sys.argv))

@@ -7,6 +7,7 @@ not by a compiler: good enough for code that clang-format has laid out.
 """
 
 import re
+import sys
 from pathlib import Path
 
 import source_tree
@@ -170,5 +171,9 @@ def check(root):
     return checker.count, errors
 
 
+def main(arguments):
+    return source_tree.report("check_sizes", arguments, check)
+
+
 if __name__ == "__main__":
-    source_tree.report("check_sizes", check)
+    sys.exit(main(sys.argv))

@@ -2,7 +2,6 @@
 
 import os
 import re
-import sys
 from pathlib import Path
 
 CPP = {".cpp", ".hpp", ".h"}
@@ -25,17 +24,17 @@ def cpp_files(root, folders=None):
     return [path for path in files(root, folders) if path.suffix in CPP]
 
 
-def report(program, check):
-    """Ends the program: `check(root)` gives how many files it read and the errors it found; root is the first argument."""
-    root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent.parent).resolve()
+def report(program, arguments, check):
+    """Tells what `check(root)`, which gives a count of files and the errors in them, found; gives the exit code."""
+    root = Path(arguments[1] if len(arguments) > 1 else Path(__file__).parent.parent).resolve()
     count, errors = check(root)
     for error in errors:
         print(error)
     if count == 0:
         print(f"{root}: no sources to check")
-        sys.exit(1)
+        return 1
     print(f"{program}: {count} files, {len(errors)} violations")
-    sys.exit(1 if errors else 0)
+    return 1 if errors else 0
 
 
 TOKENS = re.compile(
