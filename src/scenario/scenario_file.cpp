@@ -14,12 +14,11 @@ namespace {
 constexpr double most_years_s = 100 * 366.0 * 86400;  // a run's span stays far inside 64-bit nanoseconds
 
 void read_run_keys(TableReader& run, RunSettings& settings) {
-    std::string start;
-    run.utc("start", start);
+    const auto start = run.utc("start");
     if (start == "now") {
         settings.start_now = true;
-    } else if (!start.empty()) {
-        const auto utc = parse_utc(start);
+    } else if (start) {
+        const auto utc = parse_utc(*start);
         if (utc)
             settings.start = to_gps_time(*utc, LeapSeconds::announced());
         else

@@ -34,17 +34,32 @@ std::string range_words(NumberRange range, std::string_view noun = "a number") {
     constexpr double most = std::numeric_limits<double>::max();
     const bool above = range.least > -most;
     const bool below = range.most < most;
-    if (range.least == std::numeric_limits<double>::min() && !below) return fmt::format("{} above 0", noun);
+    if (range.least == NumberRange::positive().least)
+        return below ? fmt::format("{} above 0, up to {}", noun, range.most) : fmt::format("{} above 0", noun);
     if (above && below) return fmt::format("{} from {} to {}", noun, range.least, range.most);
     if (above) return fmt::format("{} of {} or more", noun, range.least);
     if (below) return fmt::format("{} of {} or less", noun, range.most);
     return noun == "a number" ? "a finite number" : std::string(noun);
 }
 
+// Keys and texts of a file may hold anything and be of any length; a mistake stays one line that can be read.
+std::string on_one_line(std::string_view sentence) {
+    constexpr std::size_t longest = 600;
+    std::size_t end = std::min(sentence.size(), longest);
+    while (end < sentence.size() && (static_cast<unsigned char>(sentence[end]) & 0xC0) == 0x80)
+        --end;  // not within a character of several bytes
+    std::string line;
+    for (const char c : sentence.substr(0, end))
+        line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f
+                    ? fmt::format("\\x{:02x}", static_cast<unsigned char>(c))
+                    : std::string(1, c);
+    return end < sentence.size() ? line + "..." : line;
+}
+
 }  // namespace
 
 void MistakeList::add(const toml::source_region& where, const std::string& sentence) {
-    mistakes_.push_back({where.begin.line, where.begin.column, sentence});
+    mistakes_.push_back({where.begin.line, where.begin.column, on_one_line(sentence)});
 }
 
 std::string MistakeList::text() const {
@@ -52,6 +67,8 @@ std::string MistakeList::text() const {
     std::stable_sort(sorted.begin(), sorted.end(), [](const Mistake& a, const Mistake& b) {
         return std::pair(a.line, a.column) < std::pair(b.line, b.column);
     });
+    // A key that is looked at twice is wrong once.
+    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
     std::string lines;
     for (const Mistake& m : sorted)
         lines += fmt::format("{}{}:{}:{}: {}", lines.empty() ? "" : "\n", file_, m.line, m.column, m.sentence);
@@ -118,14 +135,17 @@ void TableReader::text(std::string_view key, std::string& value) {
     value = found->get();
 }
 
-void TableReader::utc(std::string_view key, std::string& value) {
-    const auto* found = table_.get(key) ? table_.get(key)->as_date_time() : nullptr;
-    if (found == nullptr) return text(key, value);
-    known_.emplace_back(key);
+std::optional<std::string> TableReader::utc(std::string_view key) {
+    const toml::node* node = find(key);
+    if (!node) return std::nullopt;
+    if (const auto* written = node->as_string()) return written->get();
+    const auto* found = node->as_date_time();
+    if (!found) return wrong_type(key, *node, "a date with a time, in UTC"), std::nullopt;
     const toml::date_time& t = found->get();
-    if (t.offset && t.offset->minutes != 0) return mistake(key, "has an offset from UTC; expected UTC, ending in Z");
-    value = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:09}Z", t.date.year, t.date.month, t.date.day,
-                        t.time.hour, t.time.minute, t.time.second, t.time.nanosecond);
+    if (t.offset && t.offset->minutes != 0)
+        return mistake(key, "has an offset from UTC; expected UTC, ending in Z"), std::nullopt;
+    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:09}Z", t.date.year, t.date.month, t.date.day, t.time.hour,
+                       t.time.minute, t.time.second, t.time.nanosecond);
 }
 
 void TableReader::texts(std::string_view key, std::vector<std::string>& values) {
@@ -136,9 +156,10 @@ void TableReader::texts(std::string_view key, std::vector<std::string>& values) 
     std::vector<std::string> found;
     for (const toml::node& item : *list) {
         const auto* word = item.as_string();
-        if (!word) return wrong_type(key, item, "a list of texts");
+        if (!word) return mistake_at(item, key, fmt::format("holds {}; expected a list of texts", type_words(item)));
         found.push_back(word->get());
     }
+    if (found.empty()) return mistake(key, "is an empty list; expected at least one text");
     values = std::move(found);
 }
 
@@ -159,7 +180,11 @@ std::optional<std::vector<double>> TableReader::numbers(std::string_view key, st
     std::vector<double> values;
     for (const toml::node& item : *list) {
         const auto value = item.is_number() ? item.value<double>() : std::nullopt;
-        if (!value || !std::isfinite(*value)) return wrong_type(key, item, expected), std::nullopt;
+        if (!value)
+            return mistake_at(item, key, fmt::format("holds {}; expected {}", type_words(item), expected)),
+                   std::nullopt;
+        if (!std::isfinite(*value))
+            return mistake_at(item, key, fmt::format("holds {}; expected {}", *value, expected)), std::nullopt;
         values.push_back(*value);
     }
     if (values.size() != count) {
@@ -238,7 +263,9 @@ void TableReader::tables(std::string_view key, const std::function<void(TableRea
     if (!list) return wrong_type(key, *node, fmt::format("a list of tables, each headed [[{}]]", path_of(key)));
     for (const toml::node& item : *list) {
         const auto* inner = item.as_table();
-        if (!inner) return wrong_type(key, item, fmt::format("a list of tables, each headed [[{}]]", path_of(key)));
+        if (!inner)
+            return mistake(
+                key, fmt::format("holds {}; expected tables, each headed [[{}]]", type_words(item), path_of(key)));
         TableReader reader(*inner, path_of(key), mistakes_);
         body(reader);
         reader.finish();
@@ -269,7 +296,8 @@ Result<void> read_toml(std::string_view text, const std::string& file, const std
         return {};
     } catch (const toml::parse_error& error) {
         const auto where = error.source().begin;
-        return fail(ErrorCode::input, fmt::format("{}:{}:{}: {}", file, where.line, where.column, error.description()));
+        return fail(ErrorCode::input,
+                    fmt::format("{}:{}:{}: {}", file, where.line, where.column, on_one_line(error.description())));
     }
 }
 

@@ -33,6 +33,7 @@ private:
     struct Mistake {
         toml::source_index line, column;
         std::string sentence;
+        bool operator==(const Mistake&) const = default;
     };
     std::string file_;
     std::vector<Mistake> mistakes_;
@@ -76,7 +77,7 @@ public:
     /// [latitude, longitude] or [latitude, longitude, height]: degrees, metres above the ellipsoid.
     std::optional<Geodetic> place(std::string_view key);
     /// A UTC time as ISO 8601 text, given as a text or as a TOML date and time.
-    void utc(std::string_view key, std::string& value);
+    std::optional<std::string> utc(std::string_view key);
     /// One of the given words; gives its index.
     std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> words);
     /// A list of some of the given words, at least one and none twice; gives their indices in the order of the list.
@@ -121,7 +122,7 @@ private:
     const toml::table& table_;
     std::string path_;
     MistakeList& mistakes_;
-    std::vector<std::string> known_;
+    std::vector<std::string> known_;  // copies: a caller may compose a key
 };
 
 /// Parses TOML and reads its top table with `body`.

@@ -26,7 +26,6 @@ public:
             return std::nullopt;
         }
         const Position<Level> point((*in_level)[0], (*in_level)[1], (*in_level)[2]);
-        if (level_->beyond_reach(point)) warn_beyond_reach(point);
         const Geodetic place = to_geodetic(level_->to_ecef(point));
         const auto checked =
             place_from_degrees(place.latitude.deg(), place.longitude.deg(), place.height.above_ellipsoid.value());
@@ -34,6 +33,7 @@ public:
             table.mistake(level_key, checked.error());
             return std::nullopt;
         }
+        if (level_->beyond_reach(point)) warn_beyond_reach(point);
         return place;
     }
 
