@@ -54,8 +54,12 @@ int RunSession::run(const Scenario& scenario) {
     Recorder* recorder = emulator.recorder();
     if (recorder) recorder->record_summary(run_summary(scenario, assembly_, SKYLOOP_VERSION));
     tell_counts();
-    if (recorder && recorder->failure()) return messages_.error(*recorder->failure());
-    return 0;
+    int code = 0;
+    for (const Link& link : emulator.links())
+        if (const std::string failure = link.transport().failure(); !failure.empty())
+            code = messages_.error({ErrorCode::outside, failure});
+    if (recorder && recorder->failure()) code = messages_.error(*recorder->failure());
+    return code;
 }
 
 void RunSession::tell_counts() const {

@@ -69,15 +69,20 @@ Result<firmware::Receiver> make_receiver(const ReceiverEntry& entry, const DataF
     if (rate > board->max_rate_hz)
         warnings.push_back(
             fmt::format("{:g} Hz is more than {} can do; it runs at {:g} Hz", rate, board->name, board->max_rate_hz));
-    return firmware::Receiver(std::move(*board), rate);
+    firmware::Receiver receiver(std::move(*board), rate);
+    const double actual = 1e9 / static_cast<double>(receiver.settings().navigation_period.count());
+    if (rate < 0.99 * actual)
+        warnings.push_back(fmt::format("{:g} Hz is less than a receiver can do; it runs at {:.4g} Hz", rate, actual));
+    return receiver;
 }
 
-Result<std::vector<Link>> open_links(const ReceiverEntry& entry, std::uint32_t baud) {
+Result<std::vector<Link>> open_links(const ReceiverEntry& entry, std::uint32_t baud, bool virtual_time) {
     std::vector<Link> links;
     const std::vector<std::string> uris = entry.ports.empty() ? std::vector<std::string>{"pty"} : entry.ports;
     for (const std::string& uri : uris) {
         auto transport = open_transport(uri);
         if (!transport) return fail(transport.error());
+        if (virtual_time) (*transport)->allow_waiting();
         links.emplace_back(std::move(*transport), baud);
     }
     return links;
@@ -167,7 +172,7 @@ Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, con
         parts.recorder = std::move(*recorder);
     }
     if (mode.open_ports) {
-        auto links = open_links(scenario.receiver, parts.receiver.baud());
+        auto links = open_links(scenario.receiver, parts.receiver.baud(), mode.virtual_time);
         if (!links) return fail(links.error());
         parts.links = std::move(*links);
     }

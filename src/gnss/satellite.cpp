@@ -7,7 +7,10 @@
 namespace skyloop {
 namespace {
 
-constexpr std::string_view rinex_letters = "GSECJRI";  // in the order of Constellation
+// All in the order of Constellation.
+constexpr std::string_view rinex_letters = "GSECJRI";
+constexpr std::array<std::string_view, 7> constellation_titles{"GPS",  "SBAS",    "Galileo", "BeiDou",
+                                                               "QZSS", "GLONASS", "NavIC"};
 
 std::optional<Constellation> constellation_at(std::size_t index) {
     return index < constellation_names.size() ? std::optional(static_cast<Constellation>(index)) : std::nullopt;
@@ -19,6 +22,10 @@ char rinex_letter(Constellation constellation) { return rinex_letters[static_cas
 
 std::string_view constellation_name(Constellation constellation) {
     return constellation_names[static_cast<std::size_t>(constellation)];
+}
+
+std::string_view constellation_title(Constellation constellation) {
+    return constellation_titles[static_cast<std::size_t>(constellation)];
 }
 
 std::optional<Constellation> constellation_from_letter(char letter) {

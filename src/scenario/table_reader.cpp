@@ -199,18 +199,9 @@ std::optional<Geodetic> TableReader::place(std::string_view key) {
     const std::size_t count = list && list->size() == 2 ? 2 : 3;
     const auto values = numbers(key, count);
     if (!values) return std::nullopt;
-    const double latitude = (*values)[0];
-    const double longitude = (*values)[1];
-    const double height = count == 3 ? (*values)[2] : 0;
-    if (std::abs(latitude) > 90)
-        return mistake(key, fmt::format("latitude is {}; expected -90 to 90 degrees", latitude)), std::nullopt;
-    if (std::abs(longitude) > 360)
-        return mistake(key, fmt::format("longitude is {}; expected -180 to 180 degrees", longitude)), std::nullopt;
-    if (height < -1e4 || height > 1e7)
-        return mistake(key,
-                       fmt::format("height is {}; expected metres above the ellipsoid, -10 000 to 10 000 000", height)),
-               std::nullopt;
-    return Geodetic::degrees(latitude, std::remainder(longitude, 360), height);
+    const auto place = place_from_degrees((*values)[0], (*values)[1], count == 3 ? (*values)[2] : 0);
+    if (!place) return mistake(key, place.error()), std::nullopt;
+    return *place;
 }
 
 std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<const std::string_view> words) {

@@ -27,10 +27,10 @@ public:
         }
         const Position<Level> point((*in_level)[0], (*in_level)[1], (*in_level)[2]);
         const Geodetic place = to_geodetic(level_->to_ecef(point));
-        if (!near_earth(point, place)) {
-            table.mistake(level_key,
-                          "lies out of the world; expected a place up to 10 000 km from the frame's origin "
-                          "and from 10 km below the ellipsoid to 10 000 km above it");
+        const auto checked =
+            place_from_degrees(place.latitude.deg(), place.longitude.deg(), place.height.above_ellipsoid.value());
+        if (!checked) {
+            table.mistake(level_key, checked.error());
             return std::nullopt;
         }
         if (level_->beyond_reach(point)) warn_beyond_reach(point);
@@ -38,11 +38,6 @@ public:
     }
 
 private:
-    // The limits of a place given on the Earth, and no further than where a plane means anything at all.
-    [[nodiscard]] bool near_earth(const Position<Level>& point, const Geodetic& place) const {
-        const double height = place.height.above_ellipsoid.value();
-        return point.vector().norm() * level_->placement().unit.value() <= 1e7 && height >= -1e4 && height <= 1e7;
-    }
     void warn_beyond_reach(const Position<Level>& point) {
         const LevelPlacement& placement = level_->placement();
         scenario_.warnings.push_back(

@@ -27,6 +27,8 @@ struct SatelliteId {
 char rinex_letter(Constellation constellation);
 /// One of constellation_names.
 std::string_view constellation_name(Constellation constellation);
+/// "GPS", "Galileo", … as people write it.
+std::string_view constellation_title(Constellation constellation);
 std::optional<Constellation> constellation_from_letter(char letter);
 std::optional<Constellation> constellation_from_name(std::string_view name);
 

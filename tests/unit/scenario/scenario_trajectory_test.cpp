@@ -118,7 +118,7 @@ TEST(ScenarioTrajectory, RefusesLevelPointsOutOfTheWorld) {
     const std::string frame(level_at_odessa);
     for (const char* point : {"[1e300, 0, 0]", "[2e7, 0, 0]", "[0, 0, -20000]", "[0, 0, 1.5e7]"})
         EXPECT_THAT(mistakes_of(frame + "[trajectory]\nkind = \"fixed\"\nat_level = " + point),
-                    HasSubstr("test.toml:5:12: trajectory.at_level: lies out of the world"))
+                    HasSubstr("test.toml:5:12: trajectory.at_level: height is"))
             << point;
 }
 
