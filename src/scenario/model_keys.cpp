@@ -148,6 +148,7 @@ void read_ionosphere(TableReader& atmosphere, AtmosphereParameters& p) {
     atmosphere.quantity("total_electron_content_tecu", p.total_electron_content, {0, 1000});
     atmosphere.quantity("ionosphere_loss_db", p.ionosphere_loss, {0, 100});
     atmosphere.quantity("riometer_absorption_30mhz_db", p.riometer_absorption_30mhz, {0, 100});
+    atmosphere.quantity("ionosphere_base_m", p.ionosphere_base, {1e4, 1e6});
 }
 
 }  // namespace
@@ -170,13 +171,13 @@ void read_model_keys(TableReader& model, ModelSettings& settings) {
 
 void read_atmosphere_keys(TableReader& atmosphere, AtmosphereParameters& p) {
     atmosphere.quantity("sea_level_temperature_k", p.sea_level_temperature, {100, 400});
-    atmosphere.number("gravity_mps2", p.gravity_mps2, NumberRange::positive());
-    atmosphere.number("molar_mass_kg_per_mol", p.molar_mass_kg_per_mol, NumberRange::positive());
-    atmosphere.number("gas_constant_j_per_mol_k", p.gas_constant, NumberRange::positive());
+    atmosphere.number("gravity_mps2", p.gravity_mps2, {0.1, 100});
+    atmosphere.number("molar_mass_kg_per_mol", p.molar_mass_kg_per_mol, {0.001, 1});
+    atmosphere.number("gas_constant_j_per_mol_k", p.gas_constant, {1, 100});
     atmosphere.quantity("earth_radius_m", p.earth_radius, {1e6, 1e7});
-    atmosphere.number("oxygen_constant_ghz2", p.oxygen_constant, NumberRange::positive());
+    atmosphere.number("oxygen_constant_ghz2", p.oxygen_constant, {0.001, 10});
     atmosphere.quantity("zenith_dry_delay_m", p.zenith_dry_delay, {0, 100});
-    atmosphere.number("zenith_dry_decay_per_m", p.zenith_dry_decay_per_m, {0, 1});
+    atmosphere.number("zenith_dry_decay_per_m", p.zenith_dry_decay_per_m, {0, 0.01});
     atmosphere.quantity("zenith_wet_delay_m", p.zenith_wet_delay, {0, 100});
     read_layers(atmosphere, p);
     read_clouds(atmosphere, p);

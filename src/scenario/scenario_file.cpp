@@ -49,6 +49,10 @@ void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesyste
     sky.quantity("ephemeris_validity_s", settings.ephemeris_validity, {1, 14 * 86400.0});
 }
 
+void add_once(std::vector<firmware::NmeaSentence>& sentences, firmware::NmeaSentence sentence) {
+    if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end()) sentences.push_back(sentence);
+}
+
 void read_receiver_keys(TableReader& receiver, ReceiverEntry& entry) {
     receiver.text("board", entry.board);
     receiver.text_or_texts("port", entry.ports);
@@ -62,7 +66,9 @@ void read_receiver_keys(TableReader& receiver, ReceiverEntry& entry) {
         receiver.integer("baud", baud, {300, 4e6});
         entry.baud = baud;
     }
-    receiver.texts("sentences", entry.sentences);
+    if (const auto sentences = receiver.choices("sentences", firmware::nmea_sentence_names))
+        for (const std::size_t index : *sentences)
+            add_once(entry.sentences, static_cast<firmware::NmeaSentence>(index));
     receiver.refuse("antenna_offset_m", "a lever arm needs the vehicle's attitude, which this version does not have");
 }
 

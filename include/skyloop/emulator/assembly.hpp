@@ -39,6 +39,7 @@ struct Assembly {
     std::optional<GpsTime> end;
     std::string digest;  ///< scenario_digest()
     std::vector<std::string> warnings;
+    std::vector<std::string> details;  ///< for those who ask: what was read, and from where
 };
 
 /// Takes a scenario apart and gives each part its piece.

@@ -44,13 +44,10 @@ TEST(Assembly, StartsAndEndsAsTheScenarioSays) {
     EXPECT_EQ(ending.emulator->now(), ending.start);
 }
 
-TEST(Assembly, UnknownBoardsAndSentencesAreUsageErrors) {
+TEST(Assembly, UnknownBoardsAreUsageErrors) {
     const Error board = refusal("[[receiver]]\nboard = \"ublox-m7\"");
     EXPECT_EQ(board.code, ErrorCode::usage);
     EXPECT_THAT(board.message, HasSubstr("board 'ublox-m7' is not known"));
-    const Error sentence = refusal("[[receiver]]\nsentences = [\"RMC\", \"GGGA\"]");
-    EXPECT_EQ(sentence.code, ErrorCode::usage);
-    EXPECT_THAT(sentence.message, HasSubstr("'GGGA' is not a sentence of this version; did you mean 'GGA'?"));
 }
 
 TEST(Assembly, TheScenarioChangesTheBoard) {

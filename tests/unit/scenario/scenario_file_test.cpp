@@ -98,6 +98,7 @@ TEST(ScenarioFile, EveryAtmosphereKeyLandsInItsField) {
     EXPECT_EQ(a.tec_source, TecSource::header);
     EXPECT_EQ(a.ionosphere_loss, Decibels(0.5));
     EXPECT_EQ(a.riometer_absorption_30mhz, Decibels(1.5));
+    EXPECT_EQ(a.ionosphere_base, Metres(70000));
     EXPECT_EQ(a.environment_noise, Decibels(17.5));
     EXPECT_EQ(a.sea_level_temperature, Kelvin(290.5));
     EXPECT_EQ(a.oxygen_constant, 0.227);
@@ -218,7 +219,7 @@ TEST(ScenarioFile, ReceiverKeysLandInTheirFields) {
     EXPECT_THAT(r.ports, ElementsAre("pty:/tmp/gps", "file:out.nmea"));
     EXPECT_EQ(r.rate_hz, 7.5);
     EXPECT_EQ(r.baud, 57600U);
-    EXPECT_THAT(r.sentences, ElementsAre("ZDA", "RMC"));
+    EXPECT_THAT(r.sentences, ElementsAre(firmware::NmeaSentence::zda, firmware::NmeaSentence::rmc));
     EXPECT_THAT(scenario_of("[[receiver]]\nport = \"-\"").receiver.ports, ElementsAre("-"));
 }
 

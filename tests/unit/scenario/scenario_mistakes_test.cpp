@@ -24,8 +24,9 @@ TEST(ScenarioMistakes, WrongTypesSayWhatWasFoundAndExpected) {
               "test.toml:2:21: sky.rebase_navigation: is a whole number; expected true or false");
     EXPECT_EQ(mistakes_of("[[receiver]]\nboard = 8"),
               "test.toml:2:9: receiver.board: is a whole number; expected a text in quotes");
-    EXPECT_EQ(mistakes_of("[[receiver]]\nsentences = \"RMC\""),
-              "test.toml:2:13: receiver.sentences: is a text; expected a list of texts");
+    EXPECT_EQ(
+        mistakes_of("[[receiver]]\nsentences = \"RMC\""),
+        "test.toml:2:13: receiver.sentences: is a text; expected a list of some of RMC VTG GGA GSA GSV GLL GST ZDA");
     EXPECT_EQ(mistakes_of("[[receiver]]\nport = [1]"),
               "test.toml:2:9: receiver.port: holds a whole number; expected a list of texts");
     EXPECT_EQ(mistakes_of("[model]\nname = 3"),
@@ -47,7 +48,8 @@ TEST(ScenarioMistakes, NumbersOutOfRangeSayTheRange) {
               "test.toml:2:22: sky.elevation_mask_deg: is 91; expected a number from 0 to 90");
     EXPECT_EQ(mistakes_of("[run]\nseed = -1"), "test.toml:2:8: run.seed: is -1; expected a whole number of 0 or more");
     EXPECT_EQ(mistakes_of("[atmosphere]\ngravity_mps2 = 0"),
-              "test.toml:2:16: atmosphere.gravity_mps2: is 0; expected a number above 0");
+              "test.toml:2:16: atmosphere.gravity_mps2: is 0; expected a number from 0.1 to 100");
+    EXPECT_THAT(mistakes_of("[frame]\norigin = [46, 30]\nreach_m = 0"), HasSubstr("is 0; expected a number above 0"));
     EXPECT_EQ(mistakes_of("[[receiver]]\nbaud = 100"),
               "test.toml:2:8: receiver.baud: is 100; expected a whole number from 300 to 4000000");
     EXPECT_THAT(mistakes_of("[run]\nduration_s = 0"), HasSubstr("run.duration_s: is 0; expected"));
@@ -100,6 +102,10 @@ TEST(ScenarioMistakes, UnknownWordsSuggestTheNearestKnown) {
     EXPECT_EQ(mistakes_of("[sky]\nconstellations = [\"gps\", \"galilo\"]"),
               "test.toml:2:26: sky.constellations: holds 'galilo'; expected a list of some of gps sbas galileo beidou "
               "qzss glonass navic; did you mean 'galileo'?");
+    EXPECT_EQ(
+        mistakes_of("[[receiver]]\nsentences = [\"RMC\", \"GGGA\"]"),
+        "test.toml:2:21: receiver.sentences: holds 'GGGA'; expected a list of some of RMC VTG GGA GSA GSV GLL GST "
+        "ZDA; did you mean 'GGA'?");
     EXPECT_THAT(mistakes_of("[atmosphere]\nenvironment = \"citty\""), HasSubstr("did you mean 'city'?"));
     EXPECT_THAT(mistakes_of("[[atmosphere.cloud]]\nkind = \"cumulos\""), HasSubstr("did you mean 'cumulus'?"));
     EXPECT_THAT(mistakes_of("[model]\nname = \"modern\""), HasSubstr("the modern model is not in this version"));
@@ -110,7 +116,8 @@ TEST(ScenarioMistakes, EmptyTextsAndListsAreNotTakenForNothing) {
     EXPECT_THAT(mistakes_of("[atmosphere]\nrain_model = \"\""), HasSubstr("is ''; expected one of p838 as_vapour"));
     EXPECT_THAT(mistakes_of("[run]\nstart = \"\""), HasSubstr("run.start: '' is not a UTC time"));
     EXPECT_THAT(mistakes_of("[sky]\nconstellations = []"), HasSubstr("is an empty list; expected a list of some of"));
-    EXPECT_THAT(mistakes_of("[[receiver]]\nsentences = []"), HasSubstr("is an empty list; expected at least one text"));
+    EXPECT_THAT(mistakes_of("[[receiver]]\nsentences = []"),
+                HasSubstr("is an empty list; expected a list of some of RMC"));
 }
 
 TEST(ScenarioMistakes, KeysThatExcludeEachOtherAreRefused) {

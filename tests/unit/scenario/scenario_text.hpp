@@ -98,6 +98,7 @@ total_electron_content_tecu = 12.5
 tec_source = "header"
 ionosphere_loss_db = 0.5
 riometer_absorption_30mhz_db = 1.5
+ionosphere_base_m = 70000
 environment_noise_db = 17.5
 sea_level_temperature_k = 290.5
 oxygen_constant_ghz2 = 0.227
