@@ -2,10 +2,11 @@
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import unittest
 
-from session import SHARED, SKYLOOP, open_folder, skyloop
+from session import SHARED, SKYLOOP, Emulator, open_folder, skyloop
 
 # Arguments, exit code, words that the line must hold.
 MISUSES = [
@@ -178,7 +179,11 @@ class CommandLineTest(unittest.TestCase):
         with open_folder() as folder:
             summary = pathlib.Path(folder, "run.json")
             summary.write_text("{}", encoding="utf-8")
+            # A run that cannot begin leaves the former recording alone; one that begins and cannot end does not.
             skyloop("simulate", "--duration", 1, "--out", folder, "--port", "pty:/no/such/folder/gps0", check=False)
+            self.assertTrue(summary.exists())
+            with Emulator("--record", folder, "--port", f"pty:{folder}/gps0") as emulator:
+                emulator.stop(signal.SIGKILL)
             self.assertFalse(summary.exists())
 
     def test_a_rate_that_no_receiver_can_do_is_told(self):

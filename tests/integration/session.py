@@ -40,20 +40,26 @@ class Emulator:
     """`skyloop run` in the background; `tty` is the path of its first port."""
 
     def __init__(self, *arguments):
-        self.process = subprocess.Popen([SKYLOOP, "run", *map(str, arguments)], stderr=subprocess.PIPE, text=True)
+        # Unbuffered: a line that waits in a buffer of ours is one that select() does not tell of.
+        self.process = subprocess.Popen([SKYLOOP, "run", *map(str, arguments)], stdin=subprocess.DEVNULL,
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, bufsize=0)
         self.log = ""
-        self.tty = self._wait_for_port()
+        self.tty = None
+        try:
+            self.tty = self._wait_for_port()
+        finally:
+            if self.tty is None:
+                self.process.kill()
+                self.process.wait(timeout=20)
 
-    def _wait_for_port(self, patience=20):
+    def _wait_for_port(self, patience=60):
         end = time.monotonic() + patience
         while time.monotonic() < end:
-            ready, _, _ = select.select([self.process.stderr], [], [], 0.2)
-            if ready:
-                line = self.process.stderr.readline()
-                self.log += line
-                found = re.match(r"port 0: (\S+) \(pty\)", line)
-                if found:
-                    return found.group(1)
+            if select.select([self.process.stderr], [], [], 0.2)[0]:
+                self.log += os.read(self.process.stderr.fileno(), 4096).decode()
+            found = re.search(r"^port 0: (\S+) \(pty\)\n", self.log, re.MULTILINE)
+            if found:
+                return found.group(1)
             if self.process.poll() is not None:
                 raise AssertionError(f"skyloop ended {self.process.returncode}: {self.log}")
         raise AssertionError(f"no port line within {patience} s: {self.log}")
@@ -63,7 +69,7 @@ class Emulator:
         if self.process.poll() is None:
             self.process.send_signal(by)
         _, rest = self.process.communicate(timeout=20)
-        self.log += rest
+        self.log += rest.decode()
         return self.process.returncode
 
     def __enter__(self):
