@@ -65,7 +65,11 @@ void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesyste
     static constexpr std::array<std::string_view, 2> rules{"forward", "nearest"};
     if (const auto rule = sky.choice("ephemeris_rule", rules))
         settings.ephemeris_rule = *rule == 0 ? EphemerisRule::forward : EphemerisRule::nearest;
-    sky.quantity("ephemeris_validity_s", settings.ephemeris_validity, {1, 14 * 86400.0});
+    if (sky.has("ephemeris_validity_s")) {
+        Seconds validity(7200);
+        sky.quantity("ephemeris_validity_s", validity, {1, 14 * 86400.0});
+        settings.ephemeris_validity = validity;
+    }
 }
 
 void read_receiver_keys(TableReader& receiver, ReceiverEntry& entry) {
