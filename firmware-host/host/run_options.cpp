@@ -126,7 +126,9 @@ void add_verbosity_options(CLI::App& command, Verbosity& verbosity) {
 void add_place_options(CLI::App& command, RunOptions& options) {
     command.add_option("--at", options.at,
                        "Stand still there: LAT,LON[,HEIGHT] in degrees and metres above the ellipsoid");
-    command.add_option("--nav", options.nav, "RINEX navigation file; repeatable; without it a nominal constellation")
+    command
+        .add_option("--nav", options.nav,
+                    "RINEX navigation file or almanac; repeatable; without it a nominal constellation")
         ->allow_extra_args(false);
     command.add_flag("--rebase-nav", options.rebase_nav,
                      "Move the navigation data to the start time, keeping its time of day");

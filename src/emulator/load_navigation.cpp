@@ -1,11 +1,16 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
+
+#include "skyloop/base/text_file.hpp"
 
 #include "skyloop/emulator/assembly.hpp"
 #include "skyloop/gnss/foreign_records.hpp"
 #include "skyloop/gnss/navigation_data.hpp"
 #include "skyloop/gnss/nominal_constellation.hpp"
+#include "skyloop/rinex/almanac_file.hpp"
 #include "skyloop/rinex/navigation_file.hpp"
 #include "skyloop/time/utc_time.hpp"
 
@@ -13,31 +18,76 @@ namespace skyloop {
 namespace {
 
 struct ReadRecords {
-    std::vector<KeplerEphemeris> records;
-    std::optional<KlobucharCoefficients> klobuchar;
+    std::vector<Ephemeris> records;
+    BroadcastIonosphere ionosphere;
     std::string description;
 };
 
-Result<ReadRecords> read_all(const std::vector<std::filesystem::path>& files, std::vector<std::string>& warnings) {
+// The first file that tells of a system wins.
+void add_ionosphere(BroadcastIonosphere& all, const BroadcastIonosphere& more) {
+    if (!all.gps) all.gps = more.gps;
+    if (!all.qzss) all.qzss = more.qzss;
+    if (!all.beidou) all.beidou = more.beidou;
+    if (!all.navic) all.navic = more.navic;
+    if (!all.galileo) all.galileo = more.galileo;
+}
+
+// A RINEX file or an almanac. @param near resolves the weeks of an almanac
+Result<NavigationFile> read_file(const std::filesystem::path& path, GpsTime near) {
+    const auto text = read_text_file(path);
+    if (!text) return fail(text.error());
+    if (!is_almanac(*text)) return read_navigation(*text, path.string());
+    auto almanac = read_almanac(*text, path.string(), near);
+    if (!almanac) return fail(almanac.error());
+    NavigationFile file;
+    file.records.assign(almanac->begin(), almanac->end());
+    return file;
+}
+
+// The article's reference system is GPS (MODELS.md, R-03), which QZSS extends; the others are asked for by name.
+std::vector<Constellation> wanted_constellations(const Scenario& scenario) {
+    if (!scenario.sky.constellations.empty()) return scenario.sky.constellations;
+    return {Constellation::gps, Constellation::qzss};
+}
+
+std::string constellation_list(const std::vector<Constellation>& constellations) {
+    std::vector<std::string_view> names;
+    for (const Constellation c : constellations)
+        names.push_back(constellation_name(c));
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+// Leaves the records of the wanted systems; fails when there are none.
+Result<void> keep_constellations(ReadRecords& all, const Scenario& scenario) {
+    const std::vector<Constellation> wanted = wanted_constellations(scenario);
+    std::set<Constellation> present;
+    for (const Ephemeris& r : all.records)
+        present.insert(satellite_of(r).constellation);
+    std::erase_if(all.records, [&](const Ephemeris& r) {
+        return std::find(wanted.begin(), wanted.end(), satellite_of(r).constellation) == wanted.end();
+    });
+    if (!all.records.empty()) return {};
+    return fail(
+        ErrorCode::input,
+        fmt::format("{}: found records of {}; expected some of {}, the constellations of this run: name others "
+                    "in sky.constellations",
+                    all.description, constellation_list({present.begin(), present.end()}), constellation_list(wanted)));
+}
+
+Result<ReadRecords> read_all(const Scenario& scenario, GpsTime near, std::vector<std::string>& warnings) {
     ReadRecords all;
-    for (const std::filesystem::path& path : files) {
-        auto file = read_navigation_file(path);
+    for (const std::filesystem::path& path : scenario.sky.navigation) {
+        auto file = read_file(path, near);
         if (!file) return fail(file.error());
         warnings.insert(warnings.end(), file->warnings.begin(), file->warnings.end());
         all.records.insert(all.records.end(), file->records.begin(), file->records.end());
-        if (!all.klobuchar) all.klobuchar = file->klobuchar;
+        add_ionosphere(all.ionosphere, file->ionosphere);
         all.description += (all.description.empty() ? "" : " ") + path.filename().string();
     }
+    if (const Result<void> kept = keep_constellations(all, scenario); !kept) return fail(kept.error());
     for (const DroppedRecord& dropped : drop_foreign_records(all.records))
         warnings.push_back(dropped.reason);
     return all;
-}
-
-void keep_constellations(std::vector<KeplerEphemeris>& records, const std::vector<Constellation>& wanted) {
-    if (wanted.empty()) return;
-    std::erase_if(records, [&](const KeplerEphemeris& r) {
-        return std::find(wanted.begin(), wanted.end(), r.satellite.constellation) == wanted.end();
-    });
 }
 
 EphemerisSelection selection_of(const Scenario& scenario) {
@@ -100,14 +150,10 @@ Result<LoadedNavigation> load_nominal(const Scenario& scenario, GpsTime now, boo
 Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, bool default_to_now) {
     if (scenario.sky.navigation.empty()) return load_nominal(scenario, now, default_to_now);
     LoadedNavigation loaded;
-    auto all = read_all(scenario.sky.navigation, loaded.warnings);
+    const auto all = read_all(scenario, scenario.run.start.value_or(now), loaded.warnings);
     if (!all) return fail(all.error());
-    keep_constellations(all->records, scenario.sky.constellations);
-    if (all->records.empty())
-        return fail(ErrorCode::input,
-                    fmt::format("{}: no record of the wanted constellations is left", all->description));
 
-    NavigationData data(std::move(all->records), all->klobuchar, all->description, selection_of(scenario));
+    NavigationData data(all->records, all->ionosphere, all->description, selection_of(scenario));
     loaded.start = start_of(scenario, data, now, default_to_now);
     if (const auto checked = check_end(scenario.run, loaded.start); !checked) return fail(checked.error());
     if (scenario.sky.rebase_navigation) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
+#include <set>
 #include <tuple>
 
 #include "skyloop/gnss/constants.hpp"
@@ -16,45 +16,84 @@ namespace {
 
 constexpr std::chrono::days one_day{1};
 
-bool time_before_toe(GpsTime time, const KeplerEphemeris& record) { return time < record.toe; }
+bool time_before_toe(GpsTime time, const Ephemeris& record) { return time < toe_of(record); }
 
-std::vector<SatelliteRecords> by_satellite(const std::vector<KeplerEphemeris>& records) {
-    std::vector<std::size_t> order(records.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto issue = [&](std::size_t i) { return std::tie(records[i].satellite, records[i].toe, records[i].iode); };
+// Which records serve: messages of one satellite are not mixed.
+std::vector<std::size_t> serving_records(const std::vector<Ephemeris>& records) {
+    bool inav = false;
+    std::set<SatelliteId> with_ephemeris;
+    for (const Ephemeris& r : records) {
+        inav = inav || message_of(r) == NavigationMessage::inav;
+        if (message_of(r) != NavigationMessage::almanac) with_ephemeris.insert(satellite_of(r));
+    }
+    std::vector<std::size_t> serving;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const NavigationMessage message = message_of(records[i]);
+        if (message == NavigationMessage::fnav && inav) continue;
+        if (message == NavigationMessage::almanac && with_ephemeris.contains(satellite_of(records[i]))) continue;
+        serving.push_back(i);
+    }
+    return serving;
+}
+
+std::vector<SatelliteRecords> by_satellite(const std::vector<Ephemeris>& records) {
+    std::vector<std::size_t> order = serving_records(records);
+    const auto issue = [&](std::size_t i) {
+        return std::tuple(satellite_of(records[i]), toe_of(records[i]), iode_of(records[i]));
+    };
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return issue(a) != issue(b) ? issue(a) < issue(b) : a > b; });
     order.erase(
         std::unique(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return issue(a) == issue(b); }),
         order.end());
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return std::tie(records[a].satellite, records[a].toe, a) < std::tie(records[b].satellite, records[b].toe, b);
+        return std::tuple(satellite_of(records[a]), toe_of(records[a]), a) <
+               std::tuple(satellite_of(records[b]), toe_of(records[b]), b);
     });
 
     std::vector<SatelliteRecords> satellites;
     for (const std::size_t i : order) {
-        if (satellites.empty() || satellites.back().satellite != records[i].satellite)
-            satellites.push_back({records[i].satellite, {}});
+        if (satellites.empty() || satellites.back().satellite != satellite_of(records[i]))
+            satellites.push_back({satellite_of(records[i]), {}});
         satellites.back().records.push_back(records[i]);
     }
     return satellites;
 }
 
 // The last of the records that share the toe of `first`.
-std::vector<KeplerEphemeris>::const_iterator last_of_toe(const std::vector<KeplerEphemeris>& records,
-                                                         std::vector<KeplerEphemeris>::const_iterator first) {
-    return std::upper_bound(first, records.end(), first->toe, time_before_toe) - 1;
+std::vector<Ephemeris>::const_iterator last_of_toe(const std::vector<Ephemeris>& records,
+                                                   std::vector<Ephemeris>::const_iterator first) {
+    return std::upper_bound(first, records.end(), toe_of(*first), time_before_toe) - 1;
 }
 
 std::int64_t floor_days(Nanoseconds span) { return std::chrono::floor<std::chrono::days>(span).count(); }
 
 }  // namespace
 
-NavigationData::NavigationData(const std::vector<KeplerEphemeris>& records,
-                               std::optional<KlobucharCoefficients> klobuchar, std::string description,
-                               EphemerisSelection selection)
+Seconds usual_validity(const Ephemeris& record) {
+    if (message_of(record) == NavigationMessage::almanac) return Seconds(static_cast<double>(seconds_per_week));
+    switch (satellite_of(record).constellation) {
+        case Constellation::galileo:
+            return Seconds(14400);
+        case Constellation::beidou:
+            return Seconds(21600);
+        case Constellation::glonass:
+            return Seconds(1800);
+        case Constellation::sbas:
+            return Seconds(360);
+        default:
+            return Seconds(7200);
+    }
+}
+
+Seconds EphemerisSelection::validity_of(const Ephemeris& record) const {
+    return validity.value_or(usual_validity(record));
+}
+
+NavigationData::NavigationData(const std::vector<Ephemeris>& records, const BroadcastIonosphere& ionosphere,
+                               std::string description, EphemerisSelection selection)
     : satellites_(by_satellite(records)),
-      klobuchar_(klobuchar),
+      ionosphere_(ionosphere),
       description_(std::move(description)),
       selection_(selection) {}
 
@@ -66,30 +105,31 @@ std::vector<SatelliteId> NavigationData::satellites() const {
     return ids;
 }
 
-const KeplerEphemeris* NavigationData::find(const SatelliteRecords& satellite, GpsTime time) const {
-    const std::vector<KeplerEphemeris>& records = satellite.records;
-    const Nanoseconds validity = to_nanoseconds(selection_.validity);
+const Ephemeris* NavigationData::find(const SatelliteRecords& satellite, GpsTime time) const {
+    const std::vector<Ephemeris>& records = satellite.records;
+    const auto valid = [&](const Ephemeris& r) {
+        return std::chrono::abs(time - toe_of(r)) <= to_nanoseconds(selection_.validity_of(r));
+    };
     const auto next = std::upper_bound(records.begin(), records.end(), time, time_before_toe);
     if (selection_.rule == EphemerisRule::forward) {
         for (auto r = next; r != records.begin();) {
             --r;
-            if (time - r->toe > validity) return nullptr;
-            if (r->healthy()) return &*r;
+            if (!valid(*r)) return nullptr;
+            if (is_healthy(*r)) return &*r;
         }
         return nullptr;
     }
-    const KeplerEphemeris* nearest = next == records.begin() ? nullptr : &*(next - 1);
-    if (next != records.end() && (nearest == nullptr || next->toe - time <= time - nearest->toe))
+    const Ephemeris* nearest = next == records.begin() ? nullptr : &*(next - 1);
+    if (next != records.end() && (nearest == nullptr || toe_of(*next) - time <= time - toe_of(*nearest)))
         nearest = &*last_of_toe(records, next);
-    if (nearest == nullptr || std::chrono::abs(time - nearest->toe) > validity) return nullptr;
-    return nearest;
+    return nearest != nullptr && valid(*nearest) ? nearest : nullptr;
 }
 
-std::optional<KeplerEphemeris> NavigationData::ephemeris(SatelliteId satellite, GpsTime time) const {
+std::optional<Ephemeris> NavigationData::ephemeris(SatelliteId satellite, GpsTime time) const {
     const auto own = std::lower_bound(satellites_.begin(), satellites_.end(), satellite,
                                       [](const SatelliteRecords& s, SatelliteId id) { return s.satellite < id; });
     if (own == satellites_.end() || own->satellite != satellite) return std::nullopt;
-    const KeplerEphemeris* record = find(*own, time);
+    const Ephemeris* record = find(*own, time);
     if (record == nullptr) return std::nullopt;
     return *record;
 }
@@ -98,12 +138,13 @@ std::optional<TimeSpan> NavigationData::span() const {
     if (satellites_.empty()) return std::nullopt;
     GpsTime first = GpsTime::max();
     GpsTime last = GpsTime::min();
+    const bool before_toe = selection_.rule == EphemerisRule::nearest;
     for (const SatelliteRecords& s : satellites_) {
-        first = std::min(first, s.records.front().toe);
-        last = std::max(last, s.records.back().toe);
+        const Nanoseconds validity = to_nanoseconds(selection_.validity_of(s.records.front()));
+        first = std::min(first, toe_of(s.records.front()) - (before_toe ? validity : Nanoseconds(0)));
+        last = std::max(last, toe_of(s.records.back()) + validity);
     }
-    const Nanoseconds validity = to_nanoseconds(selection_.validity);
-    return TimeSpan{selection_.rule == EphemerisRule::nearest ? first - validity : first, last + validity};
+    return TimeSpan{first, last};
 }
 
 std::size_t NavigationData::record_count() const {
@@ -122,10 +163,23 @@ KeplerEphemeris moved_by_days(const KeplerEphemeris& record, std::int64_t days) 
     KeplerEphemeris moved = record;
     moved.toe += days * one_day;
     moved.toc += days * one_day;
-    // The node's longitude at toe is omega0 − ω_e·toe (IS-GPS-200, table 20-IV), toe being the time of week.
-    const Nanoseconds change = week_and_tow(moved.toe).tow - week_and_tow(record.toe).tow;
-    const double omega0 = record.omega0 + earth_rotation_rate * std::chrono::duration<double>(change).count();
+    // The node's longitude at toe is omega0 − ω_e·toe (IS-GPS-200, table 20-IV), toe being the time of the system's
+    // week.
+    const bool beidou = record.satellite.constellation == Constellation::beidou;
+    const auto time_of_week = [&](GpsTime t) { return beidou ? bdt_week_and_tow(t).tow : week_and_tow(t).tow; };
+    const double rate = beidou ? earth_rotation_rate_beidou : earth_rotation_rate;
+    const Nanoseconds change = time_of_week(moved.toe) - time_of_week(record.toe);
+    const double omega0 = record.omega0 + rate * std::chrono::duration<double>(change).count();
     if (change != Nanoseconds(0)) moved.omega0 = std::remainder(omega0, 2 * std::numbers::pi);
+    return moved;
+}
+
+Ephemeris moved_by_days(const Ephemeris& record, std::int64_t days) {
+    if (const auto* kepler = std::get_if<KeplerEphemeris>(&record)) return moved_by_days(*kepler, days);
+    Ephemeris moved = record;
+    // State vectors are Earth-fixed: only their time moves.
+    if (auto* glonass = std::get_if<GlonassEphemeris>(&moved)) glonass->toe += days * one_day;
+    if (auto* sbas = std::get_if<SbasEphemeris>(&moved)) sbas->toe += days * one_day;
     return moved;
 }
 
@@ -150,12 +204,12 @@ Result<NavigationData> rebased(const NavigationData& data, GpsTime start) {
                         "a start time of day that the data covers",
                         data.description(), format_utc(gps_calendar(span->first), 0),
                         format_utc(gps_calendar(span->last), 0), format_utc(gps_calendar(start), 0)));
-    std::vector<KeplerEphemeris> records;
+    std::vector<Ephemeris> records;
     records.reserve(data.record_count());
     for (const SatelliteRecords& s : data.records())
-        for (const KeplerEphemeris& r : s.records)
+        for (const Ephemeris& r : s.records)
             records.push_back(moved_by_days(r, best_days));
-    return NavigationData(records, data.klobuchar(), data.description(), data.selection());
+    return NavigationData(records, data.ionosphere(), data.description(), data.selection());
 }
 
 }  // namespace skyloop

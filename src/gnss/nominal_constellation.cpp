@@ -57,7 +57,12 @@ std::vector<SatelliteId> NominalConstellation::satellites() const {
     return all;
 }
 
-std::optional<KeplerEphemeris> NominalConstellation::ephemeris(SatelliteId satellite, GpsTime time) const {
+std::optional<Ephemeris> NominalConstellation::ephemeris(SatelliteId satellite, GpsTime time) const {
+    if (auto found = record(satellite, time)) return *found;
+    return std::nullopt;
+}
+
+std::optional<KeplerEphemeris> NominalConstellation::record(SatelliteId satellite, GpsTime time) const {
     if (satellite.constellation != Constellation::gps || satellite.number < 1 ||
         satellite.number > static_cast<int>(nominal_slots.size()))
         return std::nullopt;
@@ -68,30 +73,30 @@ std::optional<KeplerEphemeris> NominalConstellation::ephemeris(SatelliteId satel
     const auto elapsed = std::chrono::floor<std::chrono::seconds>(time - epoch).count();
     const std::int64_t count = floor_divide(elapsed, nominal_record_s);
 
-    KeplerEphemeris record;
-    record.satellite = satellite;
-    record.toe = epoch + std::chrono::seconds(count * nominal_record_s);
-    record.toc = record.toe;
-    record.sqrt_a = std::sqrt(nominal_semi_major_axis_m);
-    record.i0 = nominal_radians(nominal_inclination_deg);
-    record.omega_dot = nominal_radians(nominal_node_rate_deg_s);
+    KeplerEphemeris r;
+    r.satellite = satellite;
+    r.toe = epoch + std::chrono::seconds(count * nominal_record_s);
+    r.toc = r.toe;
+    r.sqrt_a = std::sqrt(nominal_semi_major_axis_m);
+    r.i0 = nominal_radians(nominal_inclination_deg);
+    r.omega_dot = nominal_radians(nominal_node_rate_deg_s);
     // The user algorithm squares sqrt_a again; the mean motion must be the one that it will find.
-    const double a = record.sqrt_a * record.sqrt_a;
+    const double a = r.sqrt_a * r.sqrt_a;
     const double motion = std::sqrt(gravitational_constant_gps / (a * a * a));
-    record.m0 = reduced_angle(nominal_radians(slot.argument_of_latitude_deg),
-                              motion * static_cast<double>(nominal_record_s), count);
+    r.m0 = reduced_angle(nominal_radians(slot.argument_of_latitude_deg), motion * static_cast<double>(nominal_record_s),
+                         count);
     // omega0 counts from the start of the week of toe: the Earth's rotation since then is the algorithm's, whole weeks
     // are taken out here.
-    const std::int64_t weeks = week_and_tow(record.toe).week - nominal_epoch_week;
+    const std::int64_t weeks = week_and_tow(r.toe).week - nominal_epoch_week;
     const double node_at_epoch = node - nominal_radians(greenwich_hour_angle_deg) +
                                  earth_rotation_rate * static_cast<double>(nominal_epoch_tow_s);
-    record.omega0 = reduced_angle(node_at_epoch + record.omega_dot * static_cast<double>(count * nominal_record_s),
-                                  -earth_rotation_rate * static_cast<double>(seconds_per_week), weeks);
-    record.accuracy_m = 2;
-    record.fit_interval_h = 4;
-    record.iode = static_cast<int>(((count % 256) + 256) % 256);
-    record.iodc = record.iode;
-    return record;
+    r.omega0 = reduced_angle(node_at_epoch + r.omega_dot * static_cast<double>(count * nominal_record_s),
+                             -earth_rotation_rate * static_cast<double>(seconds_per_week), weeks);
+    r.accuracy_m = 2;
+    r.fit_interval_h = 4;
+    r.iode = static_cast<int>(((count % 256) + 256) % 256);
+    r.iodc = r.iode;
+    return r;
 }
 
 }  // namespace skyloop

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "fields.hpp"
+#include "navigation_block.hpp"
 #include "navigation_header.hpp"
 #include "navigation_record.hpp"
 #include "skyloop/base/text_file.hpp"
@@ -21,6 +22,10 @@ struct DefectTally {
     void add(std::string sentence) {
         if (count++ == 0) first = std::move(sentence);
     }
+    template <class Words>
+    void add_with(Words words) {
+        if (count++ == 0) first = words();
+    }
 };
 
 class NavigationReading {
@@ -32,7 +37,9 @@ public:
         if (!header) return fail(header.error());
         major_ = header->major();
         file_.version = header->version;
-        file_.klobuchar = header->klobuchar;
+        system_ = header->system;
+        file_.ionosphere = header->ionosphere;
+        file_.time_corrections = std::move(header->time_corrections);
         file_.leap_seconds = header->leap_seconds;
         file_.warnings = std::move(header->warnings);
 
@@ -65,84 +72,73 @@ private:
     // Version 4: "> EPH G02 LNAV" and the lines up to the next ">".
     void block() {
         if (!line_->text.starts_with('>')) return stray();
-        const Line head = *line_;
-        const std::string_view type = trimmed(columns(head.text, 2, 4));
-        const std::optional<SatelliteId> satellite = parse_satellite(columns(head.text, 6, 3));
-        const std::string_view message = trimmed(columns(head.text, 10, 4));
+        const Line first = *line_;
+        const BlockHead head = block_head(first.text);
         advance();
-        if (type == "EPH" && satellite && message == "LNAV" && is_read(*satellite) && line_ &&
-            begins_record(line_->text, major_))
-            return record();
-        if (type == "EPH" && satellite && !is_read(*satellite))
-            ++file_.skipped.other_systems[satellite->constellation];
-        else if (type == "ION" && satellite && satellite->constellation == Constellation::gps && message == "LNAV")
-            ionosphere();
-        else if (type == "EPH" && satellite && message != "LNAV" && !message.empty())
-            ++file_.skipped.messages[std::string(message)];
-        else if (type == "STO" || type == "EOP" || type == "ION")
-            ++file_.skipped.messages[std::string(type)];
-        else
-            defective_.add(sentence(head.number, in_quotes(head.text), "a block header such as '> EPH G02 LNAV'"));
-        while (line_ && !line_->text.starts_with('>'))
-            advance();
-    }
-
-    // GPS coefficients of a version 4 block: epoch and three of them, four, one.
-    void ionosphere() {
-        std::array<double, 8> values{};
-        bool good = true;
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            const std::size_t field = i + 1;  // the epoch takes the first place
-            if (field % 4 == 0) advance();
-            const std::size_t column = i < 3 ? 23 + 19 * i : 4 + 19 * (field % 4);
-            const auto value = line_ ? real_field(columns(line_->text, column, 19)) : std::nullopt;
-            good = good && value && line_->text.starts_with(' ');
-            values[i] = value.value_or(0);
+        if (head.type == "EPH" && head.satellite && line_ && begins_record(line_->text, major_) &&
+            !line_->text.starts_with('>')) {
+            if (const auto message = message_of_block(head)) return record(message);
         }
-        if (!good)
-            tally(file_.skipped.defective, defective_, lines_.number(), "a damaged ionosphere block",
-                  "eight coefficients in three lines");
-        else if (!file_.klobuchar)
-            file_.klobuchar = {{values[0], values[1], values[2], values[3]},
-                               {values[4], values[5], values[6], values[7]}};
+        std::vector<Line> body;
+        for (; line_ && !line_->text.starts_with('>'); advance())
+            if (body.size() < longest_record) body.push_back(*line_);
+        other_block(first, head, body);
     }
 
-    static bool is_read(SatelliteId satellite) {
-        return satellite.constellation == Constellation::gps || satellite.constellation == Constellation::qzss;
+    void other_block(const Line& first, const BlockHead& head, std::span<const Line> body) {
+        if (head.type == "STO") {
+            auto correction = read_time_offset(body);
+            if (correction) return file_.time_corrections.push_back(std::move(*correction));
+            return tally(file_.skipped.defective, defective_, first.number, "a damaged time offset block",
+                         "an epoch, the name of an offset, and three numbers in two lines");
+        }
+        if (is_read_ionosphere(head)) {
+            if (!take_ionosphere(head, body, file_.ionosphere))
+                tally(file_.skipped.defective, defective_, first.number, "a damaged ionosphere block",
+                      "an epoch and the coefficients of the model");
+            return;
+        }
+        if (head.type == "EPH" && head.satellite && !head.message.empty() && !message_of_block(head))
+            ++file_.skipped.messages[std::string(head.message)];
+        else if (head.type == "EOP" || head.type == "ION")
+            ++file_.skipped.messages[std::string(head.type)];
+        else
+            tally(file_.skipped.defective, defective_, first.number, in_quotes(first.text),
+                  "a block header such as '> EPH G02 LNAV' and a record");
     }
 
-    void record() {
+    void record(std::optional<NavigationMessage> message = std::nullopt) {
         if (continues()) return stray();
         const Line first = *line_;
-        const std::optional<SatelliteId> satellite = record_satellite(first.text, major_);
+        const std::optional<SatelliteId> satellite = record_satellite(first.text, major_, system_);
         if (!satellite) {
             tally(file_.skipped.defective, defective_, first.number, in_quotes(columns(first.text, 0, 3)),
                   major_ == 2 ? "a satellite number" : "a satellite such as 'G07'");
             return skip_record();
         }
-        if (!is_read(*satellite)) {
-            ++file_.skipped.other_systems[satellite->constellation];
-            return skip_record();
-        }
-        lnav(*satellite, first);
+        ephemeris({*satellite, major_, message}, first);
     }
 
-    void lnav(SatelliteId satellite, const Line& first) {
-        std::array<Line, lnav_lines> lines{first};
+    void ephemeris(const RecordKind& kind, const Line& first) {
+        const RecordLength length = record_length(kind.satellite.constellation);
+        std::array<Line, longest_record> lines{first};
         std::size_t count = 1;
         // Within a record a blank line is one whose fields are all blank.
-        for (line_ = lines_.next(); count < lnav_lines && continues(); line_ = lines_.next())
+        for (line_ = lines_.next(); count < length.most && continues(); line_ = lines_.next())
             lines[count++] = *line_;
         if (line_ && is_blank(line_->text)) advance();
-        if (count < lnav_lines)
+        if (count < length.least)
             return tally(file_.skipped.incomplete, incomplete_, first.number,
-                         fmt::format("a record of {} cut off after {} of its lines", to_string(satellite), count),
-                         fmt::format("{} lines", lnav_lines));
-        auto read = read_lnav_record(satellite, lines, major_);
-        if (read) return file_.records.push_back(*read);
+                         fmt::format("a record of {} cut off after {} of its lines", to_string(kind.satellite), count),
+                         fmt::format("{} lines", length.least));
+        auto read = read_record(kind, std::span(lines.data(), count));
+        if (read) return file_.records.push_back(std::move(*read));
         ++file_.skipped.defective;
-        defective_.add(fmt::format("{}:{}:{}: found {}; expected {}", name_, read.error().line, read.error().column,
-                                   read.error().found, read.error().expected));
+        // Many records may fail; only the first needs words.
+        defective_.add_with([&] {
+            return fmt::format("{}:{}:{}: found {}; expected {}", name_, read.error().line, read.error().column,
+                               read.error().found, read.error().expected);
+        });
     }
 
     void stray() {
@@ -158,22 +154,16 @@ private:
         tally.add(sentence(line, found, expected));
     }
 
-    [[nodiscard]] std::string other_systems() const {
-        std::vector<std::string> parts;
-        for (const auto& [constellation, count] : file_.skipped.other_systems)
-            parts.push_back(fmt::format("{} of {}", count, constellation_title(constellation)));
-        return fmt::format("{}", fmt::join(parts, ", "));
-    }
-
     Result<NavigationFile> nothing_read() const {
         for (const DefectTally* t : {&defective_, &incomplete_, &stray_})
             if (t->count > 0) return fail(ErrorCode::input, t->first + "; no record could be read");
-        if (!file_.skipped.other_systems.empty())
+        if (!file_.skipped.messages.empty())
             return fail(ErrorCode::input,
-                        sentence(lines_.number(), fmt::format("only records of other systems ({})", other_systems()),
-                                 "records of GPS or QZSS"));
-        return fail(ErrorCode::input, sentence(lines_.number(), "the end of the file and no ephemeris",
-                                               "records of GPS or QZSS after the header"));
+                        sentence(lines_.number(), fmt::format("only messages of other kinds ({})", messages()),
+                                 "ephemerides of LNAV, INAV, FNAV, D1, D2, FDMA or SBAS"));
+        if (!file_.warnings.empty()) return fail(ErrorCode::input, file_.warnings.front() + "; no record follows");
+        return fail(ErrorCode::input,
+                    sentence(lines_.number(), "the end of the file and no ephemeris", "records after the header"));
     }
 
     void warn() {
@@ -186,12 +176,8 @@ private:
         defects(defective_, "record");
         defects(incomplete_, "record");
         defects(stray_, "line");
-        if (!file_.skipped.other_systems.empty())
-            file_.warnings.push_back(fmt::format(
-                "{}: skipped records of other systems ({}): this version reads GPS and QZSS", name_, other_systems()));
         if (!file_.skipped.messages.empty())
-            file_.warnings.push_back(
-                fmt::format("{}: skipped other messages ({}): this version reads LNAV ephemerides", name_, messages()));
+            file_.warnings.push_back(fmt::format("{}: skipped messages of other kinds ({})", name_, messages()));
     }
     [[nodiscard]] std::string messages() const {
         std::vector<std::string> parts;
@@ -203,6 +189,7 @@ private:
     LineReader lines_;
     std::string_view name_;
     int major_ = 2;
+    Constellation system_ = Constellation::gps;
     std::optional<Line> line_;
     NavigationFile file_;
     DefectTally defective_;
@@ -212,6 +199,13 @@ private:
 
 }  // namespace
 }  // namespace rinex
+
+std::map<Constellation, int> NavigationFile::counts() const {
+    std::map<Constellation, int> counts;
+    for (const Ephemeris& record : records)
+        ++counts[satellite_of(record).constellation];
+    return counts;
+}
 
 Result<NavigationFile> read_navigation(std::string_view text, std::string_view name) {
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";

@@ -46,7 +46,11 @@ void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesyste
     static constexpr std::array<Word<std::optional<EphemerisRule>>, 2> rules{
         {{"forward", EphemerisRule::forward}, {"nearest", EphemerisRule::nearest}}};
     sky.word("ephemeris_rule", rules, settings.ephemeris_rule);
-    sky.quantity("ephemeris_validity_s", settings.ephemeris_validity, {1, 14 * 86400.0});
+    if (sky.has("ephemeris_validity_s")) {
+        Seconds validity(7200);
+        sky.quantity("ephemeris_validity_s", validity, {1, 14 * 86400.0});
+        settings.ephemeris_validity = validity;
+    }
 }
 
 void add_once(std::vector<firmware::NmeaSentence>& sentences, firmware::NmeaSentence sentence) {

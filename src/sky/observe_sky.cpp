@@ -6,6 +6,7 @@
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/gnss/constants.hpp"
 #include "skyloop/gnss/orbit.hpp"
+#include "skyloop/gnss/signal.hpp"
 #include "skyloop/sky/light_time.hpp"
 
 namespace skyloop {
@@ -22,7 +23,7 @@ struct SignalPath {
 // About what a signal takes from a navigation satellite: 67 to 90 ms.
 constexpr Seconds usual_travel_time(0.075);
 
-SignalPath signal_path(const KeplerEphemeris& ephemeris, const TruthState& truth) {
+SignalPath signal_path(const Ephemeris& ephemeris, const TruthState& truth) {
     SignalPath path;
     path.travel_time = usual_travel_time;
     // Each pass shrinks the error by v/c, 1e-5: from 0.1 s of travel time four passes reach the last bit.
@@ -38,8 +39,8 @@ SignalPath signal_path(const KeplerEphemeris& ephemeris, const TruthState& truth
     return path;
 }
 
-std::optional<SatelliteInView> in_view(const KeplerEphemeris& ephemeris, const TruthState& truth,
-                                       const LocalFrame& local) {
+std::optional<SatelliteInView> in_view(const Ephemeris& record, const TruthState& truth, const LocalFrame& local) {
+    const Ephemeris ephemeris = carried_to(record, truth.time - to_nanoseconds(usual_travel_time));
     // Half of the satellites stand far below the horizon, and one look without light time tells so: in a tenth of a
     // second a satellite moves by less than a kilometre.
     const SatelliteState rough = satellite_state(ephemeris, truth.time, -usual_travel_time);
@@ -52,7 +53,7 @@ std::optional<SatelliteInView> in_view(const KeplerEphemeris& ephemeris, const T
     if (!(look.elevation.rad() >= 0)) return std::nullopt;
 
     SatelliteInView seen;
-    seen.id = ephemeris.satellite;
+    seen.id = satellite_of(record);
     seen.azimuth = look.azimuth;
     seen.elevation = look.elevation;
     seen.range = path.range;
@@ -63,10 +64,10 @@ std::optional<SatelliteInView> in_view(const KeplerEphemeris& ephemeris, const T
     seen.velocity_at_transmission = path.transmitter.velocity;
     seen.clock_bias = Seconds(path.transmitter.clock_bias);
     seen.clock_drift = path.transmitter.clock_drift;
-    seen.group_delay = Seconds(ephemeris.tgd);
-    seen.toe = ephemeris.toe;
-    seen.iode = ephemeris.iode;
-    seen.healthy = ephemeris.healthy();
+    seen.group_delay = group_delay(record, first_signal(seen.id.constellation)).value_or(Seconds(0));
+    seen.toe = toe_of(record);
+    seen.iode = iode_of(record);
+    seen.healthy = is_healthy(record);
     return seen;
 }
 
@@ -76,7 +77,7 @@ SkyView observe_sky(const TruthState& truth, const NavigationSource& source) {
     const LocalFrame local(truth.geodetic);
     SkyView sky;
     for (const SatelliteId satellite : source.satellites()) {
-        const std::optional<KeplerEphemeris> ephemeris = source.ephemeris(satellite, truth.time);
+        const std::optional<Ephemeris> ephemeris = source.ephemeris(satellite, truth.time);
         if (!ephemeris) continue;
         if (const std::optional<SatelliteInView> seen = in_view(*ephemeris, truth, local))
             sky.satellites.push_back(*seen);

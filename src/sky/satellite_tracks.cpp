@@ -13,11 +13,12 @@ constexpr std::chrono::hours track_record_reach{48};
 constexpr std::chrono::minutes track_record_spacing{15};
 
 // The records that `source` gives between two instants, ascending by toe.
-std::vector<KeplerEphemeris> records_between(const NavigationSource& source, SatelliteId satellite, TimeSpan window) {
-    std::vector<KeplerEphemeris> records;
+std::vector<Ephemeris> records_between(const NavigationSource& source, SatelliteId satellite, TimeSpan window) {
+    std::vector<Ephemeris> records;
     for (GpsTime t = window.first; t <= window.last; t += track_record_spacing) {
-        std::optional<KeplerEphemeris> record = source.ephemeris(satellite, t);
-        if (record && (records.empty() || records.back().toe != record->toe)) records.push_back(std::move(*record));
+        std::optional<Ephemeris> record = source.ephemeris(satellite, t);
+        if (record && (records.empty() || toe_of(records.back()) != toe_of(*record)))
+            records.push_back(std::move(*record));
     }
     return records;
 }
@@ -28,7 +29,7 @@ TimeSpan record_window(const NavigationSource& source, GpsTime start, GpsTime en
     return {std::max(span->first, start - track_record_reach), std::min(span->last, end + track_record_reach)};
 }
 
-SatelliteTrack extrapolated_track(SatelliteId satellite, const std::vector<KeplerEphemeris>& records,
+SatelliteTrack extrapolated_track(SatelliteId satellite, const std::vector<Ephemeris>& records,
                                   const TrackTimes& times) {
     SatelliteTrack track{satellite, {}};
     const GpsTime end = advanced(times.start, times.duration);
@@ -36,7 +37,7 @@ SatelliteTrack extrapolated_track(SatelliteId satellite, const std::vector<Keple
     std::size_t serving = 0;
     for (GpsTime t = times.start; t <= end; t += step) {
         while (serving + 1 < records.size() &&
-               std::chrono::abs(t - records[serving + 1].toe) <= std::chrono::abs(t - records[serving].toe))
+               std::chrono::abs(t - toe_of(records[serving + 1])) <= std::chrono::abs(t - toe_of(records[serving])))
             ++serving;
         track.points.push_back({t, satellite_state(records[serving], t).position});
     }
@@ -50,7 +51,7 @@ std::vector<SatelliteTrack> satellite_tracks(const NavigationSource& source, con
     const TimeSpan window = record_window(source, times.start, advanced(times.start, times.duration));
     std::vector<SatelliteTrack> tracks;
     for (const SatelliteId satellite : source.satellites()) {
-        const std::vector<KeplerEphemeris> records = records_between(source, satellite, window);
+        const std::vector<Ephemeris> records = records_between(source, satellite, window);
         if (!records.empty()) tracks.push_back(extrapolated_track(satellite, records, times));
     }
     return tracks;

@@ -28,7 +28,7 @@ DataFolders bench_data() { return {{std::filesystem::path(SKYLOOP_BINARY_DIR) / 
 
 void satellite_position(benchmark::State& state) {
     const NominalConstellation constellation;
-    const KeplerEphemeris ephemeris = *constellation.ephemeris({Constellation::gps, 7}, bench_start);
+    const KeplerEphemeris ephemeris = *constellation.record({Constellation::gps, 7}, bench_start);
     GpsTime time = bench_start;
     for (auto _ : state) {
         time += Nanoseconds(1'000'000);

@@ -21,7 +21,7 @@ struct SatelliteInView {
     Velocity<Ecef> velocity_at_transmission;
     Seconds clock_bias;      ///< satellite clock − GPST, relativity included
     double clock_drift = 0;  ///< s/s
-    Seconds group_delay;
+    Seconds group_delay;     ///< of the system's first signal (gnss/signal.hpp)
     GpsTime toe;
     int iode = 0;
     bool healthy = true;

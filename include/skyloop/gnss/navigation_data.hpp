@@ -14,13 +14,21 @@ namespace skyloop {
 /// How a record is chosen (MODELS.md 3.3 and D-02).
 struct EphemerisSelection {
     EphemerisRule rule = EphemerisRule::nearest;
-    Seconds validity{7200};  ///< largest age: t − toe (forward) or |t − toe| (nearest)
+    /// Largest age of any record: t − toe (forward) or |t − toe| (nearest); nothing: each system's own.
+    std::optional<Seconds> validity = std::nullopt;
+
+    [[nodiscard]] Seconds validity_of(const Ephemeris& record) const;
 };
 
-/// The records of one satellite, ascending by toe; of those with the same toe the last one read comes last.
+/// The largest age of a system's records: GPS, QZSS and NavIC 7200 s, Galileo 14 400 s, BeiDou 21 600 s, GLONASS 1800 s
+/// (MODELS.md 3.3), SBAS 360 s (DO-229, table A-25), almanacs a week.
+Seconds usual_validity(const Ephemeris& record);
+
+/// The records of one satellite, ascending by toe; of those with the same toe the last one read comes last. All come
+/// from one kind of message.
 struct SatelliteRecords {
     SatelliteId satellite;
-    std::vector<KeplerEphemeris> records;
+    std::vector<Ephemeris> records;
 };
 
 /// A source of orbits made of recorded ephemerides.
@@ -28,14 +36,18 @@ class NavigationData : public NavigationSource {
 public:
     /// @param records in any order; repetitions of one (satellite, toe, iode) are kept once, the last of them
     /// @param description for people: the name of the file or files
-    NavigationData(const std::vector<KeplerEphemeris>& records, std::optional<KlobucharCoefficients> klobuchar,
+    ///
+    /// Messages are not mixed: of Galileo I/NAV is taken, and F/NAV only when no record of I/NAV is there; an almanac
+    /// serves a satellite only when it has no ephemeris.
+    NavigationData(const std::vector<Ephemeris>& records, const BroadcastIonosphere& ionosphere,
                    std::string description, EphemerisSelection selection = {});
 
     [[nodiscard]] std::vector<SatelliteId> satellites() const override;
     /// The record that the rule picks. Forward: the newest healthy one with 0 ≤ time − toe ≤ validity. Nearest: the one
     /// with the smallest |time − toe| ≤ validity, healthy or not; of two equally near ones the newer.
-    [[nodiscard]] std::optional<KeplerEphemeris> ephemeris(SatelliteId satellite, GpsTime time) const override;
-    [[nodiscard]] std::optional<KlobucharCoefficients> klobuchar() const override { return klobuchar_; }
+    [[nodiscard]] std::optional<Ephemeris> ephemeris(SatelliteId satellite, GpsTime time) const override;
+    [[nodiscard]] std::optional<KlobucharCoefficients> klobuchar() const override { return ionosphere_.gps; }
+    [[nodiscard]] const BroadcastIonosphere& ionosphere() const { return ionosphere_; }
     /// From the first toe (forward), or `validity` before it (nearest), to `validity` after the last; nothing when
     /// there are no records.
     [[nodiscard]] std::optional<TimeSpan> span() const override;
@@ -48,10 +60,10 @@ public:
     [[nodiscard]] std::size_t satellites_at(GpsTime time) const;
 
 private:
-    [[nodiscard]] const KeplerEphemeris* find(const SatelliteRecords& satellite, GpsTime time) const;
+    [[nodiscard]] const Ephemeris* find(const SatelliteRecords& satellite, GpsTime time) const;
 
     std::vector<SatelliteRecords> satellites_;  // ascending by satellite
-    std::optional<KlobucharCoefficients> klobuchar_;
+    BroadcastIonosphere ionosphere_;
     std::string description_;
     EphemerisSelection selection_;
 };
@@ -59,6 +71,8 @@ private:
 /// The record moved by `days` whole days: toe and toc keep their time of day, and omega0 takes up the change of the
 /// time of week, so that every ECEF position at the same time of day stays what it was.
 KeplerEphemeris moved_by_days(const KeplerEphemeris& record, std::int64_t days);
+/// The same for a record of any system.
+Ephemeris moved_by_days(const Ephemeris& record, std::int64_t days);
 
 /// A copy of `data` moved by the whole number of days that gives the most satellites at `start`; among equals by the
 /// one that leaves the most data after `start`. Fails with `usage` when no move brings data to the time of day of

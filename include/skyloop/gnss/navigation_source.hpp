@@ -22,6 +22,18 @@ struct KlobucharCoefficients {
     std::array<double, 4> beta{};   ///< s, s/semicircle, …
 };
 
+/// What broadcasts say of the ionosphere, by system.
+struct BroadcastIonosphere {
+    BroadcastIonosphere() = default;
+    /// Of GPS alone.
+    BroadcastIonosphere(std::optional<KlobucharCoefficients> of_gps) : gps(of_gps) {}  // NOLINT: the usual case
+    BroadcastIonosphere(std::nullopt_t) {}                                             // NOLINT: none
+
+    std::optional<KlobucharCoefficients> gps, qzss, beidou, navic;
+    /// a_i0, a_i1, a_i2: effective ionisation level of Galileo, sfu and by degree (OS SIS ICD 2.0, table 69).
+    std::optional<std::array<double, 3>> galileo;
+};
+
 /// The instants for which a source can give orbits.
 struct TimeSpan {
     GpsTime first;
@@ -35,7 +47,7 @@ public:
     /// Every satellite that the source knows, ascending.
     [[nodiscard]] virtual std::vector<SatelliteId> satellites() const = 0;
     /// The record that serves `satellite` at `time`, or nothing.
-    [[nodiscard]] virtual std::optional<KeplerEphemeris> ephemeris(SatelliteId satellite, GpsTime time) const = 0;
+    [[nodiscard]] virtual std::optional<Ephemeris> ephemeris(SatelliteId satellite, GpsTime time) const = 0;
     [[nodiscard]] virtual std::optional<KlobucharCoefficients> klobuchar() const = 0;
     /// The instants for which there are orbits; nothing when there is no limit.
     [[nodiscard]] virtual std::optional<TimeSpan> span() const = 0;

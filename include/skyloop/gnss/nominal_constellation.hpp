@@ -25,9 +25,10 @@ struct NominalSlot {
 class NominalConstellation : public NavigationSource {
 public:
     [[nodiscard]] std::vector<SatelliteId> satellites() const override;
+    [[nodiscard]] std::optional<Ephemeris> ephemeris(SatelliteId satellite, GpsTime time) const override;
     /// A record with toe at the even hour of GPS time at or before `time`; positions run on smoothly from one record to
-    /// the next.
-    [[nodiscard]] std::optional<KeplerEphemeris> ephemeris(SatelliteId satellite, GpsTime time) const override;
+    /// the next. Nothing for a satellite without a slot.
+    [[nodiscard]] std::optional<KeplerEphemeris> record(SatelliteId satellite, GpsTime time) const;
     [[nodiscard]] std::optional<KlobucharCoefficients> klobuchar() const override { return std::nullopt; }
     [[nodiscard]] std::optional<TimeSpan> span() const override { return std::nullopt; }
     [[nodiscard]] std::string description() const override { return "nominal GPS constellation"; }

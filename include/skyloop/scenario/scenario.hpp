@@ -31,10 +31,10 @@ struct RunSettings {
 struct SkySettings {
     std::vector<std::filesystem::path> navigation;  ///< empty: the nominal constellation
     bool rebase_navigation = false;                 ///< move the data to the start time, keeping its time of day
-    std::vector<Constellation> constellations;      ///< empty: all in the data
+    std::vector<Constellation> constellations;      ///< empty: gps and qzss
     Angle elevation_mask = Angle::degrees(5);
     std::optional<EphemerisRule> ephemeris_rule;  ///< nothing: the model's own rule
-    Seconds ephemeris_validity{7200};
+    std::optional<Seconds> ephemeris_validity;    ///< nothing: each system's own
 };
 
 /// Paths are kept as what was asked for; they become a Trajectory when the start time is known.

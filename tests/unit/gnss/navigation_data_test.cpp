@@ -35,26 +35,26 @@ KeplerEphemeris plain_record(GpsTime toe, SatelliteId satellite = g15) {
     return e;
 }
 
-NavigationData data_of(std::vector<KeplerEphemeris> records, EphemerisRule rule = EphemerisRule::nearest) {
+NavigationData data_of(std::vector<Ephemeris> records, EphemerisRule rule = EphemerisRule::nearest) {
     return NavigationData(std::move(records), std::nullopt, "test data", {.rule = rule});
 }
 
 // An instant given as a total of GPS seconds, to the nanosecond.
 GpsTime total_seconds(double seconds) { return advanced(GpsTime{}, Seconds(seconds)); }
 
-void check_choice(const OracleRow& row, const std::string& column, const std::optional<KeplerEphemeris>& chosen,
-                  const std::vector<KeplerEphemeris>& records) {
+void check_choice(const OracleRow& row, const std::string& column, const std::optional<Ephemeris>& chosen,
+                  const std::vector<Ephemeris>& records) {
     SCOPED_TRACE(column);
     const std::string expected = row.text(column);
     ASSERT_EQ(chosen.has_value(), !expected.empty());
     if (!chosen) return;
     if (expected == "tie") {
         const GpsTime time = total_seconds(row.number("t_gpst_total_s"));
-        const Nanoseconds age = std::chrono::abs(time - chosen->toe);
-        for (const KeplerEphemeris& r : records)
-            EXPECT_LE(age, std::chrono::abs(time - r.toe));
+        const Nanoseconds age = std::chrono::abs(time - toe_of(*chosen));
+        for (const Ephemeris& r : records)
+            EXPECT_LE(age, std::chrono::abs(time - toe_of(r)));
     } else {
-        EXPECT_EQ(chosen->toe, total_seconds(row.number(column)));
+        EXPECT_EQ(toe_of(*chosen), total_seconds(row.number(column)));
     }
 }
 
@@ -62,7 +62,7 @@ TEST(NavigationData, ChoosesRecordsAsTheOracle) {
     for (const OracleRow& row : oracle_rows("ephemeris_selection.csv")) {
         SCOPED_TRACE(row.id());
         const SatelliteId satellite = parse_satellite(row.text("sat")).value();
-        std::vector<KeplerEphemeris> records;
+        std::vector<Ephemeris> records;
         std::istringstream toes(row.text("toe_list_gpst_total_s"));
         for (double toe = 0; toes >> toe;)
             records.push_back(plain_record(total_seconds(toe), satellite));
@@ -77,8 +77,8 @@ TEST(NavigationData, ForwardRulePassesOverUnhealthyRecords) {
     auto unhealthy = plain_record(monday + 1h);
     unhealthy.health = 63;
     const NavigationData data = data_of({plain_record(monday), unhealthy}, EphemerisRule::forward);
-    EXPECT_EQ(data.ephemeris(g15, monday + 90min)->toe, monday);
-    EXPECT_EQ(data.ephemeris(g15, monday + 2h)->toe, monday) << "exactly two hours old is valid";
+    EXPECT_EQ(toe_of(*data.ephemeris(g15, monday + 90min)), monday);
+    EXPECT_EQ(toe_of(*data.ephemeris(g15, monday + 2h)), monday) << "exactly two hours old is valid";
     EXPECT_FALSE(data.ephemeris(g15, monday + 2h + 1ns));
     EXPECT_FALSE(data.ephemeris(g15, monday - 1ns));
 }
@@ -87,7 +87,7 @@ TEST(NavigationData, NearestRuleKeepsUnhealthyRecords) {
     auto unhealthy = plain_record(monday + 1h);
     unhealthy.health = 63;
     const NavigationData data = data_of({plain_record(monday), unhealthy});
-    EXPECT_FALSE(data.ephemeris(g15, monday + 90min)->healthy());
+    EXPECT_FALSE(is_healthy(*data.ephemeris(g15, monday + 90min)));
     EXPECT_TRUE(data.ephemeris(g15, monday - 2h));
     EXPECT_FALSE(data.ephemeris(g15, monday - 2h - 1ns));
     EXPECT_TRUE(data.ephemeris(g15, monday + 3h));
@@ -100,15 +100,15 @@ TEST(NavigationData, KeepsRepetitionsOnceAndTheLastOfOneToe) {
     const NavigationData data =
         data_of({plain_record(monday), plain_record(monday + 2h), plain_record(monday), reissued});
     EXPECT_EQ(data.record_count(), 3u);
-    EXPECT_EQ(data.ephemeris(g15, monday + 1min)->iode, 12);
-    EXPECT_EQ(data.ephemeris(g15, monday - 1min)->iode, 12) << "from before, too";
+    EXPECT_EQ(iode_of(*data.ephemeris(g15, monday + 1min)), 12);
+    EXPECT_EQ(iode_of(*data.ephemeris(g15, monday - 1min)), 12) << "from before, too";
 }
 
 TEST(NavigationData, KnowsItsSatellitesAndSpan) {
     const SatelliteId g02{Constellation::gps, 2};
     const SatelliteId j01{Constellation::qzss, 1};
-    const std::vector<KeplerEphemeris> records{plain_record(monday + 4h, j01), plain_record(monday, g15),
-                                               plain_record(monday + 1h, g02)};
+    const std::vector<Ephemeris> records{plain_record(monday + 4h, j01), plain_record(monday, g15),
+                                         plain_record(monday + 1h, g02)};
     const NavigationData nearest = data_of(records);
     EXPECT_EQ(nearest.satellites(), (std::vector<SatelliteId>{g02, g15, j01}));
     EXPECT_EQ(nearest.span()->first, monday - 2h);
@@ -120,12 +120,72 @@ TEST(NavigationData, KnowsItsSatellitesAndSpan) {
     EXPECT_TRUE(data_of({}).satellites().empty());
 }
 
+SatelliteId other_system(Constellation constellation) { return {constellation, 12}; }
+
+KeplerEphemeris record_of_message(GpsTime toe, SatelliteId satellite, NavigationMessage message) {
+    KeplerEphemeris e = plain_record(toe, satellite);
+    e.message = message;
+    return e;
+}
+
+GlonassEphemeris glonass_record(GpsTime toe) {
+    GlonassEphemeris e;
+    e.satellite = other_system(Constellation::glonass);
+    e.toe = toe;
+    e.position_m = {7003e3, -12206e3, 21280e3};
+    e.velocity_mps = {780, 2800, 1300};
+    return e;
+}
+
+TEST(NavigationData, KeepsToTheValidityOfEachSystem) {
+    SbasEphemeris sbas;
+    sbas.satellite = other_system(Constellation::sbas);
+    sbas.toe = monday;
+    const auto inav = NavigationMessage::inav;
+    const std::vector<std::pair<Ephemeris, Nanoseconds>> rows{
+        {plain_record(monday), 7200s},
+        {plain_record(monday, other_system(Constellation::qzss)), 7200s},
+        {record_of_message(monday, other_system(Constellation::galileo), inav), 14400s},
+        {record_of_message(monday, other_system(Constellation::beidou), NavigationMessage::d1), 21600s},
+        {glonass_record(monday), 1800s},
+        {sbas, 360s},
+        {record_of_message(monday, {Constellation::gps, 20}, NavigationMessage::almanac), 604800s},
+    };
+    for (const EphemerisRule rule : {EphemerisRule::forward, EphemerisRule::nearest})
+        for (const auto& [record, validity] : rows) {
+            const SatelliteId id = satellite_of(record);
+            const NavigationData data = data_of({record}, rule);
+            EXPECT_TRUE(data.ephemeris(id, monday + validity)) << to_string(id);
+            EXPECT_FALSE(data.ephemeris(id, monday + validity + 1ns)) << to_string(id);
+            EXPECT_EQ(data.span()->last, monday + validity);
+            const NavigationData bounded({record}, std::nullopt, "test", {rule, Seconds(60)});
+            EXPECT_FALSE(bounded.ephemeris(id, monday + 61s));
+        }
+}
+
+TEST(NavigationData, NeverMixesMessages) {
+    const SatelliteId e12 = other_system(Constellation::galileo);
+    const SatelliteId e13{Constellation::galileo, 13};
+    const auto inav = record_of_message(monday, e12, NavigationMessage::inav);
+    const auto fnav = record_of_message(monday + 10min, e12, NavigationMessage::fnav);
+    const auto other = record_of_message(monday, e13, NavigationMessage::fnav);
+    const NavigationData both = data_of({inav, fnav, other});
+    EXPECT_EQ(message_of(*both.ephemeris(e12, monday + 10min)), NavigationMessage::inav);
+    EXPECT_FALSE(both.ephemeris(e13, monday)) << "I/NAV is there for the system";
+    EXPECT_EQ(data_of({fnav, other}).record_count(), 2u);
+
+    const auto almanac = record_of_message(monday + 3h, g15, NavigationMessage::almanac);
+    const NavigationData mixed = data_of({plain_record(monday), almanac});
+    EXPECT_FALSE(mixed.ephemeris(g15, monday + 3h)) << "an almanac is no ephemeris that has aged";
+    EXPECT_TRUE(data_of({almanac}).ephemeris(g15, monday + 3h));
+}
+
 // ECEF positions at one time of day before and after a move.
-double displacement_by_move(const KeplerEphemeris& record, std::int64_t days) {
-    const KeplerEphemeris moved = moved_by_days(record, days);
+double displacement_by_move(const Ephemeris& record, std::int64_t days) {
+    const Ephemeris moved = moved_by_days(record, days);
     double worst = 0;
-    for (const auto offset : {-2h, 0h, 1h, 2h}) {
-        const GpsTime then = record.toe + offset;
+    for (const auto offset : {-120min, 0min, 15min, 120min}) {
+        const GpsTime then = toe_of(record) + offset;
         const GpsTime now = then + std::chrono::days(days);
         const Displacement<Ecef> d = satellite_state(moved, now).position - satellite_state(record, then).position;
         worst = std::max(worst, d.length().value());
@@ -141,6 +201,16 @@ TEST(Rebase, KeepsEcefPositionsAtTheSameTimeOfDay) {
                 << tow << " s, " << days << " days";
 }
 
+TEST(Rebase, KeepsEcefPositionsOfEverySystem) {
+    const GpsTime toe = to_gps_time(2111, 604800.0 - 16);
+    for (const std::int64_t days : {-8, -1, 1, 6, 7, 8000}) {
+        for (const int number : {3, 21, 60})
+            EXPECT_LT(displacement_by_move(plain_record(toe, {Constellation::beidou, number}), days), 1e-5) << number;
+        EXPECT_LT(displacement_by_move(plain_record(toe, other_system(Constellation::galileo)), days), 1e-5);
+        EXPECT_EQ(displacement_by_move(glonass_record(toe), days), 0);
+    }
+}
+
 TEST(Rebase, KeepsTimeOfDayAndClock) {
     KeplerEphemeris record = plain_record(to_gps_time(1590, 345584.0));
     record.toc = record.toe - 16s;
@@ -151,7 +221,7 @@ TEST(Rebase, KeepsTimeOfDayAndClock) {
 }
 
 TEST(Rebase, BringsADayOfDataToTheStart) {
-    std::vector<KeplerEphemeris> records;
+    std::vector<Ephemeris> records;
     for (int hour = 0; hour <= 22; hour += 2)
         for (const int number : {3, 15, 22})
             records.push_back(plain_record(monday + std::chrono::hours(hour), {Constellation::gps, number}));

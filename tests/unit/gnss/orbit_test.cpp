@@ -2,16 +2,30 @@
 
 #include <gtest/gtest.h>
 
+#include "skyloop/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop::test {
 namespace {
 
+NavigationMessage oracle_message(const std::string& name) {
+    if (name == "INAV") return NavigationMessage::inav;
+    if (name == "FNAV") return NavigationMessage::fnav;
+    if (name == "D1") return NavigationMessage::d1;
+    return name == "D2" ? NavigationMessage::d2 : NavigationMessage::lnav;
+}
+
 KeplerEphemeris oracle_ephemeris(const OracleRow& row) {
     KeplerEphemeris e;
     e.satellite = parse_satellite(row.text("sat")).value();
-    e.toc = to_gps_time(row.integer("toc_week"), row.number("toc_tow_s"));
-    e.toe = to_gps_time(row.integer("toe_week"), row.number("toe_tow_s"));
+    // BeiDou's weeks began 1356 weeks after those of GPS, and its time runs 14 s behind.
+    const bool bdt = row.text("time_scale_of_eph") == "BDT";
+    const auto time = [&](const std::string& name) {
+        const double tow = row.number(name + "_tow_s") + (bdt ? 14 : 0);
+        return to_gps_time(row.integer(name + "_week") + (bdt ? 1356 : 0), tow);
+    };
+    e.toc = time("toc");
+    e.toe = time("toe");
     e.af0 = row.number("af0_s");
     e.af1 = row.number("af1_s_per_s");
     e.af2 = row.number("af2_s_per_s2");
@@ -32,14 +46,15 @@ KeplerEphemeris oracle_ephemeris(const OracleRow& row) {
     e.cic = row.number("cic_rad");
     e.cis = row.number("cis_rad");
     e.tgd = row.number("tgd1_s");
+    e.tgd2 = row.number("tgd2_s");
+    e.message = oracle_message(row.text("msg"));
     return e;
 }
 
-// Checks the GPS and QZSS rows of a table of broadcast orbits; gives how many there were.
+// Checks the rows of a table of broadcast orbits; gives how many there were.
 int check_orbits(const std::string& table) {
     int checked = 0;
     for (const OracleRow& row : oracle_rows(table)) {
-        if (row.text("sys") != "GPS" && row.text("sys") != "QZS") continue;
         SCOPED_TRACE(row.id());
         ++checked;
         const GpsTime time = to_gps_time(row.integer("t_gpst_week"), row.number("t_gpst_tow_s"));
@@ -61,11 +76,11 @@ int check_orbits(const std::string& table) {
 }
 
 TEST(Orbit, AgreesWithTheBroadcastOrbitOracle) {
-    EXPECT_EQ(check_orbits("orbit_kepler.csv"), shared_oracles_present() ? 56 : 4);
+    EXPECT_EQ(check_orbits("orbit_kepler.csv"), shared_oracles_present() ? 176 : 9);
 }
 
 TEST(Orbit, AgreesWithTheOracleAcrossTheEndOfTheWeek) {
-    EXPECT_EQ(check_orbits("orbit_week_rollover.csv"), shared_oracles_present() ? 3 : 2);
+    EXPECT_EQ(check_orbits("orbit_week_rollover.csv"), shared_oracles_present() ? 18 : 3);
 }
 
 // An almanac is an ephemeris without corrections whose node, too, is that of the start of the week.
@@ -93,6 +108,66 @@ TEST(Orbit, AgreesWithTheAlmanacOracle) {
     }
 }
 
+GlonassEphemeris oracle_state_vector(const OracleRow& row) {
+    GlonassEphemeris e;
+    e.satellite = parse_satellite(row.text("sat")).value();
+    const auto part = [&](const char* name) { return static_cast<unsigned>(row.integer(name)); };
+    e.toe = to_gps_time(UtcTime{static_cast<int>(row.integer("tb_utc_y")), part("tb_utc_m"), part("tb_utc_d"),
+                                part("tb_utc_h"), part("tb_utc_min"), part("tb_utc_s"), 0},
+                        LeapSeconds::constant(static_cast<int>(row.integer("leap_s"))));
+    e.position_m = {row.number("x0_m"), row.number("y0_m"), row.number("z0_m")};
+    e.velocity_mps = {row.number("vx0_m_s"), row.number("vy0_m_s"), row.number("vz0_m_s")};
+    e.acceleration_mps2 = {row.number("ax_m_s2"), row.number("ay_m_s2"), row.number("az_m_s2")};
+    e.clock_bias = -row.number("tauN_s");
+    e.clock_drift = row.number("gammaN");
+    return e;
+}
+
+TEST(Orbit, AgreesWithTheGlonassOracle) {
+    int checked = 0;
+    for (const OracleRow& row : oracle_rows("orbit_glonass.csv")) {
+        SCOPED_TRACE(row.id());
+        const GlonassEphemeris e = oracle_state_vector(row);
+        const GpsTime time = to_gps_time(row.integer("t_gpst_week"), row.number("t_gpst_tow_s"));
+        EXPECT_NEAR(difference(time, e.toe).value(), row.number("dt_s"), 1e-6);
+        // Carried along, it is the same orbit.
+        for (const Ephemeris& record : {Ephemeris(e), carried_to(e, e.toe + (time - e.toe) / 2), carried_to(e, time)}) {
+            const SatelliteState state = satellite_state(record, time);
+            const double position = row.number("tol_pos_m");
+            EXPECT_NEAR(state.position.vector().x(), row.number("x_m"), position);
+            EXPECT_NEAR(state.position.vector().y(), row.number("y_m"), position);
+            EXPECT_NEAR(state.position.vector().z(), row.number("z_m"), position);
+            const double velocity = row.number("tol_vel_m_s");
+            EXPECT_NEAR(state.velocity.vector().x(), row.number("vx_m_s"), velocity);
+            EXPECT_NEAR(state.velocity.vector().y(), row.number("vy_m_s"), velocity);
+            EXPECT_NEAR(state.velocity.vector().z(), row.number("vz_m_s"), velocity);
+            EXPECT_NEAR(state.clock_bias, row.number("clk_s"), row.number("tol_clk_s"));
+            EXPECT_EQ(state.clock_drift, row.number("gammaN"));
+            EXPECT_EQ(state.relativistic_bias, 0);
+        }
+        ++checked;
+    }
+    EXPECT_EQ(checked, shared_oracles_present() ? 40 : 4);
+}
+
+TEST(Orbit, SbasMovesOnAParabola) {
+    SbasEphemeris e;
+    e.toe = to_gps_time(2243, 100.0);
+    e.position_m = {3e7, -2.9e7, 1e4};
+    e.velocity_mps = {1, -2, 0.5};
+    e.acceleration_mps2 = {1e-3, 0, -2e-3};
+    e.clock_bias = 1e-7;
+    e.clock_drift = 1e-11;
+    const SatelliteState state = satellite_state(e, e.toe + std::chrono::seconds(99), Seconds(1));
+    EXPECT_NEAR(state.position.vector().x(), 3e7 + 100 + 5, 1e-7);
+    EXPECT_NEAR(state.position.vector().y(), -2.9e7 - 200, 1e-7);
+    EXPECT_NEAR(state.position.vector().z(), 1e4 + 50 - 10, 1e-7);
+    EXPECT_NEAR(state.velocity.vector().x(), 1.1, 1e-12);
+    EXPECT_NEAR(state.velocity.vector().z(), 0.3, 1e-12);
+    EXPECT_NEAR(state.clock_bias, 1e-7 + 1e-9, 1e-20);
+    EXPECT_EQ(state.clock_drift, 1e-11);
+}
+
 TEST(Orbit, OffsetMovesTimeBelowANanosecond) {
     const KeplerEphemeris e = oracle_ephemeris(oracle_rows("orbit_kepler.csv").front());
     const SatelliteState now = satellite_state(e, e.toe);
@@ -104,13 +179,19 @@ TEST(Orbit, OffsetMovesTimeBelowANanosecond) {
 }
 
 TEST(Orbit, VelocityIsTheDerivativeOfPosition) {
-    const KeplerEphemeris e = oracle_ephemeris(oracle_rows("orbit_kepler.csv").front());
-    for (const int minutes : {-110, -30, 0, 45, 115}) {
-        const GpsTime t = e.toe + std::chrono::minutes(minutes);
-        const Displacement<Ecef> step =
-            satellite_state(e, t, Seconds(0.5)).position - satellite_state(e, t, Seconds(-0.5)).position;
-        EXPECT_LT((step.vector() - satellite_state(e, t).velocity.vector()).norm(), 1e-4);
-    }
+    std::vector<Ephemeris> records;
+    for (const OracleRow& row : oracle_rows("orbit_kepler.csv"))
+        records.emplace_back(oracle_ephemeris(row));
+    records.emplace_back(oracle_state_vector(oracle_rows("orbit_glonass.csv").front()));
+    for (const Ephemeris& e : records)
+        for (const int minutes : {-110, -30, 0, 45, 115}) {
+            if (std::holds_alternative<GlonassEphemeris>(e) && std::abs(minutes) > 45) continue;
+            const GpsTime t = toe_of(e) + std::chrono::minutes(minutes);
+            const Displacement<Ecef> step =
+                satellite_state(e, t, Seconds(0.5)).position - satellite_state(e, t, Seconds(-0.5)).position;
+            ASSERT_LT((step.vector() - satellite_state(e, t).velocity.vector()).norm(), 1e-4)
+                << to_string(satellite_of(e)) << ' ' << minutes;
+        }
 }
 
 }  // namespace

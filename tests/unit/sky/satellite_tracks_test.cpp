@@ -31,8 +31,9 @@ TEST(SatelliteTracks, AgreesWithTheOracleOver46Hours) {
         const auto [track, is_new] = tracks.try_emplace(row.text("sat"));
         if (is_new) {
             // One record alone, extrapolated.
-            const auto record = std::find_if(file->records.begin(), file->records.end(), [&](const KeplerEphemeris& e) {
-                return to_string(e.satellite) == row.text("sat") && e.toe == toe && e.iode == row.integer("iode");
+            const auto record = std::find_if(file->records.begin(), file->records.end(), [&](const Ephemeris& e) {
+                return to_string(satellite_of(e)) == row.text("sat") && toe_of(e) == toe &&
+                       iode_of(e) == row.integer("iode");
             });
             ASSERT_NE(record, file->records.end());
             const NavigationData source({*record}, std::nullopt, "one record");
@@ -68,8 +69,8 @@ TEST(SatelliteTracks, FollowsTheNominalConstellationForHours) {
 
 TEST(SatelliteTracks, TakesTheNearestRecordAndGoesOnBeyondTheLast) {
     const SatelliteId g01{Constellation::gps, 1};
-    KeplerEphemeris first = *nominal.ephemeris(g01, noon);
-    KeplerEphemeris second = *nominal.ephemeris(g01, noon + 2h);
+    KeplerEphemeris first = *nominal.record(g01, noon);
+    KeplerEphemeris second = *nominal.record(g01, noon + 2h);
     second.crc = 1000;  // so that the two can be told apart
     const NavigationData source({first, second}, std::nullopt, "test");
     const auto tracks =
@@ -83,7 +84,7 @@ TEST(SatelliteTracks, TakesTheNearestRecordAndGoesOnBeyondTheLast) {
 }
 
 TEST(SatelliteTracks, LeavesOutSatellitesWithoutNearRecords) {
-    const NavigationData source({*nominal.ephemeris({Constellation::gps, 1}, noon)}, std::nullopt, "test");
+    const NavigationData source({*nominal.record({Constellation::gps, 1}, noon)}, std::nullopt, "test");
     EXPECT_TRUE(satellite_tracks(source, {.start = noon + std::chrono::days(30)}).empty());
     EXPECT_TRUE(satellite_tracks(NavigationData({}, std::nullopt, "none"), {.start = noon}).empty());
     EXPECT_EQ(satellite_tracks(source, {.start = noon + 24h}).size(), 1u);

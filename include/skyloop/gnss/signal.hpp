@@ -1,0 +1,36 @@
+/// Signals, their carriers and the group delays that broadcasts give for them.
+#pragma once
+
+#include <optional>
+
+#include "skyloop/base/units.hpp"
+#include "skyloop/gnss/ephemeris.hpp"
+
+namespace skyloop {
+
+/// A carrier of one or more systems.
+enum class Signal {
+    l1,   ///< GPS, QZSS and SBAS L1, Galileo E1, BeiDou B1C
+    l2,   ///< GPS and QZSS L2
+    l5,   ///< GPS, QZSS, SBAS and NavIC L5, Galileo E5a, BeiDou B2a
+    e5b,  ///< Galileo E5b, BeiDou B2I and B2b
+    e6,   ///< Galileo E6, QZSS L6
+    b1i,  ///< BeiDou B1I
+    b3i,  ///< BeiDou B3I
+    g1,   ///< GLONASS L1 by channel
+    g2,   ///< GLONASS L2 by channel
+};
+
+/// The signal that a single-frequency receiver takes: L1, E1, B1I, G1; of NavIC L5.
+Signal first_signal(Constellation constellation);
+
+/// @param frequency_channel of GLONASS: 1602 + 0.5625 k and 1246 + 0.4375 k MHz (ICD L1, L2 GLONASS, table 3.1)
+Hertz carrier_frequency(Signal signal, int frequency_channel = 0);
+
+/// What a user of one signal subtracts from the broadcast clock, s, or nothing where the record does not tell.
+/// GPS, QZSS: TGD, times (f1/f2)² for L2 (IS-GPS-200, 20.3.3.3.3.2). Galileo: BGD of the message's pair, times (f1/f)²
+/// for the second of the pair (OS SIS ICD 2.0, 5.1.5). BeiDou: TGD1 for B1I, TGD2 for B2I, 0 for B3I (B1I ICD,
+/// 5.2.4.10). GLONASS: 0 for G1, −Δτ_n for G2. SBAS: 0. Almanacs: 0.
+std::optional<Seconds> group_delay(const Ephemeris& record, Signal signal);
+
+}  // namespace skyloop

@@ -1,0 +1,65 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "skyloop/emulator/assembly.hpp"
+#include "skyloop/time/utc_time.hpp"
+#include "support/oracle_table.hpp"
+
+namespace skyloop::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+Scenario with_navigation(const std::filesystem::path& file, std::vector<Constellation> constellations = {}) {
+    Scenario scenario;
+    scenario.sky.navigation = {file};
+    scenario.sky.constellations = std::move(constellations);
+    return scenario;
+}
+
+std::set<Constellation> systems_of(const NavigationSource& source) {
+    std::set<Constellation> systems;
+    for (const SatelliteId id : source.satellites())
+        systems.insert(id.constellation);
+    return systems;
+}
+
+TEST(LoadWorldNavigation, UsesGpsAndQzssUnlessOthersAreNamed) {
+    SKYLOOP_REQUIRE_SHARED(nav, "nav/BRDC00IGS_R_20230010000_01D_MN.rnx.gz");
+    const auto plain = load_navigation(with_navigation(nav), {}, false);
+    ASSERT_TRUE(plain) << plain.error().message;
+    EXPECT_THAT(systems_of(*plain->source), ElementsAre(Constellation::gps, Constellation::qzss));
+    const auto asked =
+        load_navigation(with_navigation(nav, {Constellation::galileo, Constellation::glonass}), {}, false);
+    ASSERT_TRUE(asked);
+    EXPECT_THAT(systems_of(*asked->source), ElementsAre(Constellation::galileo, Constellation::glonass));
+}
+
+TEST(LoadWorldNavigation, SaysWhatTheDataHolds) {
+    SKYLOOP_REQUIRE_SHARED(nav, "nav/brdc0910.09g");
+    const auto refused = load_navigation(with_navigation(nav), {}, false);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message,
+                HasSubstr("brdc0910.09g: found records of glonass; expected some of gps, qzss"));
+    EXPECT_TRUE(load_navigation(with_navigation(nav, {Constellation::glonass}), {}, false));
+}
+
+TEST(LoadWorldNavigation, ReadsAlmanacs) {
+    SKYLOOP_REQUIRE_SHARED(folder, "nav/almanac");
+    Scenario scenario = with_navigation(folder / "yuma.txt");
+    scenario.run.start = to_gps_time(1024 + 862, 319488.0 + 86400);
+    const auto loaded = load_navigation(scenario, {}, false);
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    EXPECT_TRUE(loaded->warnings.empty());
+    EXPECT_EQ(loaded->source->satellites().size(), 31u);
+    EXPECT_TRUE(loaded->source->ephemeris({Constellation::gps, 1}, *scenario.run.start));
+    const auto wrong = load_navigation(with_navigation(folder / "wrong_sem.txt"), {}, false);
+    ASSERT_FALSE(wrong);
+    EXPECT_THAT(wrong.error().message, HasSubstr("wrong_sem.txt:9: found '0'"));
+}
+
+}  // namespace
+}  // namespace skyloop::test

@@ -1,0 +1,92 @@
+#include "skyloop/gnss/signal.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace skyloop::test {
+namespace {
+
+KeplerEphemeris delayed(Constellation constellation, NavigationMessage message) {
+    KeplerEphemeris e;
+    e.satellite = {constellation, 11};
+    e.message = message;
+    e.tgd = 3e-9;
+    e.tgd2 = 5e-9;
+    return e;
+}
+
+double delay_of(const Ephemeris& record, Signal signal) {
+    const auto delay = group_delay(record, signal);
+    EXPECT_TRUE(delay);
+    return delay ? delay->value() : -1;
+}
+
+TEST(Signal, HasTheCarriersOfTheInterfaceDocuments) {
+    EXPECT_EQ(carrier_frequency(Signal::l1).value(), 1575.42e6);
+    EXPECT_EQ(carrier_frequency(Signal::l5).value(), 1176.45e6);
+    EXPECT_EQ(carrier_frequency(Signal::b1i).value(), 1561.098e6);
+    EXPECT_EQ(carrier_frequency(Signal::g1, -7).value(), 1598.0625e6);
+    EXPECT_EQ(carrier_frequency(Signal::g2, 6).value(), 1248.625e6);
+    // Every carrier but those of GLONASS and L5 is a multiple of 1.023 MHz over 2.
+    for (const Signal s : {Signal::l1, Signal::l2, Signal::l5, Signal::e5b, Signal::e6, Signal::b1i, Signal::b3i}) {
+        const double halves = carrier_frequency(s).value() / 511.5e3;
+        EXPECT_NEAR(halves, std::round(halves), 1e-6);
+    }
+    EXPECT_EQ(first_signal(Constellation::galileo), Signal::l1);
+    EXPECT_EQ(first_signal(Constellation::beidou), Signal::b1i);
+    EXPECT_EQ(first_signal(Constellation::glonass), Signal::g1);
+    EXPECT_EQ(first_signal(Constellation::navic), Signal::l5);
+}
+
+TEST(Signal, TakesTheGroupDelayOfEachSystemAndSignal) {
+    const KeplerEphemeris gps = delayed(Constellation::gps, NavigationMessage::lnav);
+    EXPECT_EQ(delay_of(gps, Signal::l1), 3e-9);
+    EXPECT_NEAR(delay_of(gps, Signal::l2), 3e-9 * 77 * 77 / (60 * 60), 1e-20);  // IS-GPS-200: (77/60)²
+    EXPECT_FALSE(group_delay(gps, Signal::l5));
+
+    const KeplerEphemeris inav = delayed(Constellation::galileo, NavigationMessage::inav);
+    EXPECT_EQ(delay_of(inav, Signal::l1), 5e-9);
+    EXPECT_NEAR(delay_of(inav, Signal::e5b), 5e-9 * 154 * 154 / (118 * 118), 1e-20);
+    EXPECT_FALSE(group_delay(inav, Signal::l5)) << "another clock";
+    const KeplerEphemeris fnav = delayed(Constellation::galileo, NavigationMessage::fnav);
+    EXPECT_EQ(delay_of(fnav, Signal::l1), 3e-9);
+    EXPECT_NEAR(delay_of(fnav, Signal::l5), 3e-9 * 154 * 154 / (115 * 115), 1e-20);
+
+    const KeplerEphemeris beidou = delayed(Constellation::beidou, NavigationMessage::d1);
+    EXPECT_EQ(delay_of(beidou, Signal::b1i), 3e-9);
+    EXPECT_EQ(delay_of(beidou, Signal::e5b), 5e-9);
+    EXPECT_EQ(delay_of(beidou, Signal::b3i), 0);
+    EXPECT_FALSE(group_delay(beidou, Signal::l1));
+    EXPECT_EQ(delay_of(delayed(Constellation::navic, NavigationMessage::lnav), Signal::l5), 3e-9);
+    EXPECT_EQ(delay_of(delayed(Constellation::gps, NavigationMessage::almanac), Signal::l1), 0);
+
+    GlonassEphemeris glonass;
+    glonass.group_delay_l2 = 2e-9;
+    EXPECT_EQ(delay_of(glonass, Signal::g1), 0);
+    EXPECT_EQ(delay_of(glonass, Signal::g2), -2e-9);
+    EXPECT_EQ(delay_of(SbasEphemeris{}, Signal::l1), 0);
+}
+
+TEST(Signal, TellsHealthByTheSignalThatCarriesTheMessage) {
+    KeplerEphemeris inav = delayed(Constellation::galileo, NavigationMessage::inav);
+    KeplerEphemeris fnav = delayed(Constellation::galileo, NavigationMessage::fnav);
+    inav.health = fnav.health = 0b000'010'000;  // E5a out of service
+    EXPECT_TRUE(inav.healthy());
+    EXPECT_FALSE(fnav.healthy());
+    inav.health = fnav.health = 0b000'000'001;  // E1-B without guarantee
+    EXPECT_FALSE(inav.healthy());
+    EXPECT_TRUE(fnav.healthy());
+    SbasEphemeris sbas;
+    sbas.health = 0b10;  // corrections off, ranging on
+    EXPECT_TRUE(sbas.healthy());
+    sbas.health = 31;
+    EXPECT_FALSE(sbas.healthy());
+    EXPECT_TRUE(is_beidou_geo({Constellation::beidou, 5}));
+    EXPECT_FALSE(is_beidou_geo({Constellation::beidou, 6}));
+    EXPECT_TRUE(is_beidou_geo({Constellation::beidou, 59}));
+    EXPECT_FALSE(is_beidou_geo({Constellation::gps, 5}));
+}
+
+}  // namespace
+}  // namespace skyloop::test
