@@ -84,7 +84,8 @@ TEST(Orbit, AgreesWithTheAlmanacOracle) {
         e.m0 = row.number("M0_rad");
         e.af0 = row.number("af0_s");
         e.af1 = row.number("af1_s_s");
-        const SatelliteState state = satellite_state(e, to_gps_time(row.integer("t_gps_week"), row.number("t_gps_tow_s")));
+        const SatelliteState state =
+            satellite_state(e, to_gps_time(row.integer("t_gps_week"), row.number("t_gps_tow_s")));
         EXPECT_NEAR(state.position.vector().x(), row.number("x_m"), row.number("tol_m"));
         EXPECT_NEAR(state.position.vector().y(), row.number("y_m"), row.number("tol_m"));
         EXPECT_NEAR(state.position.vector().z(), row.number("z_m"), row.number("tol_m"));
