@@ -35,7 +35,7 @@ public:
 
     [[nodiscard]] double sum(HarmonicPair GmfGptTerm::*field) const {
         double total = 0;
-        for (const GmfGptTerm& term : gmf_gpt_terms()) {
+        for (const GmfGptTerm& term : gmf_gpt_terms) {
             const HarmonicPair& here = values_[index(term.n, term.m)];
             total += (term.*field).cosine * here.cosine + (term.*field).sine * here.sine;
         }

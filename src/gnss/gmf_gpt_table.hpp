@@ -20,6 +20,6 @@ struct GmfGptTerm {
     HarmonicPair temperature_mean, temperature_amplitude;  ///< at sea level, °C
 };
 
-const std::array<GmfGptTerm, 55>& gmf_gpt_terms();
+extern const std::array<GmfGptTerm, 55> gmf_gpt_terms;
 
 }  // namespace skyloop

@@ -24,7 +24,7 @@ struct P676Air {
 
 double oxygen_refractivity(const P676Air& air, double f) {
     double sum = 0;
-    for (const OxygenLine& line : oxygen_lines_p676()) {
+    for (const OxygenLine& line : oxygen_lines_p676) {
         const double strength = line.a1 * 1e-7 * air.p * std::pow(air.theta, 3) * std::exp(line.a2 * (1 - air.theta));
         const double pressure_width =
             line.a3 * 1e-4 * (air.p * std::pow(air.theta, 0.8 - line.a4) + 1.1 * air.e * air.theta);
@@ -37,7 +37,7 @@ double oxygen_refractivity(const P676Air& air, double f) {
 
 double vapour_refractivity(const P676Air& air, double f) {
     double sum = 0;
-    for (const VapourLine& line : vapour_lines_p676()) {
+    for (const VapourLine& line : vapour_lines_p676) {
         const double strength = line.b1 * 1e-1 * air.e * std::pow(air.theta, 3.5) * std::exp(line.b2 * (1 - air.theta));
         const double pressure_width =
             line.b3 * 1e-4 * (air.p * std::pow(air.theta, line.b4) + line.b5 * air.e * std::pow(air.theta, line.b6));

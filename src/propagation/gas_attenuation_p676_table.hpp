@@ -14,7 +14,7 @@ struct VapourLine {
     double f0, b1, b2, b3, b4, b5, b6;
 };
 
-const std::array<OxygenLine, 44>& oxygen_lines_p676();
-const std::array<VapourLine, 35>& vapour_lines_p676();
+extern const std::array<OxygenLine, 44> oxygen_lines_p676;
+extern const std::array<VapourLine, 35> vapour_lines_p676;
 
 }  // namespace skyloop
