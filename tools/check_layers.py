@@ -164,17 +164,14 @@ class Checker:
                     self.complain(start, first, f"{row.name} must not see {unseen[target]} (by {way})")
 
 
-def main(arguments):
-    root = Path(arguments[1] if len(arguments) > 1 else Path(__file__).parent.parent).resolve()
+def check(root):
     checker = Checker(root)
     errors = checker.run()
-    for error in errors:
-        print(error)
-    if not checker.edges:
-        print(f"{root}: no sources to check")
-        return 1
-    print(f"check_layers: {len(checker.edges)} files, {len(errors)} violations")
-    return 1 if errors else 0
+    return len(checker.edges), errors
+
+
+def main(arguments):
+    return source_tree.report("check_layers", arguments, check)
 
 
 if __name__ == "__main__":

@@ -165,17 +165,14 @@ class Checker:
                                    f"at most {PARAMETERS}")
 
 
-def main(arguments):
-    root = Path(arguments[1] if len(arguments) > 1 else Path(__file__).parent.parent).resolve()
+def check(root):
     checker = Checker(root)
     errors = checker.run()
-    for error in errors:
-        print(error)
-    if checker.count == 0:
-        print(f"{root}: nothing to check")
-        return 1
-    print(f"check_sizes: {checker.count} files, {len(errors)} violations")
-    return 1 if errors else 0
+    return checker.count, errors
+
+
+def main(arguments):
+    return source_tree.report("check_sizes", arguments, check)
 
 
 if __name__ == "__main__":

@@ -24,6 +24,19 @@ def cpp_files(root, folders=None):
     return [path for path in files(root, folders) if path.suffix in CPP]
 
 
+def report(program, arguments, check):
+    """Tells what `check(root)`, which gives a count of files and the errors in them, found; gives the exit code."""
+    root = Path(arguments[1] if len(arguments) > 1 else Path(__file__).parent.parent).resolve()
+    count, errors = check(root)
+    for error in errors:
+        print(error)
+    if count == 0:
+        print(f"{root}: no sources to check")
+        return 1
+    print(f"{program}: {count} files, {len(errors)} violations")
+    return 1 if errors else 0
+
+
 TOKENS = re.compile(
     r'(?P<comment>//[^\n]*|/\*.*?\*/)'
     r'|(?P<raw>R"(?P<mark>[^()\\\s]{0,16})\(.*?\)(?P=mark)")'

@@ -2,9 +2,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <new>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -60,13 +65,22 @@ int run_program(int argc, char** argv) {
     return 2;
 }
 
+// What was printed may still wait in a buffer: a full disk shows only when it is written out.
+int with_output_written(int code) {
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+    fmt::print(stderr, "skyloop: standard output: cannot be written: {}\n", std::strerror(errno));
+    return code == 0 ? 1 : code;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     try {
-        return run_program(argc, argv);
+        return with_output_written(run_program(argc, argv));
     } catch (const std::bad_alloc&) {
         std::fputs("skyloop: out of memory\n", stderr);
+    } catch (const std::system_error& refused) {
+        fmt::print(stderr, "skyloop: {}\n", refused.what());
     } catch (const std::exception& broken) {
         fmt::print(stderr, "skyloop: broken promise inside the program: {}\n", broken.what());
     }

@@ -5,8 +5,10 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "skyloop/base/spelling.hpp"
+#include "skyloop/base/text_file.hpp"
 #include "skyloop/scenario/scenario_file.hpp"
 #include "skyloop/time/utc_time.hpp"
 
@@ -31,6 +33,8 @@ Result<void> apply_place(const RunOptions& options, Scenario& scenario) {
     auto trajectory = read_trajectory_file(file);
     if (!trajectory) return fail(trajectory.error());
     scenario.trajectory = std::move(*trajectory);
+    // For the digest: the file's name alone does not say what it holds.
+    if (const auto text = read_text_file(file)) scenario.source += "\n" + *text;
     return {};
 }
 
@@ -162,16 +166,9 @@ Result<Geodetic> parse_place(const std::string& text) {
     if (at != end || count < 1 || count > 2 || text.empty() || text.back() == ',')
         return fail(ErrorCode::usage,
                     asked + "expected LAT,LON or LAT,LON,HEIGHT in degrees and metres, such as 46.4775,30.7326,77");
-    if (std::abs(values[0]) > 90)
-        return fail(ErrorCode::usage, asked + fmt::format("latitude is {:g}; expected -90 to 90 degrees", values[0]));
-    if (std::abs(values[1]) > 360)
-        return fail(ErrorCode::usage,
-                    asked + fmt::format("longitude is {:g}; expected -180 to 180 degrees", values[1]));
-    if (values[2] < -1e4 || values[2] > 1e7)
-        return fail(ErrorCode::usage,
-                    asked + fmt::format("height is {:g}; expected metres above the ellipsoid, -10 000 to 10 000 000",
-                                        values[2]));
-    return Geodetic::degrees(values[0], std::remainder(values[1], 360), values[2]);
+    const auto place = place_from_degrees(values[0], values[1], values[2]);
+    if (!place) return fail(ErrorCode::usage, asked + place.error());
+    return *place;
 }
 
 Result<Scenario> scenario_from(const RunOptions& options) {

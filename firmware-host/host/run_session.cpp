@@ -40,6 +40,8 @@ GpsTime wall_clock() {
 }
 
 RunSession::RunSession(const Messages& messages, Assembly& assembly) : messages_(messages), assembly_(assembly) {
+    for (const std::string& detail : assembly.details)
+        messages.detail(detail);
     for (const std::string& warning : assembly.warnings)
         messages.warning(warning);
 }
@@ -54,8 +56,12 @@ int RunSession::run(const Scenario& scenario) {
     Recorder* recorder = emulator.recorder();
     if (recorder) recorder->record_summary(run_summary(scenario, assembly_, SKYLOOP_VERSION));
     tell_counts();
-    if (recorder && recorder->failure()) return messages_.error(*recorder->failure());
-    return 0;
+    int code = 0;
+    for (const Link& link : emulator.links())
+        if (const std::string failure = link.transport().failure(); !failure.empty())
+            code = messages_.error({ErrorCode::outside, failure});
+    if (recorder && recorder->failure()) code = messages_.error(*recorder->failure());
+    return code;
 }
 
 void RunSession::tell_counts() const {

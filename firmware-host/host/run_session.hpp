@@ -12,7 +12,7 @@ class RunSession {
 public:
     /// @param assembly outlives the session
     RunSession(const Messages& messages, Assembly& assembly);
-    /// Exit code: 0, or 1 when a recording could not be written.
+    /// Exit code: 0, or 1 when a recording or a wire could not be written.
     int run(const Scenario& scenario);
 
 private:

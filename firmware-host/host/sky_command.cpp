@@ -34,10 +34,11 @@ struct World {
 Result<World> make_world(const Scenario& scenario, const Messages& messages) {
     auto navigation = load_navigation(scenario, wall_clock(), scenario.sky.navigation.empty());
     if (!navigation) return fail(navigation.error());
-    for (const std::string& warning : navigation->warnings)
-        messages.warning(warning);
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings = scenario.warnings;
+    warnings.insert(warnings.end(), navigation->warnings.begin(), navigation->warnings.end());
     auto geoid = find_geoid(data_folders(), warnings);
+    for (const std::string& warning : warnings)
+        messages.warning(warning);
     const GpsTime start = navigation->start;
     auto simulation = make_simulation(scenario, std::move(navigation->source), geoid.get(), start);
     if (!simulation) return fail(simulation.error());

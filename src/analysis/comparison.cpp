@@ -23,8 +23,8 @@ bool is_radial(ErrorQuantity quantity) {
     return quantity == ErrorQuantity::horizontal || quantity == ErrorQuantity::spatial;
 }
 
-// A relative difference says something only where the reference is clear of zero: a mean beside its deviation, any other
-// figure beside the size of the errors.
+// A relative difference says something only where the reference is clear of zero: a mean beside its deviation, any
+// other figure beside the size of the errors.
 bool comparable(std::string_view figure, double of_b, const SampleStatistics& b) {
     if (figure == "mean") return std::abs(b.mean) >= b.std / 4;
     return std::abs(of_b) > b.rms * 1e-2;

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <limits>
 
 #include "fix_table.hpp"
+#include "skyloop/protocol/nmea_decode.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
@@ -16,81 +15,31 @@ namespace {
 constexpr double half_day = 43200;
 constexpr double day = 86400;
 
-bool sentence_starts_at(std::string_view text, std::size_t at) {
-    if (at + 7 > text.size() || text[at + 6] != ',') return false;
-    return std::all_of(text.begin() + static_cast<std::ptrdiff_t>(at) + 1,
-                       text.begin() + static_cast<std::ptrdiff_t>(at) + 6,
-                       [](char c) { return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); });
+// The address of the sentence "$ttfff," that starts at a '$'; empty where none does.
+std::string_view address_at(std::string_view text, std::size_t dollar) {
+    constexpr std::size_t length = 5;
+    if (dollar + length + 1 >= text.size() || text[dollar + length + 1] != ',') return {};
+    const std::string_view address = text.substr(dollar + 1, length);
+    const bool plain = std::all_of(address.begin(), address.end(),
+                                   [](char c) { return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); });
+    return plain ? address : std::string_view();
 }
 
-std::optional<double> field_number(std::string_view field) {
-    if (field.starts_with('+')) field.remove_prefix(1);
-    double value = 0;
-    const auto [end, status] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (status != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) return std::nullopt;
-    return value;
+// Positions and dates; not a maker's own sentences, which begin with P.
+bool wanted(std::string_view address) {
+    return !address.starts_with('P') && (address.ends_with("GGA") || address.ends_with("RMC"));
 }
 
-// hhmmss.ss as seconds since midnight.
-std::optional<double> time_of_day(std::string_view field) {
-    const std::optional<double> value = field_number(field);
-    if (!value || field.size() < 6 || *value < 0) return std::nullopt;
-    const double hours = std::floor(*value / 10000);
-    const double minutes = std::floor((*value - hours * 10000) / 100);
-    const double seconds = *value - hours * 10000 - minutes * 100;
-    if (hours > 23 || minutes > 59 || seconds >= 61) return std::nullopt;
-    return hours * 3600 + minutes * 60 + seconds;
+std::size_t count_wanted(std::string_view text) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find('$'); at != std::string_view::npos; at = text.find('$', at + 1))
+        if (wanted(address_at(text, at))) ++count;
+    return count;
 }
 
-// ddmm.mmmm and its hemisphere as degrees.
-std::optional<double> coordinate(std::string_view field, std::string_view hemisphere, std::string_view letters) {
-    const std::optional<double> value = field_number(field);
-    if (!value || *value < 0 || hemisphere.size() != 1 || letters.find(hemisphere[0]) == std::string_view::npos)
-        return std::nullopt;
-    const double degrees = std::floor(*value / 100);
-    const double minutes = *value - degrees * 100;
-    if (minutes >= 60) return std::nullopt;
-    const double angle = degrees + minutes / 60;
-    return hemisphere[0] == letters[1] ? -angle : angle;
-}
-
-// ddmmyy as midnight UTC of that day; two-digit years from 80 on are of the last century.
-std::optional<UtcTime> date(std::string_view field) {
-    unsigned value = 0;
-    const auto [end, status] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (field.size() != 6 || status != std::errc() || end != field.data() + field.size()) return std::nullopt;
-    const unsigned year = value % 100;
-    const auto utc = parse_utc(
-        fmt::format("{:04}-{:02}-{:02}T00:00:00Z", year + (year < 80 ? 2000 : 1900), value / 100 % 100, value / 10000));
-    if (!utc) return std::nullopt;
-    return *utc;
-}
-
-enum class Checksum { good, bad, absent };
-
-// The payload between '$' and '*' of the sentence at the start of `text`, and whether its checksum holds.
-Checksum verify(std::string_view text, std::string_view& payload) {
-    const std::size_t end = text.find_first_of("*$\r\n", 1);
-    if (end == std::string_view::npos || text[end] != '*') return Checksum::absent;
-    payload = text.substr(1, end - 1);
-    unsigned char sum = 0;
-    for (const char c : payload)
-        sum = static_cast<unsigned char>(sum ^ static_cast<unsigned char>(c));
-    const std::string_view digits = text.substr(end + 1, 2);
-    unsigned expected = 0;
-    const auto [stop, status] = std::from_chars(digits.data(), digits.data() + digits.size(), expected, 16);
-    const bool read = digits.size() == 2 && status == std::errc() && stop == digits.data() + 2;
-    return read && expected == sum ? Checksum::good : Checksum::bad;
-}
-
-std::vector<std::string_view> split_fields(std::string_view payload) {
-    std::vector<std::string_view> fields;
-    for (;;) {
-        const std::size_t end = payload.find(',');
-        fields.push_back(payload.substr(0, end));
-        if (end == std::string_view::npos) return fields;
-        payload.remove_prefix(end + 1);
-    }
+double seconds_of_day(const NmeaTime& time) {
+    return UtcTime{.hour = time.hour, .minute = time.minute, .second = time.second, .nanosecond = time.nanosecond}
+        .seconds_of_day();
 }
 
 // A date and the time of day at which it was said.
@@ -99,26 +48,27 @@ struct DateMark {
     double seconds = 0;
 };
 
-// Takes sentences one by one and keeps what the next one needs.
+// Takes a log line by line and keeps what the next one needs.
 class NmeaLogReader {
 public:
     explicit NmeaLogReader(const std::string& name) { series_.name = name; }
     Result<FixSeries> read(std::string_view text);
 
 private:
-    std::optional<Error> take_sentence(std::string_view sentence);
-    std::optional<Error> take_gga(const std::vector<std::string_view>& fields);
-    std::optional<Error> take_position(const std::vector<std::string_view>& fields, FixSample& sample);
-    void take_rmc(const std::vector<std::string_view>& fields);
+    Result<void> take_line(std::string_view line);
+    Result<void> take_sentence(std::string_view sentence);
+    Result<void> take_gga(const Gga& gga);
+    void take_rmc(const Rmc& rmc);
     void date_samples();
     void add_warnings();
-    [[nodiscard]] Error error(const std::string& what) const {
-        return {ErrorCode::input, fmt::format("{}:{}: {}", series_.name, line_, what)};
+    [[nodiscard]] tl::unexpected<Error> refusal(const std::string& what) const {
+        return fail(ErrorCode::input, fmt::format("{}:{}: {}", series_.name, line_, what));
     }
 
     FixSeries series_;
+    SentenceSplitter splitter_;
     std::size_t line_ = 1;
-    std::size_t bad_checksums_ = 0, without_checksum_ = 0, without_separation_ = 0;
+    std::size_t damaged_ = 0, without_checksum_ = 0, without_separation_ = 0;
     // For each sample its time of day and the number of dates said before it.
     struct Clock {
         std::optional<double> seconds;
@@ -129,65 +79,67 @@ private:
 };
 
 Result<FixSeries> NmeaLogReader::read(std::string_view text) {
-    for (std::size_t at = 0; at < text.size(); ++at) {
-        if (text[at] == '\n') ++line_;
-        if (text[at] != '$' || !sentence_starts_at(text, at)) continue;
-        if (auto wrong = take_sentence(text.substr(at))) return fail(std::move(*wrong));
+    while (!text.empty()) {
+        // Loggers end lines in LF, CR, CR LF and even CR CR LF.
+        const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+        if (auto taken = take_line(text.substr(0, end)); !taken) return fail(std::move(taken.error()));
+        if (end < text.size() && text[end] == '\n') ++line_;
+        text.remove_prefix(std::min(end + 1, text.size()));
     }
     date_samples();
     add_warnings();
     return std::move(series_);
 }
 
-std::optional<Error> NmeaLogReader::take_sentence(std::string_view sentence) {
-    const std::string_view kind = sentence.substr(3, 3);
-    if (sentence[1] == 'P' || (kind != "GGA" && kind != "RMC")) return std::nullopt;
-    std::string_view payload;
-    const Checksum checksum = verify(sentence, payload);
-    if (checksum != Checksum::good) {
-        ++(checksum == Checksum::bad ? bad_checksums_ : without_checksum_);
-        return std::nullopt;
+Result<void> NmeaLogReader::take_line(std::string_view line) {
+    std::size_t begun = count_wanted(line);
+    if (begun == 0) return {};
+    for (const std::string& sentence : splitter_.feed(to_bytes(std::string(line) + '\n'))) {
+        if (!wanted(address_at(sentence, 0))) continue;
+        --begun;
+        if (auto taken = take_sentence(sentence); !taken) return taken;
     }
-    const std::vector<std::string_view> fields = split_fields(payload);
-    if (kind == "GGA") return take_gga(fields);
-    take_rmc(fields);
-    return std::nullopt;
+    damaged_ += begun;  // what the splitter has thrown away
+    return {};
 }
 
-std::optional<Error> NmeaLogReader::take_gga(const std::vector<std::string_view>& fields) {
-    if (fields.size() < 12) return error(fmt::format("GGA has {} fields, expected at least 12", fields.size()));
+Result<void> NmeaLogReader::take_sentence(std::string_view sentence) {
+    const std::size_t star = sentence.find('*');
+    // Loggers may write something of their own behind the checksum.
+    const Result<SentenceView> view =
+        parse_sentence(sentence.substr(0, star == std::string_view::npos ? star : star + 3));
+    if (!view) {
+        ++(star == std::string_view::npos ? without_checksum_ : damaged_);
+        return {};
+    }
+    const Result<NmeaMessage> message = decode_nmea(*view);
+    if (!message) return refusal(message.error().message);
+    if (const auto* gga = std::get_if<Gga>(&*message)) return take_gga(*gga);
+    if (const auto* rmc = std::get_if<Rmc>(&*message)) take_rmc(*rmc);
+    return {};
+}
+
+Result<void> NmeaLogReader::take_gga(const Gga& gga) {
     FixSample sample;
-    const std::optional<double> seconds = time_of_day(fields[1]);
-    if (!fields[1].empty() && !seconds)
-        return error(fmt::format("GGA time is '{}'; expected hhmmss", fields[1].substr(0, 20)));
-    sample.has_fix = !fields[6].empty() && fields[6] != "0" && !fields[2].empty() && !fields[4].empty();
-    if (sample.has_fix)
-        if (auto wrong = take_position(fields, sample)) return wrong;
+    sample.has_fix = gga.quality != 0 && gga.position.has_value();
+    if (sample.has_fix) {
+        if (!gga.altitude) return refusal("GGA has a position without an altitude; expected metres in field 9");
+        if (!gga.geoid_separation) ++without_separation_;
+        const Metres height = *gga.altitude + gga.geoid_separation.value_or(Metres(0));
+        const auto position =
+            checked_position(gga.position->latitude.deg(), gga.position->longitude.deg(), height.value());
+        if (!position) return refusal("GGA " + position.error());
+        sample.position = *position;
+    }
     series_.samples.push_back(sample);
-    clocks_.push_back({seconds, dates_.size()});
-    return std::nullopt;
+    clocks_.push_back({gga.time ? std::optional(seconds_of_day(*gga.time)) : std::nullopt, dates_.size()});
+    return {};
 }
 
-std::optional<Error> NmeaLogReader::take_position(const std::vector<std::string_view>& fields, FixSample& sample) {
-    const std::optional<double> latitude = coordinate(fields[2], fields[3], "NS");
-    const std::optional<double> longitude = coordinate(fields[4], fields[5], "EW");
-    const std::optional<double> altitude = field_number(fields[9]);
-    if (!latitude || !longitude || !altitude)
-        return error(fmt::format("GGA position is '{},{},{},{},{}'; expected ddmm.mm,N|S,dddmm.mm,E|W,metres",
-                                 fields[2], fields[3], fields[4], fields[5], fields[9]));
-    const std::optional<double> separation = field_number(fields[11]);
-    if (!separation) ++without_separation_;
-    const auto position = checked_position(*latitude, *longitude, *altitude + separation.value_or(0));
-    if (!position) return error("GGA " + position.error());
-    sample.position = *position;
-    return std::nullopt;
-}
-
-void NmeaLogReader::take_rmc(const std::vector<std::string_view>& fields) {
-    if (fields.size() < 10 || fields[2] != "A") return;
-    const std::optional<double> seconds = time_of_day(fields[1]);
-    const std::optional<UtcTime> midnight = date(fields[9]);
-    if (seconds && midnight) dates_.push_back({*midnight, *seconds});
+void NmeaLogReader::take_rmc(const Rmc& rmc) {
+    if (!rmc.valid || !rmc.time || !rmc.date) return;
+    dates_.push_back(
+        {UtcTime{.year = rmc.date->year, .month = rmc.date->month, .day = rmc.date->day}, seconds_of_day(*rmc.time)});
 }
 
 // A sample belongs to the day that puts it within half a day of the last date said, or of the first one that follows.
@@ -213,9 +165,9 @@ void NmeaLogReader::date_samples() {
 }
 
 void NmeaLogReader::add_warnings() {
-    if (bad_checksums_ > 0)
-        series_.warnings.push_back(fmt::format("{}: {} GGA or RMC sentences with a wrong checksum were skipped",
-                                               series_.name, bad_checksums_));
+    if (damaged_ > 0)
+        series_.warnings.push_back(fmt::format(
+            "{}: {} GGA or RMC sentences with a wrong checksum or stray bytes were skipped", series_.name, damaged_));
     if (without_checksum_ > 0)
         series_.warnings.push_back(fmt::format("{}: {} GGA or RMC sentences without a checksum were skipped",
                                                series_.name, without_checksum_));
@@ -232,7 +184,7 @@ bool has_nmea_sentence(std::string_view text) {
     constexpr std::size_t far_enough = std::size_t{1} << 16;
     const std::string_view start = text.substr(0, far_enough);
     for (std::size_t at = start.find('$'); at != std::string_view::npos; at = start.find('$', at + 1))
-        if (sentence_starts_at(start, at)) return true;
+        if (!address_at(start, at).empty()) return true;
     return false;
 }
 

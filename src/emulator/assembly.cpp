@@ -44,40 +44,42 @@ EffectSettings effect_settings(const Scenario& scenario, const NavigationSource&
     return settings;
 }
 
-// Replaces the board's sentences by those that the scenario names.
-Result<void> choose_sentences(firmware::BoardProfile& board, const std::vector<std::string>& names) {
-    if (names.empty()) return {};
-    board.sentences.clear();
-    for (const std::string& name : names) {
-        const auto& known = firmware::nmea_sentence_names;
-        const auto found = std::find(std::begin(known), std::end(known), name);
-        if (found == std::end(known))
-            return fail(ErrorCode::usage, fmt::format("receiver.sentences: '{}' is not a sentence of this version{}",
-                                                      name, did_you_mean(name, known)));
-        board.sentences.push_back({static_cast<firmware::NmeaSentence>(found - std::begin(known)), 1});
-    }
-    return {};
-}
-
 Result<firmware::Receiver> make_receiver(const ReceiverEntry& entry, const DataFolders& data,
                                          std::vector<std::string>& warnings) {
     auto board = find_board(entry.board, board_folders(data));
     if (!board) return fail(board.error());
     if (entry.baud) board->baud = *entry.baud;
-    if (const auto chosen = choose_sentences(*board, entry.sentences); !chosen) return fail(chosen.error());
+    if (!entry.sentences.empty()) board->sentences.clear();
+    for (const firmware::NmeaSentence sentence : entry.sentences)
+        board->sentences.push_back({sentence, 1});
     const double rate = entry.rate_hz.value_or(board->default_rate_hz);
     if (rate > board->max_rate_hz)
         warnings.push_back(
             fmt::format("{:g} Hz is more than {} can do; it runs at {:g} Hz", rate, board->name, board->max_rate_hz));
-    return firmware::Receiver(std::move(*board), rate);
+    firmware::Receiver receiver(std::move(*board), rate);
+    const double actual = 1e9 / static_cast<double>(receiver.settings().navigation_period.count());
+    if (rate < 0.99 * actual)
+        warnings.push_back(fmt::format("{:g} Hz is less than a receiver can do; it runs at {:.4g} Hz", rate, actual));
+    return receiver;
 }
 
-Result<std::vector<Link>> open_links(const ReceiverEntry& entry, std::uint32_t baud) {
+std::vector<std::string> run_details(const NavigationSource& navigation, const firmware::Receiver& receiver,
+                                     const Assembly& assembly) {
+    return {fmt::format("navigation: {}, {} satellites, {}", navigation.description(), navigation.satellites().size(),
+                        navigation.klobuchar() ? "with ionosphere coefficients" : "without ionosphere coefficients"),
+            fmt::format("geoid: {}", assembly.geoid ? "EGM96, 15 minutes" : "none"),
+            fmt::format("receiver: {}, {} baud, {} sentences", receiver.board().name, receiver.baud(),
+                        receiver.board().sentences.size()),
+            fmt::format("digest: {}", assembly.digest)};
+}
+
+Result<std::vector<Link>> open_links(const ReceiverEntry& entry, std::uint32_t baud, bool virtual_time) {
     std::vector<Link> links;
     const std::vector<std::string> uris = entry.ports.empty() ? std::vector<std::string>{"pty"} : entry.ports;
     for (const std::string& uri : uris) {
         auto transport = open_transport(uri);
         if (!transport) return fail(transport.error());
+        if (virtual_time) (*transport)->allow_waiting();
         links.emplace_back(std::move(*transport), baud);
     }
     return links;
@@ -160,16 +162,18 @@ Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, con
     if (!simulation) return fail(simulation.error());
     auto receiver = make_receiver(scenario.receiver, data, assembly.warnings);
     if (!receiver) return fail(receiver.error());
+    assembly.details = run_details(simulation->navigation(), *receiver, assembly);
     Emulator::Parts parts{std::move(*simulation), std::move(*receiver), {}, nullptr, std::nullopt};
+    if (mode.open_ports) {
+        auto links = open_links(scenario.receiver, parts.receiver.baud(), mode.virtual_time);
+        if (!links) return fail(links.error());
+        parts.links = std::move(*links);
+    }
+    // After everything that may be refused: it empties the files of a former recording.
     if (mode.record) {
         auto recorder = Recorder::create(*mode.record);
         if (!recorder) return fail(recorder.error());
         parts.recorder = std::move(*recorder);
-    }
-    if (mode.open_ports) {
-        auto links = open_links(scenario.receiver, parts.receiver.baud());
-        if (!links) return fail(links.error());
-        parts.links = std::move(*links);
     }
     // Last, so that the clock starts when everything else is ready.
     if (mode.virtual_time)

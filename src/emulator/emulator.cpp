@@ -7,10 +7,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Receivers solve on a grid of GPS time, so that the time of week is a multiple of the period.
+// Receivers solve on a grid of GPS time: where the period divides the week, the time of week is a multiple of it.
 GpsTime first_epoch(GpsTime start, Nanoseconds period) {
     const Nanoseconds past = start.time_since_epoch() % period;
-    return past == 0ns ? start : start - past + period;
+    return past > 0ns ? start - past + period : start - past;
 }
 
 }  // namespace

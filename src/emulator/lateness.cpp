@@ -5,7 +5,7 @@
 namespace skyloop {
 
 void LatenessHistogram::add(Nanoseconds lateness) {
-    const double ms = static_cast<double>(lateness.count()) * 1e-6;
+    const double ms = static_cast<double>(lateness.count()) / 1e6;
     const auto bin = std::upper_bound(bounds_ms.begin(), bounds_ms.end(), ms) - bounds_ms.begin();
     ++counts_[static_cast<std::size_t>(bin)];
     largest_ = std::max(largest_, lateness);

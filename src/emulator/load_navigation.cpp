@@ -56,6 +56,16 @@ GpsTime start_of(const Scenario& scenario, const NavigationSource& source, GpsTi
     return span->first;
 }
 
+// Far inside what 64-bit nanoseconds since 1980 can count, which ends in 2272.
+Result<void> check_end(const RunSettings& run, GpsTime start) {
+    constexpr double latest_s = 290 * 365.25 * 86400;
+    const double end_s = difference(start, GpsTime{}).value() + run.duration.value_or(Seconds(0)).value();
+    if (end_s < latest_s) return {};
+    return fail(ErrorCode::usage, fmt::format("a run of {:g} s from {} ends after 2269; expected a shorter one",
+                                              run.duration.value_or(Seconds(0)).value(),
+                                              format_utc(to_utc(start, LeapSeconds::announced()), 0)));
+}
+
 std::string span_text(const TimeSpan& span) {
     const LeapSeconds& leap = LeapSeconds::announced();
     return fmt::format("{} to {}", format_utc(to_utc(span.first, leap), 0), format_utc(to_utc(span.last, leap), 0));
@@ -81,6 +91,7 @@ Result<LoadedNavigation> load_nominal(const Scenario& scenario, GpsTime now, boo
         return fail(ErrorCode::usage, "--rebase-nav moves navigation data, but there is none; give it with --nav");
     LoadedNavigation loaded{std::make_unique<NominalConstellation>(), {}, {}};
     loaded.start = start_of(scenario, *loaded.source, now, default_to_now);
+    if (const auto checked = check_end(scenario.run, loaded.start); !checked) return fail(checked.error());
     return loaded;
 }
 
@@ -98,6 +109,7 @@ Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, 
 
     NavigationData data(std::move(all->records), all->klobuchar, all->description, selection_of(scenario));
     loaded.start = start_of(scenario, data, now, default_to_now);
+    if (const auto checked = check_end(scenario.run, loaded.start); !checked) return fail(checked.error());
     if (scenario.sky.rebase_navigation) {
         auto moved = rebased(data, loaded.start);
         if (!moved) return fail(moved.error());

@@ -16,6 +16,8 @@ Result<Recorder> Recorder::create(const std::filesystem::path& folder) {
                     fmt::format("{}: cannot be made a folder: {}", folder.string(), reason.message()));
     Recorder recorder;
     recorder.folder_ = folder;
+    // Written at the end: a run that is killed must not leave the summary of the run before.
+    std::filesystem::remove(folder / "run.json", reason);
     const std::pair<OutputFile*, const char*> files[] = {{&recorder.fixes_, "fixes.csv"},
                                                          {&recorder.satellites_, "satellites.csv"},
                                                          {&recorder.bytes_out_, "port0.out"},

@@ -1,5 +1,7 @@
 #include "skyloop/geo/geodetic.hpp"
 
+#include <fmt/format.h>
+
 #include <GeographicLib/Geocentric.hpp>
 #include <cmath>
 
@@ -7,6 +9,17 @@ namespace skyloop {
 
 Geodetic Geodetic::degrees(double latitude, double longitude, double height_m) {
     return {Angle::degrees(latitude), Angle::degrees(longitude), {Metres(height_m)}};
+}
+
+tl::expected<Geodetic, std::string> place_from_degrees(double latitude, double longitude, double height_m) {
+    if (!(std::abs(latitude) <= 90))
+        return tl::make_unexpected(fmt::format("latitude is {:g}; expected -90 to 90 degrees", latitude));
+    if (!(std::abs(longitude) <= 360))
+        return tl::make_unexpected(fmt::format("longitude is {:g}; expected -180 to 180 degrees", longitude));
+    if (!(height_m >= -1e4 && height_m <= 1e7))
+        return tl::make_unexpected(
+            fmt::format("height is {:g}; expected metres above the ellipsoid, -10 000 to 10 000 000", height_m));
+    return Geodetic::degrees(latitude, std::remainder(longitude, 360), height_m);
 }
 
 Position<Ecef> to_ecef(const Geodetic& place) {

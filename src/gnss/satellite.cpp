@@ -2,45 +2,39 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 
 namespace skyloop {
 namespace {
 
-struct ConstellationRow {
-    Constellation constellation;
-    char letter;
-    std::string_view name;
-};
-constexpr std::array<ConstellationRow, 7> constellations{{
-    {Constellation::gps, 'G', "gps"},
-    {Constellation::sbas, 'S', "sbas"},
-    {Constellation::galileo, 'E', "galileo"},
-    {Constellation::beidou, 'C', "beidou"},
-    {Constellation::qzss, 'J', "qzss"},
-    {Constellation::glonass, 'R', "glonass"},
-    {Constellation::navic, 'I', "navic"},
-}};
+// All in the order of Constellation.
+constexpr std::string_view rinex_letters = "GSECJRI";
+constexpr std::array<std::string_view, 7> constellation_titles{"GPS",  "SBAS",    "Galileo", "BeiDou",
+                                                               "QZSS", "GLONASS", "NavIC"};
 
-const ConstellationRow& row(Constellation constellation) {
-    return constellations[static_cast<std::size_t>(constellation)];
+std::optional<Constellation> constellation_at(std::size_t index) {
+    return index < constellation_names.size() ? std::optional(static_cast<Constellation>(index)) : std::nullopt;
 }
 
 }  // namespace
 
-char rinex_letter(Constellation constellation) { return row(constellation).letter; }
-std::string_view constellation_name(Constellation constellation) { return row(constellation).name; }
+char rinex_letter(Constellation constellation) { return rinex_letters[static_cast<std::size_t>(constellation)]; }
+
+std::string_view constellation_name(Constellation constellation) {
+    return constellation_names[static_cast<std::size_t>(constellation)];
+}
+
+std::string_view constellation_title(Constellation constellation) {
+    return constellation_titles[static_cast<std::size_t>(constellation)];
+}
 
 std::optional<Constellation> constellation_from_letter(char letter) {
-    for (const ConstellationRow& r : constellations)
-        if (r.letter == letter) return r.constellation;
-    return std::nullopt;
+    return constellation_at(rinex_letters.find(letter));
 }
 
 std::optional<Constellation> constellation_from_name(std::string_view name) {
-    for (const ConstellationRow& r : constellations)
-        if (r.name == name) return r.constellation;
-    return std::nullopt;
+    const auto found = std::find(constellation_names.begin(), constellation_names.end(), name);
+    return constellation_at(static_cast<std::size_t>(found - constellation_names.begin()));
 }
 
 std::string to_string(SatelliteId satellite) {

@@ -41,27 +41,6 @@ constexpr std::string_view constellation_colour(Constellation constellation) {
     return ink;
 }
 
-/// Names as people write them.
-constexpr std::string_view constellation_title(Constellation constellation) {
-    switch (constellation) {
-        case Constellation::gps:
-            return "GPS";
-        case Constellation::sbas:
-            return "SBAS";
-        case Constellation::galileo:
-            return "Galileo";
-        case Constellation::beidou:
-            return "BeiDou";
-        case Constellation::qzss:
-            return "QZSS";
-        case Constellation::glonass:
-            return "GLONASS";
-        case Constellation::navic:
-            return "NavIC";
-    }
-    return "";
-}
-
 /// A sheet of paper of its own under the picture, so that it reads on a white page and on a dark one.
 inline void draw_sheet(SvgDocument& svg, SvgPoint size) {
     svg.rectangle({0.5, 0.5}, {size.x - 1, size.y - 1}, 10, {.fill = paper, .stroke = grid});

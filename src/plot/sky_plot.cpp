@@ -173,7 +173,7 @@ void draw_system_legend(SvgDocument& svg, const SkyPlot& plot, const std::vector
         present.insert(s.id.constellation);
     for (const Constellation c : present) {
         svg.circle(row.mark_place(6), 6, {.fill = style::constellation_colour(c)});
-        row.label(std::string(style::constellation_title(c)), 12);
+        row.label(std::string(constellation_title(c)), 12);
     }
     if (plot.mask && plot.mask->deg() > 0) {
         const SvgPoint p = row.mark_place(0);

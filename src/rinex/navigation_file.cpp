@@ -161,7 +161,7 @@ private:
     [[nodiscard]] std::string other_systems() const {
         std::vector<std::string> parts;
         for (const auto& [constellation, count] : file_.skipped.other_systems)
-            parts.push_back(fmt::format("{} of {}", count, system_name(constellation)));
+            parts.push_back(fmt::format("{} of {}", count, constellation_title(constellation)));
         return fmt::format("{}", fmt::join(parts, ", "));
     }
 

@@ -57,7 +57,7 @@ std::string other_content(int major, char type, char system) {
     if (major == 2 || system == 'G' || system == 'J' || system == 'M' || system == ' ') return {};
     if (const auto constellation = constellation_from_letter(system))
         return fmt::format("{} {} navigation file (system '{}')", system == 'S' ? "an" : "a",
-                           system_name(*constellation), system);
+                           constellation_title(*constellation), system);
     return fmt::format("satellite system {}", in_quotes(std::string_view(&system, 1)));
 }
 
@@ -156,26 +156,6 @@ private:
 };
 
 }  // namespace
-
-std::string_view system_name(Constellation constellation) {
-    switch (constellation) {
-        case Constellation::gps:
-            return "GPS";
-        case Constellation::sbas:
-            return "SBAS";
-        case Constellation::galileo:
-            return "Galileo";
-        case Constellation::beidou:
-            return "BeiDou";
-        case Constellation::qzss:
-            return "QZSS";
-        case Constellation::glonass:
-            return "GLONASS";
-        case Constellation::navic:
-            return "NavIC";
-    }
-    return "unknown";
-}
 
 Result<NavigationHeader> read_header(LineReader& lines, std::string_view name) {
     std::optional<Line> line = lines.next();

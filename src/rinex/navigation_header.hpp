@@ -25,7 +25,4 @@ struct NavigationHeader {
 /// end.
 Result<NavigationHeader> read_header(LineReader& lines, std::string_view name);
 
-/// "GPS", "GLONASS", "BeiDou", …
-std::string_view system_name(Constellation constellation);
-
 }  // namespace skyloop::rinex

@@ -17,24 +17,22 @@ void read_baseline(TableReader& table, ModelSettings& settings) {
     if (const auto preset = table.choice("preset", presets))
         p = *preset == 0 ? BaselineParameters::strict() : BaselineParameters::calibrated();
     table.quantity("snr_cutoff_dbhz", p.snr_cutoff, {-100, 100});
-    std::int64_t reflections = p.max_reflections;
-    table.integer("max_reflections", reflections, {0, 16});
-    p.max_reflections = static_cast<int>(reflections);
+    table.integer("max_reflections", p.max_reflections, {0, 16});
     table.quantity("reflection_loss_db", link.reflection_loss, {0, 100});
-    static constexpr std::array<Words, 2> powers{"eirp", "received_spec"};
-    if (const auto mode = table.choice("power_mode", powers))
-        link.power_mode = *mode == 0 ? PowerMode::eirp : PowerMode::received_spec;
+    static constexpr std::array<Word<PowerMode>, 2> powers{
+        {{"eirp", PowerMode::eirp}, {"received_spec", PowerMode::received_spec}}};
+    table.word("power_mode", powers, link.power_mode);
     table.quantity("satellite_power_dbw", link.satellite_power, {-200, 200});
     table.quantity("specified_received_power_dbw", link.specified_received_power, {-300, 0});
     table.number("thermal_noise_dbw_hz", link.thermal_noise_dbw_hz, {-300, 0});
-    static constexpr std::array<Words, 2> statistics{"sample_std", "rms"};
-    if (const auto statistic = table.choice("statistic", statistics))
-        p.statistic = *statistic == 0 ? UereStatistic::sample_std : UereStatistic::rms;
+    static constexpr std::array<Word<UereStatistic>, 2> statistics{
+        {{"sample_std", UereStatistic::sample_std}, {"rms", UereStatistic::rms}}};
+    table.word("statistic", statistics, p.statistic);
     table.number("iono_fraction", p.iono_fraction, {0, 10});
     table.number("tropo_fraction", p.tropo_fraction, {0, 10});
-    static constexpr std::array<Words, 2> axes{"isotropic", "covariance"};
-    if (const auto axis = table.choice("axes", axes))
-        p.axes = *axis == 0 ? NoiseAxes::isotropic : NoiseAxes::covariance;
+    static constexpr std::array<Word<NoiseAxes>, 2> axes{
+        {{"isotropic", NoiseAxes::isotropic}, {"covariance", NoiseAxes::covariance}}};
+    table.word("axes", axes, p.axes);
 }
 
 void read_simple_models(TableReader& model, ModelSettings& settings) {
@@ -68,10 +66,13 @@ void read_simple_models(TableReader& model, ModelSettings& settings) {
 }
 
 std::optional<ConcentrationMode> read_concentration(TableReader& table) {
-    static constexpr std::array<Words, 3> modes{"mean", "midpoint", "fixed"};
-    const auto mode = table.choice("concentration", modes);
-    if (!mode) return std::nullopt;
-    return std::array{ConcentrationMode::mean, ConcentrationMode::midpoint, ConcentrationMode::fixed}[*mode];
+    static constexpr std::array<Word<std::optional<ConcentrationMode>>, 3> modes{
+        {{"mean", ConcentrationMode::mean},
+         {"midpoint", ConcentrationMode::midpoint},
+         {"fixed", ConcentrationMode::fixed}}};
+    std::optional<ConcentrationMode> mode;
+    table.word("concentration", modes, mode);
+    return mode;
 }
 
 void read_layers(TableReader& atmosphere, AtmosphereParameters& p) {
@@ -122,9 +123,9 @@ void read_clouds(TableReader& atmosphere, AtmosphereParameters& p) {
 void read_rain(TableReader& atmosphere, AtmosphereParameters& p) {
     atmosphere.number("rain_mm_h", p.rain.rate_mm_h, {0, 500});
     atmosphere.quantity("rain_top_m", p.rain.top, {0, 30000});
-    static constexpr std::array<Words, 2> models{"p838", "as_vapour"};
-    if (const auto model = atmosphere.choice("rain_model", models))
-        p.rain.model = *model == 0 ? RainModel::p838 : RainModel::as_vapour;
+    static constexpr std::array<Word<RainModel>, 2> models{
+        {{"p838", RainModel::p838}, {"as_vapour", RainModel::as_vapour}}};
+    atmosphere.word("rain_model", models, p.rain.model);
 }
 
 void read_environment(TableReader& atmosphere, AtmosphereParameters& p) {
@@ -139,14 +140,15 @@ void read_environment(TableReader& atmosphere, AtmosphereParameters& p) {
 }
 
 void read_ionosphere(TableReader& atmosphere, AtmosphereParameters& p) {
-    static constexpr std::array<Words, 3> sources{"automatic", "header", "constant"};
+    static constexpr std::array<Word<TecSource>, 3> sources{
+        {{"automatic", TecSource::automatic}, {"header", TecSource::header}, {"constant", TecSource::constant}}};
     // A number given is a number meant: it switches the broadcast coefficients off unless the source is named as well.
     if (atmosphere.has("total_electron_content_tecu")) p.tec_source = TecSource::constant;
-    if (const auto source = atmosphere.choice("tec_source", sources))
-        p.tec_source = std::array{TecSource::automatic, TecSource::header, TecSource::constant}[*source];
+    atmosphere.word("tec_source", sources, p.tec_source);
     atmosphere.quantity("total_electron_content_tecu", p.total_electron_content, {0, 1000});
     atmosphere.quantity("ionosphere_loss_db", p.ionosphere_loss, {0, 100});
     atmosphere.quantity("riometer_absorption_30mhz_db", p.riometer_absorption_30mhz, {0, 100});
+    atmosphere.quantity("ionosphere_base_m", p.ionosphere_base, {1e4, 1e6});
 }
 
 }  // namespace
@@ -169,13 +171,13 @@ void read_model_keys(TableReader& model, ModelSettings& settings) {
 
 void read_atmosphere_keys(TableReader& atmosphere, AtmosphereParameters& p) {
     atmosphere.quantity("sea_level_temperature_k", p.sea_level_temperature, {100, 400});
-    atmosphere.number("gravity_mps2", p.gravity_mps2, NumberRange::positive());
-    atmosphere.number("molar_mass_kg_per_mol", p.molar_mass_kg_per_mol, NumberRange::positive());
-    atmosphere.number("gas_constant_j_per_mol_k", p.gas_constant, NumberRange::positive());
+    atmosphere.number("gravity_mps2", p.gravity_mps2, {0.1, 100});
+    atmosphere.number("molar_mass_kg_per_mol", p.molar_mass_kg_per_mol, {0.001, 1});
+    atmosphere.number("gas_constant_j_per_mol_k", p.gas_constant, {1, 100});
     atmosphere.quantity("earth_radius_m", p.earth_radius, {1e6, 1e7});
-    atmosphere.number("oxygen_constant_ghz2", p.oxygen_constant, NumberRange::positive());
+    atmosphere.number("oxygen_constant_ghz2", p.oxygen_constant, {0.001, 10});
     atmosphere.quantity("zenith_dry_delay_m", p.zenith_dry_delay, {0, 100});
-    atmosphere.number("zenith_dry_decay_per_m", p.zenith_dry_decay_per_m, {0, 1});
+    atmosphere.number("zenith_dry_decay_per_m", p.zenith_dry_decay_per_m, {0, 0.01});
     atmosphere.quantity("zenith_wet_delay_m", p.zenith_wet_delay, {0, 100});
     read_layers(atmosphere, p);
     read_clouds(atmosphere, p);

@@ -5,7 +5,6 @@
 #include <array>
 
 #include "scenario_keys.hpp"
-#include "skyloop/base/spelling.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/time/utc_time.hpp"
 
@@ -15,12 +14,11 @@ namespace {
 constexpr double most_years_s = 100 * 366.0 * 86400;  // a run's span stays far inside 64-bit nanoseconds
 
 void read_run_keys(TableReader& run, RunSettings& settings) {
-    std::string start;
-    run.utc("start", start);
+    const auto start = run.utc("start");
     if (start == "now") {
         settings.start_now = true;
-    } else if (!start.empty()) {
-        const auto utc = parse_utc(start);
+    } else if (start) {
+        const auto utc = parse_utc(*start);
         if (utc)
             settings.start = to_gps_time(*utc, LeapSeconds::announced());
         else
@@ -31,25 +29,8 @@ void read_run_keys(TableReader& run, RunSettings& settings) {
         run.number("duration_s", duration, {std::numeric_limits<double>::min(), most_years_s});
         settings.duration = Seconds(duration);
     }
-    std::int64_t seed = 1;
-    run.integer("seed", seed, NumberRange::not_negative());
-    settings.seed = static_cast<std::uint64_t>(seed);
+    run.integer("seed", settings.seed, NumberRange::not_negative());
     run.number("speed", settings.speed, {1e-3, 1e6});
-}
-
-void read_constellations(TableReader& sky, std::vector<Constellation>& constellations) {
-    std::vector<std::string> names;
-    sky.texts("constellations", names);
-    static constexpr std::array<std::string_view, 7> known{"gps",  "galileo", "beidou", "glonass",
-                                                           "qzss", "sbas",    "navic"};
-    for (const std::string& name : names) {
-        const auto constellation = constellation_from_name(name);
-        if (constellation)
-            constellations.push_back(*constellation);
-        else
-            sky.mistake("constellations",
-                        fmt::format("'{}' is not a constellation{}", name, did_you_mean(name, known)));
-    }
 }
 
 void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesystem::path& folder) {
@@ -58,14 +39,18 @@ void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesyste
     for (const std::string& file : files)
         settings.navigation.push_back(folder / file);
     sky.boolean("rebase_navigation", settings.rebase_navigation);
-    read_constellations(sky, settings.constellations);
+    read_constellation_list(sky, settings.constellations);
     double mask = settings.elevation_mask.deg();
     sky.number("elevation_mask_deg", mask, {0, 90});
     settings.elevation_mask = Angle::degrees(mask);
-    static constexpr std::array<std::string_view, 2> rules{"forward", "nearest"};
-    if (const auto rule = sky.choice("ephemeris_rule", rules))
-        settings.ephemeris_rule = *rule == 0 ? EphemerisRule::forward : EphemerisRule::nearest;
+    static constexpr std::array<Word<std::optional<EphemerisRule>>, 2> rules{
+        {{"forward", EphemerisRule::forward}, {"nearest", EphemerisRule::nearest}}};
+    sky.word("ephemeris_rule", rules, settings.ephemeris_rule);
     sky.quantity("ephemeris_validity_s", settings.ephemeris_validity, {1, 14 * 86400.0});
+}
+
+void add_once(std::vector<firmware::NmeaSentence>& sentences, firmware::NmeaSentence sentence) {
+    if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end()) sentences.push_back(sentence);
 }
 
 void read_receiver_keys(TableReader& receiver, ReceiverEntry& entry) {
@@ -77,11 +62,13 @@ void read_receiver_keys(TableReader& receiver, ReceiverEntry& entry) {
         entry.rate_hz = rate;
     }
     if (receiver.has("baud")) {
-        std::int64_t baud = 9600;
+        std::uint32_t baud = 9600;
         receiver.integer("baud", baud, {300, 4e6});
-        entry.baud = static_cast<std::uint32_t>(baud);
+        entry.baud = baud;
     }
-    receiver.texts("sentences", entry.sentences);
+    if (const auto sentences = receiver.choices("sentences", firmware::nmea_sentence_names))
+        for (const std::size_t index : *sentences)
+            add_once(entry.sentences, static_cast<firmware::NmeaSentence>(index));
     receiver.refuse("antenna_offset_m", "a lever arm needs the vehicle's attitude, which this version does not have");
 }
 
@@ -111,32 +98,22 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     refuse_later_keys(top);
 }
 
-// Parses TOML and reads its top table with `body`; every mistake is a line of the error.
-template <class Body>
-Result<void> read_toml(std::string_view text, const std::filesystem::path& file, Body&& body) {
-    try {
-        const toml::table table = toml::parse(text, file.string());
-        MistakeList mistakes(file.string());
-        TableReader top(table, {}, mistakes);
-        body(top);
-        top.finish();
-        if (!mistakes.empty()) return fail(ErrorCode::input, mistakes.text());
-        return {};
-    } catch (const toml::parse_error& error) {
-        const auto where = error.source().begin;
-        return fail(ErrorCode::input,
-                    fmt::format("{}:{}:{}: {}", file.string(), where.line, where.column, error.description()));
-    }
-}
-
 }  // namespace
+
+void read_constellation_list(TableReader& table, std::vector<Constellation>& constellations) {
+    const auto found = table.choices("constellations", constellation_names);
+    if (!found) return;
+    constellations.clear();
+    for (const std::size_t index : *found)
+        constellations.push_back(static_cast<Constellation>(index));
+}
 
 Result<Scenario> read_scenario(std::string_view text, const std::filesystem::path& file) {
     Scenario scenario;
     scenario.name = file.string();
     scenario.source = text;
     const auto read =
-        read_toml(text, file, [&](TableReader& top) { read_top_keys(top, scenario, file.parent_path()); });
+        read_toml(text, file.string(), [&](TableReader& top) { read_top_keys(top, scenario, file.parent_path()); });
     if (!read) return fail(read.error());
     return scenario;
 }
@@ -152,7 +129,7 @@ Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& fil
     const auto text = read_text_file(file);
     if (!text) return fail(text.error());
     Scenario scenario;
-    const auto read = read_toml(*text, file, [&](TableReader& top) {
+    const auto read = read_toml(*text, file.string(), [&](TableReader& top) {
         if (!top.has("trajectory")) top.mistake_here("no [trajectory] table in this file");
         read_trajectory_keys(top, scenario);
     });

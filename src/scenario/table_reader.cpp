@@ -30,21 +30,36 @@ std::string_view type_words(const toml::node& node) {
     }
 }
 
-std::string range_words(NumberRange range) {
+std::string range_words(NumberRange range, std::string_view noun = "a number") {
     constexpr double most = std::numeric_limits<double>::max();
     const bool above = range.least > -most;
     const bool below = range.most < most;
-    if (range.least == std::numeric_limits<double>::min() && !below) return "a number above 0";
-    if (above && below) return fmt::format("a number from {} to {}", range.least, range.most);
-    if (above) return fmt::format("a number of {} or more", range.least);
-    if (below) return fmt::format("a number of {} or less", range.most);
-    return "a finite number";
+    if (range.least == NumberRange::positive().least)
+        return below ? fmt::format("{} above 0, up to {}", noun, range.most) : fmt::format("{} above 0", noun);
+    if (above && below) return fmt::format("{} from {} to {}", noun, range.least, range.most);
+    if (above) return fmt::format("{} of {} or more", noun, range.least);
+    if (below) return fmt::format("{} of {} or less", noun, range.most);
+    return noun == "a number" ? "a finite number" : std::string(noun);
+}
+
+// Keys and texts of a file may hold anything and be of any length; a mistake stays one line that can be read.
+std::string on_one_line(std::string_view sentence) {
+    constexpr std::size_t longest = 600;
+    std::size_t end = std::min(sentence.size(), longest);
+    while (end < sentence.size() && (static_cast<unsigned char>(sentence[end]) & 0xC0) == 0x80)
+        --end;  // not within a character of several bytes
+    std::string line;
+    for (const char c : sentence.substr(0, end))
+        line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f
+                    ? fmt::format("\\x{:02x}", static_cast<unsigned char>(c))
+                    : std::string(1, c);
+    return end < sentence.size() ? line + "..." : line;
 }
 
 }  // namespace
 
 void MistakeList::add(const toml::source_region& where, const std::string& sentence) {
-    mistakes_.push_back({where.begin.line, where.begin.column, sentence});
+    mistakes_.push_back({where.begin.line, where.begin.column, on_one_line(sentence)});
 }
 
 std::string MistakeList::text() const {
@@ -52,6 +67,8 @@ std::string MistakeList::text() const {
     std::stable_sort(sorted.begin(), sorted.end(), [](const Mistake& a, const Mistake& b) {
         return std::pair(a.line, a.column) < std::pair(b.line, b.column);
     });
+    // A key that is looked at twice is wrong once.
+    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
     std::string lines;
     for (const Mistake& m : sorted)
         lines += fmt::format("{}{}:{}:{}: {}", lines.empty() ? "" : "\n", file_, m.line, m.column, m.sentence);
@@ -59,7 +76,7 @@ std::string MistakeList::text() const {
 }
 
 const toml::node* TableReader::find(std::string_view key) {
-    known_.push_back(key);
+    known_.emplace_back(key);
     return table_.get(key);
 }
 
@@ -72,8 +89,12 @@ void TableReader::mistake(std::string_view key, const std::string& sentence) {
     mistakes_.add(node ? node->source() : table_.source(), fmt::format("{}: {}", path_of(key), sentence));
 }
 
+void TableReader::mistake_at(const toml::node& node, std::string_view key, const std::string& sentence) {
+    mistakes_.add(node.source(), fmt::format("{}: {}", path_of(key), sentence));
+}
+
 void TableReader::wrong_type(std::string_view key, const toml::node& node, std::string_view expected) {
-    mistake(key, fmt::format("is {}; expected {}", type_words(node), expected));
+    mistake_at(node, key, fmt::format("is {}; expected {}", type_words(node), expected));
 }
 
 void TableReader::number(std::string_view key, double& value, NumberRange range) {
@@ -86,15 +107,16 @@ void TableReader::number(std::string_view key, double& value, NumberRange range)
     value = *found;
 }
 
-void TableReader::integer(std::string_view key, std::int64_t& value, NumberRange range) {
+std::optional<std::int64_t> TableReader::whole_number(std::string_view key, NumberRange range) {
     const toml::node* node = find(key);
-    if (!node) return;
+    if (!node) return std::nullopt;
     const auto* found = node->as_integer();
-    if (!found) return wrong_type(key, *node, "a whole number");
+    const std::string expected = range_words(range, "a whole number");
+    if (!found) return wrong_type(key, *node, expected), std::nullopt;
     const auto number = static_cast<double>(found->get());
     if (number < range.least || number > range.most)
-        return mistake(key, fmt::format("is {}; expected {}", found->get(), range_words(range)));
-    value = found->get();
+        return mistake(key, fmt::format("is {}; expected {}", found->get(), expected)), std::nullopt;
+    return found->get();
 }
 
 void TableReader::boolean(std::string_view key, bool& value) {
@@ -113,14 +135,17 @@ void TableReader::text(std::string_view key, std::string& value) {
     value = found->get();
 }
 
-void TableReader::utc(std::string_view key, std::string& value) {
-    const auto* found = table_.get(key) ? table_.get(key)->as_date_time() : nullptr;
-    if (found == nullptr) return text(key, value);
-    known_.push_back(key);
+std::optional<std::string> TableReader::utc(std::string_view key) {
+    const toml::node* node = find(key);
+    if (!node) return std::nullopt;
+    if (const auto* written = node->as_string()) return written->get();
+    const auto* found = node->as_date_time();
+    if (!found) return wrong_type(key, *node, "a date with a time, in UTC"), std::nullopt;
     const toml::date_time& t = found->get();
-    if (t.offset && t.offset->minutes != 0) return mistake(key, "has an offset from UTC; expected UTC, ending in Z");
-    value = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:09}Z", t.date.year, t.date.month, t.date.day,
-                        t.time.hour, t.time.minute, t.time.second, t.time.nanosecond);
+    if (t.offset && t.offset->minutes != 0)
+        return mistake(key, "has an offset from UTC; expected UTC, ending in Z"), std::nullopt;
+    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:09}Z", t.date.year, t.date.month, t.date.day, t.time.hour,
+                       t.time.minute, t.time.second, t.time.nanosecond);
 }
 
 void TableReader::texts(std::string_view key, std::vector<std::string>& values) {
@@ -131,9 +156,10 @@ void TableReader::texts(std::string_view key, std::vector<std::string>& values) 
     std::vector<std::string> found;
     for (const toml::node& item : *list) {
         const auto* word = item.as_string();
-        if (!word) return wrong_type(key, item, "a list of texts");
+        if (!word) return mistake_at(item, key, fmt::format("holds {}; expected a list of texts", type_words(item)));
         found.push_back(word->get());
     }
+    if (found.empty()) return mistake(key, "is an empty list; expected at least one text");
     values = std::move(found);
 }
 
@@ -154,7 +180,11 @@ std::optional<std::vector<double>> TableReader::numbers(std::string_view key, st
     std::vector<double> values;
     for (const toml::node& item : *list) {
         const auto value = item.is_number() ? item.value<double>() : std::nullopt;
-        if (!value || !std::isfinite(*value)) return wrong_type(key, item, expected), std::nullopt;
+        if (!value)
+            return mistake_at(item, key, fmt::format("holds {}; expected {}", type_words(item), expected)),
+                   std::nullopt;
+        if (!std::isfinite(*value))
+            return mistake_at(item, key, fmt::format("holds {}; expected {}", *value, expected)), std::nullopt;
         values.push_back(*value);
     }
     if (values.size() != count) {
@@ -169,24 +199,16 @@ std::optional<Geodetic> TableReader::place(std::string_view key) {
     const std::size_t count = list && list->size() == 2 ? 2 : 3;
     const auto values = numbers(key, count);
     if (!values) return std::nullopt;
-    const double latitude = (*values)[0];
-    const double longitude = (*values)[1];
-    const double height = count == 3 ? (*values)[2] : 0;
-    if (std::abs(latitude) > 90)
-        return mistake(key, fmt::format("latitude is {}; expected -90 to 90 degrees", latitude)), std::nullopt;
-    if (std::abs(longitude) > 360)
-        return mistake(key, fmt::format("longitude is {}; expected -180 to 180 degrees", longitude)), std::nullopt;
-    if (height < -1e4 || height > 1e7)
-        return mistake(key,
-                       fmt::format("height is {}; expected metres above the ellipsoid, -10 000 to 10 000 000", height)),
-               std::nullopt;
-    return Geodetic::degrees(latitude, std::remainder(longitude, 360), height);
+    const auto place = place_from_degrees((*values)[0], (*values)[1], count == 3 ? (*values)[2] : 0);
+    if (!place) return mistake(key, place.error()), std::nullopt;
+    return *place;
 }
 
 std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<const std::string_view> words) {
+    const toml::node* node = find(key);
     std::string word;
     text(key, word);
-    if (word.empty()) return std::nullopt;
+    if (!node || !node->is_string()) return std::nullopt;
     const auto found = std::find(words.begin(), words.end(), word);
     if (found == words.end()) {
         mistake(key,
@@ -194,6 +216,34 @@ std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<c
         return std::nullopt;
     }
     return static_cast<std::size_t>(found - words.begin());
+}
+
+std::optional<std::vector<std::size_t>> TableReader::choices(std::string_view key,
+                                                             std::span<const std::string_view> words) {
+    const toml::node* node = find(key);
+    if (!node) return std::nullopt;
+    const std::string expected = fmt::format("a list of some of {}", fmt::join(words, " "));
+    const auto* list = node->as_array();
+    if (!list) return wrong_type(key, *node, expected), std::nullopt;
+    std::vector<std::size_t> found;
+    for (const toml::node& item : *list) {
+        const auto* word = item.as_string();
+        if (!word)
+            return mistake_at(item, key, fmt::format("holds {}; expected {}", type_words(item), expected)),
+                   std::nullopt;
+        const auto known = std::find(words.begin(), words.end(), word->get());
+        if (known == words.end())
+            return mistake_at(item, key,
+                              fmt::format("holds '{}'; expected {}{}", word->get(), expected,
+                                          did_you_mean(word->get(), words))),
+                   std::nullopt;
+        const auto index = static_cast<std::size_t>(known - words.begin());
+        if (std::find(found.begin(), found.end(), index) != found.end())
+            return mistake_at(item, key, fmt::format("holds '{}' twice; expected it once", word->get())), std::nullopt;
+        found.push_back(index);
+    }
+    if (found.empty()) return mistake(key, fmt::format("is an empty list; expected {}", expected)), std::nullopt;
+    return found;
 }
 
 void TableReader::table(std::string_view key, const std::function<void(TableReader&)>& body) {
@@ -213,7 +263,9 @@ void TableReader::tables(std::string_view key, const std::function<void(TableRea
     if (!list) return wrong_type(key, *node, fmt::format("a list of tables, each headed [[{}]]", path_of(key)));
     for (const toml::node& item : *list) {
         const auto* inner = item.as_table();
-        if (!inner) return wrong_type(key, item, fmt::format("a list of tables, each headed [[{}]]", path_of(key)));
+        if (!inner)
+            return mistake(
+                key, fmt::format("holds {}; expected tables, each headed [[{}]]", type_words(item), path_of(key)));
         TableReader reader(*inner, path_of(key), mistakes_);
         body(reader);
         reader.finish();
@@ -225,10 +277,27 @@ void TableReader::refuse(std::string_view key, const std::string& reason) {
 }
 
 void TableReader::finish() {
+    const std::vector<std::string_view> known(known_.begin(), known_.end());
     for (const auto& [key, node] : table_) {
         const std::string_view word = key.str();
-        if (std::find(known_.begin(), known_.end(), word) != known_.end()) continue;
-        mistakes_.add(key.source(), fmt::format("{}: unknown key{}", path_of(word), did_you_mean(word, known_)));
+        if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+        mistakes_.add(key.source(), fmt::format("{}: unknown key{}", path_of(word), did_you_mean(word, known)));
+    }
+}
+
+Result<void> read_toml(std::string_view text, const std::string& file, const std::function<void(TableReader&)>& body) {
+    try {
+        const toml::table table = toml::parse(text, file);
+        MistakeList mistakes(file);
+        TableReader top(table, {}, mistakes);
+        body(top);
+        top.finish();
+        if (!mistakes.empty()) return fail(ErrorCode::input, mistakes.text());
+        return {};
+    } catch (const toml::parse_error& error) {
+        const auto where = error.source().begin;
+        return fail(ErrorCode::input,
+                    fmt::format("{}:{}:{}: {}", file, where.line, where.column, on_one_line(error.description())));
     }
 }
 

@@ -3,6 +3,9 @@
 
 #include <toml++/toml.h>
 
+#include <algorithm>
+#include <array>
+#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -12,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "skyloop/base/result.hpp"
 #include "skyloop/geo/geodetic.hpp"
 
 namespace skyloop {
@@ -29,6 +33,7 @@ private:
     struct Mistake {
         toml::source_index line, column;
         std::string sentence;
+        bool operator==(const Mistake&) const = default;
     };
     std::string file_;
     std::vector<Mistake> mistakes_;
@@ -40,6 +45,13 @@ struct NumberRange {
     double most = std::numeric_limits<double>::max();
     static NumberRange positive() { return {std::numeric_limits<double>::min()}; }
     static NumberRange not_negative() { return {0}; }
+};
+
+/// A word that a key takes, and what it means.
+template <class Value>
+struct Word {
+    std::string_view word;
+    Value value;
 };
 
 /// Reads the keys of one table. A key that is absent leaves the given value as it is; a key of the wrong type or out of
@@ -55,15 +67,29 @@ public:
     void texts(std::string_view key, std::vector<std::string>& values);
     /// A text or a list of texts.
     void text_or_texts(std::string_view key, std::vector<std::string>& values);
-    void integer(std::string_view key, std::int64_t& value, NumberRange range = {});
+    /// A whole number. `range` lies within what Integer holds.
+    template <std::integral Integer>
+    void integer(std::string_view key, Integer& value, NumberRange range) {
+        if (const auto found = whole_number(key, range)) value = static_cast<Integer>(*found);
+    }
     /// A list of exactly `count` numbers.
     std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count);
     /// [latitude, longitude] or [latitude, longitude, height]: degrees, metres above the ellipsoid.
     std::optional<Geodetic> place(std::string_view key);
     /// A UTC time as ISO 8601 text, given as a text or as a TOML date and time.
-    void utc(std::string_view key, std::string& value);
+    std::optional<std::string> utc(std::string_view key);
     /// One of the given words; gives its index.
     std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> words);
+    /// A list of some of the given words, at least one and none twice; gives their indices in the order of the list.
+    std::optional<std::vector<std::size_t>> choices(std::string_view key, std::span<const std::string_view> words);
+
+    /// One of the given words; `value` becomes what it means.
+    template <class Value, std::size_t count>
+    void word(std::string_view key, const std::array<Word<Value>, count>& words, Value& value) {
+        std::array<std::string_view, count> known;
+        std::transform(words.begin(), words.end(), known.begin(), [](const Word<Value>& w) { return w.word; });
+        if (const auto index = choice(key, known)) value = words[*index].value;
+    }
 
     /// A quantity of one unit, kept in `Quantity`.
     template <class Quantity>
@@ -87,6 +113,8 @@ public:
 
 private:
     const toml::node* find(std::string_view key);
+    std::optional<std::int64_t> whole_number(std::string_view key, NumberRange range);
+    void mistake_at(const toml::node& node, std::string_view key, const std::string& sentence);
     [[nodiscard]] std::string where() const { return path_.empty() ? std::string() : "[" + path_ + "] "; }
     [[nodiscard]] std::string path_of(std::string_view key) const;
     void wrong_type(std::string_view key, const toml::node& node, std::string_view expected);
@@ -94,7 +122,12 @@ private:
     const toml::table& table_;
     std::string path_;
     MistakeList& mistakes_;
-    std::vector<std::string_view> known_;
+    std::vector<std::string> known_;  // copies: a caller may compose a key
 };
+
+/// Parses TOML and reads its top table with `body`.
+/// @param file its name, for messages
+/// Fails with `input`: one line per mistake, `FILE:LINE:COLUMN: KEY: what was found; what was expected`.
+Result<void> read_toml(std::string_view text, const std::string& file, const std::function<void(TableReader&)>& body);
 
 }  // namespace skyloop

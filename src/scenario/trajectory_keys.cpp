@@ -26,8 +26,15 @@ public:
             return std::nullopt;
         }
         const Position<Level> point((*in_level)[0], (*in_level)[1], (*in_level)[2]);
+        const Geodetic place = to_geodetic(level_->to_ecef(point));
+        const auto checked =
+            place_from_degrees(place.latitude.deg(), place.longitude.deg(), place.height.above_ellipsoid.value());
+        if (!checked) {
+            table.mistake(level_key, checked.error());
+            return std::nullopt;
+        }
         if (level_->beyond_reach(point)) warn_beyond_reach(point);
-        return to_geodetic(level_->to_ecef(point));
+        return place;
     }
 
 private:

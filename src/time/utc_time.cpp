@@ -180,8 +180,9 @@ Result<UtcTime> parse_utc(std::string_view text) {
     if (!read || !rest.empty() || !valid_calendar(t))
         return fail(
             ErrorCode::usage,
-            fmt::format("'{}' is not a UTC time; expected ISO 8601 from 1980-01-06 on, such as 2024-03-05T12:00:00Z",
-                        text));
+            fmt::format(
+                "'{}' is not a UTC time; expected ISO 8601 from 1980-01-06 to 2199, such as 2024-03-05T12:00:00Z",
+                text));
     return t;
 }
 

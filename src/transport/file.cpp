@@ -43,10 +43,10 @@ private:
 };
 
 // Standard output may be shared with a shell, so it cannot be made non-blocking: ask before each piece. A pipe that is
-// ready takes PIPE_BUF bytes without waiting.
-ssize_t write_without_waiting(int descriptor, ByteSpan bytes) {
+// ready takes PIPE_BUF bytes without waiting. A signal ends the patience.
+ssize_t write_when_ready(int descriptor, ByteSpan bytes, int patience_ms) {
     pollfd ready{descriptor, POLLOUT, 0};
-    if (::poll(&ready, 1, 0) <= 0 || (ready.revents & (POLLOUT | POLLERR | POLLHUP)) == 0) return 0;
+    if (::poll(&ready, 1, patience_ms) <= 0 || (ready.revents & (POLLOUT | POLLERR | POLLHUP)) == 0) return 0;
     const BrokenPipeIgnored guard;
     return ::write(descriptor, bytes.data(), std::min<std::size_t>(bytes.size(), PIPE_BUF));
 }
@@ -70,7 +70,7 @@ std::unique_ptr<FileTransport> FileTransport::standard_output() {
 std::size_t FileTransport::write(ByteSpan bytes) {
     std::size_t taken = 0;
     while (failure_.empty() && taken < bytes.size()) {
-        const ssize_t count = write_without_waiting(descriptor_, bytes.subspan(taken));
+        const ssize_t count = write_when_ready(descriptor_, bytes.subspan(taken), patience_ms_);
         if (count > 0)
             taken += static_cast<std::size_t>(count);
         else if (count == 0 || errno == EAGAIN)

@@ -2,9 +2,10 @@
 import json
 import os
 import pathlib
+import subprocess
 import unittest
 
-from session import SHARED, open_folder, skyloop
+from session import SHARED, SKYLOOP, open_folder, skyloop
 
 # Arguments, exit code, words that the line must hold.
 MISUSES = [
@@ -29,6 +30,7 @@ MISUSES = [
     (["run", "--start", "2024-02-30T00:00:00Z"], 2, ["2024-02-30"]),
     (["run", "--duration", "-1"], 2, ["--duration -1"]),
     (["run", "--duration", "nan"], 2, ["--duration"]),
+    (["check", "--start", "2199-12-31T00:00:00Z", "--duration", "3e9"], 2, ["2199-12-31", "2269"]),
     (["run", "--rate", "0"], 2, ["--rate 0"]),
     (["run", "--speed", "fast"], 2, ["--speed fast"]),
     (["run", "--rebase-nav"], 2, ["--rebase-nav", "--nav"]),
@@ -53,6 +55,7 @@ SCENARIO_MISTAKES = [
     ("[run\n", ["s.toml:1"]),
     ("[model.baseline]\nstatistic = \"mean\"\n", ["sample_std rms"]),
     ("[run]\nduration_s = 1e300\n", ["run.duration_s"]),
+    ("[frame]\norigin = [46, 30, 0]\n[trajectory]\nkind = \"fixed\"\nat_level = [0, 0, 1e300]\n", ["s.toml:5", "at_level"]),
     ("[[receiver]]\n[[receiver]]\n", ["s.toml:2", "this version runs one"]),
 ]
 
@@ -146,6 +149,51 @@ class CommandLineTest(unittest.TestCase):
             self.assertEqual(done.returncode, 1, done.stderr)
             self.assertIn("fixes.csv", done.stderr)
             self.assertGreater(pathlib.Path(folder, "satellites.csv").stat().st_size, 1000)
+
+    def test_full_wire_or_output_is_told_and_ends_with_1(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("no /dev/full here")
+        with open_folder() as folder:
+            done = skyloop("simulate", "--duration", 5, "--start", "2026-01-01T00:00:00Z", "--out", folder,
+                           "--port", "file:/dev/full", check=False)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertIn("/dev/full", done.stderr)
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([SKYLOOP, "sky", "--start", "2026-01-01T00:00:00Z"], stdout=full,
+                                  stderr=subprocess.PIPE, text=True, timeout=120, check=False)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("standard output", done.stderr)
+
+    def test_simulated_bytes_wait_for_a_slow_reader(self):
+        with open_folder() as folder:
+            arguments = ["--duration", "1800", "--start", "2026-01-01T00:00:00Z", "--out", folder, "--port", "-"]
+            with subprocess.Popen([SKYLOOP, "simulate", *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+                with self.assertRaises(subprocess.TimeoutExpired):
+                    process.wait(timeout=2)  # the pipe is full and nobody has read yet
+                heard, told = process.communicate(timeout=120)
+            self.assertEqual(process.returncode, 0, told)
+            self.assertEqual(heard, pathlib.Path(folder, "port0.out").read_bytes())
+
+    def test_a_run_that_does_not_end_leaves_no_summary_of_the_one_before(self):
+        with open_folder() as folder:
+            summary = pathlib.Path(folder, "run.json")
+            summary.write_text("{}", encoding="utf-8")
+            skyloop("simulate", "--duration", 1, "--out", folder, "--port", "pty:/no/such/folder/gps0", check=False)
+            self.assertFalse(summary.exists())
+
+    def test_a_rate_that_no_receiver_can_do_is_told(self):
+        self.assertIn("it runs at 0.01526 Hz", skyloop("check", "--rate", 0.01).stderr)
+        self.assertNotIn("it runs at", skyloop("check", "--rate", 3).stderr)
+
+    def test_the_digest_knows_what_the_trajectory_file_holds(self):
+        digests = set()
+        with open_folder() as folder:
+            path = pathlib.Path(folder, "t.toml")
+            for latitude in (46, 47):
+                path.write_text(f"[trajectory]\nkind = \"fixed\"\nat = [{latitude}, 30, 0]\n", encoding="utf-8")
+                skyloop("simulate", "--duration", 1, "--start", "2026-01-01T00:00:00Z", "--trajectory", path, "--out", folder)
+                digests.add(json.loads(pathlib.Path(folder, "run.json").read_text(encoding="utf-8"))["scenario_digest"])
+        self.assertEqual(len(digests), 2)
 
     def test_run_json_tells_what_ran(self):
         with open_folder() as folder:

@@ -8,7 +8,8 @@
 
 namespace skyloop {
 
-/// A seeded stream of random numbers, the same on every platform and build.
+/// A seeded stream of random numbers. bits() and uniform() are the same on every platform and build; normal() is as
+/// far as the C library's log() is, which may differ in its last bit.
 ///
 /// State: xoshiro256++ (Blackman and Vigna, 2019), seeded by SplitMix64 from the run's seed and the stream's name.
 class RandomStream {

@@ -37,17 +37,22 @@ struct Assembly {
     std::unique_ptr<Emulator> emulator;
     GpsTime start;
     std::optional<GpsTime> end;
-    std::string digest;  ///< of everything that decides the bytes: scenario, seed, navigation, board
+    std::string digest;  ///< scenario_digest()
     std::vector<std::string> warnings;
+    std::vector<std::string> details;  ///< for those who ask: what was read, and from where
 };
 
 /// Takes a scenario apart and gives each part its piece.
 Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, const RunMode& mode);
 
-/// What decides the bytes of a run, as 16 hexadecimal digits: scenario, options, seed, start and navigation files.
+/// What a user gives that decides the bytes of a run, as 16 hexadecimal digits: the scenario's text with the options
+/// and trajectory file laid over it, seed, start and navigation files. The board file counts by its name only.
 std::string scenario_digest(const Scenario& scenario, GpsTime start);
 
-/// Broadcast orbits for a scenario: its files, or the nominal constellation.
+/// Broadcast orbits for a scenario: its files, or the nominal constellation, and when its run begins. Fails with
+/// `input` for files that hold nothing to use, with `usage` for settings that contradict each other.
+/// @param now the wall clock, GPST
+/// @param default_to_now a scenario that names no start begins now, not with the data
 struct LoadedNavigation {
     std::unique_ptr<NavigationSource> source;
     GpsTime start;  ///< of the run

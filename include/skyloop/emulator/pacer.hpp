@@ -8,7 +8,7 @@
 
 namespace skyloop {
 
-/// Waits for instants of simulated time. Nothing else in the program reads a clock.
+/// Waits for instants of simulated time. Nothing else in the loop reads a clock.
 class Pacer {
 public:
     virtual ~Pacer() = default;

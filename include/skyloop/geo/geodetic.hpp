@@ -1,6 +1,9 @@
 /// Latitude, longitude and height on the WGS-84 ellipsoid.
 #pragma once
 
+#include <string>
+#include <tl/expected.hpp>
+
 #include "skyloop/base/units.hpp"
 #include "skyloop/geo/frames.hpp"
 
@@ -26,6 +29,12 @@ struct Geodetic {
     /// @param height_m metres above the ellipsoid
     static Geodetic degrees(double latitude, double longitude, double height_m);
 };
+
+/// The place that a user names, or what is wrong with it: "latitude is 91; expected …".
+/// @param latitude degrees, −90 … 90
+/// @param longitude degrees, −360 … 360; taken as −180 … 180
+/// @param height_m metres above the ellipsoid, −10 000 … 10 000 000: below any ground, below the satellites
+tl::expected<Geodetic, std::string> place_from_degrees(double latitude, double longitude, double height_m);
 
 Position<Ecef> to_ecef(const Geodetic& place);
 Geodetic to_geodetic(const Position<Ecef>& point);

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "firmware/board_profile.hpp"
 #include "skyloop/error_model/model_kind.hpp"
 #include "skyloop/error_model/parameters.hpp"
 #include "skyloop/geo/level_frame.hpp"
@@ -62,10 +63,10 @@ struct ModelSettings {
 /// One emulated receiver and its wires.
 struct ReceiverEntry {
     std::string board = "ublox-m8";
-    std::vector<std::string> ports;      ///< URIs; empty: one pty
-    std::optional<double> rate_hz;       ///< nothing: the board's
-    std::optional<std::uint32_t> baud;   ///< nothing: the board's
-    std::vector<std::string> sentences;  ///< empty: the board's
+    std::vector<std::string> ports;                 ///< URIs; empty: one pty
+    std::optional<double> rate_hz;                  ///< nothing: the board's
+    std::optional<std::uint32_t> baud;              ///< nothing: the board's
+    std::vector<firmware::NmeaSentence> sentences;  ///< empty: the board's
 };
 
 struct Scenario {

@@ -25,6 +25,7 @@ public:
 
     std::size_t write(ByteSpan bytes) override;
     Bytes read() override { return {}; }
+    void allow_waiting() override { patience_ms_ = -1; }
     LineState line() override { return {failure_.empty(), std::nullopt}; }
     [[nodiscard]] std::string failure() const override { return failure_; }
     [[nodiscard]] std::string description() const override { return name_; }
@@ -40,6 +41,7 @@ private:
     std::string name_;
     std::string failure_;
     std::uint64_t lost_bytes_ = 0;
+    int patience_ms_ = 0;  // as poll() takes it: 0 asks and goes on, −1 waits for as long as it takes
 };
 
 }  // namespace skyloop

@@ -16,7 +16,7 @@ struct LineState {
     std::optional<std::uint32_t> baud;  ///< the other end's line speed, bit/s; nothing where a wire has no speed
 };
 
-/// One wire. None of its functions waits.
+/// One wire. None of its functions waits, unless allow_waiting() has been called.
 class Transport {
 public:
     virtual ~Transport() = default;
@@ -28,6 +28,9 @@ public:
     virtual LineState line() = 0;
     /// Tells the wire the receiver's own speed, so that a client that sets none finds the right one.
     virtual void set_receiver_baud(std::uint32_t) {}
+    /// In virtual time nothing comes late: from now on write() may wait for a reader rather than lose bytes. Wires that
+    /// have a client's own pace, such as a terminal, go on as before.
+    virtual void allow_waiting() {}
     /// What has gone wrong with the wire since it was opened, in one sentence; empty while nothing has.
     [[nodiscard]] virtual std::string failure() const { return {}; }
     /// For people: "/path/to/tty (pty)".

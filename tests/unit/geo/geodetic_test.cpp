@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <numbers>
 #include <sstream>
 
@@ -132,6 +133,18 @@ TEST(CurvatureRadii, GiveTheLengthOfASmallStep) {
 TEST(MslHeight, IsHeightMinusUndulation) {
     const MslHeight height = above_sea_level(EllipsoidalHeight{Metres(77)}, Metres(27.5));
     EXPECT_DOUBLE_EQ(height.above_sea_level.value(), 49.5);
+}
+
+TEST(PlaceFromDegrees, TakesPlacesOfTheEarthOnly) {
+    EXPECT_NEAR(place_from_degrees(-90, 350, 10).value().longitude.deg(), -10, 1e-12);
+    EXPECT_EQ(place_from_degrees(90.1, 0, 0).error(), "latitude is 90.1; expected -90 to 90 degrees");
+    EXPECT_EQ(place_from_degrees(0, -361, 0).error(), "longitude is -361; expected -180 to 180 degrees");
+    EXPECT_FALSE(place_from_degrees(0, 0, 1.1e7));
+    EXPECT_FALSE(place_from_degrees(0, 0, -1.1e4));
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(place_from_degrees(nan, 0, 0));
+    EXPECT_FALSE(place_from_degrees(0, nan, 0));
+    EXPECT_FALSE(place_from_degrees(0, 0, nan));
 }
 
 }  // namespace

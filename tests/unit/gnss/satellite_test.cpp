@@ -48,5 +48,12 @@ TEST(Satellite, OrdersBySystemThenNumber) {
     EXPECT_LT((SatelliteId{Constellation::gps, 2}), (SatelliteId{Constellation::gps, 10}));
 }
 
+TEST(Constellation, EveryListStandsInTheSameOrder) {
+    EXPECT_EQ(constellation_names[static_cast<std::size_t>(Constellation::navic)], "navic");
+    EXPECT_EQ(constellation_title(Constellation::gps), "GPS");
+    EXPECT_EQ(constellation_title(Constellation::glonass), "GLONASS");
+    EXPECT_EQ(rinex_letter(Constellation::qzss), 'J');
+}
+
 }  // namespace
 }  // namespace skyloop::test

@@ -1,0 +1,50 @@
+// Any bytes as a receiver profile: mistakes of one line each, or a profile that a receiver can be built from.
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include "firmware/receiver.hpp"
+#include "skyloop/protocol/nmea_decode.hpp"
+#include "skyloop/scenario/board_file.hpp"
+
+namespace {
+
+using namespace skyloop;
+
+void require(bool promise) {
+    if (!promise) std::abort();
+}
+
+// A receiver of this profile that has not found its position yet.
+void check_receiver(const firmware::BoardProfile& board) {
+    firmware::Receiver receiver(board, board.default_rate_hz);
+    const auto period = receiver.settings().navigation_period;
+    require(period > Nanoseconds(0) && period <= std::chrono::seconds(10));
+    Epoch epoch;
+    epoch.fix.time = to_gps_time(2304, 0);
+    receiver.on_epoch(epoch);
+    SentenceSplitter splitter;
+    for (const std::string& line : splitter.feed(receiver.output(epoch.fix.time + std::chrono::seconds(60))))
+        require(decode_nmea(line).has_value());
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const auto board = read_board({reinterpret_cast<const char*>(data), size}, "fuzz.toml");
+    if (!board) {
+        require(board.error().code == ErrorCode::input && !board.error().message.empty());
+        std::istringstream lines(board.error().message);
+        for (std::string line; std::getline(lines, line);)
+            require(line.starts_with("fuzz.toml:") && line.size() < 2000);
+        return 0;
+    }
+    require(board->name == "fuzz" && !board->constellations.empty());
+    require(board->default_rate_hz > 0 && board->default_rate_hz <= board->max_rate_hz);
+    require(board->baud >= 1200 && board->transmit_buffer_bytes >= 128);
+    check_receiver(*board);
+    return 0;
+}

@@ -1,0 +1,44 @@
+// Any bytes as a file of fixes: one clear sentence, or samples on the Earth.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "skyloop/analysis/fix_series.hpp"
+
+namespace {
+
+using namespace skyloop;
+
+void require(bool promise) {
+    if (!promise) std::abort();
+}
+
+bool on_earth(const Geodetic& place) {
+    return std::abs(place.latitude.deg()) <= 90 + 1e-9 && std::abs(place.longitude.deg()) <= 180 + 1e-9 &&
+           std::isfinite(place.height.above_ellipsoid.value());
+}
+
+bool is_one_line(std::string_view text) { return !text.empty() && text.find('\n') == std::string_view::npos; }
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const auto series = parse_fix_series({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
+    if (!series) {
+        require(series.error().message.starts_with("fuzz.csv") && is_one_line(series.error().message));
+        return 0;
+    }
+    require(series->fixes() > 0 && series->fixes() <= series->samples.size());
+    for (const FixSample& sample : series->samples) {
+        require(!sample.has_fix || on_earth(sample.position));
+        require(!sample.truth || on_earth(*sample.truth));
+    }
+    require(!series->interval || std::isfinite(series->interval->value()));
+    for (const std::string& warning : series->warnings)
+        require(is_one_line(warning));
+    const FixSeries part = slice(*series, {1, 2, 5});
+    require(part.samples.size() <= 5 && part.samples.size() <= series->samples.size());
+    require(windows(*series, 3).size() == series->samples.size() / 3);
+    return 0;
+}

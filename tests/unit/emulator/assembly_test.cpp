@@ -1,0 +1,146 @@
+// What a scenario becomes, and what it is refused for.
+#include "skyloop/emulator/assembly.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "run_parts.hpp"
+#include "unit/transport/temporary_folder.hpp"
+
+namespace skyloop {
+namespace {
+
+using test::emulator_data;
+using test::emulator_scenario;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+RunMode virtual_mode() {
+    RunMode mode;
+    mode.virtual_time = true;
+    mode.open_ports = false;
+    mode.now = to_gps_time(2400, 0);
+    return mode;
+}
+
+Assembly assembled(const std::string& text, const RunMode& mode = virtual_mode()) {
+    auto assembly = assemble(emulator_scenario(text), emulator_data(), mode);
+    EXPECT_TRUE(assembly) << assembly.error().message;
+    return assembly ? std::move(*assembly) : Assembly{};
+}
+
+Error refusal(const std::string& text, const RunMode& mode = virtual_mode()) {
+    const auto assembly = assemble(emulator_scenario(text), emulator_data(), mode);
+    return assembly ? Error{ErrorCode::outside, "accepted"} : assembly.error();
+}
+
+TEST(Assembly, StartsAndEndsAsTheScenarioSays) {
+    const Assembly endless = assembled("");
+    EXPECT_EQ(endless.start, virtual_mode().now);
+    EXPECT_FALSE(endless.end);
+    const Assembly ending = assembled("[run]\nstart = 2024-03-05T12:00:00Z\nduration_s = 2.5");
+    EXPECT_EQ(*ending.end - ending.start, std::chrono::milliseconds(2500));
+    EXPECT_EQ(ending.emulator->now(), ending.start);
+}
+
+TEST(Assembly, UnknownBoardsAreUsageErrors) {
+    const Error board = refusal("[[receiver]]\nboard = \"ublox-m7\"");
+    EXPECT_EQ(board.code, ErrorCode::usage);
+    EXPECT_THAT(board.message, HasSubstr("board 'ublox-m7' is not known"));
+}
+
+TEST(Assembly, TheScenarioChangesTheBoard) {
+    const Assembly plain = assembled("");
+    EXPECT_EQ(plain.emulator->receiver().baud(), 9600U);
+    EXPECT_EQ(plain.emulator->receiver().settings().navigation_period, std::chrono::seconds(1));
+    const Assembly changed =
+        assembled("[[receiver]]\nboard = \"ublox-m9\"\nrate_hz = 4\nbaud = 115200\nsentences = [\"ZDA\", \"RMC\"]");
+    const firmware::Receiver& receiver = changed.emulator->receiver();
+    EXPECT_EQ(receiver.board().name, "ublox-m9");
+    EXPECT_EQ(receiver.baud(), 115200U);
+    EXPECT_EQ(receiver.settings().navigation_period, std::chrono::milliseconds(250));
+    ASSERT_EQ(receiver.board().sentences.size(), 2U);
+    EXPECT_EQ(receiver.board().sentences[0].sentence, firmware::NmeaSentence::zda);
+    EXPECT_EQ(receiver.board().sentences[1].every_epochs, 1);
+}
+
+TEST(Assembly, ARateAboveTheBoardsIsAWarning) {
+    const Assembly fast = assembled("[[receiver]]\nboard = \"ublox-m8\"\nrate_hz = 50");
+    EXPECT_THAT(fast.warnings, Contains(HasSubstr("50 Hz is more than ublox-m8 can do; it runs at 18 Hz")));
+    EXPECT_EQ(fast.emulator->receiver().settings().navigation_period, std::chrono::milliseconds(56))
+        << "whole milliseconds";
+    EXPECT_THAT(assembled("[[receiver]]\nrate_hz = 10").warnings, Not(Contains(HasSubstr("Hz is more than"))));
+}
+
+TEST(Assembly, PassesTheScenariosWarningsOn) {
+    EXPECT_THAT(
+        assembled("[frame]\norigin = [46, 30, 0]\n[trajectory]\nkind = \"fixed\"\nat_level = [9000, 0, 0]").warnings,
+        Contains(HasSubstr("beyond 4000 m")));
+}
+
+TEST(Assembly, WithoutAGeoidItWarnsAndGoesOn) {
+    const auto assembly =
+        assemble(emulator_scenario(""), DataFolders{{std::filesystem::path(SKYLOOP_SOURCE_DIR)}}, virtual_mode());
+    ASSERT_TRUE(assembly) << assembly.error().message;
+    EXPECT_EQ(assembly->geoid, nullptr);
+    EXPECT_THAT(assembly->warnings, Contains(HasSubstr("heights above sea level are taken as heights above the")));
+}
+
+TEST(Assembly, TecFromTheHeaderNeedsAHeader) {
+    const Error error = refusal("[atmosphere]\ntec_source = \"header\"");
+    EXPECT_EQ(error.code, ErrorCode::input);
+    EXPECT_THAT(error.message, Not(testing::IsEmpty()));
+}
+
+TEST(Assembly, TheDigestIsOfEverythingThatDecidesTheBytes) {
+    const std::string run = "[run]\nstart = 2024-03-05T12:00:00Z\n";
+    const std::string digest = assembled(run).digest;
+    EXPECT_EQ(digest.size(), 16U);
+    EXPECT_EQ(assembled(run).digest, digest);
+    EXPECT_NE(assembled(run + "seed = 2").digest, digest);
+    EXPECT_NE(assembled(run + "[model]\nname = \"ideal\"").digest, digest);
+    EXPECT_NE(assembled("[run]\nstart = 2024-03-05T12:00:01Z\n").digest, digest);
+    RunMode later = virtual_mode();
+    later.now += std::chrono::seconds(1);
+    EXPECT_NE(assembled("", later).digest, assembled("").digest) << "a run from now starts elsewhere each time";
+}
+
+TEST(Assembly, PortsAreOpenedOnlyWhenAskedFor) {
+    const test::TemporaryFolder folder;
+    const std::string receiver = "[[receiver]]\nport = \"file:" + (folder / "out.nmea").string() + "\"";
+    EXPECT_TRUE(assembled(receiver).emulator->links().empty());
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.nmea"));
+    RunMode open = virtual_mode();
+    open.open_ports = true;
+    EXPECT_EQ(assembled(receiver, open).emulator->links().size(), 1U);
+    EXPECT_TRUE(std::filesystem::exists(folder / "out.nmea"));
+    EXPECT_THAT(refusal("[[receiver]]\nport = \"tcp:1\"", open).message, HasSubstr("tcp"));
+    EXPECT_TRUE(check_port_names(emulator_scenario(receiver)));
+    EXPECT_FALSE(check_port_names(emulator_scenario("[[receiver]]\nport = \"tcp:1\"")));
+}
+
+TEST(Assembly, ARecordingThatCannotBeMadeIsTheOutsideWorldsFailure) {
+    RunMode mode = virtual_mode();
+    mode.record = "/dev/null/run";
+    EXPECT_EQ(refusal("", mode).code, ErrorCode::outside);
+}
+
+TEST(MakeTrajectory, BeginsAtTheStart) {
+    const GpsTime start = to_gps_time(2304, 0);
+    const Geodetic a = Geodetic::degrees(46, 30, 10);
+    const auto fixed = make_trajectory(FixedSettings{a}, start);
+    EXPECT_EQ(fixed->at(start + std::chrono::hours(1)).geodetic.latitude, a.latitude);
+    const auto path = make_trajectory(
+        WaypointSettings{{{a, MetresPerSecond(10), Seconds(5)}, {Geodetic::degrees(46.01, 30, 10), {}, {}}}}, start);
+    EXPECT_EQ(path->at(start + std::chrono::seconds(4)).geodetic.latitude, a.latitude);
+    EXPECT_GT(path->at(start + std::chrono::seconds(6)).geodetic.latitude, a.latitude);
+    CircleSettings circle;
+    circle.shape.centre = a;
+    const auto round = make_trajectory(circle, start);
+    EXPECT_NEAR((round->at(start).position - to_ecef(a)).length().value(), 100, 1e-3);
+    EXPECT_NEAR(round->at(start).velocity.vector().norm(), 10, 1e-3);
+}
+
+}  // namespace
+}  // namespace skyloop

@@ -1,0 +1,100 @@
+#include "skyloop/emulator/output_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include "run_parts.hpp"
+#include "unit/transport/temporary_folder.hpp"
+
+namespace skyloop {
+namespace {
+
+using test::content_of;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+TEST(OutputFile, WritesAllInOrder) {
+    const TemporaryFolder folder;
+    std::string expected;
+    {
+        auto file = OutputFile::create(folder / "x");
+        ASSERT_TRUE(file);
+        for (int i = 0; i < 100'000; ++i) {
+            const std::string line = std::to_string(i) + "\n";
+            file->write(line);
+            expected += line;
+        }
+        file->write(ByteSpan(to_bytes("end")));
+        EXPECT_FALSE(file->failure());
+    }
+    EXPECT_EQ(content_of(folder / "x"), expected + "end");
+}
+
+TEST(OutputFile, FlushHandsOverWhatIsBuffered) {
+    const TemporaryFolder folder;
+    auto file = OutputFile::create(folder / "x");
+    file->write(std::string_view("little"));
+    EXPECT_EQ(content_of(folder / "x"), "");
+    file->flush();
+    EXPECT_EQ(content_of(folder / "x"), "little");
+    OutputFile moved = std::move(*file);
+    moved.write(std::string_view(" more"));
+    moved.flush();
+    EXPECT_EQ(content_of(folder / "x"), "little more");
+}
+
+TEST(OutputFile, ReplacesAnOldFile) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "x") << "a long old content";
+    { OutputFile::create(folder / "x")->write(std::string_view("new")); }
+    EXPECT_EQ(content_of(folder / "x"), "new");
+}
+
+TEST(OutputFile, FailsOnAPathThatCannotBeWritten) {
+    const auto file = OutputFile::create("/no/such/folder/x");
+    ASSERT_FALSE(file);
+    EXPECT_EQ(file.error().code, ErrorCode::outside);
+    EXPECT_EQ(file.error().message, "/no/such/folder/x: cannot be written: No such file or directory");
+}
+
+TEST(OutputFile, KeepsTheFailureOfAFullDisk) {
+    auto file = OutputFile::create("/dev/full");
+    ASSERT_TRUE(file);
+    file->write(std::string_view("x"));
+    EXPECT_FALSE(file->failure()) << "still buffered";
+    file->flush();
+    ASSERT_TRUE(file->failure());
+    EXPECT_EQ(file->failure()->code, ErrorCode::outside);
+    EXPECT_THAT(file->failure()->message, HasSubstr("/dev/full: cannot be written: No space left on device"));
+    file->write(std::string_view("y"));
+    file->flush();
+    EXPECT_THAT(file->failure()->message, HasSubstr("No space left")) << "the first failure stays";
+}
+
+TEST(OutputFile, KeepsWhatWasWrittenBeforeTheFailure) {
+    const TemporaryFolder folder;
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{1000, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    auto file = OutputFile::create(folder / "x");
+    file->write(std::string(900, 'a'));
+    file->flush();
+    const bool failed_early = file->failure().has_value();
+    file->write(std::string(900, 'b'));
+    file->flush();
+    file->write(std::string(900, 'c'));
+    file->flush();
+    setrlimit(RLIMIT_FSIZE, &before);
+    signal(SIGXFSZ, handler);
+    EXPECT_FALSE(failed_early);
+    ASSERT_TRUE(file->failure());
+    EXPECT_THAT(file->failure()->message, HasSubstr("File too large; what was written before is kept"));
+    EXPECT_EQ(content_of(folder / "x"), std::string(900, 'a') + std::string(100, 'b'));
+}
+
+}  // namespace
+}  // namespace skyloop

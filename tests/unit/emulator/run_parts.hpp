@@ -1,0 +1,106 @@
+/// Small runs for tests: scenarios from text, wires of memory, and a clock that never waits.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "skyloop/emulator/assembly.hpp"
+#include "skyloop/gnss/nominal_constellation.hpp"
+#include "skyloop/scenario/board_file.hpp"
+#include "skyloop/scenario/scenario_file.hpp"
+#include "skyloop/transport/memory.hpp"
+
+namespace skyloop::test {
+
+/// Does not wait, but lets the loop look at the wires every `tick` of simulated time, as the real clock does.
+class TickingPacer : public Pacer {
+public:
+    TickingPacer(GpsTime start, Nanoseconds tick) : start_(start), tick_(tick) {}
+    std::optional<Nanoseconds> wait_until(GpsTime) override { return Nanoseconds(0); }
+    [[nodiscard]] Nanoseconds tick(bool) const override { return tick_; }
+    [[nodiscard]] std::int64_t monotonic_ns(GpsTime now) const override { return (now - start_).count(); }
+
+private:
+    GpsTime start_;
+    Nanoseconds tick_;
+};
+
+inline Scenario emulator_scenario(std::string_view text) {
+    const auto scenario = read_scenario(text, "test.toml");
+    EXPECT_TRUE(scenario) << scenario.error().message;
+    return scenario ? *scenario : Scenario{};
+}
+
+/// Boards from the sources; the geoid where the build has made it.
+inline DataFolders emulator_data() {
+    return {{std::filesystem::path(SKYLOOP_SOURCE_DIR), std::filesystem::path(SKYLOOP_BINARY_DIR) / "share/skyloop"}};
+}
+
+inline std::string content_of(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    EXPECT_TRUE(stream) << file;
+    std::stringstream content;
+    content << stream.rdbuf();
+    return content.str();
+}
+
+inline std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);)
+        lines.push_back(line);
+    return lines;
+}
+
+/// The cells of one row; an empty last one counts.
+inline std::vector<std::string> cells_of(const std::string& row) {
+    std::vector<std::string> cells(1);
+    for (const char c : row)
+        c == ',' ? cells.emplace_back() : cells.back() += c, void();
+    return cells;
+}
+
+/// A run whose one wire ends in memory.
+struct MemoryRun {
+    std::unique_ptr<Emulator> emulator;
+    MemoryTransport* wire = nullptr;
+    GpsTime start;
+};
+
+/// What a MemoryRun is made of besides its scenario, which must have a start.
+struct MemoryRunParts {
+    Nanoseconds tick{0};  ///< zero: one look at the wire per epoch
+    std::optional<Recorder> recorder;
+    LineState line{true, std::nullopt};
+};
+
+inline MemoryRun memory_run(const Scenario& scenario, MemoryRunParts parts = {}) {
+    MemoryRun run;
+    run.start = scenario.run.start.value();
+    auto simulation = make_simulation(scenario, std::make_unique<NominalConstellation>(), nullptr, run.start);
+    auto board = find_board(scenario.receiver.board, board_folders(emulator_data()));
+    EXPECT_TRUE(simulation && board);
+    if (scenario.receiver.baud) board->baud = *scenario.receiver.baud;
+    firmware::Receiver receiver(*board, scenario.receiver.rate_hz.value_or(board->default_rate_hz));
+    auto wire = std::make_unique<MemoryTransport>();
+    wire->set_line(parts.line);
+    run.wire = wire.get();
+    std::vector<Link> links;
+    links.emplace_back(std::move(wire), receiver.baud());
+    run.emulator = std::make_unique<Emulator>(
+        Emulator::Parts{std::move(*simulation), std::move(receiver), std::move(links),
+                        std::make_unique<TickingPacer>(run.start, parts.tick), std::move(parts.recorder)},
+        run.start);
+    return run;
+}
+
+}  // namespace skyloop::test
