@@ -30,7 +30,7 @@ double epstein(double amplitude, double peak, double thickness, double height) {
 
 double peak_density(double critical_frequency) { return 0.124 * critical_frequency * critical_frequency; }
 
-// Coefficients of place at one time and activity, from those of time by month (NeQuick-G document, 2.5.5.3).
+// Coefficients of place at one time and activity, from those of time by month.
 template <std::size_t Places, std::size_t Times>
 std::array<double, Places> ccir_at(const CcirMonth::Map<Places, Times>& map, double sunspots, double ut_hours) {
     const double t = Angle::degrees(15 * ut_hours - 180).rad();
@@ -82,7 +82,7 @@ int nequick_season(int month) {
     return month >= 5 && month <= 8 ? 1 : 0;
 }
 
-// foF1 from its neighbours, MHz (2.5.5.4).
+// foF1 from its neighbours, MHz.
 double critical_frequency_f1(double f_e, double f_f2) {
     double f = joined(1.4 * f_e, 0, 1000, f_e - 2);
     f = joined(0, f, 1000, f_e - f);

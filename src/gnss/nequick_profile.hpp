@@ -35,7 +35,7 @@ struct NequickPlace {
     double modip, latitude, longitude;
 };
 
-/// The profile of the NeQuick-G document, sections 2.5.5 and 2.5.6: three Epstein layers below the F2 peak, one that
+/// The profile of the NeQuick-G document: three Epstein layers below the F2 peak, one that
 /// widens above it.
 class NequickProfile {
 public:

@@ -34,8 +34,9 @@ struct IonosphereMaps {
 /// grid once around the globe closes on itself. Nothing where the grid does not reach or a value is missing.
 std::optional<Tecu> map_content(const IonosphereMaps& maps, const IonosphereMap& map, const PiercePoint& where);
 
-/// Vertical content between two maps: linear in time, each map turned with the Sun by 360° a day (IONEX 1.0, section 3,
-/// equation 3). Nothing before the first map, after the last, or where a map has no value.
+/// Vertical content between two maps: linear in time, each map turned with the Sun by 360° a day (IONEX 1.0,
+/// interpolation between consecutive rotated maps). Nothing before the first map, after the last, or where a map has no
+/// value.
 std::optional<Tecu> vertical_content(const IonosphereMaps& maps, const PiercePoint& where, GpsTime time);
 
 }  // namespace skyloop

@@ -34,7 +34,7 @@ struct ModipGrid {
 /// Reads the 39 × 39 numbers of modipNeQG_wrapped.asc. Fails as read_ccir_month does.
 Result<ModipGrid> read_modip_grid(std::string_view text, std::string_view name);
 
-/// Modified dip latitude of a place by third-order interpolation (NeQuick-G document, section 2.5.4.3).
+/// Modified dip latitude of a place by third-order interpolation (NeQuick-G document, MODIP interpolation).
 Angle modified_dip_latitude(const ModipGrid& grid, Angle latitude, Angle longitude);
 
 /// Both tables for one month.
