@@ -77,6 +77,13 @@ Angle refraction_bending(Angle free_space_elevation, MslHeight antenna) {
                                h * h * (0.01727 + 0.008288 * t)));
 }
 
+Angle refraction_bending_of_apparent(Angle apparent, MslHeight antenna) {
+    const double t = apparent.deg();
+    const double h = std::clamp(antenna.above_sea_level.value() / 1000, 0.0, 3.0);
+    return Angle::degrees(
+        1 / (1.314 + 0.6437 * t + 0.02869 * t * t + h * (0.2305 + 0.09428 * t + 0.01096 * t * t) + h * h * 0.008583));
+}
+
 void RefractionDelay::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
     assert(arrivals.satellites.size() == sky.satellites.size());
     const MslHeight height = sea_level_height(truth.geodetic, geoid_);

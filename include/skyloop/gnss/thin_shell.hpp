@@ -1,0 +1,35 @@
+/// The ionosphere as one thin shell: where a ray pierces it, and how much longer the slant way through it is.
+#pragma once
+
+#include "skyloop/base/units.hpp"
+#include "skyloop/geo/geodetic.hpp"
+#include "skyloop/gnss/dop.hpp"
+
+namespace skyloop {
+
+/// A spherical Earth with the shell at one height over it (IONEX 1.0; MODELS.md 7.2).
+struct ThinShell {
+    Metres earth_radius{6371000};
+    Metres height{450000};
+};
+
+/// Where a ray crosses the shell, geocentric.
+struct PiercePoint {
+    Angle latitude;
+    Angle longitude;  ///< −180 … 180°
+};
+
+/// The pierce point of the ray from `place`, at its height over a sphere: ψ = π/2 − e − asin((R + h) cos e/(R + H))
+/// with H the height of the shell (MODELS.md 7.2, where h is 0).
+PiercePoint pierce_point(const ThinShell& shell, const Geodetic& place, const SkyDirection& direction);
+
+/// Slant over vertical content of a single layer, 1/√(1 − ((R + h) cos e/(R + H))²), seen from a height h.
+double single_layer_mapping(const ThinShell& shell, Angle elevation, Metres antenna_height = Metres(0));
+/// The same of the modified single layer, which follows an extended profile more closely:
+/// 1/√(1 − (R/(R + H) sin(0.9782 z))²) (Schaer 1999; MODELS.md 7.2, A.5).
+double modified_single_layer_mapping(const ThinShell& shell, Angle elevation);
+
+/// Group delay of a slant electron content, 40.3·TEC/f² (IONEX 1.0; Galileo ionospheric correction document).
+Metres ionosphere_group_delay(Tecu slant_content, Hertz carrier);
+
+}  // namespace skyloop

@@ -1,0 +1,44 @@
+#include "skyloop/gnss/thin_shell.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace skyloop {
+namespace {
+
+double shell_ratio(const ThinShell& shell, Metres antenna_height) {
+    return (shell.earth_radius + antenna_height).value() / (shell.earth_radius + shell.height).value();
+}
+
+double obliquity(double sine_at_shell) { return 1 / std::sqrt(1 - sine_at_shell * sine_at_shell); }
+
+}  // namespace
+
+PiercePoint pierce_point(const ThinShell& shell, const Geodetic& place, const SkyDirection& direction) {
+    const double e = direction.elevation.rad(), azimuth = direction.azimuth.rad();
+    const double psi =
+        std::numbers::pi / 2 - e - std::asin(shell_ratio(shell, place.height.above_ellipsoid) * std::cos(e));
+    const double sin_latitude = std::sin(place.latitude.rad()), cos_latitude = std::cos(place.latitude.rad());
+    const double north = std::sin(psi) * std::cos(azimuth);
+    const double sine = sin_latitude * std::cos(psi) + cos_latitude * north;
+    // By atan2, so that rays over a pole come down on the other side.
+    const double east = std::sin(psi) * std::sin(azimuth);
+    const double along = cos_latitude * std::cos(psi) - sin_latitude * north;
+    const double longitude = place.longitude.rad() + std::atan2(east, along);
+    return {Angle::radians(std::atan2(sine, std::hypot(east, along))),
+            Angle::radians(std::remainder(longitude, 2 * std::numbers::pi))};
+}
+
+double single_layer_mapping(const ThinShell& shell, Angle elevation, Metres antenna_height) {
+    return obliquity(shell_ratio(shell, antenna_height) * std::cos(elevation.rad()));
+}
+
+double modified_single_layer_mapping(const ThinShell& shell, Angle elevation) {
+    return obliquity(shell_ratio(shell, Metres(0)) * std::sin(0.9782 * (std::numbers::pi / 2 - elevation.rad())));
+}
+
+Metres ionosphere_group_delay(Tecu slant_content, Hertz carrier) {
+    return Metres(40.3e16 * slant_content.value() / (carrier.value() * carrier.value()));
+}
+
+}  // namespace skyloop

@@ -1,0 +1,44 @@
+#include "skyloop/gnss/thin_shell.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "skyloop/gnss/constants.hpp"
+#include "support/oracle_table.hpp"
+
+namespace skyloop {
+namespace {
+
+TEST(ThinShell, EveryOracleRow) {
+    for (const test::OracleRow& row : test::oracle_rows("iono_ionex.csv")) {
+        SCOPED_TRACE(row.id());
+        const Geodetic place = Geodetic::degrees(row.number("lat_deg"), row.number("lon_deg"), row.number("h_m"));
+        const SkyDirection direction{Angle::degrees(row.number("az_deg")), Angle::degrees(row.number("el_deg"))};
+        const PiercePoint there = pierce_point({}, place, direction);
+        EXPECT_NEAR(there.latitude.deg(), row.number("ipp_lat_deg"), 1e-7);
+        EXPECT_NEAR(std::remainder(there.longitude.deg() - row.number("ipp_lon_deg"), 360.0), 0, 1e-7);
+        const Metres height = place.height.above_ellipsoid;
+        EXPECT_NEAR(single_layer_mapping({}, direction.elevation, height), row.number("mapping_single_layer"), 1e-8);
+        EXPECT_NEAR(modified_single_layer_mapping({}, direction.elevation), row.number("mapping_modified"), 1e-8);
+    }
+}
+
+TEST(ThinShell, ARayOverThePoleComesDownOnTheOtherSide) {
+    const PiercePoint there = pierce_point({}, Geodetic::degrees(88, 20, 0), {Angle::degrees(0), Angle::degrees(10)});
+    EXPECT_NEAR(there.longitude.deg(), -160, 1e-9);
+    EXPECT_LT(there.latitude.deg(), 90);
+}
+
+TEST(ThinShell, StraightUpIsTheVertical) {
+    const SkyDirection zenith{Angle::degrees(123), Angle::degrees(90)};
+    const PiercePoint there = pierce_point({}, Geodetic::degrees(-40, 179, 0), zenith);
+    EXPECT_NEAR(there.latitude.deg(), -40, 1e-9);
+    EXPECT_NEAR(there.longitude.deg(), 179, 1e-9);
+    EXPECT_NEAR(single_layer_mapping({}, zenith.elevation), 1, 1e-12);
+    EXPECT_NEAR(modified_single_layer_mapping({}, zenith.elevation), 1, 1e-12);
+    EXPECT_NEAR(ionosphere_group_delay(Tecu(1), Hertz(carrier_frequency_l1)).value(), 0.162372, 1e-6);
+}
+
+}  // namespace
+}  // namespace skyloop

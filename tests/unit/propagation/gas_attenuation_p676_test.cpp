@@ -1,0 +1,62 @@
+#include "skyloop/propagation/gas_attenuation_p676.hpp"
+
+#include <gtest/gtest.h>
+
+#include "skyloop/gnss/constants.hpp"
+#include "support/oracle_table.hpp"
+
+namespace skyloop {
+namespace {
+
+using test::OracleRow;
+
+ReferenceAir air_of(const OracleRow& row) {
+    ReferenceAir air{Kelvin(row.number("T_K")), row.number("p_dry_hPa"), row.number("rho_g_m3")};
+    air.pressure_hpa += air.vapour_pressure_hpa();
+    return air;
+}
+
+void expect_gases(const OracleRow& row, double tolerance) {
+    SCOPED_TRACE(row.id());
+    const GasAttenuation gas = gas_attenuation_p676(air_of(row), Hertz(row.number("f_GHz") * 1e9));
+    const auto expect_close = [&](DecibelsPerKilometre value, const char* column) {
+        const double expected = row.number(column);
+        EXPECT_NEAR(value.value(), expected, tolerance * expected) << column;
+    };
+    expect_close(gas.oxygen, "gamma_o_dB_km");
+    expect_close(gas.vapour, "gamma_w_dB_km");
+    expect_close(gas.total(), "gamma_dB_km");
+}
+
+TEST(GasAttenuationP676, EveryOracleRow) {
+    for (const OracleRow& row : test::oracle_rows("itu_p676_specific.csv"))
+        expect_gases(row, row.number("tol_rel"));
+}
+
+TEST(GasAttenuationP676, AgreesWithTheValidationWorkbook) {
+    for (const OracleRow& row : test::oracle_rows("itu_official_p676_gamma.csv"))
+        expect_gases(row, 1e-9);
+}
+
+TEST(SlantGasAttenuation, EveryOracleRow) {
+    for (const OracleRow& row : test::oracle_rows("itu_p676_slant.csv")) {
+        SCOPED_TRACE(row.id());
+        const Decibels loss =
+            slant_gas_attenuation_p676(Hertz(row.number("f_GHz") * 1e9), Angle::degrees(row.number("el_deg")),
+                                       Metres(row.number("rx_h_km") * 1000));
+        EXPECT_NEAR(loss.value() / row.number("A_gas_dB"), 1, row.number("tol_rel"));
+        // The layering itself is far closer than the table's tolerance.
+        EXPECT_NEAR(loss.value() / row.number("A_gas_dB"), 1, 2e-3);
+    }
+}
+
+TEST(SlantGasAttenuation, EndsWithTheAirAndStaysFiniteAtTheHorizon) {
+    const Hertz l1(carrier_frequency_l1);
+    EXPECT_EQ(slant_gas_attenuation_p676(l1, Angle::degrees(30), Metres(120000)).value(), 0);
+    const double level = slant_gas_attenuation_p676(l1, Angle::degrees(0), Metres(0)).value();
+    EXPECT_GT(level, 1.5);
+    EXPECT_LT(level, 4);
+}
+
+}  // namespace
+}  // namespace skyloop
