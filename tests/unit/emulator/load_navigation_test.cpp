@@ -46,7 +46,7 @@ std::string nominal_records() {
     std::string text = test::header_v3("3.04");
     for (const auto hour : {2h, 4h})
         for (const SatelliteId satellite : NominalConstellation().satellites()) {
-            KeplerEphemeris record = NominalConstellation().ephemeris(satellite, data_day + hour).value();
+            KeplerEphemeris record = NominalConstellation().record(satellite, data_day + hour).value();
             if (satellite.number >= 30) record.satellite = {Constellation::qzss, satellite.number - 29};
             text += rinex_record(record);
         }
@@ -68,7 +68,7 @@ protected:
     // The time of day of the record that serves G01 at 03:30.
     static Nanoseconds record_at_half_past_three(const Scenario& scenario) {
         const auto record = load(scenario).source->ephemeris({Constellation::gps, 1}, data_day + 3h + 30min);
-        return record ? record->toe - data_day : Nanoseconds(-1);
+        return record ? toe_of(*record) - data_day : Nanoseconds(-1);
     }
 
     TemporaryFolder folder_;
@@ -151,7 +151,7 @@ TEST_F(LoadNavigation, RebasingMovesTheDataByWholeDays) {
     EXPECT_THAT(moved.warnings, IsEmpty());
     const auto record = moved.source->ephemeris({Constellation::gps, 1}, moved.start);
     ASSERT_TRUE(record);
-    EXPECT_EQ((record->toe - data_day) % 24h, 2h);
+    EXPECT_EQ((toe_of(*record) - data_day) % 24h, 2h);
     EXPECT_EQ(load(scenario("rebase_navigation = true", "[run]\nstart = \"now\"")).start, wall_now);
     const auto no_data =
         load_navigation(scenario("rebase_navigation = true", "[run]\nstart = 2026-07-08T13:00:00Z"), wall_now, false);
