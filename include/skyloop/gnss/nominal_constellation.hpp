@@ -17,11 +17,12 @@ struct NominalSlot {
 /// 31 healthy GPS satellites on circular orbits in six planes, at all times.
 ///
 /// The 24 slots and the three expanded ones (27 satellites) are those of the GPS Standard Positioning Service
-/// Performance Standard, 4th edition (2008), section 3.2, tables 3.2-1 and 3.2-2: inclination 55°, semi-major axis 26
-/// 559.7 km. The other four satellites, named A5, B5, C5 and E5, are ours: each stands in the middle of the widest gap
-/// of its plane. Satellites are numbered 1 … 31 in the order of slots(). Clocks are perfect. Motion is secular: the
-/// two-body mean motion and the regression of the nodes, so that the sky keeps the true constellation's geometry, not
-/// its true positions.
+/// Performance Standard, 4th edition (2008), section 3.2, tables 3.2-1 and 3.2-2: inclination 55°, semi-major axis
+/// 26 559.7 km. The 24 were held against a second print of the table; the six places of the expanded slots were not.
+/// The other four satellites, named A5, B5, C5 and E5, are ours: each stands in the middle of the widest gap of its
+/// plane. Satellites are numbered 1 … 31 in the order of slots(). Clocks are perfect. Motion is secular: the two-body
+/// mean motion and the regression of the nodes, so that the sky keeps the true constellation's geometry, not its true
+/// positions.
 class NominalConstellation : public NavigationSource {
 public:
     [[nodiscard]] std::vector<SatelliteId> satellites() const override;
