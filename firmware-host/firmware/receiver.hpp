@@ -9,14 +9,10 @@
 #include "firmware/port.hpp"
 #include "skyloop/base/bytes.hpp"
 #include "skyloop/flow/epoch.hpp"
+#include "skyloop/flow/receiver_settings.hpp"
 #include "skyloop/time/gps_time.hpp"
 
 namespace skyloop::firmware {
-
-/// What has been configured and what the world outside the firmware must respect.
-struct ReceiverSettings {
-    Nanoseconds navigation_period{1'000'000'000};
-};
 
 /// What a receiver counts about itself.
 struct ReceiverCounters {
@@ -41,7 +37,7 @@ public:
     /// When the last queued byte will have left, or nothing when nothing is queued.
     [[nodiscard]] std::optional<GpsTime> drained_at() const;
     [[nodiscard]] std::uint32_t baud() const { return port_.baud(); }
-    [[nodiscard]] ReceiverSettings settings() const { return settings_; }
+    [[nodiscard]] const ReceiverSettings& settings() const { return settings_; }
     [[nodiscard]] const ReceiverCounters& counters() const { return counters_; }
     [[nodiscard]] const BoardProfile& board() const { return board_; }
 

@@ -20,6 +20,9 @@ template <class... Cases>
 struct Overloaded : Cases... {
     using Cases::operator()...;
 };
+// Clang 14 does not yet deduce it for aggregates.
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
 
 ErrorModelSettings error_model_settings(const Scenario& scenario, const Geoid* geoid) {
     const ModelSettings& model = scenario.model;
@@ -129,7 +132,6 @@ Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<Nav
     parts.trajectory = make_trajectory(scenario.trajectory, start);
     parts.effects = std::move(*effects);
     parts.error_model = make_error_model(error_model_settings(scenario, geoid));
-    parts.carrier = Hertz(carrier_frequency_l1);
     parts.navigation = std::move(navigation);
     return Simulation(std::move(parts));
 }

@@ -11,7 +11,7 @@ Trace Simulation::run(GpsTime time) {
     Trace trace;
     trace.truth = parts_.trajectory->at(time);
     trace.sky = view(trace.truth);
-    trace.arrivals = free_space(trace.sky, parts_.carrier);
+    trace.arrivals = free_space(trace.sky);
     for (const auto& effect : parts_.effects)
         effect->apply(trace.arrivals, trace.sky, trace.truth);
     trace.epoch.fix = parts_.error_model->fix(trace.truth, trace.sky, trace.arrivals);

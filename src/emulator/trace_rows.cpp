@@ -54,7 +54,7 @@ std::string satellite_rows(const Trace& trace) {
         const SatelliteInView& sky = trace.sky.satellites[i];
         const Arrival& arrival = trace.arrivals.satellites[i];
         const SatelliteStatus& status = trace.epoch.fix.satellites[i];
-        const double clock = speed_of_light * (sky.clock_bias.value() - sky.group_delay.value());
+        const double clock = speed_of_light * (sky.clock_bias.value() - sky.group_delay().value());
         const double pseudorange = sky.range.value() - clock + arrival.iono_delay.value() +
                                    arrival.tropo_delay.value() + arrival.excess_path.value();
         fmt::format_to(out, "{},{},{:.4f},{:.4f},{:.4f},{},{},{:.4f},{:.4f},{:.4f},{:.5f},{:.5f},{:.5f},", time,

@@ -25,7 +25,11 @@ std::vector<SatelliteStatus> select_satellites(const SkyView& sky, const Arrival
     for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
         const SatelliteInView& satellite = sky.satellites[i];
         const Arrival& arrival = arrivals.satellites[i];
-        SatelliteStatus status{satellite.id, satellite.azimuth, satellite.elevation, std::nullopt, false};
+        SatelliteStatus status;
+        status.id = satellite.id;
+        status.azimuth = satellite.azimuth;
+        status.elevation = satellite.elevation;
+        status.healthy = satellite.healthy;
         if (visible(arrival, rule)) status.cn0 = arrival.cn0;
         status.used = usable(satellite, arrival, rule);
         statuses.push_back(status);

@@ -1,5 +1,7 @@
 #include "skyloop/gnss/signal.hpp"
 
+#include <array>
+
 #include "skyloop/gnss/constants.hpp"
 
 namespace skyloop {
@@ -86,6 +88,70 @@ Hertz carrier_frequency(Signal signal, int frequency_channel) {
             return Hertz(1246e6 + 437.5e3 * frequency_channel);
     }
     return Hertz(carrier_frequency_l1);
+}
+
+std::span<const Signal> emulated_signals(Constellation constellation) {
+    static constexpr std::array gps{Signal::l1, Signal::l2, Signal::l5};
+    static constexpr std::array galileo{Signal::l1, Signal::e5b, Signal::l5};
+    static constexpr std::array beidou{Signal::b1i, Signal::e5b, Signal::b3i};
+    static constexpr std::array glonass{Signal::g1, Signal::g2};
+    static constexpr std::array sbas{Signal::l1};
+    static constexpr std::array navic{Signal::l5};
+    switch (constellation) {
+        case Constellation::galileo:
+            return galileo;
+        case Constellation::beidou:
+            return beidou;
+        case Constellation::glonass:
+            return glonass;
+        case Constellation::sbas:
+            return sbas;
+        case Constellation::navic:
+            return navic;
+        case Constellation::gps:
+        case Constellation::qzss:
+            break;
+    }
+    return gps;
+}
+
+std::optional<std::string_view> rinex_signal_code(Constellation constellation, Signal signal) {
+    struct Code {
+        Constellation constellation;
+        Signal signal;
+        std::string_view code;
+    };
+    using enum Constellation;
+    // Of several codes of a signal the one that u-blox receivers track: L2C long, E1-C, E5a-Q, E5b-Q.
+    static constexpr std::array<Code, 16> codes{{{gps, Signal::l1, "1C"},
+                                                 {gps, Signal::l2, "2L"},
+                                                 {gps, Signal::l5, "5Q"},
+                                                 {qzss, Signal::l1, "1C"},
+                                                 {qzss, Signal::l2, "2L"},
+                                                 {qzss, Signal::l5, "5Q"},
+                                                 {galileo, Signal::l1, "1C"},
+                                                 {galileo, Signal::e5b, "7Q"},
+                                                 {galileo, Signal::l5, "5Q"},
+                                                 {beidou, Signal::b1i, "2I"},
+                                                 {beidou, Signal::e5b, "7I"},
+                                                 {beidou, Signal::b3i, "6I"},
+                                                 {glonass, Signal::g1, "1C"},
+                                                 {glonass, Signal::g2, "2C"},
+                                                 {sbas, Signal::l1, "1C"},
+                                                 {navic, Signal::l5, "5A"}}};
+    for (const Code& c : codes)
+        if (c.constellation == constellation && c.signal == signal) return c.code;
+    return std::nullopt;
+}
+
+TransmittedSignals transmitted_signals(const Ephemeris& record) {
+    const auto* glonass = std::get_if<GlonassEphemeris>(&record);
+    const int channel = glonass ? glonass->frequency_channel : 0;
+    TransmittedSignals signals;
+    for (const Signal signal : emulated_signals(satellite_of(record).constellation))
+        signals.push_back(
+            {signal, carrier_frequency(signal, channel), group_delay(record, signal).value_or(Seconds(0))});
+    return signals;
 }
 
 std::optional<Seconds> group_delay(const Ephemeris& record, Signal signal) {

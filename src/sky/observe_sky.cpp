@@ -64,7 +64,7 @@ std::optional<SatelliteInView> in_view(const Ephemeris& record, const TruthState
     seen.velocity_at_transmission = path.transmitter.velocity;
     seen.clock_bias = Seconds(path.transmitter.clock_bias);
     seen.clock_drift = path.transmitter.clock_drift;
-    seen.group_delay = group_delay(record, first_signal(seen.id.constellation)).value_or(Seconds(0));
+    seen.signals = transmitted_signals(record);
     seen.toe = toe_of(record);
     seen.iode = iode_of(record);
     seen.healthy = is_healthy(record);

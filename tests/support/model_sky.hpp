@@ -66,7 +66,7 @@ public:
         Trace trace;
         trace.truth = truth_at(Geodetic::degrees(46.4774, 30.7326, 50), to_gps_time(2111, since_start));
         trace.sky = sky;
-        trace.arrivals = free_space(sky, Hertz(carrier_frequency_l1));
+        trace.arrivals = free_space(sky);
         for (std::size_t i = 0; i < effects_.size(); ++i) {
             if (i + 1 == effects_.size()) change(trace.arrivals);
             effects_[i]->apply(trace.arrivals, trace.sky, trace.truth);

@@ -21,7 +21,6 @@ public:
         std::unique_ptr<NavigationSource> navigation;
         std::vector<std::unique_ptr<PropagationEffect>> effects;  ///< in the order in which they are applied
         std::unique_ptr<ErrorModel> error_model;
-        Hertz carrier;
     };
     explicit Simulation(Parts parts) : parts_(std::move(parts)) {}
 

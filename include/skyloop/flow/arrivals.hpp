@@ -5,26 +5,52 @@
 #include <vector>
 
 #include "skyloop/base/units.hpp"
+#include "skyloop/gnss/dop.hpp"
 #include "skyloop/gnss/satellite.hpp"
+#include "skyloop/gnss/signal.hpp"
 
 namespace skyloop {
 
-/// One satellite's signal as it reaches the antenna: what delayed it and what weakened it, each cause by itself.
+/// One carrier of a satellite as it reaches the antenna.
+struct SignalArrival {
+    Signal signal = Signal::l1;
+    Hertz carrier;
+    Seconds group_delay;      ///< of the satellite's hardware against its clock
+    Decibels relative_power;  ///< C/N0 over that of the satellite's first signal
+};
+
+/// One satellite's signals as they reach the antenna: what delayed them and what weakened them, each cause by itself.
 struct Arrival {
     SatelliteId id;
+    SkyDirection direction;                              ///< where the satellite stands
+    Metres range;                                        ///< geometric
+    MetresPerSecond range_rate;                          ///< of the geometric range
+    Seconds clock_bias;                                  ///< satellite clock − GPST, as broadcast
+    double clock_drift = 0;                              ///< s/s
+    InplaceVector<SignalArrival, most_signals> signals;  ///< the first one first
+
     bool line_of_sight = true;
-    int paths = 1;        ///< rays that arrive; 0: the satellite is hidden
-    int reflections = 0;  ///< of the shortest path
-    Metres excess_path;   ///< of the shortest path over the direct one
-    Metres iono_delay;
+    int paths = 1;                     ///< rays that arrive; 0: the satellite is hidden
+    int reflections = 0;               ///< of the shortest path
+    Metres excess_path;                ///< of the shortest path over the direct one
+    Metres signal_in_space_error;      ///< of orbit and clock against the broadcast, in the range
+    MetresPerSecond range_rate_error;  ///< its derivative
+    Metres iono_delay;                 ///< of the code of the first signal; the carrier is advanced by as much
     Metres tropo_delay;
     Decibels free_space_loss;
     Decibels gas_loss;
     Decibels cloud_loss;
     Decibels rain_loss;
+    Decibels foliage_loss;
     Decibels iono_loss;
     Decibels reflection_loss;
-    std::optional<DbHz> cn0;  ///< nothing until a link budget has been made, or for a hidden satellite
+    Decibels antenna_gain;               ///< of the receiving antenna in this direction, dBic
+    Decibels power_offset;               ///< of this satellite against the nominal power, with what changes in time
+    Decibels interference_loss;          ///< of C/N0, by jamming
+    double amplitude_scintillation = 0;  ///< S4 at the first signal
+    Angle phase_scintillation;           ///< 1 σ, at the first signal
+    std::optional<DbHz>
+        cn0;  ///< of the first signal; nothing until a link budget has been made, or for a hidden satellite
 };
 
 /// One arrival for each satellite of the SkyView, in its order.

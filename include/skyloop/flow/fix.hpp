@@ -50,6 +50,9 @@ struct SatelliteStatus {
     Angle elevation;
     std::optional<DbHz> cn0;  ///< nothing: in view, not tracked
     bool used = false;
+    bool has_ephemeris = true;         ///< the receiver has a record of its orbit
+    bool healthy = true;               ///< by that record
+    std::optional<Metres> residual{};  ///< of the pseudorange after the solution
 };
 
 /// A position, velocity and time solution. Without a fix only `time`, `leap_seconds` and `satellites` mean something.
@@ -65,6 +68,11 @@ struct Fix {
     Dop dop;
     Metres horizontal_accuracy;  ///< 1 σ estimate, horizontal
     Metres vertical_accuracy;
+    MetresPerSecond speed_accuracy;           ///< 1 σ estimate
+    Angle course_accuracy;                    ///< 1 σ estimate
+    Metres time_accuracy;                     ///< 1 σ estimate, times the speed of light
+    Metres clock_bias;                        ///< receiver clock − GPST as solved
+    MetresPerSecond clock_drift;              ///< of it
     std::vector<SatelliteStatus> satellites;  ///< all that the receiver knows of, ascending
 
     [[nodiscard]] bool has_position() const { return type != FixType::none && type != FixType::time_only; }

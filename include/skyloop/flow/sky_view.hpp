@@ -5,6 +5,7 @@
 
 #include "skyloop/geo/frames.hpp"
 #include "skyloop/gnss/satellite.hpp"
+#include "skyloop/gnss/signal.hpp"
 #include "skyloop/time/gps_time.hpp"
 
 namespace skyloop {
@@ -19,12 +20,14 @@ struct SatelliteInView {
     Seconds travel_time;
     Position<Ecef> position_at_transmission;  ///< in the ECEF frame of the transmission instant
     Velocity<Ecef> velocity_at_transmission;
-    Seconds clock_bias;      ///< satellite clock − GPST, relativity included
-    double clock_drift = 0;  ///< s/s
-    Seconds group_delay;     ///< of the system's first signal (gnss/signal.hpp)
+    Seconds clock_bias;          ///< satellite clock − GPST, relativity included
+    double clock_drift = 0;      ///< s/s
+    TransmittedSignals signals;  ///< the first one first; may be empty where only directions matter
     GpsTime toe;
     int iode = 0;
     bool healthy = true;
+    /// Of the first signal; 0 for a satellite without signals.
+    [[nodiscard]] Seconds group_delay() const { return signals.empty() ? Seconds(0) : signals.front().group_delay; }
 };
 
 /// All satellites above the horizon at one instant, healthy or not, ascending by id.

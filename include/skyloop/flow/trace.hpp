@@ -3,6 +3,7 @@
 
 #include "skyloop/flow/arrivals.hpp"
 #include "skyloop/flow/epoch.hpp"
+#include "skyloop/flow/measurement_terms.hpp"
 #include "skyloop/flow/sky_view.hpp"
 #include "skyloop/flow/truth_state.hpp"
 
@@ -13,6 +14,7 @@ struct Trace {
     TruthState truth;
     SkyView sky;
     Arrivals arrivals;
+    MeasurementTerms measurement;
     Epoch epoch;
 };
 

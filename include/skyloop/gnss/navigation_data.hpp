@@ -46,8 +46,7 @@ public:
     /// The record that the rule picks. Forward: the newest healthy one with 0 ≤ time − toe ≤ validity. Nearest: the one
     /// with the smallest |time − toe| ≤ validity, healthy or not; of two equally near ones the newer.
     [[nodiscard]] std::optional<Ephemeris> ephemeris(SatelliteId satellite, GpsTime time) const override;
-    [[nodiscard]] std::optional<KlobucharCoefficients> klobuchar() const override { return ionosphere_.gps; }
-    [[nodiscard]] const BroadcastIonosphere& ionosphere() const { return ionosphere_; }
+    [[nodiscard]] const BroadcastIonosphere& ionosphere() const override { return ionosphere_; }
     /// From the first toe (forward), or `validity` before it (nearest), to `validity` after the last; nothing when
     /// there are no records.
     [[nodiscard]] std::optional<TimeSpan> span() const override;

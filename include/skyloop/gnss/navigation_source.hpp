@@ -48,7 +48,10 @@ public:
     [[nodiscard]] virtual std::vector<SatelliteId> satellites() const = 0;
     /// The record that serves `satellite` at `time`, or nothing.
     [[nodiscard]] virtual std::optional<Ephemeris> ephemeris(SatelliteId satellite, GpsTime time) const = 0;
-    [[nodiscard]] virtual std::optional<KlobucharCoefficients> klobuchar() const = 0;
+    /// What the satellites say of the ionosphere.
+    [[nodiscard]] virtual const BroadcastIonosphere& ionosphere() const = 0;
+    /// The coefficients of GPS.
+    [[nodiscard]] const std::optional<KlobucharCoefficients>& klobuchar() const { return ionosphere().gps; }
     /// The instants for which there are orbits; nothing when there is no limit.
     [[nodiscard]] virtual std::optional<TimeSpan> span() const = 0;
     /// For people: "brdc1820.10n" or "nominal GPS constellation".

@@ -30,12 +30,15 @@ public:
     /// A record with toe at the even hour of GPS time at or before `time`; positions run on smoothly from one record to
     /// the next. Nothing for a satellite without a slot.
     [[nodiscard]] std::optional<KeplerEphemeris> record(SatelliteId satellite, GpsTime time) const;
-    [[nodiscard]] std::optional<KlobucharCoefficients> klobuchar() const override { return std::nullopt; }
+    [[nodiscard]] const BroadcastIonosphere& ionosphere() const override { return ionosphere_; }
     [[nodiscard]] std::optional<TimeSpan> span() const override { return std::nullopt; }
     [[nodiscard]] std::string description() const override { return "nominal GPS constellation"; }
 
     /// Satellite number n stands in slot n − 1.
     static std::span<const NominalSlot> slots();
+
+private:
+    BroadcastIonosphere ionosphere_;  // it says nothing of it
 };
 
 }  // namespace skyloop

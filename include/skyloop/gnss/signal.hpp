@@ -2,7 +2,10 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <string_view>
 
+#include "skyloop/base/inplace_vector.hpp"
 #include "skyloop/base/units.hpp"
 #include "skyloop/gnss/ephemeris.hpp"
 
@@ -26,6 +29,26 @@ Signal first_signal(Constellation constellation);
 
 /// @param frequency_channel of GLONASS: 1602 + 0.5625 k and 1246 + 0.4375 k MHz (ICD L1, L2 GLONASS, table 3.1)
 Hertz carrier_frequency(Signal signal, int frequency_channel = 0);
+
+/// The signals that are emulated for a system, the first one first: L1, L2, L5; E1, E5b, E5a; B1I, B2I, B3I; G1, G2; of
+/// SBAS L1, of NavIC L5.
+std::span<const Signal> emulated_signals(Constellation constellation);
+inline constexpr std::size_t most_signals = 3;
+
+/// Band and attribute of a signal in RINEX 3 observation codes (RINEX 3.04, tables 4 to 10): "1C" of GPS L1.
+/// Nothing for a signal that the system does not send.
+std::optional<std::string_view> rinex_signal_code(Constellation constellation, Signal signal);
+
+/// A signal as a satellite sends it.
+struct TransmittedSignal {
+    Signal signal = Signal::l1;
+    Hertz carrier;
+    Seconds group_delay;  ///< of the satellite's hardware against its clock; 0 where the broadcast does not tell
+};
+using TransmittedSignals = InplaceVector<TransmittedSignal, most_signals>;
+
+/// The emulated signals of the satellite of a record. @param record tells the GLONASS channel and the group delays
+TransmittedSignals transmitted_signals(const Ephemeris& record);
 
 /// What a user of one signal subtracts from the broadcast clock, s, or nothing where the record does not tell.
 /// GPS, QZSS: TGD, times (f1/f2)² for L2 (IS-GPS-200, 20.3.3.3.3.2). Galileo: BGD of the message's pair, times (f1/f)²

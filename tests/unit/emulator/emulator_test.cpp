@@ -193,7 +193,7 @@ TEST(Emulator, AnotherSeedGivesOtherFixesOfTheSameSky) {
 
 // Two antennas with the same fix but different truths: the receiver is handed an Epoch, which holds none.
 TEST(Emulator, TheReceiverIsNotShownTheTruth) {
-    static_assert(sizeof(Epoch) == sizeof(Fix), "an epoch holds a fix and nothing else");
+    static_assert(sizeof(Epoch) == sizeof(Fix) + sizeof(Observations), "fix and observations, and nothing else");
     firmware::Receiver left(find_board("ublox-m8", board_folders(test::emulator_data())).value(), 1);
     firmware::Receiver right = left;
     MemoryRun run = memory_run(emulator_scenario(at_noon("")));

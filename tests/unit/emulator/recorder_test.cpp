@@ -35,7 +35,7 @@ Trace recorded_trace() {
     satellite.elevation = Angle::degrees(45.25);
     satellite.range = Metres(21'000'000);
     satellite.clock_bias = Seconds(1e-6);
-    satellite.group_delay = Seconds(1e-8);
+    satellite.signals.push_back({Signal::l1, Hertz(carrier_frequency_l1), Seconds(1e-8)});
     trace.sky.satellites = {satellite, satellite};
     trace.sky.satellites[1].id.number = 7;
     Arrival arrival;

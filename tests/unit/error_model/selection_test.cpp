@@ -10,7 +10,7 @@ namespace {
 // One satellite at 40° with 45 dB-Hz, which every rule below may use unless a test changes it.
 struct OneChoice {
     SkyView sky = test::sky_of({{10, 40}});
-    Arrivals arrivals = free_space(sky, Hertz(carrier_frequency_l1));
+    Arrivals arrivals = free_space(sky);
     SelectionRule rule{Angle::degrees(5), false, DbHz(5), 16};
     OneChoice() { arrival().cn0 = DbHz(45); }
     Arrival& arrival() { return arrivals.satellites.front(); }

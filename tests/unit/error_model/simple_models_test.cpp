@@ -36,7 +36,7 @@ TEST(Ideal, IsTheTruthWithItsVelocity) {
     const auto model = make_error_model(settings_of(ErrorModelKind::ideal));
     TruthState truth = test::truth_at(Geodetic::degrees(46.4774, 30.7326, 50), to_gps_time(2111, 0.0));
     truth.velocity = LocalFrame(truth.geodetic).to_ecef(Velocity<Enu>(3, 4, 1));
-    const Fix fix = model->fix(truth, simple_sky, free_space(simple_sky, Hertz(carrier_frequency_l1)));
+    const Fix fix = model->fix(truth, simple_sky, free_space(simple_sky));
     EXPECT_EQ(fix.type, FixType::fix_3d);
     EXPECT_EQ(fix.position.latitude, truth.geodetic.latitude);
     EXPECT_EQ(fix.position.longitude, truth.geodetic.longitude);

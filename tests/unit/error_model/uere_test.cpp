@@ -38,7 +38,7 @@ struct ErrorScaleScene {
         truth = test::truth_at(
             Geodetic::degrees(scenario.number("rx_lat_deg"), scenario.number("rx_lon_deg"), scenario.number("rx_h_m")),
             to_gps_time(*time, gps_calendar));
-        arrivals = free_space(sky, Hertz(carrier_frequency_l1));
+        arrivals = free_space(sky);
         TecIonosphereDelay ionosphere(Tecu(rows.empty() ? 0 : rows.front().number("tec_tecu")));
         NiellTroposphereDelay troposphere({}, nullptr, gps_calendar);
         ionosphere.apply(arrivals, sky, truth);

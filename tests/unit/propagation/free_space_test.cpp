@@ -24,7 +24,7 @@ TEST(FreeSpace, GivesOneUndisturbedArrivalForEachSatelliteInOrder) {
         satellite.range = Metres(20e6 + number * 1e5);
         sky.satellites.push_back(satellite);
     }
-    const Arrivals arrivals = free_space(sky, Hertz(carrier_frequency_l1));
+    const Arrivals arrivals = free_space(sky);
     ASSERT_EQ(arrivals.satellites.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) {
         const Arrival& arrival = arrivals.satellites[i];

@@ -25,7 +25,7 @@ struct OneSatellite {
         truth.geodetic = place;
         truth.position = to_ecef(place);
         truth.time = to_gps_time(2111, 360000.0);
-        arrivals = free_space(sky, Hertz(carrier_frequency_l1));
+        arrivals = free_space(sky);
     }
     Arrival& arrival() { return arrivals.satellites.front(); }
     /// The arrival after `effect`.

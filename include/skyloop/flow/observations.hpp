@@ -1,0 +1,38 @@
+/// What the receiver measures.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "skyloop/base/units.hpp"
+#include "skyloop/gnss/satellite.hpp"
+#include "skyloop/gnss/signal.hpp"
+#include "skyloop/time/gps_time.hpp"
+
+namespace skyloop {
+
+/// One signal of one satellite, as tracked.
+struct Observation {
+    SatelliteId satellite;
+    Signal signal = Signal::l1;
+    Hertz carrier;                        ///< nominal
+    DbHz cn0;                             ///< as the receiver estimates it
+    std::optional<Metres> pseudorange;    ///< while the code is locked
+    std::optional<double> carrier_phase;  ///< cycles, growing with the range; while the phase is locked
+    std::optional<Hertz> doppler;         ///< positive when the range shrinks
+    bool half_cycle_resolved = true;      ///< of the phase
+    bool slipped = false;                 ///< the count of cycles broke since the epoch before
+    Seconds lock_time;                    ///< since the phase was locked, or broke
+    Metres pseudorange_deviation;         ///< 1 σ by the receiver's own knowledge of its loops
+    double carrier_phase_deviation = 0;   ///< cycles
+    Hertz doppler_deviation;
+};
+
+/// All signals that are tracked at one instant, ascending by satellite, then signal. The same instant for all of them.
+struct Observations {
+    GpsTime receive_time;        ///< as the receiver's own clock shows it
+    bool clock_was_set = false;  ///< the receiver moved its clock by whole milliseconds since the epoch before
+    std::vector<Observation> signals;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,41 @@
+/// What a receiver makes of its measurements.
+#pragma once
+
+#include <memory>
+
+#include "skyloop/flow/fix.hpp"
+#include "skyloop/flow/observations.hpp"
+#include "skyloop/flow/receiver_settings.hpp"
+#include "skyloop/geo/geoid.hpp"
+#include "skyloop/gnss/navigation_source.hpp"
+#include "skyloop/pvt/navigation_parameters.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop {
+
+/// What the receiver has from the satellites and from its maker. Both outlive the engine.
+struct NavigationKnowledge {
+    const NavigationSource* broadcast = nullptr;  ///< the records that the satellites send
+    const Geoid* geoid = nullptr;                 ///< may be absent
+    LeapSeconds leap_seconds = LeapSeconds::announced();
+};
+
+/// Solves position, velocity and time, watches the residuals, and smooths.
+///
+/// State: the filter, which records have been received, and since when each satellite is tracked.
+class NavigationEngine {
+public:
+    NavigationEngine(const NavigationParameters& parameters, const NavigationKnowledge& knowledge);
+    ~NavigationEngine();
+    NavigationEngine(NavigationEngine&&) noexcept;
+    NavigationEngine& operator=(NavigationEngine&&) noexcept;
+
+    /// The fix of one epoch; epochs come in ascending time.
+    Fix solve(const Observations& observations, const ReceiverSettings& settings);
+
+private:
+    class State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace skyloop
