@@ -17,11 +17,13 @@ constexpr int text_of_error = 0;
 
 }  // namespace
 
-Receiver::Receiver(BoardProfile board, double rate_hz)
+Receiver::Receiver(BoardProfile board, double rate_hz, ReceiverSettings settings)
     : board_(std::move(board)),
-      settings_{navigation_period(board_, rate_hz)},
+      settings_(std::move(settings)),
       nmea_(board_),
-      port_(board_.baud, board_.transmit_buffer_bytes) {}
+      port_(board_.baud, board_.transmit_buffer_bytes) {
+    settings_.navigation_period = navigation_period(board_, rate_hz);
+}
 
 void Receiver::input(ByteSpan bytes, GpsTime) { counters_.bytes_received += bytes.size(); }
 

@@ -27,7 +27,8 @@ class Receiver {
 public:
     /// @param rate_hz navigation rate at start, limited to the board's maximum; one that is not above zero gives the
     ///        board's own. The period is whole milliseconds, as real receivers store it.
-    Receiver(BoardProfile board, double rate_hz);
+    /// @param settings at start; their period is replaced by that of the rate
+    Receiver(BoardProfile board, double rate_hz, ReceiverSettings settings = {});
 
     void input(ByteSpan bytes, GpsTime now);
     /// A new solution: its messages are queued and begin to leave one solution latency after `epoch.fix.time`.

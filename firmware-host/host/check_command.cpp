@@ -21,7 +21,7 @@ void print_plan(const Scenario& scenario, const Assembly& assembly) {
         fmt::print("            orbits from {} to {}\n", utc_text(span->first), utc_text(span->last));
     fmt::print("start       {}\n", utc_text(assembly.start));
     fmt::print("end         {}\n", assembly.end ? utc_text(*assembly.end) : "when stopped");
-    fmt::print("model       {}\n", error_model_name(scenario.model.kind));
+    fmt::print("model       {}\n", model_name(scenario.model));
     fmt::print("receiver    {} at {} baud, {:g} Hz\n", receiver.board().name, receiver.baud(),
                1e9 / static_cast<double>(receiver.settings().navigation_period.count()));
     for (const std::string& port : scenario.receiver.ports)

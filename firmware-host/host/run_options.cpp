@@ -59,16 +59,10 @@ Result<void> apply_time(const RunOptions& options, Scenario& scenario) {
 
 Result<void> apply_model(const RunOptions& options, Scenario& scenario) {
     if (options.model.empty()) return {};
-    std::vector<std::string_view> names;
-    for (const ErrorModelKind kind : error_model_kinds())
-        names.push_back(error_model_name(kind));
-    const auto kind = error_model_from_name(options.model);
-    if (!kind)
-        return fail(ErrorCode::usage, fmt::format("--model {}: {}; expected one of {}{}", options.model,
-                                                  options.model == "modern" ? "not in this version" : "unknown",
-                                                  fmt::join(names, " "), did_you_mean(options.model, names)));
-    scenario.model.kind = *kind;
-    return {};
+    if (choose_model(scenario.model, options.model)) return {};
+    return fail(ErrorCode::usage,
+                fmt::format("--model {}: unknown; expected one of {}{}", options.model, fmt::join(model_names(), " "),
+                            did_you_mean(options.model, model_names())));
 }
 
 Result<void> apply_receiver(const RunOptions& options, Scenario& scenario) {
@@ -140,7 +134,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
     add_place_options(command, options);
     command.add_option("--trajectory", options.trajectory, "A .toml file with waypoints");
     command.add_option("--duration", options.duration, "Seconds");
-    command.add_option("--model", options.model, "ideal constant-sigma satellite-count whole-path refraction baseline");
+    command.add_option("--model", options.model, fmt::format("{}; default modern", fmt::join(model_names(), " ")));
     command.add_option("--scene", options.scene, "Buildings (not in this version)");
     command.add_option("--board", options.board, "Receiver profile, default ublox-m8; see skyloop boards");
     command.add_option("--rate", options.rate, "Navigation rate at start, Hz");

@@ -89,7 +89,7 @@ int show_sky(const SkyOptions& options) {
     if (!world) return messages.error(world.error());
     if (options.tracks_h > 0) return print_tracks(options, *world);
 
-    const Trace trace = world->simulation.run(world->start);
+    const Trace trace = world->simulation.run(world->start, ReceiverSettings{});
     const SkyListing listing =
         sky_listing(trace.truth, trace.sky, scenario->sky.elevation_mask, {&trace.arrivals, &trace.epoch.fix});
     if (options.format == "svg")

@@ -1,5 +1,7 @@
 #include "skyloop/emulator/assembly.hpp"
 
+#include "modern_assembly.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/error_model/make_error_model.hpp"
 #include "skyloop/error_model/model_effects.hpp"
-#include "skyloop/gnss/constants.hpp"
 #include "skyloop/scenario/board_file.hpp"
 #include "skyloop/transport/open_transport.hpp"
 
@@ -27,7 +28,7 @@ Overloaded(Cases...) -> Overloaded<Cases...>;
 ErrorModelSettings error_model_settings(const Scenario& scenario, const Geoid* geoid) {
     const ModelSettings& model = scenario.model;
     ErrorModelSettings settings;
-    settings.kind = model.kind;
+    settings.kind = *model.sensor_model;
     settings.sensor = {{scenario.sky.elevation_mask}, scenario.run.seed, geoid, LeapSeconds::announced()};
     settings.baseline = model.baseline;
     settings.constant_sigma = model.constant_sigma;
@@ -47,8 +48,9 @@ EffectSettings effect_settings(const Scenario& scenario, const NavigationSource&
     return settings;
 }
 
-Result<firmware::Receiver> make_receiver(const ReceiverEntry& entry, const DataFolders& data,
+Result<firmware::Receiver> make_receiver(const Scenario& scenario, const DataFolders& data,
                                          std::vector<std::string>& warnings) {
+    const ReceiverEntry& entry = scenario.receiver;
     auto board = find_board(entry.board, board_folders(data));
     if (!board) return fail(board.error());
     if (entry.baud) board->baud = *entry.baud;
@@ -59,7 +61,13 @@ Result<firmware::Receiver> make_receiver(const ReceiverEntry& entry, const DataF
     if (rate > board->max_rate_hz)
         warnings.push_back(
             fmt::format("{:g} Hz is more than {} can do; it runs at {:g} Hz", rate, board->name, board->max_rate_hz));
-    firmware::Receiver receiver(std::move(*board), rate);
+    ReceiverSettings settings = receiver_settings(scenario, *board);
+    for (const Constellation c : scenario.sky.constellations)
+        if (!scenario.model.sensor_model && !settings.tracks(c, first_signal(c)))
+            warnings.push_back(
+                fmt::format("{} does not track {}, which sky.constellations names; receiver.constellations tells it to",
+                            board->name, constellation_name(c)));
+    firmware::Receiver receiver(std::move(*board), rate, std::move(settings));
     const double actual = 1e9 / static_cast<double>(receiver.settings().navigation_period.count());
     if (rate < 0.99 * actual)
         warnings.push_back(fmt::format("{:g} Hz is less than a receiver can do; it runs at {:.4g} Hz", rate, actual));
@@ -124,16 +132,31 @@ std::unique_ptr<Geoid> find_geoid(const DataFolders& data, std::vector<std::stri
     return nullptr;
 }
 
+ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::BoardProfile& board) {
+    const ReceiverEntry& entry = scenario.receiver;
+    ReceiverSettings settings;
+    settings.elevation_mask = scenario.sky.elevation_mask;
+    settings.start = entry.start;
+    settings.dynamic_model = entry.dynamic_model;
+    settings.static_hold_below = entry.static_hold_below;
+    for (const Constellation c : entry.constellations.empty() ? board.constellations : entry.constellations) {
+        const auto signals = emulated_signals(c);
+        settings.signals.insert({c, signals[0]});
+        if (entry.dual_frequency && signals.size() > 1) settings.signals.insert({c, signals[1]});
+    }
+    return settings;
+}
+
 Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation,
-                                   const Geoid* geoid, GpsTime start) {
-    auto effects = effects_for(scenario.model.kind, effect_settings(scenario, *navigation, geoid));
+                                   const Geoid* geoid, GpsTime start, const DataFolders& data) {
+    auto effects = scenario.model.sensor_model
+                       ? effects_for(*scenario.model.sensor_model, effect_settings(scenario, *navigation, geoid))
+                       : modern_effects_of(scenario, *navigation, {geoid, start, data});
     if (!effects) return fail(effects.error());
-    Simulation::Parts parts;
-    parts.trajectory = make_trajectory(scenario.trajectory, start);
-    parts.effects = std::move(*effects);
-    parts.error_model = make_error_model(error_model_settings(scenario, geoid));
-    parts.navigation = std::move(navigation);
-    return Simulation(std::move(parts));
+    FixMaker fix_maker = scenario.model.sensor_model ? FixMaker(make_error_model(error_model_settings(scenario, geoid)))
+                                                     : FixMaker(measuring_receiver(scenario, *navigation, geoid));
+    return Simulation({make_trajectory(scenario.trajectory, start), std::move(navigation), std::move(*effects),
+                       std::move(fix_maker)});
 }
 
 std::vector<std::filesystem::path> board_folders(const DataFolders& data) {
@@ -160,9 +183,10 @@ Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, con
     if (scenario.run.duration) assembly.end = advanced(assembly.start, *scenario.run.duration);
     assembly.digest = scenario_digest(scenario, assembly.start);
 
-    auto simulation = make_simulation(scenario, std::move(navigation->source), assembly.geoid.get(), assembly.start);
+    auto simulation =
+        make_simulation(scenario, std::move(navigation->source), assembly.geoid.get(), assembly.start, data);
     if (!simulation) return fail(simulation.error());
-    auto receiver = make_receiver(scenario.receiver, data, assembly.warnings);
+    auto receiver = make_receiver(scenario, data, assembly.warnings);
     if (!receiver) return fail(receiver.error());
     assembly.details = run_details(simulation->navigation(), *receiver, assembly);
     Emulator::Parts parts{std::move(*simulation), std::move(*receiver), {}, nullptr, std::nullopt};

@@ -57,7 +57,7 @@ void Emulator::exchange_bytes() {
 }
 
 void Emulator::run_epoch(Nanoseconds lateness) {
-    const Trace trace = parts_.simulation.run(now_);
+    const Trace trace = parts_.simulation.run(now_, parts_.receiver.settings());
     parts_.receiver.on_epoch(trace.epoch);
     if (parts_.recorder) {
         parts_.recorder->record(trace);

@@ -44,10 +44,13 @@ Result<NavigationFile> read_file(const std::filesystem::path& path, GpsTime near
     return file;
 }
 
-// The article's reference system is GPS (MODELS.md, R-03), which QZSS extends; the others are asked for by name.
+// The article's reference system is GPS (MODELS.md, R-03), which QZSS extends; with its sensor model, and those that it
+// is compared with, the others are asked for by name.
 std::vector<Constellation> wanted_constellations(const Scenario& scenario) {
+    using enum Constellation;
     if (!scenario.sky.constellations.empty()) return scenario.sky.constellations;
-    return {Constellation::gps, Constellation::qzss};
+    if (scenario.model.sensor_model) return {gps, qzss};
+    return {gps, sbas, galileo, beidou, qzss, glonass, navic};
 }
 
 std::string constellation_list(const std::vector<Constellation>& constellations) {
@@ -93,7 +96,7 @@ Result<ReadRecords> read_all(const Scenario& scenario, GpsTime near, std::vector
 EphemerisSelection selection_of(const Scenario& scenario) {
     // The article takes the record of the hour that has begun; every other model takes the nearest.
     const EphemerisRule own =
-        scenario.model.kind == ErrorModelKind::baseline ? EphemerisRule::forward : EphemerisRule::nearest;
+        scenario.model.sensor_model == ErrorModelKind::baseline ? EphemerisRule::forward : EphemerisRule::nearest;
     return {scenario.sky.ephemeris_rule.value_or(own), scenario.sky.ephemeris_validity};
 }
 

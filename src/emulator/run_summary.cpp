@@ -48,7 +48,7 @@ std::string run_summary(const Scenario& scenario, const Assembly& assembly, std:
         {"scenario", scenario.name},
         {"scenario_digest", assembly.digest},
         {"seed", scenario.run.seed},
-        {"model", error_model_name(scenario.model.kind)},
+        {"model", model_name(scenario.model)},
         {"board", emulator.receiver().board().name},
         {"navigation", emulator.simulation().navigation().description()},
         {"start_utc", format_utc(to_utc(assembly.start, LeapSeconds::announced()))},

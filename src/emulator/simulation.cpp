@@ -1,20 +1,37 @@
 #include "skyloop/emulator/simulation.hpp"
 
 #include "skyloop/propagation/free_space.hpp"
-#include "skyloop/sky/observe_sky.hpp"
 
 namespace skyloop {
+namespace {
+
+void make_fix(ErrorModel& model, Trace& trace) { trace.epoch.fix = model.fix(trace.truth, trace.sky, trace.arrivals); }
+
+void make_fix(MeasuringReceiver& receiver, Trace& trace, const ReceiverSettings& settings) {
+    Measurement measured = receiver.measurement.measure(trace.arrivals, trace.truth.time, settings);
+    trace.measurement = std::move(measured.terms);
+    trace.epoch.observations = std::move(measured.observations);
+    trace.epoch.fix = receiver.navigation.solve(trace.epoch.observations, settings);
+}
+
+}  // namespace
+
+Simulation::Simulation(Parts parts) : parts_(std::move(parts)) {}
 
 SkyView Simulation::view(const TruthState& truth) const { return observe_sky(truth, *parts_.navigation); }
 
-Trace Simulation::run(GpsTime time) {
+Trace Simulation::run(GpsTime time, const ReceiverSettings& settings) {
     Trace trace;
     trace.truth = parts_.trajectory->at(time);
-    trace.sky = view(trace.truth);
+    trace.sky = observer_.observe(trace.truth, *parts_.navigation);
     trace.arrivals = free_space(trace.sky);
+    trace.arrivals.antenna_speed = trace.truth.velocity.length();
     for (const auto& effect : parts_.effects)
         effect->apply(trace.arrivals, trace.sky, trace.truth);
-    trace.epoch.fix = parts_.error_model->fix(trace.truth, trace.sky, trace.arrivals);
+    if (auto* receiver = std::get_if<MeasuringReceiver>(&parts_.fix_maker))
+        make_fix(*receiver, trace, settings);
+    else
+        make_fix(*std::get<std::unique_ptr<ErrorModel>>(parts_.fix_maker), trace);
     return trace;
 }
 

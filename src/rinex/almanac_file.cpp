@@ -211,6 +211,7 @@ public:
         if (static_cast<double>(records.size()) != (*count)[0])
             return almanac_error(name_, lines_.number(), fmt::format("{} records", records.size()),
                                  fmt::format("{}, as the first line says", (*count)[0]));
+        if (records.empty()) return almanac_error(name_, 1, "no records", "one at least");
         return records;
     }
 

@@ -153,18 +153,14 @@ void read_ionosphere(TableReader& atmosphere, AtmosphereParameters& p) {
 
 }  // namespace
 
-void read_model_keys(TableReader& model, ModelSettings& settings) {
-    std::vector<Words> names;
-    for (const ErrorModelKind kind : error_model_kinds())
-        names.push_back(error_model_name(kind));
-    std::string name;
-    model.text("name", name);
-    if (name == "modern")
-        model.mistake("name",
-                      "the modern model is not in this version; expected baseline or one of the simpler models");
-    else if (const auto kind = model.choice("name", names))
-        settings.kind = error_model_kinds()[*kind];
-    model.refuse("errors", "belongs to the modern model, which is not in this version");
+void read_model_keys(TableReader& model, ModelSettings& settings, const std::filesystem::path& folder) {
+    if (const auto index = model.choice("name", model_names())) choose_model(settings, model_names()[*index]);
+    model.table("modern", [&](TableReader& table) { read_modern_keys(table, settings.modern, folder); });
+    static constexpr std::array<Word<bool>, 2> errors{{{"all", true}, {"none", false}}};
+    if (model.has("errors") && settings.sensor_model)
+        model.mistake("errors",
+                      fmt::format("belongs to the modern model; this scenario's is {}", model_name(settings)));
+    model.word("errors", errors, settings.modern.errors);
     model.table("baseline", [&](TableReader& table) { read_baseline(table, settings); });
     read_simple_models(model, settings);
 }

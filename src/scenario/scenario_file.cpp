@@ -73,6 +73,21 @@ void read_receiver_keys(TableReader& receiver, ReceiverEntry& entry) {
     if (const auto sentences = receiver.choices("sentences", firmware::nmea_sentence_names))
         for (const std::size_t index : *sentences)
             add_once(entry.sentences, static_cast<firmware::NmeaSentence>(index));
+    read_constellation_list(receiver, entry.constellations);
+    receiver.boolean("dual_frequency", entry.dual_frequency);
+    static constexpr std::array<Word<StartKind>, 3> starts{
+        {{"hot", StartKind::hot}, {"warm", StartKind::warm}, {"cold", StartKind::cold}}};
+    receiver.word("start", starts, entry.start);
+    static constexpr std::array<Word<DynamicModel>, 8> models{{{"portable", DynamicModel::portable},
+                                                               {"stationary", DynamicModel::stationary},
+                                                               {"pedestrian", DynamicModel::pedestrian},
+                                                               {"automotive", DynamicModel::automotive},
+                                                               {"sea", DynamicModel::sea},
+                                                               {"airborne-1g", DynamicModel::airborne_1g},
+                                                               {"airborne-2g", DynamicModel::airborne_2g},
+                                                               {"airborne-4g", DynamicModel::airborne_4g}}};
+    receiver.word("dynamic_model", models, entry.dynamic_model);
+    receiver.quantity("static_hold_mps", entry.static_hold_below, {0, 100});
     receiver.refuse("antenna_offset_m", "a lever arm needs the vehicle's attitude, which this version does not have");
 }
 
@@ -96,7 +111,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     top.table("run", [&](TableReader& t) { read_run_keys(t, scenario.run); });
     top.table("sky", [&](TableReader& t) { read_sky_keys(t, scenario.sky, folder); });
     read_trajectory_keys(top, scenario);
-    top.table("model", [&](TableReader& t) { read_model_keys(t, scenario.model); });
+    top.table("model", [&](TableReader& t) { read_model_keys(t, scenario.model, folder); });
     top.table("atmosphere", [&](TableReader& t) { read_atmosphere_keys(t, scenario.atmosphere); });
     read_receivers(top, scenario);
     refuse_later_keys(top);

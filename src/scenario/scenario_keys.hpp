@@ -6,7 +6,11 @@
 
 namespace skyloop {
 
-void read_model_keys(TableReader& model, ModelSettings& settings);
+/// @param folder that paths are relative to
+void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder);
+/// Those of the world: air, antenna, interference.
+void read_modern_propagation_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder);
+void read_model_keys(TableReader& model, ModelSettings& settings, const std::filesystem::path& folder);
 void read_atmosphere_keys(TableReader& atmosphere, AtmosphereParameters& parameters);
 
 /// Reads the list `constellations` of a scenario's [sky] or a board's [navigation].

@@ -1,5 +1,6 @@
 #include "skyloop/sky/observe_sky.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -23,6 +24,17 @@ struct SignalPath {
 // About what a signal takes from a navigation satellite: 67 to 90 ms.
 constexpr Seconds usual_travel_time(0.075);
 
+// Below this by a rough look a satellite is below the horizon by an exact one.
+constexpr double sure_to_be_down_deg = -0.1;
+
+// The soonest that a satellite can stand on the horizon: seen from the ground none climbs faster than a degree in a
+// minute, which the angular speed of an orbit of 11 h, 0.55° a minute, stays far below. A jump of the antenna of 10 km
+// turns the horizon by 0.1°.
+Seconds time_until_rise(Angle rough_elevation) {
+    constexpr double margin_deg = 0.3;
+    return Seconds(60 * std::max(0.0, -rough_elevation.deg() - margin_deg));
+}
+
 SignalPath signal_path(const Ephemeris& ephemeris, const TruthState& truth) {
     SignalPath path;
     path.travel_time = usual_travel_time;
@@ -39,14 +51,15 @@ SignalPath signal_path(const Ephemeris& ephemeris, const TruthState& truth) {
     return path;
 }
 
-std::optional<SatelliteInView> in_view(const Ephemeris& record, const TruthState& truth, const LocalFrame& local) {
-    const Ephemeris ephemeris = carried_to(record, truth.time - to_nanoseconds(usual_travel_time));
-    // Half of the satellites stand far below the horizon, and one look without light time tells so: in a tenth of a
-    // second a satellite moves by less than a kilometre.
-    const SatelliteState rough = satellite_state(ephemeris, truth.time, -usual_travel_time);
-    if (local.to_enu(rough.position).vector().z() < -1000) return std::nullopt;
+// What a look without light time tells: half of the satellites stand far below the horizon, and in a tenth of a second
+// a satellite moves by less than a kilometre.
+Angle rough_elevation(const Ephemeris& orbit, const TruthState& truth, const LocalFrame& local) {
+    return local.look_angles(satellite_state(orbit, truth.time, -usual_travel_time).position).elevation;
+}
 
-    const SignalPath path = signal_path(ephemeris, truth);
+std::optional<SatelliteInView> in_view(const Ephemeris& record, const Ephemeris& orbit, const TruthState& truth,
+                                       const LocalFrame& local) {
+    const SignalPath path = signal_path(orbit, truth);
     // The usual convention, and that of the reference scenes: directions leave out the Earth's rotation during the
     // light time. It would turn them by less than 0.0004°.
     const LookAngles look = local.look_angles(path.transmitter.position);
@@ -73,16 +86,58 @@ std::optional<SatelliteInView> in_view(const Ephemeris& record, const TruthState
 
 }  // namespace
 
-SkyView observe_sky(const TruthState& truth, const NavigationSource& source) {
+void SkyObserver::begin(const TruthState& truth, const NavigationSource& source) {
+    constexpr double far_m = 10000;
+    const Nanoseconds passed = truth.time - last_time_;
+    const bool jumped = passed < Nanoseconds(0) || (truth.position - looked_from_).length().value() > far_m;
+    if (satellites_.empty())
+        for (const SatelliteId id : source.satellites())
+            satellites_.push_back({id, truth.time, {}, std::nullopt});
+    last_time_ = truth.time;
+    if (!jumped) return;
+    looked_from_ = truth.position;
+    for (Satellite& satellite : satellites_)
+        satellite.look_again = truth.time;
+}
+
+Ephemeris SkyObserver::near_orbit(Satellite& satellite, const Ephemeris& record, GpsTime time) {
+    const auto* glonass = std::get_if<GlonassEphemeris>(&record);
+    if (glonass == nullptr) return record;
+    // Whole minutes from toe are the steps of the integration itself, so that carrying changes no bit of it.
+    const Nanoseconds minute = std::chrono::minutes(1);
+    const auto minutes = (time - glonass->toe) / minute;
+    const GpsTime whole = glonass->toe + minutes * minute;
+    if (!satellite.carried || satellite.record_toe != glonass->toe || satellite.carried->toe != whole) {
+        satellite.carried = std::get<GlonassEphemeris>(carried_to(record, whole));
+        satellite.record_toe = glonass->toe;
+    }
+    return *satellite.carried;
+}
+
+SkyView SkyObserver::observe(const TruthState& truth, const NavigationSource& source) {
+    begin(truth, source);
     const LocalFrame local(truth.geodetic);
     SkyView sky;
-    for (const SatelliteId satellite : source.satellites()) {
-        const std::optional<Ephemeris> ephemeris = source.ephemeris(satellite, truth.time);
-        if (!ephemeris) continue;
-        if (const std::optional<SatelliteInView> seen = in_view(*ephemeris, truth, local))
+    sky.satellites.reserve(satellites_.size() / 2);
+    for (Satellite& satellite : satellites_) {
+        if (truth.time < satellite.look_again) continue;
+        const std::optional<Ephemeris> record = source.ephemeris(satellite.id, truth.time);
+        if (!record) continue;
+        const Ephemeris orbit = near_orbit(satellite, *record, truth.time);
+        const Angle rough = rough_elevation(orbit, truth, local);
+        if (rough.deg() < sure_to_be_down_deg) {
+            satellite.look_again = advanced(truth.time, time_until_rise(rough));
+            continue;
+        }
+        if (const std::optional<SatelliteInView> seen = in_view(*record, orbit, truth, local))
             sky.satellites.push_back(*seen);
     }
     return sky;
+}
+
+SkyView observe_sky(const TruthState& truth, const NavigationSource& source) {
+    SkyObserver observer;
+    return observer.observe(truth, source);
 }
 
 }  // namespace skyloop

@@ -63,10 +63,14 @@ Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, 
 /// The trajectory of a scenario, begun at `start`.
 std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, GpsTime start);
 
-/// The world and the sensor model of a scenario. Fails with `input` when they do not fit each other.
+/// The world of a scenario and its way to a fix. Fails with `input` when they do not fit each other.
 /// @param geoid may be absent; outlives the simulation
+/// @param data where the tables of the modern model's ionosphere lie
 Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation,
-                                   const Geoid* geoid, GpsTime start);
+                                   const Geoid* geoid, GpsTime start, const DataFolders& data = {});
+
+/// How the receiver of a scenario is configured when it starts.
+ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::BoardProfile& board);
 
 /// Whether every port of a scenario names a wire that this version has; opens none.
 Result<void> check_port_names(const Scenario& scenario);

@@ -2,36 +2,54 @@
 #pragma once
 
 #include <memory>
+#include <variant>
 #include <vector>
 
-#include "skyloop/base/units.hpp"
 #include "skyloop/error_model/error_model.hpp"
+#include "skyloop/flow/receiver_settings.hpp"
 #include "skyloop/flow/trace.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
+#include "skyloop/measurement/measurement_engine.hpp"
 #include "skyloop/propagation/effect.hpp"
+#include "skyloop/pvt/navigation_engine.hpp"
+#include "skyloop/sky/observe_sky.hpp"
 #include "skyloop/trajectory/trajectory.hpp"
 
 namespace skyloop {
 
-/// The world and the sensor model of one antenna.
+/// A receiver that measures what arrives and solves it: the modern profile.
+struct MeasuringReceiver {
+    MeasurementEngine measurement;
+    NavigationEngine navigation;
+};
+
+/// The two ways to a fix.
+using FixMaker = std::variant<std::unique_ptr<ErrorModel>, MeasuringReceiver>;
+
+/// The world and the receiver's solution of one antenna.
 class Simulation {
 public:
     struct Parts {
         std::unique_ptr<Trajectory> trajectory;
         std::unique_ptr<NavigationSource> navigation;
         std::vector<std::unique_ptr<PropagationEffect>> effects;  ///< in the order in which they are applied
-        std::unique_ptr<ErrorModel> error_model;
+        FixMaker fix_maker;
     };
-    explicit Simulation(Parts parts) : parts_(std::move(parts)) {}
+    explicit Simulation(Parts parts);
 
-    /// Epochs come in ascending time.
-    Trace run(GpsTime time);
+    /// Epochs come in ascending time. @param settings what the receiver is configured to do
+    Trace run(GpsTime time, const ReceiverSettings& settings);
     /// What stands above an antenna, and nothing of what reaches it.
     [[nodiscard]] SkyView view(const TruthState& truth) const;
     [[nodiscard]] const NavigationSource& navigation() const { return *parts_.navigation; }
+    /// Where the antenna is.
+    [[nodiscard]] TruthState truth_at(GpsTime time) const { return parts_.trajectory->at(time); }
+    /// True when the receiver measures: there are observations to write down.
+    [[nodiscard]] bool measures() const { return std::holds_alternative<MeasuringReceiver>(parts_.fix_maker); }
 
 private:
     Parts parts_;
+    SkyObserver observer_;
 };
 
 }  // namespace skyloop

@@ -60,6 +60,7 @@ public:
     explicit Velocity(const Eigen::Vector3d& metres_per_second) : vector_(metres_per_second) {}
     Velocity(double x, double y, double z) : vector_(x, y, z) {}
     [[nodiscard]] const Eigen::Vector3d& vector() const { return vector_; }
+    [[nodiscard]] MetresPerSecond length() const { return MetresPerSecond(vector_.norm()); }
 
 private:
     Eigen::Vector3d vector_ = Eigen::Vector3d::Zero();

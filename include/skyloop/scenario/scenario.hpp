@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -11,11 +12,13 @@
 #include "firmware/board_profile.hpp"
 #include "skyloop/error_model/model_kind.hpp"
 #include "skyloop/error_model/parameters.hpp"
+#include "skyloop/flow/receiver_settings.hpp"
 #include "skyloop/geo/level_frame.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
 #include "skyloop/propagation/atmosphere_parameters.hpp"
 #include "skyloop/propagation/link_budget_parameters.hpp"
 #include "skyloop/propagation/whole_path_parameters.hpp"
+#include "skyloop/scenario/modern_settings.hpp"
 #include "skyloop/trajectory/geometric_paths.hpp"
 
 namespace skyloop {
@@ -31,7 +34,7 @@ struct RunSettings {
 struct SkySettings {
     std::vector<std::filesystem::path> navigation;  ///< empty: the nominal constellation
     bool rebase_navigation = false;                 ///< move the data to the start time, keeping its time of day
-    std::vector<Constellation> constellations;      ///< empty: gps and qzss
+    std::vector<Constellation> constellations;      ///< empty: all of the data; for sensor models gps and qzss
     Angle elevation_mask = Angle::degrees(5);
     std::optional<EphemerisRule> ephemeris_rule;  ///< nothing: the model's own rule
     std::optional<Seconds> ephemeris_validity;    ///< nothing: each system's own
@@ -49,9 +52,10 @@ struct CircleSettings {
 };
 using TrajectorySettings = std::variant<FixedSettings, WaypointSettings, CircleSettings>;
 
-/// Which sensor model makes the fix, and the numbers of all of them.
+/// How the fix is made, and the numbers of all ways.
 struct ModelSettings {
-    ErrorModelKind kind = ErrorModelKind::baseline;
+    std::optional<ErrorModelKind> sensor_model;  ///< nothing: modern, which measures and solves
+    ModernSettings modern;
     BaselineParameters baseline;
     LinkBudgetParameters link;
     ConstantSigmaParameters constant_sigma;
@@ -60,6 +64,13 @@ struct ModelSettings {
     RefractionParameters refraction;
 };
 
+/// "modern" and the names of the sensor models, in the order in which people list them.
+std::span<const std::string_view> model_names();
+/// One of them.
+std::string_view model_name(const ModelSettings& settings);
+/// Makes it the model of that name. False for an unknown name, which changes nothing.
+bool choose_model(ModelSettings& settings, std::string_view name);
+
 /// One emulated receiver and its wires.
 struct ReceiverEntry {
     std::string board = "ublox-m8";
@@ -67,6 +78,11 @@ struct ReceiverEntry {
     std::optional<double> rate_hz;                  ///< nothing: the board's
     std::optional<std::uint32_t> baud;              ///< nothing: the board's
     std::vector<firmware::NmeaSentence> sentences;  ///< empty: the board's
+    std::vector<Constellation> constellations;      ///< that it tracks; empty: the board's
+    bool dual_frequency = false;                    ///< tracks the second signal of each system too
+    StartKind start = StartKind::hot;
+    DynamicModel dynamic_model = DynamicModel::portable;
+    MetresPerSecond static_hold_below{0};
 };
 
 struct Scenario {

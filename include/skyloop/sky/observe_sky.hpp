@@ -1,6 +1,9 @@
 /// From orbits and a place to what stands in the sky.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "skyloop/flow/sky_view.hpp"
 #include "skyloop/flow/truth_state.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
@@ -10,5 +13,31 @@ namespace skyloop {
 /// Every satellite of `source` above the horizon at `truth.time`, with light time iterated and the Earth's rotation
 /// during it (MODELS.md 3.4). Satellites without a valid record are absent.
 SkyView observe_sky(const TruthState& truth, const NavigationSource& source);
+
+/// Gives what observe_sky() gives, faster when epochs follow each other: a satellite far below the horizon is not
+/// looked at before it could have risen, and a GLONASS orbit is integrated from minute to minute, not from its record
+/// each time.
+///
+/// State: when to look again at each satellite, and GLONASS orbits at the last whole minute. A jump in time or place
+/// makes it look at everything.
+class SkyObserver {
+public:
+    /// @param source the same at every call
+    SkyView observe(const TruthState& truth, const NavigationSource& source);
+
+private:
+    struct Satellite {
+        SatelliteId id;
+        GpsTime look_again;  ///< it stays below the horizon until then
+        GpsTime record_toe;  ///< of the GLONASS record that `carried` comes from
+        std::optional<GlonassEphemeris> carried;
+    };
+    void begin(const TruthState& truth, const NavigationSource& source);
+    static Ephemeris near_orbit(Satellite& satellite, const Ephemeris& record, GpsTime time);
+
+    std::vector<Satellite> satellites_;
+    GpsTime last_time_;
+    Position<Ecef> looked_from_;
+};
 
 }  // namespace skyloop

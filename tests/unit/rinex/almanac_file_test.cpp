@@ -117,6 +117,7 @@ TEST(AlmanacFile, NamesTheLineThatIsWrong) {
     EXPECT_THAT(almanac_refusal(with_line(sem_text, "1  CURRENT", "2  CURRENT")),
                 HasSubstr("found 1 records; expected 2, as the first line says"));
     EXPECT_THAT(almanac_refusal(sem_text.substr(0, sem_text.size() - 4)), HasSubstr("expected the health"));
+    EXPECT_THAT(almanac_refusal("0  CURRENT\n 377 31\n"), HasSubstr("found no records; expected one at least"));
     EXPECT_THAT(almanac_refusal("RINEX?\n"), HasSubstr("found no almanac"));
     EXPECT_FALSE(is_almanac(""));
     EXPECT_FALSE(is_almanac("     2.11           N: GPS NAV DATA                         RINEX VERSION / TYPE\n"));

@@ -1,0 +1,60 @@
+/// The modern profile as a scenario sets it: the world's numbers, the receiver's, and the presets of both.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "skyloop/measurement/measurement_parameters.hpp"
+#include "skyloop/propagation/modern_parameters.hpp"
+#include "skyloop/pvt/navigation_parameters.hpp"
+
+namespace skyloop {
+
+/// Receivers that the profile was calibrated to (README, validation).
+enum class ModernPreset {
+    survey,    ///< a geodetic receiver under an open sky
+    consumer,  ///< a u-blox 6 to M8 with a patch antenna
+    phone,     ///< a telephone's receiver and antenna
+};
+inline constexpr std::string_view modern_preset_names[] = {"survey", "consumer", "phone"};
+
+/// What stands around the antenna, as far as no scene tells.
+enum class Surroundings {
+    open_sky,     ///< a roof or a field
+    residential,  ///< a garden between houses and trees
+};
+inline constexpr std::string_view surroundings_names[] = {"open-sky", "residential"};
+
+/// Every number of the modern profile.
+struct ModernSettings {
+    ModernPreset preset = ModernPreset::consumer;
+    Surroundings surroundings = Surroundings::open_sky;
+    bool errors = true;  ///< false: geometry and clocks of satellites only, every error and delay off
+    ModernPropagationParameters propagation;
+    MeasurementParameters measurement;
+    NavigationParameters navigation;
+    std::optional<IonosphereCorrection> ionosphere_correction;    ///< nothing: broadcast when there is an ionosphere
+    std::optional<TroposphereCorrection> troposphere_correction;  ///< nothing: Niell's when there is a troposphere
+    std::filesystem::path ionosphere_maps;                        ///< IONEX file; empty: none
+
+    /// The numbers of a preset in surroundings.
+    static ModernSettings of(ModernPreset preset, Surroundings surroundings = Surroundings::open_sky);
+    ModernSettings();
+};
+
+/// A cause of error by its name in scenario files.
+struct NamedTerm {
+    std::string_view name;
+    ErrorTerm* term = nullptr;
+};
+/// Every cause that can be switched, scaled and seeded by itself.
+std::vector<NamedTerm> error_terms(ModernSettings& settings);
+
+/// The settings as they act: `errors = false` switches every term off, and the receiver corrects only for what there
+/// is.
+ModernSettings effective(ModernSettings settings);
+
+}  // namespace skyloop

@@ -1,0 +1,49 @@
+#include "modern_assembly.hpp"
+
+#include "skyloop/propagation/modern_effects.hpp"
+#include "skyloop/rinex/ionex_file.hpp"
+
+namespace skyloop {
+namespace {
+
+std::filesystem::path nequick_folder(const DataFolders& data) {
+    for (const auto& folder : data.folders)
+        if (std::filesystem::exists(folder / "nequick_g")) return folder / "nequick_g";
+    return "nequick_g";
+}
+
+// The span for which tables and maps must be there; of a run without an end the first hour.
+TimeSpan span_of(const Scenario& scenario, GpsTime start) {
+    return {start, advanced(start, scenario.run.duration.value_or(Seconds(3600)))};
+}
+
+}  // namespace
+
+Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const Scenario& scenario,
+                                                                          const NavigationSource& navigation,
+                                                                          const WorldData& world) {
+    const ModernSettings settings = effective(scenario.model.modern);
+    ModernContext context;
+    context.run = span_of(scenario, world.start);
+    context.atmosphere = scenario.atmosphere;
+    context.broadcast = navigation.ionosphere();
+    if (settings.navigation.corrections.ionosphere != IonosphereCorrection::none)
+        context.receiver_correction = IonosphereModel::klobuchar;
+    if (!settings.ionosphere_maps.empty()) {
+        auto maps = read_ionex_file(settings.ionosphere_maps);
+        if (!maps) return fail(maps.error());
+        context.maps = NamedIonosphereMaps{settings.ionosphere_maps.string(), std::move(*maps)};
+    }
+    context.nequick_folder = nequick_folder(world.data);
+    context.geoid = world.geoid;
+    context.seed = scenario.run.seed;
+    return modern_effects(settings.propagation, context);
+}
+
+MeasuringReceiver measuring_receiver(const Scenario& scenario, const NavigationSource& navigation, const Geoid* geoid) {
+    const ModernSettings settings = effective(scenario.model.modern);
+    return {MeasurementEngine(settings.measurement, scenario.run.seed),
+            NavigationEngine(settings.navigation, {&navigation, geoid, LeapSeconds::announced()})};
+}
+
+}  // namespace skyloop

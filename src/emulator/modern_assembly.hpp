@@ -1,0 +1,27 @@
+/// The parts of a run that measures and solves.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "skyloop/emulator/assembly.hpp"
+
+namespace skyloop {
+
+/// What lies outside the scenario.
+struct WorldData {
+    const Geoid* geoid = nullptr;
+    GpsTime start;
+    DataFolders data;
+};
+
+/// The effects of the modern profile, from a scenario's settings. Fails with `input` when a file they need is missing
+/// or does not fit the run.
+Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const Scenario& scenario,
+                                                                          const NavigationSource& navigation,
+                                                                          const WorldData& world);
+
+/// The receiver's own part. `navigation` and `geoid` outlive it.
+MeasuringReceiver measuring_receiver(const Scenario& scenario, const NavigationSource& navigation, const Geoid* geoid);
+
+}  // namespace skyloop

@@ -1,0 +1,120 @@
+#include <array>
+
+#include "scenario_keys.hpp"
+
+namespace skyloop {
+namespace {
+
+void read_terms(TableReader& modern, ModernSettings& settings) {
+    modern.table("terms", [&](TableReader& terms) {
+        for (const NamedTerm& named : error_terms(settings))
+            terms.table(named.name, [&](TableReader& table) {
+                table.boolean("enabled", named.term->enabled);
+                table.number("scale", named.term->scale, {0, 1000});
+                if (!table.has("seed")) return;
+                std::uint64_t seed = 1;
+                table.integer("seed", seed, NumberRange::not_negative());
+                named.term->seed = seed;
+            });
+    });
+}
+
+void read_clock(TableReader& table, ReceiverClockParameters& clock) {
+    table.number("h0_s", clock.noise.h0, {0, 1e-10});
+    table.number("h_minus_2_per_s", clock.noise.h_minus_2, {0, 1e-10});
+    table.quantity("bias_m", clock.bias, {-3e8, 3e8});
+    table.quantity("drift_mps", clock.drift, {-1e5, 1e5});
+    static constexpr std::array<Word<ClockSteering>, 3> steerings{
+        {{"free", ClockSteering::free_running},
+         {"millisecond-jumps", ClockSteering::millisecond_jumps},
+         {"continuous", ClockSteering::continuous}}};
+    table.word("steering", steerings, clock.steering);
+}
+
+void read_tracking(TableReader& table, MeasurementParameters& p) {
+    table.quantity("code_bandwidth_hz", p.code_loop.bandwidth, {0.001, 100});
+    table.number("code_spacing_chips", p.code_loop.spacing_chips, {0.01, 1.99});
+    table.quantity("front_end_bandwidth_hz", p.code_loop.front_end_bandwidth, {1e5, 1e9});
+    Seconds integration = p.code_loop.integration;
+    table.quantity("integration_s", integration, {1e-4, 10});
+    p.code_loop.integration = p.phase_loop.integration = p.frequency_loop.integration = integration;
+    table.quantity("phase_bandwidth_hz", p.phase_loop.bandwidth, {0.01, 1000});
+    table.quantity("frequency_bandwidth_hz", p.frequency_loop.bandwidth, {0.01, 1000});
+    table.quantity("cn0_resolution_db", p.cn0_resolution, {0, 10});
+    table.number("slips_per_hour", p.slips_per_hour, {0, 1e6});
+}
+
+void read_acquisition(TableReader& table, AcquisitionParameters& p) {
+    table.quantity("cold_threshold_dbhz", p.cold_threshold, {-100, 100});
+    table.quantity("warm_threshold_dbhz", p.warm_threshold, {-100, 100});
+    table.quantity("loss_threshold_dbhz", p.loss_threshold, {-100, 100});
+    table.quantity("phase_threshold_dbhz", p.phase_threshold, {-100, 100});
+    table.quantity("loss_after_s", p.loss_after, {0, 3600});
+    table.quantity("reacquisition_s", p.reacquisition, {0, 3600});
+    table.quantity("hot_search_s", p.hot_search, {0, 3600});
+    table.quantity("warm_search_s", p.warm_search, {0, 3600});
+    table.quantity("cold_search_s", p.cold_search, {0, 3600});
+    table.quantity("half_cycle_after_s", p.half_cycle_after, {0, 3600});
+}
+
+void read_multipath(TableReader& table, StatisticalMultipath& p) {
+    table.quantity("floor_m", p.floor, {0, 1000});
+    table.quantity("at_horizon_m", p.at_horizon, {0, 1000});
+    table.quantity("static_time_s", p.static_time, {0, 1e6});
+    table.quantity("moving_time_s", p.moving_time, {0, 1e6});
+}
+
+void read_filter(TableReader& table, FilterParameters& p) {
+    static constexpr std::array<Word<FilterKind>, 2> kinds{
+        {{"none", FilterKind::none}, {"smoothed", FilterKind::smoothed}}};
+    table.word("filter", kinds, p.kind);
+    table.quantity("position_memory_s", p.position_memory, {0.01, 1e5});
+    table.quantity("code_smoothing_s", p.code_smoothing, {0, 1e5});
+    table.quantity("coasting_s", p.coasting, {0, 3600});
+}
+
+void read_corrections(TableReader& table, ModernSettings& settings) {
+    static constexpr std::array<Word<std::optional<IonosphereCorrection>>, 3> ionospheres{
+        {{"none", IonosphereCorrection::none},
+         {"broadcast", IonosphereCorrection::broadcast},
+         {"klobuchar", IonosphereCorrection::klobuchar}}};
+    table.word("ionosphere_correction", ionospheres, settings.ionosphere_correction);
+    static constexpr std::array<Word<std::optional<TroposphereCorrection>>, 3> tropospheres{
+        {{"none", TroposphereCorrection::none},
+         {"saastamoinen", TroposphereCorrection::saastamoinen},
+         {"niell", TroposphereCorrection::niell}}};
+    table.word("troposphere_correction", tropospheres, settings.troposphere_correction);
+    table.number("relative_humidity", settings.navigation.corrections.relative_humidity, {0, 1});
+}
+
+void read_solution(TableReader& table, ModernSettings& settings) {
+    read_corrections(table, settings);
+    NavigationParameters& p = settings.navigation;
+    table.quantity("weight_floor_m", p.weights.floor, {0.001, 1000});
+    table.quantity("weight_at_zenith_m", p.weights.at_zenith, {0, 1000});
+    read_filter(table, p.filter);
+    table.boolean("raim", p.integrity.enabled);
+    table.number("false_alarm", p.integrity.false_alarm, {1e-12, 0.5});
+    table.integer("most_exclusions", p.integrity.most_exclusions, {0, 20});
+    table.number("position_accuracy_scale", p.accuracy.position_scale, {0, 100});
+    table.number("velocity_accuracy_scale", p.accuracy.velocity_scale, {0, 100});
+    table.quantity("ephemeris_collection_s", p.ephemeris_collection, {0, 1e5});
+}
+
+}  // namespace
+
+void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder) {
+    const auto preset = modern.choice("preset", modern_preset_names);
+    const auto surroundings = modern.choice("surroundings", surroundings_names);
+    settings = ModernSettings::of(preset ? static_cast<ModernPreset>(*preset) : settings.preset,
+                                  surroundings ? static_cast<Surroundings>(*surroundings) : settings.surroundings);
+    read_terms(modern, settings);
+    read_modern_propagation_keys(modern, settings, folder);
+    modern.table("clock", [&](TableReader& t) { read_clock(t, settings.measurement.clock); });
+    modern.table("tracking", [&](TableReader& t) { read_tracking(t, settings.measurement); });
+    modern.table("acquisition", [&](TableReader& t) { read_acquisition(t, settings.measurement.acquisition); });
+    modern.table("multipath", [&](TableReader& t) { read_multipath(t, settings.measurement.multipath_model); });
+    modern.table("solution", [&](TableReader& t) { read_solution(t, settings); });
+}
+
+}  // namespace skyloop
