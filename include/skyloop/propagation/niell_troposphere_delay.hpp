@@ -10,14 +10,14 @@
 namespace skyloop {
 
 /// Delay at the zenith, dry air and vapour (MODELS.md 3.8, E_z).
-struct ZenithDelay {
+struct DryAndWetDelay {
     Metres dry;
     Metres wet;
 };
 /// Dry: a exp(−b H); wet: as given.
-ZenithDelay zenith_delay(const AtmosphereParameters& atmosphere, MslHeight height);
+DryAndWetDelay zenith_delay(const AtmosphereParameters& atmosphere, MslHeight height);
 /// Dry delay times hydrostatic mapping plus wet delay times wet mapping.
-Metres slant_delay(const ZenithDelay& zenith, const MappingSite& site, Angle elevation);
+Metres slant_delay(const DryAndWetDelay& zenith, const MappingSite& site, Angle elevation);
 
 /// Writes the tropospheric delay of each arrival (MODELS.md 3.8).
 class NiellTroposphereDelay : public PropagationEffect {

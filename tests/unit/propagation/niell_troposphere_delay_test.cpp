@@ -23,7 +23,7 @@ TEST(SlantDelay, EveryOracleRow) {
             Angle::degrees(row.number("lat_deg")), {Metres(row.number("h_m"))}, row.number("doy_1based")};
         AtmosphereParameters atmosphere;
         atmosphere.zenith_wet_delay = Metres(row.number("zenith_wet_m"));
-        const ZenithDelay zenith = zenith_delay(atmosphere, site.height);
+        const DryAndWetDelay zenith = zenith_delay(atmosphere, site.height);
         EXPECT_NEAR(zenith.dry.value(), row.number("zenith_dry_m"), tolerance);
         EXPECT_NEAR(niell_hydrostatic_mapping(site, elevation), row.number("m_dry"), tolerance);
         EXPECT_NEAR(niell_wet_mapping(site.latitude, elevation), row.number("m_wet"), tolerance);

@@ -1,0 +1,38 @@
+/// How much a receiving antenna hears from each direction.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/base/units.hpp"
+#include "skyloop/gnss/dop.hpp"
+
+namespace skyloop {
+
+/// The gain of a patch or survey antenna, G0 − d (1 − sin e)^p dBic (MODELS.md 7.7), or that of a table.
+class AntennaPattern {
+public:
+    /// The formula with its defaults: G0 = 3.4 dBic, d = 16.5 dB, p = 1.3.
+    AntennaPattern() = default;
+    AntennaPattern(Decibels peak, Decibels drop, double exponent) : peak_(peak), drop_(drop), exponent_(exponent) {}
+
+    /// Reads a table: a header line `elevation_deg,gain_dbic` or `azimuth_deg,elevation_deg,gain_dbic`, then numbers.
+    /// Azimuths may come in any order; each has the same elevations. Lines that start with # are comments. Fails with
+    /// `input` and FILE:LINE.
+    static Result<AntennaPattern> parse(std::string_view text, std::string_view name);
+    /// Reads a table from a file. Fails as read_text_file and parse() do.
+    static Result<AntennaPattern> read(const std::filesystem::path& path);
+
+    /// Linear between the rows of a table, around the compass too; constant beyond its elevations.
+    [[nodiscard]] Decibels gain(const SkyDirection& direction) const;
+
+private:
+    Decibels peak_{3.4}, drop_{16.5};
+    double exponent_ = 1.3;
+    // A table: gains by azimuth, then elevation, both ascending; degrees. Without azimuths it is the formula.
+    std::vector<double> azimuths_, elevations_, gains_;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,50 @@
+/// What happens to the signals in the modern profile.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/geo/geoid.hpp"
+#include "skyloop/gnss/ionosphere_maps.hpp"
+#include "skyloop/gnss/navigation_source.hpp"
+#include "skyloop/propagation/atmosphere_parameters.hpp"
+#include "skyloop/propagation/effect.hpp"
+#include "skyloop/propagation/modern_parameters.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop {
+
+/// Maps of the ionosphere and where they come from.
+struct NamedIonosphereMaps {
+    std::string file;  ///< for messages
+    IonosphereMaps maps;
+};
+
+/// What the effects need to know of the run.
+struct ModernContext {
+    TimeSpan run;                     ///< first and last instant of the run
+    AtmosphereParameters atmosphere;  ///< its clouds and its rain
+    BroadcastIonosphere broadcast;    ///< of the navigation data
+    /// The model that the receiver corrects with, where it is one of these.
+    std::optional<IonosphereModel> receiver_correction;
+    std::optional<NamedIonosphereMaps> maps;  ///< of kind `ionex`
+    std::filesystem::path nequick_folder;     ///< of kind `nequick_g`: share/skyloop/nequick_g
+    const Geoid* geoid = nullptr;             ///< must outlive the effects; without one heights stay ellipsoidal
+    LeapSeconds leap_seconds = LeapSeconds::announced();
+    std::uint64_t seed = 1;
+};
+
+/// The effects in the order of their application: signal in space, ionosphere, troposphere, losses, scintillation,
+/// link budget. Effects of the scene go before the last.
+///
+/// Fails when the ionosphere is to come from maps that are not there or that do not cover the run and the globe
+/// (`input`, naming the file), or from NeQuick-G without the tables of a month of the run.
+Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects(const ModernPropagationParameters& parameters,
+                                                                       const ModernContext& context);
+
+}  // namespace skyloop
