@@ -56,6 +56,7 @@ struct Arrival {
 /// One arrival for each satellite of the SkyView, in its order.
 struct Arrivals {
     std::vector<Arrival> satellites;
+    MetresPerSecond antenna_speed;  ///< over the ground
 };
 
 }  // namespace skyloop

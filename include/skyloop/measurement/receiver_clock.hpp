@@ -27,19 +27,31 @@ ClockCovariance clock_covariance(const OscillatorNoise& noise, Seconds dt);
 enum class ClockSteering {
     free_running,       ///< not at all
     millisecond_jumps,  ///< whole milliseconds, whenever the bias passes half of one: pseudoranges jump along
+    continuous,         ///< the oscillator is pulled to the time of the satellites: within tens of nanoseconds
+};
+
+/// The slow temperature of the oscillator against that of the start: a Gauss-Markov process, and what it does to the
+/// frequency (MODELS.md 7.12).
+struct OscillatorTemperature {
+    double per_kelvin = 5e-8;       ///< change of frequency, 1/K
+    Kelvin deviation{0.2};          ///< 1 σ; 0: constant
+    Seconds correlation_time{600};  ///< of it
 };
 
 /// What a receiver's clock is and where it starts.
 struct ReceiverClockParameters {
     OscillatorNoise noise;
     Metres bias;                 ///< at the start
-    MetresPerSecond drift{150};  ///< at the start; 0.5 parts per million
+    MetresPerSecond drift{150};  ///< at the start; 0.5 parts per million; continuous steering starts with it taken out
     ClockSteering steering = ClockSteering::free_running;
+    OscillatorTemperature temperature;
+    Seconds steering_time{10};  ///< of the critically damped loop of continuous steering
 };
 
-/// A seeded two-state clock.
+/// A seeded two-state clock at a temperature.
 ///
-/// State: bias and drift against the time of the satellites, how often it has jumped, its own stream of random numbers.
+/// State: bias and drift against the time of the satellites, the oscillator's temperature, how often it has jumped, its
+/// own stream of random numbers.
 class ReceiverClock {
 public:
     /// @param stream of this clock alone
@@ -55,13 +67,15 @@ public:
     void advance(Seconds dt);
 
 private:
-    void steer();
+    void add_noise(Seconds dt);
+    void pull(Seconds dt);
+    void jump();
 
-    OscillatorNoise noise_;
-    ClockSteering steering_;
+    ReceiverClockParameters parameters_;
     RandomStream stream_;
     Metres bias_;
     MetresPerSecond drift_;
+    Kelvin temperature_;
     int jumped_milliseconds_ = 0;
 };
 
