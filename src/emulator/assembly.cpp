@@ -1,6 +1,7 @@
 #include "skyloop/emulator/assembly.hpp"
 
 #include "modern_assembly.hpp"
+#include "rinex_recording.hpp"
 
 #include <fmt/format.h>
 
@@ -82,6 +83,29 @@ std::vector<std::string> run_details(const NavigationSource& navigation, const f
             fmt::format("receiver: {}, {} baud, {} sentences", receiver.board().name, receiver.baud(),
                         receiver.board().sentences.size()),
             fmt::format("digest: {}", assembly.digest)};
+}
+
+RinexRecordingSetup rinex_setup(const Emulator::Parts& parts, GpsTime start) {
+    const ReceiverSettings& settings = parts.receiver.settings();
+    const NavigationSource& navigation = parts.simulation.navigation();
+    RinexRecordingSetup setup;
+    setup.observations.approximate_position = parts.simulation.truth_at(start).position;
+    setup.observations.interval = Seconds(static_cast<double>(settings.navigation_period.count()) * 1e-9);
+    setup.observations.first_epoch = start;
+    setup.observations.receiver = parts.receiver.board().name;
+    for (const SatelliteId satellite : navigation.satellites()) {
+        const Constellation c = satellite.constellation;
+        if (!setup.observations.signals.contains(c))
+            for (const Signal signal : emulated_signals(c))
+                if (settings.tracks(c, signal)) setup.observations.signals[c].push_back(signal);
+        const auto record = navigation.ephemeris(satellite, start);
+        if (const auto* glonass = record ? std::get_if<GlonassEphemeris>(&*record) : nullptr)
+            setup.observations.glonass_channels[satellite.number] = glonass->frequency_channel;
+    }
+    setup.navigation.ionosphere = navigation.ionosphere();
+    setup.navigation.leap_seconds = LeapSeconds::announced().offset(start);
+    setup.navigation.date = start;
+    return setup;
 }
 
 Result<std::vector<Link>> open_links(const ReceiverEntry& entry, std::uint32_t baud, bool virtual_time) {
@@ -199,6 +223,9 @@ Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, con
     if (mode.record) {
         auto recorder = Recorder::create(*mode.record);
         if (!recorder) return fail(recorder.error());
+        if (parts.simulation.measures())
+            if (const auto added = recorder->add_rinex(rinex_setup(parts, assembly.start)); !added)
+                return fail(added.error());
         parts.recorder = std::move(*recorder);
     }
     // Last, so that the clock starts when everything else is ready.

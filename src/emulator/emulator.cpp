@@ -60,7 +60,7 @@ void Emulator::run_epoch(Nanoseconds lateness) {
     const Trace trace = parts_.simulation.run(now_, parts_.receiver.settings());
     parts_.receiver.on_epoch(trace.epoch);
     if (parts_.recorder) {
-        parts_.recorder->record(trace);
+        parts_.recorder->record(trace, parts_.simulation.navigation());
         // In real time an epoch's worth is little to write and much to lose.
         if (!parts_.pacer->is_virtual()) parts_.recorder->flush();
     }

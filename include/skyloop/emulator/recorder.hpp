@@ -9,16 +9,27 @@
 #include "skyloop/base/result.hpp"
 #include "skyloop/emulator/output_file.hpp"
 #include "skyloop/flow/trace.hpp"
+#include "skyloop/gnss/navigation_source.hpp"
 
 namespace skyloop {
+
+class RinexRecording;
+struct RinexRecordingSetup;
 
 /// Writes fixes.csv, satellites.csv and the bytes of each port into one folder (INTERFACE.md section 3).
 class Recorder {
 public:
+    ~Recorder();
+    Recorder(Recorder&&) noexcept;
+    Recorder& operator=(Recorder&&) noexcept;
     /// Makes the folder and its files; old files of a former run are replaced.
     static Result<Recorder> create(const std::filesystem::path& folder);
 
-    void record(const Trace& trace);
+    /// Adds observations.rnx and navigation.rnx, for a receiver that measures.
+    Result<void> add_rinex(const RinexRecordingSetup& setup);
+
+    /// @param broadcast the records that the satellites send
+    void record(const Trace& trace, const NavigationSource& broadcast);
     /// Bytes that left the receiver. @param monotonic_ns when, on the pacer's clock
     void record_output(ByteSpan bytes, GpsTime now, std::int64_t monotonic_ns);
     /// Bytes that reached the receiver.
@@ -32,9 +43,10 @@ public:
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
 private:
-    Recorder() = default;
+    Recorder();
     std::filesystem::path folder_;
     OutputFile fixes_, satellites_, bytes_out_, bytes_in_, times_;
+    std::unique_ptr<RinexRecording> rinex_;
     std::uint64_t offset_ = 0;
     std::optional<Error> summary_failure_;
 };

@@ -218,5 +218,44 @@ TEST(ObserveSky, HasNoStepAtMidnightOrTheEndOfTheWeek) {
     }
 }
 
+void expect_same_sky(const SkyView& one, const SkyView& other) {
+    ASSERT_EQ(one.satellites.size(), other.satellites.size());
+    for (std::size_t i = 0; i < one.satellites.size(); ++i) {
+        EXPECT_EQ(one.satellites[i].id, other.satellites[i].id);
+        EXPECT_EQ(one.satellites[i].range, other.satellites[i].range);
+        EXPECT_EQ(one.satellites[i].clock_bias, other.satellites[i].clock_bias);
+    }
+}
+
+// An observer that remembers gives bit by bit what one without a memory gives, on a flight and after a leap.
+TEST(SkyObserver, GivesWhatAFirstLookGives) {
+    SKYLOOP_REQUIRE_SHARED(nav, "nav/BRDC00IGS_R_20230010000_01D_MN.rnx.gz");
+    const auto file = read_navigation_file(nav);
+    ASSERT_TRUE(file);
+    const NavigationData data(file->records, file->ionosphere, "day");
+    const GpsTime start = gps_text("2023-01-01T10:07:00");
+    SkyObserver observer;
+    std::size_t seen = 0;
+    for (int k = 0; k < 240; ++k) {
+        const double jump = k < 200 ? 0 : 40;  // degrees of longitude
+        const Geodetic place = Geodetic::degrees(48 + 0.002 * k, 11 + jump, 9000);
+        const TruthState truth = moving_from(place, start + 37s * k, {0, 250, 0});
+        const SkyView sky = observer.observe(truth, data);
+        expect_same_sky(sky, observe_sky(truth, data));
+        seen = std::max(seen, sky.satellites.size());
+    }
+    EXPECT_GT(seen, 40U);
+}
+
+TEST(SkyObserver, LooksAgainWhenTimeGoesBack) {
+    const NominalConstellation nominal;
+    SkyObserver observer;
+    const GpsTime noon = gps_text("2026-03-01T12:00:00");
+    const Geodetic odessa = Geodetic::degrees(46.4775, 30.7326, 77);
+    for (const auto hours : {0h, 5h, 1h, 30h})
+        expect_same_sky(observer.observe(standing_at(odessa, noon + hours), nominal),
+                        observe_sky(standing_at(odessa, noon + hours), nominal));
+}
+
 }  // namespace
 }  // namespace skyloop::test

@@ -1,0 +1,42 @@
+/// The part of a recording that other programs can solve: observations.rnx and navigation.rnx.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/emulator/output_file.hpp"
+#include "skyloop/flow/trace.hpp"
+#include "skyloop/gnss/navigation_source.hpp"
+#include "skyloop/rinex/navigation_writer.hpp"
+#include "skyloop/rinex/observation_file.hpp"
+
+namespace skyloop {
+
+/// What the two files begin with.
+struct RinexRecordingSetup {
+    ObservationHeader observations;
+    NavigationTextHeader navigation;
+};
+
+/// Writes what was measured, and each record of an orbit when it first serves a satellite in the sky.
+class RinexRecording {
+public:
+    static Result<RinexRecording> create(const std::filesystem::path& folder, const RinexRecordingSetup& setup);
+
+    void record(const Trace& trace, const NavigationSource& broadcast);
+    [[nodiscard]] OutputFile& observations() { return observations_; }
+    [[nodiscard]] OutputFile& navigation() { return navigation_; }
+    [[nodiscard]] const OutputFile& observations() const { return observations_; }
+    [[nodiscard]] const OutputFile& navigation() const { return navigation_; }
+
+private:
+    explicit RinexRecording(const RinexRecordingSetup& setup) : writer_(setup.observations) {}
+
+    ObservationWriter writer_;
+    OutputFile observations_, navigation_;
+    std::map<SatelliteId, std::pair<GpsTime, int>> written_;  // toe and issue of the last record of each satellite
+};
+
+}  // namespace skyloop
