@@ -75,14 +75,17 @@ GptWeather gpt_weather(const Geodetic& place, AnnualPhase phase) {
     return weather;
 }
 
-TroposphereMapping gmf_mapping(const Geodetic& place, AnnualPhase phase, Angle elevation) {
+Vmf1Coefficients gmf_coefficients(const Geodetic& place, AnnualPhase phase) {
     const SphericalHarmonics harmonics(place.latitude, place.longitude);
     const auto field = [&](HarmonicPair GmfGptTerm::*mean, HarmonicPair GmfGptTerm::*amplitude) {
         return (harmonics.sum(mean) + harmonics.sum(amplitude) * phase.cosine()) * 1e-5;
     };
-    const Vmf1Coefficients a{field(&GmfGptTerm::hydrostatic_mean, &GmfGptTerm::hydrostatic_amplitude),
-                             field(&GmfGptTerm::wet_mean, &GmfGptTerm::wet_amplitude)};
-    TroposphereMapping mapping = vmf1_mapping(a, place.latitude, phase, elevation);
+    return {field(&GmfGptTerm::hydrostatic_mean, &GmfGptTerm::hydrostatic_amplitude),
+            field(&GmfGptTerm::wet_mean, &GmfGptTerm::wet_amplitude)};
+}
+
+TroposphereMapping gmf_mapping(const Geodetic& place, AnnualPhase phase, Angle elevation) {
+    TroposphereMapping mapping = vmf1_mapping(gmf_coefficients(place, phase), place.latitude, phase, elevation);
     mapping.hydrostatic += niell_height_correction({place.height.above_ellipsoid}, elevation);
     return mapping;
 }

@@ -34,15 +34,18 @@ struct TroposphereMapping {
     double wet = 1;
 };
 
-/// Global mapping function (Boehm, Niell, Tregoning and Schuh 2006; IERS Conventions 2010, GMF.F), Niell's height
-/// correction included.
-TroposphereMapping gmf_mapping(const Geodetic& place, AnnualPhase phase, Angle elevation);
-
 /// The two numbers that weather models give for VMF1.
 struct Vmf1Coefficients {
     double a_hydrostatic = 0;
     double a_wet = 0;
 };
+
+/// a_h and a_w of the global mapping function, at sea level: what of it depends on place and season alone.
+Vmf1Coefficients gmf_coefficients(const Geodetic& place, AnnualPhase phase);
+
+/// Global mapping function (Boehm, Niell, Tregoning and Schuh 2006; IERS Conventions 2010, GMF.F), Niell's height
+/// correction included.
+TroposphereMapping gmf_mapping(const Geodetic& place, AnnualPhase phase, Angle elevation);
 
 /// Hydrostatic coefficients of VMF1 with a given a (Boehm, Werl and Schuh 2006; MODELS.md 7.3).
 MappingCoefficients vmf1_hydrostatic(double a_hydrostatic, Angle latitude, AnnualPhase phase);

@@ -1,0 +1,85 @@
+/// What gases, clouds, rain and trees take from a signal in the modern profile.
+#pragma once
+
+#include <vector>
+
+#include "skyloop/geo/geoid.hpp"
+#include "skyloop/gnss/constants.hpp"
+#include "skyloop/propagation/atmosphere_parameters.hpp"
+#include "skyloop/propagation/effect.hpp"
+#include "skyloop/propagation/modern_parameters.hpp"
+#include "skyloop/propagation/specific_attenuation.hpp"
+
+namespace skyloop {
+
+/// slant_gas_attenuation_p676() at L1 from a table, to within 1e-4 dB from 0.5° and heights of 0 … 20 km; the integral
+/// itself takes milliseconds. Constant below 0.5° and above 20 km, where what is left is below 0.03 dB.
+class GasLossTable {
+public:
+    explicit GasLossTable(Hertz carrier = Hertz(carrier_frequency_l1));
+    /// @param elevation apparent, taken as that of the straight line  @param antenna_height above sea level
+    [[nodiscard]] Decibels loss(Angle elevation, Metres antenna_height) const;
+
+private:
+    // Rows of height, then columns of elevation: the loss as that of the zenith of the height, times a slant.
+    std::vector<double> slants_, zeniths_;
+};
+
+/// Writes the gas loss of each arrival: ITU-R P.676-13 through the reference atmosphere (MODELS.md 7.4).
+class GasLoss : public PropagationEffect {
+public:
+    /// @param geoid must outlive this; without one, the ellipsoidal height stands in
+    GasLoss(const ErrorTerm& term, const Geoid* geoid) : factor_(term.factor()), geoid_(geoid) {}
+    void apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) override;
+
+private:
+    double factor_;
+    const Geoid* geoid_;
+    GasLossTable table_;
+};
+
+/// Writes the cloud loss: the liquid water of each deck over the straight path through it, ITU-R P.840-8. The water is
+/// as warm as the reference atmosphere in the middle of the deck, and not colder than 0 °C, the temperature for which
+/// P.840 reckons the liquid of a column (MODELS.md 7.5).
+class CloudLoss : public PropagationEffect {
+public:
+    CloudLoss(const std::vector<CloudDeck>& decks, const ErrorTerm& term, const Geoid* geoid);
+    void apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) override;
+
+private:
+    struct Deck {
+        Metres base, top;
+        DecibelsPerKilometre attenuation;
+    };
+    std::vector<Deck> decks_;
+    double factor_;
+    const Geoid* geoid_;
+};
+
+/// Writes the rain loss: ITU-R P.838-3 over the straight path up to the rain's top, as far as the cell reaches.
+class RainLoss : public PropagationEffect {
+public:
+    RainLoss(const Rain& rain, const ModernPropagationParameters& parameters, const Geoid* geoid)
+        : rain_(rain), cell_(parameters.loss_model.rain_cell), factor_(parameters.rain.factor()), geoid_(geoid) {}
+    void apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) override;
+
+private:
+    Rain rain_;
+    Metres cell_;
+    double factor_;
+    const Geoid* geoid_;
+};
+
+/// Writes the foliage loss: crowns of trees on every side, so many decibels a metre up to a limit.
+class FoliageLoss : public PropagationEffect {
+public:
+    FoliageLoss(const LossParameters& parameters, const ErrorTerm& term)
+        : parameters_(parameters), factor_(term.factor()) {}
+    void apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) override;
+
+private:
+    LossParameters parameters_;
+    double factor_;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,48 @@
+/// The delay of the true ionosphere: a model, and how the day departs from it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "skyloop/propagation/effect.hpp"
+#include "skyloop/propagation/ionosphere_truth.hpp"
+#include "skyloop/propagation/knotted_process.hpp"
+#include "skyloop/propagation/modern_parameters.hpp"
+#include "skyloop/propagation/per_satellite.hpp"
+
+namespace skyloop {
+
+/// What departs from a model of the ionosphere, as a share of its delay: s_v x_v + s_g ψ/0.05 (x_n cos A + x_e sin A) +
+/// s_i x_i, with ψ the angle at the centre of the Earth to the pierce point (MODELS.md 7.2). Smooth processes.
+///
+/// State: the common processes and one for each satellite that has been in view.
+class IonosphereResidual {
+public:
+    IonosphereResidual(const IonosphereParameters& parameters, const ErrorTerm& term, std::uint64_t seed);
+    /// Of one satellite. @param antenna where it stands
+    double share(SatelliteId satellite, const SkyDirection& direction, const Geodetic& antenna, GpsTime time);
+
+private:
+    IonosphereParameters parameters_;
+    ErrorTerm term_;
+    std::uint64_t seed_;
+    KnottedProcess vertical_, north_, east_;
+    PerSatellite<KnottedProcess> singles_;
+};
+
+/// Writes the ionospheric delay of each arrival at the carrier of its first signal: that of the model, and the
+/// residual's share of it.
+class IonosphereDelay : public PropagationEffect {
+public:
+    /// @param model not null  @param with_residual by the parameters' choice
+    IonosphereDelay(std::unique_ptr<IonosphereTruth> model, const ModernPropagationParameters& parameters,
+                    bool with_residual, std::uint64_t seed);
+    void apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) override;
+
+private:
+    std::unique_ptr<IonosphereTruth> model_;
+    IonosphereResidual residual_;
+    double factor_, residual_factor_;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,144 @@
+#include "skyloop/propagation/ionosphere_truth.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "lowest_elevation.hpp"
+#include "skyloop/gnss/atmosphere.hpp"
+
+namespace skyloop {
+namespace {
+
+SkyDirection direction_of(const SatelliteInView& satellite) { return {satellite.azimuth, satellite.elevation}; }
+
+class KlobucharTruth : public IonosphereTruth {
+public:
+    explicit KlobucharTruth(const KlobucharCoefficients& coefficients) : coefficients_(coefficients) {}
+    Metres delay(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) override {
+        // The very numbers of a receiver that corrects with the same coefficients.
+        const auto at_l1 = klobuchar_delay(coefficients_, truth.geodetic, direction_of(satellite), truth.time).slant;
+        return ionosphere_delay_at(at_l1, carrier);
+    }
+
+private:
+    KlobucharCoefficients coefficients_;
+};
+
+class NtcmGTruth : public IonosphereTruth {
+public:
+    NtcmGTruth(const EffectiveIonisation& ionisation, LeapSeconds leap_seconds)
+        : ionisation_(ionisation), leap_seconds_(std::move(leap_seconds)) {}
+    Metres delay(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) override {
+        if (truth.time != time_) {
+            time_ = truth.time;
+            when_ = IonosphereTime::of(to_utc(time_, leap_seconds_));
+        }
+        const SkyDirection direction{satellite.azimuth, above_horizon(satellite.elevation)};
+        return ionosphere_group_delay(ntcm_g_content(ionisation_, truth.geodetic, direction, when_).slant, carrier);
+    }
+
+private:
+    EffectiveIonisation ionisation_;
+    LeapSeconds leap_seconds_;
+    GpsTime time_{Nanoseconds::min()};
+    IonosphereTime when_;
+};
+
+// A vertical content over a shell, towards a satellite.
+Metres shell_delay(const ThinShell& shell, Tecu vertical, const SatelliteInView& satellite, const TruthState& truth,
+                   Hertz carrier) {
+    const double mapping = single_layer_mapping(shell, satellite.elevation, truth.geodetic.height.above_ellipsoid);
+    return ionosphere_group_delay(vertical * mapping, carrier);
+}
+
+bool stands_below(const ThinShell& shell, const TruthState& truth) {
+    return truth.geodetic.height.above_ellipsoid < shell.height;
+}
+
+class ConstantTruth : public IonosphereTruth {
+public:
+    explicit ConstantTruth(Tecu vertical) : vertical_(vertical) {}
+    Metres delay(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) override {
+        if (!stands_below({}, truth)) return Metres(0);
+        return shell_delay({}, vertical_, satellite, truth, carrier);
+    }
+
+private:
+    Tecu vertical_;
+};
+
+class MapTruth : public IonosphereTruth {
+public:
+    explicit MapTruth(IonosphereMaps maps) : maps_(std::move(maps)) {}
+    Metres delay(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) override {
+        if (!stands_below(maps_.shell, truth)) return Metres(0);
+        const PiercePoint where = pierce_point(maps_.shell, truth.geodetic, direction_of(satellite));
+        // Within the run and on the globe there is a value everywhere: the maps have been searched for holes.
+        const Tecu vertical = vertical_content(maps_, where, truth.time).value_or(Tecu(0));
+        return shell_delay(maps_.shell, vertical, satellite, truth, carrier);
+    }
+
+private:
+    IonosphereMaps maps_;
+};
+
+std::string gps_day(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); }
+
+// The first place without a value, by steps that are finer than the grids of the analysis centres.
+std::optional<PiercePoint> hole_in(const IonosphereMaps& maps, const IonosphereMap& map) {
+    for (double latitude = -90; latitude <= 90; latitude += 1.25) {
+        for (double longitude = -180; longitude < 180; longitude += 2.5) {
+            const PiercePoint where{Angle::degrees(latitude), Angle::degrees(longitude)};
+            if (!map_content(maps, map, where)) return where;
+        }
+    }
+    return std::nullopt;
+}
+
+Result<std::unique_ptr<IonosphereTruth>> make_map_truth(const ModernContext& context) {
+    if (!context.maps || context.maps->maps.maps.empty())
+        return fail(ErrorCode::input, "the ionosphere is to come from maps and none are given; expected an IONEX file");
+    const auto& [file, maps] = *context.maps;
+    const GpsTime first = maps.maps.front().time, last = maps.maps.back().time;
+    if (context.run.first < first || context.run.last > last)
+        return fail(ErrorCode::input,
+                    fmt::format("{}: its maps span {} to {}; the run lasts from {} to {}", file, gps_day(first),
+                                gps_day(last), gps_day(context.run.first), gps_day(context.run.last)));
+    for (const IonosphereMap& map : maps.maps) {
+        const auto hole = hole_in(maps, map);
+        if (hole)
+            return fail(ErrorCode::input,
+                        fmt::format("{}: the map of {} has no value at latitude {:.2f}°, longitude {:.2f}°; expected "
+                                    "maps of the whole globe",
+                                    file, gps_day(map.time), hole->latitude.deg(), hole->longitude.deg()));
+    }
+    return std::make_unique<MapTruth>(maps);
+}
+
+EffectiveIonisation ionisation_of(const IonosphereParameters& parameters, const BroadcastIonosphere& broadcast) {
+    if (!broadcast.galileo) return parameters.ionisation;
+    const auto& [a0, a1, a2] = *broadcast.galileo;
+    return {a0, a1, a2};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<IonosphereTruth>> make_ionosphere_truth(const IonosphereParameters& parameters,
+                                                               const ModernContext& context) {
+    switch (parameters.model) {
+        case IonosphereModel::klobuchar:
+            return std::make_unique<KlobucharTruth>(context.broadcast.gps.value_or(parameters.klobuchar));
+        case IonosphereModel::nequick_g:
+            return make_nequick_truth(ionisation_of(parameters, context.broadcast), context);
+        case IonosphereModel::ionex:
+            return make_map_truth(context);
+        case IonosphereModel::constant:
+            return std::make_unique<ConstantTruth>(parameters.constant_content);
+        case IonosphereModel::ntcm_g:
+            break;
+    }
+    return std::make_unique<NtcmGTruth>(ionisation_of(parameters, context.broadcast), context.leap_seconds);
+}
+
+}  // namespace skyloop

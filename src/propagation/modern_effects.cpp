@@ -1,0 +1,45 @@
+#include "skyloop/propagation/modern_effects.hpp"
+
+#include <utility>
+
+#include "skyloop/propagation/atmosphere_losses.hpp"
+#include "skyloop/propagation/ionosphere_delay.hpp"
+#include "skyloop/propagation/modern_link_budget.hpp"
+#include "skyloop/propagation/scintillation_indices.hpp"
+#include "skyloop/propagation/signal_in_space_error.hpp"
+#include "skyloop/propagation/troposphere_delay.hpp"
+
+namespace skyloop {
+namespace {
+
+bool residual_wanted(const IonosphereParameters& parameters, const ModernContext& context) {
+    if (parameters.residual != Choice::automatic) return parameters.residual == Choice::on;
+    return !context.receiver_correction || *context.receiver_correction == parameters.model;
+}
+
+}  // namespace
+
+Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects(const ModernPropagationParameters& parameters,
+                                                                       const ModernContext& context) {
+    auto truth = make_ionosphere_truth(parameters.ionosphere_model, context);
+    if (!truth) return fail(truth.error());
+    const AtmosphereParameters& air = context.atmosphere;
+    const bool residual = residual_wanted(parameters.ionosphere_model, context);
+    const TroposphereDelay::Site site{context.geoid, context.leap_seconds};
+
+    std::vector<std::unique_ptr<PropagationEffect>> effects;
+    effects.push_back(std::make_unique<SignalInSpaceError>(parameters.signal_in_space_model, parameters.signal_in_space,
+                                                           context.seed));
+    effects.push_back(std::make_unique<IonosphereDelay>(std::move(*truth), parameters, residual, context.seed));
+    effects.push_back(std::make_unique<TroposphereDelay>(parameters, air, site, context.seed));
+    effects.push_back(std::make_unique<GasLoss>(parameters.gas, context.geoid));
+    effects.push_back(std::make_unique<CloudLoss>(air.clouds, parameters.clouds, context.geoid));
+    effects.push_back(std::make_unique<RainLoss>(air.rain, parameters, context.geoid));
+    effects.push_back(std::make_unique<FoliageLoss>(parameters.loss_model, parameters.foliage));
+    effects.push_back(std::make_unique<ScintillationIndices>(parameters.scintillation_model, parameters.scintillation,
+                                                             context.leap_seconds));
+    effects.push_back(std::make_unique<ModernLinkBudget>(parameters, context.seed));
+    return effects;
+}
+
+}  // namespace skyloop
