@@ -62,7 +62,7 @@ void ReceiverClock::add_noise(Seconds dt) {
 
 // The free response of b″ = −w² b − 2w b′, w = 1/steering time: exact for every step.
 void ReceiverClock::pull(Seconds dt) {
-    const double w = 1 / parameters_.steering_time.value(), t = dt.value();
+    const double w = 1 / std::max(parameters_.steering_time.value(), 1e-3), t = dt.value();
     const double b = bias_.value(), slope = drift_.value() + w * b, decay = std::exp(-w * t);
     bias_ = Metres((b + slope * t) * decay);
     drift_ = MetresPerSecond((drift_.value() - w * slope * t) * decay);

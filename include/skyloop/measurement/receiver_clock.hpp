@@ -44,7 +44,7 @@ struct ReceiverClockParameters {
     Metres bias;                 ///< at the start
     MetresPerSecond drift{150};  ///< at the start; 0.5 parts per million; continuous steering starts with it taken out
     ClockSteering steering = ClockSteering::free_running;
-    OscillatorTemperature temperature;
+    OscillatorTemperature temperature{};
     Seconds steering_time{10};  ///< of the critically damped loop of continuous steering
 };
 

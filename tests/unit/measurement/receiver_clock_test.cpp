@@ -21,8 +21,10 @@ TEST(ClockCovariance, EveryOracleRow) {
     }
 }
 
+constexpr OscillatorTemperature constant_temperature{5e-8, Kelvin(0), Seconds(600)};
+
 TEST(ReceiverClock, WithoutNoiseItDriftsStraight) {
-    ReceiverClock clock({{0, 0}, Metres(10), MetresPerSecond(150), ClockSteering::free_running},
+    ReceiverClock clock({{0, 0}, Metres(10), MetresPerSecond(150), ClockSteering::free_running, constant_temperature},
                         RandomStream(1, "clock"));
     for (int i = 0; i < 100; ++i)
         clock.advance(Seconds(0.5));
@@ -37,7 +39,8 @@ TEST(ReceiverClock, HasTheCovarianceOfItsOscillator) {
     const ClockCovariance q = clock_covariance(noise, dt);
     ClockCovariance seen;
     constexpr int runs = 20000;
-    ReceiverClock clock({noise, {}, MetresPerSecond(0)}, RandomStream(7, "clock"));
+    ReceiverClock clock({noise, {}, MetresPerSecond(0), ClockSteering::free_running, constant_temperature},
+                        RandomStream(7, "clock"));
     for (int i = 0; i < runs; ++i) {
         const Metres bias = clock.bias();
         const MetresPerSecond drift = clock.drift();
@@ -66,6 +69,60 @@ TEST(ReceiverClock, JumpsByWholeMilliseconds) {
         ASSERT_NEAR(jumping.bias().value() - running.bias().value(), jumping.jumped_milliseconds() * millisecond, 1e-4);
     }
     EXPECT_LT(jumping.jumped_milliseconds(), -1);
+}
+
+TEST(ReceiverClock, FollowsTheTemperatureOfItsOscillator) {
+    // Without other noise the drift is that of the start and what the temperature makes of it: c·5e-8/K·σ = 3 m/s.
+    ReceiverClockParameters parameters{{0, 0}, {}, MetresPerSecond(150)};
+    ReceiverClock clock(parameters, RandomStream(5, "clock"));
+    EXPECT_EQ(clock.drift(), MetresPerSecond(150));
+    double sum = 0, square = 0, products = 0, before = 0;
+    constexpr int steps = 40000;
+    Metres last = clock.bias();
+    for (int i = 0; i < steps; ++i) {
+        const double drift_before = clock.drift().value();
+        clock.advance(Seconds(60));
+        ASSERT_NEAR((clock.bias() - last).value(), (drift_before + clock.drift().value()) / 2 * 60, 1e-3);
+        last = clock.bias();
+        const double d = clock.drift().value() - 150;
+        sum += d;
+        square += d * d;
+        products += d * before;
+        before = d;
+    }
+    EXPECT_NEAR(std::sqrt(square / steps), speed_of_light * 5e-8 * 0.2, 0.15);
+    EXPECT_NEAR(sum / steps, 0, 0.3);
+    EXPECT_NEAR(products / square, std::exp(-0.1), 0.01);
+}
+
+TEST(ReceiverClock, ContinuousSteeringHoldsItWithinTensOfNanoseconds) {
+    for (const double dt : {0.1, 1.0, 30.0}) {
+        SCOPED_TRACE(dt);
+        ReceiverClock clock({{}, {}, MetresPerSecond(150), ClockSteering::continuous}, RandomStream(3, "clock"));
+        double square = 0;
+        constexpr int steps = 20000;
+        for (int i = 0; i < steps; ++i) {
+            clock.advance(Seconds(dt));
+            ASSERT_LT(std::abs(clock.bias().value()), speed_of_light * 100e-9);
+            square += clock.bias().value() * clock.bias().value() / steps;
+        }
+        EXPECT_GT(std::sqrt(square), speed_of_light * 1e-9);
+        EXPECT_LT(std::sqrt(square), speed_of_light * 30e-9);
+        EXPECT_EQ(clock.jumped_milliseconds(), 0);
+    }
+}
+
+TEST(ReceiverClock, ContinuousSteeringTakesAnInitialBiasOut) {
+    ReceiverClock clock({{0, 0}, Metres(1000), {}, ClockSteering::continuous, constant_temperature},
+                        RandomStream(1, "clock"));
+    EXPECT_EQ(clock.bias(), Metres(1000));
+    // Critically damped from rest: (1 + t/τ) exp(−t/τ), in one step or in many.
+    clock.advance(Seconds(10));
+    EXPECT_NEAR(clock.bias().value(), 2000 * std::exp(-1.0), 1e-9);
+    for (int i = 0; i < 100; ++i)
+        clock.advance(Seconds(0.1));
+    EXPECT_NEAR(clock.bias().value(), 3000 * std::exp(-2.0), 1e-9);
+    EXPECT_NEAR(clock.drift().value(), -200 * std::exp(-2.0), 1e-9);
 }
 
 TEST(ReceiverClock, TheSameSeedGivesTheSameClock) {

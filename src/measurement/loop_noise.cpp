@@ -1,0 +1,65 @@
+#include "loop_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "signal_traits.hpp"
+#include "skyloop/measurement/scintillation.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr double strongest_tracked_s4 = 0.7;
+
+Seconds memory_of(Hertz bandwidth) { return Seconds(bandwidth.value() > 0 ? 1 / (4 * bandwidth.value()) : 0); }
+
+}  // namespace
+
+NoiseSteps noise_steps(const MeasurementParameters& parameters, Seconds dt, bool moving) {
+    const auto unit = [dt](Seconds correlation_time) { return gauss_markov_step({1, correlation_time}, dt); };
+    const StatisticalMultipath& multipath = parameters.multipath_model;
+    return {unit(memory_of(parameters.code_loop.bandwidth)), unit(memory_of(parameters.phase_loop.bandwidth)),
+            unit(memory_of(parameters.frequency_loop.bandwidth)),
+            unit(moving ? multipath.moving_time : multipath.static_time), unit(parameters.scintillation_time)};
+}
+
+SignalProcesses::SignalProcesses(const MeasurementParameters& parameters, std::uint64_t seed, SatelliteId satellite,
+                                 Signal signal)
+    : code(parameters.code_noise.stream(seed, signal_stream_name("code_noise", satellite, signal))),
+      phase(parameters.phase_noise.stream(seed, signal_stream_name("phase_noise", satellite, signal))),
+      frequency(parameters.doppler_noise.stream(seed, signal_stream_name("doppler_noise", satellite, signal))),
+      multipath(parameters.multipath.stream(seed, signal_stream_name("multipath", satellite, signal))),
+      scintillation(parameters.phase_noise.stream(seed, signal_stream_name("phase_scintillation", satellite, signal))) {
+}
+
+void SignalProcesses::advance(const NoiseSteps& steps) {
+    code.advance(steps.code);
+    phase.advance(steps.phase);
+    frequency.advance(steps.frequency);
+    multipath.advance(steps.multipath);
+    scintillation.advance(steps.scintillation);
+}
+
+SignalScintillation scintillation_at(const SignalScintillation& first, double frequency_ratio) {
+    if (frequency_ratio == 1) return first;
+    return {first.amplitude * frequency_ratio * std::sqrt(frequency_ratio), first.phase * frequency_ratio};
+}
+
+Angle LoopDeviations::total_phase() const { return Angle::radians(std::hypot(phase.rad(), scintillation.rad())); }
+
+LoopDeviations loop_deviations(const MeasurementParameters& parameters, const CodeLoop& code_loop, double jitter_ratio,
+                               DbHz cn0, const SignalScintillation& scintillation) {
+    // Near the threshold a frequency loop is twice as noisy in power.
+    const double threshold_factor = cn0 >= parameters.acquisition.phase_threshold ? 1 : 2;
+    LoopDeviations result{code_jitter(code_loop, cn0) * jitter_ratio, phase_jitter(parameters.phase_loop, cn0),
+                          scintillation.phase, frequency_jitter(parameters.frequency_loop, cn0, threshold_factor)};
+    if (!(scintillation.amplitude > 0)) return result;
+    const double s4 = std::min(scintillation.amplitude, strongest_tracked_s4);
+    // The published formula has no front end: only its growth with S4 is taken.
+    result.code = result.code * (scintillating_code_jitter_chips(code_loop, cn0, s4) /
+                                 scintillating_code_jitter_chips(code_loop, cn0, 0));
+    result.phase = scintillating_phase_jitter(parameters.phase_loop, cn0, s4);
+    return result;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,156 @@
+#include "signal_channel.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "skyloop/gnss/constants.hpp"
+#include "skyloop/measurement/scintillation.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr double multipath_fall = 10;  // degrees of elevation over which m1 falls to 1/e
+constexpr double seconds_per_hour = 3600;
+
+double first_to_own_frequency(const ChannelInput& input) {
+    return input.arrival.signals.front().carrier.value() / input.signal.carrier.value();
+}
+
+std::optional<DbHz> arriving_cn0(const ChannelInput& input) {
+    const Arrival& arrival = input.arrival;
+    if (arrival.paths == 0 || !arrival.cn0 || !std::isfinite(arrival.cn0->value())) return std::nullopt;
+    return DbHz(arrival.cn0->value() + input.signal.relative_power.value());
+}
+
+DbHz reported_cn0(DbHz cn0, Decibels resolution) {
+    if (!(resolution.value() > 0)) return cn0;
+    return DbHz(std::round(cn0.value() / resolution.value()) * resolution.value());
+}
+
+double multipath_deviation(const StatisticalMultipath& model, Angle elevation) {
+    return model.floor.value() + model.at_horizon.value() * std::exp(-elevation.deg() / multipath_fall);
+}
+
+}  // namespace
+
+SignalChannel::SignalChannel(const MeasurementParameters& parameters, std::uint64_t seed, SatelliteId satellite,
+                             Signal signal)
+    : satellite_(satellite),
+      signal_(signal),
+      traits_(signal_traits(satellite.constellation, signal)),
+      code_loop_(code_loop_for(parameters.code_loop, traits_)),
+      lock_(traits_.pilot, RandomStream(seed, signal_stream_name("acquisition", satellite, signal))),
+      count_(RandomStream(seed, signal_stream_name("ambiguity", satellite, signal)),
+             parameters.cycle_slips.stream(seed, signal_stream_name("cycle_slips", satellite, signal))),
+      processes_(parameters, seed, satellite, signal) {
+    terms_.satellite = satellite;
+    terms_.signal = signal;
+}
+
+void SignalChannel::track(const ChannelInput& input, const ChannelEpoch& epoch) {
+    visited_ = epoch.now;
+    const std::optional<DbHz> cn0 = arriving_cn0(input);
+    const SignalScintillation scintillation = scintillation_at(
+        {input.arrival.amplitude_scintillation, input.arrival.phase_scintillation}, first_to_own_frequency(input));
+    const bool had_phase = lock_.phase_locked();
+    lock_.advance(epoch.parameters.acquisition,
+                  {cn0, input.aided ? StartKind::hot : epoch.knowledge, input.searchable,
+                   scintillation.amplitude < strongest_scintillation},
+                  epoch.now);
+    if (!lock_.code_locked()) return;
+    deviations_ = loop_deviations(epoch.parameters, code_loop_, traits_.jitter_ratio, *cn0, scintillation);
+    draw_errors(input, epoch);
+    follow_cycles(input, epoch, had_phase);
+}
+
+void SignalChannel::miss(const ChannelEpoch& epoch) { lock_.advance(epoch.parameters.acquisition, {}, epoch.now); }
+
+void SignalChannel::forget() {
+    lock_.forget();
+    ever_counted_ = false;
+}
+
+void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& epoch) {
+    if (!new_) {
+        const Seconds passed = difference(epoch.now, processed_);
+        processes_.advance(passed == epoch.since_last ? epoch.steps
+                                                      : noise_steps(epoch.parameters, passed, epoch.moving));
+    }
+    new_ = false;
+    processed_ = epoch.now;
+
+    const MeasurementParameters& parameters = epoch.parameters;
+    const double metres_per_radian = speed_of_light / input.signal.carrier.value() / (2 * std::numbers::pi);
+    terms_.code_noise = deviations_.code * (parameters.code_noise.factor() * processes_.code.value());
+    terms_.phase_noise = Metres(metres_per_radian * parameters.phase_noise.factor() *
+                                (deviations_.phase.rad() * processes_.phase.value() +
+                                 deviations_.scintillation.rad() * processes_.scintillation.value()));
+    terms_.doppler_noise = deviations_.frequency * (parameters.doppler_noise.factor() * processes_.frequency.value());
+    // Without the line of sight the excess path is the error, and the scene has told it.
+    const double multipath = input.arrival.line_of_sight ? parameters.multipath.factor() : 0;
+    terms_.multipath = Metres(multipath * processes_.multipath.value() *
+                              multipath_deviation(parameters.multipath_model, input.arrival.direction.elevation));
+}
+
+void SignalChannel::follow_cycles(const ChannelInput& input, const ChannelEpoch& epoch, bool had_phase) {
+    slipped_ = false;
+    if (!lock_.phase_locked()) return;
+    const MeasurementParameters& parameters = epoch.parameters;
+    const double factor = parameters.cycle_slips.factor();
+    const bool path_changed = input.arrival.line_of_sight != line_of_sight_;
+    line_of_sight_ = input.arrival.line_of_sight;
+    if (!had_phase) {
+        count_.start(factor > 0 && !lock_.half_cycle_resolved());
+        half_cycle_resolved_ = lock_.half_cycle_resolved();
+        counting_since_ = epoch.now;
+        slipped_ = ever_counted_;
+        ever_counted_ = true;
+        return;
+    }
+    slipped_ = path_changed;
+    if (factor > 0) {
+        const double rate = parameters.slips_per_hour / seconds_per_hour +
+                            slips_per_second(parameters.phase_loop, deviations_.total_phase());
+        if (count_.slip(factor * rate * epoch.since_last.value(), half_cycle_resolved_)) slipped_ = true;
+    }
+    if (lock_.half_cycle_resolved() && !half_cycle_resolved_ && count_.resolve_half_cycle()) slipped_ = true;
+    half_cycle_resolved_ = lock_.half_cycle_resolved();
+    if (slipped_) counting_since_ = epoch.now;
+}
+
+Observation SignalChannel::observation(const ChannelInput& input, const ChannelEpoch& epoch) const {
+    const Arrival& arrival = input.arrival;
+    const MeasurementParameters& parameters = epoch.parameters;
+    const double carrier = input.signal.carrier.value(), wavelength = speed_of_light / carrier;
+    const double ratio = first_to_own_frequency(input);
+    const double iono = arrival.iono_delay.value() * ratio * ratio;
+    const double path = arrival.range.value() + epoch.clock_bias.value() - speed_of_light * arrival.clock_bias.value() +
+                        arrival.signal_in_space_error.value() + arrival.tropo_delay.value() +
+                        arrival.excess_path.value();
+    const double path_rate = arrival.range_rate.value() + arrival.range_rate_error.value() + epoch.clock_drift.value() -
+                             speed_of_light * arrival.clock_drift;
+    const double phase_ratio = parameters.multipath_model.phase_ratio;
+    const double floor = parameters.multipath_model.floor.value();
+
+    Observation result;
+    result.satellite = satellite_;
+    result.signal = signal_;
+    result.carrier = input.signal.carrier;
+    result.cn0 = reported_cn0(*arriving_cn0(input), parameters.cn0_resolution);
+    result.pseudorange = Metres(path + speed_of_light * input.signal.group_delay.value() + iono +
+                                terms_.multipath.value() + terms_.code_noise.value());
+    result.pseudorange_deviation = Metres(std::hypot(deviations_.code.value(), floor));
+    result.doppler = Hertz(-path_rate / wavelength + terms_.doppler_noise.value());
+    result.doppler_deviation = deviations_.frequency;
+    result.half_cycle_resolved = lock_.half_cycle_resolved();
+    if (!lock_.phase_locked()) return result;
+    const double carrier_path = path - iono + phase_ratio * terms_.multipath.value() + terms_.phase_noise.value();
+    result.carrier_phase = carrier_path / wavelength + count_.cycles();
+    result.carrier_phase_deviation =
+        std::hypot(deviations_.total_phase().rad() / (2 * std::numbers::pi), phase_ratio * floor / wavelength);
+    result.slipped = slipped_;
+    result.lock_time = difference(epoch.now, counting_since_);
+    return result;
+}
+
+}  // namespace skyloop
