@@ -22,9 +22,8 @@ void CodeSmoother::smooth(Observations& observations) {
             continue;
         }
         const auto known = signals_.find(key);
-        const double dt = known == signals_.end()
-                              ? 0
-                              : difference(observations.receive_time, known->second.time).value();
+        const double dt =
+            known == signals_.end() ? 0 : difference(observations.receive_time, known->second.time).value();
         if (dt <= 0 || dt > longest_phase_gap_s || o.slipped) {
             signals_[key] = {observations.receive_time, o.pseudorange->value(), *o.carrier_phase, 1};
             continue;

@@ -32,8 +32,8 @@ Metres beidou_klobuchar_delay(const KlobucharCoefficients& coefficients, const G
     const Geodetic ground{place.latitude, place.longitude, {}};
     const PiercePoint pierce = pierce_point(shell, ground, direction);
     const double latitude = std::abs(pierce.latitude.rad()) / std::numbers::pi;
-    double local_time = std::fmod(
-        43200 * pierce.longitude.rad() / std::numbers::pi + bdt_week_and_tow(time).tow_seconds(), 86400.0);
+    double local_time =
+        std::fmod(43200 * pierce.longitude.rad() / std::numbers::pi + bdt_week_and_tow(time).tow_seconds(), 86400.0);
     if (local_time < 0) local_time += 86400;
 
     const double amplitude = std::max(0.0, power_series(coefficients.alpha, latitude));
@@ -55,8 +55,8 @@ SiteCorrections::SiteCorrections(const CorrectionParameters& parameters, const C
     const UtcTime utc = to_utc(time, knowledge.leap_seconds);
     ionosphere_time_ = IonosphereTime::of(utc);
     if (parameters.troposphere == TroposphereCorrection::none) return;
-    zenith_ = saastamoinen_zenith_delay(standard_weather(height_, parameters.relative_humidity), place.latitude,
-                                        height_);
+    zenith_ =
+        saastamoinen_zenith_delay(standard_weather(height_, parameters.relative_humidity), place.latitude, height_);
     hydrostatic_ = niell_hydrostatic(place.latitude, day_of_year(utc));
     wet_ = niell_wet(place.latitude);
 }
@@ -77,8 +77,8 @@ Metres SiteCorrections::ionosphere(Constellation constellation, const SkyDirecti
     if (parameters_.ionosphere == IonosphereCorrection::broadcast) {
         if (constellation == Constellation::galileo && heard.galileo) {
             const auto& a = *heard.galileo;
-            return ionosphere_group_delay(
-                ntcm_g_content({a[0], a[1], a[2]}, place_, direction, ionosphere_time_).slant, carrier);
+            return ionosphere_group_delay(ntcm_g_content({a[0], a[1], a[2]}, place_, direction, ionosphere_time_).slant,
+                                          carrier);
         }
         if (constellation == Constellation::beidou && heard.beidou) {
             const double ratio = carrier_frequency(Signal::b1i).value() / carrier.value();

@@ -25,8 +25,8 @@ constexpr std::array<std::array<double, 4>, 3> path_weights{{
     {5.0 / 12, 8.0 / 12, -1.0 / 12, 0},
     {9.0 / 24, 19.0 / 24, -5.0 / 24, 1.0 / 24},
 }};
-// Root of the sum of squares of the difference between the last two rows: what white noise puts into it.
-constexpr double path_noise = 0.186;
+// Root of the sum of squares of the difference between two rows: what white noise puts into it.
+constexpr double path_noise = 0.2;
 
 // How much longer or shorter single positions are remembered, by what the vehicle may do; ours.
 double memory_factor(DynamicModel model) {
@@ -132,8 +132,8 @@ bool PositionFilter::holds(const PositionInput& input, const ReceiverSettings& s
 
 FilteredPosition PositionFilter::update(const PositionInput& input, const ReceiverSettings& settings) {
     const double dt = time_ ? difference(input.time, *time_).value() : 0;
-    const bool follows = time_ && !interrupted_ && dt > 0 && dt < longest_gap_s && input.velocity &&
-                         velocity_count_ > 0;
+    const bool follows =
+        time_ && !interrupted_ && dt > 0 && dt < longest_gap_s && input.velocity && velocity_count_ > 0;
     if (follows) {
         double unsure = 0;
         const Vector3d predicted = position_ + way(dt, input, unsure);
@@ -141,8 +141,9 @@ FilteredPosition PositionFilter::update(const PositionInput& input, const Receiv
         if (innovation.norm() > jump_floor_m + jump_deviations * input.deviation.value()) {
             start(input);
         } else {
-            position_ = predicted + gain(dt, unsure, settings) * innovation;
-            averaged_ += 1;
+            const double share = gain(dt, unsure, settings);
+            position_ = predicted + share * innovation;
+            averaged_ = 1 / share;
         }
     } else {
         start(input);

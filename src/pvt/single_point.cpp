@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "earth_turn.hpp"
+#include "normal_equations.hpp"
 #include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop {
@@ -21,10 +22,8 @@ constexpr int most_passes = 8;
 // Passes after which the mask decides no more, lest a satellite on its edge come and go.
 constexpr int masking_passes = 3;
 constexpr double farthest_m = 1e8;
-// Of the determinant of a normal matrix against its mean eigenvalue cubed.
-constexpr double singular = 1e-13;
-constexpr double held_height_variance = 1;      // m²
-constexpr double held_height_certainty = 1e8;   // weight among unit weights
+constexpr double held_height_variance = 1;     // m²
+constexpr double held_height_certainty = 1e8;  // weight among unit weights
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -49,19 +48,6 @@ struct ClockMean {
     double misfit = 0;                // weighted mean
 };
 using ClockMeans = std::array<ClockMean, clock_count>;
-
-struct NormalEquations {
-    Matrix3d matrix = Matrix3d::Zero();
-    Vector3d right = Vector3d::Zero();
-};
-
-std::optional<Matrix3d> inverse_of(const Matrix3d& m) {
-    const double scale = m.trace() / 3;
-    if (!(scale > 0)) return std::nullopt;
-    const double determinant = m.determinant();
-    if (!(determinant > singular * scale * scale * scale)) return std::nullopt;
-    return Matrix3d(m.inverse());
-}
 
 Vector3d up_at(const Geodetic& place) {
     const double cos_lat = std::cos(place.latitude.rad());
@@ -216,7 +202,7 @@ void Adjustment::correct(bool mask) {
     look();
     const LocalFrame frame(to_geodetic(Position<Ecef>(position_)));
     std::optional<SiteCorrections> site;
-    if (setup_.corrections) site = setup_.corrections->at(frame.origin(), setup_.time);
+    if (setup_.corrections) site.emplace(setup_.corrections->at(frame.origin(), setup_.time));
     for (std::size_t i = 0; i < work_.size(); ++i) {
         const RangeEquation& e = equations_[i];
         RangeWork& w = work_[i];
@@ -230,8 +216,9 @@ void Adjustment::correct(bool mask) {
         }
         // The signal left later than the delayed pseudorange says.
         w.transmission = e.transmitter.position.vector() + delay / speed_of_light * e.transmitter.velocity.vector();
-        w.observed = e.pseudorange.value() - delay +
-                     speed_of_light * (e.transmitter.clock_bias.value() + e.transmitter.clock_drift * delay / speed_of_light);
+        w.observed =
+            e.pseudorange.value() - delay +
+            speed_of_light * (e.transmitter.clock_bias.value() + e.transmitter.clock_drift * delay / speed_of_light);
         if (mask) w.weight = believed(e) && look.elevation >= setup_.elevation_mask ? 1 : 0;
         if (w.weight == 0) continue;
         const double s0 = setup_.weights.floor.value();
@@ -356,46 +343,6 @@ std::optional<SinglePoint> solve_clocks(std::span<const RangeEquation> equations
     Adjustment adjustment(equations, setup);
     adjustment.correct(true);
     return adjustment.result(true);
-}
-
-std::optional<SinglePointVelocity> solve_velocity(std::span<const DopplerEquation> equations,
-                                                  std::optional<Eigen::Vector3d> held_up) {
-    // Each equation: drift − g u·v = range rate + c·satellite drift − g u·v_s, with g the factor of light time.
-    struct Row {
-        Vector3d row;
-        double right, weight;
-    };
-    std::vector<Row> rows;
-    rows.reserve(equations.size());
-    Vector3d mean_row = Vector3d::Zero();
-    double mean_right = 0;
-    double weights = 0;
-    for (const DopplerEquation& e : equations) {
-        const Vector3d& r = e.satellite.vector();
-        const Vector3d velocity = e.satellite_velocity.vector();
-        const Vector3d turn = earth_rotation_rate * Vector3d(r.y(), -r.x(), 0);
-        const double g = 1 / (1 + e.line.dot(velocity - turn) / speed_of_light);
-        const double w = 1 / (e.deviation.value() * e.deviation.value());
-        rows.push_back({-g * e.line,
-                        e.range_rate.value() + speed_of_light * e.satellite_drift - g * e.line.dot(velocity), w});
-        mean_row += w * rows.back().row;
-        mean_right += w * rows.back().right;
-        weights += w;
-    }
-    if (rows.size() < (held_up ? 3U : 4U)) return std::nullopt;
-    mean_row /= weights;
-    mean_right /= weights;
-    NormalEquations n;
-    for (const Row& r : rows) {
-        n.matrix.noalias() += r.weight * (r.row - mean_row) * (r.row - mean_row).transpose();
-        n.right += r.weight * (r.right - mean_right) * (r.row - mean_row);
-    }
-    if (held_up) n.matrix += n.matrix.trace() * *held_up * held_up->transpose();
-    const std::optional<Matrix3d> inverse = inverse_of(n.matrix);
-    if (!inverse) return std::nullopt;
-    const Vector3d velocity = *inverse * n.right;
-    return SinglePointVelocity{Velocity<Ecef>(velocity), MetresPerSecond(mean_right - mean_row.dot(velocity)),
-                               *inverse};
 }
 
 }  // namespace skyloop

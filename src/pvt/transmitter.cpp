@@ -28,8 +28,7 @@ double broadcast_accuracy(const Ephemeris& record) {
 
 bool same_record(const GlonassEphemeris& a, const GlonassEphemeris& b) {
     return a.toe == b.toe && a.position_m == b.position_m && a.velocity_mps == b.velocity_mps &&
-           a.acceleration_mps2 == b.acceleration_mps2 && a.clock_bias == b.clock_bias &&
-           a.clock_drift == b.clock_drift;
+           a.acceleration_mps2 == b.acceleration_mps2 && a.clock_bias == b.clock_bias && a.clock_drift == b.clock_drift;
 }
 
 // No satellite's pseudorange is so far off, whatever the receiver's clock.
@@ -78,8 +77,8 @@ std::optional<Transmitter> BroadcastTransmitters::at(SatelliteId satellite, Sign
     const auto look = [&](Seconds offset) {
         const SatelliteState state = glonass ? satellite_state(carried(*glonass, reading.time), reading.time, offset)
                                              : satellite_state(*record, reading.time, offset);
-        return Transmitter{state.position,           state.velocity,     Seconds(state.clock_bias) - *delay,
-                           state.clock_drift,        is_healthy(*record), Metres(broadcast_accuracy(*record))};
+        return Transmitter{state.position,    state.velocity,      Seconds(state.clock_bias) - *delay,
+                           state.clock_drift, is_healthy(*record), Metres(broadcast_accuracy(*record))};
     };
     const Transmitter rough = look(reading.rest);
     if (std::abs(rough.clock_bias.value()) < longest_move_s) return moved(rough, -rough.clock_bias);
@@ -103,8 +102,8 @@ std::optional<Transmitter> PreciseTransmitters::at(SatelliteId satellite, Signal
         delay = *told;
         healthy = is_healthy(*record);
     }
-    const double relativity = -2 * state->position.vector().dot(state->velocity.vector()) /
-                              (speed_of_light * speed_of_light);
+    const double relativity =
+        -2 * state->position.vector().dot(state->velocity.vector()) / (speed_of_light * speed_of_light);
     Transmitter transmitter{state->position, state->velocity, Seconds(*state->clock_bias + relativity) - delay, 0,
                             healthy,         Metres(0)};
     const auto ahead = orbits_.state(satellite, reading.time + std::chrono::seconds(1));

@@ -33,8 +33,8 @@ struct CorrectionKnowledge {
 /// Formulas for the delays at one place and instant, with all that does not depend on the direction.
 class SiteCorrections {
 public:
-    SiteCorrections(const CorrectionParameters& parameters, const CorrectionKnowledge& knowledge,
-                    const Geodetic& place, GpsTime time);
+    SiteCorrections(const CorrectionParameters& parameters, const CorrectionKnowledge& knowledge, const Geodetic& place,
+                    GpsTime time);
     /// Of the code at the carrier; 0 for directions below the horizon.
     [[nodiscard]] Metres ionosphere(Constellation constellation, const SkyDirection& direction, Hertz carrier) const;
     /// Elevations below 0.1° are taken as that.

@@ -68,9 +68,9 @@ struct AccuracyParameters {
 enum class DifferentialKind { none, sbas, rtk_float, rtk_fixed };
 struct DifferentialParameters {
     DifferentialKind kind = DifferentialKind::none;
-    double sbas_scale = 0.5;         ///< of the reported position accuracies
-    Metres float_accuracy{0.3};      ///< reported, horizontal
-    Metres fixed_accuracy{0.014};    ///< the same with integer ambiguities
+    double sbas_scale = 0.5;           ///< of the reported position accuracies
+    Metres float_accuracy{0.3};        ///< reported, horizontal
+    Metres fixed_accuracy{0.014};      ///< the same with integer ambiguities
     double vertical_proportion = 1.5;  ///< vertical over horizontal, of the two above
 };
 

@@ -34,7 +34,7 @@ struct PositionInput {
 struct FilteredPosition {
     Position<Ecef> position;
     Velocity<Ecef> velocity;
-    bool held = false;    ///< by static hold
+    bool held = false;   ///< by static hold
     Seconds coasted{0};  ///< since the last solution
 };
 

@@ -41,11 +41,11 @@ struct SinglePointSetup {
 /// What became of one pseudorange.
 struct RangeOutcome {
     SkyDirection direction;
-    Metres residual;           ///< corrected pseudorange − computed one; without a clock to compare with, 0
-    double variance = 0;       ///< m², as weighted
-    double cofactor = 0;       ///< m², variance of the residual's estimate
-    Eigen::Vector3d line;      ///< unit vector receiver to satellite, ECEF of reception
-    Position<Ecef> satellite;  ///< at transmission, in the ECEF frame of reception
+    Metres residual;                    ///< corrected pseudorange − computed one; without a clock to compare with, 0
+    double variance = 0;                ///< m², as weighted
+    double cofactor = 0;                ///< m², variance of the residual's estimate
+    Eigen::Vector3d line;               ///< unit vector receiver to satellite, ECEF of reception
+    Position<Ecef> satellite;           ///< at transmission, in the ECEF frame of reception
     Velocity<Ecef> satellite_velocity;  ///< the same
     bool used = false;
 };
@@ -77,12 +77,12 @@ std::optional<SinglePoint> solve_clocks(std::span<const RangeEquation> equations
 
 /// One Doppler shift, ready to be solved.
 struct DopplerEquation {
-    Eigen::Vector3d line;      ///< unit vector receiver to satellite, ECEF of reception
-    Position<Ecef> satellite;  ///< at transmission, in the ECEF frame of reception
+    Eigen::Vector3d line;               ///< unit vector receiver to satellite, ECEF of reception
+    Position<Ecef> satellite;           ///< at transmission, in the ECEF frame of reception
     Velocity<Ecef> satellite_velocity;  ///< the same
     double satellite_drift = 0;         ///< of its clock, s/s
-    MetresPerSecond range_rate;  ///< −(c/f)·Doppler
-    MetresPerSecond deviation;   ///< 1 σ, above 0
+    MetresPerSecond range_rate;         ///< −(c/f)·Doppler
+    MetresPerSecond deviation;          ///< 1 σ, above 0
 };
 
 /// A solved velocity.
