@@ -1,7 +1,10 @@
 /// Every number of the navigation engine.
 #pragma once
 
+#include <optional>
+
 #include "skyloop/base/units.hpp"
+#include "skyloop/geo/geodetic.hpp"
 
 namespace skyloop {
 
@@ -22,7 +25,9 @@ enum class TroposphereCorrection {
 struct CorrectionParameters {
     IonosphereCorrection ionosphere = IonosphereCorrection::broadcast;
     TroposphereCorrection troposphere = TroposphereCorrection::niell;
-    double relative_humidity = 0.5;  ///< that the receiver assumes
+    double relative_humidity = 0.5;   ///< that the receiver assumes
+    bool default_ionosphere = false;  ///< where nothing is broadcast, default_klobuchar_coefficients()
+    bool ionosphere_free = false;     ///< of two carriers, where both are tracked, instead of a model
 };
 
 /// Variance of a pseudorange: s0² + s1²/sin² e + the code loop's own variance (MODELS.md 7.13).
@@ -38,9 +43,11 @@ enum class FilterKind {
 };
 struct FilterParameters {
     FilterKind kind = FilterKind::smoothed;
-    Seconds position_memory{15};  ///< how long single positions are remembered at rest
-    Seconds code_smoothing{0};    ///< of the code by the carrier (Hatch), before the solution; 0: none
-    Seconds coasting{2};          ///< how long a lost fix is carried on, as dead reckoning
+    Seconds position_memory{15};    ///< how long single positions are remembered at rest
+    Seconds code_smoothing{0};      ///< of the code by the carrier (Hatch), before the solution; 0: none
+    Seconds coasting{2};            ///< how long a lost fix is carried on, as dead reckoning
+    Metres static_hold_radius{10};  ///< out of which a held position is let go
+    MetresPerSecond course_held_below{0.3};
 };
 
 /// Who is believed.
@@ -56,13 +63,34 @@ struct AccuracyParameters {
     double velocity_scale = 1;
 };
 
+/// Corrections from outside that the receiver uses. They are a regime of the measurements: whoever asks for one here
+/// makes the measurements as good as it says.
+enum class DifferentialKind { none, sbas, rtk_float, rtk_fixed };
+struct DifferentialParameters {
+    DifferentialKind kind = DifferentialKind::none;
+    double sbas_scale = 0.5;           ///< of the reported position accuracies
+    Metres float_accuracy{0.3};        ///< reported, horizontal
+    Metres fixed_accuracy{0.014};      ///< the same with integer ambiguities
+    double vertical_proportion = 1.5;  ///< vertical over horizontal, of the two above
+};
+
+/// What the receiver must hear of the satellites' data.
+struct DataParameters {
+    DbHz decoding_cn0{25};            ///< from which bits are read
+    Seconds almanac_collection{750};  ///< after a cold start: 25 pages of 30 s (IS-GPS-200, 20.3.3.5.1.2)
+};
+
 struct NavigationParameters {
     CorrectionParameters corrections;
     WeightParameters weights;
     FilterParameters filter;
     IntegrityParameters integrity;
     AccuracyParameters accuracy;
+    DifferentialParameters differential;
+    DataParameters data;
     Seconds ephemeris_collection{30};  ///< of tracking, until a satellite's record has been received
+    /// Where the antenna stands, when it was surveyed: with the stationary model time alone is solved.
+    std::optional<Geodetic> fixed_position;
 };
 
 }  // namespace skyloop

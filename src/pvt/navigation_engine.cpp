@@ -1,0 +1,389 @@
+#include "skyloop/pvt/navigation_engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "skyloop/geo/local_frame.hpp"
+#include "skyloop/gnss/constants.hpp"
+#include "skyloop/pvt/code_smoother.hpp"
+#include "skyloop/pvt/integrity.hpp"
+#include "skyloop/pvt/position_filter.hpp"
+#include "skyloop/pvt/received_records.hpp"
+#include "skyloop/pvt/satellite_report.hpp"
+#include "skyloop/pvt/single_point.hpp"
+
+namespace skyloop {
+namespace {
+
+// Of a range rate, beside what the loop itself knows; ours.
+constexpr double range_rate_floor = 0.02;    // m/s
+constexpr double coasting_acceleration = 1;  // m/s², by which a lost fix may have left its course
+
+GpsTime whole_millisecond(GpsTime time) { return std::chrono::round<std::chrono::milliseconds>(time); }
+
+// What was made of one epoch before the filter.
+struct EpochSolution {
+    std::vector<RangeEquation> equations;
+    std::vector<const Observation*> primaries;  // the observation behind each equation
+    std::optional<SinglePoint> point;
+    std::optional<SinglePointVelocity> velocity;
+    bool consistent = true;
+    bool time_only = false;
+};
+
+Angle course_of(const VelocityNed& v) {
+    double course = std::atan2(v.east, v.north);
+    if (course < 0) course += 2 * std::numbers::pi;
+    return Angle::radians(course < 2 * std::numbers::pi ? course : 0);
+}
+
+Eigen::Matrix3d in_enu(const LocalFrame& frame, const Eigen::Matrix3d& covariance) {
+    Eigen::Matrix3d rotation;
+    for (int axis = 0; axis < 3; ++axis)
+        rotation.col(axis) = frame.to_enu(Displacement<Ecef>(Eigen::Vector3d::Unit(axis))).vector();
+    return rotation * covariance * rotation.transpose();
+}
+
+}  // namespace
+
+class NavigationEngine::State {
+public:
+    State(const NavigationParameters& parameters, const NavigationKnowledge& knowledge)
+        : parameters_(parameters),
+          knowledge_(knowledge),
+          received_(*knowledge.broadcast, parameters),
+          transmitters_(received_),
+          corrections_(parameters.corrections,
+                       {knowledge.broadcast->ionosphere(), knowledge.geoid, knowledge.leap_seconds}),
+          monitor_(parameters.integrity),
+          smoother_(parameters.filter.code_smoothing),
+          filter_(parameters.filter),
+          report_(*knowledge.broadcast, received_) {}
+
+    Fix solve(const Observations& observations, const ReceiverSettings& settings);
+
+private:
+    void begin(const ReceiverSettings& settings, GpsTime time);
+    [[nodiscard]] GpsTime presumed_time(const Observations& observations) const;
+    EpochSolution solve_epoch(const Observations& observations, const ReceiverSettings& settings);
+    void add_equations(const Observations& observations, const ReceiverSettings& settings, EpochSolution& epoch);
+    std::optional<RangeEquation> equation(const Observation& first, const Observation* second, GpsTime receive_time);
+    void solve_position(const ReceiverSettings& settings, EpochSolution& epoch);
+    static void solve_doppler(EpochSolution& epoch);
+    [[nodiscard]] bool plausible(const FilteredPosition& filtered, const ReceiverSettings& settings) const;
+    void fill_solved(const EpochSolution& epoch, const ReceiverSettings& settings, Fix& fix);
+    void fill_motion(const FilteredPosition& filtered, Fix& fix);
+    void fill_accuracy(const EpochSolution& epoch, Fix& fix) const;
+    void fill_coasting(Fix& fix);
+
+    NavigationParameters parameters_;
+    NavigationKnowledge knowledge_;
+    ReceivedRecords received_;
+    BroadcastTransmitters transmitters_;
+    RangeCorrections corrections_;
+    IntegrityMonitor monitor_;
+    CodeSmoother smoother_;
+    PositionFilter filter_;
+    SatelliteReport report_;
+
+    std::optional<int> restarts_;
+    GpsTime time_;                           // true, as well as the receiver can tell
+    std::optional<GpsTime> clock_known_at_;  // receiver's reading at the last solution
+    Metres clock_bias_;
+    MetresPerSecond clock_drift_;
+    std::optional<Position<Ecef>> position_;   // the last one
+    std::optional<EllipsoidalHeight> height_;  // of the last fix in three dimensions
+    Angle course_;
+    Fix last_;
+};
+
+// A restart, and the very first start.
+void NavigationEngine::State::begin(const ReceiverSettings& settings, GpsTime time) {
+    if (restarts_ == settings.restarts) return;
+    restarts_ = settings.restarts;
+    received_.restart(settings.start, time);
+    filter_.reset();
+    smoother_.reset();
+    report_.reset();
+    clock_known_at_.reset();
+    if (settings.start != StartKind::cold) return;
+    position_.reset();
+    height_.reset();
+    course_ = Angle();
+}
+
+GpsTime NavigationEngine::State::presumed_time(const Observations& observations) const {
+    double bias_m = 0;
+    // After a jump by whole milliseconds the clock is within half of one.
+    if (clock_known_at_ && !observations.clock_was_set)
+        bias_m = clock_bias_.value() +
+                 clock_drift_.value() * difference(observations.receive_time, *clock_known_at_).value();
+    return whole_millisecond(advanced(observations.receive_time, Seconds(-bias_m / speed_of_light)));
+}
+
+std::optional<RangeEquation> NavigationEngine::State::equation(const Observation& first, const Observation* second,
+                                                               GpsTime receive_time) {
+    std::optional<Transmitter> t1 = transmitters_.at(first.satellite, first.signal, receive_time, *first.pseudorange);
+    if (!t1) return std::nullopt;
+    RangeEquation e{first.satellite, *t1, *first.pseudorange, first.carrier, first.pseudorange_deviation, false};
+    if (second == nullptr) return e;
+    const auto t2 = transmitters_.at(second->satellite, second->signal, receive_time, *second->pseudorange);
+    if (!t2) return e;
+    const double ratio = first.carrier.value() / second->carrier.value();
+    const double b = -1 / (ratio * ratio - 1);
+    const double a = 1 - b;
+    const double c = speed_of_light;
+    e.pseudorange = a * *first.pseudorange + b * *second->pseudorange;
+    const Seconds clock = a * t1->clock_bias + b * t2->clock_bias;
+    // The first signal left later than its pseudorange says, by the delay that the combination takes out.
+    const Seconds delay((*first.pseudorange - e.pseudorange).value() / c + (t1->clock_bias - clock).value());
+    e.transmitter = moved(*t1, delay);
+    e.transmitter.clock_bias = clock;
+    e.carrier = Hertz(0);
+    e.deviation =
+        Metres(std::hypot(a * first.pseudorange_deviation.value(), b * second->pseudorange_deviation.value()));
+    return e;
+}
+
+void NavigationEngine::State::add_equations(const Observations& observations, const ReceiverSettings& settings,
+                                            EpochSolution& epoch) {
+    const std::vector<Observation>& all = observations.signals;
+    for (std::size_t i = 0; i < all.size();) {
+        // The signals of one satellite: its first one, or what there is, and one on another carrier.
+        const Observation* first = nullptr;
+        const Observation* second = nullptr;
+        const SatelliteId id = all[i].satellite;
+        for (; i < all.size() && all[i].satellite == id; ++i) {
+            if (!all[i].pseudorange || all[i].cn0 < settings.minimum_cn0) continue;
+            if (first == nullptr) {
+                first = &all[i];
+            } else if (all[i].signal == first_signal(id.constellation)) {
+                second = first;
+                first = &all[i];
+            } else if (second == nullptr) {
+                second = &all[i];
+            }
+        }
+        if (first == nullptr) continue;
+        if (!parameters_.corrections.ionosphere_free || (second != nullptr && second->carrier == first->carrier))
+            second = nullptr;
+        const auto made = equation(*first, second, observations.receive_time);
+        if (!made) continue;
+        epoch.equations.push_back(*made);
+        epoch.primaries.push_back(first);
+    }
+}
+
+void NavigationEngine::State::solve_position(const ReceiverSettings& settings, EpochSolution& epoch) {
+    const CorrectionParameters& c = parameters_.corrections;
+    const bool corrects = c.ionosphere != IonosphereCorrection::none || c.troposphere != TroposphereCorrection::none;
+    SinglePointSetup setup{time_,     parameters_.weights, settings.elevation_mask, corrects ? &corrections_ : nullptr,
+                           position_, std::nullopt};
+    if (parameters_.fixed_position && settings.dynamic_model == DynamicModel::stationary) {
+        setup.start = to_ecef(*parameters_.fixed_position);
+        epoch.point = solve_clocks(epoch.equations, setup);
+        epoch.time_only = true;
+        return;
+    }
+    std::optional<CheckedSolution> checked = monitor_.solve(epoch.equations, setup);
+    if (!checked && setup.start) {
+        // Perhaps the last position is too far off to begin with.
+        setup.start.reset();
+        checked = monitor_.solve(epoch.equations, setup);
+        setup.start = position_;
+    }
+    if (!checked && position_ && height_) {
+        setup.held_height = height_;
+        checked = monitor_.solve(epoch.equations, setup);
+    }
+    if (!checked) return;
+    epoch.point = std::move(checked->solution);
+    epoch.consistent = checked->consistent;
+}
+
+void NavigationEngine::State::solve_doppler(EpochSolution& epoch) {
+    if (!epoch.point || epoch.time_only) return;
+    std::vector<DopplerEquation> equations;
+    equations.reserve(epoch.equations.size());
+    for (std::size_t i = 0; i < epoch.equations.size(); ++i) {
+        const Observation& o = *epoch.primaries[i];
+        const RangeOutcome& r = epoch.point->ranges[i];
+        if (!r.used || !o.doppler) continue;
+        const double wavelength = speed_of_light / o.carrier.value();
+        const double noise = std::hypot(range_rate_floor, wavelength * o.doppler_deviation.value());
+        equations.push_back({r.line, r.satellite, r.satellite_velocity, epoch.equations[i].transmitter.clock_drift,
+                             MetresPerSecond(-wavelength * o.doppler->value()), MetresPerSecond(noise)});
+    }
+    std::optional<Eigen::Vector3d> up;
+    if (epoch.point->height_held)
+        up = LocalFrame(to_geodetic(epoch.point->position)).to_ecef(Displacement<Enu>(0, 0, 1)).vector();
+    epoch.velocity = solve_velocity(equations, up);
+}
+
+EpochSolution NavigationEngine::State::solve_epoch(const Observations& observations, const ReceiverSettings& settings) {
+    EpochSolution epoch;
+    time_ = presumed_time(observations);
+    // Records change at whole epochs: the second look is for a clock that was farther off than expected.
+    for (int look = 0; look < 2; ++look) {
+        received_.listen(observations, time_);
+        epoch = EpochSolution();
+        if (!received_.time_known()) return epoch;
+        transmitters_.choose_records_at(time_);
+        add_equations(observations, settings, epoch);
+        solve_position(settings, epoch);
+        if (!epoch.point) return epoch;
+        const GpsTime solved = whole_millisecond(
+            advanced(observations.receive_time, Seconds(-epoch.point->clock().value() / speed_of_light)));
+        if (solved == time_) break;
+        time_ = solved;
+    }
+    solve_doppler(epoch);
+    return epoch;
+}
+
+bool NavigationEngine::State::plausible(const FilteredPosition& filtered, const ReceiverSettings& settings) const {
+    if (parameters_.filter.kind == FilterKind::none) return true;
+    const MotionLimits limits = motion_limits(settings.dynamic_model);
+    const Geodetic place = to_geodetic(filtered.position);
+    const Metres undulation =
+        knowledge_.geoid ? knowledge_.geoid->undulation(place.latitude, place.longitude) : Metres(0);
+    const Eigen::Vector3d v = LocalFrame(place).to_enu(filtered.velocity).vector();
+    return above_sea_level(place.height, undulation).above_sea_level <= limits.height &&
+           std::hypot(v.x(), v.y()) <= limits.horizontal_speed.value() &&
+           std::abs(v.z()) <= limits.vertical_speed.value();
+}
+
+void NavigationEngine::State::fill_motion(const FilteredPosition& filtered, Fix& fix) {
+    fix.position = to_geodetic(filtered.position);
+    if (knowledge_.geoid)
+        fix.geoid_undulation = knowledge_.geoid->undulation(fix.position.latitude, fix.position.longitude);
+    const Eigen::Vector3d v = LocalFrame(fix.position).to_enu(filtered.velocity).vector();
+    fix.velocity = {v.y(), v.x(), -v.z()};
+    fix.speed = MetresPerSecond(std::hypot(v.x(), v.y()));
+    if (fix.speed >= parameters_.filter.course_held_below) course_ = course_of(fix.velocity);
+    fix.course = course_;
+}
+
+void NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& fix) const {
+    const SinglePoint& point = *epoch.point;
+    double scale = parameters_.accuracy.position_scale;
+    // Residuals that noise does not explain make the formal covariance a lie.
+    if (!epoch.consistent && point.redundancy > 0)
+        scale *= std::sqrt(std::max(1.0, point.statistic / point.redundancy));
+    fix.time_accuracy = Metres(scale * std::sqrt(point.clock_variance));
+    if (epoch.time_only) return;
+    const LocalFrame frame(fix.position);
+    const Eigen::Matrix3d q = in_enu(frame, point.covariance);
+    const DifferentialParameters& d = parameters_.differential;
+    if (d.kind == DifferentialKind::sbas) scale *= d.sbas_scale;
+    fix.horizontal_accuracy = Metres(scale * std::sqrt(q(0, 0) + q(1, 1)));
+    fix.vertical_accuracy = Metres(scale * std::sqrt(q(2, 2)));
+    if (d.kind == DifferentialKind::rtk_float || d.kind == DifferentialKind::rtk_fixed) {
+        fix.horizontal_accuracy = d.kind == DifferentialKind::rtk_fixed ? d.fixed_accuracy : d.float_accuracy;
+        fix.vertical_accuracy = d.vertical_proportion * fix.horizontal_accuracy;
+    }
+    const double velocity_variance = epoch.velocity ? epoch.velocity->covariance.trace() : 0;
+    fix.speed_accuracy = MetresPerSecond(parameters_.accuracy.velocity_scale * std::sqrt(velocity_variance));
+    const double turn = fix.speed.value() > 0 ? fix.speed_accuracy.value() / fix.speed.value() : std::numbers::pi;
+    fix.course_accuracy = Angle::radians(std::min(turn, std::numbers::pi));
+}
+
+void NavigationEngine::State::fill_solved(const EpochSolution& epoch, const ReceiverSettings& settings, Fix& fix) {
+    const SinglePoint& point = *epoch.point;
+    fix.clock_bias = point.clock();
+    if (epoch.velocity) fix.clock_drift = epoch.velocity->clock_drift;
+    fix.dop = point.dop;
+    if (epoch.time_only) {
+        fix.type = FixType::time_only;
+        fill_accuracy(epoch, fix);
+        return;
+    }
+    FilteredPosition filtered;
+    filtered.position = point.position;
+    if (epoch.velocity) filtered.velocity = epoch.velocity->velocity;
+    if (parameters_.filter.kind == FilterKind::smoothed) {
+        PositionInput input{time_, point.position, Metres(std::sqrt(point.covariance.trace())), std::nullopt, {}};
+        if (epoch.velocity) {
+            input.velocity = epoch.velocity->velocity;
+            input.velocity_deviation = MetresPerSecond(std::sqrt(epoch.velocity->covariance.trace()));
+        }
+        filtered = filter_.update(input, settings);
+    }
+    if (!plausible(filtered, settings)) {
+        filter_.reset();
+        return;
+    }
+    fill_motion(filtered, fix);
+    static constexpr std::array differential{FixType::fix_3d, FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
+    fix.type =
+        point.height_held ? FixType::fix_2d : differential[static_cast<std::size_t>(parameters_.differential.kind)];
+    fill_accuracy(epoch, fix);
+    if (!point.height_held) height_ = to_geodetic(point.position).height;
+}
+
+void NavigationEngine::State::fill_coasting(Fix& fix) {
+    if (parameters_.filter.kind == FilterKind::none || !last_.has_position()) return;
+    const std::optional<FilteredPosition> carried = filter_.coast(time_);
+    if (!carried) return;
+    const GpsTime time = fix.time;
+    const std::vector<SatelliteStatus> none;
+    Fix coasting = last_;
+    coasting.time = time;
+    coasting.leap_seconds = fix.leap_seconds;
+    coasting.satellites = none;
+    coasting.type = FixType::dead_reckoning;
+    fill_motion(*carried, coasting);
+    const double t = carried->coasted.value();
+    const double left = last_.speed_accuracy.value() * t + coasting_acceleration * t * t / 2;
+    coasting.horizontal_accuracy = Metres(std::hypot(last_.horizontal_accuracy.value(), left));
+    coasting.vertical_accuracy = Metres(std::hypot(last_.vertical_accuracy.value(), left));
+    coasting.speed_accuracy = last_.speed_accuracy + MetresPerSecond(coasting_acceleration * t);
+    coasting.clock_bias = clock_bias_ + Metres(clock_drift_.value() * t);
+    fix = std::move(coasting);
+}
+
+Fix NavigationEngine::State::solve(const Observations& observations, const ReceiverSettings& settings) {
+    begin(settings, observations.receive_time);
+    const Observations* measured = &observations;
+    Observations smoothed;
+    if (parameters_.filter.code_smoothing > Seconds(0)) {
+        smoothed = observations;
+        smoother_.smooth(smoothed);
+        measured = &smoothed;
+    }
+    const EpochSolution epoch = solve_epoch(*measured, settings);
+    Fix fix;
+    fix.time = time_;
+    fix.leap_seconds = knowledge_.leap_seconds.offset(time_);
+    if (epoch.point) {
+        fill_solved(epoch, settings, fix);
+        clock_known_at_ = observations.receive_time;
+        clock_bias_ = epoch.point->clock();
+        clock_drift_ = fix.clock_drift;
+        if (!epoch.time_only) position_ = epoch.point->position;
+    } else {
+        fill_coasting(fix);
+    }
+    // What is carried on is carried on from the last solution.
+    if (epoch.point || fix.type == FixType::none) {
+        last_ = fix;
+    }
+    std::optional<Position<Ecef>> place = position_;
+    if (epoch.time_only) place = to_ecef(*parameters_.fixed_position);
+    fix.satellites =
+        report_.list({observations, time_, place, epoch.equations, epoch.point ? &epoch.point->ranges : nullptr});
+    return fix;
+}
+
+NavigationEngine::NavigationEngine(const NavigationParameters& parameters, const NavigationKnowledge& knowledge)
+    : state_(std::make_unique<State>(parameters, knowledge)) {}
+NavigationEngine::~NavigationEngine() = default;
+NavigationEngine::NavigationEngine(NavigationEngine&&) noexcept = default;
+NavigationEngine& NavigationEngine::operator=(NavigationEngine&&) noexcept = default;
+
+Fix NavigationEngine::solve(const Observations& observations, const ReceiverSettings& settings) {
+    return state_->solve(observations, settings);
+}
+
+}  // namespace skyloop
