@@ -143,6 +143,41 @@ const std::vector<double>& error_values(const PositionErrors& errors, ErrorQuant
     return errors.horizontal;
 }
 
+namespace {
+
+QuantityStatistics quantity_statistics(const FixSeries& series, const FixTimes& times,
+                                       const std::vector<double>& values) {
+    QuantityStatistics q;
+    q.figures = sample_statistics(values).value_or(SampleStatistics{});
+    const TimeCorrelation correlation(times, values);
+    if (correlation.has_gaps()) {
+        if (const auto lag = correlation.time_to_1_e()) q.correlation_samples = *lag / times.step;
+    } else {
+        q.correlation_samples = correlation_length(values);
+    }
+    if (q.correlation_samples && series.interval) q.correlation_time = *series.interval * *q.correlation_samples;
+    q.epoch_noise = correlation.epoch_noise();
+    for (std::size_t i = 0; i < correlation_lags.size(); ++i)
+        q.lagged[i] = correlation.at_lag(correlation_lags[i]);
+    return q;
+}
+
+std::optional<SampleStatistics> satellites_used_statistics(const FixSeries& series) {
+    std::vector<double> counts;
+    for (const FixSample& sample : series.samples)
+        if (sample.has_fix && sample.satellites_used) counts.push_back(*sample.satellites_used);
+    return sample_statistics(counts);
+}
+
+void measure_distances(Comparison& comparison, const PositionErrors& a, const PositionErrors& b) {
+    for (const ErrorQuantity quantity : error_quantities)
+        comparison.distances[static_cast<std::size_t>(quantity)] =
+            distribution_distance(error_values(a, quantity), error_values(b, quantity))
+                .value_or(DistributionDistance{});
+}
+
+}  // namespace
+
 Result<SeriesStatistics> series_statistics(const FixSeries& series, const std::optional<Geodetic>& point) {
     SeriesStatistics result;
     result.name = series.name;
@@ -155,13 +190,12 @@ Result<SeriesStatistics> series_statistics(const FixSeries& series, const std::o
     const PositionErrors errors = position_errors(series, point);
     result.reference = errors.reference;
     result.point = errors.point;
-    for (const ErrorQuantity quantity : error_quantities) {
-        QuantityStatistics& q = result.quantities[static_cast<std::size_t>(quantity)];
-        const std::vector<double>& values = error_values(errors, quantity);
-        q.figures = sample_statistics(values).value_or(SampleStatistics{});
-        q.correlation_samples = correlation_length(values);
-        if (q.correlation_samples && series.interval) q.correlation_time = *series.interval * *q.correlation_samples;
-    }
+    const FixTimes times = fix_times(series);
+    for (const ErrorQuantity quantity : error_quantities)
+        result.quantities[static_cast<std::size_t>(quantity)] =
+            quantity_statistics(series, times, error_values(errors, quantity));
+    result.satellites_used = satellites_used_statistics(series);
+    result.signal_strength = series.signal_strength;
     return result;
 }
 
@@ -174,6 +208,7 @@ Result<Comparison> compare(const FixSeries& a, const FixSeries& b, const Compari
     comparison.a = *of_a;
     comparison.b = *of_b;
     comparison.quantity = options.quantity;
+    measure_distances(comparison, position_errors(a, options.reference), position_errors(b, options.reference));
     comparison.differences = figure_differences(*of_a, *of_b);
     comparison.article = comparison_percent(of_a->of(options.quantity).figures, of_b->of(options.quantity).figures);
     for (const FixSeries* series : {&a, &b})

@@ -41,6 +41,43 @@ Json percent_json(const std::optional<ComparisonPercent>& p) {
             {"mean_near_zero", p->mean_near_zero}};
 }
 
+// null where a lag has too few pairs.
+Json lagged_json(const QuantityStatistics& q, bool in_seconds) {
+    Json json = Json::array();
+    for (std::size_t i = 0; i < correlation_lags.size(); ++i)
+        json.push_back({{in_seconds ? "lag_s" : "lag_samples", correlation_lags[i]},
+                        {"value", q.lagged[i] ? Json(q.lagged[i]->value) : Json(nullptr)},
+                        {"pairs", q.lagged[i] ? q.lagged[i]->pairs : 0}});
+    return json;
+}
+
+Json signal_strength_json(const SignalStrengthByElevation& strengths) {
+    Json json = Json::array();
+    for (std::size_t i = 0; i < SignalStrengthByElevation::bins; ++i) {
+        const RunningStatistics& bin = strengths.bin(i);
+        if (bin.n() == 0) continue;
+        const double from = SignalStrengthByElevation::bin_width_deg * static_cast<double>(i);
+        json.push_back({{"from_deg", from},
+                        {"to_deg", from + SignalStrengthByElevation::bin_width_deg},
+                        {"n", bin.n()},
+                        {"mean_dbhz", bin.mean()},
+                        {"std_dbhz", bin.std()}});
+    }
+    return json;
+}
+
+Json distances_json(const Comparison& comparison) {
+    Json json = Json::object();
+    for (const ErrorQuantity quantity : error_quantities) {
+        const DistributionDistance& d = comparison.distances[static_cast<std::size_t>(quantity)];
+        json[std::string(error_quantity_name(quantity))] = {{"total_variation", d.total_variation},
+                                                            {"bins", d.bins},
+                                                            {"bin_width_m", d.bin_width},
+                                                            {"kolmogorov_smirnov", d.kolmogorov_smirnov}};
+    }
+    return json;
+}
+
 Json series_json(const SeriesStatistics& s) {
     Json json{{"name", s.name}, {"samples", s.samples}, {"fixes", s.fixes}, {"interval_s", seconds_json(s.interval)}};
     json["reference"] = {{"kind", reference_word(s.reference)}};
@@ -54,8 +91,17 @@ Json series_json(const SeriesStatistics& s) {
         Json figures = figures_json(q.figures);
         figures["correlation_samples"] = json_or_null(q.correlation_samples);
         figures["correlation_time_s"] = seconds_json(q.correlation_time);
+        figures["epoch_noise_m"] = json_or_null(q.epoch_noise);
+        figures["autocorrelation"] = lagged_json(q, s.interval.has_value());
         json["errors"][std::string(error_quantity_name(quantity))] = std::move(figures);
     }
+    json["cep_m"] = s.cep();
+    json["r95_m"] = s.r95();
+    json["satellites_used"] = nullptr;
+    if (s.satellites_used)
+        json["satellites_used"] = {
+            {"n", s.satellites_used->n}, {"mean", s.satellites_used->mean}, {"std", s.satellites_used->std}};
+    json["cn0_by_elevation"] = signal_strength_json(s.signal_strength);
     return json;
 }
 
@@ -92,6 +138,7 @@ Json yardstick_json(const Comparison& comparison) {
 std::string comparison_json(const Comparison& comparison) {
     Json json{{"a", series_json(comparison.a)}, {"b", series_json(comparison.b)}};
     json["difference_percent"] = differences_json(comparison);
+    json["distribution_distance"] = distances_json(comparison);
     json["comparison"] = percent_json(comparison.article);
     json["quantity"] = error_quantity_name(comparison.quantity);
     if (comparison.window > 0) {

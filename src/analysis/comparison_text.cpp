@@ -70,6 +70,23 @@ std::string figure_row(std::string_view heading, std::string_view figure, std::s
     return row + "\n";
 }
 
+std::string optional_metres_text(const std::optional<double>& metres) { return metres ? metres_text(*metres) : "-"; }
+
+std::string satellites_cell(const SeriesStatistics& s) {
+    if (!s.satellites_used) return "-";
+    return fmt::format("{:.1f} +- {:.1f}", s.satellites_used->mean, s.satellites_used->std);
+}
+
+std::string satellites_row(const Comparison& comparison) {
+    const SeriesStatistics& a = comparison.a;
+    const SeriesStatistics& b = comparison.b;
+    if (!a.satellites_used && !b.satellites_used) return {};
+    std::optional<double> percent;
+    if (a.satellites_used && b.satellites_used && b.satellites_used->mean > 0)
+        percent = 100 * (a.satellites_used->mean / b.satellites_used->mean - 1);
+    return figure_row("satellites used", "mean +- std", satellites_cell(a), satellites_cell(b), percent_text(percent));
+}
+
 std::string figures_text(const Comparison& comparison) {
     std::string text = figure_row("error", "figure", "A", "B", "difference");
     text += std::string(83, '-') + "\n";
@@ -81,10 +98,13 @@ std::string figures_text(const Comparison& comparison) {
                                percent_text(d.percent));
             heading.clear();
         }
-        text += figure_row("", "1/e correlation", correlation_cell(comparison.a.of(quantity)),
-                           correlation_cell(comparison.b.of(quantity)), "");
+        const QuantityStatistics& a = comparison.a.of(quantity);
+        const QuantityStatistics& b = comparison.b.of(quantity);
+        text += figure_row("", "epoch to epoch", optional_metres_text(a.epoch_noise),
+                           optional_metres_text(b.epoch_noise), "");
+        text += figure_row("", "1/e correlation", correlation_cell(a), correlation_cell(b), "");
     }
-    return text;
+    return text + satellites_row(comparison);
 }
 
 std::string article_text(const Comparison& comparison) {
@@ -156,11 +176,72 @@ std::string yardstick_text(const Comparison& comparison) {
     return text + "difference: " + spread_text(std::move(percents));
 }
 
+// Two digits, never a negative zero.
+std::string correlation_value(const std::optional<LaggedCorrelation>& r) {
+    if (!r) return "-";
+    constexpr double shown_as_zero = 0.005;
+    return fmt::format("{:.2f}", std::abs(r->value) < shown_as_zero ? 0.0 : r->value);
+}
+
+std::string autocorrelation_text(const Comparison& comparison) {
+    const auto unit = [](const SeriesStatistics& s) { return s.interval ? "s" : "samples"; };
+    std::string text = fmt::format("\n{:<20}{:<12}", "autocorrelation", "at lag");
+    for (const double lag : correlation_lags)
+        text += fmt::format("{:>10}", lag);
+    text += "\n" + std::string(82, '-') + "\n";
+    for (const ErrorQuantity quantity : error_quantities) {
+        std::string heading = heading_of(quantity);
+        for (const auto& [label, series] : {std::pair("A", &comparison.a), std::pair("B", &comparison.b)}) {
+            text += fmt::format("{:<20}{:<12}", heading, fmt::format("{}, {}", label, unit(*series)));
+            for (const auto& r : series->of(quantity).lagged)
+                text += fmt::format("{:>10}", correlation_value(r));
+            text += "\n";
+            heading.clear();
+        }
+    }
+    return text;
+}
+
+std::string distances_text(const Comparison& comparison) {
+    std::string text = fmt::format("\n{:<40}{:>18}{:>22}\n{}\n", "distance between the distributions",
+                                   "total variation", "Kolmogorov-Smirnov", std::string(80, '-'));
+    for (const ErrorQuantity quantity : error_quantities) {
+        const DistributionDistance& d = comparison.distances[static_cast<std::size_t>(quantity)];
+        text +=
+            fmt::format("{:<40}{:>18.3f}{:>22.3f}\n", heading_of(quantity), d.total_variation, d.kolmogorov_smirnov);
+    }
+    return text;
+}
+
+std::string strength_cell(const RunningStatistics& bin) {
+    return bin.n() == 0 ? std::string("-") : fmt::format("{:.1f} +- {:.1f}", bin.mean(), bin.std());
+}
+
+std::string signal_strength_text(const Comparison& comparison) {
+    const SignalStrengthByElevation& a = comparison.a.signal_strength;
+    const SignalStrengthByElevation& b = comparison.b.signal_strength;
+    if (a.empty() && b.empty()) return {};
+    std::string text = fmt::format("\n{:<24}{:>16}{:>10}{:>16}{:>10}{:>10}\n{}\n", "C/N0, dB-Hz, elevation",
+                                   "A mean +- std", "n", "B mean +- std", "n", "A - B", std::string(86, '-'));
+    for (std::size_t i = 0; i < SignalStrengthByElevation::bins; ++i) {
+        const RunningStatistics& of_a = a.bin(i);
+        const RunningStatistics& of_b = b.bin(i);
+        if (of_a.n() + of_b.n() == 0) continue;
+        const bool both = of_a.n() > 0 && of_b.n() > 0;
+        text +=
+            fmt::format("{:<24}{:>16}{:>10}{:>16}{:>10}{:>10}\n", fmt::format("{:>2} to {} deg", 10 * i, 10 * i + 10),
+                        strength_cell(of_a), of_a.n(), strength_cell(of_b), of_b.n(),
+                        both ? fmt::format("{:+.1f}", of_a.mean() - of_b.mean()) : "-");
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string comparison_text(const Comparison& comparison) {
     std::string text = series_text("A (candidate)", comparison.a) + series_text("B (reference)", comparison.b) + "\n";
-    text += figures_text(comparison) + "\n" + article_text(comparison);
+    text += figures_text(comparison) + autocorrelation_text(comparison) + distances_text(comparison) +
+            signal_strength_text(comparison) + "\n" + article_text(comparison);
     if (comparison.window > 0) text += windows_text(comparison) + yardstick_text(comparison);
     for (const std::string& warning : comparison.warnings)
         text += "warning: " + warning + "\n";

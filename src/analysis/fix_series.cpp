@@ -6,12 +6,16 @@
 
 #include "fix_table.hpp"
 #include "nmea_log.hpp"
+#include "rtklib_solution.hpp"
+#include "satellites_table.hpp"
 #include "skyloop/base/text_file.hpp"
+#include "ubx_log.hpp"
 
 namespace skyloop {
 namespace {
 
-constexpr std::string_view known_formats = "fixes.csv, a table of lat,lon,height or an NMEA log with GGA sentences";
+constexpr std::string_view known_formats =
+    "fixes.csv, a table of lat,lon,height, an NMEA log with GGA sentences, a UBX log or an RTKLIB solution (.pos)";
 
 // The median of the times between neighbours, so that a pause in the log does not matter.
 std::optional<Seconds> sampling_interval(const std::vector<FixSample>& samples) {
@@ -27,7 +31,28 @@ std::optional<Seconds> sampling_interval(const std::vector<FixSample>& samples) 
 
 bool blank(std::string_view text) { return text.find_first_not_of(" \t\r\n") == std::string_view::npos; }
 
-bool starts_as_ubx(std::string_view text) { return text.starts_with("\xB5\x62"); }
+char quoted_letter(char c) { return c >= ' ' && c <= '~' ? c : '?'; }
+
+// The label of the first line of a RINEX file, plain or in Hatanaka's compact form; empty where it is none.
+std::string_view rinex_label(std::string_view text) {
+    constexpr std::size_t label_column = 60;
+    const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
+    if (line.size() <= label_column) return {};
+    const std::string_view label = line.substr(label_column);
+    return label.starts_with("RINEX VERSION / TYPE") || label.starts_with("CRINEX VERS") ? label : std::string_view();
+}
+
+Error rinex_refusal(std::string_view text, const std::string& name) {
+    constexpr std::size_t type_column = 20;
+    if (!rinex_label(text).starts_with("CRINEX") && text[type_column] != 'O')
+        return {ErrorCode::input, fmt::format("{}: is a RINEX file without observations (type '{}'), which holds no "
+                                              "fixes; expected {}",
+                                              name, quoted_letter(text[type_column]), known_formats)};
+    return {ErrorCode::input,
+            fmt::format("{}: is a RINEX observation file, which holds measurements and no fixes; `skyloop solve {}` "
+                        "makes fixes of them",
+                        name, name)};
+}
 
 // The place of the first byte that no text file has, or nothing.
 std::optional<std::size_t> first_binary_byte(std::string_view text) {
@@ -40,12 +65,20 @@ std::optional<std::size_t> first_binary_byte(std::string_view text) {
 
 Result<FixSeries> parse_by_content(std::string_view text, const std::string& name) {
     if (blank(text)) return fail(ErrorCode::input, fmt::format("{}: is empty; expected {}", name, known_formats));
-    if (starts_as_ubx(text))
-        return fail(ErrorCode::input,
-                    fmt::format("{}: is a UBX log (it starts with the bytes B5 62), which cannot be read "
-                                "here; expected {}",
-                                name, known_formats));
+    if (!rinex_label(text).empty()) return fail(rinex_refusal(text, name));
+    std::size_t ubx_messages = 0;
+    if (has_ubx_sync(text)) {
+        UbxLog log = parse_ubx_log(text, name);
+        if (!log.series.samples.empty()) return std::move(log.series);
+        ubx_messages = log.messages;
+    }
     if (has_nmea_sentence(text)) return parse_nmea_log(text, name);
+    if (ubx_messages > 0 || text.starts_with("\xB5\x62"))
+        return fail(ErrorCode::input,
+                    fmt::format("{}: is a UBX log (bytes B5 62) without a position in its {} whole messages; expected "
+                                "NAV-PVT, NAV-SOL or NAV-POSLLH",
+                                name, ubx_messages));
+    if (is_rtklib_solution(text)) return parse_rtklib_solution(text, name);
     if (const auto at = first_binary_byte(text))
         return fail(ErrorCode::input, fmt::format("{}: is not text: byte {:#04x} at offset {}; expected {}", name,
                                                   static_cast<unsigned char>(text[*at]), *at, known_formats));
@@ -76,7 +109,15 @@ Result<FixSeries> parse_fix_series(std::string_view text, const std::string& nam
 Result<FixSeries> read_fix_series(const std::filesystem::path& path) {
     const Result<std::string> text = read_text_file(path);
     if (!text) return fail(text.error());
-    return parse_fix_series(*text, path.string());
+    Result<FixSeries> series = parse_fix_series(*text, path.string());
+    if (series) add_satellites_beside(path, *series);
+    return series;
+}
+
+FixSeries without_truth(FixSeries series) {
+    for (FixSample& sample : series.samples)
+        sample.truth.reset();
+    return series;
 }
 
 FixSeries slice(const FixSeries& series, const Slice& slice) {

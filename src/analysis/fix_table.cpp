@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <span>
 
 #include "skyloop/base/spelling.hpp"
 #include "skyloop/flow/fix.hpp"
 #include "skyloop/time/utc_time.hpp"
+#include "table_cells.hpp"
 
 namespace skyloop {
 namespace {
@@ -25,6 +25,7 @@ constexpr std::array<std::string_view, 7> longitude_names{"lon_deg", "longitude_
                                                           "lng",     "long",          "gps_lon"};
 constexpr std::array<std::string_view, 10> height_names{
     "height_m", "ellipsoidal_height_m", "altitude_m", "alt_m", "height", "altitude", "alt", "hgt", "h", "gps_alt"};
+constexpr std::array<std::string_view, 4> used_names{"satellites_used", "num_sv", "numsv", "nsat"};
 constexpr std::array<std::string_view, 6> time_names{"time_utc", "utc", "time", "timestamp", "datetime", "date_time"};
 
 // Where the cells of a row stand; npos: no such column.
@@ -34,7 +35,7 @@ struct Columns {
     std::size_t count = 0;
     std::size_t latitude = none, longitude = none, height = none;
     std::size_t true_latitude = none, true_longitude = none, true_height = none;
-    std::size_t fix_type = none, time = none, week = none, tow = none;
+    std::size_t fix_type = none, time = none, week = none, tow = none, used = none;
 
     [[nodiscard]] bool has_truth() const {
         return true_latitude != none && true_longitude != none && true_height != none;
@@ -52,12 +53,6 @@ struct TableRow {
     }
 };
 
-std::string_view without_blanks(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t\r\"");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
 // What a message may quote of a cell that can be anything.
 std::string_view quotable(std::string_view text) { return text.substr(0, 40); }
 
@@ -65,26 +60,6 @@ char separator_of(std::string_view line) {
     for (const char c : {',', ';', '\t'})
         if (line.find(c) != std::string_view::npos) return c;
     return ' ';
-}
-
-std::vector<std::string_view> split_cells(std::string_view line, char separator) {
-    std::vector<std::string_view> cells;
-    for (;;) {
-        const std::size_t end = line.find(separator);
-        cells.push_back(without_blanks(line.substr(0, end)));
-        if (end == std::string_view::npos) return cells;
-        line.remove_prefix(end + 1);
-        while (separator == ' ' && line.starts_with(' '))
-            line.remove_prefix(1);
-    }
-}
-
-std::optional<double> number(std::string_view cell) {
-    if (cell.starts_with('+')) cell.remove_prefix(1);
-    double value = 0;
-    const auto [end, status] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (status != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
-    return value;
 }
 
 // "Latitude (deg)" and "lat_deg" are the same column to a reader.
@@ -126,6 +101,7 @@ Result<Columns> read_header(const TableRow& row) {
     columns.time = column_of(header, time_names);
     columns.week = column_of(header, "gps_week");
     columns.tow = column_of(header, "tow_s");
+    columns.used = column_of(header, used_names);
     const auto missing = [&](const char* what, Names names) {
         constexpr std::size_t longest_quote = 120;
         std::string found = fmt::format("{}", fmt::join(row.cells, ","));
@@ -140,7 +116,7 @@ Result<Columns> read_header(const TableRow& row) {
 }
 
 Result<double> cell_number(const TableRow& row, std::size_t column, std::string_view what) {
-    const std::optional<double> value = number(row.cells[column]);
+    const std::optional<double> value = cell_value(row.cells[column]);
     if (!value || !std::isfinite(*value))
         return fail(row.error(fmt::format("column {}: the {} is '{}'; expected a number", column + 1, what,
                                           quotable(row.cells[column]))));
@@ -191,12 +167,24 @@ Result<std::optional<GpsTime>> row_time(const TableRow& row, const Columns& colu
     if (columns.time == Columns::none || row.cells[columns.time].empty()) return std::optional<GpsTime>();
     const std::string_view cell = row.cells[columns.time];
     constexpr double longest_span = 5e9;  // s; beyond any clock that counts seconds, within 64-bit nanoseconds
-    if (const auto seconds = number(cell); seconds && std::abs(*seconds) < longest_span)
+    if (const auto seconds = cell_value(cell); seconds && std::abs(*seconds) < longest_span)
         return GpsTime(to_nanoseconds(Seconds(*seconds)));
     const Result<UtcTime> utc = parse_utc(cell);
     if (!utc) return fail(row.error(fmt::format("column {}: {}", columns.time + 1, utc.error().message)));
     dated = true;
     return to_gps_time(*utc, LeapSeconds::announced());
+}
+
+// An empty cell tells nothing.
+Result<std::optional<int>> row_satellites(const TableRow& row, const Columns& columns) {
+    if (columns.used == Columns::none || row.cells[columns.used].empty()) return std::optional<int>();
+    constexpr double most = 1000;
+    const Result<double> count = cell_number(row, columns.used, "number of satellites used");
+    if (!count) return fail(count.error());
+    if (!(*count >= 0 && *count <= most) || *count != std::floor(*count))
+        return fail(row.error(fmt::format("column {}: the number of satellites used is {}; expected 0 to {}",
+                                          columns.used + 1, *count, most)));
+    return std::optional<int>(static_cast<int>(*count));
 }
 
 Result<FixSample> read_row(const TableRow& row, const Columns& columns, bool& dated) {
@@ -214,6 +202,9 @@ Result<FixSample> read_row(const TableRow& row, const Columns& columns, bool& da
         if (!position) return fail(position.error());
         sample.position = *position;
     }
+    const auto used = row_satellites(row, columns);
+    if (!used) return fail(used.error());
+    sample.satellites_used = *used;
     if (columns.has_truth()) {
         const Result<Geodetic> truth =
             position_at(row, columns.true_latitude, columns.true_longitude, columns.true_height);
@@ -225,7 +216,7 @@ Result<FixSample> read_row(const TableRow& row, const Columns& columns, bool& da
 
 Result<Columns> columns_of(const TableRow& first) {
     const bool numbers = std::all_of(first.cells.begin(), first.cells.end(),
-                                     [](std::string_view cell) { return cell.empty() || number(cell); });
+                                     [](std::string_view cell) { return cell.empty() || cell_value(cell); });
     if (!numbers) return read_header(first);
     if (first.cells.size() != 3)
         return fail(

@@ -30,10 +30,15 @@ bool wanted(std::string_view address) {
     return !address.starts_with('P') && (address.ends_with("GGA") || address.ends_with("RMC"));
 }
 
-std::size_t count_wanted(std::string_view text) {
+// Which satellites are used and how strong they are; a damaged one costs no fix.
+bool of_satellites(std::string_view address) {
+    return !address.starts_with('P') && (address.ends_with("GSV") || address.ends_with("GSA"));
+}
+
+std::size_t count_sentences(std::string_view text, bool (*kind)(std::string_view)) {
     std::size_t count = 0;
     for (std::size_t at = text.find('$'); at != std::string_view::npos; at = text.find('$', at + 1))
-        if (wanted(address_at(text, at))) ++count;
+        if (kind(address_at(text, at))) ++count;
     return count;
 }
 
@@ -58,6 +63,8 @@ private:
     Result<void> take_line(std::string_view line);
     Result<void> take_sentence(std::string_view sentence);
     Result<void> take_gga(const Gga& gga);
+    bool take_satellites(std::string_view sentence);
+    void finish_epoch();
     void take_rmc(const Rmc& rmc);
     void date_samples();
     void add_warnings();
@@ -68,7 +75,8 @@ private:
     FixSeries series_;
     SentenceSplitter splitter_;
     std::size_t line_ = 1;
-    std::size_t damaged_ = 0, without_checksum_ = 0, without_separation_ = 0;
+    std::size_t damaged_ = 0, without_checksum_ = 0, without_separation_ = 0, damaged_of_satellites_ = 0;
+    int listed_used_ = 0;  // by the GSA sentences since the last GGA
     // For each sample its time of day and the number of dates said before it.
     struct Clock {
         std::optional<double> seconds;
@@ -86,20 +94,27 @@ Result<FixSeries> NmeaLogReader::read(std::string_view text) {
         if (end < text.size() && text[end] == '\n') ++line_;
         text.remove_prefix(std::min(end + 1, text.size()));
     }
+    finish_epoch();
     date_samples();
     add_warnings();
     return std::move(series_);
 }
 
 Result<void> NmeaLogReader::take_line(std::string_view line) {
-    std::size_t begun = count_wanted(line);
-    if (begun == 0) return {};
+    std::size_t begun = count_sentences(line, wanted);
+    std::size_t begun_of_satellites = count_sentences(line, of_satellites);
+    if (begun + begun_of_satellites == 0) return {};
     for (const std::string& sentence : splitter_.feed(to_bytes(std::string(line) + '\n'))) {
+        if (of_satellites(address_at(sentence, 0))) {
+            if (take_satellites(sentence)) --begun_of_satellites;
+            continue;
+        }
         if (!wanted(address_at(sentence, 0))) continue;
         --begun;
         if (auto taken = take_sentence(sentence); !taken) return taken;
     }
     damaged_ += begun;  // what the splitter has thrown away
+    damaged_of_satellites_ += begun_of_satellites;
     return {};
 }
 
@@ -119,8 +134,31 @@ Result<void> NmeaLogReader::take_sentence(std::string_view sentence) {
     return {};
 }
 
+// False for a sentence that is damaged or makes no sense. GSA follows the GGA of its epoch, one for each system.
+bool NmeaLogReader::take_satellites(std::string_view sentence) {
+    const std::size_t star = sentence.find('*');
+    const Result<NmeaMessage> message =
+        decode_nmea(sentence.substr(0, star == std::string_view::npos ? star : star + 3));
+    if (!message) return false;
+    if (const auto* gsa = std::get_if<Gsa>(&*message)) listed_used_ += static_cast<int>(gsa->satellites.size());
+    if (const auto* gsv = std::get_if<Gsv>(&*message))
+        for (const GsvSatellite& satellite : gsv->satellites)
+            if (satellite.elevation_deg && satellite.cn0_dbhz)
+                series_.signal_strength.add(Angle::degrees(*satellite.elevation_deg), DbHz(*satellite.cn0_dbhz));
+    return true;
+}
+
+// GGA of older versions shows at most 12 satellites; GSA of all systems together tell more.
+void NmeaLogReader::finish_epoch() {
+    if (!series_.samples.empty() && series_.samples.back().satellites_used)
+        series_.samples.back().satellites_used = std::max(*series_.samples.back().satellites_used, listed_used_);
+    listed_used_ = 0;
+}
+
 Result<void> NmeaLogReader::take_gga(const Gga& gga) {
+    finish_epoch();
     FixSample sample;
+    sample.satellites_used = gga.satellites_used;
     sample.has_fix = gga.quality != 0 && gga.position.has_value();
     if (sample.has_fix) {
         if (!gga.altitude) return refusal("GGA has a position without an altitude; expected metres in field 9");
@@ -171,6 +209,9 @@ void NmeaLogReader::add_warnings() {
     if (without_checksum_ > 0)
         series_.warnings.push_back(fmt::format("{}: {} GGA or RMC sentences without a checksum were skipped",
                                                series_.name, without_checksum_));
+    if (damaged_of_satellites_ > 0)
+        series_.warnings.push_back(
+            fmt::format("{}: {} damaged GSA or GSV sentences were skipped", series_.name, damaged_of_satellites_));
     if (without_separation_ > 0)
         series_.warnings.push_back(
             fmt::format("{}: {} fixes without geoid separation; their heights are above sea level, "

@@ -8,8 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "skyloop/analysis/distribution.hpp"
 #include "skyloop/analysis/fix_series.hpp"
 #include "skyloop/analysis/statistics.hpp"
+#include "skyloop/analysis/time_correlation.hpp"
 #include "skyloop/base/result.hpp"
 
 namespace skyloop {
@@ -30,6 +32,8 @@ struct QuantityStatistics {
     SampleStatistics figures;
     std::optional<double> correlation_samples;  ///< 1/e length of the autocorrelation, samples
     std::optional<Seconds> correlation_time;    ///< the same as a time; nothing when the sampling interval is not known
+    std::optional<double> epoch_noise;          ///< see TimeCorrelation::epoch_noise()
+    std::array<std::optional<LaggedCorrelation>, correlation_lags.size()> lagged;  ///< at correlation_lags
 };
 
 /// Everything about one file.
@@ -41,7 +45,13 @@ struct SeriesStatistics {
     ReferenceKind reference = ReferenceKind::own_mean;
     std::optional<Geodetic> point;
     std::array<QuantityStatistics, error_quantities.size()> quantities;  ///< in the order of ErrorQuantity
+    std::optional<SampleStatistics> satellites_used;  ///< of the fixes; nothing when the file does not tell
+    SignalStrengthByElevation signal_strength;        ///< of the whole file
 
+    /// 50 % of the horizontal errors are not larger, metres.
+    [[nodiscard]] double cep() const { return of(ErrorQuantity::horizontal).figures.median; }
+    /// 95 % of the horizontal errors are not larger, metres.
+    [[nodiscard]] double r95() const { return of(ErrorQuantity::horizontal).figures.p95; }
     [[nodiscard]] const QuantityStatistics& of(ErrorQuantity quantity) const {
         return quantities[static_cast<std::size_t>(quantity)];
     }
@@ -85,6 +95,8 @@ struct Comparison {
     SeriesStatistics a, b;
     ErrorQuantity quantity = ErrorQuantity::horizontal;
     std::vector<FigureDifference> differences;
+    /// Between the distributions of the errors, in the order of ErrorQuantity.
+    std::array<DistributionDistance, error_quantities.size()> distances;
     std::optional<ComparisonPercent> article;  ///< of `quantity`; nothing when B's mean or deviation is zero
     std::size_t window = 0;                    ///< samples in a window; 0: none were asked for
     std::vector<WindowComparison> windows;

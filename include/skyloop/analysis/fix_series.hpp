@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "skyloop/analysis/signal_strength.hpp"
 #include "skyloop/base/result.hpp"
 #include "skyloop/base/units.hpp"
 #include "skyloop/geo/geodetic.hpp"
@@ -21,15 +22,17 @@ struct FixSample {
     bool has_fix = false;
     Geodetic position;              ///< means something only with `has_fix`
     std::optional<Geodetic> truth;  ///< where the antenna really was, when the file knows
+    std::optional<int> satellites_used{};
 };
 
 /// The samples of one file, or of a part of it, in the file's order.
 struct FixSeries {
     std::string name;  ///< for people: the file's name, or a window of it
     std::vector<FixSample> samples;
-    bool dated = false;                 ///< false: times only tell samples apart, their day is not known
-    std::optional<Seconds> interval;    ///< median time between samples; nothing when the file has no times
-    std::vector<std::string> warnings;  ///< what was skipped or assumed on reading, a sentence each
+    bool dated = false;                           ///< false: times only tell samples apart, their day is not known
+    std::optional<Seconds> interval;              ///< median time between samples; nothing when the file has no times
+    std::vector<std::string> warnings;            ///< what was skipped or assumed on reading, a sentence each
+    SignalStrengthByElevation signal_strength{};  ///< of the whole file, also in a slice of it; empty: not told
 
     /// The samples with a fix.
     [[nodiscard]] std::size_t fixes() const;
@@ -39,12 +42,19 @@ struct FixSeries {
 ///  - a table with a header line that names latitude, longitude and height: fixes.csv (INTERFACE.md, section 3) or any
 ///    other CSV with the usual names; columns in any order, others are ignored;
 ///  - a table of numbers without a header: latitude, longitude (degrees), height above the ellipsoid (metres);
-///  - a log with NMEA 0183 sentences: GGA for positions, RMC for the date.
-/// Fails with one sentence that names file and line. UBX logs are refused by name.
+///  - a log with NMEA 0183 sentences: GGA for positions, RMC for the date, GSV for signal strengths;
+///  - a log with u-blox UBX messages: NAV-PVT, NAV-SOL or NAV-POSLLH for positions, NAV-SAT or NAV-SVINFO for signal
+///    strengths; other bytes between them are passed over;
+///  - a solution of RTKLIB (.pos), geodetic or Earth-centred.
+/// Beside a file called fixes.csv the signal strengths are read from satellites.csv, where that is (INTERFACE.md,
+/// section 3). Fails with one sentence that names file and line. RINEX files are refused by name: they hold no fixes.
 Result<FixSeries> read_fix_series(const std::filesystem::path& path);
 
 /// The same from text already read; `name` stands for the file in messages.
 Result<FixSeries> parse_fix_series(std::string_view text, const std::string& name);
+
+/// The series as a receiver would have written it, without the truth: errors are then about a point or its own mean.
+FixSeries without_truth(FixSeries series);
 
 /// Which samples to keep.
 struct Slice {

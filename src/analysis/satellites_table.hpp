@@ -1,0 +1,20 @@
+/// Signal strengths from the satellites.csv of a run.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "skyloop/analysis/fix_series.hpp"
+
+namespace skyloop {
+
+/// Sums up the columns elevation_deg and cn0_dbhz of a table (INTERFACE.md, section 3). Rows without C/N0 are
+/// satellites that are not tracked.
+Result<SignalStrengthByElevation> parse_satellites_table(std::string_view text, const std::string& name);
+
+/// Where `fixes` is a file fixes.csv or fixes.csv.gz, adds what the satellites.csv (or .gz) in its folder tells. What
+/// cannot be read there becomes a warning of `series`: its fixes are good without it.
+void add_satellites_beside(const std::filesystem::path& fixes, FixSeries& series);
+
+}  // namespace skyloop

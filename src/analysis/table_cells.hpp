@@ -1,0 +1,19 @@
+/// Cells of a line of a table.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace skyloop {
+
+/// `text` without blanks, line ends and quotation marks around it.
+std::string_view without_blanks(std::string_view text);
+
+/// The cells of a line, each without blanks around it. With a space as `separator` several count as one.
+std::vector<std::string_view> split_cells(std::string_view line, char separator);
+
+/// The number that a cell is, or nothing.
+std::optional<double> cell_value(std::string_view cell);
+
+}  // namespace skyloop
