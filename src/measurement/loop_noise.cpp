@@ -32,12 +32,12 @@ SignalProcesses::SignalProcesses(const MeasurementParameters& parameters, std::u
       scintillation(parameters.phase_noise.stream(seed, signal_stream_name("phase_scintillation", satellite, signal))) {
 }
 
-void SignalProcesses::advance(const NoiseSteps& steps) {
+void SignalProcesses::advance(const NoiseSteps& steps, bool scintillates) {
     code.advance(steps.code);
     phase.advance(steps.phase);
     frequency.advance(steps.frequency);
     multipath.advance(steps.multipath);
-    scintillation.advance(steps.scintillation);
+    if (scintillates) scintillation.advance(steps.scintillation);
 }
 
 SignalScintillation scintillation_at(const SignalScintillation& first, double frequency_ratio) {
@@ -45,7 +45,9 @@ SignalScintillation scintillation_at(const SignalScintillation& first, double fr
     return {first.amplitude * frequency_ratio * std::sqrt(frequency_ratio), first.phase * frequency_ratio};
 }
 
-Angle LoopDeviations::total_phase() const { return Angle::radians(std::hypot(phase.rad(), scintillation.rad())); }
+Angle LoopDeviations::total_phase() const {
+    return Angle::radians(std::sqrt(phase.rad() * phase.rad() + scintillation.rad() * scintillation.rad()));
+}
 
 LoopDeviations loop_deviations(const MeasurementParameters& parameters, const CodeLoop& code_loop, double jitter_ratio,
                                DbHz cn0, const SignalScintillation& scintillation) {
