@@ -1,7 +1,7 @@
 // When signals are found, kept and lost, seen through the engine.
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <limits>
 #include <optional>
 #include <set>
 #include <vector>
@@ -238,6 +238,19 @@ TEST(SignalLock, StrongScintillationTearsThePhaseOff) {
     const Measurement torn = run.epoch(arrivals);
     EXPECT_FALSE(torn.observations.signals[0].carrier_phase);
     EXPECT_TRUE(torn.observations.signals[0].pseudorange);
+}
+
+TEST(SignalLock, ScintillationIsStrongerOnALowerCarrier) {
+    // S4 ~ f^−1.5: 0.5 at L1 is 0.727 at L2, above what a phase loop stands.
+    MeasuredRun run(without_errors());
+    run.settings = all_signals();
+    Arrivals arrivals = plain_arrivals({g07});
+    arrivals.satellites[0].amplitude_scintillation = 0.48;
+    EXPECT_TRUE(observation_of(run.epochs(arrivals, 5), g07, Signal::l2)->carrier_phase);
+    arrivals.satellites[0].amplitude_scintillation = 0.5;
+    const Measurement measured = run.epoch(arrivals);
+    EXPECT_TRUE(observation_of(measured, g07, Signal::l1)->carrier_phase);
+    EXPECT_FALSE(observation_of(measured, g07, Signal::l2)->carrier_phase);
 }
 
 }  // namespace
