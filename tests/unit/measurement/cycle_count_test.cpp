@@ -96,6 +96,25 @@ TEST(CycleCount, AnUnresolvedHalfCycleIsTakenOutAndTold) {
     EXPECT_NEAR(halves, runs / 2, 20);
 }
 
+TEST(CycleCount, AnUnresolvedCarrierSlipsByHalves) {
+    MeasurementParameters parameters = only_slips(360);
+    parameters.acquisition.half_cycle_after = Seconds(1e6);
+    MeasuredRun run(parameters);
+    double before = run.epochs(plain_arrivals({g07}), 5).observations.signals.at(0).carrier_phase.value_or(0);
+    int odd = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const Measurement measured = run.epoch(plain_arrivals({g07}));
+        const Observation& o = measured.observations.signals.at(0);
+        ASSERT_FALSE(o.half_cycle_resolved);
+        const double halves = 2 * (o.carrier_phase.value_or(0) - before);
+        EXPECT_NEAR(halves, std::round(halves), 1e-9);
+        EXPECT_EQ(std::abs(halves) > 0.5, o.slipped);
+        odd += std::abs(std::remainder(halves, 2)) > 0.5 ? 1 : 0;
+        before = o.carrier_phase.value_or(0);
+    }
+    EXPECT_GT(odd, 30);
+}
+
 TEST(CycleCount, WeakSignalsSlipByThemselves) {
     MeasurementParameters parameters = only_slips(0);
     parameters.acquisition.phase_loss_threshold = DbHz(15);
