@@ -32,12 +32,12 @@ SignalProcesses::SignalProcesses(const MeasurementParameters& parameters, std::u
       scintillation(parameters.phase_noise.stream(seed, signal_stream_name("phase_scintillation", satellite, signal))) {
 }
 
-void SignalProcesses::advance(const NoiseSteps& steps) {
+void SignalProcesses::advance(const NoiseSteps& steps, bool scintillates) {
     code.advance(steps.code);
     phase.advance(steps.phase);
     frequency.advance(steps.frequency);
     multipath.advance(steps.multipath);
-    scintillation.advance(steps.scintillation);
+    if (scintillates) scintillation.advance(steps.scintillation);
 }
 
 SignalScintillation scintillation_at(const SignalScintillation& first, double frequency_ratio) {
@@ -45,20 +45,23 @@ SignalScintillation scintillation_at(const SignalScintillation& first, double fr
     return {first.amplitude * frequency_ratio * std::sqrt(frequency_ratio), first.phase * frequency_ratio};
 }
 
-Angle LoopDeviations::total_phase() const { return Angle::radians(std::hypot(phase.rad(), scintillation.rad())); }
+Angle LoopDeviations::total_phase() const {
+    return Angle::radians(std::sqrt(phase.rad() * phase.rad() + scintillation.rad() * scintillation.rad()));
+}
 
 LoopDeviations loop_deviations(const MeasurementParameters& parameters, const CodeLoop& code_loop, double jitter_ratio,
                                DbHz cn0, const SignalScintillation& scintillation) {
     // Near the threshold a frequency loop is twice as noisy in power.
     const double threshold_factor = cn0 >= parameters.acquisition.phase_threshold ? 1 : 2;
-    LoopDeviations result{code_jitter(code_loop, cn0) * jitter_ratio, phase_jitter(parameters.phase_loop, cn0),
-                          scintillation.phase, frequency_jitter(parameters.frequency_loop, cn0, threshold_factor)};
+    const CarrierToNoise power(cn0);
+    LoopDeviations result{code_jitter(code_loop, power) * jitter_ratio, phase_jitter(parameters.phase_loop, power),
+                          scintillation.phase, frequency_jitter(parameters.frequency_loop, power, threshold_factor)};
     if (!(scintillation.amplitude > 0)) return result;
     const double s4 = std::min(scintillation.amplitude, strongest_tracked_s4);
     // The published formula has no front end: only its growth with S4 is taken.
-    result.code = result.code * (scintillating_code_jitter_chips(code_loop, cn0, s4) /
-                                 scintillating_code_jitter_chips(code_loop, cn0, 0));
-    result.phase = scintillating_phase_jitter(parameters.phase_loop, cn0, s4);
+    result.code = result.code * (scintillating_code_jitter_chips(code_loop, power, s4) /
+                                 scintillating_code_jitter_chips(code_loop, power, 0));
+    result.phase = scintillating_phase_jitter(parameters.phase_loop, power, s4);
     return result;
 }
 

@@ -36,7 +36,8 @@ private:
 /// The processes of one signal, each with a stream of its own.
 struct SignalProcesses {
     SignalProcesses(const MeasurementParameters& parameters, std::uint64_t seed, SatelliteId satellite, Signal signal);
-    void advance(const NoiseSteps& steps);
+    /// @param scintillates the phase does: without, its process rests
+    void advance(const NoiseSteps& steps, bool scintillates);
 
     UnitProcess code, phase, frequency, multipath, scintillation;
 };

@@ -12,23 +12,22 @@ struct FadedSignal {
     double squared;
 };
 
-FadedSignal faded(DbHz cn0, double s4) {
+FadedSignal faded(CarrierToNoise cn0, double s4) {
     assert(s4 >= 0 && s4 < strongest_scintillation);
-    const double cn = std::pow(10, cn0.value() / 10);
-    return {cn * (1 - s4 * s4), cn * (1 - 2 * s4 * s4)};
+    return {cn0.ratio() * (1 - s4 * s4), cn0.ratio() * (1 - 2 * s4 * s4)};
 }
 
 }  // namespace
 
 double nakagami_m(double s4) { return 1 / (s4 * s4); }
 
-double scintillating_code_jitter_chips(const CodeLoop& loop, DbHz cn0, double s4) {
+double scintillating_code_jitter_chips(const CodeLoop& loop, CarrierToNoise cn0, double s4) {
     const FadedSignal signal = faded(cn0, s4);
     const double squaring = 1 + 1 / (loop.integration.value() * signal.squared);
     return std::sqrt(loop.bandwidth.value() * loop.spacing_chips * squaring / (2 * signal.tracked));
 }
 
-Angle scintillating_phase_jitter(const CarrierLoop& loop, DbHz cn0, double s4) {
+Angle scintillating_phase_jitter(const CarrierLoop& loop, CarrierToNoise cn0, double s4) {
     const FadedSignal signal = faded(cn0, s4);
     const double squaring = 1 + 1 / (2 * loop.integration.value() * signal.squared);
     return Angle::radians(std::sqrt(loop.bandwidth.value() * squaring / signal.tracked));

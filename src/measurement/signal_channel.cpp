@@ -31,6 +31,9 @@ double multipath_deviation(const StatisticalMultipath& model, Angle elevation) {
     return model.floor.value() + model.at_horizon.value() * std::exp(-elevation.deg() / multipath_fall);
 }
 
+// Not std::hypot(): these numbers are far from overflow, and it is called for every signal.
+double root_of_squares(double a, double b) { return std::sqrt(a * a + b * b); }
+
 }  // namespace
 
 SignalChannel::SignalChannel(const MeasurementParameters& parameters, std::uint64_t seed, SatelliteId satellite,
@@ -73,8 +76,9 @@ void SignalChannel::forget() {
 void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& epoch) {
     if (!new_) {
         const Seconds passed = difference(epoch.now, processed_);
-        processes_.advance(passed == epoch.since_last ? epoch.steps
-                                                      : noise_steps(epoch.parameters, passed, epoch.moving));
+        processes_.advance(
+            passed == epoch.since_last ? epoch.steps : noise_steps(epoch.parameters, passed, epoch.moving),
+            deviations_.scintillation.rad() > 0);
     }
     new_ = false;
     processed_ = epoch.now;
@@ -139,7 +143,7 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     result.cn0 = reported_cn0(*arriving_cn0(input), parameters.cn0_resolution);
     result.pseudorange = Metres(path + speed_of_light * input.signal.group_delay.value() + iono +
                                 terms_.multipath.value() + terms_.code_noise.value());
-    result.pseudorange_deviation = Metres(std::hypot(deviations_.code.value(), floor));
+    result.pseudorange_deviation = Metres(root_of_squares(deviations_.code.value(), floor));
     result.doppler = Hertz(-path_rate / wavelength + terms_.doppler_noise.value());
     result.doppler_deviation = deviations_.frequency;
     result.half_cycle_resolved = lock_.half_cycle_resolved();
@@ -147,7 +151,7 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     const double carrier_path = path - iono + phase_ratio * terms_.multipath.value() + terms_.phase_noise.value();
     result.carrier_phase = carrier_path / wavelength + count_.cycles();
     result.carrier_phase_deviation =
-        std::hypot(deviations_.total_phase().rad() / (2 * std::numbers::pi), phase_ratio * floor / wavelength);
+        root_of_squares(deviations_.total_phase().rad() / (2 * std::numbers::pi), phase_ratio * floor / wavelength);
     result.slipped = slipped_;
     result.lock_time = difference(epoch.now, counting_since_);
     return result;

@@ -6,16 +6,13 @@
 #include "skyloop/gnss/constants.hpp"
 
 namespace skyloop {
-namespace {
 
-double power_of(DbHz cn0) { return std::pow(10, cn0.value() / 10); }
-
-}  // namespace
+CarrierToNoise::CarrierToNoise(DbHz cn0) : ratio_(std::pow(10, cn0.value() / 10)) {}
 
 Metres CodeLoop::chip_length() const { return Metres(speed_of_light / chip_rate.value()); }
 
-double code_jitter_chips(const CodeLoop& loop, DbHz cn0) {
-    const double cn = power_of(cn0), spacing = loop.spacing_chips;
+double code_jitter_chips(const CodeLoop& loop, CarrierToNoise cn0) {
+    const double cn = cn0.ratio(), spacing = loop.spacing_chips;
     const double b = loop.front_end_bandwidth.value() / loop.chip_rate.value();
     const double per_integration = 1 / (loop.integration.value() * cn);
     const double thermal = loop.bandwidth.value() / (2 * cn);
@@ -26,15 +23,17 @@ double code_jitter_chips(const CodeLoop& loop, DbHz cn0) {
     return std::sqrt(thermal * (1 / b + b / (std::numbers::pi - 1) * wider * wider) * squaring);
 }
 
-Metres code_jitter(const CodeLoop& loop, DbHz cn0) { return loop.chip_length() * code_jitter_chips(loop, cn0); }
+Metres code_jitter(const CodeLoop& loop, CarrierToNoise cn0) {
+    return loop.chip_length() * code_jitter_chips(loop, cn0);
+}
 
-Angle phase_jitter(const CarrierLoop& loop, DbHz cn0) {
-    const double cn = power_of(cn0);
+Angle phase_jitter(const CarrierLoop& loop, CarrierToNoise cn0) {
+    const double cn = cn0.ratio();
     return Angle::radians(std::sqrt(loop.bandwidth.value() / cn * (1 + 1 / (2 * loop.integration.value() * cn))));
 }
 
-Hertz frequency_jitter(const CarrierLoop& loop, DbHz cn0, double threshold_factor) {
-    const double cn = power_of(cn0), t = loop.integration.value();
+Hertz frequency_jitter(const CarrierLoop& loop, CarrierToNoise cn0, double threshold_factor) {
+    const double cn = cn0.ratio(), t = loop.integration.value();
     return Hertz(std::sqrt(4 * threshold_factor * loop.bandwidth.value() / cn * (1 + 1 / (t * cn))) /
                  (2 * std::numbers::pi * t));
 }

@@ -13,10 +13,10 @@ double nakagami_m(double s4);
 
 /// Standard deviation of the code phase, chips (Conker, El-Arini, Hegarty and Hsiao 2003; MODELS.md 7.11).
 /// @param s4 0 … 0.707 (exclusive)
-double scintillating_code_jitter_chips(const CodeLoop& loop, DbHz cn0, double s4);
+double scintillating_code_jitter_chips(const CodeLoop& loop, CarrierToNoise cn0, double s4);
 
 /// Standard deviation of the carrier phase by thermal noise; the scintillation of the phase itself comes on top (Conker
 /// et al. 2003; MODELS.md 7.11).
-Angle scintillating_phase_jitter(const CarrierLoop& loop, DbHz cn0, double s4);
+Angle scintillating_phase_jitter(const CarrierLoop& loop, CarrierToNoise cn0, double s4);
 
 }  // namespace skyloop
