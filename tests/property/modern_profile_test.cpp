@@ -23,7 +23,10 @@ struct Plan {
 template <class Look>
 void run_plan(const Plan& plan, Look&& look) {
     const ModernSettings settings = effective(ModernSettings::of(plan.preset));
-    Simulation simulation = modern_run(settings, std::make_unique<FixedPoint>(profile_place), {}, plan.seed);
+    const bool gps = plan.receiver.signals == gps_alone().signals;
+    auto orbits = gps ? std::make_unique<FourSystems>(std::vector{Constellation::gps}) : nullptr;
+    Simulation simulation =
+        modern_run(settings, std::make_unique<FixedPoint>(profile_place), plan.seed, std::move(orbits));
     for (int k = 0; k < plan.epochs; ++k)
         look(simulation.run(profile_start + std::chrono::seconds(plan.step_s * k), plan.receiver));
 }

@@ -18,10 +18,17 @@ class FourSystems : public NavigationSource {
 public:
     static constexpr int satellites_each = 24;
 
+    explicit FourSystems(std::vector<Constellation> systems = {Constellation::gps, Constellation::galileo,
+                                                               Constellation::beidou, Constellation::glonass})
+        : systems_(std::move(systems)) {
+        // Coefficients of an ordinary day (GPS 2004-01-01) and a medium Sun.
+        ionosphere_.gps = KlobucharCoefficients{{0.1118e-7, -0.7451e-8, -0.5961e-7, 0.1192e-6},
+                                                {0.1167e6, -0.2294e6, -0.1311e6, 0.1049e7}};
+        ionosphere_.galileo = std::array{121.129893, 0.351254133, 0.0134635348};
+    }
     [[nodiscard]] std::vector<SatelliteId> satellites() const override {
         std::vector<SatelliteId> all;
-        for (const Constellation c :
-             {Constellation::gps, Constellation::galileo, Constellation::beidou, Constellation::glonass})
+        for (const Constellation c : systems_)
             for (int n = 1; n <= satellites_each; ++n)
                 // BeiDou's first numbers are geostationary.
                 all.push_back({c, c == Constellation::beidou ? n + 10 : n});
@@ -37,8 +44,6 @@ public:
     [[nodiscard]] const BroadcastIonosphere& ionosphere() const override { return ionosphere_; }
     [[nodiscard]] std::optional<TimeSpan> span() const override { return std::nullopt; }
     [[nodiscard]] std::string description() const override { return "four systems"; }
-    /// What its satellites say of the ionosphere.
-    void broadcast(const BroadcastIonosphere& ionosphere) { ionosphere_ = ionosphere; }
 
 private:
     static GpsTime toe_near(GpsTime time, Nanoseconds spacing) {
@@ -103,6 +108,7 @@ private:
         return r;
     }
 
+    std::vector<Constellation> systems_;
     BroadcastIonosphere ionosphere_;
 };
 

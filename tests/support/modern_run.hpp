@@ -38,10 +38,9 @@ inline ModernContext context_of(const ModernSettings& settings, const Navigation
 
 /// @param settings taken through effective()
 inline Simulation modern_run(const ModernSettings& settings, std::unique_ptr<Trajectory> trajectory,
-                             const AtmosphereParameters& atmosphere = {}, std::uint64_t seed = 1) {
-    auto navigation = std::make_unique<FourSystems>();
-    ModernContext context = context_of(settings, *navigation, seed);
-    context.atmosphere = atmosphere;
+                             std::uint64_t seed = 1, std::unique_ptr<FourSystems> navigation = nullptr) {
+    if (!navigation) navigation = std::make_unique<FourSystems>();
+    const ModernContext context = context_of(settings, *navigation, seed);
     auto effects = modern_effects(settings.propagation, context);
     EXPECT_TRUE(effects) << effects.error().message;
     MeasuringReceiver receiver{MeasurementEngine(settings.measurement, seed),
