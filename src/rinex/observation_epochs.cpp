@@ -131,8 +131,18 @@ std::string_view SatelliteRecord::field(int index) const {
                                         : std::string_view{};
 }
 
-void SignalReading::append(SatelliteId satellite, const SatelliteRecord& record, const SystemLayout& layout,
-                           int channel, Observations& epoch, std::vector<BadField>& bad) {
+void SignalReading::break_all() {
+    for (auto& [signal, history] : phases_)
+        history.broken = true;
+}
+
+void SignalReading::break_phases(SatelliteId satellite) {
+    for (auto& [signal, history] : phases_)
+        if (signal.first == satellite) history.broken = true;
+}
+
+void SignalReading::append(const SatelliteRecord& record, const SystemLayout& layout, int channel, Observations& epoch,
+                           std::vector<BadField>& bad) {
     FieldReading fields(record, layout, bad);
     for (const SignalColumns& signal : layout.signals) {
         std::optional<Observation> best;
@@ -144,7 +154,7 @@ void SignalReading::append(SatelliteId satellite, const SatelliteRecord& record,
             best_code = i;
         }
         if (!best) continue;
-        best->satellite = satellite;
+        best->satellite = record.satellite();
         best->signal = signal.signal;
         best->carrier = carrier_frequency(signal.signal, channel);
         follow_phase(*best, epoch.receive_time, best_code);
@@ -154,11 +164,10 @@ void SignalReading::append(SatelliteId satellite, const SatelliteRecord& record,
 
 void SignalReading::follow_phase(Observation& observation, GpsTime time, std::size_t code) {
     if (!observation.carrier_phase) return;
-    const auto [entry, first] =
-        phases_.try_emplace({observation.satellite, observation.signal}, PhaseHistory{time, code});
+    const auto entry = phases_.try_emplace({observation.satellite, observation.signal}, PhaseHistory{time, code}).first;
     PhaseHistory& history = entry->second;
-    if (all_broken_ || broken_.contains(observation.satellite) || (!first && history.code != code))
-        observation.slipped = true;
+    if (history.broken || history.code != code) observation.slipped = true;
+    history.broken = false;
     if (observation.slipped) history.since = time;
     history.code = code;
     observation.lock_time = difference(time, history.since);

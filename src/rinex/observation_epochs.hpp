@@ -3,7 +3,6 @@
 
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -31,12 +30,14 @@ GpsTime epoch_in_gpst(GpsTime written, std::string_view time_system);
 /// The observations of one satellite at one epoch: one line, of version 2 one for each five.
 class SatelliteRecord {
 public:
-    SatelliteRecord(std::span<const Line> lines, int major) : lines_(lines), major_(major) {}
+    SatelliteRecord(SatelliteId satellite, std::span<const Line> lines, int major)
+        : satellite_(satellite), lines_(lines), major_(major) {}
+    [[nodiscard]] SatelliteId satellite() const { return satellite_; }
     /// Sixteen columns, fewer where the line ends.
     [[nodiscard]] std::string_view field(int index) const;
-    [[nodiscard]] const Line& first_line() const { return lines_.front(); }
 
 private:
+    SatelliteId satellite_;
     std::span<const Line> lines_;
     int major_;
 };
@@ -51,29 +52,24 @@ struct BadField {
 class SignalReading {
 public:
     /// Every phase is broken: the receiver had no power.
-    void break_all() { all_broken_ = true; }
+    void break_all();
     /// The phases of one satellite are broken.
-    void break_phases(SatelliteId satellite) { broken_.insert(satellite); }
-    void end_epoch() {
-        all_broken_ = false;
-        broken_.clear();
-    }
+    void break_phases(SatelliteId satellite);
 
     /// Appends what was measured of the satellite. @param channel of GLONASS @param bad takes fields that cannot be
     /// read
-    void append(SatelliteId satellite, const SatelliteRecord& record, const SystemLayout& layout, int channel,
-                Observations& epoch, std::vector<BadField>& bad);
+    void append(const SatelliteRecord& record, const SystemLayout& layout, int channel, Observations& epoch,
+                std::vector<BadField>& bad);
 
 private:
     struct PhaseHistory {
         GpsTime since;
         std::size_t code = 0;
+        bool broken = false;
     };
     void follow_phase(Observation& observation, GpsTime time, std::size_t code);
 
     std::map<std::pair<SatelliteId, Signal>, PhaseHistory> phases_;
-    std::set<SatelliteId> broken_;
-    bool all_broken_ = false;
 };
 
 }  // namespace skyloop::rinex

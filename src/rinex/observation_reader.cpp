@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "defect_tally.hpp"
 #include "observation_epochs.hpp"
@@ -71,16 +72,14 @@ private:
     void measured(const EpochHead& head, const Line& first) {
         Observations at;
         at.receive_time = epoch_in_gpst(*head.time, file().time_system);
-        kept_ = head.flag != 6;
-        if (kept_ && !file().epochs.empty() && at.receive_time <= file().epochs.back().receive_time) {
+        slips_ = head.flag == 6;
+        const bool unordered = !file().epochs.empty() && at.receive_time <= file().epochs.back().receive_time;
+        kept_ = !slips_ && !unordered;
+        if (!slips_ && unordered) {
             ++file().skipped.unordered;
             unordered_.add_with([&] {
                 return sentence(first, in_quotes(columns(first.text, 0, 29)), "an epoch later than the one before");
             });
-            kept_ = false;
-            slips_count_ = false;
-        } else {
-            slips_count_ = head.flag == 6;
         }
         if (head.flag == 1) signals_.break_all();
         seen_.clear();
@@ -93,7 +92,6 @@ private:
             });
         }
         if (!kept_) return;
-        signals_.end_epoch();
         std::sort(at.signals.begin(), at.signals.end(), [](const Observation& a, const Observation& b) {
             return std::pair(a.satellite, a.signal) < std::pair(b.satellite, b.signal);
         });
@@ -145,33 +143,31 @@ private:
     }
 
     void satellite(std::string_view name, std::size_t lines, Observations& at) {
-        const SatelliteRecord record(std::span(record_.data(), lines), major());
         std::optional<SatelliteId> id = parse_satellite(name);
         if (!id && major() == 2 && name.starts_with(' '))
             if (const std::optional<int> number = whole_field(name); number && *number > 0)
                 id = SatelliteId{header_.file_system(), *number};
         const SystemLayout* layout = id ? header_.layout(id->constellation) : nullptr;
-        if (!layout || !seen_.insert(*id).second) return bad_satellite(name, record.first_line(), id, layout);
-        if (slips_count_) return signals_.break_phases(*id);
+        if (!layout || !seen_.insert(*id).second) return bad_satellite(name, id, layout);
+        if (slips_) return signals_.break_phases(*id);
         if (!kept_) return;
         bad_.clear();
-        signals_.append(*id, record, *layout, channel_of(*id), at, bad_);
+        const SatelliteRecord record(*id, std::span(record_.data(), lines), major());
+        signals_.append(record, *layout, channel_of(*id), at, bad_);
         for (const BadField& b : bad_) {
             ++file().skipped.fields;
-            fields_.add_with([&] {
-                return sentence(record.first_line(), b.text, fmt::format("{} of {}", b.expected, to_string(*id)));
-            });
+            fields_.add_with(
+                [&] { return sentence(record_[0], b.text, fmt::format("{} of {}", b.expected, to_string(*id))); });
         }
     }
 
-    void bad_satellite(std::string_view name, const Line& line, std::optional<SatelliteId> id,
-                       const SystemLayout* layout) {
+    void bad_satellite(std::string_view name, std::optional<SatelliteId> id, const SystemLayout* layout) {
         ++file().skipped.satellites;
         satellites_.add_with([&] {
             const std::string_view expected = !id       ? "a satellite such as 'G07'"
                                               : !layout ? "a satellite of a system whose observation types are declared"
                                                         : "each satellite once an epoch";
-            return sentence(line, in_quotes(name), expected);
+            return sentence(record_[0], in_quotes(name), expected);
         });
     }
 
@@ -211,8 +207,8 @@ private:
     ObservationHeaderReading header_;
     std::optional<Line> line_;
     SignalReading signals_;
-    bool kept_ = true;          // the epoch at hand goes into the file
-    bool slips_count_ = false;  // it is a list of cycle slips
+    bool kept_ = true;    // the epoch at hand goes into the file
+    bool slips_ = false;  // it is a list of cycle slips
     std::vector<Line> record_ = std::vector<Line>(1);
     std::vector<std::string_view> names_;
     std::set<SatelliteId> seen_;
