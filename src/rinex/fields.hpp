@@ -33,6 +33,9 @@ std::string_view columns(std::string_view line, std::size_t first, std::size_t w
 std::string_view trimmed(std::string_view text);
 inline bool is_blank(std::string_view text) { return trimmed(text).empty(); }
 
+/// The label of a header line, in columns 61-80.
+inline std::string_view header_label(std::string_view line) { return trimmed(columns(line, 60, 20)); }
+
 /// A real number with exponent D or E of either case, as F, D and E formats write it; 0 when blank; nothing when the
 /// field holds something else, or a value that is not finite.
 std::optional<double> real_field(std::string_view field);

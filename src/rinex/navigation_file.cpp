@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "defect_tally.hpp"
 #include "fields.hpp"
 #include "navigation_block.hpp"
 #include "navigation_header.hpp"
@@ -14,19 +15,6 @@
 namespace skyloop {
 namespace rinex {
 namespace {
-
-// What is wrong with records of one kind: the first of them in words, and how many there are.
-struct DefectTally {
-    std::string first;
-    int count = 0;
-    void add(std::string sentence) {
-        if (count++ == 0) first = std::move(sentence);
-    }
-    template <class Words>
-    void add_with(Words words) {
-        if (count++ == 0) first = words();
-    }
-};
 
 class NavigationReading {
 public:

@@ -35,8 +35,6 @@ constexpr std::array<std::string_view, 18> known_labels{
 
 constexpr std::string_view what_is_read = "navigation data (RINEX 2.00-2.12, 3.00-3.05 or 4.00-4.02)";
 
-std::string_view label_of(std::string_view line) { return trimmed(columns(line, 60, 20)); }
-
 tl::unexpected<Error> header_error(std::string_view name, int line, std::string_view found, std::string_view expected) {
     return fail(ErrorCode::input, fmt::format("{}:{}: found {}; expected {}", name, line, found, expected));
 }
@@ -84,7 +82,7 @@ struct VersionLine {
 };
 
 Result<VersionLine> read_version(const Line& line, std::string_view name) {
-    if (label_of(line.text) != version_label)
+    if (header_label(line.text) != version_label)
         return header_error(name, line.number, line.text.empty() ? "an empty line" : in_quotes(line.text),
                             fmt::format("a RINEX header, its label '{}' in columns 61-80", version_label));
     const std::string_view field = columns(line.text, 0, 20);
@@ -104,7 +102,7 @@ public:
     explicit HeaderReading(std::string_view name) : name_(name) {}
 
     void take(const Line& line) {
-        const std::string_view label = label_of(line.text);
+        const std::string_view label = header_label(line.text);
         if (label == "ION ALPHA") coefficients(line, 2, pairs_[0].alpha);
         if (label == "ION BETA") coefficients(line, 2, pairs_[0].beta);
         if (label == "IONOSPHERIC CORR") ionosphere(line);
@@ -225,7 +223,7 @@ Result<NavigationHeader> read_header(LineReader& lines, std::string_view name) {
 
     HeaderReading reading(name);
     while ((line = lines.next())) {
-        if (label_of(line->text) == end_label) return reading.finish(*version);
+        if (header_label(line->text) == end_label) return reading.finish(*version);
         reading.take(*line);
     }
     const std::optional<Line>& unknown = reading.first_unknown();
