@@ -21,13 +21,29 @@ struct CompareOptions {
     std::size_t skip_a = 0, skip_b = 0;
     std::size_t count_a = 0, count_b = 0;
     std::size_t window = 0;
+    double interval_a = 0, interval_b = 0;  // s; 0: as the file says
     Verbosity verbosity;
 };
 
-Result<FixSeries> read_slice(const std::string& path, const Slice& part) {
-    auto series = read_fix_series(path);
+// What to take of a file and how to see it.
+struct FileView {
+    const std::string& path;
+    Slice part;
+    double interval = 0;  // s; 0: as the file says
+    bool own_mean = false;
+};
+
+Result<FixSeries> read_view(const FileView& view) {
+    auto series = read_fix_series(view.path);
     if (!series) return series;
-    return slice(*series, part);
+    if (view.interval > 0 && series->interval)
+        series->warnings.push_back(
+            fmt::format("{}: has times of its own, one fix every {:g} s; the given interval of "
+                        "{:g} s is not used",
+                        view.path, series->interval->value(), view.interval));
+    else if (view.interval > 0)
+        series->interval = Seconds(view.interval);
+    return slice(view.own_mean ? without_truth(std::move(*series)) : std::move(*series), view.part);
 }
 
 int compare_files(const CompareOptions& options) {
@@ -35,14 +51,17 @@ int compare_files(const CompareOptions& options) {
     ComparisonOptions wanted;
     wanted.quantity = *error_quantity_from_name(options.series);
     wanted.window = options.window;
-    if (!options.reference.empty()) {
+    const bool own_mean = options.reference == "own-mean";
+    if (!options.reference.empty() && !own_mean) {
         const auto place = parse_place(options.reference);
         if (!place) return messages.error({place.error().code, "--reference" + place.error().message.substr(4)});
         wanted.reference = *place;
     }
-    const auto a = read_slice(options.a, {options.skip_a, options.every_a, options.count_a});
+    const auto a =
+        read_view({options.a, {options.skip_a, options.every_a, options.count_a}, options.interval_a, own_mean});
     if (!a) return messages.error(a.error());
-    const auto b = read_slice(options.b, {options.skip_b, options.every_b, options.count_b});
+    const auto b =
+        read_view({options.b, {options.skip_b, options.every_b, options.count_b}, options.interval_b, own_mean});
     if (!b) return messages.error(b.error());
     for (const FixSeries* series : {&*a, &*b})
         for (const std::string& warning : series->warnings)
@@ -51,7 +70,7 @@ int compare_files(const CompareOptions& options) {
     if (!result) return messages.error(result.error());
     if (options.format == "svg")
         fmt::print("{}", scatter_plot_svg({a->name, position_errors(*a, wanted.reference)},
-                                          {b->name, position_errors(*b, wanted.reference)}));
+                                          {b->name, position_errors(*b, wanted.reference)}, wanted.quantity));
     else
         fmt::print("{}", options.format == "json" ? comparison_json(*result) : comparison_text(*result));
     return 0;
@@ -60,13 +79,14 @@ int compare_files(const CompareOptions& options) {
 }  // namespace
 
 Action add_compare_command(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("compare", "Statistics of two fix files (CSV or NMEA) and their difference in percent");
+    CLI::App* command = app.add_subcommand(
+        "compare", "Statistics of two fix files (CSV, NMEA, UBX or RTKLIB .pos) and their difference in percent");
     auto options = std::make_shared<CompareOptions>();
     command->add_option("A", options->a, "The candidate, e.g. a simulated fixes.csv")->required();
     command->add_option("B", options->b, "The reference, e.g. a real receiver's log")->required();
     command->add_option("--reference", options->reference,
-                        "The true place LAT,LON,HEIGHT for a file that does not know it; default: its own mean");
+                        "The true place LAT,LON,HEIGHT for a file that does not know it; default: its own mean. "
+                        "own-mean: both files about their own means, even where they know the truth");
     command->add_option("--series", options->series, "The error whose percentage is told")
         ->check(CLI::IsMember({"east", "north", "up", "horizontal", "3d"}));
     command->add_option("--format", options->format, "text, json or svg")
@@ -80,6 +100,11 @@ Action add_compare_command(CLI::App& app) {
     command->add_option("--skip-b", options->skip_b, "Leave out the first N fixes of B");
     command->add_option("--count-a", options->count_a, "Take at most N fixes of A");
     command->add_option("--count-b", options->count_b, "Take at most N fixes of B");
+    const auto seconds = CLI::Range(1e-3, 1e6);
+    command->add_option("--interval-a", options->interval_a, "Seconds between the fixes of A, if it holds no times")
+        ->check(seconds);
+    command->add_option("--interval-b", options->interval_b, "Seconds between the fixes of B, if it holds no times")
+        ->check(seconds);
     add_verbosity_options(*command, options->verbosity);
     return [options] { return compare_files(*options); };
 }

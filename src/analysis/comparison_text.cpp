@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "skyloop/analysis/comparison.hpp"
 #include "skyloop/time/utc_time.hpp"

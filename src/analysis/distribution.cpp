@@ -49,7 +49,7 @@ CommonBins common_bins(const std::vector<double>& a, const std::vector<double>& 
     const auto n = static_cast<double>(std::min(a.size(), b.size()));
     // Half of the values being equal leaves no interquartile range: then a fiftieth of the whole range.
     const double wanted = upper > lower ? 2 * (upper - lower) / std::cbrt(n) : (to - from) / 50;
-    const double count = std::clamp(std::ceil((to - from) / wanted), 1.0, most);
+    const double count = std::clamp(std::ceil((to - from) / wanted), 2.0, most);
     return {from, (to - from) / count, static_cast<std::size_t>(count)};
 }
 

@@ -9,37 +9,25 @@
 #include <vector>
 
 #include "plot_style.hpp"
+#include "scatter_panel.hpp"
 
 namespace skyloop {
 namespace {
 
 namespace style = plot_style;
 
-constexpr double panel_width = 400;
-constexpr double panel_left = 68;
-constexpr double panel_gap = 56;
-constexpr double cloud_top = 104;
-constexpr double cloud_size = 400;
-constexpr double histogram_top = 580;
-constexpr double histogram_height = 130;
 constexpr std::string_view candidate_colour = "#1f5fbf";
 constexpr std::string_view reference_colour = "#0a8f72";
 
-// A cloud with what is drawn of it.
-struct ScatterPanel {
-    const ScatterCloud& cloud;
-    std::string_view colour;
-    double left = 0;
-    std::optional<SampleStatistics> east, north, horizontal;
-};
-
-ScatterPanel scatter_panel(const ScatterCloud& cloud, std::string_view colour, int place) {
+ScatterPanel scatter_panel(const ScatterCloud& cloud, std::string_view colour, int place, ErrorQuantity quantity) {
     return {cloud,
             colour,
             panel_left + place * (panel_width + panel_gap),
             sample_statistics(cloud.errors.east),
             sample_statistics(cloud.errors.north),
-            sample_statistics(cloud.errors.horizontal)};
+            sample_statistics(cloud.errors.horizontal),
+            quantity,
+            sample_statistics(error_values(cloud.errors, quantity))};
 }
 
 // Metres east or north that the figures of a cloud reach, its circle and its ellipse.
@@ -64,11 +52,6 @@ double scatter_reach(const ScatterPanel& a, const ScatterPanel& b) {
     }
     const double figures = std::max(figures_reach(a), figures_reach(b));
     return 1.05 * (figures < 2 * reach ? std::max(reach, figures) : reach);
-}
-
-std::string scatter_tick(double value, double step) {
-    const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 9);
-    return fmt::format("{:.{}f}", std::abs(value) < step / 1000 ? 0.0 : value, decimals);
 }
 
 void draw_cloud_axes(SvgDocument& svg, const ScatterPanel& panel, double reach) {
@@ -152,7 +135,7 @@ void draw_cloud_figures(SvgDocument& svg, const ScatterPanel& panel, double reac
 
 // The end of a long file name, which tells more than its start; cut between characters.
 std::string shortened(const std::string& name) {
-    constexpr std::size_t longest_name = 46;
+    constexpr std::size_t longest_name = 42;
     if (name.size() <= longest_name) return name;
     std::size_t start = name.size() - longest_name;
     while (start < name.size() && (name[start] & 0xC0) == 0x80)
@@ -179,113 +162,36 @@ void draw_cloud(SvgDocument& svg, const ScatterPanel& panel, double reach) {
     svg.end_group();
 }
 
-struct HistogramScale {
-    double bin = 0;  ///< metres
-    int bins = 0;
-    double most = 0;  ///< the largest share of a bin in either cloud, percent
-    [[nodiscard]] double pixels_per_percent() const { return histogram_height / (1.08 * most); }
-};
-
-std::vector<double> bin_shares(const ScatterPanel& panel, const HistogramScale& scale) {
-    std::vector<double> shares(static_cast<std::size_t>(scale.bins));
-    for (const double r : panel.cloud.errors.horizontal)
-        if (r < scale.bin * scale.bins) shares[static_cast<std::size_t>(r / scale.bin)] += 1;
-    for (double& share : shares)
-        share *= 100 / static_cast<double>(std::max<std::size_t>(1, panel.cloud.errors.horizontal.size()));
-    return shares;
+std::string article_caption(const ScatterPanel& a, const ScatterPanel& b) {
+    const std::string quantity = error_axis_name(a.quantity);
+    if (!a.chosen || !b.chosen) return quantity + ": no percentage can be given";
+    const auto percent = comparison_percent(*a.chosen, *b.chosen);
+    if (!percent || percent->mean_near_zero)
+        return quantity + ": no percentage can be given, the mean of the reference is near zero";
+    return fmt::format("{}: difference {:.1f} %, agreement {:.1f} % (mean differs by {:.1f} %, std by {:.1f} %)",
+                       quantity, percent->difference, 100 - percent->difference, percent->mean_part, percent->std_part);
 }
 
-HistogramScale histogram_scale(const ScatterPanel& a, const ScatterPanel& b, double reach) {
-    HistogramScale scale;
-    scale.bin = style::round_step(reach, 40);
-    scale.bins = std::max(1, static_cast<int>(std::ceil(reach / scale.bin)));
-    for (const ScatterPanel* panel : {&a, &b})
-        for (const double share : bin_shares(*panel, scale))
-            scale.most = std::max(scale.most, share);
-    scale.most = std::max(scale.most, 1e-3);
-    return scale;
-}
-
-void draw_histogram_axes(SvgDocument& svg, const ScatterPanel& panel, const HistogramScale& scale) {
-    const double extent = scale.bin * scale.bins;
-    const double bottom = histogram_top + histogram_height;
-    const double step_y = style::round_step(1.08 * scale.most, 6);
-    for (double share = 0; share <= 1.08 * scale.most; share += step_y) {
-        const double y = bottom - share * scale.pixels_per_percent();
-        svg.line({panel.left, y}, {panel.left + panel_width, y}, {.stroke = style::faint_grid});
-        svg.text({.at = {panel.left - 7, y},
-                  .text = scatter_tick(share, step_y),
-                  .size = 11,
-                  .fill = style::faint_ink,
-                  .anchor = "end"});
-    }
-    const double step = style::round_step(extent, 8);
-    for (double t = 0; t <= extent * (1 + 1e-9); t += step)
-        svg.text({.at = {panel.left + t / extent * panel_width, bottom + 13},
-                  .text = scatter_tick(t, step),
-                  .size = 11,
-                  .fill = style::faint_ink,
-                  .anchor = "middle"});
-    svg.text({.at = {panel.left + panel_width / 2, bottom + 32},
-              .text = "horizontal error, m",
-              .size = 12,
-              .anchor = "middle"});
-    svg.text({.at = {panel.left - 40, bottom - histogram_height / 2},
-              .text = "fixes, %",
-              .size = 12,
-              .anchor = "middle",
-              .rotation_deg = -90});
-}
-
-void draw_histogram(SvgDocument& svg, const ScatterPanel& panel, const HistogramScale& scale) {
-    const double extent = scale.bin * scale.bins;
-    const double width = panel_width / scale.bins;
-    const double bottom = histogram_top + histogram_height;
-    svg.begin_group("histogram", "horizontal radial error");
-    draw_histogram_axes(svg, panel, scale);
-    const std::vector<double> shares = bin_shares(panel, scale);
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-        const double height = shares[i] * scale.pixels_per_percent();
-        if (shares[i] > 0)
-            svg.rectangle({panel.left + static_cast<double>(i) * width + 0.4, bottom - height}, {width - 0.8, height},
-                          0, {.fill = panel.colour, .opacity = 0.75});
-    }
-    svg.line({panel.left, bottom}, {panel.left + panel_width, bottom}, {.stroke = style::faint_ink});
-    if (panel.horizontal) {
-        const auto place = [&](double metres) { return panel.left + std::min(metres / extent, 1.0) * panel_width; };
-        const double mean = place(panel.horizontal->mean);
-        const double p95 = place(panel.horizontal->p95);
-        svg.line({mean, bottom}, {mean, histogram_top - 2}, {.stroke = style::accent, .width = 1.8});
-        svg.line({p95, bottom}, {p95, histogram_top - 2}, {.stroke = style::ink, .width = 1.3, .dash = "6 4"});
-    }
-    svg.end_group();
-}
-
-void draw_horizontal_figures(SvgDocument& svg, const ScatterPanel& panel) {
-    if (!panel.horizontal) return;
-    svg.text({.at = {panel.left, histogram_top - 16},
-              .text = fmt::format("mean {:.2f} m,  std {:.2f} m,  95 % {:.2f} m", panel.horizontal->mean,
-                                  panel.horizontal->std, panel.horizontal->p95),
-              .size = 12.5,
-              .bold = true});
+std::string distance_caption(const ScatterPanel& a, const ScatterPanel& b) {
+    const auto distance =
+        distribution_distance(error_values(a.cloud.errors, a.quantity), error_values(b.cloud.errors, b.quantity));
+    if (!distance) return {};
+    return fmt::format("distance of the distributions: total variation {:.3f}, Kolmogorov–Smirnov {:.3f}",
+                       distance->total_variation, distance->kolmogorov_smirnov);
 }
 
 void draw_scatter_heading(SvgDocument& svg, const ScatterPanel& a, const ScatterPanel& b) {
-    svg.text({.at = {28, 32}, .text = "Horizontal position errors", .size = 17, .bold = true});
-    std::string text = "no percentage can be given";
-    if (a.horizontal && b.horizontal)
-        if (const auto percent = comparison_percent(*a.horizontal, *b.horizontal))
-            text = fmt::format(
-                "difference {:.1f} %, agreement {:.1f} % (mean differs by {:.1f} %, standard deviation by {:.1f} %)",
-                percent->difference, 100 - percent->difference, percent->mean_part, percent->std_part);
-    svg.text({.at = {28, 56}, .text = text, .size = 12.5, .fill = style::faint_ink});
+    svg.text({.at = {28, 32}, .text = "Position errors", .size = 17, .bold = true});
+    svg.text({.at = {28, 57}, .text = article_caption(a, b), .size = 12.5, .fill = style::faint_ink});
+    svg.text({.at = {28, 77}, .text = distance_caption(a, b), .size = 12.5, .fill = style::faint_ink});
     constexpr double right = scatter_plot_width - 28;
-    const auto entry = [&](double y, std::string_view colour, std::string_view dash, const char* label) {
-        svg.line({right - 190, y}, {right - 162, y}, {.stroke = colour, .width = 1.6, .dash = dash});
-        svg.text({.at = {right - 154, y}, .text = label, .size = 11.5, .fill = style::faint_ink});
+    const auto entry = [&](double y, const SvgStyle& line, const char* label) {
+        svg.line({right - 196, y}, {right - 168, y}, line);
+        svg.text({.at = {right - 160, y}, .text = label, .size = 11.5, .fill = style::faint_ink});
     };
-    entry(28, style::accent, "", "mean and 95 % ellipse");
-    entry(48, style::ink, "6 4", "95 % of the errors");
+    entry(30, {.stroke = style::accent, .width = 1.6}, "mean and 95 % ellipse");
+    entry(50, {.stroke = style::ink, .width = 1.6, .dash = "6 4"}, "95 % of the errors");
+    entry(70, {.stroke = b.colour, .width = 1.4, .opacity = 0.8}, "outline: the other file");
 }
 
 }  // namespace
@@ -306,20 +212,17 @@ ErrorEllipse error_ellipse_95(std::span<const double> east, std::span<const doub
     return {k * std::sqrt(middle + spread), k * std::sqrt(std::max(0.0, middle - spread)), Angle::radians(azimuth)};
 }
 
-std::string scatter_plot_svg(const ScatterCloud& candidate, const ScatterCloud& reference) {
-    const ScatterPanel a = scatter_panel(candidate, candidate_colour, 0);
-    const ScatterPanel b = scatter_panel(reference, reference_colour, 1);
+std::string scatter_plot_svg(const ScatterCloud& candidate, const ScatterCloud& reference, ErrorQuantity quantity) {
+    const ScatterPanel a = scatter_panel(candidate, candidate_colour, 0, quantity);
+    const ScatterPanel b = scatter_panel(reference, reference_colour, 1, quantity);
     const double reach = scatter_reach(a, b);
-    const HistogramScale histogram = histogram_scale(a, b, reach);
     SvgDocument svg(scatter_plot_width, scatter_plot_height,
-                    "Horizontal position errors: " + candidate.name + ", " + reference.name);
+                    "Position errors: " + candidate.name + ", " + reference.name);
     style::draw_sheet(svg, {scatter_plot_width, scatter_plot_height});
     draw_scatter_heading(svg, a, b);
-    for (const ScatterPanel* panel : {&a, &b}) {
-        draw_cloud(svg, *panel, reach);
-        draw_histogram(svg, *panel, histogram);
-        draw_horizontal_figures(svg, *panel);
-    }
+    draw_cloud(svg, a, reach);
+    draw_cloud(svg, b, reach);
+    draw_error_histograms(svg, a, b, reach);
     return svg.str();
 }
 

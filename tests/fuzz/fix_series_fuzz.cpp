@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "skyloop/analysis/comparison.hpp"
 #include "skyloop/analysis/fix_series.hpp"
 
 namespace {
@@ -37,6 +38,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(!series->interval || std::isfinite(series->interval->value()));
     for (const std::string& warning : series->warnings)
         require(is_one_line(warning));
+    // Whatever could be read can be compared, and is not far from itself.
+    if (const auto comparison = compare(*series, *series)) {
+        for (const DistributionDistance& distance : comparison->distances)
+            require(distance.total_variation == 0 && distance.kolmogorov_smirnov == 0);
+        require(!comparison_text(*comparison).empty() && !comparison_json(*comparison).empty());
+    }
     const FixSeries part = slice(*series, {1, 2, 5});
     require(part.samples.size() <= 5 && part.samples.size() <= series->samples.size());
     require(windows(*series, 3).size() == series->samples.size() / 3);

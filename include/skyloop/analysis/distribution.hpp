@@ -19,7 +19,7 @@ struct DistributionDistance {
 };
 
 /// Both distances of `a` and `b`, nothing when one is empty. The bins are those of Freedman and Diaconis (1981) for
-/// both series together, as wide as the smaller one needs: 2·IQR·n^(−1/3), at most 500 of them; values far outside
+/// both series together, as wide as the smaller one needs: 2·IQR·n^(−1/3), 2 to 500 of them; values far outside
 /// (beyond ten interquartile ranges of the quartiles) share the bins at the ends.
 std::optional<DistributionDistance> distribution_distance(std::span<const double> a, std::span<const double> b);
 

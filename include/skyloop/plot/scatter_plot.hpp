@@ -1,9 +1,10 @@
-/// Two clouds of horizontal position errors side by side, and how their radii are distributed.
+/// Two clouds of horizontal position errors side by side, and how their errors are distributed.
 #pragma once
 
 #include <span>
 #include <string>
 
+#include "skyloop/analysis/comparison.hpp"
 #include "skyloop/analysis/statistics.hpp"
 
 namespace skyloop {
@@ -15,12 +16,14 @@ struct ScatterCloud {
 };
 
 inline constexpr double scatter_plot_width = 960;
-inline constexpr double scatter_plot_height = 780;
+inline constexpr double scatter_plot_height = 796;
 
 /// The picture as an SVG document: the candidate left, the reference right, on one scale; the mean as a cross, the 95 %
 /// ellipse of a normal distribution with the cloud's covariance, the circle that holds 95 % of the errors; histograms
-/// of the horizontal radial error below. Points outside the panels are counted in words.
-std::string scatter_plot_svg(const ScatterCloud& candidate, const ScatterCloud& reference);
+/// of the error `quantity` below, each with the outline of the other. The caption tells the article's percentage and
+/// the distances of both distributions of that quantity. Points outside the panels are counted in words.
+std::string scatter_plot_svg(const ScatterCloud& candidate, const ScatterCloud& reference,
+                             ErrorQuantity quantity = ErrorQuantity::horizontal);
 
 /// Half-axes (m) and direction of the ellipse that holds 95 % of a normal distribution in the plane with the covariance
 /// of the two series (k² = −2 ln 0.05).

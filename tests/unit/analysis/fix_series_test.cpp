@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 
 #include "skyloop/time/utc_time.hpp"
@@ -58,6 +60,7 @@ TEST(FixSeries, reads_our_fixes_table_with_truth_and_missing_fixes) {
     ASSERT_TRUE(first.truth);
     EXPECT_NEAR(first.truth->latitude.deg(), 46.4775, 1e-12);
     EXPECT_EQ(first.time, to_gps_time(1590, 388815.0));
+    EXPECT_EQ(first.satellites_used, 8);
     EXPECT_FALSE(series->samples[1].has_fix);
     EXPECT_TRUE(series->samples[1].truth);
 }
@@ -135,9 +138,12 @@ TEST(FixSeries, a_fixes_table_with_holes_is_refused) {
     row.replace(row.find(",3d,"), 4, ",4d,");
     EXPECT_THAT(message_of(fixes_header + row), AllOf(HasSubstr("fix_type is '4d'"), HasSubstr("rtk_fixed")));
     EXPECT_THAT(message_of(fixes_header + no_fix_row), HasSubstr("no fix in 1 rows"));
+    row = fix_row;
+    row.replace(row.find(",8,"), 3, ",8.5,");
+    EXPECT_THAT(message_of(fixes_header + row), HasSubstr("number of satellites used is 8.5"));
 }
 
-TEST(FixSeries, ubx_and_other_binary_files_are_refused_by_name) {
+TEST(FixSeries, ubx_without_a_position_and_other_binary_files_are_refused_by_name) {
     EXPECT_THAT(message_of("\xB5\x62\x01\x07"), AllOf(HasSubstr("UBX"), HasSubstr("B5 62")));
     EXPECT_THAT(message_of(std::string("1,2\0,3\n", 7)), AllOf(HasSubstr("not text"), HasSubstr("offset 3")));
 }
@@ -177,6 +183,51 @@ TEST(FixSeries, gga_without_a_date_still_gives_the_interval) {
     EXPECT_EQ(series->interval, Seconds(0.5));
     ASSERT_EQ(series->warnings.size(), 1u);
     EXPECT_THAT(series->warnings[0], AllOf(HasSubstr("3 fixes without geoid separation"), HasSubstr("log.nmea")));
+}
+
+TEST(FixSeries, nmea_tells_satellites_used_and_signal_strengths) {
+    const std::string gga = nmea("GNGGA,120000.00,4628.650,N,03043.956,E,1,12,1.0,50.5,M,30.5,M,,");
+    const std::string satellites = nmea("GNGSA,A,3,01,02,03,04,05,06,07,08,09,10,11,12,1.8,1.0,1.5,1") +
+                                   nmea("GNGSA,A,3,65,66,67,,,,,,,,,,1.8,1.0,1.5,2") +
+                                   nmea("GPGSV,1,1,03,01,42,090,40,02,90,000,50,03,10,180,,1") +
+                                   nmea("GLGSV,1,1,02,65,47,090,44,66,,,30,1");
+    const auto series = parse_fix_series(gga + satellites + gga, "log.nmea");
+    ASSERT_TRUE(series) << series.error().message;
+    ASSERT_EQ(series->samples.size(), 2u);
+    EXPECT_EQ(series->samples[0].satellites_used, 15);
+    EXPECT_EQ(series->samples[1].satellites_used, 12);
+    EXPECT_EQ(series->signal_strength.bin(4).n(), 2u);
+    EXPECT_DOUBLE_EQ(series->signal_strength.bin(4).mean(), 42);
+    EXPECT_EQ(series->signal_strength.bin(8).n(), 1u);
+    EXPECT_EQ(series->signal_strength.bin(1).n(), 0u);
+    std::string damaged = satellites;
+    damaged[10] = '2';
+    const auto rest = parse_fix_series(gga + damaged, "log.nmea");
+    ASSERT_TRUE(rest) << rest.error().message;
+    EXPECT_THAT(rest->warnings, ElementsAre(HasSubstr("1 damaged GSA or GSV sentences")));
+}
+
+// The folder of a run: fixes.csv and beside it satellites.csv.
+TEST(FixSeries, signal_strengths_come_from_the_satellites_table_beside_fixes) {
+    const std::filesystem::path folder = testing::TempDir() + "fix_series_run";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "fixes.csv") << fixes_header + fix_row;
+    const auto alone = read_fix_series(folder / "fixes.csv");
+    ASSERT_TRUE(alone) << alone.error().message;
+    EXPECT_TRUE(alone->signal_strength.empty() && alone->warnings.empty());
+    std::ofstream(folder / "satellites.csv")
+        << "time_utc,satellite,elevation_deg,cn0_dbhz,used\nt,G01,35.0,44,1\nt,G02,39.9,46,0\nt,G03,5,,0\n";
+    const auto series = read_fix_series(folder / "fixes.csv");
+    ASSERT_TRUE(series) << series.error().message;
+    EXPECT_EQ(series->signal_strength.bin(3).n(), 2u);
+    EXPECT_DOUBLE_EQ(series->signal_strength.bin(3).mean(), 45);
+    EXPECT_DOUBLE_EQ(series->signal_strength.bin(3).std(), std::sqrt(2.0));
+    EXPECT_EQ(series->signal_strength.bin(0).n(), 0u);
+    std::ofstream(folder / "satellites.csv") << "elevation_deg,cn0_dbhz\nlow,44\n";
+    const auto broken = read_fix_series(folder / "fixes.csv");
+    ASSERT_TRUE(broken) << broken.error().message;
+    EXPECT_THAT(broken->warnings, ElementsAre(AllOf(HasSubstr("satellites.csv:2:"), HasSubstr("left out"))));
+    std::filesystem::remove_all(folder);
 }
 
 TEST(FixSeries, damaged_sentences_are_skipped_and_counted) {
@@ -298,14 +349,8 @@ TEST(FixSeries, reads_a_real_nmea_log_of_an_indoor_receiver) {
     EXPECT_NEAR(static_cast<double>(series->fixes()), 3759, 2);
     EXPECT_TRUE(series->dated);
     EXPECT_EQ(series->interval, Seconds(1));
+    EXPECT_NEAR(series->signal_strength.bin(3).mean(), 24.4, 0.1);
     EXPECT_EQ(format_utc(to_utc(*series->samples[0].time, LeapSeconds::announced()), 0), "2024-07-26T11:24:35Z");
-}
-
-TEST(FixSeries, refuses_a_real_ubx_log) {
-    SKYLOOP_REQUIRE_SHARED(log, "receivers/galway_20181015_m8p_static/base-20181015-1654.ubx.gz");
-    const auto series = read_fix_series(log);
-    ASSERT_FALSE(series);
-    EXPECT_THAT(series.error().message, HasSubstr("UBX"));
 }
 
 // Whatever a real serial line has carried is read or refused with the file's name, never worse.

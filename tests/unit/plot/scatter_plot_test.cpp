@@ -40,6 +40,28 @@ TEST(ScatterPlot, is_well_formed_and_names_both_clouds_and_the_percentage) {
     EXPECT_EQ(svg, scatter_plot_svg(a, b));
 }
 
+TEST(ScatterPlot, histograms_show_the_chosen_error_with_its_sign) {
+    ScatterCloud a = normal_cloud("sim", 900, 1.5, 2);
+    ScatterCloud b = normal_cloud("real", 500, 1.6, 1.9);
+    for (ScatterCloud* cloud : {&a, &b}) {
+        RandomStream random(2, cloud->name);
+        for (std::size_t i = 0; i < cloud->errors.east.size(); ++i)
+            cloud->errors.up.push_back(20 + 3 * random.normal());
+    }
+    const std::string svg = scatter_plot_svg(a, b, ErrorQuantity::up);
+    EXPECT_EQ(test::xml_fault(svg), "");
+    EXPECT_THAT(svg, ::testing::ContainsRegex("up error: difference [0-9.]+ %, agreement [0-9.]+ %"));
+    EXPECT_THAT(svg, ::testing::ContainsRegex("total variation 0\\.[0-9]+, Kolmogorov–Smirnov 0\\.[0-9]+"));
+    EXPECT_THAT(svg, HasSubstr(">up error, m<"));
+    EXPECT_THAT(svg, ::testing::ContainsRegex("mean (19|20)\\.[0-9]+ m"));
+    EXPECT_THAT(svg, HasSubstr(">-20<"));
+    for (double& up : a.errors.up)
+        up -= 20;
+    for (double& up : b.errors.up)
+        up -= 20;
+    EXPECT_THAT(scatter_plot_svg(a, b, ErrorQuantity::up), HasSubstr("mean of the reference is near zero"));
+}
+
 TEST(ScatterPlot, a_wild_fix_is_counted_and_does_not_shrink_the_rest) {
     ScatterCloud a = normal_cloud("sim", 1000, 1, 1);
     const ScatterCloud b = normal_cloud("real", 1000, 1, 1);
