@@ -11,6 +11,7 @@
 #include "skyloop/gnss/constants.hpp"
 #include "skyloop/propagation/effect.hpp"
 #include "skyloop/propagation/free_space.hpp"
+#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::test {
 
