@@ -41,6 +41,11 @@ double gas_abscissa(double elevation_deg) { return std::log(std::sin(Angle::degr
 
 }  // namespace
 
+GasLossTable::GasLossTable(Hertz carrier) : carrier_(carrier) {
+    for (const double elevation : gas_elevations_deg)
+        abscissae_.push_back(gas_abscissa(elevation));
+}
+
 const std::vector<double>& GasLossTable::row(std::size_t index) {
     std::vector<double>& row = rows_[index];
     if (!row.empty()) return row;
@@ -58,7 +63,7 @@ Decibels GasLossTable::loss(Angle elevation, Metres antenna_height) {
     const auto above = std::upper_bound(gas_elevations_deg.begin(), gas_elevations_deg.end(), degrees);
     const auto column = static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - gas_elevations_deg.begin() - 1, 0));
     const CubicStencil across = cubic_stencil(gas_abscissa(degrees), gas_elevations_deg.size(), column,
-                                              [](std::size_t i) { return gas_abscissa(gas_elevations_deg[i]); });
+                                              [this](std::size_t i) { return abscissae_[i]; });
     const double height = std::clamp(antenna_height.value() / 1000, 0.0, gas_height_step_km * (heights - 1));
     const CubicStencil up = cubic_stencil(height, heights, static_cast<std::size_t>(height / gas_height_step_km),
                                           [](std::size_t i) { return gas_height_step_km * static_cast<double>(i); });

@@ -19,7 +19,7 @@ namespace skyloop {
 /// State: the rows of the table, each made when it is first needed.
 class GasLossTable {
 public:
-    explicit GasLossTable(Hertz carrier = Hertz(carrier_frequency_l1)) : carrier_(carrier) {}
+    explicit GasLossTable(Hertz carrier = Hertz(carrier_frequency_l1));
     /// @param elevation apparent, taken as that of the straight line  @param antenna_height above sea level
     Decibels loss(Angle elevation, Metres antenna_height);
 
@@ -28,6 +28,7 @@ private:
     const std::vector<double>& row(std::size_t index);
 
     Hertz carrier_;
+    std::vector<double> abscissae_;                  // of the elevations, on the scale of interpolation
     std::array<std::vector<double>, heights> rows_;  // logarithm of the loss, by elevation
 };
 
