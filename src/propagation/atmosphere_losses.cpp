@@ -37,9 +37,11 @@ void CloudLoss::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& 
     const Metres height = sea_level_height(truth.geodetic, geoid_).above_sea_level;
     for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
         Decibels loss;
-        for (const Deck& deck : decks_)
+        for (const Deck& deck : decks_) {
+            if (deck.top <= height) continue;
             loss +=
                 loss_over(deck.attenuation, shell_path(ray_over_sea(sky.satellites[i], height), deck.base, deck.top));
+        }
         arrivals.satellites[i].cloud_loss = loss * factor_;
     }
 }
@@ -48,6 +50,7 @@ void RainLoss::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& t
     assert(arrivals.satellites.size() == sky.satellites.size());
     if (factor_ == 0 || rain_.rate_mm_h <= 0) return;
     const Metres height = sea_level_height(truth.geodetic, geoid_).above_sea_level;
+    if (height >= rain_.top) return;
     for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
         const SphericalRay ray = ray_over_sea(sky.satellites[i], height);
         const double level = std::cos(ray.elevation.rad());

@@ -70,26 +70,34 @@ GasAttenuation gas_attenuation_p676(const ReferenceAir& air, Hertz carrier) {
 }
 
 Decibels slant_gas_attenuation_p676(Hertz carrier, Angle apparent, Metres antenna_height) {
+    return slant_gas_attenuation_p676(carrier, std::span<const Angle>(&apparent, 1), antenna_height).front();
+}
+
+std::vector<Decibels> slant_gas_attenuation_p676(Hertz carrier, std::span<const Angle> apparent,
+                                                 Metres antenna_height) {
     double height_km = std::clamp(antenna_height.value() / 1000, 0.0, p676_top_km);
     double thickness = 0.0001;
-    double invariant = 0;  // n r sin of the angle to the vertical, Bouguer's law
-    Decibels loss;
+    std::vector<double> invariants(apparent.size(), 0.0);  // n r sin of the angle to the vertical, Bouguer's law
+    std::vector<Decibels> losses(apparent.size());
     while (height_km < p676_top_km) {
         const double step = std::min(thickness, p676_top_km - height_km);
         const ReferenceAir air = with_least_vapour(reference_atmosphere_p835(Metres((height_km + step / 2) * 1000)));
         const double index =
             1 + 1e-6 * refractivity_p453(air.dry_pressure_hpa(), air.temperature, air.vapour_pressure_hpa()).total();
+        const DecibelsPerKilometre attenuation = gas_attenuation_p676(air, carrier).total();
         const double base = p676_earth_radius_km + height_km;
-        if (invariant == 0) invariant = index * base * std::cos(apparent.rad());
-        // A ray that the next layer would turn back is kept level instead.
-        const double level = std::min(invariant / index, base);
         const double top = base + step;
-        const double path = std::sqrt(top * top - level * level) - std::sqrt(base * base - level * level);
-        loss += loss_over(gas_attenuation_p676(air, carrier).total(), Metres(path * 1000));
+        for (std::size_t i = 0; i < apparent.size(); ++i) {
+            if (invariants[i] == 0) invariants[i] = index * base * std::cos(apparent[i].rad());
+            // A ray that the next layer would turn back is kept level instead.
+            const double level = std::min(invariants[i] / index, base);
+            const double path = std::sqrt(top * top - level * level) - std::sqrt(base * base - level * level);
+            losses[i] += loss_over(attenuation, Metres(path * 1000));
+        }
         height_km += step;
         thickness *= std::exp(0.01);
     }
-    return loss;
+    return losses;
 }
 
 }  // namespace skyloop

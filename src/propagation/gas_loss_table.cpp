@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::array<double, 20> gas_elevations_deg{0.5, 0.75, 1,  1.25, 1.5, 2,  2.5, 3,  4,  5,
                                                     6,   8,    10, 13,   17,  23, 32,  45, 65, 90};
-constexpr double gas_height_step_km = 1;
-constexpr std::size_t gas_heights = 21;
+// So short that a cubic follows the bend of the temperature at the tropopause.
+constexpr double gas_height_step_km = 0.5;
 
 // Place between the entries of an ascending table: lower index of four neighbours, and their Lagrange weights.
 struct CubicStencil {
@@ -41,34 +41,37 @@ double gas_abscissa(double elevation_deg) { return std::log(std::sin(Angle::degr
 
 }  // namespace
 
-GasLossTable::GasLossTable(Hertz carrier) {
-    for (std::size_t row = 0; row < gas_heights; ++row) {
-        const Metres height(1000 * gas_height_step_km * static_cast<double>(row));
-        const double zenith = slant_gas_attenuation_p676(carrier, Angle::degrees(90), height).value();
-        zeniths_.push_back(std::log(zenith));
-        for (const double elevation : gas_elevations_deg) {
-            const double slant = slant_gas_attenuation_p676(carrier, Angle::degrees(elevation), height).value();
-            slants_.push_back(std::log(slant / zenith));
-        }
-    }
+GasLossTable::GasLossTable(Hertz carrier) : carrier_(carrier) {
+    for (const double elevation : gas_elevations_deg)
+        abscissae_.push_back(gas_abscissa(elevation));
 }
 
-Decibels GasLossTable::loss(Angle elevation, Metres antenna_height) const {
+const std::vector<double>& GasLossTable::row(std::size_t index) {
+    std::vector<double>& row = rows_[index];
+    if (!row.empty()) return row;
+    std::array<Angle, gas_elevations_deg.size()> elevations;
+    for (std::size_t i = 0; i < elevations.size(); ++i)
+        elevations[i] = Angle::degrees(gas_elevations_deg[i]);
+    const Metres height(1000 * gas_height_step_km * static_cast<double>(index));
+    for (const Decibels loss : slant_gas_attenuation_p676(carrier_, elevations, height))
+        row.push_back(std::log(loss.value()));
+    return row;
+}
+
+Decibels GasLossTable::loss(Angle elevation, Metres antenna_height) {
     const double degrees = std::clamp(elevation.deg(), gas_elevations_deg.front(), gas_elevations_deg.back());
     const auto above = std::upper_bound(gas_elevations_deg.begin(), gas_elevations_deg.end(), degrees);
     const auto column = static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - gas_elevations_deg.begin() - 1, 0));
     const CubicStencil across = cubic_stencil(gas_abscissa(degrees), gas_elevations_deg.size(), column,
-                                              [](std::size_t i) { return gas_abscissa(gas_elevations_deg[i]); });
-    const double height = std::clamp(antenna_height.value() / 1000, 0.0, gas_height_step_km * (gas_heights - 1));
-    const CubicStencil up = cubic_stencil(height, gas_heights, static_cast<std::size_t>(height / gas_height_step_km),
+                                              [this](std::size_t i) { return abscissae_[i]; });
+    const double height = std::clamp(antenna_height.value() / 1000, 0.0, gas_height_step_km * (heights - 1));
+    const CubicStencil up = cubic_stencil(height, heights, static_cast<std::size_t>(height / gas_height_step_km),
                                           [](std::size_t i) { return gas_height_step_km * static_cast<double>(i); });
     double sum = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-        const std::size_t row = up.first + i;
-        double slant = 0;
+        const std::vector<double>& logarithms = row(up.first + i);
         for (std::size_t j = 0; j < 4; ++j)
-            slant += across.weight[j] * slants_[row * gas_elevations_deg.size() + across.first + j];
-        sum += up.weight[i] * (zeniths_[row] + slant);
+            sum += up.weight[i] * across.weight[j] * logarithms[across.first + j];
     }
     return Decibels(std::exp(sum));
 }

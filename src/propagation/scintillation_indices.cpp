@@ -33,7 +33,9 @@ double evening_share(const ScintillationParameters& parameters, const Geodetic& 
     const double local = hours + place.longitude.deg() / 15;
     const double from_peak = std::remainder(local - parameters.evening_peak_h, 24.0);
     const double from_crest = std::abs(dipole_modified_dip(place).deg()) - parameters.crest.deg();
-    return bell(from_peak, parameters.evening_width_h) * bell(from_crest, parameters.crest_width.deg());
+    double crest = bell(from_crest, parameters.crest_width.deg());
+    if (from_crest < 0) crest = (1 + crest) / 2;  // half of it is left between the crests
+    return bell(from_peak, parameters.evening_width_h) * crest;
 }
 
 ScintillationIndices::ScintillationIndices(const ScintillationParameters& parameters, const ErrorTerm& term,

@@ -1,6 +1,7 @@
 /// What gases, clouds, rain and trees take from a signal in the modern profile.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "skyloop/geo/geoid.hpp"
@@ -12,17 +13,23 @@
 
 namespace skyloop {
 
-/// slant_gas_attenuation_p676() at L1 from a table, to within 1e-4 dB from 0.5° and heights of 0 … 20 km; the integral
-/// itself takes milliseconds. Constant below 0.5° and above 20 km, where what is left is below 0.03 dB.
+/// slant_gas_attenuation_p676() from a table, to within 1e-4 dB from 0.5° and heights of 0 … 20 km; the integral itself
+/// takes milliseconds. Constant below 0.5° and above 20 km, where what is left at L1 is below 0.03 dB.
+///
+/// State: the rows of the table, each made when it is first needed.
 class GasLossTable {
 public:
     explicit GasLossTable(Hertz carrier = Hertz(carrier_frequency_l1));
     /// @param elevation apparent, taken as that of the straight line  @param antenna_height above sea level
-    [[nodiscard]] Decibels loss(Angle elevation, Metres antenna_height) const;
+    Decibels loss(Angle elevation, Metres antenna_height);
 
 private:
-    // Rows of height, then columns of elevation: the loss as that of the zenith of the height, times a slant.
-    std::vector<double> slants_, zeniths_;
+    static constexpr std::size_t heights = 41;
+    const std::vector<double>& row(std::size_t index);
+
+    Hertz carrier_;
+    std::vector<double> abscissae_;                  // of the elevations, on the scale of interpolation
+    std::array<std::vector<double>, heights> rows_;  // logarithm of the loss, by elevation
 };
 
 /// Writes the gas loss of each arrival: ITU-R P.676-13 through the reference atmosphere (MODELS.md 7.4).

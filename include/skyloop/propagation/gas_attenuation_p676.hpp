@@ -1,6 +1,9 @@
 /// What oxygen and water vapour absorb, line by line.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "skyloop/propagation/reference_atmosphere_p835.hpp"
 #include "skyloop/propagation/specific_attenuation.hpp"
 
@@ -21,5 +24,7 @@ GasAttenuation gas_attenuation_p676(const ReferenceAir& air, Hertz carrier);
 /// @param apparent elevation at the antenna, above the horizon
 /// @param antenna_height above sea level
 Decibels slant_gas_attenuation_p676(Hertz carrier, Angle apparent, Metres antenna_height);
+/// The same along several rays from one antenna, for little more than the price of one.
+std::vector<Decibels> slant_gas_attenuation_p676(Hertz carrier, std::span<const Angle> apparent, Metres antenna_height);
 
 }  // namespace skyloop

@@ -27,14 +27,14 @@ struct NamedIonosphereMaps {
 
 /// What the effects need to know of the run.
 struct ModernContext {
-    TimeSpan run;                     ///< first and last instant of the run
-    AtmosphereParameters atmosphere;  ///< its clouds and its rain
-    BroadcastIonosphere broadcast;    ///< of the navigation data
+    TimeSpan run{};                     ///< first and last instant of the run
+    AtmosphereParameters atmosphere{};  ///< its clouds and its rain
+    BroadcastIonosphere broadcast{};    ///< of the navigation data
     /// The model that the receiver corrects with, where it is one of these.
-    std::optional<IonosphereModel> receiver_correction;
-    std::optional<NamedIonosphereMaps> maps;  ///< of kind `ionex`
-    std::filesystem::path nequick_folder;     ///< of kind `nequick_g`: share/skyloop/nequick_g
-    const Geoid* geoid = nullptr;             ///< must outlive the effects; without one heights stay ellipsoidal
+    std::optional<IonosphereModel> receiver_correction{};
+    std::optional<NamedIonosphereMaps> maps{};  ///< of kind `ionex`
+    std::filesystem::path nequick_folder{};     ///< of kind `nequick_g`: share/skyloop/nequick_g
+    const Geoid* geoid = nullptr;               ///< must outlive the effects; without one heights stay ellipsoidal
     LeapSeconds leap_seconds = LeapSeconds::announced();
     std::uint64_t seed = 1;
 };

@@ -151,15 +151,15 @@ struct ModernLinkParameters {
 
 /// Irregularities of the ionosphere (MODELS.md 7.11).
 struct ScintillationParameters {
-    double s4 = 0;    ///< amplitude index at L1 towards the zenith, 0 … 0.7
-    Angle sigma_phi;  ///< 1 σ of the phase at L1 towards the zenith
+    double s4 = 0;      ///< amplitude index at L1 towards the zenith, 0 … 0.7
+    Angle sigma_phi{};  ///< 1 σ of the phase at L1 towards the zenith
     /// The indices above are those of the worst hour under the crests of the equatorial anomaly; elsewhere and at
     /// other hours they fade.
     bool equatorial_evening = false;
-    double evening_peak_h = 21;              ///< local time
-    double evening_width_h = 2;              ///< 1 σ
-    Angle crest = Angle::degrees(30);        ///< modified dip latitude of the crests, either side
-    Angle crest_width = Angle::degrees(12);  ///< 1 σ
+    double evening_peak_h = 21;             ///< local time
+    double evening_width_h = 2;             ///< 1 σ
+    Angle crest = Angle::degrees(30);       ///< modified dip latitude of the crests, either side
+    Angle crest_width = Angle::degrees(8);  ///< 1 σ, towards the poles; between the crests half is left
 };
 
 /// All of it.

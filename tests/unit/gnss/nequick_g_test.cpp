@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 // April, the month of the benchmark.
 const NequickTables& april() {
     static const NequickTables tables = [] {
-        const auto read = read_nequick_tables(std::filesystem::path(SKYLOOP_SOURCE_DIR) / "tests/support/nequick_g", 4);
+        const auto read = read_nequick_tables(std::filesystem::path(SKYLOOP_SOURCE_DIR) / "data/nequick_g", 4);
         if (!read) throw std::runtime_error(read.error().message);
         return *read;
     }();

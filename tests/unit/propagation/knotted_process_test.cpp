@@ -1,0 +1,74 @@
+#include "skyloop/propagation/knotted_process.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace skyloop {
+namespace {
+
+using std::chrono::seconds;
+
+const GpsTime knotted_start = to_gps_time(2361, 12345.0);
+
+TEST(KnottedProcess, KeepsSigmaAndCorrelation) {
+    double square = 0, lagged = 0;
+    int count = 0;
+    for (int run = 0; run < 200; ++run) {
+        KnottedProcess process({2, Seconds(1800)}, seconds(60), RandomStream(5, "run " + std::to_string(run)));
+        std::vector<double> values;
+        for (int i = 0; i < 600; ++i)
+            values.push_back(process.at(knotted_start + seconds(300) * i));
+        for (std::size_t i = 0; i + 6 < values.size(); ++i, ++count) {
+            square += values[i] * values[i];
+            lagged += values[i] * values[i + 6];
+        }
+    }
+    EXPECT_NEAR(std::sqrt(square / count), 2, 0.1);
+    EXPECT_NEAR(lagged / square, std::exp(-1), 0.05);
+}
+
+TEST(KnottedProcess, DoesNotDependOnHowOftenItIsLookedAt) {
+    KnottedProcess often({1, Seconds(600)}, seconds(30), RandomStream(1, "x"));
+    KnottedProcess seldom({1, Seconds(600)}, seconds(30), RandomStream(1, "x"));
+    for (int i = 0; i < 4000; ++i) {
+        const double value = often.at(knotted_start + std::chrono::milliseconds(100) * i);
+        if (i % 100 != 0) continue;
+        EXPECT_EQ(seldom.at(knotted_start + std::chrono::milliseconds(100) * i), value);
+    }
+}
+
+TEST(KnottedProcess, IsSmoothAndKnowsItsRate) {
+    KnottedProcess process({1, Seconds(600)}, seconds(30), RandomStream(2, "x"));
+    double before = process.at(knotted_start), rate_before = process.rate();
+    for (int i = 1; i < 3000; ++i) {
+        const double value = process.at(knotted_start + std::chrono::milliseconds(100) * i);
+        EXPECT_NEAR((value - before) / 0.1, (process.rate() + rate_before) / 2, 1e-5);
+        EXPECT_NEAR(process.rate(), rate_before, 0.004);
+        before = value;
+        rate_before = process.rate();
+    }
+}
+
+TEST(KnottedProcess, ForgetsOverALongAbsenceAndWalksByTheRootOfTime) {
+    double product = 0, square = 0, walked = 0;
+    for (int run = 0; run < 2000; ++run) {
+        const RandomStream stream(7, "run " + std::to_string(run));
+        KnottedProcess process({1, Seconds(600)}, seconds(60), stream);
+        const double first = process.at(knotted_start);
+        const double last = process.at(knotted_start + seconds(36000));
+        product += first * last;
+        square += last * last;
+        KnottedProcess walk = KnottedProcess::walk(0.01, seconds(60), stream);
+        const double from = walk.at(knotted_start);
+        const double to = walk.at(knotted_start + seconds(36000));
+        walked += (to - from) * (to - from);
+    }
+    EXPECT_NEAR(product / 2000, 0, 0.1);
+    EXPECT_NEAR(std::sqrt(square / 2000), 1, 0.06);
+    EXPECT_NEAR(std::sqrt(walked / 2000), 0.01 * std::sqrt(36000), 0.12);
+}
+
+}  // namespace
+}  // namespace skyloop
