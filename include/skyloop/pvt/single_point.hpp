@@ -30,11 +30,11 @@ struct RangeEquation {
 
 /// How an epoch is solved.
 struct SinglePointSetup {
-    GpsTime time;  ///< of the corrections
-    WeightParameters weights;
+    GpsTime time{};  ///< of the corrections
+    WeightParameters weights{};
     Angle elevation_mask = Angle::degrees(-90);      ///< >= is used
     const RangeCorrections* corrections = nullptr;   ///< absent: none
-    std::optional<Position<Ecef>> start;             ///< absent: the centre of the Earth
+    std::optional<Position<Ecef>> start{};           ///< absent: the centre of the Earth
     std::optional<EllipsoidalHeight> held_height{};  ///< for solutions that three ranges must carry
 };
 
