@@ -11,6 +11,7 @@
 #include "skyloop/flow/observations.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/gnss/constants.hpp"
+#include "skyloop/gnss/dop.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
 #include "skyloop/gnss/orbit.hpp"
 #include "skyloop/gnss/signal.hpp"
