@@ -9,7 +9,7 @@ namespace {
 using Eigen::Vector3d;
 
 // How far the filter may lag in a manoeuvre.
-constexpr double tolerated_lag_m = 0.02;
+constexpr double tolerated_lag_m = 0.01;
 // Standard deviations of the velocity's noise that are not taken for a manoeuvre.
 constexpr double quiet_deviations = 3;
 // An innovation beyond these is a jump, which is followed at once.

@@ -11,12 +11,15 @@
 namespace skyloop {
 namespace {
 
-constexpr double converged_m = 1e-5;
+// Steps shrink with their square over the satellites' distance: after this one 1e-9 m are left.
+constexpr double converged_m = 1e-3;
 // The first steps go without corrections, until the place is known well enough for directions.
 constexpr double near_m = 1000;
 // A correction changes by at most some 3e-3 of the way that the receiver moves.
 constexpr double correction_reach_m = 2e-4;
-constexpr double weight_reach_m = 1;
+// Of the residuals' deviation: corrections need not be finer than noise.
+constexpr double noise_reach = 0.02;
+constexpr double weight_reach_m = 100;
 constexpr int most_steps = 20;
 constexpr int most_passes = 8;
 // Passes after which the mask decides no more, lest a satellite on its edge come and go.
@@ -93,7 +96,6 @@ public:
 
     // Corrects, weighs and solves until nothing moves.
     bool refine() {
-        const double reach = setup_.corrections ? correction_reach_m : weight_reach_m;
         for (int pass = 0; pass < most_passes; ++pass) {
             const Vector3d before = position_;
             correct(pass < masking_passes);
@@ -104,6 +106,8 @@ public:
                 step = *moved_by;
             }
             if (step >= converged_m) return false;
+            const double reach =
+                setup_.corrections ? std::max(correction_reach_m, noise_reach * misfit_deviation()) : weight_reach_m;
             if ((position_ - before).norm() < reach) break;
         }
         return true;
@@ -118,6 +122,7 @@ private:
     }
     void look();
     [[nodiscard]] ClockMeans means() const;
+    [[nodiscard]] double misfit_deviation();
     [[nodiscard]] NormalEquations normal_equations(const ClockMeans& clocks) const;
     std::optional<double> improve();
     [[nodiscard]] Dop dilution(const Geodetic& place, const SinglePoint& solution) const;
@@ -137,6 +142,9 @@ void Adjustment::look() {
             w.travel_s = (turned_by(w.transmission, w.travel_s) - position_).norm() / speed_of_light;
         }
         w.satellite = turned_by(w.transmission, w.travel_s);
+        // The travel time of the last look may be that of another place.
+        const double late = (w.satellite - position_).norm() / speed_of_light - w.travel_s;
+        w.satellite += late * earth_rotation_rate * Vector3d(w.satellite.y(), -w.satellite.x(), 0);
         const Vector3d way = w.satellite - position_;
         const double range = way.norm();
         w.travel_s = range / speed_of_light;
@@ -161,6 +169,21 @@ ClockMeans Adjustment::means() const {
         c.misfit /= c.weight;
     }
     return clocks;
+}
+
+// Of the ranges about their clocks, m.
+double Adjustment::misfit_deviation() {
+    look();
+    const ClockMeans clocks = means();
+    double sum = 0;
+    int count = 0;
+    for (const RangeWork& w : work_) {
+        if (w.weight == 0) continue;
+        const double misfit = w.misfit - clocks[w.clock].misfit;
+        sum += misfit * misfit;
+        ++count;
+    }
+    return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
 NormalEquations Adjustment::normal_equations(const ClockMeans& clocks) const {

@@ -39,7 +39,7 @@ constexpr double longest_range_m = 1e12;
 Transmitter moved(const Transmitter& transmitter, Seconds span) {
     const Eigen::Vector3d& r = transmitter.position.vector();
     const Eigen::Vector3d& v = transmitter.velocity.vector();
-    // Central gravity in the turning frame; what it leaves out is below 1e-9 m in 2 ms.
+    // Central gravity in the turning frame; what it leaves out is below 1e-8 m in 2 ms.
     constexpr double rate = earth_rotation_rate;
     const double gravity = -gravitational_constant_gps / std::pow(r.squaredNorm(), 1.5);
     const Eigen::Vector3d acceleration = gravity * r + Eigen::Vector3d(rate * rate * r.x() + 2 * rate * v.y(),

@@ -30,11 +30,11 @@ struct RangeEquation {
 
 /// How an epoch is solved.
 struct SinglePointSetup {
-    GpsTime time;  ///< of the corrections
-    WeightParameters weights;
+    GpsTime time{};  ///< of the corrections
+    WeightParameters weights{};
     Angle elevation_mask = Angle::degrees(-90);      ///< >= is used
     const RangeCorrections* corrections = nullptr;   ///< absent: none
-    std::optional<Position<Ecef>> start;             ///< absent: the centre of the Earth
+    std::optional<Position<Ecef>> start{};           ///< absent: the centre of the Earth
     std::optional<EllipsoidalHeight> held_height{};  ///< for solutions that three ranges must carry
 };
 
@@ -66,7 +66,8 @@ struct SinglePoint {
     [[nodiscard]] Metres clock() const { return clocks[reference].value_or(Metres(0)); }
 };
 
-/// Weighted least squares, iterated until nothing moves by 1e-5 m (MODELS.md 7.13). The clocks are eliminated: the
+/// Weighted least squares, iterated until less than 1e-8 m is left; corrections follow the position until they are
+/// finer than 1e-6 m, or than a ten-thousandth of the residuals (MODELS.md 7.13). The clocks are eliminated: the
 /// satellites of a system count against their weighted mean, so that one which is alone in its system tells nothing and
 /// is not used. DOPs come from unit weights; TDOP and GDOP take the reference clock.
 /// @return nothing for too few ranges or a singular geometry

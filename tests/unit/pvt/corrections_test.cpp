@@ -1,0 +1,98 @@
+#include "skyloop/pvt/corrections.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "skyloop/gnss/constants.hpp"
+#include "support/flat_geoid.hpp"
+
+namespace skyloop {
+namespace {
+
+const Geodetic odessa = Geodetic::degrees(46.5, 30.7, 60);
+const SkyDirection slanting{Angle::degrees(120), Angle::degrees(30)};
+const GpsTime noon = to_gps_time(2300, 216000.0 + 43200);
+constexpr Hertz l1(carrier_frequency_l1);
+
+TEST(RangeCorrections, HasADefaultIonosphereOnlyWhenAsked) {
+    CorrectionParameters parameters;
+    const RangeCorrections silent(parameters, {});
+    EXPECT_EQ(silent.at(odessa, noon).ionosphere(Constellation::gps, slanting, l1), Metres(0));
+    parameters.default_ionosphere = true;
+    const RangeCorrections assumed(parameters, {});
+    const KlobucharDelay model = klobuchar_delay(default_klobuchar_coefficients(), odessa, slanting, noon);
+    EXPECT_EQ(assumed.at(odessa, noon).ionosphere(Constellation::gps, slanting, l1), model.slant);
+    EXPECT_GT(model.slant, Metres(2.5));
+    parameters.ionosphere = IonosphereCorrection::none;
+    const RangeCorrections off(parameters, {});
+    EXPECT_EQ(off.at(odessa, noon).ionosphere(Constellation::gps, slanting, l1), Metres(0));
+}
+
+TEST(RangeCorrections, TakesEachSystemsOwnIonosphereWhereItIsHeard) {
+    BroadcastIonosphere heard(default_klobuchar_coefficients());
+    const Hertz e1 = l1;
+    const Hertz b1i = carrier_frequency(Signal::b1i);
+    const RangeCorrections gps_alone({}, {heard});
+    heard.galileo = std::array<double, 3>{100, 0.3, 0.002};
+    heard.beidou = KlobucharCoefficients{{2e-8, 0, 0, 0}, {1e5, 0, 0, 0}};
+    const RangeCorrections all({}, {heard});
+    CorrectionParameters klobuchar;
+    klobuchar.ionosphere = IonosphereCorrection::klobuchar;
+    const RangeCorrections forced(klobuchar, {heard});
+
+    const auto at = [](const RangeCorrections& c, Constellation s, Hertz f) {
+        return c.at(odessa, noon).ionosphere(s, slanting, f).value();
+    };
+    EXPECT_EQ(at(gps_alone, Constellation::galileo, e1), at(all, Constellation::gps, l1));
+    EXPECT_NE(at(all, Constellation::galileo, e1), at(all, Constellation::gps, l1));
+    EXPECT_EQ(at(forced, Constellation::galileo, e1), at(all, Constellation::gps, l1));
+    const double ratio = l1.value() / b1i.value();
+    EXPECT_NEAR(at(forced, Constellation::beidou, b1i), at(all, Constellation::gps, l1) * ratio * ratio, 1e-12);
+    EXPECT_NEAR(at(all, Constellation::beidou, b1i),
+                beidou_klobuchar_delay(*heard.beidou, odessa, slanting, noon).value(), 1e-12);
+    EXPECT_EQ(gps_alone.at(odessa, noon).ionosphere(Constellation::gps, {Angle(), Angle::degrees(-3)}, l1), Metres(0));
+}
+
+TEST(BeidouKlobuchar, HasItsNightAndItsNoonAtTheZenith) {
+    const KlobucharCoefficients c{{2e-8, 0, 0, 0}, {1e5, 0, 0, 0}};
+    const SkyDirection zenith{Angle(), Angle::degrees(90)};
+    // 14:00 local BDT time at longitude 0 is the peak; at night 5 ns are left.
+    const Geodetic greenwich = Geodetic::degrees(20, 0, 0);
+    const GpsTime peak = to_gps_time(2300, 86400.0 + 50400 + 14);
+    EXPECT_NEAR(beidou_klobuchar_delay(c, greenwich, zenith, peak).value(), speed_of_light * 25e-9, 1e-9);
+    EXPECT_NEAR(beidou_klobuchar_delay(c, greenwich, zenith, peak + std::chrono::hours(10)).value(),
+                speed_of_light * 5e-9, 1e-9);
+    // A sixth of the period before the peak the cosine is one half.
+    EXPECT_NEAR(beidou_klobuchar_delay(c, greenwich, zenith, advanced(peak, Seconds(-1e5 / 6))).value(),
+                speed_of_light * 15e-9, 1e-9);
+}
+
+TEST(RangeCorrections, MapsTheZenithTroposphere) {
+    CorrectionParameters parameters;
+    parameters.troposphere = TroposphereCorrection::saastamoinen;
+    const RangeCorrections simple(parameters, {});
+    const double expected = saastamoinen_delay(odessa.latitude, MslHeight{Metres(60)}, slanting.elevation, 0.5).value();
+    EXPECT_NEAR(simple.at(odessa, noon).troposphere(slanting.elevation).value(), expected, 1e-12);
+    const RangeCorrections niell({}, {});
+    EXPECT_NEAR(niell.at(odessa, noon).troposphere(slanting.elevation).value(), expected, 0.05);
+    EXPECT_NEAR(niell.at(odessa, noon).troposphere(Angle::degrees(90)).value(),
+                simple.at(odessa, noon).troposphere(Angle::degrees(90)).value(), 1e-9);
+    EXPECT_TRUE(std::isfinite(simple.at(odessa, noon).troposphere(Angle::degrees(-10)).value()));
+    parameters.troposphere = TroposphereCorrection::none;
+    const RangeCorrections off(parameters, {});
+    EXPECT_EQ(off.at(odessa, noon).troposphere(slanting.elevation), Metres(0));
+}
+
+TEST(RangeCorrections, CountsHeightsFromTheSeaWhenThereIsAGeoid) {
+    const auto geoid = test::flat_geoid(40);
+    ASSERT_TRUE(geoid);
+    CorrectionParameters parameters;
+    parameters.troposphere = TroposphereCorrection::saastamoinen;
+    const RangeCorrections with(parameters, {{}, &*geoid});
+    const double expected = saastamoinen_delay(odessa.latitude, MslHeight{Metres(20)}, slanting.elevation, 0.5).value();
+    EXPECT_NEAR(with.at(odessa, noon).troposphere(slanting.elevation).value(), expected, 1e-6);
+}
+
+}  // namespace
+}  // namespace skyloop

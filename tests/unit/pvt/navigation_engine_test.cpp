@@ -1,0 +1,380 @@
+#include "skyloop/pvt/navigation_engine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "skyloop/base/random.hpp"
+#include "skyloop/pvt/corrections.hpp"
+#include "support/flat_geoid.hpp"
+#include "synthetic_sky.hpp"
+
+namespace skyloop {
+namespace {
+
+using test::measure;
+using test::receiver_at;
+using test::sample_time;
+using test::SyntheticSky;
+using test::TrueReceiver;
+
+const Geodetic antenna = Geodetic::degrees(46.5, 30.7, 60);
+
+NavigationParameters plain(FilterKind filter) {
+    NavigationParameters parameters;
+    parameters.corrections.ionosphere = IonosphereCorrection::none;
+    parameters.corrections.troposphere = TroposphereCorrection::none;
+    parameters.filter.kind = filter;
+    return parameters;
+}
+
+// The receiver `seconds` later.
+TrueReceiver later(TrueReceiver receiver, double seconds) {
+    receiver.position = receiver.position_at(seconds);
+    receiver.time = advanced(receiver.time, Seconds(seconds));
+    receiver.clock_bias_m += seconds * receiver.clock_drift_mps;
+    return receiver;
+}
+
+double error_of(const Fix& fix, const TrueReceiver& receiver) {
+    return (to_ecef(fix.position).vector() - receiver.position).norm();
+}
+
+TEST(NavigationEngine, FindsAPerfectReceiverWithAndWithoutAFilter) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    for (const FilterKind filter : {FilterKind::none, FilterKind::smoothed})
+        for (const double speed : {0.0, 60.0}) {
+            NavigationEngine engine(plain(filter), {&sky});
+            TrueReceiver receiver = receiver_at(antenna, sample_time - std::chrono::seconds(10));
+            receiver.velocity = LocalFrame(antenna).to_ecef(Velocity<Enu>(0.6 * speed, -0.8 * speed, 0)).vector();
+            for (int s = 0; s < 20; ++s) {
+                const TrueReceiver now = later(receiver, s);
+                const Fix fix = engine.solve(measure(sky, now), {});
+                EXPECT_EQ(fix.type, FixType::fix_3d);
+                EXPECT_EQ(fix.time, now.time);
+                // An angle of one unit in the last place is 1e-9 m.
+                EXPECT_LT(error_of(fix, now), 2e-6) << s << ' ' << speed;
+                EXPECT_NEAR(fix.clock_bias.value(), now.clock_bias_m, 2e-6);
+                EXPECT_NEAR(fix.clock_drift.value(), 42, 1e-6);
+                const Eigen::Vector3d enu =
+                    LocalFrame(to_geodetic(Position<Ecef>(now.position))).to_enu(Velocity<Ecef>(now.velocity)).vector();
+                EXPECT_NEAR(fix.velocity.east, enu.x(), 2e-6);
+                EXPECT_NEAR(fix.velocity.north, enu.y(), 2e-6);
+                EXPECT_NEAR(fix.velocity.down, -enu.z(), 2e-6);
+                EXPECT_NEAR(fix.speed.value(), std::hypot(enu.x(), enu.y()), 2e-6);
+                if (speed > 0) {
+                    EXPECT_NEAR(fix.course.rad(), std::atan2(enu.x(), enu.y()), 1e-6);
+                }
+            }
+        }
+}
+
+TEST(NavigationEngine, IsExactAtThePolesTheDateLineAndTheEndOfTheWeek) {
+    const GpsTime sunday = to_gps_time(2300, 0.0);
+    const SyntheticSky sky = test::synthetic_sky(sunday, test::four_systems);
+    for (const Geodetic& place : {Geodetic::degrees(90, 0, 100), Geodetic::degrees(-90, 0, 2800),
+                                  Geodetic::degrees(10, 180, 5), Geodetic::degrees(-45, -179.99999, 300)}) {
+        NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
+        for (int s = -3; s <= 3; ++s) {
+            const TrueReceiver receiver = receiver_at(place, sunday + std::chrono::seconds(s));
+            const Fix fix = engine.solve(measure(sky, receiver), {});
+            EXPECT_EQ(fix.type, FixType::fix_3d);
+            EXPECT_LT(error_of(fix, receiver), 2e-6);
+            EXPECT_EQ(fix.time, receiver.time);
+        }
+    }
+}
+
+TEST(NavigationEngine, TakesTheIonosphereOutWithTwoCarriers) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    NavigationParameters parameters = plain(FilterKind::none);
+    parameters.corrections.ionosphere_free = true;
+    NavigationEngine engine(parameters, {&sky});
+    const TrueReceiver receiver = receiver_at(antenna, sample_time);
+    test::MeasureOptions options;
+    options.all_signals = true;
+    const Observations observations =
+        measure(sky, receiver, options, [](const SatelliteId& id, const SkyDirection& d, Hertz carrier) {
+            return ionosphere_delay_at(Metres((3 + id.number % 5) / std::sin(d.elevation.rad())), carrier).value();
+        });
+    ReceiverSettings settings;
+    const Fix fix = engine.solve(observations, settings);
+    EXPECT_LT(error_of(fix, receiver), 1e-5);
+    NavigationEngine single(plain(FilterKind::none), {&sky});
+    EXPECT_GT(error_of(single.solve(observations, settings), receiver), 0.5);
+}
+
+TEST(NavigationEngine, ReportsSatellitesUsedAndUnusedAscending) {
+    SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    const TrueReceiver receiver = receiver_at(antenna, sample_time);
+    test::MeasureOptions horizon;
+    horizon.mask = Angle::degrees(0.01);
+    const Observations all = measure(sky, receiver, horizon);
+    Observations observations = all;
+    const SatelliteId dropped = observations.signals[2].satellite;
+    observations.signals.erase(observations.signals.begin() + 2);
+    const SatelliteId weak = observations.signals[4].satellite;
+    observations.signals[4].cn0 = DbHz(20);
+    const SatelliteId faulty = observations.signals[6].satellite;
+    *observations.signals[6].pseudorange += Metres(200);
+    ReceiverSettings settings;
+    settings.minimum_cn0 = DbHz(25);
+    NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
+    const Fix fix = engine.solve(observations, settings);
+    EXPECT_LT(error_of(fix, receiver), 2e-6);
+    ASSERT_EQ(fix.satellites.size(), all.signals.size());
+    const LocalFrame frame(antenna);
+    for (std::size_t i = 0; i < fix.satellites.size(); ++i) {
+        const SatelliteStatus& s = fix.satellites[i];
+        EXPECT_EQ(s.id, all.signals[i].satellite);
+        const LookAngles look = frame.look_angles(
+            Position<Ecef>(test::true_range(*sky.ephemeris(s.id, sample_time), receiver, 0).satellite));
+        EXPECT_NEAR(s.elevation.deg(), look.elevation.deg(), 1e-3);
+        EXPECT_NEAR(s.azimuth.deg(), look.azimuth.deg(), 1e-2);
+        EXPECT_TRUE(s.has_ephemeris && s.healthy);
+        EXPECT_EQ(s.cn0.has_value(), s.id != dropped);
+        const bool low = s.elevation < settings.elevation_mask;
+        EXPECT_EQ(s.used, s.id != dropped && s.id != weak && s.id != faulty && !low) << to_string(s.id);
+        if (s.id == faulty) {
+            EXPECT_NEAR(s.residual->value(), 200, 1e-3);
+        }
+        if (s.used) {
+            EXPECT_NEAR(s.residual->value(), 0, 1e-6);
+        }
+    }
+}
+
+TEST(NavigationEngine, HearsTheSatellitesBeforeItUsesThem) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, {Constellation::gps, Constellation::galileo});
+    for (const StartKind start : {StartKind::hot, StartKind::warm, StartKind::cold}) {
+        NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
+        ReceiverSettings settings;
+        settings.start = start;
+        int first_fix = -1;
+        for (int s = 0; s < 40 && first_fix < 0; ++s) {
+            const TrueReceiver now = later(receiver_at(antenna, sample_time), s);
+            Observations observations = measure(sky, now);
+            if (s < 5) observations.signals.clear();
+            const Fix fix = engine.solve(observations, settings);
+            if (fix.type != FixType::none) {
+                first_fix = s;
+                EXPECT_LT(error_of(fix, now), 2e-6);
+            } else if (s >= 5) {
+                ASSERT_EQ(fix.satellites.size(), observations.signals.size());
+                EXPECT_FALSE(fix.satellites[0].has_ephemeris);
+                EXPECT_TRUE(fix.satellites[0].cn0);
+                EXPECT_FALSE(fix.satellites[0].used);
+            }
+        }
+        EXPECT_EQ(first_fix, start == StartKind::hot ? 5 : 35);
+    }
+}
+
+TEST(NavigationEngine, ForgetsAtARestartAndNotAtAHotOne) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
+    ReceiverSettings settings;
+    const auto fix_at = [&](int s) {
+        return engine.solve(measure(sky, later(receiver_at(antenna, sample_time), s)), settings);
+    };
+    EXPECT_EQ(fix_at(0).type, FixType::fix_3d);
+    settings.restarts = 1;
+    EXPECT_EQ(fix_at(1).type, FixType::fix_3d);
+    settings.restarts = 2;
+    settings.start = StartKind::cold;
+    for (int s = 2; s < 32; ++s)
+        EXPECT_EQ(fix_at(s).type, FixType::none) << s;
+    EXPECT_EQ(fix_at(32).type, FixType::fix_3d);
+    // No almanac yet: nothing is known of what is not tracked.
+    for (const SatelliteStatus& s : fix_at(33).satellites)
+        EXPECT_TRUE(s.cn0);
+}
+
+TEST(NavigationEngine, CannotReadTheDataOfWeakSignals) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
+    ReceiverSettings settings;
+    settings.start = StartKind::cold;
+    for (int s = 0; s < 60; ++s) {
+        Observations observations = measure(sky, later(receiver_at(antenna, sample_time), s));
+        for (Observation& o : observations.signals)
+            o.cn0 = DbHz(22);
+        EXPECT_EQ(engine.solve(observations, settings).type, FixType::none);
+    }
+}
+
+TEST(NavigationEngine, CoastsThenGivesUpThenReturns) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
+    TrueReceiver receiver = receiver_at(antenna, sample_time);
+    receiver.velocity = {15, -10, 5};
+    Metres accuracy;
+    for (int s = 0; s < 20; ++s) {
+        const TrueReceiver now = later(receiver, s);
+        Observations observations = measure(sky, now);
+        if (s >= 10 && s < 15) observations.signals.clear();
+        const Fix fix = engine.solve(observations, {});
+        const FixType expected = s < 10 || s >= 15 ? FixType::fix_3d : s < 12 ? FixType::dead_reckoning : FixType::none;
+        EXPECT_EQ(fix.type, expected) << s;
+        EXPECT_EQ(fix.time, now.time);
+        if (fix.type != FixType::none) {
+            EXPECT_LT(error_of(fix, now), 1e-5);
+        }
+        if (s == 9) accuracy = fix.horizontal_accuracy;
+        if (s == 11) {
+            EXPECT_GT(fix.horizontal_accuracy, accuracy);
+        }
+        if (s >= 10 && s < 15) {
+            EXPECT_EQ(fix.satellites_used(), 0);
+        }
+    }
+}
+
+TEST(NavigationEngine, HoldsTheHeightWithThreeSatellites) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, {Constellation::gps});
+    NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
+    for (int s = 0; s < 6; ++s) {
+        const TrueReceiver now = later(receiver_at(antenna, sample_time), s);
+        Observations observations = measure(sky, now);
+        if (s >= 3) observations.signals.resize(3);
+        const Fix fix = engine.solve(observations, {});
+        EXPECT_EQ(fix.type, s < 3 ? FixType::fix_3d : FixType::fix_2d);
+        EXPECT_LT(error_of(fix, now), 1e-5);
+    }
+}
+
+TEST(NavigationEngine, ReportsAccuraciesThatHold) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    const WeightParameters weights;
+    RandomStream noise(7, "accuracy");
+    NavigationEngine engine(plain(FilterKind::none), {&sky});
+    const TrueReceiver receiver = receiver_at(antenna, sample_time);
+    const LocalFrame frame(antenna);
+    int within = 0, vertical = 0, speed = 0;
+    constexpr int epochs = 1500;
+    const Observations perfect = measure(sky, receiver);
+    const Fix clean = engine.solve(perfect, {});
+    for (int epoch = 0; epoch < epochs; ++epoch) {
+        Observations observations = perfect;
+        observations.receive_time += std::chrono::nanoseconds(0);
+        for (Observation& o : observations.signals) {
+            for (const SatelliteStatus& s : clean.satellites)
+                if (s.id == o.satellite)
+                    *o.pseudorange +=
+                        Metres(noise.normal() * std::hypot(weights.floor.value(),
+                                                           weights.at_zenith.value() / std::sin(s.elevation.rad())));
+            *o.doppler += Hertz(noise.normal() * 0.02 * o.carrier.value() / speed_of_light);
+        }
+        const Fix fix = engine.solve(observations, {});
+        const Eigen::Vector3d error = frame.to_enu(to_ecef(fix.position)).vector();
+        within += std::hypot(error.x(), error.y()) <= fix.horizontal_accuracy.value() ? 1 : 0;
+        vertical += std::abs(error.z()) <= fix.vertical_accuracy.value() ? 1 : 0;
+        const double v2 =
+            std::pow(fix.velocity.north, 2) + std::pow(fix.velocity.east, 2) + std::pow(fix.velocity.down, 2);
+        speed += std::sqrt(v2) <= fix.speed_accuracy.value() ? 1 : 0;
+    }
+    EXPECT_NEAR(within, 0.645 * epochs, 0.06 * epochs);
+    EXPECT_NEAR(vertical, 0.683 * epochs, 0.06 * epochs);
+    EXPECT_NEAR(speed, 0.63 * epochs, 0.08 * epochs);
+}
+
+TEST(NavigationEngine, WidensItsAccuracyWhenResidualsDoNotFit) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, {Constellation::gps});
+    NavigationEngine engine(plain(FilterKind::none), {&sky});
+    Observations observations = measure(sky, receiver_at(antenna, sample_time));
+    ASSERT_GE(observations.signals.size(), 5U);
+    observations.signals.resize(5);
+    const Fix good = engine.solve(observations, {});
+    *observations.signals[1].pseudorange += Metres(500);
+    const Fix bad = engine.solve(observations, {});
+    EXPECT_GT(bad.horizontal_accuracy.value(), 5 * good.horizontal_accuracy.value());
+}
+
+TEST(NavigationEngine, SolvesTimeAloneWhereTheAntennaWasSurveyed) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    NavigationParameters parameters = plain(FilterKind::smoothed);
+    parameters.fixed_position = antenna;
+    NavigationEngine engine(parameters, {&sky});
+    ReceiverSettings settings;
+    settings.dynamic_model = DynamicModel::stationary;
+    const TrueReceiver receiver = receiver_at(antenna, sample_time);
+    const Fix fix = engine.solve(measure(sky, receiver), settings);
+    EXPECT_EQ(fix.type, FixType::time_only);
+    EXPECT_NEAR(fix.clock_bias.value(), receiver.clock_bias_m, 1e-6);
+    EXPECT_GT(fix.satellites_used(), 10);
+    settings.dynamic_model = DynamicModel::portable;
+    EXPECT_EQ(engine.solve(measure(sky, later(receiver, 1)), settings).type, FixType::fix_3d);
+}
+
+TEST(NavigationEngine, NamesDifferentialFixes) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    const Observations observations = measure(sky, receiver_at(antenna, sample_time));
+    const auto fix_with = [&](DifferentialKind kind) {
+        NavigationParameters parameters = plain(FilterKind::none);
+        parameters.differential.kind = kind;
+        return NavigationEngine(parameters, {&sky}).solve(observations, {});
+    };
+    const Fix alone = fix_with(DifferentialKind::none);
+    EXPECT_EQ(fix_with(DifferentialKind::sbas).type, FixType::dgnss);
+    EXPECT_NEAR(fix_with(DifferentialKind::sbas).horizontal_accuracy.value(), alone.horizontal_accuracy.value() / 2,
+                1e-9);
+    EXPECT_EQ(fix_with(DifferentialKind::rtk_float).type, FixType::rtk_float);
+    EXPECT_EQ(fix_with(DifferentialKind::rtk_fixed).type, FixType::rtk_fixed);
+    EXPECT_EQ(fix_with(DifferentialKind::rtk_fixed).horizontal_accuracy, Metres(0.014));
+}
+
+TEST(NavigationEngine, KeepsToTheLimitsOfItsDynamicModel) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    const TrueReceiver balloon = receiver_at(Geodetic::degrees(46, 30, 30000), sample_time);
+    NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
+    ReceiverSettings settings;
+    EXPECT_EQ(engine.solve(measure(sky, balloon), settings).type, FixType::none);
+    settings.dynamic_model = DynamicModel::airborne_1g;
+    EXPECT_EQ(engine.solve(measure(sky, later(balloon, 1)), settings).type, FixType::fix_3d);
+}
+
+TEST(NavigationEngine, FindsAClockThatWanderedOffWhileNoSatelliteWasSeen) {
+    // A record that is sent from a whole second on is chosen by true time, however wrong the receiver's clock is.
+    SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    NavigationEngine engine(plain(FilterKind::none), {&sky});
+    TrueReceiver receiver = receiver_at(antenna, sample_time);
+    receiver.clock_bias_m = -0.4 * speed_of_light;
+    const Fix fix = engine.solve(measure(sky, receiver), {});
+    EXPECT_EQ(fix.time, receiver.time);
+    EXPECT_LT(error_of(fix, receiver), 2e-6);
+    Observations jumped = measure(sky, receiver_at(antenna, sample_time + std::chrono::seconds(1)));
+    jumped.clock_was_set = true;
+    const Fix after = engine.solve(jumped, {});
+    EXPECT_EQ(after.time, sample_time + std::chrono::seconds(1));
+}
+
+TEST(NavigationEngine, ReportsTheGeoidAtTheFix) {
+    const auto geoid = test::flat_geoid(27.5);
+    ASSERT_TRUE(geoid);
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    NavigationEngine engine(plain(FilterKind::none), {&sky, &*geoid});
+    const Fix fix = engine.solve(measure(sky, receiver_at(antenna, sample_time)), {});
+    EXPECT_NEAR(fix.geoid_undulation.value(), 27.5, 1e-6);
+    EXPECT_EQ(fix.leap_seconds, 18);
+}
+
+TEST(NavigationEngine, SurvivesNonsense) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
+    Observations observations = measure(sky, receiver_at(antenna, sample_time));
+    RandomStream random(1, "nonsense");
+    for (int s = 0; s < 30; ++s) {
+        Observations broken = observations;
+        broken.receive_time += std::chrono::seconds(s);
+        for (Observation& o : broken.signals) {
+            o.pseudorange = Metres(random.normal() * std::pow(10, 30 * random.uniform()));
+            if (s % 3 == 0) o.pseudorange = Metres(std::nan(""));
+            o.doppler = Hertz(random.normal() * 1e6);
+        }
+        const Fix fix = engine.solve(broken, {});
+        EXPECT_EQ(fix.satellites.empty(), false);
+    }
+}
+
+}  // namespace
+}  // namespace skyloop
