@@ -140,7 +140,7 @@ std::string shortened(const std::string& name) {
     std::size_t start = name.size() - longest_name;
     while (start < name.size() && (name[start] & 0xC0) == 0x80)
         ++start;
-    return "…" + name.substr(start);
+    return std::string("…").append(name.substr(start));
 }
 
 void draw_cloud(SvgDocument& svg, const ScatterPanel& panel, double reach) {
@@ -217,7 +217,7 @@ std::string scatter_plot_svg(const ScatterCloud& candidate, const ScatterCloud& 
     const ScatterPanel b = scatter_panel(reference, reference_colour, 1, quantity);
     const double reach = scatter_reach(a, b);
     SvgDocument svg(scatter_plot_width, scatter_plot_height,
-                    "Position errors: " + candidate.name + ", " + reference.name);
+                    fmt::format("Position errors: {}, {}", candidate.name, reference.name));
     style::draw_sheet(svg, {scatter_plot_width, scatter_plot_height});
     draw_scatter_heading(svg, a, b);
     draw_cloud(svg, a, reach);

@@ -82,7 +82,7 @@ constexpr std::array<AlmanacRange, almanac_field_count> almanac_ranges{{
     {"Mean Anom", -7, 7},
     {"Af0", -1, 1},
     {"Af1", -1e-6, 1e-6},
-    {"week", 0, 1e5},
+    {"week", 0, 8191},  // 13 bits, as CNAV counts them
 }};
 
 // The words for the first value that cannot be, or nothing.
