@@ -16,6 +16,7 @@ Action add_simulate_command(CLI::App& app);
 Action add_sky_command(CLI::App& app);
 Action add_check_command(CLI::App& app);
 Action add_compare_command(CLI::App& app);
+Action add_solve_command(CLI::App& app);
 Action add_boards_command(CLI::App& app);
 
 }  // namespace skyloop::host

@@ -20,7 +20,7 @@ namespace {
 
 using skyloop::host::Action;
 
-constexpr std::array<std::string_view, 6> commands{"run", "simulate", "sky", "check", "compare", "boards"};
+constexpr std::array<std::string_view, 7> commands{"run", "simulate", "sky", "check", "compare", "solve", "boards"};
 constexpr std::array<std::string_view, 8> later_commands{"devices",    "decode",        "replay", "scene",
                                                          "trajectory", "scenario-from", "ctl",    "campaign"};
 
@@ -39,7 +39,8 @@ int run_program(int argc, char** argv) {
     app.require_subcommand(1);
     const std::array<Action (*)(CLI::App&), commands.size()> add{
         skyloop::host::add_run_command,   skyloop::host::add_simulate_command, skyloop::host::add_sky_command,
-        skyloop::host::add_check_command, skyloop::host::add_compare_command,  skyloop::host::add_boards_command};
+        skyloop::host::add_check_command, skyloop::host::add_compare_command,  skyloop::host::add_solve_command,
+        skyloop::host::add_boards_command};
     std::vector<Action> actions;
     for (const auto add_command : add)
         actions.push_back(add_command(app));

@@ -65,6 +65,7 @@ public:
 
 private:
     void begin(const ReceiverSettings& settings, GpsTime time);
+    TransmitterSource& transmitters() { return knowledge_.transmitters ? *knowledge_.transmitters : transmitters_; }
     [[nodiscard]] GpsTime presumed_time(const Observations& observations) const;
     EpochSolution solve_epoch(const Observations& observations, const ReceiverSettings& settings);
     void add_equations(const Observations& observations, const ReceiverSettings& settings, EpochSolution& epoch);
@@ -124,11 +125,11 @@ GpsTime NavigationEngine::State::presumed_time(const Observations& observations)
 
 std::optional<RangeEquation> NavigationEngine::State::equation(const Observation& first, const Observation* second,
                                                                GpsTime receive_time) {
-    std::optional<Transmitter> t1 = transmitters_.at(first.satellite, first.signal, receive_time, *first.pseudorange);
+    std::optional<Transmitter> t1 = transmitters().at(first.satellite, first.signal, receive_time, *first.pseudorange);
     if (!t1) return std::nullopt;
     RangeEquation e{first.satellite, *t1, *first.pseudorange, first.carrier, first.pseudorange_deviation, false};
     if (second == nullptr) return e;
-    const auto t2 = transmitters_.at(second->satellite, second->signal, receive_time, *second->pseudorange);
+    const auto t2 = transmitters().at(second->satellite, second->signal, receive_time, *second->pseudorange);
     if (!t2) return e;
     const double ratio = first.carrier.value() / second->carrier.value();
     const double b = -1 / (ratio * ratio - 1);

@@ -9,15 +9,17 @@
 #include "skyloop/geo/geoid.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
 #include "skyloop/pvt/navigation_parameters.hpp"
+#include "skyloop/pvt/transmitter.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
 
-/// What the receiver has from the satellites and from its maker. Both outlive the engine.
+/// What the receiver has from the satellites and from its maker. All of it outlives the engine.
 struct NavigationKnowledge {
     const NavigationSource* broadcast = nullptr;  ///< the records that the satellites send
     const Geoid* geoid = nullptr;                 ///< may be absent
     LeapSeconds leap_seconds = LeapSeconds::announced();
+    TransmitterSource* transmitters = nullptr;  ///< orbits and clocks in place of those of the records; may be absent
 };
 
 /// Solves position, velocity and time, watches the residuals, and smooths.

@@ -1,0 +1,184 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <memory>
+
+#include "commands.hpp"
+#include "data_folders.hpp"
+#include "run_session.hpp"
+#include "skyloop/emulator/output_file.hpp"
+#include "skyloop/gnss/navigation_data.hpp"
+#include "skyloop/pvt/navigation_engine.hpp"
+#include "skyloop/rinex/observation_reader.hpp"
+#include "skyloop/rinex/precise_orbit_file.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop::host {
+namespace {
+
+struct SolveOptions {
+    std::string observations;
+    std::vector<std::string> nav;
+    std::string sp3;
+    std::string out;
+    std::vector<std::string> systems;
+    double mask_deg = 10;
+    std::string ionosphere = "klobuchar";
+    std::string troposphere = "saastamoinen";
+    std::string filter = "none";
+    double humidity = 0.7;
+    Verbosity verbosity;
+};
+
+constexpr std::string_view solved_header =
+    "time_utc,gps_week,tow_s,lat_deg,lon_deg,height_m,vel_north_mps,vel_east_mps,vel_down_mps,speed_mps,course_deg,"
+    "fix_type,satellites_used,gdop,pdop,hdop,vdop,tdop,h_acc_m,v_acc_m,clock_bias_m\n";
+
+std::string solved_row(const Fix& fix) {
+    const WeekAndTow gps = week_and_tow(fix.time);
+    std::string row = fmt::format("{},{},{:.3f},", format_utc(to_utc(fix.time, LeapSeconds::announced())), gps.week,
+                                  gps.tow_seconds());
+    if (!fix.has_position()) return row + fmt::format(",,,,,,,,{},0,,,,,,,,\n", fix_type_name(fix.type));
+    row += fmt::format("{:.9f},{:.9f},{:.4f},", fix.position.latitude.deg(), fix.position.longitude.deg(),
+                       fix.position.height.above_ellipsoid.value());
+    row += fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},", fix.velocity.north, fix.velocity.east, fix.velocity.down,
+                       fix.speed.value(), fix.course.deg());
+    row += fmt::format("{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},", fix_type_name(fix.type), fix.satellites_used(),
+                       fix.dop.gdop, fix.dop.pdop, fix.dop.hdop, fix.dop.vdop, fix.dop.tdop);
+    return row + fmt::format("{:.3f},{:.3f},{:.4f}\n", fix.horizontal_accuracy.value(), fix.vertical_accuracy.value(),
+                             fix.clock_bias.value());
+}
+
+NavigationParameters parameters_of(const SolveOptions& options) {
+    NavigationParameters p;
+    p.corrections.ionosphere = options.ionosphere == "none"        ? IonosphereCorrection::none
+                               : options.ionosphere == "klobuchar" ? IonosphereCorrection::klobuchar
+                                                                   : IonosphereCorrection::broadcast;
+    p.corrections.troposphere = options.troposphere == "none"           ? TroposphereCorrection::none
+                                : options.troposphere == "saastamoinen" ? TroposphereCorrection::saastamoinen
+                                                                        : TroposphereCorrection::niell;
+    p.corrections.relative_humidity = options.humidity;
+    p.corrections.default_ionosphere = true;
+    p.filter.kind = options.filter == "none" ? FilterKind::none : FilterKind::smoothed;
+    return p;
+}
+
+ReceiverSettings settings_of(const SolveOptions& options) {
+    ReceiverSettings settings;
+    settings.elevation_mask = Angle::degrees(options.mask_deg);
+    settings.minimum_cn0 = DbHz(0);  // a file may not tell it
+    settings.dynamic_model = DynamicModel::airborne_4g;
+    for (const std::string& name : options.systems)
+        if (const auto system = constellation_from_name(name))
+            settings.signals.insert({*system, first_signal(*system)});
+    return settings;
+}
+
+// The broadcast records for the span of the observations; none without a file.
+Result<std::unique_ptr<NavigationSource>> broadcast_of(const SolveOptions& options, const ObservationFile& file,
+                                                       const Messages& messages) {
+    if (options.nav.empty()) return std::make_unique<NavigationData>(std::vector<Ephemeris>{}, std::nullopt, "nothing");
+    Scenario scenario;
+    scenario.sky.navigation.assign(options.nav.begin(), options.nav.end());
+    scenario.run.start = file.epochs.front().receive_time;
+    scenario.run.duration = difference(file.epochs.back().receive_time, file.epochs.front().receive_time);
+    auto loaded = load_navigation(scenario, *scenario.run.start, false);
+    if (!loaded) return fail(loaded.error());
+    for (const std::string& warning : loaded->warnings)
+        messages.warning(warning);
+    return std::move(loaded->source);
+}
+
+// Observation files may leave out the channels of GLONASS, which the broadcast records know.
+void set_glonass_carriers(Observations& epoch, const NavigationSource& broadcast) {
+    for (Observation& o : epoch.signals) {
+        if (o.satellite.constellation != Constellation::glonass) continue;
+        const auto record = broadcast.ephemeris(o.satellite, epoch.receive_time);
+        const auto* glonass = record ? std::get_if<GlonassEphemeris>(&*record) : nullptr;
+        if (glonass) o.carrier = carrier_frequency(o.signal, glonass->frequency_channel);
+    }
+}
+
+struct SolvedCounts {
+    std::size_t epochs = 0, fixes = 0;
+};
+
+SolvedCounts solve_epochs(ObservationFile& file, NavigationEngine& engine, const ReceiverSettings& settings,
+                          const NavigationSource& broadcast, OutputFile& out) {
+    SolvedCounts counts;
+    out.write(solved_header);
+    for (Observations& epoch : file.epochs) {
+        if (!settings.signals.empty())
+            std::erase_if(epoch.signals,
+                          [&](const Observation& o) { return !settings.tracks(o.satellite.constellation, o.signal); });
+        set_glonass_carriers(epoch, broadcast);
+        const Fix fix = engine.solve(epoch, settings);
+        out.write(solved_row(fix));
+        ++counts.epochs;
+        counts.fixes += fix.has_position() ? 1 : 0;
+    }
+    return counts;
+}
+
+int solve_file(const SolveOptions& options) {
+    const Messages messages(options.verbosity);
+    if (options.nav.empty() && options.sp3.empty())
+        return messages.error({ErrorCode::usage,
+                               "solve needs orbits; give navigation data with --nav or an SP3 file "
+                               "with --sp3"});
+    auto file = read_observation_file(options.observations);
+    if (!file) return messages.error(file.error());
+    for (const std::string& warning : file->warnings)
+        messages.warning(warning);
+    const auto broadcast = broadcast_of(options, *file, messages);
+    if (!broadcast) return messages.error(broadcast.error());
+    std::optional<PreciseOrbitFile> precise;
+    std::optional<PreciseTransmitters> transmitters;
+    if (!options.sp3.empty()) {
+        auto read = read_precise_orbit_file(options.sp3);
+        if (!read) return messages.error(read.error());
+        precise = std::move(*read);
+        transmitters.emplace(precise->orbits, options.nav.empty() ? nullptr : broadcast->get());
+    }
+    // Heights above the ellipsoid are taken for those above the sea, as other solvers do.
+    NavigationEngine engine(parameters_of(options), {broadcast->get(), nullptr, LeapSeconds::announced(),
+                                                     transmitters ? &*transmitters : nullptr});
+    auto out = OutputFile::create(options.out.empty() ? "/dev/stdout" : options.out);
+    if (!out) return messages.error(out.error());
+    const SolvedCounts counts = solve_epochs(*file, engine, settings_of(options), **broadcast, *out);
+    out->flush();
+    if (out->failure()) return messages.error(*out->failure());
+    messages.info(fmt::format("{} epochs, {} with a fix", counts.epochs, counts.fixes));
+    return 0;
+}
+
+}  // namespace
+
+Action add_solve_command(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("solve", "Positions from a RINEX observation file, by the receiver's engine");
+    auto options = std::make_shared<SolveOptions>();
+    command->add_option("OBSERVATIONS", options->observations, "RINEX 2, 3 or 4 observation file, gzip or not")
+        ->required();
+    command->add_option("--nav", options->nav, "RINEX navigation file; repeatable")->allow_extra_args(false);
+    command->add_option("--sp3", options->sp3, "Precise orbits and clocks in place of the broadcast ones");
+    command->add_option("--out", options->out, "Where the fixes go, as CSV; default: standard output");
+    command->add_option("--systems", options->systems, "Only these: gps galileo beidou glonass qzss sbas navic")
+        ->delimiter(',')
+        ->check(CLI::IsMember(std::vector<std::string>(constellation_names.begin(), constellation_names.end())));
+    command->add_option("--mask", options->mask_deg, "Elevation mask, degrees; default 10")
+        ->check(CLI::Range(0.0, 90.0));
+    command->add_option("--ionosphere", options->ionosphere, "Correction: none, broadcast or klobuchar (default)")
+        ->check(CLI::IsMember({"none", "broadcast", "klobuchar"}));
+    command->add_option("--troposphere", options->troposphere, "Correction: none, saastamoinen (default) or niell")
+        ->check(CLI::IsMember({"none", "saastamoinen", "niell"}));
+    command->add_option("--humidity", options->humidity, "Relative humidity that is assumed, 0 to 1; default 0.7")
+        ->check(CLI::Range(0.0, 1.0));
+    command->add_option("--filter", options->filter, "none (default): every epoch by itself; smoothed: as receivers do")
+        ->check(CLI::IsMember({"none", "smoothed"}));
+    add_verbosity_options(*command, options->verbosity);
+    return [options] { return solve_file(*options); };
+}
+
+}  // namespace skyloop::host
