@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "skyloop/base/text_file.hpp"
@@ -77,6 +78,27 @@ Result<void> keep_constellations(ReadRecords& all, const Scenario& scenario) {
                     all.description, constellation_list({present.begin(), present.end()}), constellation_list(wanted)));
 }
 
+// A line for each satellite; for a file that is full of them one line with all satellites.
+void warn_of_foreign_records(const std::vector<DroppedRecord>& dropped, std::vector<std::string>& warnings) {
+    constexpr std::size_t most_lines = 6;
+    std::map<SatelliteId, std::vector<const DroppedRecord*>> satellites;
+    for (const DroppedRecord& d : dropped)
+        satellites[satellite_of(d.record)].push_back(&d);
+    if (satellites.size() <= most_lines) {
+        for (const auto& [satellite, own] : satellites)
+            warnings.push_back(own.size() == 1
+                                   ? own.front()->reason
+                                   : fmt::format("{}; {} more of it likewise", own.front()->reason, own.size() - 1));
+        return;
+    }
+    std::vector<std::string> counts;
+    for (const auto& [satellite, own] : satellites)
+        counts.push_back(fmt::format("{} {}", to_string(satellite), own.size()));
+    warnings.push_back(
+        fmt::format("{} records are not of the satellite that they name, as the first: {}; by satellite {}",
+                    dropped.size(), dropped.front().reason, fmt::join(counts, ", ")));
+}
+
 Result<ReadRecords> read_all(const Scenario& scenario, GpsTime near, std::vector<std::string>& warnings) {
     ReadRecords all;
     for (const std::filesystem::path& path : scenario.sky.navigation) {
@@ -88,8 +110,7 @@ Result<ReadRecords> read_all(const Scenario& scenario, GpsTime near, std::vector
         all.description += (all.description.empty() ? "" : " ") + path.filename().string();
     }
     if (const Result<void> kept = keep_constellations(all, scenario); !kept) return fail(kept.error());
-    for (const DroppedRecord& dropped : drop_foreign_records(all.records))
-        warnings.push_back(dropped.reason);
+    warn_of_foreign_records(drop_foreign_records(all.records), warnings);
     return all;
 }
 

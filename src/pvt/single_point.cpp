@@ -31,6 +31,12 @@ constexpr double held_height_certainty = 1e8;  // weight among unit weights
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+double orbit_deviation(const WeightParameters& weights, Constellation constellation) {
+    if (constellation == Constellation::beidou) return weights.beidou_orbits.value();
+    if (constellation == Constellation::glonass) return weights.glonass_orbits.value();
+    return 0;
+}
+
 struct RangeWork {
     Vector3d transmission;  // satellite, in the frame of transmission
     Vector3d satellite;     // the same in the frame of reception
@@ -246,7 +252,8 @@ void Adjustment::correct(bool mask) {
         if (w.weight == 0) continue;
         const double s0 = setup_.weights.floor.value();
         const double s1 = setup_.weights.at_zenith.value() / std::max(std::sin(look.elevation.rad()), 0.02);
-        const double variance = s0 * s0 + s1 * s1 + e.deviation.value() * e.deviation.value();
+        const double orbits = orbit_deviation(setup_.weights, e.satellite.constellation);
+        const double variance = s0 * s0 + s1 * s1 + orbits * orbits + e.deviation.value() * e.deviation.value();
         w.weight = 1 / std::max(variance, 1e-6);
     }
 }

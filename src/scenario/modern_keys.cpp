@@ -92,6 +92,8 @@ void read_solution(TableReader& table, ModernSettings& settings) {
     NavigationParameters& p = settings.navigation;
     table.quantity("weight_floor_m", p.weights.floor, {0.001, 1000});
     table.quantity("weight_at_zenith_m", p.weights.at_zenith, {0, 1000});
+    table.quantity("weight_beidou_orbits_m", p.weights.beidou_orbits, {0, 1000});
+    table.quantity("weight_glonass_orbits_m", p.weights.glonass_orbits, {0, 1000});
     read_filter(table, p.filter);
     table.boolean("raim", p.integrity.enabled);
     table.number("false_alarm", p.integrity.false_alarm, {1e-12, 0.5});

@@ -1,50 +1,78 @@
 #include "skyloop/scenario/modern_settings.hpp"
 
+#include <algorithm>
+
 namespace skyloop {
 namespace {
 
-// A geodetic receiver with a choke-ring antenna (Ashtech, Trimble): narrow correlators, a steered clock, no filter.
+struct MultipathNumbers {
+    Metres floor, at_horizon;
+    Seconds static_time;
+};
+
+void set_multipath(ModernSettings& s, const MultipathNumbers& numbers) {
+    s.measurement.multipath_model.floor = numbers.floor;
+    s.measurement.multipath_model.at_horizon = numbers.at_horizon;
+    s.measurement.multipath_model.static_time = numbers.static_time;
+}
+
+void set_weights(ModernSettings& s, Metres both) {
+    s.navigation.weights.floor = both;
+    s.navigation.weights.at_zenith = both;
+}
+
+// A geodetic receiver with a choke-ring antenna: carrier-aided narrow correlators, a steered clock, no filter.
 void make_survey(ModernSettings& s) {
-    s.measurement.code_loop.bandwidth = Hertz(0.25);
+    s.measurement.code_loop.bandwidth = Hertz(0.2);
     s.measurement.code_loop.spacing_chips = 0.1;
     s.measurement.code_loop.front_end_bandwidth = Hertz(20e6);
     s.measurement.clock.steering = ClockSteering::continuous;
     s.measurement.cn0_resolution = Decibels(0.25);
-    s.measurement.multipath_model = {Metres(0.10), Metres(0.30), Seconds(90), Seconds(5)};
+    set_multipath(s, {Metres(0.25), Metres(0.5), Seconds(30)});
     s.navigation.filter.kind = FilterKind::none;
-    s.navigation.weights = {Metres(0.5), Metres(0.5)};
+    set_weights(s, Metres(0.36));
 }
 
 // A u-blox 6 to M8 with a patch antenna.
 void make_consumer(ModernSettings& s) {
     s.measurement.clock.steering = ClockSteering::millisecond_jumps;
-    s.measurement.multipath_model = {Metres(0.5), Metres(1.0), Seconds(120), Seconds(5)};
-    s.navigation.filter.kind = FilterKind::smoothed;
+    set_multipath(s, {Metres(0.5), Metres(1.0), Seconds(120)});
+    s.navigation.filter.position_memory = Seconds(20);
+    set_weights(s, Metres(0.42));
 }
 
-// A linearly polarised antenna behind glass and a hand: 10 dB less, and echoes of either hand.
+// A linearly polarised antenna behind glass and a hand: 7 dB less towards the zenith, and echoes of either hand.
 void make_phone(ModernSettings& s) {
     s.propagation.link.antenna = AntennaPattern(Decibels(-4), Decibels(9), 1.0);
     s.propagation.link.implementation_loss = Decibels(3.5);
     s.propagation.link.ripple = Decibels(2);
     s.propagation.link.ripple_time = Seconds(10);
     s.measurement.clock.steering = ClockSteering::millisecond_jumps;
-    s.measurement.multipath_model = {Metres(3), Metres(4), Seconds(30), Seconds(3)};
+    set_multipath(s, {Metres(3), Metres(4), Seconds(30)});
     s.measurement.slips_per_hour = 60;
-    s.navigation.filter.kind = FilterKind::smoothed;
-    s.navigation.weights = {Metres(3), Metres(3)};
+    s.navigation.filter.position_memory = Seconds(20);
+    set_weights(s, Metres(3));
+}
+
+// Crowns of trees up to 35° and walls whose echoes last while a satellite moves by a degree or less. An antenna that
+// keeps echoes off in the open keeps them off here: the multipath grows by the same factors for all receivers.
+void surround_by_houses(ModernSettings& s) {
+    constexpr double floor_growth = 5, horizon_growth = 5;
+    s.propagation.loss_model.canopy_depth = Metres(11);
+    StatisticalMultipath& m = s.measurement.multipath_model;
+    m.floor = floor_growth * m.floor;
+    m.at_horizon = horizon_growth * m.at_horizon;
+    m.static_time = std::min(m.static_time, Seconds(100));
 }
 
 }  // namespace
 
-ModernSettings::ModernSettings() { make_consumer(*this); }
-
 ModernSettings ModernSettings::of(ModernPreset preset, Surroundings surroundings) {
     ModernSettings settings;
-    settings.navigation = {};
-    settings.measurement = {};
     settings.preset = preset;
     settings.surroundings = surroundings;
+    // A receiver that has heard no coefficients takes those of an ordinary day.
+    settings.navigation.corrections.default_ionosphere = true;
     switch (preset) {
         case ModernPreset::survey:
             make_survey(settings);
@@ -56,6 +84,7 @@ ModernSettings ModernSettings::of(ModernPreset preset, Surroundings surroundings
             make_phone(settings);
             break;
     }
+    if (surroundings == Surroundings::residential) surround_by_houses(settings);
     return settings;
 }
 

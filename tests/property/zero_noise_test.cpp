@@ -87,7 +87,7 @@ TEST(ZeroNoise, TheFixIsTheTruthInFlight) {
 TEST(ZeroNoise, TheClockDoesNotMatter) {
     for (const auto steering :
          {ClockSteering::free_running, ClockSteering::millisecond_jumps, ClockSteering::continuous}) {
-        ModernSettings settings;
+        ModernSettings settings = ModernSettings::of(ModernPreset::consumer);
         settings.errors = false;
         settings = effective(settings);
         settings.measurement.receiver_clock.enabled = true;

@@ -50,7 +50,7 @@ inline Simulation modern_run(const ModernSettings& settings, std::unique_ptr<Tra
 
 /// Geometry and the satellites' clocks, and nothing else; every epoch stands alone.
 inline Simulation errorless_run(std::unique_ptr<Trajectory> trajectory) {
-    ModernSettings settings;
+    ModernSettings settings = ModernSettings::of(ModernPreset::consumer);
     settings.errors = false;
     settings = effective(settings);
     settings.navigation.filter.kind = FilterKind::none;

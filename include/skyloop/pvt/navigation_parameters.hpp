@@ -30,10 +30,13 @@ struct CorrectionParameters {
     bool ionosphere_free = false;     ///< of two carriers, where both are tracked, instead of a model
 };
 
-/// Variance of a pseudorange: s0² + s1²/sin² e + the code loop's own variance (MODELS.md 7.13).
+/// Variance of a pseudorange: s0² + s1²/sin² e + the code loop's own variance (MODELS.md 7.13), and what the receiver
+/// expects of a system's orbits and clocks beyond those of GPS.
 struct WeightParameters {
     Metres floor{0.9};      ///< s0
     Metres at_zenith{0.9};  ///< s1
+    Metres beidou_orbits{0.6};
+    Metres glonass_orbits{1.5};
 };
 
 /// The receiver's filter over the solutions of single epochs.

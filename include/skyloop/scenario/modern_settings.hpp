@@ -28,7 +28,7 @@ enum class Surroundings {
 };
 inline constexpr std::string_view surroundings_names[] = {"open-sky", "residential"};
 
-/// Every number of the modern profile.
+/// Every number of the modern profile. One that is made by itself has no preset's numbers: take it from of().
 struct ModernSettings {
     ModernPreset preset = ModernPreset::consumer;
     Surroundings surroundings = Surroundings::open_sky;
@@ -42,7 +42,6 @@ struct ModernSettings {
 
     /// The numbers of a preset in surroundings.
     static ModernSettings of(ModernPreset preset, Surroundings surroundings = Surroundings::open_sky);
-    ModernSettings();
 };
 
 /// A cause of error by its name in scenario files.

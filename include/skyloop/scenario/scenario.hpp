@@ -55,7 +55,7 @@ using TrajectorySettings = std::variant<FixedSettings, WaypointSettings, CircleS
 /// How the fix is made, and the numbers of all ways.
 struct ModelSettings {
     std::optional<ErrorModelKind> sensor_model;  ///< nothing: modern, which measures and solves
-    ModernSettings modern;
+    ModernSettings modern = ModernSettings::of(ModernPreset::consumer);
     BaselineParameters baseline;
     LinkBudgetParameters link;
     ConstantSigmaParameters constant_sigma;
