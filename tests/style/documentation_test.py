@@ -1,0 +1,116 @@
+"""Every key that a scenario or board file may hold, and every column of the output tables, stands in its page, and no page
+tells of one that is not there."""
+
+import re
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+READERS = "number|boolean|text|texts|text_or_texts|integer|numbers|place|utc|choice|choices|word|quantity|table|tables"
+COMMENT = re.compile(r"//[^\n]*")
+CODE_SPAN = re.compile(r"`([^`]*)`")
+NAME = re.compile(r"[A-Za-z0-9_]+(?:-[A-Za-z0-9_]+)*")
+
+
+def keys_read(source):
+    """Names of the keys that this C++ text reads: literals passed to a TableReader, and places, which come in two frames."""
+    code = COMMENT.sub("", source)
+    keys = set(re.findall(rf'\.(?:{READERS})\(\s*"([^"]+)"', code))
+    for place in re.findall(r'\bplaces\.read\(\s*\w+\s*,\s*"([^"]+)"', code):
+        keys |= {place, f"{place}_level"}
+    return keys
+
+
+def words_read(source):
+    """Words that a key may take and names of error terms: the first literal of each brace of a table of theirs."""
+    return set(re.findall(r'\{\s*"([a-z0-9][a-z0-9_-]*)"\s*,\s*[A-Za-z&]', COMMENT.sub("", source)))
+
+
+def names_told(page):
+    """Names in the code spans and the headings of tables of a page."""
+    headings = re.findall(r"^##+ (.*\[.*)$", page, re.MULTILINE)
+    return {name for span in CODE_SPAN.findall(page) + headings for name in NAME.findall(span)}
+
+
+def names_of_rows(page):
+    """Names in the first column of tables headed `key` or `column`: those that the page claims to exist."""
+    names, inside = set(), False
+    for line in page.splitlines():
+        if not line.startswith("|"):
+            inside = False
+        elif re.match(r"\| (key|column)s? \|", line):
+            inside = True
+        elif inside and not line.startswith("|---"):
+            names |= {name for span in CODE_SPAN.findall(line.split("|")[1]) for name in NAME.findall(span)}
+    return names
+
+
+def read(name):
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def scenario_sources():
+    return [path.read_text(encoding="utf-8") for path in sorted((ROOT / "src/scenario").glob("*.cpp"))
+            if path.name != "board_file.cpp"]
+
+
+def columns(header):
+    """Columns of a table whose header line is the C++ constant `header`."""
+    text = re.search(rf"{header} =((?:\s*\"[^\"]*\")+);", read("src/emulator/trace_rows.hpp")).group(1)
+    return "".join(re.findall(r'"([^"]*)"', text)).removesuffix("\\n").split(",")
+
+
+class Extraction(unittest.TestCase):
+    CODE = '''
+        table.number("wide", x);  // table.number("comment", x);
+        run.quantity(
+            "long_line_m", y, {0, 1});
+        model.table("layers", [&](TableReader& t) { t.boolean("on", b); });
+        if (const auto at = places.read(row, "at")) {}
+        static constexpr std::array<Word<Kind>, 1> kinds{{{"narrow-band", Kind::narrow}}};
+        return {{"rain", &p.rain}};'''
+
+    def test_keys(self):
+        self.assertEqual(keys_read(self.CODE), {"wide", "long_line_m", "layers", "on", "at", "at_level"})
+
+    def test_words(self):
+        self.assertEqual(words_read(self.CODE), {"narrow-band", "rain"})
+
+    def test_what_a_page_tells(self):
+        page = "## [model.sky]\nplain word `start`, `model.errors`\n| key | x |\n|---|---|\n| `a_m`, `b-c` | `d` |\n\n| `e` |\n"
+        self.assertEqual(names_told(page), {"sky", "start", "model", "errors", "a_m", "b-c", "d", "e"})
+        self.assertEqual(names_of_rows(page), {"a_m", "b-c"})
+
+
+class Pages(unittest.TestCase):
+    def expect_all(self, names, page):
+        self.assertGreater(len(names), 15)  # or the extraction has gone blind
+        self.assertEqual(sorted(names - names_told(read(page))), [], f"read by the program, not told in {page}")
+
+    def test_scenario_keys_are_told(self):
+        self.expect_all(set().union(*map(keys_read, scenario_sources())), "docs/scenario.md")
+
+    def test_scenario_words_are_told(self):
+        self.expect_all(set().union(*map(words_read, scenario_sources())), "docs/scenario.md")
+
+    def test_presets_are_told(self):
+        names = re.findall(r"_names\[\] = \{([^}]*)\}", read("include/skyloop/scenario/modern_settings.hpp"))
+        words = set(re.findall(r'"([^"]+)"', ",".join(names)))
+        self.assertGreater(len(words), 4)
+        self.assertEqual(sorted(words - names_told(read("docs/scenario.md"))), [])
+
+    def test_scenario_page_invents_nothing(self):
+        known = set().union(*map(keys_read, scenario_sources())) | set().union(*map(words_read, scenario_sources()))
+        self.assertEqual(sorted(names_of_rows(read("docs/scenario.md")) - known), [], "told, but never read")
+
+    def test_board_keys_are_told(self):
+        self.expect_all(keys_read(read("src/scenario/board_file.cpp")), "boards/README.md")
+
+    def test_columns_are_told(self):
+        names = set(columns("fixes_header")) | set(columns("satellites_header"))
+        self.expect_all(names, "docs/output.md")
+        self.assertEqual(sorted(names_of_rows(read("docs/output.md")) - names), [], "told, but never written")
+
+
+if __name__ == "__main__":
+    unittest.main()
