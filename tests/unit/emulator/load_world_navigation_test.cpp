@@ -37,8 +37,8 @@ TEST(LoadWorldNavigation, SensorModelsUseGpsAndQzssUnlessOthersAreNamed) {
     EXPECT_THAT(systems_of(*plain->source), ElementsAre(Constellation::gps, Constellation::qzss));
     const auto all = load_navigation(with_navigation(nav), {}, false);
     ASSERT_TRUE(all) << all.error().message;
-    EXPECT_THAT(systems_of(*all->source),
-                IsSupersetOf({Constellation::gps, Constellation::galileo, Constellation::beidou, Constellation::glonass}))
+    EXPECT_THAT(systems_of(*all->source), IsSupersetOf({Constellation::gps, Constellation::galileo,
+                                                        Constellation::beidou, Constellation::glonass}))
         << "a receiver that measures chooses by itself";
     const auto asked =
         load_navigation(with_navigation(nav, {Constellation::galileo, Constellation::glonass}), {}, false);
