@@ -116,7 +116,7 @@ SolvedCounts solve_epochs(ObservationFile& file, NavigationEngine& engine, const
         const Fix fix = engine.solve(epoch, settings);
         out.write(solved_row(fix));
         ++counts.epochs;
-        counts.fixes += fix.has_position() ? 1 : 0;
+        if (fix.has_position()) ++counts.fixes;
     }
     return counts;
 }

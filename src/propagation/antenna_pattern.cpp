@@ -4,49 +4,30 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
-#include <utility>
+#include <span>
 
+#include "number_table.hpp"
 #include "skyloop/base/text_file.hpp"
 
 namespace skyloop {
 namespace {
 
-constexpr std::string_view pattern_header = "elevation_deg,gain_dbic";
-constexpr std::string_view pattern_header_azimuth = "azimuth_deg,elevation_deg,gain_dbic";
-
-std::string_view pattern_trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t\r");
-    return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 // Gains by azimuth, then elevation, degrees.
 using PatternRows = std::map<double, std::map<double, double>>;
 
-// Reads one line of numbers into the rows, or says what is wrong with it.
-std::string pattern_line(std::string_view line, std::size_t columns, PatternRows& rows) {
-    std::array<double, 3> numbers{};
-    std::size_t count = 0;
-    for (std::size_t at = 0; at <= line.size(); ++count) {
-        const std::size_t comma = std::min(line.find(',', at), line.size());
-        const std::string_view cell = pattern_trimmed(line.substr(at, comma - at));
-        if (count == columns) return fmt::format("found more than {} columns", columns);
-        const auto [stopped, error] = std::from_chars(cell.data(), cell.data() + cell.size(), numbers[count]);
-        if (error != std::errc{} || stopped != cell.data() + cell.size() || !std::isfinite(numbers[count]))
-            return fmt::format("found \"{}\"; expected a number", cell.substr(0, 40));
-        at = comma + 1;
-    }
-    if (count != columns) return fmt::format("found {} columns; expected {}", count, columns);
-    const double azimuth = columns == 3 ? std::fmod(std::fmod(numbers[0], 360) + 360, 360) : 0;
-    const double elevation = numbers[columns - 2], gain = numbers[columns - 1];
-    if (columns == 3 && std::abs(numbers[0]) > 360) return fmt::format("azimuth is {}; expected 0 to 360", numbers[0]);
+// Adds one line of a table to the rows, or says what is wrong with it.
+std::string add_gain(std::span<const double> cells, PatternRows& rows) {
+    const bool has_azimuth = cells.size() == 3;
+    const double elevation = cells[cells.size() - 2], gain = cells[cells.size() - 1];
+    if (has_azimuth && std::abs(cells[0]) > 360) return fmt::format("azimuth is {}; expected 0 to 360", cells[0]);
     if (std::abs(elevation) > 90) return fmt::format("elevation is {}; expected -90 to 90", elevation);
     if (std::abs(gain) > 100) return fmt::format("gain is {} dBic; expected -100 to 100", gain);
+    const double azimuth = has_azimuth ? std::fmod(std::fmod(cells[0], 360) + 360, 360) : 0;
     const auto [entry, added] = rows[azimuth].emplace(elevation, gain);
     // 0° and 360° are one azimuth and may both be given.
-    if (!added && (columns == 2 || entry->second != gain)) return "this direction has a gain already";
+    if (!added && (!has_azimuth || entry->second != gain)) return "this direction has a gain already";
     return {};
 }
 
@@ -74,27 +55,15 @@ PatternPlace pattern_compass_place(const std::vector<double>& azimuths, double d
 }  // namespace
 
 Result<AntennaPattern> AntennaPattern::parse(std::string_view text, std::string_view name) {
+    static constexpr std::array<std::string_view, 2> headers{"elevation_deg,gain_dbic",
+                                                             "azimuth_deg,elevation_deg,gain_dbic"};
+    const auto table = read_number_table(text, name, headers);
+    if (!table) return fail(table.error());
     PatternRows rows;
-    std::size_t columns = 0;
-    int number = 0;
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find('\n', at), text.size());
-        const std::string_view line = pattern_trimmed(text.substr(at, end - at));
-        at = end + 1;
-        ++number;
-        if (line.empty() || line.front() == '#') continue;
-        if (columns == 0) {
-            columns = line == pattern_header ? 2 : line == pattern_header_azimuth ? 3 : 0;
-            if (columns != 0) continue;
-            return fail(ErrorCode::input, fmt::format("{}:{}: found \"{}\"; expected \"{}\" or \"{}\"", name, number,
-                                                      line.substr(0, 60), pattern_header, pattern_header_azimuth));
-        }
-        const std::string wrong = pattern_line(line, columns, rows);
-        if (!wrong.empty()) return fail(ErrorCode::input, fmt::format("{}:{}: {}", name, number, wrong));
+    for (const NumberRow& row : table->rows) {
+        const std::string wrong = add_gain(std::span(row.values).first(table->header + 2), rows);
+        if (!wrong.empty()) return fail(ErrorCode::input, fmt::format("{}:{}: {}", name, row.line, wrong));
     }
-    if (rows.empty())
-        return fail(ErrorCode::input,
-                    fmt::format("{}:{}: found no gains; expected at least one line of numbers", name, number));
     AntennaPattern pattern;
     for (const auto& [elevation, gain] : rows.begin()->second)
         pattern.elevations_.push_back(elevation);
@@ -130,6 +99,30 @@ Decibels AntennaPattern::gain(const SkyDirection& direction) const {
         return row[up.below] * (1 - up.fraction) + row[up.above] * up.fraction;
     };
     return Decibels(at(around.below) * (1 - around.fraction) + at(around.above) * around.fraction);
+}
+
+Result<std::vector<SatellitePowerPoint>> read_satellite_pattern(std::string_view text, std::string_view name) {
+    static constexpr std::array<std::string_view, 1> headers{"off_boresight_deg,eirp_dbw"};
+    const auto table = read_number_table(text, name, headers);
+    if (!table) return fail(table.error());
+    std::vector<SatellitePowerPoint> points;
+    for (const NumberRow& row : table->rows) {
+        const Angle angle = Angle::degrees(row.values[0]);
+        if (!(row.values[0] >= 0 && row.values[0] <= 90) || (!points.empty() && angle <= points.back().off_boresight))
+            return fail(ErrorCode::input,
+                        fmt::format("{}:{}: angle is {}; expected 0 to 90, ascending", name, row.line, row.values[0]));
+        if (std::abs(row.values[1]) > 200)
+            return fail(ErrorCode::input,
+                        fmt::format("{}:{}: EIRP is {} dBW; expected -200 to 200", name, row.line, row.values[1]));
+        points.push_back({angle, DecibelWatts(row.values[1])});
+    }
+    return points;
+}
+
+Result<std::vector<SatellitePowerPoint>> read_satellite_pattern_file(const std::filesystem::path& path) {
+    const auto text = read_text_file(path);
+    if (!text) return fail(text.error());
+    return read_satellite_pattern(*text, path.string());
 }
 
 }  // namespace skyloop

@@ -101,6 +101,11 @@ void read_solution(TableReader& table, ModernSettings& settings) {
     table.number("position_accuracy_scale", p.accuracy.position_scale, {0, 100});
     table.number("velocity_accuracy_scale", p.accuracy.velocity_scale, {0, 100});
     table.quantity("ephemeris_collection_s", p.ephemeris_collection, {0, 1e5});
+    static constexpr std::array<Word<DifferentialKind>, 4> kinds{{{"none", DifferentialKind::none},
+                                                                  {"sbas", DifferentialKind::sbas},
+                                                                  {"rtk-float", DifferentialKind::rtk_float},
+                                                                  {"rtk-fixed", DifferentialKind::rtk_fixed}}};
+    table.word("differential", kinds, p.differential.kind);
 }
 
 }  // namespace

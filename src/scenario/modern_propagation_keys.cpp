@@ -112,6 +112,17 @@ void read_antenna(TableReader& table, ModernLinkParameters& p, const std::filesy
         table.mistake("antenna_table", pattern.error().message);
 }
 
+void read_satellite_table(TableReader& table, ModernLinkParameters& p, const std::filesystem::path& folder) {
+    std::string file;
+    table.text("satellite_table", file);
+    if (file.empty()) return;
+    auto pattern = read_satellite_pattern_file(folder / file);
+    if (pattern)
+        p.satellite_pattern = std::move(*pattern);
+    else
+        table.mistake("satellite_table", pattern.error().message);
+}
+
 void read_received_power(TableReader& table, ModernLinkParameters::ReceivedPower& p) {
     table.quantity("gps_dbw", p.gps, {-250, 0});
     table.quantity("sbas_dbw", p.sbas, {-250, 0});
@@ -124,6 +135,7 @@ void read_received_power(TableReader& table, ModernLinkParameters::ReceivedPower
 
 void read_link(TableReader& table, ModernLinkParameters& p, const std::filesystem::path& folder) {
     read_received_power(table, p.received);
+    read_satellite_table(table, p, folder);
     read_antenna(table, p, folder);
     table.quantity("antenna_temperature_k", p.noise.antenna_temperature, {0, 1e5});
     table.quantity("line_loss_db", p.noise.line_loss, {0, 100});

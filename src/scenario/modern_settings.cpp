@@ -112,7 +112,28 @@ std::vector<NamedTerm> error_terms(ModernSettings& settings) {
             {"cycle_slips", &m.cycle_slips}};
 }
 
+// What corrections from outside leave of each error. Both ends of a baseline see the same orbits, clocks and air; with
+// carrier phases the receiver's own noise and echoes are those of the carrier.
+void apply_differential(ModernSettings& s) {
+    const DifferentialKind kind = s.navigation.differential.kind;
+    if (kind == DifferentialKind::none) return;
+    // What is left of the ionosphere is what the corrections from outside did not take.
+    s.ionosphere_correction = IonosphereCorrection::none;
+    const bool sbas = kind == DifferentialKind::sbas;
+    const double common = sbas ? 0.1 : 0;
+    for (ErrorTerm* term : {&s.propagation.signal_in_space, &s.propagation.ionosphere})
+        term->scale *= common;
+    if (sbas) return;  // which leaves the troposphere and the antenna's surroundings to the receiver
+    s.troposphere_correction = TroposphereCorrection::none;
+    for (ErrorTerm* term : {&s.propagation.troposphere, &s.propagation.troposphere_residual})
+        term->scale = 0;
+    const double own = kind == DifferentialKind::rtk_float ? 0.15 : 0.008;
+    for (ErrorTerm* term : {&s.measurement.multipath, &s.measurement.code_noise})
+        term->scale *= own;
+}
+
 ModernSettings effective(ModernSettings settings) {
+    apply_differential(settings);
     if (!settings.errors)
         for (const NamedTerm& named : error_terms(settings))
             named.term->enabled = false;

@@ -17,7 +17,6 @@ MISUSES = [
     (["run", "--at", "46"], 2, ["--at 46", "LAT,LON"]),
     (["run", "--at", "nan,0"], 2, ["--at nan,0"]),
     (["run", "--at", "46,30,"], 2, ["--at 46,30,"]),
-    (["run", "--model", "modern"], 2, ["--model modern", "not in this version", "baseline"]),
     (["run", "--model", "basline"], 2, ["did you mean 'baseline'"]),
     (["run", "--scene", "x.obj"], 2, ["--scene"]),
     (["run", "--control", "8080"], 2, ["--control"]),
@@ -46,7 +45,7 @@ MISUSES = [
 
 SCENARIO_MISTAKES = [
     ("[run]\nsede = 3\n", ["s.toml:2:1", "run.sede", "did you mean 'seed'"]),
-    ("[model]\nname = \"modern\"\n", ["s.toml:2", "model.name", "not in this version"]),
+    ("[model.modern]\npreset = \"consumr\"\n", ["s.toml:2", "model.modern.preset", "did you mean 'consumer'"]),
     ("[trajectory]\nkind = \"fixed\"\nat = [91, 0, 0]\n", ["s.toml:3", "latitude is 91"]),
     ("[trajectory]\nkind = \"fixed\"\nat_level = [1, 2, 3]\n", ["s.toml:3", "[frame]"]),
     ("[[atmosphere.cloud]]\nkind = \"thunderstrom\"\n", ["s.toml:2", "did you mean 'thunderstorm'"]),

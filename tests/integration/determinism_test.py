@@ -6,33 +6,41 @@ import unittest
 from session import SHARED, open_folder, skyloop
 
 FILES = ("fixes.csv", "satellites.csv", "port0.out", "port0.times")
+MEASURED = ("observations.rnx", "navigation.rnx")
 COLUMNS = {
     "fixes.csv": "time_utc,gps_week,tow_s,true_lat_deg,true_lon_deg,true_height_m,lat_deg,lon_deg,height_m,east_error_m,"
                  "north_error_m,up_error_m,vel_north_mps,vel_east_mps,vel_down_mps,speed_mps,course_deg,fix_type,"
-                 "satellites_used,satellites_visible,gdop,pdop,hdop,vdop,tdop,h_acc_m,v_acc_m",
+                 "satellites_used,satellites_visible,gdop,pdop,hdop,vdop,tdop,h_acc_m,v_acc_m,s_acc_mps,t_acc_m,clock_bias_m,"
+                 "true_clock_bias_m",
     "satellites.csv": "time_utc,satellite,azimuth_deg,elevation_deg,range_m,line_of_sight,paths,excess_path_m,iono_delay_m,"
-                      "tropo_delay_m,gas_loss_db,cloud_loss_db,rain_loss_db,cn0_dbhz,pseudorange_m,used",
+                      "tropo_delay_m,gas_loss_db,cloud_loss_db,rain_loss_db,cn0_dbhz,pseudorange_m,used,orbit_clock_error_m,"
+                      "multipath_m,code_noise_m,phase_noise_m,doppler_noise_hz,foliage_loss_db,antenna_gain_dbic,"
+                      "power_offset_db,interference_loss_db,amplitude_scintillation,phase_scintillation_rad,residual_m",
 }
 
 
-def digests(*arguments):
+def digests(*arguments, files=FILES):
     """The digest of each file of an hour at 1 Hz, and the text of the tables' first lines."""
     with open_folder() as folder:
         skyloop("simulate", "--out", folder, "--duration", 3600, *arguments)
-        content = {name: pathlib.Path(folder, name).read_bytes() for name in FILES}
+        content = {name: pathlib.Path(folder, name).read_bytes() for name in files}
     lines = {name: content[name].splitlines() for name in COLUMNS}
     return {name: hashlib.sha256(data).hexdigest() for name, data in content.items()}, lines
 
 
 class DeterminismTest(unittest.TestCase):
-    def check(self, *arguments):
-        first, lines = digests(*arguments, "--seed", 7)
-        again, _ = digests(*arguments, "--seed", 7)
-        other, _ = digests(*arguments, "--seed", 8)
+    def check(self, *arguments, files=FILES):
+        first, lines = digests(*arguments, "--seed", 7, files=files)
+        again, _ = digests(*arguments, "--seed", 7, files=files)
+        other, _ = digests(*arguments, "--seed", 8, files=files)
         self.assertEqual(first, again)
         self.assertNotEqual(first["fixes.csv"], other["fixes.csv"])
         self.assertNotEqual(first["port0.out"], other["port0.out"])
-        self.assertEqual(first["satellites.csv"], other["satellites.csv"], "the noise must not touch the sky")
+        if files == FILES:
+            self.assertEqual(first["satellites.csv"], other["satellites.csv"], "the noise must not touch the sky")
+        else:
+            self.assertNotEqual(first["observations.rnx"], other["observations.rnx"])
+            self.assertEqual(first["navigation.rnx"], other["navigation.rnx"], "nor what the satellites send")
         self.assertEqual(len(lines["fixes.csv"]), 3601)
         for name, columns in COLUMNS.items():
             self.assertEqual(lines[name][0].decode(), columns)
@@ -40,13 +48,17 @@ class DeterminismTest(unittest.TestCase):
                 self.assertEqual(line.count(b","), columns.count(","))
 
     def test_nominal_constellation(self):
-        self.check("--start", "2026-03-01T00:00:00Z")
+        self.check("--start", "2026-03-01T00:00:00Z", "--model", "baseline")
 
     def test_real_navigation_data(self):
         navigation = SHARED / "nav/brdc1820.10n"
         if not navigation.exists():
             self.skipTest(f"shared data absent: {navigation}")
-        self.check("--nav", navigation, "--start", "2010-07-01T12:00:00Z", "--at", "46.4775,30.7326,77")
+        self.check("--nav", navigation, "--start", "2010-07-01T12:00:00Z", "--at", "46.4775,30.7326,77", "--model",
+                   "baseline")
+
+    def test_a_receiver_that_measures(self):
+        self.check("--start", "2026-03-01T00:00:00Z", files=FILES + MEASURED)
 
 
 if __name__ == "__main__":

@@ -206,5 +206,30 @@ TEST(ModernProfile, EveryTermCanBeTakenOutByItself) {
     }
 }
 
+// Corrections from outside make the measurements as good as the fix type says.
+TEST(ModernProfile, CorrectionsFromOutsideScatterLess) {
+    struct Regime {
+        DifferentialKind kind;
+        FixType type;
+        double least, most;  // m, 3D rms over an hour
+    };
+    for (const Regime& r : {Regime{DifferentialKind::sbas, FixType::dgnss, 0.2, 1.2},
+                            {DifferentialKind::rtk_float, FixType::rtk_float, 0.05, 0.5},
+                            {DifferentialKind::rtk_fixed, FixType::rtk_fixed, 0.002, 0.05}}) {
+        ModernSettings settings = ModernSettings::of(ModernPreset::consumer);
+        settings.navigation.differential.kind = r.kind;
+        Simulation simulation = modern_run(effective(settings), std::make_unique<FixedPoint>(profile_place));
+        double squares = 0;
+        for (int k = 0; k < 360; ++k) {
+            const Trace trace = simulation.run(profile_start + std::chrono::seconds(10 * k), all_systems());
+            ASSERT_EQ(trace.epoch.fix.type, r.type);
+            const double error = (to_ecef(trace.epoch.fix.position) - trace.truth.position).length().value();
+            squares += error * error / 360;
+        }
+        EXPECT_GT(std::sqrt(squares), r.least) << fix_type_name(r.type);
+        EXPECT_LT(std::sqrt(squares), r.most) << fix_type_name(r.type);
+    }
+}
+
 }  // namespace
 }  // namespace skyloop::test

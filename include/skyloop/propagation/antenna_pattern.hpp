@@ -1,4 +1,4 @@
-/// How much a receiving antenna hears from each direction.
+/// How much a receiving antenna hears from each direction, and how much a satellite sends.
 #pragma once
 
 #include <filesystem>
@@ -34,5 +34,17 @@ private:
     // A table: gains by azimuth, then elevation, both ascending; degrees. Without azimuths it is the formula.
     std::vector<double> azimuths_, elevations_, gains_;
 };
+
+/// EIRP of a satellite by the angle between the centre of the Earth and the antenna.
+struct SatellitePowerPoint {
+    Angle off_boresight;
+    DecibelWatts eirp;
+};
+
+/// Reads a table: a header line `off_boresight_deg,eirp_dbw`, then numbers with ascending angles. Lines that start with
+/// # are comments. Fails with `input` and FILE:LINE.
+Result<std::vector<SatellitePowerPoint>> read_satellite_pattern(std::string_view text, std::string_view name);
+/// The same from a file. Fails as read_text_file and the above do.
+Result<std::vector<SatellitePowerPoint>> read_satellite_pattern_file(const std::filesystem::path& path);
 
 }  // namespace skyloop

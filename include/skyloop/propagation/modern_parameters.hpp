@@ -115,12 +115,6 @@ enum class JammerKind {
     wide_band,    ///< Q 2.2
 };
 
-/// EIRP of a satellite by the angle between the centre of the Earth and the antenna.
-struct SatellitePowerPoint {
-    Angle off_boresight;
-    DecibelWatts eirp;
-};
-
 /// Powers, noise and jamming (MODELS.md 7.7, 7.8).
 struct ModernLinkParameters {
     /// Received in an isotropic antenna on the ground, at every elevation, from the nominal orbit of the system.

@@ -88,7 +88,7 @@ TEST(Assembly, WithoutAGeoidItWarnsAndGoesOn) {
 }
 
 TEST(Assembly, TecFromTheHeaderNeedsAHeader) {
-    const Error error = refusal("[atmosphere]\ntec_source = \"header\"");
+    const Error error = refusal("[model]\nname = \"baseline\"\n[atmosphere]\ntec_source = \"header\"");
     EXPECT_EQ(error.code, ErrorCode::input);
     EXPECT_THAT(error.message, Not(testing::IsEmpty()));
 }

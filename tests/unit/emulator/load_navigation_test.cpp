@@ -41,6 +41,8 @@ std::string rinex_record(const KeplerEphemeris& e) {
            line({toe.tow_seconds() - 3600, 4});
 }
 
+constexpr const char* baseline = "[model]\nname = \"baseline\"\n";
+
 // Records of the nominal constellation at 02:00 and 04:00 of data_day; satellites 30 and 31 as QZSS J01 and J02.
 std::string nominal_records() {
     std::string text = test::header_v3("3.04");
@@ -106,21 +108,23 @@ TEST_F(LoadNavigation, AMissingOrBrokenFileIsNamed) {
 }
 
 TEST_F(LoadNavigation, ARunBeginsWithTheDataUnlessToldOtherwise) {
-    const LoadedNavigation loaded = load(scenario(""));
+    const LoadedNavigation loaded = load(scenario("", baseline));
     EXPECT_EQ(loaded.start, data_day + 2h);
     EXPECT_THAT(loaded.warnings, IsEmpty());
     EXPECT_EQ(loaded.source->description(), "two.rnx");
+    EXPECT_EQ(load(scenario("")).start, data_day) << "the nearest record serves before its time, too";
     EXPECT_EQ(load(scenario("", "[run]\nstart = \"now\"")).start, wall_now);
 }
 
 TEST_F(LoadNavigation, TheBaselineLooksBackAndTheOthersLookNear) {
-    EXPECT_EQ(record_at_half_past_three(scenario("")), 2h);
-    for (const char* model : {"ideal", "constant-sigma", "satellite-count", "whole-path", "refraction"})
+    EXPECT_EQ(record_at_half_past_three(scenario("", baseline)), 2h);
+    for (const char* model : {"modern", "ideal", "constant-sigma", "satellite-count", "whole-path", "refraction"})
         EXPECT_EQ(record_at_half_past_three(scenario("", std::string("[model]\nname = \"") + model + "\"")), 4h)
             << model;
     EXPECT_EQ(record_at_half_past_three(scenario("ephemeris_rule = \"nearest\"")), 4h);
     EXPECT_EQ(record_at_half_past_three(scenario("ephemeris_rule = \"forward\"", "[model]\nname = \"ideal\"")), 2h);
-    EXPECT_EQ(record_at_half_past_three(scenario("ephemeris_validity_s = 3600")), -1ns) << "too old by half an hour";
+    EXPECT_EQ(record_at_half_past_three(scenario("ephemeris_validity_s = 3600", baseline)), -1ns)
+        << "too old by half an hour";
 }
 
 TEST_F(LoadNavigation, KeepsTheWantedConstellations) {
@@ -135,7 +139,9 @@ TEST_F(LoadNavigation, KeepsTheWantedConstellations) {
 }
 
 TEST_F(LoadNavigation, WarnsOnceOfARunOutsideItsData) {
-    const auto warnings = [&](const std::string& run) { return load(scenario("", "[run]\n" + run)).warnings; };
+    const auto warnings = [&](const std::string& run) {
+        return load(scenario("", baseline + ("[run]\n" + run))).warnings;
+    };
     const auto outside = warnings("start = 2024-03-07T00:00:00Z\nduration_s = 86400");
     ASSERT_THAT(outside, SizeIs(1));
     EXPECT_THAT(outside[0], HasSubstr("the run starts outside the navigation data, which spans 2024-03-05T01:59:42Z to "
@@ -147,7 +153,8 @@ TEST_F(LoadNavigation, WarnsOnceOfARunOutsideItsData) {
 }
 
 TEST_F(LoadNavigation, RebasingMovesTheDataByWholeDays) {
-    const LoadedNavigation moved = load(scenario("rebase_navigation = true", "[run]\nstart = 2026-07-08T03:00:00Z"));
+    const LoadedNavigation moved =
+        load(scenario("rebase_navigation = true", std::string(baseline) + "[run]\nstart = 2026-07-08T03:00:00Z"));
     EXPECT_THAT(moved.warnings, IsEmpty());
     const auto record = moved.source->ephemeris({Constellation::gps, 1}, moved.start);
     ASSERT_TRUE(record);

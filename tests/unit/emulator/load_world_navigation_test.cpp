@@ -12,6 +12,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
 
 Scenario with_navigation(const std::filesystem::path& file, std::vector<Constellation> constellations = {}) {
     Scenario scenario;
@@ -27,11 +28,18 @@ std::set<Constellation> systems_of(const NavigationSource& source) {
     return systems;
 }
 
-TEST(LoadWorldNavigation, UsesGpsAndQzssUnlessOthersAreNamed) {
+TEST(LoadWorldNavigation, SensorModelsUseGpsAndQzssUnlessOthersAreNamed) {
     SKYLOOP_REQUIRE_SHARED(nav, "nav/BRDC00IGS_R_20230010000_01D_MN.rnx.gz");
-    const auto plain = load_navigation(with_navigation(nav), {}, false);
+    Scenario baseline = with_navigation(nav);
+    baseline.model.sensor_model = ErrorModelKind::baseline;
+    const auto plain = load_navigation(baseline, {}, false);
     ASSERT_TRUE(plain) << plain.error().message;
     EXPECT_THAT(systems_of(*plain->source), ElementsAre(Constellation::gps, Constellation::qzss));
+    const auto all = load_navigation(with_navigation(nav), {}, false);
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_THAT(systems_of(*all->source), IsSupersetOf({Constellation::gps, Constellation::galileo,
+                                                        Constellation::beidou, Constellation::glonass}))
+        << "a receiver that measures chooses by itself";
     const auto asked =
         load_navigation(with_navigation(nav, {Constellation::galileo, Constellation::glonass}), {}, false);
     ASSERT_TRUE(asked);
@@ -40,7 +48,9 @@ TEST(LoadWorldNavigation, UsesGpsAndQzssUnlessOthersAreNamed) {
 
 TEST(LoadWorldNavigation, SaysWhatTheDataHolds) {
     SKYLOOP_REQUIRE_SHARED(nav, "nav/brdc0910.09g");
-    const auto refused = load_navigation(with_navigation(nav), {}, false);
+    Scenario baseline = with_navigation(nav);
+    baseline.model.sensor_model = ErrorModelKind::baseline;
+    const auto refused = load_navigation(baseline, {}, false);
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message,
                 HasSubstr("brdc0910.09g: found records of glonass; expected some of gps, qzss"));

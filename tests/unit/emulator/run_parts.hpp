@@ -90,7 +90,8 @@ inline MemoryRun memory_run(const Scenario& scenario, MemoryRunParts parts = {})
     auto board = find_board(scenario.receiver.board, board_folders(emulator_data()));
     EXPECT_TRUE(simulation && board);
     if (scenario.receiver.baud) board->baud = *scenario.receiver.baud;
-    firmware::Receiver receiver(*board, scenario.receiver.rate_hz.value_or(board->default_rate_hz));
+    firmware::Receiver receiver(*board, scenario.receiver.rate_hz.value_or(board->default_rate_hz),
+                                receiver_settings(scenario, *board));
     auto wire = std::make_unique<MemoryTransport>();
     wire->set_line(parts.line);
     run.wire = wire.get();

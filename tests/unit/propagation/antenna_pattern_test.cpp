@@ -49,8 +49,8 @@ TEST(AntennaPattern, SaysWhereATableIsWrong) {
         return pattern ? std::string("none") : pattern.error().message;
     };
     EXPECT_THAT(refusal("el,gain\n"), HasSubstr("p.csv:1: found \"el,gain\"; expected \"elevation_deg,gain_dbic\""));
-    EXPECT_THAT(refusal(""), HasSubstr("found no gains"));
-    EXPECT_THAT(refusal("elevation_deg,gain_dbic\n"), HasSubstr("p.csv:1: found no gains"));
+    EXPECT_THAT(refusal(""), HasSubstr("found no rows"));
+    EXPECT_THAT(refusal("elevation_deg,gain_dbic\n"), HasSubstr("p.csv:1: found no rows"));
     EXPECT_THAT(refusal("elevation_deg,gain_dbic\n10,1\n20,x\n"), HasSubstr("p.csv:3: found \"x\"; expected a number"));
     EXPECT_THAT(refusal("elevation_deg,gain_dbic\n10\n"), HasSubstr("p.csv:2: found 1 columns; expected 2"));
     EXPECT_THAT(refusal("elevation_deg,gain_dbic\n10,1,2\n"), HasSubstr("p.csv:2: found more than 2 columns"));
@@ -59,6 +59,25 @@ TEST(AntennaPattern, SaysWhereATableIsWrong) {
     EXPECT_THAT(refusal("elevation_deg,gain_dbic\n10,inf\n"), HasSubstr("p.csv:2: found \"inf\""));
     EXPECT_THAT(refusal("azimuth_deg,elevation_deg,gain_dbic\n0,0,1\n0,90,2\n90,0,1\n"), HasSubstr("azimuth 90 has"));
     EXPECT_FALSE(AntennaPattern::read("/nonexistent/pattern.csv"));
+}
+
+TEST(SatellitePattern, ReadsATableAndRefusesMistakes) {
+    const auto points = read_satellite_pattern("# L1\noff_boresight_deg,eirp_dbw\n0,25\n9.5,27.5\n14,24\n", "sat.csv");
+    ASSERT_TRUE(points);
+    ASSERT_EQ(points->size(), 3U);
+    EXPECT_DOUBLE_EQ((*points)[1].off_boresight.deg(), 9.5);
+    EXPECT_EQ((*points)[2].eirp.value(), 24);
+    const auto refusal = [](std::string_view text) {
+        const auto read = read_satellite_pattern(text, "sat.csv");
+        return read ? std::string("accepted") : read.error().message;
+    };
+    EXPECT_EQ(refusal("angle,power\n0,1\n"),
+              "sat.csv:1: found \"angle,power\"; expected \"off_boresight_deg,eirp_dbw\"");
+    EXPECT_EQ(refusal("off_boresight_deg,eirp_dbw\n5,25\n5,26\n"),
+              "sat.csv:3: angle is 5; expected 0 to 90, ascending");
+    EXPECT_EQ(refusal("off_boresight_deg,eirp_dbw\n0,x\n"), "sat.csv:2: found \"x\"; expected a number");
+    EXPECT_EQ(refusal("off_boresight_deg,eirp_dbw\n"),
+              "sat.csv:1: found no rows; expected at least one line of numbers");
 }
 
 }  // namespace

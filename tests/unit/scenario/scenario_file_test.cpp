@@ -34,7 +34,8 @@ TEST(ScenarioFile, AnEmptyFileIsTheDefaults) {
     EXPECT_EQ(s.run.speed, 1);
     EXPECT_TRUE(s.sky.navigation.empty());
     EXPECT_FALSE(s.sky.ephemeris_rule);
-    EXPECT_EQ(s.model.kind, ErrorModelKind::baseline);
+    EXPECT_FALSE(s.model.sensor_model) << "modern";
+    EXPECT_EQ(model_name(s.model), "modern");
     EXPECT_TRUE(std::holds_alternative<FixedSettings>(s.trajectory));
     EXPECT_EQ(s.receiver.board, "ublox-m8");
     EXPECT_TRUE(s.receiver.ports.empty());
@@ -67,7 +68,7 @@ TEST(ScenarioFile, EveryRunAndSkyKeyLandsInItsField) {
 
 TEST(ScenarioFile, EveryModelKeyLandsInItsField) {
     const ModelSettings m = scenario_of(test::every_key_text).model;
-    EXPECT_EQ(m.kind, ErrorModelKind::whole_path);
+    EXPECT_EQ(m.sensor_model, ErrorModelKind::whole_path);
     EXPECT_EQ(m.baseline.snr_cutoff, DbHz(6.5));
     EXPECT_EQ(m.baseline.max_reflections, 3);
     EXPECT_EQ(m.link.reflection_loss, Decibels(4.5));
@@ -188,7 +189,9 @@ TEST(ScenarioFile, ExplicitKeysGoBeforeThePresetInAnyOrder) {
 
 TEST(ScenarioFile, EveryModelIsFoundByItsName) {
     for (const ErrorModelKind kind : error_model_kinds())
-        EXPECT_EQ(scenario_of("[model]\nname = \"" + std::string(error_model_name(kind)) + "\"").model.kind, kind);
+        EXPECT_EQ(scenario_of("[model]\nname = \"" + std::string(error_model_name(kind)) + "\"").model.sensor_model,
+                  kind);
+    EXPECT_FALSE(scenario_of("[model]\nname = \"modern\"").model.sensor_model);
 }
 
 TEST(ScenarioFile, AStartIsUtcInEveryForm) {
