@@ -1,34 +1,58 @@
 /// What one epoch costs, and its parts.
 #include <benchmark/benchmark.h>
+#include <sys/resource.h>
+#include <time.h>
 
+#include <array>
 #include <atomic>
 
 #include "firmware/nmea_handler.hpp"
 #include "skyloop/emulator/assembly.hpp"
 #include "skyloop/gnss/nominal_constellation.hpp"
 #include "skyloop/gnss/orbit.hpp"
+#include "skyloop/propagation/free_space.hpp"
+#include "skyloop/propagation/modern_effects.hpp"
 #include "skyloop/sky/observe_sky.hpp"
 #include "skyloop/time/utc_time.hpp"
+#include "support/four_systems.hpp"
 
 namespace {
 
 using namespace skyloop;
+using enum Constellation;
 
 const GpsTime bench_start = to_gps_time({2026, 3, 1, 12, 0, 0, 0}, LeapSeconds::announced());
+const GpsTime real_start = to_gps_time({2023, 1, 1, 12, 0, 0, 0}, LeapSeconds::announced());
+const std::filesystem::path real_day =
+    std::filesystem::path(SKYLOOP_SHARED_DATA) / "nav/BRDC00IGS_R_20230010000_01D_MN.rnx.gz";
 
-Scenario open_sky(ErrorModelKind kind) {
+// @param sensor_model nothing: modern
+Scenario open_sky(std::optional<ErrorModelKind> sensor_model) {
     Scenario scenario;
     scenario.run.start = bench_start;
     scenario.run.duration = Seconds(1e6);
-    scenario.model.kind = kind;
+    scenario.model.sensor_model = sensor_model;
     return scenario;
 }
 
 DataFolders bench_data() { return {{std::filesystem::path(SKYLOOP_BINARY_DIR) / "share" / "skyloop"}}; }
 
+double peak_megabytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+// Of this thread on the processor: other programs do not count.
+double thread_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 void satellite_position(benchmark::State& state) {
     const NominalConstellation constellation;
-    const KeplerEphemeris ephemeris = *constellation.record({Constellation::gps, 7}, bench_start);
+    const KeplerEphemeris ephemeris = *constellation.record({gps, 7}, bench_start);
     GpsTime time = bench_start;
     for (auto _ : state) {
         time += Nanoseconds(1'000'000);
@@ -62,7 +86,7 @@ void epoch(benchmark::State& state, ErrorModelKind kind) {
     std::size_t in_view = 0;
     for (auto _ : state) {
         time += Nanoseconds(1'000'000'000);
-        in_view = simulation.run(time).sky.satellites.size();
+        in_view = simulation.run(time, {}).sky.satellites.size();
     }
     state.counters["in_view"] = static_cast<double>(in_view);
     state.counters["epochs/s"] =
@@ -71,13 +95,101 @@ void epoch(benchmark::State& state, ErrorModelKind kind) {
 BENCHMARK_CAPTURE(epoch, baseline, ErrorModelKind::baseline);
 BENCHMARK_CAPTURE(epoch, ideal, ErrorModelKind::ideal);
 
+// A real day of these systems, or the made-up four where the shared data is absent.
+struct ModernBench {
+    explicit ModernBench(std::vector<Constellation> constellations) {
+        scenario = open_sky(std::nullopt);
+        scenario.sky.constellations = constellations;
+        if (std::filesystem::exists(real_day)) {
+            scenario.sky.navigation = {real_day};
+            scenario.run.start = real_start;
+            source = std::move(load_navigation(scenario, real_start, false)->source);
+        } else {
+            source = std::make_unique<test::FourSystems>(constellations);
+        }
+        start = scenario.run.start.value();
+        std::vector<std::string> warnings;
+        geoid = find_geoid(bench_data(), warnings);
+        settings = effective(scenario.model.modern);
+    }
+    Simulation simulation() {
+        return std::move(*make_simulation(scenario, std::move(source), geoid.get(), start, bench_data()));
+    }
+    // The numbers repeat after an hour, for which every record is at hand.
+    [[nodiscard]] GpsTime at(std::int64_t index) const { return start + std::chrono::seconds(index % 3600); }
+
+    Scenario scenario;
+    std::unique_ptr<NavigationSource> source;
+    std::unique_ptr<Geoid> geoid;
+    ModernSettings settings;
+    GpsTime start;
+};
+
+// An hour of epochs of the modern profile: sky, effects, measurement, solution.
+void modern_hour(benchmark::State& state, const std::vector<Constellation>& constellations) {
+    std::size_t satellites = 0, epochs = 0;
+    for (auto _ : state) {
+        state.PauseTiming();
+        ModernBench bench(constellations);
+        Simulation simulation = bench.simulation();
+        state.ResumeTiming();
+        for (std::int64_t k = 0; k < 3600; ++k)
+            satellites += simulation.run(bench.at(k), {}).epoch.observations.signals.size();
+        epochs += 3600;
+    }
+    state.counters["tracked"] = static_cast<double>(satellites) / static_cast<double>(epochs);
+    state.counters["epochs/s"] = benchmark::Counter(static_cast<double>(epochs), benchmark::Counter::kIsRate);
+    state.counters["peak_MB"] = peak_megabytes();
+}
+BENCHMARK_CAPTURE(modern_hour, gps, {gps})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(modern_hour, gps_galileo, {gps, galileo})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(modern_hour, four_systems, {gps, galileo, beidou, glonass})->Unit(benchmark::kMillisecond);
+
+// One part of the epochs of an hour; the parts before it are made beforehand.
+enum class Part { sky, effects, measurement, solution };
+
+void modern_part(benchmark::State& state, Part part) {
+    ModernBench bench({gps, galileo, beidou, glonass});
+    FixedPoint place(std::get<FixedSettings>(bench.scenario.trajectory).at);
+    SkyObserver observer;
+    ModernContext context;
+    context.broadcast = bench.source->ionosphere();
+    context.receiver_correction = IonosphereModel::klobuchar;
+    context.geoid = bench.geoid.get();
+    auto effects = std::move(*modern_effects(bench.settings.propagation, context));
+    MeasurementEngine measurement(bench.settings.measurement, 1);
+    NavigationEngine navigation(bench.settings.navigation, {bench.source.get(), bench.geoid.get()});
+    std::int64_t k = 0;
+    for (auto _ : state) {
+        const TruthState truth = place.at(bench.at(0) + std::chrono::seconds(k++));
+        std::array<double, 5> from{};
+        from[0] = thread_seconds();
+        const SkyView sky = observer.observe(truth, *bench.source);
+        from[1] = thread_seconds();
+        Arrivals arrivals = free_space(sky);
+        for (const auto& effect : effects)
+            effect->apply(arrivals, sky, truth);
+        from[2] = thread_seconds();
+        const Measurement measured = measurement.measure(arrivals, truth.time, {});
+        from[3] = thread_seconds();
+        benchmark::DoNotOptimize(navigation.solve(measured.observations, {}));
+        from[4] = thread_seconds();
+        const auto index = static_cast<std::size_t>(part);
+        state.SetIterationTime(from[index + 1] - from[index]);
+    }
+}
+BENCHMARK_CAPTURE(modern_part, sky, Part::sky)->UseManualTime()->Iterations(3600);
+BENCHMARK_CAPTURE(modern_part, effects, Part::effects)->UseManualTime()->Iterations(3600);
+BENCHMARK_CAPTURE(modern_part, measurement, Part::measurement)->UseManualTime()->Iterations(3600);
+BENCHMARK_CAPTURE(modern_part, solution, Part::solution)->UseManualTime()->Iterations(3600);
+
 void nmea_sentences(benchmark::State& state) {
     const Scenario scenario = open_sky(ErrorModelKind::baseline);
     auto navigation = load_navigation(scenario, bench_start, true);
     auto simulation = make_simulation(scenario, std::move(navigation->source), nullptr, bench_start);
-    const Epoch one = simulation->run(bench_start).epoch;
+    const Epoch one = simulation->run(bench_start, {}).epoch;
     firmware::BoardProfile board;
-    board.constellations = {Constellation::gps};
+    board.constellations = {gps};
     for (int i = 0; i < 8; ++i)
         board.sentences.push_back({static_cast<firmware::NmeaSentence>(i), 1});
     firmware::NmeaHandler handler(board);
@@ -90,14 +202,14 @@ void nmea_sentences(benchmark::State& state) {
 BENCHMARK(nmea_sentences);
 
 // A whole run on the virtual clock, receiver and recording included: simulated seconds per second.
-void simulated_hour(benchmark::State& state) {
+void simulated_hour(benchmark::State& state, std::optional<ErrorModelKind> sensor_model) {
     const auto folder = std::filesystem::temp_directory_path() / "skyloop-bench";
     for (auto _ : state) {
         RunMode mode;
         mode.virtual_time = true;
         mode.open_ports = false;
         mode.record = folder;
-        auto assembly = assemble(open_sky(ErrorModelKind::baseline), bench_data(), mode);
+        auto assembly = assemble(open_sky(sensor_model), bench_data(), mode);
         const std::atomic<bool> stop{false};
         assembly->emulator->run_until(advanced(bench_start, Seconds(3600)), stop);
     }
@@ -105,6 +217,7 @@ void simulated_hour(benchmark::State& state) {
     state.counters["realtime_ratio"] =
         benchmark::Counter(3600.0 * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
-BENCHMARK(simulated_hour)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(simulated_hour, baseline, ErrorModelKind::baseline)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(simulated_hour, modern, std::nullopt)->Unit(benchmark::kMillisecond);
 
 }  // namespace

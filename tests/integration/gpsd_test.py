@@ -76,9 +76,9 @@ def metres_apart(latitude, longitude):
 
 
 class GpsdTest(unittest.TestCase):
-    def read_fix_and_sky(self, *arguments):
+    def read_fix_and_sky(self, *arguments, model="baseline"):
         """The first 3D TPV and a SKY with satellites that follows it."""
-        with open_folder() as folder, Emulator(*arguments, "--at", ",".join(map(str, PLACE)), "--model", "baseline",
+        with open_folder() as folder, Emulator(*arguments, "--at", ",".join(map(str, PLACE)), "--model", model,
                                                "--port", f"pty:{folder}/gps0", "--quiet") as emulator:
             gpsd = Gpsd(emulator.tty)
             fix = sky = None
@@ -125,6 +125,17 @@ class GpsdTest(unittest.TestCase):
         fix, sky = self.read_fix_and_sky("--start", "2026-03-01T00:00:00Z")
         self.assertLess(metres_apart(fix["lat"], fix["lon"]), 60)
         self.assert_same_satellites(sky, fix["time"])
+
+    def test_a_receiver_that_measures(self):
+        fix, sky = self.read_fix_and_sky("--start", "2026-03-01T00:00:00Z", model="modern")
+        self.assertLess(metres_apart(fix["lat"], fix["lon"]), 25)
+        self.assertAlmostEqual(fix.get("altHAE", PLACE[2]), PLACE[2], delta=40)
+        used = [s for s in sky["satellites"] if s["used"]]
+        self.assertGreaterEqual(len(used), 5)
+        for satellite in used:
+            self.assertGreater(satellite["ss"], 20)
+            self.assertLess(satellite["ss"], 60)
+            self.assertGreaterEqual(satellite["el"], 4)
 
 
 if __name__ == "__main__":

@@ -126,6 +126,63 @@ TEST(Assembly, ARecordingThatCannotBeMadeIsTheOutsideWorldsFailure) {
     EXPECT_EQ(refusal("", mode).code, ErrorCode::outside);
 }
 
+firmware::BoardProfile board_of(const char* name) { return find_board(name, board_folders(emulator_data())).value(); }
+
+TEST(ReceiverSettingsOfAScenario, TracksWhatTheBoardTracksUnlessToldOtherwise) {
+    firmware::BoardProfile board = board_of("ublox-m8");
+    board.constellations = {Constellation::gps, Constellation::glonass};
+    const ReceiverSettings plain = receiver_settings(emulator_scenario(""), board);
+    EXPECT_EQ(plain.signals.size(), 2U);
+    EXPECT_TRUE(plain.tracks(Constellation::gps, Signal::l1));
+    EXPECT_TRUE(plain.tracks(Constellation::glonass, first_signal(Constellation::glonass)));
+    EXPECT_FALSE(plain.tracks(Constellation::galileo, first_signal(Constellation::galileo)));
+    const ReceiverSettings told =
+        receiver_settings(emulator_scenario("[[receiver]]\nconstellations = [\"galileo\"]"), board);
+    EXPECT_EQ(told.signals.size(), 1U);
+    EXPECT_TRUE(told.tracks(Constellation::galileo, first_signal(Constellation::galileo)));
+}
+
+TEST(ReceiverSettingsOfAScenario, DualFrequencyAddsTheSecondSignals) {
+    const ReceiverSettings both = receiver_settings(
+        emulator_scenario("[[receiver]]\nconstellations = [\"gps\", \"galileo\"]\ndual_frequency = true"),
+        board_of("ublox-f9p"));
+    EXPECT_EQ(both.signals.size(), 4U);
+    for (const Constellation c : {Constellation::gps, Constellation::galileo})
+        for (const Signal signal : {emulated_signals(c)[0], emulated_signals(c)[1]})
+            EXPECT_TRUE(both.tracks(c, signal)) << constellation_name(c);
+}
+
+TEST(ReceiverSettingsOfAScenario, TakesStartMotionAndMaskOver) {
+    const ReceiverSettings s =
+        receiver_settings(emulator_scenario("[sky]\nelevation_mask_deg = 12.5\n[[receiver]]\nstart = \"cold\"\n"
+                                            "dynamic_model = \"sea\"\nstatic_hold_mps = 0.25"),
+                          board_of("ublox-m8"));
+    EXPECT_NEAR(s.elevation_mask.deg(), 12.5, 1e-12);
+    EXPECT_EQ(s.start, StartKind::cold);
+    EXPECT_EQ(s.dynamic_model, DynamicModel::sea);
+    EXPECT_EQ(s.static_hold_below, MetresPerSecond(0.25));
+    EXPECT_EQ(receiver_settings(emulator_scenario(""), board_of("ublox-m8")).start, StartKind::hot);
+}
+
+TEST(Assembly, AConstellationThatTheReceiverDoesNotTrackIsAWarning) {
+    const auto told = HasSubstr("nmea-generic does not track galileo, which sky.constellations names");
+    const std::string sky = "[sky]\nconstellations = [\"gps\", \"galileo\"]\n";
+    const std::string board = "[[receiver]]\nboard = \"nmea-generic\"\n";
+    EXPECT_THAT(assembled(sky + board + "constellations = [\"gps\"]").warnings, Contains(told));
+    EXPECT_THAT(assembled(sky + board + "constellations = [\"gps\", \"galileo\"]").warnings, Not(Contains(told)));
+    EXPECT_THAT(assembled(board + "constellations = [\"gps\"]").warnings, Not(Contains(told))) << "nobody asked for it";
+    EXPECT_THAT(assembled(sky + board + "constellations = [\"gps\"]\n[model]\nname = \"ideal\"").warnings,
+                Not(Contains(told)))
+        << "sensor models take what is in the sky";
+}
+
+TEST(Assembly, OnlyTheModernModelMeasures) {
+    for (const std::string_view name : model_names())
+        EXPECT_EQ(assembled("[model]\nname = \"" + std::string(name) + "\"").emulator->simulation().measures(),
+                  name == "modern")
+            << name;
+}
+
 TEST(MakeTrajectory, BeginsAtTheStart) {
     const GpsTime start = to_gps_time(2304, 0);
     const Geodetic a = Geodetic::degrees(46, 30, 10);

@@ -1,0 +1,266 @@
+// What a receiver that measures leaves behind: RINEX files that say what it measured, and every term in its column.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "run_parts.hpp"
+#include "skyloop/gnss/orbit.hpp"
+#include "skyloop/rinex/navigation_file.hpp"
+#include "skyloop/rinex/navigation_writer.hpp"
+#include "skyloop/rinex/observation_reader.hpp"
+#include "skyloop/time/utc_time.hpp"
+#include "support/four_systems.hpp"
+#include "unit/transport/temporary_folder.hpp"
+
+namespace skyloop {
+namespace {
+
+using test::content_of;
+using test::emulator_data;
+using test::emulator_scenario;
+using test::FourSystems;
+using test::TemporaryFolder;
+
+constexpr const char* receiver_of_four =
+    "[[receiver]]\nconstellations = [\"gps\", \"galileo\", \"beidou\", \"glonass\"]\ndual_frequency = true\n";
+
+class ModernRecording : public testing::Test {
+protected:
+    // Two hours of records of four systems.
+    ModernRecording() {
+        const FourSystems systems;
+        const GpsTime noon = to_gps_time({2024, 3, 5, 12, 0, 0, 0}, LeapSeconds::announced());
+        std::vector<Ephemeris> records;
+        for (const SatelliteId id : systems.satellites())
+            for (int k = -2; k <= 4; ++k)
+                if (const auto record = systems.ephemeris(id, noon + k * std::chrono::minutes(30)))
+                    if (records.empty() || !(toe_of(records.back()) == toe_of(*record) &&
+                                             satellite_of(records.back()) == satellite_of(*record)))
+                        records.push_back(*record);
+        NavigationTextHeader header;
+        header.ionosphere = systems.ionosphere();
+        header.leap_seconds = 18;
+        header.date = noon;
+        std::ofstream(folder_ / "four.rnx") << navigation_text(records, header);
+    }
+    std::string text(const std::string& rest, int duration = 20) const {
+        return "[run]\nstart = 2024-03-05T12:00:00Z\nduration_s = " + std::to_string(duration) +
+               "\n[sky]\nnavigation = \"" + (folder_ / "four.rnx").string() + "\"\n" + rest;
+    }
+    // Runs into folder/run and gives the trace of each epoch.
+    std::vector<Trace> run(const std::string& scenario) {
+        RunMode mode;
+        mode.virtual_time = true;
+        mode.open_ports = false;
+        mode.record = folder_ / "run";
+        auto assembly = assemble(emulator_scenario(scenario), emulator_data(), mode);
+        EXPECT_TRUE(assembly) << assembly.error().message;
+        if (!assembly) return {};
+        std::vector<Trace> traces;
+        assembly->emulator->on_status([&](const Status& status) { traces.push_back(*status.trace); });
+        assembly->emulator->run_until(*assembly->end, false);
+        EXPECT_FALSE(assembly->emulator->recorder()->failure());
+        return traces;
+    }
+    [[nodiscard]] std::string recorded(const std::string& name) const { return content_of(folder_ / "run" / name); }
+    [[nodiscard]] bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / "run" / name); }
+
+    TemporaryFolder folder_;
+};
+
+// To the resolution of the format: 0.001 m, cycles, Hz and dB-Hz.
+void expect_same(const Observation& read, const Observation& measured) {
+    constexpr double half = 0.0005 + 1e-7;
+    const std::string name = to_string(measured.satellite);
+    EXPECT_EQ(read.satellite, measured.satellite);
+    EXPECT_EQ(read.signal, measured.signal) << name;
+    EXPECT_NEAR(read.carrier.value(), measured.carrier.value(), 1e-3) << name;
+    EXPECT_NEAR(read.cn0.value(), measured.cn0.value(), half) << name;
+    ASSERT_EQ(read.pseudorange.has_value(), measured.pseudorange.has_value()) << name;
+    if (measured.pseudorange) {
+        EXPECT_NEAR(read.pseudorange->value(), measured.pseudorange->value(), half) << name;
+    }
+    ASSERT_EQ(read.carrier_phase.has_value(), measured.carrier_phase.has_value()) << name;
+    if (measured.carrier_phase) {
+        EXPECT_NEAR(*read.carrier_phase, *measured.carrier_phase, half) << name;
+    }
+    ASSERT_EQ(read.doppler.has_value(), measured.doppler.has_value()) << name;
+    if (measured.doppler) {
+        EXPECT_NEAR(read.doppler->value(), measured.doppler->value(), half) << name;
+    }
+    if (measured.carrier_phase) {
+        EXPECT_EQ(read.half_cycle_resolved, measured.half_cycle_resolved) << name;
+    }
+}
+
+TEST_F(ModernRecording, ObservationsReadBackAreThoseOfTheReceiver) {
+    const auto traces = run(text(receiver_of_four));
+    ASSERT_EQ(traces.size(), 20U);
+    const auto file = read_observations(recorded("observations.rnx"), "observations.rnx");
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_THAT(file->warnings, testing::IsEmpty());
+    EXPECT_EQ(file->skipped, SkippedObservations{});
+    EXPECT_EQ(file->interval, Seconds(1));
+    EXPECT_EQ(file->leap_seconds, 18);
+    EXPECT_EQ(file->receiver.substr(0, 8), "ublox-m8");
+    ASSERT_TRUE(file->approximate_position);
+    EXPECT_LT((*file->approximate_position - traces[0].truth.position).length().value(), 1e-3);
+    ASSERT_EQ(file->epochs.size(), traces.size());
+    std::set<SystemSignal> seen;
+    for (std::size_t k = 0; k < traces.size(); ++k) {
+        const Observations& measured = traces[k].epoch.observations;
+        EXPECT_LE(std::abs((file->epochs[k].receive_time - measured.receive_time).count()), 50) << "ns";
+        ASSERT_EQ(file->epochs[k].signals.size(), measured.signals.size());
+        for (std::size_t i = 0; i < measured.signals.size(); ++i) {
+            expect_same(file->epochs[k].signals[i], measured.signals[i]);
+            seen.insert({measured.signals[i].satellite.constellation, measured.signals[i].signal});
+        }
+    }
+    EXPECT_EQ(seen.size(), 8U) << "two signals of each of four systems";
+}
+
+TEST_F(ModernRecording, NavigationReadBackIsWhatTheSatellitesSent) {
+    const std::string scenario = text(receiver_of_four, 3600) + "rate_hz = 0.02\n";
+    const auto traces = run(scenario);
+    const auto source = load_navigation(emulator_scenario(scenario), {}, false);
+    ASSERT_TRUE(source);
+    const auto file = read_navigation(recorded("navigation.rnx"), "navigation.rnx");
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_THAT(file->warnings, testing::IsEmpty());
+    EXPECT_EQ(file->leap_seconds, 18);
+    ASSERT_TRUE(file->ionosphere.gps && file->ionosphere.galileo);
+    EXPECT_NEAR(file->ionosphere.gps->alpha[0], 0.1118e-7, 1e-12);
+    std::map<std::pair<SatelliteId, GpsTime>, const Ephemeris*> records;
+    for (const Ephemeris& record : file->records)
+        EXPECT_TRUE(records.insert({{satellite_of(record), toe_of(record)}, &record}).second) << "written once";
+    std::size_t used = 0;
+    for (const Trace& trace : traces)
+        for (const SatelliteInView& satellite : trace.sky.satellites) {
+            const auto sent = source->source->ephemeris(satellite.id, trace.truth.time);
+            ASSERT_TRUE(sent) << to_string(satellite.id);
+            const auto found = records.find({satellite.id, toe_of(*sent)});
+            ASSERT_NE(found, records.end()) << to_string(satellite.id);
+            const SatelliteState a = satellite_state(*sent, trace.truth.time);
+            const SatelliteState b = satellite_state(*found->second, trace.truth.time);
+            EXPECT_LT((a.position - b.position).length().value(), 1e-6) << to_string(satellite.id);
+            EXPECT_NEAR(a.clock_bias, b.clock_bias, 1e-17) << to_string(satellite.id);
+            ++used;
+        }
+    EXPECT_GT(used, 1000U);
+    EXPECT_GT(records.size(), 60U) << "GLONASS changes its records within the hour";
+}
+
+TEST_F(ModernRecording, SensorModelsMeasureNothingAndRemoveWhatAnotherRunLeft) {
+    run(text("", 2));
+    EXPECT_TRUE(exists("observations.rnx"));
+    EXPECT_TRUE(exists("navigation.rnx"));
+    run(text("[model]\nname = \"baseline\"\n", 2));
+    EXPECT_FALSE(exists("observations.rnx"));
+    EXPECT_FALSE(exists("navigation.rnx"));
+    run(text("[model]\nname = \"ideal\"\n", 2));
+    EXPECT_FALSE(exists("observations.rnx"));
+    EXPECT_TRUE(exists("satellites.csv"));
+}
+
+using Row = std::map<std::string, std::string>;
+
+std::vector<Row> rows_of(const std::string& table) {
+    const auto lines = test::lines_of(table);
+    const auto names = test::cells_of(lines.at(0));
+    std::vector<Row> rows;
+    for (std::size_t k = 1; k < lines.size(); ++k) {
+        const auto cells = test::cells_of(lines[k]);
+        EXPECT_EQ(cells.size(), names.size());
+        rows.emplace_back();
+        for (std::size_t i = 0; i < std::min(names.size(), cells.size()); ++i)
+            rows.back()[names[i]] = cells[i];
+    }
+    return rows;
+}
+
+void expect_cell(const Row& row, const char* column, double value, double tolerance) {
+    ASSERT_NE(row.at(column), "") << column;
+    EXPECT_NEAR(std::stod(row.at(column)), value, tolerance) << column;
+}
+
+void expect_arrival(const Row& row, const Arrival& arrival) {
+    expect_cell(row, "iono_delay_m", arrival.iono_delay.value(), 6e-5);
+    expect_cell(row, "tropo_delay_m", arrival.tropo_delay.value(), 6e-5);
+    expect_cell(row, "gas_loss_db", arrival.gas_loss.value(), 6e-6);
+    expect_cell(row, "rain_loss_db", arrival.rain_loss.value(), 6e-6);
+    expect_cell(row, "orbit_clock_error_m", arrival.signal_in_space_error.value(), 6e-5);
+    expect_cell(row, "foliage_loss_db", arrival.foliage_loss.value(), 6e-4);
+    expect_cell(row, "antenna_gain_dbic", arrival.antenna_gain.value(), 6e-4);
+    expect_cell(row, "power_offset_db", arrival.power_offset.value(), 6e-4);
+    expect_cell(row, "interference_loss_db", arrival.interference_loss.value(), 6e-4);
+    expect_cell(row, "amplitude_scintillation", arrival.amplitude_scintillation, 6e-5);
+    expect_cell(row, "phase_scintillation_rad", arrival.phase_scintillation.rad(), 6e-5);
+}
+
+constexpr const char* rough_world = R"toml(
+[atmosphere]
+rain_mm_h = 20
+[model.modern.losses]
+canopy_depth_m = 5
+[model.modern.interference]
+jammer_to_signal_db = 15
+[model.modern.scintillation]
+s4 = 0.3
+sigma_phi_rad = 0.2
+)toml";
+
+TEST_F(ModernRecording, EveryTermStandsInItsColumn) {
+    const auto traces = run(text("[[receiver]]\nconstellations = [\"gps\", \"glonass\"]\n" + std::string(rough_world)));
+    const auto rows = rows_of(recorded("satellites.csv"));
+    std::size_t at = 0, tracked = 0, untracked = 0;
+    for (const Trace& trace : traces)
+        for (std::size_t i = 0; i < trace.sky.satellites.size(); ++i) {
+            ASSERT_LT(at, rows.size());
+            const Row& row = rows[at++];
+            const SatelliteId id = trace.sky.satellites[i].id;
+            ASSERT_EQ(row.at("satellite"), to_string(id));
+            expect_arrival(row, trace.arrivals.satellites[i]);
+            const auto& terms = trace.measurement.signals;
+            const auto term = std::find_if(terms.begin(), terms.end(), [&](auto& t) { return t.satellite == id; });
+            const auto& signals = trace.epoch.observations.signals;
+            const auto seen = std::find_if(signals.begin(), signals.end(), [&](auto& o) { return o.satellite == id; });
+            if (seen == signals.end()) {
+                for (const char* column : {"pseudorange_m", "multipath_m", "code_noise_m", "phase_noise_m",
+                                           "doppler_noise_hz", "residual_m"})
+                    EXPECT_EQ(row.at(column), "") << column << " of " << to_string(id) << ", which is not tracked";
+                EXPECT_EQ(row.at("used"), "0");
+                ++untracked;
+                continue;
+            }
+            ASSERT_NE(term, terms.end());
+            expect_cell(row, "multipath_m", term->multipath.value(), 6e-5);
+            expect_cell(row, "code_noise_m", term->code_noise.value(), 6e-5);
+            expect_cell(row, "phase_noise_m", term->phase_noise.value(), 6e-6);
+            expect_cell(row, "doppler_noise_hz", term->doppler_noise.value(), 6e-5);
+            ASSERT_TRUE(seen->pseudorange);
+            expect_cell(row, "pseudorange_m", seen->pseudorange->value(), 6e-5);
+            ++tracked;
+        }
+    EXPECT_EQ(at, rows.size());
+    EXPECT_GT(tracked, 50U);
+    EXPECT_GT(untracked, 50U) << "Galileo and BeiDou stand in the sky all the same";
+}
+
+TEST_F(ModernRecording, FixesTellTheClockAsSolvedAndAsItWas) {
+    const auto traces = run(text(receiver_of_four));
+    const auto rows = rows_of(recorded("fixes.csv"));
+    ASSERT_EQ(rows.size(), traces.size());
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        const Fix& fix = traces[k].epoch.fix;
+        ASSERT_TRUE(fix.has_position()) << "a hot start has a fix at its first epoch";
+        expect_cell(rows[k], "s_acc_mps", fix.speed_accuracy.value(), 6e-4);
+        expect_cell(rows[k], "t_acc_m", fix.time_accuracy.value(), 6e-4);
+        expect_cell(rows[k], "clock_bias_m", fix.clock_bias.value(), 6e-5);
+        expect_cell(rows[k], "true_clock_bias_m", traces[k].measurement.clock_bias.value(), 6e-5);
+        EXPECT_NEAR(fix.clock_bias.value(), traces[k].measurement.clock_bias.value(), 30);
+    }
+}
+
+}  // namespace
+}  // namespace skyloop
