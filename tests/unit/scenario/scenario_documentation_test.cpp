@@ -59,16 +59,20 @@ std::map<std::string, std::set<std::string>> documented_keys() {
     std::map<std::string, std::set<std::string>> keys;
     std::vector<std::string> headings{"none"};
     std::size_t tables = 0;
+    bool in_key_table = false;
     for (const std::string& line : document_lines()) {
-        if (line.starts_with("## [")) headings = headings_of(line), tables = 0;
+        if (line.starts_with("## [") || line.starts_with("### [")) headings = headings_of(line), tables = 0;
         if (line.starts_with("`[")) headings = {between(line, '`', '`').at(0)};
         // Two tables under one heading: the second one is of the second part.
         if (line.starts_with("| key ") && ++tables > 1 && headings.size() > 1) headings.erase(headings.begin());
+        if (!line.starts_with('|')) in_key_table = false;
+        if (line.starts_with("| key ")) in_key_table = true;
         const std::string& heading = headings.front();
-        const bool row = line.starts_with("| `");
+        const bool row = in_key_table && line.starts_with("| `");
         // Paragraphs list keys with their defaults in running text: those of the models, layers and clouds.
         const bool listing =
-            !line.starts_with('|') && (heading.starts_with("[model.") || heading.starts_with("[[atmosphere."));
+            !line.starts_with('|') && ((heading.starts_with("[model.") && !heading.starts_with("[model.modern")) ||
+                                       heading.starts_with("[[atmosphere."));
         if (row || listing)
             for (const std::string& key : quoted_keys(row ? line.substr(0, line.find('|', 1)) : line))
                 keys[heading].insert(key);
@@ -82,7 +86,9 @@ bool reader_knows(const std::string& text) {
     return mistakes.find("unknown key") == std::string::npos;
 }
 
-bool reader_knows(const std::string& heading, const std::string& key) {
+bool reader_knows(std::string heading, const std::string& key) {
+    // The page tells of the tables of all terms at once.
+    if (const std::size_t name = heading.find("NAME"); name != std::string::npos) heading.replace(name, 4, "multipath");
     const std::string value = key + " = 1979-05-27\n";
     if (heading != "[trajectory]") return reader_knows(heading + "\n" + value);
     if (key == "kind") return reader_knows("[trajectory]\n" + value);
@@ -95,8 +101,9 @@ TEST(ScenarioDocumentation, HasAllParts) {
     const auto keys = documented_keys();
     for (const char* heading :
          {"[run]", "[sky]", "[trajectory]", "[frame]", "[model.baseline]", "[model.constant-sigma]",
-          "[model.satellite-count]", "[model.whole-path]", "[model.refraction]", "[atmosphere]", "[[atmosphere.layer]]",
-          "[[atmosphere.cloud]]", "[[receiver]]"})
+          "[model.satellite-count]", "[model.whole-path]", "[model.refraction]", "[model.modern]",
+          "[model.modern.terms.NAME]", "[model.modern.ionosphere]", "[model.modern.solution]", "[atmosphere]",
+          "[[atmosphere.layer]]", "[[atmosphere.cloud]]", "[[receiver]]"})
         EXPECT_TRUE(keys.contains(heading)) << heading;
     EXPECT_TRUE(keys.at("[frame]").contains("reach_m"));
     EXPECT_TRUE(keys.at("[model.whole-path]").contains("vapour_db_per_km_per_g_m3"));
