@@ -23,8 +23,9 @@ std::vector<Case> cases() {
     std::vector<Case> all;
     for (int i = 0; i < 60; ++i) {
         const double latitude = std::asin(2 * random.uniform() - 1) * 180 / 3.14159265358979;
-        all.push_back({Geodetic::degrees(latitude, 360 * random.uniform() - 180, 9000 * random.uniform() - 400),
-                       to_gps_time(1024 + static_cast<int>(2000 * random.uniform()), std::floor(604800 * random.uniform()))});
+        all.push_back(
+            {Geodetic::degrees(latitude, 360 * random.uniform() - 180, 9000 * random.uniform() - 400),
+             to_gps_time(1024 + static_cast<int>(2000 * random.uniform()), std::floor(604800 * random.uniform()))});
     }
     const GpsTime rollover = to_gps_time(2048, 0.0) - std::chrono::seconds(3);
     for (const auto& [latitude, longitude] :
