@@ -29,6 +29,8 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
     context.broadcast = navigation.ionosphere();
     if (settings.navigation.corrections.ionosphere != IonosphereCorrection::none)
         context.receiver_correction = IonosphereModel::klobuchar;
+    if (settings.navigation.corrections.ionosphere == IonosphereCorrection::broadcast && context.broadcast.galileo)
+        context.galileo_correction = IonosphereModel::ntcm_g;
     if (!settings.ionosphere_maps.empty()) {
         auto maps = read_ionex_file(settings.ionosphere_maps);
         if (!maps) return fail(maps.error());
@@ -41,7 +43,9 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
 }
 
 MeasuringReceiver measuring_receiver(const Scenario& scenario, const NavigationSource& navigation, const Geoid* geoid) {
-    const ModernSettings settings = effective(scenario.model.modern);
+    ModernSettings settings = effective(scenario.model.modern);
+    // Satellites broadcast an ionosphere even where the navigation data has lost it or there is none.
+    settings.navigation.corrections.default_ionosphere = true;
     return {MeasurementEngine(settings.measurement, scenario.run.seed),
             NavigationEngine(settings.navigation, {&navigation, geoid, LeapSeconds::announced()})};
 }

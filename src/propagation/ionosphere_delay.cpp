@@ -47,11 +47,12 @@ double IonosphereResidual::share(SatelliteId satellite, const SkyDirection& dire
 }
 
 IonosphereDelay::IonosphereDelay(std::unique_ptr<IonosphereTruth> model, const ModernPropagationParameters& parameters,
-                                 bool with_residual, std::uint64_t seed)
+                                 const ResidualReach& residual, std::uint64_t seed)
     : model_(std::move(model)),
       residual_(parameters.ionosphere_model, parameters.ionosphere_residual, seed),
+      reach_(residual),
       factor_(parameters.ionosphere.factor()),
-      residual_factor_(with_residual ? parameters.ionosphere_residual.factor() : 0) {}
+      residual_factor_(parameters.ionosphere_residual.factor()) {}
 
 void IonosphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
     assert(arrivals.satellites.size() == sky.satellites.size());
@@ -60,7 +61,8 @@ void IonosphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const TruthS
         const SatelliteInView& satellite = sky.satellites[i];
         Arrival& arrival = arrivals.satellites[i];
         arrival.iono_delay = model_->delay(satellite, truth, first_carrier(arrival)) * factor_;
-        if (residual_factor_ == 0) continue;
+        const bool departs = satellite.id.constellation == Constellation::galileo ? reach_.galileo : reach_.others;
+        if (residual_factor_ == 0 || !departs) continue;
         const SkyDirection direction{satellite.azimuth, satellite.elevation};
         const double share = residual_.share(satellite.id, direction, truth.geodetic, truth.time);
         // However the day departs from the model, electrons never speed the code up.

@@ -12,10 +12,18 @@ namespace {
 
 SkyDirection direction_of(const SatelliteInView& satellite) { return {satellite.azimuth, satellite.elevation}; }
 
+bool stands_below(const ThinShell& shell, const TruthState& truth) {
+    return truth.geodetic.height.above_ellipsoid < shell.height;
+}
+
+constexpr ThinShell klobuchar_shell{Metres(6371000), Metres(350000)};
+constexpr ThinShell ntcm_g_shell{Metres(6371000), Metres(450000)};
+
 class KlobucharTruth : public IonosphereTruth {
 public:
     explicit KlobucharTruth(const KlobucharCoefficients& coefficients) : coefficients_(coefficients) {}
     Metres delay(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) override {
+        if (!stands_below(klobuchar_shell, truth)) return Metres(0);
         // The very numbers of a receiver that corrects with the same coefficients.
         const auto at_l1 = klobuchar_delay(coefficients_, truth.geodetic, direction_of(satellite), truth.time).slant;
         return ionosphere_delay_at(at_l1, carrier);
@@ -30,6 +38,7 @@ public:
     NtcmGTruth(const EffectiveIonisation& ionisation, LeapSeconds leap_seconds)
         : ionisation_(ionisation), leap_seconds_(std::move(leap_seconds)) {}
     Metres delay(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) override {
+        if (!stands_below(ntcm_g_shell, truth)) return Metres(0);
         if (truth.time != time_) {
             time_ = truth.time;
             when_ = IonosphereTime::of(to_utc(time_, leap_seconds_));
@@ -50,10 +59,6 @@ Metres shell_delay(const ThinShell& shell, Tecu vertical, const SatelliteInView&
                    Hertz carrier) {
     const double mapping = single_layer_mapping(shell, satellite.elevation, truth.geodetic.height.above_ellipsoid);
     return ionosphere_group_delay(vertical * mapping, carrier);
-}
-
-bool stands_below(const ThinShell& shell, const TruthState& truth) {
-    return truth.geodetic.height.above_ellipsoid < shell.height;
 }
 
 class ConstantTruth : public IonosphereTruth {

@@ -12,9 +12,9 @@
 namespace skyloop {
 namespace {
 
-bool residual_wanted(const IonosphereParameters& parameters, const ModernContext& context) {
+bool residual_wanted(const IonosphereParameters& parameters, std::optional<IonosphereModel> correction) {
     if (parameters.residual != Choice::automatic) return parameters.residual == Choice::on;
-    return !context.receiver_correction || *context.receiver_correction == parameters.model;
+    return !correction || *correction == parameters.model;
 }
 
 }  // namespace
@@ -24,7 +24,9 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects(const Mod
     auto truth = make_ionosphere_truth(parameters.ionosphere_model, context);
     if (!truth) return fail(truth.error());
     const AtmosphereParameters& air = context.atmosphere;
-    const bool residual = residual_wanted(parameters.ionosphere_model, context);
+    const auto galileo = context.galileo_correction ? context.galileo_correction : context.receiver_correction;
+    const ResidualReach residual{residual_wanted(parameters.ionosphere_model, galileo),
+                                 residual_wanted(parameters.ionosphere_model, context.receiver_correction)};
     const TroposphereDelay::Site site{context.geoid, context.leap_seconds};
 
     std::vector<std::unique_ptr<PropagationEffect>> effects;

@@ -14,6 +14,12 @@ namespace skyloop {
 namespace {
 
 constexpr Nanoseconds troposphere_spacing = std::chrono::seconds(60);
+constexpr double vapour_scale_height_m = 2000;  // of the reference atmosphere (P.835, 1.2)
+
+// The share of the vapour over the sea that still lies above: what wanders of the delay wanders with it.
+double vapour_above(MslHeight height) {
+    return std::exp(-std::max(height.above_sea_level.value(), 0.0) / vapour_scale_height_m);
+}
 
 // A mapping function whose coefficients have been found for one epoch.
 struct EpochMapping {
@@ -112,7 +118,8 @@ void TroposphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const Truth
                                                    truth.geodetic.latitude, height);
     zenith.hydrostatic = zenith.hydrostatic * factor_;
     zenith.wet = zenith.wet * factor_;
-    if (residual_factor_ != 0) zenith.wet += Metres(residual_factor_ * (wander_.at(truth.time) + walk_.at(truth.time)));
+    if (residual_factor_ != 0)
+        zenith.wet += Metres(residual_factor_ * vapour_above(height) * (wander_.at(truth.time) + walk_.at(truth.time)));
     const EpochMapping mapping = epoch_mapping(parameters_, truth.geodetic, height, utc);
     for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
         const SkyDirection direction{sky.satellites[i].azimuth, above_horizon(sky.satellites[i].elevation)};

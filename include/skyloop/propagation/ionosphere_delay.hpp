@@ -30,18 +30,25 @@ private:
     PerSatellite<KnottedProcess> singles_;
 };
 
+/// Whose delays depart from the model. Galileo's receivers may correct with another one than the others.
+struct ResidualReach {
+    bool galileo = false;
+    bool others = false;
+};
+
 /// Writes the ionospheric delay of each arrival at the carrier of its first signal: that of the model, and the
 /// residual's share of it.
 class IonosphereDelay : public PropagationEffect {
 public:
-    /// @param model not null  @param with_residual by the parameters' choice
+    /// @param model not null  @param residual by the parameters' choice
     IonosphereDelay(std::unique_ptr<IonosphereTruth> model, const ModernPropagationParameters& parameters,
-                    bool with_residual, std::uint64_t seed);
+                    const ResidualReach& residual, std::uint64_t seed);
     void apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) override;
 
 private:
     std::unique_ptr<IonosphereTruth> model_;
     IonosphereResidual residual_;
+    ResidualReach reach_;
     double factor_, residual_factor_;
 };
 

@@ -32,6 +32,8 @@ struct ModernContext {
     BroadcastIonosphere broadcast{};    ///< of the navigation data
     /// The model that the receiver corrects with, where it is one of these.
     std::optional<IonosphereModel> receiver_correction{};
+    /// And Galileo's signals with, where it is another one.
+    std::optional<IonosphereModel> galileo_correction{};
     std::optional<NamedIonosphereMaps> maps{};  ///< of kind `ionex`
     std::filesystem::path nequick_folder{};     ///< of kind `nequick_g`: share/skyloop/nequick_g
     const Geoid* geoid = nullptr;               ///< must outlive the effects; without one heights stay ellipsoidal

@@ -33,7 +33,7 @@ IonosphereDelay ionosphere_effect(IonosphereModel model, const ModernContext& co
     parameters.ionosphere_model.model = model;
     auto truth = make_ionosphere_truth(parameters.ionosphere_model, context);
     if (!truth) throw std::runtime_error(truth.error().message);
-    return {std::move(*truth), parameters, false, 1};
+    return {std::move(*truth), parameters, {}, 1};
 }
 
 SkyView ionosphere_sky() {
@@ -183,6 +183,23 @@ TEST(IonosphereTruth, WithoutBroadcastTheParametersServe) {
     EXPECT_GT(test::after(ntcm, sky, truth).satellites[0].iono_delay.value(), 2);
 }
 
+TEST(IonosphereTruth, LiesBelowAnAntennaInOrbit) {
+    const SkyView sky = ionosphere_sky();
+    for (const IonosphereModel model :
+         {IonosphereModel::klobuchar, IonosphereModel::ntcm_g, IonosphereModel::constant}) {
+        IonosphereDelay effect = ionosphere_effect(model);
+        const auto largest = [&](double height) {
+            const Geodetic place = Geodetic::degrees(46.4774, 30.7326, height);
+            double most = 0;
+            for (const Arrival& a : test::after(effect, sky, test::truth_of(place, test::april_noon)).satellites)
+                most = std::max(most, a.iono_delay.value());
+            return most;
+        };
+        EXPECT_GT(largest(60e3), 1);
+        EXPECT_EQ(largest(1000e3), 0);
+    }
+}
+
 // Relative departures of the delay of a ring of satellites from its model, by epoch, then satellite.
 std::vector<std::vector<double>> residual_shares(const SkyView& sky, std::uint64_t seed, int epochs,
                                                  const ErrorTerm& term = {}) {
@@ -245,7 +262,7 @@ TEST(IonosphereDelay, ItsTermsSwitchModelAndResidual) {
         parameters.ionosphere = model;
         parameters.ionosphere_residual = residual;
         auto made = make_ionosphere_truth(parameters.ionosphere_model, ionosphere_context());
-        IonosphereDelay effect(std::move(*made), parameters, residual_wanted, 5);
+        IonosphereDelay effect(std::move(*made), parameters, {false, residual_wanted}, 5);
         return test::after(effect, sky, truth).satellites[2].iono_delay.value();
     };
     const double model = delay(false, {}, {});

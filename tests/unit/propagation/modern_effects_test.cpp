@@ -121,6 +121,31 @@ TEST(ModernEffects, MakeAResidualOnlyWhereTheReceiverCorrectsAllElse) {
     EXPECT_EQ(delay(Choice::automatic, IonosphereModel::ntcm_g), model);
 }
 
+TEST(ModernEffects, MakeAResidualForGalileoWhereItsOwnModelIsTheTruth) {
+    const Geodetic place = test::odessa_place;
+    const SkyView sky{{test::satellite_at({Constellation::gps, 1}, 30, 40, place),
+                       test::satellite_at({Constellation::galileo, 1}, 30, 40, place)}};
+    const auto delays = [&](Choice choice) {
+        ModernPropagationParameters parameters;
+        parameters.ionosphere_model.model = IonosphereModel::ntcm_g;
+        parameters.ionosphere_model.residual = choice;
+        ModernContext context;
+        context.receiver_correction = IonosphereModel::klobuchar;
+        context.galileo_correction = IonosphereModel::ntcm_g;
+        auto effects = modern_effects(parameters, context);
+        if (!effects) throw std::runtime_error(effects.error().message);
+        const TruthState truth = test::truth_of(place, test::april_noon);
+        Arrivals arrivals = free_space(sky);
+        for (const auto& effect : *effects)
+            effect->apply(arrivals, sky, truth);
+        return std::pair{arrivals.satellites[0].iono_delay.value(), arrivals.satellites[1].iono_delay.value()};
+    };
+    const auto model = delays(Choice::off), real = delays(Choice::on), automatic = delays(Choice::automatic);
+    EXPECT_EQ(automatic.first, model.first);
+    EXPECT_NE(real.second, model.second);
+    EXPECT_EQ(automatic.second, real.second);
+}
+
 TEST(ModernEffects, FailWhenTheIonosphereIsMissing) {
     ModernPropagationParameters parameters;
     parameters.ionosphere_model.model = IonosphereModel::ionex;

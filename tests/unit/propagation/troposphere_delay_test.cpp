@@ -77,6 +77,22 @@ TEST(TroposphereWeather, ComesFromEachSource) {
     EXPECT_NEAR(weather({.weather = WeatherSource::p835}).vapour_pressure_hpa, 9.7, 0.1);
 }
 
+TEST(TroposphereDelay, VapourWandersOnlyWhereThereIsVapour) {
+    const auto wandered = [](double height) {
+        const Geodetic place = Geodetic::degrees(46.4774, 30.7326, height);
+        const SkyView sky{{test::satellite_at({Constellation::gps, 1}, 30, 90, place)}};
+        const TruthState truth = test::truth_of(place, test::april_noon);
+        TroposphereDelay real({}, {}, {}, 1), still(still_air({}), {}, {}, 1);
+        return test::after(real, sky, truth).satellites[0].tropo_delay.value() -
+               test::after(still, sky, truth).satellites[0].tropo_delay.value();
+    };
+    const double at_sea = wandered(0);
+    EXPECT_GT(std::abs(at_sea), 1e-3);
+    EXPECT_NEAR(wandered(-400), at_sea, std::abs(at_sea) * 1e-4);
+    EXPECT_NEAR(wandered(2000), at_sea * std::exp(-1), std::abs(at_sea) * 1e-4);
+    EXPECT_LT(std::abs(wandered(60e3)), 1e-9);
+}
+
 TEST(TroposphereDelay, GradientsLeanOneWay) {
     const TroposphereParameters level, tilted{.gradient_north = Metres(0.001), .gradient_east = Metres(0.0005)};
     const double slant = 1 / (std::sin(0.2617993877991494) * std::tan(0.2617993877991494) + 0.0032);
