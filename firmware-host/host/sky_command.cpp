@@ -32,7 +32,7 @@ struct World {
 };
 
 Result<World> make_world(const Scenario& scenario, const Messages& messages) {
-    auto navigation = load_navigation(scenario, wall_clock(), scenario.sky.navigation.empty());
+    auto navigation = load_navigation(scenario, wall_clock());
     if (!navigation) return fail(navigation.error());
     std::vector<std::string> warnings = scenario.warnings;
     warnings.insert(warnings.end(), navigation->warnings.begin(), navigation->warnings.end());

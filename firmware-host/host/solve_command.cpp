@@ -83,7 +83,7 @@ Result<std::unique_ptr<NavigationSource>> broadcast_of(const SolveOptions& optio
     scenario.sky.navigation.assign(options.nav.begin(), options.nav.end());
     scenario.run.start = file.epochs.front().receive_time;
     scenario.run.duration = difference(file.epochs.back().receive_time, file.epochs.front().receive_time);
-    auto loaded = load_navigation(scenario, *scenario.run.start, false);
+    auto loaded = load_navigation(scenario, *scenario.run.start);
     if (!loaded) return fail(loaded.error());
     for (const std::string& warning : loaded->warnings)
         messages.warning(warning);

@@ -4,6 +4,7 @@
 #include "rinex_recording.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -199,7 +200,12 @@ Result<void> check_port_names(const Scenario& scenario) {
 Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, const RunMode& mode) {
     Assembly assembly;
     assembly.warnings = scenario.warnings;
-    auto navigation = load_navigation(scenario, mode.now, scenario.sky.navigation.empty());
+    if (!scenario.model.sensor_model && !scenario.sensor_model_keys.empty())
+        assembly.warnings.push_back(
+            fmt::format("atmosphere.{}: of the sensor models; the modern model takes clouds and rain from [atmosphere] "
+                        "and the rest from [model.modern]",
+                        fmt::join(scenario.sensor_model_keys, ", atmosphere.")));
+    auto navigation = load_navigation(scenario, mode.now);
     if (!navigation) return fail(navigation.error());
     assembly.warnings.insert(assembly.warnings.end(), navigation->warnings.begin(), navigation->warnings.end());
     assembly.geoid = find_geoid(data, assembly.warnings);

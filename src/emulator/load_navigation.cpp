@@ -121,13 +121,12 @@ EphemerisSelection selection_of(const Scenario& scenario) {
     return {scenario.sky.ephemeris_rule.value_or(own), scenario.sky.ephemeris_validity};
 }
 
-// The instant at which a run begins.
-GpsTime start_of(const Scenario& scenario, const NavigationSource& source, GpsTime now, bool default_to_now) {
+// The instant at which a run begins. @param first_epoch of the data; nothing for orbits at all times
+GpsTime start_of(const Scenario& scenario, std::optional<GpsTime> first_epoch, GpsTime now) {
     const RunSettings& run = scenario.run;
     if (run.start) return *run.start;
-    const auto span = source.span();
-    if (run.start_now || default_to_now || scenario.sky.rebase_navigation || !span) return now;
-    return span->first;
+    if (run.start_now || scenario.sky.rebase_navigation) return now;
+    return first_epoch.value_or(now);
 }
 
 // Far inside what 64-bit nanoseconds since 1980 can count, which ends in 2272.
@@ -155,7 +154,7 @@ void warn_outside(const Scenario& scenario, const LoadedNavigation& loaded, std:
         loaded.start < span->first || loaded.start > span->last ? "starts outside" : "outlasts", span_text(*span)));
 }
 
-Result<LoadedNavigation> load_nominal(const Scenario& scenario, GpsTime now, bool default_to_now) {
+Result<LoadedNavigation> load_nominal(const Scenario& scenario, GpsTime now) {
     const auto& wanted = scenario.sky.constellations;
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), Constellation::gps) == wanted.end())
         return fail(
@@ -164,21 +163,21 @@ Result<LoadedNavigation> load_nominal(const Scenario& scenario, GpsTime now, boo
     if (scenario.sky.rebase_navigation)
         return fail(ErrorCode::usage, "--rebase-nav moves navigation data, but there is none; give it with --nav");
     LoadedNavigation loaded{std::make_unique<NominalConstellation>(), {}, {}};
-    loaded.start = start_of(scenario, *loaded.source, now, default_to_now);
+    loaded.start = start_of(scenario, std::nullopt, now);
     if (const auto checked = check_end(scenario.run, loaded.start); !checked) return fail(checked.error());
     return loaded;
 }
 
 }  // namespace
 
-Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, bool default_to_now) {
-    if (scenario.sky.navigation.empty()) return load_nominal(scenario, now, default_to_now);
+Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now) {
+    if (scenario.sky.navigation.empty()) return load_nominal(scenario, now);
     LoadedNavigation loaded;
     const auto all = read_all(scenario, scenario.run.start.value_or(now), loaded.warnings);
     if (!all) return fail(all.error());
 
     NavigationData data(all->records, all->ionosphere, all->description, selection_of(scenario));
-    loaded.start = start_of(scenario, data, now, default_to_now);
+    loaded.start = start_of(scenario, data.first_epoch(), now);
     if (const auto checked = check_end(scenario.run, loaded.start); !checked) return fail(checked.error());
     if (scenario.sky.rebase_navigation) {
         auto moved = rebased(data, loaded.start);

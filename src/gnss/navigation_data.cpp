@@ -147,6 +147,13 @@ std::optional<TimeSpan> NavigationData::span() const {
     return TimeSpan{first, last};
 }
 
+std::optional<GpsTime> NavigationData::first_epoch() const {
+    std::optional<GpsTime> first;
+    for (const SatelliteRecords& s : satellites_)
+        first = std::min(first.value_or(GpsTime::max()), toe_of(s.records.front()));
+    return first;
+}
+
 std::size_t NavigationData::record_count() const {
     std::size_t count = 0;
     for (const SatelliteRecords& s : satellites_)

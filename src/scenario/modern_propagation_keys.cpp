@@ -94,14 +94,12 @@ void read_losses(TableReader& table, LossParameters& p) {
 }
 
 void read_antenna(TableReader& table, ModernLinkParameters& p, const std::filesystem::path& folder) {
-    Decibels peak(3.4), drop(16.5);
-    double exponent = 1.3;
-    if (table.has("antenna_peak_dbic") || table.has("antenna_drop_db") || table.has("antenna_exponent")) {
-        table.quantity("antenna_peak_dbic", peak, {-100, 100});
-        table.quantity("antenna_drop_db", drop, {0, 100});
-        table.number("antenna_exponent", exponent, {0.1, 10});
-        p.antenna = AntennaPattern(peak, drop, exponent);
-    }
+    Decibels peak = p.antenna.peak(), drop = p.antenna.drop();
+    double exponent = p.antenna.exponent();
+    table.quantity("antenna_peak_dbic", peak, {-100, 100});
+    table.quantity("antenna_drop_db", drop, {0, 100});
+    table.number("antenna_exponent", exponent, {0.1, 10});
+    p.antenna = AntennaPattern(peak, drop, exponent);
     std::string file;
     table.text("antenna_table", file);
     if (file.empty()) return;

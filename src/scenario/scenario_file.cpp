@@ -99,6 +99,28 @@ void read_receivers(TableReader& top, Scenario& scenario) {
     });
 }
 
+// The modern model has its own air: of [atmosphere] it takes clouds and rain.
+constexpr std::string_view sensor_model_atmosphere_keys[] = {"total_electron_content_tecu",
+                                                             "tec_source",
+                                                             "ionosphere_loss_db",
+                                                             "riometer_absorption_30mhz_db",
+                                                             "ionosphere_base_m",
+                                                             "environment",
+                                                             "environment_noise_db",
+                                                             "sea_level_temperature_k",
+                                                             "oxygen_constant_ghz2",
+                                                             "concentration",
+                                                             "zenith_dry_delay_m",
+                                                             "zenith_dry_decay_per_m",
+                                                             "zenith_wet_delay_m",
+                                                             "rain_model",
+                                                             "clouds_apply_concentration",
+                                                             "gravity_mps2",
+                                                             "molar_mass_kg_per_mol",
+                                                             "gas_constant_j_per_mol_k",
+                                                             "earth_radius_m",
+                                                             "layer"};
+
 // What INTERFACE names and later versions will read.
 void refuse_later_keys(TableReader& top) {
     top.refuse("scene", "buildings are not in this version");
@@ -112,7 +134,11 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     top.table("sky", [&](TableReader& t) { read_sky_keys(t, scenario.sky, folder); });
     read_trajectory_keys(top, scenario);
     top.table("model", [&](TableReader& t) { read_model_keys(t, scenario.model, folder); });
-    top.table("atmosphere", [&](TableReader& t) { read_atmosphere_keys(t, scenario.atmosphere); });
+    top.table("atmosphere", [&](TableReader& t) {
+        read_atmosphere_keys(t, scenario.atmosphere);
+        for (const std::string_view key : sensor_model_atmosphere_keys)
+            if (t.has(key)) scenario.sensor_model_keys.emplace_back(key);
+    });
     read_receivers(top, scenario);
     refuse_later_keys(top);
 }

@@ -77,7 +77,7 @@ BENCHMARK(sky_of_31_satellites);
 // The whole pipeline of an epoch: truth, sky, propagation, fix.
 void epoch(benchmark::State& state, ErrorModelKind kind) {
     const Scenario scenario = open_sky(kind);
-    auto navigation = load_navigation(scenario, bench_start, true);
+    auto navigation = load_navigation(scenario, bench_start);
     std::vector<std::string> warnings;
     const auto geoid = find_geoid(bench_data(), warnings);
     auto made = make_simulation(scenario, std::move(navigation->source), geoid.get(), bench_start);
@@ -103,7 +103,7 @@ struct ModernBench {
         if (std::filesystem::exists(real_day)) {
             scenario.sky.navigation = {real_day};
             scenario.run.start = real_start;
-            source = std::move(load_navigation(scenario, real_start, false)->source);
+            source = std::move(load_navigation(scenario, real_start)->source);
         } else {
             source = std::make_unique<test::FourSystems>(constellations);
         }
@@ -185,7 +185,7 @@ BENCHMARK_CAPTURE(modern_part, solution, Part::solution)->UseManualTime()->Itera
 
 void nmea_sentences(benchmark::State& state) {
     const Scenario scenario = open_sky(ErrorModelKind::baseline);
-    auto navigation = load_navigation(scenario, bench_start, true);
+    auto navigation = load_navigation(scenario, bench_start);
     auto simulation = make_simulation(scenario, std::move(navigation->source), nullptr, bench_start);
     const Epoch one = simulation->run(bench_start, {}).epoch;
     firmware::BoardProfile board;

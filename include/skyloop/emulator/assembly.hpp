@@ -52,13 +52,12 @@ std::string scenario_digest(const Scenario& scenario, GpsTime start);
 /// Broadcast orbits for a scenario: its files, or the nominal constellation, and when its run begins. Fails with
 /// `input` for files that hold nothing to use, with `usage` for settings that contradict each other.
 /// @param now the wall clock, GPST
-/// @param default_to_now a scenario that names no start begins now, not with the data
 struct LoadedNavigation {
     std::unique_ptr<NavigationSource> source;
     GpsTime start;  ///< of the run
     std::vector<std::string> warnings;
 };
-Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, bool default_to_now);
+Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now);
 
 /// The trajectory of a scenario, begun at `start`.
 std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, GpsTime start);

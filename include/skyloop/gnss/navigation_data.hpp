@@ -52,6 +52,8 @@ public:
     [[nodiscard]] std::optional<TimeSpan> span() const override;
     [[nodiscard]] std::string description() const override { return description_; }
 
+    /// The first toe of all records; nothing when there are none.
+    [[nodiscard]] std::optional<GpsTime> first_epoch() const;
     [[nodiscard]] const std::vector<SatelliteRecords>& records() const { return satellites_; }
     [[nodiscard]] std::size_t record_count() const;
     [[nodiscard]] const EphemerisSelection& selection() const { return selection_; }

@@ -28,6 +28,11 @@ public:
     /// Linear between the rows of a table, around the compass too; constant beyond its elevations.
     [[nodiscard]] Decibels gain(const SkyDirection& direction) const;
 
+    /// G0, d and p of the formula.
+    [[nodiscard]] Decibels peak() const { return peak_; }
+    [[nodiscard]] Decibels drop() const { return drop_; }
+    [[nodiscard]] double exponent() const { return exponent_; }
+
 private:
     Decibels peak_{3.4}, drop_{16.5};
     double exponent_ = 1.3;

@@ -93,6 +93,8 @@ struct Scenario {
     TrajectorySettings trajectory = FixedSettings{};
     ModelSettings model;
     AtmosphereParameters atmosphere;
+    std::vector<std::string>
+        sensor_model_keys;  ///< keys of [atmosphere] that were given and act in sensor models alone
     ReceiverEntry receiver;
     std::vector<std::string> warnings;  ///< what a reader should be told, e.g. a level that is too large for a plane
 };

@@ -63,7 +63,7 @@ protected:
                                  rest);
     }
     static LoadedNavigation load(const Scenario& scenario) {
-        auto loaded = load_navigation(scenario, wall_now, scenario.sky.navigation.empty());
+        auto loaded = load_navigation(scenario, wall_now);
         EXPECT_TRUE(loaded) << loaded.error().message;
         return loaded ? std::move(*loaded) : LoadedNavigation{std::make_unique<NominalConstellation>(), {}, {}};
     }
@@ -87,7 +87,7 @@ TEST_F(LoadNavigation, WithoutAFileTheNominalConstellationServesFromNow) {
 
 TEST_F(LoadNavigation, TheNominalConstellationIsGps) {
     const auto refused = [](const std::string& sky) {
-        const auto loaded = load_navigation(emulator_scenario("[sky]\n" + sky), wall_now, true);
+        const auto loaded = load_navigation(emulator_scenario("[sky]\n" + sky), wall_now);
         return loaded ? "accepted" : loaded.error().message;
     };
     EXPECT_THAT(refused("constellations = [\"galileo\"]"), HasSubstr("the nominal constellation is GPS"));
@@ -96,12 +96,12 @@ TEST_F(LoadNavigation, TheNominalConstellationIsGps) {
 }
 
 TEST_F(LoadNavigation, AMissingOrBrokenFileIsNamed) {
-    const auto missing = load_navigation(emulator_scenario("[sky]\nnavigation = \"none.rnx\""), wall_now, false);
+    const auto missing = load_navigation(emulator_scenario("[sky]\nnavigation = \"none.rnx\""), wall_now);
     ASSERT_FALSE(missing);
     EXPECT_EQ(missing.error().code, ErrorCode::outside);
     EXPECT_THAT(missing.error().message, HasSubstr("none.rnx"));
     std::ofstream(folder_ / "two.rnx") << "no navigation file\n";
-    const auto broken = load_navigation(scenario(""), wall_now, false);
+    const auto broken = load_navigation(scenario(""), wall_now);
     ASSERT_FALSE(broken);
     EXPECT_EQ(broken.error().code, ErrorCode::input);
     EXPECT_THAT(broken.error().message, HasSubstr("two.rnx:1"));
@@ -133,7 +133,7 @@ TEST_F(LoadNavigation, KeepsTheWantedConstellations) {
     const auto qzss = load(scenario("constellations = [\"qzss\"]")).source->satellites();
     ASSERT_THAT(qzss, SizeIs(2));
     EXPECT_EQ(to_string(qzss[0]), "J01");
-    const auto none = load_navigation(scenario("constellations = [\"galileo\"]"), wall_now, false);
+    const auto none = load_navigation(scenario("constellations = [\"galileo\"]"), wall_now);
     ASSERT_FALSE(none);
     EXPECT_THAT(none.error().message, HasSubstr("two.rnx: found records of gps, qzss; expected some of galileo"));
 }
@@ -161,19 +161,18 @@ TEST_F(LoadNavigation, RebasingMovesTheDataByWholeDays) {
     EXPECT_EQ((toe_of(*record) - data_day) % 24h, 2h);
     EXPECT_EQ(load(scenario("rebase_navigation = true", "[run]\nstart = \"now\"")).start, wall_now);
     const auto no_data =
-        load_navigation(scenario("rebase_navigation = true", "[run]\nstart = 2026-07-08T13:00:00Z"), wall_now, false);
+        load_navigation(scenario("rebase_navigation = true", "[run]\nstart = 2026-07-08T13:00:00Z"), wall_now);
     EXPECT_FALSE(no_data) << "there is nothing for this time of day";
 }
 
 TEST_F(LoadNavigation, RefusesARunThatOutlastsItsClock) {
     const auto nominal =
-        load_navigation(emulator_scenario("[run]\nstart = 2199-01-01T00:00:00Z\nduration_s = 3e9"), wall_now, true);
+        load_navigation(emulator_scenario("[run]\nstart = 2199-01-01T00:00:00Z\nduration_s = 3e9"), wall_now);
     ASSERT_FALSE(nominal);
     EXPECT_EQ(nominal.error().code, ErrorCode::usage);
     EXPECT_EQ(nominal.error().message,
               "a run of 3e+09 s from 2199-01-01T00:00:00Z ends after 2269; expected a shorter one");
-    EXPECT_FALSE(
-        load_navigation(scenario("", "[run]\nstart = 2199-01-01T00:00:00Z\nduration_s = 3e9"), wall_now, false));
+    EXPECT_FALSE(load_navigation(scenario("", "[run]\nstart = 2199-01-01T00:00:00Z\nduration_s = 3e9"), wall_now));
 }
 
 }  // namespace

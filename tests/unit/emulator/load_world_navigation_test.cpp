@@ -32,16 +32,15 @@ TEST(LoadWorldNavigation, SensorModelsUseGpsAndQzssUnlessOthersAreNamed) {
     SKYLOOP_REQUIRE_SHARED(nav, "nav/BRDC00IGS_R_20230010000_01D_MN.rnx.gz");
     Scenario baseline = with_navigation(nav);
     baseline.model.sensor_model = ErrorModelKind::baseline;
-    const auto plain = load_navigation(baseline, {}, false);
+    const auto plain = load_navigation(baseline, {});
     ASSERT_TRUE(plain) << plain.error().message;
     EXPECT_THAT(systems_of(*plain->source), ElementsAre(Constellation::gps, Constellation::qzss));
-    const auto all = load_navigation(with_navigation(nav), {}, false);
+    const auto all = load_navigation(with_navigation(nav), {});
     ASSERT_TRUE(all) << all.error().message;
     EXPECT_THAT(systems_of(*all->source), IsSupersetOf({Constellation::gps, Constellation::galileo,
                                                         Constellation::beidou, Constellation::glonass}))
         << "a receiver that measures chooses by itself";
-    const auto asked =
-        load_navigation(with_navigation(nav, {Constellation::galileo, Constellation::glonass}), {}, false);
+    const auto asked = load_navigation(with_navigation(nav, {Constellation::galileo, Constellation::glonass}), {});
     ASSERT_TRUE(asked);
     EXPECT_THAT(systems_of(*asked->source), ElementsAre(Constellation::galileo, Constellation::glonass));
 }
@@ -50,23 +49,23 @@ TEST(LoadWorldNavigation, SaysWhatTheDataHolds) {
     SKYLOOP_REQUIRE_SHARED(nav, "nav/brdc0910.09g");
     Scenario baseline = with_navigation(nav);
     baseline.model.sensor_model = ErrorModelKind::baseline;
-    const auto refused = load_navigation(baseline, {}, false);
+    const auto refused = load_navigation(baseline, {});
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message,
                 HasSubstr("brdc0910.09g: found records of glonass; expected some of gps, qzss"));
-    EXPECT_TRUE(load_navigation(with_navigation(nav, {Constellation::glonass}), {}, false));
+    EXPECT_TRUE(load_navigation(with_navigation(nav, {Constellation::glonass}), {}));
 }
 
 TEST(LoadWorldNavigation, ReadsAlmanacs) {
     SKYLOOP_REQUIRE_SHARED(folder, "nav/almanac");
     Scenario scenario = with_navigation(folder / "yuma.txt");
     scenario.run.start = to_gps_time(1024 + 862, 319488.0 + 86400);
-    const auto loaded = load_navigation(scenario, {}, false);
+    const auto loaded = load_navigation(scenario, {});
     ASSERT_TRUE(loaded) << loaded.error().message;
     EXPECT_TRUE(loaded->warnings.empty());
     EXPECT_EQ(loaded->source->satellites().size(), 31u);
     EXPECT_TRUE(loaded->source->ephemeris({Constellation::gps, 1}, *scenario.run.start));
-    const auto wrong = load_navigation(with_navigation(folder / "wrong_sem.txt"), {}, false);
+    const auto wrong = load_navigation(with_navigation(folder / "wrong_sem.txt"), {});
     ASSERT_FALSE(wrong);
     EXPECT_THAT(wrong.error().message, HasSubstr("wrong_sem.txt:9: found '0'"));
 }

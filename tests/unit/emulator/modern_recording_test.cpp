@@ -123,7 +123,7 @@ TEST_F(ModernRecording, ObservationsReadBackAreThoseOfTheReceiver) {
 TEST_F(ModernRecording, NavigationReadBackIsWhatTheSatellitesSent) {
     const std::string scenario = text(receiver_of_four, 3600) + "rate_hz = 0.02\n";
     const auto traces = run(scenario);
-    const auto source = load_navigation(emulator_scenario(scenario), {}, false);
+    const auto source = load_navigation(emulator_scenario(scenario), {});
     ASSERT_TRUE(source);
     const auto file = read_navigation(recorded("navigation.rnx"), "navigation.rnx");
     ASSERT_TRUE(file) << file.error().message;
