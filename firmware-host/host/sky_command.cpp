@@ -34,13 +34,13 @@ struct World {
 Result<World> make_world(const Scenario& scenario, const Messages& messages) {
     auto navigation = load_navigation(scenario, wall_clock());
     if (!navigation) return fail(navigation.error());
-    std::vector<std::string> warnings = scenario.warnings;
+    std::vector<std::string> warnings = scenario_warnings(scenario);
     warnings.insert(warnings.end(), navigation->warnings.begin(), navigation->warnings.end());
     auto geoid = find_geoid(data_folders(), warnings);
     for (const std::string& warning : warnings)
         messages.warning(warning);
     const GpsTime start = navigation->start;
-    auto simulation = make_simulation(scenario, std::move(navigation->source), geoid.get(), start);
+    auto simulation = make_simulation(scenario, std::move(navigation->source), geoid.get(), start, data_folders());
     if (!simulation) return fail(simulation.error());
     return World{std::move(geoid), std::move(*simulation), start};
 }
@@ -89,9 +89,12 @@ int show_sky(const SkyOptions& options) {
     if (!world) return messages.error(world.error());
     if (options.tracks_h > 0) return print_tracks(options, *world);
 
-    const Trace trace = world->simulation.run(world->start, ReceiverSettings{});
+    // A receiver that tracks everything shows the whole sky.
+    ReceiverSettings receiver;
+    receiver.elevation_mask = scenario->sky.elevation_mask.value_or(receiver.elevation_mask);
+    const Trace trace = world->simulation.run(world->start, receiver);
     const SkyListing listing =
-        sky_listing(trace.truth, trace.sky, scenario->sky.elevation_mask, {&trace.arrivals, &trace.epoch.fix});
+        sky_listing(trace.truth, trace.sky, receiver.elevation_mask, {&trace.arrivals, &trace.epoch.fix});
     if (options.format == "svg")
         fmt::print("{}", sky_svg(listing, *world, trace.truth));
     else if (options.format == "json")

@@ -31,7 +31,10 @@ ErrorModelSettings error_model_settings(const Scenario& scenario, const Geoid* g
     const ModelSettings& model = scenario.model;
     ErrorModelSettings settings;
     settings.kind = *model.sensor_model;
-    settings.sensor = {{scenario.sky.elevation_mask}, scenario.run.seed, geoid, LeapSeconds::announced()};
+    settings.sensor = {{scenario.sky.elevation_mask.value_or(SelectionParameters().elevation_mask)},
+                       scenario.run.seed,
+                       geoid,
+                       LeapSeconds::announced()};
     settings.baseline = model.baseline;
     settings.constant_sigma = model.constant_sigma;
     settings.satellite_count = model.satellite_count;
@@ -56,6 +59,7 @@ Result<firmware::Receiver> make_receiver(const Scenario& scenario, const DataFol
     auto board = find_board(entry.board, board_folders(data));
     if (!board) return fail(board.error());
     if (entry.baud) board->baud = *entry.baud;
+    if (!entry.constellations.empty()) board->constellations = entry.constellations;
     if (!entry.sentences.empty()) board->sentences.clear();
     for (const firmware::NmeaSentence sentence : entry.sentences)
         board->sentences.push_back({sentence, 1});
@@ -109,6 +113,13 @@ RinexRecordingSetup rinex_setup(const Emulator::Parts& parts, GpsTime start) {
     return setup;
 }
 
+Result<Recorder> make_recorder(const std::filesystem::path& folder, const Emulator::Parts& parts, GpsTime start) {
+    auto recorder = Recorder::create(folder);
+    if (!recorder || !parts.simulation.measures()) return recorder;
+    if (const auto added = recorder->add_rinex(rinex_setup(parts, start)); !added) return fail(added.error());
+    return recorder;
+}
+
 Result<std::vector<Link>> open_links(const ReceiverEntry& entry, std::uint32_t baud, bool virtual_time) {
     std::vector<Link> links;
     const std::vector<std::string> uris = entry.ports.empty() ? std::vector<std::string>{"pty"} : entry.ports;
@@ -157,10 +168,20 @@ std::unique_ptr<Geoid> find_geoid(const DataFolders& data, std::vector<std::stri
     return nullptr;
 }
 
+std::vector<std::string> scenario_warnings(const Scenario& scenario) {
+    std::vector<std::string> warnings = scenario.warnings;
+    if (!scenario.model.sensor_model && !scenario.sensor_model_keys.empty())
+        warnings.push_back(
+            fmt::format("atmosphere.{}: of the sensor models; the modern model takes clouds and rain from [atmosphere] "
+                        "and the rest from [model.modern]",
+                        fmt::join(scenario.sensor_model_keys, ", atmosphere.")));
+    return warnings;
+}
+
 ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::BoardProfile& board) {
     const ReceiverEntry& entry = scenario.receiver;
     ReceiverSettings settings;
-    settings.elevation_mask = scenario.sky.elevation_mask;
+    settings.elevation_mask = scenario.sky.elevation_mask.value_or(board.elevation_mask);
     settings.start = entry.start;
     settings.dynamic_model = entry.dynamic_model;
     settings.static_hold_below = entry.static_hold_below;
@@ -199,12 +220,7 @@ Result<void> check_port_names(const Scenario& scenario) {
 
 Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, const RunMode& mode) {
     Assembly assembly;
-    assembly.warnings = scenario.warnings;
-    if (!scenario.model.sensor_model && !scenario.sensor_model_keys.empty())
-        assembly.warnings.push_back(
-            fmt::format("atmosphere.{}: of the sensor models; the modern model takes clouds and rain from [atmosphere] "
-                        "and the rest from [model.modern]",
-                        fmt::join(scenario.sensor_model_keys, ", atmosphere.")));
+    assembly.warnings = scenario_warnings(scenario);
     auto navigation = load_navigation(scenario, mode.now);
     if (!navigation) return fail(navigation.error());
     assembly.warnings.insert(assembly.warnings.end(), navigation->warnings.begin(), navigation->warnings.end());
@@ -227,11 +243,8 @@ Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, con
     }
     // After everything that may be refused: it empties the files of a former recording.
     if (mode.record) {
-        auto recorder = Recorder::create(*mode.record);
+        auto recorder = make_recorder(*mode.record, parts, assembly.start);
         if (!recorder) return fail(recorder.error());
-        if (parts.simulation.measures())
-            if (const auto added = recorder->add_rinex(rinex_setup(parts, assembly.start)); !added)
-                return fail(added.error());
         parts.recorder = std::move(*recorder);
     }
     // Last, so that the clock starts when everything else is ready.

@@ -29,6 +29,8 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
     context.broadcast = navigation.ionosphere();
     if (settings.navigation.corrections.ionosphere != IonosphereCorrection::none)
         context.receiver_correction = IonosphereModel::klobuchar;
+    if (settings.navigation.corrections.ionosphere == IonosphereCorrection::broadcast && context.broadcast.galileo)
+        context.galileo_correction = IonosphereModel::ntcm_g;
     if (!settings.ionosphere_maps.empty()) {
         auto maps = read_ionex_file(settings.ionosphere_maps);
         if (!maps) return fail(maps.error());

@@ -167,7 +167,9 @@ void ModernLinkBudget::apply(Arrivals& arrivals, const SkyView& sky, const Truth
         if (power_factor != 0) {
             Power& power = powers_.of(arrival.id, [this](SatelliteId id) {
                 const std::string name = "satellite_power." + to_string(id);
-                const double spread = power_term_.stream(seed_, name).normal() * link_.satellite_spread.value();
+                // Satellites lie within two deviations: a satellite that is stronger than any real one helps nobody.
+                const double normal = std::clamp(power_term_.stream(seed_, name).normal(), -2.0, 2.0);
+                const double spread = normal * link_.satellite_spread.value();
                 return Power{spread, KnottedProcess({link_.ripple.value(), link_.ripple_time}, ripple_spacing,
                                                     power_term_.stream(seed_, name + ".ripple"))};
             });

@@ -76,6 +76,7 @@ void PositionFilter::reset() { *this = PositionFilter(parameters_); }
 void PositionFilter::start(const PositionInput& input) {
     position_ = input.position.vector();
     averaged_ = 1;
+    settled_ = false;
     velocity_count_ = 0;
 }
 
@@ -97,10 +98,11 @@ Vector3d PositionFilter::way(double dt, const PositionInput& input, double& unsu
     return best;
 }
 
-double PositionFilter::gain(double dt, double unsure, const ReceiverSettings& settings) const {
+double PositionFilter::gain(double dt, double unsure, const ReceiverSettings& settings) {
     const double memory = parameters_.position_memory.value() * memory_factor(settings.dynamic_model);
     const double steady = memory > 0 ? 1 - std::exp(-dt / memory) : 1;
     const double young = 1 / (averaged_ + 1);
+    settled_ = young <= 2 * steady;
     return std::max({steady, young, unsure / (unsure + tolerated_lag_m)});
 }
 
@@ -126,8 +128,9 @@ bool PositionFilter::holds(const PositionInput& input, const ReceiverSettings& s
         return false;
     }
     if (held_ && (position_ - *held_).norm() > parameters_.static_hold_radius.value()) held_.reset();
-    if (!held_) held_ = position_;
-    return true;
+    // What is held is an average, not the first position that came along.
+    if (!held_ && settled_) held_ = position_;
+    return held_.has_value();
 }
 
 FilteredPosition PositionFilter::update(const PositionInput& input, const ReceiverSettings& settings) {

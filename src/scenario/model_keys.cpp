@@ -155,12 +155,12 @@ void read_ionosphere(TableReader& atmosphere, AtmosphereParameters& p) {
 
 void read_model_keys(TableReader& model, ModelSettings& settings, const std::filesystem::path& folder) {
     if (const auto index = model.choice("name", model_names())) choose_model(settings, model_names()[*index]);
-    model.table("modern", [&](TableReader& table) { read_modern_keys(table, settings.modern, folder); });
     static constexpr std::array<Word<bool>, 2> errors{{{"all", true}, {"none", false}}};
     if (model.has("errors") && settings.sensor_model)
         model.mistake("errors",
                       fmt::format("belongs to the modern model; this scenario's is {}", model_name(settings)));
     model.word("errors", errors, settings.modern.errors);
+    model.table("modern", [&](TableReader& table) { read_modern_keys(table, settings.modern, folder); });
     model.table("baseline", [&](TableReader& table) { read_baseline(table, settings); });
     read_simple_models(model, settings);
 }

@@ -10,6 +10,10 @@ void read_terms(TableReader& modern, ModernSettings& settings) {
         for (const NamedTerm& named : error_terms(settings))
             terms.table(named.name, [&](TableReader& table) {
                 table.boolean("enabled", named.term->enabled);
+                if (!settings.errors && table.has("enabled") && named.term->enabled)
+                    table.mistake("enabled",
+                                  "is true beside errors = \"none\", which switches every term off; expected "
+                                  "one of the two");
                 table.number("scale", named.term->scale, {0, 1000});
                 if (!table.has("seed")) return;
                 std::uint64_t seed = 1;
@@ -85,6 +89,7 @@ void read_corrections(TableReader& table, ModernSettings& settings) {
          {"niell", TroposphereCorrection::niell}}};
     table.word("troposphere_correction", tropospheres, settings.troposphere_correction);
     table.number("relative_humidity", settings.navigation.corrections.relative_humidity, {0, 1});
+    table.boolean("ionosphere_free", settings.navigation.corrections.ionosphere_free);
 }
 
 void read_solution(TableReader& table, ModernSettings& settings) {
@@ -113,8 +118,10 @@ void read_solution(TableReader& table, ModernSettings& settings) {
 void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder) {
     const auto preset = modern.choice("preset", modern_preset_names);
     const auto surroundings = modern.choice("surroundings", surroundings_names);
+    const bool errors = settings.errors;
     settings = ModernSettings::of(preset ? static_cast<ModernPreset>(*preset) : settings.preset,
                                   surroundings ? static_cast<Surroundings>(*surroundings) : settings.surroundings);
+    settings.errors = errors;
     read_terms(modern, settings);
     read_modern_propagation_keys(modern, settings, folder);
     modern.table("clock", [&](TableReader& t) { read_clock(t, settings.measurement.clock); });

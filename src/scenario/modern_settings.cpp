@@ -73,6 +73,8 @@ ModernSettings ModernSettings::of(ModernPreset preset, Surroundings surroundings
     settings.surroundings = surroundings;
     // A receiver that has heard no coefficients takes those of an ordinary day.
     settings.navigation.corrections.default_ionosphere = true;
+    // NTCM-G, which the true ionosphere follows by default, would leave Galileo alone without an ionospheric error.
+    settings.navigation.corrections.ionosphere = IonosphereCorrection::klobuchar;
     switch (preset) {
         case ModernPreset::survey:
             make_survey(settings);
@@ -128,15 +130,18 @@ void apply_differential(ModernSettings& s) {
     for (ErrorTerm* term : {&s.propagation.troposphere, &s.propagation.troposphere_residual})
         term->scale = 0;
     const double own = kind == DifferentialKind::rtk_float ? 0.15 : 0.008;
-    for (ErrorTerm* term : {&s.measurement.multipath, &s.measurement.code_noise})
+    for (ErrorTerm* term : {&s.measurement.multipath, &s.measurement.code_noise, &s.measurement.doppler_noise})
         term->scale *= own;
 }
 
 ModernSettings effective(ModernSettings settings) {
     apply_differential(settings);
-    if (!settings.errors)
+    if (!settings.errors) {
         for (const NamedTerm& named : error_terms(settings))
             named.term->enabled = false;
+        // A filter has errors of its own: it follows a turn a little late.
+        settings.navigation.filter.kind = FilterKind::none;
+    }
     CorrectionParameters& c = settings.navigation.corrections;
     const bool air = settings.propagation.troposphere.factor() != 0;
     const bool plasma = settings.propagation.ionosphere.factor() != 0;

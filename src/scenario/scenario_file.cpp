@@ -40,9 +40,11 @@ void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesyste
         settings.navigation.push_back(folder / file);
     sky.boolean("rebase_navigation", settings.rebase_navigation);
     read_constellation_list(sky, settings.constellations);
-    double mask = settings.elevation_mask.deg();
-    sky.number("elevation_mask_deg", mask, {0, 90});
-    settings.elevation_mask = Angle::degrees(mask);
+    if (sky.has("elevation_mask_deg")) {
+        double mask = 5;
+        sky.number("elevation_mask_deg", mask, {0, 90});
+        settings.elevation_mask = Angle::degrees(mask);
+    }
     static constexpr std::array<Word<std::optional<EphemerisRule>>, 2> rules{
         {{"forward", EphemerisRule::forward}, {"nearest", EphemerisRule::nearest}}};
     sky.word("ephemeris_rule", rules, settings.ephemeris_rule);

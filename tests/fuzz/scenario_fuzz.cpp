@@ -59,7 +59,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check_trajectory(scenario->trajectory);
     require(scenario->run.speed > 0 && std::isfinite(scenario->run.speed));
     require(!scenario->run.duration || *scenario->run.duration > Seconds(0));
-    require(scenario->sky.elevation_mask >= Angle() && scenario->sky.elevation_mask <= Angle::degrees(90));
+    const Angle mask = scenario->sky.elevation_mask.value_or(Angle());
+    require(mask >= Angle() && mask <= Angle::degrees(90));
     for (const AtmosphericLayer& layer : scenario->atmosphere.layers)
         require(layer.top > layer.base);
     for (const CloudDeck& cloud : scenario->atmosphere.clouds)

@@ -53,7 +53,6 @@ inline Simulation errorless_run(std::unique_ptr<Trajectory> trajectory) {
     ModernSettings settings = ModernSettings::of(ModernPreset::consumer);
     settings.errors = false;
     settings = effective(settings);
-    settings.navigation.filter.kind = FilterKind::none;
     return modern_run(settings, std::move(trajectory));
 }
 

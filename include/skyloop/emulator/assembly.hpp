@@ -68,6 +68,9 @@ std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, 
 Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation,
                                    const Geoid* geoid, GpsTime start, const DataFolders& data = {});
 
+/// What the user of a scenario should be told before anything is read from elsewhere.
+std::vector<std::string> scenario_warnings(const Scenario& scenario);
+
 /// How the receiver of a scenario is configured when it starts.
 ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::BoardProfile& board);
 

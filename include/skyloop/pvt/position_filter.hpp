@@ -55,7 +55,7 @@ public:
 
 private:
     [[nodiscard]] Eigen::Vector3d way(double dt, const PositionInput& input, double& unsure) const;
-    [[nodiscard]] double gain(double dt, double unsure, const ReceiverSettings& settings) const;
+    double gain(double dt, double unsure, const ReceiverSettings& settings);
     void remember(const PositionInput& input, double dt);
     void start(const PositionInput& input);
     bool holds(const PositionInput& input, const ReceiverSettings& settings);
@@ -67,6 +67,7 @@ private:
     int velocity_count_ = 0;                       // evenly spaced ones
     double spacing_ = 0;                           // s
     double averaged_ = 0;                          // epochs, while young
+    bool settled_ = false;                         // half of the memory has been filled
     bool interrupted_ = false;
     std::optional<Eigen::Vector3d> held_;
 };

@@ -32,11 +32,11 @@ inline constexpr std::string_view surroundings_names[] = {"open-sky", "residenti
 struct ModernSettings {
     ModernPreset preset = ModernPreset::consumer;
     Surroundings surroundings = Surroundings::open_sky;
-    bool errors = true;  ///< false: geometry and clocks of satellites only, every error and delay off
+    bool errors = true;  ///< false: geometry and clocks of satellites only, every error and delay off, no filter
     ModernPropagationParameters propagation;
     MeasurementParameters measurement;
     NavigationParameters navigation;
-    std::optional<IonosphereCorrection> ionosphere_correction;    ///< nothing: broadcast when there is an ionosphere
+    std::optional<IonosphereCorrection> ionosphere_correction;    ///< nothing: Klobuchar's when there is an ionosphere
     std::optional<TroposphereCorrection> troposphere_correction;  ///< nothing: Niell's when there is a troposphere
     std::filesystem::path ionosphere_maps;                        ///< IONEX file; empty: none
 

@@ -35,9 +35,9 @@ struct SkySettings {
     std::vector<std::filesystem::path> navigation;  ///< empty: the nominal constellation
     bool rebase_navigation = false;                 ///< move the data to the start time, keeping its time of day
     std::vector<Constellation> constellations;      ///< empty: all of the data; for sensor models gps and qzss
-    Angle elevation_mask = Angle::degrees(5);
-    std::optional<EphemerisRule> ephemeris_rule;  ///< nothing: the model's own rule
-    std::optional<Seconds> ephemeris_validity;    ///< nothing: each system's own
+    std::optional<Angle> elevation_mask;            ///< nothing: the board's; of sensor models 5°
+    std::optional<EphemerisRule> ephemeris_rule;    ///< nothing: the model's own rule
+    std::optional<Seconds> ephemeris_validity;      ///< nothing: each system's own
 };
 
 /// Paths are kept as what was asked for; they become a Trajectory when the start time is known.

@@ -112,7 +112,7 @@ TEST_F(LoadNavigation, ARunBeginsWithTheDataUnlessToldOtherwise) {
     EXPECT_EQ(loaded.start, data_day + 2h);
     EXPECT_THAT(loaded.warnings, IsEmpty());
     EXPECT_EQ(loaded.source->description(), "two.rnx");
-    EXPECT_EQ(load(scenario("")).start, data_day) << "the nearest record serves before its time, too";
+    EXPECT_EQ(load(scenario("")).start, data_day + 2h) << "though the nearest record serves before its time, too";
     EXPECT_EQ(load(scenario("", "[run]\nstart = \"now\"")).start, wall_now);
 }
 

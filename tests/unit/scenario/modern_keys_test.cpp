@@ -313,6 +313,10 @@ TEST(ModernKeys, MistakesSayWhereAndWhat) {
               "test.toml:2:22: model.modern.tracking.code_spacing_chips: is 2; expected a number from 0.01 to 1.99");
     EXPECT_EQ(mistakes_of("[model]\nerrors = \"non\""),
               "test.toml:2:10: model.errors: is 'non'; expected one of all none; did you mean 'none'?");
+    EXPECT_EQ(mistakes_of("[model]\nerrors = \"none\"\n[model.modern.terms.gas]\nenabled = true"),
+              "test.toml:4:11: model.modern.terms.gas.enabled: is true beside errors = \"none\", which switches every "
+              "term off; expected one of the two");
+    EXPECT_EQ(mistakes_of("[model]\nerrors = \"none\"\n[model.modern.terms.gas]\nscale = 2"), "accepted");
     EXPECT_EQ(mistakes_of("[model]\nname = \"baseline\"\nerrors = \"none\""),
               "test.toml:3:10: model.errors: belongs to the modern model; this scenario's is baseline");
     EXPECT_EQ(mistakes_of("[[receiver]]\nstart = \"luke\""),

@@ -55,7 +55,7 @@ TEST(ScenarioFile, EveryRunAndSkyKeyLandsInItsField) {
                 ElementsAre(std::filesystem::path("folder/a.rnx"), std::filesystem::path("folder/sub/b.rnx.gz")));
     EXPECT_TRUE(s.sky.rebase_navigation);
     EXPECT_THAT(s.sky.constellations, ElementsAre(Constellation::gps, Constellation::qzss));
-    EXPECT_NEAR(s.sky.elevation_mask.deg(), 12.5, 1e-12);
+    EXPECT_NEAR(s.sky.elevation_mask.value().deg(), 12.5, 1e-12);
     EXPECT_EQ(s.sky.ephemeris_rule, EphemerisRule::nearest);
     EXPECT_EQ(s.sky.ephemeris_validity, Seconds(3600));
     ASSERT_TRUE(std::holds_alternative<CircleSettings>(s.trajectory));
