@@ -34,9 +34,7 @@ GpsTime wall_clock() {
     using namespace std::chrono;
     constexpr seconds gps_epoch_unix(315964800);  // 1980-01-06T00:00:00Z
     const Nanoseconds utc = duration_cast<Nanoseconds>(system_clock::now().time_since_epoch()) - gps_epoch_unix;
-    // POSIX time leaves leap seconds out; the table puts them back.
-    const GpsTime guess(utc);
-    return guess + seconds(LeapSeconds::announced().offset(guess + seconds(LeapSeconds::announced().offset(guess))));
+    return from_utc_count(utc, LeapSeconds::announced());
 }
 
 RunSession::RunSession(const Messages& messages, Assembly& assembly) : messages_(messages), assembly_(assembly) {

@@ -60,8 +60,7 @@ tl::expected<GlonassEphemeris, Defect> read_glonass_record(const RecordKind& kin
     }
     const GpsTime utc = fields.epoch();
     if (fields.defect()) return tl::make_unexpected(*fields.defect());
-    const LeapSeconds& leap = LeapSeconds::announced();
-    eph.toe = utc + std::chrono::seconds(leap.offset(utc + std::chrono::seconds(leap.offset(utc))));
+    eph.toe = from_utc_count(utc.time_since_epoch(), LeapSeconds::announced());
     constexpr std::int64_t moscow_s = 3 * 3600, quarter_hour_s = 900;
     const std::int64_t of_day = std::chrono::floor<std::chrono::seconds>(utc.time_since_epoch()).count() + moscow_s;
     eph.iode = static_cast<int>(of_day % seconds_per_day / quarter_hour_s);

@@ -138,13 +138,17 @@ GpsTime to_gps_time(const UtcTime& utc, const LeapSeconds& leap_seconds) {
     const Nanoseconds count = since_gps_epoch(utc.year, utc.month, utc.day) + std::chrono::hours(utc.hour) +
                               std::chrono::minutes(utc.minute) + std::chrono::seconds(utc.second) +
                               Nanoseconds(utc.nanosecond);
-    // The table is in GPS time, the question in UTC: a step holds from the UTC count `from` − its offset. A second of
-    // 60 still belongs to the old day.
-    const Nanoseconds asked = utc.second == 60 ? count - 1s : count;
+    // A second of 60 still belongs to the old day.
+    const Nanoseconds into_next_day = utc.second == 60 ? Nanoseconds(1s) : Nanoseconds(0);
+    return from_utc_count(count - into_next_day, leap_seconds) + into_next_day;
+}
+
+GpsTime from_utc_count(Nanoseconds count, const LeapSeconds& leap_seconds) {
+    // The table is in GPS time, the question in UTC: a step holds from the UTC count `from` − its offset.
     const auto& steps = leap_seconds.steps();
     for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
         const std::chrono::seconds offset(step->offset);
-        if (step->from == GpsTime::min() || asked >= step->from.time_since_epoch() - offset)
+        if (step->from == GpsTime::min() || count >= step->from.time_since_epoch() - offset)
             return GpsTime(count + offset);
     }
     return GpsTime(count);

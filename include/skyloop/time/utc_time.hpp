@@ -51,6 +51,8 @@ private:
 
 UtcTime to_utc(GpsTime time, const LeapSeconds& leap_seconds);
 GpsTime to_gps_time(const UtcTime& utc, const LeapSeconds& leap_seconds);
+/// GPS time of a count of UTC since 1980-01-06T00:00:00Z that leaves leap seconds out, as POSIX and GLONASS count.
+GpsTime from_utc_count(Nanoseconds count, const LeapSeconds& leap_seconds);
 /// The calendar of GPS time itself, without leap seconds, as RINEX epochs are written.
 GpsTime gps_calendar_time(int year, unsigned month, unsigned day, unsigned hour, unsigned minute, double second);
 UtcTime gps_calendar(GpsTime time);

@@ -234,5 +234,18 @@ TEST(UtcTime, OrdersByTime) {
     EXPECT_DOUBLE_EQ(day_of_year({2024, 12, 31, 12, 0, 0, 0}), 366.5);
 }
 
+// POSIX counts the second before and after the leap second of 2016 as neighbours; in GPS time two seconds pass.
+TEST(UtcTime, CountsWithoutLeapSecondsFindThem) {
+    const auto count_of = [](const UtcTime& utc, int offset) {
+        return to_gps_time(utc, LeapSeconds::announced()).time_since_epoch() - std::chrono::seconds(offset);
+    };
+    const UtcTime before{2016, 12, 31, 23, 59, 59, 0}, after{2017, 1, 1, 0, 0, 0, 0};
+    EXPECT_EQ(count_of(after, 18) - count_of(before, 17), Nanoseconds(std::chrono::seconds(1)));
+    EXPECT_EQ(from_utc_count(count_of(before, 17), LeapSeconds::announced()),
+              to_gps_time(before, LeapSeconds::announced()));
+    EXPECT_EQ(from_utc_count(count_of(after, 18), LeapSeconds::announced()),
+              to_gps_time(after, LeapSeconds::announced()));
+}
+
 }  // namespace
 }  // namespace skyloop
