@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include <cmath>
 #include <limits>
 
@@ -161,6 +163,12 @@ TEST(IonosphereTruth, NequickIsTracedEveryHalfMinuteAndLinearBetween) {
 
 TEST(IonosphereTruth, NequickRefusesAMonthWithoutTablesByName) {
     ModernContext context = ionosphere_context();
+    const auto april_alone = std::filesystem::path(::testing::TempDir()) / "skyloop_nequick_april";
+    std::filesystem::create_directories(april_alone);
+    for (const char* file : {"ccir14.asc", "modipNeQG_wrapped.asc"})
+        std::filesystem::copy_file(context.nequick_folder / file, april_alone / file,
+                                   std::filesystem::copy_options::overwrite_existing);
+    context.nequick_folder = april_alone;
     context.run.last = gps_calendar_time(2025, 7, 2, 0, 0, 0);
     const auto made = make_ionosphere_truth({.model = IonosphereModel::nequick_g}, context);
     ASSERT_FALSE(made);
