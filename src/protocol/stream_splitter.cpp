@@ -1,0 +1,148 @@
+#include "skyloop/protocol/stream_splitter.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "skyloop/protocol/nmea_sentence.hpp"
+#include "skyloop/protocol/ubx_frame.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::size_t splitter_ubx_limit = 8192;
+constexpr std::size_t splitter_line_limit = 256;
+constexpr std::size_t splitter_noise_limit = 256;
+constexpr std::uint8_t rtcm3_preamble = 0xD3;
+constexpr std::size_t rtcm3_head_size = 3, rtcm3_crc_size = 3;
+
+// What starts at a byte: nothing, something not yet whole, or `size` bytes of `kind`. A verdict other than `unfinished`
+// never changes when more bytes arrive; that makes the pieces independent of the cuts.
+struct Candidate {
+    enum class Verdict : std::uint8_t { nothing, unfinished, whole } verdict = Verdict::nothing;
+    StreamKind kind = StreamKind::noise;
+    std::size_t size = 0;
+};
+
+constexpr Candidate no_piece{};
+constexpr Candidate unfinished_piece{Candidate::Verdict::unfinished, StreamKind::noise, 0};
+
+Candidate ubx_at(ByteSpan bytes) {
+    if (bytes.size() < 2) return unfinished_piece;
+    if (bytes[1] != ubx_sync_2) return no_piece;
+    if (bytes.size() < ubx_head_size) return unfinished_piece;
+    const std::size_t length = bytes[4] + std::size_t{256} * bytes[5];
+    if (length > splitter_ubx_limit) return no_piece;
+    const std::size_t size = ubx_head_size + length + ubx_tail_size;
+    if (bytes.size() < size) return unfinished_piece;
+    if (!parse_frame(bytes.first(size))) return no_piece;
+    return {Candidate::Verdict::whole, StreamKind::ubx, size};
+}
+
+Candidate rtcm3_at(ByteSpan bytes) {
+    if (bytes.size() < rtcm3_head_size) {
+        return bytes.size() == 2 && (bytes[1] & 0xFC) != 0 ? no_piece : unfinished_piece;
+    }
+    if ((bytes[1] & 0xFC) != 0) return no_piece;
+    const std::size_t covered = rtcm3_head_size + (bytes[1] & 0x03u) * std::size_t{256} + bytes[2];
+    if (bytes.size() < covered + rtcm3_crc_size) return unfinished_piece;
+    const ByteSpan crc = bytes.subspan(covered, rtcm3_crc_size);
+    const std::uint32_t said = static_cast<std::uint32_t>(crc[0]) << 16 | static_cast<std::uint32_t>(crc[1]) << 8 |
+                               static_cast<std::uint32_t>(crc[2]);
+    if (crc24q(bytes.first(covered)) != said) return no_piece;
+    return {Candidate::Verdict::whole, StreamKind::rtcm3, covered + rtcm3_crc_size};
+}
+
+Candidate sentence_at(ByteSpan bytes) {
+    const std::size_t seen = std::min(bytes.size(), splitter_line_limit);
+    for (std::size_t i = 1; i < seen; ++i) {
+        const std::uint8_t byte = bytes[i];
+        if (byte == '\n') {
+            const std::size_t length = bytes[i - 1] == '\r' ? i - 1 : i;
+            const std::string_view line(reinterpret_cast<const char*>(bytes.data()), length);
+            if (!parse_sentence(line)) return no_piece;
+            return {Candidate::Verdict::whole, StreamKind::nmea, i + 1};
+        }
+        if (bytes[i - 1] == '\r' || byte == '$') return no_piece;
+        if (byte != '\r' && (byte < 0x20 || byte > 0x7E)) return no_piece;
+    }
+    return bytes.size() < splitter_line_limit ? unfinished_piece : no_piece;
+}
+
+Candidate piece_at(ByteSpan bytes) {
+    switch (bytes[0]) {
+        case ubx_sync_1:
+            return ubx_at(bytes);
+        case rtcm3_preamble:
+            return rtcm3_at(bytes);
+        case '$':
+        case '!':
+            return sentence_at(bytes);
+        default:
+            return no_piece;
+    }
+}
+
+}  // namespace
+
+std::uint32_t crc24q(ByteSpan bytes) {
+    std::uint32_t crc = 0;
+    for (const std::uint8_t byte : bytes) {
+        crc ^= static_cast<std::uint32_t>(byte) << 16;
+        for (int bit = 0; bit < 8; ++bit) {
+            crc <<= 1;
+            if ((crc & 0x1000000u) != 0) crc ^= 0x1864CFBu;
+        }
+    }
+    return crc;
+}
+
+std::vector<StreamPiece> StreamSplitter::feed(ByteSpan bytes) {
+    std::vector<StreamPiece> pieces;
+    // In portions, so that a long stream handed over at once needs no more memory than a slow one.
+    while (!bytes.empty()) {
+        const std::size_t portion = std::min(bytes.size(), splitter_ubx_limit);
+        pending_.insert(pending_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(portion));
+        bytes = bytes.subspan(portion);
+        search(false, pieces);
+    }
+    return pieces;
+}
+
+std::vector<StreamPiece> StreamSplitter::finish() {
+    std::vector<StreamPiece> pieces;
+    search(true, pieces);
+    flush_noise(pieces);
+    return pieces;
+}
+
+void StreamSplitter::search(bool at_end, std::vector<StreamPiece>& pieces) {
+    const ByteSpan bytes(pending_);
+    std::size_t at = 0;
+    while (at < bytes.size()) {
+        const Candidate found = piece_at(bytes.subspan(at));
+        if (found.verdict == Candidate::Verdict::unfinished && !at_end) break;
+        if (found.verdict != Candidate::Verdict::whole) {
+            keep_noise(bytes[at], pieces);
+            ++at;
+            continue;
+        }
+        flush_noise(pieces);
+        const ByteSpan piece = bytes.subspan(at, found.size);
+        pieces.push_back({found.kind, Bytes(piece.begin(), piece.end())});
+        at += found.size;
+    }
+    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(at));
+}
+
+void StreamSplitter::keep_noise(std::uint8_t byte, std::vector<StreamPiece>& pieces) {
+    noise_.push_back(byte);
+    if (noise_.size() == splitter_noise_limit) flush_noise(pieces);
+}
+
+void StreamSplitter::flush_noise(std::vector<StreamPiece>& pieces) {
+    if (noise_.empty()) return;
+    pieces.push_back({StreamKind::noise, std::exchange(noise_, {})});
+}
+
+}  // namespace skyloop
