@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "earth_turn.hpp"
 #include "skyloop/geo/local_frame.hpp"
+#include "skyloop/gnss/earth_turn.hpp"
 #include "skyloop/gnss/orbit.hpp"
 
 namespace skyloop {

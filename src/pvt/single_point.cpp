@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "earth_turn.hpp"
 #include "normal_equations.hpp"
 #include "skyloop/geo/local_frame.hpp"
+#include "skyloop/gnss/earth_turn.hpp"
 
 namespace skyloop {
 namespace {
