@@ -26,11 +26,6 @@ double broadcast_accuracy(const Ephemeris& record) {
     return std::visit([](const auto& r) { return std::max(r.accuracy_m, 0.0); }, record);
 }
 
-bool same_record(const GlonassEphemeris& a, const GlonassEphemeris& b) {
-    return a.toe == b.toe && a.position_m == b.position_m && a.velocity_mps == b.velocity_mps &&
-           a.acceleration_mps2 == b.acceleration_mps2 && a.clock_bias == b.clock_bias && a.clock_drift == b.clock_drift;
-}
-
 // No satellite's pseudorange is so far off, whatever the receiver's clock.
 constexpr double longest_range_m = 1e12;
 
@@ -52,18 +47,6 @@ Transmitter moved(const Transmitter& transmitter, Seconds span) {
     return there;
 }
 
-const GlonassEphemeris& BroadcastTransmitters::carried(const GlonassEphemeris& record, GpsTime time) {
-    // Whole minutes from toe, as the integration itself steps.
-    const auto minutes = std::chrono::duration_cast<std::chrono::minutes>(time - record.toe);
-    const GpsTime base = record.toe + minutes;
-    Carried& kept = carried_[record.satellite];
-    if (!same_record(kept.origin, record) || kept.record.toe != base) {
-        kept.origin = record;
-        kept.record = std::get<GlonassEphemeris>(carried_to(record, base));
-    }
-    return kept.record;
-}
-
 std::optional<Transmitter> BroadcastTransmitters::at(SatelliteId satellite, Signal signal, GpsTime receive_time,
                                                      Metres pseudorange) {
     if (!(std::abs(pseudorange.value()) < longest_range_m)) return std::nullopt;
@@ -75,8 +58,9 @@ std::optional<Transmitter> BroadcastTransmitters::at(SatelliteId satellite, Sign
 
     const auto* glonass = std::get_if<GlonassEphemeris>(&*record);
     const auto look = [&](Seconds offset) {
-        const SatelliteState state = glonass ? satellite_state(carried(*glonass, reading.time), reading.time, offset)
-                                             : satellite_state(*record, reading.time, offset);
+        const SatelliteState state = glonass
+                                         ? satellite_state(carried_.at(*glonass, reading.time), reading.time, offset)
+                                         : satellite_state(*record, reading.time, offset);
         return Transmitter{state.position,    state.velocity,      Seconds(state.clock_bias) - *delay,
                            state.clock_drift, is_healthy(*record), Metres(broadcast_accuracy(*record))};
     };

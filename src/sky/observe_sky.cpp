@@ -92,26 +92,12 @@ void SkyObserver::begin(const TruthState& truth, const NavigationSource& source)
     const bool jumped = passed < Nanoseconds(0) || (truth.position - looked_from_).length().value() > far_m;
     if (satellites_.empty())
         for (const SatelliteId id : source.satellites())
-            satellites_.push_back({id, truth.time, {}, std::nullopt});
+            satellites_.push_back({id, truth.time});
     last_time_ = truth.time;
     if (!jumped) return;
     looked_from_ = truth.position;
     for (Satellite& satellite : satellites_)
         satellite.look_again = truth.time;
-}
-
-Ephemeris SkyObserver::near_orbit(Satellite& satellite, const Ephemeris& record, GpsTime time) {
-    const auto* glonass = std::get_if<GlonassEphemeris>(&record);
-    if (glonass == nullptr) return record;
-    // Whole minutes from toe are the steps of the integration itself, so that carrying changes no bit of it.
-    const Nanoseconds minute = std::chrono::minutes(1);
-    const auto minutes = (time - glonass->toe) / minute;
-    const GpsTime whole = glonass->toe + minutes * minute;
-    if (!satellite.carried || satellite.record_toe != glonass->toe || satellite.carried->toe != whole) {
-        satellite.carried = std::get<GlonassEphemeris>(carried_to(record, whole));
-        satellite.record_toe = glonass->toe;
-    }
-    return *satellite.carried;
 }
 
 SkyView SkyObserver::observe(const TruthState& truth, const NavigationSource& source) {
@@ -123,7 +109,8 @@ SkyView SkyObserver::observe(const TruthState& truth, const NavigationSource& so
         if (truth.time < satellite.look_again) continue;
         const std::optional<Ephemeris> record = source.ephemeris(satellite.id, truth.time);
         if (!record) continue;
-        const Ephemeris orbit = near_orbit(satellite, *record, truth.time);
+        const auto* glonass = std::get_if<GlonassEphemeris>(&*record);
+        const Ephemeris orbit = glonass ? Ephemeris(carried_.at(*glonass, truth.time)) : *record;
         const Angle rough = rough_elevation(orbit, truth, local);
         if (rough.deg() < sure_to_be_down_deg) {
             satellite.look_again = advanced(truth.time, time_until_rise(rough));

@@ -1,10 +1,10 @@
 /// Where a satellite was when it sent, and what its clock showed.
 #pragma once
 
-#include <map>
 #include <optional>
 
 #include "skyloop/geo/frames.hpp"
+#include "skyloop/gnss/carried_records.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
 #include "skyloop/gnss/precise_orbits.hpp"
 #include "skyloop/gnss/signal.hpp"
@@ -34,8 +34,7 @@ public:
 
 /// By broadcast records.
 ///
-/// State: GLONASS records that were integrated to a whole minute after their toe. They hang on record and minute alone,
-/// so that no answer depends on what was asked before.
+/// State: GLONASS records near the present.
 class BroadcastTransmitters : public TransmitterSource {
 public:
     /// @param source outlives this
@@ -46,15 +45,9 @@ public:
                                   Metres pseudorange) override;
 
 private:
-    struct Carried {
-        GlonassEphemeris origin;
-        GlonassEphemeris record;
-    };
-    const GlonassEphemeris& carried(const GlonassEphemeris& record, GpsTime time);
-
     const NavigationSource& source_;
     std::optional<GpsTime> choice_;
-    std::map<SatelliteId, Carried> carried_;
+    CarriedRecords carried_;
 };
 
 /// By tables of positions and clocks; their clocks get the eccentricity term −2 r·v/c² (IS-GPS-200, 20.3.3.3.3.1).

@@ -1,11 +1,11 @@
 /// From orbits and a place to what stands in the sky.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "skyloop/flow/sky_view.hpp"
 #include "skyloop/flow/truth_state.hpp"
+#include "skyloop/gnss/carried_records.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
 
 namespace skyloop {
@@ -29,12 +29,10 @@ private:
     struct Satellite {
         SatelliteId id;
         GpsTime look_again;  ///< it stays below the horizon until then
-        GpsTime record_toe;  ///< of the GLONASS record that `carried` comes from
-        std::optional<GlonassEphemeris> carried;
     };
     void begin(const TruthState& truth, const NavigationSource& source);
-    static Ephemeris near_orbit(Satellite& satellite, const Ephemeris& record, GpsTime time);
 
+    CarriedRecords carried_;
     std::vector<Satellite> satellites_;
     GpsTime last_time_;
     Position<Ecef> looked_from_;
