@@ -2,20 +2,27 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "firmware/port_id.hpp"
+#include "skyloop/base/bytes.hpp"
 #include "skyloop/base/units.hpp"
 #include "skyloop/gnss/satellite.hpp"
 #include "skyloop/protocol/nmea_satellites.hpp"
 #include "skyloop/protocol/nmea_version.hpp"
+#include "skyloop/protocol/ubx_frame.hpp"
 
 namespace skyloop::firmware {
 
 /// Sentences that a receiver can send periodically, in the order in which they leave within one epoch.
-enum class NmeaSentence { rmc, vtg, gga, gsa, gsv, gll, gst, zda };
-inline constexpr std::string_view nmea_sentence_names[] = {"RMC", "VTG", "GGA", "GSA", "GSV", "GLL", "GST", "ZDA"};
+enum class NmeaSentence { rmc, vtg, gga, gns, gsa, gsv, gll, gst, zda, gbs, dtm, grs, vlw, ths };
+inline constexpr std::string_view nmea_sentence_names[] = {"RMC", "VTG", "GGA", "GNS", "GSA", "GSV", "GLL",
+                                                           "GST", "ZDA", "GBS", "DTM", "GRS", "VLW", "THS"};
 
 /// A sentence and every how many epochs it is sent.
 struct SentenceRate {
@@ -23,16 +30,90 @@ struct SentenceRate {
     int every_epochs = 1;
 };
 
+/// Whose commands a receiver understands.
+enum class Personality {
+    mute,   ///< nobody's
+    ublox,  ///< UBX and PUBX
+    mtk,    ///< MediaTek PMTK
+    airoha  ///< Airoha PAIR
+};
+
+/// At which speed the answer leaves to a message that changes the speed of the port it came by.
+enum class SpeedChangeAnswer { at_new_speed, at_old_speed, lost };
+
+/// What a receiver does with a legacy configuration message.
+enum class LegacyAnswer {
+    apply,   ///< takes it
+    ignore,  ///< acknowledges it, and that is all
+    refuse,  ///< ACK-NAK
+    silence
+};
+
+/// What a receiver says to CFG-VALSET, VALGET and VALDEL.
+enum class ValueConfigSupport { full, refuse, silence };
+
+/// Who it says it is (MON-VER, SEC-UNIQID, MON-GNSS, boot banner).
+struct Identity {
+    int generation = 8;                        ///< of u-blox: 6, 7, 8, 9, 10
+    std::string software;                      ///< swVersion
+    std::string hardware;                      ///< hwVersion
+    std::vector<std::string> extensions;       ///< of MON-VER, at most 30 characters each
+    Bytes unique_id;                           ///< five bytes, or six on M10
+    std::vector<std::string> banner;           ///< texts of the TXT notices at start
+    std::vector<std::string> version_answers;  ///< whole answers of PMTK605, PAIR020: sentences without checksum
+};
+
+/// Times of starting and answering.
+struct Timing {
+    Seconds boot{0.5};                                       ///< from power to the first byte
+    Seconds first_epoch{1.0};                                ///< from the end of the banner
+    Seconds answer{0.003};                                   ///< from a message's last byte to the first of its answer
+    Seconds flash_write{0.1};                                ///< more for what is saved
+    Seconds signal_restart{0.5};                             ///< without output after a change of the tracked signals
+    Seconds latency_deviation{0};                            ///< 1 σ of the solution latency
+    Seconds cold_start{26}, warm_start{22}, hot_start{1.5};  ///< to the first fix, for models that do not acquire
+};
+
+/// Where units of one model differ, or no document says what it does: each a key of the board file.
+struct Quirks {
+    ValueConfigSupport value_config = ValueConfigSupport::full;
+    bool single_key_valget = false;  ///< a VALGET for several keys is refused (M10 SPG 5.10)
+    bool hardware_reset_clears_battery = true;
+    SpeedChangeAnswer speed_change = SpeedChangeAnswer::at_new_speed;
+    bool answers_unknown_nmea = false;  ///< "… inv format" (M8)
+    bool overflow_notice = false;       ///< a TXT says that messages did not fit into the transmit buffer
+    bool default_interference_monitor = false;
+    bool voltage_control = false;     ///< watches its antenna's supply from the factory on
+    std::optional<int> leap_seconds;  ///< that it believes until it has decoded them; nothing: the right ones
+};
+
+/// The blocks of CFG-GNSS as the board answers them.
+struct GnssBlock {
+    std::uint8_t gnss_id = 0, reserved_channels = 0, max_channels = 0;
+    std::uint32_t flags = 0;  ///< as on the wire; bit 0 is replaced by what is configured
+};
+
 /// One receiver model (boards/receivers/*.toml; every key in boards/README.md).
 struct BoardProfile {
     std::string name;
     std::string description;
+    Personality personality = Personality::mute;
+    Identity identity;
+    Timing timing;
+    Quirks quirks;
+
     std::uint32_t baud = 9600;  ///< of UART1 at the factory
     std::uint32_t transmit_buffer_bytes = 4096;
+    std::vector<PortId> ports{PortId::uart1};
+    std::vector<std::uint32_t> bauds;  ///< that it can be set to, ascending; empty: any
+
     std::vector<Constellation> constellations;  ///< enabled at the factory
+    bool dual_frequency = false;                ///< tracks the second signal of each system from the factory on
     double default_rate_hz = 1;
     double max_rate_hz = 10;
+    int least_measurement_period_ms = 25;  ///< shorter ones are stored as this (CFG-RATE), or refused (VALSET)
     Angle elevation_mask = Angle::degrees(5);
+
     NmeaVersion nmea_version = NmeaVersion::v4_0;
     NmeaNumbering satellite_numbering = NmeaNumbering::strict;
     std::string main_talker;      ///< "GP", "GN", …; empty: by the enabled constellations
@@ -41,8 +122,18 @@ struct BoardProfile {
     int max_listed_satellites = 12;         ///< numSV of GGA stops here (12 in strict NMEA)
     MetresPerSecond course_min_speed{0.1};  ///< slower than this, the course is left empty
     std::vector<SentenceRate> sentences;    ///< factory output
-    bool overflow_notice = false;           ///< a TXT says that messages did not fit into the transmit buffer
     Seconds solution_latency{0.05};         ///< from the epoch instant to the first byte of its output
+
+    /// What it can send, in the order in which it leaves within an epoch; sentences among it.
+    std::vector<UbxMessageId> messages;
+    std::set<UbxMessageId> polled;                ///< what it answers but does not send by itself
+    std::map<UbxMessageId, LegacyAnswer> legacy;  ///< legacy configuration messages that it knows
+    std::vector<GnssBlock> gnss_blocks;           ///< of CFG-GNSS
+    std::uint8_t gnss_channels_hardware = 0, gnss_channels_used = 0;
+    std::uint8_t gnss_supported = 0,
+                 gnss_simultaneous = 0;             ///< of MON-GNSS: bits 0 GPS, 1 GLONASS, 2 BeiDou, 3 Galileo
+    std::map<std::uint32_t, std::uint64_t> config;  ///< factory values that differ from ConfigKey::default_value
+    std::set<std::uint32_t> absent_keys;            ///< items that it does not have
 };
 
 }  // namespace skyloop::firmware

@@ -167,6 +167,8 @@ void NmeaHandler::append(std::vector<std::string>& out, NmeaSentence sentence, c
         case NmeaSentence::zda:
             out.push_back(encode(Zda{talker_, r.time, r.date}, format_));
             return;
+        default:
+            return;
     }
 }
 

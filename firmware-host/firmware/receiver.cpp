@@ -37,7 +37,7 @@ void Receiver::on_epoch(const Epoch& epoch) {
     bool overflow = false;
     for (const std::string& sentence : nmea_.sentences(epoch, counters_.epochs))
         overflow |= !send(sentence);
-    if (overflow && board_.overflow_notice) send(nmea_.text_message(text_of_error, "txbuf alloc"));
+    if (overflow && board_.quirks.overflow_notice) send(nmea_.text_message(text_of_error, "txbuf alloc"));
     ++counters_.epochs;
 }
 

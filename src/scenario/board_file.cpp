@@ -58,7 +58,7 @@ void read_board_nmea(TableReader& nmea, firmware::BoardProfile& board) {
     nmea.integer("time_decimals", board.time_decimals, {0, 3});
     nmea.integer("max_listed_satellites", board.max_listed_satellites, {4, 99});
     nmea.quantity("course_min_speed_mps", board.course_min_speed, {0, 10});
-    nmea.boolean("overflow_notice", board.overflow_notice);
+    nmea.boolean("overflow_notice", board.quirks.overflow_notice);
     nmea.table("sentences", [&](TableReader& rates) { read_board_sentences(rates, board.sentences); });
 }
 

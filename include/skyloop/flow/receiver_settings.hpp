@@ -26,6 +26,9 @@ struct SystemSignal {
     auto operator<=>(const SystemSignal&) const = default;
 };
 
+/// How far a receiver has come with the corrections of a base station.
+enum class CorrectionState { none, differential, rtk_float, rtk_fixed };
+
 /// The settings that measurement, solution and the world outside the firmware must respect.
 struct ReceiverSettings {
     Nanoseconds navigation_period{1'000'000'000};
@@ -36,6 +39,9 @@ struct ReceiverSettings {
     MetresPerSecond static_hold_below{0};  ///< 0: never held
     StartKind start = StartKind::hot;      ///< what the receiver knew at its last start
     int restarts = 0;                      ///< counts up with each restart; the receiver forgets what `start` says
+    bool navigating = true;                ///< false: stopped by its user, it tracks nothing
+    bool subframes = false;                ///< received subframes are wanted
+    CorrectionState corrections = CorrectionState::none;  ///< of those that a client hands in
 
     [[nodiscard]] bool tracks(Constellation constellation, Signal signal) const {
         return signals.empty() ? signal == first_signal(constellation) : signals.contains({constellation, signal});

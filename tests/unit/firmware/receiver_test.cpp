@@ -70,7 +70,7 @@ TEST(Receiver, IsMute) {
 TEST(Receiver, DropsWholeMessagesWhenTheLineIsTooSlow) {
     BoardProfile board = sample_board(NmeaVersion::v4_0, {gps});
     board.transmit_buffer_bytes = 1000;
-    board.overflow_notice = true;
+    board.quirks.overflow_notice = true;
     Receiver receiver(board, 10);
     SentenceSplitter splitter;
     std::size_t sentences = 0, notices = 0;

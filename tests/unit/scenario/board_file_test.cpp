@@ -138,7 +138,7 @@ TEST(BoardFile, RefusesWithFileLineAndColumn) {
     EXPECT_THAT(board_refusal("[nmea]\nmain_talker = \"XX\""),
                 HasSubstr("nmea.main_talker: is 'XX'; expected one of GP GL"));
     EXPECT_THAT(board_refusal("[nmea]\noverflow_notice = 1"),
-                HasSubstr("nmea.overflow_notice: is a whole number; expected true or false"));
+                HasSubstr("nmea.quirks.overflow_notice: is a whole number; expected true or false"));
     EXPECT_THAT(board_refusal("[nmea.sentences]\nGAG = 1"),
                 HasSubstr("nmea.sentences.GAG: unknown key; did you mean 'GGA'?"));
     EXPECT_THAT(board_refusal("[nmea]\nsentences = [\"GGA\"]"),

@@ -1,0 +1,76 @@
+/// What a client configures: both ways, on one store.
+#pragma once
+
+#include <vector>
+
+#include "firmware/board_profile.hpp"
+#include "firmware/config/config_store.hpp"
+#include "firmware/port_id.hpp"
+#include "skyloop/base/bytes.hpp"
+#include "skyloop/base/units.hpp"
+#include "skyloop/protocol/ubx_frame.hpp"
+
+namespace skyloop::firmware {
+
+/// What is said to a configuration message.
+enum class Verdict {
+    silence,      ///< nothing at all
+    acknowledge,  ///< ACK-ACK
+    refuse,       ///< ACK-NAK
+};
+
+/// What came of a configuration message: answers go out before the verdict.
+struct ConfigOutcome {
+    std::vector<Bytes> answers;  ///< whole frames
+    Verdict verdict = Verdict::refuse;
+    Seconds work{0};  ///< that the receiver needs before it answers, over its usual delay (flash, restart of tracking)
+};
+
+/// CFG-VALSET, CFG-VALGET and CFG-VALDEL with their transactions (RECEIVER.md 3.4, 4.4).
+/// State: the open transaction.
+class ValueConfig {
+public:
+    ValueConfig(const BoardProfile& board, ConfigStore& store) : board_(board), store_(store) {}
+
+    ConfigOutcome valset(ByteSpan payload);
+    ConfigOutcome valget(ByteSpan payload);
+    ConfigOutcome valdel(ByteSpan payload);
+    /// Another configuration message came between: an open transaction is dropped.
+    void cancel() { transaction_.reset(); }
+
+private:
+    struct Transaction {
+        std::uint8_t layers = 0;
+        bool deleting = false;
+        std::vector<std::pair<std::uint32_t, std::uint64_t>> pending;
+    };
+    const BoardProfile& board_;
+    ConfigStore& store_;
+    std::optional<Transaction> transaction_;
+};
+
+/// The legacy messages of class CFG, read from and written to the store (RECEIVER.md 3.3). Knows CFG-PRT, MSG, INF,
+/// RATE, CFG, RXM, ANT, SBAS, NMEA, USB, ODO, NAVX5, NAV5, TP5, ITFM, GNSS, DGNSS, TMODE3, PMS and LOGFILTER; the board
+/// says which of them it has, and which it only pretends to take.
+class LegacyConfig {
+public:
+    LegacyConfig(const BoardProfile& board, ConfigStore& store) : board_(board), store_(store) {}
+
+    /// A poll or a setting. @param from the port it came in by
+    ConfigOutcome handle(UbxMessageId message, ByteSpan payload, PortId from);
+
+private:
+    const BoardProfile& board_;
+    ConfigStore& store_;
+};
+
+/// The factory configuration of a board: every item that it has.
+ConfigValues factory_config(const BoardProfile& board);
+
+/// Whether values may stand together in RAM: each in its range, at least one system enabled, a signal plan that the
+/// board can track (RECEIVER.md 4.4).
+bool is_consistent(const BoardProfile& board, const ConfigValues& ram);
+/// Whether one value is in the range of its item: enumerations, logicals, the board's speeds and rates.
+bool is_in_range(const BoardProfile& board, std::uint32_t key, std::uint64_t value);
+
+}  // namespace skyloop::firmware

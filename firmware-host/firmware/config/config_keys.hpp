@@ -1,0 +1,88 @@
+/// Every configuration item that an emulated receiver can have (u-blox F9 interface description HPG 1.32, section 6;
+/// RECEIVER.md 3.5).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "firmware/port_id.hpp"
+#include "skyloop/protocol/ubx_frame.hpp"
+
+namespace skyloop::firmware {
+
+/// How a value is to be read: logical, unsigned, signed, bit field, enumeration, floating point; with its bytes.
+enum class ConfigType : std::uint8_t { l, u1, i1, x1, e1, u2, i2, x2, u4, i4, x4, r4, u8, i8, x8, r8 };
+
+/// One item.
+struct ConfigKey {
+    std::uint32_t id = 0;
+    std::string_view name;  ///< "CFG-RATE-MEAS"
+    ConfigType type = ConfigType::u1;
+    std::uint64_t default_value = 0;  ///< of the NEO-M9N; a board says where its own differs
+    /// False for items that old receivers reach by CFG-MSG and their like alone: the receiver stores them, VALGET and
+    /// VALSET do not know them.
+    bool on_the_wire = true;
+};
+
+/// All of them, ascending by group and item, the size bits left aside.
+std::span<const ConfigKey> config_keys();
+/// The item of exactly this id, size bits among it, or null.
+const ConfigKey* find_config_key(std::uint32_t id);
+/// The item of this name, or null.
+const ConfigKey* find_config_key(std::string_view name);
+
+/// Group and item of a key without its size bits: what wildcards and order go by.
+constexpr std::uint32_t group_and_item(std::uint32_t key) { return key & 0x00FF'FFFFu; }
+
+/// A message that can be sent periodically, and the key of its rate on I2C; that of port p is the key plus p.
+struct OutputMessage {
+    UbxMessageId id;        ///< NMEA sentences are class F0, PUBX F1, RTCM F5, as CFG-MSG numbers them
+    std::string_view name;  ///< "NAV-PVT", "GGA", "PUBX-00", "RTCM-1005"
+    std::uint32_t i2c_key = 0;
+};
+/// All of them, ascending by id.
+std::span<const OutputMessage> output_messages();
+const OutputMessage* find_output_message(UbxMessageId id);
+const OutputMessage* find_output_message(std::string_view name);
+/// The key of a message's rate on a port, or nothing for a message that is never sent periodically.
+std::optional<std::uint32_t> rate_key(UbxMessageId message, PortId port);
+
+/// Keys that the receiver itself looks at.
+namespace key {
+inline constexpr std::uint32_t navspg_fixmode = 0x20110011, navspg_dynmodel = 0x20110021,
+                               navspg_utcstandard = 0x2011001C, navspg_wknrollover = 0x30110017,
+                               navspg_min_svs = 0x201100A1, navspg_max_svs = 0x201100A2, navspg_min_cno = 0x201100A3,
+                               navspg_min_elev = 0x201100A4, navspg_pdop = 0x301100B1, navspg_tdop = 0x301100B2,
+                               navspg_pacc = 0x301100B3, navspg_tacc = 0x301100B4, navspg_dgnss_timeout = 0x201100C4;
+inline constexpr std::uint32_t navhpg_dgnssmode = 0x20140011;
+inline constexpr std::uint32_t rate_meas = 0x30210001, rate_nav = 0x30210002, rate_timeref = 0x20210003;
+inline constexpr std::uint32_t mot_speed_threshold = 0x20250038, mot_distance_threshold = 0x3025003B;
+inline constexpr std::uint32_t itfm_enable = 0x1041000D;
+inline constexpr std::uint32_t uart1_baudrate = 0x40520001, uart2_baudrate = 0x40530001;
+inline constexpr std::uint32_t nmea_protver = 0x20930001, nmea_maxsvs = 0x20930002, nmea_compat = 0x10930003,
+                               nmea_consider = 0x10930004, nmea_limit82 = 0x10930005, nmea_highprec = 0x10930006,
+                               nmea_svnumbering = 0x20930007, nmea_filt_gps = 0x10930011, nmea_filt_sbas = 0x10930012,
+                               nmea_filt_gal = 0x10930013, nmea_filt_qzss = 0x10930015, nmea_filt_glo = 0x10930016,
+                               nmea_filt_bds = 0x10930017, nmea_out_invfix = 0x10930021, nmea_out_mskfix = 0x10930022,
+                               nmea_out_invtime = 0x10930023, nmea_out_invdate = 0x10930024,
+                               nmea_out_onlygps = 0x10930025, nmea_out_frozencog = 0x10930026,
+                               nmea_main_talker = 0x20930031, nmea_gsv_talker = 0x20930032,
+                               nmea_bds_talker = 0x30930033;
+inline constexpr std::uint32_t ant_voltage_control = 0x10A3002E, ant_short_detect = 0x10A3002F,
+                               ant_open_detect = 0x10A30031, ant_power_down = 0x10A30033, ant_recover = 0x10A30035;
+inline constexpr std::uint32_t tmode_mode = 0x20030001;
+/// Groups in which the item is 1 UBX, 2 NMEA, 4 RTCM3, and the size one bit.
+constexpr std::uint32_t in_protocol(PortId port, std::uint32_t item) {
+    constexpr std::uint32_t groups[] = {0x71, 0x73, 0x75, 0x77, 0x79};
+    return 0x1000'0000u | groups[static_cast<std::size_t>(port)] << 16 | item;
+}
+constexpr std::uint32_t out_protocol(PortId port, std::uint32_t item) { return in_protocol(port, item) + 0x1'0000u; }
+/// INF levels of a port (bits 0 error, 1 warning, 2 notice, 3 test, 4 debug), as UBX or as NMEA TXT.
+constexpr std::uint32_t inf_ubx(PortId port) { return 0x2092'0001u + static_cast<std::uint32_t>(port); }
+constexpr std::uint32_t inf_nmea(PortId port) { return 0x2092'0006u + static_cast<std::uint32_t>(port); }
+}  // namespace key
+
+}  // namespace skyloop::firmware

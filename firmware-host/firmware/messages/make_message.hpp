@@ -1,0 +1,30 @@
+/// From the receiver's state to the bytes of a message.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "firmware/navigation_state.hpp"
+
+namespace skyloop::firmware {
+
+/// The whole frames or sentences of one message, most often one: GSV has pages, RXM-SFRBX one for each subframe. Empty
+/// when there is nothing to say, or the message is not known. Classes F0 and F1 are NMEA and PUBX.
+std::vector<Bytes> make_message(UbxMessageId message, const ReportContext& context);
+
+/// Of the classes NAV and TIM.
+std::vector<Bytes> make_navigation_message(UbxMessageId message, const ReportContext& context);
+/// NAV-SAT, NAV-SVINFO, NAV-SIG, NAV-ORB, NAV-SBAS.
+std::vector<Bytes> make_satellite_message(UbxMessageId message, const ReportContext& context);
+/// Of the class RXM.
+std::vector<Bytes> make_raw_message(UbxMessageId message, const ReportContext& context);
+/// Of the classes MON and SEC.
+std::vector<Bytes> make_monitor_message(UbxMessageId message, const ReportContext& context);
+/// Of the classes F0 (NMEA) and F1 (PUBX 00, 03, 04).
+std::vector<Bytes> make_nmea_message(UbxMessageId message, const ReportContext& context);
+
+/// A text for people: level 0 error, 1 warning, 2 notice, 3 test, 4 debug, 7 user; as NMEA TXT and as UBX INF, by what
+/// the port's configuration lets through.
+std::vector<Bytes> make_text_message(int level, const std::string& text, const ReportContext& context);
+
+}  // namespace skyloop::firmware

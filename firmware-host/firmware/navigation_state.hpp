@@ -1,0 +1,85 @@
+/// Everything from which messages are made.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "firmware/board_profile.hpp"
+#include "firmware/config/config_store.hpp"
+#include "firmware/port_id.hpp"
+#include "skyloop/base/units.hpp"
+#include "skyloop/flow/epoch.hpp"
+#include "skyloop/flow/receiver_settings.hpp"
+
+namespace skyloop::firmware {
+
+/// What the receiver knows of the time.
+struct TimeKnowledge {
+    bool time = false;  ///< the time of day
+    bool date = false;
+    bool leap_seconds = false;  ///< decoded, not the firmware's own number: fully resolved
+    bool confirmed = false;     ///< by several systems (NAV-PVT flags2)
+    bool week_and_tow = false;  ///< GPS time (NAV-TIMEGPS)
+    Seconds accuracy{0};        ///< 1 σ; meaningless without `time`
+};
+
+/// What came in by RTCM.
+struct CorrectionStatus {
+    CorrectionState state = CorrectionState::none;
+    std::optional<Seconds> age;  ///< of the last observations; nothing before the first
+    std::optional<int> station;  ///< DF003
+};
+
+/// The receiver's monitors as it reports them.
+struct MonitorStatus {
+    int jamming_state = 0;      ///< 0 unknown or off, 1 ok, 2 warning, 3 critical
+    int jamming_indicator = 0;  ///< 0 … 255
+    int agc = 0;                ///< 0 … 8191
+    int noise_per_ms = 0;
+    AntennaStatus antenna = AntennaStatus::unknown;
+    int antenna_power = 2;  ///< 0 off, 1 on, 2 unknown
+    SpoofingIndication spoofing = SpoofingIndication::unknown;
+};
+
+/// The receiver at one epoch, as it reports itself. Free of the truth.
+struct NavigationState {
+    Epoch epoch;                  ///< its fix is the one to report: after limits, static hold and coasting
+    bool fix_ok = false;          ///< within the user's limits (gnssFixOK)
+    bool ever_had_fix = false;    ///< since the last cold start: `epoch.fix` has a position, if an old one
+    bool position_known = false;  ///< the position is of now, or was of a fix before
+    TimeKnowledge time;
+    CorrectionStatus corrections;
+    MonitorStatus monitors;
+    std::optional<Seconds> time_to_first_fix;
+    Seconds since_start{0};
+    bool position_held = false;   ///< by static hold
+    std::optional<Angle> course;  ///< frozen at low speed; nothing before the first
+    bool course_is_frozen = false;
+    double odometer_m = 0, odometer_total_m = 0, odometer_deviation_m = 0;
+    std::uint64_t epoch_index = 0;  ///< since the last start
+};
+
+/// What one port has done, for MON-COMMS, MON-TXBUF, MON-RXBUF and MON-IO.
+struct PortStatus {
+    PortId id = PortId::uart1;
+    std::size_t pending = 0;  ///< bytes waiting to leave
+    std::uint64_t bytes_out = 0, bytes_in = 0;
+    int usage_percent = 0, peak_usage_percent = 0;  ///< of the transmit buffer
+    std::array<std::uint16_t, 4> messages_in{};     ///< UBX, NMEA, RTCM3, SPARTN
+    std::uint32_t skipped = 0;                      ///< bytes of no message
+    std::uint16_t overruns = 0;
+    bool transmit_full = false;  ///< a message did not fit since the last report
+};
+
+/// What a message is made from.
+struct ReportContext {
+    const BoardProfile& board;
+    const ConfigStore& config;
+    const NavigationState& state;
+    std::span<const PortStatus> ports{};
+    PortId port = PortId::uart1;  ///< by which it leaves
+};
+
+}  // namespace skyloop::firmware

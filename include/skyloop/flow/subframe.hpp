@@ -1,0 +1,22 @@
+/// Navigation messages as they are received.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "skyloop/gnss/satellite.hpp"
+#include "skyloop/gnss/signal.hpp"
+#include "skyloop/time/gps_time.hpp"
+
+namespace skyloop {
+
+/// One subframe, string or page of one signal, in words as a u-blox receiver hands them out (RXM-SFRBX).
+struct Subframe {
+    SatelliteId satellite;
+    Signal signal = Signal::l1;
+    GpsTime end;                ///< when its last bit was sent
+    int frequency_channel = 0;  ///< of GLONASS
+    std::vector<std::uint32_t> words;
+};
+
+}  // namespace skyloop
