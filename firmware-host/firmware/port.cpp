@@ -28,7 +28,7 @@ bool Port::queue(ByteSpan message, GpsTime ready) {
         waiting += m.bytes.size() - departed(m, ready);
     if (message.empty() || waiting + message.size() > buffer_bytes_) return message.empty();
     const GpsTime start = std::max(ready, line_free_);
-    messages_.push_back({{message.begin(), message.end()}, start, 0});
+    messages_.push_back({{message.begin(), message.end()}, ready, start, 0});
     line_free_ = start + line_time(message.size());
     pending_ += message.size();
     return true;
@@ -47,6 +47,38 @@ Bytes Port::take(GpsTime now) {
     }
     pending_ -= out.size();
     return out;
+}
+
+GpsTime Port::between_bytes(GpsTime now) const {
+    for (const Message& m : messages_) {
+        if (now <= m.start) return now;
+        const std::size_t gone = departed(m, now);
+        if (gone == m.bytes.size()) continue;
+        return m.start + line_time(gone) == now ? now : m.start + line_time(gone + 1);
+    }
+    return now;
+}
+
+void Port::set_baud(std::uint32_t baud, GpsTime now) {
+    for (Message& m : messages_) {
+        const std::size_t gone = std::max(m.taken, departed(m, now));
+        m.bytes.erase(m.bytes.begin(), m.bytes.begin() + static_cast<std::ptrdiff_t>(gone));
+        pending_ -= gone - m.taken;
+        m.taken = 0;
+    }
+    baud_ = baud;
+    line_free_ = now;
+    std::erase_if(messages_, [](const Message& m) { return m.bytes.empty(); });
+    for (Message& m : messages_) {
+        m.start = std::max(m.ready, line_free_);
+        line_free_ = m.start + line_time(m.bytes.size());
+    }
+}
+
+void Port::clear() {
+    messages_.clear();
+    pending_ = 0;
+    line_free_ = {};
 }
 
 std::optional<GpsTime> Port::drained_at() const {

@@ -1,4 +1,4 @@
-/// A UART: byte timing and a transmit buffer that overflows as a real one does.
+/// The transmit side of a port: byte timing and a buffer that overflows as a real one does.
 #pragma once
 
 #include <cstdint>
@@ -21,15 +21,23 @@ public:
     bool queue(ByteSpan message, GpsTime ready);
     /// The bytes whose stop bit has left by `now`. `now` never goes back, and is not later than the next `ready`.
     Bytes take(GpsTime now);
+    /// The speed of all bytes that have not left by `now`. @param now between two bytes: see between_bytes()
+    void set_baud(std::uint32_t baud, GpsTime now);
+    /// The first instant from `now` on at which no byte is on its way.
+    [[nodiscard]] GpsTime between_bytes(GpsTime now) const;
+    /// Forgets what is queued.
+    void clear();
     /// When the last queued byte will have left, or nothing.
     [[nodiscard]] std::optional<GpsTime> drained_at() const;
     [[nodiscard]] std::uint32_t baud() const { return baud_; }
+    [[nodiscard]] std::uint32_t buffer_bytes() const { return static_cast<std::uint32_t>(buffer_bytes_); }
     /// Bytes queued and not yet taken.
     [[nodiscard]] std::size_t pending() const { return pending_; }
 
 private:
     struct Message {
         Bytes bytes;
+        GpsTime ready;
         GpsTime start;          ///< first start bit
         std::size_t taken = 0;  ///< bytes that have left
     };

@@ -1,48 +1,31 @@
 #include "firmware/receiver.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include "firmware/receiver_core.hpp"
 
 namespace skyloop::firmware {
-namespace {
 
-// Receivers store the period as a 16-bit number of milliseconds (CFG-RATE measRate, RECEIVER.md 3.3).
-Nanoseconds navigation_period(const BoardProfile& board, double rate_hz) {
-    constexpr double longest_ms = 65535;
-    const double rate = std::min(rate_hz > 0 ? rate_hz : board.default_rate_hz, board.max_rate_hz);
-    return std::chrono::milliseconds(std::llround(std::clamp(1000.0 / rate, 1.0, longest_ms)));
+Receiver::Receiver(BoardProfile board, ReceiverOptions options)
+    : core_(std::make_unique<Core>(std::move(board), options)) {}
+Receiver::~Receiver() = default;
+Receiver::Receiver(Receiver&&) noexcept = default;
+Receiver& Receiver::operator=(Receiver&&) noexcept = default;
+
+void Receiver::start(GpsTime now) { core_->start(now); }
+void Receiver::input(PortId port, ByteSpan bytes, GpsTime now) { core_->input(port, bytes, now); }
+void Receiver::on_epoch(const Epoch& epoch) { core_->on_epoch(epoch); }
+std::vector<Receiver::Sent> Receiver::output(GpsTime now) { return core_->output(now); }
+std::optional<GpsTime> Receiver::drained_at() const { return core_->outbox().drained_at(); }
+
+bool Receiver::has(PortId port) const { return core_->unit(port) != nullptr; }
+std::uint32_t Receiver::baud(PortId port) const {
+    const PortUnit* unit = core_->unit(port);
+    return unit == nullptr ? 0 : unit->transmit.baud();
 }
-
-constexpr int text_of_error = 0;
-
-}  // namespace
-
-Receiver::Receiver(BoardProfile board, double rate_hz, ReceiverSettings settings)
-    : board_(std::move(board)),
-      settings_(std::move(settings)),
-      nmea_(board_),
-      port_(board_.baud, board_.transmit_buffer_bytes) {
-    settings_.navigation_period = navigation_period(board_, rate_hz);
-}
-
-void Receiver::input(ByteSpan bytes, GpsTime) { counters_.bytes_received += bytes.size(); }
-
-void Receiver::on_epoch(const Epoch& epoch) {
-    const GpsTime ready = advanced(epoch.fix.time, board_.solution_latency);
-    const auto send = [&](const std::string& sentence) {
-        const bool queued = port_.queue(to_bytes(sentence), ready);
-        ++(queued ? counters_.messages_sent : counters_.messages_dropped);
-        return queued;
-    };
-    bool overflow = false;
-    for (const std::string& sentence : nmea_.sentences(epoch, counters_.epochs))
-        overflow |= !send(sentence);
-    if (overflow && board_.quirks.overflow_notice) send(nmea_.text_message(text_of_error, "txbuf alloc"));
-    ++counters_.epochs;
-}
-
-Bytes Receiver::output(GpsTime now) { return port_.take(now); }
-
-std::optional<GpsTime> Receiver::drained_at() const { return port_.drained_at(); }
+const ReceiverSettings& Receiver::settings() const { return core_->settings(); }
+const ReceiverCounters& Receiver::counters() const { return core_->counters(); }
+const BoardProfile& Receiver::board() const { return core_->board(); }
+const NavigationState& Receiver::state() const { return core_->state(); }
+std::string Receiver::persistent_text() const { return core_->store().persistent_text(); }
+Result<void> Receiver::restore(const std::string& text, const std::string& name) { return core_->restore(text, name); }
 
 }  // namespace skyloop::firmware

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "firmware/board_profile.hpp"
-#include "firmware/nmea_handler.hpp"
-#include "firmware/port.hpp"
+#include "firmware/navigation_state.hpp"
 #include "skyloop/base/bytes.hpp"
+#include "skyloop/base/result.hpp"
 #include "skyloop/flow/epoch.hpp"
 #include "skyloop/flow/receiver_settings.hpp"
 #include "skyloop/time/gps_time.hpp"
@@ -20,34 +23,64 @@ struct ReceiverCounters {
     std::uint64_t messages_sent = 0;
     std::uint64_t messages_dropped = 0;  ///< the transmit buffer was full
     std::uint64_t bytes_received = 0;
+    std::uint64_t commands = 0;  ///< messages of clients that were understood
+    std::uint64_t restarts = 0;
 };
 
-/// One receiver with one UART. It is mute: it swallows what a client sends and streams its factory sentences.
+/// How a receiver begins.
+struct ReceiverOptions {
+    double rate_hz = 0;           ///< navigation rate from the factory on; 0: the board's own
+    ReceiverSettings settings{};  ///< what else its user has set from the factory on
+    std::uint64_t seed = 1;       ///< of the jitter of its latency
+    bool power_up = false;        ///< it is switched on at the start; otherwise it has been on for long
+};
+
+/// One receiver with all its ports.
+///
+/// What a client configures acts as on the real one: on the messages, the speeds, and through settings() on measurement
+/// and solution. State: configuration, ports, what it knows of time and place.
 class Receiver {
 public:
-    /// @param rate_hz navigation rate at start, limited to the board's maximum; one that is not above zero gives the
-    ///        board's own. The period is whole milliseconds, as real receivers store it.
-    /// @param settings at start; their period is replaced by that of the rate
-    Receiver(BoardProfile board, double rate_hz, ReceiverSettings settings = {});
+    /// @param options rates are limited to the board's maximum, and stored in whole milliseconds as real receivers do
+    explicit Receiver(BoardProfile board, ReceiverOptions options = {});
+    ~Receiver();
+    Receiver(Receiver&&) noexcept;
+    Receiver& operator=(Receiver&&) noexcept;
 
-    void input(ByteSpan bytes, GpsTime now);
+    /// Begins. To be called once, before input, epochs and output; those before it find the receiver running.
+    void start(GpsTime now);
+    /// Bytes that reach a port. Times of input(), on_epoch() and output() never go back.
+    void input(PortId port, ByteSpan bytes, GpsTime now);
     /// A new solution: its messages are queued and begin to leave one solution latency after `epoch.fix.time`.
     void on_epoch(const Epoch& epoch);
-    /// The bytes that have left the UART between the last call and `now`, at the port's speed.
-    Bytes output(GpsTime now);
-    /// When the last queued byte will have left, or nothing when nothing is queued.
+    /// Bytes of one port at one speed.
+    struct Sent {
+        PortId port = PortId::uart1;
+        std::uint32_t baud = 0;
+        Bytes bytes;
+    };
+    /// What has left the ports between the last call and `now`, each at its speed.
+    std::vector<Sent> output(GpsTime now);
+    /// When the last queued byte will have left, or nothing when nothing is queued or planned.
     [[nodiscard]] std::optional<GpsTime> drained_at() const;
-    [[nodiscard]] std::uint32_t baud() const { return port_.baud(); }
-    [[nodiscard]] const ReceiverSettings& settings() const { return settings_; }
-    [[nodiscard]] const ReceiverCounters& counters() const { return counters_; }
-    [[nodiscard]] const BoardProfile& board() const { return board_; }
+
+    /// Whether the board has the port.
+    [[nodiscard]] bool has(PortId port) const;
+    /// A port's speed, bit/s; of USB, I2C and SPI that of their bus. 0 for a port that the board does not have.
+    [[nodiscard]] std::uint32_t baud(PortId port) const;
+    [[nodiscard]] const ReceiverSettings& settings() const;
+    [[nodiscard]] const ReceiverCounters& counters() const;
+    [[nodiscard]] const BoardProfile& board() const;
+    /// What it reported last.
+    [[nodiscard]] const NavigationState& state() const;
+    /// What outlives the process: battery-backed layer and flash.
+    [[nodiscard]] std::string persistent_text() const;
+    /// Takes `ReceiverOptions::stored`. Fails with `input` for a text that is none; @param name for the message
+    Result<void> restore(const std::string& text, const std::string& name);
 
 private:
-    BoardProfile board_;
-    ReceiverSettings settings_;
-    ReceiverCounters counters_;
-    NmeaHandler nmea_;
-    Port port_;
+    class Core;
+    std::unique_ptr<Core> core_;
 };
 
 }  // namespace skyloop::firmware

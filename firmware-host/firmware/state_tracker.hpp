@@ -13,12 +13,14 @@ struct Forgotten {
     bool ephemerides = false, almanac = false, health = false, ionosphere = false, position = false, clock = false,
          utc = false, rtc = false;
     static Forgotten by_mask(std::uint16_t nav_bbr_mask);
-    /// hot: nothing but the state of tracking; warm: ephemerides; cold: everything.
+    /// hot: nothing but the state of tracking; warm: ephemerides; cold: time or place too.
     [[nodiscard]] StartKind kind() const;
 };
 
 /// Validity of time and date, time to first fix, coasting, limits of the dynamic models and of export, static hold,
-/// course freezing, monitors, odometer: RECEIVER.md 4.8 to 4.11.
+/// course freezing, monitors and odometer: RECEIVER.md 4.8 to 4.11.
+///
+/// State: what was reported before, and since when what is so. Times of update() never go back but with a restart.
 class StateTracker {
 public:
     explicit StateTracker(const BoardProfile& board) : board_(board) {}
@@ -28,11 +30,34 @@ public:
     /// The next epoch, in the receiver's own words. @param corrections of CorrectionInput at that instant
     const NavigationState& update(const Epoch& epoch, const ConfigStore& config, const CorrectionStatus& corrections);
     [[nodiscard]] const NavigationState& state() const { return state_; }
-    void reset_odometer() { state_.odometer_m = 0; }
+    void reset_odometer() { state_.odometer_m = state_.odometer_deviation_m = 0; }
 
 private:
+    void learn_time(const ConfigStore& config);
+    void keep_within_limits(const ConfigStore& config);
+    void acquire();
+    void coast(const Fix& before);
+    void hold(const ConfigStore& config);
+    void apply_corrections(const CorrectionStatus& corrections);
+    void freeze_course();
+    void count_distance(const Fix& before);
+    void monitor(const ConfigStore& config);
+
     const BoardProfile& board_;
     NavigationState state_;
+    std::optional<GpsTime> started_;  ///< nothing: long ago
+    StartKind start_kind_ = StartKind::hot;
+    bool measured_ = false;                  ///< the model acquires satellites itself
+    std::optional<GpsTime> first_tracking_;  ///< since the start
+    std::optional<GpsTime> first_fix_;
+    std::optional<GpsTime> last_good_;  ///< epoch of the last solution that was not coasted
+    Fix last_fix_;
+    std::optional<Fix> held_;  ///< the fix of static hold
+    int epochs_beyond_limits_ = 0;
 };
+
+/// Whether a dynamic model allows a fix (RECEIVER.md 4.8, table of dynamic models; generation as in Identity).
+/// @param number of CFG-NAVSPG-DYNMODEL
+bool within_dynamic_model(std::uint64_t number, const Fix& fix, int generation);
 
 }  // namespace skyloop::firmware

@@ -1,0 +1,99 @@
+#include "firmware/port_unit.hpp"
+
+#include <algorithm>
+
+#include "firmware/config/config_keys.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+constexpr std::uint32_t usb_full_speed = 12'000'000, i2c_fast_mode = 400'000;
+
+PortUnit* unit_of(std::vector<PortUnit>& units, PortId port) {
+    const auto found = std::find_if(units.begin(), units.end(), [&](const PortUnit& u) { return u.id == port; });
+    return found == units.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::uint32_t configured_baud(const ConfigStore& store, PortId port) {
+    switch (port) {
+        case PortId::uart1:
+            return static_cast<std::uint32_t>(store.value(key::uart1_baudrate));
+        case PortId::uart2:
+            return static_cast<std::uint32_t>(store.value(key::uart2_baudrate));
+        case PortId::usb:
+            return usb_full_speed;
+        case PortId::i2c:
+        case PortId::spi:
+            return i2c_fast_mode;
+    }
+    return 0;
+}
+
+void Outbox::plan(GpsTime at, Action action) { plans_.emplace(at, std::move(action)); }
+
+std::size_t Outbox::queue(PortId port, const std::vector<Bytes>& messages, GpsTime now) {
+    PortUnit* unit = unit_of(units_, port);
+    if (unit == nullptr) return 0;
+    std::size_t queued = 0;
+    for (const Bytes& message : messages) {
+        if (!unit->transmit.queue(message, now)) {
+            unit->status.transmit_full = true;
+            continue;
+        }
+        ++queued;
+        const auto usage = static_cast<int>(100 * unit->transmit.pending() / unit->transmit.buffer_bytes());
+        unit->status.usage_percent = std::min(usage, 100);
+        unit->status.peak_usage_percent = std::max(unit->status.peak_usage_percent, unit->status.usage_percent);
+    }
+    unit->status.pending = unit->transmit.pending();
+    return queued;
+}
+
+void Outbox::collect(GpsTime now, std::vector<Receiver::Sent>& sent) {
+    for (PortUnit& unit : units_) {
+        Bytes bytes = unit.transmit.take(now);
+        unit.status.pending = unit.transmit.pending();
+        if (bytes.empty()) continue;
+        unit.status.bytes_out += bytes.size();
+        const auto same = std::find_if(sent.rbegin(), sent.rend(), [&](const auto& s) { return s.port == unit.id; });
+        if (same != sent.rend() && same->baud == unit.transmit.baud())
+            same->bytes.insert(same->bytes.end(), bytes.begin(), bytes.end());
+        else
+            sent.push_back({unit.id, unit.transmit.baud(), std::move(bytes)});
+    }
+}
+
+std::vector<Receiver::Sent> Outbox::run(GpsTime now) {
+    std::vector<Receiver::Sent> sent;
+    while (!plans_.empty() && plans_.begin()->first <= now) {
+        const auto first = plans_.begin();
+        const GpsTime at = first->first;
+        const Action action = std::move(first->second);
+        plans_.erase(first);
+        collect(at, sent);
+        action(at);
+    }
+    collect(now, sent);
+    return sent;
+}
+
+std::optional<GpsTime> Outbox::drained_at() const {
+    std::optional<GpsTime> last;
+    const auto later = [&](std::optional<GpsTime> t) {
+        if (t && (!last || *t > *last)) last = t;
+    };
+    for (const PortUnit& unit : units_)
+        later(unit.transmit.drained_at());
+    if (!plans_.empty()) later(plans_.rbegin()->first);
+    return last;
+}
+
+void Outbox::clear() {
+    plans_.clear();
+    for (PortUnit& unit : units_)
+        unit.transmit.clear();
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,59 @@
+/// One port of a receiver with everything that belongs to it.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "firmware/board_profile.hpp"
+#include "firmware/config/config_store.hpp"
+#include "firmware/navigation_state.hpp"
+#include "firmware/port.hpp"
+#include "firmware/receiver.hpp"
+#include "skyloop/protocol/stream_splitter.hpp"
+
+namespace skyloop::firmware {
+
+/// Both directions of one port, and what is counted of them.
+struct PortUnit {
+    PortUnit(PortId port, std::uint32_t baud, std::uint32_t buffer_bytes) : id(port), transmit(baud, buffer_bytes) {
+        status.id = port;
+    }
+    PortId id;
+    Port transmit;
+    StreamSplitter splitter;
+    PortStatus status;
+    GpsTime last_input{};
+    std::uint32_t configured_baud = 0;  ///< to which it has been told to go
+};
+
+/// The speed of a port by the configuration; of USB, I2C and SPI that of their bus (USB full speed; I2C fast mode).
+std::uint32_t configured_baud(const ConfigStore& store, PortId port);
+
+/// What leaves the receiver, and what is going to happen to its ports, in the order of time.
+///
+/// State: the plan and the ports' queues.
+class Outbox {
+public:
+    using Action = std::function<void(GpsTime)>;
+
+    explicit Outbox(std::vector<PortUnit>& units) : units_(units) {}
+
+    /// Something that happens at `at`, or now when that has passed; at the same instant in the order of planning.
+    void plan(GpsTime at, Action action);
+    /// Queues whole messages on a port. @return how many found room
+    std::size_t queue(PortId port, const std::vector<Bytes>& messages, GpsTime now);
+    /// Does what is planned until `now`, and gives what has left.
+    std::vector<Receiver::Sent> run(GpsTime now);
+    [[nodiscard]] std::optional<GpsTime> drained_at() const;
+    /// Forgets plans and queues, as when the power goes.
+    void clear();
+
+private:
+    void collect(GpsTime now, std::vector<Receiver::Sent>& sent);
+
+    std::vector<PortUnit>& units_;
+    std::multimap<GpsTime, Action> plans_;
+};
+
+}  // namespace skyloop::firmware

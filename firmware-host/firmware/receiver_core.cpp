@@ -1,0 +1,156 @@
+#include "firmware/receiver_core.hpp"
+
+#include <algorithm>
+
+namespace skyloop::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int notice = 2;
+
+// CFG-RST resetMode (u-blox M8 interface description, 32.11.28).
+enum ResetMode : std::uint8_t {
+    reset_hardware = 0,
+    reset_software = 1,
+    reset_navigation = 2,
+    reset_hardware_after_shutdown = 4,
+    stop_navigation = 8,
+    start_navigation = 9
+};
+
+// A speed that a line cannot have would divide by zero; the board's tables do not let one in, stored text may.
+constexpr std::uint32_t slowest_baud = 300;
+
+std::vector<PortUnit> make_units(const BoardProfile& board, const ConfigStore& store) {
+    std::vector<PortUnit> units;
+    for (const PortId port : board.ports) {
+        const std::uint32_t baud = std::max(slowest_baud, configured_baud(store, port));
+        units.emplace_back(port, baud, board.transmit_buffer_bytes);
+        units.back().configured_baud = baud;
+    }
+    return units;
+}
+
+}  // namespace
+
+Receiver::Core::Core(BoardProfile board, const ReceiverOptions& options)
+    : board_(std::move(board)),
+      options_(options),
+      store_(initial_config(board_, options)),
+      values_(board_, store_),
+      legacy_(board_, store_),
+      tracker_(board_),
+      units_(make_units(board_, store_)),
+      outbox_(units_),
+      settings_(settings_of(store_, board_, options.settings)),
+      latency_noise_(options.seed, "receiver.latency"),
+      revision_(store_.revision()) {
+    tracker_.start({}, {}, true);
+}
+
+void Receiver::Core::start(GpsTime now) {
+    Forgotten forgotten;
+    forgotten.ephemerides = options_.settings.start != StartKind::hot;
+    if (options_.settings.start == StartKind::cold) forgotten = Forgotten::by_mask(0xFFFF);
+    tracker_.start(now, forgotten, !options_.power_up && options_.settings.start == StartKind::hot);
+    if (!options_.power_up) return;
+    const GpsTime awake = advanced(now, board_.timing.boot);
+    deaf_until_ = awake;
+    silent_until_ = advanced(awake, board_.timing.first_epoch);
+    outbox_.plan(awake, [this](GpsTime t) { send_banner(t); });
+}
+
+PortUnit* Receiver::Core::find(PortId port) {
+    const auto found = std::find_if(units_.begin(), units_.end(), [&](const PortUnit& u) { return u.id == port; });
+    return found == units_.end() ? nullptr : &*found;
+}
+
+const PortUnit* Receiver::Core::unit(PortId port) const {
+    const auto found = std::find_if(units_.begin(), units_.end(), [&](const PortUnit& u) { return u.id == port; });
+    return found == units_.end() ? nullptr : &*found;
+}
+
+Result<void> Receiver::Core::restore(const std::string& text, const std::string& name) {
+    if (auto restored = store_.restore(text, name); !restored) return restored;
+    for (PortUnit& unit : units_) {
+        unit.configured_baud = std::max(slowest_baud, configured_baud(store_, unit.id));
+        unit.transmit = Port(unit.configured_baud, board_.transmit_buffer_bytes);
+    }
+    adopt_settings();
+    return {};
+}
+
+void Receiver::Core::adopt_settings() {
+    revision_ = store_.revision();
+    const ReceiverSettings before = settings_;
+    settings_ = settings_of(store_, board_, options_.settings);
+    settings_.restarts = before.restarts;
+    settings_.start = before.start;
+    settings_.navigating = before.navigating;
+    settings_.corrections = before.corrections;
+}
+
+// What a client has configured comes in force; other signals mean that tracking begins anew (RECEIVER.md 4.4).
+void Receiver::Core::apply_changes(GpsTime now) {
+    if (store_.revision() == revision_) return;
+    const std::set<SystemSignal> signals = settings_.signals;
+    adopt_settings();
+    if (settings_.signals != signals) restart_navigation({}, now, board_.timing.signal_restart);
+}
+
+void Receiver::Core::restart_navigation(const Forgotten& forgotten, GpsTime now, Seconds silence) {
+    settings_.start = forgotten.kind();
+    ++settings_.restarts;
+    ++counters_.restarts;
+    settings_.navigating = true;
+    corrections_.reset();
+    tracker_.start(now, forgotten);
+    silent_until_ = std::max(silent_until_, advanced(now, silence));
+}
+
+void Receiver::Core::reset(std::uint16_t nav_bbr_mask, std::uint8_t mode, GpsTime now) {
+    Forgotten forgotten = Forgotten::by_mask(nav_bbr_mask);
+    switch (mode) {
+        case reset_hardware:
+        case reset_hardware_after_shutdown:
+            if (board_.quirks.hardware_reset_clears_battery) {
+                store_.clear(in_battery);
+                forgotten = Forgotten::by_mask(0xFFFF);
+            }
+            return reboot(forgotten, now);
+        case reset_software:
+            return reboot(forgotten, now);
+        case reset_navigation:
+            return restart_navigation(forgotten, now, board_.timing.signal_restart);
+        case stop_navigation:
+            settings_.navigating = false;
+            return send_text(notice, "Stopping GNSS", now);
+        case start_navigation:
+            send_text(notice, "Starting GNSS", now);
+            return restart_navigation({}, now, Seconds(0));
+        default:
+            return;  // other modes are not defined: nothing happens, and nothing is answered
+    }
+}
+
+// RAM and transmit queue are lost, the configuration is built from its layers, the banner comes at the stored speed.
+void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now) {
+    outbox_.clear();
+    store_.reload();
+    adopt_settings();
+    for (PortUnit& unit : units_) {
+        const PortId id = unit.id;
+        unit = PortUnit(id, std::max(slowest_baud, configured_baud(store_, id)), board_.transmit_buffer_bytes);
+        unit.configured_baud = unit.transmit.baud();
+    }
+    values_.cancel();
+    busy_until_ = now;
+    told_antenna_.reset();
+    const GpsTime awake = advanced(now, board_.timing.boot);
+    deaf_until_ = awake;
+    restart_navigation(forgotten, now, board_.timing.boot + board_.timing.first_epoch);
+    outbox_.plan(awake, [this](GpsTime t) { send_banner(t); });
+}
+
+}  // namespace skyloop::firmware

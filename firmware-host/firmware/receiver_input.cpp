@@ -1,0 +1,174 @@
+// What a client's bytes do (RECEIVER.md 1.3, 1.4, 4.1, 4.2).
+#include <algorithm>
+
+#include "firmware/messages/make_message.hpp"
+#include "firmware/receiver_core.hpp"
+#include "skyloop/base/units.hpp"
+#include "skyloop/protocol/ubx_cfg.hpp"
+#include "skyloop/protocol/ubx_mon.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A frame that was begun and not ended within this belongs to a client's hunt for the speed.
+constexpr Nanoseconds frame_timeout = 2s;
+
+constexpr std::uint8_t class_cfg = 0x06, class_log = 0x21;
+constexpr UbxMessageId cfg_rst{0x06, 0x04}, cfg_valset{0x06, 0x8A}, cfg_valget{0x06, 0x8B}, cfg_valdel{0x06, 0x8C},
+    nav_resetodo{0x01, 0x10};
+constexpr std::uint32_t protocol_ubx = 1, protocol_nmea = 2, protocol_rtcm3 = 4;
+
+ConfigOutcome refusal() { return {{}, Verdict::refuse, Seconds(0)}; }
+ConfigOutcome silent() { return {{}, Verdict::silence, Seconds(0)}; }
+
+std::optional<Bytes> verdict_frame(Verdict verdict, UbxMessageId to) {
+    switch (verdict) {
+        case Verdict::acknowledge:
+            return encode_frame(AckAck{to.message_class, to.id});
+        case Verdict::refuse:
+            return encode_frame(AckNak{to.message_class, to.id});
+        case Verdict::silence:
+            break;
+    }
+    return std::nullopt;
+}
+
+void count_input(PortStatus& status, const StreamPiece& piece) {
+    switch (piece.kind) {
+        case StreamKind::ubx:
+            ++status.messages_in[0];
+            break;
+        case StreamKind::nmea:
+            ++status.messages_in[1];
+            break;
+        case StreamKind::rtcm3:
+            ++status.messages_in[2];
+            break;
+        case StreamKind::noise:
+            status.skipped += static_cast<std::uint32_t>(piece.bytes.size());
+            break;
+    }
+}
+
+}  // namespace
+
+void Receiver::Core::input(PortId port, ByteSpan bytes, GpsTime now) {
+    counters_.bytes_received += bytes.size();
+    PortUnit* unit = find(port);
+    if (unit == nullptr || now < deaf_until_ || bytes.empty()) return;
+    unit->status.bytes_in += bytes.size();
+    std::vector<StreamPiece> pieces;
+    if (now - unit->last_input > frame_timeout) pieces = unit->splitter.finish();
+    unit->last_input = now;
+    for (StreamPiece& piece : unit->splitter.feed(bytes))
+        pieces.push_back(std::move(piece));
+    for (const StreamPiece& piece : pieces) {
+        count_input(unit->status, piece);
+        const std::uint32_t baud = unit->configured_baud;
+        dispatch(*unit, piece, now);
+        // What follows was sent at a speed that the port no longer has.
+        if (unit->configured_baud != baud || now < deaf_until_) {
+            unit->splitter = StreamSplitter();
+            return;
+        }
+    }
+}
+
+bool Receiver::Core::accepts(const PortUnit& unit, StreamKind kind) const {
+    const std::uint32_t protocol = kind == StreamKind::ubx    ? protocol_ubx
+                                   : kind == StreamKind::nmea ? protocol_nmea
+                                                              : protocol_rtcm3;
+    return store_.flag(key::in_protocol(unit.id, protocol));
+}
+
+void Receiver::Core::dispatch(PortUnit& unit, const StreamPiece& piece, GpsTime now) {
+    if (piece.kind == StreamKind::noise || board_.personality == Personality::mute || !accepts(unit, piece.kind))
+        return;
+    if (piece.kind == StreamKind::nmea) return dispatch_sentence(unit, piece.bytes, now);
+    if (board_.personality != Personality::ublox) return;
+    if (piece.kind == StreamKind::ubx) return dispatch_ubx(unit, piece.bytes, now);
+    dispatch_corrections(piece.bytes, now);
+}
+
+void Receiver::Core::dispatch_ubx(PortUnit& unit, ByteSpan bytes, GpsTime now) {
+    const auto frame = parse_frame(bytes);
+    if (!frame) return;
+    const std::uint8_t message_class = frame->id.message_class;
+    if (message_class == class_cfg) return configure(unit, *frame, now);
+    command(unit, *frame, now);
+}
+
+void Receiver::Core::configure(PortUnit& unit, const UbxFrameView& frame, GpsTime now) {
+    if (frame.id == cfg_rst) {
+        const auto rst = decode_payload<CfgRst>(frame.payload);
+        if (!rst) return reply(unit, {{}, verdict_frame(Verdict::refuse, frame.id), Seconds(0)}, now);
+        ++counters_.commands;
+        return reset(rst->nav_bbr_mask, rst->reset_mode, now);
+    }
+    const ConfigOutcome outcome = configured(frame, unit.id);
+    if (outcome.verdict == Verdict::acknowledge) ++counters_.commands;
+    apply_changes(now);
+    reply(unit, {outcome.answers, verdict_frame(outcome.verdict, frame.id), outcome.work}, now);
+}
+
+ConfigOutcome Receiver::Core::configured(const UbxFrameView& frame, PortId from) {
+    const bool by_values = frame.id == cfg_valset || frame.id == cfg_valget || frame.id == cfg_valdel;
+    if (!by_values) {
+        values_.cancel();
+        return legacy_.handle(frame.id, frame.payload, from);
+    }
+    if (board_.quirks.value_config == ValueConfigSupport::refuse) return refusal();
+    if (board_.quirks.value_config == ValueConfigSupport::silence) return silent();
+    if (frame.id == cfg_valset) return values_.valset(frame.payload);
+    return frame.id == cfg_valget ? values_.valget(frame.payload) : values_.valdel(frame.payload);
+}
+
+// Everything but configuration: polls, and the few commands of other classes.
+void Receiver::Core::command(PortUnit& unit, const UbxFrameView& frame, GpsTime now) {
+    if (frame.id == nav_resetodo && frame.payload.empty()) {
+        tracker_.reset_odometer();
+        return;
+    }
+    // A log that is not there, and assistance when its acknowledgement is on, are refused; all else is silence.
+    if (frame.id.message_class == class_log)
+        return reply(unit, {{}, verdict_frame(Verdict::refuse, frame.id), Seconds(0)}, now);
+    const bool known = board_.polled.contains(frame.id) ||
+                       std::find(board_.messages.begin(), board_.messages.end(), frame.id) != board_.messages.end();
+    if (!known || frame.payload.size() > 1) return;
+    std::vector<Bytes> answers = make_message(frame.id, context(unit.id));
+    if (answers.empty()) return;
+    ++counters_.commands;
+    reply(unit, {std::move(answers), std::nullopt, Seconds(0)}, now);
+}
+
+void Receiver::Core::dispatch_sentence(PortUnit& unit, ByteSpan line, GpsTime now) {
+    const std::string text = to_string(line);
+    const auto sentence = parse_sentence(text);
+    if (!sentence) return;
+    CommandOutcome outcome = execute_sentence(*sentence, board_, store_, unit.id);
+    apply_changes(now);
+    for (const UbxMessageId message : outcome.polled)
+        for (Bytes& answer : make_message(message, context(unit.id)))
+            outcome.answers.push_back(std::move(answer));
+    if (!outcome.answers.empty()) ++counters_.commands;
+    reply(unit, {std::move(outcome.answers), std::nullopt, Seconds(0)}, now);
+    if (!outcome.restart) return;
+    Forgotten forgotten;
+    forgotten.ephemerides = *outcome.restart != StartKind::hot;
+    if (*outcome.restart == StartKind::cold) forgotten = Forgotten::by_mask(0xFFFF);
+    ++counters_.commands;
+    reboot(forgotten, now);
+}
+
+void Receiver::Core::dispatch_corrections(ByteSpan frame, GpsTime now) {
+    constexpr UbxMessageId rxm_rtcm{0x02, 0x32};
+    const Bytes answer = corrections_.take(frame, now);
+    const GpsTime at = answer_time(now, Seconds(0));
+    for (const PortId port : board_.ports)
+        if (store_.rate(rxm_rtcm, port) > 0 && lets_out(port, rxm_rtcm))
+            outbox_.plan(at, [this, port, answer](GpsTime t) { send(port, {answer}, t); });
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,186 @@
+// What leaves the receiver and when (RECEIVER.md 4.2, 4.5 to 4.7).
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/messages/make_message.hpp"
+#include "firmware/receiver_core.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+constexpr int level_error = 0, level_notice = 2;
+constexpr std::uint8_t class_nmea = 0xF0, class_pubx = 0xF1, class_rtcm = 0xF5;
+
+std::uint32_t protocol_item(UbxMessageId message) {
+    if (message.message_class == class_nmea || message.message_class == class_pubx) return 2;
+    return message.message_class == class_rtcm ? 4 : 1;
+}
+
+std::string_view antenna_text(AntennaStatus status) {
+    switch (status) {
+        case AntennaStatus::initialising:
+            return "ANTSTATUS=INIT";
+        case AntennaStatus::unknown:
+            return "ANTSTATUS=DONTKNOW";
+        case AntennaStatus::ok:
+            return "ANTSTATUS=OK";
+        case AntennaStatus::short_circuit:
+            return "ANTSTATUS=SHORT";
+        case AntennaStatus::open:
+            return "ANTSTATUS=OPEN";
+    }
+    return "";
+}
+
+}  // namespace
+
+void Receiver::Core::look_at_ports() {
+    statuses_.clear();
+    for (PortUnit& unit : units_) {
+        unit.status.pending = unit.transmit.pending();
+        statuses_.push_back(unit.status);
+    }
+}
+
+ReportContext Receiver::Core::context(PortId port) {
+    look_at_ports();
+    return context(port, tracker_.state());
+}
+
+ReportContext Receiver::Core::context(PortId port, const NavigationState& state) const {
+    return {board_, store_, state, statuses_, port};
+}
+
+bool Receiver::Core::lets_out(PortId port, UbxMessageId message) const {
+    return store_.flag(key::out_protocol(port, protocol_item(message)));
+}
+
+// Commands are worked off one after the other; each takes the board's usual time and what it has to do besides.
+GpsTime Receiver::Core::answer_time(GpsTime now, Seconds work) {
+    busy_until_ = advanced(advanced(std::max(now, busy_until_), board_.timing.answer), work);
+    return busy_until_;
+}
+
+// Answers leave before the verdict. A new speed of the port of arrival comes in force with the answer, or after it, or
+// swallows it, as the board's maker has it.
+void Receiver::Core::reply(PortUnit& unit, Reply out, GpsTime now) {
+    const PortId port = unit.id;
+    const bool speed_changes = configured_baud(store_, port) != unit.configured_baud;
+    if (out.verdict && board_.quirks.speed_change != SpeedChangeAnswer::lost) out.answers.push_back(*out.verdict);
+    if (out.verdict && board_.quirks.speed_change == SpeedChangeAnswer::lost && !speed_changes)
+        out.answers.push_back(*out.verdict);
+    const bool anything = !out.answers.empty();
+    if (!anything && !speed_changes && configured_speeds_hold()) return;
+    const GpsTime at = answer_time(now, out.work);
+    const bool old_speed = board_.quirks.speed_change == SpeedChangeAnswer::at_old_speed;
+    if (!old_speed) plan_speed_changes(at);
+    if (anything)
+        outbox_.plan(at, [this, port, messages = std::move(out.answers)](GpsTime t) {
+            std::vector<Bytes> let_out;
+            for (const Bytes& message : messages)
+                if (lets_out(port, message.front() == ubx_sync_1 ? UbxMessageId{} : UbxMessageId{class_nmea, 0}))
+                    let_out.push_back(message);
+            send(port, let_out, t);
+        });
+    if (old_speed) plan_speed_changes(at);
+}
+
+bool Receiver::Core::configured_speeds_hold() const {
+    return std::all_of(units_.begin(), units_.end(),
+                       [&](const PortUnit& u) { return configured_baud(store_, u.id) == u.configured_baud; });
+}
+
+void Receiver::Core::plan_speed_changes(GpsTime at) {
+    const bool drain = board_.quirks.speed_change == SpeedChangeAnswer::at_old_speed;
+    for (PortUnit& unit : units_) {
+        const std::uint32_t baud = configured_baud(store_, unit.id);
+        if (baud == unit.configured_baud) continue;
+        unit.configured_baud = baud;
+        const PortId port = unit.id;
+        outbox_.plan(at, [this, port, drain](GpsTime t) {
+            const Port& line = find(port)->transmit;
+            const GpsTime when = drain ? line.drained_at().value_or(t) : line.between_bytes(t);
+            outbox_.plan(when, [this, port](GpsTime then) { change_speed(port, then); });
+        });
+    }
+}
+
+void Receiver::Core::change_speed(PortId port, GpsTime at) {
+    PortUnit& unit = *find(port);
+    unit.transmit.set_baud(unit.configured_baud, at);
+    unit.splitter = StreamSplitter();
+}
+
+void Receiver::Core::send(PortId port, const std::vector<Bytes>& messages, GpsTime now) {
+    const std::size_t queued = outbox_.queue(port, messages, now);
+    counters_.messages_sent += queued;
+    counters_.messages_dropped += messages.size() - queued;
+}
+
+void Receiver::Core::send_text(int level, const std::string& text, GpsTime now) {
+    for (const PortId port : board_.ports)
+        send(port, make_text_message(level, text, context(port)), now);
+}
+
+GpsTime Receiver::Core::burst_time(GpsTime epoch) {
+    const double deviation = board_.timing.latency_deviation.value();
+    // Bounded at three deviations; one epoch's output never overtakes another's.
+    const double jitter = deviation > 0 ? deviation * std::clamp(latency_noise_.normal(), -3.0, 3.0) : 0;
+    const double latency = std::max(0.0, board_.solution_latency.value() + jitter);
+    last_burst_ = std::max(last_burst_, advanced(epoch, Seconds(latency)));
+    return last_burst_;
+}
+
+void Receiver::Core::on_epoch(const Epoch& epoch) {
+    const GpsTime time = epoch.fix.time;
+    if (time < silent_until_) return;
+    settings_.corrections = corrections_.status(time, store_).state;
+    const auto state =
+        std::make_shared<const NavigationState>(tracker_.update(epoch, store_, corrections_.status(time, store_)));
+    ++counters_.epochs;
+    if (!settings_.navigating) return;
+    outbox_.plan(burst_time(time), [this, state](GpsTime t) { send_epoch(*state, t); });
+}
+
+void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {
+    look_at_ports();
+    std::map<UbxMessageId, std::vector<Bytes>> made;
+    for (PortUnit& unit : units_) {
+        const std::vector<Bytes> messages = due_messages(unit.id, state, made);
+        const std::uint64_t dropped = counters_.messages_dropped;
+        send(unit.id, messages, now);
+        if (counters_.messages_dropped > dropped && board_.quirks.overflow_notice)
+            send(unit.id, make_text_message(level_error, "txbuf alloc", context(unit.id, state)), now);
+        unit.status.transmit_full = false;
+    }
+    tell_antenna_status(state, now);
+}
+
+std::vector<Bytes> Receiver::Core::due_messages(PortId port, const NavigationState& state,
+                                                std::map<UbxMessageId, std::vector<Bytes>>& made) const {
+    std::vector<Bytes> due;
+    for (const UbxMessageId message : board_.messages) {
+        const int rate = store_.rate(message, port);
+        if (rate <= 0 || state.epoch_index % static_cast<std::uint64_t>(rate) != 0 || !lets_out(port, message))
+            continue;
+        const auto [entry, is_new] = made.try_emplace(message);
+        if (is_new) entry->second = make_message(message, context(port, state));
+        due.insert(due.end(), entry->second.begin(), entry->second.end());
+    }
+    return due;
+}
+
+void Receiver::Core::tell_antenna_status(const NavigationState& state, GpsTime now) {
+    const AntennaStatus status = state.monitors.antenna;
+    if (told_antenna_ && *told_antenna_ != status) send_text(level_notice, std::string(antenna_text(status)), now);
+    told_antenna_ = status;
+}
+
+void Receiver::Core::send_banner(GpsTime now) {
+    for (const std::string& line : board_.identity.banner)
+        send_text(level_notice, line, now);
+    for (const PortUnit& unit : units_)
+        deaf_until_ = std::max(deaf_until_, is_uart(unit.id) ? unit.transmit.drained_at().value_or(now) : now);
+}
+
+}  // namespace skyloop::firmware

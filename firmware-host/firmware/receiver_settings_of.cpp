@@ -1,0 +1,161 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "firmware/receiver_core.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using enum Constellation;
+
+// The items of CFG-SIGNAL: the system's own switch, and what its signals are.
+struct SystemKey {
+    Constellation constellation;
+    std::uint32_t enable;
+};
+constexpr std::array<SystemKey, 7> system_keys{{{gps, 0x1031001F},
+                                                {sbas, 0x10310020},
+                                                {galileo, 0x10310021},
+                                                {beidou, 0x10310022},
+                                                {qzss, 0x10310024},
+                                                {glonass, 0x10310025},
+                                                {navic, 0x10310026}}};
+struct SignalKey {
+    SystemSignal signal;
+    std::uint32_t enable;
+};
+// B1C is measured as B1I is, and E5a and B2a as the signals of their carrier.
+constexpr std::array<SignalKey, 19> signal_keys{{{{gps, Signal::l1}, 0x10310001},
+                                                 {{gps, Signal::l2}, 0x10310003},
+                                                 {{gps, Signal::l5}, 0x10310004},
+                                                 {{sbas, Signal::l1}, 0x10310005},
+                                                 {{galileo, Signal::l1}, 0x10310007},
+                                                 {{galileo, Signal::l5}, 0x10310009},
+                                                 {{galileo, Signal::e5b}, 0x1031000A},
+                                                 {{galileo, Signal::e6}, 0x1031000B},
+                                                 {{beidou, Signal::b1i}, 0x1031000D},
+                                                 {{beidou, Signal::e5b}, 0x1031000E},
+                                                 {{beidou, Signal::b1i}, 0x1031000F},
+                                                 {{beidou, Signal::b3i}, 0x10310010},
+                                                 {{qzss, Signal::l1}, 0x10310012},
+                                                 {{qzss, Signal::l2}, 0x10310015},
+                                                 {{qzss, Signal::l5}, 0x10310017},
+                                                 {{glonass, Signal::g1}, 0x10310018},
+                                                 {{glonass, Signal::g2}, 0x1031001A},
+                                                 {{navic, Signal::l5}, 0x1031001D},
+                                                 {{beidou, Signal::l5}, 0x10310028}}};
+
+std::set<SystemSignal> enabled_signals(const ConfigStore& store) {
+    std::set<SystemSignal> enabled;
+    for (const SystemKey& system : system_keys) {
+        if (!store.flag(system.enable)) continue;
+        for (const SignalKey& s : signal_keys)
+            if (s.signal.constellation == system.constellation && store.flag(s.enable)) enabled.insert(s.signal);
+    }
+    return enabled;
+}
+
+bool signals_changed(const ConfigStore& store) {
+    const auto changed = [&](std::uint32_t id) {
+        return store.has(id) && store.stored(ConfigLayer::factory, id) != store.value(id);
+    };
+    return std::any_of(system_keys.begin(), system_keys.end(), [&](const auto& s) { return changed(s.enable); }) ||
+           std::any_of(signal_keys.begin(), signal_keys.end(), [&](const auto& s) { return changed(s.enable); });
+}
+
+bool is_changed(const ConfigStore& store, std::uint32_t id) {
+    return store.has(id) && store.stored(ConfigLayer::factory, id) != store.value(id);
+}
+
+// CFG-NAVSPG-DYNMODEL: 9 wrist, 10 bike, 11 mower and 12 e-scooter move about as the nearest of the others.
+DynamicModel dynamic_model_of(std::uint64_t number) {
+    using enum DynamicModel;
+    constexpr std::array models{portable,    stationary,  stationary, pedestrian, automotive, sea,       airborne_1g,
+                                airborne_2g, airborne_4g, pedestrian, automotive, pedestrian, pedestrian};
+    return number < models.size() ? models[number] : portable;
+}
+
+std::uint64_t number_of(DynamicModel model) {
+    using enum DynamicModel;
+    switch (model) {
+        case portable:
+            return 0;
+        case stationary:
+            return 2;
+        case pedestrian:
+            return 3;
+        case automotive:
+            return 4;
+        case sea:
+            return 5;
+        case airborne_1g:
+            return 6;
+        case airborne_2g:
+            return 7;
+        case airborne_4g:
+            return 8;
+    }
+    return 0;
+}
+
+// Measurement and navigation period of the store, made longer by whole measurements until the board can follow.
+Nanoseconds navigation_period_of(const ConfigStore& store, const BoardProfile& board) {
+    const auto measurement = std::chrono::milliseconds(std::max<std::uint64_t>(1, store.value(key::rate_meas)));
+    auto cycles = static_cast<std::int64_t>(std::max<std::uint64_t>(1, store.value(key::rate_nav)));
+    // Periods are whole milliseconds: 56 ms is what 18 Hz are stored as.
+    const auto shortest = std::chrono::milliseconds(std::llround(1000.0 / board.max_rate_hz));
+    while (cycles * measurement < shortest)
+        ++cycles;
+    return cycles * measurement;
+}
+
+std::uint64_t measurement_period_of(const BoardProfile& board, double rate_hz) {
+    constexpr double longest_ms = 65535;  // CFG-RATE measRate is a U2
+    const double rate = std::min(rate_hz > 0 ? rate_hz : board.default_rate_hz, board.max_rate_hz);
+    return static_cast<std::uint64_t>(std::llround(std::clamp(1000.0 / rate, 1.0, longest_ms)));
+}
+
+}  // namespace
+
+ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board, const ReceiverSettings& base) {
+    ReceiverSettings settings = base;
+    settings.navigation_period = navigation_period_of(store, board);
+    if (signals_changed(store) || base.signals.empty()) settings.signals = enabled_signals(store);
+    if (is_changed(store, key::navspg_min_elev))
+        settings.elevation_mask = Angle::degrees(static_cast<double>(store.signed_value(key::navspg_min_elev)));
+    settings.minimum_cn0 = DbHz(static_cast<double>(store.value(key::navspg_min_cno)));
+    if (is_changed(store, key::navspg_dynmodel))
+        settings.dynamic_model = dynamic_model_of(store.value(key::navspg_dynmodel));
+    if (is_changed(store, key::mot_speed_threshold))
+        settings.static_hold_below =
+            MetresPerSecond(static_cast<double>(store.value(key::mot_speed_threshold)) / 100.0);
+    settings.subframes = false;
+    for (const PortId port : board.ports)
+        settings.subframes |= store.rate({0x02, 0x13}, port) > 0;
+    return settings;
+}
+
+ConfigValues initial_config(const BoardProfile& board, const ReceiverOptions& options) {
+    ConfigValues values = factory_config(board);
+    const auto put = [&](std::uint32_t id, std::uint64_t value) {
+        if (const auto found = values.find(id); found != values.end()) found->second = value;
+    };
+    put(key::rate_meas, measurement_period_of(board, options.rate_hz));
+    const ReceiverSettings& s = options.settings;
+    put(key::navspg_dynmodel, number_of(s.dynamic_model));
+    put(key::navspg_min_elev, static_cast<std::uint8_t>(std::lround(s.elevation_mask.deg())));
+    const double hold = std::round(s.static_hold_below.value() * 100);
+    put(key::mot_speed_threshold, static_cast<std::uint64_t>(std::clamp(hold, 0.0, 255.0)));
+    if (s.signals.empty()) return values;
+    for (const SignalKey& signal : signal_keys)
+        put(signal.enable, s.signals.contains(signal.signal) ? 1 : 0);
+    // Of the two names of one measured signal a receiver has the older on at the factory.
+    put(0x1031000F, 0);
+    for (const SystemKey& system : system_keys)
+        put(system.enable, std::any_of(s.signals.begin(), s.signals.end(),
+                                       [&](const auto& t) { return t.constellation == system.constellation; }));
+    return values;
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,239 @@
+#include "firmware/state_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/config/config_keys.hpp"
+#include "skyloop/geo/local_frame.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+double seconds_between(GpsTime later, GpsTime earlier) {
+    return std::chrono::duration<double>(later - earlier).count();
+}
+
+// Of a receiver that finds no satellite for its first fix: what it shows after how long, s (RECEIVER.md 4.8, the middle
+// of the ranges).
+constexpr double first_satellite_cold = 3, first_satellite_warm = 1.5, first_satellite_hot = 0.5;
+// One satellite after the other.
+constexpr double between_satellites = 1.2;
+
+// Growth of the accuracies while there is no solution, per second: 27 to 63 m in 5 s was captured (RECEIVER.md 4.10).
+constexpr double accuracy_growth_mps = 7.2, speed_accuracy_growth = 0.5;
+
+Geodetic moved(const Geodetic& from, const VelocityNed& velocity, double seconds) {
+    const Position<Enu> to{velocity.east * seconds, velocity.north * seconds, -velocity.down * seconds};
+    return to_geodetic(LocalFrame(from).to_ecef(to));
+}
+
+double horizontal_distance(const Geodetic& a, const Geodetic& b) {
+    const Position<Enu> to = LocalFrame(a).to_enu(to_ecef(b));
+    return std::hypot(to.x(), to.y());
+}
+
+bool is_tracking(const Fix& fix) {
+    return std::any_of(fix.satellites.begin(), fix.satellites.end(), [](const auto& s) { return s.cn0.has_value(); });
+}
+
+}  // namespace
+
+Forgotten Forgotten::by_mask(std::uint16_t mask) {
+    const auto bit = [&](int n) { return (mask >> n & 1) != 0; };
+    return {bit(0), bit(1), bit(2), bit(3), bit(4), bit(5) || bit(6), bit(7), bit(8)};
+}
+
+StartKind Forgotten::kind() const {
+    if (position || rtc) return StartKind::cold;
+    return ephemerides ? StartKind::warm : StartKind::hot;
+}
+
+void StateTracker::start(GpsTime now, const Forgotten& forgotten, bool running) {
+    const double odometer_total = state_.odometer_total_m;
+    const bool keeps_place = !forgotten.position;
+    const NavigationState before = std::move(state_);
+    state_ = {};
+    state_.odometer_total_m = odometer_total;
+    if (keeps_place) {
+        state_.ever_had_fix = before.ever_had_fix;
+        state_.position_known = before.position_known;
+    } else {
+        last_fix_ = {};
+    }
+    started_ = running ? std::nullopt : std::optional(now);
+    start_kind_ = forgotten.kind();
+    state_.time.time = state_.time.date = state_.time.week_and_tow = running || start_kind_ != StartKind::cold;
+    state_.time.leap_seconds = running || (start_kind_ != StartKind::cold && !forgotten.utc);
+    state_.time.confirmed = running;
+    // A clock that ran on a crystal alone since the last fix.
+    state_.time.accuracy = Seconds(running ? 20e-9 : 1.0);
+    first_tracking_.reset();
+    first_fix_.reset();
+    last_good_.reset();
+    held_.reset();
+    epochs_beyond_limits_ = 0;
+    measured_ = false;
+    if (running) state_.time_to_first_fix = board_.timing.cold_start;
+}
+
+const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStore& config,
+                                            const CorrectionStatus& corrections) {
+    const Fix before = state_.epoch.fix;
+    if (state_.epoch.fix.time != GpsTime{}) ++state_.epoch_index;
+    state_.epoch = epoch;
+    Fix& fix = state_.epoch.fix;
+    constexpr double long_ago_s = 3600;
+    state_.since_start = Seconds(started_ ? seconds_between(fix.time, *started_) : long_ago_s);
+    measured_ |= !epoch.observations.signals.empty();
+    if (is_tracking(fix) && !first_tracking_) first_tracking_ = fix.time;
+
+    acquire();
+    keep_within_limits(config);
+    apply_corrections(corrections);
+    coast(before);
+    if (fix.has_position()) {
+        hold(config);
+        if (!first_fix_) first_fix_ = fix.time;
+        if (!state_.time_to_first_fix) state_.time_to_first_fix = state_.since_start;
+        state_.ever_had_fix = state_.position_known = true;
+    }
+    learn_time(config);
+    freeze_course();
+    count_distance(before);
+    monitor(config);
+    if (fix.has_position()) last_fix_ = fix;
+    return state_;
+}
+
+// Models that measure nothing have a solution from the first epoch on: the time of acquisition is the board's.
+void StateTracker::acquire() {
+    Fix& fix = state_.epoch.fix;
+    if (measured_ || !started_) return;
+    const Timing& t = board_.timing;
+    const Seconds to_fix = start_kind_ == StartKind::cold   ? t.cold_start
+                           : start_kind_ == StartKind::warm ? t.warm_start
+                                                            : t.hot_start;
+    const double elapsed = state_.since_start.value();
+    if (elapsed >= to_fix.value()) return;
+    fix.type = FixType::none;
+    const double first = start_kind_ == StartKind::cold   ? first_satellite_cold
+                         : start_kind_ == StartKind::warm ? first_satellite_warm
+                                                          : first_satellite_hot;
+    double heard_from = first;
+    std::vector<SatelliteStatus> found;
+    for (SatelliteStatus s : fix.satellites) {
+        if (!s.cn0) continue;
+        if (elapsed < heard_from) break;
+        heard_from += between_satellites;
+        s.used = false;
+        s.has_ephemeris = start_kind_ == StartKind::hot;
+        found.push_back(s);
+    }
+    fix.satellites = std::move(found);
+}
+
+void StateTracker::keep_within_limits(const ConfigStore& config) {
+    Fix& fix = state_.epoch.fix;
+    state_.fix_ok = false;
+    if (!fix.has_position()) return;
+    constexpr int epochs_until_no_fix = 3;
+    const bool moves_as_expected =
+        within_dynamic_model(config.value(key::navspg_dynmodel), fix, board_.identity.generation);
+    epochs_beyond_limits_ = moves_as_expected ? 0 : epochs_beyond_limits_ + 1;
+    const bool two_d = fix.type == FixType::fix_2d;
+    const std::uint64_t mode = config.value(key::navspg_fixmode);
+    const bool mode_forbids = two_d && mode == 2;
+    if (epochs_beyond_limits_ >= epochs_until_no_fix || mode_forbids) {
+        fix.type = FixType::none;
+        return;
+    }
+    const double p_dop = static_cast<double>(config.value(key::navspg_pdop)) / 10;
+    const double p_acc = static_cast<double>(config.value(key::navspg_pacc));
+    const double accuracy = std::hypot(fix.horizontal_accuracy.value(), fix.vertical_accuracy.value());
+    state_.fix_ok = moves_as_expected && (p_dop <= 0 || fix.dop.pdop <= p_dop) && (p_acc <= 0 || accuracy <= p_acc);
+}
+
+void StateTracker::apply_corrections(const CorrectionStatus& corrections) {
+    state_.corrections = corrections;
+    Fix& fix = state_.epoch.fix;
+    // What measures has used them itself, or could not.
+    if (measured_ || fix.type != FixType::fix_3d) return;
+    switch (corrections.state) {
+        case CorrectionState::none:
+            return;
+        case CorrectionState::differential:
+            fix.type = FixType::dgnss;
+            return;
+        case CorrectionState::rtk_float:
+            fix.type = FixType::rtk_float;
+            return;
+        case CorrectionState::rtk_fixed:
+            fix.type = FixType::rtk_fixed;
+            return;
+    }
+}
+
+// A solution that is lost goes on with its last velocity for a while, and what is shown grows less certain.
+void StateTracker::coast(const Fix& before) {
+    Fix& fix = state_.epoch.fix;
+    if (fix.has_position()) {
+        last_good_ = fix.time;
+        return;
+    }
+    if (!state_.position_known) return;
+    const Fix now = fix;
+    const double step = std::max(0.0, seconds_between(now.time, before.time));
+    fix = last_fix_;
+    fix.time = now.time;
+    fix.leap_seconds = now.leap_seconds;
+    fix.satellites = now.satellites;
+    for (SatelliteStatus& s : fix.satellites)
+        s.used = false;
+    fix.type = now.type;
+    const bool coasting = last_good_ && seconds_between(now.time, *last_good_) <= board_.timing.coasting.value();
+    if (coasting) {
+        fix.type = FixType::dead_reckoning;
+        fix.position = moved(last_fix_.position, last_fix_.velocity, step);
+        state_.fix_ok = true;
+    }
+    fix.horizontal_accuracy = before.horizontal_accuracy + Metres(accuracy_growth_mps * step);
+    fix.vertical_accuracy = before.vertical_accuracy + Metres(accuracy_growth_mps * step);
+    fix.speed_accuracy = before.speed_accuracy + MetresPerSecond(speed_accuracy_growth * step);
+}
+
+// Position and speed stand still below the threshold until the antenna has left the place (RECEIVER.md 4.8).
+void StateTracker::hold(const ConfigStore& config) {
+    Fix& fix = state_.epoch.fix;
+    const double threshold = static_cast<double>(config.value(key::mot_speed_threshold)) / 100;
+    const double farthest = static_cast<double>(config.value(key::mot_distance_threshold));
+    state_.position_held = false;
+    if (threshold <= 0 || fix.speed.value() >= threshold) {
+        held_.reset();
+        return;
+    }
+    if (held_ && farthest > 0 && horizontal_distance(held_->position, fix.position) > farthest) held_.reset();
+    if (!held_) held_ = fix;
+    fix.position = held_->position;
+    fix.course = held_->course;
+    fix.velocity = {};
+    fix.speed = MetresPerSecond(0);
+    state_.position_held = true;
+}
+
+void StateTracker::freeze_course() {
+    const Fix& fix = state_.epoch.fix;
+    if (!fix.has_position()) return;
+    state_.course_is_frozen = state_.position_held || fix.speed < board_.course_min_speed;
+    if (!state_.course_is_frozen) state_.course = fix.course;
+}
+
+void StateTracker::count_distance(const Fix& before) {
+    const Fix& fix = state_.epoch.fix;
+    if (!fix.has_position() || !before.has_position() || state_.course_is_frozen) return;
+    const double step = fix.speed.value() * std::max(0.0, seconds_between(fix.time, before.time));
+    state_.odometer_m += step;
+    state_.odometer_total_m += step;
+    state_.odometer_deviation_m += step * fix.speed_accuracy.value() / std::max(1.0, fix.speed.value());
+}
+
+}  // namespace skyloop::firmware

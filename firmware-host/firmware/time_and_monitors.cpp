@@ -1,0 +1,106 @@
+// What a receiver knows of the time, and what its monitors say (RECEIVER.md 4.8, 4.9, 4.11).
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "firmware/config/config_keys.hpp"
+#include "firmware/state_tracker.hpp"
+#include "skyloop/gnss/constants.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+// A handover word, and with it the time of week, comes every 6 s; the week in subframe 1, every 30 s.
+constexpr double time_after_s = 8, date_after_s = 14;
+// Time is confirmed when two systems have agreed for so long after the first fix.
+constexpr double confirmed_after_s = 45;
+// Drift of a crystal whose frequency was just solved.
+constexpr double clock_drift_accuracy = 1e-8;
+// Galileo sends UTC parameters in word type 6, once a nominal sub-frame of 30 s (OS SIS ICD 2.0, 4.3.3).
+constexpr double galileo_utc_period_s = 30;
+
+// Whether subframe 4 page 18, the GPS page with the leap seconds, has ended between the two: the 25 frames of 30 s are
+// counted from the start of the week, subframe 4 ends after 24 s of its frame (IS-GPS-200, 20.3.3.5.1).
+bool gps_utc_page_ended(GpsTime from, GpsTime to) {
+    constexpr std::int64_t cycle_s = 750, page_end_s = 17 * 30 + 24;
+    const auto pages_until = [&](GpsTime t) {
+        const double tow = week_and_tow(t).tow_seconds();
+        const auto week = week_and_tow(t).week;
+        // 604 800 s are 806 cycles and a piece: the cycle begins anew with the week.
+        return week * 807 + static_cast<std::int64_t>(std::floor((tow - page_end_s) / cycle_s)) + 1;
+    };
+    return pages_until(to) > pages_until(from);
+}
+
+bool tracks(const Fix& fix, Constellation constellation) {
+    return std::any_of(fix.satellites.begin(), fix.satellites.end(),
+                       [&](const auto& s) { return s.cn0 && s.id.constellation == constellation; });
+}
+
+std::size_t systems_used(const Fix& fix) {
+    std::set<Constellation> systems;
+    for (const SatelliteStatus& s : fix.satellites)
+        if (s.used && s.id.constellation != Constellation::sbas) systems.insert(s.id.constellation);
+    return systems.size();
+}
+
+// u-blox's thresholds are not published: a rise of the noise by 3 dB is seen, by 10 dB is a warning.
+constexpr double interference_ok_db = 3, interference_warning_db = 10;
+// In captures of undisturbed receivers the indicator is 13 to 27, the gain counter 2457 to 4914, the noise 65 to 99.
+constexpr double quiet_indicator = 14, indicator_per_db = 9, quiet_gain = 4200, gain_per_db = 140, quiet_noise = 69;
+
+}  // namespace
+
+void StateTracker::learn_time(const ConfigStore&) {
+    TimeKnowledge& time = state_.time;
+    Fix& fix = state_.epoch.fix;
+    const auto since = [&](const std::optional<GpsTime>& t) {
+        return t ? std::chrono::duration<double>(fix.time - *t).count() : -1.0;
+    };
+    const bool solved = last_good_ == fix.time;
+    const double tracking = since(first_tracking_);
+    time.time = time.time || tracking >= time_after_s || solved;
+    time.week_and_tow = time.week_and_tow || time.time;
+    time.date = time.date || tracking >= date_after_s || solved;
+    if (!time.leap_seconds && first_tracking_)
+        time.leap_seconds = (tracks(fix, Constellation::gps) && gps_utc_page_ended(*first_tracking_, fix.time)) ||
+                            (tracks(fix, Constellation::galileo) && tracking >= galileo_utc_period_s);
+    if (!time.confirmed) time.confirmed = since(first_fix_) >= confirmed_after_s && systems_used(fix) >= 2;
+    if (!time.leap_seconds && board_.quirks.leap_seconds) fix.leap_seconds = *board_.quirks.leap_seconds;
+    if (solved) {
+        time.accuracy = Seconds(std::max(1e-9, fix.time_accuracy.value() / speed_of_light));
+    } else if (last_good_) {
+        const double away = since(last_good_);
+        time.accuracy = Seconds(last_fix_.time_accuracy.value() / speed_of_light + clock_drift_accuracy * away);
+    }
+}
+
+void StateTracker::monitor(const ConfigStore& config) {
+    MonitorStatus& m = state_.monitors;
+    const FrontEnd& front = state_.epoch.front_end;
+    const double rise = std::max(0.0, front.interference.value());
+    const bool watched =
+        config.has(key::itfm_enable) ? config.flag(key::itfm_enable) : board_.quirks.default_interference_monitor;
+    m.jamming_indicator = static_cast<int>(std::lround(std::min(255.0, quiet_indicator + indicator_per_db * rise)));
+    m.agc = static_cast<int>(std::lround(std::clamp(quiet_gain - gain_per_db * rise, 0.0, 8191.0)));
+    m.noise_per_ms = static_cast<int>(std::lround(std::min(65535.0, quiet_noise * std::pow(10.0, rise / 20))));
+    m.jamming_state = 0;
+    if (watched) {
+        m.jamming_state = rise < interference_ok_db ? 1 : 2;
+        if (rise >= interference_warning_db && !state_.epoch.fix.has_position()) m.jamming_state = 3;
+    }
+    m.spoofing = front.spoofing;
+
+    const bool voltage =
+        config.has(key::ant_voltage_control) ? config.flag(key::ant_voltage_control) : board_.quirks.voltage_control;
+    if (!voltage && !board_.quirks.voltage_control) {
+        m.antenna = AntennaStatus::unknown;
+        m.antenna_power = 2;
+        return;
+    }
+    m.antenna = front.antenna;
+    const bool off = front.antenna == AntennaStatus::short_circuit && config.flag(key::ant_power_down);
+    m.antenna_power = off ? 0 : 1;
+}
+
+}  // namespace skyloop::firmware
