@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "firmware/config/signal_keys.hpp"
 #include "firmware/receiver_core.hpp"
 
 namespace skyloop::firmware {
@@ -9,18 +10,7 @@ namespace {
 
 using enum Constellation;
 
-// The items of CFG-SIGNAL: the system's own switch, and what its signals are.
-struct SystemKey {
-    Constellation constellation;
-    std::uint32_t enable;
-};
-constexpr std::array<SystemKey, 7> system_keys{{{gps, 0x1031001F},
-                                                {sbas, 0x10310020},
-                                                {galileo, 0x10310021},
-                                                {beidou, 0x10310022},
-                                                {qzss, 0x10310024},
-                                                {glonass, 0x10310025},
-                                                {navic, 0x10310026}}};
+// An item of CFG-SIGNAL and what it lets a receiver measure.
 struct SignalKey {
     SystemSignal signal;
     std::uint32_t enable;
@@ -48,7 +38,7 @@ constexpr std::array<SignalKey, 19> signal_keys{{{{gps, Signal::l1}, 0x10310001}
 
 std::set<SystemSignal> enabled_signals(const ConfigStore& store) {
     std::set<SystemSignal> enabled;
-    for (const SystemKey& system : system_keys) {
+    for (const SystemKeys& system : system_keys_of_signals) {
         if (!store.flag(system.enable)) continue;
         for (const SignalKey& s : signal_keys)
             if (s.signal.constellation == system.constellation && store.flag(s.enable)) enabled.insert(s.signal);
@@ -60,7 +50,8 @@ bool signals_changed(const ConfigStore& store) {
     const auto changed = [&](std::uint32_t id) {
         return store.has(id) && store.stored(ConfigLayer::factory, id) != store.value(id);
     };
-    return std::any_of(system_keys.begin(), system_keys.end(), [&](const auto& s) { return changed(s.enable); }) ||
+    return std::any_of(system_keys_of_signals.begin(), system_keys_of_signals.end(),
+                       [&](const auto& s) { return changed(s.enable); }) ||
            std::any_of(signal_keys.begin(), signal_keys.end(), [&](const auto& s) { return changed(s.enable); });
 }
 
@@ -152,7 +143,7 @@ ConfigValues initial_config(const BoardProfile& board, const ReceiverOptions& op
         put(signal.enable, s.signals.contains(signal.signal) ? 1 : 0);
     // Of the two names of one measured signal a receiver has the older on at the factory.
     put(0x1031000F, 0);
-    for (const SystemKey& system : system_keys)
+    for (const SystemKeys& system : system_keys_of_signals)
         put(system.enable, std::any_of(s.signals.begin(), s.signals.end(),
                                        [&](const auto& t) { return t.constellation == system.constellation; }));
     return values;

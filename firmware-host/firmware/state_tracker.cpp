@@ -29,7 +29,7 @@ Geodetic moved(const Geodetic& from, const VelocityNed& velocity, double seconds
 
 double horizontal_distance(const Geodetic& a, const Geodetic& b) {
     const Position<Enu> to = LocalFrame(a).to_enu(to_ecef(b));
-    return std::hypot(to.x(), to.y());
+    return std::hypot(to.vector().x(), to.vector().y());
 }
 
 bool is_tracking(const Fix& fix) {
