@@ -48,4 +48,21 @@ inline BoardProfile sample_board(NmeaVersion version, std::vector<Constellation>
     return board;
 }
 
+/// A u-blox of generation 9 with two UARTs and USB, all in its factory state but for silence on NMEA.
+inline BoardProfile sample_ublox() {
+    BoardProfile board = sample_board(NmeaVersion::v4_10, {Constellation::gps, Constellation::galileo});
+    board.personality = Personality::ublox;
+    board.identity = {9, "EXT CORE 4.04 (7f89f7)", "00190000", {"FWVER=SPG 4.04", "PROTVER=32.01"}, Bytes(5), {}, {}};
+    board.identity.banner = {"HELLO", "FWVER=SPG 4.04"};
+    board.baud = 38400;
+    board.max_rate_hz = 25;
+    board.ports = {PortId::i2c, PortId::uart1, PortId::uart2, PortId::usb};
+    board.sentences.clear();
+    board.messages = {{0x01, 0x07}, {0x01, 0x03}, {0xF0, 0x04}, {0xF0, 0x00}, {0x01, 0x04}, {0x01, 0x61}, {0x0A, 0x36}};
+    board.polled = {{0x0A, 0x04}, {0x27, 0x03}};
+    for (const std::uint8_t id : {0x00, 0x01, 0x02, 0x08, 0x09, 0x24, 0x3E})
+        board.legacy[{0x06, id}] = LegacyAnswer::apply;
+    return board;
+}
+
 }  // namespace skyloop::firmware

@@ -1,0 +1,335 @@
+// What the receiver does with what a client sends: answers, speeds, restarts.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "firmware/receiver.hpp"
+#include "sample_epochs.hpp"
+#include "skyloop/protocol/nmea_sentence.hpp"
+#include "skyloop/protocol/stream_splitter.hpp"
+#include "skyloop/protocol/ubx_cfg.hpp"
+#include "skyloop/protocol/ubx_cfg_values.hpp"
+#include "skyloop/protocol/ubx_mon.hpp"
+#include "skyloop/protocol/ubx_nav.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+using enum Constellation;
+using testing::HasSubstr;
+
+constexpr UbxMessageId mon_ver_id{0x0A, 0x04}, nav_pvt_id{0x01, 0x07}, ack_id{0x05, 0x01}, nak_id{0x05, 0x00};
+
+CfgValset valset(std::vector<ConfigPair> pairs, std::uint8_t layers = 1) {
+    CfgValset message;
+    message.layers = layers;
+    message.pairs = std::move(pairs);
+    return message;
+}
+
+// A receiver that has been on for long, its client on one port, and the time.
+class Bench {
+public:
+    explicit Bench(BoardProfile board = sample_ublox(), ReceiverOptions options = {}, PortId port = PortId::uart1)
+        : receiver_(std::move(board), options), port_(port) {
+        fix_ = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500);
+        add_satellites(fix_, gps, 1, 12);
+        now_ = fix_.time;
+        receiver_.start(now_);
+    }
+    Receiver& receiver() { return receiver_; }
+    [[nodiscard]] GpsTime now() const { return now_; }
+    Bench& write(ByteSpan bytes) {
+        receiver_.input(port_, bytes, now_);
+        return *this;
+    }
+    template <class Message>
+    Bench& send(const Message& message) {
+        return write(encode_frame(message));
+    }
+    // Epochs of a second each, looked at every millisecond.
+    Bench& wait(Nanoseconds length) {
+        for (const GpsTime end = now_ + length; now_ < end;) {
+            now_ += 1ms;
+            for (const Receiver::Sent& sent : receiver_.output(now_))
+                if (sent.port == port_) keep(sent);
+            if (now_.time_since_epoch() % 1s != 0ns) continue;
+            fix_.time = now_;
+            receiver_.on_epoch({fix_});
+        }
+        return *this;
+    }
+    [[nodiscard]] std::vector<UbxFrameView> frames(UbxMessageId id) const {
+        std::vector<UbxFrameView> found;
+        for (const StreamPiece& piece : pieces_)
+            if (piece.kind == StreamKind::ubx)
+                if (const auto frame = parse_frame(piece.bytes); frame->id == id) found.push_back(*frame);
+        return found;
+    }
+    [[nodiscard]] std::string text() const {
+        std::string text;
+        for (const StreamPiece& piece : pieces_)
+            if (piece.kind == StreamKind::nmea) text += to_string(piece.bytes);
+        return text;
+    }
+    [[nodiscard]] const std::vector<Receiver::Sent>& sent() const { return sent_; }
+    void forget() {
+        pieces_.clear();
+        sent_.clear();
+    }
+
+private:
+    void keep(const Receiver::Sent& sent) {
+        for (StreamPiece& piece : splitter_.feed(sent.bytes))
+            pieces_.push_back(std::move(piece));
+        if (sent_.empty() || sent_.back().baud != sent.baud)
+            sent_.push_back(sent);
+        else
+            sent_.back().bytes.insert(sent_.back().bytes.end(), sent.bytes.begin(), sent.bytes.end());
+    }
+    Receiver receiver_;
+    PortId port_;
+    Fix fix_;
+    GpsTime now_;
+    StreamSplitter splitter_;
+    std::vector<StreamPiece> pieces_;
+    std::vector<Receiver::Sent> sent_;
+};
+
+TEST(ReceiverCommands, AnswersAPollOnceWithoutAcknowledgement) {
+    Bench bench;
+    bench.wait(1500ms).write(encode_frame(mon_ver_id, {})).wait(3s);
+    EXPECT_EQ(bench.frames(mon_ver_id).size(), 1U);
+    EXPECT_TRUE(bench.frames(ack_id).empty());
+    EXPECT_TRUE(bench.frames(nak_id).empty());
+}
+
+TEST(ReceiverCommands, AnswersFromTheLastEpoch) {
+    Bench bench;
+    bench.wait(1500ms).write(encode_frame(nav_pvt_id, {})).wait(20ms);
+    ASSERT_EQ(bench.frames(nav_pvt_id).size(), 1U);
+    const auto pvt = decode_payload<NavPvt>(bench.frames(nav_pvt_id)[0].payload);
+    ASSERT_TRUE(pvt);
+    EXPECT_EQ(pvt->lat, 470000000);
+    EXPECT_EQ(pvt->i_tow % 1000, 0U);
+}
+
+TEST(ReceiverCommands, SaysNothingToWhatItDoesNotKnowOutsideOfConfiguration) {
+    Bench bench;
+    bench.wait(100ms).write(encode_frame({0x0A, 0x77}, {})).write(encode_frame({0x33, 0x01}, Bytes(4))).wait(500ms);
+    EXPECT_TRUE(bench.sent().empty());
+    bench.write(encode_frame({0x06, 0x77}, {})).wait(500ms);
+    EXPECT_EQ(bench.frames(nak_id).size(), 1U);
+}
+
+TEST(ReceiverCommands, AcknowledgesWithinFiftyMillisecondsUnloaded) {
+    Bench bench;
+    bench.wait(300ms).send(valset({{0x20910007, 1}})).wait(50ms);
+    ASSERT_EQ(bench.frames(ack_id).size(), 1U);
+    EXPECT_EQ(bench.frames(ack_id)[0].payload[0], 0x06);
+    EXPECT_EQ(bench.frames(ack_id)[0].payload[1], 0x8A);
+    bench.wait(3s);
+    EXPECT_EQ(bench.frames(nav_pvt_id).size(), 3U);
+    EXPECT_EQ(bench.frames(ack_id).size(), 1U) << "never twice";
+}
+
+TEST(ReceiverCommands, RefusesAllOfAValsetWithOneUnknownKey) {
+    Bench bench;
+    bench.wait(300ms)
+        .send(valset({{0x20910007, 1}, {0x30210001, 200}, {0x20FF0001, 1}, {0x20910039, 1}, {0x20110021, 4}}))
+        .wait(2s);
+    EXPECT_EQ(bench.frames(nak_id).size(), 1U);
+    EXPECT_TRUE(bench.frames(nav_pvt_id).empty());
+    EXPECT_EQ(bench.receiver().settings().navigation_period, 1s);
+    EXPECT_EQ(bench.receiver().settings().dynamic_model, DynamicModel::portable);
+}
+
+TEST(ReceiverCommands, ConfiguresMeasurementAndSolution) {
+    Bench bench;
+    bench.send(valset({{0x30210001, 200}, {0x20110021, 8}, {0x201100A4, 10}, {0x10310021, 0}, {0x20250038, 30}}))
+        .wait(1s);
+    const ReceiverSettings& settings = bench.receiver().settings();
+    EXPECT_EQ(settings.navigation_period, 200ms);
+    EXPECT_EQ(settings.dynamic_model, DynamicModel::airborne_4g);
+    EXPECT_NEAR(settings.elevation_mask.deg(), 10, 1e-9);
+    EXPECT_NEAR(settings.static_hold_below.value(), 0.3, 1e-9);
+    EXPECT_TRUE(settings.tracks(gps, Signal::l1));
+    EXPECT_FALSE(settings.tracks(galileo, Signal::l1));
+    EXPECT_EQ(settings.restarts, 1) << "other signals: tracking begins anew";
+}
+
+TEST(ReceiverCommands, SkipsMeasurementsWhenAskedForMoreThanItCanDo) {
+    BoardProfile board = sample_ublox();
+    board.max_rate_hz = 10;
+    Bench bench(board);
+    bench.send(valset({{0x30210001, 40}})).wait(1s);
+    EXPECT_EQ(bench.receiver().settings().navigation_period, 120ms);
+}
+
+TEST(ReceiverCommands, ChangesTheSpeedWithItsAnswer) {
+    const auto speeds = [](SpeedChangeAnswer answer) {
+        BoardProfile board = sample_ublox();
+        board.quirks.speed_change = answer;
+        Bench bench(board);
+        bench.wait(300ms).send(valset({{0x40520001, 115200}})).wait(100ms);
+        std::vector<std::uint32_t> found;
+        for (const Receiver::Sent& sent : bench.sent())
+            found.push_back(sent.baud);
+        EXPECT_EQ(bench.receiver().baud(PortId::uart1), 115200U);
+        EXPECT_EQ(bench.receiver().baud(PortId::uart2), 38400U);
+        return found;
+    };
+    EXPECT_EQ(speeds(SpeedChangeAnswer::at_new_speed), std::vector<std::uint32_t>{115200});
+    EXPECT_EQ(speeds(SpeedChangeAnswer::at_old_speed), std::vector<std::uint32_t>{38400});
+    EXPECT_TRUE(speeds(SpeedChangeAnswer::lost).empty());
+}
+
+// What is in the buffer goes on at the new speed, from a whole byte on.
+TEST(ReceiverCommands, ChangesTheSpeedBetweenTwoBytes) {
+    BoardProfile board = sample_ublox();
+    board.baud = 9600;
+    Bench bench(board);
+    bench.send(valset({{0x209100AC, 1}, {0x209100BB, 1}})).wait(700ms);
+    bench.wait(390ms);
+    bench.forget();
+    bench.send(valset({{0x40520001, 38400}})).wait(500ms);
+    ASSERT_EQ(bench.sent().size(), 2U);
+    EXPECT_EQ(bench.sent()[0].baud, 9600U);
+    EXPECT_EQ(bench.sent()[1].baud, 38400U);
+    EXPECT_FALSE(bench.frames(ack_id).empty());
+}
+
+TEST(ReceiverCommands, LosesWhatFollowsAChangeOfSpeedInOnePiece) {
+    Bench bench;
+    Bytes both = encode_frame(valset({{0x40520001, 115200}}));
+    const Bytes second = encode_frame(valset({{0x20910007, 1}}));
+    both.insert(both.end(), second.begin(), second.end());
+    bench.wait(300ms).write(both).wait(3s);
+    EXPECT_EQ(bench.frames(ack_id).size(), 1U);
+    EXPECT_TRUE(bench.frames(nav_pvt_id).empty());
+}
+
+TEST(ReceiverCommands, ShutsAClientOutThatTurnsItsProtocolOff) {
+    Bench bench;
+    bench.wait(300ms).send(valset({{0x10730001, 0}})).wait(100ms);
+    EXPECT_EQ(bench.frames(ack_id).size(), 1U);
+    bench.write(encode_frame(mon_ver_id, {})).wait(500ms);
+    EXPECT_TRUE(bench.frames(mon_ver_id).empty());
+    Bench silent;
+    silent.wait(300ms).send(valset({{0x10740001, 0}})).wait(500ms);
+    EXPECT_TRUE(silent.frames(ack_id).empty());
+}
+
+TEST(ReceiverCommands, KeepsItsPortsApart) {
+    Bench bench(sample_ublox(), {}, PortId::usb);
+    bench.wait(300ms).write(encode_frame(CfgMsgCurrentPort{0x01, 0x07, 1})).wait(2s);
+    EXPECT_EQ(bench.frames(nav_pvt_id).size(), 2U);
+    EXPECT_FALSE(bench.receiver().has(PortId::spi));
+    EXPECT_EQ(bench.receiver().baud(PortId::spi), 0U);
+    Bench other;
+    other.receiver().input(PortId::usb, encode_frame(CfgMsgCurrentPort{0x01, 0x07, 1}), other.now());
+    other.wait(2s);
+    EXPECT_TRUE(other.frames(nav_pvt_id).empty());
+}
+
+TEST(ReceiverCommands, BeginsAnewAfterAHardwareResetAtTheStoredSpeedWithItsBanner) {
+    Bench bench;
+    bench.wait(300ms).send(valset({{0x40520001, 115200}, {0x20910007, 1}})).wait(2s);
+    bench.send(CfgRst{0xFFFF, 0, 0});
+    bench.forget();
+    bench.wait(100ms);
+    EXPECT_EQ(bench.receiver().baud(PortId::uart1), 38400U);
+    bench.write(encode_frame(mon_ver_id, {})).wait(3s);
+    EXPECT_TRUE(bench.frames(mon_ver_id).empty()) << "it boots, and hears nothing";
+    EXPECT_TRUE(bench.frames(ack_id).empty()) << "a reset is not acknowledged";
+    EXPECT_TRUE(bench.frames(nav_pvt_id).empty()) << "the configuration was in RAM alone";
+    EXPECT_THAT(bench.text(), HasSubstr("$GNTXT,01,01,02,FWVER=SPG 4.04*"));
+    EXPECT_EQ(bench.receiver().settings().start, StartKind::cold);
+    EXPECT_EQ(bench.receiver().settings().restarts, 1);
+}
+
+TEST(ReceiverCommands, KeepsWhatIsInFlashOverAReset) {
+    Bench bench;
+    bench.wait(300ms).send(valset({{0x20910007, 1}}, 5)).wait(500ms);
+    bench.send(valset({{0x20910039, 1}}, 3)).wait(500ms).send(CfgRst{0, 0, 0});
+    bench.forget();
+    bench.wait(6s);
+    EXPECT_FALSE(bench.frames(nav_pvt_id).empty());
+    EXPECT_TRUE(bench.frames({0x01, 0x04}).empty()) << "the battery-backed layer is cleared with the hardware";
+    bench.send(valset({{0x20910039, 1}}, 3)).wait(500ms).send(CfgRst{0, 1, 0});
+    bench.forget();
+    bench.wait(6s);
+    EXPECT_FALSE(bench.frames({0x01, 0x04}).empty()) << "a software reset keeps it";
+}
+
+TEST(ReceiverCommands, KeepsPortsAndConfigurationWhenNavigationAloneRestarts) {
+    Bench bench;
+    bench.wait(300ms).send(valset({{0x40520001, 115200}, {0x20910007, 1}})).wait(2s);
+    bench.send(CfgRst{0x0001, 2, 0});
+    bench.forget();
+    bench.wait(5s);
+    EXPECT_EQ(bench.receiver().baud(PortId::uart1), 115200U);
+    EXPECT_GE(bench.frames(nav_pvt_id).size(), 4U);
+    EXPECT_EQ(bench.text().find("FWVER"), std::string::npos);
+    EXPECT_EQ(bench.receiver().settings().start, StartKind::warm);
+}
+
+TEST(ReceiverCommands, StopsAndStartsNavigation) {
+    Bench bench;
+    bench.wait(300ms).send(valset({{0x20910007, 1}})).wait(2s).send(CfgRst{0, 8, 0}).wait(200ms);
+    EXPECT_THAT(bench.text(), HasSubstr("Stopping GNSS"));
+    EXPECT_FALSE(bench.receiver().settings().navigating);
+    bench.forget();
+    bench.wait(3s);
+    EXPECT_TRUE(bench.frames(nav_pvt_id).empty());
+    bench.send(CfgRst{0, 9, 0}).wait(4s);
+    EXPECT_TRUE(bench.receiver().settings().navigating);
+    EXPECT_EQ(bench.receiver().settings().start, StartKind::hot);
+    EXPECT_FALSE(bench.frames(nav_pvt_id).empty());
+    EXPECT_TRUE(bench.frames(ack_id).size() == 1U) << "only the VALSET is acknowledged";
+}
+
+TEST(ReceiverCommands, SaysWhoItIsWhenItIsSwitchedOn) {
+    ReceiverOptions options;
+    options.power_up = true;
+    BoardProfile board = sample_ublox();
+    board.timing.boot = Seconds(0.5);
+    board.timing.first_epoch = Seconds(1.0);
+    Bench bench(board, options);
+    bench.wait(499ms);
+    EXPECT_TRUE(bench.sent().empty());
+    bench.wait(200ms);
+    EXPECT_THAT(bench.text(), HasSubstr("$GNTXT,01,01,02,HELLO*"));
+}
+
+TEST(ReceiverCommands, RemembersOverTheEndOfTheProcess) {
+    Bench bench;
+    bench.send(valset({{0x20910007, 1}, {0x40520001, 57600}}, 4)).wait(500ms);
+    const std::string stored = bench.receiver().persistent_text();
+    Bench next;
+    ASSERT_TRUE(next.receiver().restore(stored, "state"));
+    EXPECT_EQ(next.receiver().baud(PortId::uart1), 57600U);
+    next.wait(3s);
+    EXPECT_EQ(next.frames(nav_pvt_id).size(), 3U);
+    EXPECT_FALSE(next.receiver().restore("nonsense", "state"));
+}
+
+TEST(ReceiverCommands, TellsWhenTheAntennaChanges) {
+    BoardProfile board = sample_ublox();
+    board.quirks.voltage_control = true;
+    Receiver receiver(board, {});
+    Epoch epoch{sample_fix("2024-03-05T12:00:00Z", 47, 8, 500)};
+    receiver.start(epoch.fix.time);
+    std::string text;
+    for (const AntennaStatus status : {AntennaStatus::ok, AntennaStatus::short_circuit, AntennaStatus::short_circuit}) {
+        epoch.fix.time += 1s;
+        epoch.front_end.antenna = status;
+        receiver.on_epoch(epoch);
+        for (const Receiver::Sent& sent : receiver.output(epoch.fix.time + 900ms))
+            if (sent.port == PortId::uart1) text += to_string(sent.bytes);
+    }
+    EXPECT_EQ(text, "$GNTXT,01,01,02,ANTSTATUS=SHORT*73\r\n");
+}
+
+}  // namespace
+}  // namespace skyloop::firmware
