@@ -56,6 +56,7 @@ private:
     void configure(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
     [[nodiscard]] ConfigOutcome configured(const UbxFrameView& frame, PortId from);
     void command(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
+    void assist(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
 
     // Output.
     // What messages of now are made from.

@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 // A frame that was begun and not ended within this belongs to a client's hunt for the speed.
 constexpr Nanoseconds frame_timeout = 2s;
 
-constexpr std::uint8_t class_cfg = 0x06, class_log = 0x21;
+constexpr std::uint8_t class_cfg = 0x06, class_mga = 0x13, class_log = 0x21;
 constexpr UbxMessageId cfg_rst{0x06, 0x04}, cfg_valset{0x06, 0x8A}, cfg_valget{0x06, 0x8B}, cfg_valdel{0x06, 0x8C},
     nav_resetodo{0x01, 0x10};
 constexpr std::uint32_t protocol_ubx = 1, protocol_nmea = 2, protocol_rtcm3 = 4;
@@ -131,7 +131,8 @@ void Receiver::Core::command(PortUnit& unit, const UbxFrameView& frame, GpsTime 
         tracker_.reset_odometer();
         return;
     }
-    // A log that is not there, and assistance when its acknowledgement is on, are refused; all else is silence.
+    if (frame.id.message_class == class_mga) return assist(unit, frame, now);
+    // There is no log to work on.
     if (frame.id.message_class == class_log)
         return reply(unit, {{}, verdict_frame(Verdict::refuse, frame.id), Seconds(0)}, now);
     const bool known = board_.polled.contains(frame.id) ||
@@ -141,6 +142,17 @@ void Receiver::Core::command(PortUnit& unit, const UbxFrameView& frame, GpsTime 
     if (answers.empty()) return;
     ++counters_.commands;
     reply(unit, {std::move(answers), std::nullopt, Seconds(0)}, now);
+}
+
+// Assistance is taken and, where the client wants to know, acknowledged (MGA-ACK-DATA0, type 1: it will be used). The
+// satellites themselves tell the receiver all it needs.
+void Receiver::Core::assist(PortUnit& unit, const UbxFrameView& frame, GpsTime now) {
+    constexpr UbxMessageId mga_ack{0x13, 0x60};
+    constexpr std::uint8_t accepted = 1;
+    if (!store_.flag(key::navspg_ackaiding)) return;
+    Bytes payload{accepted, 0, 0, frame.id.id, 0, 0, 0, 0};
+    std::copy_n(frame.payload.begin(), std::min<std::size_t>(4, frame.payload.size()), payload.begin() + 4);
+    reply(unit, {{encode_frame(mga_ack, payload)}, std::nullopt, Seconds(0)}, now);
 }
 
 void Receiver::Core::dispatch_sentence(PortUnit& unit, ByteSpan line, GpsTime now) {

@@ -11,6 +11,8 @@ namespace {
 constexpr int level_error = 0, level_notice = 2;
 constexpr std::uint8_t class_nmea = 0xF0, class_pubx = 0xF1, class_rtcm = 0xF5;
 
+constexpr double late_epochs = 0.005, late_by_s = 0.020;
+
 std::uint32_t protocol_item(UbxMessageId message) {
     if (message.message_class == class_nmea || message.message_class == class_pubx) return 2;
     return message.message_class == class_rtcm ? 4 : 1;
@@ -124,8 +126,13 @@ void Receiver::Core::send_text(int level, const std::string& text, GpsTime now) 
 
 GpsTime Receiver::Core::burst_time(GpsTime epoch) {
     const double deviation = board_.timing.latency_deviation.value();
-    // Bounded at three deviations; one epoch's output never overtakes another's.
-    const double jitter = deviation > 0 ? deviation * std::clamp(latency_noise_.normal(), -3.0, 3.0) : 0;
+    // Bounded at three deviations, with a rare epoch that comes much later (RECEIVER.md 4.6); one epoch's output never
+    // overtakes another's.
+    double jitter = 0;
+    if (deviation > 0) {
+        jitter = deviation * std::clamp(latency_noise_.normal(), -3.0, 3.0);
+        if (latency_noise_.uniform() < late_epochs) jitter += late_by_s;
+    }
     const double latency = std::max(0.0, board_.solution_latency.value() + jitter);
     last_burst_ = std::max(last_burst_, advanced(epoch, Seconds(latency)));
     return last_burst_;
