@@ -5,26 +5,6 @@
 #include <string_view>
 
 namespace skyloop::firmware {
-namespace {
-
-/// Whether a value fits the storage that the size bits of its key name.
-bool fits_the_item(std::uint32_t key, std::uint64_t value) {
-    switch (key >> 28 & 7) {
-        case 1:
-            return value <= 1;
-        case 2:
-            return value <= 0xFF;
-        case 3:
-            return value <= 0xFFFF;
-        case 4:
-            return value <= 0xFFFF'FFFF;
-        default:
-            return true;
-    }
-}
-
-}  // namespace
-
 void LegacyChanges::put_raw(std::uint32_t key, std::uint64_t value) {
     if (context_.store.has(key)) values_.emplace_back(key, value);
 }
@@ -43,7 +23,7 @@ ConfigValues LegacyChanges::result() const {
 
 ConfigOutcome LegacyChanges::apply(Seconds work) const {
     for (const auto& [key, value] : values_)
-        if (!fits_the_item(key, value) || !is_in_range(context_.board, key, value)) return legacy_refused();
+        if (!is_in_range(context_.board, key, value)) return legacy_refused();
     if (!is_consistent(context_.board, result())) return legacy_refused();
     for (const auto& [key, value] : values_)
         if (context_.store.value(key) != value) context_.store.set(in_ram, key, value);
