@@ -12,6 +12,8 @@ namespace skyloop::firmware::legacy_key {
 /// The group of our own items, and that of the message rates which have no item of u-blox.
 inline constexpr std::uint32_t own_group = 0xFD, own_rate_group = 0xFE;
 
+inline constexpr std::uint32_t lock = 0x10F60009, unlocked_group_1 = 0x30F6000A, unlocked_group_2 = 0x30F6000B;
+
 inline constexpr std::uint32_t i2c_address = 0x20510001, i2c_extended_timeout = 0x10510002, spi_max_ff = 0x20640001,
                                spi_polarity = 0x10640002, spi_phase = 0x10640003, spi_extended_timeout = 0x10640005,
                                usb_self_powered = 0x10650002;

@@ -85,7 +85,7 @@ void load(const LegacyContext& context, const SectionMask& mask) {
 
 ConfigOutcome legacy_cfg(const LegacyContext& context, ByteSpan payload) {
     const auto set = decode_payload<CfgCfg>(payload);
-    if (!set) return legacy_refused();
+    if (!set || is_locked(context)) return legacy_refused();
     const ConfigLayers layers = layers_of(context.board, set->device_mask);
     const SectionMask cleared(context, set->clear_mask), saved(context, set->save_mask),
         loaded(context, set->load_mask);

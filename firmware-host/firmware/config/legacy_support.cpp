@@ -4,7 +4,26 @@
 #include <charconv>
 #include <string_view>
 
+#include "firmware/config/legacy_keys.hpp"
+
 namespace skyloop::firmware {
+namespace {
+
+/// A lock leaves up to two groups open (F9 interface description, CFG-SEC-CFG_LOCK).
+bool touches_locked_group(const LegacyContext& context,
+                          std::span<const std::pair<std::uint32_t, std::uint64_t>> values) {
+    if (!is_locked(context)) return false;
+    return std::ranges::any_of(values, [&](const auto& one) {
+        const std::uint32_t group = one.first >> 16 & 0xFF;
+        return group != context.store.value(legacy_key::unlocked_group_1) &&
+               group != context.store.value(legacy_key::unlocked_group_2);
+    });
+}
+
+}  // namespace
+
+bool is_locked(const LegacyContext& context) { return context.store.flag(legacy_key::lock); }
+
 void LegacyChanges::put_raw(std::uint32_t key, std::uint64_t value) {
     if (context_.store.has(key)) values_.emplace_back(key, value);
 }
@@ -24,6 +43,7 @@ ConfigValues LegacyChanges::result() const {
 ConfigOutcome LegacyChanges::apply(Seconds work) const {
     for (const auto& [key, value] : values_)
         if (!is_in_range(context_.board, key, value)) return legacy_refused();
+    if (touches_locked_group(context_, values_)) return legacy_refused();
     if (!is_consistent(context_.board, result())) return legacy_refused();
     for (const auto& [key, value] : values_)
         if (context_.store.value(key) != value) context_.store.set(in_ram, key, value);

@@ -70,6 +70,8 @@ T in_force(const LegacyContext& context, std::uint32_t key) {
     return static_cast<T>(context.store.value(key));
 }
 std::uint32_t bits_in_force(const LegacyContext& context, std::span<const BitKey> keys);
+/// Whether the configuration is locked (CFG-SEC-CFG_LOCK).
+bool is_locked(const LegacyContext& context);
 /// Whether the board has the port.
 bool has_port(const BoardProfile& board, std::uint8_t port_id);
 /// The protocol version that a board names in its MON-VER extensions, in hundredths (18.00 is 1800); 0 when it does
