@@ -11,9 +11,9 @@ using namespace std::chrono_literals;
 
 constexpr Nanoseconds utc_rounding = 10ms;
 
-LeapSeconds leap_seconds_of(const Fix& fix) {
+LeapSeconds leap_seconds_of(const ReportedTime& now) {
     const LeapSeconds& announced = LeapSeconds::announced();
-    return announced.offset(fix.time) == fix.leap_seconds ? announced : LeapSeconds::constant(fix.leap_seconds);
+    return announced.offset(now.time) == now.leap_seconds ? announced : LeapSeconds::constant(now.leap_seconds);
 }
 
 // Keys of CFG-SIGNAL (RECEIVER.md 3.5.1).
@@ -68,15 +68,25 @@ SplitValue split_value(double value, int parts) {
 EpochTime epoch_time(GpsTime time) {
     const GpsTime rounded = std::chrono::floor<std::chrono::milliseconds>(time + 500us);
     const WeekAndTow value = week_and_tow(rounded);
-    return {value.week, static_cast<std::uint32_t>(value.tow / 1ms), static_cast<std::int32_t>((time - rounded).count())};
+    return {value.week, static_cast<std::uint32_t>(value.tow / 1ms),
+            static_cast<std::int32_t>((time - rounded).count())};
 }
 
-UtcFields utc_fields(const Fix& fix) {
-    const Nanoseconds since_epoch = fix.time.time_since_epoch() + utc_rounding / 2;
+ReportedTime reported_time(const ReportContext& context) {
+    const NavigationState& state = context.state;
+    if (state.time.time) return {state.epoch.fix.time, state.epoch.fix.leap_seconds};
+    const auto week = static_cast<std::int64_t>(context.config.value(key::navspg_wknrollover) & 0xFFFFu);
+    const std::chrono::milliseconds running(field<std::uint32_t>(state.since_start.value() * 1e3));
+    return {to_gps_time({week, Nanoseconds(0)}) + running, 0};
+}
+
+UtcFields utc_fields(const ReportedTime& now) {
+    const Nanoseconds since_epoch = now.time.time_since_epoch() + utc_rounding / 2;
     const GpsTime rounded(since_epoch - ((since_epoch % utc_rounding) + utc_rounding) % utc_rounding);
     UtcFields fields;
-    fields.utc = to_utc(rounded, leap_seconds_of(fix));
-    fields.nano = static_cast<std::int32_t>(fields.utc.nanosecond) + static_cast<std::int32_t>((fix.time - rounded).count());
+    fields.utc = to_utc(rounded, leap_seconds_of(now));
+    fields.nano =
+        static_cast<std::int32_t>(fields.utc.nanosecond) + static_cast<std::int32_t>((now.time - rounded).count());
     return fields;
 }
 

@@ -48,16 +48,26 @@ struct EpochTime {
 };
 EpochTime epoch_time(GpsTime time);
 
+/// The instant of the epoch as the receiver believes it, and how far GPS time is ahead of UTC.
+struct ReportedTime {
+    GpsTime time;
+    int leap_seconds = 18;
+};
+/// Before the first time from space a receiver without a clock of its own counts from the week that
+/// CFG-NAVSPG-WKNROLLOVER names (M9N 4.04: 2020-08-02, F9P: 2024-06-23; RECEIVER.md 4.9).
+ReportedTime reported_time(const ReportContext& context);
+
 /// UTC rounded to 10 ms, and what was rounded away with the hundredths in it (RECEIVER.md 4.9).
 struct UtcFields {
     UtcTime utc;            ///< its nanosecond is a multiple of 10 ms
     std::int32_t nano = 0;  ///< ns from utc's whole second, −5 000 000 … 994 999 999
 };
 /// In a leap second that was announced the receiver counts to 60; any other belief about the offset just subtracts.
-UtcFields utc_fields(const Fix& fix);
+UtcFields utc_fields(const ReportedTime& now);
 
 /// The UTC standard of NAV-PVT and NAV-TIMEUTC: 15 until leap seconds are known; then what CFG-NAVSPG-UTCSTANDARD says,
-/// or that of the systems in use: 3 USNO with GPS, 6 SU of GLONASS, 5 EU of Galileo, 7 NTSC of BeiDou (RECEIVER.md 4.9).
+/// or that of the systems in use: 3 USNO with GPS, 6 SU of GLONASS, 5 EU of Galileo, 7 NTSC of BeiDou
+/// (RECEIVER.md 4.9).
 std::uint8_t utc_standard(const ReportContext& context);
 
 /// 1 σ of the time, ns; `unknown_accuracy` without time.

@@ -208,7 +208,8 @@ struct NavPl {
     std::uint8_t pl_vel_valid = 0;
     std::uint8_t pl_vel_frame = 0;
     std::uint8_t pl_time_valid = 0;
-    std::array<std::uint8_t, 4> reserved0{};
+    std::array<std::uint8_t, 3> invalidity_reason{};  ///< of position, velocity, time; 0: valid
+    std::uint8_t reserved0 = 0;
     std::uint32_t i_tow = 0;                ///< ms, GPS time of week of the epoch
     std::array<std::uint32_t, 3> pl_pos{};  ///< mm
     std::array<std::uint32_t, 3> pl_vel{};  ///< mm/s
@@ -220,8 +221,8 @@ struct NavPl {
     template <class M, class V>
     static void fields(M& m, V& v) {
         v(m.version, m.tmir_coeff, m.tmir_exp, m.pl_pos_valid, m.pl_pos_frame, m.pl_vel_valid, m.pl_vel_frame,
-          m.pl_time_valid, m.reserved0, m.i_tow, m.pl_pos, m.pl_vel, m.pl_pos_horiz_orient, m.pl_vel_horiz_orient,
-          m.pl_time, m.reserved1);
+          m.pl_time_valid, m.invalidity_reason, m.reserved0, m.i_tow, m.pl_pos, m.pl_vel, m.pl_pos_horiz_orient,
+          m.pl_vel_horiz_orient, m.pl_time, m.reserved1);
     }
 };
 
