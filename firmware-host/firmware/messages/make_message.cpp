@@ -1,0 +1,26 @@
+#include "firmware/messages/make_message.hpp"
+
+namespace skyloop::firmware {
+
+std::vector<Bytes> make_message(UbxMessageId message, const ReportContext& context) {
+    switch (message.message_class) {
+        case 0x01: {
+            std::vector<Bytes> frames = make_satellite_message(message, context);
+            return frames.empty() ? make_navigation_message(message, context) : frames;
+        }
+        case 0x02:
+            return make_raw_message(message, context);
+        case 0x0A:
+        case 0x27:
+            return make_monitor_message(message, context);
+        case 0x0D:
+            return make_navigation_message(message, context);
+        case 0xF0:
+        case 0xF1:
+            return make_nmea_message(message, context);
+        default:
+            return {};
+    }
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,139 @@
+// Classes MON and SEC: who the receiver is, and how it does (RECEIVER.md 2.1, 3.2, 4.11).
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/messages/field_values.hpp"
+#include "firmware/messages/make_message.hpp"
+#include "firmware/messages/monitor_parts.hpp"
+#include "skyloop/protocol/ubx_mon.hpp"
+#include "skyloop/protocol/ubx_security.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+// Hardware of the X20, the first whose SEC-SIG has version 2 (RECEIVER.md 3.2).
+constexpr std::string_view x20_hardware = "000B";
+constexpr int jamming_warning = 2;
+
+MonVer version(const ReportContext& context) {
+    const Identity& identity = context.board.identity;
+    MonVer m;
+    m.sw_version = padded_text<30>(identity.software);
+    m.hw_version = padded_text<10>(identity.hardware);
+    for (const std::string& text : identity.extensions)
+        m.extensions.push_back({padded_text<30>(text)});
+    return m;
+}
+
+// Bits of MON-GNSS, and the key of CFG-SIGNAL that enables the system (RECEIVER.md 3.5.1).
+struct SystemBit {
+    Constellation constellation;
+    std::uint8_t bit;
+    std::uint32_t key;
+};
+constexpr SystemBit system_bits[] = {{Constellation::gps, 1, 0x1031001F},
+                                     {Constellation::glonass, 2, 0x10310025},
+                                     {Constellation::beidou, 4, 0x10310022},
+                                     {Constellation::galileo, 8, 0x10310021}};
+
+MonGnss systems(const ReportContext& context) {
+    const BoardProfile& board = context.board;
+    MonGnss m;
+    m.supported = board.gnss_supported;
+    m.simultaneous = board.gnss_simultaneous;
+    for (const SystemBit& system : system_bits) {
+        const bool from_factory = std::find(board.constellations.begin(), board.constellations.end(),
+                                            system.constellation) != board.constellations.end();
+        const bool enabled = context.config.has(system.key) ? context.config.flag(system.key) : from_factory;
+        if (from_factory) m.default_gnss |= system.bit;
+        if (enabled) m.enabled |= system.bit;
+    }
+    return m;
+}
+
+// The load that tracking takes: that of a captured ZED-F9P, 22 % with 20 satellites.
+MonSys system_load(const ReportContext& context) {
+    constexpr double idle_percent = 8, percent_per_satellite = 0.7;
+    const auto& satellites = context.state.epoch.fix.satellites;
+    const auto tracked =
+        std::count_if(satellites.begin(), satellites.end(), [](const SatelliteStatus& s) { return s.cn0.has_value(); });
+    MonSys m;
+    m.boot_type = 1;
+    m.cpu_load = m.cpu_load_max =
+        field<std::uint8_t>(std::min(100.0, idle_percent + percent_per_satellite * static_cast<double>(tracked)));
+    m.mem_usage = 8;
+    m.mem_usage_max = 19;
+    for (const PortStatus& port : context.ports) {
+        m.io_usage = std::max(m.io_usage, field<std::uint8_t>(port.usage_percent));
+        m.io_usage_max = std::max(m.io_usage_max, field<std::uint8_t>(port.peak_usage_percent));
+    }
+    m.run_time = field<std::uint32_t>(std::floor(context.state.since_start.value()));
+    m.temp_value = 28;
+    return m;
+}
+
+SecUniqid unique_id(const ReportContext& context) {
+    SecUniqid m;
+    m.unique_id = context.board.identity.unique_id;
+    m.unique_id.resize(m.unique_id.size() > 5 ? 6 : 5);
+    m.version = m.unique_id.size() == 6 ? 2 : 1;
+    return m;
+}
+
+bool jamming_detection(const ReportContext& context) {
+    if (context.config.has(key::itfm_enable)) return context.config.flag(key::itfm_enable);
+    return context.board.quirks.default_interference_monitor;
+}
+
+std::vector<Bytes> signal_security(const ReportContext& context) {
+    const MonitorStatus& monitors = context.state.monitors;
+    const int spoofing = static_cast<int>(monitors.spoofing);
+    const int jam_flags = (jamming_detection(context) ? 1 : 0) | std::clamp(monitors.jamming_state, 0, 3) << 1;
+    if (!context.board.identity.hardware.starts_with(x20_hardware)) {
+        SecSig1 m;
+        m.jam_flags = static_cast<std::uint8_t>(jam_flags);
+        m.spf_flags = static_cast<std::uint8_t>(1 | spoofing << 1);
+        return one_frame(m);
+    }
+    // Its jamming states end at 2. L1, L2 and the lower end of L5, as captured, kHz.
+    SecSig2 m;
+    const int jamming = std::clamp(monitors.jamming_state, 0, jamming_warning);
+    m.sig_sec_flags = static_cast<std::uint8_t>((jam_flags & 1) | jamming << 1 | 8 | spoofing << 4);
+    m.centre_frequencies = {1575420, 1227600, 1207140};
+    if (jamming == jamming_warning) m.centre_frequencies[0] |= 1u << 24;
+    return one_frame(m);
+}
+
+// What goes on now; the receiver's state keeps no older events.
+SecSiglog security_log(const ReportContext& context) {
+    constexpr std::uint8_t simulated_signal = 0, jamming = 4, triggered = 2;
+    const MonitorStatus& monitors = context.state.monitors;
+    SecSiglog m;
+    if (monitors.jamming_state >= jamming_warning) m.events.push_back({0, jamming, triggered, {}});
+    if (monitors.spoofing == SpoofingIndication::indicated || monitors.spoofing == SpoofingIndication::several)
+        m.events.push_back({0, simulated_signal, triggered, {}});
+    return m;
+}
+
+std::vector<Bytes> make_identity_message(UbxMessageId message, const ReportContext& context) {
+    if (message == MonVer::message_id) return one_frame(version(context));
+    if (message == MonGnss::message_id) return one_frame(systems(context));
+    if (message == MonSys::message_id) return one_frame(system_load(context));
+    if (message == MonPatch::message_id) return one_frame(MonPatch{});
+    if (message == MonRxr::message_id) return one_frame(MonRxr{1});
+    if (message == SecUniqid::message_id) return one_frame(unique_id(context));
+    if (message == SecSig1::message_id) return signal_security(context);
+    if (message == SecSiglog::message_id) return one_frame(security_log(context));
+    return {};
+}
+
+}  // namespace
+
+std::vector<Bytes> make_monitor_message(UbxMessageId message, const ReportContext& context) {
+    std::vector<Bytes> frames = make_identity_message(message, context);
+    if (frames.empty()) frames = make_hardware_message(message, context);
+    if (frames.empty()) frames = make_port_message(message, context);
+    return frames;
+}
+
+}  // namespace skyloop::firmware

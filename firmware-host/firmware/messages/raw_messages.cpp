@@ -1,0 +1,209 @@
+// Class RXM: RAWX, MEASX, SFRBX and SVSI (RECEIVER.md 3.2).
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "firmware/messages/make_message.hpp"
+#include "firmware/messages/satellite_parts.hpp"
+#include "skyloop/gnss/constants.hpp"
+#include "skyloop/protocol/ubx_raw.hpp"
+#include "skyloop/protocol/ubx_satellites.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint16_t longest_lock_ms = 64500;
+constexpr std::uint8_t invalid_phase_deviation = 15;
+
+// n of unit·2^n, 0 … 15.
+std::uint8_t exponent_code(double deviation, double unit) {
+    if (!(deviation > unit)) return 0;
+    return static_cast<std::uint8_t>(std::min(15.0, std::round(std::log2(deviation / unit))));
+}
+
+// n of 0.004 cycles·n; 15 says that there is no phase.
+std::uint8_t phase_deviation_code(const Observation& o) {
+    if (!o.carrier_phase) return invalid_phase_deviation;
+    return std::clamp(field<std::uint8_t>(o.carrier_phase_deviation / 0.004), std::uint8_t{1}, std::uint8_t{14});
+}
+
+RxmRawxItem raw_measurement(const Observation& o, const ReportContext& context) {
+    RxmRawxItem item;
+    item.pr_mes = o.pseudorange->value();
+    item.cp_mes = o.carrier_phase.value_or(0);
+    item.do_mes = static_cast<float>(o.doppler ? o.doppler->value() : 0);
+    item.gnss_id = gnss_id(o.satellite.constellation);
+    item.sv_id = sv_id(o.satellite);
+    item.sig_id = context.board.identity.generation <= 8 ? std::uint8_t{0}
+                                                         : signal_id(o.satellite, o.signal, takes_b1c(context.config));
+    item.freq_id = frequency_id(o.satellite, o.signal, o.carrier);
+    item.locktime =
+        o.carrier_phase ? std::min(longest_lock_ms, field<std::uint16_t>(o.lock_time.value() * 1e3)) : std::uint16_t{0};
+    item.cno = field<std::uint8_t>(o.cn0.value());
+    item.pr_stdev = exponent_code(o.pseudorange_deviation.value(), 0.01);
+    item.cp_stdev = phase_deviation_code(o);
+    item.do_stdev = exponent_code(o.doppler_deviation.value(), 0.002);
+    item.trk_stat =
+        static_cast<std::uint8_t>(1 | (o.carrier_phase ? 2 : 0) | (o.carrier_phase && o.half_cycle_resolved ? 4 : 0));
+    return item;
+}
+
+// The receiver's own time of the measurements; of models that measure nothing that of the epoch.
+GpsTime measurement_time(const ReportContext& context) {
+    const Observations& observations = context.state.epoch.observations;
+    return observations.signals.empty() ? reported_time(context).time : observations.receive_time;
+}
+
+RxmRawx raw_measurements(const ReportContext& context) {
+    const NavigationState& state = context.state;
+    const WeekAndTow now = week_and_tow(measurement_time(context));
+    RxmRawx m;
+    m.rcv_tow = now.tow_seconds();
+    m.week = field<std::uint16_t>(static_cast<double>(now.week));
+    m.leap_s = field<std::int8_t>(state.epoch.fix.leap_seconds);
+    m.rec_stat =
+        static_cast<std::uint8_t>((state.time.leap_seconds ? 1 : 0) | (state.epoch.observations.clock_was_set ? 2 : 0));
+    m.version = 1;
+    for (const Observation& o : state.epoch.observations.signals)
+        if (o.pseudorange) m.measurements.push_back(raw_measurement(o, context));
+    return m;
+}
+
+// The code on the signal: chips in a millisecond, and how many milliseconds it lasts (the systems' ICDs).
+struct CodeShape {
+    int chips_per_ms = 1023, milliseconds = 1;
+};
+CodeShape code_shape(const Observation& o) {
+    switch (o.satellite.constellation) {
+        case Constellation::glonass:
+            return {511, 1};
+        case Constellation::beidou:
+            return {2046, 1};
+        case Constellation::galileo:
+            return o.signal == Signal::l1 ? CodeShape{1023, 4} : CodeShape{10230, 1};
+        default:
+            return o.signal == Signal::l5 ? CodeShape{10230, 1} : CodeShape{1023, 1};
+    }
+}
+
+// Index i = x + 8y of 0.5·(1 + x/8)·2^y m, the first that is not less (3GPP TS 44.031, table A.9).
+std::uint8_t range_error_index(double deviation_m) {
+    for (int i = 0; i < 63; ++i)
+        if (deviation_m <= 0.5 * (1 + i % 8 / 8.0) * std::exp2(i / 8)) return static_cast<std::uint8_t>(i);
+    return 63;
+}
+
+// The code phase grows with the range, as the log of a ZED-F9P with MEASX and RAWX side by side shows.
+RxmMeasxItem code_measurement(const Observation& o) {
+    const CodeShape shape = code_shape(o);
+    const double travel_ms = o.pseudorange->value() / speed_of_light * 1e3;
+    const double in_code = travel_ms - std::floor(travel_ms / shape.milliseconds) * shape.milliseconds;
+    const double whole_ms = std::floor(in_code), phase = in_code - whole_ms;
+    const double chips = in_code * shape.chips_per_ms;
+    RxmMeasxItem item;
+    item.gnss_id = gnss_id(o.satellite.constellation);
+    item.sv_id = sv_id(o.satellite);
+    item.cno = field<std::uint8_t>(o.cn0.value());
+    item.mpath_indic = 1;
+    if (o.doppler) {
+        item.doppler_hz = field<std::int32_t>(o.doppler->value() / 0.2);
+        item.doppler_ms = field<std::int32_t>(o.doppler->value() * speed_of_light / o.carrier.value() / 0.04);
+    }
+    item.whole_chips = field<std::uint16_t>(std::floor(chips));
+    item.frac_chips = static_cast<std::uint16_t>(std::clamp((chips - std::floor(chips)) * 1024, 0.0, 1023.0));
+    item.code_phase = field<std::uint32_t>(std::floor(phase * 2097152.0));
+    item.int_code_phase = field<std::uint8_t>(whole_ms);
+    item.pseu_range_rms_err = range_error_index(o.pseudorange_deviation.value());
+    return item;
+}
+
+std::uint32_t tow_ms(GpsTime time) { return static_cast<std::uint32_t>(week_and_tow(time).tow / 1ms); }
+
+RxmMeasx code_measurements(const ReportContext& context) {
+    const NavigationState& state = context.state;
+    const GpsTime time = std::chrono::round<std::chrono::milliseconds>(measurement_time(context));
+    RxmMeasx m;
+    if (state.time.time) {
+        m.gps_tow = m.qzss_tow = tow_ms(time);
+        m.bds_tow = tow_ms(time - 14s);
+        m.glo_tow = tow_ms(time + 3h - std::chrono::seconds(state.epoch.fix.leap_seconds));
+        const std::uint16_t accuracy = field<std::uint16_t>(state.time.accuracy.value() * 1e3 * 16);
+        m.gps_tow_acc = m.glo_tow_acc = m.bds_tow_acc = m.qzss_tow_acc = accuracy;
+        m.flags = 2;
+    }
+    for (const Observation& o : state.epoch.observations.signals)
+        if (o.pseudorange) m.satellites.push_back(code_measurement(o));
+    return m;
+}
+
+// Channels are numbered as the satellites are listed.
+std::uint8_t tracking_channel(SatelliteId id, const Fix& fix) {
+    const auto found =
+        std::find_if(fix.satellites.begin(), fix.satellites.end(), [&](const auto& s) { return s.id == id; });
+    return found == fix.satellites.end() ? std::uint8_t{0}
+                                         : field<std::uint8_t>(static_cast<double>(found - fix.satellites.begin()));
+}
+
+std::vector<Bytes> received_subframes(const ReportContext& context) {
+    std::vector<Bytes> frames;
+    for (const Subframe& subframe : context.state.epoch.subframes) {
+        RxmSfrbx m;
+        m.gnss_id = gnss_id(subframe.satellite.constellation);
+        m.sv_id = sv_id(subframe.satellite);
+        if (context.board.identity.generation > 8)
+            m.sig_id = signal_id(subframe.satellite, subframe.signal, takes_b1c(context.config));
+        if (subframe.satellite.constellation == Constellation::glonass)
+            m.freq_id = field<std::uint8_t>(subframe.frequency_channel + 7);
+        m.chn = tracking_channel(subframe.satellite, context.state.epoch.fix);
+        m.version = 2;
+        m.words = subframe.words;
+        frames.push_back(encode_frame(m));
+    }
+    return frames;
+}
+
+// Flags: 0-3 accuracy index, 4 healthy, 5 ephemeris, 6 almanac, 7 not available.
+RxmSvsiItem satellite_knowledge(std::uint8_t number, const SatelliteStatus& s, const NavigationState& state) {
+    constexpr int no_accuracy = 15, no_age = 15, fresh = 4;
+    const bool almanac = almanac_known(state) && s.id.constellation != Constellation::sbas;
+    RxmSvsiItem item;
+    item.sv_id = number;
+    item.sv_flag =
+        static_cast<std::uint8_t>((s.has_ephemeris ? 1 : no_accuracy) | (satellite_health(s, state) == 1 ? 0x10 : 0) |
+                                  (s.has_ephemeris ? 0x20 : 0) | (almanac ? 0x40 : 0));
+    item.elev = -91;
+    if (direction_known(s, state)) {
+        item.azim = static_cast<std::int16_t>(std::lround(s.azimuth.deg()) % 360);
+        item.elev = field<std::int8_t>(s.elevation.deg());
+    }
+    item.age = static_cast<std::uint8_t>((almanac ? fresh : no_age) | (s.has_ephemeris ? fresh : no_age) << 4);
+    return item;
+}
+
+RxmSvsi satellites_known(const ReportContext& context) {
+    const EpochTime now = epoch_time(reported_time(context).time);
+    RxmSvsi m;
+    m.i_tow = now.i_tow;
+    m.week = field<std::int16_t>(static_cast<double>(now.week));
+    for (const SatelliteStatus& s : sorted_satellites(context.state.epoch.fix)) {
+        const auto number = single_byte_number(s.id);
+        if (!number) continue;
+        m.satellites.push_back(satellite_knowledge(*number, s, context.state));
+        if (m.satellites.back().elev > 0) ++m.num_vis;
+    }
+    return m;
+}
+
+}  // namespace
+
+std::vector<Bytes> make_raw_message(UbxMessageId message, const ReportContext& context) {
+    if (message == RxmRawx::message_id) return one_frame(raw_measurements(context));
+    if (message == RxmMeasx::message_id) return one_frame(code_measurements(context));
+    if (message == RxmSfrbx::message_id) return received_subframes(context);
+    if (message == RxmSvsi::message_id) return one_frame(satellites_known(context));
+    return {};
+}
+
+}  // namespace skyloop::firmware

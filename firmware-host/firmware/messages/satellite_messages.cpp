@@ -1,0 +1,220 @@
+// NAV-SAT, NAV-SVINFO, NAV-ORB and NAV-SBAS (RECEIVER.md 3.1, 5.6).
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/messages/make_message.hpp"
+#include "firmware/messages/satellite_parts.hpp"
+#include "skyloop/protocol/ubx_satellites.hpp"
+#include "skyloop/protocol/ubx_services.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+constexpr std::int8_t unknown_elevation = -91;
+
+struct SkyFields {
+    std::int8_t elevation = unknown_elevation;
+    std::int16_t azimuth = 0;
+};
+SkyFields sky_fields(const SatelliteStatus& s, const NavigationState& state) {
+    if (!direction_known(s, state)) return {};
+    return {field<std::int8_t>(s.elevation.deg()), static_cast<std::int16_t>(std::lround(s.azimuth.deg()) % 360)};
+}
+
+bool has_almanac(const SatelliteStatus& s, const NavigationState& state) {
+    return s.id.constellation != Constellation::sbas && almanac_known(state);
+}
+
+// orbitSource: 0 none, 1 ephemeris, 2 almanac.
+std::uint32_t orbit_source(const SatelliteStatus& s, const NavigationState& state) {
+    if (s.has_ephemeris) return 1;
+    return direction_known(s, state) || has_almanac(s, state) ? 2 : 0;
+}
+
+std::uint32_t satellite_flags(const SatelliteStatus& s, const ReportContext& context) {
+    const NavigationState& state = context.state;
+    std::uint32_t flags = satellite_quality(s, state) | (s.used ? 8u : 0u) | satellite_health(s, state) << 4 |
+                          orbit_source(s, state) << 8 | (s.has_ephemeris ? 1u << 11 : 0u) |
+                          (has_almanac(s, state) ? 1u << 12 : 0u);
+    if (!s.used) return flags;
+    switch (corrections_in_use(state)) {
+        case CorrectionSource::none:
+            break;
+        case CorrectionSource::sbas:
+            flags |= 1u << 6 | 1u << 16;
+            break;
+        case CorrectionSource::rtcm3:
+            flags |= 1u << 6 | 1u << 17 | 1u << 20 | (carrier_solution(state.epoch.fix) != 0 ? 1u << 21 : 0u);
+            break;
+    }
+    return flags;
+}
+
+NavSat satellites_in_view(const ReportContext& context) {
+    NavSat m;
+    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    m.version = 1;
+    for (const SatelliteStatus& s : sorted_satellites(context.state.epoch.fix)) {
+        const SkyFields sky = sky_fields(s, context.state);
+        m.satellites.push_back({gnss_id(s.id.constellation), sv_id(s.id), cn0_field(s.cn0), sky.elevation, sky.azimuth,
+                                s.residual ? field<std::int16_t>(s.residual->value() * 10) : std::int16_t{0},
+                                satellite_flags(s, context)});
+    }
+    return m;
+}
+
+// Bits: 0 used, 1 corrected, 2 orbit known, 3 by ephemeris, 4 unhealthy, 5 by almanac.
+std::uint8_t channel_flags(const SatelliteStatus& s, const NavigationState& state) {
+    const std::uint32_t source = orbit_source(s, state);
+    const bool corrected = s.used && corrections_in_use(state) != CorrectionSource::none;
+    return static_cast<std::uint8_t>((s.used ? 1 : 0) | (corrected ? 2 : 0) | (source != 0 ? 4 : 0) |
+                                     (source == 1 ? 8 : 0) | (satellite_health(s, state) == 2 ? 0x10 : 0) |
+                                     (source == 2 ? 0x20 : 0));
+}
+
+NavSvinfo channels(const ReportContext& context) {
+    constexpr std::uint8_t no_channel = 255;
+    const int generation = context.board.identity.generation;
+    NavSvinfo m;
+    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    m.global_flags = static_cast<std::uint8_t>(std::clamp(generation - 4, 0, 4));  // 4 of M8, 1 of u-blox 5
+    std::uint8_t channel = 0;
+    for (const SatelliteStatus& s : sorted_satellites(context.state.epoch.fix)) {
+        const auto number = single_byte_number(s.id);
+        if (!number) continue;
+        const SkyFields sky = sky_fields(s, context.state);
+        const bool tracked = s.cn0.has_value() && channel < no_channel;
+        m.channels.push_back({tracked ? channel++ : no_channel, *number, channel_flags(s, context.state),
+                              static_cast<std::uint8_t>(satellite_quality(s, context.state)), cn0_field(s.cn0),
+                              sky.elevation, sky.azimuth,
+                              s.residual ? field<std::int32_t>(s.residual->value() * 1e2) : 0});
+    }
+    return m;
+}
+
+// 0 unknown, 1 below the horizon, 2 above it, 3 above the elevation mask.
+int visibility(const SatelliteStatus& s, const ReportContext& context) {
+    if (!direction_known(s, context.state)) return 0;
+    const double mask = context.config.has(key::navspg_min_elev)
+                            ? static_cast<double>(context.config.signed_value(key::navspg_min_elev))
+                            : context.board.elevation_mask.deg();
+    return s.elevation.deg() < 0 ? 1 : s.elevation.deg() < mask ? 2 : 3;
+}
+
+NavOrb orbits(const ReportContext& context) {
+    constexpr std::uint8_t from_sky_for_unknown_time = 1 << 5 | 31;
+    NavOrb m;
+    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    for (const SatelliteStatus& s : sorted_satellites(context.state.epoch.fix)) {
+        if (orbit_source(s, context.state) == 0) continue;
+        NavOrbItem item;
+        item.gnss_id = gnss_id(s.id.constellation);
+        item.sv_id = sv_id(s.id);
+        item.sv_flag = static_cast<std::uint8_t>(satellite_health(s, context.state) |
+                                                 static_cast<unsigned>(visibility(s, context)) << 2);
+        item.eph = s.has_ephemeris ? from_sky_for_unknown_time : std::uint8_t{0};
+        item.alm = has_almanac(s, context.state) ? from_sky_for_unknown_time : std::uint8_t{0};
+        m.satellites.push_back(item);
+    }
+    return m;
+}
+
+// Whose satellite a PRN is (ICAO SARPs, SBAS providers of 2024): 0 WAAS, 1 EGNOS, 2 MSAS, 3 GAGAN, −1 another.
+std::int8_t sbas_system(std::uint8_t prn) {
+    switch (prn) {
+        case 131:
+        case 133:
+        case 135:
+        case 138:
+            return 0;
+        case 120:
+        case 121:
+        case 123:
+        case 124:
+        case 126:
+        case 136:
+            return 1;
+        case 129:
+        case 137:
+            return 2;
+        case 127:
+        case 128:
+        case 132:
+            return 3;
+        default:
+            return -1;
+    }
+}
+
+// With corrections of SBAS in use, the strongest of its satellites is the one that they come from.
+NavSbas augmentation(const ReportContext& context) {
+    const NavigationState& state = context.state;
+    NavSbas m;
+    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    const auto satellites = sorted_satellites(state.epoch.fix);
+    const SatelliteStatus* source = nullptr;
+    for (const SatelliteStatus& s : satellites)
+        if (s.id.constellation == Constellation::sbas && s.cn0 && (source == nullptr || *s.cn0 > *source->cn0))
+            source = &s;
+    if (source == nullptr) return m;
+    m.geo = sv_id(source->id);
+    m.mode = 1;
+    m.sys = sbas_system(m.geo);
+    const bool corrects = corrections_in_use(state) == CorrectionSource::sbas;
+    m.service = corrects ? 3 : 1;
+    for (const SatelliteStatus& s : satellites) {
+        const auto number = single_byte_number(s.id);
+        if (!corrects || !s.used || !number) continue;
+        NavSbasItem item;
+        item.sv_id = *number;
+        item.flags = 1;
+        item.sv_sys = static_cast<std::uint8_t>(m.sys);
+        item.sv_service = m.service;
+        m.satellites.push_back(item);
+    }
+    return m;
+}
+
+}  // namespace
+
+std::vector<SatelliteStatus> sorted_satellites(const Fix& fix) {
+    std::vector<SatelliteStatus> list = fix.satellites;
+    std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+    if (list.size() > ubx_most_items) list.resize(ubx_most_items);
+    return list;
+}
+
+CorrectionSource corrections_in_use(const NavigationState& state) {
+    if (!is_differential(state.epoch.fix)) return CorrectionSource::none;
+    return state.corrections.state == CorrectionState::none ? CorrectionSource::sbas : CorrectionSource::rtcm3;
+}
+
+std::uint32_t satellite_health(const SatelliteStatus& s, const NavigationState& state) {
+    if (orbit_source(s, state) == 0) return 0;
+    return s.healthy ? 1 : 2;
+}
+
+std::uint32_t satellite_quality(const SatelliteStatus& s, const NavigationState& state) {
+    if (!s.cn0) return 1;
+    const auto& signals = state.epoch.observations.signals;
+    if (signals.empty()) return 7;
+    const auto found = std::find_if(signals.begin(), signals.end(), [&](const auto& o) { return o.satellite == s.id; });
+    return found == signals.end() ? 2 : signal_quality(*found);
+}
+
+std::uint8_t signal_quality(const Observation& observation) {
+    if (!observation.pseudorange) return 3;
+    if (!observation.carrier_phase) return 4;
+    return observation.half_cycle_resolved ? 7 : 6;
+}
+
+std::vector<Bytes> make_satellite_message(UbxMessageId message, const ReportContext& context) {
+    if (message == NavSat::message_id) return one_frame(satellites_in_view(context));
+    if (message == NavSvinfo::message_id) return one_frame(channels(context));
+    if (message == NavOrb::message_id) return one_frame(orbits(context));
+    if (message == NavSbas::message_id) return one_frame(augmentation(context));
+    if (message == NavSig::message_id) return make_signal_message(context);
+    return {};
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,97 @@
+// NAV-SIG (RECEIVER.md 3.1, 5.6).
+#include <algorithm>
+#include <tuple>
+
+#include "firmware/messages/satellite_parts.hpp"
+#include "skyloop/protocol/ubx_satellites.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+// One signal, from a measurement or from the satellite alone.
+struct SignalReport {
+    const SatelliteStatus* satellite = nullptr;
+    const Observation* observation = nullptr;
+    bool second_frequency = false;  // the satellite is measured on two
+};
+
+// Bits: 0-1 health, 3-5 range, carrier and Doppler used, 6-8 corrections of them. Captured: 0x29 used, 0x169 with SBAS,
+// 0xF9 with carrier phases of a base.
+std::uint16_t signal_flags(const SignalReport& signal, const NavigationState& state) {
+    unsigned flags = satellite_health(*signal.satellite, state);
+    const bool range = signal.observation == nullptr || signal.observation->pseudorange.has_value();
+    if (!signal.satellite->used || !range) return static_cast<std::uint16_t>(flags);
+    flags |= 0x28;
+    switch (corrections_in_use(state)) {
+        case CorrectionSource::none:
+            break;
+        case CorrectionSource::sbas:
+            flags |= 0x140;
+            break;
+        case CorrectionSource::rtcm3:
+            flags |= carrier_solution(state.epoch.fix) != 0 ? 0xD0u : 0x40u;
+            break;
+    }
+    return static_cast<std::uint16_t>(flags);
+}
+
+// 0 none, 1 SBAS, 4 RTCM 3 observations.
+std::uint8_t correction_source(const SignalReport& signal, const NavigationState& state) {
+    if (!signal.satellite->used) return 0;
+    constexpr std::uint8_t codes[] = {0, 1, 4};
+    return codes[static_cast<std::size_t>(corrections_in_use(state))];
+}
+
+// 0 none, 1 Klobuchar of GPS, which comes in the page of the leap seconds, 2 SBAS, 8 two frequencies.
+std::uint8_t ionosphere_model(const SignalReport& signal, const NavigationState& state) {
+    if (!signal.satellite->used) return 0;
+    switch (corrections_in_use(state)) {
+        case CorrectionSource::sbas:
+            return 2;
+        case CorrectionSource::rtcm3:
+            return 0;
+        case CorrectionSource::none:
+            break;
+    }
+    if (signal.second_frequency) return 8;
+    return state.time.leap_seconds ? 1 : 0;
+}
+
+NavSigItem signal_item(const SignalReport& report, const ReportContext& context) {
+    const SatelliteStatus& s = *report.satellite;
+    const Observation* o = report.observation;
+    const Signal signal = o != nullptr ? o->signal : first_signal(s.id.constellation);
+    NavSigItem item;
+    item.gnss_id = gnss_id(s.id.constellation);
+    item.sv_id = sv_id(s.id);
+    item.sig_id = signal_id(s.id, signal, takes_b1c(context.config));
+    item.freq_id = frequency_id(s.id, signal, o != nullptr ? o->carrier : carrier_frequency(signal));
+    if (s.residual) item.pr_res = field<std::int16_t>(s.residual->value() * 10);
+    item.cno = o != nullptr ? field<std::uint8_t>(o->cn0.value()) : cn0_field(s.cn0);
+    item.quality = o != nullptr ? signal_quality(*o) : static_cast<std::uint8_t>(satellite_quality(s, context.state));
+    item.corr_source = correction_source(report, context.state);
+    item.iono_model = ionosphere_model(report, context.state);
+    item.flags = signal_flags(report, context.state);
+    return item;
+}
+
+}  // namespace
+
+std::vector<Bytes> make_signal_message(const ReportContext& context) {
+    NavSig m;
+    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    const auto& measured = context.state.epoch.observations.signals;
+    for (const SatelliteStatus& s : sorted_satellites(context.state.epoch.fix)) {
+        const auto of_it = [&](const Observation& o) { return o.satellite == s.id; };
+        const auto count = std::count_if(measured.begin(), measured.end(), of_it);
+        if (count == 0) m.signals.push_back(signal_item({&s, nullptr, false}, context));
+        for (const Observation& o : measured)
+            if (of_it(o)) m.signals.push_back(signal_item({&s, &o, count > 1}, context));
+    }
+    std::stable_sort(m.signals.begin(), m.signals.end(), [](const NavSigItem& a, const NavSigItem& b) {
+        return std::tie(a.gnss_id, a.sv_id, a.sig_id) < std::tie(b.gnss_id, b.sv_id, b.sig_id);
+    });
+    return one_frame(m);
+}
+
+}  // namespace skyloop::firmware
