@@ -122,6 +122,9 @@ struct BoardProfile {
 
     std::vector<Constellation> constellations;  ///< enabled at the factory
     bool dual_frequency = false;                ///< tracks the second signal of each system from the factory on
+    int most_systems = 4;                       ///< of GPS, GLONASS, BeiDou and Galileo that it tracks at once
+    /// Sets of items of CFG-SIGNAL that may not all be 1 at once: what its front end cannot receive together.
+    std::vector<std::set<std::uint32_t>> signal_conflicts;
     double default_rate_hz = 1;
     double max_rate_hz = 10;
     int least_measurement_period_ms = 25;  ///< shorter ones are stored as this (CFG-RATE), or refused (VALSET)
