@@ -54,12 +54,13 @@ enum class ValueConfigSupport { full, refuse, silence };
 
 /// Who it says it is (MON-VER, SEC-UNIQID, MON-GNSS, boot banner).
 struct Identity {
-    int generation = 8;                        ///< of u-blox: 6, 7, 8, 9, 10
-    std::string software;                      ///< swVersion
-    std::string hardware;                      ///< hwVersion
-    std::vector<std::string> extensions;       ///< of MON-VER, at most 30 characters each
-    Bytes unique_id;                           ///< five bytes, or six on M10
-    std::vector<std::string> banner;           ///< texts of the TXT notices at start
+    int generation = 8;                   ///< of u-blox: 6, 7, 8, 9, 10
+    std::string software;                 ///< swVersion
+    std::string hardware;                 ///< hwVersion
+    std::vector<std::string> extensions;  ///< of MON-VER, at most 30 characters each
+    Bytes unique_id;                      ///< five bytes, or six on M10
+    /// Texts of the TXT notices at start; of MediaTek and Airoha whole sentences, without checksum.
+    std::vector<std::string> banner;
     std::vector<std::string> version_answers;  ///< whole answers of PMTK605, PAIR020: sentences without checksum
 };
 
@@ -103,6 +104,8 @@ struct NmeaStyle {
     std::string station_field;          ///< of GGA without corrections: empty, or "0000"
     std::string beidou_talker = "GB";   ///< or "BD"
     std::string qzss_talker = "GQ";     ///< or "QZ"; of versions in which QZSS has its own
+    bool gst_ellipse = true;            ///< GST tells the axes of the error ellipse (F9P: not)
+    bool gst_padded = false;            ///< its fields look like "004.0", the last like "00014" (MTK)
     bool unknown_date_is_1980 = false;  ///< before the date is known RMC says 050180 and a time since power-on (MTK)
 };
 

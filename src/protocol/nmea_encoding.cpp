@@ -76,6 +76,7 @@ std::string date_text(const NmeaDate& date) {
 
 std::string deviation_text(Metres deviation) {
     const double value = deviation.value();
+    if (value < 0.0995) return fixed_decimals(value, 3);
     if (value < 0.995) return fixed_decimals(value, 2);
     return fixed_decimals(value, value < 9.95 ? 1 : 0);
 }

@@ -26,7 +26,7 @@ void add_metres(Sentence& sentence, const std::optional<Metres>& value, int deci
 void add_dop(Sentence& sentence, const std::optional<double>& dop, int decimals);
 /// Degrees with `decimals` digits in 0 ≤ course < 360: 359.996 is 0.00.
 std::string course_text(Angle course, int decimals);
-/// Two to three digits that mean something: 0.98, 3.1, 228650 (captures in RECEIVER.md 5.3).
+/// Two to three digits that mean something: 0.049, 0.98, 3.1, 228650 (captures of F9R and M9N).
 std::string deviation_text(Metres deviation);
 void add_station(Sentence& sentence, const std::optional<int>& station, std::string_view without);
 std::string hex_text(int value);

@@ -106,7 +106,7 @@ std::string encode(const PubxSatellites& m, const NmeaFormat&) {
     s.text("03").number(static_cast<int>(shown), 2);
     for (std::size_t i = 0; i < shown; ++i) {
         const PubxSatellite& satellite = m.satellites[i];
-        s.number(satellite.number, 2).letter(satellite.status);
+        s.number(satellite.number).letter(satellite.status);
         add_whole(s, satellite.azimuth_deg, 3);
         add_whole(s, satellite.elevation_deg, 2);
         add_whole(s, satellite.cn0_dbhz, 2);
