@@ -106,6 +106,8 @@ struct NmeaStyle {
     std::string station_field;          ///< of GGA without corrections: empty, or "0000"
     std::string beidou_talker = "GB";   ///< or "BD"
     std::string qzss_talker = "GQ";     ///< or "QZ"; of versions in which QZSS has its own
+    bool gst_ellipse = true;            ///< GST tells the axes of the error ellipse (F9P: not)
+    bool gst_padded = false;            ///< its fields look like "004.0", the last like "00014" (MTK)
     bool unknown_date_is_1980 = false;  ///< before the date is known RMC says 050180 and a time since power-on (MTK)
 };
 

@@ -27,4 +27,22 @@ struct CommandOutcome {
 CommandOutcome execute_sentence(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store,
                                 PortId from);
 
+// Each personality's own commands.
+CommandOutcome execute_ublox(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store, PortId from);
+CommandOutcome execute_pmtk(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store, PortId from);
+CommandOutcome execute_pair(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store, PortId from);
+
+/// Where corrections come from, as MediaTek and Airoha number it.
+enum class CorrectionSource { none = 0, rtcm = 1, sbas = 2 };
+CorrectionSource correction_source(const ConfigStore& store, PortId from);
+void set_correction_source(ConfigStore& store, PortId from, CorrectionSource source);
+
+/// Sets systems in the order of `systems`, one for each of `wanted`; false, and nothing changed, when none of the
+/// major systems would be left or a system is wanted that the board cannot track.
+bool set_systems(const BoardProfile& board, ConfigStore& store, ConfigLayers layers,
+                 const std::vector<std::pair<Constellation, bool>>& wanted);
+
+/// The number in a field, with nothing after it.
+std::optional<int> whole_number(std::string_view field);
+
 }  // namespace skyloop::firmware

@@ -59,7 +59,70 @@ std::optional<int> added_in_4_10(int number, int last, int offset, bool since_4_
     return numbering == NmeaNumbering::extended ? within(number, last, offset) : std::nullopt;
 }
 
+// L2 and L5 are those of which receivers tell the civil long code and the pilot.
+int gps_signal_id(Signal signal) {
+    switch (signal) {
+        case Signal::l1:
+            return 1;
+        case Signal::l2:
+            return 6;
+        case Signal::l5:
+            return 8;
+        default:
+            return 0;
+    }
+}
+
+int galileo_signal_id(Signal signal) {
+    switch (signal) {
+        case Signal::l1:
+            return 7;
+        case Signal::l5:
+            return 1;
+        case Signal::e5b:
+            return 2;
+        default:
+            return 0;
+    }
+}
+
+int beidou_signal_id(Signal signal, NmeaVersion version) {
+    switch (signal) {
+        case Signal::b1i:
+            return 1;
+        case Signal::e5b:
+            return version >= NmeaVersion::v4_11 ? 0xB : 3;
+        case Signal::l1:
+            return 3;
+        case Signal::l5:
+            return 5;
+        case Signal::b3i:
+            return 8;
+        default:
+            return 0;
+    }
+}
+
 }  // namespace
+
+int nmea_signal_id(Constellation constellation, Signal signal, NmeaVersion version) {
+    switch (constellation) {
+        case Constellation::gps:
+        case Constellation::qzss:
+            return gps_signal_id(signal);
+        case Constellation::sbas:
+            return signal == Signal::l1 ? 1 : 0;
+        case Constellation::galileo:
+            return galileo_signal_id(signal);
+        case Constellation::beidou:
+            return beidou_signal_id(signal, version);
+        case Constellation::glonass:
+            return signal == Signal::g1 ? 1 : signal == Signal::g2 ? 3 : 0;
+        case Constellation::navic:
+            return signal == Signal::l5 ? 1 : 0;
+    }
+    return 0;
+}
 
 NmeaSystem nmea_system(Constellation constellation, NmeaVersion version) {
     switch (constellation) {

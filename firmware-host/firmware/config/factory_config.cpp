@@ -75,6 +75,8 @@ private:
 // CFG-NMEA-PROTVER (F9 interface description, CFG-NMEA).
 std::uint64_t number_of(NmeaVersion version) {
     switch (version) {
+        case NmeaVersion::v2_1:
+            return 21;
         case NmeaVersion::v2_3:
             return 23;
         case NmeaVersion::v4_0:

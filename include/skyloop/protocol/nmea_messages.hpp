@@ -1,66 +1,16 @@
 /// The NMEA 0183 sentences of a GNSS receiver as values, and their text.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "skyloop/base/units.hpp"
-#include "skyloop/protocol/nmea_version.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "skyloop/protocol/nmea_fields.hpp"
+#include "skyloop/protocol/nmea_supplements.hpp"
 
 namespace skyloop {
-
-/// Digits and version of encoded sentences. Digits beyond those shown are rounded, except those of times, which are
-/// cut: round an epoch's time once with rounded_utc(), so that every sentence of it, and the date, agree.
-struct NmeaFormat {
-    NmeaVersion version = NmeaVersion::v4_10;
-    int time_decimals = 2;
-    int coordinate_decimals = 5;  ///< of the minutes of latitude and longitude
-    int altitude_decimals = 1;
-    bool limit_82 = true;  ///< GGA gives up coordinate digits rather than exceed 82 characters
-};
-
-/// `time` in UTC, rounded to `decimals` (0 … 9) digits of a second: the carry goes as far as the year, and through
-/// second 60 where the table has a leap second.
-UtcTime rounded_utc(GpsTime time, int decimals, const LeapSeconds& leap_seconds);
-
-/// A time of day, UTC; second 60 is a leap second.
-struct NmeaTime {
-    unsigned hour = 0, minute = 0, second = 0;
-    std::uint32_t nanosecond = 0;
-    auto operator<=>(const NmeaTime&) const = default;
-};
-/// A calendar day. RMC writes two digits of the year: 80 … 99 are read as 1980 … 1999.
-struct NmeaDate {
-    int year = 1980;
-    unsigned month = 1, day = 6;
-    auto operator<=>(const NmeaDate&) const = default;
-};
-NmeaTime nmea_time(const UtcTime& utc);
-NmeaDate nmea_date(const UtcTime& utc);
-
-/// Where, on the ellipsoid; without height.
-struct NmeaPosition {
-    Angle latitude;
-    Angle longitude;
-    bool operator==(const NmeaPosition&) const = default;
-};
-
-/// Mode indicator of RMC, VTG and GLL (since version 2.3).
-enum class NmeaMode : char {
-    none = 'N',
-    autonomous = 'A',
-    differential = 'D',
-    estimated = 'E',
-    rtk_float = 'F',
-    rtk_fixed = 'R',
-    manual = 'M',
-    simulator = 'S',
-    precise = 'P',
-};
 
 // Every message names its talker ("GN"), and absent values are empty fields.
 
@@ -174,7 +124,7 @@ struct Txt {
     bool operator==(const Txt&) const = default;
 };
 
-using NmeaMessage = std::variant<Rmc, Vtg, Gga, Gsa, Gsv, Gll, Gst, Zda, Txt>;
+using NmeaMessage = std::variant<Rmc, Vtg, Gga, Gsa, Gsv, Gll, Gst, Zda, Txt, Gns, Gbs, Grs, Dtm, Vlw, Ths, Hdt>;
 
 /// The sentence, with checksum and line end. Layouts and digits: RECEIVER.md 5.2, 5.3 and 5.5.
 std::string encode(const Rmc& message, const NmeaFormat& format);

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "skyloop/gnss/satellite.hpp"
+#include "skyloop/gnss/signal.hpp"
 #include "skyloop/protocol/nmea_version.hpp"
 
 namespace skyloop {
@@ -19,6 +20,10 @@ struct NmeaSystem {
 
 /// The group of a constellation. SBAS is listed with GPS, and so is QZSS before version 4.11.
 NmeaSystem nmea_system(Constellation constellation, NmeaVersion version);
+
+/// The id of a signal in GSV, GRS and GBS since version 4.10; 0 for a signal that has none. BeiDou's B2I changed with
+/// version 4.11.
+int nmea_signal_id(Constellation constellation, Signal signal, NmeaVersion version);
 
 /// What satellites have numbers: those of the standard alone, or the receiver maker's additions too.
 enum class NmeaNumbering { strict, extended };

@@ -234,6 +234,48 @@ TEST(NmeaGst, ShowsTwoToThreeDigits) {
     m.longitude = Metres(9.949);
     m.altitude = Metres(9.951);
     EXPECT_THAT(encode(m, in_4_10), StartsWith("$GNGST,,228650,2.4,1.0,126,0.98,9.9,10*"));
+    m.latitude = Metres(0.0494);
+    m.longitude = Metres(0.0996);
+    EXPECT_THAT(encode(m, in_4_10), HasSubstr(",0.049,0.10,10*"));
+    // MediaTek's (capture of a Quectel L70).
+    const Gst padded{"GP",        NmeaTime{15, 1, 19, 0}, Metres(4),   Metres(8.7),
+                     Metres(4.7), Angle::degrees(132.3),  Metres(6.8), Metres(7.2),
+                     Metres(14)};
+    EXPECT_EQ(encode(padded, {.time_decimals = 3, .deviations_padded = true}),
+              "$GPGST,150119.000,004.0,008.7,004.7,132.3,006.8,007.2,00014*71\r\n");
+}
+
+// RECEIVER.md 5.2: mode indicators since 2.3.
+TEST(NmeaVersions, OfTheBeginningHaveNoMode) {
+    constexpr NmeaFormat in_2_1{.version = NmeaVersion::v2_1};
+    Rmc rmc;
+    rmc.talker = "GP";
+    Vtg vtg;
+    vtg.talker = "GP";
+    Gll gll;
+    gll.talker = "GP";
+    EXPECT_EQ(encode(rmc, in_2_1), Sentence("GPRMC,,V,,,,,,,,,").finish());
+    EXPECT_EQ(encode(vtg, in_2_1), Sentence("GPVTG,,,,,,,,").finish());
+    EXPECT_EQ(encode(gll, in_2_1), Sentence("GPGLL,,,,,,V").finish());
+}
+
+TEST(NmeaFormats, FollowTheMaker) {
+    constexpr NmeaFormat maker{.version = NmeaVersion::v2_3,
+                               .speed_decimals = 2,
+                               .course_decimals = 1,
+                               .dop_decimals = 1,
+                               .satellites_padded = false,
+                               .no_station = "0000"};
+    Rmc rmc;
+    rmc.speed = MetresPerSecond(10);
+    rmc.course = Angle::degrees(77.77);
+    EXPECT_THAT(encode(rmc, maker), StartsWith("$GNRMC,,V,,,,,19.44,77.8,,,,*"));
+    Gga gga;
+    gga.satellites_used = 7;
+    gga.hdop = 1.26;
+    EXPECT_THAT(encode(gga, maker), StartsWith("$GNGGA,,,,,,0,7,1.3,,,,,,0000*"));
+    gga.correction_station = 41;
+    EXPECT_THAT(encode(gga, maker), HasSubstr(",0041*"));
 }
 
 TEST(NmeaTxt, EscapesWhatWouldEndTheSentence) {

@@ -37,6 +37,28 @@ TEST(NmeaSatelliteNumber, FollowsTheTable) {
             << to_string(c.satellite) << " version " << static_cast<int>(c.version);
 }
 
+// RECEIVER.md 5.6, signal ids.
+TEST(NmeaSignalId, FollowsTheTable) {
+    struct SignalCase {
+        Constellation constellation;
+        Signal signal;
+        NmeaVersion version;
+        int id;
+    };
+    const SignalCase cases[] = {
+        {gps, Signal::l1, v4_10, 1},      {gps, Signal::l2, v4_10, 6},     {gps, Signal::l5, v4_11, 8},
+        {sbas, Signal::l1, v4_10, 1},     {galileo, Signal::l1, v4_10, 7}, {galileo, Signal::l5, v4_11, 1},
+        {galileo, Signal::e5b, v4_10, 2}, {beidou, Signal::b1i, v4_10, 1}, {beidou, Signal::e5b, v4_10, 3},
+        {beidou, Signal::e5b, v4_11, 11}, {beidou, Signal::l1, v4_11, 3},  {beidou, Signal::l5, v4_11, 5},
+        {beidou, Signal::b3i, v4_11, 8},  {glonass, Signal::g1, v4_10, 1}, {glonass, Signal::g2, v4_10, 3},
+        {qzss, Signal::l1, v4_11, 1},     {qzss, Signal::l2, v4_11, 6},    {qzss, Signal::l5, v4_11, 8},
+        {navic, Signal::l5, v4_11, 1},    {galileo, Signal::e6, v4_11, 0},
+    };
+    for (const SignalCase& c : cases)
+        EXPECT_EQ(nmea_signal_id(c.constellation, c.signal, c.version), c.id)
+            << constellation_name(c.constellation) << ' ' << static_cast<int>(c.signal);
+}
+
 TEST(NmeaSystem, ListsSbasWithGpsAndQzssAloneOnlyIn4_11) {
     EXPECT_EQ(nmea_system(sbas, v4_11), nmea_system(gps, v4_11));
     EXPECT_EQ(nmea_system(qzss, v4_10), nmea_system(gps, v4_10));

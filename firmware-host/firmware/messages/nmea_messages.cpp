@@ -1,0 +1,181 @@
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/error_ellipse.hpp"
+#include "firmware/messages/make_message.hpp"
+#include "firmware/messages/nmea_report.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+constexpr double unknown_dop = 99.99;
+constexpr std::uint8_t class_nmea = 0xF0, class_pubx = 0xF1;
+
+// What GGA and GNS share: height, age and station of corrections.
+template <class Message>
+void add_height_and_corrections(Message& m, const NmeaReport& r) {
+    if (r.position) {
+        m.altitude = above_sea_level(r.fix().position.height, r.fix().geoid_undulation).above_sea_level;
+        m.geoid_separation = r.fix().geoid_undulation;
+    }
+    if (r.course_mode != NmeaMode::differential) return;
+    const CorrectionStatus& corrections = r.context.state.corrections;
+    if (corrections.state != CorrectionState::none) m.correction_age = corrections.age;
+    // Corrections from SBAS come with no station of their own and an age that is not shown (capture in
+    // RECEIVER.md 5.3).
+    m.correction_station = m.correction_age ? corrections.station.value_or(0) : 0;
+}
+
+Gga gga(const NmeaReport& r) {
+    Gga m;
+    m.talker = r.talker;
+    m.time = r.time;
+    m.position = r.position;
+    m.quality = r.quality;
+    m.satellites_used = std::min(r.satellites_counted, r.context.board.max_listed_satellites);
+    m.hdop = r.solved ? r.fix().dop.hdop : unknown_dop;
+    add_height_and_corrections(m, r);
+    return m;
+}
+
+// One character for each of GPS, GLONASS, Galileo and BeiDou; version 4.0 leaves out the last two while they are off.
+std::vector<NmeaMode> modes_of_systems(const NmeaReport& r) {
+    constexpr Constellation in_order[] = {Constellation::gps, Constellation::glonass, Constellation::galileo,
+                                          Constellation::beidou};
+    std::vector<NmeaMode> modes;
+    std::size_t shown = r.format.version >= NmeaVersion::v4_10 ? std::size(in_order) : 2;
+    const std::vector<Constellation> enabled = enabled_systems(r.context.config);
+    for (std::size_t i = 0; i < std::size(in_order); ++i) {
+        const bool used = std::any_of(r.used.begin(), r.used.end(),
+                                      [&](const SatelliteStatus& s) { return s.id.constellation == in_order[i]; });
+        modes.push_back(used ? r.mode : NmeaMode::none);
+        if (std::find(enabled.begin(), enabled.end(), in_order[i]) != enabled.end()) shown = std::max(shown, i + 1);
+    }
+    modes.resize(shown);
+    return modes;
+}
+
+Gns gns(const NmeaReport& r) {
+    Gns m;
+    m.talker = r.talker;
+    m.time = r.time;
+    m.position = r.position;
+    m.modes = modes_of_systems(r);
+    m.satellites_used = r.satellites_counted;
+    m.hdop = r.solved ? r.fix().dop.hdop : unknown_dop;
+    add_height_and_corrections(m, r);
+    return m;
+}
+
+Gst gst(const NmeaReport& r) {
+    Gst m;
+    m.talker = r.talker;
+    m.time = r.time;
+    if (!r.position || !r.solved) return m;
+    if (const auto ellipse = error_ellipse(r.fix(), r.used)) {
+        m.range_rms = r.fix().horizontal_accuracy / std::hypot(r.fix().dop.edop, r.fix().dop.ndop);
+        if (r.context.board.style.gst_ellipse) {
+            m.semi_major = ellipse->semi_major;
+            m.semi_minor = ellipse->semi_minor;
+            m.orientation = ellipse->orientation;
+        }
+        m.latitude = ellipse->north;
+        m.longitude = ellipse->east;
+    }
+    m.altitude = r.fix().vertical_accuracy;
+    return m;
+}
+
+Gbs gbs(const NmeaReport& r) {
+    Gbs m;
+    m.talker = r.talker;
+    m.time = r.time;
+    if (!r.position || !r.solved) return m;
+    if (const auto ellipse = error_ellipse(r.fix(), r.used)) {
+        m.latitude = ellipse->north;
+        m.longitude = ellipse->east;
+    }
+    m.altitude = r.fix().vertical_accuracy;
+    return m;
+}
+
+Vlw vlw(const NmeaReport& r) {
+    return {r.talker, Metres(r.context.state.odometer_total_m), Metres(r.context.state.odometer_m)};
+}
+
+Dtm dtm(const NmeaReport& r) {
+    Dtm m;
+    m.talker = r.talker;
+    return m;
+}
+
+Ths ths(const NmeaReport& r) {
+    const auto& relative = r.context.state.epoch.relative;
+    if (!relative || !relative->base_moves) return {r.talker, std::nullopt, 'V'};
+    return {r.talker, Angle::radians(std::atan2(relative->east_m, relative->north_m)), 'A'};
+}
+
+Rmc rmc(const NmeaReport& r) { return {r.talker, r.time, r.valid, r.position, r.speed, r.course, r.date, r.mode}; }
+
+std::vector<NmeaMessage> messages_of(NmeaSentence sentence, const NmeaReport& r) {
+    const auto all = [](const auto& list) { return std::vector<NmeaMessage>(list.begin(), list.end()); };
+    switch (sentence) {
+        case NmeaSentence::rmc:
+            return {rmc(r)};
+        case NmeaSentence::vtg:
+            return {Vtg{r.talker, r.course, r.speed, r.course_mode}};
+        case NmeaSentence::gga:
+            return {gga(r)};
+        case NmeaSentence::gns:
+            return {gns(r)};
+        case NmeaSentence::gsa:
+            return all(gsa_messages(r));
+        case NmeaSentence::gsv:
+            return all(gsv_messages(r));
+        case NmeaSentence::gll:
+            return {Gll{r.talker, r.position, r.time, r.valid, r.course_mode}};
+        case NmeaSentence::gst:
+            return {gst(r)};
+        case NmeaSentence::zda:
+            return {Zda{r.talker, r.time, r.date}};
+        case NmeaSentence::gbs:
+            return {gbs(r)};
+        case NmeaSentence::dtm:
+            return {dtm(r)};
+        case NmeaSentence::grs:
+            return all(grs_messages(r));
+        case NmeaSentence::vlw:
+            return {vlw(r)};
+        case NmeaSentence::ths:
+            return {ths(r)};
+    }
+    return {};
+}
+
+struct SentenceId {
+    std::uint8_t id;
+    NmeaSentence sentence;
+};
+// As CFG-MSG numbers them (u-blox M8 interface description, 31.1.1).
+constexpr SentenceId sentence_ids[] = {{0x00, NmeaSentence::gga}, {0x01, NmeaSentence::gll}, {0x02, NmeaSentence::gsa},
+                                       {0x03, NmeaSentence::gsv}, {0x04, NmeaSentence::rmc}, {0x05, NmeaSentence::vtg},
+                                       {0x06, NmeaSentence::grs}, {0x07, NmeaSentence::gst}, {0x08, NmeaSentence::zda},
+                                       {0x09, NmeaSentence::gbs}, {0x0A, NmeaSentence::dtm}, {0x0D, NmeaSentence::gns},
+                                       {0x0E, NmeaSentence::ths}, {0x0F, NmeaSentence::vlw}};
+
+}  // namespace
+
+std::vector<Bytes> make_nmea_message(UbxMessageId message, const ReportContext& context) {
+    if (message.message_class == class_pubx) return pubx_sentences(message.id, nmea_report(context));
+    if (message.message_class != class_nmea) return {};
+    const auto* known = std::find_if(std::begin(sentence_ids), std::end(sentence_ids),
+                                     [&](const SentenceId& s) { return s.id == message.id; });
+    if (known == std::end(sentence_ids)) return {};
+    const NmeaReport report = nmea_report(context);
+    std::vector<Bytes> out;
+    for (const NmeaMessage& m : messages_of(known->sentence, report))
+        out.push_back(to_bytes(encode(m, report.format)));
+    return out;
+}
+
+}  // namespace skyloop::firmware

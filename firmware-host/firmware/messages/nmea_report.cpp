@@ -1,0 +1,243 @@
+#include "firmware/messages/nmea_report.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "firmware/config/signal_keys.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+// The flags of one kind of solution (RECEIVER.md 5.4).
+struct SolutionFlags {
+    int quality;
+    int fix_mode;
+    NmeaMode mode;
+    NmeaMode course_mode;
+};
+
+SolutionFlags solution_flags(FixType type) {
+    using enum NmeaMode;
+    switch (type) {
+        case FixType::none:
+        case FixType::time_only:
+            return {0, 1, none, none};
+        case FixType::dead_reckoning:
+            return {6, 2, estimated, estimated};
+        case FixType::fix_2d:
+            return {1, 2, autonomous, autonomous};
+        case FixType::fix_3d:
+            return {1, 3, autonomous, autonomous};
+        case FixType::dgnss:
+            return {2, 3, differential, differential};
+        case FixType::rtk_float:
+            return {5, 3, rtk_float, differential};
+        case FixType::rtk_fixed:
+            return {4, 3, rtk_fixed, differential};
+    }
+    return {0, 1, none, none};
+}
+
+// Beyond the user's limits only dead reckoning still shows (RECEIVER.md 5.4, second row).
+SolutionFlags flags_beyond_limits(FixType type) {
+    if (type == FixType::dead_reckoning) return {6, 2, NmeaMode::none, NmeaMode::none};
+    return {0, 1, NmeaMode::none, NmeaMode::none};
+}
+
+NmeaVersion configured_version(const BoardProfile& board, const ConfigStore& config) {
+    switch (config.value(key::nmea_protver)) {
+        case 21:
+            return NmeaVersion::v2_1;
+        case 23:
+            return NmeaVersion::v2_3;
+        case 40:
+            return NmeaVersion::v4_0;
+        case 41:
+            return NmeaVersion::v4_10;
+        case 42:
+            return NmeaVersion::v4_11;
+        default:
+            return board.nmea_version;
+    }
+}
+
+// Two characters of CFG-NMEA-BDSTALKERID, or the board's own.
+std::string beidou_talker(const BoardProfile& board, const ConfigStore& config) {
+    const std::uint64_t configured = config.value(key::nmea_bds_talker);
+    const char first = static_cast<char>(configured & 0x7F), second = static_cast<char>(configured >> 8 & 0x7F);
+    const auto letter = [](char c) { return c >= 'A' && c <= 'Z'; };
+    return letter(first) && letter(second) ? std::string{first, second} : board.style.beidou_talker;
+}
+
+std::string own_talker(const NmeaSystem& system, const BoardProfile& board, const ConfigStore& config) {
+    if (system.talker == "GB") return beidou_talker(board, config);
+    if (system.talker == "GQ") return board.style.qzss_talker;
+    return std::string(system.talker);
+}
+
+// CFG-NMEA-FILT_… takes a system out of the output.
+bool is_filtered(Constellation constellation, const ConfigStore& config) {
+    switch (constellation) {
+        case Constellation::gps:
+            return config.flag(key::nmea_filt_gps);
+        case Constellation::sbas:
+            return config.flag(key::nmea_filt_sbas);
+        case Constellation::galileo:
+            return config.flag(key::nmea_filt_gal);
+        case Constellation::beidou:
+            return config.flag(key::nmea_filt_bds);
+        case Constellation::qzss:
+            return config.flag(key::nmea_filt_qzss);
+        case Constellation::glonass:
+            return config.flag(key::nmea_filt_glo);
+        case Constellation::navic:
+            return false;
+    }
+    return false;
+}
+
+void add_groups(NmeaReport& r, const std::vector<Constellation>& listed) {
+    const ReportContext& c = r.context;
+    const bool main_talker_everywhere = c.config.value(key::nmea_gsv_talker) == 1;
+    for (const Constellation constellation : listed) {
+        const NmeaSystem system = nmea_system(constellation, r.format.version);
+        const auto same = [&](const NmeaGroup& group) { return group.system == system; };
+        if (std::any_of(r.groups.begin(), r.groups.end(), same)) continue;
+        r.groups.push_back({system, main_talker_everywhere ? r.talker : own_talker(system, c.board, c.config)});
+    }
+    std::sort(r.groups.begin(), r.groups.end(),
+              [](const NmeaGroup& a, const NmeaGroup& b) { return a.system.system_id < b.system.system_id; });
+}
+
+// With CFG-NMEA-CONSIDER satellites that the solution looked at and left out are counted too.
+void add_satellites(NmeaReport& r, const std::vector<Constellation>& enabled,
+                    const std::vector<Constellation>& listed) {
+    const auto within = [](const std::vector<Constellation>& list, const SatelliteStatus& s) {
+        return std::find(list.begin(), list.end(), s.id.constellation) != list.end();
+    };
+    const bool consider = r.context.config.flag(key::nmea_consider);
+    for (const SatelliteStatus& s : r.fix().satellites) {
+        if (!within(enabled, s)) continue;
+        const bool counted = s.used || (consider && s.residual.has_value());
+        if (r.solved && counted) ++r.satellites_counted;
+        if (!within(listed, s)) continue;
+        r.satellites.push_back(s);
+        if (r.solved && s.used) r.used.push_back(s);
+    }
+}
+
+void add_time_and_date(NmeaReport& r) {
+    const ConfigStore& config = r.context.config;
+    const TimeKnowledge& known = r.context.state.time;
+    UtcTime utc = reported_utc(r.context);
+    bool time = known.time || config.flag(key::nmea_out_invtime);
+    bool date = known.date || config.flag(key::nmea_out_invdate);
+    if (r.context.board.style.unknown_date_is_1980 && !known.time) {
+        // Such receivers count from 23:59:46 of 5 January 1980 on (RECEIVER.md 5.8).
+        constexpr auto before_gps_time = std::chrono::seconds(14);
+        const Nanoseconds on = to_nanoseconds(r.context.state.since_start);
+        utc = to_utc(GpsTime(on - before_gps_time), LeapSeconds::constant(0));
+        time = date = true;
+    }
+    if (time) r.time = nmea_time(utc);
+    if (date) r.date = nmea_date(utc);
+}
+
+void add_position_and_motion(NmeaReport& r) {
+    const auto& [board, config, state, ports, port] = r.context;
+    const bool any = config.flag(key::nmea_out_invfix) && state.position_known;
+    const bool beyond_limits = r.solved && config.flag(key::nmea_out_mskfix);
+    if (!r.valid && !any && !beyond_limits) return;
+    const Fix& fix = r.fix();
+    r.position = NmeaPosition{fix.position.latitude, fix.position.longitude};
+    r.speed = fix.speed;
+    const bool frozen = state.course_is_frozen || fix.speed < board.course_min_speed;
+    if (board.style.course_always)
+        r.course = state.course.value_or(fix.course);
+    else if (!frozen || config.flag(key::nmea_out_frozencog))
+        r.course = state.course;
+}
+
+}  // namespace
+
+std::vector<Constellation> enabled_systems(const ConfigStore& config) {
+    std::vector<Constellation> systems;
+    for (const SystemKeys& system : system_keys_of_signals)
+        if (config.flag(system.enable)) systems.push_back(system.constellation);
+    return systems;
+}
+
+std::string nmea_talker(const BoardProfile& board, const ConfigStore& config) {
+    constexpr std::array<std::string_view, 8> configured{"", "GP", "GL", "GN", "GA", "GB", "", "GQ"};
+    const std::uint64_t number = config.value(key::nmea_main_talker);
+    if (number < configured.size() && !configured[number].empty()) return std::string(configured[number]);
+    if (!board.main_talker.empty()) return board.main_talker;
+    const NmeaVersion version = configured_version(board, config);
+    if (version == NmeaVersion::v2_1 || config.flag(key::nmea_out_onlygps)) return "GP";
+    std::string talker;
+    for (const SystemKeys& system : system_keys_of_signals) {
+        if (!system.is_major || !config.flag(system.enable)) continue;
+        if (!talker.empty()) return "GN";
+        talker = own_talker(nmea_system(system.constellation, version), board, config);
+    }
+    return talker.empty() ? "GP" : talker;
+}
+
+NmeaFormat nmea_format(const BoardProfile& board, const ConfigStore& config) {
+    constexpr int compatible_time_decimals = 3, precise_coordinate_decimals = 7, precise_altitude_decimals = 3;
+    NmeaFormat format{.version = configured_version(board, config),
+                      .time_decimals = board.time_decimals,
+                      .coordinate_decimals = board.coordinate_decimals,
+                      .limit_82 = config.flag(key::nmea_limit82),
+                      .speed_decimals = board.style.speed_decimals,
+                      .course_decimals = board.style.course_decimals,
+                      .dop_decimals = board.style.dop_decimals,
+                      .satellites_padded = board.style.satellites_padded,
+                      .deviations_padded = board.style.gst_padded,
+                      .no_station = board.style.station_field};
+    if (config.flag(key::nmea_compat)) format.time_decimals = compatible_time_decimals;
+    if (config.flag(key::nmea_highprec)) {
+        format.coordinate_decimals = precise_coordinate_decimals;
+        format.altitude_decimals = precise_altitude_decimals;
+    }
+    return format;
+}
+
+UtcTime reported_utc(const ReportContext& context) {
+    const Fix& fix = context.state.epoch.fix;
+    // During an announced leap second the receiver counts to 60; with any other belief it just subtracts.
+    const LeapSeconds& announced = LeapSeconds::announced();
+    const bool believed = announced.offset(fix.time) == fix.leap_seconds;
+    return rounded_utc(fix.time, context.board.time_decimals,
+                       believed ? announced : LeapSeconds::constant(fix.leap_seconds));
+}
+
+NmeaReport nmea_report(const ReportContext& context) {
+    const auto& [board, config, state, ports, port] = context;
+    NmeaReport r{.context = context,
+                 .format = nmea_format(board, config),
+                 .numbering = board.satellite_numbering,
+                 .talker = nmea_talker(board, config)};
+    if (config.has(key::nmea_svnumbering))
+        r.numbering = config.flag(key::nmea_svnumbering) ? NmeaNumbering::extended : NmeaNumbering::strict;
+    const FixType type = r.fix().type;
+    r.solved = r.fix().has_position();
+    r.valid = r.solved && state.fix_ok;
+    const SolutionFlags flags = r.valid ? solution_flags(type) : flags_beyond_limits(type);
+    r.quality = flags.quality;
+    r.fix_mode = flags.fix_mode;
+    r.mode = flags.mode;
+    r.course_mode = flags.course_mode;
+    std::vector<Constellation> enabled = enabled_systems(config), listed;
+    if (config.flag(key::nmea_out_onlygps))
+        std::erase_if(enabled, [](Constellation c) { return c != Constellation::gps; });
+    for (const Constellation c : enabled)
+        if (!is_filtered(c, config)) listed.push_back(c);
+    add_groups(r, listed);
+    add_satellites(r, enabled, listed);
+    add_time_and_date(r);
+    add_position_and_motion(r);
+    return r;
+}
+
+}  // namespace skyloop::firmware

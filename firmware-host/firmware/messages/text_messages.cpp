@@ -1,0 +1,52 @@
+#include "firmware/messages/make_message.hpp"
+#include "firmware/messages/nmea_report.hpp"
+#include "skyloop/protocol/nmea_sentence.hpp"
+#include "skyloop/protocol/ubx_mon.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+constexpr int text_debug = 4, text_user = 7;
+constexpr std::uint32_t ubx_protocol = 1, nmea_protocol = 2;
+
+// CFG-INFMSG has a bit for each level but that of the user, which always passes.
+bool passes(std::uint64_t mask, int level) { return level == text_user || (mask >> level & 1) != 0; }
+
+Bytes inf_frame(int level, const std::string& text) {
+    const std::vector<char> characters(text.begin(), text.end());
+    switch (level) {
+        case 0:
+            return encode_frame(InfError{characters});
+        case 1:
+            return encode_frame(InfWarning{characters});
+        case 2:
+            return encode_frame(InfNotice{characters});
+        case 3:
+            return encode_frame(InfTest{characters});
+        default:
+            return encode_frame(InfDebug{characters});
+    }
+}
+
+// MediaTek's and Airoha's receivers begin with sentences of their own instead of texts.
+bool is_own_sentence(const BoardProfile& board, const std::string& text) {
+    return (board.personality == Personality::mtk && text.starts_with("PMTK")) ||
+           (board.personality == Personality::airoha && text.starts_with("PAIR"));
+}
+
+}  // namespace
+
+std::vector<Bytes> make_text_message(int level, const std::string& text, const ReportContext& context) {
+    const auto& [board, config, state, ports, port] = context;
+    std::vector<Bytes> out;
+    if (level < 0 || (level > text_debug && level != text_user)) return out;
+    const bool nmea = config.flag(key::out_protocol(port, nmea_protocol));
+    if (nmea && is_own_sentence(board, text)) return {to_bytes(Sentence(text).finish())};
+    if (nmea && passes(config.value(key::inf_nmea(port)), level))
+        out.push_back(to_bytes(encode(Txt{nmea_talker(board, config), 1, 1, level, text}, nmea_format(board, config))));
+    const bool ubx = config.flag(key::out_protocol(port, ubx_protocol)) && level <= text_debug;
+    if (ubx && passes(config.value(key::inf_ubx(port)), level)) out.push_back(inf_frame(level, text));
+    return out;
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,72 @@
+#include "firmware/nmea_commands.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include "firmware/config/config_handler.hpp"
+#include "firmware/config/signal_keys.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+constexpr std::uint32_t rtcm3_protocol = 4;
+// CFG-SBAS-USE_DIFFCORR (F9 interface description HPG 1.32).
+constexpr std::uint32_t sbas_corrections = 0x1036'0004;
+
+std::uint32_t enable_key(Constellation constellation) {
+    for (const SystemKeys& system : system_keys_of_signals)
+        if (system.constellation == constellation) return system.enable;
+    return 0;
+}
+
+}  // namespace
+
+CommandOutcome execute_sentence(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store,
+                                PortId from) {
+    switch (board.personality) {
+        case Personality::mute:
+            return {};
+        case Personality::ublox:
+            return execute_ublox(sentence, board, store, from);
+        case Personality::mtk:
+            return execute_pmtk(sentence, board, store, from);
+        case Personality::airoha:
+            return execute_pair(sentence, board, store, from);
+    }
+    return {};
+}
+
+std::optional<int> whole_number(std::string_view field) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+    if (field.empty() || error != std::errc() || end != field.data() + field.size()) return std::nullopt;
+    return value;
+}
+
+CorrectionSource correction_source(const ConfigStore& store, PortId from) {
+    if (store.flag(sbas_corrections) && store.flag(enable_key(Constellation::sbas))) return CorrectionSource::sbas;
+    return store.flag(key::in_protocol(from, rtcm3_protocol)) ? CorrectionSource::rtcm : CorrectionSource::none;
+}
+
+void set_correction_source(ConfigStore& store, PortId from, CorrectionSource source) {
+    constexpr ConfigLayers layers = in_ram | in_battery;
+    store.set(layers, sbas_corrections, source == CorrectionSource::sbas);
+    store.set(layers, key::in_protocol(from, rtcm3_protocol), source == CorrectionSource::rtcm);
+    if (source == CorrectionSource::sbas) store.set(layers, enable_key(Constellation::sbas), 1);
+}
+
+bool set_systems(const BoardProfile& board, ConfigStore& store, ConfigLayers layers,
+                 const std::vector<std::pair<Constellation, bool>>& wanted) {
+    ConfigValues after = store.values(ConfigLayer::ram);
+    for (const auto& [constellation, on] : wanted)
+        if (const auto item = after.find(enable_key(constellation)); item != after.end())
+            item->second = on;
+        else if (on)
+            return false;
+    if (!is_consistent(board, after)) return false;
+    for (const auto& [constellation, on] : wanted)
+        store.set(layers, enable_key(constellation), on);
+    return true;
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,192 @@
+// Airoha's PAIR (RECEIVER.md 5.9). What a client sets outlives a restart; 513 saves it for good.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "firmware/config/config_handler.hpp"
+#include "firmware/config/signal_keys.hpp"
+#include "firmware/nmea_commands.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+constexpr ConfigLayers pair_layers = in_ram | in_battery;
+constexpr ConfigLayers at_next_start = in_battery;
+
+enum class PairResult { done = 0, in_process = 1, failed = 2, unsupported = 3, busy = 4 };
+
+struct PairCommand {
+    const SentenceView& sentence;
+    const BoardProfile& board;
+    ConfigStore& store;
+    PortId from;
+    int number = 0;
+    CommandOutcome outcome{};
+
+    [[nodiscard]] std::optional<int> argument(std::size_t i) const { return whole_number(sentence.field(i)); }
+    void answer(const std::string& body) { outcome.answers.push_back(to_bytes(Sentence(body).finish())); }
+    void acknowledge(PairResult result) { answer(fmt::format("PAIR001,{:03},{}", number, static_cast<int>(result))); }
+};
+
+void accept_pair(PairCommand& c) { c.acknowledge(PairResult::done); }
+
+// 004 hot, 005 warm, 006 cold, 007 cold with factory settings.
+void restart_pair(PairCommand& c) {
+    constexpr int hot = 4, warm = 5, factory = 7;
+    c.acknowledge(PairResult::done);
+    c.outcome.restart = c.number == hot ? StartKind::hot : c.number == warm ? StartKind::warm : StartKind::cold;
+    if (c.number == factory) c.store.clear(in_battery | in_flash);
+    c.store.reload();
+}
+
+void tell_pair_version(PairCommand& c) {
+    c.acknowledge(PairResult::done);
+    for (const std::string& answer : c.board.identity.version_answers)
+        if (answer.starts_with("PAIR")) c.answer(answer);
+}
+
+void set_fix_interval(PairCommand& c) {
+    constexpr int longest = 1000;
+    const auto period = c.argument(0);
+    const int least =
+        std::max(c.board.least_measurement_period_ms, static_cast<int>(std::ceil(1000.0 / c.board.max_rate_hz - 1e-6)));
+    if (!period || *period < least || *period > longest ||
+        !is_in_range(c.board, key::rate_meas, static_cast<std::uint64_t>(*period)))
+        return c.acknowledge(PairResult::failed);
+    c.store.set(pair_layers, key::rate_meas, static_cast<std::uint64_t>(*period));
+    c.store.set(pair_layers, key::rate_nav, 1);
+    c.acknowledge(PairResult::done);
+}
+
+void tell_fix_interval(PairCommand& c) {
+    c.acknowledge(PairResult::done);
+    c.answer(fmt::format("PAIR051,{}",
+                         c.store.value(key::rate_meas) * std::max<std::uint64_t>(1, c.store.value(key::rate_nav))));
+}
+
+constexpr std::array<std::string_view, 10> sentence_types{"GGA", "GLL", "GSA", "GSV", "RMC",
+                                                          "VTG", "ZDA", "GRS", "GST", "GNS"};
+
+std::optional<std::uint32_t> type_key(std::optional<int> type, PortId port) {
+    if (!type || *type < 0 || *type >= static_cast<int>(sentence_types.size())) return std::nullopt;
+    const OutputMessage* message = find_output_message(sentence_types[static_cast<std::size_t>(*type)]);
+    return message == nullptr ? std::nullopt : rate_key(message->id, port);
+}
+
+void set_sentence_rate(PairCommand& c) {
+    constexpr int most = 20;
+    const auto item = type_key(c.argument(0), c.from);
+    const auto rate = c.argument(1);
+    if (!item || !rate || *rate < 0 || *rate > most) return c.acknowledge(PairResult::failed);
+    c.store.set(pair_layers, *item, static_cast<std::uint64_t>(*rate));
+    c.acknowledge(PairResult::done);
+}
+
+void tell_sentence_rate(PairCommand& c) {
+    const auto item = type_key(c.argument(0), c.from);
+    if (!item) return c.acknowledge(PairResult::failed);
+    c.acknowledge(PairResult::done);
+    c.answer(fmt::format("PAIR063,{},{}", *c.argument(0), c.store.value(*item)));
+}
+
+// 066,gps,glonass,galileo,beidou,qzss,navic: in force after the next start.
+void set_pair_systems(PairCommand& c) {
+    constexpr Constellation in_order[] = {Constellation::gps,    Constellation::glonass, Constellation::galileo,
+                                          Constellation::beidou, Constellation::qzss,    Constellation::navic};
+    std::vector<std::pair<Constellation, bool>> wanted;
+    for (std::size_t i = 0; i < std::size(in_order) && i < c.sentence.fields.size(); ++i) {
+        const auto on = c.argument(i);
+        if (!on || *on < 0 || *on > 1) return c.acknowledge(PairResult::failed);
+        wanted.emplace_back(in_order[i], *on == 1);
+    }
+    const bool taken = !wanted.empty() && set_systems(c.board, c.store, at_next_start, wanted);
+    c.acknowledge(taken ? PairResult::done : PairResult::failed);
+}
+
+// Airoha's modes and the dynamic models that come nearest: 0 normal, 1 fitness, 4 at rest, 5 drone, 7 swimming.
+struct NavigationMode {
+    int mode;
+    std::uint64_t dynamic_model;
+};
+constexpr NavigationMode navigation_modes[] = {{0, 0}, {1, 3}, {4, 2}, {5, 8}, {7, 3}};
+
+void set_navigation_mode(PairCommand& c) {
+    const auto mode = c.argument(0);
+    const auto* row = std::find_if(std::begin(navigation_modes), std::end(navigation_modes),
+                                   [&](const NavigationMode& m) { return m.mode == mode.value_or(-1); });
+    if (row == std::end(navigation_modes)) return c.acknowledge(PairResult::failed);
+    c.store.set(pair_layers, key::navspg_dynmodel, row->dynamic_model);
+    c.acknowledge(PairResult::done);
+}
+
+void set_pair_corrections(PairCommand& c) {
+    const auto source = c.argument(0);
+    if (!source || *source < 0 || *source > 2) return c.acknowledge(PairResult::failed);
+    set_correction_source(c.store, c.from, static_cast<CorrectionSource>(*source));
+    c.acknowledge(PairResult::done);
+}
+
+void set_pair_sbas(PairCommand& c) {
+    const auto on = c.argument(0);
+    const bool good =
+        on && *on >= 0 && *on <= 1 && set_systems(c.board, c.store, pair_layers, {{Constellation::sbas, *on == 1}});
+    c.acknowledge(good ? PairResult::done : PairResult::failed);
+}
+
+void save_pair(PairCommand& c) {
+    for (const auto& [item, value] : c.store.values(ConfigLayer::ram))
+        if (c.store.stored(ConfigLayer::factory, item) != value)
+            c.store.set(in_flash, item, value);
+        else
+            c.store.erase(in_flash, item);
+    c.acknowledge(PairResult::done);
+}
+
+// 864,0,0,baud: in force after the next start.
+void set_pair_speed(PairCommand& c) {
+    const auto baud = c.argument(2);
+    const std::uint32_t item = c.from == PortId::uart2 ? key::uart2_baudrate : key::uart1_baudrate;
+    if (c.argument(0) != 0 || c.argument(1) != 0 || !baud || *baud <= 0 ||
+        !is_in_range(c.board, item, static_cast<std::uint64_t>(*baud)))
+        return c.acknowledge(PairResult::failed);
+    c.store.set(at_next_start, item, static_cast<std::uint64_t>(*baud));
+    c.acknowledge(PairResult::done);
+}
+
+struct PairRow {
+    int number;
+    void (*execute)(PairCommand&);
+};
+// 002 and 003 switch the positioning on and off: taken, without effect.
+constexpr PairRow pair_rows[] = {
+    {2, accept_pair},          {3, accept_pair},
+    {4, restart_pair},         {5, restart_pair},
+    {6, restart_pair},         {7, restart_pair},
+    {20, tell_pair_version},   {50, set_fix_interval},
+    {51, tell_fix_interval},   {62, set_sentence_rate},
+    {63, tell_sentence_rate},  {66, set_pair_systems},
+    {80, set_navigation_mode}, {400, set_pair_corrections},
+    {410, set_pair_sbas},      {513, save_pair},
+    {864, set_pair_speed},
+};
+
+}  // namespace
+
+CommandOutcome execute_pair(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store, PortId from) {
+    constexpr std::string_view prefix = "PAIR";
+    if (!sentence.address.starts_with(prefix)) return {};
+    const auto number = whole_number(sentence.address.substr(prefix.size()));
+    if (!number || *number < 0 || *number > 999) return {};
+    PairCommand command{sentence, board, store, from, *number};
+    const auto* row =
+        std::find_if(std::begin(pair_rows), std::end(pair_rows), [&](const PairRow& r) { return r.number == *number; });
+    if (row == std::end(pair_rows))
+        command.acknowledge(PairResult::unsupported);
+    else
+        row->execute(command);
+    return command.outcome;
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,236 @@
+// MediaTek's PMTK (RECEIVER.md 5.8). What a client sets outlives a restart, but not the battery.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "firmware/config/config_handler.hpp"
+#include "firmware/config/signal_keys.hpp"
+#include "firmware/nmea_commands.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+constexpr ConfigLayers pmtk_layers = in_ram | in_battery;
+
+enum class PmtkFlag { invalid = 0, unsupported = 1, failed = 2, done = 3 };
+
+// One sentence being answered.
+struct PmtkCommand {
+    const SentenceView& sentence;
+    const BoardProfile& board;
+    ConfigStore& store;
+    PortId from;
+    int number = 0;
+    CommandOutcome outcome{};
+
+    [[nodiscard]] std::optional<int> argument(std::size_t i) const { return whole_number(sentence.field(i)); }
+    void answer(const std::string& body) { outcome.answers.push_back(to_bytes(Sentence(body).finish())); }
+    void acknowledge(PmtkFlag flag, const std::string& more = {}) {
+        answer(fmt::format("PMTK001,{},{}{}", number, static_cast<int>(flag), more));
+    }
+};
+
+void accept_pmtk(PmtkCommand& c) { c.acknowledge(PmtkFlag::done); }
+
+// 101 hot, 102 warm, 103 cold, 104 cold with factory settings: no acknowledgement, the start sentences follow.
+void restart_pmtk(PmtkCommand& c) {
+    constexpr int hot = 101, warm = 102, factory = 104;
+    c.outcome.restart = c.number == hot ? StartKind::hot : c.number == warm ? StartKind::warm : StartKind::cold;
+    if (c.number != factory) return;
+    c.store.clear(in_battery | in_flash);
+    c.store.reload();
+}
+
+// 220 and 300: the time between two fixes, ms.
+void set_interval(PmtkCommand& c) {
+    constexpr int shortest = 100, longest = 10000;
+    const auto period = c.argument(0);
+    if (!period || *period < shortest || *period > longest) return c.acknowledge(PmtkFlag::invalid);
+    const int least =
+        std::max(c.board.least_measurement_period_ms, static_cast<int>(std::ceil(1000.0 / c.board.max_rate_hz - 1e-6)));
+    if (*period < least || !is_in_range(c.board, key::rate_meas, static_cast<std::uint64_t>(*period)))
+        return c.acknowledge(PmtkFlag::failed);
+    c.store.set(pmtk_layers, key::rate_meas, static_cast<std::uint64_t>(*period));
+    c.store.set(pmtk_layers, key::rate_nav, 1);
+    c.acknowledge(PmtkFlag::done);
+}
+
+void tell_interval(PmtkCommand& c) {
+    c.acknowledge(PmtkFlag::done);
+    const std::uint64_t period =
+        c.store.value(key::rate_meas) * std::max<std::uint64_t>(1, c.store.value(key::rate_nav));
+    c.answer(fmt::format("PMTK500,{},0,0,0.0,0.0", period));
+}
+
+// 251: no acknowledgement, the new speed holds at once; 0 is the factory's.
+void set_speed(PmtkCommand& c) {
+    const auto baud = c.argument(0);
+    const std::uint32_t item = c.from == PortId::uart2 ? key::uart2_baudrate : key::uart1_baudrate;
+    if (!baud || *baud < 0) return c.acknowledge(PmtkFlag::invalid);
+    const std::uint64_t wanted =
+        *baud == 0 ? c.store.stored(ConfigLayer::factory, item).value_or(0) : static_cast<std::uint64_t>(*baud);
+    if (wanted == 0 || !is_in_range(c.board, item, wanted)) return c.acknowledge(PmtkFlag::invalid);
+    c.store.set(pmtk_layers, item, wanted);
+}
+
+// The places of 314 and 514; those that are empty belong to sentences that are not emulated.
+constexpr std::array<std::string_view, 19> sentence_places{
+    "GLL", "RMC", "VTG", "GGA", "GSA", "GSV", "GRS", "GST", "", "", "", "", "", "", "", "", "", "ZDA", ""};
+
+std::optional<std::uint32_t> place_key(std::size_t place, PortId port) {
+    const OutputMessage* message = find_output_message(sentence_places[place]);
+    return message == nullptr ? std::nullopt : rate_key(message->id, port);
+}
+
+void set_sentences(PmtkCommand& c) {
+    constexpr int most = 5;
+    constexpr std::size_t fewest = 17;
+    const auto& fields = c.sentence.fields;
+    const bool defaults = fields.size() == 1 && fields[0] == "-1";
+    if (!defaults && (fields.size() < fewest || fields.size() > sentence_places.size()))
+        return c.acknowledge(PmtkFlag::invalid);
+    for (std::size_t i = 0; !defaults && i < fields.size(); ++i) {
+        const auto divider = c.argument(i);
+        if (!divider || *divider < 0 || *divider > most) return c.acknowledge(PmtkFlag::invalid);
+    }
+    for (std::size_t i = 0; i < sentence_places.size(); ++i) {
+        const auto item = place_key(i, c.from);
+        if (!item || (!defaults && i >= fields.size())) continue;
+        const std::uint64_t rate = defaults ? c.store.stored(ConfigLayer::factory, *item).value_or(0)
+                                            : static_cast<std::uint64_t>(*c.argument(i));
+        c.store.set(pmtk_layers, *item, rate);
+    }
+    c.acknowledge(PmtkFlag::done);
+}
+
+void tell_sentences(PmtkCommand& c) {
+    std::string body = "PMTK514";
+    for (std::size_t i = 0; i < sentence_places.size(); ++i) {
+        const auto item = place_key(i, c.from);
+        body += fmt::format(",{}", item ? c.store.value(*item) : 0);
+    }
+    c.acknowledge(PmtkFlag::done);
+    c.answer(body);
+}
+
+void set_corrections(PmtkCommand& c) {
+    const auto source = c.argument(0);
+    if (!source || *source < 0 || *source > 2) return c.acknowledge(PmtkFlag::invalid);
+    set_correction_source(c.store, c.from, static_cast<CorrectionSource>(*source));
+    c.acknowledge(PmtkFlag::done);
+}
+
+void tell_corrections(PmtkCommand& c) {
+    c.acknowledge(PmtkFlag::done);
+    c.answer(fmt::format("PMTK501,{}", static_cast<int>(correction_source(c.store, c.from))));
+}
+
+void set_sbas(PmtkCommand& c) {
+    const auto on = c.argument(0);
+    if (!on || *on < 0 || *on > 1) return c.acknowledge(PmtkFlag::invalid);
+    const bool taken = set_systems(c.board, c.store, pmtk_layers, {{Constellation::sbas, *on == 1}});
+    c.acknowledge(taken ? PmtkFlag::done : PmtkFlag::failed);
+}
+
+void tell_sbas(PmtkCommand& c) {
+    c.acknowledge(PmtkFlag::done);
+    c.answer(fmt::format("PMTK513,{}", c.store.value(system_keys_of_signals[1].enable)));
+}
+
+// 353,gps,glonass,galileo,galileo full,beidou.
+void set_constellations(PmtkCommand& c) {
+    constexpr Constellation in_order[] = {Constellation::gps, Constellation::glonass, Constellation::galileo,
+                                          Constellation::galileo, Constellation::beidou};
+    constexpr std::size_t full_galileo = 3;
+    std::vector<std::pair<Constellation, bool>> wanted;
+    std::string echo;
+    for (std::size_t i = 0; i < std::size(in_order); ++i) {
+        const bool given = i < c.sentence.fields.size();
+        const auto on = given ? c.argument(i) : std::optional(0);
+        if (!on || *on < 0 || *on > 1) return c.acknowledge(PmtkFlag::invalid);
+        echo += fmt::format(",{}", *on);
+        if (i == full_galileo)
+            wanted.back().second = wanted.back().second || *on == 1;
+        else
+            wanted.emplace_back(in_order[i], *on == 1);
+    }
+    const bool taken = set_systems(c.board, c.store, pmtk_layers, wanted);
+    c.acknowledge(taken ? PmtkFlag::done : PmtkFlag::failed, taken ? echo : "");
+}
+
+// 386 and 397: slower than this, m/s, the position is held.
+void set_speed_threshold(PmtkCommand& c) {
+    constexpr double most = 2.0, per_step = 100.0;
+    const std::string_view field = c.sentence.field(0);
+    double threshold = 0;
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), threshold);
+    if (field.empty() || error != std::errc() || end != field.data() + field.size() || !(threshold >= 0) ||
+        threshold > most)
+        return c.acknowledge(PmtkFlag::invalid);
+    c.store.set(pmtk_layers, key::mot_speed_threshold, static_cast<std::uint64_t>(std::llround(threshold * per_step)));
+    c.acknowledge(PmtkFlag::done);
+}
+
+void tell_version(PmtkCommand& c) {
+    bool told = false;
+    for (const std::string& answer : c.board.identity.version_answers)
+        if (answer.starts_with("PMTK")) c.answer(answer), told = true;
+    if (!told) c.acknowledge(PmtkFlag::unsupported);
+}
+
+struct PmtkRow {
+    int number;
+    void (*execute)(PmtkCommand&);
+};
+// 161 standby and 869 the receiver's own orbit prediction: taken, without effect.
+constexpr PmtkRow pmtk_rows[] = {
+    {0, accept_pmtk},
+    {101, restart_pmtk},
+    {102, restart_pmtk},
+    {103, restart_pmtk},
+    {104, restart_pmtk},
+    {161, accept_pmtk},
+    {220, set_interval},
+    {251, set_speed},
+    {300, set_interval},
+    {301, set_corrections},
+    {313, set_sbas},
+    {314, set_sentences},
+    {353, set_constellations},
+    {386, set_speed_threshold},
+    {397, set_speed_threshold},
+    {400, tell_interval},
+    {401, tell_corrections},
+    {413, tell_sbas},
+    {414, tell_sentences},
+    {605, tell_version},
+    {869, accept_pmtk},
+};
+
+}  // namespace
+
+CommandOutcome execute_pmtk(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store, PortId from) {
+    constexpr std::string_view prefix = "PMTK", version = "PQVERNO";
+    PmtkCommand command{sentence, board, store, from};
+    if (sentence.address == version && sentence.field(0) == "R") {
+        for (const std::string& answer : board.identity.version_answers)
+            if (answer.starts_with(version)) command.answer(answer);
+        return command.outcome;
+    }
+    if (!sentence.address.starts_with(prefix)) return {};
+    const auto number = whole_number(sentence.address.substr(prefix.size()));
+    if (!number || *number < 0 || *number > 999) return {};
+    command.number = *number;
+    const auto* row =
+        std::find_if(std::begin(pmtk_rows), std::end(pmtk_rows), [&](const PmtkRow& r) { return r.number == *number; });
+    if (row == std::end(pmtk_rows))
+        command.acknowledge(PmtkFlag::unsupported);
+    else
+        row->execute(command);
+    return command.outcome;
+}
+
+}  // namespace skyloop::firmware
