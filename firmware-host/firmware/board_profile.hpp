@@ -77,6 +77,14 @@ struct Timing {
     Seconds cold_start{26}, warm_start{22}, hot_start{1.5};  ///< to the first fix, for models that do not acquire
 };
 
+/// What becomes of the corrections of a base station (RECEIVER.md 4.12).
+struct CorrectionAbility {
+    bool rtk = false;         ///< resolves carrier phases; without, corrections make a differential solution
+    Seconds float_after{5};   ///< from the first complete set
+    Seconds fixed_after{15};  ///< the same
+    Seconds fixed_held{15};   ///< without new corrections, until the solution is float again
+};
+
 /// Where units of one model differ, or no document says what it does: each a key of the board file.
 struct Quirks {
     ValueConfigSupport value_config = ValueConfigSupport::full;
@@ -119,6 +127,7 @@ struct BoardProfile {
     Identity identity;
     Timing timing;
     Quirks quirks;
+    CorrectionAbility corrections;
 
     std::uint32_t baud = 9600;  ///< of UART1 at the factory
     std::uint32_t transmit_buffer_bytes = 4096;

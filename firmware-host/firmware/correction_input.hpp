@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "firmware/board_profile.hpp"
 #include "firmware/config/config_store.hpp"
@@ -12,24 +11,51 @@
 
 namespace skyloop::firmware {
 
-/// From RTCM frames to the state of the corrected solution: differential one epoch after the first complete set
-/// (observations and a station's position, same station), float and fixed after times of their own, back again with
-/// age (RECEIVER.md 4.12). State: what came when.
+/// What a receiver's configuration allows of corrections.
+struct CorrectionLimits {
+    Seconds timeout{60};      ///< of differential corrections (CFG-NAVSPG-CONSTR_DGNSSTO)
+    bool float_only = false;  ///< ambiguities are not fixed (CFG-NAVHPG-DGNSSMODE 2)
+
+    /// As configured; the values above where the receiver does not have an item.
+    static CorrectionLimits of(const ConfigStore& store) {
+        CorrectionLimits limits;
+        if (store.has(key::navspg_dgnss_timeout))
+            limits.timeout = Seconds(static_cast<double>(store.value(key::navspg_dgnss_timeout)));
+        constexpr std::uint64_t rtk_float = 2;
+        limits.float_only = store.has(key::navhpg_dgnssmode) && store.value(key::navhpg_dgnssmode) == rtk_float;
+        return limits;
+    }
+};
+
+/// From RTCM frames to the state of the corrected solution: differential at the first epoch after the first complete
+/// set (observations and a station's position, same station), float and fixed after times of their own, back again with
+/// age (RECEIVER.md 4.12). One station is followed; another one takes its place when it has been silent for ten seconds
+/// or was never complete. State: what came when.
 class CorrectionInput {
 public:
-    /// One frame whose CRC held. Gives the RXM-RTCM frame that answers it.
+    explicit CorrectionInput(const CorrectionAbility& ability = {}) : ability_(ability) {}
+
+    /// One frame whose CRC held. Gives the RXM-RTCM frame that answers it: used are observations and positions of the
+    /// station that is followed, GLONASS biases and descriptions.
     Bytes take(ByteSpan frame, GpsTime now);
-    /// What a solution at `now` can be. @param store for CFG-NAVHPG-DGNSSMODE and the time-out
-    [[nodiscard]] CorrectionStatus status(GpsTime now, const ConfigStore& store) const;
-    void reset() { *this = {}; }
+    /// What a solution at `now` can be.
+    [[nodiscard]] CorrectionStatus status(GpsTime now, const CorrectionLimits& limits) const;
+    [[nodiscard]] CorrectionStatus status(GpsTime now, const ConfigStore& store) const {
+        return status(now, CorrectionLimits::of(store));
+    }
+    void reset() { *this = CorrectionInput(ability_); }
 
 private:
     struct Station {
         int id = 0;
         std::optional<GpsTime> observations, position, complete_since;
+        std::optional<GpsTime> resumed;  // after a silence in which fixed ambiguities were lost
     };
+    bool follow(int station, GpsTime now);
+    void take_observations(GpsTime now);
+
+    CorrectionAbility ability_;
     std::optional<Station> station_;
-    std::vector<int> recent_types_;
 };
 
 }  // namespace skyloop::firmware

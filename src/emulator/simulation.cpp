@@ -32,6 +32,8 @@ Trace Simulation::run(GpsTime time, const ReceiverSettings& settings) {
         make_fix(*receiver, trace, settings);
     else
         make_fix(*std::get<std::unique_ptr<ErrorModel>>(parts_.fix_maker), trace);
+    if (measures() && settings.subframes)
+        trace.epoch.subframes = subframes_.receive(trace.epoch.observations, *parts_.navigation, time);
     return trace;
 }
 

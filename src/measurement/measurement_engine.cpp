@@ -42,7 +42,8 @@ public:
     Measurement measure(const Arrivals& arrivals, GpsTime time, const ReceiverSettings& settings) {
         follow_restarts(settings, time);
         Measurement result;
-        const ChannelEpoch epoch = begin_epoch(arrivals, time, result);
+        ChannelEpoch epoch = begin_epoch(arrivals, time, result);
+        epoch.corrected = settings.corrections != CorrectionState::none;
         result.observations.signals.reserve(channels_.size());
         result.terms.signals.reserve(channels_.size());
         for (const Arrival& arrival : arrivals.satellites) {

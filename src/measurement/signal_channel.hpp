@@ -24,6 +24,7 @@ struct ChannelEpoch {
     Metres clock_bias;
     MetresPerSecond clock_drift;
     StartKind knowledge = StartKind::hot;
+    bool corrected = false;  ///< a base station nearby is heard
 };
 
 /// A signal and the satellite that it comes from.
@@ -59,6 +60,7 @@ public:
 private:
     void follow_cycles(const ChannelInput& input, const ChannelEpoch& epoch, bool had_phase);
     void draw_errors(const ChannelInput& input, const ChannelEpoch& epoch);
+    [[nodiscard]] DifferentialCorrection correction(const ChannelInput& input, Metres iono) const;
 
     SatelliteId satellite_;
     Signal signal_;

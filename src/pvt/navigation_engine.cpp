@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "differential.hpp"
+#include "local_motion.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/gnss/constants.hpp"
 #include "skyloop/pvt/code_smoother.hpp"
@@ -31,19 +33,6 @@ struct EpochSolution {
     bool consistent = true;
     bool time_only = false;
 };
-
-Angle course_of(const VelocityNed& v) {
-    double course = std::atan2(v.east, v.north);
-    if (course < 0) course += 2 * std::numbers::pi;
-    return Angle::radians(course < 2 * std::numbers::pi ? course : 0);
-}
-
-Eigen::Matrix3d in_enu(const LocalFrame& frame, const Eigen::Matrix3d& covariance) {
-    Eigen::Matrix3d rotation;
-    for (int axis = 0; axis < 3; ++axis)
-        rotation.col(axis) = frame.to_enu(Displacement<Ecef>(Eigen::Vector3d::Unit(axis))).vector();
-    return rotation * covariance * rotation.transpose();
-}
 
 }  // namespace
 
@@ -77,6 +66,9 @@ private:
     void fill_motion(const FilteredPosition& filtered, Fix& fix);
     void fill_accuracy(const EpochSolution& epoch, Fix& fix) const;
     void fill_coasting(Fix& fix);
+    void begin_regime(CorrectionState state);
+    Observations prepared(const Observations& observations, const ReceiverSettings& settings);
+    [[nodiscard]] DifferentialKind differential_kind() const;
 
     NavigationParameters parameters_;
     NavigationKnowledge knowledge_;
@@ -96,6 +88,7 @@ private:
     std::optional<Position<Ecef>> position_;   // the last one
     std::optional<EllipsoidalHeight> height_;  // of the last fix in three dimensions
     Angle course_;
+    CorrectionState corrected_ = CorrectionState::none;  // by a base station, this epoch
     Fix last_;
 };
 
@@ -167,7 +160,8 @@ void NavigationEngine::State::add_equations(const Observations& observations, co
             }
         }
         if (first == nullptr) continue;
-        if (!parameters_.corrections.ionosphere_free || (second != nullptr && second->carrier == first->carrier))
+        if (!parameters_.corrections.ionosphere_free || corrected_ != CorrectionState::none ||
+            (second != nullptr && second->carrier == first->carrier))
             second = nullptr;
         const auto made = equation(*first, second, observations.receive_time);
         if (!made) continue;
@@ -178,7 +172,8 @@ void NavigationEngine::State::add_equations(const Observations& observations, co
 
 void NavigationEngine::State::solve_position(const ReceiverSettings& settings, EpochSolution& epoch) {
     const CorrectionParameters& c = parameters_.corrections;
-    const bool corrects = c.ionosphere != IonosphereCorrection::none || c.troposphere != TroposphereCorrection::none;
+    const bool models = c.ionosphere != IonosphereCorrection::none || c.troposphere != TroposphereCorrection::none;
+    const bool corrects = models && corrected_ == CorrectionState::none;
     SinglePointSetup setup{time_,     parameters_.weights, settings.elevation_mask, corrects ? &corrections_ : nullptr,
                            position_, std::nullopt};
     if (parameters_.fixed_position && settings.dynamic_model == DynamicModel::stationary) {
@@ -277,11 +272,12 @@ void NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& fix
     const LocalFrame frame(fix.position);
     const Eigen::Matrix3d q = in_enu(frame, point.covariance);
     const DifferentialParameters& d = parameters_.differential;
-    if (d.kind == DifferentialKind::sbas) scale *= d.sbas_scale;
+    const DifferentialKind kind = differential_kind();
+    if (kind == DifferentialKind::sbas) scale *= d.sbas_scale;
     fix.horizontal_accuracy = Metres(scale * std::sqrt(q(0, 0) + q(1, 1)));
     fix.vertical_accuracy = Metres(scale * std::sqrt(q(2, 2)));
-    if (d.kind == DifferentialKind::rtk_float || d.kind == DifferentialKind::rtk_fixed) {
-        fix.horizontal_accuracy = d.kind == DifferentialKind::rtk_fixed ? d.fixed_accuracy : d.float_accuracy;
+    if (kind == DifferentialKind::rtk_float || kind == DifferentialKind::rtk_fixed) {
+        fix.horizontal_accuracy = kind == DifferentialKind::rtk_fixed ? d.fixed_accuracy : d.float_accuracy;
         fix.vertical_accuracy = d.vertical_proportion * fix.horizontal_accuracy;
     }
     const double velocity_variance = epoch.velocity ? epoch.velocity->covariance.trace() : 0;
@@ -317,8 +313,7 @@ void NavigationEngine::State::fill_solved(const EpochSolution& epoch, const Rece
     }
     fill_motion(filtered, fix);
     static constexpr std::array differential{FixType::fix_3d, FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
-    fix.type =
-        point.height_held ? FixType::fix_2d : differential[static_cast<std::size_t>(parameters_.differential.kind)];
+    fix.type = point.height_held ? FixType::fix_2d : differential[static_cast<std::size_t>(differential_kind())];
     fill_accuracy(epoch, fix);
     if (!point.height_held) height_ = to_geodetic(point.position).height;
 }
@@ -344,16 +339,31 @@ void NavigationEngine::State::fill_coasting(Fix& fix) {
     fix = std::move(coasting);
 }
 
+// Old solutions with errors of another size must not stay in the filter; carrier phases need none.
+void NavigationEngine::State::begin_regime(CorrectionState state) {
+    if (state != corrected_ || state >= CorrectionState::rtk_float) filter_.reset();
+    corrected_ = state;
+}
+
+Observations NavigationEngine::State::prepared(const Observations& observations, const ReceiverSettings& settings) {
+    Observations result = observations;
+    if (parameters_.filter.code_smoothing > Seconds(0)) smoother_.smooth(result);
+    begin_regime(correct(result, settings.corrections));
+    return result;
+}
+
+DifferentialKind NavigationEngine::State::differential_kind() const {
+    return corrected_ == CorrectionState::none ? parameters_.differential.kind
+                                               : static_cast<DifferentialKind>(corrected_);
+}
+
 Fix NavigationEngine::State::solve(const Observations& observations, const ReceiverSettings& settings) {
     begin(settings, observations.receive_time);
-    const Observations* measured = &observations;
-    Observations smoothed;
-    if (parameters_.filter.code_smoothing > Seconds(0)) {
-        smoothed = observations;
-        smoother_.smooth(smoothed);
-        measured = &smoothed;
-    }
-    const EpochSolution epoch = solve_epoch(*measured, settings);
+    const bool changed =
+        parameters_.filter.code_smoothing > Seconds(0) || settings.corrections != CorrectionState::none;
+    const Observations own = changed ? prepared(observations, settings) : Observations();
+    if (!changed) begin_regime(CorrectionState::none);
+    const EpochSolution epoch = solve_epoch(changed ? own : observations, settings);
     Fix fix;
     fix.time = time_;
     fix.leap_seconds = knowledge_.leap_seconds.offset(time_);

@@ -10,6 +10,7 @@
 #include "skyloop/flow/trace.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
 #include "skyloop/measurement/measurement_engine.hpp"
+#include "skyloop/measurement/subframe_reception.hpp"
 #include "skyloop/propagation/effect.hpp"
 #include "skyloop/pvt/navigation_engine.hpp"
 #include "skyloop/sky/observe_sky.hpp"
@@ -50,6 +51,7 @@ public:
 private:
     Parts parts_;
     SkyObserver observer_;
+    SubframeReception subframes_;
 };
 
 }  // namespace skyloop

@@ -11,6 +11,13 @@
 
 namespace skyloop {
 
+/// What a base station nearby tells of a signal, and what the receiver has made of it: the errors of orbits, clocks and
+/// air that both ends of the baseline see.
+struct DifferentialCorrection {
+    Metres code;                  ///< to be taken off the pseudorange
+    std::optional<Metres> phase;  ///< off the phase times its wavelength, the whole cycles among it
+};
+
 /// One signal of one satellite, as tracked.
 struct Observation {
     SatelliteId satellite;
@@ -26,6 +33,7 @@ struct Observation {
     Metres pseudorange_deviation;         ///< 1 σ by the receiver's own knowledge of its loops
     double carrier_phase_deviation = 0;   ///< cycles
     Hertz doppler_deviation;
+    std::optional<DifferentialCorrection> correction{};  ///< while the receiver uses corrections
 };
 
 /// All signals that are tracked at one instant, ascending by satellite, then signal. The same instant for all of them.

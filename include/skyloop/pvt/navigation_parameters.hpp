@@ -66,8 +66,9 @@ struct AccuracyParameters {
     double velocity_scale = 1;
 };
 
-/// Corrections from outside that the receiver uses. They are a regime of the measurements: whoever asks for one here
-/// makes the measurements as good as it says.
+/// Corrections from outside that the receiver uses, in the order of CorrectionState. Here they are a regime of the
+/// measurements: whoever asks for one makes the measurements as good as it says. Corrections that a client hands in are
+/// another way to the same solutions: they come with the measurements (ReceiverSettings::corrections) and prevail.
 enum class DifferentialKind { none, sbas, rtk_float, rtk_fixed };
 struct DifferentialParameters {
     DifferentialKind kind = DifferentialKind::none;

@@ -1,0 +1,301 @@
+#include "skyloop/gnss/broadcast_lnav.hpp"
+
+#include <bit>
+#include <cmath>
+
+#include "broadcast_fields.hpp"
+
+namespace skyloop {
+
+int broadcast::accuracy_index(double metres) {
+    constexpr std::array<double, 15> bounds{2.4, 3.4, 4.85, 6.85, 9.65, 13.65, 24,  48,
+                                            96,  192, 384,  768,  1536, 3072,  6144};
+    for (std::size_t i = 0; i < bounds.size(); ++i)
+        if (metres >= 0 && metres <= bounds[i]) return static_cast<int>(i);
+    return 15;
+}
+
+namespace {
+
+using broadcast::power_of_two;
+using broadcast::put_circle;
+using broadcast::put_scaled;
+using broadcast::put_scaled_unsigned;
+using broadcast::put_semicircles;
+
+constexpr int data_bits = 24;
+constexpr std::uint32_t preamble = 0x8B;
+
+// Which data bits, d1 the highest, go into D25 … D30 (table 20-XIV), and which of the two bits before.
+constexpr std::array<std::uint32_t, 6> parity_masks{0xEC7CD2, 0x763E69, 0xBB1F34, 0x5D8F9A, 0xAEC7CD, 0x2DEA27};
+constexpr std::array<bool, 6> parity_takes_last{false, true, false, true, true, false};  // D30*; else D29*
+
+std::uint32_t parity_of(std::uint32_t data, bool d29, bool d30) {
+    std::uint32_t parity = 0;
+    for (std::size_t i = 0; i < parity_masks.size(); ++i) {
+        const bool before = parity_takes_last[i] ? d30 : d29;
+        const bool odd = (std::popcount(data & parity_masks[i]) & 1) != 0;
+        parity = parity << 1 | static_cast<std::uint32_t>(odd != before);
+    }
+    return parity;
+}
+
+// The data of the first two words (20.3.3.1 and 20.3.3.2), and the rest of the stream in the other eight.
+LnavData with_header(int subframe, GpsTime end, const BitWriter& rest) {
+    LnavData data{};
+    data[0] = preamble << 16;
+    const auto sixes = static_cast<std::uint32_t>(week_and_tow(end).tow / std::chrono::seconds(6));
+    constexpr std::uint32_t anti_spoofing = 1u << 5;
+    data[1] = sixes << 7 | anti_spoofing | static_cast<std::uint32_t>(subframe) << 2;
+    for (std::size_t word = 2; word < data.size(); ++word)
+        data[word] = static_cast<std::uint32_t>(rest.field((word - 2) * data_bits, data_bits));
+    return data;
+}
+
+double tow_of(GpsTime time) { return week_and_tow(time).tow_seconds(); }
+
+std::uint64_t week_bits(GpsTime time) { return static_cast<std::uint64_t>(week_and_tow(time).week); }
+
+BitWriter clock_fields(const KeplerEphemeris& r, GpsTime end) {
+    constexpr std::uint64_t p_code_on_l2 = 1;
+    const auto issue = static_cast<std::uint64_t>(r.iodc);
+    BitWriter bits;
+    bits.put(week_bits(end - std::chrono::seconds(6)), 10);
+    bits.put(p_code_on_l2, 2);
+    bits.put_signed(broadcast::accuracy_index(r.accuracy_m), 4);
+    bits.put_signed(r.health, 6);
+    bits.put(issue >> 8, 2);
+    bits.put(0, 24 + 24 + 24);
+    bits.put(0, 16);
+    put_scaled(bits, r.tgd, 8, power_of_two(-31));
+    bits.put(issue, 8);
+    put_scaled_unsigned(bits, tow_of(r.toc), 16, 16);
+    put_scaled(bits, r.af2, 8, power_of_two(-55));
+    put_scaled(bits, r.af1, 16, power_of_two(-43));
+    put_scaled(bits, r.af0, 22, power_of_two(-31));
+    return bits;
+}
+
+BitWriter first_orbit_fields(const KeplerEphemeris& r) {
+    BitWriter bits;
+    bits.put_signed(r.iode, 8);
+    put_scaled(bits, r.crs, 16, power_of_two(-5));
+    put_semicircles(bits, r.delta_n, 16, -43);
+    put_circle(bits, r.m0, 32);
+    put_scaled(bits, r.cuc, 16, power_of_two(-29));
+    put_scaled_unsigned(bits, r.e, 32, power_of_two(-33));
+    put_scaled(bits, r.cus, 16, power_of_two(-29));
+    put_scaled_unsigned(bits, r.sqrt_a, 32, power_of_two(-19));
+    put_scaled_unsigned(bits, tow_of(r.toe), 16, 16);
+    // A flag: longer than the usual four hours, two of QZSS.
+    bits.put(r.fit_interval_h > 4 ? 1 : 0, 1);
+    constexpr std::uint64_t no_offset_age = 31;
+    bits.put(no_offset_age, 5);
+    return bits;
+}
+
+BitWriter second_orbit_fields(const KeplerEphemeris& r) {
+    BitWriter bits;
+    put_scaled(bits, r.cic, 16, power_of_two(-29));
+    put_circle(bits, r.omega0, 32);
+    put_scaled(bits, r.cis, 16, power_of_two(-29));
+    put_circle(bits, r.i0, 32);
+    put_scaled(bits, r.crc, 16, power_of_two(-5));
+    put_circle(bits, r.omega, 32);
+    put_semicircles(bits, r.omega_dot, 24, -43);
+    bits.put_signed(r.iode, 8);
+    put_semicircles(bits, r.idot, 14, -43);
+    return bits;
+}
+
+}  // namespace
+
+LnavWords lnav_words(const LnavData& data) {
+    LnavWords words{};
+    bool d29 = false, d30 = false;  // of word 10 before
+    for (std::size_t i = 0; i < data.size(); ++i) {
+        std::uint32_t upright = data[i] & 0xFFFFFF;
+        std::uint32_t parity = parity_of(upright, d29, d30);
+        if (i == 1 || i == 9) {
+            // Of the four endings exactly one gives a word that ends in 00.
+            upright &= ~3u;
+            for (std::uint32_t ending = 0; ending < 4; ++ending) {
+                parity = parity_of(upright | ending, d29, d30);
+                if ((parity & 3) != 0) continue;
+                upright |= ending;
+                break;
+            }
+        }
+        // Sent is upright ⊕ D30*; handed out is what was received, turned upright again, parity and register with it.
+        const std::uint32_t inverted = d30 ? ~0u : 0u;
+        const std::uint32_t before = (d29 ? 2u : 0u) | (d30 ? 1u : 0u);
+        words[i] = ((before << 30 | parity) ^ (inverted & 0xC000'003Fu)) | upright << 6;
+        d29 = (parity & 2) != 0;
+        d30 = (parity & 1) != 0;
+    }
+    return words;
+}
+
+LnavWords lnav_ephemeris_subframe(const KeplerEphemeris& record, int subframe, GpsTime end) {
+    const BitWriter fields = subframe == 1   ? clock_fields(record, end)
+                             : subframe == 2 ? first_orbit_fields(record)
+                                             : second_orbit_fields(record);
+    return lnav_words(with_header(subframe, end, fields));
+}
+
+namespace {
+
+constexpr int page_count = 25;
+constexpr std::uint64_t data_id = 1;
+constexpr double almanac_step_s = 4096;
+
+struct LnavPage {
+    const LnavSystemData& system;
+    GpsTime time;
+    // One reference for all almanacs: the last whole step of the week.
+    [[nodiscard]] GpsTime reference() const {
+        const WeekAndTow now = week_and_tow(time);
+        return to_gps_time(now.week, almanac_step_s * std::floor(now.tow_seconds() / almanac_step_s));
+    }
+    [[nodiscard]] std::optional<KeplerEphemeris> record(int number) const {
+        if (system.source == nullptr) return std::nullopt;
+        const auto found = system.source->ephemeris({Constellation::gps, number}, time);
+        if (!found || !std::holds_alternative<KeplerEphemeris>(*found)) return std::nullopt;
+        return std::get<KeplerEphemeris>(*found);
+    }
+    [[nodiscard]] std::uint64_t health(int number) const {
+        const auto found = record(number);
+        return found && found->healthy() ? 0 : 0b111111;
+    }
+};
+
+void put_page_head(BitWriter& bits, std::uint64_t page_id) {
+    bits.put(data_id, 2);
+    bits.put(page_id, 6);
+}
+
+BitWriter empty_page() {
+    BitWriter bits;
+    put_page_head(bits, 0);
+    bits.put(0xAAAA, 16);
+    for (int word = 4; word <= 10; ++word)
+        bits.put(0xAAAAAA, data_bits);
+    return bits;
+}
+
+BitWriter almanac_page(const LnavPage& page, int number) {
+    const std::optional<KeplerEphemeris> found = page.record(number);
+    if (!found) return empty_page();
+    const KeplerEphemeris& r = *found;
+    const GpsTime reference = page.reference();
+    const double passed = difference(reference, r.toe).value();
+    constexpr double earth_rate = 7.2921151467e-5;  // rad/s (IS-GPS-200, table 20-IV)
+    const double weeks = static_cast<double>(week_and_tow(r.toe).week - week_and_tow(reference).week);
+    const double motion = std::sqrt(3.986005e14) / std::pow(r.sqrt_a, 3) + r.delta_n;
+
+    BitWriter bits;
+    put_page_head(bits, static_cast<std::uint64_t>(number));
+    put_scaled_unsigned(bits, r.e, 16, power_of_two(-21));
+    put_scaled_unsigned(bits, tow_of(reference), 8, almanac_step_s);
+    put_semicircles(bits, r.i0 + r.idot * passed - 0.3 * std::numbers::pi, 16, -19);
+    put_semicircles(bits, r.omega_dot, 16, -38);
+    bits.put(r.healthy() ? 0 : 0xFF, 8);
+    put_scaled_unsigned(bits, r.sqrt_a, 24, power_of_two(-11));
+    put_circle(bits, r.omega0 + r.omega_dot * passed + earth_rate * static_cast<double>(seconds_per_week) * weeks, 24);
+    put_circle(bits, r.omega, 24);
+    put_circle(bits, r.m0 + motion * passed, 24);
+    BitWriter offset;
+    put_scaled(offset, r.af0 + r.af1 * difference(reference, r.toc).value(), 11, power_of_two(-20));
+    bits.put(offset.field(0, 8), 8);
+    put_scaled(bits, r.af1, 11, power_of_two(-38));
+    bits.put(offset.field(8, 3), 3);
+    return bits;
+}
+
+// Page 25 of subframe 5.
+BitWriter first_health_page(const LnavPage& page) {
+    BitWriter bits;
+    put_page_head(bits, 51);
+    put_scaled_unsigned(bits, tow_of(page.reference()), 8, almanac_step_s);
+    bits.put(week_bits(page.reference()), 8);
+    for (int number = 1; number <= 24; ++number)
+        bits.put(page.health(number), 6);
+    return bits;
+}
+
+// Page 25 of subframe 4.
+BitWriter second_health_page(const LnavPage& page) {
+    constexpr std::uint64_t encrypted_and_new = 0b1001;  // block II and later, anti-spoofing on
+    BitWriter bits;
+    put_page_head(bits, 63);
+    for (int number = 1; number <= 32; ++number)
+        bits.put(page.record(number) ? encrypted_and_new : 0, 4);
+    bits.put(0, 2);
+    for (int number = 25; number <= 32; ++number)
+        bits.put(page.health(number), 6);
+    return bits;
+}
+
+// The last or next change of the leap seconds: the day at whose end it comes, 1 Sunday … 7, and the offset after it.
+struct LeapChange {
+    std::uint64_t week = 0, day = 1;
+    int offset = 0;
+};
+
+LeapChange leap_change(const LeapSeconds& leap_seconds, GpsTime time) {
+    const auto& steps = leap_seconds.steps();
+    const LeapSeconds::Step* chosen = nullptr;
+    for (const LeapSeconds::Step& step : steps) {
+        // One that is to come is announced half a year before.
+        if (step.from - time > std::chrono::hours(24 * 183)) break;
+        chosen = &step;
+    }
+    if (chosen == nullptr) return {week_bits(time), 1, leap_seconds.offset(time)};
+    const WeekAndTow before = week_and_tow(chosen->from - std::chrono::seconds(60));
+    const auto day = static_cast<std::uint64_t>(before.tow / std::chrono::hours(24)) + 1;
+    return {static_cast<std::uint64_t>(before.week), day, chosen->offset};
+}
+
+// Page 18 of subframe 4; without coefficients zeros, as satellites of old sent.
+BitWriter ionosphere_page(const LnavPage& page) {
+    KlobucharCoefficients c{};
+    if (page.system.source != nullptr) c = page.system.source->klobuchar().value_or(c);
+    const LeapChange change = leap_change(page.system.leap_seconds, page.time);
+    BitWriter bits;
+    put_page_head(bits, 56);
+    constexpr std::array<int, 4> alpha_exponents{-30, -27, -24, -24}, beta_exponents{11, 14, 16, 16};
+    for (std::size_t i = 0; i < 4; ++i)
+        put_scaled(bits, c.alpha[i], 8, power_of_two(alpha_exponents[i]));
+    for (std::size_t i = 0; i < 4; ++i)
+        put_scaled(bits, c.beta[i], 8, power_of_two(beta_exponents[i]));
+    bits.put(0, 24);  // A1: GPS time is UTC but for whole seconds
+    bits.put(0, 32);  // A0
+    put_scaled_unsigned(bits, tow_of(page.reference()), 8, almanac_step_s);
+    bits.put(week_bits(page.reference()), 8);
+    bits.put_signed(page.system.leap_seconds.offset(page.time), 8);
+    bits.put(change.week, 8);
+    bits.put(change.day, 8);
+    bits.put_signed(change.offset, 8);
+    return bits;
+}
+
+}  // namespace
+
+LnavWords lnav_system_subframe(const LnavSystemData& system, int subframe, GpsTime end) {
+    const LnavPage page{system, end};
+    const auto frame = week_and_tow(end - std::chrono::seconds(6)).tow / std::chrono::seconds(30);
+    const int number = static_cast<int>(frame % page_count) + 1;
+    BitWriter bits = empty_page();
+    if (subframe == 5) {
+        bits = number < page_count ? almanac_page(page, number) : first_health_page(page);
+    } else if (number == page_count) {
+        bits = second_health_page(page);
+    } else if (number == 18) {
+        bits = ionosphere_page(page);
+    } else if (number >= 2 && number <= 10 && number != 6) {
+        bits = almanac_page(page, number <= 5 ? number + 23 : number + 22);
+    }
+    return lnav_words(with_header(subframe, end, bits));
+}
+
+}  // namespace skyloop

@@ -1,0 +1,133 @@
+#include "firmware/correction_input.hpp"
+
+#include <gtest/gtest.h>
+
+#include "skyloop/protocol/rtcm3.hpp"
+#include "skyloop/protocol/ubx_frame.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+const GpsTime power_on = to_gps_time(2300, 1000.0);
+GpsTime second(double s) { return advanced(power_on, Seconds(s)); }
+
+Bytes observations_of(int station, int number = 1077) {
+    return encode(Rtcm3MsmHeader{number, station, 1000, false, 0, 1, 1u << 30, {true}});
+}
+Bytes position_of(int station) { return encode(Rtcm3Station{station, {1, 2, 3}, std::nullopt}); }
+
+CorrectionAbility rtk_ability() {
+    CorrectionAbility ability;
+    ability.rtk = true;
+    return ability;
+}
+
+// A base that sends at every whole second of first … last, then the state at `asked`.
+void hear(CorrectionInput& input, int first, int last, int station = 7) {
+    for (int s = first; s <= last; ++s) {
+        input.take(position_of(station), second(s));
+        input.take(observations_of(station), second(s));
+    }
+}
+
+CorrectionState state_at(const CorrectionInput& input, double s, const CorrectionLimits& limits = {}) {
+    return input.status(second(s), limits).state;
+}
+
+TEST(CorrectionInput, AnswersEveryMessage) {
+    CorrectionInput input(rtk_ability());
+    // version 2, message used, subtype 0, station 7, 1077
+    EXPECT_EQ(input.take(observations_of(7), power_on),
+              encode_frame({0x02, 0x32}, Bytes{2, 4, 0, 0, 7, 0, 0x35, 0x04}));
+    // A kind of observations that is not taken: MSM 1 of GPS.
+    EXPECT_EQ(input.take(observations_of(7, 1071), power_on),
+              encode_frame({0x02, 0x32}, Bytes{2, 2, 0, 0, 7, 0, 0x2F, 0x04}));
+    // 4072.1: the subtype stands where the station does.
+    EXPECT_EQ(input.take(encode_rtcm3(Bytes{0xFE, 0x80, 0x01}), power_on),
+              encode_frame({0x02, 0x32}, Bytes{2, 4, 1, 0, 0, 0, 0xE8, 0x0F}));
+    EXPECT_EQ(input.take(encode_rtcm3({}), power_on), encode_frame({0x02, 0x32}, Bytes{2, 2, 0, 0, 0, 0, 0, 0}));
+}
+
+TEST(CorrectionInput, NeedsObservationsAndPositionOfOneStation) {
+    CorrectionInput input(rtk_ability());
+    EXPECT_EQ(state_at(input, 0), CorrectionState::none);
+    EXPECT_FALSE(input.status(power_on, CorrectionLimits{}).age);
+    input.take(observations_of(7), second(0));
+    EXPECT_EQ(state_at(input, 1), CorrectionState::none);
+    input.take(position_of(8), second(1));
+    input.take(observations_of(7), second(1));
+    EXPECT_EQ(state_at(input, 2), CorrectionState::none);
+    input.take(position_of(7), second(2));
+    EXPECT_EQ(state_at(input, 2), CorrectionState::differential);
+    EXPECT_EQ(input.status(second(2), CorrectionLimits{}).station, 7);
+    EXPECT_EQ(input.status(second(2), CorrectionLimits{}).age, Seconds(1));
+}
+
+TEST(CorrectionInput, GoesFromDifferentialToFloatToFixed) {
+    CorrectionInput input(rtk_ability());
+    hear(input, 0, 30);
+    EXPECT_EQ(state_at(input, 1), CorrectionState::differential);
+    EXPECT_EQ(state_at(input, 4.9), CorrectionState::differential);
+    EXPECT_EQ(state_at(input, 5), CorrectionState::rtk_float);
+    EXPECT_EQ(state_at(input, 14.9), CorrectionState::rtk_float);
+    EXPECT_EQ(state_at(input, 15), CorrectionState::rtk_fixed);
+    input.reset();
+    EXPECT_EQ(state_at(input, 31), CorrectionState::none);
+    hear(input, 31, 60);
+    EXPECT_EQ(state_at(input, 60), CorrectionState::rtk_fixed);
+}
+
+TEST(CorrectionInput, WithoutRtkItStaysDifferential) {
+    CorrectionInput input;
+    hear(input, 0, 60);
+    EXPECT_EQ(state_at(input, 60), CorrectionState::differential);
+}
+
+TEST(CorrectionInput, ModeTwoLimitsToFloat) {
+    CorrectionInput input(rtk_ability());
+    hear(input, 0, 60);
+    EXPECT_EQ(state_at(input, 60, {Seconds(60), true}), CorrectionState::rtk_float);
+}
+
+TEST(CorrectionInput, ComesBackStepByStepWithAge) {
+    CorrectionInput input(rtk_ability());
+    hear(input, 0, 30);
+    EXPECT_EQ(state_at(input, 45), CorrectionState::rtk_fixed);
+    EXPECT_EQ(state_at(input, 45.1), CorrectionState::rtk_float);
+    EXPECT_EQ(state_at(input, 90), CorrectionState::rtk_float);
+    EXPECT_EQ(state_at(input, 90.1), CorrectionState::none);
+    EXPECT_EQ(state_at(input, 50.1, {Seconds(20), false}), CorrectionState::none);
+    EXPECT_EQ(input.status(second(90.5), CorrectionLimits{}).age, Seconds(60.5));
+}
+
+TEST(CorrectionInput, FixesAnewAfterASilence) {
+    CorrectionInput input(rtk_ability());
+    hear(input, 0, 30);
+    hear(input, 50, 80);
+    EXPECT_EQ(state_at(input, 50), CorrectionState::rtk_float);
+    EXPECT_EQ(state_at(input, 59.9), CorrectionState::rtk_float);
+    EXPECT_EQ(state_at(input, 60), CorrectionState::rtk_fixed);
+}
+
+TEST(CorrectionInput, AShortSilenceCostsNothing) {
+    CorrectionInput input(rtk_ability());
+    hear(input, 0, 30);
+    hear(input, 40, 41);
+    EXPECT_EQ(state_at(input, 41), CorrectionState::rtk_fixed);
+}
+
+TEST(CorrectionInput, FollowsOneStation) {
+    CorrectionInput input(rtk_ability());
+    hear(input, 0, 20, 7);
+    // Another one beside it is not used …
+    EXPECT_EQ(input.take(observations_of(8), second(21))[7], 2);
+    EXPECT_EQ(input.status(second(21), CorrectionLimits{}).station, 7);
+    EXPECT_EQ(state_at(input, 21), CorrectionState::rtk_fixed);
+    // … but takes its place when it is silent.
+    hear(input, 31, 40, 8);
+    EXPECT_EQ(input.status(second(31), CorrectionLimits{}).station, 8);
+    EXPECT_EQ(state_at(input, 32), CorrectionState::differential);
+}
+
+}  // namespace
+}  // namespace skyloop::firmware
