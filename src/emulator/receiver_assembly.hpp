@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "skyloop/emulator/assembly.hpp"
-#include "wires.hpp"
+#include "skyloop/emulator/wires.hpp"
 
 namespace skyloop {
 

@@ -1,4 +1,4 @@
-#include "wires.hpp"
+#include "skyloop/emulator/wires.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
