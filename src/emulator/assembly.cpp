@@ -169,10 +169,10 @@ Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSet
                        ? effects_for(*scenario.model.sensor_model, effect_settings(scenario, navigation, setup.geoid))
                        : modern_effects_of(scenario, navigation, {setup.geoid, setup.start, setup.data});
     if (!effects) return fail(effects.error());
-    FixMaker fix_maker = scenario.model.sensor_model
-                             ? FixMaker(make_error_model(error_model_settings(scenario, setup)))
-                             : FixMaker(measuring_receiver(scenario, setup));
-    return Simulation({make_antenna_path(scenario, setup), setup.navigation, std::move(*effects), std::move(fix_maker)});
+    FixMaker fix_maker = scenario.model.sensor_model ? FixMaker(make_error_model(error_model_settings(scenario, setup)))
+                                                     : FixMaker(measuring_receiver(scenario, setup));
+    return Simulation(
+        {make_antenna_path(scenario, setup), setup.navigation, std::move(*effects), std::move(fix_maker)});
 }
 
 Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation,

@@ -39,8 +39,7 @@ std::optional<RelativePosition> MovingBase::relate(const Trace& base, const Trac
     }
     if (!both_since_) both_since_ = now;
 
-    const Displacement<Enu> truth =
-        LocalFrame(base.truth.geodetic).to_enu(rover.truth.position - base.truth.position);
+    const Displacement<Enu> truth = LocalFrame(base.truth.geodetic).to_enu(rover.truth.position - base.truth.position);
     RelativePosition relative;
     relative.fixed = difference(now, *both_since_) >= accuracy_.time_to_fix;
     const GaussMarkovParameters& parameters = relative.fixed ? accuracy_.fixed : accuracy_.floating;

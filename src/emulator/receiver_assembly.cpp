@@ -71,8 +71,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     if (!board) return fail(board.error());
     auto wires = wires_of(entry, *board);
     if (!wires) return fail(wires.error());
-    auto simulation =
-        make_simulation(scenario, {shared.navigation, shared.geoid, shared.start, shared.data, index});
+    auto simulation = make_simulation(scenario, {shared.navigation, shared.geoid, shared.start, shared.data, index});
     if (!simulation) return fail(simulation.error());
     std::optional<StateFile> state;
     if (!entry.state_file.empty()) {

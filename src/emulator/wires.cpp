@@ -38,9 +38,8 @@ Result<WireRequest> parse_wire(std::string_view text, const BoardProfile& board)
         const auto names = names_of(board.ports);
         const auto found = std::find(names.begin(), names.end(), name);
         if (found == names.end())
-            return fail(ErrorCode::usage,
-                        fmt::format("port '{}': {} has no port '{}'{}; expected {}", text, board.name, name,
-                                    did_you_mean(name, names), fmt::join(names, ", ")));
+            return fail(ErrorCode::usage, fmt::format("port '{}': {} has no port '{}'{}; expected {}", text, board.name,
+                                                      name, did_you_mean(name, names), fmt::join(names, ", ")));
         wire.port = board.ports[static_cast<std::size_t>(found - names.begin())];
     }
     if (const auto uri = parse_port_uri(wire.uri); !uri) return fail(uri.error());

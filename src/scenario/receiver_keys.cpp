@@ -73,8 +73,8 @@ void read_name(TableReader& receiver, Scenario& scenario) {
     const std::size_t own = scenario.receivers.size() - 1;
     for (std::size_t i = 0; i < own; ++i)
         if (receiver_name(scenario, i) == receiver_name(scenario, own))
-            receiver.mistake_here(fmt::format("is the second receiver called '{}'; expected another name",
-                                              receiver_name(scenario, own)));
+            receiver.mistake_here(
+                fmt::format("is the second receiver called '{}'; expected another name", receiver_name(scenario, own)));
 }
 
 // @param names of all receivers of the scenario

@@ -72,9 +72,9 @@ private:
     LineGarbler to_receiver_;
     InputPace pace_;
     std::deque<Piece> incoming_;
-    std::size_t waiting_ = 0;    // bytes in incoming_
-    GpsTime line_free_{};        // when the client's line has carried all that was heard
-    bool may_rest_ = false;      // nothing has come since the last look
+    std::size_t waiting_ = 0;  // bytes in incoming_
+    GpsTime line_free_{};      // when the client's line has carried all that was heard
+    bool may_rest_ = false;    // nothing has come since the last look
     LinkCounters counters_;
     bool connected_ = false;
 };

@@ -13,10 +13,10 @@ namespace skyloop {
 
 /// How well a rover knows its vector to the base.
 struct BaselineAccuracy {
-    GaussMarkovParameters fixed{0.005, Seconds(30)};    ///< of each axis, m
-    GaussMarkovParameters floating{0.3, Seconds(30)};   ///< of each axis, m, as long as the ambiguities are not whole
-    double per_length = 1e-6;                           ///< more for each metre between the antennas
-    Seconds time_to_fix{5};                             ///< both have had a fix, until the ambiguities are whole
+    GaussMarkovParameters fixed{0.005, Seconds(30)};   ///< of each axis, m
+    GaussMarkovParameters floating{0.3, Seconds(30)};  ///< of each axis, m, as long as the ambiguities are not whole
+    double per_length = 1e-6;                          ///< more for each metre between the antennas
+    Seconds time_to_fix{5};                            ///< both have had a fix, until the ambiguities are whole
 };
 
 /// Makes the solution of a moving base's rover from the truth and an error: the true vector plus three first-order

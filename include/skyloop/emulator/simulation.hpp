@@ -37,8 +37,8 @@ public:
     };
     explicit Simulation(Parts parts);
 
-    /// Epochs come in ascending time. A receiver that is stopped tracks nothing and has no fix; the world, its clock and
-    /// every random number go on. @param settings what the receiver is configured to do
+    /// Epochs come in ascending time. A receiver that is stopped tracks nothing and has no fix; the world, its clock
+    /// and every random number go on. @param settings what the receiver is configured to do
     Trace run(GpsTime time, const ReceiverSettings& settings);
     /// What stands above an antenna, and nothing of what reaches it.
     [[nodiscard]] SkyView view(const TruthState& truth) const;

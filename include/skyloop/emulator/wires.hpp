@@ -17,8 +17,9 @@ struct WireRequest {
     std::string uri;
 };
 
-/// What stands before "=" names the port, what stands behind is a URI of a transport; without a name it is UART1, or the
-/// only port of a board that has no UART1. Fails with `usage`: the sentence quotes the text and lists the board's ports.
+/// What stands before "=" names the port, what stands behind is a URI of a transport; without a name it is UART1, or
+/// the only port of a board that has no UART1. Fails with `usage`: the sentence quotes the text and lists the board's
+/// ports.
 Result<WireRequest> parse_wire(std::string_view text, const firmware::BoardProfile& board);
 
 /// The wires of one receiver, as they were asked for; opens none. Without any in the scenario it is one pty.

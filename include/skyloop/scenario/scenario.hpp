@@ -89,10 +89,10 @@ struct ReceiverEntry {
     StartKind start = StartKind::hot;
     DynamicModel dynamic_model = DynamicModel::portable;
     MetresPerSecond static_hold_below{0};
-    bool power_up = false;                ///< it is switched on at the start of the run: banner, then `start`
-    std::filesystem::path state_file;     ///< keeps battery-backed memory and flash; empty: nothing does
+    bool power_up = false;                   ///< it is switched on at the start of the run: banner, then `start`
+    std::filesystem::path state_file;        ///< keeps battery-backed memory and flash; empty: nothing does
     std::array<double, 3> antenna_offset{};  ///< forward, right, down from the point that follows the trajectory, m
-    std::optional<std::size_t> base;      ///< the receiver, by its place in the list, that carries the base antenna
+    std::optional<std::size_t> base;         ///< the receiver, by its place in the list, that carries the base antenna
 };
 
 struct Scenario {

@@ -214,7 +214,8 @@ TEST(Emulator, TheReceiverIsNotShownTheTruth) {
     run.emulator->run_until(run.start + 1s, never_stop);
     const std::string bytes = sent_after(scenario, seen);
     EXPECT_GT(bytes.size(), 100U);
-    EXPECT_EQ(to_string(ByteSpan(run.wire->written())).substr(0, bytes.size()), bytes.substr(0, run.wire->written().size()))
+    EXPECT_EQ(to_string(ByteSpan(run.wire->written())).substr(0, bytes.size()),
+              bytes.substr(0, run.wire->written().size()))
         << "what went over the wire is of this epoch alone";
     const GpsTime time = seen.truth.time;
     seen.truth = {};

@@ -140,7 +140,8 @@ TEST(Stations, TheRecordingOfTheSecondLiesInAFolderOfItsOwn) {
 }
 
 TEST(Stations, MistakesAndWarningsNameTheReceiver) {
-    const auto refused = assemble(emulator_scenario(two_receivers + "port = \"uart9=pty\"\n"), test::emulator_data(), {});
+    const auto refused =
+        assemble(emulator_scenario(two_receivers + "port = \"uart9=pty\"\n"), test::emulator_data(), {});
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message, testing::StartsWith("receiver 'rear': port 'uart9=pty'"));
     EXPECT_THAT(stations_assembly(two_receivers + "rate_hz = 90\n").warnings,
