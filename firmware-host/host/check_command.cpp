@@ -12,9 +12,16 @@ namespace {
 
 std::string utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); }
 
+void print_receiver(const ReceiverEntry& entry, const Station& station, bool of_several) {
+    const firmware::Receiver& receiver = station.receiver();
+    fmt::print("receiver    {}{} at {} baud, {:g} Hz\n", of_several ? station.name() + ": " : "", receiver.board().name,
+               receiver.board().baud, 1e9 / static_cast<double>(receiver.settings().navigation_period.count()));
+    for (const std::string& port : entry.ports)
+        fmt::print("port        {}\n", port);
+}
+
 void print_plan(const Scenario& scenario, const Assembly& assembly) {
     const Emulator& emulator = *assembly.emulator;
-    const firmware::Receiver& receiver = emulator.receiver();
     fmt::print("scenario    {}\n", scenario.name);
     fmt::print("navigation  {}\n", emulator.simulation().navigation().description());
     if (const auto span = emulator.simulation().navigation().span())
@@ -22,10 +29,8 @@ void print_plan(const Scenario& scenario, const Assembly& assembly) {
     fmt::print("start       {}\n", utc_text(assembly.start));
     fmt::print("end         {}\n", assembly.end ? utc_text(*assembly.end) : "when stopped");
     fmt::print("model       {}\n", model_name(scenario.model));
-    fmt::print("receiver    {} at {} baud, {:g} Hz\n", receiver.board().name, receiver.baud(),
-               1e9 / static_cast<double>(receiver.settings().navigation_period.count()));
-    for (const std::string& port : scenario.receiver.ports)
-        fmt::print("port        {}\n", port);
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
+        print_receiver(scenario.receivers[i], emulator.stations()[i], scenario.receivers.size() > 1);
     fmt::print("seed        {}\n", scenario.run.seed);
 }
 
@@ -40,7 +45,6 @@ int check(const RunOptions& options) {
     mode.open_ports = false;
     const auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
-    if (const auto ports = check_port_names(*scenario); !ports) return messages.error(ports.error());
     for (const std::string& warning : assembly->warnings)
         messages.warning(warning);
     if (!options.verbosity.quiet) print_plan(*scenario, *assembly);

@@ -17,6 +17,28 @@ std::string count_text(std::uint64_t bytes) {
     return fmt::format("{:.1f} MB", static_cast<double>(bytes) * 1e-6);
 }
 
+std::string fix_text(const Status& status, const Station& station, bool of_several) {
+    const Fix& fix = status.trace->epoch.fix;
+    std::string text = of_several ? station.name() + " " : "";
+    text += fmt::format("fix {:<4} {:>2}/{:<2} satellites", fix_type_name(fix.type), fix.satellites_used(),
+                        fix.satellites.size());
+    if (fix.has_position()) text += fmt::format("  HDOP {:.2f}", fix.dop.hdop);
+    const auto period = static_cast<double>(station.receiver().settings().navigation_period.count());
+    return text + fmt::format("  {:g} Hz", 1e9 / period);
+}
+
+// What all wires have taken; nothing when there are none.
+std::string bytes_text(const std::vector<Station>& stations) {
+    std::uint64_t bytes = 0;
+    bool wired = false;
+    for (const Station& station : stations)
+        for (const Wire& wire : station.wires()) {
+            bytes += wire.link.counters().bytes_out;
+            wired = true;
+        }
+    return wired ? "  " + count_text(bytes) : "";
+}
+
 }  // namespace
 
 Progress::Progress(bool wanted, GpsTime start, std::optional<GpsTime> end)
@@ -27,22 +49,18 @@ Progress::~Progress() { clear(); }
 void Progress::show(const Status& status, const Emulator& emulator) {
     constexpr std::int64_t pause_ns = 200'000'000;
     if (!active_) return;
+    const auto& stations = emulator.stations();
+    fixes_.resize(stations.size());
+    fixes_[status.station] = fix_text(status, stations[status.station], stations.size() > 1);
     const std::int64_t now_ns = std::chrono::steady_clock::now().time_since_epoch().count();
     if (on_screen_ && now_ns - shown_ns_ < pause_ns) return;
     shown_ns_ = now_ns;
 
-    const Fix& fix = status.trace->epoch.fix;
-    std::string line =
-        fmt::format("{}  fix {:<4} {:>2}/{:<2} satellites", format_utc(to_utc(status.now, LeapSeconds::announced()), 0),
-                    fix_type_name(fix.type), fix.satellites_used(), fix.satellites.size());
-    if (fix.has_position()) line += fmt::format("  HDOP {:.2f}", fix.dop.hdop);
-    line += fmt::format("  {:g} Hz  late {:.2f} ms",
-                        1e9 / static_cast<double>(emulator.receiver().settings().navigation_period.count()),
-                        static_cast<double>(status.lateness.count()) * 1e-6);
-    std::uint64_t bytes = 0;
-    for (const Link& link : emulator.links())
-        bytes += link.counters().bytes_out;
-    if (!emulator.links().empty()) line += "  " + count_text(bytes);
+    std::string line = format_utc(to_utc(status.now, LeapSeconds::announced()), 0);
+    for (const std::string& fix : fixes_)
+        if (!fix.empty()) line += "  " + fix;
+    line += fmt::format("  late {:.2f} ms", static_cast<double>(status.lateness.count()) * 1e-6);
+    line += bytes_text(stations);
     if (end_)
         line +=
             fmt::format("  {:.0f} %", 100 * difference(status.now, start_).value() / difference(*end_, start_).value());

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "skyloop/emulator/emulator.hpp"
 
@@ -26,6 +28,7 @@ private:
     bool active_;
     GpsTime start_;
     std::optional<GpsTime> end_;
+    std::vector<std::string> fixes_;  // of each receiver, as last seen
     std::int64_t shown_ns_ = 0;
     bool on_screen_ = false;
 };

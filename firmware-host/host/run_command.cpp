@@ -26,9 +26,10 @@ int run_live(const RunOptions& options) {
 
     RunSession session(messages, *assembly);
     // Scripts wait for these lines to know the tty: they are said even when quiet.
-    const auto& links = assembly->emulator->links();
-    for (std::size_t i = 0; i < links.size(); ++i)
-        fmt::print(stderr, "port {}: {}\n", i, links[i].transport().description());
+    for (const Station& station : assembly->emulator->stations())
+        for (std::size_t i = 0; i < station.wires().size(); ++i)
+            fmt::print(stderr, "{}: {}\n", session.port_name(station, i),
+                       station.wires()[i].link.transport().description());
     return session.run(*scenario);
 }
 

@@ -66,12 +66,14 @@ Result<void> apply_model(const RunOptions& options, Scenario& scenario) {
 }
 
 Result<void> apply_receiver(const RunOptions& options, Scenario& scenario) {
-    if (!options.board.empty()) scenario.receiver.board = options.board;
-    if (!options.ports.empty()) scenario.receiver.ports = options.ports;
+    ReceiverEntry& first = scenario.receivers.front();
+    if (!options.board.empty()) first.board = options.board;
+    if (!options.ports.empty()) first.ports = options.ports;
+    if (!options.state.empty()) first.state_file = options.state;
     if (options.rate) {
         if (!(*options.rate >= 0.01 && *options.rate <= 100))
             return fail(ErrorCode::usage, fmt::format("--rate {}: expected 0.01 to 100 Hz", *options.rate));
-        scenario.receiver.rate_hz = options.rate;
+        first.rate_hz = options.rate;
     }
     return {};
 }
@@ -138,8 +140,12 @@ void add_run_options(CLI::App& command, RunOptions& options) {
     command.add_option("--scene", options.scene, "Buildings (not in this version)");
     command.add_option("--board", options.board, "Receiver profile, default ublox-m8; see skyloop boards");
     command.add_option("--rate", options.rate, "Navigation rate at start, Hz");
-    command.add_option("--port", options.ports, "Where the bytes go: pty[:LINK] file:PATH - ; repeatable")
+    command
+        .add_option("--port", options.ports,
+                    "Where the bytes go: pty[:LINK] file:PATH - ; NAME=… is the board's port of that name, such as "
+                    "uart2=pty; repeatable")
         ->allow_extra_args(false);
+    command.add_option("--state", options.state, "File that keeps what the receiver saves beyond the run");
     command.add_option("--seed", options.seed, "Default 1; the same scenario, seed and inputs give the same bytes");
     command.add_option("--control", options.control, "HTTP control (not in this version)");
     add_verbosity_options(command, options.verbosity);

@@ -51,39 +51,59 @@ int RunSession::run(const Scenario& scenario) {
         emulator.on_status([&](const Status& status) { progress.show(status, emulator); });
         emulator.run_until(assembly_.end.value_or(GpsTime::max()), stop_asked);
     }
-    Recorder* recorder = emulator.recorder();
-    if (recorder) recorder->record_summary(run_summary(scenario, assembly_, SKYLOOP_VERSION));
-    tell_counts();
+    if (Recorder* recorder = emulator.recorder())
+        recorder->record_summary(run_summary(scenario, assembly_, SKYLOOP_VERSION));
     int code = 0;
-    for (const Link& link : emulator.links())
-        if (const std::string failure = link.transport().failure(); !failure.empty())
-            code = messages_.error({ErrorCode::outside, failure});
-    if (recorder && recorder->failure()) code = messages_.error(*recorder->failure());
+    for (const Station& station : emulator.stations()) {
+        tell_counts(station);
+        for (const Wire& wire : station.wires())
+            if (const std::string failure = wire.link.transport().failure(); !failure.empty())
+                code = messages_.error({ErrorCode::outside, failure});
+        if (station.recorder() && station.recorder()->failure()) code = messages_.error(*station.recorder()->failure());
+        if (station.state() && station.state()->failure()) code = messages_.error(*station.state()->failure());
+    }
     return code;
 }
 
-void RunSession::tell_counts() const {
-    const Emulator& emulator = *assembly_.emulator;
-    const RunCounts& counts = emulator.counts();
-    messages_.info(fmt::format("{} epochs, {} with a fix, {} messages", counts.epochs, counts.epochs_with_fix,
-                               emulator.receiver().counters().messages_sent));
-    for (std::size_t i = 0; i < emulator.links().size(); ++i) {
-        const LinkCounters& wire = emulator.links()[i].counters();
-        messages_.info(fmt::format("port {}: {} bytes out, {} in, {} while nobody listened", i, wire.bytes_out,
-                                   wire.bytes_in, wire.bytes_unheard));
-        if (wire.bytes_garbled > 0)
-            messages_.warning(fmt::format("port {}: {} bytes went out garbled: the client's line speed was not {} baud",
-                                          i, wire.bytes_garbled, emulator.receiver().baud()));
-        if (wire.bytes_lost > 0)
-            messages_.warning(
-                fmt::format("port {}: {} bytes were lost: the client read too slowly", i, wire.bytes_lost));
-    }
-    if (const std::uint64_t dropped = emulator.receiver().counters().messages_dropped; dropped > 0)
+std::string RunSession::prefix(const Station& station) const {
+    return assembly_.emulator->stations().size() > 1 ? station.name() + ": " : "";
+}
+
+std::string RunSession::port_name(const Station& station, std::size_t wire) const {
+    const firmware::PortId port = station.wires().at(wire).port;
+    const std::string of_port = port == firmware::PortId::uart1
+                                    ? ""
+                                    : fmt::format(" ({})", firmware::port_names[static_cast<std::size_t>(port)]);
+    return fmt::format("{}port {}{}", prefix(station), wire, of_port);
+}
+
+void RunSession::tell_wire(const Station& station, std::size_t wire) const {
+    const auto& [port, link] = station.wires()[wire];
+    const LinkCounters& counted = link.counters();
+    const std::string name = port_name(station, wire);
+    messages_.info(fmt::format("{}: {} bytes out, {} in, {} while nobody listened", name, counted.bytes_out,
+                               counted.bytes_in, counted.bytes_unheard));
+    if (counted.bytes_garbled > 0)
+        messages_.warning(fmt::format("{}: {} bytes went out garbled: the client's line speed was not {} baud", name,
+                                      counted.bytes_garbled, station.speed(port).value_or(0)));
+    if (counted.bytes_lost > 0)
+        messages_.warning(fmt::format("{}: {} bytes were lost: the client read too slowly", name, counted.bytes_lost));
+}
+
+void RunSession::tell_counts(const Station& station) const {
+    const RunCounts& counts = station.counts();
+    messages_.info(fmt::format("{}{} epochs, {} with a fix, {} messages", prefix(station), counts.epochs,
+                               counts.epochs_with_fix, station.receiver().counters().messages_sent));
+    for (std::size_t i = 0; i < station.wires().size(); ++i)
+        tell_wire(station, i);
+    if (const std::uint64_t dropped = station.receiver().counters().messages_dropped; dropped > 0) {
+        const PortSpeed speed = station.speed(firmware::PortId::uart1);
         messages_.warning(
-            fmt::format("{} messages did not fit the receiver's transmit buffer: {} baud is too slow for this output",
-                        dropped, emulator.receiver().baud()));
+            fmt::format("{}{} messages did not fit the receiver's transmit buffer: {} baud is too slow for this output",
+                        prefix(station), dropped, speed.value_or(0)));
+    }
     if (counts.lateness.largest() > Nanoseconds(0))
-        messages_.info(fmt::format("epochs came {:.3f} ms late on average, {:.3f} ms at worst",
+        messages_.info(fmt::format("{}epochs came {:.3f} ms late on average, {:.3f} ms at worst", prefix(station),
                                    counts.lateness.mean_ms(),
                                    static_cast<double>(counts.lateness.largest().count()) * 1e-6));
 }

@@ -1,6 +1,8 @@
 /// One run of an assembled emulator, from its first message to its exit code.
 #pragma once
 
+#include <string>
+
 #include "messages.hpp"
 #include "run_options.hpp"
 #include "skyloop/emulator/assembly.hpp"
@@ -15,8 +17,14 @@ public:
     /// Exit code: 0, or 1 when a recording or a wire could not be written.
     int run(const Scenario& scenario);
 
+    /// "port 0", "port 1 (uart2)", "rover: port 0": what messages call a wire.
+    [[nodiscard]] std::string port_name(const Station& station, std::size_t wire) const;
+
 private:
-    void tell_counts() const;
+    void tell_counts(const Station& station) const;
+    void tell_wire(const Station& station, std::size_t wire) const;
+    // "rover: " when there are several receivers.
+    [[nodiscard]] std::string prefix(const Station& station) const;
     const Messages& messages_;
     Assembly& assembly_;
 };

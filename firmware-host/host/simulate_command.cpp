@@ -22,6 +22,7 @@ int simulate(const RunOptions& options) {
     mode.record = options.record;
     // A scenario's pty belongs to a live run; only wires asked for here are opened.
     mode.open_ports = !options.ports.empty();
+    mode.first_ports_only = true;
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
     RunSession session(messages, *assembly);

@@ -1,7 +1,7 @@
 #include "skyloop/emulator/assembly.hpp"
 
 #include "modern_assembly.hpp"
-#include "rinex_recording.hpp"
+#include "receiver_assembly.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,12 +9,10 @@
 #include <algorithm>
 
 #include "skyloop/base/digest.hpp"
-#include "skyloop/base/spelling.hpp"
 #include "skyloop/base/text_file.hpp"
+#include "skyloop/emulator/lever_arm.hpp"
 #include "skyloop/error_model/make_error_model.hpp"
 #include "skyloop/error_model/model_effects.hpp"
-#include "skyloop/scenario/board_file.hpp"
-#include "skyloop/transport/open_transport.hpp"
 
 namespace skyloop {
 namespace {
@@ -27,13 +25,13 @@ struct Overloaded : Cases... {
 template <class... Cases>
 Overloaded(Cases...) -> Overloaded<Cases...>;
 
-ErrorModelSettings error_model_settings(const Scenario& scenario, const Geoid* geoid) {
+ErrorModelSettings error_model_settings(const Scenario& scenario, const SimulationSetup& setup) {
     const ModelSettings& model = scenario.model;
     ErrorModelSettings settings;
     settings.kind = *model.sensor_model;
     settings.sensor = {{scenario.sky.elevation_mask.value_or(SelectionParameters().elevation_mask)},
-                       scenario.run.seed,
-                       geoid,
+                       receiver_seed(scenario.run.seed, setup.receiver),
+                       setup.geoid,
                        LeapSeconds::announced()};
     settings.baseline = model.baseline;
     settings.constant_sigma = model.constant_sigma;
@@ -53,83 +51,43 @@ EffectSettings effect_settings(const Scenario& scenario, const NavigationSource&
     return settings;
 }
 
-Result<firmware::Receiver> make_receiver(const Scenario& scenario, const DataFolders& data,
-                                         std::vector<std::string>& warnings) {
-    const ReceiverEntry& entry = scenario.receiver;
-    auto board = find_board(entry.board, board_folders(data));
-    if (!board) return fail(board.error());
-    if (entry.baud) board->baud = *entry.baud;
-    if (!entry.constellations.empty()) board->constellations = entry.constellations;
-    if (!entry.sentences.empty()) board->sentences.clear();
-    for (const firmware::NmeaSentence sentence : entry.sentences)
-        board->sentences.push_back({sentence, 1});
-    const double rate = entry.rate_hz.value_or(board->default_rate_hz);
-    if (rate > board->max_rate_hz)
-        warnings.push_back(
-            fmt::format("{:g} Hz is more than {} can do; it runs at {:g} Hz", rate, board->name, board->max_rate_hz));
-    ReceiverSettings settings = receiver_settings(scenario, *board);
-    for (const Constellation c : scenario.sky.constellations)
-        if (!scenario.model.sensor_model && !settings.tracks(c, first_signal(c)))
-            warnings.push_back(
-                fmt::format("{} does not track {}, which sky.constellations names; receiver.constellations tells it to",
-                            board->name, constellation_name(c)));
-    firmware::Receiver receiver(std::move(*board), rate, std::move(settings));
-    const double actual = 1e9 / static_cast<double>(receiver.settings().navigation_period.count());
-    if (rate < 0.99 * actual)
-        warnings.push_back(fmt::format("{:g} Hz is less than a receiver can do; it runs at {:.4g} Hz", rate, actual));
-    return receiver;
-}
-
-std::vector<std::string> run_details(const NavigationSource& navigation, const firmware::Receiver& receiver,
-                                     const Assembly& assembly) {
+std::vector<std::string> world_details(const NavigationSource& navigation, const Assembly& assembly) {
     return {fmt::format("navigation: {}, {} satellites, {}", navigation.description(), navigation.satellites().size(),
                         navigation.klobuchar() ? "with ionosphere coefficients" : "without ionosphere coefficients"),
-            fmt::format("geoid: {}", assembly.geoid ? "EGM96, 15 minutes" : "none"),
-            fmt::format("receiver: {}, {} baud, {} sentences", receiver.board().name, receiver.baud(),
-                        receiver.board().sentences.size()),
-            fmt::format("digest: {}", assembly.digest)};
+            fmt::format("geoid: {}", assembly.geoid ? "EGM96, 15 minutes" : "none")};
 }
 
-RinexRecordingSetup rinex_setup(const Emulator::Parts& parts, GpsTime start) {
-    const ReceiverSettings& settings = parts.receiver.settings();
-    const NavigationSource& navigation = parts.simulation.navigation();
-    RinexRecordingSetup setup;
-    setup.observations.approximate_position = parts.simulation.truth_at(start).position;
-    setup.observations.interval = Seconds(static_cast<double>(settings.navigation_period.count()) * 1e-9);
-    setup.observations.first_epoch = start;
-    setup.observations.receiver = parts.receiver.board().name;
-    for (const SatelliteId satellite : navigation.satellites()) {
-        const Constellation c = satellite.constellation;
-        if (!setup.observations.signals.contains(c))
-            for (const Signal signal : emulated_signals(c))
-                if (settings.tracks(c, signal)) setup.observations.signals[c].push_back(signal);
-        const auto record = navigation.ephemeris(satellite, start);
-        if (const auto* glonass = record ? std::get_if<GlonassEphemeris>(&*record) : nullptr)
-            setup.observations.glonass_channels[satellite.number] = glonass->frequency_channel;
+std::string receiver_detail(const Station::Parts& parts) {
+    const firmware::BoardProfile& board = parts.receiver.board();
+    return fmt::format("receiver: {}, {} baud, {} sentences", board.name, board.baud, board.sentences.size());
+}
+
+std::unique_ptr<Pacer> make_pacer(const RunMode& mode, GpsTime start, double speed) {
+    if (mode.virtual_time) return std::make_unique<VirtualPacer>(start);
+    // A run that begins now keeps the wall clock's time; what loading took is not to shift it.
+    return std::make_unique<RealtimePacer>(start, start == mode.now ? mode.now_steady_ns : steady_clock_ns(), speed);
+}
+
+// All receivers, with their wires and recordings.
+Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& assembly) {
+    std::vector<PlannedStation> plans;
+    for (std::size_t i = 0; i < shared.scenario.receivers.size(); ++i) {
+        auto plan = plan_station(shared, i, assembly.warnings);
+        if (!plan) return fail(plan.error());
+        assembly.details.push_back(receiver_detail(plan->parts));
+        plans.push_back(std::move(*plan));
     }
-    setup.navigation.ionosphere = navigation.ionosphere();
-    setup.navigation.leap_seconds = LeapSeconds::announced().offset(start);
-    setup.navigation.date = start;
-    return setup;
-}
-
-Result<Recorder> make_recorder(const std::filesystem::path& folder, const Emulator::Parts& parts, GpsTime start) {
-    auto recorder = Recorder::create(folder);
-    if (!recorder || !parts.simulation.measures()) return recorder;
-    if (const auto added = recorder->add_rinex(rinex_setup(parts, start)); !added) return fail(added.error());
-    return recorder;
-}
-
-Result<std::vector<Link>> open_links(const ReceiverEntry& entry, std::uint32_t baud, bool virtual_time) {
-    std::vector<Link> links;
-    const std::vector<std::string> uris = entry.ports.empty() ? std::vector<std::string>{"pty"} : entry.ports;
-    for (const std::string& uri : uris) {
-        auto transport = open_transport(uri);
-        if (!transport) return fail(transport.error());
-        if (virtual_time) (*transport)->allow_waiting();
-        links.emplace_back(std::move(*transport), baud);
+    for (std::size_t i = 0; i < plans.size() && shared.mode.open_ports; ++i)
+        if (i == 0 || !shared.mode.first_ports_only)
+            if (const auto plugged = plug_in(plans[i], shared, i); !plugged) return fail(plugged.error());
+    std::vector<Station> stations;
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+        // After everything that may be refused: it empties the files of a former recording.
+        if (shared.mode.record)
+            if (const auto added = add_recorder(plans[i].parts, shared, i); !added) return fail(added.error());
+        stations.emplace_back(std::move(plans[i].parts));
     }
-    return links;
+    return stations;
 }
 
 }  // namespace
@@ -139,6 +97,9 @@ std::string scenario_digest(const Scenario& scenario, GpsTime start) {
     digest = fnv1a_64(fmt::format("start {} seed {}", start.time_since_epoch().count(), scenario.run.seed), digest);
     for (const auto& file : scenario.sky.navigation)
         if (const auto text = read_text_file(file)) digest = fnv1a_64(*text, digest);
+    for (const ReceiverEntry& receiver : scenario.receivers)
+        if (!receiver.state_file.empty() && std::filesystem::exists(receiver.state_file))
+            if (const auto text = read_text_file(receiver.state_file)) digest = fnv1a_64(*text, digest);
     return fmt::format("{:016x}", digest);
 }
 
@@ -155,6 +116,15 @@ std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, 
                           },
                       },
                       settings);
+}
+
+std::unique_ptr<Trajectory> make_antenna_path(const Scenario& scenario, const SimulationSetup& setup) {
+    const auto& [forward, right, down] = scenario.receivers.at(setup.receiver).antenna_offset;
+    const AntennaOffset offset{forward, right, down};
+    auto vehicle = make_trajectory(scenario.trajectory, setup.start);
+    if (offset == AntennaOffset{}) return vehicle;
+    const Angle heading = std::visit([](const auto& path) { return path.heading; }, scenario.trajectory);
+    return std::make_unique<LeverArm>(std::move(vehicle), offset, heading);
 }
 
 std::unique_ptr<Geoid> find_geoid(const DataFolders& data, std::vector<std::string>& warnings) {
@@ -178,8 +148,8 @@ std::vector<std::string> scenario_warnings(const Scenario& scenario) {
     return warnings;
 }
 
-ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::BoardProfile& board) {
-    const ReceiverEntry& entry = scenario.receiver;
+ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::BoardProfile& board, std::size_t index) {
+    const ReceiverEntry& entry = scenario.receivers.at(index);
     ReceiverSettings settings;
     settings.elevation_mask = scenario.sky.elevation_mask.value_or(board.elevation_mask);
     settings.start = entry.start;
@@ -193,16 +163,21 @@ ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::Boa
     return settings;
 }
 
+Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSetup& setup) {
+    const NavigationSource& navigation = *setup.navigation;
+    auto effects = scenario.model.sensor_model
+                       ? effects_for(*scenario.model.sensor_model, effect_settings(scenario, navigation, setup.geoid))
+                       : modern_effects_of(scenario, navigation, {setup.geoid, setup.start, setup.data});
+    if (!effects) return fail(effects.error());
+    FixMaker fix_maker = scenario.model.sensor_model ? FixMaker(make_error_model(error_model_settings(scenario, setup)))
+                                                     : FixMaker(measuring_receiver(scenario, setup));
+    return Simulation(
+        {make_antenna_path(scenario, setup), setup.navigation, std::move(*effects), std::move(fix_maker)});
+}
+
 Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation,
                                    const Geoid* geoid, GpsTime start, const DataFolders& data) {
-    auto effects = scenario.model.sensor_model
-                       ? effects_for(*scenario.model.sensor_model, effect_settings(scenario, *navigation, geoid))
-                       : modern_effects_of(scenario, *navigation, {geoid, start, data});
-    if (!effects) return fail(effects.error());
-    FixMaker fix_maker = scenario.model.sensor_model ? FixMaker(make_error_model(error_model_settings(scenario, geoid)))
-                                                     : FixMaker(measuring_receiver(scenario, *navigation, geoid));
-    return Simulation({make_trajectory(scenario.trajectory, start), std::move(navigation), std::move(*effects),
-                       std::move(fix_maker)});
+    return make_simulation(scenario, {std::move(navigation), geoid, start, data});
 }
 
 std::vector<std::filesystem::path> board_folders(const DataFolders& data) {
@@ -210,12 +185,6 @@ std::vector<std::filesystem::path> board_folders(const DataFolders& data) {
     for (const auto& folder : data.folders)
         folders.push_back(folder / "boards");
     return folders;
-}
-
-Result<void> check_port_names(const Scenario& scenario) {
-    for (const std::string& uri : scenario.receiver.ports)
-        if (const auto port = parse_port_uri(uri); !port) return fail(port.error());
-    return {};
 }
 
 Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, const RunMode& mode) {
@@ -228,33 +197,15 @@ Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, con
     assembly.start = navigation->start;
     if (scenario.run.duration) assembly.end = advanced(assembly.start, *scenario.run.duration);
     assembly.digest = scenario_digest(scenario, assembly.start);
+    assembly.details = world_details(*navigation->source, assembly);
 
-    auto simulation =
-        make_simulation(scenario, std::move(navigation->source), assembly.geoid.get(), assembly.start, data);
-    if (!simulation) return fail(simulation.error());
-    auto receiver = make_receiver(scenario, data, assembly.warnings);
-    if (!receiver) return fail(receiver.error());
-    assembly.details = run_details(simulation->navigation(), *receiver, assembly);
-    Emulator::Parts parts{std::move(*simulation), std::move(*receiver), {}, nullptr, std::nullopt};
-    if (mode.open_ports) {
-        auto links = open_links(scenario.receiver, parts.receiver.baud(), mode.virtual_time);
-        if (!links) return fail(links.error());
-        parts.links = std::move(*links);
-    }
-    // After everything that may be refused: it empties the files of a former recording.
-    if (mode.record) {
-        auto recorder = make_recorder(*mode.record, parts, assembly.start);
-        if (!recorder) return fail(recorder.error());
-        parts.recorder = std::move(*recorder);
-    }
-    // Last, so that the clock starts when everything else is ready.
-    if (mode.virtual_time)
-        parts.pacer = std::make_unique<VirtualPacer>(assembly.start);
-    else
-        parts.pacer = std::make_unique<RealtimePacer>(
-            // A run that begins now keeps the wall clock's time; what loading took is not to shift it.
-            assembly.start, assembly.start == mode.now ? mode.now_steady_ns : steady_clock_ns(), scenario.run.speed);
-    assembly.emulator = std::make_unique<Emulator>(std::move(parts), assembly.start);
+    auto stations = make_stations(
+        {scenario, data, mode, std::move(navigation->source), assembly.geoid.get(), assembly.start}, assembly);
+    if (!stations) return fail(stations.error());
+    assembly.details.push_back(fmt::format("digest: {}", assembly.digest));
+    // The pacer comes last, so that the clock starts when everything else is ready.
+    assembly.emulator = std::make_unique<Emulator>(
+        Emulator::Parts{std::move(*stations), make_pacer(mode, assembly.start, scenario.run.speed)}, assembly.start);
     return assembly;
 }
 

@@ -5,25 +5,26 @@
 namespace skyloop {
 namespace {
 
-using namespace std::chrono_literals;
-
-// Receivers solve on a grid of GPS time: where the period divides the week, the time of week is a multiple of it.
-GpsTime first_epoch(GpsTime start, Nanoseconds period) {
-    const Nanoseconds past = start.time_since_epoch() % period;
-    return past > 0ns ? start - past + period : start - past;
-}
+constexpr Nanoseconds no_time{0};
 
 }  // namespace
 
 Emulator::Emulator(Parts parts, GpsTime start)
-    : parts_(std::move(parts)),
-      now_(start),
-      next_epoch_(first_epoch(start, parts_.receiver.settings().navigation_period)) {}
+    : parts_(std::move(parts)), now_(start), traces_(parts_.stations.size()) {
+    for (Station& station : parts_.stations)
+        station.start(start);
+}
 
 GpsTime Emulator::next_instant(GpsTime end) const {
-    GpsTime next = std::min(end, next_epoch_);
-    const Nanoseconds tick = parts_.pacer->tick(parts_.receiver.drained_at().has_value());
-    if (tick > 0ns && !parts_.links.empty()) next = std::min(next, now_ + tick);
+    GpsTime next = end;
+    bool busy = false, wired = false;
+    for (const Station& station : parts_.stations) {
+        next = std::min(next, station.next_epoch());
+        busy = busy || station.busy();
+        wired = wired || !station.wires().empty();
+    }
+    const Nanoseconds tick = parts_.pacer->tick(busy);
+    if (tick > no_time && wired) next = std::min(next, now_ + tick);
     return next;
 }
 
@@ -35,41 +36,43 @@ void Emulator::run_until(GpsTime end, const std::atomic<bool>& stop) {
         if (!lateness) continue;
         now_ = next;
         exchange_bytes();
-        if (now_ == next_epoch_ && now_ < end) run_epoch(*lateness);
-        if (parts_.recorder && parts_.recorder->failure()) break;
+        if (now_ < end) run_epochs(*lateness);
+        if (recording_failed()) break;
     }
-    if (parts_.recorder) parts_.recorder->flush();
+    for (Station& station : parts_.stations)
+        station.finish(now_);
+}
+
+bool Emulator::recording_failed() const {
+    return std::any_of(parts_.stations.begin(), parts_.stations.end(),
+                       [](const Station& s) { return s.recorder() && s.recorder()->failure(); });
 }
 
 void Emulator::exchange_bytes() {
-    firmware::Receiver& receiver = parts_.receiver;
-    for (Link& link : parts_.links) {
-        const Bytes heard = link.receive(receiver.baud());
-        if (heard.empty()) continue;
-        receiver.input(heard, now_);
-        if (parts_.recorder) parts_.recorder->record_input(heard);
+    const LoopTime time{now_, parts_.pacer->monotonic_ns(now_)};
+    for (Station& station : parts_.stations) {
+        station.exchange(time);
+        // As fast as the machine can, the end of the run is soon enough.
+        if (!parts_.pacer->is_virtual()) station.keep_state(now_);
     }
-    const Bytes sent = receiver.output(now_);
-    const bool at_rest = !receiver.drained_at().has_value();
-    for (Link& link : parts_.links)
-        link.send(sent, receiver.baud(), at_rest);
-    if (parts_.recorder) parts_.recorder->record_output(sent, now_, parts_.pacer->monotonic_ns(now_));
 }
 
-void Emulator::run_epoch(Nanoseconds lateness) {
-    const Trace trace = parts_.simulation.run(now_, parts_.receiver.settings());
-    parts_.receiver.on_epoch(trace.epoch);
-    if (parts_.recorder) {
-        parts_.recorder->record(trace, parts_.simulation.navigation());
-        // In real time an epoch's worth is little to write and much to lose.
-        if (!parts_.pacer->is_virtual()) parts_.recorder->flush();
+// All that is due is solved before any of it is reported: a rover needs what its base has at the same instant.
+void Emulator::run_epochs(Nanoseconds lateness) {
+    auto& stations = parts_.stations;
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+        traces_[i].reset();
+        if (stations[i].next_epoch() == now_) traces_[i] = stations[i].observe();
     }
-
-    ++counts_.epochs;
-    if (trace.epoch.fix.has_position()) ++counts_.epochs_with_fix;
-    counts_.lateness.add(lateness);
-    if (status_) status_({now_, &trace, lateness});
-    next_epoch_ += parts_.receiver.settings().navigation_period;
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+        const auto base = stations[i].base();
+        if (traces_[i] && base) stations[i].relate(*traces_[i], traces_[*base] ? &*traces_[*base] : nullptr);
+    }
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+        if (!traces_[i]) continue;
+        stations[i].report(*traces_[i], lateness, !parts_.pacer->is_virtual());
+        if (status_) status_({now_, &*traces_[i], lateness, i});
+    }
 }
 
 }  // namespace skyloop

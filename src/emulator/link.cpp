@@ -1,12 +1,32 @@
 #include "skyloop/emulator/link.hpp"
 
-namespace skyloop {
+#include <algorithm>
+#include <utility>
 
-Link::Link(std::unique_ptr<Transport> transport, std::uint32_t receiver_baud)
+namespace skyloop {
+namespace {
+
+constexpr std::uint32_t any_baud = 9600;    // of a garbler that is never used
+constexpr std::size_t driver_bytes = 4096;  // of input, as a terminal's driver holds (N_TTY_BUF_SIZE of Linux)
+constexpr std::int64_t second_in_ns = 1'000'000'000;
+constexpr std::int64_t bits_of_byte = 10;            // start, eight data, stop
+constexpr std::int64_t usb_bits_per_s = 12'000'000;  // full speed (USB 2.0, section 4.2.1)
+
+// Rounded up: at the end of it the stop bit has come whole.
+Nanoseconds byte_time(PortSpeed speed) {
+    const std::int64_t bits = speed ? bits_of_byte : 8;
+    const std::int64_t rate = speed ? std::max<std::int64_t>(*speed, 1) : usb_bits_per_s;
+    return Nanoseconds((bits * second_in_ns + rate - 1) / rate);
+}
+
+}  // namespace
+
+Link::Link(std::unique_ptr<Transport> transport, PortSpeed speed, InputPace pace)
     : transport_(std::move(transport)),
-      to_client_(receiver_baud, receiver_baud),
-      to_receiver_(receiver_baud, receiver_baud) {
-    transport_->set_receiver_baud(receiver_baud);
+      to_client_(speed.value_or(any_baud), speed.value_or(any_baud)),
+      to_receiver_(speed.value_or(any_baud), speed.value_or(any_baud)),
+      pace_(pace) {
+    if (speed) transport_->set_receiver_baud(*speed);
 }
 
 Bytes Link::heard_by_client(ByteSpan bytes, std::uint32_t receiver_baud, std::uint32_t client_baud, bool at_rest) {
@@ -19,14 +39,15 @@ Bytes Link::heard_by_client(ByteSpan bytes, std::uint32_t receiver_baud, std::ui
     return heard;
 }
 
-void Link::send(ByteSpan bytes, std::uint32_t receiver_baud, bool at_rest) {
+void Link::send(ByteSpan bytes, PortSpeed speed, bool at_rest) {
     const LineState line = transport_->line();
     connected_ = line.connected;
     if (!line.connected) {
         counters_.bytes_unheard += bytes.size();
         return;
     }
-    const std::uint32_t client_baud = line.baud.value_or(receiver_baud);
+    const std::uint32_t receiver_baud = speed.value_or(any_baud);
+    const std::uint32_t client_baud = speed ? line.baud.value_or(receiver_baud) : any_baud;
     const Bytes heard = heard_by_client(bytes, receiver_baud, client_baud, at_rest);
     if (heard.empty()) return;
     const std::size_t taken = transport_->write(heard);
@@ -35,13 +56,48 @@ void Link::send(ByteSpan bytes, std::uint32_t receiver_baud, bool at_rest) {
     if (client_baud != receiver_baud) counters_.bytes_garbled += taken;
 }
 
-Bytes Link::receive(std::uint32_t receiver_baud) {
+void Link::look(GpsTime now) {
     const LineState line = transport_->line();
     connected_ = line.connected;
-    const Bytes sent = transport_->read();
-    to_receiver_.set_bauds(line.baud.value_or(receiver_baud), receiver_baud);
-    // A client's bytes come in one piece between two looks at the wire; when there are none, its line rests.
-    Bytes heard = sent.empty() ? to_receiver_.idle() : to_receiver_.pass(sent);
+    // What is left in the driver makes the client wait, as a slow line does.
+    if (waiting_ >= driver_bytes) return;
+    Bytes bytes = transport_->read();
+    may_rest_ = bytes.empty();
+    if (bytes.empty()) return;
+    waiting_ += bytes.size();
+    incoming_.push_back({std::move(bytes), line.baud, now, 0});
+}
+
+Bytes Link::take_piece(const Piece& piece, PortSpeed speed, std::size_t count) {
+    const ByteSpan bytes = ByteSpan(piece.bytes).subspan(piece.taken, count);
+    const std::uint32_t receiver_baud = speed.value_or(any_baud);
+    to_receiver_.set_bauds(speed ? piece.speed.value_or(receiver_baud) : any_baud, receiver_baud);
+    return to_receiver_.pass(bytes);
+}
+
+std::optional<Bytes> Link::receive(PortSpeed speed, GpsTime now) {
+    if (incoming_.empty()) {
+        // The bytes of one write come without a gap; when none are left and none came, the line rests.
+        if (!std::exchange(may_rest_, false)) return std::nullopt;
+        Bytes heard = to_receiver_.idle();
+        counters_.bytes_in += heard.size();
+        return heard.empty() ? std::nullopt : std::optional<Bytes>(std::move(heard));
+    }
+    Piece& piece = incoming_.front();
+    // A wire without a speed of its own is as fast as the port.
+    const PortSpeed line_speed = speed ? PortSpeed(piece.speed.value_or(*speed)) : PortSpeed();
+    std::size_t count = speed ? 1 : piece.bytes.size() - piece.taken;
+    if (pace_ == InputPace::line) {
+        const GpsTime begins = std::max(line_free_, piece.read_at);
+        const auto arrived = (now - begins) / byte_time(line_speed);
+        if (now < begins || arrived < 1) return std::nullopt;
+        count = std::min(count, static_cast<std::size_t>(arrived));
+        line_free_ = begins + byte_time(line_speed) * static_cast<std::int64_t>(count);
+    }
+    Bytes heard = take_piece(piece, speed, count);
+    piece.taken += count;
+    waiting_ -= count;
+    if (piece.taken == piece.bytes.size()) incoming_.pop_front();
     counters_.bytes_in += heard.size();
     return heard;
 }

@@ -1,5 +1,7 @@
 #include "modern_assembly.hpp"
 
+#include "receiver_assembly.hpp"
+
 #include "skyloop/propagation/modern_effects.hpp"
 #include "skyloop/rinex/ionex_file.hpp"
 
@@ -42,12 +44,12 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
     return modern_effects(settings.propagation, context);
 }
 
-MeasuringReceiver measuring_receiver(const Scenario& scenario, const NavigationSource& navigation, const Geoid* geoid) {
+MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationSetup& setup) {
     ModernSettings settings = effective(scenario.model.modern);
     // Satellites broadcast an ionosphere even where the navigation data has lost it or there is none.
     settings.navigation.corrections.default_ionosphere = true;
-    return {MeasurementEngine(settings.measurement, scenario.run.seed),
-            NavigationEngine(settings.navigation, {&navigation, geoid, LeapSeconds::announced()})};
+    return {MeasurementEngine(settings.measurement, receiver_seed(scenario.run.seed, setup.receiver)),
+            NavigationEngine(settings.navigation, {setup.navigation.get(), setup.geoid, LeapSeconds::announced()})};
 }
 
 }  // namespace skyloop

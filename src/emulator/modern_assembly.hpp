@@ -21,7 +21,7 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
                                                                           const NavigationSource& navigation,
                                                                           const WorldData& world);
 
-/// The receiver's own part. `navigation` and `geoid` outlive it.
-MeasuringReceiver measuring_receiver(const Scenario& scenario, const NavigationSource& navigation, const Geoid* geoid);
+/// The receiver's own part. Navigation and geoid outlive it.
+MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationSetup& setup);
 
 }  // namespace skyloop

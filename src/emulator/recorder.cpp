@@ -14,7 +14,7 @@ Recorder::~Recorder() = default;
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 
-Result<Recorder> Recorder::create(const std::filesystem::path& folder) {
+Result<Recorder> Recorder::create(const std::filesystem::path& folder, std::size_t wires) {
     std::error_code reason;
     std::filesystem::create_directories(folder, reason);
     if (reason)
@@ -28,18 +28,39 @@ Result<Recorder> Recorder::create(const std::filesystem::path& folder) {
     std::filesystem::remove(folder / "observations.rnx", reason);
     std::filesystem::remove(folder / "navigation.rnx", reason);
     const std::pair<OutputFile*, const char*> files[] = {{&recorder.fixes_, "fixes.csv"},
-                                                         {&recorder.satellites_, "satellites.csv"},
-                                                         {&recorder.bytes_out_, "port0.out"},
-                                                         {&recorder.bytes_in_, "port0.in"},
-                                                         {&recorder.times_, "port0.times"}};
+                                                         {&recorder.satellites_, "satellites.csv"}};
     for (const auto& [file, name] : files) {
         auto created = OutputFile::create(folder / name);
         if (!created) return fail(created.error());
         *file = std::move(*created);
     }
+    if (const auto ports = recorder.create_ports(wires); !ports) return fail(ports.error());
     recorder.fixes_.write(fixes_header);
     recorder.satellites_.write(satellites_header);
     return recorder;
+}
+
+Result<void> Recorder::create_ports(std::size_t wires) {
+    const auto name = [&](std::size_t wire, const char* extension) {
+        return folder_ / fmt::format("port{}.{}", wire, extension);
+    };
+    for (std::size_t wire = 0; wire < wires; ++wire) {
+        PortFiles port;
+        const std::pair<OutputFile*, const char*> files[] = {
+            {&port.out, "out"}, {&port.in, "in"}, {&port.times, "times"}};
+        for (const auto& [file, extension] : files) {
+            auto created = OutputFile::create(name(wire, extension));
+            if (!created) return fail(created.error());
+            *file = std::move(*created);
+        }
+        ports_.push_back(std::move(port));
+    }
+    // Of a former run with more wires.
+    std::error_code reason;
+    for (std::size_t wire = wires; std::filesystem::remove(name(wire, "out"), reason); ++wire)
+        for (const char* extension : {"in", "times"})
+            std::filesystem::remove(name(wire, extension), reason);
+    return {};
 }
 
 Result<void> Recorder::add_rinex(const RinexRecordingSetup& setup) {
@@ -55,14 +76,16 @@ void Recorder::record(const Trace& trace, const NavigationSource& broadcast) {
     if (rinex_) rinex_->record(trace, broadcast);
 }
 
-void Recorder::record_output(ByteSpan bytes, GpsTime now, std::int64_t monotonic_ns) {
+void Recorder::record_output(ByteSpan bytes, const LoopTime& time, std::size_t wire) {
     if (bytes.empty()) return;
-    times_.write(fmt::format("{} {} {} {}\n", monotonic_ns, now.time_since_epoch().count(), offset_, bytes.size()));
-    bytes_out_.write(bytes);
-    offset_ += bytes.size();
+    PortFiles& port = ports_.at(wire);
+    port.times.write(fmt::format("{} {} {} {}\n", time.monotonic_ns, time.now.time_since_epoch().count(), port.offset,
+                                 bytes.size()));
+    port.out.write(bytes);
+    port.offset += bytes.size();
 }
 
-void Recorder::record_input(ByteSpan bytes) { bytes_in_.write(bytes); }
+void Recorder::record_input(ByteSpan bytes, std::size_t wire) { ports_.at(wire).in.write(bytes); }
 
 void Recorder::record_summary(const std::string& content) {
     auto file = OutputFile::create(folder_ / "run.json");
@@ -75,19 +98,28 @@ void Recorder::record_summary(const std::string& content) {
     }
 }
 
+std::vector<const OutputFile*> Recorder::files() const {
+    std::vector<const OutputFile*> files{&fixes_, &satellites_};
+    for (const PortFiles& port : ports_)
+        files.insert(files.end(), {&port.out, &port.in, &port.times});
+    if (rinex_) files.insert(files.end(), {&rinex_->observations(), &rinex_->navigation()});
+    return files;
+}
+
 void Recorder::flush() {
-    for (OutputFile* file : {&fixes_, &satellites_, &bytes_out_, &bytes_in_, &times_})
-        file->flush();
+    fixes_.flush();
+    satellites_.flush();
+    for (PortFiles& port : ports_)
+        for (OutputFile* file : {&port.out, &port.in, &port.times})
+            file->flush();
     if (!rinex_) return;
     rinex_->observations().flush();
     rinex_->navigation().flush();
 }
 
 std::optional<Error> Recorder::failure() const {
-    for (const OutputFile* file : {&fixes_, &satellites_, &bytes_out_, &bytes_in_, &times_})
+    for (const OutputFile* file : files())
         if (file->failure()) return file->failure();
-    if (rinex_ && rinex_->observations().failure()) return rinex_->observations().failure();
-    if (rinex_ && rinex_->navigation().failure()) return rinex_->navigation().failure();
     return summary_failure_;
 }
 

@@ -23,11 +23,12 @@ Json lateness_json(const LatenessHistogram& lateness) {
             {"histogram", bins}};
 }
 
-Json ports_json(const std::vector<Link>& links) {
+Json ports_json(const std::vector<Wire>& wires) {
     Json ports = Json::array();
-    for (const Link& link : links) {
+    for (const auto& [port, link] : wires) {
         const LinkCounters& c = link.counters();
         ports.push_back({{"wire", link.transport().description()},
+                         {"port", firmware::port_names[static_cast<std::size_t>(port)]},
                          {"bytes_out", c.bytes_out},
                          {"bytes_in", c.bytes_in},
                          {"bytes_unheard", c.bytes_unheard},
@@ -37,12 +38,33 @@ Json ports_json(const std::vector<Link>& links) {
     return ports;
 }
 
+// What one receiver counted; the first one's stands at the top of the file.
+void add_counts(Json& summary, const Station& station) {
+    const firmware::ReceiverCounters& receiver = station.receiver().counters();
+    summary["epochs"] = station.counts().epochs;
+    summary["epochs_with_fix"] = station.counts().epochs_with_fix;
+    summary["messages_sent"] = receiver.messages_sent;
+    summary["messages_dropped"] = receiver.messages_dropped;
+    summary["ports"] = ports_json(station.wires());
+    summary["lateness"] = lateness_json(station.counts().lateness);
+}
+
+Json receivers_json(const Emulator& emulator) {
+    Json receivers = Json::array();
+    for (const Station& station : emulator.stations()) {
+        Json one{{"name", station.name()}, {"board", station.receiver().board().name}};
+        if (station.recorder()) one["folder"] = station.recorder()->folder().string();
+        add_counts(one, station);
+        receivers.push_back(std::move(one));
+    }
+    return receivers;
+}
+
 }  // namespace
 
 std::string run_summary(const Scenario& scenario, const Assembly& assembly, std::string_view version) {
     const Emulator& emulator = *assembly.emulator;
-    const firmware::ReceiverCounters& receiver = emulator.receiver().counters();
-    const Json summary{
+    Json summary{
         {"program", "skyloop"},
         {"version", version},
         {"scenario", scenario.name},
@@ -53,14 +75,10 @@ std::string run_summary(const Scenario& scenario, const Assembly& assembly, std:
         {"navigation", emulator.simulation().navigation().description()},
         {"start_utc", format_utc(to_utc(assembly.start, LeapSeconds::announced()))},
         {"simulated_s", difference(emulator.now(), assembly.start).value()},
-        {"epochs", emulator.counts().epochs},
-        {"epochs_with_fix", emulator.counts().epochs_with_fix},
-        {"messages_sent", receiver.messages_sent},
-        {"messages_dropped", receiver.messages_dropped},
-        {"ports", ports_json(emulator.links())},
-        {"lateness", lateness_json(emulator.counts().lateness)},
-        {"warnings", assembly.warnings},
     };
+    add_counts(summary, emulator.first());
+    summary["warnings"] = assembly.warnings;
+    if (emulator.stations().size() > 1) summary["receivers"] = receivers_json(emulator);
     return summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

@@ -1,5 +1,7 @@
 #include "skyloop/emulator/simulation.hpp"
 
+#include <algorithm>
+
 #include "skyloop/propagation/free_space.hpp"
 
 namespace skyloop {
@@ -8,10 +10,29 @@ namespace {
 void make_fix(ErrorModel& model, Trace& trace) { trace.epoch.fix = model.fix(trace.truth, trace.sky, trace.arrivals); }
 
 void make_fix(MeasuringReceiver& receiver, Trace& trace, const ReceiverSettings& settings) {
-    Measurement measured = receiver.measurement.measure(trace.arrivals, trace.truth.time, settings);
+    const Arrivals nothing;
+    const Arrivals& heard = settings.navigating ? trace.arrivals : nothing;
+    Measurement measured = receiver.measurement.measure(heard, trace.truth.time, settings);
     trace.measurement = std::move(measured.terms);
     trace.epoch.observations = std::move(measured.observations);
     trace.epoch.fix = receiver.navigation.solve(trace.epoch.observations, settings);
+}
+
+// Of a receiver that is stopped: not even dead reckoning.
+void withhold(Fix& fix) {
+    Fix nothing;
+    nothing.time = fix.time;
+    nothing.leap_seconds = fix.leap_seconds;
+    fix = std::move(nothing);
+}
+
+// A jammer raises the noise floor for all signals alike, however strong they are; of what it takes from codes of
+// different rates the largest is told.
+FrontEnd front_end(const Arrivals& arrivals) {
+    FrontEnd seen;
+    for (const Arrival& arrival : arrivals.satellites)
+        if (arrival.cn0) seen.interference = std::max(seen.interference, arrival.interference_loss);
+    return seen;
 }
 
 }  // namespace
@@ -34,6 +55,8 @@ Trace Simulation::run(GpsTime time, const ReceiverSettings& settings) {
         make_fix(*std::get<std::unique_ptr<ErrorModel>>(parts_.fix_maker), trace);
     if (measures() && settings.subframes)
         trace.epoch.subframes = subframes_.receive(trace.epoch.observations, *parts_.navigation, time);
+    if (!settings.navigating) withhold(trace.epoch.fix);
+    trace.epoch.front_end = front_end(trace.arrivals);
     return trace;
 }
 

@@ -55,52 +55,6 @@ void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesyste
     }
 }
 
-void add_once(std::vector<firmware::NmeaSentence>& sentences, firmware::NmeaSentence sentence) {
-    if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end()) sentences.push_back(sentence);
-}
-
-void read_receiver_keys(TableReader& receiver, ReceiverEntry& entry) {
-    receiver.text("board", entry.board);
-    receiver.text_or_texts("port", entry.ports);
-    if (receiver.has("rate_hz")) {
-        double rate = 1;
-        receiver.number("rate_hz", rate, {0.01, 100});
-        entry.rate_hz = rate;
-    }
-    if (receiver.has("baud")) {
-        std::uint32_t baud = 9600;
-        receiver.integer("baud", baud, {300, 4e6});
-        entry.baud = baud;
-    }
-    if (const auto sentences = receiver.choices("sentences", firmware::nmea_sentence_names))
-        for (const std::size_t index : *sentences)
-            add_once(entry.sentences, static_cast<firmware::NmeaSentence>(index));
-    read_constellation_list(receiver, entry.constellations);
-    receiver.boolean("dual_frequency", entry.dual_frequency);
-    static constexpr std::array<Word<StartKind>, 3> starts{
-        {{"hot", StartKind::hot}, {"warm", StartKind::warm}, {"cold", StartKind::cold}}};
-    receiver.word("start", starts, entry.start);
-    static constexpr std::array<Word<DynamicModel>, 8> models{{{"portable", DynamicModel::portable},
-                                                               {"stationary", DynamicModel::stationary},
-                                                               {"pedestrian", DynamicModel::pedestrian},
-                                                               {"automotive", DynamicModel::automotive},
-                                                               {"sea", DynamicModel::sea},
-                                                               {"airborne-1g", DynamicModel::airborne_1g},
-                                                               {"airborne-2g", DynamicModel::airborne_2g},
-                                                               {"airborne-4g", DynamicModel::airborne_4g}}};
-    receiver.word("dynamic_model", models, entry.dynamic_model);
-    receiver.quantity("static_hold_mps", entry.static_hold_below, {0, 100});
-    receiver.refuse("antenna_offset_m", "a lever arm needs the vehicle's attitude, which this version does not have");
-}
-
-void read_receivers(TableReader& top, Scenario& scenario) {
-    int count = 0;
-    top.tables("receiver", [&](TableReader& receiver) {
-        if (++count > 1) receiver.mistake_here("a second receiver; this version runs one");
-        read_receiver_keys(receiver, scenario.receiver);
-    });
-}
-
 // The modern model has its own air: of [atmosphere] it takes clouds and rain.
 constexpr std::string_view sensor_model_atmosphere_keys[] = {"total_electron_content_tecu",
                                                              "tec_source",
@@ -141,7 +95,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
         for (const std::string_view key : sensor_model_atmosphere_keys)
             if (t.has(key)) scenario.sensor_model_keys.emplace_back(key);
     });
-    read_receivers(top, scenario);
+    read_receivers(top, scenario, folder);
     refuse_later_keys(top);
 }
 

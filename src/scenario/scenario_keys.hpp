@@ -16,6 +16,10 @@ void read_atmosphere_keys(TableReader& atmosphere, AtmosphereParameters& paramet
 /// Reads the list `constellations` of a scenario's [sky] or a board's [navigation].
 void read_constellation_list(TableReader& table, std::vector<Constellation>& constellations);
 
+/// Reads every [[receiver]] of a scenario's top table.
+/// @param folder that paths are relative to
+void read_receivers(TableReader& top, Scenario& scenario, const std::filesystem::path& folder);
+
 /// Reads [frame] and [trajectory] of a file's top table.
 void read_trajectory_keys(TableReader& top, Scenario& scenario);
 

@@ -302,6 +302,13 @@ void TableReader::tables(std::string_view key, const std::function<void(TableRea
     }
 }
 
+void TableReader::look_at_tables(std::string_view key, const std::function<void(const toml::table&)>& body) const {
+    const auto* list = table_[key].as_array();
+    if (!list) return;
+    for (const toml::node& item : *list)
+        if (const auto* inner = item.as_table()) body(*inner);
+}
+
 void TableReader::refuse(std::string_view key, const std::string& reason) {
     if (find(key)) mistake(key, reason);
 }

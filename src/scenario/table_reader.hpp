@@ -107,6 +107,8 @@ public:
     void table(std::string_view key, const std::function<void(TableReader&)>& body);
     /// Reads each table of a list with `body` and finishes it.
     void tables(std::string_view key, const std::function<void(TableReader&)>& body);
+    /// Shows each table of a list to `body` as it stands, unchecked; mistakes are for tables() to find.
+    void look_at_tables(std::string_view key, const std::function<void(const toml::table&)>& body) const;
     /// Says why a key that other versions know is refused here.
     void refuse(std::string_view key, const std::string& reason);
 

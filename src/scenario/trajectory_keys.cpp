@@ -71,8 +71,15 @@ std::optional<LevelFrame> read_frame(TableReader& top) {
     return frame;
 }
 
+Angle read_heading(TableReader& table) {
+    double heading = 0;
+    table.number("heading_deg", heading, {-360, 360});
+    return Angle::degrees(heading);
+}
+
 void read_fixed(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
     FixedSettings fixed;
+    fixed.heading = read_heading(table);
     if (const auto at = places.read(table, "at"))
         fixed.at = *at;
     else if (!table.has("at") && !table.has("at_level"))
@@ -82,6 +89,7 @@ void read_fixed(TableReader& table, PlaceReader& places, TrajectorySettings& tra
 
 void read_waypoints(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
     WaypointSettings path;
+    path.heading = read_heading(table);
     table.tables("waypoint", [&](TableReader& row) {
         Waypoint corner;
         if (!path.corners.empty()) corner.speed = path.corners.back().speed;
@@ -101,6 +109,7 @@ void read_waypoints(TableReader& table, PlaceReader& places, TrajectorySettings&
 
 void read_circle(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
     CircleSettings circle;
+    circle.heading = read_heading(table);
     if (const auto centre = places.read(table, "centre"))
         circle.shape.centre = *centre;
     else if (!table.has("centre") && !table.has("centre_level"))

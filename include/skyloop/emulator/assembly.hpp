@@ -29,6 +29,7 @@ struct RunMode {
     std::int64_t now_steady_ns = 0;               ///< the steady clock at that instant
     std::optional<std::filesystem::path> record;  ///< where to keep the recording
     bool open_ports = true;                       ///< false: no wires, the recording alone
+    bool first_ports_only = false;                ///< of several receivers only the first gets its wires
 };
 
 /// A run ready to go, and what its user should be told first.
@@ -62,20 +63,31 @@ Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now);
 /// The trajectory of a scenario, begun at `start`.
 std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, GpsTime start);
 
-/// The world of a scenario and its way to a fix. Fails with `input` when they do not fit each other.
-/// @param geoid may be absent; outlives the simulation
-/// @param data where the tables of the modern model's ionosphere lie
+struct SimulationSetup;
+/// The path of a receiver's antenna: that of the vehicle, or beside it when it has a lever arm.
+std::unique_ptr<Trajectory> make_antenna_path(const Scenario& scenario, const SimulationSetup& setup);
+
+/// What the simulation of one antenna needs besides the scenario.
+struct SimulationSetup {
+    std::shared_ptr<const NavigationSource> navigation;
+    const Geoid* geoid = nullptr;  ///< may be absent; outlives the simulation
+    GpsTime start;
+    DataFolders data{};        ///< where the tables of the modern model's ionosphere lie
+    std::size_t receiver = 0;  ///< whose antenna: its place in the scenario's list
+};
+/// The world of a scenario and its way to a fix. Receivers of one run share the world and its errors; what their own
+/// electronics add differs. Fails with `input` when scenario and world do not fit each other.
+Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSetup& setup);
+/// Of the first receiver.
 Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation,
                                    const Geoid* geoid, GpsTime start, const DataFolders& data = {});
 
 /// What the user of a scenario should be told before anything is read from elsewhere.
 std::vector<std::string> scenario_warnings(const Scenario& scenario);
 
-/// How the receiver of a scenario is configured when it starts.
-ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::BoardProfile& board);
-
-/// Whether every port of a scenario names a wire that this version has; opens none.
-Result<void> check_port_names(const Scenario& scenario);
+/// How a receiver of a scenario is configured when it starts. @param index its place in the scenario's list
+ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::BoardProfile& board,
+                                   std::size_t index = 0);
 
 /// The EGM96 geoid, or nothing and a warning.
 std::unique_ptr<Geoid> find_geoid(const DataFolders& data, std::vector<std::string>& warnings);

@@ -1,4 +1,4 @@
-/// The one loop that joins world, receiver and wires.
+/// The one loop that joins world, receivers and wires.
 #pragma once
 
 #include <atomic>
@@ -7,38 +7,25 @@
 #include <optional>
 #include <vector>
 
-#include "firmware/receiver.hpp"
-#include "skyloop/emulator/lateness.hpp"
-#include "skyloop/emulator/link.hpp"
 #include "skyloop/emulator/pacer.hpp"
-#include "skyloop/emulator/recorder.hpp"
-#include "skyloop/emulator/simulation.hpp"
+#include "skyloop/emulator/station.hpp"
 
 namespace skyloop {
 
-/// The state of a run after an epoch, for progress displays.
+/// The state of a run after an epoch of one receiver, for progress displays.
 struct Status {
     GpsTime now;
     const Trace* trace = nullptr;  ///< valid during the call
     Nanoseconds lateness{0};
+    std::size_t station = 0;  ///< whose epoch it is
 };
 
-/// What a run counted.
-struct RunCounts {
-    std::uint64_t epochs = 0;
-    std::uint64_t epochs_with_fix = 0;
-    LatenessHistogram lateness;
-};
-
-/// A receiver on its trajectory, streaming to its wires.
+/// Receivers on one vehicle, streaming to their wires on one clock.
 class Emulator {
 public:
     struct Parts {
-        Simulation simulation;
-        firmware::Receiver receiver;
-        std::vector<Link> links;
+        std::vector<Station> stations;  ///< at least one
         std::unique_ptr<Pacer> pacer;
-        std::optional<Recorder> recorder;
     };
     Emulator(Parts parts, GpsTime start);
 
@@ -47,22 +34,26 @@ public:
     /// Runs to `end`, or until `stop` is true, or until a recording fails.
     void run_until(GpsTime end, const std::atomic<bool>& stop);
 
-    [[nodiscard]] const RunCounts& counts() const { return counts_; }
-    [[nodiscard]] const firmware::Receiver& receiver() const { return parts_.receiver; }
-    [[nodiscard]] const std::vector<Link>& links() const { return parts_.links; }
-    [[nodiscard]] const Simulation& simulation() const { return parts_.simulation; }
-    [[nodiscard]] Recorder* recorder() { return parts_.recorder ? &*parts_.recorder : nullptr; }
+    [[nodiscard]] const std::vector<Station>& stations() const { return parts_.stations; }
+    [[nodiscard]] std::vector<Station>& stations() { return parts_.stations; }
+    /// Of the first receiver.
+    [[nodiscard]] const Station& first() const { return parts_.stations.front(); }
+    [[nodiscard]] const RunCounts& counts() const { return first().counts(); }
+    [[nodiscard]] const firmware::Receiver& receiver() const { return first().receiver(); }
+    [[nodiscard]] const std::vector<Wire>& wires() const { return first().wires(); }
+    [[nodiscard]] const Simulation& simulation() const { return first().simulation(); }
+    [[nodiscard]] Recorder* recorder() { return parts_.stations.front().recorder(); }
     [[nodiscard]] GpsTime now() const { return now_; }
 
 private:
     [[nodiscard]] GpsTime next_instant(GpsTime end) const;
     void exchange_bytes();
-    void run_epoch(Nanoseconds lateness);
+    void run_epochs(Nanoseconds lateness);
+    [[nodiscard]] bool recording_failed() const;
 
     Parts parts_;
     GpsTime now_;
-    GpsTime next_epoch_;
-    RunCounts counts_;
+    std::vector<std::optional<Trace>> traces_;  // of the present instant, one a station
     std::function<void(const Status&)> status_;
 };
 

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <memory>
+#include <optional>
 
+#include "skyloop/time/gps_time.hpp"
 #include "skyloop/transport/line_garbler.hpp"
 #include "skyloop/transport/transport.hpp"
 
@@ -15,31 +18,63 @@ struct LinkCounters {
     std::uint64_t bytes_unheard = 0;  ///< sent while nobody listened
     std::uint64_t bytes_lost = 0;     ///< the client did not read in time
     std::uint64_t bytes_garbled = 0;  ///< sent at another speed than the client's
-    std::uint64_t bytes_in = 0;
+    std::uint64_t bytes_in = 0;       ///< heard by the receiver
 };
 
-/// Carries bytes between a receiver's UART and a Transport, at the speeds that both ends have set.
+/// The line speed of a receiver's port, bit/s; nothing for a port that has none, such as USB.
+using PortSpeed = std::optional<std::uint32_t>;
+
+/// When the bytes of a client reach the receiver.
+enum class InputPace {
+    at_once,  ///< when the loop looks: in virtual time
+    line      ///< one after the other, at the speed of the client's line
+};
+
+/// Carries bytes between a receiver's port and a Transport, at the speeds that both ends have set.
+///
+/// State: bytes that are on their way to the receiver. A client's bytes follow each other without a gap at the speed
+/// that its line had when they were read, ten bits each; on a port without a speed at 12 Mbit/s, the full speed of USB
+/// 2.0. Of a client that writes without end no more is read ahead than a terminal's driver holds.
 class Link {
 public:
-    Link(std::unique_ptr<Transport> transport, std::uint32_t receiver_baud);
+    Link(std::unique_ptr<Transport> transport, PortSpeed speed, InputPace pace = InputPace::at_once);
 
     /// Puts on the wire what the receiver has sent. What a slow client does not take is lost, as in an overrun UART.
+    /// @param speed at which the bytes left
     /// @param at_rest the receiver has nothing more to send: the line goes idle after these bytes
-    void send(ByteSpan bytes, std::uint32_t receiver_baud, bool at_rest);
-    /// What the client has sent, as the receiver's UART hears it.
-    Bytes receive(std::uint32_t receiver_baud);
+    void send(ByteSpan bytes, PortSpeed speed, bool at_rest);
+    /// Takes from the wire what the client has written since the last look. To be called before receive().
+    void look(GpsTime now);
+    /// The next of the client's bytes that have arrived by `now`, as a port of this speed hears them: nothing at all
+    /// when there are no more, an empty piece for bytes of which nothing was heard. A port that has a speed is given
+    /// one byte at a time, so that a command in them which changes the speed acts on the very next one.
+    std::optional<Bytes> receive(PortSpeed speed, GpsTime now);
 
     [[nodiscard]] const Transport& transport() const { return *transport_; }
     [[nodiscard]] const LinkCounters& counters() const { return counters_; }
     [[nodiscard]] bool connected() const { return connected_; }
+    /// Bytes are on their way to the receiver.
+    [[nodiscard]] bool input_pending() const { return !incoming_.empty(); }
 
 private:
+    struct Piece {
+        Bytes bytes;
+        PortSpeed speed;  ///< of the client's line; nothing: the receiver's own
+        GpsTime read_at;
+        std::size_t taken = 0;
+    };
     // What the client's UART makes of the bytes at its own speed.
     Bytes heard_by_client(ByteSpan bytes, std::uint32_t receiver_baud, std::uint32_t client_baud, bool at_rest);
+    Bytes take_piece(const Piece& piece, PortSpeed speed, std::size_t count);
 
     std::unique_ptr<Transport> transport_;
     LineGarbler to_client_;
     LineGarbler to_receiver_;
+    InputPace pace_;
+    std::deque<Piece> incoming_;
+    std::size_t waiting_ = 0;  // bytes in incoming_
+    GpsTime line_free_{};      // when the client's line has carried all that was heard
+    bool may_rest_ = false;    // nothing has come since the last look
     LinkCounters counters_;
     bool connected_ = false;
 };

@@ -8,6 +8,12 @@
 
 namespace skyloop {
 
+/// An instant on the clocks of a run.
+struct LoopTime {
+    GpsTime now;                    ///< simulated
+    std::int64_t monotonic_ns = 0;  ///< Pacer::monotonic_ns()
+};
+
 /// Waits for instants of simulated time. Nothing else in the loop reads a clock.
 class Pacer {
 public:

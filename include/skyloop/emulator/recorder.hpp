@@ -5,9 +5,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "skyloop/base/result.hpp"
 #include "skyloop/emulator/output_file.hpp"
+#include "skyloop/emulator/pacer.hpp"
 #include "skyloop/flow/trace.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
 
@@ -16,24 +18,25 @@ namespace skyloop {
 class RinexRecording;
 struct RinexRecordingSetup;
 
-/// Writes fixes.csv, satellites.csv and the bytes of each port into one folder (INTERFACE.md section 3).
+/// Writes fixes.csv, satellites.csv and the bytes of each wire's port into one folder (INTERFACE.md section 3).
 class Recorder {
 public:
     ~Recorder();
     Recorder(Recorder&&) noexcept;
     Recorder& operator=(Recorder&&) noexcept;
     /// Makes the folder and its files; old files of a former run are replaced.
-    static Result<Recorder> create(const std::filesystem::path& folder);
+    /// @param wires how many sets of port files there are to be: port0, port1, …
+    static Result<Recorder> create(const std::filesystem::path& folder, std::size_t wires = 1);
 
     /// Adds observations.rnx and navigation.rnx, for a receiver that measures.
     Result<void> add_rinex(const RinexRecordingSetup& setup);
 
     /// @param broadcast the records that the satellites send
     void record(const Trace& trace, const NavigationSource& broadcast);
-    /// Bytes that left the receiver. @param monotonic_ns when, on the pacer's clock
-    void record_output(ByteSpan bytes, GpsTime now, std::int64_t monotonic_ns);
-    /// Bytes that reached the receiver.
-    void record_input(ByteSpan bytes);
+    /// Bytes that left the receiver by a wire's port.
+    void record_output(ByteSpan bytes, const LoopTime& time, std::size_t wire = 0);
+    /// Bytes that reached the receiver over a wire.
+    void record_input(ByteSpan bytes, std::size_t wire = 0);
     /// Writes run.json; `content` is its text.
     void record_summary(const std::string& content);
     /// Hands everything to the operating system, so that a killed run keeps it.
@@ -43,11 +46,18 @@ public:
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
 private:
+    struct PortFiles {
+        OutputFile out, in, times;
+        std::uint64_t offset = 0;
+    };
     Recorder();
+    Result<void> create_ports(std::size_t wires);
+    [[nodiscard]] std::vector<const OutputFile*> files() const;
+
     std::filesystem::path folder_;
-    OutputFile fixes_, satellites_, bytes_out_, bytes_in_, times_;
+    OutputFile fixes_, satellites_;
+    std::vector<PortFiles> ports_;
     std::unique_ptr<RinexRecording> rinex_;
-    std::uint64_t offset_ = 0;
     std::optional<Error> summary_failure_;
 };
 

@@ -32,13 +32,14 @@ class Simulation {
 public:
     struct Parts {
         std::unique_ptr<Trajectory> trajectory;
-        std::unique_ptr<NavigationSource> navigation;
+        std::shared_ptr<const NavigationSource> navigation;       ///< that the antennas of a run share
         std::vector<std::unique_ptr<PropagationEffect>> effects;  ///< in the order in which they are applied
         FixMaker fix_maker;
     };
     explicit Simulation(Parts parts);
 
-    /// Epochs come in ascending time. @param settings what the receiver is configured to do
+    /// Epochs come in ascending time. A receiver that is stopped tracks nothing and has no fix; the world, its clock
+    /// and every random number go on. @param settings what the receiver is configured to do
     Trace run(GpsTime time, const ReceiverSettings& settings);
     /// What stands above an antenna, and nothing of what reaches it.
     [[nodiscard]] SkyView view(const TruthState& truth) const;

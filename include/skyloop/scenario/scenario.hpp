@@ -1,6 +1,7 @@
 /// One run, as plain data: what a scenario file and the command line say.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -40,15 +41,19 @@ struct SkySettings {
     std::optional<Seconds> ephemeris_validity;      ///< nothing: each system's own
 };
 
-/// Paths are kept as what was asked for; they become a Trajectory when the start time is known.
+/// Paths are kept as what was asked for; they become a Trajectory when the start time is known. The heading, clockwise
+/// from true north, is that of the vehicle until it moves: from then on it looks where it goes.
 struct FixedSettings {
     Geodetic at = Geodetic::degrees(46.4774, 30.7326, 77);
+    Angle heading{};
 };
 struct WaypointSettings {
-    std::vector<Waypoint> corners;
+    std::vector<Waypoint> corners{};
+    Angle heading{};
 };
 struct CircleSettings {
-    Circle::Shape shape;
+    Circle::Shape shape{};
+    Angle heading{};
 };
 using TrajectorySettings = std::variant<FixedSettings, WaypointSettings, CircleSettings>;
 
@@ -73,8 +78,9 @@ bool choose_model(ModelSettings& settings, std::string_view name);
 
 /// One emulated receiver and its wires.
 struct ReceiverEntry {
+    std::string name;  ///< empty: receiver0, receiver1, …
     std::string board = "ublox-m8";
-    std::vector<std::string> ports;                 ///< URIs; empty: one pty
+    std::vector<std::string> ports;                 ///< URIs, after the name of a port and "=" or alone; empty: one pty
     std::optional<double> rate_hz;                  ///< nothing: the board's
     std::optional<std::uint32_t> baud;              ///< nothing: the board's
     std::vector<firmware::NmeaSentence> sentences;  ///< empty: the board's
@@ -83,6 +89,10 @@ struct ReceiverEntry {
     StartKind start = StartKind::hot;
     DynamicModel dynamic_model = DynamicModel::portable;
     MetresPerSecond static_hold_below{0};
+    bool power_up = false;                   ///< it is switched on at the start of the run: banner, then `start`
+    std::filesystem::path state_file;        ///< keeps battery-backed memory and flash; empty: nothing does
+    std::array<double, 3> antenna_offset{};  ///< forward, right, down from the point that follows the trajectory, m
+    std::optional<std::size_t> base;         ///< the receiver, by its place in the list, that carries the base antenna
 };
 
 struct Scenario {
@@ -95,8 +105,11 @@ struct Scenario {
     AtmosphereParameters atmosphere;
     std::vector<std::string>
         sensor_model_keys;  ///< keys of [atmosphere] that were given and act in sensor models alone
-    ReceiverEntry receiver;
+    std::vector<ReceiverEntry> receivers = std::vector<ReceiverEntry>(1);  ///< at least one
     std::vector<std::string> warnings;  ///< what a reader should be told, e.g. a level that is too large for a plane
 };
+
+/// What messages call a receiver: its name, or receiver0 and so on by its place in the list.
+std::string receiver_name(const Scenario& scenario, std::size_t index);
 
 }  // namespace skyloop

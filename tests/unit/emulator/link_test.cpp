@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "skyloop/transport/memory.hpp"
 
 namespace skyloop {
 namespace {
+
+using namespace std::chrono_literals;
 
 constexpr std::uint32_t receiver_baud = 9600;
 const Bytes sentence_bytes = to_bytes("$GPRMC,120000.00,V,,,,,,,010710,,,N*7D\r\n");
@@ -20,6 +24,23 @@ JoinedLink joined_link(std::optional<std::uint32_t> client_baud, bool connected 
     MemoryTransport* wire = transport.get();
     wire->set_line({connected, client_baud});
     return {wire, Link(std::move(transport), receiver_baud)};
+}
+
+// One look at the wire, and all that the receiver has heard by then.
+Bytes all_heard(Link& link, PortSpeed speed, GpsTime now = {}) {
+    link.look(now);
+    Bytes all;
+    while (const auto heard = link.receive(speed, now))
+        all.insert(all.end(), heard->begin(), heard->end());
+    return all;
+}
+
+// A link whose client's bytes take their time.
+JoinedLink paced_link(PortSpeed speed, std::optional<std::uint32_t> client_baud) {
+    auto transport = std::make_unique<MemoryTransport>();
+    MemoryTransport* wire = transport.get();
+    wire->set_line({true, client_baud});
+    return {wire, Link(std::move(transport), speed, InputPace::line)};
 }
 
 TEST(Link, TellsTheWireTheReceiversSpeed) { EXPECT_EQ(joined_link(std::nullopt).wire->receiver_baud(), receiver_baud); }
@@ -80,22 +101,108 @@ TEST(Link, ASlowClientLosesBytes) {
 
 TEST(Link, BytesOfTheClientReachTheReceiver) {
     JoinedLink joined = joined_link(receiver_baud);
-    EXPECT_TRUE(joined.link.receive(receiver_baud).empty());
+    EXPECT_TRUE(all_heard(joined.link, receiver_baud).empty());
     joined.wire->feed(sentence_bytes);
-    EXPECT_EQ(joined.link.receive(receiver_baud), sentence_bytes);
+    EXPECT_EQ(all_heard(joined.link, receiver_baud), sentence_bytes);
     EXPECT_EQ(joined.link.counters().bytes_in, sentence_bytes.size());
-    EXPECT_TRUE(joined.link.receive(receiver_baud).empty());
+    EXPECT_TRUE(all_heard(joined.link, receiver_baud).empty());
 }
 
 TEST(Link, BytesOfAClientAtAnotherSpeedReachTheReceiverGarbled) {
     JoinedLink joined = joined_link(4800);
     joined.wire->feed(sentence_bytes);
-    Bytes heard = joined.link.receive(receiver_baud);
-    const Bytes rest = joined.link.receive(receiver_baud);
+    Bytes heard = all_heard(joined.link, receiver_baud);
+    const Bytes rest = all_heard(joined.link, receiver_baud);
     heard.insert(heard.end(), rest.begin(), rest.end());
     EXPECT_GT(heard.size(), sentence_bytes.size()) << "twice as many bits fit into the time";
     EXPECT_EQ(to_string(heard).find("GPRMC"), std::string::npos);
     EXPECT_EQ(joined.link.counters().bytes_in, heard.size());
+}
+
+TEST(Link, AWriteTakesTheTimeOfItsBits) {
+    for (const std::optional<std::uint32_t> client : {std::optional<std::uint32_t>(), std::optional(receiver_baud)}) {
+        JoinedLink joined = paced_link(receiver_baud, client);
+        const GpsTime start = to_gps_time(2400, 0);
+        joined.wire->feed(Bytes(96, 0x55));
+        EXPECT_TRUE(all_heard(joined.link, receiver_baud, start).empty());
+        EXPECT_TRUE(joined.link.input_pending());
+        std::size_t heard = 0;
+        for (const int ms : {1, 2, 3, 50, 99, 100, 101}) {
+            heard += all_heard(joined.link, receiver_baud, start + ms * 1ms).size();
+            EXPECT_EQ(heard, std::min<std::size_t>(96, static_cast<std::size_t>(ms * 1e6 / 1'041'667))) << ms << " ms";
+        }
+        EXPECT_EQ(heard, 96U) << "96 bytes of ten bits are a tenth of a second";
+        EXPECT_FALSE(joined.link.input_pending());
+    }
+}
+
+TEST(Link, HowOftenOneLooksMakesNoDifference) {
+    JoinedLink often = paced_link(receiver_baud, receiver_baud), once = paced_link(receiver_baud, receiver_baud);
+    const GpsTime start = to_gps_time(2400, 0);
+    for (JoinedLink* joined : {&often, &once}) {
+        joined->wire->feed(Bytes(500, 1));
+        joined->link.look(start);
+    }
+    std::size_t heard = 0;
+    for (Nanoseconds t = 0ns; t <= 300ms; t += 700us)
+        heard += all_heard(often.link, receiver_baud, start + t).size();
+    heard += all_heard(often.link, receiver_baud, start + 300ms).size();
+    EXPECT_EQ(heard, all_heard(once.link, receiver_baud, start + 300ms).size());
+    EXPECT_EQ(heard, 287U);
+}
+
+TEST(Link, ASpeedChangeInTheMiddleOfAWriteActsOnTheNextByte) {
+    for (const InputPace pace : {InputPace::line, InputPace::at_once}) {
+        auto transport = std::make_unique<MemoryTransport>();
+        transport->set_line({true, receiver_baud});
+        transport->feed(to_bytes("$PUBX,41*00\r\nthis comes too early"));
+        Link link(std::move(transport), receiver_baud, pace);
+        const GpsTime start = to_gps_time(2400, 0);
+        link.look(start);
+        std::uint32_t baud = receiver_baud;
+        Bytes all;
+        while (const auto heard = link.receive(baud, start + 1s)) {
+            all.insert(all.end(), heard->begin(), heard->end());
+            if (!all.empty() && all.back() == '\n') baud = 38400;
+        }
+        EXPECT_EQ(to_string(all).substr(0, 13), "$PUBX,41*00\r\n");
+        EXPECT_GT(all.size(), 13U);
+        EXPECT_EQ(to_string(all).find('t', 13), std::string::npos) << "not a letter of it is understood";
+    }
+}
+
+TEST(Link, BytesThatWereReadKeepTheirSpeedWhenTheClientChangesItsOwn) {
+    JoinedLink joined = paced_link(receiver_baud, receiver_baud);
+    const GpsTime start = to_gps_time(2400, 0);
+    joined.wire->feed(to_bytes("slow"));
+    joined.link.look(start);
+    joined.wire->set_line({true, 115200});
+    joined.wire->feed(to_bytes("quick"));
+    EXPECT_EQ(to_string(all_heard(joined.link, receiver_baud, start + 4 * 1'041'667ns)), "slow");
+    EXPECT_EQ(to_string(all_heard(joined.link, 115200, start + 4 * 1'041'667ns + 5 * 86'806ns)), "quick")
+        << "five bytes more at twelve times the speed";
+}
+
+TEST(Link, AClientThatWritesWithoutEndHasToWait) {
+    JoinedLink joined = paced_link(receiver_baud, receiver_baud);
+    joined.wire->feed(Bytes(5000, 1));
+    joined.link.look({});
+    joined.wire->feed(to_bytes("later"));
+    joined.link.look({});
+    EXPECT_EQ(to_string(joined.wire->read()), "later") << "left in the driver";
+}
+
+TEST(Link, APortWithoutASpeedHearsEverySpeed) {
+    JoinedLink joined = paced_link(std::nullopt, 4800);
+    EXPECT_EQ(joined.wire->receiver_baud(), 0U) << "none is told";
+    const GpsTime start = to_gps_time(2400, 0);
+    joined.wire->feed(Bytes(3000, 7));
+    EXPECT_TRUE(all_heard(joined.link, std::nullopt, start).empty());
+    EXPECT_EQ(all_heard(joined.link, std::nullopt, start + 1ms).size(), 1499U) << "12 Mbit/s";
+    EXPECT_EQ(all_heard(joined.link, std::nullopt, start + 3ms), Bytes(1501, 7));
+    joined.link.send(sentence_bytes, std::nullopt, true);
+    EXPECT_EQ(joined.wire->written(), sentence_bytes);
+    EXPECT_EQ(joined.link.counters().bytes_garbled, 0U);
 }
 
 }  // namespace

@@ -164,9 +164,9 @@ TEST(Recorder, TheTimesOfBytesFollowTheBytes) {
     const GpsTime start = to_gps_time(2304, 0);
     {
         auto recorder = Recorder::create(folder / "run");
-        recorder->record_output(to_bytes("abc"), start, 100);
-        recorder->record_output({}, start, 150);
-        recorder->record_output(to_bytes("de"), start + std::chrono::milliseconds(1), 200);
+        recorder->record_output(to_bytes("abc"), {start, 100});
+        recorder->record_output({}, {start, 150});
+        recorder->record_output(to_bytes("de"), {start + std::chrono::milliseconds(1), 200});
         recorder->record_input(to_bytes("in"));
     }
     EXPECT_EQ(content_of(folder / "run/port0.out"), "abcde");
@@ -189,7 +189,7 @@ TEST(Recorder, AFolderThatCannotBeMadeIsNamed) {
 
 TEST(Recorder, ReplacesAFormerRunAndTellsFailures) {
     const TemporaryFolder folder;
-    { Recorder::create(folder / "run")->record_output(to_bytes("old"), {}, 0); }
+    { Recorder::create(folder / "run")->record_output(to_bytes("old"), {}); }
     auto recorder = Recorder::create(folder / "run");
     recorder->flush();
     EXPECT_EQ(content_of(folder / "run/port0.out"), "");

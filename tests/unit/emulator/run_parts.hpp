@@ -83,24 +83,33 @@ struct MemoryRunParts {
     LineState line{true, std::nullopt};
 };
 
+/// The receiver of a scenario as the assembly makes it, without wires.
+inline Station::Parts station_parts(const Scenario& scenario, std::size_t index, GpsTime start) {
+    const ReceiverEntry& entry = scenario.receivers.at(index);
+    auto simulation =
+        make_simulation(scenario, {std::make_shared<NominalConstellation>(), nullptr, start, DataFolders{}, index});
+    auto board = find_board(entry.board, board_folders(emulator_data()));
+    EXPECT_TRUE(simulation && board);
+    if (entry.baud) board->baud = *entry.baud;
+    ReceiverSettings settings = receiver_settings(scenario, *board, index);
+    firmware::Receiver receiver = make_receiver(std::move(*board), {entry.rate_hz.value_or(0), std::move(settings)});
+    return {std::move(*simulation), std::move(receiver), {}, {}};
+}
+
 inline MemoryRun memory_run(const Scenario& scenario, MemoryRunParts parts = {}) {
     MemoryRun run;
     run.start = scenario.run.start.value();
-    auto simulation = make_simulation(scenario, std::make_unique<NominalConstellation>(), nullptr, run.start);
-    auto board = find_board(scenario.receiver.board, board_folders(emulator_data()));
-    EXPECT_TRUE(simulation && board);
-    if (scenario.receiver.baud) board->baud = *scenario.receiver.baud;
-    firmware::Receiver receiver(*board, scenario.receiver.rate_hz.value_or(board->default_rate_hz),
-                                receiver_settings(scenario, *board));
+    Station::Parts station = station_parts(scenario, 0, run.start);
+    station.recorder = std::move(parts.recorder);
     auto wire = std::make_unique<MemoryTransport>();
     wire->set_line(parts.line);
     run.wire = wire.get();
-    std::vector<Link> links;
-    links.emplace_back(std::move(wire), receiver.baud());
+    station.wires.push_back(
+        {firmware::PortId::uart1, Link(std::move(wire), port_speed(station.receiver, firmware::PortId::uart1))});
+    std::vector<Station> stations;
+    stations.emplace_back(std::move(station));
     run.emulator = std::make_unique<Emulator>(
-        Emulator::Parts{std::move(*simulation), std::move(receiver), std::move(links),
-                        std::make_unique<TickingPacer>(run.start, parts.tick), std::move(parts.recorder)},
-        run.start);
+        Emulator::Parts{std::move(stations), std::make_unique<TickingPacer>(run.start, parts.tick)}, run.start);
     return run;
 }
 

@@ -277,7 +277,7 @@ TEST(ModernKeys, ErrorsCanAllBeSwitchedOff) {
 }
 
 TEST(ModernKeys, OfTheReceiver) {
-    const ReceiverEntry plain = scenario_of("[[receiver]]").receiver;
+    const ReceiverEntry plain = scenario_of("[[receiver]]").receivers[0];
     EXPECT_TRUE(plain.constellations.empty());
     EXPECT_FALSE(plain.dual_frequency);
     EXPECT_EQ(plain.start, StartKind::hot);
@@ -285,13 +285,13 @@ TEST(ModernKeys, OfTheReceiver) {
     const ReceiverEntry r = scenario_of(
                                 "[[receiver]]\nconstellations = [\"galileo\", \"gps\"]\ndual_frequency = true\n"
                                 "start = \"cold\"\ndynamic_model = \"airborne-2g\"\nstatic_hold_mps = 0.5")
-                                .receiver;
+                                .receivers[0];
     EXPECT_THAT(r.constellations, testing::ElementsAre(Constellation::galileo, Constellation::gps));
     EXPECT_TRUE(r.dual_frequency);
     EXPECT_EQ(r.start, StartKind::cold);
     EXPECT_EQ(r.dynamic_model, DynamicModel::airborne_2g);
     EXPECT_EQ(r.static_hold_below, MetresPerSecond(0.5));
-    EXPECT_EQ(scenario_of("[[receiver]]\nstart = \"warm\"").receiver.start, StartKind::warm);
+    EXPECT_EQ(scenario_of("[[receiver]]\nstart = \"warm\"").receivers[0].start, StartKind::warm);
 }
 
 TEST(ModernKeys, MistakesSayWhereAndWhat) {

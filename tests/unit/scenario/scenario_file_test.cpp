@@ -37,8 +37,9 @@ TEST(ScenarioFile, AnEmptyFileIsTheDefaults) {
     EXPECT_FALSE(s.model.sensor_model) << "modern";
     EXPECT_EQ(model_name(s.model), "modern");
     EXPECT_TRUE(std::holds_alternative<FixedSettings>(s.trajectory));
-    EXPECT_EQ(s.receiver.board, "ublox-m8");
-    EXPECT_TRUE(s.receiver.ports.empty());
+    ASSERT_EQ(s.receivers.size(), 1U);
+    EXPECT_EQ(s.receivers[0].board, "ublox-m8");
+    EXPECT_TRUE(s.receivers[0].ports.empty());
     EXPECT_TRUE(s.warnings.empty());
     EXPECT_EQ(s.name, "folder/test.toml");
 }
@@ -217,13 +218,13 @@ TEST(ScenarioFile, ANavigationFileMayStandAlone) {
 }
 
 TEST(ScenarioFile, ReceiverKeysLandInTheirFields) {
-    const ReceiverEntry r = scenario_of(test::every_key_text).receiver;
+    const ReceiverEntry r = scenario_of(test::every_key_text).receivers[0];
     EXPECT_EQ(r.board, "ublox-f9p");
     EXPECT_THAT(r.ports, ElementsAre("pty:/tmp/gps", "file:out.nmea"));
     EXPECT_EQ(r.rate_hz, 7.5);
     EXPECT_EQ(r.baud, 57600U);
     EXPECT_THAT(r.sentences, ElementsAre(firmware::NmeaSentence::zda, firmware::NmeaSentence::rmc));
-    EXPECT_THAT(scenario_of("[[receiver]]\nport = \"-\"").receiver.ports, ElementsAre("-"));
+    EXPECT_THAT(scenario_of("[[receiver]]\nport = \"-\"").receivers[0].ports, ElementsAre("-"));
 }
 
 TEST(ScenarioFile, EveryShippedScenarioIsReadWithoutAMistake) {

@@ -139,9 +139,6 @@ TEST(ScenarioMistakes, TablesThatContradictThemselvesAreRefused) {
     EXPECT_THAT(mistakes_of("[model.satellite-count]\nsigma_m = [1, 2, 3, 4, 5, -6]"),
                 HasSubstr("has a negative number"));
     EXPECT_THAT(mistakes_of("[model.satellite-count]\nsigma_m = [1, 2, 3]"), HasSubstr("has 3 numbers; expected 6"));
-    EXPECT_THAT(mistakes_of("[[receiver]]\n[[receiver]]"),
-                HasSubstr("test.toml:2:1: [receiver] a second receiver; this version runs one"));
-    EXPECT_THAT(mistakes_of("[[receiver]]\nantenna_offset_m = [0, 0, 1]"), HasSubstr("a lever arm needs"));
 }
 
 TEST(ScenarioMistakes, KeysOfLaterVersionsAreRefusedByName) {

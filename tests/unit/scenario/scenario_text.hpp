@@ -54,6 +54,7 @@ centre = [10.5, -20.25, 300]
 radius_m = 250
 speed_mps = -7
 start_azimuth_deg = 45
+heading_deg = 30
 
 [model]
 name = "whole-path"
@@ -141,6 +142,13 @@ port = ["pty:/tmp/gps", "file:out.nmea"]
 rate_hz = 7.5
 baud = 57600
 sentences = ["ZDA", "RMC"]
+power_up = true
+state_file = "receiver.state"
+antenna_offset_m = [1, 0.5, -2]
+
+[[receiver]]
+name = "rear"
+base = "receiver0"
 )toml";
 
 }  // namespace skyloop::test

@@ -1,0 +1,37 @@
+/// Where an antenna is that does not stand in the middle of its vehicle.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "skyloop/base/units.hpp"
+#include "skyloop/trajectory/trajectory.hpp"
+
+namespace skyloop {
+
+/// From the point that follows the trajectory to the antenna, in the axes of the vehicle; metres.
+struct AntennaOffset {
+    double forward = 0, right = 0, down = 0;
+    bool operator==(const AntennaOffset&) const = default;
+};
+
+/// The path of an antenna on a vehicle that follows another path, upright: pitch and roll are 0. The vehicle looks
+/// where it goes; at rest it looks where it last went, and before it ever moved into a given direction.
+///
+/// State: the heading of the last instant at which it moved. Instants are to come in ascending order.
+class LeverArm : public Trajectory {
+public:
+    /// @param heading_at_rest clockwise from true north, until the vehicle moves
+    LeverArm(std::unique_ptr<Trajectory> vehicle, const AntennaOffset& offset, Angle heading_at_rest);
+    [[nodiscard]] TruthState at(GpsTime time) const override;
+
+private:
+    [[nodiscard]] std::optional<double> course(GpsTime time) const;
+    [[nodiscard]] double yaw_rate(GpsTime time) const;
+
+    std::unique_ptr<Trajectory> vehicle_;
+    AntennaOffset offset_;
+    mutable double heading_;  // rad
+};
+
+}  // namespace skyloop

@@ -1,0 +1,43 @@
+/// The vector between the antennas of a pair that rides on one vehicle.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "skyloop/base/gauss_markov.hpp"
+#include "skyloop/flow/relative_position.hpp"
+#include "skyloop/flow/trace.hpp"
+
+namespace skyloop {
+
+/// How well a rover knows its vector to the base.
+struct BaselineAccuracy {
+    GaussMarkovParameters fixed{0.005, Seconds(30)};   ///< of each axis, m
+    GaussMarkovParameters floating{0.3, Seconds(30)};  ///< of each axis, m, as long as the ambiguities are not whole
+    double per_length = 1e-6;                          ///< more for each metre between the antennas
+    Seconds time_to_fix{5};                            ///< both have had a fix, until the ambiguities are whole
+};
+
+/// Makes the solution of a moving base's rover from the truth and an error: the true vector plus three first-order
+/// Gauss-Markov processes. Numbers: ZED-F9P data sheet, RTK 1 cm + 1 ppm CEP, heading 0.4° at 1 m, which 5 mm each axis
+/// give; times of float and fixed as in RECEIVER.md 4.12.
+///
+/// State: the errors, and since when both receivers have had a fix. All numbers are of streams of their own.
+class MovingBase {
+public:
+    explicit MovingBase(std::uint64_t seed, const BaselineAccuracy& accuracy = {});
+
+    /// The vector at one instant; instants come in ascending order. Nothing while one of the two has no fix of its own.
+    /// @param base,rover of the same instant
+    std::optional<RelativePosition> relate(const Trace& base, const Trace& rover);
+    /// An instant at which the base had no epoch, or a receiver no fix: the ambiguities are searched anew.
+    void lose();
+
+private:
+    BaselineAccuracy accuracy_;
+    std::array<GaussMarkov, 3> fixed_, floating_;  // north, east, down
+    std::optional<GpsTime> last_, both_since_;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,95 @@
+/// One receiver of a run with everything that belongs to it, and the only place that calls the firmware.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware/receiver.hpp"
+#include "skyloop/emulator/epoch_grid.hpp"
+#include "skyloop/emulator/lateness.hpp"
+#include "skyloop/emulator/link.hpp"
+#include "skyloop/emulator/moving_base.hpp"
+#include "skyloop/emulator/recorder.hpp"
+#include "skyloop/emulator/simulation.hpp"
+#include "skyloop/emulator/state_file.hpp"
+
+namespace skyloop {
+
+/// The line speed of a receiver's port, bit/s; nothing for a port that has none.
+PortSpeed port_speed(const firmware::Receiver& receiver, firmware::PortId port);
+
+/// A wire and the port that it is plugged into.
+struct Wire {
+    firmware::PortId port = firmware::PortId::uart1;
+    Link link;
+};
+
+/// What a run counted of one receiver.
+struct RunCounts {
+    std::uint64_t epochs = 0;
+    std::uint64_t epochs_with_fix = 0;
+    LatenessHistogram lateness;
+};
+
+/// A receiver on its antenna's path, with its wires and its recording. The loop tells it when.
+///
+/// State: when its next epoch is.
+class Station {
+public:
+    struct Parts {
+        Simulation simulation;
+        firmware::Receiver receiver;
+        std::vector<Wire> wires;
+        std::optional<Recorder> recorder;
+        std::string name = "receiver0";
+        std::optional<StateFile> state{};
+        std::optional<std::size_t> base{};  ///< the station that carries the base antenna of the pair
+        std::optional<MovingBase> moving_base{};
+    };
+    explicit Station(Parts parts) : parts_(std::move(parts)) {}
+
+    /// The receiver starts; before anything else.
+    void start(GpsTime now);
+    /// Carries bytes between receiver and wires, and follows what the client has configured by them.
+    void exchange(const LoopTime& time);
+    /// What is true, measured and solved at the epoch that is due.
+    Trace observe();
+    /// Adds the vector from the base antenna, and the type of fix that it makes.
+    /// @param base of the same instant, or null when the base has none
+    void relate(Trace& trace, const Trace* base);
+    /// Hands the epoch to receiver and recording.
+    /// @param safe flushes the recording, so that a killed run keeps it
+    void report(const Trace& trace, Nanoseconds lateness, bool safe);
+    /// Looks whether the receiver's memory has changed, at most once a second.
+    void keep_state(GpsTime now);
+    /// Writes what is left to write.
+    void finish(GpsTime now);
+
+    [[nodiscard]] GpsTime next_epoch() const { return grid_.next(); }
+    /// Bytes are on their way or a client listens: the wires want to be looked at often.
+    [[nodiscard]] bool busy() const;
+    [[nodiscard]] std::optional<std::size_t> base() const { return parts_.base; }
+    [[nodiscard]] const std::string& name() const { return parts_.name; }
+    [[nodiscard]] const firmware::Receiver& receiver() const { return parts_.receiver; }
+    [[nodiscard]] PortSpeed speed(firmware::PortId port) const { return port_speed(parts_.receiver, port); }
+    [[nodiscard]] const std::vector<Wire>& wires() const { return parts_.wires; }
+    [[nodiscard]] const Simulation& simulation() const { return parts_.simulation; }
+    [[nodiscard]] const Recorder* recorder() const { return parts_.recorder ? &*parts_.recorder : nullptr; }
+    [[nodiscard]] Recorder* recorder() { return parts_.recorder ? &*parts_.recorder : nullptr; }
+    [[nodiscard]] const std::optional<StateFile>& state() const { return parts_.state; }
+    [[nodiscard]] const RunCounts& counts() const { return counts_; }
+
+private:
+    void hear(std::size_t wire, GpsTime now);
+    void speak(const LoopTime& time);
+    void follow_settings(GpsTime now);
+
+    Parts parts_;
+    EpochGrid grid_;
+    RunCounts counts_;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,28 @@
+/// The ports of a receiver and the wires that a scenario plugs into them.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/emulator/station.hpp"
+#include "skyloop/scenario/scenario.hpp"
+
+namespace skyloop {
+
+/// A wire as it was asked for: "uart2=pty:LINK".
+struct WireRequest {
+    firmware::PortId port = firmware::PortId::uart1;
+    std::string uri;
+};
+
+/// What stands before "=" names the port, what stands behind is a URI of a transport; without a name it is UART1, or
+/// the only port of a board that has no UART1. Fails with `usage`: the sentence quotes the text and lists the board's
+/// ports.
+Result<WireRequest> parse_wire(std::string_view text, const firmware::BoardProfile& board);
+
+/// The wires of one receiver, as they were asked for; opens none. Without any in the scenario it is one pty.
+Result<std::vector<WireRequest>> wires_of(const ReceiverEntry& entry, const firmware::BoardProfile& board);
+
+}  // namespace skyloop

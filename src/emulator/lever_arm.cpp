@@ -1,0 +1,55 @@
+#include "skyloop/emulator/lever_arm.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "skyloop/geo/local_frame.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr double slowest_mps = 0.01;  // below it there is no course
+constexpr double pi = std::numbers::pi;
+
+}  // namespace
+
+LeverArm::LeverArm(std::unique_ptr<Trajectory> vehicle, const AntennaOffset& offset, Angle heading_at_rest)
+    : vehicle_(std::move(vehicle)), offset_(offset), heading_(heading_at_rest.rad()) {}
+
+// Over ground, rad; nothing at rest.
+std::optional<double> LeverArm::course(GpsTime time) const {
+    const TruthState state = vehicle_->at(time);
+    const Eigen::Vector3d enu = LocalFrame(state.geodetic).to_enu(state.velocity).vector();
+    if (std::hypot(enu.x(), enu.y()) < slowest_mps) return std::nullopt;
+    return std::atan2(enu.x(), enu.y());
+}
+
+// rad/s. A path that turns at a corner does so in no time, which is no rate.
+double LeverArm::yaw_rate(GpsTime time) const {
+    constexpr Nanoseconds half_step = std::chrono::milliseconds(5);
+    constexpr double fastest_rad_per_s = 4 * pi;
+    const auto before = course(time - half_step), after = course(time + half_step);
+    if (!before || !after) return 0;
+    const double turned = std::remainder(*after - *before, 2 * pi);
+    const double rate = turned / std::chrono::duration<double>(2 * half_step).count();
+    return std::abs(rate) > fastest_rad_per_s ? 0 : rate;
+}
+
+TruthState LeverArm::at(GpsTime time) const {
+    TruthState state = vehicle_->at(time);
+    const auto moving = course(time);
+    if (moving) heading_ = *moving;
+    const double s = std::sin(heading_), c = std::cos(heading_);
+    const double east = offset_.forward * s + offset_.right * c;
+    const double north = offset_.forward * c - offset_.right * s;
+    const double rate = moving ? yaw_rate(time) : 0;
+    const LocalFrame frame(state.geodetic);
+    // Clockwise from north: what lies ahead moves to the right.
+    const Velocity<Ecef> swing = frame.to_ecef(Velocity<Enu>(rate * north, -rate * east, 0));
+    state.position = state.position + frame.to_ecef(Displacement<Enu>(east, north, -offset_.down));
+    state.velocity = Velocity<Ecef>(state.velocity.vector() + swing.vector());
+    state.geodetic = to_geodetic(state.position);
+    return state;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,143 @@
+#include "receiver_assembly.hpp"
+
+#include <fmt/format.h>
+
+#include "rinex_recording.hpp"
+#include "skyloop/base/digest.hpp"
+#include "skyloop/scenario/board_file.hpp"
+#include "skyloop/transport/open_transport.hpp"
+
+namespace skyloop {
+namespace {
+
+Result<firmware::BoardProfile> board_of(const ReceiverEntry& entry, const DataFolders& data) {
+    auto board = find_board(entry.board, board_folders(data));
+    if (!board) return fail(board.error());
+    if (entry.baud) board->baud = *entry.baud;
+    if (!entry.constellations.empty()) board->constellations = entry.constellations;
+    if (!entry.sentences.empty()) board->sentences.clear();
+    for (const firmware::NmeaSentence sentence : entry.sentences)
+        board->sentences.push_back({sentence, 1});
+    return board;
+}
+
+void warn_of_untracked(const Scenario& scenario, const firmware::BoardProfile& board, const ReceiverSettings& settings,
+                       std::vector<std::string>& warnings) {
+    if (scenario.model.sensor_model) return;
+    for (const Constellation c : scenario.sky.constellations)
+        if (!settings.tracks(c, first_signal(c)))
+            warnings.push_back(
+                fmt::format("{} does not track {}, which sky.constellations names; receiver.constellations tells it to",
+                            board.name, constellation_name(c)));
+}
+
+void warn_of_rate(double asked, const firmware::Receiver& receiver, std::vector<std::string>& warnings) {
+    const firmware::BoardProfile& board = receiver.board();
+    if (asked > board.max_rate_hz)
+        warnings.push_back(
+            fmt::format("{:g} Hz is more than {} can do; it runs at {:g} Hz", asked, board.name, board.max_rate_hz));
+    const double actual = 1e9 / static_cast<double>(receiver.settings().navigation_period.count());
+    if (asked < 0.99 * actual)
+        warnings.push_back(fmt::format("{:g} Hz is less than a receiver can do; it runs at {:.4g} Hz", asked, actual));
+}
+
+RinexRecordingSetup rinex_setup(const Station::Parts& parts, GpsTime start) {
+    const ReceiverSettings& settings = parts.receiver.settings();
+    const NavigationSource& navigation = parts.simulation.navigation();
+    RinexRecordingSetup setup;
+    setup.observations.approximate_position = parts.simulation.truth_at(start).position;
+    setup.observations.interval = Seconds(static_cast<double>(settings.navigation_period.count()) * 1e-9);
+    setup.observations.first_epoch = start;
+    setup.observations.receiver = parts.receiver.board().name;
+    for (const SatelliteId satellite : navigation.satellites()) {
+        const Constellation c = satellite.constellation;
+        if (!setup.observations.signals.contains(c))
+            for (const Signal signal : emulated_signals(c))
+                if (settings.tracks(c, signal)) setup.observations.signals[c].push_back(signal);
+        const auto record = navigation.ephemeris(satellite, start);
+        if (const auto* glonass = record ? std::get_if<GlonassEphemeris>(&*record) : nullptr)
+            setup.observations.glonass_channels[satellite.number] = glonass->frequency_channel;
+    }
+    setup.navigation.ionosphere = navigation.ionosphere();
+    setup.navigation.leap_seconds = LeapSeconds::announced().offset(start);
+    setup.navigation.date = start;
+    return setup;
+}
+
+Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings) {
+    const Scenario& scenario = shared.scenario;
+    const ReceiverEntry& entry = scenario.receivers.at(index);
+    auto board = board_of(entry, shared.data);
+    if (!board) return fail(board.error());
+    auto wires = wires_of(entry, *board);
+    if (!wires) return fail(wires.error());
+    auto simulation = make_simulation(scenario, {shared.navigation, shared.geoid, shared.start, shared.data, index});
+    if (!simulation) return fail(simulation.error());
+    std::optional<StateFile> state;
+    if (!entry.state_file.empty()) {
+        auto opened = StateFile::open(entry.state_file);
+        if (!opened) return fail(opened.error());
+        state = std::move(*opened);
+    }
+    firmware::ReceiverOptions options{entry.rate_hz.value_or(0), receiver_settings(scenario, *board, index),
+                                      receiver_seed(scenario.run.seed, index), entry.power_up};
+    warn_of_untracked(scenario, *board, options.settings, warnings);
+    firmware::Receiver receiver(std::move(*board), std::move(options));
+    if (state && !state->text().empty())
+        if (auto restored = receiver.restore(state->text(), state->path().string()); !restored)
+            return fail(restored.error());
+    Station::Parts parts{std::move(*simulation), std::move(receiver), {}, {}};
+    if (entry.rate_hz) warn_of_rate(*entry.rate_hz, parts.receiver, warnings);
+    parts.name = receiver_name(scenario, index);
+    parts.state = std::move(state);
+    parts.base = entry.base;
+    if (entry.base) parts.moving_base.emplace(receiver_seed(scenario.run.seed, index));
+    return PlannedStation{std::move(parts), std::move(*wires)};
+}
+
+}  // namespace
+
+std::uint64_t receiver_seed(std::uint64_t seed, std::size_t index) {
+    return index == 0 ? seed : fnv1a_64(fmt::format("seed {} receiver {}", seed, index));
+}
+
+Error of_receiver(Error error, const Scenario& scenario, std::size_t index) {
+    if (scenario.receivers.size() > 1)
+        error.message = fmt::format("receiver '{}': {}", receiver_name(scenario, index), error.message);
+    return error;
+}
+
+Result<PlannedStation> plan_station(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings) {
+    std::vector<std::string> own;
+    auto station = planned(shared, index, own);
+    for (const std::string& warning : own)
+        warnings.push_back(of_receiver({ErrorCode::usage, warning}, shared.scenario, index).message);
+    if (!station) return fail(of_receiver(station.error(), shared.scenario, index));
+    return station;
+}
+
+Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::size_t index) {
+    for (const WireRequest& wire : station.wires) {
+        auto transport = open_transport(wire.uri);
+        if (!transport) return fail(of_receiver(transport.error(), shared.scenario, index));
+        if (shared.mode.virtual_time) (*transport)->allow_waiting();
+        const InputPace pace = shared.mode.virtual_time ? InputPace::at_once : InputPace::line;
+        station.parts.wires.push_back(
+            {wire.port, Link(std::move(*transport), port_speed(station.parts.receiver, wire.port), pace)});
+    }
+    return {};
+}
+
+Result<void> add_recorder(Station::Parts& parts, const SharedParts& shared, std::size_t index) {
+    const std::filesystem::path& folder = *shared.mode.record;
+    auto recorder = Recorder::create(index == 0 ? folder : folder / fmt::format("receiver{}", index),
+                                     std::max<std::size_t>(parts.wires.size(), 1));
+    if (!recorder) return fail(recorder.error());
+    if (parts.simulation.measures())
+        if (const auto added = recorder->add_rinex(rinex_setup(parts, shared.start)); !added)
+            return fail(added.error());
+    parts.recorder = std::move(*recorder);
+    return {};
+}
+
+}  // namespace skyloop

@@ -1,0 +1,43 @@
+/// The part of the assembly that is made once for each receiver.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "skyloop/emulator/assembly.hpp"
+#include "skyloop/emulator/wires.hpp"
+
+namespace skyloop {
+
+/// What all receivers of a run share.
+struct SharedParts {
+    const Scenario& scenario;
+    const DataFolders& data;
+    const RunMode& mode;
+    std::shared_ptr<const NavigationSource> navigation;
+    const Geoid* geoid = nullptr;
+    GpsTime start;
+};
+
+/// One receiver before anything is opened or emptied for it.
+struct PlannedStation {
+    Station::Parts parts;
+    std::vector<WireRequest> wires;
+};
+
+/// Builds the receiver of this place in the scenario's list. Fails with `usage` or `input`, naming the receiver when
+/// there are several.
+Result<PlannedStation> plan_station(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings);
+/// Opens its wires.
+Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::size_t index);
+/// Makes the files of its recording: the first receiver's in the folder itself, the others' in receiver1 and so on.
+Result<void> add_recorder(Station::Parts& parts, const SharedParts& shared, std::size_t index);
+
+/// The seed of a receiver's own random numbers. The first has that of the run; the world has it too.
+std::uint64_t receiver_seed(std::uint64_t seed, std::size_t index);
+
+/// An error of one receiver of several names it.
+Error of_receiver(Error error, const Scenario& scenario, std::size_t index);
+
+}  // namespace skyloop

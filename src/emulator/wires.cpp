@@ -1,0 +1,60 @@
+#include "skyloop/emulator/wires.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "skyloop/base/spelling.hpp"
+#include "skyloop/transport/open_transport.hpp"
+
+namespace skyloop {
+namespace {
+
+using firmware::BoardProfile;
+using firmware::PortId;
+
+std::vector<std::string_view> names_of(const std::vector<PortId>& ports) {
+    std::vector<std::string_view> names;
+    for (const PortId port : ports)
+        names.push_back(firmware::port_names[static_cast<std::size_t>(port)]);
+    return names;
+}
+
+PortId default_port(const BoardProfile& board) {
+    const bool has_uart1 = std::find(board.ports.begin(), board.ports.end(), PortId::uart1) != board.ports.end();
+    return has_uart1 || board.ports.empty() ? PortId::uart1 : board.ports.front();
+}
+
+}  // namespace
+
+Result<WireRequest> parse_wire(std::string_view text, const BoardProfile& board) {
+    // A path may hold "=" too: it stands behind the colon of its scheme.
+    const std::size_t equals = text.find('=');
+    const bool named = equals != std::string_view::npos && text.substr(0, equals).find(':') == std::string_view::npos;
+    WireRequest wire{default_port(board), std::string(named ? text.substr(equals + 1) : text)};
+    if (named) {
+        const std::string_view name = text.substr(0, equals);
+        const auto names = names_of(board.ports);
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found == names.end())
+            return fail(ErrorCode::usage, fmt::format("port '{}': {} has no port '{}'{}; expected {}", text, board.name,
+                                                      name, did_you_mean(name, names), fmt::join(names, ", ")));
+        wire.port = board.ports[static_cast<std::size_t>(found - names.begin())];
+    }
+    if (const auto uri = parse_port_uri(wire.uri); !uri) return fail(uri.error());
+    return wire;
+}
+
+Result<std::vector<WireRequest>> wires_of(const ReceiverEntry& entry, const BoardProfile& board) {
+    std::vector<WireRequest> wires;
+    if (entry.ports.empty()) wires.push_back({default_port(board), "pty"});
+    for (const std::string& text : entry.ports) {
+        auto wire = parse_wire(text, board);
+        if (!wire) return fail(wire.error());
+        wires.push_back(std::move(*wire));
+    }
+    return wires;
+}
+
+}  // namespace skyloop

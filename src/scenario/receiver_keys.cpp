@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scenario_keys.hpp"
+
+namespace skyloop {
+namespace {
+
+std::string default_receiver_name(std::size_t index) { return fmt::format("receiver{}", index); }
+
+void add_once(std::vector<firmware::NmeaSentence>& sentences, firmware::NmeaSentence sentence) {
+    if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end()) sentences.push_back(sentence);
+}
+
+void read_output_keys(TableReader& receiver, ReceiverEntry& entry) {
+    receiver.text("board", entry.board);
+    receiver.text_or_texts("port", entry.ports);
+    if (receiver.has("rate_hz")) {
+        double rate = 1;
+        receiver.number("rate_hz", rate, {0.01, 100});
+        entry.rate_hz = rate;
+    }
+    if (receiver.has("baud")) {
+        std::uint32_t baud = 9600;
+        receiver.integer("baud", baud, {300, 4e6});
+        entry.baud = baud;
+    }
+    if (const auto sentences = receiver.choices("sentences", firmware::nmea_sentence_names))
+        for (const std::size_t index : *sentences)
+            add_once(entry.sentences, static_cast<firmware::NmeaSentence>(index));
+}
+
+void read_navigation_keys(TableReader& receiver, ReceiverEntry& entry) {
+    read_constellation_list(receiver, entry.constellations);
+    receiver.boolean("dual_frequency", entry.dual_frequency);
+    static constexpr std::array<Word<StartKind>, 3> starts{
+        {{"hot", StartKind::hot}, {"warm", StartKind::warm}, {"cold", StartKind::cold}}};
+    receiver.word("start", starts, entry.start);
+    static constexpr std::array<Word<DynamicModel>, 8> models{{{"portable", DynamicModel::portable},
+                                                               {"stationary", DynamicModel::stationary},
+                                                               {"pedestrian", DynamicModel::pedestrian},
+                                                               {"automotive", DynamicModel::automotive},
+                                                               {"sea", DynamicModel::sea},
+                                                               {"airborne-1g", DynamicModel::airborne_1g},
+                                                               {"airborne-2g", DynamicModel::airborne_2g},
+                                                               {"airborne-4g", DynamicModel::airborne_4g}}};
+    receiver.word("dynamic_model", models, entry.dynamic_model);
+    receiver.quantity("static_hold_mps", entry.static_hold_below, {0, 100});
+}
+
+void read_place_and_power_keys(TableReader& receiver, ReceiverEntry& entry, const std::filesystem::path& folder) {
+    receiver.boolean("power_up", entry.power_up);
+    std::string state_file;
+    receiver.text("state_file", state_file);
+    if (!state_file.empty()) entry.state_file = folder / state_file;
+    constexpr double longest_arm_m = 1000;
+    if (const auto offset = receiver.numbers("antenna_offset_m", 3)) {
+        std::copy(offset->begin(), offset->end(), entry.antenna_offset.begin());
+        if (std::any_of(offset->begin(), offset->end(), [](double part) { return !(std::abs(part) <= longest_arm_m); }))
+            receiver.mistake("antenna_offset_m", fmt::format("expected numbers from -{0:g} to {0:g}", longest_arm_m));
+    }
+}
+
+// A name stands for the table in messages and in `base`.
+void read_name(TableReader& receiver, Scenario& scenario) {
+    ReceiverEntry& entry = scenario.receivers.back();
+    receiver.text("name", entry.name);
+    if (receiver.has("name") && entry.name.empty()) receiver.mistake("name", "is empty; expected a name");
+    const std::size_t own = scenario.receivers.size() - 1;
+    for (std::size_t i = 0; i < own; ++i)
+        if (receiver_name(scenario, i) == receiver_name(scenario, own))
+            receiver.mistake_here(
+                fmt::format("is the second receiver called '{}'; expected another name", receiver_name(scenario, own)));
+}
+
+// @param names of all receivers of the scenario
+void read_base(TableReader& receiver, std::span<const std::string> names, Scenario& scenario) {
+    std::string base;
+    receiver.text("base", base);
+    if (base.empty()) return;
+    const auto found = std::find(names.begin(), names.end(), base);
+    const auto index = static_cast<std::size_t>(found - names.begin());
+    if (found == names.end())
+        receiver.mistake("base", fmt::format("'{}' is no receiver of this scenario; expected one of {}", base,
+                                             fmt::join(names, ", ")));
+    else if (index + 1 == scenario.receivers.size())
+        receiver.mistake("base", fmt::format("'{}' is this receiver itself; expected another one", base));
+    else
+        scenario.receivers.back().base = index;
+}
+
+}  // namespace
+
+std::string receiver_name(const Scenario& scenario, std::size_t index) {
+    const std::string& name = scenario.receivers.at(index).name;
+    return name.empty() ? default_receiver_name(index) : name;
+}
+
+void read_receivers(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
+    // A rover may stand before its base, so the names are read before the rest.
+    std::vector<std::string> names;
+    top.look_at_tables("receiver", [&](const toml::table& table) {
+        const auto name = table["name"].value<std::string>().value_or("");
+        names.push_back(name.empty() ? default_receiver_name(names.size()) : name);
+    });
+    std::size_t count = 0;
+    top.tables("receiver", [&](TableReader& receiver) {
+        if (count++ > 0) scenario.receivers.emplace_back();
+        read_name(receiver, scenario);
+        ReceiverEntry& entry = scenario.receivers.back();
+        read_output_keys(receiver, entry);
+        read_navigation_keys(receiver, entry);
+        read_place_and_power_keys(receiver, entry, folder);
+        read_base(receiver, names, scenario);
+    });
+}
+
+}  // namespace skyloop

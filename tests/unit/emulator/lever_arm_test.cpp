@@ -1,0 +1,77 @@
+// Antennas beside the path of their vehicle.
+#include "skyloop/emulator/lever_arm.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "skyloop/geo/local_frame.hpp"
+#include "skyloop/trajectory/geometric_paths.hpp"
+
+namespace skyloop {
+namespace {
+
+const GpsTime arm_start = to_gps_time(2400, 0);
+const Geodetic arm_place = Geodetic::degrees(46, 30, 100);
+
+// East, north, up from the vehicle to the antenna.
+Eigen::Vector3d arm_enu(const Trajectory& antenna, const Trajectory& vehicle, GpsTime time) {
+    const TruthState middle = vehicle.at(time);
+    return LocalFrame(middle.geodetic).to_enu(antenna.at(time).position - middle.position).vector();
+}
+
+TEST(LeverArm, AtRestItLooksWhereItIsTold) {
+    const FixedPoint vehicle(arm_place);
+    const LeverArm antenna(std::make_unique<FixedPoint>(arm_place), {2, 1, -0.5}, Angle::degrees(90));
+    const Eigen::Vector3d arm = arm_enu(antenna, vehicle, arm_start);
+    EXPECT_NEAR(arm.x(), 2, 1e-6) << "ahead is east";
+    EXPECT_NEAR(arm.y(), -1, 1e-6) << "right is south";
+    EXPECT_NEAR(arm.z(), 0.5, 1e-6) << "negative down is up";
+    EXPECT_EQ(antenna.at(arm_start).velocity.length().value(), 0);
+    EXPECT_NEAR((to_ecef(antenna.at(arm_start).geodetic) - antenna.at(arm_start).position).length().value(), 0, 1e-6);
+}
+
+TEST(LeverArm, MovingItLooksWhereItGoes) {
+    const Circle::Shape shape{arm_place, Metres(50), MetresPerSecond(5), Angle::degrees(0)};
+    const Circle vehicle(arm_start, shape);
+    const LeverArm antenna(std::make_unique<Circle>(arm_start, shape), {0, 3, 0}, Angle::degrees(123));
+    for (const int second : {0, 7, 20, 55}) {
+        const GpsTime time = arm_start + std::chrono::seconds(second);
+        const double from_centre =
+            LocalFrame(arm_place).to_enu(antenna.at(time).position - to_ecef(arm_place)).vector().head<2>().norm();
+        EXPECT_NEAR(from_centre, 47, 1e-3) << "right of a clockwise path is its centre";
+        EXPECT_NEAR(arm_enu(antenna, vehicle, time).norm(), 3, 1e-6);
+    }
+}
+
+TEST(LeverArm, TheInsideOfATurnIsSlower) {
+    const Circle::Shape shape{arm_place, Metres(50), MetresPerSecond(5), Angle::degrees(0)};
+    const LeverArm antenna(std::make_unique<Circle>(arm_start, shape), {0, 10, 0}, Angle());
+    const GpsTime time = arm_start + std::chrono::seconds(9);
+    EXPECT_NEAR(antenna.at(time).velocity.length().value(), 4, 1e-3) << "40 of 50 m from the centre";
+    const auto step = std::chrono::milliseconds(10);
+    const Eigen::Vector3d passed = (antenna.at(time + step).position - antenna.at(time - step).position).vector();
+    EXPECT_NEAR((passed / 0.02 - antenna.at(time).velocity.vector()).norm(), 0, 1e-3) << "the derivative of the place";
+}
+
+TEST(LeverArm, AfterAStopItLooksWhereItWent) {
+    const std::vector<Waypoint> corners{{arm_place, MetresPerSecond(10), Seconds(5)},
+                                        {Geodetic::degrees(46, 30.001, 100), {}, {}}};
+    const Waypoints vehicle(arm_start, corners);
+    const LeverArm antenna(std::make_unique<Waypoints>(arm_start, corners), {1, 0, 0}, Angle::degrees(180));
+    EXPECT_NEAR(arm_enu(antenna, vehicle, arm_start).y(), -1, 1e-6) << "south, as it was told";
+    EXPECT_NEAR(arm_enu(antenna, vehicle, arm_start + std::chrono::seconds(8)).x(), 1, 1e-4) << "east, as it goes";
+    EXPECT_NEAR(arm_enu(antenna, vehicle, arm_start + std::chrono::seconds(60)).x(), 1, 1e-4) << "and went";
+}
+
+TEST(LeverArm, ACornerIsNoSwing) {
+    const std::vector<Waypoint> corners{{arm_place, MetresPerSecond(10), {}},
+                                        {Geodetic::degrees(46, 30.001, 100), MetresPerSecond(10), {}},
+                                        {Geodetic::degrees(46.001, 30.001, 100), {}, {}}};
+    const LeverArm antenna(std::make_unique<Waypoints>(arm_start, corners), {1, 0, 0}, Angle());
+    for (int ms = 0; ms < 12000; ++ms)
+        ASSERT_LT(antenna.at(arm_start + std::chrono::milliseconds(ms)).velocity.length().value(), 15) << ms << " ms";
+}
+
+}  // namespace
+}  // namespace skyloop

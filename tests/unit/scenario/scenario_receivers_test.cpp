@@ -1,0 +1,87 @@
+// [[receiver]]: several of them, their names, antennas, bases and memories.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scenario_text.hpp"
+
+namespace skyloop {
+namespace {
+
+using test::mistakes_of;
+using test::scenario_of;
+using testing::HasSubstr;
+
+TEST(ScenarioReceivers, EachHasItsOwnKeys) {
+    const Scenario s = scenario_of(
+        "[[receiver]]\nport = [\"uart1=pty:a\", \"uart2=file:x\"]\n"
+        "[[receiver]]\nname = \"rear\"\nboard = \"ublox-f9p\"\nantenna_offset_m = [-0.5, 0.25, -1]\n");
+    ASSERT_EQ(s.receivers.size(), 2U);
+    EXPECT_EQ(s.receivers[0].board, "ublox-m8");
+    EXPECT_EQ(s.receivers[1].board, "ublox-f9p");
+    EXPECT_THAT(s.receivers[0].ports, testing::ElementsAre("uart1=pty:a", "uart2=file:x"));
+    EXPECT_TRUE(s.receivers[1].ports.empty());
+    EXPECT_THAT(s.receivers[0].antenna_offset, testing::ElementsAre(0, 0, 0));
+    EXPECT_THAT(s.receivers[1].antenna_offset, testing::ElementsAre(-0.5, 0.25, -1));
+    EXPECT_EQ(receiver_name(s, 0), "receiver0");
+    EXPECT_EQ(receiver_name(s, 1), "rear");
+    EXPECT_EQ(scenario_of("").receivers.size(), 1U) << "one, without any table";
+}
+
+TEST(ScenarioReceivers, PowerAndMemory) {
+    const ReceiverEntry plain = scenario_of("[[receiver]]").receivers[0];
+    EXPECT_FALSE(plain.power_up);
+    EXPECT_TRUE(plain.state_file.empty());
+    const ReceiverEntry r =
+        scenario_of("[[receiver]]\npower_up = true\nstate_file = \"gps.state\"\nstart = \"cold\"").receivers[0];
+    EXPECT_TRUE(r.power_up);
+    EXPECT_EQ(r.state_file, std::filesystem::path("folder/gps.state")) << "beside the scenario";
+    EXPECT_EQ(r.start, StartKind::cold);
+}
+
+TEST(ScenarioReceivers, ABaseIsNamedOrCounted) {
+    const std::string named =
+        "[[receiver]]\nbase = \"rear\"\n[[receiver]]\nname = \"rear\"\n[[receiver]]\nbase = \"receiver0\"";
+    const Scenario s = scenario_of(named);
+    EXPECT_EQ(s.receivers[0].base, 1U) << "that stands behind its rover";
+    EXPECT_FALSE(s.receivers[1].base);
+    EXPECT_EQ(s.receivers[2].base, 0U);
+}
+
+TEST(ScenarioReceivers, ABaseThatIsNotThereIsRefused) {
+    EXPECT_THAT(mistakes_of("[[receiver]]\nbase = \"reer\"\n[[receiver]]\nname = \"rear\""),
+                testing::AllOf(HasSubstr("test.toml:2:"), HasSubstr("receiver.base: 'reer' is no receiver"),
+                               HasSubstr("expected one of receiver0, rear")));
+    EXPECT_THAT(mistakes_of("[[receiver]]\nbase = \"receiver0\""), HasSubstr("is this receiver itself"));
+    EXPECT_THAT(mistakes_of("[[receiver]]\nbase = 1"), HasSubstr("receiver.base"));
+}
+
+TEST(ScenarioReceivers, NamesAreThereAndDiffer) {
+    EXPECT_THAT(mistakes_of("[[receiver]]\nname = \"a\"\n[[receiver]]\nname = \"a\""),
+                testing::AllOf(HasSubstr("test.toml:3:1"), HasSubstr("second receiver called 'a'")));
+    EXPECT_THAT(mistakes_of("[[receiver]]\n[[receiver]]\nname = \"receiver0\""),
+                HasSubstr("second receiver called 'receiver0'"));
+    EXPECT_THAT(mistakes_of("[[receiver]]\nname = \"\""), HasSubstr("receiver.name: is empty"));
+}
+
+TEST(ScenarioReceivers, LeverArmsAreThreeNumbersOfAVehiclesSize) {
+    EXPECT_THAT(mistakes_of("[[receiver]]\nantenna_offset_m = [1, 2]"), HasSubstr("antenna_offset_m"));
+    EXPECT_THAT(mistakes_of("[[receiver]]\nantenna_offset_m = [1, 2, 1001]"), HasSubstr("-1000 to 1000"));
+    EXPECT_THAT(mistakes_of("[[receiver]]\nantenna_offset_m = [nan, 0, 0]"), HasSubstr("antenna_offset_m"));
+}
+
+TEST(ScenarioReceivers, TheHeadingBelongsToEveryKindOfPath) {
+    const auto heading = [](const std::string& keys) {
+        return std::visit([](const auto& path) { return path.heading.deg(); },
+                          scenario_of("[trajectory]\nheading_deg = 135\n" + keys).trajectory);
+    };
+    EXPECT_NEAR(heading("kind = \"fixed\"\nat = [1, 2, 3]"), 135, 1e-9);
+    EXPECT_NEAR(heading("kind = \"circle\"\ncentre = [1, 2, 3]"), 135, 1e-9);
+    EXPECT_NEAR(heading("kind = \"waypoints\"\n[[trajectory.waypoint]]\nat = [1, 2, 3]\n[[trajectory.waypoint]]\n"
+                        "at = [1, 2.1, 3]"),
+                135, 1e-9);
+    EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"fixed\"\nat = [1, 2, 3]\nheading_deg = 400"),
+                HasSubstr("trajectory.heading_deg"));
+}
+
+}  // namespace
+}  // namespace skyloop
