@@ -6,7 +6,8 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-READERS = "number|boolean|text|texts|text_or_texts|integer|numbers|place|utc|choice|choices|word|quantity|table|tables"
+READERS = ("number|boolean|text|texts|text_or_texts|integer|numbers|whole_numbers|place|utc|choice|choices|word|quantity|"
+           "table|tables")
 COMMENT = re.compile(r"//[^\n]*")
 CODE_SPAN = re.compile(r"`([^`]*)`")
 NAME = re.compile(r"[A-Za-z0-9_]+(?:-[A-Za-z0-9_]+)*")
@@ -51,7 +52,11 @@ def read(name):
 
 def scenario_sources():
     return [path.read_text(encoding="utf-8") for path in sorted((ROOT / "src/scenario").glob("*.cpp"))
-            if path.name != "board_file.cpp"]
+            if not path.name.startswith("board_")]
+
+
+def board_sources():
+    return [path.read_text(encoding="utf-8") for path in sorted((ROOT / "src/scenario").glob("board_*.cpp"))]
 
 
 def columns(header):
@@ -104,7 +109,12 @@ class Pages(unittest.TestCase):
         self.assertEqual(sorted(names_of_rows(read("docs/scenario.md")) - known), [], "told, but never read")
 
     def test_board_keys_are_told(self):
-        self.expect_all(keys_read(read("src/scenario/board_file.cpp")), "boards/README.md")
+        self.expect_all(set().union(*map(keys_read, board_sources())), "boards/README.md")
+
+    def test_board_words_are_told(self):
+        words = set().union(*map(words_read, board_sources()))
+        self.assertGreater(len(words), 10)
+        self.assertEqual(sorted(words - names_told(read("boards/README.md"))), [])
 
     def test_columns_are_told(self):
         names = set(columns("fixes_header")) | set(columns("satellites_header"))

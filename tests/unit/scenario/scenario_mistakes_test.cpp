@@ -103,8 +103,8 @@ TEST(ScenarioMistakes, UnknownWordsSuggestTheNearestKnown) {
               "qzss glonass navic; did you mean 'galileo'?");
     EXPECT_EQ(
         mistakes_of("[[receiver]]\nsentences = [\"RMC\", \"GGGA\"]"),
-        "test.toml:2:21: receiver.sentences: holds 'GGGA'; expected a list of some of RMC VTG GGA GSA GSV GLL GST "
-        "ZDA; did you mean 'GGA'?");
+        "test.toml:2:21: receiver.sentences: holds 'GGGA'; expected a list of some of RMC VTG GGA GNS GSA GSV GLL "
+        "GST ZDA GBS DTM GRS VLW THS; did you mean 'GGA'?");
     EXPECT_THAT(mistakes_of("[atmosphere]\nenvironment = \"citty\""), HasSubstr("did you mean 'city'?"));
     EXPECT_THAT(mistakes_of("[[atmosphere.cloud]]\nkind = \"cumulos\""), HasSubstr("did you mean 'cumulus'?"));
     EXPECT_THAT(mistakes_of("[model]\nname = \"moderne\""), HasSubstr("did you mean 'modern'?"));
