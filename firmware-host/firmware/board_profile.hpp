@@ -19,7 +19,8 @@
 
 namespace skyloop::firmware {
 
-/// Sentences that a receiver can send periodically, in the order in which they leave within one epoch.
+/// Sentences that a receiver can send periodically, in the order in which they leave within one epoch unless the board
+/// gives another (`BoardProfile::messages`).
 enum class NmeaSentence { rmc, vtg, gga, gns, gsa, gsv, gll, gst, zda, gbs, dtm, grs, vlw, ths };
 inline constexpr std::string_view nmea_sentence_names[] = {"RMC", "VTG", "GGA", "GNS", "GSA", "GSV", "GLL",
                                                            "GST", "ZDA", "GBS", "DTM", "GRS", "VLW", "THS"};
@@ -54,13 +55,14 @@ enum class ValueConfigSupport { full, refuse, silence };
 
 /// Who it says it is (MON-VER, SEC-UNIQID, MON-GNSS, boot banner).
 struct Identity {
-    int generation = 8;                        ///< of u-blox: 6, 7, 8, 9, 10
-    std::string software;                      ///< swVersion
-    std::string hardware;                      ///< hwVersion
-    std::vector<std::string> extensions;       ///< of MON-VER, at most 30 characters each
-    Bytes unique_id;                           ///< five bytes, or six on M10
-    std::vector<std::string> banner;           ///< texts of the TXT notices at start
-    std::vector<std::string> version_answers;  ///< whole answers of PMTK605, PAIR020: sentences without checksum
+    int generation = 8;                   ///< of u-blox: 6, 7, 8, 9, 10
+    std::string software;                 ///< swVersion
+    std::string hardware;                 ///< hwVersion
+    std::vector<std::string> extensions;  ///< of MON-VER, at most 30 characters each
+    Bytes unique_id;                      ///< five bytes, or six on M10
+    /// Texts of the TXT notices at start; whole sentences without checksum where they begin with $.
+    std::vector<std::string> banner;
+    std::vector<std::string> version_answers;  ///< to PMTK605, PAIR020: sentences from $, without checksum
 };
 
 /// Times of starting and answering.
