@@ -96,6 +96,11 @@ TEST(LegacyStorage, WithoutFlashItIsTakenAllTheSame) {
     EXPECT_TRUE(rom.store.values(ConfigLayer::flash).empty());
     EXPECT_EQ(rom.set(cfg(0x09), masks(nothing, everything, nothing, "02")), Verdict::acknowledge);
     EXPECT_TRUE(rom.store.values(ConfigLayer::flash).empty());
+    board.identity.generation = 6;
+    board.identity.software = "7.03 (45969)";
+    LegacyBench u6(board);
+    EXPECT_EQ(u6.set(cfg(0x09), masks(nothing, everything, nothing)), Verdict::acknowledge);
+    EXPECT_TRUE(u6.store.values(ConfigLayer::flash).empty());
 }
 
 // From generation 9 on any bit stands for everything (RECEIVER.md 3.3).
