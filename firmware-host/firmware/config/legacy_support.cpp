@@ -75,6 +75,9 @@ int protocol_version(const BoardProfile& board) {
     return 0;
 }
 
-bool has_flash(const BoardProfile& board) { return !board.identity.software.starts_with("ROM"); }
+bool has_flash(const BoardProfile& board) {
+    const std::string& software = board.identity.software;
+    return board.identity.generation <= 7 ? software.starts_with("EXT") : !software.starts_with("ROM");
+}
 
 }  // namespace skyloop::firmware

@@ -77,7 +77,8 @@ bool has_port(const BoardProfile& board, std::uint8_t port_id);
 /// The protocol version that a board names in its MON-VER extensions, in hundredths (18.00 is 1800); 0 when it does
 /// not say.
 int protocol_version(const BoardProfile& board);
-/// Whether the board keeps configuration in flash: firmware that runs from ROM says so in its version.
+/// Whether the board keeps configuration in flash: swVersion says from M8 on that firmware runs from ROM, before that
+/// it does not.
 bool has_flash(const BoardProfile& board);
 
 using LegacyHandler = ConfigOutcome (*)(const LegacyContext& context, ByteSpan payload);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,19 +26,19 @@ inline Bytes hex(std::string_view text) {
     return bytes;
 }
 
-inline constexpr UbxMessageId cfg(std::uint8_t id) { return {0x06, id}; }
-inline constexpr UbxMessageId nav(std::uint8_t id) { return {0x01, id}; }
+inline constexpr UbxMessageId cfg(int id) { return {0x06, static_cast<std::uint8_t>(id)}; }
+inline constexpr UbxMessageId nav(int id) { return {0x01, static_cast<std::uint8_t>(id)}; }
 
 /// What the three boards have in common: every legacy message, speeds, ports, the messages that clients name.
 inline BoardProfile legacy_board() {
     BoardProfile board;
     for (const int id :
          {0x00, 0x01, 0x02, 0x08, 0x09, 0x11, 0x13, 0x16, 0x17, 0x1B, 0x1E, 0x23, 0x24, 0x31, 0x39, 0x3E, 0x47, 0x86})
-        board.legacy[cfg(static_cast<std::uint8_t>(id))] = LegacyAnswer::apply;
+        board.legacy[cfg(id)] = LegacyAnswer::apply;
     board.bauds = {4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600};
     board.ports = {PortId::i2c, PortId::uart1, PortId::uart2, PortId::usb, PortId::spi};
     for (const int id : {0x01, 0x02, 0x03, 0x04, 0x07, 0x11, 0x12, 0x20, 0x21, 0x22, 0x26, 0x35, 0x61})
-        board.messages.push_back(nav(static_cast<std::uint8_t>(id)));
+        board.messages.push_back(nav(id));
     for (std::uint8_t id = 0; id < 6; ++id)
         board.messages.push_back({0xF0, id});
     board.messages.push_back({0x0A, 0x09});
