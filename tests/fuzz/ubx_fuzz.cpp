@@ -10,6 +10,7 @@
 #include "skyloop/protocol/ubx_mon.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
 #include "skyloop/protocol/ubx_satellites.hpp"
+#include "support/ubx_message_types.hpp"
 
 namespace {
 
@@ -57,6 +58,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (piece.kind != StreamKind::ubx) continue;
         const auto frame = parse_frame(piece.bytes);
         if (!frame || encode_frame(frame->id, frame->payload) != piece.bytes) std::abort();
+        if (UbxOutputTypes::written_again(*frame).value_or(piece.bytes) != piece.bytes) std::abort();
         check_payload(frame->payload);
     }
     if (joined != Bytes(stream.begin(), stream.end())) std::abort();
