@@ -4,13 +4,13 @@
 #include <cstdlib>
 #include <utility>
 
+#include "../support/ubx_message_types.hpp"
 #include "skyloop/protocol/stream_splitter.hpp"
 #include "skyloop/protocol/ubx_cfg.hpp"
 #include "skyloop/protocol/ubx_cfg_values.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
 #include "skyloop/protocol/ubx_satellites.hpp"
-#include "support/ubx_message_types.hpp"
 
 namespace {
 
