@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "sample_reports.hpp"
 #include "skyloop/protocol/ubx_names.hpp"
 #include "support/ubx_message_types.hpp"
+#include "ubx_reports.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -23,13 +23,13 @@ bool is_made_here(UbxMessageId message) {
 // Every message of every generation, in each state, is a whole frame that reads and writes to the same bytes.
 TEST(EveryMessage, ReadsBackAsItWasMade) {
     for (const int generation : {6, 7, 8, 9, 10}) {
-        SampleReport fixed(generation), cold(generation), lost(generation);
+        UbxReport fixed(generation), cold(generation), lost(generation);
         cold.start_cold(7);
         lost.lose_fix();
         int made = 0;
         for (const UbxMessageName& message : ubx_message_names()) {
             if (!is_made_here(message.id)) continue;
-            for (const SampleReport* report : {&fixed, &cold, &lost}) {
+            for (const UbxReport* report : {&fixed, &cold, &lost}) {
                 for (const Bytes& bytes : report->frames(message.id)) {
                     const auto frame = parse_frame(bytes);
                     ASSERT_TRUE(frame) << message.name;
@@ -45,7 +45,7 @@ TEST(EveryMessage, ReadsBackAsItWasMade) {
 
 // RECEIVER.md 3.1, 3.2: no message of those tables is left out but those that a pin or a base station sets off.
 TEST(EveryMessage, OfTheSpecificationIsMade) {
-    const SampleReport f9(9);
+    const UbxReport f9(9);
     for (const char* name :
          {"NAV-PVT",       "NAV-POSECEF", "NAV-POSLLH",    "NAV-STATUS",   "NAV-DOP",     "NAV-SOL",
           "NAV-VELECEF",   "NAV-VELNED",  "NAV-HPPOSECEF", "NAV-HPPOSLLH", "NAV-TIMEGPS", "NAV-TIMEUTC",

@@ -1,23 +1,23 @@
 #include <gtest/gtest.h>
 
-#include "sample_reports.hpp"
 #include "skyloop/protocol/ubx_hardware.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
 #include "skyloop/protocol/ubx_ports.hpp"
 #include "skyloop/protocol/ubx_security.hpp"
+#include "ubx_reports.hpp"
 
 namespace skyloop::firmware {
 namespace {
 
-SampleReport high_precision() {
-    SampleReport f9(9);
+UbxReport high_precision() {
+    UbxReport f9(9);
     f9.board.identity.extensions = {"ROM BASE 0x118B2060", "FWVER=HPG 1.32", "PROTVER=27.31"};
     f9.board.dual_frequency = true;
     return f9;
 }
 
 TEST(MonVerMessage, FillsTextsUpWithZeros) {
-    const SampleReport m8(8);
+    const UbxReport m8(8);
     const auto m = m8.report<MonVer>();
     EXPECT_STREQ(m.sw_version.data(), "ROM CORE 3.01 (107888)");
     EXPECT_STREQ(m.hw_version.data(), "00080000");
@@ -28,7 +28,7 @@ TEST(MonVerMessage, FillsTextsUpWithZeros) {
 }
 
 TEST(MonGnssMessage, SaysWhatIsOn) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     EXPECT_EQ(m9.report<MonGnss>().supported, 0x0F);
     EXPECT_EQ(m9.report<MonGnss>().default_gnss, 0x09);
     EXPECT_EQ(m9.report<MonGnss>().simultaneous, 3);
@@ -39,14 +39,14 @@ TEST(MonGnssMessage, SaysWhatIsOn) {
 
 // RECEIVER.md 2.3, 3.2.
 TEST(MonHwMessage, HasThreeForms) {
-    EXPECT_EQ(SampleReport(6).frames(MonHw::message_id)[0].size(), 68u + 8);
-    EXPECT_EQ(SampleReport(8).frames(MonHw::message_id)[0].size(), 60u + 8);
-    EXPECT_EQ(SampleReport(9).frames(MonHw::message_id)[0].size(), 56u + 8);
+    EXPECT_EQ(UbxReport(6).frames(MonHw::message_id)[0].size(), 68u + 8);
+    EXPECT_EQ(UbxReport(8).frames(MonHw::message_id)[0].size(), 60u + 8);
+    EXPECT_EQ(UbxReport(9).frames(MonHw::message_id)[0].size(), 56u + 8);
     EXPECT_EQ(high_precision().frames(MonHw::message_id)[0].size(), 60u + 8);
 }
 
 TEST(MonHwMessage, ReportsTheMonitors) {
-    SampleReport m8(8);
+    UbxReport m8(8);
     m8.state.monitors = {2, 300, 9000, 100000, AntennaStatus::short_circuit, 0, SpoofingIndication::none};
     const auto m = m8.report<MonHw>();
     EXPECT_EQ(m.a_status, 3);
@@ -58,7 +58,7 @@ TEST(MonHwMessage, ReportsTheMonitors) {
 }
 
 TEST(MonRfMessage, HasABlockForEachFrontEnd) {
-    EXPECT_EQ(SampleReport(9).report<MonRf>().blocks.size(), 1u);
+    EXPECT_EQ(UbxReport(9).report<MonRf>().blocks.size(), 1u);
     const auto m = high_precision().report<MonRf>();
     ASSERT_EQ(m.blocks.size(), 2u);
     EXPECT_EQ(m.blocks[1].block_id, 1);
@@ -69,10 +69,10 @@ TEST(MonRfMessage, HasABlockForEachFrontEnd) {
 }
 
 TEST(MonHardwareMessages, AreThere) {
-    EXPECT_EQ(SampleReport(9).report<MonHw3>().pins.size(), 17u);
-    EXPECT_STREQ(SampleReport(9).report<MonHw3>().hw_version.data(), "00190000");
-    EXPECT_EQ(SampleReport(8).report<MonHw2>().cfg_source, 114);
-    SampleReport quiet(9), jammed(9);
+    EXPECT_EQ(UbxReport(9).report<MonHw3>().pins.size(), 17u);
+    EXPECT_STREQ(UbxReport(9).report<MonHw3>().hw_version.data(), "00190000");
+    EXPECT_EQ(UbxReport(8).report<MonHw2>().cfg_source, 114);
+    UbxReport quiet(9), jammed(9);
     jammed.state.monitors.jamming_indicator = 200;
     const auto calm = quiet.report<MonSpan>(), loud = jammed.report<MonSpan>();
     EXPECT_GT(loud.blocks[0].spectrum[127], calm.blocks[0].spectrum[127] + 20);
@@ -80,7 +80,7 @@ TEST(MonHardwareMessages, AreThere) {
 }
 
 TEST(MonPortMessages, CountBytesAndMessages) {
-    SampleReport f9 = high_precision();
+    UbxReport f9 = high_precision();
     PortStatus uart2;
     uart2.id = PortId::uart2;
     uart2.pending = 100000;
@@ -109,14 +109,14 @@ TEST(MonPortMessages, CountBytesAndMessages) {
     EXPECT_EQ(f9.report<MonMsgpp>().msg[2 * 8 + 5], 3);
     EXPECT_EQ(f9.report<MonMsgpp>().skipped[2], 5u);
     EXPECT_EQ(f9.frames(MonRxbuf::message_id)[0].size(), 24u + 8);
-    SampleReport m9(9);
+    UbxReport m9(9);
     m9.ports = {uart2};
     EXPECT_EQ(m9.report<MonComms>().ports[0].port_id, 0x0200);
     EXPECT_EQ(m9.report<MonComms>().prot_ids[3], 255);
 }
 
 TEST(MonSystemMessages, AreThere) {
-    SampleReport f9(9);
+    UbxReport f9(9);
     EXPECT_EQ(f9.report<MonSys>().run_time, 123u);
     EXPECT_LT(f9.report<MonSys>().cpu_load, 30);
     EXPECT_EQ(f9.report<MonPatch>().n_entries, 0);
@@ -124,7 +124,7 @@ TEST(MonSystemMessages, AreThere) {
 }
 
 TEST(SecUniqidMessage, HasTwoVersions) {
-    const auto m9 = SampleReport(9).report<SecUniqid>(), m10 = SampleReport(10).report<SecUniqid>();
+    const auto m9 = UbxReport(9).report<SecUniqid>(), m10 = UbxReport(10).report<SecUniqid>();
     EXPECT_EQ(m9.version, 1);
     EXPECT_EQ(m9.unique_id.size(), 5u);
     EXPECT_EQ(m10.version, 2);
@@ -132,7 +132,7 @@ TEST(SecUniqidMessage, HasTwoVersions) {
 }
 
 TEST(SecSigMessage, TellsJammingAndSpoofing) {
-    SampleReport m10(10);
+    UbxReport m10(10);
     m10.config.set(in_ram, key::itfm_enable, 1);
     m10.state.monitors.jamming_state = 2;
     m10.state.monitors.spoofing = SpoofingIndication::indicated;

@@ -3,16 +3,16 @@
 #include <cmath>
 #include <limits>
 
-#include "sample_reports.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
 #include "skyloop/protocol/ubx_relative.hpp"
 #include "skyloop/protocol/ubx_services.hpp"
+#include "ubx_reports.hpp"
 
 namespace skyloop::firmware {
 namespace {
 
 TEST(NavPvtMessage, SaysWhatTheFixIs) {
-    const SampleReport m9(9);
+    const UbxReport m9(9);
     const auto pvt = m9.report<NavPvt>();
     EXPECT_EQ(pvt.i_tow, 218981521u);  // Tuesday 12:49:41.521 GPS
     EXPECT_EQ(pvt.year, 2024);
@@ -49,7 +49,7 @@ TEST(NavPvtMessage, SaysWhatTheFixIs) {
 }
 
 TEST(NavPvtMessage, IsShorterBeforeM8) {
-    const SampleReport old(7), m8(8);
+    const UbxReport old(7), m8(8);
     EXPECT_FALSE(old.report<NavPvt>().vehicle);
     EXPECT_EQ(old.report<NavPvt>().flags2, 0);
     EXPECT_TRUE(m8.report<NavPvt>().vehicle);
@@ -57,7 +57,7 @@ TEST(NavPvtMessage, IsShorterBeforeM8) {
 
 // RECEIVER.md 4.10, the column of a receiver that never had a fix.
 TEST(NavPvtMessage, HasTheValuesOfAReceiverWithoutAnyFix) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     m9.start_cold(19.0);
     const auto pvt = m9.report<NavPvt>();
     EXPECT_EQ(pvt.fix_type, 0);
@@ -83,7 +83,7 @@ TEST(NavPvtMessage, HasTheValuesOfAReceiverWithoutAnyFix) {
 
 // M9N 4.04 counts from 2020-08-02, the start of its reference week (RECEIVER.md 4.9).
 TEST(NavPvtMessage, CountsFromTheReferenceWeekBeforeItKnowsTheTime) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     m9.start_cold(19.0);
     m9.config.set(in_ram, key::navspg_wknrollover, 2117);
     const auto pvt = m9.report<NavPvt>();
@@ -97,7 +97,7 @@ TEST(NavPvtMessage, CountsFromTheReferenceWeekBeforeItKnowsTheTime) {
 
 // RECEIVER.md 4.10, the column of a lost fix.
 TEST(NavPvtMessage, KeepsThePlaceOfALostFix) {
-    SampleReport m8(8);
+    UbxReport m8(8);
     m8.lose_fix();
     const auto pvt = m8.report<NavPvt>();
     EXPECT_EQ(pvt.fix_type, 0);
@@ -112,7 +112,7 @@ TEST(NavPvtMessage, KeepsThePlaceOfALostFix) {
 }
 
 TEST(NavPvtMessage, TellsTheStepsOfTimeApart) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     m9.state.time.leap_seconds = false;
     m9.state.time.confirmed = false;
     EXPECT_EQ(m9.report<NavPvt>().valid, 0xF3);
@@ -126,7 +126,7 @@ TEST(NavPvtMessage, TellsTheStepsOfTimeApart) {
 }
 
 TEST(NavPvtMessage, NamesTheStandardOfTheOnlySystem) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     m9.state.epoch.fix.satellites.clear();
     add_satellites(m9.state.epoch.fix, Constellation::glonass, 1, 6);
     EXPECT_EQ(m9.report<NavPvt>().valid, 0x67);
@@ -136,7 +136,7 @@ TEST(NavPvtMessage, NamesTheStandardOfTheOnlySystem) {
 }
 
 TEST(NavPvtMessage, TellsFloatFromFixed) {
-    SampleReport f9(9);
+    UbxReport f9(9);
     f9.state.corrections = {CorrectionState::differential, Seconds(1.5), 12};
     f9.state.epoch.fix.type = FixType::dgnss;
     EXPECT_EQ(f9.report<NavPvt>().flags, 0x03);
@@ -152,7 +152,7 @@ TEST(NavPvtMessage, TellsFloatFromFixed) {
 
 // RECEIVER.md 3.1, lastCorrectionAge.
 TEST(NavPvtMessage, CodesTheAgeOfCorrections) {
-    SampleReport f9(9);
+    UbxReport f9(9);
     const double ages[] = {0, 0.99, 1, 2, 4.9, 5, 10, 15, 20, 30, 45, 60, 90, 120, 1e9};
     const int codes[] = {1, 1, 2, 3, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 12};
     for (std::size_t i = 0; i < std::size(ages); ++i) {
@@ -162,7 +162,7 @@ TEST(NavPvtMessage, CodesTheAgeOfCorrections) {
 }
 
 TEST(NavPvtMessage, FreezesTheCourse) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     m9.state.course_is_frozen = true;
     EXPECT_EQ(m9.report<NavPvt>().head_mot, 5313000);
     EXPECT_EQ(m9.report<NavPvt>().head_acc, 18000000u);
@@ -174,7 +174,7 @@ TEST(NavPvtMessage, FreezesTheCourse) {
 
 // Nothing overflows: UBSan looks on.
 TEST(NavPvtMessage, StaysInTheRangesOfItsFields) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     Fix& fix = m9.state.epoch.fix;
     fix.horizontal_accuracy = Metres(1e9);
     fix.vertical_accuracy = Metres(std::numeric_limits<double>::infinity());
@@ -198,7 +198,7 @@ TEST(NavPvtMessage, StaysInTheRangesOfItsFields) {
 }
 
 TEST(NavSolutionMessages, AgreeOnThePlace) {
-    const SampleReport f9(9);
+    const UbxReport f9(9);
     const auto place = f9.report<NavPosllh>();
     EXPECT_EQ(place.lon, 87654322);
     EXPECT_EQ(place.h_msl, 490976);
@@ -223,7 +223,7 @@ TEST(NavSolutionMessages, AgreeOnThePlace) {
 }
 
 TEST(NavSolutionMessages, SplitNegativeNumbersToOneSide) {
-    SampleReport f9(9);
+    UbxReport f9(9);
     f9.state.epoch.fix.position = Geodetic::degrees(-33.1234567891, -70.00000000051, -0.0005);
     const auto fine = f9.report<NavHpposllh>();
     EXPECT_EQ(fine.lat, -331234567);
@@ -235,7 +235,7 @@ TEST(NavSolutionMessages, SplitNegativeNumbersToOneSide) {
 }
 
 TEST(NavSolutionMessages, AgreeOnTheVelocity) {
-    const SampleReport m8(8);
+    const UbxReport m8(8);
     const auto local = m8.report<NavVelned>();
     EXPECT_EQ(local.vel_n, 300);
     EXPECT_EQ(local.vel_d, -125);
@@ -251,7 +251,7 @@ TEST(NavSolutionMessages, AgreeOnTheVelocity) {
 }
 
 TEST(NavSolutionMessages, HaveTheBytesOfCapturedReceiversWithoutAnyFix) {
-    SampleReport f9(9);
+    UbxReport f9(9);
     f9.start_cold(19.0);
     EXPECT_EQ(f9.report<NavPosecef>().ecef, (std::array<std::int32_t, 3>{637813700, 0, 0}));
     EXPECT_EQ(f9.report<NavHpposllh>().flags, 1);
@@ -271,7 +271,7 @@ TEST(NavSolutionMessages, HaveTheBytesOfCapturedReceiversWithoutAnyFix) {
 }
 
 TEST(NavSolMessage, HasTheFlagsOfM8) {
-    SampleReport m8(8);
+    UbxReport m8(8);
     EXPECT_EQ(m8.report<NavSol>().flags, 0xDD);
     EXPECT_EQ(m8.report<NavSol>().gps_fix, 3);
     EXPECT_EQ(m8.report<NavSol>().week, 2304);
@@ -282,7 +282,7 @@ TEST(NavSolMessage, HasTheFlagsOfM8) {
 }
 
 TEST(NavStatusMessage, TellsSpoofingAndTheFirstFix) {
-    SampleReport m8(8);
+    UbxReport m8(8);
     EXPECT_EQ(m8.report<NavStatus>().flags, 0xDD);
     EXPECT_EQ(m8.report<NavStatus>().flags2, 0x08);
     EXPECT_EQ(m8.report<NavStatus>().ttff, 26500u);
@@ -293,7 +293,7 @@ TEST(NavStatusMessage, TellsSpoofingAndTheFirstFix) {
 }
 
 TEST(NavDopMessage, KeepsTimeInATimeOnlySolution) {
-    SampleReport f9(9);
+    UbxReport f9(9);
     EXPECT_EQ(f9.report<NavDop>().h_dop, 110);
     f9.state.epoch.fix.type = FixType::time_only;
     EXPECT_EQ(f9.report<NavDop>().t_dop, 131);
@@ -304,7 +304,7 @@ TEST(NavDopMessage, KeepsTimeInATimeOnlySolution) {
 }
 
 TEST(NavCovMessage, SplitsTheAccuracies) {
-    const SampleReport m9(9);
+    const UbxReport m9(9);
     const auto m = m9.report<NavCov>();
     EXPECT_NEAR(m.pos_cov[0] + m.pos_cov[3], 3.3 * 3.3, 1e-3);
     EXPECT_NEAR(m.pos_cov[5], 5.04 * 5.04, 1e-3);
@@ -314,7 +314,7 @@ TEST(NavCovMessage, SplitsTheAccuracies) {
 }
 
 TEST(NavOdoMessage, RoundsToMetres) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     m9.state.odometer_m = 12.6;
     m9.state.odometer_total_m = 1e12;
     m9.state.odometer_deviation_m = 0.4;
@@ -325,7 +325,7 @@ TEST(NavOdoMessage, RoundsToMetres) {
 }
 
 TEST(NavRelposnedMessage, IsFlagOneAndZerosWithoutABase) {
-    const SampleReport f9(9), m8p(8);
+    const UbxReport f9(9), m8p(8);
     const auto m = f9.report<NavRelposned>();
     EXPECT_EQ(m.version, 1);
     EXPECT_EQ(m.flags, 1u);
@@ -336,7 +336,7 @@ TEST(NavRelposnedMessage, IsFlagOneAndZerosWithoutABase) {
 }
 
 TEST(NavRelposnedMessage, GivesTheVectorOfAMovingBase) {
-    SampleReport f9(9);
+    UbxReport f9(9);
     f9.state.epoch.fix.type = FixType::rtk_fixed;
     f9.state.epoch.relative = RelativePosition{-0.30004, 0.40007, -0.0123, Metres(0.01), true, true, 77};
     const auto m = f9.report<NavRelposned>();
@@ -355,7 +355,7 @@ TEST(NavRelposnedMessage, GivesTheVectorOfAMovingBase) {
 }
 
 TEST(NavSvinMessage, RunsUntilTheTimeOnlySolution) {
-    SampleReport f9(9);
+    UbxReport f9(9);
     EXPECT_EQ(f9.report<NavSvin>().active, 0);
     f9.config.set(in_ram, key::tmode_mode, 1);
     EXPECT_EQ(f9.report<NavSvin>().active, 1);
@@ -366,7 +366,7 @@ TEST(NavSvinMessage, RunsUntilTheTimeOnlySolution) {
 }
 
 TEST(NavDgpsMessage, ListsTheCorrectedSatellites) {
-    SampleReport m8(8);
+    UbxReport m8(8);
     EXPECT_EQ(m8.report<NavDgps>().age, 999999);
     EXPECT_TRUE(m8.report<NavDgps>().satellites.empty());
     m8.state.corrections = {CorrectionState::differential, Seconds(2.5), 5};
@@ -376,7 +376,7 @@ TEST(NavDgpsMessage, ListsTheCorrectedSatellites) {
 }
 
 TEST(NavServiceMessages, CarryTheEpoch) {
-    const SampleReport m8(8);
+    const UbxReport m8(8);
     EXPECT_EQ(m8.report<NavEoe>().i_tow, 218981521u);
     EXPECT_EQ(m8.report<NavGeofence>().i_tow, 218981521u);
     EXPECT_EQ(m8.report<NavAopstatus>().i_tow, 218981521u);

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "sample_reports.hpp"
 #include "skyloop/protocol/ubx_raw.hpp"
 #include "skyloop/protocol/ubx_satellites.hpp"
+#include "ubx_reports.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -25,8 +25,8 @@ Observation raw_signal(SatelliteId satellite, Signal signal, double pseudorange_
     return o;
 }
 
-SampleReport measured() {
-    SampleReport f9(9);
+UbxReport measured() {
+    UbxReport f9(9);
     f9.state.epoch.observations.receive_time = to_gps_time({2304, 218981521ms + 200us});
     f9.state.epoch.observations.signals = {raw_signal({Constellation::gps, 1}, Signal::l1, 22'345'678.9),
                                            raw_signal({Constellation::gps, 1}, Signal::l2, 22'345'680.1),
@@ -35,7 +35,7 @@ SampleReport measured() {
 }
 
 TEST(RxmRawxMessage, IsInTheTimeOfTheReceiver) {
-    SampleReport f9 = measured();
+    UbxReport f9 = measured();
     auto m = f9.report<RxmRawx>();
     EXPECT_DOUBLE_EQ(m.rcv_tow, 218981.5212);
     EXPECT_EQ(m.week, 2304);
@@ -48,7 +48,7 @@ TEST(RxmRawxMessage, IsInTheTimeOfTheReceiver) {
 }
 
 TEST(RxmRawxMessage, CodesDeviationsAndTracking) {
-    SampleReport f9 = measured();
+    UbxReport f9 = measured();
     auto& signals = f9.state.epoch.observations.signals;
     signals[1].carrier_phase = std::nullopt;
     signals[2].half_cycle_resolved = false;
@@ -80,14 +80,14 @@ TEST(RxmRawxMessage, CodesDeviationsAndTracking) {
 }
 
 TEST(RxmRawxMessage, IsEmptyForAModelThatMeasuresNothing) {
-    const SampleReport m8(8);
+    const UbxReport m8(8);
     EXPECT_TRUE(m8.report<RxmRawx>().measurements.empty());
     EXPECT_DOUBLE_EQ(m8.report<RxmRawx>().rcv_tow, 218981.521);
 }
 
 // G20 of a captured ZED-F9P (fw 1.11): RAWX gives 66.69534 ms of travel, MEASX 710 chips and 1018/1024.
 TEST(RxmMeasxMessage, HasTheCodePhaseOfTheTravelTime) {
-    SampleReport f9 = measured();
+    UbxReport f9 = measured();
     const double travel_ms = 66.0 + (710 + 1018 / 1024.0) / 1023;
     f9.state.epoch.observations.signals = {
         raw_signal({Constellation::gps, 20}, Signal::l1, travel_ms * 299792.458 + 0.05),
@@ -110,7 +110,7 @@ TEST(RxmMeasxMessage, HasTheCodePhaseOfTheTravelTime) {
 }
 
 TEST(RxmSfrbxMessage, HasOneFrameForEachSubframe) {
-    SampleReport f9(9);
+    UbxReport f9(9);
     EXPECT_TRUE(f9.frames(RxmSfrbx::message_id).empty());
     f9.state.epoch.subframes = {{{Constellation::gps, 2}, Signal::l1, {}, 0, {0x22C00E18, 1, 2, 3, 4, 5, 6, 7, 8, 9}},
                                 {{Constellation::glonass, 9}, Signal::g1, {}, -2, {1, 2, 3, 4}}};
@@ -128,7 +128,7 @@ TEST(RxmSfrbxMessage, HasOneFrameForEachSubframe) {
 }
 
 TEST(RxmSvsiMessage, TellsWhatIsKnown) {
-    SampleReport m8(8);
+    UbxReport m8(8);
     m8.state.epoch.fix.satellites[1].has_ephemeris = false;
     const auto m = m8.report<RxmSvsi>();
     EXPECT_EQ(m.num_vis, 12);

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "firmware/messages/field_values.hpp"
-#include "sample_reports.hpp"
 #include "skyloop/protocol/ubx_satellites.hpp"
 #include "skyloop/protocol/ubx_services.hpp"
+#include "ubx_reports.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -30,14 +30,14 @@ TEST(SatelliteNumbers, FollowTheTable) {
     EXPECT_EQ(gnss_id(Constellation::glonass), 6);
     EXPECT_EQ(sv_id({Constellation::sbas, 23}), 123);
     EXPECT_EQ(sv_id({Constellation::beidou, 63}), 63);
-    EXPECT_EQ(single_byte_number({Constellation::galileo, 36}), 246);
-    EXPECT_EQ(single_byte_number({Constellation::beidou, 5}), 163);
-    EXPECT_EQ(single_byte_number({Constellation::beidou, 6}), 33);
-    EXPECT_EQ(single_byte_number({Constellation::beidou, 37}), 64);
-    EXPECT_FALSE(single_byte_number({Constellation::beidou, 38}));
-    EXPECT_EQ(single_byte_number({Constellation::qzss, 1}), 193);
-    EXPECT_EQ(single_byte_number({Constellation::glonass, 24}), 88);
-    EXPECT_EQ(single_byte_number({Constellation::sbas, 20}), 120);
+    EXPECT_EQ(ubx_single_number({Constellation::galileo, 36}), 246);
+    EXPECT_EQ(ubx_single_number({Constellation::beidou, 5}), 163);
+    EXPECT_EQ(ubx_single_number({Constellation::beidou, 6}), 33);
+    EXPECT_EQ(ubx_single_number({Constellation::beidou, 37}), 64);
+    EXPECT_FALSE(ubx_single_number({Constellation::beidou, 38}));
+    EXPECT_EQ(ubx_single_number({Constellation::qzss, 1}), 193);
+    EXPECT_EQ(ubx_single_number({Constellation::glonass, 24}), 88);
+    EXPECT_EQ(ubx_single_number({Constellation::sbas, 20}), 120);
 }
 
 TEST(SatelliteNumbers, NameSignals) {
@@ -56,7 +56,7 @@ TEST(SatelliteNumbers, NameSignals) {
 }
 
 TEST(NavSatMessage, HasTheTypicalFlags) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     m9.state.epoch.fix.satellites[0].residual = Metres(-1.26);
     const auto m = m9.report<NavSat>();
     ASSERT_EQ(m.satellites.size(), 12u);
@@ -72,7 +72,7 @@ TEST(NavSatMessage, HasTheTypicalFlags) {
 }
 
 TEST(NavSatMessage, TellsWhatItDoesNotKnow) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     m9.state.time.leap_seconds = false;
     auto& satellites = m9.state.epoch.fix.satellites;
     satellites[0].has_ephemeris = false;
@@ -94,7 +94,7 @@ TEST(NavSatMessage, TellsWhatItDoesNotKnow) {
 }
 
 TEST(NavSatMessage, NamesTheCorrections) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     m9.state.epoch.fix.type = FixType::dgnss;
     EXPECT_EQ(m9.report<NavSat>().satellites[0].flags, 0x191Fu | 0x00010040u);
     m9.state.corrections.state = CorrectionState::rtk_fixed;
@@ -103,7 +103,7 @@ TEST(NavSatMessage, NamesTheCorrections) {
 }
 
 TEST(NavSatMessage, IsSortedAndCountsTo255) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     m9.state.epoch.fix.satellites.clear();
     for (int i = 0; i < 300; ++i)
         m9.state.epoch.fix.satellites.push_back({{Constellation::gps, 300 - i}, Angle(), Angle(), std::nullopt});
@@ -114,7 +114,7 @@ TEST(NavSatMessage, IsSortedAndCountsTo255) {
 }
 
 TEST(NavSvinfoMessage, NumbersChannels) {
-    SampleReport m8(8);
+    UbxReport m8(8);
     const auto m = m8.report<NavSvinfo>();
     EXPECT_EQ(m.global_flags, 4);
     ASSERT_EQ(m.channels.size(), 12u);
@@ -126,11 +126,11 @@ TEST(NavSvinfoMessage, NumbersChannels) {
     EXPECT_EQ(m.channels[8].sv_id, 211);
     m8.state.epoch.fix.satellites[0].healthy = false;
     EXPECT_EQ(m8.report<NavSvinfo>().channels[0].flags, 0x1D);
-    EXPECT_EQ(SampleReport(7).report<NavSvinfo>().global_flags, 3);
+    EXPECT_EQ(UbxReport(7).report<NavSvinfo>().global_flags, 3);
 }
 
 TEST(NavOrbMessage, TellsHealthAndVisibility) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     auto& satellites = m9.state.epoch.fix.satellites;
     satellites[1].elevation = Angle::degrees(2);
     satellites[2].elevation = Angle::degrees(-3);
@@ -146,7 +146,7 @@ TEST(NavOrbMessage, TellsHealthAndVisibility) {
 }
 
 TEST(NavSbasMessage, NamesTheStrongestSatellite) {
-    SampleReport m8(8);
+    UbxReport m8(8);
     EXPECT_EQ(m8.report<NavSbas>().geo, 0);
     add_satellites(m8.state.epoch.fix, Constellation::sbas, 23, 3);
     m8.state.epoch.fix.satellites[12].used = m8.state.epoch.fix.satellites[13].used = false;
@@ -159,7 +159,7 @@ TEST(NavSbasMessage, NamesTheStrongestSatellite) {
 }
 
 TEST(NavSigMessage, ComesFromTheSatellitesOfAModelThatMeasuresNothing) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     const auto m = m9.report<NavSig>();
     ASSERT_EQ(m.signals.size(), 12u);
     EXPECT_EQ(m.signals[0].flags, 0x29);  // RECEIVER.md 3.1
@@ -178,7 +178,7 @@ TEST(NavSigMessage, ComesFromTheSatellitesOfAModelThatMeasuresNothing) {
 }
 
 TEST(NavSigMessage, ListsEverySignal) {
-    SampleReport f9(9);
+    UbxReport f9(9);
     auto& signals = f9.state.epoch.observations.signals;
     signals = {tracked_signal({Constellation::gps, 1}, Signal::l1), tracked_signal({Constellation::gps, 1}, Signal::l2),
                tracked_signal({Constellation::gps, 2}, Signal::l1)};
@@ -196,7 +196,7 @@ TEST(NavSigMessage, ListsEverySignal) {
 }
 
 TEST(NavSigMessage, CallsB1iB1cWhereThatIsConfigured) {
-    SampleReport m10(10);
+    UbxReport m10(10);
     m10.state.epoch.fix.satellites.clear();
     add_satellites(m10.state.epoch.fix, Constellation::beidou, 20, 1);
     EXPECT_EQ(m10.report<NavSig>().signals[0].sig_id, 0);

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "sample_reports.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
 #include "skyloop/protocol/ubx_time.hpp"
+#include "ubx_reports.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 // RECEIVER.md 4.9: UTC to the nearest 10 ms, the rest in nano.
 TEST(TimeOfMessages, RoundsToTenMilliseconds) {
-    SampleReport m9(9, "2012-01-01T00:00:00Z");
+    UbxReport m9(9, "2012-01-01T00:00:00Z");
     m9.state.epoch.fix.time -= 700us;
     auto pvt = m9.report<NavPvt>();
     EXPECT_EQ(pvt.year, 2012);
@@ -33,7 +33,7 @@ TEST(TimeOfMessages, RoundsToTenMilliseconds) {
 }
 
 TEST(TimeOfMessages, KeepsTheFlooredSecondInsideIt) {
-    SampleReport m8(8, "2017-07-19T08:50:01.8Z");
+    UbxReport m8(8, "2017-07-19T08:50:01.8Z");
     m8.state.epoch.fix.time -= 100313ns;
     const auto pvt = m8.report<NavPvt>();
     EXPECT_EQ(pvt.second, 1);
@@ -47,7 +47,7 @@ TEST(TimeOfMessages, KeepsTheFlooredSecondInsideIt) {
 }
 
 TEST(TimeOfMessages, CountsToSixtyInALeapSecond) {
-    SampleReport m8(8, "2016-12-31T23:59:60Z");
+    UbxReport m8(8, "2016-12-31T23:59:60Z");
     EXPECT_EQ(m8.report<NavPvt>().second, 60);
     EXPECT_EQ(m8.report<NavPvt>().day, 31);
     EXPECT_EQ(m8.report<NavTimeutc>().second, 60);
@@ -58,14 +58,14 @@ TEST(TimeOfMessages, CountsToSixtyInALeapSecond) {
 }
 
 TEST(TimeOfMessages, BelievesAWrongLeapSecond) {
-    SampleReport m8(8, "2024-03-05T12:00:00Z");
+    UbxReport m8(8, "2024-03-05T12:00:00Z");
     m8.state.epoch.fix.leap_seconds = 17;
     EXPECT_EQ(m8.report<NavPvt>().second, 1);
     EXPECT_EQ(m8.report<NavTimegps>().leap_s, 17);
 }
 
 TEST(TimeOfMessages, BeginsTheWeekAtZero) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     m9.state.epoch.fix.time = to_gps_time({2300, 0ns}) - 400us;
     EXPECT_EQ(m9.report<NavTimegps>().i_tow, 0u);
     EXPECT_EQ(m9.report<NavTimegps>().week, 2300);
@@ -77,7 +77,7 @@ TEST(TimeOfMessages, BeginsTheWeekAtZero) {
 }
 
 TEST(NavTimegpsMessage, GoesFromThreeToSeven) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     EXPECT_EQ(m9.report<NavTimegps>().valid, 7);
     EXPECT_EQ(m9.report<NavTimegps>().t_acc, 25u);
     m9.state.time.leap_seconds = false;
@@ -90,7 +90,7 @@ TEST(NavTimegpsMessage, GoesFromThreeToSeven) {
 
 // One instant of the captured ZED-F9P (2025-04-25 06:38:04 UTC): NAV-TIMEGLO, BDS, GAL and QZSS beside each other.
 TEST(NavTimeMessages, AgreeWithACapturedReceiver) {
-    SampleReport f9(9);
+    UbxReport f9(9);
     f9.state.epoch.fix.time = to_gps_time({2363, 455902s}) - 64933ns;
     const auto glonass = f9.report<NavTimeglo>();
     EXPECT_EQ(glonass.tod, 0x877Cu);
@@ -112,7 +112,7 @@ TEST(NavTimeMessages, AgreeWithACapturedReceiver) {
 }
 
 TEST(NavTimelsMessage, TellsWhereTheNumberIsFrom) {
-    SampleReport m9(9, "2024-03-05T12:00:00Z");
+    UbxReport m9(9, "2024-03-05T12:00:00Z");
     EXPECT_EQ(m9.report<NavTimels>().src_of_curr_ls, 2);
     EXPECT_EQ(m9.report<NavTimels>().curr_ls, 18);
     EXPECT_EQ(m9.report<NavTimels>().ls_change, 0);
@@ -124,7 +124,7 @@ TEST(NavTimelsMessage, TellsWhereTheNumberIsFrom) {
 }
 
 TEST(NavTimelsMessage, AnnouncesTheNextOne) {
-    const SampleReport m8(8, "2016-12-31T23:00:00Z");
+    const UbxReport m8(8, "2016-12-31T23:00:00Z");
     const auto m = m8.report<NavTimels>();
     EXPECT_EQ(m.curr_ls, 17);
     EXPECT_EQ(m.ls_change, 1);
@@ -134,7 +134,7 @@ TEST(NavTimelsMessage, AnnouncesTheNextOne) {
 }
 
 TEST(NavClockMessage, StaysWithinHalfAMillisecond) {
-    SampleReport m9(9);
+    UbxReport m9(9);
     EXPECT_EQ(m9.report<NavClock>().clk_b, 200000);
     EXPECT_EQ(m9.report<NavClock>().clk_d, 500);
     EXPECT_EQ(m9.report<NavClock>().f_acc, 834u);
@@ -146,7 +146,7 @@ TEST(NavClockMessage, StaysWithinHalfAMillisecond) {
 }
 
 TEST(TimTpMessage, NamesTheNextPulse) {
-    SampleReport m8(8);
+    UbxReport m8(8);
     const auto tp = m8.report<TimTp>();
     EXPECT_EQ(tp.tow_ms, 218964000u);  // UTC grid: 12:49:24
     EXPECT_EQ(tp.tow_sub_ms, 0u);

@@ -15,8 +15,8 @@
 namespace skyloop::firmware {
 
 /// A board of a generation of u-blox, its factory configuration and an epoch with a fix.
-struct SampleReport {
-    explicit SampleReport(int generation, const char* utc = "2024-03-05T12:49:23.521Z")
+struct UbxReport {
+    explicit UbxReport(int generation, const char* utc = "2024-03-05T12:49:23.521Z")
         : board(board_of(generation)), config(factory_config(board)) {
         Fix& fix = state.epoch.fix;
         fix = sample_fix(utc, 47.1234567891, 8.7654321987, 512.3456);
