@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "../support/ubx_message_types.hpp"
 #include "skyloop/protocol/stream_splitter.hpp"
 #include "skyloop/protocol/ubx_cfg.hpp"
 #include "skyloop/protocol/ubx_cfg_values.hpp"
@@ -57,6 +58,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (piece.kind != StreamKind::ubx) continue;
         const auto frame = parse_frame(piece.bytes);
         if (!frame || encode_frame(frame->id, frame->payload) != piece.bytes) std::abort();
+        if (UbxOutputTypes::written_again(*frame).value_or(piece.bytes) != piece.bytes) std::abort();
         check_payload(frame->payload);
     }
     if (joined != Bytes(stream.begin(), stream.end())) std::abort();

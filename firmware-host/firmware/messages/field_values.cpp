@@ -140,7 +140,7 @@ std::uint8_t sv_id(SatelliteId satellite) {
     return field<std::uint8_t>(number);
 }
 
-std::optional<std::uint8_t> single_byte_number(SatelliteId satellite) {
+std::optional<std::uint8_t> ubx_single_number(SatelliteId satellite) {
     const int n = satellite.number;
     int number = n;
     switch (satellite.constellation) {

@@ -85,7 +85,7 @@ std::uint8_t gnss_id(Constellation constellation);
 /// svId of UBX: as RINEX, but SBAS by its PRN.
 std::uint8_t sv_id(SatelliteId satellite);
 /// The one numbering for all systems of NAV-SVINFO, or nothing where it has none.
-std::optional<std::uint8_t> single_byte_number(SatelliteId satellite);
+std::optional<std::uint8_t> ubx_single_number(SatelliteId satellite);
 /// sigId of UBX. @param b1c_for_b1i the receiver tracks B1C and calls it so
 std::uint8_t signal_id(SatelliteId satellite, Signal signal, bool b1c_for_b1i = false);
 /// freqId: the GLONASS channel + 7; 0 of other systems.
@@ -104,7 +104,7 @@ inline bool almanac_known(const NavigationState& state) { return state.time.leap
 
 /// One frame as a list.
 template <class Message>
-std::vector<Bytes> one_frame(const Message& message) {
+std::vector<Bytes> ubx_frames_of(const Message& message) {
     return {encode_frame(message)};
 }
 

@@ -93,7 +93,7 @@ std::vector<Bytes> signal_security(const ReportContext& context) {
         SecSig1 m;
         m.jam_flags = static_cast<std::uint8_t>(jam_flags);
         m.spf_flags = static_cast<std::uint8_t>(1 | spoofing << 1);
-        return one_frame(m);
+        return ubx_frames_of(m);
     }
     // Its jamming states end at 2. L1, L2 and the lower end of L5, as captured, kHz.
     SecSig2 m;
@@ -101,7 +101,7 @@ std::vector<Bytes> signal_security(const ReportContext& context) {
     m.sig_sec_flags = static_cast<std::uint8_t>((jam_flags & 1) | jamming << 1 | 8 | spoofing << 4);
     m.centre_frequencies = {1575420, 1227600, 1207140};
     if (jamming == jamming_warning) m.centre_frequencies[0] |= 1u << 24;
-    return one_frame(m);
+    return ubx_frames_of(m);
 }
 
 // What goes on now; the receiver's state keeps no older events.
@@ -116,14 +116,14 @@ SecSiglog security_log(const ReportContext& context) {
 }
 
 std::vector<Bytes> make_identity_message(UbxMessageId message, const ReportContext& context) {
-    if (message == MonVer::message_id) return one_frame(version(context));
-    if (message == MonGnss::message_id) return one_frame(systems(context));
-    if (message == MonSys::message_id) return one_frame(system_load(context));
-    if (message == MonPatch::message_id) return one_frame(MonPatch{});
-    if (message == MonRxr::message_id) return one_frame(MonRxr{1});
-    if (message == SecUniqid::message_id) return one_frame(unique_id(context));
+    if (message == MonVer::message_id) return ubx_frames_of(version(context));
+    if (message == MonGnss::message_id) return ubx_frames_of(systems(context));
+    if (message == MonSys::message_id) return ubx_frames_of(system_load(context));
+    if (message == MonPatch::message_id) return ubx_frames_of(MonPatch{});
+    if (message == MonRxr::message_id) return ubx_frames_of(MonRxr{1});
+    if (message == SecUniqid::message_id) return ubx_frames_of(unique_id(context));
     if (message == SecSig1::message_id) return signal_security(context);
-    if (message == SecSiglog::message_id) return one_frame(security_log(context));
+    if (message == SecSiglog::message_id) return ubx_frames_of(security_log(context));
     return {};
 }
 

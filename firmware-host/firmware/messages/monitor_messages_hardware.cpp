@@ -43,9 +43,9 @@ Message hardware(const MonitorStatus& monitors) {
 std::vector<Bytes> hardware_message(const ReportContext& context) {
     const MonitorStatus& monitors = context.state.monitors;
     const int generation = context.board.identity.generation;
-    if (generation <= 6) return one_frame(hardware<MonHwLong>(monitors));
-    if (generation <= 8 || is_high_precision(context.board)) return one_frame(hardware<MonHw>(monitors));
-    return one_frame(hardware<MonHwShort>(monitors));
+    if (generation <= 6) return ubx_frames_of(hardware<MonHwLong>(monitors));
+    if (generation <= 8 || is_high_precision(context.board)) return ubx_frames_of(hardware<MonHw>(monitors));
+    return ubx_frames_of(hardware<MonHwShort>(monitors));
 }
 
 MonHw2 front_end(const ReportContext& context) {
@@ -135,10 +135,10 @@ MonSpan spectra(const ReportContext& context) {
 
 std::vector<Bytes> make_hardware_message(UbxMessageId message, const ReportContext& context) {
     if (message == MonHw::message_id) return hardware_message(context);
-    if (message == MonHw2::message_id) return one_frame(front_end(context));
-    if (message == MonHw3::message_id) return one_frame(pins(context));
-    if (message == MonRf::message_id) return one_frame(radio(context));
-    if (message == MonSpan::message_id) return one_frame(spectra(context));
+    if (message == MonHw2::message_id) return ubx_frames_of(front_end(context));
+    if (message == MonHw3::message_id) return ubx_frames_of(pins(context));
+    if (message == MonRf::message_id) return ubx_frames_of(radio(context));
+    if (message == MonSpan::message_id) return ubx_frames_of(spectra(context));
     return {};
 }
 

@@ -89,12 +89,12 @@ MonMsgpp messages_by_port(const ReportContext& context) {
 }  // namespace
 
 std::vector<Bytes> make_port_message(UbxMessageId message, const ReportContext& context) {
-    if (message == MonComms::message_id) return one_frame(communications(context));
-    if (message == MonTxbuf::message_id) return one_frame(transmit_buffers(context));
+    if (message == MonComms::message_id) return ubx_frames_of(communications(context));
+    if (message == MonTxbuf::message_id) return ubx_frames_of(transmit_buffers(context));
     // What arrives is taken at once: the receive buffers are empty.
-    if (message == MonRxbuf::message_id) return one_frame(MonRxbuf{});
-    if (message == MonIo::message_id) return one_frame(input_output(context));
-    if (message == MonMsgpp::message_id) return one_frame(messages_by_port(context));
+    if (message == MonRxbuf::message_id) return ubx_frames_of(MonRxbuf{});
+    if (message == MonIo::message_id) return ubx_frames_of(input_output(context));
+    if (message == MonMsgpp::message_id) return ubx_frames_of(messages_by_port(context));
     return {};
 }
 

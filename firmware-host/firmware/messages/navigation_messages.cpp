@@ -276,25 +276,25 @@ NavDop navigation_dop(const ReportContext& context) {
 std::vector<Bytes> make_solution_message(UbxMessageId message, const ReportContext& context) {
     switch (message.id) {
         case NavPvt::message_id.id:
-            return one_frame(navigation_pvt(context));
+            return ubx_frames_of(navigation_pvt(context));
         case NavPosllh::message_id.id:
-            return one_frame(navigation_posllh(context));
+            return ubx_frames_of(navigation_posllh(context));
         case NavPosecef::message_id.id:
-            return one_frame(navigation_posecef(context));
+            return ubx_frames_of(navigation_posecef(context));
         case NavHpposllh::message_id.id:
-            return one_frame(navigation_hpposllh(context));
+            return ubx_frames_of(navigation_hpposllh(context));
         case NavHpposecef::message_id.id:
-            return one_frame(navigation_hpposecef(context));
+            return ubx_frames_of(navigation_hpposecef(context));
         case NavVelned::message_id.id:
-            return one_frame(navigation_velned(context));
+            return ubx_frames_of(navigation_velned(context));
         case NavVelecef::message_id.id:
-            return one_frame(navigation_velecef(context));
+            return ubx_frames_of(navigation_velecef(context));
         case NavSol::message_id.id:
-            return one_frame(navigation_sol(context));
+            return ubx_frames_of(navigation_sol(context));
         case NavStatus::message_id.id:
-            return one_frame(navigation_status(context));
+            return ubx_frames_of(navigation_status(context));
         case NavDop::message_id.id:
-            return one_frame(navigation_dop(context));
+            return ubx_frames_of(navigation_dop(context));
         default:
             return {};
     }

@@ -169,7 +169,7 @@ NavDgps differential(const ReportContext& context) {
     if (state.corrections.state == CorrectionState::none) return m;
     m.status = 2;
     for (const SatelliteStatus& s : state.epoch.fix.satellites) {
-        const auto number = single_byte_number(s.id);
+        const auto number = ubx_single_number(s.id);
         if (!s.used || !number || m.satellites.size() == ubx_most_items) continue;
         NavDgpsItem item;
         item.sv_id = *number;
@@ -242,28 +242,28 @@ std::uint32_t heading_accuracy_field(const NavigationState& state) {
 std::vector<Bytes> make_service_message(UbxMessageId message, const ReportContext& context) {
     switch (message.id) {
         case NavCov::message_id.id:
-            return one_frame(solution_covariance(context));
+            return ubx_frames_of(solution_covariance(context));
         case NavEell::message_id.id:
-            return one_frame(ellipse_message(context));
+            return ubx_frames_of(ellipse_message(context));
         case NavOdo::message_id.id:
-            return one_frame(odometer(context));
+            return ubx_frames_of(odometer(context));
         case NavEoe::message_id.id:
-            return one_frame(NavEoe{service_tow(context)});
+            return ubx_frames_of(NavEoe{service_tow(context)});
         case NavRelposned::message_id.id:
-            return context.board.identity.generation <= 8 ? one_frame(relative_position_m8(context))
-                                                          : one_frame(relative_position(context));
+            return context.board.identity.generation <= 8 ? ubx_frames_of(relative_position_m8(context))
+                                                          : ubx_frames_of(relative_position(context));
         case NavSvin::message_id.id:
-            return one_frame(survey(context));
+            return ubx_frames_of(survey(context));
         case NavDgps::message_id.id:
-            return one_frame(differential(context));
+            return ubx_frames_of(differential(context));
         case NavGeofence::message_id.id:
-            return one_frame(service_message<NavGeofence>(context));
+            return ubx_frames_of(service_message<NavGeofence>(context));
         case NavSlas::message_id.id:
-            return one_frame(service_message<NavSlas>(context));
+            return ubx_frames_of(service_message<NavSlas>(context));
         case NavAopstatus::message_id.id:
-            return one_frame(autonomous_orbits(context));
+            return ubx_frames_of(autonomous_orbits(context));
         case NavPl::message_id.id:
-            return one_frame(protection_level(context));
+            return ubx_frames_of(protection_level(context));
         default:
             return {};
     }

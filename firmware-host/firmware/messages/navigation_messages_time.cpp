@@ -202,25 +202,25 @@ TimTp next_pulse(const ReportContext& context) {
 }  // namespace
 
 std::vector<Bytes> make_time_message(UbxMessageId message, const ReportContext& context) {
-    if (message == TimTp::message_id) return one_frame(next_pulse(context));
+    if (message == TimTp::message_id) return ubx_frames_of(next_pulse(context));
     if (message.message_class != NavClock::message_id.message_class) return {};
     switch (message.id) {
         case NavTimegps::message_id.id:
-            return one_frame(time_gps(context));
+            return ubx_frames_of(time_gps(context));
         case NavTimeutc::message_id.id:
-            return one_frame(time_utc(context));
+            return ubx_frames_of(time_utc(context));
         case NavTimegal::message_id.id:
-            return one_frame(time_galileo(context));
+            return ubx_frames_of(time_galileo(context));
         case NavTimebds::message_id.id:
-            return one_frame(time_beidou(context));
+            return ubx_frames_of(time_beidou(context));
         case NavTimeqzss::message_id.id:
-            return one_frame(time_qzss(context));
+            return ubx_frames_of(time_qzss(context));
         case NavTimeglo::message_id.id:
-            return one_frame(time_glonass(context));
+            return ubx_frames_of(time_glonass(context));
         case NavTimels::message_id.id:
-            return one_frame(time_leap_seconds(context));
+            return ubx_frames_of(time_leap_seconds(context));
         case NavClock::message_id.id:
-            return one_frame(receiver_clock(context));
+            return ubx_frames_of(receiver_clock(context));
         default:
             return {};
     }

@@ -188,7 +188,7 @@ RxmSvsi satellites_known(const ReportContext& context) {
     m.i_tow = now.i_tow;
     m.week = field<std::int16_t>(static_cast<double>(now.week));
     for (const SatelliteStatus& s : sorted_satellites(context.state.epoch.fix)) {
-        const auto number = single_byte_number(s.id);
+        const auto number = ubx_single_number(s.id);
         if (!number) continue;
         m.satellites.push_back(satellite_knowledge(*number, s, context.state));
         if (m.satellites.back().elev > 0) ++m.num_vis;
@@ -199,10 +199,10 @@ RxmSvsi satellites_known(const ReportContext& context) {
 }  // namespace
 
 std::vector<Bytes> make_raw_message(UbxMessageId message, const ReportContext& context) {
-    if (message == RxmRawx::message_id) return one_frame(raw_measurements(context));
-    if (message == RxmMeasx::message_id) return one_frame(code_measurements(context));
+    if (message == RxmRawx::message_id) return ubx_frames_of(raw_measurements(context));
+    if (message == RxmMeasx::message_id) return ubx_frames_of(code_measurements(context));
     if (message == RxmSfrbx::message_id) return received_subframes(context);
-    if (message == RxmSvsi::message_id) return one_frame(satellites_known(context));
+    if (message == RxmSvsi::message_id) return ubx_frames_of(satellites_known(context));
     return {};
 }
 

@@ -38,12 +38,12 @@ std::uint32_t satellite_flags(const SatelliteStatus& s, const ReportContext& con
                           (has_almanac(s, state) ? 1u << 12 : 0u);
     if (!s.used) return flags;
     switch (corrections_in_use(state)) {
-        case CorrectionSource::none:
+        case CorrectionOrigin::none:
             break;
-        case CorrectionSource::sbas:
+        case CorrectionOrigin::sbas:
             flags |= 1u << 6 | 1u << 16;
             break;
-        case CorrectionSource::rtcm3:
+        case CorrectionOrigin::rtcm3:
             flags |= 1u << 6 | 1u << 17 | 1u << 20 | (carrier_solution(state.epoch.fix) != 0 ? 1u << 21 : 0u);
             break;
     }
@@ -66,7 +66,7 @@ NavSat satellites_in_view(const ReportContext& context) {
 // Bits: 0 used, 1 corrected, 2 orbit known, 3 by ephemeris, 4 unhealthy, 5 by almanac.
 std::uint8_t channel_flags(const SatelliteStatus& s, const NavigationState& state) {
     const std::uint32_t source = orbit_source(s, state);
-    const bool corrected = s.used && corrections_in_use(state) != CorrectionSource::none;
+    const bool corrected = s.used && corrections_in_use(state) != CorrectionOrigin::none;
     return static_cast<std::uint8_t>((s.used ? 1 : 0) | (corrected ? 2 : 0) | (source != 0 ? 4 : 0) |
                                      (source == 1 ? 8 : 0) | (satellite_health(s, state) == 2 ? 0x10 : 0) |
                                      (source == 2 ? 0x20 : 0));
@@ -80,7 +80,7 @@ NavSvinfo channels(const ReportContext& context) {
     m.global_flags = static_cast<std::uint8_t>(std::clamp(generation - 4, 0, 4));  // 4 of M8, 1 of u-blox 5
     std::uint8_t channel = 0;
     for (const SatelliteStatus& s : sorted_satellites(context.state.epoch.fix)) {
-        const auto number = single_byte_number(s.id);
+        const auto number = ubx_single_number(s.id);
         if (!number) continue;
         const SkyFields sky = sky_fields(s, context.state);
         const bool tracked = s.cn0.has_value() && channel < no_channel;
@@ -160,10 +160,10 @@ NavSbas augmentation(const ReportContext& context) {
     m.geo = sv_id(source->id);
     m.mode = 1;
     m.sys = sbas_system(m.geo);
-    const bool corrects = corrections_in_use(state) == CorrectionSource::sbas;
+    const bool corrects = corrections_in_use(state) == CorrectionOrigin::sbas;
     m.service = corrects ? 3 : 1;
     for (const SatelliteStatus& s : satellites) {
-        const auto number = single_byte_number(s.id);
+        const auto number = ubx_single_number(s.id);
         if (!corrects || !s.used || !number) continue;
         NavSbasItem item;
         item.sv_id = *number;
@@ -184,9 +184,9 @@ std::vector<SatelliteStatus> sorted_satellites(const Fix& fix) {
     return list;
 }
 
-CorrectionSource corrections_in_use(const NavigationState& state) {
-    if (!is_differential(state.epoch.fix)) return CorrectionSource::none;
-    return state.corrections.state == CorrectionState::none ? CorrectionSource::sbas : CorrectionSource::rtcm3;
+CorrectionOrigin corrections_in_use(const NavigationState& state) {
+    if (!is_differential(state.epoch.fix)) return CorrectionOrigin::none;
+    return state.corrections.state == CorrectionState::none ? CorrectionOrigin::sbas : CorrectionOrigin::rtcm3;
 }
 
 std::uint32_t satellite_health(const SatelliteStatus& s, const NavigationState& state) {
@@ -209,10 +209,10 @@ std::uint8_t signal_quality(const Observation& observation) {
 }
 
 std::vector<Bytes> make_satellite_message(UbxMessageId message, const ReportContext& context) {
-    if (message == NavSat::message_id) return one_frame(satellites_in_view(context));
-    if (message == NavSvinfo::message_id) return one_frame(channels(context));
-    if (message == NavOrb::message_id) return one_frame(orbits(context));
-    if (message == NavSbas::message_id) return one_frame(augmentation(context));
+    if (message == NavSat::message_id) return ubx_frames_of(satellites_in_view(context));
+    if (message == NavSvinfo::message_id) return ubx_frames_of(channels(context));
+    if (message == NavOrb::message_id) return ubx_frames_of(orbits(context));
+    if (message == NavSbas::message_id) return ubx_frames_of(augmentation(context));
     if (message == NavSig::message_id) return make_signal_message(context);
     return {};
 }

@@ -23,12 +23,12 @@ std::uint16_t signal_flags(const SignalReport& signal, const NavigationState& st
     if (!signal.satellite->used || !range) return static_cast<std::uint16_t>(flags);
     flags |= 0x28;
     switch (corrections_in_use(state)) {
-        case CorrectionSource::none:
+        case CorrectionOrigin::none:
             break;
-        case CorrectionSource::sbas:
+        case CorrectionOrigin::sbas:
             flags |= 0x140;
             break;
-        case CorrectionSource::rtcm3:
+        case CorrectionOrigin::rtcm3:
             flags |= carrier_solution(state.epoch.fix) != 0 ? 0xD0u : 0x40u;
             break;
     }
@@ -46,11 +46,11 @@ std::uint8_t correction_source(const SignalReport& signal, const NavigationState
 std::uint8_t ionosphere_model(const SignalReport& signal, const NavigationState& state) {
     if (!signal.satellite->used) return 0;
     switch (corrections_in_use(state)) {
-        case CorrectionSource::sbas:
+        case CorrectionOrigin::sbas:
             return 2;
-        case CorrectionSource::rtcm3:
+        case CorrectionOrigin::rtcm3:
             return 0;
-        case CorrectionSource::none:
+        case CorrectionOrigin::none:
             break;
     }
     if (signal.second_frequency) return 8;
@@ -91,7 +91,7 @@ std::vector<Bytes> make_signal_message(const ReportContext& context) {
     std::stable_sort(m.signals.begin(), m.signals.end(), [](const NavSigItem& a, const NavSigItem& b) {
         return std::tie(a.gnss_id, a.sv_id, a.sig_id) < std::tie(b.gnss_id, b.sv_id, b.sig_id);
     });
-    return one_frame(m);
+    return ubx_frames_of(m);
 }
 
 }  // namespace skyloop::firmware

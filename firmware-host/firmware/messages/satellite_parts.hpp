@@ -14,8 +14,8 @@ std::vector<Bytes> make_signal_message(const ReportContext& context);
 std::vector<SatelliteStatus> sorted_satellites(const Fix& fix);
 
 /// Where the corrections in the solution come from.
-enum class CorrectionSource { none, sbas, rtcm3 };
-CorrectionSource corrections_in_use(const NavigationState& state);
+enum class CorrectionOrigin { none, sbas, rtcm3 };
+CorrectionOrigin corrections_in_use(const NavigationState& state);
 
 /// 0 unknown, 1 healthy, 2 unhealthy.
 std::uint32_t satellite_health(const SatelliteStatus& s, const NavigationState& state);

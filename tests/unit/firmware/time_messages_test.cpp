@@ -1,0 +1,163 @@
+#include <gtest/gtest.h>
+
+#include "skyloop/protocol/ubx_nav.hpp"
+#include "skyloop/protocol/ubx_time.hpp"
+#include "ubx_reports.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+
+// RECEIVER.md 4.9: UTC to the nearest 10 ms, the rest in nano.
+TEST(TimeOfMessages, RoundsToTenMilliseconds) {
+    UbxReport m9(9, "2012-01-01T00:00:00Z");
+    m9.state.epoch.fix.time -= 700us;
+    auto pvt = m9.report<NavPvt>();
+    EXPECT_EQ(pvt.year, 2012);
+    EXPECT_EQ(pvt.month, 1);
+    EXPECT_EQ(pvt.day, 1);
+    EXPECT_EQ(pvt.second, 0);
+    EXPECT_EQ(pvt.nano, -700000);
+    m9.state.epoch.fix.time -= 4300us;
+    pvt = m9.report<NavPvt>();
+    EXPECT_EQ(pvt.year, 2012);
+    EXPECT_EQ(pvt.nano, -5000000);
+    m9.state.epoch.fix.time -= 1ns;
+    pvt = m9.report<NavPvt>();
+    EXPECT_EQ(pvt.year, 2011);
+    EXPECT_EQ(pvt.month, 12);
+    EXPECT_EQ(pvt.day, 31);
+    EXPECT_EQ(pvt.second, 59);
+    EXPECT_EQ(pvt.nano, 994999999);
+}
+
+TEST(TimeOfMessages, KeepsTheFlooredSecondInsideIt) {
+    UbxReport m8(8, "2017-07-19T08:50:01.8Z");
+    m8.state.epoch.fix.time -= 100313ns;
+    const auto pvt = m8.report<NavPvt>();
+    EXPECT_EQ(pvt.second, 1);
+    EXPECT_EQ(pvt.nano, 799899687);
+    const auto utc = m8.report<NavTimeutc>();
+    EXPECT_EQ(utc.nano, pvt.nano);
+    EXPECT_EQ(utc.second, pvt.second);
+    EXPECT_EQ(utc.valid, 0x37);
+    EXPECT_EQ(m8.report<NavTimegps>().f_tow, -100313);
+    EXPECT_EQ(pvt.i_tow % 200, 0u);
+}
+
+TEST(TimeOfMessages, CountsToSixtyInALeapSecond) {
+    UbxReport m8(8, "2016-12-31T23:59:60Z");
+    EXPECT_EQ(m8.report<NavPvt>().second, 60);
+    EXPECT_EQ(m8.report<NavPvt>().day, 31);
+    EXPECT_EQ(m8.report<NavTimeutc>().second, 60);
+    m8.state.epoch.fix.time += 1s;
+    m8.state.epoch.fix.leap_seconds = 18;
+    EXPECT_EQ(m8.report<NavPvt>().second, 0);
+    EXPECT_EQ(m8.report<NavPvt>().year, 2017);
+}
+
+TEST(TimeOfMessages, BelievesAWrongLeapSecond) {
+    UbxReport m8(8, "2024-03-05T12:00:00Z");
+    m8.state.epoch.fix.leap_seconds = 17;
+    EXPECT_EQ(m8.report<NavPvt>().second, 1);
+    EXPECT_EQ(m8.report<NavTimegps>().leap_s, 17);
+}
+
+TEST(TimeOfMessages, BeginsTheWeekAtZero) {
+    UbxReport m9(9);
+    m9.state.epoch.fix.time = to_gps_time({2300, 0ns}) - 400us;
+    EXPECT_EQ(m9.report<NavTimegps>().i_tow, 0u);
+    EXPECT_EQ(m9.report<NavTimegps>().week, 2300);
+    EXPECT_EQ(m9.report<NavTimegps>().f_tow, -400000);
+    m9.state.epoch.fix.time -= 200us;
+    EXPECT_EQ(m9.report<NavTimegps>().i_tow, 604799999u);
+    EXPECT_EQ(m9.report<NavTimegps>().week, 2299);
+    EXPECT_EQ(m9.report<NavEoe>().i_tow, 604799999u);
+}
+
+TEST(NavTimegpsMessage, GoesFromThreeToSeven) {
+    UbxReport m9(9);
+    EXPECT_EQ(m9.report<NavTimegps>().valid, 7);
+    EXPECT_EQ(m9.report<NavTimegps>().t_acc, 25u);
+    m9.state.time.leap_seconds = false;
+    EXPECT_EQ(m9.report<NavTimegps>().valid, 3);
+    m9.start_cold(5);
+    EXPECT_EQ(m9.report<NavTimegps>().valid, 0);
+    EXPECT_EQ(m9.report<NavTimegps>().week, 0);
+    EXPECT_EQ(m9.report<NavTimegps>().t_acc, 4294967295u);
+}
+
+// One instant of the captured ZED-F9P (2025-04-25 06:38:04 UTC): NAV-TIMEGLO, BDS, GAL and QZSS beside each other.
+TEST(NavTimeMessages, AgreeWithACapturedReceiver) {
+    UbxReport f9(9);
+    f9.state.epoch.fix.time = to_gps_time({2363, 455902s}) - 64933ns;
+    const auto glonass = f9.report<NavTimeglo>();
+    EXPECT_EQ(glonass.tod, 0x877Cu);
+    EXPECT_EQ(glonass.n_t, 0x01E1);
+    EXPECT_EQ(glonass.n_4, 8);
+    EXPECT_EQ(glonass.f_tod, -64933);
+    EXPECT_EQ(glonass.valid, 3);
+    const auto beidou = f9.report<NavTimebds>();
+    EXPECT_EQ(beidou.sow, 0x06F4D0u);
+    EXPECT_EQ(beidou.week, 0x03EF);
+    EXPECT_EQ(beidou.leap_s, 4);
+    const auto galileo = f9.report<NavTimegal>();
+    EXPECT_EQ(galileo.gal_tow, 0x06F4DEu);
+    EXPECT_EQ(galileo.gal_wno, 0x053B);
+    EXPECT_EQ(galileo.leap_s, 18);
+    EXPECT_EQ(f9.report<NavTimeqzss>().qzss_wno, 0x093B);
+    EXPECT_EQ(f9.report<NavTimeqzss>().qzss_tow, galileo.gal_tow);
+    EXPECT_EQ(f9.report<NavTimeqzss>().f_qzss_tow, -64933);
+}
+
+TEST(NavTimelsMessage, TellsWhereTheNumberIsFrom) {
+    UbxReport m9(9, "2024-03-05T12:00:00Z");
+    EXPECT_EQ(m9.report<NavTimels>().src_of_curr_ls, 2);
+    EXPECT_EQ(m9.report<NavTimels>().curr_ls, 18);
+    EXPECT_EQ(m9.report<NavTimels>().ls_change, 0);
+    EXPECT_LT(m9.report<NavTimels>().time_to_ls_event, 0);
+    EXPECT_EQ(m9.report<NavTimels>().valid, 3);
+    m9.state.time.leap_seconds = false;
+    EXPECT_EQ(m9.report<NavTimels>().src_of_curr_ls, 7);
+    EXPECT_EQ(m9.report<NavTimels>().valid, 0);
+}
+
+TEST(NavTimelsMessage, AnnouncesTheNextOne) {
+    const UbxReport m8(8, "2016-12-31T23:00:00Z");
+    const auto m = m8.report<NavTimels>();
+    EXPECT_EQ(m.curr_ls, 17);
+    EXPECT_EQ(m.ls_change, 1);
+    EXPECT_NEAR(m.time_to_ls_event, 3600, 1);
+    EXPECT_EQ(m.date_of_ls_gps_wn, 1929);  // Saturday 31 December 2016
+    EXPECT_EQ(m.date_of_ls_gps_dn, 7);
+}
+
+TEST(NavClockMessage, StaysWithinHalfAMillisecond) {
+    UbxReport m9(9);
+    EXPECT_EQ(m9.report<NavClock>().clk_b, 200000);
+    EXPECT_EQ(m9.report<NavClock>().clk_d, 500);
+    EXPECT_EQ(m9.report<NavClock>().f_acc, 834u);
+    m9.state.epoch.fix.clock_bias = Metres(299792458.0 * 0.0127);
+    EXPECT_EQ(m9.report<NavClock>().clk_b, -300000);
+    m9.start_cold(1);
+    EXPECT_EQ(m9.report<NavClock>().clk_b, 0);
+    EXPECT_EQ(m9.report<NavClock>().t_acc, 4294967295u);
+}
+
+TEST(TimTpMessage, NamesTheNextPulse) {
+    UbxReport m8(8);
+    const auto tp = m8.report<TimTp>();
+    EXPECT_EQ(tp.tow_ms, 218964000u);  // UTC grid: 12:49:24
+    EXPECT_EQ(tp.tow_sub_ms, 0u);
+    EXPECT_EQ(tp.week, 2304);
+    EXPECT_EQ(tp.flags, 0x0B);
+    EXPECT_EQ(tp.ref_info, 0x0F);
+    EXPECT_LE(std::abs(tp.q_err), 15000);
+    m8.lose_fix();
+    EXPECT_EQ(m8.report<TimTp>().flags, 0x13);
+    EXPECT_EQ(m8.report<TimTp>().q_err, 0);
+}
+
+}  // namespace
+}  // namespace skyloop::firmware
