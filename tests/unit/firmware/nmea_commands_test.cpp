@@ -137,7 +137,7 @@ TEST(PmtkCommands, SetTheInterval) {
     receiver.execute("PMTK220,200");
     EXPECT_EQ(receiver.config.value(key::rate_meas), 200U);
     EXPECT_THAT(receiver.answers("PMTK400"),
-                ElementsAre("$PMTK001,400,3*32\r\n", Sentence("PMTK500,200,0,0,0.0,0.0").finish()));
+                ElementsAre(Sentence("PMTK001,400,3").finish(), Sentence("PMTK500,200,0,0,0.0,0.0").finish()));
     receiver.board.max_rate_hz = 5;  // the old 3329
     EXPECT_THAT(receiver.answers("PMTK220,100"), ElementsAre(Sentence("PMTK001,220,2").finish()));
     for (const char* bad : {"PMTK220,50", "PMTK220,10001", "PMTK220,x", "PMTK220"})
@@ -272,10 +272,12 @@ TEST(PairCommands, SaveForGood) {
     receiver.config.reload();
     EXPECT_EQ(receiver.config.value(key::rate_meas), 200U);
     receiver.execute("PAIR050,1000");
+    receiver.execute("PAIR864,0,0,115200");
     receiver.execute("PAIR513");
     receiver.config.clear(in_battery);
     receiver.config.reload();
     EXPECT_EQ(receiver.config.value(key::rate_meas), 1000U);
+    EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 115200U);
 }
 
 }  // namespace
