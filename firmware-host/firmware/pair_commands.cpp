@@ -43,8 +43,8 @@ void restart_pair(PairCommand& c) {
 
 void tell_pair_version(PairCommand& c) {
     c.acknowledge(PairResult::done);
-    for (const std::string& answer : c.board.identity.version_answers)
-        if (answer.starts_with("PAIR")) c.answer(answer);
+    for (Bytes& answer : version_answers(c.board, "PAIR"))
+        c.outcome.answers.push_back(std::move(answer));
 }
 
 void set_fix_interval(PairCommand& c) {

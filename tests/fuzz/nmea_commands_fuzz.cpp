@@ -18,7 +18,7 @@ BoardProfile board_of(Personality personality) {
     board.constellations = {Constellation::gps, Constellation::sbas, Constellation::glonass};
     board.ports = {PortId::i2c, PortId::uart1, PortId::uart2, PortId::usb};
     board.quirks.answers_unknown_nmea = true;
-    board.identity.version_answers = {"PMTK705,AXN_1.30,0145,x,", "PQVERNO,R,y", "PAIR020,z"};
+    board.identity.version_answers = {"$PMTK705,AXN_1.30,0145,x,", "$PQVERNO,R,y", "$PAIR020,z"};
     return board;
 }
 

@@ -20,8 +20,8 @@ SampleReceiver receiver_of(Personality personality, std::vector<Constellation> s
     board.ports = {PortId::i2c, PortId::uart1, PortId::usb};
     board.baud = 9600;
     board.max_rate_hz = 10;
-    board.identity.version_answers = {"PMTK705,AXN_2.51_3339_19071200,0002,QUECTEL-L70,1.0",
-                                      "PQVERNO,R,L70BGR03A05S,2019/10/09,21:12", "PAIR020,AG3352,1.2"};
+    board.identity.version_answers = {"$PMTK705,AXN_2.51_3339_19071200,0002,QUECTEL-L70,1.0",
+                                      "$PQVERNO,R,L70BGR03A05S,2019/10/09,21:12", "$PAIR020,AG3352,1.2"};
     return SampleReceiver(board);
 }
 

@@ -360,9 +360,9 @@ TEST(TextMessages, FollowTheMasksOfTheirPort) {
 
 TEST(TextMessages, AreWholeSentencesOfMediaTek) {
     SampleReceiver receiver(sample_board(NmeaVersion::v2_3, {gps}));
-    receiver.board.personality = Personality::mtk;
-    EXPECT_EQ(to_string(make_text_message(2, "PMTK011,MTKGPS", receiver.context()).at(0)), "$PMTK011,MTKGPS*08\r\n");
-    EXPECT_EQ(to_string(make_text_message(2, "PMTK010,001", receiver.context()).at(0)), "$PMTK010,001*2E\r\n");
+    receiver.config.set(in_ram, key::inf_nmea(PortId::uart1), 0);
+    EXPECT_EQ(to_string(make_text_message(2, "$PMTK011,MTKGPS", receiver.context()).at(0)), "$PMTK011,MTKGPS*08\r\n");
+    EXPECT_EQ(to_string(make_text_message(2, "$PMTK010,001", receiver.context()).at(0)), "$PMTK010,001*2E\r\n");
 }
 
 }  // namespace
