@@ -19,7 +19,8 @@
 
 namespace skyloop::firmware {
 
-/// Sentences that a receiver can send periodically, in the order in which they leave within one epoch.
+/// Sentences that a receiver can send periodically, in the order in which they leave within one epoch unless the board
+/// gives another (`BoardProfile::messages`).
 enum class NmeaSentence { rmc, vtg, gga, gns, gsa, gsv, gll, gst, zda, gbs, dtm, grs, vlw, ths };
 inline constexpr std::string_view nmea_sentence_names[] = {"RMC", "VTG", "GGA", "GNS", "GSA", "GSV", "GLL",
                                                            "GST", "ZDA", "GBS", "DTM", "GRS", "VLW", "THS"};
@@ -59,9 +60,9 @@ struct Identity {
     std::string hardware;                 ///< hwVersion
     std::vector<std::string> extensions;  ///< of MON-VER, at most 30 characters each
     Bytes unique_id;                      ///< five bytes, or six on M10
-    /// Texts of the TXT notices at start; of MediaTek and Airoha whole sentences, without checksum.
+    /// Texts of the TXT notices at start; whole sentences without checksum where they begin with $.
     std::vector<std::string> banner;
-    std::vector<std::string> version_answers;  ///< whole answers of PMTK605, PAIR020: sentences without checksum
+    std::vector<std::string> version_answers;  ///< to PMTK605, PAIR020: sentences from $, without checksum
 };
 
 /// Times of starting and answering.

@@ -219,10 +219,12 @@ std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<c
 }
 
 std::optional<std::vector<std::size_t>> TableReader::choices(std::string_view key,
-                                                             std::span<const std::string_view> words) {
+                                                             std::span<const std::string_view> words,
+                                                             std::string_view wanted) {
     const toml::node* node = find(key);
     if (!node) return std::nullopt;
-    const std::string expected = fmt::format("a list of some of {}", fmt::join(words, " "));
+    const std::string expected =
+        wanted.empty() ? fmt::format("a list of some of {}", fmt::join(words, " ")) : std::string(wanted);
     const auto* list = node->as_array();
     if (!list) return wrong_type(key, *node, expected), std::nullopt;
     std::vector<std::size_t> found;
@@ -244,6 +246,34 @@ std::optional<std::vector<std::size_t>> TableReader::choices(std::string_view ke
     }
     if (found.empty()) return mistake(key, fmt::format("is an empty list; expected {}", expected)), std::nullopt;
     return found;
+}
+
+std::optional<std::vector<std::int64_t>> TableReader::whole_numbers(std::string_view key, NumberRange range) {
+    const toml::node* node = find(key);
+    if (!node) return std::nullopt;
+    const std::string expected = "a list, each entry " + range_words(range, "a whole number");
+    const auto* list = node->as_array();
+    if (!list) return wrong_type(key, *node, expected), std::nullopt;
+    std::vector<std::int64_t> values;
+    for (const toml::node& item : *list) {
+        const auto* value = item.as_integer();
+        if (!value)
+            return mistake_at(item, key, fmt::format("holds {}; expected {}", type_words(item), expected)),
+                   std::nullopt;
+        const auto number = static_cast<double>(value->get());
+        if (number < range.least || number > range.most)
+            return mistake_at(item, key, fmt::format("holds {}; expected {}", value->get(), expected)), std::nullopt;
+        values.push_back(value->get());
+    }
+    if (values.empty()) return mistake(key, "is an empty list; expected " + expected), std::nullopt;
+    return values;
+}
+
+std::vector<std::string> TableReader::keys() const {
+    std::vector<std::string> names;
+    for (const auto& [key, node] : table_)
+        names.emplace_back(key.str());
+    return names;
 }
 
 void TableReader::table(std::string_view key, const std::function<void(TableReader&)>& body) {

@@ -81,7 +81,11 @@ public:
     /// One of the given words; gives its index.
     std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> words);
     /// A list of some of the given words, at least one and none twice; gives their indices in the order of the list.
-    std::optional<std::vector<std::size_t>> choices(std::string_view key, std::span<const std::string_view> words);
+    /// @param wanted what a mistake says was expected, when the words are too many to list
+    std::optional<std::vector<std::size_t>> choices(std::string_view key, std::span<const std::string_view> words,
+                                                    std::string_view wanted = {});
+    /// A list of whole numbers, at least one.
+    std::optional<std::vector<std::int64_t>> whole_numbers(std::string_view key, NumberRange range);
 
     /// One of the given words; `value` becomes what it means.
     template <class Value, std::size_t count>
@@ -107,6 +111,11 @@ public:
     void refuse(std::string_view key, const std::string& reason);
 
     [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
+    [[nodiscard]] bool is_boolean(std::string_view key) const { return table_[key].is_boolean(); }
+    /// The keys that the table has.
+    [[nodiscard]] std::vector<std::string> keys() const;
+    /// The caller has dealt with this key itself.
+    void has_been_read(std::string_view key) { known_.emplace_back(key); }
     void mistake(std::string_view key, const std::string& sentence);
     void mistake_here(const std::string& sentence) { mistakes_.add(table_.source(), where() + sentence); }
     void finish();

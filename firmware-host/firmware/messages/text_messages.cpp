@@ -29,7 +29,7 @@ Bytes inf_frame(int level, const std::string& text) {
 }
 
 // MediaTek's and Airoha's receivers begin with sentences of their own instead of texts.
-bool is_own_sentence(const std::string& text) { return text.starts_with("$P"); }
+bool is_own_sentence(const std::string& text) { return text.starts_with('$'); }
 
 }  // namespace
 

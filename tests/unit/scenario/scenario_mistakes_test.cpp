@@ -24,9 +24,9 @@ TEST(ScenarioMistakes, WrongTypesSayWhatWasFoundAndExpected) {
               "test.toml:2:21: sky.rebase_navigation: is a whole number; expected true or false");
     EXPECT_EQ(mistakes_of("[[receiver]]\nboard = 8"),
               "test.toml:2:9: receiver.board: is a whole number; expected a text in quotes");
-    EXPECT_EQ(
-        mistakes_of("[[receiver]]\nsentences = \"RMC\""),
-        "test.toml:2:13: receiver.sentences: is a text; expected a list of some of RMC VTG GGA GSA GSV GLL GST ZDA");
+    EXPECT_EQ(mistakes_of("[[receiver]]\nsentences = \"RMC\""),
+              "test.toml:2:13: receiver.sentences: is a text; expected a list of some of RMC VTG GGA GNS GSA GSV GLL "
+              "GST ZDA GBS DTM GRS VLW THS");
     EXPECT_EQ(mistakes_of("[[receiver]]\nport = [1]"),
               "test.toml:2:9: receiver.port: holds a whole number; expected a list of texts");
     EXPECT_EQ(mistakes_of("[model]\nname = 3"),
@@ -103,8 +103,8 @@ TEST(ScenarioMistakes, UnknownWordsSuggestTheNearestKnown) {
               "qzss glonass navic; did you mean 'galileo'?");
     EXPECT_EQ(
         mistakes_of("[[receiver]]\nsentences = [\"RMC\", \"GGGA\"]"),
-        "test.toml:2:21: receiver.sentences: holds 'GGGA'; expected a list of some of RMC VTG GGA GSA GSV GLL GST "
-        "ZDA; did you mean 'GGA'?");
+        "test.toml:2:21: receiver.sentences: holds 'GGGA'; expected a list of some of RMC VTG GGA GNS GSA GSV GLL "
+        "GST ZDA GBS DTM GRS VLW THS; did you mean 'GGA'?");
     EXPECT_THAT(mistakes_of("[atmosphere]\nenvironment = \"citty\""), HasSubstr("did you mean 'city'?"));
     EXPECT_THAT(mistakes_of("[[atmosphere.cloud]]\nkind = \"cumulos\""), HasSubstr("did you mean 'cumulus'?"));
     EXPECT_THAT(mistakes_of("[model]\nname = \"moderne\""), HasSubstr("did you mean 'modern'?"));
