@@ -43,6 +43,14 @@ std::optional<int> whole_number(std::string_view field) {
     return value;
 }
 
+std::vector<Bytes> version_answers(const BoardProfile& board, std::string_view prefix) {
+    std::vector<Bytes> answers;
+    for (const std::string_view answer : board.identity.version_answers)
+        if (answer.starts_with('$') && answer.substr(1).starts_with(prefix))
+            answers.push_back(to_bytes(Sentence(answer.substr(1)).finish()));
+    return answers;
+}
+
 CorrectionSource correction_source(const ConfigStore& store, PortId from) {
     if (store.flag(sbas_corrections) && store.flag(enable_key(Constellation::sbas))) return CorrectionSource::sbas;
     return store.flag(key::in_protocol(from, rtcm3_protocol)) ? CorrectionSource::rtcm : CorrectionSource::none;

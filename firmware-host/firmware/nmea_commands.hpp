@@ -42,6 +42,9 @@ void set_correction_source(ConfigStore& store, PortId from, CorrectionSource sou
 bool set_systems(const BoardProfile& board, ConfigStore& store, ConfigLayers layers,
                  const std::vector<std::pair<Constellation, bool>>& wanted);
 
+/// The board's version answers that begin with "$" and `prefix`, as sentences.
+std::vector<Bytes> version_answers(const BoardProfile& board, std::string_view prefix);
+
 /// The number in a field, with nothing after it.
 std::optional<int> whole_number(std::string_view field);
 

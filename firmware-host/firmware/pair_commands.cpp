@@ -43,8 +43,8 @@ void restart_pair(PairCommand& c) {
 
 void tell_pair_version(PairCommand& c) {
     c.acknowledge(PairResult::done);
-    for (const std::string& answer : c.board.identity.version_answers)
-        if (answer.starts_with("PAIR")) c.answer(answer);
+    for (Bytes& answer : version_answers(c.board, "PAIR"))
+        c.outcome.answers.push_back(std::move(answer));
 }
 
 void set_fix_interval(PairCommand& c) {
@@ -135,12 +135,15 @@ void set_pair_sbas(PairCommand& c) {
     c.acknowledge(good ? PairResult::done : PairResult::failed);
 }
 
+// What waits for the next start is saved too.
 void save_pair(PairCommand& c) {
-    for (const auto& [item, value] : c.store.values(ConfigLayer::ram))
-        if (c.store.stored(ConfigLayer::factory, item) != value)
-            c.store.set(in_flash, item, value);
+    for (const auto& [item, value] : c.store.values(ConfigLayer::ram)) {
+        const std::uint64_t lasting = c.store.stored(ConfigLayer::battery, item).value_or(value);
+        if (c.store.stored(ConfigLayer::factory, item) != lasting)
+            c.store.set(in_flash, item, lasting);
         else
             c.store.erase(in_flash, item);
+    }
     c.acknowledge(PairResult::done);
 }
 

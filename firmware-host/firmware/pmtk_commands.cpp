@@ -175,10 +175,8 @@ void set_speed_threshold(PmtkCommand& c) {
 }
 
 void tell_version(PmtkCommand& c) {
-    bool told = false;
-    for (const std::string& answer : c.board.identity.version_answers)
-        if (answer.starts_with("PMTK")) c.answer(answer), told = true;
-    if (!told) c.acknowledge(PmtkFlag::unsupported);
+    c.outcome.answers = version_answers(c.board, "PMTK");
+    if (c.outcome.answers.empty()) c.acknowledge(PmtkFlag::unsupported);
 }
 
 struct PmtkRow {
@@ -216,8 +214,7 @@ CommandOutcome execute_pmtk(const SentenceView& sentence, const BoardProfile& bo
     constexpr std::string_view prefix = "PMTK", version = "PQVERNO";
     PmtkCommand command{sentence, board, store, from};
     if (sentence.address == version && sentence.field(0) == "R") {
-        for (const std::string& answer : board.identity.version_answers)
-            if (answer.starts_with(version)) command.answer(answer);
+        command.outcome.answers = version_answers(board, version);
         return command.outcome;
     }
     if (!sentence.address.starts_with(prefix)) return {};

@@ -5,7 +5,8 @@
 namespace skyloop {
 namespace {
 
-constexpr std::array<Word<NmeaVersion>, 4> board_nmea_versions{{{"2.3", NmeaVersion::v2_3},
+constexpr std::array<Word<NmeaVersion>, 5> board_nmea_versions{{{"2.1", NmeaVersion::v2_1},
+                                                                {"2.3", NmeaVersion::v2_3},
                                                                 {"4.0", NmeaVersion::v4_0},
                                                                 {"4.10", NmeaVersion::v4_10},
                                                                 {"4.11", NmeaVersion::v4_11}}};
@@ -34,6 +35,8 @@ void read_board_style(TableReader& nmea, firmware::NmeaStyle& style) {
     nmea.boolean("course_always", style.course_always);
     nmea.boolean("satellites_padded", style.satellites_padded);
     nmea.integer("dop_decimals", style.dop_decimals, {0, 3});
+    nmea.boolean("gst_ellipse", style.gst_ellipse);
+    nmea.boolean("gst_padded", style.gst_padded);
     nmea.boolean("unknown_date_is_1980", style.unknown_date_is_1980);
     read_one_of(nmea, "station_field", station_fields, style.station_field);
     read_one_of(nmea, "beidou_talker", beidou_talkers, style.beidou_talker);

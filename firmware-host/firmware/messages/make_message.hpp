@@ -24,7 +24,7 @@ std::vector<Bytes> make_monitor_message(UbxMessageId message, const ReportContex
 std::vector<Bytes> make_nmea_message(UbxMessageId message, const ReportContext& context);
 
 /// A text for people: level 0 error, 1 warning, 2 notice, 3 test, 4 debug, 7 user; as NMEA TXT and as UBX INF, by what
-/// the port's configuration lets through.
+/// the port's configuration lets through. A text that begins with "$" is a whole sentence, without checksum.
 std::vector<Bytes> make_text_message(int level, const std::string& text, const ReportContext& context);
 
 }  // namespace skyloop::firmware

@@ -29,10 +29,7 @@ Bytes inf_frame(int level, const std::string& text) {
 }
 
 // MediaTek's and Airoha's receivers begin with sentences of their own instead of texts.
-bool is_own_sentence(const BoardProfile& board, const std::string& text) {
-    return (board.personality == Personality::mtk && text.starts_with("PMTK")) ||
-           (board.personality == Personality::airoha && text.starts_with("PAIR"));
-}
+bool is_own_sentence(const std::string& text) { return text.starts_with('$'); }
 
 }  // namespace
 
@@ -41,7 +38,8 @@ std::vector<Bytes> make_text_message(int level, const std::string& text, const R
     std::vector<Bytes> out;
     if (level < 0 || (level > text_debug && level != text_user)) return out;
     const bool nmea = config.flag(key::out_protocol(port, nmea_protocol));
-    if (nmea && is_own_sentence(board, text)) return {to_bytes(Sentence(text).finish())};
+    if (is_own_sentence(text))
+        return nmea ? std::vector{to_bytes(Sentence(text.substr(1)).finish())} : out;
     if (nmea && passes(config.value(key::inf_nmea(port)), level))
         out.push_back(to_bytes(encode(Txt{nmea_talker(board, config), 1, 1, level, text}, nmea_format(board, config))));
     const bool ubx = config.flag(key::out_protocol(port, ubx_protocol)) && level <= text_debug;

@@ -4,9 +4,7 @@
 #include <fstream>
 #include <map>
 
-#include "firmware/nmea_handler.hpp"
-#include "sample_epochs.hpp"
-#include "skyloop/protocol/nmea_decode.hpp"
+#include "sample_reports.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -29,10 +27,10 @@ std::map<std::string, std::string> golden_epochs() {
 }
 
 void expect_golden(const std::string& name, const BoardProfile& board, const std::vector<Fix>& fixes) {
-    NmeaHandler handler(board);
+    SampleReceiver receiver(board);
     std::string bytes;
-    for (std::size_t i = 0; i < fixes.size(); ++i)
-        for (const std::string& sentence : handler.sentences(Epoch{fixes[i]}, i)) {
+    for (const Fix& fix : fixes)
+        for (const std::string& sentence : receiver.sentences(fix)) {
             EXPECT_LE(sentence.size(), 82U) << sentence;
             EXPECT_TRUE(decode_nmea(sentence)) << sentence;
             bytes += sentence;

@@ -43,8 +43,9 @@ inline BoardProfile sample_board(NmeaVersion version, std::vector<Constellation>
     board.name = "sample";
     board.constellations = std::move(constellations);
     board.nmea_version = version;
-    for (int i = 0; i < 8; ++i)
-        board.sentences.push_back({static_cast<NmeaSentence>(i), 1});
+    using enum NmeaSentence;
+    for (const NmeaSentence sentence : {rmc, vtg, gga, gsa, gsv, gll, gst, zda})
+        board.sentences.push_back({sentence, 1});
     return board;
 }
 

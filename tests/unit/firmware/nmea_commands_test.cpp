@@ -1,0 +1,284 @@
+// What sentences of clients do (RECEIVER.md 5.7 to 5.9).
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sample_reports.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using enum Constellation;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr std::uint32_t sbas_enable = 0x1031'0020, galileo_enable = 0x1031'0021, glonass_enable = 0x1031'0025;
+
+SampleReceiver receiver_of(Personality personality, std::vector<Constellation> systems = {gps, sbas, glonass}) {
+    BoardProfile board = sample_board(NmeaVersion::v4_0, std::move(systems));
+    board.personality = personality;
+    board.ports = {PortId::i2c, PortId::uart1, PortId::usb};
+    board.baud = 9600;
+    board.max_rate_hz = 10;
+    board.identity.version_answers = {"$PMTK705,AXN_2.51_3339_19071200,0002,QUECTEL-L70,1.0",
+                                      "$PQVERNO,R,L70BGR03A05S,2019/10/09,21:12", "$PAIR020,AG3352,1.2"};
+    return SampleReceiver(board);
+}
+
+TEST(MuteReceiver, AnswersNothing) {
+    SampleReceiver receiver = receiver_of(Personality::mute);
+    for (const char* body : {"PUBX,00", "EIGPQ,RMC", "PMTK605", "PAIR020", "PGRMCE", "PUBX,41,1,0003,0001,115200,0"}) {
+        const CommandOutcome outcome = receiver.execute(body);
+        EXPECT_THAT(outcome.answers, IsEmpty());
+        EXPECT_THAT(outcome.polled, IsEmpty());
+    }
+    EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 9600U);
+}
+
+TEST(PubxCommands, PollSentences) {
+    SampleReceiver receiver = receiver_of(Personality::ublox);
+    using Ids = std::vector<UbxMessageId>;
+    EXPECT_EQ(receiver.execute("PUBX,00").polled, (Ids{{0xF1, 0}}));
+    EXPECT_EQ(receiver.execute("PUBX,03").polled, (Ids{{0xF1, 3}}));
+    EXPECT_EQ(receiver.execute("PUBX,04").polled, (Ids{{0xF1, 4}}));
+    EXPECT_THAT(receiver.execute("PUBX,05").polled, IsEmpty());
+    EXPECT_THAT(receiver.execute("PUBX,00,1").polled, IsEmpty());
+    for (const char* poll : {"EIGPQ,RMC", "XXGNQ,RMC", "GPGLQ,RMC", "EIGBQ,RMC", "EIGAQ,RMC", "EIGQQ,RMC"})
+        EXPECT_EQ(receiver.execute(poll).polled, (Ids{{0xF0, 4}})) << poll;
+    EXPECT_THAT(receiver.execute("EIGPQ,XYZ").polled, IsEmpty());
+    EXPECT_THAT(receiver.execute("EIGPQ,NAV-PVT").polled, IsEmpty());
+    EXPECT_THAT(receiver.execute("EIGXQ,RMC").polled, IsEmpty());
+    receiver.board.messages = {{0xF0, 0}};
+    EXPECT_THAT(receiver.execute("EIGPQ,RMC").polled, IsEmpty());
+    receiver.board.polled = {{0xF0, 4}};
+    EXPECT_EQ(receiver.execute("EIGPQ,RMC").polled, (Ids{{0xF0, 4}}));
+}
+
+TEST(PubxCommands, SetRatesOfEachPort) {
+    SampleReceiver receiver = receiver_of(Personality::ublox);
+    EXPECT_THAT(receiver.answers("PUBX,40,GLL,0,0,0,0,0,0"), IsEmpty());
+    EXPECT_EQ(receiver.rate("GLL"), 0);
+    EXPECT_EQ(receiver.rate("GLL", PortId::usb), 0);
+    receiver.execute("PUBX,40,ZDA,1,2,3,4,5,0");
+    EXPECT_EQ(receiver.rate("ZDA", PortId::i2c), 1);
+    EXPECT_EQ(receiver.rate("ZDA", PortId::uart1), 2);
+    EXPECT_EQ(receiver.rate("ZDA", PortId::usb), 4);
+    EXPECT_FALSE(receiver.config.has(*rate_key({0xF0, 8}, PortId::spi)));
+    const std::uint64_t before = receiver.config.revision();
+    receiver.execute("PUBX,40,XYZ,1,1,1,1,1,0");
+    receiver.execute("PUBX,40,GGA,x,1,1,1,1,0");
+    receiver.execute("PUBX,40,GGA,0,-1,0,0,0,0");
+    receiver.execute("PUBX,40,GGA,0,256,0,0,0,0");
+    receiver.execute("PUBX,40,GGA,0");
+    receiver.execute("PUBX,40");
+    EXPECT_EQ(receiver.config.revision(), before);
+}
+
+// The strings of RECEIVER.md 5.7.
+TEST(PubxCommands, SetPortsAsDriversDo) {
+    SampleReceiver receiver = receiver_of(Personality::ublox);
+    const auto in = [&](std::uint32_t p) { return receiver.config.flag(key::in_protocol(PortId::uart1, p)); };
+    const auto out = [&](std::uint32_t p) { return receiver.config.flag(key::out_protocol(PortId::uart1, p)); };
+    EXPECT_THAT(receiver.answers("PUBX,41,1,0003,0001,115200,0"), IsEmpty());
+    EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 115200U);
+    EXPECT_TRUE(in(1) && in(2) && !in(4));
+    EXPECT_TRUE(out(1) && !out(2) && !out(4));
+    receiver.execute("PUBX,41,1,0023,0003,230400,0");
+    EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 230400U);
+    EXPECT_TRUE(in(1) && in(2) && in(4) && out(1) && out(2));
+    const std::uint64_t before = receiver.config.revision();
+    for (const char* bad :
+         {"PUBX,41,1,0003,0001,0,0", "PUBX,41,1,000G,0001,9600,0", "PUBX,41,7,0003,0001,9600,0",
+          "PUBX,41,2,0003,0001,9600,0", "PUBX,41,1,0003,0001", "PUBX,41", "PUBX,41,1,00003,0001,9600,0"})
+        receiver.execute(bad);
+    EXPECT_EQ(receiver.config.revision(), before);
+    receiver.board.bauds = {9600, 115200};
+    receiver.execute("PUBX,41,1,0003,0003,57600,0");
+    EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 230400U);
+    receiver.execute("PUBX,41,3,0001,0001,0,0");  // USB has no speed
+    EXPECT_FALSE(receiver.config.flag(key::out_protocol(PortId::usb, 2)));
+}
+
+// Captures in RECEIVER.md 1.4.
+TEST(UnknownSentences, AreNamedByM8Alone) {
+    SampleReceiver receiver = receiver_of(Personality::ublox);
+    EXPECT_THAT(receiver.answers("PGRMCE"), IsEmpty());
+    receiver.board.quirks.answers_unknown_nmea = true;
+    EXPECT_THAT(receiver.answers("PGRMCE"), ElementsAre("$GNTXT,01,01,01,PGRM inv format*2A\r\n"));
+    EXPECT_THAT(receiver.answers("PASHQ,RID"), ElementsAre(Sentence("GNTXT,01,01,01,PASH inv format").finish()));
+    EXPECT_THAT(receiver.answers("PMTK605"), ElementsAre(Sentence("GNTXT,01,01,01,PMTK inv format").finish()));
+    EXPECT_THAT(receiver.answers("PFEC,GPint"), ElementsAre(Sentence("GNTXT,01,01,01,PFEC inv format").finish()));
+    EXPECT_THAT(receiver.answers("GPGGA,1"), IsEmpty());
+    EXPECT_THAT(receiver.answers("PUBX,99"), IsEmpty());
+    receiver.config.set(in_ram, key::inf_nmea(PortId::uart1), 0x05);
+    EXPECT_THAT(receiver.answers("PGRMCE"), IsEmpty());
+}
+
+TEST(PmtkCommands, AnswerAsRecorded) {
+    SampleReceiver receiver = receiver_of(Personality::mtk);
+    EXPECT_THAT(receiver.answers("PMTK000"), ElementsAre("$PMTK001,0,3*30\r\n"));
+    EXPECT_THAT(receiver.answers("PMTK220,200"), ElementsAre("$PMTK001,220,3*30\r\n"));
+    EXPECT_THAT(receiver.answers("PMTK300,1000,0,0,0,0"), ElementsAre("$PMTK001,300,3*33\r\n"));
+    EXPECT_THAT(receiver.answers("PMTK301,2"), ElementsAre("$PMTK001,301,3*32\r\n"));
+    EXPECT_THAT(receiver.answers("PMTK313,1"), ElementsAre("$PMTK001,313,3*31\r\n"));
+    EXPECT_THAT(receiver.answers("PMTK424"), ElementsAre("$PMTK001,424,1*30\r\n"));
+    EXPECT_THAT(receiver.answers("PMTK604"), ElementsAre("$PMTK001,604,1*30\r\n"));
+    EXPECT_THAT(receiver.answers("PMTK605"),
+                ElementsAre("$PMTK705,AXN_2.51_3339_19071200,0002,QUECTEL-L70,1.0*32\r\n"));
+    EXPECT_THAT(receiver.answers("PQVERNO,R"), ElementsAre("$PQVERNO,R,L70BGR03A05S,2019/10/09,21:12*23\r\n"));
+    for (const char* other : {"PMTKx", "PMTK", "PMTK1000", "PUBX,00", "EIGPQ,RMC", "PGRMCE"}) {
+        EXPECT_THAT(receiver.execute(other).answers, IsEmpty()) << other;
+        EXPECT_THAT(receiver.execute(other).polled, IsEmpty()) << other;
+    }
+}
+
+TEST(PmtkCommands, SetTheInterval) {
+    SampleReceiver receiver = receiver_of(Personality::mtk);
+    receiver.execute("PMTK220,200");
+    EXPECT_EQ(receiver.config.value(key::rate_meas), 200U);
+    EXPECT_THAT(receiver.answers("PMTK400"),
+                ElementsAre(Sentence("PMTK001,400,3").finish(), Sentence("PMTK500,200,0,0,0.0,0.0").finish()));
+    receiver.board.max_rate_hz = 5;  // the old 3329
+    EXPECT_THAT(receiver.answers("PMTK220,100"), ElementsAre(Sentence("PMTK001,220,2").finish()));
+    for (const char* bad : {"PMTK220,50", "PMTK220,10001", "PMTK220,x", "PMTK220"})
+        EXPECT_THAT(receiver.answers(bad), ElementsAre(Sentence("PMTK001,220,0").finish())) << bad;
+    EXPECT_EQ(receiver.config.value(key::rate_meas), 200U);
+    receiver.config.reload();  // what a restart does
+    EXPECT_EQ(receiver.config.value(key::rate_meas), 200U);
+}
+
+TEST(PmtkCommands, SetTheSpeed) {
+    SampleReceiver receiver = receiver_of(Personality::mtk);
+    EXPECT_THAT(receiver.answers("PMTK251,38400"), IsEmpty());
+    EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 38400U);
+    EXPECT_THAT(receiver.answers("PMTK251,0"), IsEmpty());
+    EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 9600U);
+    receiver.board.bauds = {9600, 115200};
+    EXPECT_THAT(receiver.answers("PMTK251,12345"), ElementsAre(Sentence("PMTK001,251,0").finish()));
+    EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 9600U);
+}
+
+TEST(PmtkCommands, SetTheSentences) {
+    SampleReceiver receiver = receiver_of(Personality::mtk);
+    EXPECT_THAT(receiver.answers("PMTK314,0,1,0,5,0,0,0,0,0,0,0,0,0,0,0,0,0,2,0"),
+                ElementsAre("$PMTK001,314,3*36\r\n"));
+    EXPECT_EQ(receiver.rate("RMC"), 1);
+    EXPECT_EQ(receiver.rate("GGA"), 5);
+    EXPECT_EQ(receiver.rate("ZDA"), 2);
+    EXPECT_EQ(receiver.rate("GLL"), 0);
+    EXPECT_THAT(receiver.answers("PMTK414"),
+                ElementsAre(Sentence("PMTK001,414,3").finish(),
+                            Sentence("PMTK514,0,1,0,5,0,0,0,0,0,0,0,0,0,0,0,0,0,2,0").finish()));
+    for (const char* bad : {"PMTK314,0,1", "PMTK314,0,1,0,6,0,0,0,0,0,0,0,0,0,0,0,0,0,2,0", "PMTK314",
+                            "PMTK314,0,1,0,5,0,0,0,0,0,0,0,0,0,0,0,0,0,2,0,0"})
+        EXPECT_THAT(receiver.answers(bad), ElementsAre(Sentence("PMTK001,314,0").finish())) << bad;
+    EXPECT_EQ(receiver.rate("GGA"), 5);
+    receiver.execute("PMTK314,-1");
+    EXPECT_EQ(receiver.rate("GGA"), 1);
+    EXPECT_EQ(receiver.rate("GLL"), 1);
+}
+
+TEST(PmtkCommands, SetCorrectionsAndSystems) {
+    SampleReceiver receiver = receiver_of(Personality::mtk);
+    const auto source = [&] { return receiver.answers("PMTK401").at(1); };
+    receiver.execute("PMTK301,0");
+    EXPECT_EQ(source(), Sentence("PMTK501,0").finish());
+    receiver.execute("PMTK301,1");
+    EXPECT_EQ(source(), Sentence("PMTK501,1").finish());
+    receiver.execute("PMTK301,2");
+    EXPECT_EQ(source(), Sentence("PMTK501,2").finish());
+    EXPECT_THAT(receiver.answers("PMTK301,3"), ElementsAre(Sentence("PMTK001,301,0").finish()));
+    receiver.execute("PMTK313,0");
+    EXPECT_EQ(receiver.answers("PMTK413").at(1), Sentence("PMTK513,0").finish());
+    EXPECT_FALSE(receiver.config.flag(sbas_enable));
+    EXPECT_THAT(receiver.answers("PMTK353,1,1,1,0,0"), ElementsAre(Sentence("PMTK001,353,3,1,1,1,0,0").finish()));
+    EXPECT_TRUE(receiver.config.flag(galileo_enable));
+    EXPECT_THAT(receiver.answers("PMTK353,0,0,0,0,0"), ElementsAre(Sentence("PMTK001,353,2").finish()));
+    EXPECT_TRUE(receiver.config.flag(galileo_enable));
+    EXPECT_THAT(receiver.answers("PMTK386,0.4"), ElementsAre(Sentence("PMTK001,386,3").finish()));
+    EXPECT_EQ(receiver.config.value(key::mot_speed_threshold), 40U);
+    EXPECT_THAT(receiver.answers("PMTK397,9"), ElementsAre(Sentence("PMTK001,397,0").finish()));
+    EXPECT_THAT(receiver.answers("PMTK161,0"), ElementsAre(Sentence("PMTK001,161,3").finish()));
+    EXPECT_THAT(receiver.answers("PMTK869,1,1"), ElementsAre(Sentence("PMTK001,869,3").finish()));
+}
+
+TEST(PmtkCommands, RestartWithoutAnswer) {
+    SampleReceiver receiver = receiver_of(Personality::mtk);
+    receiver.execute("PMTK220,200");
+    const auto restart = [&](const char* body) {
+        const CommandOutcome outcome = receiver.execute(body);
+        EXPECT_THAT(outcome.answers, IsEmpty());
+        return outcome.restart;
+    };
+    EXPECT_EQ(restart("PMTK101"), StartKind::hot);
+    EXPECT_EQ(restart("PMTK102"), StartKind::warm);
+    EXPECT_EQ(restart("PMTK103"), StartKind::cold);
+    EXPECT_EQ(receiver.config.value(key::rate_meas), 200U);
+    EXPECT_EQ(restart("PMTK104"), StartKind::cold);
+    EXPECT_EQ(receiver.config.value(key::rate_meas), 1000U);
+}
+
+TEST(PairCommands, AnswerAndSet) {
+    SampleReceiver receiver = receiver_of(Personality::airoha);
+    EXPECT_THAT(receiver.answers("PAIR002"), ElementsAre(Sentence("PAIR001,002,0").finish()));
+    EXPECT_THAT(receiver.answers("PAIR020"),
+                ElementsAre(Sentence("PAIR001,020,0").finish(), Sentence("PAIR020,AG3352,1.2").finish()));
+    EXPECT_THAT(receiver.answers("PAIR050,100"), ElementsAre(Sentence("PAIR001,050,0").finish()));
+    EXPECT_EQ(receiver.config.value(key::rate_meas), 100U);
+    EXPECT_EQ(receiver.answers("PAIR051").at(1), Sentence("PAIR051,100").finish());
+    EXPECT_THAT(receiver.answers("PAIR050,20"), ElementsAre(Sentence("PAIR001,050,2").finish()));
+    receiver.execute("PAIR062,1,0");
+    EXPECT_EQ(receiver.rate("GLL"), 0);
+    receiver.execute("PAIR062,9,3");
+    EXPECT_EQ(receiver.rate("GNS"), 3);
+    EXPECT_EQ(receiver.answers("PAIR063,9").at(1), Sentence("PAIR063,9,3").finish());
+    EXPECT_THAT(receiver.answers("PAIR062,10,1"), ElementsAre(Sentence("PAIR001,062,2").finish()));
+    EXPECT_THAT(receiver.answers("PAIR063"), ElementsAre(Sentence("PAIR001,063,2").finish()));
+    receiver.execute("PAIR080,5");
+    EXPECT_EQ(receiver.config.value(key::navspg_dynmodel), 8U);
+    EXPECT_THAT(receiver.answers("PAIR080,2"), ElementsAre(Sentence("PAIR001,080,2").finish()));
+    receiver.execute("PAIR410,0");
+    EXPECT_FALSE(receiver.config.flag(sbas_enable));
+    receiver.execute("PAIR400,2");
+    EXPECT_TRUE(receiver.config.flag(sbas_enable));
+    EXPECT_THAT(receiver.answers("PAIR999"), ElementsAre(Sentence("PAIR001,999,3").finish()));
+    EXPECT_THAT(receiver.answers("PAIRx"), IsEmpty());
+    EXPECT_THAT(receiver.answers("PMTK605"), IsEmpty());
+}
+
+TEST(PairCommands, KeepSpeedAndSystemsForTheNextStart) {
+    SampleReceiver receiver = receiver_of(Personality::airoha);
+    EXPECT_THAT(receiver.answers("PAIR864,0,0,115200"), ElementsAre(Sentence("PAIR001,864,0").finish()));
+    EXPECT_THAT(receiver.answers("PAIR066,1,0,1,0,0,0"), ElementsAre(Sentence("PAIR001,066,0").finish()));
+    EXPECT_THAT(receiver.answers("PAIR066,0,0,0,0,0,0"), ElementsAre(Sentence("PAIR001,066,2").finish()));
+    EXPECT_THAT(receiver.answers("PAIR864,1,0,9600"), ElementsAre(Sentence("PAIR001,864,2").finish()));
+    EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 9600U);
+    EXPECT_TRUE(receiver.config.flag(glonass_enable));
+    EXPECT_EQ(receiver.execute("PAIR004").restart, StartKind::hot);
+    EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 115200U);
+    EXPECT_FALSE(receiver.config.flag(glonass_enable));
+    EXPECT_TRUE(receiver.config.flag(galileo_enable));
+    EXPECT_EQ(receiver.execute("PAIR005").restart, StartKind::warm);
+    EXPECT_EQ(receiver.execute("PAIR006").restart, StartKind::cold);
+    EXPECT_EQ(receiver.execute("PAIR007").restart, StartKind::cold);
+    EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 9600U);
+}
+
+TEST(PairCommands, SaveForGood) {
+    SampleReceiver receiver = receiver_of(Personality::airoha);
+    receiver.execute("PAIR050,200");
+    receiver.execute("PAIR513");
+    receiver.config.clear(in_battery);
+    receiver.config.reload();
+    EXPECT_EQ(receiver.config.value(key::rate_meas), 200U);
+    receiver.execute("PAIR050,1000");
+    receiver.execute("PAIR864,0,0,115200");
+    receiver.execute("PAIR513");
+    receiver.config.clear(in_battery);
+    receiver.config.reload();
+    EXPECT_EQ(receiver.config.value(key::rate_meas), 1000U);
+    EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 115200U);
+}
+
+}  // namespace
+}  // namespace skyloop::firmware

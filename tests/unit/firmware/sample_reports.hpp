@@ -1,0 +1,94 @@
+/// A receiver reduced to what its sentences are made from.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "firmware/config/config_handler.hpp"
+#include "firmware/messages/make_message.hpp"
+#include "firmware/nmea_commands.hpp"
+#include "sample_epochs.hpp"
+#include "skyloop/protocol/nmea_decode.hpp"
+
+namespace skyloop::firmware {
+
+/// Board, configuration and state; time and date are known from the first kind of fix on.
+struct SampleReceiver {
+    explicit SampleReceiver(BoardProfile profile) : board(std::move(profile)), config(factory_config(board)) {
+        state.time.leap_seconds = true;
+    }
+
+    /// Takes a fix as the state tracker would that limits and holds nothing.
+    void set(const Fix& fix) {
+        state.epoch.fix = fix;
+        state.fix_ok = state.position_known = fix.has_position();
+        if (fix.type != FixType::none) state.time.time = state.time.date = true;
+        state.course = fix.has_position() ? std::optional(fix.course) : std::nullopt;
+        state.course_is_frozen = fix.speed < board.course_min_speed;
+    }
+    [[nodiscard]] ReportContext context() const { return {board, config, state}; }
+    /// One message, as text.
+    [[nodiscard]] std::vector<std::string> message(std::uint8_t id, std::uint8_t message_class = 0xF0) const {
+        std::vector<std::string> lines;
+        for (const Bytes& bytes : make_nmea_message({message_class, id}, context()))
+            lines.push_back(to_string(bytes));
+        return lines;
+    }
+    /// A message of one sentence.
+    [[nodiscard]] std::string line(std::uint8_t id, std::uint8_t message_class = 0xF0) const {
+        const auto lines = message(id, message_class);
+        EXPECT_EQ(lines.size(), 1U);
+        return lines.empty() ? std::string() : lines.front();
+    }
+    /// What the board sends of an epoch.
+    [[nodiscard]] std::vector<std::string> sentences() const {
+        std::vector<std::string> lines;
+        for (const SentenceRate& rate : board.sentences) {
+            const auto name = nmea_sentence_names[static_cast<std::size_t>(rate.sentence)];
+            for (std::string& one : message(find_output_message(name)->id.id))
+                lines.push_back(std::move(one));
+        }
+        return lines;
+    }
+    std::vector<std::string> sentences(const Fix& fix) {
+        set(fix);
+        return sentences();
+    }
+    /// A client's sentence, without checksum.
+    CommandOutcome execute(const std::string& body, PortId from = PortId::uart1) {
+        const std::string text = Sentence(body).finish();
+        return execute_sentence(*parse_sentence(text), board, config, from);
+    }
+    /// The answers to it.
+    std::vector<std::string> answers(const std::string& body, PortId from = PortId::uart1) {
+        std::vector<std::string> lines;
+        for (const Bytes& bytes : execute(body, from).answers)
+            lines.push_back(to_string(bytes));
+        return lines;
+    }
+    [[nodiscard]] int rate(std::string_view name, PortId port = PortId::uart1) const {
+        return config.rate(find_output_message(name)->id, port);
+    }
+
+    BoardProfile board;
+    ConfigStore config;
+    NavigationState state;
+};
+
+/// The messages of one kind among sentences.
+template <class Message>
+std::vector<Message> messages_of_kind(const std::vector<std::string>& sentences) {
+    std::vector<Message> out;
+    for (const auto& s : sentences) {
+        const auto message = decode_nmea(s);
+        EXPECT_TRUE(message) << s;
+        if (message && std::holds_alternative<Message>(*message)) out.push_back(std::get<Message>(*message));
+    }
+    return out;
+}
+
+}  // namespace skyloop::firmware
