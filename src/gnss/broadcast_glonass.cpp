@@ -49,7 +49,8 @@ std::uint64_t accuracy_factor(double metres) {
 // The bits 80 to 9 of a string, made from a record as it is told at one instant.
 struct StringFields {
     const GlonassEphemeris& r;
-    std::int64_t start;  // of the frame, GLONASS time
+    std::int64_t start;      // of the frame, GLONASS time
+    std::int64_t reference;  // of the record, the same
 
     void first(BitWriter& bits) const {
         const std::int64_t of_day = start % seconds_per_day;
@@ -65,8 +66,10 @@ struct StringFields {
         constexpr std::uint64_t malfunction = 0b100;
         const auto told = static_cast<std::uint64_t>(r.health) & 7;
         bits.put(r.healthy() ? 0 : (told | malfunction), 3);
-        bits.put_signed(r.iode & 1, 1);
-        bits.put_signed(r.iode, 7);
+        constexpr std::int64_t quarter_hour = 900;
+        const std::int64_t nearest = (reference % seconds_per_day + quarter_hour / 2) / quarter_hour % 96;
+        bits.put_signed(nearest & 1, 1);
+        bits.put_signed(nearest, 7);
         bits.put(0, 5);
         put_axis(bits, r, 1);
     }
@@ -127,7 +130,7 @@ std::optional<int> glonass_string_ending(GpsTime end, const LeapSeconds& leap_se
 
 GlonassWords glonass_string(const GlonassEphemeris& record, int string, GpsTime end, const LeapSeconds& leap_seconds) {
     const std::int64_t sent = glonass_seconds(end, leap_seconds) - string_s;
-    const StringFields fields{record, sent - sent % frame_s};
+    const StringFields fields{record, sent - sent % frame_s, glonass_seconds(record.toe, leap_seconds)};
     BitWriter bits;
     bits.put(0, 1);
     bits.put_signed(string, 4);

@@ -2,11 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "../../../src/analysis/ubx_frames.hpp"
 #include "../../support/oracle_table.hpp"
+#include "skyloop/base/bit_field.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/gnss/broadcast_d1.hpp"
 #include "skyloop/gnss/broadcast_glonass.hpp"
@@ -206,7 +209,8 @@ GlonassEphemeris record_of_strings(const std::array<PageBits, 4>& strings, int s
         r.acceleration_mps2[axis] = 1000 * std::ldexp(signed_field(strings[axis], 40, 5), -30);
         r.position_m[axis] = 1000 * std::ldexp(signed_field(strings[axis], 35, 27), -11);
     }
-    r.iode = static_cast<int>(strings[1].field(85 - 76, 7));
+    // t_b, quarter hours of the Moscow Monday 2018-10-15.
+    r.toe = to_gps_time(2023, 86400.0 - 3 * 3600 + 18 + 900.0 * static_cast<double>(strings[1].field(85 - 76, 7)));
     r.clock_drift = std::ldexp(signed_field(strings[2], 79, 11), -40);
     r.clock_bias = -std::ldexp(signed_field(strings[3], 80, 22), -30);
     r.group_delay_l2 = std::ldexp(signed_field(strings[3], 58, 5), -30);
@@ -258,6 +262,79 @@ TEST(BroadcastFrames, GlonassStringsAreThoseThatWereReceived) {
     }
     EXPECT_GT(compared, 2000);
     EXPECT_GT(same_check, 100);  // whole strings, check bits among them
+}
+
+// BeiDou D1 of three real subframes, taken apart by the tables of the ICD and put together again.
+TEST(BroadcastFrames, D1SubframesOfARealSatelliteComeBack) {
+    SKYLOOP_REQUIRE_SHARED(f9p, "serial/ublox-zed-f9p-sfrbx.log");
+    std::array<PageBits, 3> subframes;
+    for (const RealFrame& frame : real_frames(f9p)) {
+        if (frame.gnss != 3 || frame.signal != 0 || frame.sv != 29 || frame.words.size() != 10) continue;
+        // The information without parity: 26 bits of the first word, 22 of the others.
+        BitWriter bits;
+        bits.put(frame.words[0] >> 4, 26);
+        for (std::size_t i = 1; i < 10; ++i)
+            bits.put(frame.words[i] >> 8, 22);
+        const auto number = bits.field(15, 3);
+        if (number >= 1 && number <= 3) subframes[number - 1] = {bits.words()};
+        if (number < 1 || number > 3) continue;
+        subframes[number - 1].words.insert(subframes[number - 1].words.end(), frame.words.begin(), frame.words.end());
+    }
+    for (const PageBits& s : subframes)
+        ASSERT_EQ(s.words.size(), 17u);
+    const auto number = [](std::uint64_t raw, int width) {
+        return static_cast<double>(static_cast<std::int64_t>(raw << (64 - width)) >> (64 - width));
+    };
+    const auto& [s1, s2, s3] = subframes;
+    const double semicircle = std::numbers::pi;
+    const std::int64_t week = 1356 + static_cast<std::int64_t>(s1.field(48, 13));
+    KeplerEphemeris r;
+    r.satellite = {Constellation::beidou, 29};
+    r.message = NavigationMessage::d1;
+    r.health = static_cast<int>(s1.field(38, 1));
+    r.iodc = static_cast<int>(s1.field(39, 5));
+    EXPECT_EQ(s1.field(44, 4), 0u);
+    r.accuracy_m = 2;
+    r.toc = to_gps_time(week, 8.0 * static_cast<double>(s1.field(61, 17)) + 14);
+    r.tgd = 1e-10 * number(s1.field(78, 10), 10);
+    r.tgd2 = 1e-10 * number(s1.field(88, 10), 10);
+    KlobucharCoefficients c;
+    for (std::size_t i = 0; i < 4; ++i) {
+        c.alpha[i] = std::ldexp(number(s1.field(98 + 8 * i, 8), 8), std::array{-30, -27, -24, -24}[i]);
+        c.beta[i] = std::ldexp(number(s1.field(130 + 8 * i, 8), 8), std::array{11, 14, 16, 16}[i]);
+    }
+    r.af2 = std::ldexp(number(s1.field(162, 11), 11), -66);
+    r.af0 = std::ldexp(number(s1.field(173, 24), 24), -33);
+    r.af1 = std::ldexp(number(s1.field(197, 22), 22), -50);
+    r.iode = static_cast<int>(s1.field(219, 5));
+    r.delta_n = semicircle * std::ldexp(number(s2.field(38, 16), 16), -43);
+    r.cuc = std::ldexp(number(s2.field(54, 18), 18), -31);
+    r.m0 = semicircle * std::ldexp(number(s2.field(72, 32), 32), -31);
+    r.e = std::ldexp(static_cast<double>(s2.field(104, 32)), -33);
+    r.cus = std::ldexp(number(s2.field(136, 18), 18), -31);
+    r.crc = std::ldexp(number(s2.field(154, 18), 18), -6);
+    r.crs = std::ldexp(number(s2.field(172, 18), 18), -6);
+    r.sqrt_a = std::ldexp(static_cast<double>(s2.field(190, 32)), -19);
+    r.toe = to_gps_time(week, 8.0 * static_cast<double>(s2.field(222, 2) << 15 | s3.field(38, 15)) + 14);
+    r.i0 = semicircle * std::ldexp(number(s3.field(53, 32), 32), -31);
+    r.cic = std::ldexp(number(s3.field(85, 18), 18), -31);
+    r.omega_dot = semicircle * std::ldexp(number(s3.field(103, 24), 24), -43);
+    r.cis = std::ldexp(number(s3.field(127, 18), 18), -31);
+    r.idot = semicircle * std::ldexp(number(s3.field(145, 14), 14), -43);
+    r.omega0 = semicircle * std::ldexp(number(s3.field(159, 32), 32), -31);
+    r.omega = semicircle * std::ldexp(number(s3.field(191, 32), 32), -31);
+    EXPECT_NEAR(r.sqrt_a * r.sqrt_a, 27.9e6, 1e5);  // a MEO, so the places above are right
+    EXPECT_NEAR(r.i0 * 57.29578, 55, 3);
+    for (int subframe = 1; subframe <= 3; ++subframe) {
+        const auto& words = subframes[static_cast<std::size_t>(subframe - 1)].words;
+        const double sow = static_cast<double>(subframes[static_cast<std::size_t>(subframe - 1)].field(18, 20));
+        const D1Words ours = d1_subframe(r, c, subframe, to_gps_time(week, sow + 14 + 6));
+        for (std::size_t i = 0; i < 10; ++i) {
+            // Four bits of the first word are reserved, one of subframe 3.
+            const std::uint32_t told = i == 0 ? 0x3FF87FF0 : ~0u;
+            EXPECT_EQ((ours[i] ^ words[7 + i]) & told, 0u) << "subframe " << subframe << " word " << i + 1;
+        }
+    }
 }
 
 }  // namespace

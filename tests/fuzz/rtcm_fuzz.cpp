@@ -1,0 +1,61 @@
+// RTCM 3: any bytes through the splitter, the readers and the firmware's book-keeping of corrections.
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+#include "firmware/correction_input.hpp"
+#include "skyloop/protocol/rtcm3.hpp"
+#include "skyloop/protocol/stream_splitter.hpp"
+#include "skyloop/protocol/ubx_frame.hpp"
+
+namespace {
+
+void require(bool promise) {
+    if (!promise) std::abort();
+}
+
+void read(skyloop::ByteSpan frame) {
+    using namespace skyloop;
+    const auto message = parse_rtcm3(frame);
+    if (!message) return;
+    require(message->number >= 0 && message->number <= 4095);
+    // What we write we must be able to read, and it must be the same.
+    if (const auto station = decode_station(*message)) {
+        const Bytes again = encode(*station);
+        require(decode_station(*parse_rtcm3(again)) == station);
+    }
+    if (const auto biases = decode_glonass_biases(*message)) {
+        const Bytes again = encode(*biases);
+        require(decode_glonass_biases(*parse_rtcm3(again)) == biases);
+    }
+    if (const auto header = decode_msm_header(*message)) {
+        const Bytes again = encode(*header);
+        require(decode_msm_header(*parse_rtcm3(again)) == header);
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace skyloop;
+    firmware::CorrectionAbility ability;
+    ability.rtk = true;
+    firmware::CorrectionInput input(ability);
+    GpsTime now = to_gps_time(2300, 0.0);
+    StreamSplitter splitter;
+    for (const StreamPiece& piece : splitter.feed({data, size})) {
+        if (piece.kind != StreamKind::rtcm3) continue;
+        read(piece.bytes);
+        require(parse_frame(input.take(piece.bytes, now)).has_value());
+        now += std::chrono::milliseconds(700);
+        const auto status = input.status(now, firmware::CorrectionLimits{});
+        require(status.state == CorrectionState::none || (status.age && status.station));
+    }
+    // The same bytes as the payload of one frame, so that a checksum does not stand in the way.
+    const Bytes frame = encode_rtcm3({data, size});
+    if (frame.empty()) return 0;
+    read(frame);
+    require(parse_frame(input.take(frame, now)).has_value());
+    return 0;
+}

@@ -1,0 +1,178 @@
+// Navigation messages without a receiver to compare with: pages of the whole system, time, and records that do not fit.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "skyloop/gnss/broadcast_d1.hpp"
+#include "skyloop/gnss/broadcast_glonass.hpp"
+#include "skyloop/gnss/broadcast_inav.hpp"
+#include "skyloop/gnss/broadcast_lnav.hpp"
+#include "skyloop/gnss/nominal_constellation.hpp"
+#include "skyloop/gnss/orbit.hpp"
+
+namespace skyloop {
+namespace {
+
+std::uint32_t page_data(const LnavWords& words, std::size_t word) { return words[word - 1] >> 6 & 0xFFFFFF; }
+
+std::int64_t complement(std::uint32_t value, int width) {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(value) << (64 - width)) >> (64 - width);
+}
+
+// A subframe of a ZED-F9P's log, word by word.
+TEST(BroadcastLnav, WordsOfARealSubframe) {
+    const LnavWords real{0x22c03d38, 0x1b626b0c, 0x3fe74766, 0x9b39e17a, 0x8000c9dc,
+                         0x15fc6484, 0x06850998, 0x0e397a36, 0xbfea5a74, 0x04fd9090};
+    LnavData data{};
+    for (std::size_t i = 0; i < 10; ++i)
+        data[i] = real[i] >> 6 & 0xFFFFFF;
+    EXPECT_EQ(lnav_words(data), real);
+}
+
+// Real bits of page 18, GPS week 2023: Galway's log, 2018-10-15.
+TEST(BroadcastLnav, PageEighteenTellsIonosphereAndLeapSeconds) {
+    class WithIonosphere : public NominalConstellation {
+    public:
+        [[nodiscard]] const BroadcastIonosphere& ionosphere() const override { return ionosphere_; }
+
+    private:
+        BroadcastIonosphere ionosphere_{
+            KlobucharCoefficients{{std::ldexp(12, -30), std::ldexp(-8, -27), std::ldexp(-1, -24), std::ldexp(2, -24)},
+                                  {std::ldexp(44, 11), std::ldexp(-3, 14), std::ldexp(-2, 16), std::ldexp(7, 16)}}};
+    } source;
+    // Page 18 is that of the eighteenth frame of 30 s; subframe 4 ends 24 s after its start.
+    const GpsTime end = to_gps_time(2023, 750.0 * 100 + 17 * 30 + 24);
+    const LnavWords words = lnav_system_subframe({&source, LeapSeconds::announced()}, 4, end);
+    EXPECT_EQ(page_data(words, 3) >> 16, 0x78u);  // data 01, page 56
+    EXPECT_EQ(page_data(words, 3) & 0xFFFF, 0x0CF8u);
+    EXPECT_EQ(page_data(words, 4), 0xFF022Cu);
+    EXPECT_EQ(page_data(words, 5), 0xFDFE07u);
+    EXPECT_EQ(page_data(words, 8) & 0xFF, 2023u & 0xFF);
+    // 18 s since the end of Saturday 2016-12-31, week 1929.
+    EXPECT_EQ(page_data(words, 9), (18u << 16 | (1929u & 0xFF) << 8 | 7u));
+    EXPECT_EQ(page_data(words, 10) >> 16, 18u);
+}
+
+TEST(BroadcastLnav, AlmanacsGiveTheOrbitsOfTheRecords) {
+    const NominalConstellation source;
+    for (int number : {1, 12, 24}) {
+        const GpsTime end = to_gps_time(2023, 750.0 * 700 + (number - 1) * 30 + 30);
+        const LnavWords words = lnav_system_subframe({&source, LeapSeconds::announced()}, 5, end);
+        ASSERT_EQ(page_data(words, 3) >> 16, 0x40u + static_cast<std::uint32_t>(number));
+        constexpr double semicircle = std::numbers::pi;
+        KeplerEphemeris almanac;
+        almanac.satellite = {Constellation::gps, number};
+        almanac.message = NavigationMessage::almanac;
+        almanac.e = std::ldexp(page_data(words, 3) & 0xFFFF, -21);
+        almanac.toe = almanac.toc = to_gps_time(2023, 4096.0 * (page_data(words, 4) >> 16));
+        const auto inclination = static_cast<double>(complement(page_data(words, 4) & 0xFFFF, 16));
+        almanac.i0 = semicircle * (0.3 + std::ldexp(inclination, -19));
+        almanac.omega_dot = semicircle * std::ldexp(static_cast<double>(complement(page_data(words, 5) >> 8, 16)), -38);
+        EXPECT_EQ(page_data(words, 5) & 0xFF, 0u);
+        almanac.sqrt_a = std::ldexp(page_data(words, 6), -11);
+        const auto circle = [&words](std::size_t word) {
+            return semicircle * std::ldexp(static_cast<double>(complement(page_data(words, word), 24)), -23);
+        };
+        almanac.omega0 = circle(7);
+        almanac.omega = circle(8);
+        almanac.m0 = circle(9);
+        const auto record = source.record(almanac.satellite, end);
+        ASSERT_TRUE(record);
+        const auto apart =
+            satellite_state(almanac, end).position.vector() - satellite_state(*record, end).position.vector();
+        EXPECT_LT(apart.norm(), 2000) << number;  // δi has steps of 160 m, Ω̇ of 600 m over a day
+    }
+}
+
+TEST(BroadcastLnav, HealthPagesTellWhoIsThere) {
+    const NominalConstellation source;
+    const LnavWords words = lnav_system_subframe({&source, LeapSeconds::announced()}, 5, to_gps_time(2023, 750.0 * 3));
+    EXPECT_EQ(page_data(words, 3) >> 16, 0x40u + 51);
+    for (std::size_t word = 4; word <= 9; ++word)
+        EXPECT_EQ(page_data(words, word), 0u);
+    const LnavWords second =
+        lnav_system_subframe({&source, LeapSeconds::announced()}, 4, to_gps_time(2023, 750.0 * 3 - 6));
+    EXPECT_EQ(page_data(second, 3) >> 16, 0x40u + 63);
+}
+
+TEST(BroadcastGlonass, HammingCodeOfARealString) {
+    // String 6 of R3, ublox-glo.log; only its check bits are looked at, through a string of our own below.
+    const GlonassWords ours = glonass_string({}, 5, to_gps_time(2023, 150000.0 + 18), LeapSeconds::announced());
+    unsigned places = 0, ones = 0, place = 2;
+    const auto bit = [&ours](int number) {
+        const auto at = static_cast<std::size_t>(85 - number);
+        return ours[at / 32] >> (31 - at % 32) & 1;
+    };
+    for (int number = 9; number <= 85; ++number) {
+        do
+            ++place;
+        while (std::has_single_bit(place));
+        places ^= bit(number) != 0 ? place : 0;
+    }
+    for (int number = 1; number <= 85; ++number)
+        ones += bit(number);
+    for (int number = 1; number <= 7; ++number)
+        EXPECT_EQ(bit(number), places >> (number - 1) & 1) << number;
+    EXPECT_EQ(ones % 2, 0u);
+}
+
+TEST(BroadcastGlonass, StringsFollowTheMoscowDay) {
+    const LeapSeconds& leap = LeapSeconds::announced();
+    // 18 s after a whole half minute of GPS time one of GLONASS begins.
+    const GpsTime frame = to_gps_time(2023, 150000.0 + 18);
+    EXPECT_EQ(glonass_string_ending(frame, leap), 15);
+    EXPECT_EQ(glonass_string_ending(frame + std::chrono::seconds(2), leap), 1);
+    EXPECT_FALSE(glonass_string_ending(frame + std::chrono::seconds(1), leap));
+    EXPECT_FALSE(glonass_string_ending(frame + std::chrono::milliseconds(2500), leap));
+}
+
+TEST(BroadcastMessages, TakeWhateverARecordHolds) {
+    const double worst[] = {0,
+                            1e300,
+                            -1e300,
+                            std::numeric_limits<double>::quiet_NaN(),
+                            std::numeric_limits<double>::infinity(),
+                            -std::numeric_limits<double>::infinity()};
+    const BroadcastIonosphere none;
+    for (const double value : worst) {
+        KeplerEphemeris r;
+        for (double KeplerEphemeris::*field :
+             {&KeplerEphemeris::sqrt_a, &KeplerEphemeris::e, &KeplerEphemeris::i0, &KeplerEphemeris::idot,
+              &KeplerEphemeris::omega0, &KeplerEphemeris::omega, &KeplerEphemeris::omega_dot, &KeplerEphemeris::m0,
+              &KeplerEphemeris::delta_n, &KeplerEphemeris::cuc, &KeplerEphemeris::crs, &KeplerEphemeris::af0,
+              &KeplerEphemeris::af1, &KeplerEphemeris::af2, &KeplerEphemeris::tgd, &KeplerEphemeris::accuracy_m})
+            r.*field = value;
+        r.iode = r.iodc = r.health = -1;
+        GlonassEphemeris g;
+        g.position_m = g.velocity_mps = g.acceleration_mps2 = {value, value, value};
+        g.clock_bias = g.clock_drift = g.group_delay_l2 = g.accuracy_m = value;
+        const GpsTime end = to_gps_time(2023, 600.0);
+        for (int i = 1; i <= 3; ++i) {
+            const LnavWords words = lnav_ephemeris_subframe(r, i, end);
+            EXPECT_EQ(words[0] >> 22, 0x8Bu);
+            EXPECT_EQ(words[9] & 3, 0u);
+            EXPECT_EQ(d1_subframe(r, std::nullopt, i, end)[0] >> 19, 0b11100010010u);
+        }
+        for (int i = 1; i <= 5; ++i)
+            EXPECT_EQ(glonass_string(g, i, end, LeapSeconds::announced())[0] >> 27, static_cast<std::uint32_t>(i));
+        for (int i = 0; i <= 6; ++i)
+            EXPECT_EQ(inav_pages({r, none, LeapSeconds::announced()}, i, end)[0] >> 24, static_cast<std::uint32_t>(i));
+    }
+}
+
+TEST(BroadcastInav, WordsFollowTheSubframe) {
+    const GpsTime start = to_gps_time(2300, 3000.0);
+    std::vector<int> e1, e5b;
+    for (int pair = 1; pair <= 15; ++pair) {
+        e1.push_back(inav_word_ending(Signal::l1, start + std::chrono::seconds(2 * pair)).value());
+        e5b.push_back(inav_word_ending(Signal::e5b, start + std::chrono::seconds(2 * pair)).value());
+    }
+    EXPECT_EQ(e1, (std::vector{2, 4, 6, 0, 0, 0, 0, 0, 0, 0, 1, 3, 5, 0, 0}));
+    EXPECT_EQ(e5b, (std::vector{1, 3, 5, 0, 0, 0, 0, 0, 0, 0, 2, 4, 6, 0, 0}));
+    EXPECT_FALSE(inav_word_ending(Signal::l1, start + std::chrono::seconds(1)));
+}
+
+}  // namespace
+}  // namespace skyloop

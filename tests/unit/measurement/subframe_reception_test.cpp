@@ -1,0 +1,119 @@
+#include "skyloop/measurement/subframe_reception.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "skyloop/gnss/broadcast_lnav.hpp"
+#include "support/four_systems.hpp"
+
+namespace skyloop {
+namespace {
+
+const SatelliteId gps_sent{Constellation::gps, 3}, galileo_sent{Constellation::galileo, 4},
+    beidou_sent{Constellation::beidou, 15}, glonass_sent{Constellation::glonass, 5};
+
+Observation locked_signal(SatelliteId satellite, Signal signal) {
+    Observation o;
+    o.satellite = satellite;
+    o.signal = signal;
+    o.pseudorange = Metres(2.2e7);
+    return o;
+}
+
+Observations of_all(GpsTime time) {
+    return {time,
+            false,
+            {locked_signal(gps_sent, Signal::l1), locked_signal(galileo_sent, Signal::l1),
+             locked_signal(galileo_sent, Signal::e5b), locked_signal(beidou_sent, Signal::b1i),
+             locked_signal(glonass_sent, Signal::g1)}};
+}
+
+// 30 s begin with a frame of GPS and of Galileo, 14 s later one of BeiDou.
+const GpsTime frame_start = to_gps_time(2300, 3600.0 * 20);
+
+TEST(SubframeReception, EverySubframeOfHalfAMinuteOnce) {
+    const test::FourSystems sent;
+    SubframeReception reception;
+    std::map<std::pair<SatelliteId, Signal>, int> counts;
+    std::map<int, int> gps_subframes;
+    GpsTime last = frame_start;
+    for (int i = -100; i <= 300; ++i) {
+        const GpsTime now = frame_start + std::chrono::milliseconds(100 * i + 75);
+        for (const Subframe& s : reception.receive(of_all(now), sent, now)) {
+            if (i <= 0) continue;
+            EXPECT_GE(s.end, last);
+            last = s.end;
+            ++counts[{s.satellite, s.signal}];
+            if (s.satellite != gps_sent) continue;
+            ++gps_subframes[static_cast<int>(s.words[1] >> 8 & 7)];
+            // The hand-over word tells the start of the next subframe, which is the end of this one.
+            EXPECT_EQ((s.words[1] >> 13 & 0x1FFFF) * std::chrono::seconds(6), week_and_tow(s.end).tow);
+        }
+    }
+    EXPECT_EQ((counts[{gps_sent, Signal::l1}]), 5);
+    EXPECT_EQ((counts[{galileo_sent, Signal::l1}]), 15);
+    EXPECT_EQ((counts[{galileo_sent, Signal::e5b}]), 15);
+    EXPECT_EQ((counts[{beidou_sent, Signal::b1i}]), 3);
+    EXPECT_EQ((counts[{glonass_sent, Signal::g1}]), 5);
+    for (int subframe = 1; subframe <= 5; ++subframe)
+        EXPECT_EQ(gps_subframes[subframe], 1) << subframe;
+}
+
+TEST(SubframeReception, DoesNotDependOnTheRate) {
+    const test::FourSystems sent;
+    SubframeReception slow, fast;
+    std::vector<std::pair<GpsTime, std::vector<std::uint32_t>>> of_slow, of_fast;
+    for (int i = 0; i <= 600; ++i) {
+        const GpsTime now = frame_start + std::chrono::milliseconds(100 * i);
+        for (const Subframe& s : fast.receive(of_all(now), sent, now))
+            of_fast.emplace_back(s.end, s.words);
+        if (i % 20 != 0) continue;
+        for (const Subframe& s : slow.receive(of_all(now), sent, now))
+            of_slow.emplace_back(s.end, s.words);
+    }
+    EXPECT_EQ(of_slow, of_fast);
+    EXPECT_GT(of_slow.size(), 60u);
+}
+
+TEST(SubframeReception, NeedsTheCodeFromTheBeginning) {
+    const test::FourSystems sent;
+    SubframeReception reception;
+    int received = 0;
+    for (int i = 0; i <= 12; ++i) {
+        const GpsTime now = frame_start + std::chrono::milliseconds(1000 * i + 100);
+        Observations o{now, false, {locked_signal(gps_sent, Signal::l1)}};
+        if (i == 3) o.signals[0].pseudorange.reset();
+        const auto got = reception.receive(o, sent, now);
+        // Ends at 6 s, broken at 3 s; and at 12 s, whole.
+        received += static_cast<int>(got.size());
+        if (i < 12) {
+            EXPECT_TRUE(got.empty()) << i;
+        }
+    }
+    EXPECT_EQ(received, 1);
+}
+
+TEST(SubframeReception, AGapBeginsAnew) {
+    const test::FourSystems sent;
+    SubframeReception reception;
+    reception.receive(of_all(frame_start), sent, frame_start);
+    const GpsTime later = frame_start + std::chrono::hours(1000);
+    EXPECT_TRUE(reception.receive(of_all(later), sent, later).empty());
+}
+
+TEST(SubframeReception, SendsNothingOfOtherSignalsAndSatellitesWithoutRecords) {
+    const test::FourSystems sent;
+    SubframeReception reception;
+    for (int i = 0; i <= 30; ++i) {
+        const GpsTime now = frame_start + std::chrono::seconds(i);
+        const Observations o{now,
+                             false,
+                             {locked_signal(gps_sent, Signal::l2), locked_signal({Constellation::qzss, 1}, Signal::l1),
+                              locked_signal({Constellation::navic, 2}, Signal::l5)}};
+        EXPECT_TRUE(reception.receive(o, sent, now).empty());
+    }
+}
+
+}  // namespace
+}  // namespace skyloop
