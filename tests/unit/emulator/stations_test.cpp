@@ -184,7 +184,9 @@ TEST(Stations, ARoverKnowsTheHeadingOfItsVehicle) {
 
 TEST(Stations, ThereIsNoVectorWithoutAnEpochOfTheBase) {
     Assembly assembly = stations_assembly(two_receivers + "base = \"front\"\nrate_hz = 2\n");
-    for (const Trace& trace : traces_of(assembly)[1])
+    auto traces = traces_of(assembly);
+    ASSERT_EQ(traces[1].size(), 60U);
+    for (const Trace& trace : traces[1])
         EXPECT_EQ(trace.epoch.relative.has_value(), trace.truth.time.time_since_epoch() % 1s == 0ns);
 }
 
