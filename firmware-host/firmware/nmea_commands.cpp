@@ -51,16 +51,16 @@ std::vector<Bytes> version_answers(const BoardProfile& board, std::string_view p
     return answers;
 }
 
-CorrectionSource correction_source(const ConfigStore& store, PortId from) {
-    if (store.flag(sbas_corrections) && store.flag(enable_key(Constellation::sbas))) return CorrectionSource::sbas;
-    return store.flag(key::in_protocol(from, rtcm3_protocol)) ? CorrectionSource::rtcm : CorrectionSource::none;
+AidingSource correction_source(const ConfigStore& store, PortId from) {
+    if (store.flag(sbas_corrections) && store.flag(enable_key(Constellation::sbas))) return AidingSource::sbas;
+    return store.flag(key::in_protocol(from, rtcm3_protocol)) ? AidingSource::rtcm : AidingSource::none;
 }
 
-void set_correction_source(ConfigStore& store, PortId from, CorrectionSource source) {
+void set_correction_source(ConfigStore& store, PortId from, AidingSource source) {
     constexpr ConfigLayers layers = in_ram | in_battery;
-    store.set(layers, sbas_corrections, source == CorrectionSource::sbas);
-    store.set(layers, key::in_protocol(from, rtcm3_protocol), source == CorrectionSource::rtcm);
-    if (source == CorrectionSource::sbas) store.set(layers, enable_key(Constellation::sbas), 1);
+    store.set(layers, sbas_corrections, source == AidingSource::sbas);
+    store.set(layers, key::in_protocol(from, rtcm3_protocol), source == AidingSource::rtcm);
+    if (source == AidingSource::sbas) store.set(layers, enable_key(Constellation::sbas), 1);
 }
 
 bool set_systems(const BoardProfile& board, ConfigStore& store, ConfigLayers layers,

@@ -33,9 +33,9 @@ CommandOutcome execute_pmtk(const SentenceView& sentence, const BoardProfile& bo
 CommandOutcome execute_pair(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store, PortId from);
 
 /// Where corrections come from, as MediaTek and Airoha number it.
-enum class CorrectionSource { none = 0, rtcm = 1, sbas = 2 };
-CorrectionSource correction_source(const ConfigStore& store, PortId from);
-void set_correction_source(ConfigStore& store, PortId from, CorrectionSource source);
+enum class AidingSource { none = 0, rtcm = 1, sbas = 2 };
+AidingSource correction_source(const ConfigStore& store, PortId from);
+void set_correction_source(ConfigStore& store, PortId from, AidingSource source);
 
 /// Sets systems in the order of `systems`, one for each of `wanted`; false, and nothing changed, when none of the
 /// major systems would be left or a system is wanted that the board cannot track.

@@ -124,7 +124,7 @@ void set_navigation_mode(PairCommand& c) {
 void set_pair_corrections(PairCommand& c) {
     const auto source = c.argument(0);
     if (!source || *source < 0 || *source > 2) return c.acknowledge(PairResult::failed);
-    set_correction_source(c.store, c.from, static_cast<CorrectionSource>(*source));
+    set_correction_source(c.store, c.from, static_cast<AidingSource>(*source));
     c.acknowledge(PairResult::done);
 }
 

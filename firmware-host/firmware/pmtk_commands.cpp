@@ -119,7 +119,7 @@ void tell_sentences(PmtkCommand& c) {
 void set_corrections(PmtkCommand& c) {
     const auto source = c.argument(0);
     if (!source || *source < 0 || *source > 2) return c.acknowledge(PmtkFlag::invalid);
-    set_correction_source(c.store, c.from, static_cast<CorrectionSource>(*source));
+    set_correction_source(c.store, c.from, static_cast<AidingSource>(*source));
     c.acknowledge(PmtkFlag::done);
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "skyloop/emulator/wires.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -53,9 +55,15 @@ void Station::speak(const LoopTime& time) {
     }
     if (!parts_.recorder) return;
     for (std::size_t i = 0; i < std::max<std::size_t>(parts_.wires.size(), 1); ++i) {
+<<<<<<< HEAD
         // Without a wire, what its first port sends is kept.
         const PortId port = parts_.wires.empty() ? parts_.receiver.board().ports.front() : parts_.wires[i].port;
         for (const firmware::Receiver::Sent& piece : pieces)
+=======
+        // Without a wire, what would leave by the port of an unnamed one is kept.
+        const PortId port = parts_.wires.empty() ? default_port(parts_.receiver.board()) : parts_.wires[i].port;
+        for (const SentPiece& piece : pieces)
+>>>>>>> emulator
             if (piece.port == port) parts_.recorder->record_output(piece.bytes, time, i);
     }
 }

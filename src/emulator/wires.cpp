@@ -21,12 +21,12 @@ std::vector<std::string_view> names_of(const std::vector<PortId>& ports) {
     return names;
 }
 
-PortId default_port(const BoardProfile& board) {
+}  // namespace
+
+firmware::PortId default_port(const BoardProfile& board) {
     const bool has_uart1 = std::find(board.ports.begin(), board.ports.end(), PortId::uart1) != board.ports.end();
     return has_uart1 || board.ports.empty() ? PortId::uart1 : board.ports.front();
 }
-
-}  // namespace
 
 Result<WireRequest> parse_wire(std::string_view text, const BoardProfile& board) {
     // A path may hold "=" too: it stands behind the colon of its scheme.

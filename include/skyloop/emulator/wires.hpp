@@ -17,9 +17,11 @@ struct WireRequest {
     std::string uri;
 };
 
-/// What stands before "=" names the port, what stands behind is a URI of a transport; without a name it is UART1, or
-/// the only port of a board that has no UART1. Fails with `usage`: the sentence quotes the text and lists the board's
-/// ports.
+/// The port of a wire without a name: UART1, or the first port of a board that has no UART1.
+firmware::PortId default_port(const firmware::BoardProfile& board);
+
+/// What stands before "=" names the port, what stands behind is a URI of a transport; without a name it is the
+/// default_port(). Fails with `usage`: the sentence quotes the text and lists the board's ports.
 Result<WireRequest> parse_wire(std::string_view text, const firmware::BoardProfile& board);
 
 /// The wires of one receiver, as they were asked for; opens none. Without any in the scenario it is one pty.

@@ -58,6 +58,26 @@ TEST(Wires, AnUnknownNameListsThePortsOfTheBoard) {
     EXPECT_FALSE(parse_wire("usb=", board));
 }
 
+TEST(Wires, WithoutANameItIsUart1WhereverTheBoardListsIt) {
+    using firmware::PortId;
+    EXPECT_EQ(default_port(board_with({PortId::i2c, PortId::uart1, PortId::usb})), PortId::uart1);
+    EXPECT_EQ(default_port(board_with({PortId::i2c, PortId::usb})), PortId::i2c);
+}
+
+// On a board that may have a port before it.
+TEST(Stations, ARecordingWithoutWiresIsOfUart1) {
+    const test::TemporaryFolder folder;
+    const Scenario scenario = emulator_scenario("[run]\nstart = 2024-03-05T12:00:00Z");
+    const GpsTime start = *scenario.run.start;
+    Station::Parts parts = test::station_parts(scenario, 0, start);
+    parts.recorder = std::move(Recorder::create(folder / "run").value());
+    std::vector<Station> stations;
+    stations.emplace_back(std::move(parts));
+    Emulator emulator({std::move(stations), std::make_unique<VirtualPacer>(start)}, start);
+    emulator.run_until(start + 5s, stations_never_stop);
+    EXPECT_THAT(content_of(folder / "run/port0.out"), HasSubstr("RMC,12000"));
+}
+
 const std::string two_receivers =
     "[run]\nstart = 2024-03-05T12:00:00Z\nduration_s = 30\n"
     "[trajectory]\nkind = \"circle\"\ncentre = [46.5, 30.75, 50]\nradius_m = 30\nspeed_mps = 4\n"
@@ -184,7 +204,9 @@ TEST(Stations, ARoverKnowsTheHeadingOfItsVehicle) {
 
 TEST(Stations, ThereIsNoVectorWithoutAnEpochOfTheBase) {
     Assembly assembly = stations_assembly(two_receivers + "base = \"front\"\nrate_hz = 2\n");
-    for (const Trace& trace : traces_of(assembly)[1])
+    auto traces = traces_of(assembly);
+    ASSERT_EQ(traces[1].size(), 60U);
+    for (const Trace& trace : traces[1])
         EXPECT_EQ(trace.epoch.relative.has_value(), trace.truth.time.time_since_epoch() % 1s == 0ns);
 }
 
