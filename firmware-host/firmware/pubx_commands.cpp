@@ -5,6 +5,7 @@
 #include <string>
 
 #include "firmware/config/config_handler.hpp"
+#include "firmware/message_class.hpp"
 #include "firmware/messages/nmea_report.hpp"
 #include "firmware/nmea_commands.hpp"
 
@@ -12,7 +13,6 @@ namespace skyloop::firmware {
 namespace {
 
 constexpr std::uint8_t class_of_sentences = 0xF0, class_of_pubx = 0xF1;
-constexpr std::uint32_t protocol_ubx = 1, protocol_nmea = 2, protocol_rtcm3 = 4;
 
 bool pubx_port_exists(const BoardProfile& board, PortId port) {
     return std::find(board.ports.begin(), board.ports.end(), port) != board.ports.end();

@@ -1,6 +1,7 @@
 // What a client's bytes do (RECEIVER.md 1.3, 1.4, 4.1, 4.2).
 #include <algorithm>
 
+#include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/receiver_core.hpp"
 #include "skyloop/base/units.hpp"
@@ -15,10 +16,8 @@ using namespace std::chrono_literals;
 // A frame that was begun and not ended within this belongs to a client's hunt for the speed.
 constexpr Nanoseconds frame_timeout = 2s;
 
-constexpr std::uint8_t class_cfg = 0x06, class_mga = 0x13, class_log = 0x21;
 constexpr UbxMessageId cfg_rst{0x06, 0x04}, cfg_valset{0x06, 0x8A}, cfg_valget{0x06, 0x8B}, cfg_valdel{0x06, 0x8C},
     nav_resetodo{0x01, 0x10};
-constexpr std::uint32_t protocol_ubx = 1, protocol_nmea = 2, protocol_rtcm3 = 4;
 
 ConfigOutcome refusal() { return {{}, Verdict::refuse, Seconds(0)}; }
 ConfigOutcome silent() { return {{}, Verdict::silence, Seconds(0)}; }

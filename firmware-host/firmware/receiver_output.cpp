@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/receiver_core.hpp"
 
@@ -9,13 +10,12 @@ namespace skyloop::firmware {
 namespace {
 
 constexpr int level_error = 0, level_notice = 2;
-constexpr std::uint8_t class_nmea = 0xF0, class_pubx = 0xF1, class_rtcm = 0xF5;
 
 constexpr double late_epochs = 0.005, late_by_s = 0.020;
 
 std::uint32_t protocol_item(UbxMessageId message) {
-    if (message.message_class == class_nmea || message.message_class == class_pubx) return 2;
-    return message.message_class == class_rtcm ? 4 : 1;
+    if (message.message_class == class_nmea || message.message_class == class_pubx) return protocol_nmea;
+    return message.message_class == class_rtcm ? protocol_rtcm3 : protocol_ubx;
 }
 
 std::string_view antenna_text(AntennaStatus status) {

@@ -13,9 +13,7 @@ PortSpeed speed_of(PortId port, std::uint32_t baud) { return firmware::is_uart(p
 
 }  // namespace
 
-PortSpeed port_speed(const firmware::Receiver& receiver, PortId port) {
-    return speed_of(port, receiver.baud(port));
-}
+PortSpeed port_speed(const firmware::Receiver& receiver, PortId port) { return speed_of(port, receiver.baud(port)); }
 
 void Station::start(GpsTime now) {
     parts_.receiver.start(now);
@@ -55,15 +53,9 @@ void Station::speak(const LoopTime& time) {
     }
     if (!parts_.recorder) return;
     for (std::size_t i = 0; i < std::max<std::size_t>(parts_.wires.size(), 1); ++i) {
-<<<<<<< HEAD
-        // Without a wire, what its first port sends is kept.
-        const PortId port = parts_.wires.empty() ? parts_.receiver.board().ports.front() : parts_.wires[i].port;
-        for (const firmware::Receiver::Sent& piece : pieces)
-=======
         // Without a wire, what would leave by the port of an unnamed one is kept.
         const PortId port = parts_.wires.empty() ? default_port(parts_.receiver.board()) : parts_.wires[i].port;
-        for (const SentPiece& piece : pieces)
->>>>>>> emulator
+        for (const firmware::Receiver::Sent& piece : pieces)
             if (piece.port == port) parts_.recorder->record_output(piece.bytes, time, i);
     }
 }

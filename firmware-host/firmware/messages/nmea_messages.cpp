@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "firmware/error_ellipse.hpp"
+#include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/nmea_report.hpp"
 
@@ -9,7 +10,6 @@ namespace skyloop::firmware {
 namespace {
 
 constexpr double unknown_dop = 99.99;
-constexpr std::uint8_t class_nmea = 0xF0, class_pubx = 0xF1;
 
 // What GGA and GNS share: height, age and station of corrections.
 template <class Message>
