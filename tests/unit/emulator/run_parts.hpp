@@ -92,7 +92,7 @@ inline Station::Parts station_parts(const Scenario& scenario, std::size_t index,
     EXPECT_TRUE(simulation && board);
     if (entry.baud) board->baud = *entry.baud;
     ReceiverSettings settings = receiver_settings(scenario, *board, index);
-    firmware::Receiver receiver = make_receiver(std::move(*board), {entry.rate_hz.value_or(0), std::move(settings)});
+    firmware::Receiver receiver(std::move(*board), {entry.rate_hz.value_or(0), std::move(settings), 1, false});
     return {std::move(*simulation), std::move(receiver), {}, {}};
 }
 
