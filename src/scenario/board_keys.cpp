@@ -134,7 +134,7 @@ std::optional<Bytes> bytes_of_hex(std::string_view text) {
         const std::size_t value = std::min(digits.find(c), small_digits.find(c));
         if (value == std::string_view::npos) return std::nullopt;
         if (first) bytes.push_back(0);
-        bytes.back() = static_cast<std::uint8_t>(bytes.back() << 4 | value);
+        bytes.back() = static_cast<std::uint8_t>(std::size_t{bytes.back()} << 4 | value);
         first = !first;
     }
     if (!first) return std::nullopt;

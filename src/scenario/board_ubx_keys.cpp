@@ -61,7 +61,9 @@ void read_gnss_blocks(TableReader& ubx, BoardProfile& board) {
             return ubx.mistake("gnss_blocks",
                                fmt::format("holds '{}'; expected eight bytes in hexadecimal digits", text));
         const Bytes& b = *bytes;
-        const auto flags = b[4] | b[5] << 8 | b[6] << 16 | std::uint32_t{b[7]} << 24;
+        std::uint32_t flags = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            flags |= std::uint32_t{b[4 + i]} << 8 * i;
         board.gnss_blocks.push_back({b[0], b[1], b[2], flags});
     }
 }
