@@ -14,7 +14,8 @@ using firmware::Verdict;
 
 /// A receiver as it leaves the factory, asked once; empty when it refused.
 Bytes factory_answer(std::string_view name, std::uint8_t id, const Bytes& selector = {}) {
-    const auto board = find_board(name, {std::filesystem::path(SKYLOOP_SOURCE_DIR) / "boards"});
+    const std::vector<std::filesystem::path> folders{std::filesystem::path(SKYLOOP_SOURCE_DIR) / "boards"};
+    const auto board = find_board(name, folders);
     if (!board) return {};
     firmware::ConfigStore store(firmware::factory_config(*board));
     firmware::LegacyConfig config(*board, store);
