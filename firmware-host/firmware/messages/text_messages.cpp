@@ -38,7 +38,10 @@ std::vector<Bytes> make_text_message(int level, const std::string& text, const R
     std::vector<Bytes> out;
     if (level < 0 || (level > text_debug && level != text_user)) return out;
     const bool nmea = config.flag(key::out_protocol(port, nmea_protocol));
-    if (is_own_sentence(text)) return nmea ? std::vector<Bytes>{to_bytes(Sentence(text.substr(1)).finish())} : out;
+    if (is_own_sentence(text)) {
+        if (nmea) out.push_back(to_bytes(Sentence(text.substr(1)).finish()));
+        return out;
+    }
     if (nmea && passes(config.value(key::inf_nmea(port)), level))
         out.push_back(to_bytes(encode(Txt{nmea_talker(board, config), 1, 1, level, text}, nmea_format(board, config))));
     const bool ubx = config.flag(key::out_protocol(port, ubx_protocol)) && level <= text_debug;
