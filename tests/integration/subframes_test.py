@@ -1,6 +1,7 @@
 """RTKLIB's convbin reads the subframes that we send and finds the records that they were made from."""
 import math
 import os
+import pathlib
 import shutil
 import subprocess
 import unittest
@@ -54,7 +55,9 @@ class Subframes(unittest.TestCase):
     def test_records_come_back(self):
         if shutil.which("convbin") is None:
             skip("convbin of RTKLIB is absent: apt-get install rtklib")
-        folder = open_folder(self)
+        temporary = open_folder()
+        self.addCleanup(temporary.cleanup)
+        folder = pathlib.Path(temporary.name)
         subprocess.run([os.environ["SKYLOOP_SUBFRAME_LOG"], folder / "sent.rnx", folder / "heard.ubx"], check=True)
         subprocess.run(["convbin", "-r", "ubx", "-v", "3.04", "-n", folder / "found.rnx", "-o", folder / "found.obs",
                         folder / "heard.ubx"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
