@@ -43,6 +43,15 @@ def check_solutions(client, items, period_ms, longest_gap_ms, seconds):
     return frames, solutions
 
 
+def check_alive(client, items, longest_gap_ms):
+    """A NAV-PVT, with a fix or without, at least so often: else the client says that the receiver is lost."""
+    times = [frame.time for frame in of(items, "NAV-PVT")]
+    client.check(bool(times), "NAV-PVT", kinds(items))
+    gaps = [(b - a) * 1000 for a, b in zip(times, times[1:])]
+    client.check(max(gaps, default=0) <= longest_gap_ms, f"NAV-PVT at least every {longest_gap_ms} ms",
+                 f"a gap of {max(gaps, default=0):.0f} ms")
+
+
 def check_fix(client, last):
     """A 3D fix at the place and date of the run, its time known."""
     client.check(last["fix_type"] == 3 and last["flags"] & 1, "fixType 3 with gnssFixOK",
