@@ -294,18 +294,19 @@ class ArduPilotKeys(ArduPilot):
     def batches(self):
         """CFG-VALGET, compare, CFG-VALSET of what differs to all layers, until nothing does."""
         self.step("CFG-VALGET, compare, CFG-VALSET")
-        different = self.wanted
+        self.changed = []
         for _ in range(4):
             found = dict(ubx.valget_pairs(self.every(0.2, ubx.valget([k for k, _ in self.wanted]), "CFG-VALGET").payload))
             different = [(key, value) for key, value in self.wanted if found.get(key) != value]
             if not different:
                 return
+            self.changed += different
             self.set(ubx.valset(different, ubx.RAM | ubx.BBR | ubx.FLASH), "CFG-VALSET", 500)
         self.fail("all keys to read back as set", [f"{key:08X}" for key, _ in different])
 
     def page_layers(self):
         """What was set is what BBR and flash hold, page by page with the wildcard 0FFF0000."""
-        for layer in (ubx.READ_BBR, ubx.READ_FLASH):
+        for layer in (ubx.READ_BBR, ubx.READ_FLASH) if self.changed else ():
             self.step(f"CFG-VALGET of everything in layer {layer}")
             pairs, position = [], 0
             while True:
@@ -315,7 +316,7 @@ class ArduPilotKeys(ArduPilot):
                 position += ubx.PAGE
                 if len(page) < ubx.PAGE:
                     break
-            for pair in self.wanted:
+            for pair in self.changed:
                 self.check(pair in pairs, f"key {pair[0]:08X} = {pair[1]} in layer {layer}", f"{len(pairs)} others")
 
 

@@ -1,4 +1,4 @@
-"""Plays one client against one board: run_client.py CLIENT BOARD [--variant NAME] [--keep-log].
+"""Plays one client against one board: run_client.py CLIENT BOARD [--variant NAME].
 
 Variants: whole (default), bytes, bursts, garbage: how the client writes. reopen: the client goes and comes back to a
 receiver that has kept its configuration. restart: a new process after the first, and the same dialogue again.
@@ -49,6 +49,8 @@ def main():
     parser.add_argument("board", choices=sorted(receiver.BOARDS))
     parser.add_argument("--variant", choices=VARIANTS, default="whole")
     options = parser.parse_args()
+    if f"{options.board} " not in receiver.skyloop("boards").stdout:
+        receiver.skip(f"this skyloop has no board {options.board}")
     try:
         play(CLIENTS[options.client], receiver.BOARDS[options.board], options.variant)
     except (Failure, ConnectionError) as error:
