@@ -6,6 +6,7 @@ import inav
 import kumar_ros
 import px4
 import sparkfun
+import u_center
 import ubloxcfg
 
 CLIENTS = {
@@ -19,5 +20,6 @@ CLIENTS = {
     "px4": px4.Px4,
     "px4_nmea": px4.Px4Nmea,
     "sparkfun": sparkfun.SparkFun,
+    "u_center": u_center.UCenter,
     "ubloxcfg": ubloxcfg.UbloxCfg,
 }

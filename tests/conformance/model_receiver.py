@@ -2,7 +2,7 @@
 
 It knows no more than what the clients look at. `faults` names what it shall do wrong, so that a test can show that a
 client notices: silent_keys, late_acks, twice_acked, wrong_date, dropped_epochs, stray_nmea, forgets_rates,
-version_late, answers_binary.
+version_late, answers_binary, acks_polls.
 """
 import fcntl
 import os
@@ -14,6 +14,7 @@ import tty
 
 import nmea
 import receiver
+import u_center
 import ubx
 import wire
 
@@ -58,8 +59,9 @@ class ModelReceiver(threading.Thread):
                 self.defaults[key + port] = int(message >> 8 == 0xF0)
         self.layers = {0: dict(self.defaults), 1: {}, 2: {}}
         self.gnss, self.stopped, self.fixed_at = GNSS, False, 0.0
-        self.begun = self.next_epoch = time.monotonic()
-        self.epochs = 0
+        self.polled = {message for message, boards in u_center.POLLED if board.name in boards}
+        self.next_epoch = time.monotonic()
+        self.epochs = self.itow = 0
 
     # --- the line ---
 
@@ -73,7 +75,9 @@ class ModelReceiver(threading.Thread):
             if now >= self.next_epoch:
                 period = self.layers[0][0x30210001] / 1000
                 self.next_epoch += period
-                if not self.stopped and not ("dropped_epochs" in self.faults and self.epochs % 29 == 28):
+                if self.stopped or ("dropped_epochs" in self.faults and self.epochs % 29 == 28):
+                    self.itow += round(period * 1000)
+                else:
                     self.epoch()
                 self.epochs += 1
             self.transmit(now)
@@ -124,7 +128,7 @@ class ModelReceiver(threading.Thread):
         if not isinstance(item, ubx.Frame) or not (self.board.generation or "answers_binary" in self.faults):
             return
         handler = {0x0600: self.prt, 0x0601: self.msg, 0x0608: self.rate, 0x0624: self.nav5, 0x063E: self.cfg_gnss,
-                   0x0616: lambda f: self.block(f, SBAS), 0x0631: lambda f: self.block(f, bytes(32)),
+                   0x0616: self.sbas, 0x0631: lambda f: self.block(f, bytes(32)),
                    0x068A: self.valset, 0x068B: self.valget, 0x068C: self.valdel, 0x0604: self.reset}.get(item.message)
         if handler:
             handler(item)
@@ -132,12 +136,14 @@ class ModelReceiver(threading.Thread):
             self.version()
         elif item.message == 0x0A28:
             self.send(0x0A28, bytes((0, 15, 15, 15, 3, 0, 0, 0)))
-        elif item.message == 0x0A36:
+        elif item.message == 0x0A36 and self.board.has_keys:
             self.send(0x0A36, bytes((0, 1, 0, 0, 0, 1, 255, 255)) + struct.pack("<H", 0x0100) + bytes(38))
         elif item.message >> 8 == 6:
-            self.ack(item)
-        elif item.message in RATE_KEYS and not item.payload:
-            self.put(ubx.frame(item.message, self.message(item.message)))
+            self.ack(item, item.message in ubx.NAMES)
+        elif item.message in self.polled and not item.payload:
+            self.send(item.message, self.message(item.message))
+            if "acks_polls" in self.faults:
+                self.ack(item)
 
     def sentence(self, fields):
         if fields[0] == "PUBX" and fields[1] == "41" and self.board.generation:
@@ -211,8 +217,21 @@ class ModelReceiver(threading.Thread):
             self.send(frame.message, payload)
         self.ack(frame)
 
+    def sbas(self, frame):
+        if self.board.generation == 10:
+            self.ack(frame, False)
+        else:
+            self.block(frame, SBAS)
+
     def reset(self, frame):
         self.stopped = frame.payload[2] == 8
+        if frame.payload[2] < 2:
+            self.layers[0] = dict(self.defaults)
+            self.set_port(self.board.speed, 3)
+            version = VERSIONS[self.board.name][2]
+            for text in ["u-blox AG - www.u-blox.com"] + version:
+                self.put(nmea.sentence(f"GNTXT,01,01,02,{text}"), 0.8)
+            self.fixed_at = time.monotonic() + 30
         if frame.payload[2] == 2:
             self.fixed_at = time.monotonic() + 30
 
@@ -270,12 +289,9 @@ class ModelReceiver(threading.Thread):
 
     # --- output ---
 
-    def seconds(self):
-        period = self.layers[0][0x30210001]
-        return round((time.monotonic() - self.begun) * 1000 / period) * period
-
     def epoch(self):
-        self.itow = self.seconds()
+        period = self.layers[0][0x30210001]
+        self.itow = (self.itow // period + 1) * period
         for message in (0x0107, 0x0103, 0x0104, 0x0114, 0x0135, 0x0143, 0x0120, 0x0A09, 0x0A0B, 0x0A38):
             key = RATE_KEYS.get(message) or OLD_RATES[message]
             rate = self.layers[0][key + 1]
@@ -285,7 +301,7 @@ class ModelReceiver(threading.Thread):
             self.sentences()
 
     def message(self, message):
-        itow = struct.pack("<I", getattr(self, "itow", 0))
+        itow = struct.pack("<I", self.itow)
         if message == 0x0107:
             return self.pvt()
         if message == 0x0135:
@@ -310,6 +326,9 @@ class ModelReceiver(threading.Thread):
         clock = f"{self.itow // 3600000:02}{self.itow // 60000 % 60:02}{self.itow / 1000 % 60:05.2f}"
         place = f"{int(latitude):02}{latitude % 1 * 60:08.5f},N,{int(longitude):03}{longitude % 1 * 60:08.5f},E"
         if self.layers[0][0x209100AC] or "stray_nmea" in self.faults:
-            self.put(nmea.sentence(f"GNRMC,{clock},A,{place},0.0,,010326,,,A,V"), 0.03)
+            status = "A" if time.monotonic() > self.fixed_at else "V"
+            self.put(nmea.sentence(f"GNRMC,{clock},{status},{place},0.0,,010326,,,A,V"), 0.03)
+        if self.layers[0][0x209100C5]:
+            self.put(nmea.sentence("GPGSV,1,1,00,0"), 0.03)
         if self.layers[0][0x209100BB]:
             self.put(nmea.sentence(f"GNGGA,{clock},{place},1,12,0.9,488.0,M,48.0,M,,"), 0.03)

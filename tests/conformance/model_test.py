@@ -10,6 +10,7 @@ from dialogue import Failure
 
 GOOD = [("px4", "ublox-m9", "garbage"), ("px4", "ublox-m8", "whole"), ("ardupilot", "ublox-m10", "bytes"),
         ("ardupilot_keys", "ublox-f9p", "bursts"), ("inav", "ublox-m8", "whole"), ("betaflight", "ublox-f9p", "whole"),
+        ("u_center", "ublox-m8", "whole"), ("u_center", "ublox-m10", "whole"),
         ("kumar_ros", "ublox-m8", "whole"), ("sparkfun", "ublox-m10", "whole"), ("ubloxcfg", "ublox-m9", "whole"),
         ("gpsd_probes", "ublox-m8", "whole"), ("gpsd_probes", "mtk3339", "whole"), ("px4_nmea", "nmea-generic", "whole"),
         ("ardupilot_nmea", "mtk3339", "whole")]
@@ -22,6 +23,8 @@ BAD = [("px4", "ublox-m9", "twice_acked", "no acknowledgement that was not asked
        ("inav", "ublox-m8", "dropped_epochs", "iTOW on the grid"),
        ("betaflight", "ublox-m9", "late_acks", "within 150 ms of the request"),
        ("ardupilot", "ublox-m8", "forgets_rates", "to read back rate"),
+       ("u_center", "ublox-f9p", "late_acks", "expected ACK-ACK of CFG-PRT within"),
+       ("u_center", "ublox-m9", "acks_polls", "no acknowledgement that was not asked for"),
        ("gpsd_probes", "nmea-generic", "answers_binary", "not a byte of UBX")]
 
 
