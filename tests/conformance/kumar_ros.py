@@ -80,7 +80,8 @@ class KumarRos(Client):
             self.systems()
         for message, rate in (("NAV-PVT", 1), ("NAV-SAT", 4), ("MON-HW", 4)):
             self.step(f"CFG-MSG {message}")
-            self.set(ubx.cfg_msg(message, rate), "CFG-MSG", ACK)
+            # M10 documents no MON-HW; there the node goes on without it.
+            self.set(ubx.cfg_msg(message, rate), "CFG-MSG", ACK, nak_is_good=m10 and message == "MON-HW")
         self.step("CFG-INF")
         self.set(ubx.frame("CFG-INF", bytes((0, 0, 0, 0)) + b"\x07" * 6), "CFG-INF", ACK)
         self.check(version.value_of("PROTVER") is not None, "a protocol version", version.extensions)

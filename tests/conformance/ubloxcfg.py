@@ -59,7 +59,7 @@ class UbloxCfg(Client):
                 break
         numbers = [key & 0x0FFFFFFF for key, _ in pairs]
         self.check(numbers == sorted(set(numbers)), "every key once, by rising group and item", len(numbers))
-        self.check(len(pairs) > 200, "more than 200 keys", len(pairs))
+        self.check(len(pairs) > 150, "more than 150 keys", len(pairs))
         return pairs
 
     def check_known(self, defaults):
