@@ -69,6 +69,7 @@ class ArduPilot(Client):
     """The steps of messages, which ArduPilot takes with every generation; M10 gets its signals by keys besides."""
 
     name = "ArduPilot"
+    after_power_on = 0.0
     rounds = 3
 
     def run(self):

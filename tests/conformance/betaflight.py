@@ -27,6 +27,7 @@ NAV5_REST = bytes.fromhex("00000000 10270000 05 00 FA00 FA00 6400 2C01 00 3C 00 
 
 class Betaflight(Client):
     name = "Betaflight"
+    after_power_on = 0.0
     rounds = 2
 
     def run(self):

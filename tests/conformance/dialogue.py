@@ -16,6 +16,7 @@ class Client:
 
     name = "client"
     patience = 70.0  # seconds that the whole dialogue may take
+    after_power_on = 5.0  # seconds that its user leaves the receiver to start; a flight controller leaves none
     arguments = ()  # more arguments of `skyloop run`
 
     def __init__(self, wire, board):

@@ -26,8 +26,8 @@ class Gpsdecode(unittest.TestCase):
     def record(self):
         """The bytes of ten seconds with navigation messages on and sentences off."""
         with receiver.open_folder() as folder, receiver.start(self.board, folder) as emulator:
+            receiver.wait_for_sentences(self.board, emulator.tty)
             line = wire.Wire(emulator.tty, self.board.speed)
-            time.sleep(1.5)
             for sentence in range(6):
                 line.write(ubx.cfg_msg(0xF000 + sentence, 0))
             for message in MESSAGES:

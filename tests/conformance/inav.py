@@ -26,6 +26,7 @@ SENTENCES = (0xF000, 0xF001, 0xF002, 0xF003, 0xF004, 0xF005)
 
 class Inav(Client):
     name = "INAV"
+    after_power_on = 3.5
     rounds = 3
 
     def run(self):

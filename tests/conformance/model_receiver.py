@@ -2,7 +2,7 @@
 
 It knows no more than what the clients look at. `faults` names what it shall do wrong, so that a test can show that a
 client notices: silent_keys, late_acks, twice_acked, wrong_date, dropped_epochs, stray_nmea, forgets_rates,
-version_late, answers_binary, acks_polls.
+version_late, answers_binary, acks_polls; deaf_at_first is no fault but a start.
 """
 import fcntl
 import os
@@ -61,6 +61,7 @@ class ModelReceiver(threading.Thread):
         self.gnss, self.stopped, self.fixed_at = GNSS, False, 0.0
         self.polled = {message for message, boards in u_center.POLLED if board.name in boards}
         self.next_epoch = time.monotonic()
+        self.hears_from = time.monotonic() + 1.5 * ("deaf_at_first" in self.faults)
         self.epochs = self.itow = 0
 
     # --- the line ---
@@ -89,7 +90,7 @@ class ModelReceiver(threading.Thread):
         if not select.select([self.master], [], [], 0.001)[0]:
             return b""
         data = os.read(self.master, 4096)
-        if self.client_speed() != self.speed:
+        if self.client_speed() != self.speed or time.monotonic() < self.hears_from:
             self.parser.clear()
             return b""
         return data

@@ -8,7 +8,7 @@ import wire
 from clients import CLIENTS
 from dialogue import Failure
 
-GOOD = [("px4", "ublox-m9", "garbage"), ("px4", "ublox-m8", "whole"), ("ardupilot", "ublox-m10", "bytes"),
+GOOD = [("px4", "ublox-m9", "garbage"), ("px4", "ublox-m10", "whole", "deaf_at_first"), ("px4", "ublox-m8", "whole"), ("ardupilot", "ublox-m10", "bytes"),
         ("ardupilot_keys", "ublox-f9p", "bursts"), ("inav", "ublox-m8", "whole"), ("betaflight", "ublox-f9p", "whole"),
         ("u_center", "ublox-m8", "whole"), ("u_center", "ublox-m10", "whole"),
         ("kumar_ros", "ublox-m8", "whole"), ("sparkfun", "ublox-m10", "whole"), ("ubloxcfg", "ublox-m9", "whole"),

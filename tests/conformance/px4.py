@@ -20,13 +20,14 @@ MODE_8N1 = 0x8D0
 
 class Px4(Client):
     name = "PX4"
+    after_power_on = 0.0
     passes = 3
+    by_keys = False
 
     def run(self):
         for number in range(self.passes):
             self.step(f"pass {number + 1}: hunt for the speed")
-            if self.find_speed() and self.identify():
-                self.configure()
+            if self.find_speed() and self.identify() and self.configure():
                 self.fly()
                 return
         self.fail(f"a configured receiver after {self.passes} passes over all speeds")
@@ -41,6 +42,7 @@ class Px4(Client):
             answer = self.wait_ack("CFG-VALSET", FIRST_ACK)
             self.check(answer is None or answer == self.board.has_keys,
                        f"{'ACK-ACK' if self.board.has_keys else 'ACK-NAK'} of the first CFG-VALSET", "the other one")
+            self.by_keys = bool(answer)
             if answer:
                 self.set_speed_by_key()
                 return True
@@ -80,12 +82,21 @@ class Px4(Client):
         return True
 
     def configure(self):
+        """True when all was acknowledged; False when this pass took the wrong path, and the next one must succeed."""
         self.strict_acks = True
         self.asked.clear()
-        if self.board.has_keys:
+        if self.by_keys:
             self.configure_by_keys()
+        elif self.board.has_keys:
+            # The first CFG-VALSET was lost while the receiver started. The old path ends at a message it has not.
+            self.step("the old path with a receiver of the new one: CFG-MSG NAV-SVINFO")
+            self.send(ubx.cfg_msg("NAV-SVINFO", 5))
+            self.check(self.wait_ack("CFG-MSG", ACK) is False, "ACK-NAK of CFG-MSG for NAV-SVINFO", None)
+            self.strict_acks = False
+            return False
         else:
             self.configure_by_messages()
+        return True
 
     def configure_by_messages(self):
         self.step("CFG-PRT to 115200; no acknowledgement is needed")

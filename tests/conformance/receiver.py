@@ -3,6 +3,9 @@ import dataclasses
 import math
 import pathlib
 import sys
+import time
+
+import wire
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "integration"))
 from session import SHARED, SKIPPED, Emulator, open_folder, skip, skyloop  # noqa: E402,F401  (for those who import us)
@@ -43,6 +46,17 @@ def start(board, folder, *arguments, duration=170):
     """`skyloop run` of a board on a pty in `folder`, standing still at PLACE; it ends by itself."""
     return Emulator("--board", board.name, "--at", ",".join(map(str, PLACE)), "--start", START, "--duration", duration,
                     "--port", f"pty:{folder}/gps0", *arguments)
+
+
+def wait_for_sentences(board, tty):
+    """Until the receiver has started: a client at its first speed has heard GGA."""
+    line = wire.Wire(tty, board.speed)
+    heard, end = b"", time.monotonic() + 15
+    while b"GGA," not in heard:
+        if time.monotonic() > end:
+            raise AssertionError(f"{board.name}: no GGA at {board.speed} baud within 15 s; came {heard[-200:]}")
+        heard += line.read(0.2)[0]
+    line.close()
 
 
 def metres_apart(latitude, longitude, place=PLACE):

@@ -33,6 +33,7 @@ def play(kind, board, variant):
         for _ in range(2 if variant == "restart" else 1):
             with receiver.start(board, folder, *kind.arguments) as emulator:
                 try:
+                    time.sleep(kind.after_power_on)
                     for _ in range(2 if variant == "reopen" else 1):
                         dialogue(kind, board, emulator.tty, writes)
                         time.sleep(0.5)

@@ -19,6 +19,7 @@ class Ubxtool(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.emulator = receiver.start(self.board, folder.name)
         self.addCleanup(self.finish)
+        receiver.wait_for_sentences(self.board, self.emulator.tty)
 
     def finish(self):
         code = self.emulator.stop()
