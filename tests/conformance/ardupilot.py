@@ -297,7 +297,8 @@ class ArduPilotKeys(ArduPilot):
         self.step("CFG-VALGET, compare, CFG-VALSET")
         self.changed = []
         for _ in range(4):
-            found = dict(ubx.valget_pairs(self.every(0.2, ubx.valget([k for k, _ in self.wanted]), "CFG-VALGET").payload))
+            answer = self.every(0.2, ubx.valget([key for key, _ in self.wanted]), "CFG-VALGET")
+            found = dict(ubx.valget_pairs(answer.payload))
             different = [(key, value) for key, value in self.wanted if found.get(key) != value]
             if not different:
                 return

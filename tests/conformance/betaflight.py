@@ -80,14 +80,15 @@ class Betaflight(Client):
         self.rate(1000)
         if keys:
             ports = (0, 1, 4)  # I2C, UART1, SPI
-            self.must("NMEA off", ubx.valset([(key + port, 0) for key in SENTENCE_KEYS for port in ports]), "CFG-VALSET")
+            pairs = [(key + port, 0) for key in SENTENCE_KEYS for port in ports]
+            self.must("NMEA off", ubx.valset(pairs), "CFG-VALSET")
         else:
             for message in SENTENCES:
                 self.must(f"sentence {message:04X} off", ubx.cfg_msg(message, 0), "CFG-MSG")
         if m10:
             self.must("dynamic model", ubx.valset([
-                (0x20110011, 3), (0x2011001C, 0), (0x20110021, 8), (0x201100A4, 5), (0x301100B1, 250), (0x301100B2, 250),
-                (0x301100B3, 100), (0x301100B4, 300), (0x401100C1, 0), (0x401100C2, 10000), (0x201100C4, 60),
+                (0x20110011, 3), (0x2011001C, 0), (0x20110021, 8), (0x201100A4, 5), (0x301100B1, 250),
+                (0x301100B2, 250), (0x301100B3, 100), (0x301100B4, 300), (0x401100C1, 0), (0x401100C2, 10000), (0x201100C4, 60),
                 (0x20250038, 0)]), "CFG-VALSET")
             self.must("AssistNow Autonomous", ubx.valset([(0x10230001, 1)]), "CFG-VALSET")
         else:

@@ -18,6 +18,7 @@ CLIENTS = {
     "inav": inav.Inav,
     "kumar_ros": kumar_ros.KumarRos,
     "px4": px4.Px4,
+    "px4_ublox6": px4.Px4Ublox6,
     "px4_nmea": px4.Px4Nmea,
     "sparkfun": sparkfun.SparkFun,
     "u_center": u_center.UCenter,

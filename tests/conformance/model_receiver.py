@@ -1,7 +1,7 @@
 """A small receiver in Python that answers as the specification says: it tries the scripted clients, never skyloop.
 
 It knows no more than what the clients look at. `faults` names what it shall do wrong, so that a test can show that a
-client notices: silent_keys, late_acks, twice_acked, wrong_date, dropped_epochs, stray_nmea, forgets_rates,
+client notices: late_acks, twice_acked, wrong_date, dropped_epochs, stray_nmea, forgets_rates,
 version_late, answers_binary, acks_polls; deaf_at_first is no fault but a start.
 """
 import fcntl
@@ -24,11 +24,14 @@ RATE_KEYS = {0x0102: 0x20910029, 0x0103: 0x2091001A, 0x0104: 0x20910038, 0x0107:
              0xF000: 0x209100BA, 0xF001: 0x209100C9, 0xF002: 0x209100BF, 0xF003: 0x209100C4, 0xF004: 0x209100AB,
              0xF005: 0x209100B0}
 OLD_RATES = {0x0106: 0x7F910001, 0x0130: 0x7F910011, 0x0A0B: 0x7F910021}  # messages of the M8 that have no key
-PLAIN_KEYS = {0x30210001: 1000, 0x30210002: 1, 0x20210003: 1, 0x20110011: 3, 0x20110021: 0, 0x10730001: 1, 0x10730002: 1,
+PLAIN_KEYS = {0x30210001: 1000, 0x30210002: 1, 0x20210003: 1, 0x20110011: 3, 0x20110021: 0, 0x10730001: 1,
+              0x10730002: 1,
               0x10740001: 1, 0x10740002: 1, 0x2011001C: 0, 0x1041000D: 0, 0x10230001: 1, 0x50360006: 0, 0x20D00001: 0}
-MORE_KEYS = ([0x20520002, 0x20520003, 0x20520004, 0x10730004, 0x10770001, 0x10770002, 0x10770004, 0x10780001, 0x10780002,
+MORE_KEYS = ([0x20520002, 0x20520003, 0x20520004, 0x10730004, 0x10770001, 0x10770002, 0x10770004, 0x10780001,
+              0x10780002,
               0x10710001, 0x10710002, 0x10710004, 0x10720001, 0x10720002, 0x10720004, 0x10740004, 0x20030001,
-              0x20140011, 0x201100A4, 0x301100B1, 0x301100B2, 0x301100B3, 0x301100B4, 0x401100C1, 0x401100C2, 0x201100C4,
+              0x20140011, 0x201100A4, 0x301100B1, 0x301100B2, 0x301100B3, 0x301100B4, 0x401100C1, 0x401100C2,
+              0x201100C4,
               0x20250038] + [0x10220000 + i for i in range(1, 5)] + [0x10360000 + i for i in range(2, 6)] +
              [0x10310000 + i for i in range(1, 0x27)] + [0x20910400 + i for i in range(200)])
 SBAS = struct.pack("<BBBBI", 1, 3, 3, 0, 0)
@@ -247,9 +250,7 @@ class ModelReceiver(threading.Thread):
             pairs = ubx.valget_pairs(b"\1" + frame.payload[1:])
         except ValueError:
             pairs = [(0, 0)]
-        good = self.board.has_keys and "silent_keys" not in self.faults and all(k in self.defaults for k, _ in pairs)
-        if "silent_keys" in self.faults:
-            return
+        good = self.board.has_keys and all(key in self.defaults for key, _ in pairs)
         if good:
             values = dict(pairs)
             if frame.payload[1] & 1:
@@ -318,7 +319,8 @@ class ModelReceiver(threading.Thread):
         year, month, day = receiver.START_DATE
         if "wrong_date" in self.faults:
             year -= 20
-        return ubx.PVT.pack(self.itow, year, month, day, 0, 0, self.itow // 1000 % 60, 7, 20, 0, 3 * fixed, fixed, 0xEA, 12,
+        second = self.itow // 1000 % 60
+        return ubx.PVT.pack(self.itow, year, month, day, 0, 0, second, 7, 20, 0, 3 * fixed, fixed, 0xEA, 12,
                             round(longitude * 1e7), round(latitude * 1e7), round(height * 1000), 0, 2000, 3000,
                             0, 0, 0, 0, 0, 100, 18000000, 120, 0) + bytes(12)
 

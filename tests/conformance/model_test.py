@@ -8,11 +8,13 @@ import wire
 from clients import CLIENTS
 from dialogue import Failure
 
-GOOD = [("px4", "ublox-m9", "garbage"), ("px4", "ublox-m10", "whole", "deaf_at_first"), ("px4", "ublox-m8", "whole"), ("ardupilot", "ublox-m10", "bytes"),
+GOOD = [("px4", "ublox-m9", "garbage"), ("px4", "ublox-m10", "whole", "deaf_at_first"),
+        ("px4", "ublox-m8", "whole"), ("ardupilot", "ublox-m10", "bytes"),
         ("ardupilot_keys", "ublox-f9p", "bursts"), ("inav", "ublox-m8", "whole"), ("betaflight", "ublox-f9p", "whole"),
         ("u_center", "ublox-m8", "whole"), ("u_center", "ublox-m10", "whole"),
         ("kumar_ros", "ublox-m8", "whole"), ("sparkfun", "ublox-m10", "whole"), ("ubloxcfg", "ublox-m9", "whole"),
-        ("gpsd_probes", "ublox-m8", "whole"), ("gpsd_probes", "mtk3339", "whole"), ("px4_nmea", "nmea-generic", "whole"),
+        ("gpsd_probes", "ublox-m8", "whole"), ("gpsd_probes", "mtk3339", "whole"),
+        ("px4_nmea", "nmea-generic", "whole"),
         ("ardupilot_nmea", "mtk3339", "whole")]
 # Client, board, what the receiver does wrong, and words of the failure.
 BAD = [("px4", "ublox-m9", "twice_acked", "no acknowledgement that was not asked for"),

@@ -166,6 +166,51 @@ class Px4(Client):
         solutions.check_bursts(self, items, 8, 0.1)
 
 
+class Px4Ublox6(Px4):
+    """PX4 with a u-blox 6, which knows no NAV-PVT: four older messages instead, at 38400 baud."""
+
+    name = "PX4"
+    older = (("NAV-TIMEUTC", 5), ("NAV-POSLLH", 1), ("NAV-SOL", 1), ("NAV-VELNED", 1))
+
+    def identify(self):
+        self.step("MON-VER")
+        version = self.version(ACK)
+        self.check(version is None or version.hardware == "00040007", "hardware 00040007", version)
+        return version is not None
+
+    def configure(self):
+        self.strict_acks = True
+        self.asked.clear()
+        self.step("CFG-RATE")
+        self.set(ubx.cfg_rate(200, 1, 0), "CFG-RATE", ACK)
+        self.step("CFG-NAV5")
+        self.set(ubx.cfg_nav5(0x0005, 7, 2), "CFG-NAV5", ACK)
+        self.step("CFG-MSG NAV-PVT")
+        self.send(ubx.cfg_msg("NAV-PVT", 1))
+        self.check(self.wait_ack("CFG-MSG", ACK) is False, "ACK-NAK of CFG-MSG for NAV-PVT", None)
+        for message, rate in self.older + (("NAV-STATUS", 1), ("NAV-DOP", 1), ("NAV-SVINFO", 5), ("MON-HW", 1)):
+            self.step(f"CFG-MSG {message}")
+            self.set(ubx.cfg_msg(message, rate), "CFG-MSG", ACK)
+        return True
+
+    def fly(self):
+        """NAV-POSLLH and NAV-VELNED of one time within 500 ms of the last pair, and a fix in NAV-SOL."""
+        self.step("solutions")
+        self.pump(1.0)
+        items = self.collect(HEALTHY)
+        solutions.check_kinds(self, items, [message for message, _ in self.older] + [
+            "NAV-STATUS", "NAV-DOP", "NAV-SVINFO", "MON-HW"])
+        positions = {i.payload[:4]: i.time for i in solutions.of(items, "NAV-POSLLH")}
+        velocities = {i.payload[:4]: i.time for i in solutions.of(items, "NAV-VELNED")}
+        times = [max(at, velocities[tow]) for tow, at in positions.items() if tow in velocities]
+        self.check(len(times) >= 45, "at least 45 pairs of NAV-POSLLH and NAV-VELNED in 10 s", solutions.kinds(items))
+        longest = max(b - a for a, b in zip(times, times[1:])) * 1000
+        self.check(longest <= 500, "a pair at least every 500 ms", f"a gap of {longest:.0f} ms")
+        last = solutions.of(items, "NAV-SOL")[-1].payload
+        self.check(len(last) == 52 and last[10] == 3 and last[11] & 1, "NAV-SOL of 52 bytes with a valid 3D fix",
+                   last.hex(" "))
+
+
 class Px4Nmea(Client):
     """PX4's reader of NMEA: GGA and RMC of every epoch, upper-case sums, times that only rise."""
 

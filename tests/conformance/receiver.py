@@ -39,6 +39,8 @@ BOARDS = {board.name: board for board in (
     Board("ublox-f9p", 38400, 9, (27, 31)),
     Board("nmea-generic", 9600),
     Board("mtk3339", 9600),
+    Board("airoha-ag33xx", 115200),
+    Board("ublox-6", 9600, 6),
 )}
 
 
