@@ -88,8 +88,8 @@ class Betaflight(Client):
         if m10:
             self.must("dynamic model", ubx.valset([
                 (0x20110011, 3), (0x2011001C, 0), (0x20110021, 8), (0x201100A4, 5), (0x301100B1, 250),
-                (0x301100B2, 250), (0x301100B3, 100), (0x301100B4, 300), (0x401100C1, 0), (0x401100C2, 10000), (0x201100C4, 60),
-                (0x20250038, 0)]), "CFG-VALSET")
+                (0x301100B2, 250), (0x301100B3, 100), (0x301100B4, 300), (0x401100C1, 0), (0x401100C2, 10000),
+                (0x201100C4, 60), (0x20250038, 0)]), "CFG-VALSET")
             self.must("AssistNow Autonomous", ubx.valset([(0x10230001, 1)]), "CFG-VALSET")
         else:
             self.must("dynamic model", ubx.cfg_nav5(0xFFFF, 8, 3, NAV5_REST), "CFG-NAV5")

@@ -65,7 +65,7 @@ class GpsdConfigures(unittest.TestCase):
         told = datetime.datetime.strptime(fix["time"], "%Y-%m-%dT%H:%M:%S.%fZ")
         begun = datetime.datetime.strptime(receiver.START, "%Y-%m-%dT%H:%M:%SZ")
         self.assertAlmostEqual((told - begun).total_seconds(), fixed, delta=1.5,
-                               msg="the time told, and seconds since the start: a report waits for the end of its epoch")
+                               msg="the time told, and seconds since the start: a report waits for its epoch's end")
         self.assertLess(receiver.metres_apart(fix["lat"], fix["lon"]), 20)
         self.assertAlmostEqual(fix["altHAE"], receiver.PLACE[2], delta=30)
 

@@ -36,7 +36,7 @@ def check_solutions(client, items, period_ms, longest_gap_ms, seconds):
     for before, after in zip(solutions, solutions[1:]):
         step = (after["itow"] - before["itow"]) % 604_800_000
         client.check(step == period_ms and after["itow"] % period_ms == 0,
-                     f"iTOW on the grid of {period_ms} ms, step after step", f"{before['itow']} and then {after['itow']}")
+                     f"iTOW on the grid of {period_ms} ms, step by step", f"{before['itow']}, then {after['itow']}")
     mean = (frames[-1].time - frames[0].time) * 1000 / (len(frames) - 1)
     client.check(abs(mean - period_ms) < 0.075 * period_ms, f"a mean interval of {period_ms} ms", f"{mean:.1f} ms")
     check_fix(client, solutions[-1])
