@@ -19,7 +19,8 @@ M8, M9, M10, F9P = ((board,) for board in ALL)
 # Polled by an empty payload and answered once, without an acknowledgement: message, and the boards that have it.
 POLLED = (
     (0x0101, ALL), (0x0102, ALL), (0x0103, ALL), (0x0104, ALL), (0x0106, M8), (0x0107, ALL), (0x0109, ALL),
-    (0x0111, ALL), (0x0112, ALL), (0x0113, F9P), (0x0114, F9P), (0x0120, ALL), (0x0121, ALL), (0x0122, ALL), (0x0123, ALL),
+    (0x0111, ALL), (0x0112, ALL), (0x0113, F9P), (0x0114, F9P), (0x0120, ALL), (0x0121, ALL), (0x0122, ALL),
+    (0x0123, ALL),
     (0x0124, ALL), (0x0125, ALL), (0x0126, ALL), (0x0130, M8), (0x0132, ALL), (0x0134, ALL), (0x0135, ALL),
     (0x0136, KEYED), (0x013B, F9P), (0x013C, F9P), (0x0143, KEYED), (0x0161, ALL), (0x0A04, ALL), (0x0A28, ALL),
     (0x0A36, KEYED), (0x0A38, KEYED), (0x2703, ALL))

@@ -303,8 +303,8 @@ def mon_ver(payload):
 
 PVT = struct.Struct("<IHBBBBBBIiBBBBiiiiIIiiiiiIIHH")
 PVT_FIELDS = ("itow year month day hour minute second valid time_accuracy nano fix_type flags flags2 satellites "
-              "longitude latitude height height_msl horizontal_accuracy vertical_accuracy north east down ground_speed heading "
-              "speed_accuracy heading_accuracy pdop flags3").split()
+              "longitude latitude height height_msl horizontal_accuracy vertical_accuracy north east down ground_speed "
+              "heading speed_accuracy heading_accuracy pdop flags3").split()
 
 
 def nav_pvt(payload):
