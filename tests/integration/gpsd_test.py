@@ -4,22 +4,13 @@ import json
 import math
 import os
 import shutil
-import socket
-import subprocess
-import time
 import unittest
 
+from gpsd_process import Gpsd
 from session import SHARED, Emulator, open_folder, skip, skyloop
 
 PLACE = (46.4775, 30.7326, 77.0)
 START = "2010-07-01T12:00:00Z"
-
-
-def free_port():
-    """A port of the loopback address that nobody has."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def unrolled(text):
@@ -28,44 +19,6 @@ def unrolled(text):
     if time_utc > datetime.datetime(2028, 1, 1):
         time_utc -= datetime.timedelta(weeks=1024)
     return time_utc.strftime("%Y-%m-%dT%H:%M:%S.%f")[:-3] + "Z"
-
-
-class Gpsd:
-    """gpsd in the foreground on one tty, and a client of its JSON."""
-
-    def __init__(self, tty):
-        self.port = free_port()
-        self.process = subprocess.Popen([shutil.which("gpsd"), "-N", "-n", "-b", "-S", str(self.port), tty],
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        self.stream = None
-
-    def reports(self, patience):
-        """The JSON objects of gpsd for `patience` seconds."""
-        end = time.monotonic() + patience
-        while self.stream is None and time.monotonic() < end:
-            try:
-                self.socket = socket.create_connection(("127.0.0.1", self.port), timeout=1)
-                self.stream = self.socket.makefile("r")
-                self.socket.sendall(b'?WATCH={"enable":true,"json":true};\n')
-            except OSError:
-                time.sleep(0.2)
-        while time.monotonic() < end:
-            self.socket.settimeout(max(0.1, end - time.monotonic()))
-            try:
-                line = self.stream.readline()
-            except OSError:
-                return
-            if line:
-                yield json.loads(line)
-
-    def stop(self):
-        """Ends gpsd."""
-        if self.stream:
-            self.stream.close()
-            self.socket.close()
-        self.process.terminate()
-        _, log = self.process.communicate(timeout=10)
-        return log
 
 
 def metres_apart(latitude, longitude):
@@ -80,7 +33,7 @@ class GpsdTest(unittest.TestCase):
         """The first 3D TPV and a SKY with satellites that follows it."""
         with open_folder() as folder, Emulator(*arguments, "--at", ",".join(map(str, PLACE)), "--model", model,
                                                "--port", f"pty:{folder}/gps0", "--quiet") as emulator:
-            gpsd = Gpsd(emulator.tty)
+            gpsd = Gpsd(emulator.tty, "-b")
             fix = sky = None
             try:
                 for report in gpsd.reports(60):

@@ -1,0 +1,26 @@
+"""The scripted clients by the names that the tests have."""
+import ardupilot
+import betaflight
+import gpsd_probes
+import inav
+import kumar_ros
+import px4
+import sparkfun
+import u_center
+import ubloxcfg
+
+CLIENTS = {
+    "ardupilot": ardupilot.ArduPilot,
+    "ardupilot_keys": ardupilot.ArduPilotKeys,
+    "ardupilot_nmea": ardupilot.ArduPilotNmea,
+    "betaflight": betaflight.Betaflight,
+    "gpsd_probes": gpsd_probes.GpsdProbes,
+    "inav": inav.Inav,
+    "kumar_ros": kumar_ros.KumarRos,
+    "px4": px4.Px4,
+    "px4_ublox6": px4.Px4Ublox6,
+    "px4_nmea": px4.Px4Nmea,
+    "sparkfun": sparkfun.SparkFun,
+    "u_center": u_center.UCenter,
+    "ubloxcfg": ubloxcfg.UbloxCfg,
+}
