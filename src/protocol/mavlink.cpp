@@ -17,7 +17,10 @@ MavlinkFrameView mavlink_view(ByteSpan bytes) {
     if (bytes[0] == mavlink_v1_start)
         return {1, {bytes[3], bytes[4], bytes[2]}, bytes[5], false, bytes.subspan(mavlink_v1_head_size, bytes[1])};
     const bool is_signed = (bytes[2] & mavlink_signed_flag) != 0;
-    return {2, {bytes[5], bytes[6], bytes[4]}, *mavlink_message_id(bytes), is_signed,
+    return {2,
+            {bytes[5], bytes[6], bytes[4]},
+            *mavlink_message_id(bytes),
+            is_signed,
             bytes.subspan(mavlink_v2_head_size, bytes[1])};
 }
 
@@ -54,8 +57,16 @@ Bytes encode_mavlink_v2(MavlinkSource source, std::uint32_t message, ByteSpan pa
     while (payload.size() > 1 && payload.back() == 0)
         payload = payload.first(payload.size() - 1);
     const auto byte = [message](int shift) { return static_cast<std::uint8_t>(message >> shift & 0xFF); };
-    Bytes frame{mavlink_v2_start, static_cast<std::uint8_t>(payload.size()), 0, 0, source.sequence, source.system,
-                source.component, byte(0), byte(8), byte(16)};
+    Bytes frame{mavlink_v2_start,
+                static_cast<std::uint8_t>(payload.size()),
+                0,
+                0,
+                source.sequence,
+                source.system,
+                source.component,
+                byte(0),
+                byte(8),
+                byte(16)};
     frame.insert(frame.end(), payload.begin(), payload.end());
     append_mavlink_crc(frame, *extra);
     return frame;

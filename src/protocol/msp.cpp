@@ -38,8 +38,7 @@ Bytes encode_msp_v2(std::uint16_t function, ByteSpan payload) {
     if (payload.size() > 0xFFFF) return {};
     const auto low = [](std::size_t value) { return static_cast<std::uint8_t>(value & 0xFF); };
     const auto high = [](std::size_t value) { return static_cast<std::uint8_t>(value >> 8); };
-    Bytes frame{'$', msp_v2_mark,    '<',           0, low(function), high(function), low(payload.size()),
-                high(payload.size())};
+    Bytes frame{'$', msp_v2_mark, '<', 0, low(function), high(function), low(payload.size()), high(payload.size())};
     frame.insert(frame.end(), payload.begin(), payload.end());
     frame.push_back(crc8_dvb_s2(ByteSpan(frame).subspan(3)));
     return frame;

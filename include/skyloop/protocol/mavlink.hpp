@@ -1,7 +1,7 @@
 /// MAVLink: frames of version 1 and 2 and the messages between a GNSS receiver and an autopilot.
 ///
-/// Frames, truncation and checksums: the MAVLink developer guide, "Packet Serialization"; messages: its common.xml, with
-/// the fields in the order of the wire (by descending size, extensions behind).
+/// Frames, truncation and checksums: the MAVLink developer guide, "Packet Serialization"; messages: its common.xml,
+/// with the fields in the order of the wire (by descending size, extensions behind).
 #pragma once
 
 #include <array>
@@ -66,8 +66,8 @@ struct MavlinkHeartbeat {
     static constexpr std::string_view field_names =
         "custom_mode type autopilot base_mode system_status mavlink_version";
     std::uint32_t custom_mode = 0;
-    std::uint8_t type = 29;       ///< 29: MAV_TYPE_GPS
-    std::uint8_t autopilot = 8;   ///< 8: none
+    std::uint8_t type = 29;      ///< 29: MAV_TYPE_GPS
+    std::uint8_t autopilot = 8;  ///< 8: none
     std::uint8_t base_mode = 0;
     std::uint8_t system_status = 4;  ///< 4: active
     std::uint8_t mavlink_version = 3;
@@ -94,9 +94,9 @@ struct MavlinkGpsInput {
     float alt = 0;                   ///< m above mean sea level
     float hdop = 65535;              ///< 65535 unknown
     float vdop = 65535;
-    float vn = 0;  ///< m/s
-    float ve = 0;  ///< m/s
-    float vd = 0;  ///< m/s
+    float vn = 0;                    ///< m/s
+    float ve = 0;                    ///< m/s
+    float vd = 0;                    ///< m/s
     float speed_accuracy = 0;        ///< m/s
     float horiz_accuracy = 0;        ///< m
     float vert_accuracy = 0;         ///< m
@@ -125,15 +125,15 @@ struct MavlinkGpsRawInt {
         "time_s*1e-6 lat_deg*1e-7 lon_deg*1e-7 msl_m*1e-3 hdop*1e-2!65535 vdop*1e-2!65535 speed_mps*1e-2!65535 "
         "course_deg*1e-2!65535 fix_type satellites!255 height_m*1e-3 h_acc_m*1e-3 v_acc_m*1e-3 speed_acc_mps*1e-3 "
         "course_acc_deg*1e-5 yaw_deg*1e-2!0";
-    std::uint64_t time_usec = 0;   ///< us, of 1970 or of the start
-    std::int32_t lat = 0;          ///< 1e-7 deg
-    std::int32_t lon = 0;          ///< 1e-7 deg
-    std::int32_t alt = 0;          ///< mm above mean sea level
-    std::uint16_t eph = 0xFFFF;    ///< HDOP, 0.01
-    std::uint16_t epv = 0xFFFF;    ///< VDOP, 0.01
-    std::uint16_t vel = 0xFFFF;    ///< cm/s
-    std::uint16_t cog = 0xFFFF;    ///< 0.01 deg
-    std::uint8_t fix_type = 0;     ///< as MavlinkGpsInput::fix_type
+    std::uint64_t time_usec = 0;  ///< us, of 1970 or of the start
+    std::int32_t lat = 0;         ///< 1e-7 deg
+    std::int32_t lon = 0;         ///< 1e-7 deg
+    std::int32_t alt = 0;         ///< mm above mean sea level
+    std::uint16_t eph = 0xFFFF;   ///< HDOP, 0.01
+    std::uint16_t epv = 0xFFFF;   ///< VDOP, 0.01
+    std::uint16_t vel = 0xFFFF;   ///< cm/s
+    std::uint16_t cog = 0xFFFF;   ///< 0.01 deg
+    std::uint8_t fix_type = 0;    ///< as MavlinkGpsInput::fix_type
     std::uint8_t satellites_visible = 0xFF;
     std::int32_t alt_ellipsoid = 0;  ///< mm; this and what follows are extensions
     std::uint32_t h_acc = 0;         ///< mm
@@ -172,8 +172,8 @@ Bytes encode_mavlink(MavlinkSource source, const Message& message) {
     return encode_mavlink_v2(source, Message::message_id, encode_payload(message));
 }
 
-/// The message of a payload that may be cut short of its zeros or, from an older sender, of its extensions; bytes that a
-/// later one has added are ignored.
+/// The message of a payload that may be cut short of its zeros or, from an older sender, of its extensions; bytes that
+/// a later one has added are ignored.
 template <class Message>
 Message decode_mavlink(ByteSpan payload) {
     Bytes whole(payload.begin(), payload.end());

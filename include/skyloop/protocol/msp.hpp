@@ -74,9 +74,9 @@ struct MspSensorGps {
 
     template <class M, class V>
     static void fields(M& m, V& v) {
-        v(m.instance, m.gps_week, m.ms_tow, m.fix_type, m.satellites, m.h_acc, m.v_acc, m.speed_acc, m.dop,
-          m.longitude, m.latitude, m.msl_altitude, m.vel_north, m.vel_east, m.vel_down, m.course, m.true_yaw, m.year,
-          m.month, m.day, m.hour, m.minute, m.second);
+        v(m.instance, m.gps_week, m.ms_tow, m.fix_type, m.satellites, m.h_acc, m.v_acc, m.speed_acc, m.dop, m.longitude,
+          m.latitude, m.msl_altitude, m.vel_north, m.vel_east, m.vel_down, m.course, m.true_yaw, m.year, m.month, m.day,
+          m.hour, m.minute, m.second);
     }
 };
 
