@@ -27,7 +27,7 @@ std::size_t end_of_name(std::string_view names) {
     return names.size();
 }
 
-double power_of_ten(int digits) {
+double tenth_power(int digits) {
     double power = 1;
     for (int i = 0; i < digits; ++i)
         power *= 10;
@@ -37,9 +37,10 @@ double power_of_ten(int digits) {
 // Division by a power of ten rounds once, so that the shortest text is the decimal number itself.
 template <class Raw>
 DecodedValue value_of(Raw raw, const FieldName& name) {
-    if (name.absent && static_cast<double>(raw) == *name.absent) return {};
-    if (name.decimal_digits != 0) return {static_cast<double>(raw) / power_of_ten(name.decimal_digits)};
-    if (name.binary_digits != 0) return {std::ldexp(static_cast<double>(raw), -name.binary_digits)};
+    const auto number = static_cast<double>(raw);
+    if (name.absent && number == *name.absent) return {};
+    if (name.decimal_digits != 0) return {number / tenth_power(name.decimal_digits)};
+    if (name.binary_digits != 0) return {std::ldexp(number, -name.binary_digits)};
     return {raw};
 }
 
