@@ -93,6 +93,19 @@ struct GnssBlock {
     std::uint32_t flags = 0;  ///< as on the wire; bit 0 is replaced by what is configured
 };
 
+/// How fields of sentences look, where makers differ; the defaults are u-blox's (RECEIVER.md 5.3, 5.8 to 5.10).
+struct NmeaStyle {
+    int speed_decimals = 3;         ///< of RMC (knots) and VTG (knots, km/h)
+    int course_decimals = 2;        ///< of RMC and VTG
+    bool course_always = false;     ///< the course is printed even at rest and frozen
+    bool satellites_padded = true;  ///< numSV of GGA and GNS in two digits: "07", not "7"
+    int dop_decimals = 2;
+    std::string station_field;          ///< of GGA without corrections: empty, or "0000"
+    std::string beidou_talker = "GB";   ///< or "BD"
+    std::string qzss_talker = "GQ";     ///< or "QZ"; of versions in which QZSS has its own
+    bool unknown_date_is_1980 = false;  ///< before the date is known RMC says 050180 and a time since power-on (MTK)
+};
+
 /// One receiver model (boards/receivers/*.toml; every key in boards/README.md).
 struct BoardProfile {
     std::string name;
@@ -109,6 +122,9 @@ struct BoardProfile {
 
     std::vector<Constellation> constellations;  ///< enabled at the factory
     bool dual_frequency = false;                ///< tracks the second signal of each system from the factory on
+    int most_systems = 4;                       ///< of GPS, GLONASS, BeiDou and Galileo that it tracks at once
+    /// Sets of items of CFG-SIGNAL that may not all be 1 at once: what its front end cannot receive together.
+    std::vector<std::set<std::uint32_t>> signal_conflicts;
     double default_rate_hz = 1;
     double max_rate_hz = 10;
     int least_measurement_period_ms = 25;  ///< shorter ones are stored as this (CFG-RATE), or refused (VALSET)
@@ -121,8 +137,9 @@ struct BoardProfile {
     int time_decimals = 2;
     int max_listed_satellites = 12;         ///< numSV of GGA stops here (12 in strict NMEA)
     MetresPerSecond course_min_speed{0.1};  ///< slower than this, the course is left empty
-    std::vector<SentenceRate> sentences;    ///< factory output
-    Seconds solution_latency{0.05};         ///< from the epoch instant to the first byte of its output
+    NmeaStyle style;
+    std::vector<SentenceRate> sentences;  ///< factory output
+    Seconds solution_latency{0.05};       ///< from the epoch instant to the first byte of its output
 
     /// What it can send, in the order in which it leaves within an epoch; sentences among it.
     std::vector<UbxMessageId> messages;

@@ -1,6 +1,7 @@
 /// What a client configures: both ways, on one store.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "firmware/board_profile.hpp"
@@ -39,14 +40,23 @@ public:
     void cancel() { transaction_.reset(); }
 
 private:
-    struct Transaction {
+    /// What one message, or a transaction of several, is to change.
+    struct Change {
         std::uint8_t layers = 0;
         bool deleting = false;
-        std::vector<std::pair<std::uint32_t, std::uint64_t>> pending;
+        ConfigValues items;  ///< when deleting, the values mean nothing
     };
+    /// Does now what a message asks for, or adds it to a transaction.
+    ConfigOutcome take(std::uint8_t transaction, Change change);
+    ConfigOutcome apply(const Change& change);
+    /// The items that a wildcard means, or the one of this id; nothing when there is none.
+    [[nodiscard]] std::vector<std::uint32_t> expanded(std::uint32_t key) const;
+    [[nodiscard]] bool is_settable(std::uint32_t key, std::uint64_t value) const;
+    [[nodiscard]] bool is_locked(const ConfigValues& items) const;
+
     const BoardProfile& board_;
     ConfigStore& store_;
-    std::optional<Transaction> transaction_;
+    std::optional<Change> transaction_;
 };
 
 /// The legacy messages of class CFG, read from and written to the store (RECEIVER.md 3.3). Knows CFG-PRT, MSG, INF,

@@ -26,6 +26,9 @@ struct ByGroupAndItem {
 };
 using ConfigValues = std::map<std::uint32_t, std::uint64_t, ByGroupAndItem>;
 
+/// A value as its item keeps it: as many bytes as the key says, of a logical only bit 0 (RECEIVER.md 3.4).
+std::uint64_t cut_to_size(std::uint32_t key, std::uint64_t value);
+
 /// One store for both ways to configure a receiver. It keeps values and layers; what is allowed is decided by those
 /// who write. State: three layers.
 class ConfigStore {

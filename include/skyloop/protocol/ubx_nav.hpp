@@ -231,4 +231,66 @@ struct NavEoe {
     }
 };
 
+/// NAV-VELECEF: velocity in the Earth-fixed frame (RECEIVER.md 3.1).
+struct NavVelecef {
+    static constexpr UbxMessageId message_id{0x01, 0x11};
+    std::uint32_t i_tow = 0;               ///< ms, GPS time of week of the epoch
+    std::array<std::int32_t, 3> ecef_v{};  ///< cm/s
+    std::uint32_t s_acc = 0;               ///< cm/s
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.i_tow, m.ecef_v, m.s_acc);
+    }
+};
+
+/// NAV-HPPOSECEF: position in the Earth-fixed frame with more digits (RECEIVER.md 3.1).
+struct NavHpposecef {
+    static constexpr UbxMessageId message_id{0x01, 0x13};
+    std::uint8_t version = 0;  ///< 0
+    std::array<std::uint8_t, 3> reserved{};
+    std::uint32_t i_tow = 0;               ///< ms, GPS time of week of the epoch
+    std::array<std::int32_t, 3> ecef{};    ///< cm
+    std::array<std::int8_t, 3> ecef_hp{};  ///< 0.1 mm, to add
+    std::uint8_t flags = 0;                ///< bit 0: invalid
+    std::uint32_t p_acc = 0;               ///< 0.1 mm
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.version, m.reserved, m.i_tow, m.ecef, m.ecef_hp, m.flags, m.p_acc);
+    }
+};
+
+/// NAV-ODO: odometer (RECEIVER.md 3.1).
+struct NavOdo {
+    static constexpr UbxMessageId message_id{0x01, 0x09};
+    std::uint8_t version = 0;  ///< 0
+    std::array<std::uint8_t, 3> reserved{};
+    std::uint32_t i_tow = 0;           ///< ms, GPS time of week of the epoch
+    std::uint32_t distance = 0;        ///< m since NAV-RESETODO
+    std::uint32_t total_distance = 0;  ///< m
+    std::uint32_t distance_std = 0;    ///< m, 1 σ
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.version, m.reserved, m.i_tow, m.distance, m.total_distance, m.distance_std);
+    }
+};
+
+/// NAV-EELL: horizontal error ellipse (M8 interface description).
+struct NavEell {
+    static constexpr UbxMessageId message_id{0x01, 0x3D};
+    std::uint32_t i_tow = 0;   ///< ms, GPS time of week of the epoch
+    std::uint8_t version = 0;  ///< 0
+    std::uint8_t reserved = 0;
+    std::uint16_t orient = 0;  ///< 0.01 deg of the major axis from true north
+    std::uint32_t major = 0;   ///< mm
+    std::uint32_t minor = 0;   ///< mm
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.i_tow, m.version, m.reserved, m.orient, m.major, m.minor);
+    }
+};
+
 }  // namespace skyloop

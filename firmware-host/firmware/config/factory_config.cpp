@@ -1,0 +1,275 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "firmware/config/config_handler.hpp"
+#include "firmware/config/key_tables.hpp"
+#include "firmware/config/signal_keys.hpp"
+#include "skyloop/protocol/ubx_cfg_values.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+// The port that an item belongs to: by its group, by the order of CFG-INFMSG, by the order of CFG-MSGOUT.
+std::optional<PortId> port_of(const ConfigKey& key) {
+    switch (key.id >> 16 & 0xFF) {
+        case 0x51:
+        case 0x71:
+        case 0x72:
+            return PortId::i2c;
+        case 0x52:
+        case 0x73:
+        case 0x74:
+            return PortId::uart1;
+        case 0x53:
+        case 0x75:
+        case 0x76:
+            return PortId::uart2;
+        case 0x65:
+        case 0x77:
+        case 0x78:
+            return PortId::usb;
+        case 0x64:
+        case 0x79:
+        case 0x7A:
+            return PortId::spi;
+        case 0x92:
+            return static_cast<PortId>(((key.id & 0xFFFF) - 1) % port_count);
+        default:
+            return std::nullopt;
+    }
+}
+
+// Items of CFG-MSGOUT of ports that the board does not have.
+void erase_rates_of_missing_ports(const BoardProfile& board, ConfigValues& values) {
+    for (const OutputMessage& message : output_messages())
+        for (std::uint32_t port = 0; port < port_count; ++port)
+            if (std::find(board.ports.begin(), board.ports.end(), static_cast<PortId>(port)) == board.ports.end())
+                values.erase(message.i2c_key + port);
+}
+
+ConfigValues items_of_board(const BoardProfile& board) {
+    ConfigValues values;
+    for (const ConfigKey& key : config_keys()) {
+        const auto port = port_of(key);
+        const bool missing = port && std::find(board.ports.begin(), board.ports.end(), *port) == board.ports.end();
+        if (!missing && !board.absent_keys.contains(key.id)) values.emplace(key.id, key.default_value);
+    }
+    erase_rates_of_missing_ports(board, values);
+    return values;
+}
+
+// Sets an item that the board has; others are left out.
+class FactoryWriter {
+public:
+    explicit FactoryWriter(ConfigValues& values) : values_(values) {}
+    void set(std::uint32_t key, std::uint64_t value) {
+        if (const auto found = values_.find(key); found != values_.end() && found->first == key) found->second = value;
+    }
+
+private:
+    ConfigValues& values_;
+};
+
+// CFG-NMEA-PROTVER (F9 interface description, CFG-NMEA).
+std::uint64_t number_of(NmeaVersion version) {
+    switch (version) {
+        case NmeaVersion::v2_3:
+            return 23;
+        case NmeaVersion::v4_0:
+            return 40;
+        case NmeaVersion::v4_10:
+            return 41;
+        case NmeaVersion::v4_11:
+            break;
+    }
+    return 42;
+}
+
+// CFG-NMEA-MAINTALKERID; 0: by the systems.
+std::uint64_t number_of_talker(std::string_view talker) {
+    constexpr std::array<std::string_view, 8> talkers{"", "GP", "GL", "GN", "GA", "GB", "", "GQ"};
+    const auto found = std::find(talkers.begin(), talkers.end(), talker);
+    return found == talkers.end() ? 0 : static_cast<std::uint64_t>(found - talkers.begin());
+}
+
+void write_signals(const BoardProfile& board, FactoryWriter& writer) {
+    const auto& enabled = board.constellations;
+    for (const SystemKeys& system : system_keys_of_signals) {
+        const bool on = std::find(enabled.begin(), enabled.end(), system.constellation) != enabled.end();
+        writer.set(system.enable, on);
+        writer.set(system.second, board.dual_frequency);
+        if (system.constellation == Constellation::navic) writer.set(system.first[0], on);
+    }
+}
+
+void write_sentences(const BoardProfile& board, FactoryWriter& writer) {
+    constexpr std::uint8_t nmea_class = 0xF0;
+    for (const OutputMessage& message : output_messages()) {
+        if (message.id.message_class != nmea_class) continue;
+        std::uint64_t rate = 0;
+        for (const SentenceRate& sentence : board.sentences)
+            if (nmea_sentence_names[static_cast<std::size_t>(sentence.sentence)] == message.name)
+                rate = static_cast<std::uint64_t>(sentence.every_epochs);
+        for (std::uint32_t port = 0; port < port_count; ++port)
+            writer.set(message.i2c_key + port, rate);
+    }
+}
+
+std::uint64_t measurement_period_ms(const BoardProfile& board) {
+    constexpr long long longest = 65535;
+    return static_cast<std::uint64_t>(std::clamp(std::llround(1000 / board.default_rate_hz), 1LL, longest));
+}
+
+// What a value may be: within one of the rows of its item; an item without a row takes any value.
+struct AllowedRange {
+    std::uint32_t key;
+    std::int64_t least, most;
+};
+
+// Enumerations of the F9 interface description HPG 1.32, section 6.9; those of M8 lie within (RECEIVER.md 3.3, 3.5.1).
+constexpr AllowedRange allowed_ranges[] = {
+    {key::tmode_mode, 0, 2},  // disabled, survey-in, fixed
+    {0x20030002, 0, 1},       // CFG-TMODE-POS_TYPE: ECEF, LLH
+    {0x2005000C, 0, 5},       // CFG-TP-TIMEGRID_TP1: UTC and five systems
+    {0x2005000C, 15, 15},     // local
+    {0x20050017, 0, 5},       // CFG-TP-TIMEGRID_TP2
+    {0x20050017, 15, 15},
+    {0x20050023, 0, 1},               // CFG-TP-PULSE_DEF: period, frequency
+    {0x20050030, 0, 1},               // CFG-TP-PULSE_LENGTH_DEF: ratio, length
+    {0x20090009, 0, 2},               // CFG-RTCM-DF003_IN_FILTER: disabled, relaxed, strict
+    {key::navspg_fixmode, 1, 3},      // 2D, 3D, auto
+    {key::navspg_utcstandard, 0, 0},  // auto
+    {key::navspg_utcstandard, 3, 3},  // USNO
+    {key::navspg_utcstandard, 5, 8},  // EU, SU, NTSC, NPLI
+    {key::navspg_dynmodel, 0, 0},     // portable
+    {key::navspg_dynmodel, 2, 9},     // stationary … wrist
+    {key::navspg_min_elev, -90, 90},  // degrees
+    {0x201100D6, 0, 63},              // CFG-NAVSPG-SIGATTCOMP: off, fixed level
+    {0x201100D6, 255, 255},           // automatic
+    {key::navhpg_dgnssmode, 2, 3},    // float, fixed
+    {key::rate_timeref, 0, 5},        // UTC and five systems
+    {0x20220005, 0, 4},               // CFG-ODO-PROFILE: running … custom
+    {0x20340009, 0, 2},               // CFG-BDS-D1D2_NAVDATA
+    {0x20410010, 0, 2},               // CFG-ITFM-ANTSETTING: unknown, passive, active
+    {0x20520002, 0, 3},               // CFG-UART1-STOPBITS: half, one, one and a half, two
+    {0x20520003, 0, 1},               // CFG-UART1-DATABITS: eight, seven
+    {0x20520004, 0, 2},               // CFG-UART1-PARITY: none, odd, even
+    {0x20530002, 0, 3},               // CFG-UART2-STOPBITS
+    {0x20530003, 0, 1},               // CFG-UART2-DATABITS
+    {0x20530004, 0, 2},               // CFG-UART2-PARITY
+    {key::nmea_protver, 21, 21},      // 2.1
+    {key::nmea_protver, 23, 23},      // 2.3
+    {key::nmea_protver, 40, 42},      // 4.0, 4.10, 4.11
+    {key::nmea_maxsvs, 0, 0},         // as many as there are
+    {key::nmea_maxsvs, 8, 8},
+    {key::nmea_maxsvs, 12, 12},
+    {key::nmea_maxsvs, 16, 16},
+    {key::nmea_svnumbering, 0, 1},  // strict, extended
+    {key::nmea_main_talker, 0, 7},  // by the systems, GP, GL, GN, GA, GB, GI, GQ
+    {key::nmea_gsv_talker, 0, 1},   // by the systems, the main one
+    {0x20A20005, 0, 4},             // CFG-TXREADY-INTERFACE
+    {0x20A70001, 0, 1},             // CFG-SPARTN-USE_SOURCE: IP, L-band
+    {0x20D00001, 0, 2},             // CFG-PM-OPERATEMODE: full, on and off, cyclic
+    {0x20D0000B, 0, 1},             // CFG-PM-EXTINTSEL
+};
+
+bool is_duty(std::uint32_t key) { return find_config_key(key)->type == ConfigType::r8; }
+
+std::int64_t as_number(const ConfigKey& key, std::uint64_t value) {
+    using enum ConfigType;
+    const bool is_signed = key.type == i1 || key.type == i2 || key.type == i4 || key.type == i8;
+    if (!is_signed) return static_cast<std::int64_t>(value);
+    const std::size_t unused_bits = 64 - 8 * config_value_size(key.id);
+    return static_cast<std::int64_t>(value << unused_bits) >> unused_bits;
+}
+
+// What depends on the board; nothing for other items.
+std::optional<bool> is_in_range_of_board(const BoardProfile& board, std::uint32_t key, std::uint64_t value) {
+    // navRate: 1 … 127, on receivers before generation 9 up to 128 (RECEIVER.md 2.6).
+    const std::uint64_t most_cycles = board.identity.generation >= 9 ? 127 : 128;
+    switch (key) {
+        case key::rate_meas:
+            return value >= static_cast<std::uint64_t>(board.least_measurement_period_ms);
+        case key::rate_nav:
+            return value >= 1 && value <= most_cycles;
+        case key::uart1_baudrate:
+        case key::uart2_baudrate:
+            return board.bauds.empty() ? value > 0
+                                       : std::find(board.bauds.begin(), board.bauds.end(), value) != board.bauds.end();
+        default:
+            return std::nullopt;
+    }
+}
+
+bool is_on(const ConfigValues& values, std::uint32_t key) {
+    const auto found = values.find(key);
+    return found != values.end() && found->second != 0;
+}
+
+bool is_signal_plan(const BoardProfile& board, const ConfigValues& values) {
+    int systems = 0, major = 0;
+    for (const SystemKeys& system : system_keys_of_signals) {
+        if (!is_on(values, system.enable)) continue;
+        const auto on = [&values](std::uint32_t key) { return key != 0 && is_on(values, key); };
+        if (std::none_of(system.first.begin(), system.first.end(), on)) return false;
+        if (system.constellation != Constellation::sbas) ++systems;
+        if (system.is_major) ++major;
+    }
+    const auto is_whole = [&values](const std::set<std::uint32_t>& conflict) {
+        return std::all_of(conflict.begin(), conflict.end(), [&](std::uint32_t key) { return is_on(values, key); });
+    };
+    return systems > 0 && major <= board.most_systems &&
+           std::none_of(board.signal_conflicts.begin(), board.signal_conflicts.end(), is_whole);
+}
+
+}  // namespace
+
+ConfigValues factory_config(const BoardProfile& board) {
+    ConfigValues values = items_of_board(board);
+    FactoryWriter writer(values);
+    writer.set(key::uart1_baudrate, board.baud);
+    writer.set(key::rate_meas, measurement_period_ms(board));
+    writer.set(key::navspg_min_elev, static_cast<std::uint8_t>(std::lround(board.elevation_mask.deg())));
+    writer.set(key::nmea_protver, number_of(board.nmea_version));
+    writer.set(key::nmea_svnumbering, board.satellite_numbering == NmeaNumbering::extended);
+    writer.set(key::nmea_main_talker, number_of_talker(board.main_talker));
+    writer.set(key::itfm_enable, board.quirks.default_interference_monitor);
+    writer.set(key::ant_voltage_control, board.quirks.voltage_control);
+    write_signals(board, writer);
+    write_sentences(board, writer);
+    for (const auto& [key, value] : board.config)
+        writer.set(key, value);
+    return values;
+}
+
+bool is_in_range(const BoardProfile& board, std::uint32_t key, std::uint64_t value) {
+    const ConfigKey* item = find_config_key(key);
+    if (item == nullptr) return false;
+    const std::size_t bytes = config_value_size(key);
+    if (bytes < 8 && value >> 8 * bytes != 0) return false;
+    if (const auto by_board = is_in_range_of_board(board, key, value)) return *by_board;
+    if (is_duty(key)) {
+        const double percent = std::bit_cast<double>(value);
+        return percent >= 0 && percent <= 100;
+    }
+    bool limited = false;
+    for (const AllowedRange& range : allowed_ranges) {
+        if (range.key != key) continue;
+        const std::int64_t number = as_number(*item, value);
+        if (number >= range.least && number <= range.most) return true;
+        limited = true;
+    }
+    return !limited;
+}
+
+bool is_consistent(const BoardProfile& board, const ConfigValues& ram) {
+    const auto in_range = [&board](const auto& item) { return is_in_range(board, item.first, item.second); };
+    if (!std::all_of(ram.begin(), ram.end(), in_range)) return false;
+    // A supply can only be cut where it is switched (RECEIVER.md 4.4).
+    if (is_on(ram, key::ant_power_down) && !is_on(ram, key::ant_voltage_control)) return false;
+    return is_signal_plan(board, ram);
+}
+
+}  // namespace skyloop::firmware

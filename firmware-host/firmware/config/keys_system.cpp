@@ -1,0 +1,89 @@
+// Configuration items: texts, sentences, hardware, power, security. Ids, names and types are those of the u-blox F9
+// interface description HPG 1.32, section 6.9; defaults those of the NEO-M9N's list (RECEIVER.md 3.5.1), 0 where it has
+// none.
+#include "firmware/config/key_tables.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using enum ConfigType;
+constexpr ConfigKey system_items[] = {
+    {0x20920001, "CFG-INFMSG-UBX_I2C", x1, 0},
+    {0x20920002, "CFG-INFMSG-UBX_UART1", x1, 0},
+    {0x20920003, "CFG-INFMSG-UBX_UART2", x1, 0},
+    {0x20920004, "CFG-INFMSG-UBX_USB", x1, 0},
+    {0x20920005, "CFG-INFMSG-UBX_SPI", x1, 0},
+    {0x20920006, "CFG-INFMSG-NMEA_I2C", x1, 7},
+    {0x20920007, "CFG-INFMSG-NMEA_UART1", x1, 7},
+    {0x20920008, "CFG-INFMSG-NMEA_UART2", x1, 7},
+    {0x20920009, "CFG-INFMSG-NMEA_USB", x1, 7},
+    {0x2092000A, "CFG-INFMSG-NMEA_SPI", x1, 7},
+    {0x20930001, "CFG-NMEA-PROTVER", e1, 41},
+    {0x20930002, "CFG-NMEA-MAXSVS", e1, 0},
+    {0x10930003, "CFG-NMEA-COMPAT", l, 0},
+    {0x10930004, "CFG-NMEA-CONSIDER", l, 1},
+    {0x10930005, "CFG-NMEA-LIMIT82", l, 0},
+    {0x10930006, "CFG-NMEA-HIGHPREC", l, 0},
+    {0x20930007, "CFG-NMEA-SVNUMBERING", e1, 0},
+    {0x10930011, "CFG-NMEA-FILT_GPS", l, 0},
+    {0x10930012, "CFG-NMEA-FILT_SBAS", l, 0},
+    {0x10930013, "CFG-NMEA-FILT_GAL", l, 0},
+    {0x10930015, "CFG-NMEA-FILT_QZSS", l, 0},
+    {0x10930016, "CFG-NMEA-FILT_GLO", l, 0},
+    {0x10930017, "CFG-NMEA-FILT_BDS", l, 0},
+    {0x10930021, "CFG-NMEA-OUT_INVFIX", l, 0},
+    {0x10930022, "CFG-NMEA-OUT_MSKFIX", l, 0},
+    {0x10930023, "CFG-NMEA-OUT_INVTIME", l, 0},
+    {0x10930024, "CFG-NMEA-OUT_INVDATE", l, 0},
+    {0x10930025, "CFG-NMEA-OUT_ONLYGPS", l, 0},
+    {0x10930026, "CFG-NMEA-OUT_FROZENCOG", l, 0},
+    {0x20930031, "CFG-NMEA-MAINTALKERID", e1, 0},
+    {0x20930032, "CFG-NMEA-GSVTALKERID", e1, 0},
+    {0x30930033, "CFG-NMEA-BDSTALKERID", u2, 0},
+    {0x10A20001, "CFG-TXREADY-ENABLED", l, 0},
+    {0x10A20002, "CFG-TXREADY-POLARITY", l, 0},
+    {0x20A20003, "CFG-TXREADY-PIN", u1, 0},
+    {0x30A20004, "CFG-TXREADY-THRESHOLD", u2, 0},
+    {0x20A20005, "CFG-TXREADY-INTERFACE", e1, 0},
+    {0x10A3002E, "CFG-HW-ANT_CFG_VOLTCTRL", l, 0},
+    {0x10A3002F, "CFG-HW-ANT_CFG_SHORTDET", l, 0},
+    {0x10A30030, "CFG-HW-ANT_CFG_SHORTDET_POL", l, 1},
+    {0x10A30031, "CFG-HW-ANT_CFG_OPENDET", l, 0},
+    {0x10A30032, "CFG-HW-ANT_CFG_OPENDET_POL", l, 1},
+    {0x10A30033, "CFG-HW-ANT_CFG_PWRDOWN", l, 0},
+    {0x10A30034, "CFG-HW-ANT_CFG_PWRDOWN_POL", l, 1},
+    {0x10A30035, "CFG-HW-ANT_CFG_RECOVER", l, 0},
+    {0x20A30036, "CFG-HW-ANT_SUP_SWITCH_PIN", u1, 16},
+    {0x20A30037, "CFG-HW-ANT_SUP_SHORT_PIN", u1, 15},
+    {0x20A30038, "CFG-HW-ANT_SUP_OPEN_PIN", u1, 8},
+    {0x30A3003C, "CFG-HW-ANT_ON_SHORT_US", u2, 500},
+    {0x20A70001, "CFG-SPARTN-USE_SOURCE", e1, 0},
+    {0x20D00001, "CFG-PM-OPERATEMODE", e1, 0},
+    {0x40D00002, "CFG-PM-POSUPDATEPERIOD", u4, 10},
+    {0x40D00003, "CFG-PM-ACQPERIOD", u4, 10},
+    {0x40D00004, "CFG-PM-GRIDOFFSET", u4, 0},
+    {0x30D00005, "CFG-PM-ONTIME", u2, 0},
+    {0x20D00006, "CFG-PM-MINACQTIME", u1, 0},
+    {0x20D00007, "CFG-PM-MAXACQTIME", u1, 0},
+    {0x10D00008, "CFG-PM-DONOTENTEROFF", l, 0},
+    {0x10D00009, "CFG-PM-WAITTIMEFIX", l, 0},
+    {0x10D0000A, "CFG-PM-UPDATEEPH", l, 1},
+    {0x20D0000B, "CFG-PM-EXTINTSEL", e1, 0},
+    {0x10D0000C, "CFG-PM-EXTINTWAKE", l, 0},
+    {0x10D0000D, "CFG-PM-EXTINTBACKUP", l, 0},
+    {0x10D0000E, "CFG-PM-EXTINTINACTIVE", l, 0},
+    {0x40D0000F, "CFG-PM-EXTINTINACTIVITY", u4, 0},
+    {0x10D00010, "CFG-PM-LIMITPEAKCURR", l, 0},
+    {0x10DE0002, "CFG-LOGFILTER-RECORD_ENA", l, 0},
+    {0x10F60009, "CFG-SEC-CFG_LOCK", l, 0},
+    {0x30F6000A, "CFG-SEC-CFG_LOCK_UNLOCKGRP1", u2, 0},
+    {0x30F6000B, "CFG-SEC-CFG_LOCK_UNLOCKGRP2", u2, 0},
+    {0x10F60051, "CFG-SEC-JAMDET_SENSITIVITY_HI", l, 0},
+    {0x10F6005D, "CFG-SEC-SPOOFDET_SIM_SIG_DIS", l, 0},
+};
+
+}  // namespace
+
+std::span<const ConfigKey> system_keys() { return system_items; }
+
+}  // namespace skyloop::firmware

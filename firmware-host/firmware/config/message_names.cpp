@@ -1,0 +1,30 @@
+#include "firmware/config/message_names.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+constexpr NamedMessage polled_message_list[] = {
+    {{0x02, 0x41}, "RXM-PMREQ"}, {{0x0A, 0x04}, "MON-VER"},    {{0x0A, 0x27}, "MON-PATCH"}, {{0x0A, 0x28}, "MON-GNSS"},
+    {{0x0B, 0x01}, "AID-INI"},   {{0x0B, 0x02}, "AID-HUI"},    {{0x0B, 0x30}, "AID-ALM"},   {{0x0B, 0x31}, "AID-EPH"},
+    {{0x0B, 0x33}, "AID-AOP"},   {{0x27, 0x03}, "SEC-UNIQID"}, {{0xF0, 0x40}, "GPQ"},       {{0xF0, 0x42}, "GNQ"},
+    {{0xF0, 0x43}, "GLQ"},       {{0xF0, 0x44}, "GBQ"},        {{0xF0, 0x45}, "GAQ"},       {{0xF0, 0x47}, "GQQ"},
+};
+
+constexpr NamedMessage legacy_message_list[] = {
+    {{0x06, 0x00}, "CFG-PRT"},    {{0x06, 0x01}, "CFG-MSG"},    {{0x06, 0x02}, "CFG-INF"},
+    {{0x06, 0x06}, "CFG-DAT"},    {{0x06, 0x08}, "CFG-RATE"},   {{0x06, 0x09}, "CFG-CFG"},
+    {{0x06, 0x11}, "CFG-RXM"},    {{0x06, 0x13}, "CFG-ANT"},    {{0x06, 0x16}, "CFG-SBAS"},
+    {{0x06, 0x17}, "CFG-NMEA"},   {{0x06, 0x1B}, "CFG-USB"},    {{0x06, 0x1E}, "CFG-ODO"},
+    {{0x06, 0x23}, "CFG-NAVX5"},  {{0x06, 0x24}, "CFG-NAV5"},   {{0x06, 0x31}, "CFG-TP5"},
+    {{0x06, 0x34}, "CFG-RINV"},   {{0x06, 0x39}, "CFG-ITFM"},   {{0x06, 0x3B}, "CFG-PM2"},
+    {{0x06, 0x3D}, "CFG-TMODE2"}, {{0x06, 0x3E}, "CFG-GNSS"},   {{0x06, 0x47}, "CFG-LOGFILTER"},
+    {{0x06, 0x57}, "CFG-PWR"},    {{0x06, 0x5C}, "CFG-HNR"},    {{0x06, 0x69}, "CFG-GEOFENCE"},
+    {{0x06, 0x70}, "CFG-DGNSS"},  {{0x06, 0x71}, "CFG-TMODE3"}, {{0x06, 0x86}, "CFG-PMS"},
+};
+
+}  // namespace
+
+std::span<const NamedMessage> polled_messages() { return polled_message_list; }
+std::span<const NamedMessage> legacy_messages() { return legacy_message_list; }
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,111 @@
+/// What the fields of several UBX messages have in common: numbers that stay in their range, time, satellites.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "firmware/navigation_state.hpp"
+#include "skyloop/gnss/satellite.hpp"
+#include "skyloop/gnss/signal.hpp"
+#include "skyloop/protocol/ubx_fields.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop::firmware {
+
+/// The nearest whole number that the field can hold; not a number is 0.
+template <class Integer>
+Integer field(double value) {
+    using Limits = std::numeric_limits<Integer>;
+    static_assert(sizeof(Integer) <= 4, "the limits of eight bytes are no doubles");
+    if (std::isnan(value)) return 0;
+    const double whole = std::round(value);
+    if (whole <= static_cast<double>(Limits::min())) return Limits::min();
+    if (whole >= static_cast<double>(Limits::max())) return Limits::max();
+    return static_cast<Integer>(whole);
+}
+
+/// A number and what is left of it for a field of higher precision (NAV-HPPOSLLH and its like).
+struct SplitValue {
+    std::int32_t whole = 0;
+    std::int8_t rest = 0;  ///< −(parts−1) … parts−1
+};
+/// @param value in units of the rest @param parts of these make one unit of the whole: 100 or 10
+SplitValue split_value(double value, int parts);
+
+/// An accuracy that nobody knows.
+inline constexpr std::uint32_t unknown_accuracy = 0xFFFF'FFFF;
+/// A DOP that was not computed: 99.99.
+inline constexpr std::uint16_t unknown_dop = 9999;
+
+/// An epoch in GPS time as messages say it: the nearest millisecond, and the rest.
+struct EpochTime {
+    std::int64_t week = 0;
+    std::uint32_t i_tow = 0;  ///< ms, 0 … 604 799 999
+    std::int32_t f_tow = 0;   ///< ns, −500 000 … 500 000
+};
+EpochTime epoch_time(GpsTime time);
+
+/// The instant of the epoch as the receiver believes it, and how far GPS time is ahead of UTC.
+struct ReportedTime {
+    GpsTime time;
+    int leap_seconds = 18;
+};
+/// Before the first time from space a receiver without a clock of its own counts from the week that
+/// CFG-NAVSPG-WKNROLLOVER names (M9N 4.04: 2020-08-02, F9P: 2024-06-23; RECEIVER.md 4.9).
+ReportedTime reported_time(const ReportContext& context);
+
+/// UTC rounded to 10 ms, and what was rounded away with the hundredths in it (RECEIVER.md 4.9).
+struct UtcFields {
+    UtcTime utc;            ///< its nanosecond is a multiple of 10 ms
+    std::int32_t nano = 0;  ///< ns from utc's whole second, −5 000 000 … 994 999 999
+};
+/// In a leap second that was announced the receiver counts to 60; any other belief about the offset just subtracts.
+UtcFields utc_fields(const ReportedTime& now);
+
+/// The UTC standard of NAV-PVT and NAV-TIMEUTC: 15 until leap seconds are known; then what CFG-NAVSPG-UTCSTANDARD says,
+/// or that of the systems in use: 3 USNO with GPS, 6 SU of GLONASS, 5 EU of Galileo, 7 NTSC of BeiDou
+/// (RECEIVER.md 4.9).
+std::uint8_t utc_standard(const ReportContext& context);
+
+/// 1 σ of the time, ns; `unknown_accuracy` without time.
+std::uint32_t time_accuracy_ns(const NavigationState& state);
+
+/// NAV-PVT fixType: 0 none, 1 dead reckoning, 2 2D, 3 3D, 5 time only.
+std::uint8_t fix_type_code(const Fix& fix);
+/// 0 none, 1 float, 2 fixed.
+std::uint8_t carrier_solution(const Fix& fix);
+/// True when corrections are in the solution: of a base station or of SBAS.
+bool is_differential(const Fix& fix);
+
+/// gnssId of UBX (RECEIVER.md 5.6).
+std::uint8_t gnss_id(Constellation constellation);
+/// svId of UBX: as RINEX, but SBAS by its PRN.
+std::uint8_t sv_id(SatelliteId satellite);
+/// The one numbering for all systems of NAV-SVINFO, or nothing where it has none.
+std::optional<std::uint8_t> single_byte_number(SatelliteId satellite);
+/// sigId of UBX. @param b1c_for_b1i the receiver tracks B1C and calls it so
+std::uint8_t signal_id(SatelliteId satellite, Signal signal, bool b1c_for_b1i = false);
+/// freqId: the GLONASS channel + 7; 0 of other systems.
+std::uint8_t frequency_id(SatelliteId satellite, Signal signal, Hertz carrier);
+/// True when the receiver takes BeiDou's B1C and not B1I.
+bool takes_b1c(const ConfigStore& config);
+
+/// C/N0 as a field.
+inline std::uint8_t cn0_field(const std::optional<DbHz>& cn0) { return cn0 ? field<std::uint8_t>(cn0->value()) : 0; }
+
+/// Whether the satellite's place in the sky is known: the position is, and so is an orbit. A report leaves both angles
+/// at exactly zero where it does not know them.
+bool direction_known(const SatelliteStatus& satellite, const NavigationState& state);
+/// Whether the almanac is there: it takes the same twelve and a half minutes as the leap seconds, or was stored.
+inline bool almanac_known(const NavigationState& state) { return state.time.leap_seconds; }
+
+/// One frame as a list.
+template <class Message>
+std::vector<Bytes> one_frame(const Message& message) {
+    return {encode_frame(message)};
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,280 @@
+// The other NAV messages without satellites: covariances, odometer, base station, fences, end of the epoch (RECEIVER.md
+// 3.1, 4.12).
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "firmware/error_ellipse.hpp"
+#include "firmware/messages/field_values.hpp"
+#include "firmware/messages/make_message.hpp"
+#include "firmware/messages/navigation_parts.hpp"
+#include "skyloop/protocol/ubx_nav.hpp"
+#include "skyloop/protocol/ubx_relative.hpp"
+#include "skyloop/protocol/ubx_services.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+// CFG-ANA-USE_ANA (RECEIVER.md 3.5.1).
+constexpr std::uint32_t use_ana = 0x10230001;
+// A course that is frozen says nothing of the motion.
+constexpr std::uint32_t half_turn = 18000000;  // 1e-5 deg
+
+std::uint32_t service_tow(const ReportContext& context) { return epoch_time(reported_time(context).time).i_tow; }
+
+std::vector<SatelliteStatus> solved_satellites(const Fix& fix) {
+    std::vector<SatelliteStatus> used;
+    std::copy_if(fix.satellites.begin(), fix.satellites.end(), std::back_inserter(used),
+                 [](const SatelliteStatus& s) { return s.used; });
+    return used;
+}
+
+// Variances and covariances NN, NE, ND, EE, ED, DD. Horizontal and vertical errors count as uncorrelated.
+std::array<float, 6> covariance(double north, double east, double north_east, double down) {
+    return {static_cast<float>(north), static_cast<float>(north_east), 0, static_cast<float>(east), 0,
+            static_cast<float>(down)};
+}
+
+// Without a fix captured receivers give 3750 km and 20 m/s, and call it valid.
+NavCov solution_covariance(const ReportContext& context) {
+    constexpr double unknown_m = 3750e3, unknown_mps = 20;
+    const Fix& fix = context.state.epoch.fix;
+    NavCov m;
+    m.i_tow = service_tow(context);
+    m.pos_cov_valid = m.vel_cov_valid = 1;
+    m.pos_cov = covariance(unknown_m * unknown_m, unknown_m * unknown_m, 0, unknown_m * unknown_m);
+    m.vel_cov = covariance(unknown_mps * unknown_mps, unknown_mps * unknown_mps, 0, unknown_mps * unknown_mps);
+    const std::optional<ErrorEllipse> ellipse = error_ellipse(fix, solved_satellites(fix));
+    if (!fix.has_position() || !ellipse) return m;
+    const double north = ellipse->north.value(), east = ellipse->east.value(), up = fix.vertical_accuracy.value();
+    const double major = ellipse->semi_major.value(), minor = ellipse->semi_minor.value();
+    const double across = (major * major - minor * minor) / 2 * std::sin(2 * ellipse->orientation.rad());
+    m.pos_cov = covariance(north * north, east * east, across, up * up);
+    const double horizontal = std::hypot(north, east);
+    if (!(horizontal > 0) || !(fix.dop.pdop > 0)) return m;
+    // Velocity is solved with the same geometry: its error splits as that of the position does.
+    const double level = fix.speed_accuracy.value() * std::hypot(fix.dop.ndop, fix.dop.edop) / fix.dop.pdop;
+    const double scale = level * level / (horizontal * horizontal);
+    const double vertical = fix.speed_accuracy.value() * fix.dop.vdop / fix.dop.pdop;
+    m.vel_cov = covariance(north * north * scale, east * east * scale, across * scale, vertical * vertical);
+    return m;
+}
+
+NavEell ellipse_message(const ReportContext& context) {
+    const Fix& fix = context.state.epoch.fix;
+    NavEell m;
+    m.i_tow = service_tow(context);
+    m.major = m.minor = unknown_accuracy;
+    const std::optional<ErrorEllipse> ellipse = error_ellipse(fix, solved_satellites(fix));
+    if (!fix.has_position() || !ellipse) return m;
+    m.orient = field<std::uint16_t>(ellipse->orientation.deg() * 1e2);
+    m.major = field<std::uint32_t>(ellipse->semi_major.value() * 1e3);
+    m.minor = field<std::uint32_t>(ellipse->semi_minor.value() * 1e3);
+    return m;
+}
+
+NavOdo odometer(const ReportContext& context) {
+    const NavigationState& state = context.state;
+    NavOdo m;
+    m.i_tow = service_tow(context);
+    m.distance = field<std::uint32_t>(state.odometer_m);
+    m.total_distance = field<std::uint32_t>(state.odometer_total_m);
+    m.distance_std = field<std::uint32_t>(state.odometer_deviation_m);
+    return m;
+}
+
+// Bits: 0 fix ok, 1 differential, 2 vector valid, 3-4 carrier solution, 5 moving base.
+std::uint32_t relative_flags(const ReportContext& context) {
+    const NavigationState& state = context.state;
+    const auto& relative = state.epoch.relative;
+    std::uint32_t flags = state.fix_ok ? 1u : 0u;
+    if (!relative) return flags;
+    flags |= is_differential(state.epoch.fix) ? 2u : 0u;
+    flags |= 4u | (relative->fixed ? 2u : 1u) << 3 | (relative->base_moves ? 0x20u : 0u);
+    return flags;
+}
+
+NavRelposned0 relative_position_m8(const ReportContext& context) {
+    NavRelposned0 m;
+    m.i_tow = service_tow(context);
+    m.flags = relative_flags(context);
+    const auto& relative = context.state.epoch.relative;
+    if (!relative) return m;
+    m.ref_station_id = field<std::uint16_t>(relative->base_station);
+    const double parts[] = {relative->north_m, relative->east_m, relative->down_m};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const SplitValue value = split_value(parts[i] * 1e4, 100);
+        m.rel_pos[i] = value.whole;
+        m.rel_pos_hp[i] = value.rest;
+    }
+    m.acc.fill(field<std::uint32_t>(relative->deviation.value() * 1e4));
+    return m;
+}
+
+NavRelposned relative_position(const ReportContext& context) {
+    const NavRelposned0 parts = relative_position_m8(context);
+    NavRelposned m;
+    m.ref_station_id = parts.ref_station_id;
+    m.i_tow = parts.i_tow;
+    m.rel_pos = parts.rel_pos;
+    m.rel_pos_hp = parts.rel_pos_hp;
+    m.acc = parts.acc;
+    m.flags = parts.flags;
+    const auto& relative = context.state.epoch.relative;
+    if (!relative) return m;
+    const double length = std::hypot(relative->north_m, relative->east_m, relative->down_m);
+    const SplitValue split = split_value(length * 1e4, 100);
+    m.rel_pos_length = split.whole;
+    m.rel_pos_length_hp = split.rest;
+    m.acc_length = m.acc[0];
+    const double heading = std::atan2(relative->east_m, relative->north_m) * 180 / std::numbers::pi;
+    m.rel_pos_heading = field<std::int32_t>(std::fmod(heading + 360, 360.0) * 1e5);
+    const double level = std::hypot(relative->north_m, relative->east_m);
+    const double heading_deviation = level > 0 ? std::atan2(relative->deviation.value(), level) : std::numbers::pi;
+    m.acc_heading = std::min(half_turn, field<std::uint32_t>(heading_deviation * 180 / std::numbers::pi * 1e5));
+    if (relative->base_moves && relative->fixed && level > 0) m.flags |= 0x100;
+    return m;
+}
+
+// With CFG-TMODE-MODE 1 the receiver surveys until its solution is one of time alone (RECEIVER.md 4.12).
+NavSvin survey(const ReportContext& context) {
+    const NavigationState& state = context.state;
+    NavSvin m;
+    m.i_tow = service_tow(context);
+    if (context.config.value(key::tmode_mode) != 1) return m;
+    m.valid = state.epoch.fix.type == FixType::time_only ? 1 : 0;
+    m.active = m.valid == 0 ? 1 : 0;
+    m.dur = field<std::uint32_t>(std::floor(state.since_start.value()));
+    m.mean_acc = unknown_accuracy;
+    if (!state.ever_had_fix) return m;
+    const Fix& fix = state.epoch.fix;
+    const Eigen::Vector3d place = to_ecef(fix.position).vector();
+    for (std::size_t i = 0; i < 3; ++i) {
+        const SplitValue value = split_value(place[static_cast<Eigen::Index>(i)] * 1e4, 100);
+        m.mean[i] = value.whole;
+        m.mean_hp[i] = value.rest;
+    }
+    m.mean_acc = field<std::uint32_t>(std::hypot(fix.horizontal_accuracy.value(), fix.vertical_accuracy.value()) * 1e4);
+    m.obs = field<std::uint32_t>(static_cast<double>(state.epoch_index));
+    return m;
+}
+
+NavDgps differential(const ReportContext& context) {
+    constexpr std::int32_t no_age = 999999;  // of a captured receiver without corrections
+    const NavigationState& state = context.state;
+    NavDgps m;
+    m.i_tow = service_tow(context);
+    m.age = state.corrections.age ? field<std::int32_t>(state.corrections.age->value() * 1e3) : no_age;
+    m.base_id = field<std::int16_t>(state.corrections.station.value_or(0));
+    if (state.corrections.state == CorrectionState::none) return m;
+    m.status = 2;
+    for (const SatelliteStatus& s : state.epoch.fix.satellites) {
+        const auto number = single_byte_number(s.id);
+        if (!s.used || !number || m.satellites.size() == ubx_most_items) continue;
+        NavDgpsItem item;
+        item.sv_id = *number;
+        item.flags = static_cast<std::uint8_t>(0x10 | (m.satellites.size() & 0x0F));
+        item.age_c =
+            state.corrections.age ? field<std::uint16_t>(state.corrections.age->value() * 1e3) : std::uint16_t{0};
+        m.satellites.push_back(item);
+    }
+    return m;
+}
+
+// Of services that no emulated receiver has in use: the time, and zeros.
+template <class Message>
+Message service_message(const ReportContext& context) {
+    Message m;
+    m.i_tow = service_tow(context);
+    return m;
+}
+
+NavAopstatus autonomous_orbits(const ReportContext& context) {
+    NavAopstatus m = service_message<NavAopstatus>(context);
+    m.aop_cfg = context.config.flag(use_ana) ? 1 : 0;
+    return m;
+}
+
+// Bounds of the position that a normal error passes once in ten million times; u-blox's own formula is not published.
+NavPl protection_level(const ReportContext& context) {
+    constexpr double sigmas = 5.33;
+    const NavigationState& state = context.state;
+    const Fix& fix = state.epoch.fix;
+    NavPl m = service_message<NavPl>(context);
+    m.tmir_coeff = 1;
+    m.tmir_exp = -7;
+    m.pl_pos_frame = 1;
+    m.pl_pos.fill(unknown_accuracy);
+    m.invalidity_reason.fill(1);
+    const std::optional<ErrorEllipse> ellipse = error_ellipse(fix, solved_satellites(fix));
+    if (!state.fix_ok || !fix.has_position() || !ellipse) return m;
+    m.pl_pos_valid = 1;
+    m.invalidity_reason[0] = 0;
+    m.pl_pos = {field<std::uint32_t>(ellipse->north.value() * sigmas * 1e3),
+                field<std::uint32_t>(ellipse->east.value() * sigmas * 1e3),
+                field<std::uint32_t>(fix.vertical_accuracy.value() * sigmas * 1e3)};
+    return m;
+}
+
+}  // namespace
+
+std::uint16_t dop_field(double dop, bool computed) {
+    if (!computed) return unknown_dop;
+    return std::min(unknown_dop, field<std::uint16_t>(dop * 1e2));
+}
+
+std::uint8_t used_satellites(const Fix& fix) {
+    return fix.type == FixType::none ? std::uint8_t{0} : field<std::uint8_t>(fix.satellites_used());
+}
+
+std::int32_t course_field(const NavigationState& state) {
+    if (!state.course) return 0;
+    constexpr std::int32_t turn = 36000000;
+    const std::int32_t course = field<std::int32_t>(std::fmod(state.course->deg(), 360.0) * 1e5);
+    return (course % turn + turn) % turn;
+}
+
+std::uint32_t heading_accuracy_field(const NavigationState& state) {
+    if (!state.course || state.course_is_frozen) return half_turn;
+    return std::min(half_turn, field<std::uint32_t>(state.epoch.fix.course_accuracy.deg() * 1e5));
+}
+
+std::vector<Bytes> make_service_message(UbxMessageId message, const ReportContext& context) {
+    switch (message.id) {
+        case NavCov::message_id.id:
+            return one_frame(solution_covariance(context));
+        case NavEell::message_id.id:
+            return one_frame(ellipse_message(context));
+        case NavOdo::message_id.id:
+            return one_frame(odometer(context));
+        case NavEoe::message_id.id:
+            return one_frame(NavEoe{service_tow(context)});
+        case NavRelposned::message_id.id:
+            return context.board.identity.generation <= 8 ? one_frame(relative_position_m8(context))
+                                                          : one_frame(relative_position(context));
+        case NavSvin::message_id.id:
+            return one_frame(survey(context));
+        case NavDgps::message_id.id:
+            return one_frame(differential(context));
+        case NavGeofence::message_id.id:
+            return one_frame(service_message<NavGeofence>(context));
+        case NavSlas::message_id.id:
+            return one_frame(service_message<NavSlas>(context));
+        case NavAopstatus::message_id.id:
+            return one_frame(autonomous_orbits(context));
+        case NavPl::message_id.id:
+            return one_frame(protection_level(context));
+        default:
+            return {};
+    }
+}
+
+std::vector<Bytes> make_navigation_message(UbxMessageId message, const ReportContext& context) {
+    std::vector<Bytes> frames = make_time_message(message, context);
+    if (message.message_class != NavEoe::message_id.message_class) return frames;
+    if (frames.empty()) frames = make_solution_message(message, context);
+    if (frames.empty()) frames = make_service_message(message, context);
+    return frames;
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,229 @@
+// NAV-TIME…, NAV-CLOCK and TIM messages (RECEIVER.md 3.1, 3.2, 4.9).
+#include <chrono>
+#include <cmath>
+
+#include "firmware/messages/field_values.hpp"
+#include "firmware/messages/navigation_parts.hpp"
+#include "skyloop/gnss/constants.hpp"
+#include "skyloop/protocol/ubx_time.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+
+// CFG-TP: period of the locked pulse, µs, and the time that it is aligned to, 0 UTC (RECEIVER.md 3.5.1).
+constexpr std::uint32_t tp_period_lock = 0x40050003, tp_time_grid = 0x2005000C;
+// Step of the oscillator by which a pulse can be moved: RECEIVER.md 4.9 has errors of ±15 ns.
+constexpr double pulse_step_ns = 30;
+// The clock is set by whole milliseconds (NAV-CLOCK clkB).
+constexpr double clock_step_ns = 1e6;
+
+// Time of week, week and leap seconds.
+std::uint8_t gnss_time_valid(const NavigationState& state) {
+    const int known = state.time.week_and_tow ? 3 : 0;
+    return static_cast<std::uint8_t>(known | (state.time.leap_seconds ? 4 : 0));
+}
+
+// Whole seconds of a time of week, and the rest: −5e8 … 5e8 ns.
+struct WholeSeconds {
+    std::int64_t week = 0;
+    std::uint32_t seconds = 0;
+    std::int32_t rest = 0;
+};
+WholeSeconds whole_seconds(GpsTime time, WeekAndTow (*system)(GpsTime)) {
+    const GpsTime rounded = std::chrono::floor<std::chrono::seconds>(time + 500ms);
+    const WeekAndTow value = system(rounded);
+    return {value.week, static_cast<std::uint32_t>(value.tow / 1s),
+            static_cast<std::int32_t>((time - rounded).count())};
+}
+
+NavTimegps time_gps(const ReportContext& context) {
+    const ReportedTime reported = reported_time(context);
+    const EpochTime now = epoch_time(reported.time);
+    const NavigationState& state = context.state;
+    NavTimegps m{now.i_tow, now.f_tow, 0, 0, gnss_time_valid(state), time_accuracy_ns(state)};
+    m.week = state.time.week_and_tow ? field<std::int16_t>(static_cast<double>(now.week)) : std::int16_t{0};
+    m.leap_s = field<std::int8_t>(state.epoch.fix.leap_seconds);
+    return m;
+}
+
+NavTimeutc time_utc(const ReportContext& context) {
+    const ReportedTime reported = reported_time(context);
+    const UtcFields now = utc_fields(reported);
+    const TimeKnowledge& time = context.state.time;
+    NavTimeutc m;
+    m.i_tow = epoch_time(reported.time).i_tow;
+    m.t_acc = time_accuracy_ns(context.state);
+    m.nano = now.nano;
+    m.year = static_cast<std::uint16_t>(now.utc.year);
+    m.month = static_cast<std::uint8_t>(now.utc.month);
+    m.day = static_cast<std::uint8_t>(now.utc.day);
+    m.hour = static_cast<std::uint8_t>(now.utc.hour);
+    m.minute = static_cast<std::uint8_t>(now.utc.minute);
+    m.second = static_cast<std::uint8_t>(now.utc.second);
+    m.valid = static_cast<std::uint8_t>((time.week_and_tow ? 3 : 0) | (time.leap_seconds ? 4 : 0) |
+                                        utc_standard(context) << 4);
+    return m;
+}
+
+NavTimegal time_galileo(const ReportContext& context) {
+    const GpsTime time = reported_time(context).time;
+    const WholeSeconds now = whole_seconds(time, gst_week_and_tow);
+    return {epoch_time(time).i_tow,
+            now.seconds,
+            now.rest,
+            field<std::int16_t>(static_cast<double>(now.week)),
+            field<std::int8_t>(context.state.epoch.fix.leap_seconds),
+            gnss_time_valid(context.state),
+            time_accuracy_ns(context.state)};
+}
+
+// QZSS counts weeks and leap seconds as GPS does.
+NavTimeqzss time_qzss(const ReportContext& context) {
+    const GpsTime time = reported_time(context).time;
+    const WholeSeconds now = whole_seconds(time, week_and_tow);
+    return {epoch_time(time).i_tow,
+            now.seconds,
+            now.rest,
+            field<std::int16_t>(static_cast<double>(now.week)),
+            field<std::int8_t>(context.state.epoch.fix.leap_seconds),
+            gnss_time_valid(context.state),
+            time_accuracy_ns(context.state)};
+}
+
+NavTimebds time_beidou(const ReportContext& context) {
+    constexpr int ahead_of_gps_leaps = 14;
+    const GpsTime time = reported_time(context).time;
+    const WholeSeconds now = whole_seconds(time, bdt_week_and_tow);
+    return {epoch_time(time).i_tow,
+            now.seconds,
+            now.rest,
+            field<std::int16_t>(static_cast<double>(now.week)),
+            field<std::int8_t>(context.state.epoch.fix.leap_seconds - ahead_of_gps_leaps),
+            gnss_time_valid(context.state),
+            time_accuracy_ns(context.state)};
+}
+
+// GLONASS time is UTC and three hours; days count in cycles of four years from 1996 (ICD L1, L2 GLONASS 5.1, 4.4).
+NavTimeglo time_glonass(const ReportContext& context) {
+    using std::chrono::sys_days;
+    constexpr int days_of_cycle = 1461, seconds_of_day = 86400;
+    constexpr auto first_day = (sys_days(std::chrono::year(1996) / 1 / 1) - sys_days(std::chrono::year(1980) / 1 / 6));
+    const ReportedTime reported = reported_time(context);
+    const GpsTime rounded = std::chrono::floor<std::chrono::seconds>(reported.time + 500ms);
+    const std::int64_t count = (rounded.time_since_epoch() + 3h) / 1s - reported.leap_seconds;
+    const std::int64_t days = std::max<std::int64_t>(0, count / seconds_of_day - first_day.count());
+    NavTimeglo m;
+    m.i_tow = epoch_time(reported.time).i_tow;
+    m.tod = static_cast<std::uint32_t>((count % seconds_of_day + seconds_of_day) % seconds_of_day);
+    m.f_tod = static_cast<std::int32_t>((reported.time - rounded).count());
+    m.n_t = static_cast<std::uint16_t>(days % days_of_cycle + 1);
+    m.n_4 = field<std::uint8_t>(static_cast<double>(days / days_of_cycle + 1));
+    m.valid = static_cast<std::uint8_t>((context.state.time.time ? 1 : 0) | (context.state.time.date ? 2 : 0));
+    m.t_acc = time_accuracy_ns(context.state);
+    return m;
+}
+
+// Of the last event or, once it is broadcast (half a year before, IERS Bulletin C), of the coming one.
+void put_leap_event(GpsTime now, NavTimels& m) {
+    constexpr auto announced_before = std::chrono::hours(24 * 182);
+    const LeapSeconds::Step* event = nullptr;
+    int change = 0, offset = 0;
+    for (const LeapSeconds::Step& step : LeapSeconds::announced().steps()) {
+        if (step.from - announced_before > now) break;
+        change = step.from > now ? step.offset - offset : 0;
+        offset = step.offset;
+        event = &step;
+    }
+    if (event == nullptr) return;
+    m.ls_change = field<std::int8_t>(change);
+    m.time_to_ls_event = field<std::int32_t>(std::chrono::duration<double>(event->from - now).count());
+    // The day at whose end it comes: 1 is Sunday, 7 Saturday.
+    const WeekAndTow day = week_and_tow(event->from - std::chrono::hours(12));
+    m.date_of_ls_gps_wn = field<std::uint16_t>(static_cast<double>(day.week));
+    m.date_of_ls_gps_dn = static_cast<std::uint16_t>(day.tow / std::chrono::hours(24) + 1);
+}
+
+NavTimels time_leap_seconds(const ReportContext& context) {
+    constexpr std::uint8_t from_firmware_configuration = 7, from_gps = 2;
+    const ReportedTime reported = reported_time(context);
+    NavTimels m;
+    m.i_tow = epoch_time(reported.time).i_tow;
+    m.curr_ls = field<std::int8_t>(context.state.epoch.fix.leap_seconds);
+    m.src_of_curr_ls = from_firmware_configuration;
+    if (!context.state.time.leap_seconds) return m;
+    m.src_of_curr_ls = m.src_of_ls_change = from_gps;
+    m.valid = 3;
+    put_leap_event(reported.time, m);
+    return m;
+}
+
+NavClock receiver_clock(const ReportContext& context) {
+    const NavigationState& state = context.state;
+    NavClock m;
+    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    m.t_acc = time_accuracy_ns(state);
+    m.f_acc = 3749500;  // ps/s, of captured receivers without a fix
+    if (!state.ever_had_fix) return m;
+    const Fix& fix = state.epoch.fix;
+    m.clk_b = field<std::int32_t>(std::remainder(fix.clock_bias.value() / speed_of_light * 1e9, clock_step_ns));
+    m.clk_d = field<std::int32_t>(fix.clock_drift.value() / speed_of_light * 1e9);
+    m.f_acc = field<std::uint32_t>(fix.speed_accuracy.value() / speed_of_light * 1e12);
+    return m;
+}
+
+// The pulse after the epoch. Flags: 0 UTC base, 1 UTC available, 2-3 RAIM active, 4 quantisation unknown.
+TimTp next_pulse(const ReportContext& context) {
+    const NavigationState& state = context.state;
+    const ReportedTime reported = reported_time(context);
+    const bool utc = context.config.value(tp_time_grid) == 0;
+    const std::uint64_t period_us = std::max<std::uint64_t>(
+        1, context.config.has(tp_period_lock) ? context.config.value(tp_period_lock) : std::uint64_t{1'000'000});
+    const std::chrono::microseconds period(static_cast<std::int64_t>(period_us));
+    const Nanoseconds offset = utc ? std::chrono::seconds(reported.leap_seconds) : Nanoseconds(0);
+    const GpsTime grid = reported.time - offset;
+    const GpsTime pulse = grid + period - (grid.time_since_epoch() % period + period) % period;
+    const WeekAndTow value = week_and_tow(pulse);
+    const Nanoseconds sub_ms = value.tow % 1ms;
+    TimTp m;
+    m.tow_ms = static_cast<std::uint32_t>(value.tow / 1ms);
+    m.tow_sub_ms = field<std::uint32_t>(static_cast<double>(sub_ms.count()) * 1e-6 * 4294967296.0);
+    m.week = field<std::uint16_t>(static_cast<double>(value.week));
+    const bool known = state.epoch.fix.type != FixType::none;
+    m.flags = static_cast<std::uint8_t>((utc ? 1 : 0) | (state.time.leap_seconds ? 2 : 0) | (known ? 8 : 0x10));
+    if (known)
+        m.q_err = field<std::int32_t>(
+            std::remainder(state.epoch.fix.clock_bias.value() / speed_of_light * 1e9, pulse_step_ns) * 1e3);
+    m.ref_info = utc ? 0x0F : 0;
+    return m;
+}
+
+}  // namespace
+
+std::vector<Bytes> make_time_message(UbxMessageId message, const ReportContext& context) {
+    if (message == TimTp::message_id) return one_frame(next_pulse(context));
+    if (message.message_class != NavClock::message_id.message_class) return {};
+    switch (message.id) {
+        case NavTimegps::message_id.id:
+            return one_frame(time_gps(context));
+        case NavTimeutc::message_id.id:
+            return one_frame(time_utc(context));
+        case NavTimegal::message_id.id:
+            return one_frame(time_galileo(context));
+        case NavTimebds::message_id.id:
+            return one_frame(time_beidou(context));
+        case NavTimeqzss::message_id.id:
+            return one_frame(time_qzss(context));
+        case NavTimeglo::message_id.id:
+            return one_frame(time_glonass(context));
+        case NavTimels::message_id.id:
+            return one_frame(time_leap_seconds(context));
+        case NavClock::message_id.id:
+            return one_frame(receiver_clock(context));
+        default:
+            return {};
+    }
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,50 @@
+/// Every UBX message that a receiver sends and that has a layout.
+#pragma once
+
+#include <optional>
+
+#include "skyloop/protocol/ubx_hardware.hpp"
+#include "skyloop/protocol/ubx_inertial.hpp"
+#include "skyloop/protocol/ubx_mon.hpp"
+#include "skyloop/protocol/ubx_nav.hpp"
+#include "skyloop/protocol/ubx_ports.hpp"
+#include "skyloop/protocol/ubx_raw.hpp"
+#include "skyloop/protocol/ubx_relative.hpp"
+#include "skyloop/protocol/ubx_satellites.hpp"
+#include "skyloop/protocol/ubx_security.hpp"
+#include "skyloop/protocol/ubx_services.hpp"
+#include "skyloop/protocol/ubx_time.hpp"
+
+namespace skyloop {
+
+template <class... Message>
+struct UbxTypes {
+    /// True for an id that one of the types has.
+    static bool names(UbxMessageId id) { return ((Message::message_id == id) || ...); }
+
+    /// The frame as it is written again from what was read from it; nothing when no type of that id can read it.
+    static std::optional<Bytes> written_again(const UbxFrameView& frame) {
+        std::optional<Bytes> bytes;
+        (try_one<Message>(frame, bytes), ...);
+        return bytes;
+    }
+
+private:
+    template <class M>
+    static void try_one(const UbxFrameView& frame, std::optional<Bytes>& bytes) {
+        if (bytes || M::message_id != frame.id) return;
+        if (const auto message = decode_payload<M>(frame.payload)) bytes = encode_frame(*message);
+    }
+};
+
+using UbxOutputTypes =
+    UbxTypes<NavPosecef, NavPosllh, NavStatus, NavDop, NavAtt, NavSol, NavPvt, NavOdo, NavVelecef, NavVelned,
+             NavHpposecef, NavHpposllh, NavTimegps, NavTimeutc, NavClock, NavTimeglo, NavTimebds, NavTimegal, NavTimels,
+             NavTimeqzss, NavSvinfo, NavDgps, NavSbas, NavOrb, NavSat, NavCov, NavGeofence, NavSvin, NavRelposned0,
+             NavRelposned, NavEell, NavSlas, NavSig, NavAopstatus, NavEoe, NavPl, RxmSfrbx, RxmMeasx, RxmRawx, RxmSvsi,
+             RxmRtcm, RxmRlm, InfError, InfWarning, InfNotice, InfTest, InfDebug, AckAck, AckNak, MonIo, MonVer,
+             MonMsgpp, MonRxbuf, MonTxbuf, MonHw, MonHwLong, MonHwShort, MonHw2, MonRxr, MonPatch, MonGnss, MonSpan,
+             MonComms, MonHw3, MonRf, MonSys, TimTp, TimTm2, TimVrfy, MgaAck, SecUniqid, SecSig1, SecSig2, SecSiglog,
+             EsfStatus, HnrPvt, HnrAtt, HnrIns>;
+
+}  // namespace skyloop
