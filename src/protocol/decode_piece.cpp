@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "message_listing.hpp"
+#include "skyloop/protocol/message_listing.hpp"
 #include "skyloop/protocol/mavlink.hpp"
 #include "skyloop/protocol/msp.hpp"
 #include "skyloop/protocol/sbf_blocks.hpp"

@@ -1,4 +1,4 @@
-#include "field_lister.hpp"
+#include "skyloop/protocol/field_lister.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "message_listing.hpp"
+#include "skyloop/protocol/message_listing.hpp"
 
 namespace skyloop {
 namespace {

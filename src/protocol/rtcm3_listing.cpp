@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "message_listing.hpp"
+#include "skyloop/protocol/message_listing.hpp"
 
 namespace skyloop {
 namespace {

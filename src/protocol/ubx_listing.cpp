@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "message_listing.hpp"
+#include "skyloop/protocol/message_listing.hpp"
 #include "skyloop/protocol/ubx_cfg.hpp"
 #include "skyloop/protocol/ubx_cfg_values.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
