@@ -6,10 +6,15 @@
 #include "skyloop/protocol/message_listing.hpp"
 #include "skyloop/protocol/ubx_cfg.hpp"
 #include "skyloop/protocol/ubx_cfg_values.hpp"
+#include "skyloop/protocol/ubx_hardware.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
 #include "skyloop/protocol/ubx_names.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
+#include "skyloop/protocol/ubx_ports.hpp"
+#include "skyloop/protocol/ubx_raw.hpp"
+#include "skyloop/protocol/ubx_relative.hpp"
 #include "skyloop/protocol/ubx_satellites.hpp"
+#include "skyloop/protocol/ubx_services.hpp"
 #include "skyloop/protocol/ubx_time.hpp"
 
 namespace skyloop {
@@ -149,6 +154,47 @@ constexpr auto ubx_listing_table = std::to_array<UbxListing>({
     listed<MonVer, "software hardware extensions">,
     listed<TimTp, "tow_s*1e-3 tow_fraction_ms*2^-32 quantisation_ps week flags reference">,
     listed<SecUniqid, "version -reserved unique_id">,
+    listed<NavVelecef, "tow_s*1e-3 ecef_v_mps*1e-2 speed_acc_mps*1e-2">,
+    listed<NavHpposecef, "version -reserved tow_s*1e-3 ecef_m*1e-2 ecef_hp_m*1e-4 flags p_acc_m*1e-4">,
+    listed<NavOdo, "version -reserved tow_s*1e-3 distance_m total_distance_m distance_deviation_m">,
+    listed<NavTimels,
+           "tow_s*1e-3 version -reserved leap_source leap_seconds change_source change_s time_to_change_s "
+           "change_week change_day -reserved valid">,
+    listed<NavTimegal, "tow_s*1e-3 galileo_tow_s tow_fraction_ns week leap_seconds valid t_acc_ns">,
+    listed<NavTimebds, "tow_s*1e-3 beidou_tow_s tow_fraction_ns week leap_seconds valid t_acc_ns">,
+    listed<NavTimeglo, "tow_s*1e-3 time_of_day_s tow_fraction_ns day four_year_interval valid t_acc_ns">,
+    listed<NavOrb, "tow_s*1e-3 version -reserved satellites[gnss_id sv_id flags ephemeris almanac other]">,
+    listed<NavSbas,
+           "tow_s*1e-3 geo mode system service status -reserved satellites[sv_id flags udre system service "
+           "-reserved correction_m*1e-2 -reserved ionosphere_m*1e-2]">,
+    listed<NavDgps,
+           "tow_s*1e-3 age_s*1e-3 station health status -reserved channels[sv_id flags age_s*1e-3 "
+           "correction_m correction_rate_mps]">,
+    listed<NavGeofence, "tow_s*1e-3 version status combined fences[state id]">,
+    listed<NavSvin,
+           "version -reserved tow_s*1e-3 duration_s mean_ecef_m*1e-2 mean_ecef_hp_m*1e-4 -reserved "
+           "mean_acc_m*1e-4 observations valid active -reserved">,
+    listed<NavRelposned,
+           "version -reserved station tow_s*1e-3 relative_ned_m*1e-2 length_m*1e-2 heading_deg*1e-5 "
+           "-reserved relative_ned_hp_m*1e-4 length_hp_m*1e-4 acc_ned_m*1e-4 acc_length_m*1e-4 "
+           "acc_heading_deg*1e-5 -reserved flags">,
+    listed<RxmRtcm, "version flags subtype station message">,
+    listed<TimTm2,
+           "channel flags count week_rising week_falling tow_rising_s*1e-3 tow_rising_ns tow_falling_s*1e-3 "
+           "tow_falling_ns acc_ns">,
+    listed<MonGnss, "version supported default enabled simultaneous -reserved">,
+    listed<MonTxbuf,
+           "pending usage_percent peak_usage_percent total_usage_percent total_peak_usage_percent errors "
+           "-reserved">,
+    listed<MonRxbuf, "pending usage_percent peak_usage_percent">,
+    listed<MonIo, "ports[rx_bytes tx_bytes parity_errors framing_errors overruns breaks -reserved]">,
+    listed<MonComms,
+           "version tx_errors -reserved protocols ports[port_id tx_pending tx_bytes tx_usage_percent "
+           "tx_peak_usage_percent rx_pending rx_bytes rx_usage_percent rx_peak_usage_percent overruns messages "
+           "-reserved skipped_bytes]">,
+    listed<MonRf,
+           "version -reserved blocks[id flags antenna_status antenna_power post_status -reserved noise agc "
+           "jamming_indicator offset_i magnitude_i offset_q magnitude_q -reserved]">,
 });
 
 }  // namespace
