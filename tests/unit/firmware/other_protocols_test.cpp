@@ -38,13 +38,13 @@ protected:
     }
     SbfPvtGeodetic pvt(const NavigationState& state) { return sbf_pvt_geodetic({board_, config_, state}); }
     BoardProfile board_;
-    ConfigStore config_{board_};
+    ConfigStore config_{ConfigValues{}};
 };
 
 TEST_F(OtherProtocols, MspTellsTheSolution) {
     const MspSensorGps m = msp_sensor_gps(navigating());
     EXPECT_EQ(m.gps_week, 2408);
-    EXPECT_EQ(m.ms_tow, 16200u);  // Sunday midnight and 18 leap seconds, less 1.8 s
+    EXPECT_EQ(m.ms_tow, 86416200u);  // the end of Sunday, and 18 leap seconds
     EXPECT_EQ(m.fix_type, 3);
     EXPECT_EQ(m.satellites, 9);
     EXPECT_EQ(m.h_acc, 330);
@@ -110,7 +110,7 @@ TEST_F(OtherProtocols, GpsInputTellsTheSolution) {
     const MavlinkGpsInput m = mavlink_gps_input(navigating());
     EXPECT_EQ(m.time_usec, 1772409598200000u);  // 2026-03-01T23:59:58.2Z as POSIX counts
     EXPECT_EQ(m.time_week, 2408);
-    EXPECT_EQ(m.time_week_ms, 16200u);
+    EXPECT_EQ(m.time_week_ms, 86416200u);
     EXPECT_EQ(m.ignore_flags, 0);
     EXPECT_EQ(m.lat, 464775000);
     EXPECT_FLOAT_EQ(m.alt, 55.63F);
@@ -159,7 +159,7 @@ TEST_F(OtherProtocols, SbfTellsTheSolution) {
     NavigationState state = navigating();
     const SbfPvtGeodetic m = pvt(state);
     EXPECT_EQ(m.time.wnc, 2408);
-    EXPECT_EQ(m.time.tow, 16200u);
+    EXPECT_EQ(m.time.tow, 86416200u);
     EXPECT_EQ(m.mode, 1);
     EXPECT_EQ(m.error, 0);
     EXPECT_NEAR(m.latitude, 46.4775 * std::numbers::pi / 180, 1e-15);
