@@ -4,8 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "skyloop/protocol/message_listing.hpp"
 #include "skyloop/protocol/mavlink.hpp"
+#include "skyloop/protocol/message_listing.hpp"
 #include "skyloop/protocol/msp.hpp"
 #include "skyloop/protocol/sbf_blocks.hpp"
 

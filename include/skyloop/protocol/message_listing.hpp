@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
-#include "skyloop/protocol/field_lister.hpp"
 #include "skyloop/protocol/decoded_message.hpp"
+#include "skyloop/protocol/field_lister.hpp"
 #include "skyloop/protocol/nmea_sentence.hpp"
 #include "skyloop/protocol/ubx_frame.hpp"
 
