@@ -7,6 +7,11 @@ import unittest
 
 from session import SHARED, SKYLOOP, skip
 
+try:
+    import pynmea2
+except ImportError:
+    pynmea2 = None
+
 LOGS = SHARED / "serial"
 if not LOGS.is_dir():
     skip(f"{LOGS} is absent")
@@ -128,6 +133,30 @@ class DecodeLogsTest(unittest.TestCase):
             for path, result in [(path, pool.submit(self.check, path)) for path in paths]:
                 with self.subTest(path.name):
                     result.result()
+
+    @unittest.skipIf(pynmea2 is None, "the parser is not installed; apt-get install python3-nmea2")
+    def test_positions_are_those_of_another_parser(self):
+        compared = 0
+        for path in sorted(path for path in LOGS.iterdir() if path.is_file()):
+            data = path.read_bytes()
+            for message in decode(path)[1]:
+                if message["protocol"] != "nmea" or not message["id"].endswith("GGA"):
+                    continue
+                raw = data[message["offset"]:message["offset"] + message["bytes"]].decode("ascii").strip()
+                try:
+                    other = pynmea2.parse(raw, check=True)
+                    place = (other.latitude, other.longitude)
+                except (pynmea2.ParseError, ValueError, AttributeError):
+                    continue  # what that parser does not understand
+                fields = message["fields"]
+                if not other.lat or not other.lon or not isinstance(fields["lat_deg"], (int, float)):
+                    continue
+                self.assertAlmostEqual(fields["lat_deg"], place[0], delta=1e-9, msg=raw)
+                self.assertAlmostEqual(fields["lon_deg"], place[1], delta=1e-9, msg=raw)
+                if other.num_sats.isdigit():
+                    self.assertEqual(fields["satellites"], int(other.num_sats), raw)
+                compared += 1
+        self.assertGreater(compared, 500)
 
 
 if __name__ == "__main__":
