@@ -31,12 +31,16 @@ struct SentenceRate {
     int every_epochs = 1;
 };
 
-/// Whose commands a receiver understands.
+/// Whose commands a receiver understands, or which protocol other than NMEA and UBX it speaks, without taking commands.
 enum class Personality {
-    mute,   ///< nobody's
-    ublox,  ///< UBX and PUBX
-    mtk,    ///< MediaTek PMTK
-    airoha  ///< Airoha PAIR
+    mute,     ///< nobody's
+    ublox,    ///< UBX and PUBX
+    mtk,      ///< MediaTek PMTK
+    airoha,   ///< Airoha PAIR
+    msp,      ///< MSP2_SENSOR_GPS of the MultiWii Serial Protocol
+    msp_v1,   ///< its older MSP_SET_RAW_GPS
+    mavlink,  ///< MAVLink GPS_INPUT
+    sbf       ///< Septentrio's blocks
 };
 
 /// At which speed the answer leaves to a message that changes the speed of the port it came by.

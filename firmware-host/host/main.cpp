@@ -20,9 +20,10 @@ namespace {
 
 using skyloop::host::Action;
 
-constexpr std::array<std::string_view, 7> commands{"run", "simulate", "sky", "check", "compare", "solve", "boards"};
-constexpr std::array<std::string_view, 8> later_commands{"devices",    "decode",        "replay", "scene",
-                                                         "trajectory", "scenario-from", "ctl",    "campaign"};
+constexpr std::array<std::string_view, 8> commands{"run",     "simulate", "sky",    "check",
+                                                   "compare", "solve",    "boards", "decode"};
+constexpr std::array<std::string_view, 7> later_commands{"devices",       "replay", "scene",   "trajectory",
+                                                         "scenario-from", "ctl",    "campaign"};
 
 // CLI11 does not know which words may be meant; this says it in one line.
 int refuse_command(std::string_view word) {
@@ -38,9 +39,9 @@ int run_program(int argc, char** argv) {
     app.set_version_flag("--version", "skyloop " SKYLOOP_VERSION);
     app.require_subcommand(1);
     const std::array<Action (*)(CLI::App&), commands.size()> add{
-        skyloop::host::add_run_command,   skyloop::host::add_simulate_command, skyloop::host::add_sky_command,
-        skyloop::host::add_check_command, skyloop::host::add_compare_command,  skyloop::host::add_solve_command,
-        skyloop::host::add_boards_command};
+        skyloop::host::add_run_command,    skyloop::host::add_simulate_command, skyloop::host::add_sky_command,
+        skyloop::host::add_check_command,  skyloop::host::add_compare_command,  skyloop::host::add_solve_command,
+        skyloop::host::add_boards_command, skyloop::host::add_decode_command};
     std::vector<Action> actions;
     for (const auto add_command : add)
         actions.push_back(add_command(app));

@@ -30,6 +30,8 @@ void catch_stop_signals() {
     signal(SIGPIPE, SIG_IGN);
 }
 
+bool stop_was_asked() { return stop_asked; }
+
 GpsTime wall_clock() {
     using namespace std::chrono;
     constexpr seconds gps_epoch_unix(315964800);  // 1980-01-06T00:00:00Z

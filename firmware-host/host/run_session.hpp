@@ -31,6 +31,8 @@ private:
 
 /// From here on SIGINT, SIGTERM and SIGHUP end a run in order. Called before any port is opened, so that none is left.
 void catch_stop_signals();
+/// One of them has come.
+bool stop_was_asked();
 
 /// The wall clock as GPS time: read once, at the start.
 GpsTime wall_clock();

@@ -1,31 +1,39 @@
 #include "skyloop/protocol/stream_splitter.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 #include <utility>
 
+#include "skyloop/protocol/mavlink.hpp"
+#include "skyloop/protocol/msp.hpp"
 #include "skyloop/protocol/nmea_sentence.hpp"
+#include "skyloop/protocol/sbf_frame.hpp"
 #include "skyloop/protocol/ubx_frame.hpp"
 
 namespace skyloop {
 namespace {
 
 constexpr std::size_t splitter_ubx_limit = 8192;
+constexpr std::size_t splitter_payload_limit = 8192;  // of MSP and SBF
 constexpr std::size_t splitter_line_limit = 256;
 constexpr std::size_t splitter_noise_limit = 256;
 constexpr std::uint8_t rtcm3_preamble = 0xD3;
 constexpr std::size_t rtcm3_head_size = 3, rtcm3_crc_size = 3;
 
-// What starts at a byte: nothing, something not yet whole, or `size` bytes of `kind`. A verdict other than `unfinished`
-// never changes when more bytes arrive; that makes the pieces independent of the cuts.
+// What starts at a byte: nothing, a `kind` whose checksum is wrong, something not yet whole, or `size` bytes of `kind`.
+// A verdict other than `unfinished` never changes when more bytes arrive; that makes the pieces independent of the
+// cuts.
 struct Candidate {
-    enum class Verdict : std::uint8_t { nothing, unfinished, whole } verdict = Verdict::nothing;
+    enum class Verdict : std::uint8_t { nothing, bad, unfinished, whole } verdict = Verdict::nothing;
     StreamKind kind = StreamKind::noise;
     std::size_t size = 0;
 };
 
 constexpr Candidate no_piece{};
 constexpr Candidate unfinished_piece{Candidate::Verdict::unfinished, StreamKind::noise, 0};
+
+constexpr Candidate bad_piece(StreamKind kind) { return {Candidate::Verdict::bad, kind, 0}; }
 
 Candidate ubx_at(ByteSpan bytes) {
     if (bytes.size() < 2) return unfinished_piece;
@@ -35,7 +43,7 @@ Candidate ubx_at(ByteSpan bytes) {
     if (length > splitter_ubx_limit) return no_piece;
     const std::size_t size = ubx_head_size + length + ubx_tail_size;
     if (bytes.size() < size) return unfinished_piece;
-    if (!parse_frame(bytes.first(size))) return no_piece;
+    if (!parse_frame(bytes.first(size))) return bad_piece(StreamKind::ubx);
     return {Candidate::Verdict::whole, StreamKind::ubx, size};
 }
 
@@ -49,7 +57,7 @@ Candidate rtcm3_at(ByteSpan bytes) {
     const ByteSpan crc = bytes.subspan(covered, rtcm3_crc_size);
     const std::uint32_t said = static_cast<std::uint32_t>(crc[0]) << 16 | static_cast<std::uint32_t>(crc[1]) << 8 |
                                static_cast<std::uint32_t>(crc[2]);
-    if (crc24q(bytes.first(covered)) != said) return no_piece;
+    if (crc24q(bytes.first(covered)) != said) return bad_piece(StreamKind::rtcm3);
     return {Candidate::Verdict::whole, StreamKind::rtcm3, covered + rtcm3_crc_size};
 }
 
@@ -60,7 +68,7 @@ Candidate sentence_at(ByteSpan bytes) {
         if (byte == '\n') {
             const std::size_t length = bytes[i - 1] == '\r' ? i - 1 : i;
             const std::string_view line(reinterpret_cast<const char*>(bytes.data()), length);
-            if (!parse_sentence(line)) return no_piece;
+            if (!parse_sentence(line)) return bad_piece(StreamKind::nmea);
             return {Candidate::Verdict::whole, StreamKind::nmea, i + 1};
         }
         if (bytes[i - 1] == '\r' || byte == '$') return no_piece;
@@ -69,19 +77,65 @@ Candidate sentence_at(ByteSpan bytes) {
     return bytes.size() < splitter_line_limit ? unfinished_piece : no_piece;
 }
 
-Candidate piece_at(ByteSpan bytes) {
+// A frame of which the head is there, and has told its size.
+template <class Parse>
+Candidate framed_at(ByteSpan bytes, StreamKind kind, std::optional<std::size_t> size, Parse parse) {
+    if (!size || *size > splitter_payload_limit) return no_piece;
+    if (bytes.size() < *size) return unfinished_piece;
+    if (!parse(bytes.first(*size))) return bad_piece(kind);
+    return {Candidate::Verdict::whole, kind, *size};
+}
+
+Candidate msp_at(ByteSpan bytes) {
+    if (bytes.size() < 3) return unfinished_piece;
+    if (bytes[2] != '<' && bytes[2] != '>' && bytes[2] != '!') return no_piece;
+    if (bytes.size() < (bytes[1] == 'M' ? msp_v1_head_size : msp_v2_head_size)) return unfinished_piece;
+    return framed_at(bytes, StreamKind::msp, msp_frame_size(bytes), parse_msp);
+}
+
+Candidate sbf_at(ByteSpan bytes) {
+    if (bytes.size() < sbf_head_size) return unfinished_piece;
+    return framed_at(bytes, StreamKind::sbf, sbf_block_size(bytes), parse_sbf);
+}
+
+Candidate mavlink_at(ByteSpan bytes) {
+    if (bytes.size() < (bytes[0] == mavlink_v1_start ? mavlink_v1_head_size : mavlink_v2_head_size))
+        return unfinished_piece;
+    // Frames of messages that are not known cannot be checked: they are not waited for.
+    if (!mavlink_crc_extra(*mavlink_message_id(bytes))) return no_piece;
+    return framed_at(bytes, StreamKind::mavlink, mavlink_frame_size(bytes), parse_mavlink);
+}
+
+Candidate dollar_at(ByteSpan bytes, const StreamProtocols& protocols) {
+    if (bytes.size() < 2) return unfinished_piece;
+    if (protocols.sbf && bytes[1] == sbf_sync_2) return sbf_at(bytes);
+    if (protocols.msp && (bytes[1] == 'M' || bytes[1] == 'X')) {
+        // A sentence may begin with the same two letters.
+        const Candidate found = msp_at(bytes);
+        if (found.verdict != Candidate::Verdict::nothing || !protocols.nmea) return found;
+    }
+    return protocols.nmea ? sentence_at(bytes) : no_piece;
+}
+
+Candidate piece_at(ByteSpan bytes, const StreamProtocols& protocols) {
     switch (bytes[0]) {
         case ubx_sync_1:
-            return ubx_at(bytes);
+            return protocols.ubx ? ubx_at(bytes) : no_piece;
         case rtcm3_preamble:
-            return rtcm3_at(bytes);
+            return protocols.rtcm3 ? rtcm3_at(bytes) : no_piece;
+        case mavlink_v1_start:
+        case mavlink_v2_start:
+            return protocols.mavlink ? mavlink_at(bytes) : no_piece;
         case '$':
+            return dollar_at(bytes, protocols);
         case '!':
-            return sentence_at(bytes);
+            return protocols.nmea ? sentence_at(bytes) : no_piece;
         default:
             return no_piece;
     }
 }
+
+constexpr std::size_t index_of(StreamKind kind) { return static_cast<std::size_t>(kind); }
 
 }  // namespace
 
@@ -120,8 +174,9 @@ void StreamSplitter::search(bool at_end, std::vector<StreamPiece>& pieces) {
     const ByteSpan bytes(pending_);
     std::size_t at = 0;
     while (at < bytes.size()) {
-        const Candidate found = piece_at(bytes.subspan(at));
+        const Candidate found = piece_at(bytes.subspan(at), protocols_);
         if (found.verdict == Candidate::Verdict::unfinished && !at_end) break;
+        if (found.verdict == Candidate::Verdict::bad) ++counts_.bad[index_of(found.kind)];
         if (found.verdict != Candidate::Verdict::whole) {
             keep_noise(bytes[at], pieces);
             ++at;
@@ -130,6 +185,8 @@ void StreamSplitter::search(bool at_end, std::vector<StreamPiece>& pieces) {
         flush_noise(pieces);
         const ByteSpan piece = bytes.subspan(at, found.size);
         pieces.push_back({found.kind, Bytes(piece.begin(), piece.end())});
+        ++counts_.frames[index_of(found.kind)];
+        counts_.bytes += found.size;
         at += found.size;
     }
     pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(at));
@@ -137,6 +194,8 @@ void StreamSplitter::search(bool at_end, std::vector<StreamPiece>& pieces) {
 
 void StreamSplitter::keep_noise(std::uint8_t byte, std::vector<StreamPiece>& pieces) {
     noise_.push_back(byte);
+    ++counts_.bytes;
+    ++counts_.skipped;
     if (noise_.size() == splitter_noise_limit) flush_noise(pieces);
 }
 

@@ -12,7 +12,11 @@ from session import SHARED, SKYLOOP, Emulator, open_folder, skyloop
 MISUSES = [
     (["fly"], 2, ["fly", "expected one of"]),
     (["siumlate"], 2, ["did you mean 'simulate'"]),
-    (["decode"], 2, ["does not have the command 'decode'"]),
+    (["replay"], 2, ["does not have the command 'replay'"]),
+    (["decode", "/no/such/file.log"], 1, ["/no/such/file.log"]),
+    (["decode", "/"], 1, ["/"]),
+    (["decode", "/dev/null", "--format", "xml"], 2, ["--format", "json"]),
+    (["decode", "/dev/null", "--protocol", "ubx,nmae"], 2, ["--protocol", "nmae"]),
     (["run", "--at", "91,0"], 2, ["--at 91,0", "latitude is 91", "-90 to 90"]),
     (["run", "--at", "46"], 2, ["--at 46", "LAT,LON"]),
     (["run", "--at", "nan,0"], 2, ["--at nan,0"]),

@@ -1,0 +1,156 @@
+#include "firmware/messages/other_protocols.hpp"
+
+#include <chrono>
+
+#include "firmware/messages/reported_fix.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+// 1980-01-06 as POSIX counts: 3657 days, s.
+constexpr std::int64_t gps_epoch_posix_s = 315964800;
+constexpr std::uint16_t every_ignore_flag = 0xFF;
+
+const LeapSeconds& believed_leap_seconds(const Fix& fix, LeapSeconds& constant) {
+    const LeapSeconds& announced = LeapSeconds::announced();
+    if (announced.offset(fix.time) == fix.leap_seconds) return announced;
+    constant = LeapSeconds::constant(fix.leap_seconds);
+    return constant;
+}
+
+void put_msp_position(const Fix& fix, MspSensorGps& to) {
+    to.h_acc = field<std::uint16_t>(fix.horizontal_accuracy.value() * 100);
+    to.v_acc = field<std::uint16_t>(fix.vertical_accuracy.value() * 100);
+    to.speed_acc = field<std::uint16_t>(fix.speed_accuracy.value() * 100);
+    to.dop = fix.dop.hdop > 0 ? field<std::uint16_t>(fix.dop.hdop * 100) : std::uint16_t{9999};
+    to.longitude = field<std::int32_t>(fix.position.longitude.deg() * 1e7);
+    to.latitude = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
+    to.msl_altitude = field<std::int32_t>(msl_height(fix) * 100);
+    to.vel_north = field<std::int32_t>(fix.velocity.north * 100);
+    to.vel_east = field<std::int32_t>(fix.velocity.east * 100);
+    to.vel_down = field<std::int32_t>(fix.velocity.down * 100);
+}
+
+void put_msp_clock(const Fix& fix, MspSensorGps& to) {
+    LeapSeconds constant({});
+    const UtcTime utc = to_utc(to_gps_time(gps_stamp(fix.time)), believed_leap_seconds(fix, constant));
+    to.year = static_cast<std::uint16_t>(utc.year);
+    to.month = static_cast<std::uint8_t>(utc.month);
+    to.day = static_cast<std::uint8_t>(utc.day);
+    to.hour = static_cast<std::uint8_t>(utc.hour);
+    to.minute = static_cast<std::uint8_t>(utc.minute);
+    to.second = static_cast<std::uint8_t>(utc.second);
+}
+
+// POSIX leaves leap seconds out.
+std::uint64_t posix_microseconds(const Fix& fix) {
+    const std::int64_t gps_us =
+        std::chrono::duration_cast<std::chrono::microseconds>(to_gps_time(gps_stamp(fix.time)).time_since_epoch())
+            .count();
+    return static_cast<std::uint64_t>(gps_us + (gps_epoch_posix_s - fix.leap_seconds) * 1'000'000);
+}
+
+void put_mavlink_position(const Fix& fix, MavlinkGpsInput& to) {
+    to.lat = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
+    to.lon = field<std::int32_t>(fix.position.longitude.deg() * 1e7);
+    to.alt = static_cast<float>(msl_height(fix));
+    if (fix.dop.hdop > 0) to.hdop = static_cast<float>(fix.dop.hdop);
+    if (fix.dop.vdop > 0) to.vdop = static_cast<float>(fix.dop.vdop);
+    to.vn = static_cast<float>(fix.velocity.north);
+    to.ve = static_cast<float>(fix.velocity.east);
+    to.vd = static_cast<float>(fix.velocity.down);
+    to.speed_accuracy = static_cast<float>(fix.speed_accuracy.value());
+    to.horiz_accuracy = static_cast<float>(fix.horizontal_accuracy.value());
+    to.vert_accuracy = static_cast<float>(fix.vertical_accuracy.value());
+}
+
+std::vector<Bytes> mavlink_messages(const NavigationState& state) {
+    // Two frames an epoch, so that the sequence has no gap.
+    MavlinkSource source;
+    source.sequence = static_cast<std::uint8_t>(2 * state.epoch_index & 0xFF);
+    std::vector<Bytes> frames{encode_mavlink(source, MavlinkHeartbeat{})};
+    ++source.sequence;
+    frames.push_back(encode_mavlink(source, mavlink_gps_input(state)));
+    return frames;
+}
+
+}  // namespace
+
+MspSensorGps msp_sensor_gps(const NavigationState& state) {
+    const Fix& fix = state.epoch.fix;
+    MspSensorGps message;
+    message.fix_type = autopilot_fix_type(state);
+    message.satellites = used_satellites(fix);
+    if (state.time.week_and_tow) {
+        const WeekAndTow stamp = gps_stamp(fix.time);
+        message.gps_week = field<std::uint16_t>(static_cast<double>(stamp.week));
+        message.ms_tow = whole_milliseconds(stamp);
+    }
+    if (state.time.time && state.time.date) put_msp_clock(fix, message);
+    if (!has_solution(state)) return message;
+    put_msp_position(fix, message);
+    if (state.course) message.course = field<std::uint16_t>(state.course->deg() * 100);
+    if (const auto attitude = pair_attitude(state))
+        message.true_yaw = field<std::uint16_t>(attitude->heading_deg * 100);
+    return message;
+}
+
+MspSetRawGps msp_set_raw_gps(const NavigationState& state) {
+    const Fix& fix = state.epoch.fix;
+    MspSetRawGps message;
+    message.satellites = used_satellites(fix);
+    if (!has_solution(state)) return message;
+    message.fix = 1;
+    message.latitude = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
+    message.longitude = field<std::int32_t>(fix.position.longitude.deg() * 1e7);
+    message.altitude = field<std::uint16_t>(msl_height(fix));
+    message.speed = field<std::uint16_t>(fix.speed.value() * 100);
+    return message;
+}
+
+MavlinkGpsInput mavlink_gps_input(const NavigationState& state) {
+    const Fix& fix = state.epoch.fix;
+    MavlinkGpsInput message;
+    message.fix_type = autopilot_fix_type(state);
+    message.satellites_visible = used_satellites(fix);
+    if (state.time.week_and_tow) {
+        const WeekAndTow stamp = gps_stamp(fix.time);
+        message.time_week = field<std::uint16_t>(static_cast<double>(stamp.week));
+        message.time_week_ms = whole_milliseconds(stamp);
+    }
+    if (state.time.time && state.time.date) message.time_usec = posix_microseconds(fix);
+    message.ignore_flags = every_ignore_flag;
+    if (!has_solution(state)) return message;
+    message.ignore_flags = 0;
+    put_mavlink_position(fix, message);
+    if (const auto attitude = pair_attitude(state)) {
+        const auto yaw = field<std::uint16_t>(attitude->heading_deg * 100);
+        message.yaw = yaw == 0 ? std::uint16_t{36000} : yaw;
+    }
+    return message;
+}
+
+std::vector<Bytes> make_protocol_messages(Personality personality, const ReportContext& context) {
+    const NavigationState& state = context.state;
+    switch (personality) {
+        case Personality::msp:
+            return {encode_msp(msp_sensor_gps(state))};
+        case Personality::msp_v1:
+            return {encode_msp(msp_set_raw_gps(state))};
+        case Personality::mavlink:
+            return mavlink_messages(state);
+        case Personality::sbf:
+            return {encode_sbf(sbf_pvt_geodetic(context)),
+                    encode_sbf(sbf_position_covariance(state)),
+                    encode_sbf(sbf_velocity_covariance(state)),
+                    encode_sbf(sbf_dop(state)),
+                    encode_sbf(sbf_attitude(state)),
+                    encode_sbf(sbf_channel_status(state)),
+                    encode_sbf(sbf_receiver_status(state))};
+        default:
+            return {};
+    }
+}
+
+}  // namespace skyloop::firmware

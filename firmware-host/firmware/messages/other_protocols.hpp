@@ -1,0 +1,35 @@
+/// From the receiver's state to the messages of receivers that are no NMEA or UBX ones: MSP, MAVLink and SBF. They go
+/// one way: such a receiver takes no commands.
+#pragma once
+
+#include <vector>
+
+#include "firmware/navigation_state.hpp"
+#include "skyloop/protocol/mavlink.hpp"
+#include "skyloop/protocol/msp.hpp"
+#include "skyloop/protocol/sbf_blocks.hpp"
+
+namespace skyloop::firmware {
+
+/// What a receiver of this personality sends at every epoch, in order: msp MSP2_SENSOR_GPS; msp_v1 MSP_SET_RAW_GPS;
+/// mavlink HEARTBEAT and GPS_INPUT; sbf PVTGeodetic, PosCovGeodetic, VelCovGeodetic, DOP, AttEuler, ChannelStatus and
+/// ReceiverStatus. Nothing for the others.
+std::vector<Bytes> make_protocol_messages(Personality personality, const ReportContext& context);
+
+/// Its values without a fix: fix type 1, zeros, accuracies 65535, DOP 99.99; week 65535 while time is not known.
+MspSensorGps msp_sensor_gps(const NavigationState& state);
+/// Its values without a fix: zeros.
+MspSetRawGps msp_set_raw_gps(const NavigationState& state);
+/// Its values without a fix: fix type 1, all ignore flags, DOP 65535; times 0 while time is not known.
+MavlinkGpsInput mavlink_gps_input(const NavigationState& state);
+
+/// Their values without a fix: those that mean nothing (sbf_blocks.hpp), with error 1.
+SbfPvtGeodetic sbf_pvt_geodetic(const ReportContext& context);
+SbfPosCovGeodetic sbf_position_covariance(const NavigationState& state);
+SbfVelCovGeodetic sbf_velocity_covariance(const NavigationState& state);
+SbfDop sbf_dop(const NavigationState& state);
+SbfAttEuler sbf_attitude(const NavigationState& state);
+SbfChannelStatus sbf_channel_status(const NavigationState& state);
+SbfReceiverStatus sbf_receiver_status(const NavigationState& state);
+
+}  // namespace skyloop::firmware

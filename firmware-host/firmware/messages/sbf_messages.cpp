@@ -1,0 +1,214 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "firmware/error_ellipse.hpp"
+#include "firmware/messages/other_protocols.hpp"
+#include "firmware/messages/reported_fix.hpp"
+#include "skyloop/gnss/constants.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+constexpr std::uint32_t antenna_active = 1u << 1, week_set = 1u << 4, tow_set = 1u << 5, fine_time = 1u << 6;
+constexpr std::uint32_t antenna_error = 1u << 5;
+
+SbfTime sbf_time(const NavigationState& state) {
+    if (!state.time.week_and_tow) return {};
+    const WeekAndTow stamp = gps_stamp(state.epoch.fix.time);
+    return {whole_milliseconds(stamp), field<std::uint16_t>(static_cast<double>(stamp.week))};
+}
+
+// PVT mode, bits 0-3 and 7 (PolaRx5TR reference guide, PVTGeodetic).
+std::uint8_t sbf_mode(const NavigationState& state) {
+    if (!has_solution(state)) return 0;
+    switch (state.epoch.fix.type) {
+        case FixType::fix_2d:
+            return 0x81;
+        case FixType::dgnss:
+            return state.corrections.state == CorrectionState::none ? 6 : 2;
+        case FixType::rtk_fixed:
+            return 4;
+        case FixType::rtk_float:
+            return 5;
+        default:
+            return 1;
+    }
+}
+
+std::uint8_t sbf_error(const NavigationState& state) { return has_solution(state) ? 0 : 1; }
+
+// Clipped to the largest number that still means something.
+std::uint16_t sbf_u2(double value) { return std::min(field<std::uint16_t>(value), std::uint16_t{65534}); }
+
+// Numbers of the open signals on L1 (NavIC: L5) in SignalInfo (section 4.1.10).
+int sbf_signal_number(Constellation constellation) {
+    switch (constellation) {
+        case Constellation::gps:
+            return 0;
+        case Constellation::qzss:
+            return 6;
+        case Constellation::glonass:
+            return 8;
+        case Constellation::navic:
+            return 15;
+        case Constellation::galileo:
+            return 17;
+        case Constellation::sbas:
+            return 24;
+        case Constellation::beidou:
+            return 28;
+    }
+    return 0;
+}
+
+// The first bit of that signal in the statuses of ChannelStatus.
+int sbf_status_shift(Constellation constellation) { return constellation == Constellation::galileo ? 2 : 0; }
+
+void put_sbf_solution(const NavigationState& state, SbfPvtGeodetic& to) {
+    const Fix& fix = state.epoch.fix;
+    to.latitude = fix.position.latitude.rad();
+    to.longitude = fix.position.longitude.rad();
+    to.height = fix.position.height.above_ellipsoid.value();
+    to.undulation = static_cast<float>(fix.geoid_undulation.value());
+    to.vel_north = static_cast<float>(fix.velocity.north);
+    to.vel_east = static_cast<float>(fix.velocity.east);
+    to.vel_up = static_cast<float>(-fix.velocity.down);
+    if (state.course && fix.speed.value() >= 0.1) to.course = static_cast<float>(state.course->deg());
+    to.clock_bias = fix.clock_bias.value() / speed_of_light * 1e3;
+    to.clock_drift = static_cast<float>(fix.clock_drift.value() / speed_of_light * 1e6);
+    to.time_system = 0;
+    to.datum = 0;
+    to.num_sv = used_satellites(fix);
+    for (const SatelliteStatus& satellite : fix.satellites)
+        if (satellite.used) to.signal_info |= 1u << sbf_signal_number(satellite.id.constellation);
+    if (state.corrections.age) to.mean_corr_age = sbf_u2(state.corrections.age->value() * 100);
+    if (state.corrections.station) to.reference_id = sbf_u2(*state.corrections.station);
+    to.num_bases = state.corrections.state == CorrectionState::none ? 0 : 1;
+}
+
+std::vector<SatelliteStatus> sbf_used(const Fix& fix) {
+    std::vector<SatelliteStatus> used;
+    for (const SatelliteStatus& satellite : fix.satellites)
+        if (satellite.used) used.push_back(satellite);
+    return used;
+}
+
+float sbf_square(double value) { return static_cast<float>(value * value); }
+
+SbfChannel sbf_channel(const SatelliteStatus& satellite, std::uint8_t svid) {
+    const int shift = sbf_status_shift(satellite.id.constellation);
+    const auto status = [shift](unsigned value) { return static_cast<std::uint16_t>(value << shift); };
+    SbfChannel channel;
+    channel.svid = svid;
+    // Whether it rises is not known here.
+    const unsigned degrees = static_cast<unsigned>(std::lround(satellite.azimuth.deg() + 360)) % 360u;
+    channel.azimuth = static_cast<std::uint16_t>(degrees | 3u << 14);
+    channel.elevation = field<std::int8_t>(satellite.elevation.deg());
+    channel.health_status = status(!satellite.has_ephemeris ? 0 : satellite.healthy ? 1 : 3);
+    channel.tracking_status = status(3);
+    channel.pvt_status = status(satellite.used ? 2 : satellite.has_ephemeris ? 0 : 1);
+    return channel;
+}
+
+}  // namespace
+
+SbfPvtGeodetic sbf_pvt_geodetic(const ReportContext& context) {
+    const NavigationState& state = context.state;
+    SbfPvtGeodetic block;
+    block.time = sbf_time(state);
+    block.mode = sbf_mode(state);
+    block.error = sbf_error(state);
+    block.accuracy.emplace();
+    if (!has_solution(state)) return block;
+    put_sbf_solution(state, block);
+    const Fix& fix = state.epoch.fix;
+    block.accuracy->latency = sbf_u2(context.board.solution_latency.value() * 1e4);
+    block.accuracy->h_accuracy = sbf_u2(2 * fix.horizontal_accuracy.value() * 100);
+    block.accuracy->v_accuracy = sbf_u2(2 * fix.vertical_accuracy.value() * 100);
+    return block;
+}
+
+SbfPosCovGeodetic sbf_position_covariance(const NavigationState& state) {
+    SbfPosCovGeodetic block{sbf_time(state), sbf_mode(state), sbf_error(state), no_sbf_covariance};
+    const Fix& fix = state.epoch.fix;
+    const auto ellipse = error_ellipse(fix, sbf_used(fix));
+    if (!has_solution(state) || !ellipse) return block;
+    const double a = ellipse->semi_major.value(), b = ellipse->semi_minor.value();
+    block.covariance = {};
+    block.covariance[0] = sbf_square(ellipse->north.value());
+    block.covariance[1] = sbf_square(ellipse->east.value());
+    block.covariance[2] = sbf_square(fix.vertical_accuracy.value());
+    block.covariance[3] = sbf_square(fix.time_accuracy.value());
+    block.covariance[4] = static_cast<float>((a * a - b * b) / 2 * std::sin(2 * ellipse->orientation.rad()));
+    if (fix.type == FixType::fix_2d)
+        for (const std::size_t up : {2u, 5u, 7u, 9u})
+            block.covariance[up] = static_cast<float>(sbf_nothing);
+    return block;
+}
+
+SbfVelCovGeodetic sbf_velocity_covariance(const NavigationState& state) {
+    SbfVelCovGeodetic block{sbf_time(state), sbf_mode(state), sbf_error(state), no_sbf_covariance};
+    const Fix& fix = state.epoch.fix;
+    const double all = std::hypot(fix.dop.ndop, fix.dop.edop, fix.dop.vdop);
+    if (!has_solution(state) || !(all > 0)) return block;
+    const double one = fix.speed_accuracy.value() / all;
+    block.covariance[0] = sbf_square(one * fix.dop.ndop);
+    block.covariance[1] = sbf_square(one * fix.dop.edop);
+    block.covariance[4] = 0;
+    // Of the drift nothing is known; nor of what stands still in two dimensions.
+    if (fix.type == FixType::fix_2d) return block;
+    block.covariance[2] = sbf_square(one * fix.dop.vdop);
+    block.covariance[5] = block.covariance[7] = 0;
+    return block;
+}
+
+SbfDop sbf_dop(const NavigationState& state) {
+    SbfDop block;
+    block.time = sbf_time(state);
+    if (!has_solution(state)) return block;
+    const Fix& fix = state.epoch.fix;
+    block.num_sv = used_satellites(fix);
+    block.pdop = field<std::uint16_t>(fix.dop.pdop * 100);
+    block.tdop = field<std::uint16_t>(fix.dop.tdop * 100);
+    block.hdop = field<std::uint16_t>(fix.dop.hdop * 100);
+    block.vdop = field<std::uint16_t>(fix.dop.vdop * 100);
+    return block;
+}
+
+SbfAttEuler sbf_attitude(const NavigationState& state) {
+    SbfAttEuler block;
+    block.time = sbf_time(state);
+    const auto attitude = pair_attitude(state);
+    if (!attitude) return block;
+    block.num_sv = used_satellites(state.epoch.fix);
+    block.error = 0;
+    block.mode = attitude->fixed ? 2 : 1;
+    block.heading = static_cast<float>(attitude->heading_deg);
+    block.pitch = static_cast<float>(attitude->pitch_deg);
+    return block;
+}
+
+SbfChannelStatus sbf_channel_status(const NavigationState& state) {
+    SbfChannelStatus block;
+    block.time = sbf_time(state);
+    for (const SatelliteStatus& satellite : state.epoch.fix.satellites) {
+        const auto svid = sbf_svid(satellite.id);
+        if (!satellite.cn0 || !svid || block.channels.size() == most_items) continue;
+        block.channels.push_back(sbf_channel(satellite, *svid));
+        block.channels.back().rx_channel = static_cast<std::uint8_t>(block.channels.size());
+    }
+    return block;
+}
+
+SbfReceiverStatus sbf_receiver_status(const NavigationState& state) {
+    SbfReceiverStatus block;
+    block.time = sbf_time(state);
+    block.up_time = field<std::uint32_t>(std::floor(state.since_start.value()));
+    block.rx_state = (state.monitors.antenna_power == 1 ? antenna_active : 0) |
+                     (state.time.week_and_tow ? week_set | tow_set : 0) | (has_solution(state) ? fine_time : 0);
+    block.rx_error = state.monitors.antenna == AntennaStatus::short_circuit ? antenna_error : 0;
+    return block;
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,201 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "input_stream.hpp"
+#include "messages.hpp"
+#include "run_options.hpp"
+#include "run_session.hpp"
+#include "skyloop/base/text_file.hpp"
+#include "skyloop/protocol/decoded_message.hpp"
+
+namespace skyloop::host {
+namespace {
+
+constexpr std::array<StreamKind, 6> all_kinds{StreamKind::ubx, StreamKind::nmea,    StreamKind::rtcm3,
+                                              StreamKind::msp, StreamKind::mavlink, StreamKind::sbf};
+
+// A tty that is silent for so long has sent all of its frame (RECEIVER.md 1.3).
+constexpr std::chrono::seconds frame_silence{2};
+
+struct DecodeOptions {
+    std::string input = "-";
+    std::string format = "text";
+    std::vector<std::string> protocols{"auto"};
+    Verbosity verbosity;
+};
+
+// The options, understood.
+struct Wanted {
+    StreamProtocols protocols;
+    std::vector<StreamKind> named;  // by the user; empty: all that are found
+};
+
+bool& flag_of(StreamProtocols& protocols, StreamKind kind) {
+    switch (kind) {
+        case StreamKind::ubx:
+            return protocols.ubx;
+        case StreamKind::nmea:
+            return protocols.nmea;
+        case StreamKind::rtcm3:
+            return protocols.rtcm3;
+        case StreamKind::msp:
+            return protocols.msp;
+        case StreamKind::mavlink:
+            return protocols.mavlink;
+        default:
+            return protocols.sbf;
+    }
+}
+
+Wanted wanted_of(const std::vector<std::string>& words) {
+    Wanted wanted;
+    const bool automatic = std::find(words.begin(), words.end(), "auto") != words.end();
+    for (const StreamKind kind : all_kinds) {
+        const bool named = std::find(words.begin(), words.end(), stream_kind_name(kind)) != words.end();
+        flag_of(wanted.protocols, kind) = automatic || named;
+        if (named) wanted.named.push_back(kind);
+    }
+    return wanted;
+}
+
+// One stream from its first byte to its counts.
+class Decoder {
+public:
+    Decoder(const DecodeOptions& options, const Wanted& wanted)
+        : json_(options.format == "json"), wanted_(wanted), splitter_(wanted.protocols) {}
+
+    // False when standard output takes no more.
+    bool take(ByteSpan bytes, bool flush) {
+        for (const StreamPiece& piece : splitter_.feed(bytes))
+            print(piece, flush);
+        return std::ferror(stdout) == 0;
+    }
+    void finish() {
+        for (const StreamPiece& piece : splitter_.finish())
+            print(piece, true);
+    }
+    [[nodiscard]] std::uint64_t frames() const {
+        std::uint64_t all = 0;
+        for (const std::uint64_t count : splitter_.counts().frames)
+            all += count;
+        return all;
+    }
+    [[nodiscard]] std::uint64_t bytes() const { return splitter_.counts().bytes; }
+
+    // "ubx 12 frames, 0 bad; … ; 40 of 5000 bytes skipped"
+    [[nodiscard]] std::string counts_text() const {
+        std::string text;
+        for (const StreamKind kind : counted())
+            text += fmt::format("{} {} frames, {} bad; ", stream_kind_name(kind),
+                                splitter_.counts().frames[index(kind)], splitter_.counts().bad[index(kind)]);
+        return text + fmt::format("{} of {} bytes skipped", splitter_.counts().skipped, splitter_.counts().bytes);
+    }
+    void print_counts() const {
+        if (!json_) return;
+        std::string text = fmt::format("{{\"counts\":{{\"bytes\":{},\"skipped_bytes\":{}", splitter_.counts().bytes,
+                                       splitter_.counts().skipped);
+        for (const StreamKind kind : counted())
+            text += fmt::format(",\"{}\":{{\"frames\":{},\"bad\":{}}}", stream_kind_name(kind),
+                                splitter_.counts().frames[index(kind)], splitter_.counts().bad[index(kind)]);
+        fmt::print("{}}}}}\n", text);
+    }
+
+private:
+    static std::size_t index(StreamKind kind) { return static_cast<std::size_t>(kind); }
+
+    void print(const StreamPiece& piece, bool flush) {
+        const std::uint64_t offset = offset_;
+        offset_ += piece.bytes.size();
+        if (piece.kind == StreamKind::noise || std::ferror(stdout) != 0) return;
+        const DecodedMessage message = decode_piece(piece);
+        const std::string line = (json_ ? json_line(message, offset) : text_line(message)) + '\n';
+        std::fwrite(line.data(), 1, line.size(), stdout);
+        if (flush) std::fflush(stdout);
+    }
+    // A dollar or a byte of 0xFE in another stream is no failed frame of a protocol that never speaks there.
+    [[nodiscard]] std::vector<StreamKind> counted() const {
+        if (!wanted_.named.empty()) return wanted_.named;
+        std::vector<StreamKind> kinds;
+        for (const StreamKind kind : all_kinds)
+            if (kind == StreamKind::ubx || kind == StreamKind::nmea || kind == StreamKind::rtcm3 ||
+                splitter_.counts().frames[index(kind)] > 0)
+                kinds.push_back(kind);
+        return kinds;
+    }
+
+    bool json_;
+    Wanted wanted_;
+    StreamSplitter splitter_;
+    std::uint64_t offset_ = 0;
+};
+
+// gzip's magic number (RFC 1952, 2.3.1).
+bool is_gzip(ByteSpan bytes) { return bytes.size() > 1 && bytes[0] == 0x1F && bytes[1] == 0x8B; }
+
+Result<void> decode_stream(InputStream& input, const std::string& path, Decoder& decoder) {
+    auto last = std::chrono::steady_clock::now();
+    bool first = true;
+    while (!input.at_end() && !stop_was_asked()) {
+        const auto bytes = input.read();
+        if (!bytes) return fail(bytes.error());
+        const auto now = std::chrono::steady_clock::now();
+        if (bytes->empty()) {
+            if (input.is_tty() && now - last > frame_silence) decoder.finish();
+            continue;
+        }
+        last = now;
+        if (first && input.is_file() && path != "-" && is_gzip(*bytes)) {
+            const auto text = read_text_file(path);
+            if (!text) return fail(text.error());
+            decoder.take(to_bytes(*text), false);
+            return {};
+        }
+        first = false;
+        if (!decoder.take(*bytes, !input.is_file())) return {};
+    }
+    return {};
+}
+
+int decode(const DecodeOptions& options) {
+    const Messages messages(options.verbosity);
+    catch_stop_signals();
+    auto input = InputStream::open(options.input);
+    if (!input) return messages.error(input.error());
+    Decoder decoder(options, wanted_of(options.protocols));
+    const auto read = decode_stream(*input, options.input, decoder);
+    decoder.finish();
+    decoder.print_counts();
+    messages.info(decoder.counts_text());
+    if (!read) return messages.error(read.error());
+    if (decoder.frames() > 0 || decoder.bytes() == 0 || stop_was_asked()) return 0;
+    return messages.error({ErrorCode::input, fmt::format("{}: no message of {} in its {} bytes", input->name(),
+                                                         fmt::join(options.protocols, " "), decoder.bytes())});
+}
+
+}  // namespace
+
+Action add_decode_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "decode", "The messages of a UBX, NMEA, RTCM 3, MSP, MAVLink or SBF stream as text or JSON lines");
+    auto options = std::make_shared<DecodeOptions>();
+    command->add_option("FILE", options->input, "File (also gzip), tty or pipe; default: -, standard input");
+    command->add_option("--format", options->format, "text or json")->check(CLI::IsMember({"text", "json"}));
+    command
+        ->add_option(
+            "--protocol", options->protocols,
+            "What to look for, separated by commas: ubx nmea rtcm3 msp mavlink sbf; default: auto, all of them")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember({"auto", "ubx", "nmea", "rtcm3", "msp", "mavlink", "sbf"}));
+    add_verbosity_options(*command, options->verbosity);
+    return [options] { return decode(*options); };
+}
+
+}  // namespace skyloop::host

@@ -1,0 +1,221 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+
+#include "skyloop/protocol/message_listing.hpp"
+#include "skyloop/protocol/ubx_cfg.hpp"
+#include "skyloop/protocol/ubx_cfg_values.hpp"
+#include "skyloop/protocol/ubx_hardware.hpp"
+#include "skyloop/protocol/ubx_mon.hpp"
+#include "skyloop/protocol/ubx_names.hpp"
+#include "skyloop/protocol/ubx_nav.hpp"
+#include "skyloop/protocol/ubx_ports.hpp"
+#include "skyloop/protocol/ubx_raw.hpp"
+#include "skyloop/protocol/ubx_relative.hpp"
+#include "skyloop/protocol/ubx_satellites.hpp"
+#include "skyloop/protocol/ubx_services.hpp"
+#include "skyloop/protocol/ubx_time.hpp"
+
+namespace skyloop {
+namespace {
+
+// A text as a template argument.
+template <std::size_t N>
+struct Names {
+    constexpr Names(const char (&text)[N]) { std::copy_n(text, N, characters); }  // NOLINT: converts on purpose
+    char characters[N]{};
+    [[nodiscard]] constexpr std::string_view view() const { return {characters, N - 1}; }
+};
+
+// A message with one item in every list and every tail there: as many fields as it can have.
+struct Filler {
+    template <class... T>
+    void operator()(T&...) {}
+    template <class T>
+    void count(std::vector<T>& list) {
+        list.resize(1);
+    }
+    template <class T>
+    void items(std::vector<T>& list) {
+        list.resize(1);
+    }
+    template <class T>
+    void rest(std::vector<T>& list, std::size_t, std::size_t) {
+        list.resize(1);
+    }
+    template <class T>
+    void if_present(std::optional<T>& field) {
+        field.emplace();
+    }
+    void sized(std::uint64_t&, std::size_t) {}
+};
+
+template <class Message, Names names>
+std::optional<std::vector<DecodedField>> list_as(ByteSpan payload) {
+    const auto message = decode_payload<Message>(payload);
+    if (!message) return std::nullopt;
+    FieldLister lister(names.view());
+    Message::fields(*message, lister);
+    return lister.take();
+}
+
+template <class Message, Names names>
+bool fits() {
+    Message message;
+    Filler filler;
+    Message::fields(message, filler);
+    FieldLister lister(names.view());
+    Message::fields(std::as_const(message), lister);
+    return lister.names_fit();
+}
+
+template <class Message, Names names>
+constexpr UbxListing listed{Message::message_id, list_as<Message, names>, fits<Message, names>};
+
+// CFG-VALGET: the version tells the question from the answer, which may have the same length.
+template <class Message, Names names, std::uint8_t version>
+std::optional<std::vector<DecodedField>> list_version(ByteSpan payload) {
+    if (payload.empty() || payload[0] != version) return std::nullopt;
+    return list_as<Message, names>(payload);
+}
+
+constexpr Names satellite_names =
+    "tow_s*1e-3 version -reserved satellites[gnss_id sv_id cno_dbhz elevation_deg!-91 azimuth_deg residual_m*1e-1 "
+    "flags]";
+constexpr Names valget_poll_names = "version layer position keys";
+constexpr Names valget_names = "version layer position pairs[key value]";
+
+// One line a message.
+constexpr auto ubx_listing_table = std::to_array<UbxListing>({
+    listed<NavPosecef, "tow_s*1e-3 ecef_m*1e-2 p_acc_m*1e-2">,
+    listed<NavPosllh, "tow_s*1e-3 lon_deg*1e-7 lat_deg*1e-7 height_m*1e-3 msl_m*1e-3 h_acc_m*1e-3 v_acc_m*1e-3">,
+    listed<NavStatus, "tow_s*1e-3 fix_type flags fix_status flags2 ttff_s*1e-3 since_start_s*1e-3">,
+    listed<NavDop, "tow_s*1e-3 gdop*1e-2 pdop*1e-2 tdop*1e-2 vdop*1e-2 hdop*1e-2 ndop*1e-2 edop*1e-2">,
+    listed<NavSol,
+           "tow_s*1e-3 tow_fraction_ns week fix_type flags ecef_m*1e-2 p_acc_m*1e-2 ecef_v_mps*1e-2 "
+           "speed_acc_mps*1e-2 pdop*1e-2 -reserved satellites -reserved">,
+    listed<NavPvt,
+           "tow_s*1e-3 year month day hour minute second valid t_acc_ns nano_ns fix_type flags flags2 satellites "
+           "lon_deg*1e-7 lat_deg*1e-7 height_m*1e-3 msl_m*1e-3 h_acc_m*1e-3 v_acc_m*1e-3 vel_north_mps*1e-3 "
+           "vel_east_mps*1e-3 vel_down_mps*1e-3 speed_mps*1e-3 course_deg*1e-5 speed_acc_mps*1e-3 course_acc_deg*1e-5 "
+           "pdop*1e-2 flags3 -reserved heading_deg*1e-5 declination_deg*1e-2 declination_acc_deg*1e-2">,
+    listed<NavVelned,
+           "tow_s*1e-3 vel_north_mps*1e-2 vel_east_mps*1e-2 vel_down_mps*1e-2 speed_3d_mps*1e-2 "
+           "speed_mps*1e-2 course_deg*1e-5 speed_acc_mps*1e-2 course_acc_deg*1e-5">,
+    listed<NavHpposllh,
+           "version -reserved flags tow_s*1e-3 lon_deg*1e-7 lat_deg*1e-7 height_m*1e-3 msl_m*1e-3 "
+           "lon_hp_deg*1e-9 lat_hp_deg*1e-9 height_hp_m*1e-4 msl_hp_m*1e-4 h_acc_m*1e-4 v_acc_m*1e-4">,
+    listed<NavTimegps, "tow_s*1e-3 tow_fraction_ns week leap_seconds valid t_acc_ns">,
+    listed<NavTimeutc, "tow_s*1e-3 t_acc_ns nano_ns year month day hour minute second valid">,
+    listed<NavClock, "tow_s*1e-3 bias_ns drift_nsps t_acc_ns f_acc_psps">,
+    listed<NavSvinfo,
+           "tow_s*1e-3 global_flags -reserved channels[channel!255 sv_id flags quality cno_dbhz "
+           "elevation_deg azimuth_deg residual_m*1e-2]">,
+    listed<NavSat, satellite_names>,
+    listed<NavCov, "tow_s*1e-3 version position_valid velocity_valid -reserved position_m2 velocity_m2ps2">,
+    listed<NavSig,
+           "tow_s*1e-3 version -reserved signals[gnss_id sv_id sig_id freq_id residual_m*1e-1 cno_dbhz quality "
+           "correction_source ionosphere_model flags -reserved]">,
+    listed<NavEoe, "tow_s*1e-3">,
+    listed<RxmSfrbx, "gnss_id sv_id sig_id freq_id channel version -reserved words">,
+    listed<RxmRawx,
+           "tow_s week leap_seconds receiver_status version -reserved measurements[range_m phase_cycles "
+           "doppler_hz gnss_id sv_id sig_id freq_id lock_time_s*1e-3 cno_dbhz range_deviation_code "
+           "phase_deviation_code doppler_deviation_code tracking_status -reserved]">,
+    listed<InfError, "text">,
+    listed<InfWarning, "text">,
+    listed<InfNotice, "text">,
+    listed<InfTest, "text">,
+    listed<InfDebug, "text">,
+    listed<AckAck, "class id">,
+    listed<AckNak, "class id">,
+    listed<CfgPrtPoll, "port_id">,
+    listed<CfgPrt, "ports[port_id -reserved tx_ready mode baud in_protocols out_protocols flags -reserved]">,
+    listed<CfgMsgPoll, "class id">,
+    listed<CfgMsgCurrentPort, "class id rate">,
+    listed<CfgMsg, "class id rates">,
+    listed<CfgRst, "clear_mask reset_mode -reserved">,
+    listed<CfgRate, "measurement_period_s*1e-3 measurements_per_solution time_reference">,
+    listed<CfgCfg, "clear_mask save_mask load_mask device_mask">,
+    listed<CfgNav5,
+           "mask dynamic_model fix_mode fixed_height_m*1e-2 fixed_height_variance_m2*1e-4 min_elevation_deg "
+           "dead_reckoning_limit_s pdop_mask*1e-1 tdop_mask*1e-1 position_acc_mask_m time_acc_mask_m "
+           "static_hold_mps*1e-2 dgnss_timeout_s cno_satellites cno_mask_dbhz -reserved static_hold_m "
+           "utc_standard -reserved">,
+    listed<CfgGnss,
+           "version channels_hardware channels_used systems[gnss_id channels_reserved channels_max -reserved "
+           "flags]">,
+    listed<CfgValset, "version layers transaction -reserved pairs[key value]">,
+    UbxListing{CfgValgetPoll::message_id, list_version<CfgValgetPoll, valget_poll_names, 0>,
+               fits<CfgValgetPoll, valget_poll_names>},
+    UbxListing{CfgValget::message_id, list_version<CfgValget, valget_names, 1>, fits<CfgValget, valget_names>},
+    listed<CfgValdel, "version layers transaction -reserved keys">,
+    listed<MonVer, "software hardware extensions">,
+    listed<TimTp, "tow_s*1e-3 tow_fraction_ms*2^-32 quantisation_ps week flags reference">,
+    listed<SecUniqid, "version -reserved unique_id">,
+    listed<NavVelecef, "tow_s*1e-3 ecef_v_mps*1e-2 speed_acc_mps*1e-2">,
+    listed<NavHpposecef, "version -reserved tow_s*1e-3 ecef_m*1e-2 ecef_hp_m*1e-4 flags p_acc_m*1e-4">,
+    listed<NavOdo, "version -reserved tow_s*1e-3 distance_m total_distance_m distance_deviation_m">,
+    listed<NavTimels,
+           "tow_s*1e-3 version -reserved leap_source leap_seconds change_source change_s time_to_change_s "
+           "change_week change_day -reserved valid">,
+    listed<NavTimegal, "tow_s*1e-3 galileo_tow_s tow_fraction_ns week leap_seconds valid t_acc_ns">,
+    listed<NavTimebds, "tow_s*1e-3 beidou_tow_s tow_fraction_ns week leap_seconds valid t_acc_ns">,
+    listed<NavTimeglo, "tow_s*1e-3 time_of_day_s tow_fraction_ns day four_year_interval valid t_acc_ns">,
+    listed<NavOrb, "tow_s*1e-3 version -reserved satellites[gnss_id sv_id flags ephemeris almanac other]">,
+    listed<NavSbas,
+           "tow_s*1e-3 geo mode system service status -reserved satellites[sv_id flags udre system service "
+           "-reserved correction_m*1e-2 -reserved ionosphere_m*1e-2]">,
+    listed<NavDgps,
+           "tow_s*1e-3 age_s*1e-3 station health status -reserved channels[sv_id flags age_s*1e-3 "
+           "correction_m correction_rate_mps]">,
+    listed<NavGeofence, "tow_s*1e-3 version status combined fences[state id]">,
+    listed<NavSvin,
+           "version -reserved tow_s*1e-3 duration_s mean_ecef_m*1e-2 mean_ecef_hp_m*1e-4 -reserved "
+           "mean_acc_m*1e-4 observations valid active -reserved">,
+    listed<NavRelposned,
+           "version -reserved station tow_s*1e-3 relative_ned_m*1e-2 length_m*1e-2 heading_deg*1e-5 "
+           "-reserved relative_ned_hp_m*1e-4 length_hp_m*1e-4 acc_ned_m*1e-4 acc_length_m*1e-4 "
+           "acc_heading_deg*1e-5 -reserved flags">,
+    listed<RxmRtcm, "version flags subtype station message">,
+    listed<TimTm2,
+           "channel flags count week_rising week_falling tow_rising_s*1e-3 tow_rising_ns tow_falling_s*1e-3 "
+           "tow_falling_ns acc_ns">,
+    listed<MonGnss, "version supported default enabled simultaneous -reserved">,
+    listed<MonTxbuf,
+           "pending usage_percent peak_usage_percent total_usage_percent total_peak_usage_percent errors "
+           "-reserved">,
+    listed<MonRxbuf, "pending usage_percent peak_usage_percent">,
+    listed<MonIo, "ports[rx_bytes tx_bytes parity_errors framing_errors overruns breaks -reserved]">,
+    listed<MonComms,
+           "version tx_errors -reserved protocols ports[port_id tx_pending tx_bytes tx_usage_percent "
+           "tx_peak_usage_percent rx_pending rx_bytes rx_usage_percent rx_peak_usage_percent overruns messages "
+           "-reserved skipped_bytes]">,
+    listed<MonRf,
+           "version -reserved blocks[id flags antenna_status antenna_power post_status -reserved noise agc "
+           "jamming_indicator offset_i magnitude_i offset_q magnitude_q -reserved]">,
+});
+
+}  // namespace
+
+std::span<const UbxListing> ubx_listings() { return ubx_listing_table; }
+
+void list_ubx(const UbxFrameView& frame, DecodedMessage& message) {
+    message.id = fmt::format("{:02X}-{:02X}", frame.id.message_class, frame.id.id);
+    message.name = ubx_message_name(frame.id).value_or("");
+    if (frame.payload.empty()) {
+        message.fields.push_back({"poll", {std::uint64_t{1}}});
+        return;
+    }
+    for (const UbxListing& listing : ubx_listing_table) {
+        if (listing.id != frame.id) continue;
+        if (auto fields = listing.list(frame.payload)) {
+            message.fields = std::move(*fields);
+            return;
+        }
+    }
+    message.payload.assign(frame.payload.begin(), frame.payload.end());
+}
+
+}  // namespace skyloop

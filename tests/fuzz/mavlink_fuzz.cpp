@@ -1,0 +1,31 @@
+// MAVLink: any bytes as a frame and as payloads of every length; what is written must be read again.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+#include "skyloop/protocol/mavlink.hpp"
+
+namespace {
+
+template <class Message>
+void check_mavlink_return(skyloop::ByteSpan payload) {
+    const auto message = skyloop::decode_mavlink<Message>(payload);
+    const skyloop::Bytes frame = skyloop::encode_mavlink({}, message);
+    const auto view = skyloop::parse_mavlink(frame);
+    if (!view) std::abort();
+    const auto again = skyloop::decode_mavlink<Message>(view->payload);
+    if (skyloop::encode_payload(again) != skyloop::encode_payload(message)) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace skyloop;
+    const ByteSpan bytes(data, size);
+    check_mavlink_return<MavlinkHeartbeat>(bytes);
+    check_mavlink_return<MavlinkGpsInput>(bytes);
+    check_mavlink_return<MavlinkGpsRawInt>(bytes);
+    check_mavlink_return<MavlinkGpsRtcmData>(bytes);
+    if (const auto frame = parse_mavlink(bytes); frame && frame->payload.size() > 0xFF) std::abort();
+    return 0;
+}

@@ -1,0 +1,236 @@
+#include "firmware/messages/other_protocols.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "sample_epochs.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+NavigationState navigating() {
+    NavigationState state;
+    state.epoch.fix = sample_fix("2026-03-01T23:59:58.2Z", 46.4775, -30.7326, 77);
+    add_satellites(state.epoch.fix, Constellation::gps, 1, 8);
+    add_satellites(state.epoch.fix, Constellation::galileo, 3, 4);
+    state.epoch.fix.velocity = {-1.5, 2.25, 0.5};
+    state.epoch.fix.speed_accuracy = MetresPerSecond(0.4);
+    state.fix_ok = true;
+    state.time = {true, true, true, true, true, Seconds(1e-8)};
+    state.course = Angle::degrees(77.77);
+    state.epoch_index = 130;
+    state.since_start = Seconds(33.9);
+    return state;
+}
+
+NavigationState without_fix() {
+    NavigationState state;
+    state.epoch.fix.time = navigating().epoch.fix.time;
+    return state;
+}
+
+class OtherProtocols : public testing::Test {
+protected:
+    OtherProtocols() { board_.solution_latency = Seconds(0.05); }
+    std::vector<Bytes> messages(Personality personality, const NavigationState& state) {
+        return make_protocol_messages(personality, {board_, config_, state});
+    }
+    SbfPvtGeodetic pvt(const NavigationState& state) { return sbf_pvt_geodetic({board_, config_, state}); }
+    BoardProfile board_;
+    ConfigStore config_{ConfigValues{}};
+};
+
+TEST_F(OtherProtocols, MspTellsTheSolution) {
+    const MspSensorGps m = msp_sensor_gps(navigating());
+    EXPECT_EQ(m.gps_week, 2408);
+    EXPECT_EQ(m.ms_tow, 86416200u);  // the end of Sunday, and 18 leap seconds
+    EXPECT_EQ(m.fix_type, 3);
+    EXPECT_EQ(m.satellites, 9);
+    EXPECT_EQ(m.h_acc, 330);
+    EXPECT_EQ(m.v_acc, 504);
+    EXPECT_EQ(m.speed_acc, 40);
+    EXPECT_EQ(m.dop, 110);
+    EXPECT_EQ(m.latitude, 464775000);
+    EXPECT_EQ(m.longitude, -307326000);
+    EXPECT_EQ(m.msl_altitude, 5563);
+    EXPECT_EQ(m.vel_north, -150);
+    EXPECT_EQ(m.vel_down, 50);
+    EXPECT_EQ(m.course, 7777);
+    EXPECT_EQ(m.true_yaw, 0xFFFF);
+    EXPECT_EQ(m.year, 2026);
+    EXPECT_EQ(m.day, 1);
+    EXPECT_EQ(m.second, 58);  // cut, not rounded
+}
+
+TEST_F(OtherProtocols, MspWithoutAFixHasNoPosition) {
+    const MspSensorGps m = msp_sensor_gps(without_fix());
+    EXPECT_EQ(m.gps_week, 0xFFFF);
+    EXPECT_EQ(m.fix_type, 1);
+    EXPECT_EQ(m.latitude, 0);
+    EXPECT_EQ(m.h_acc, 0xFFFF);
+    EXPECT_EQ(m.dop, 9999);
+    EXPECT_EQ(m.year, 0);
+    const MspSetRawGps raw = msp_set_raw_gps(without_fix());
+    EXPECT_EQ(raw.fix, 0);
+    EXPECT_EQ(raw.latitude, 0);
+}
+
+TEST_F(OtherProtocols, AFixBeyondTheUsersLimitsIsNone) {
+    NavigationState state = navigating();
+    state.fix_ok = false;
+    EXPECT_EQ(msp_sensor_gps(state).fix_type, 1);
+    EXPECT_EQ(mavlink_gps_input(state).ignore_flags, 0xFF);
+    EXPECT_EQ(pvt(state).mode, 0);
+}
+
+TEST_F(OtherProtocols, FixTypesAreThoseOfTheAutopilots) {
+    NavigationState state = navigating();
+    const std::pair<FixType, int> kinds[] = {
+        {FixType::none, 1},  {FixType::dead_reckoning, 1}, {FixType::fix_2d, 2},    {FixType::fix_3d, 3},
+        {FixType::dgnss, 4}, {FixType::rtk_float, 5},      {FixType::rtk_fixed, 6}, {FixType::time_only, 1}};
+    for (const auto& [type, code] : kinds) {
+        state.epoch.fix.type = type;
+        EXPECT_EQ(msp_sensor_gps(state).fix_type, code);
+        EXPECT_EQ(mavlink_gps_input(state).fix_type, code);
+    }
+}
+
+TEST_F(OtherProtocols, TheShortMspFormHasMetresAndNothingBelowSeaLevel) {
+    NavigationState state = navigating();
+    MspSetRawGps m = msp_set_raw_gps(state);
+    EXPECT_EQ(m.fix, 1);
+    EXPECT_EQ(m.altitude, 56);
+    EXPECT_EQ(m.speed, 1250);
+    state.epoch.fix.position.height.above_ellipsoid = Metres(-400);
+    EXPECT_EQ(msp_set_raw_gps(state).altitude, 0);
+}
+
+TEST_F(OtherProtocols, GpsInputTellsTheSolution) {
+    const MavlinkGpsInput m = mavlink_gps_input(navigating());
+    EXPECT_EQ(m.time_usec, 1772409598200000u);  // 2026-03-01T23:59:58.2Z as POSIX counts
+    EXPECT_EQ(m.time_week, 2408);
+    EXPECT_EQ(m.time_week_ms, 86416200u);
+    EXPECT_EQ(m.ignore_flags, 0);
+    EXPECT_EQ(m.lat, 464775000);
+    EXPECT_FLOAT_EQ(m.alt, 55.63F);
+    EXPECT_FLOAT_EQ(m.hdop, 1.1F);
+    EXPECT_FLOAT_EQ(m.vn, -1.5F);
+    EXPECT_EQ(m.yaw, 0);
+    const MavlinkGpsInput none = mavlink_gps_input(without_fix());
+    EXPECT_EQ(none.ignore_flags, 0xFF);
+    EXPECT_EQ(none.fix_type, 1);
+    EXPECT_EQ(none.time_week, 0);
+    EXPECT_EQ(none.hdop, 65535);
+}
+
+TEST_F(OtherProtocols, APairTellsWhereItPoints) {
+    NavigationState state = navigating();
+    state.epoch.relative = RelativePosition{1, 0, -1, Metres(0.01)};
+    EXPECT_EQ(mavlink_gps_input(state).yaw, 36000);  // north; 0 would mean unknown
+    EXPECT_EQ(msp_sensor_gps(state).true_yaw, 0);
+    const SbfAttEuler attitude = sbf_attitude(state);
+    EXPECT_FLOAT_EQ(attitude.heading, 0);
+    EXPECT_FLOAT_EQ(attitude.pitch, 45);
+    EXPECT_EQ(attitude.mode, 2);
+    state.epoch.relative->north_m = 0;
+    state.epoch.relative->east_m = -1;
+    EXPECT_EQ(msp_sensor_gps(state).true_yaw, 27000);
+    state.epoch.relative->base_moves = false;
+    EXPECT_EQ(msp_sensor_gps(state).true_yaw, 0xFFFF);
+    EXPECT_EQ(sbf_attitude(state).error, 1);
+}
+
+TEST_F(OtherProtocols, MavlinkCountsItsFramesWithoutAGap) {
+    NavigationState state = navigating();
+    std::vector<int> sequence;
+    for (int epoch = 126; epoch < 130; ++epoch) {
+        state.epoch_index = static_cast<std::uint64_t>(epoch);
+        for (const Bytes& frame : messages(Personality::mavlink, state)) {
+            const auto view = parse_mavlink(frame);
+            ASSERT_TRUE(view);
+            sequence.push_back(view->source.sequence);
+        }
+    }
+    EXPECT_EQ(sequence, (std::vector<int>{252, 253, 254, 255, 0, 1, 2, 3}));
+}
+
+TEST_F(OtherProtocols, SbfTellsTheSolution) {
+    NavigationState state = navigating();
+    const SbfPvtGeodetic m = pvt(state);
+    EXPECT_EQ(m.time.wnc, 2408);
+    EXPECT_EQ(m.time.tow, 86416200u);
+    EXPECT_EQ(m.mode, 1);
+    EXPECT_EQ(m.error, 0);
+    EXPECT_NEAR(m.latitude, 46.4775 * std::numbers::pi / 180, 1e-15);
+    EXPECT_DOUBLE_EQ(m.height, 77);
+    EXPECT_FLOAT_EQ(m.vel_up, -0.5F);
+    EXPECT_FLOAT_EQ(m.course, 77.77F);
+    EXPECT_EQ(m.num_sv, 9);
+    EXPECT_EQ(m.signal_info, 1u | 1u << 17);
+    ASSERT_TRUE(m.accuracy);
+    EXPECT_EQ(m.accuracy->latency, 500);
+    EXPECT_EQ(m.accuracy->h_accuracy, 660);  // twice the root mean square
+    EXPECT_EQ(m.accuracy->v_accuracy, 1008);
+    state.epoch.fix.type = FixType::fix_2d;
+    EXPECT_EQ(pvt(state).mode, 0x81);
+    state.epoch.fix.type = FixType::dgnss;
+    EXPECT_EQ(pvt(state).mode, 6);
+    state.corrections.state = CorrectionState::differential;
+    EXPECT_EQ(pvt(state).mode, 2);
+    state.epoch.fix.speed = MetresPerSecond(0.05);
+    EXPECT_EQ(pvt(state).course, static_cast<float>(sbf_nothing));
+}
+
+TEST_F(OtherProtocols, SbfWithoutAFixSaysNothing) {
+    const SbfPvtGeodetic m = pvt(without_fix());
+    EXPECT_EQ(m.time.tow, 0xFFFFFFFFu);
+    EXPECT_EQ(m.error, 1);
+    EXPECT_EQ(m.latitude, sbf_nothing);
+    EXPECT_EQ(m.accuracy->h_accuracy, 0xFFFF);
+    EXPECT_EQ(sbf_dop(without_fix()).pdop, 0);
+    EXPECT_EQ(sbf_position_covariance(without_fix()).covariance, no_sbf_covariance);
+    EXPECT_EQ(sbf_velocity_covariance(without_fix()).covariance, no_sbf_covariance);
+    EXPECT_EQ(sbf_receiver_status(without_fix()).rx_state, 0u);
+}
+
+TEST_F(OtherProtocols, CovariancesAddUpToTheAccuracies) {
+    const NavigationState state = navigating();
+    const auto position = sbf_position_covariance(state).covariance;
+    EXPECT_NEAR(position[0] + position[1], 3.3 * 3.3, 1e-4);
+    EXPECT_NEAR(position[2], 5.04 * 5.04, 1e-4);
+    EXPECT_LE(position[4] * position[4], position[0] * position[1]);
+    const auto velocity = sbf_velocity_covariance(state).covariance;
+    EXPECT_NEAR(velocity[0] + velocity[1] + velocity[2], 0.4 * 0.4, 1e-6);
+    EXPECT_EQ(velocity[3], static_cast<float>(sbf_nothing));
+}
+
+TEST_F(OtherProtocols, ChannelsAreTheTrackedSatellites) {
+    const SbfChannelStatus m = sbf_channel_status(navigating());
+    ASSERT_EQ(m.channels.size(), 9u);
+    EXPECT_EQ(m.channels[0].svid, 1);
+    EXPECT_EQ(m.channels[0].azimuth, 11 | 3 << 14);
+    EXPECT_EQ(m.channels[0].elevation, 8);
+    EXPECT_EQ(m.channels[0].tracking_status, 3);
+    EXPECT_EQ(m.channels[0].pvt_status, 2);
+    EXPECT_EQ(m.channels[6].svid, 73);
+    EXPECT_EQ(m.channels[6].tracking_status, 3 << 2);  // Galileo's first two bits are another signal's
+    EXPECT_EQ(m.channels[6].rx_channel, 7);
+}
+
+TEST_F(OtherProtocols, EveryPersonalityHasItsMessages) {
+    const NavigationState state = navigating();
+    const std::vector<Bytes> sbf = messages(Personality::sbf, state);
+    std::vector<int> numbers;
+    for (const Bytes& block : sbf)
+        numbers.push_back(parse_sbf(block)->number);
+    EXPECT_EQ(numbers, (std::vector<int>{4007, 5906, 5908, 4001, 5938, 4013, 4014}));
+    EXPECT_EQ(parse_msp(messages(Personality::msp, state).at(0))->function, 0x1F03);
+    EXPECT_EQ(parse_msp(messages(Personality::msp_v1, state).at(0))->function, 201);
+    EXPECT_EQ(parse_mavlink(messages(Personality::mavlink, state).at(1))->message, 232u);
+    EXPECT_TRUE(messages(Personality::ublox, state).empty());
+    EXPECT_TRUE(messages(Personality::mute, state).empty());
+}
+
+}  // namespace
+}  // namespace skyloop::firmware
