@@ -25,6 +25,10 @@ CommandOutcome execute_sentence(const SentenceView& sentence, const BoardProfile
                                 PortId from) {
     switch (board.personality) {
         case Personality::mute:
+        case Personality::msp:
+        case Personality::msp_v1:
+        case Personality::mavlink:
+        case Personality::sbf:
             return {};
         case Personality::ublox:
             return execute_ublox(sentence, board, store, from);

@@ -41,12 +41,16 @@ Receiver::Core::Core(BoardProfile board, const ReceiverOptions& options)
       values_(board_, store_),
       legacy_(board_, store_),
       tracker_(board_),
+      corrections_(board_.corrections),
       units_(make_units(board_, store_)),
       outbox_(units_),
       settings_(settings_of(store_, board_, options.settings)),
       latency_noise_(options.seed, "receiver.latency"),
       revision_(store_.revision()) {
     tracker_.start({}, {}, true);
+    if (!board_.messages.empty()) return;
+    for (const std::string_view name : nmea_sentence_names)
+        board_.messages.push_back(find_output_message(name)->id);
 }
 
 void Receiver::Core::start(GpsTime now) {

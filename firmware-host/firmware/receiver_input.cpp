@@ -45,7 +45,7 @@ void count_input(PortStatus& status, const StreamPiece& piece) {
         case StreamKind::rtcm3:
             ++status.messages_in[2];
             break;
-        case StreamKind::noise:
+        default:
             status.skipped += static_cast<std::uint32_t>(piece.bytes.size());
             break;
     }

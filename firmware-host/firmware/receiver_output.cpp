@@ -4,6 +4,7 @@
 
 #include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
+#include "firmware/messages/other_protocols.hpp"
 #include "firmware/receiver_core.hpp"
 
 namespace skyloop::firmware {
@@ -154,6 +155,8 @@ void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {
     std::map<UbxMessageId, std::vector<Bytes>> made;
     for (PortUnit& unit : units_) {
         const std::vector<Bytes> messages = due_messages(unit.id, state, made);
+        if (unit.id == PortId::uart1)
+            send(unit.id, make_protocol_messages(board_.personality, context(unit.id, state)), now);
         const std::uint64_t dropped = counters_.messages_dropped;
         send(unit.id, messages, now);
         if (counters_.messages_dropped > dropped && board_.quirks.overflow_notice)

@@ -17,10 +17,14 @@ using firmware::PortId;
 using firmware::SpeedChangeAnswer;
 using firmware::ValueConfigSupport;
 
-constexpr std::array<Word<Personality>, 4> board_personalities{{{"mute", Personality::mute},
+constexpr std::array<Word<Personality>, 8> board_personalities{{{"mute", Personality::mute},
                                                                 {"ublox", Personality::ublox},
                                                                 {"mtk", Personality::mtk},
-                                                                {"airoha", Personality::airoha}}};
+                                                                {"airoha", Personality::airoha},
+                                                                {"msp", Personality::msp},
+                                                                {"msp-v1", Personality::msp_v1},
+                                                                {"mavlink", Personality::mavlink},
+                                                                {"sbf", Personality::sbf}}};
 constexpr std::array<Word<ValueConfigSupport>, 3> value_config_words{{{"full", ValueConfigSupport::full},
                                                                       {"refuse", ValueConfigSupport::refuse},
                                                                       {"silence", ValueConfigSupport::silence}}};
@@ -59,9 +63,17 @@ void read_board_timing(TableReader& table, firmware::Timing& timing) {
     table.quantity("flash_write_s", timing.flash_write, {0, 10});
     table.quantity("signal_restart_s", timing.signal_restart, {0, 60});
     table.quantity("latency_deviation_s", timing.latency_deviation, {0, 1});
+    table.quantity("coasting_s", timing.coasting, {0, 600});
     table.quantity("cold_start_s", timing.cold_start, {0, 3600});
     table.quantity("warm_start_s", timing.warm_start, {0, 3600});
     table.quantity("hot_start_s", timing.hot_start, {0, 3600});
+}
+
+void read_board_corrections(TableReader& table, firmware::CorrectionAbility& ability) {
+    table.boolean("rtk", ability.rtk);
+    table.quantity("float_after_s", ability.float_after, {0, 3600});
+    table.quantity("fixed_after_s", ability.fixed_after, {0, 3600});
+    table.quantity("fixed_held_s", ability.fixed_held, {0, 3600});
 }
 
 void read_board_quirks(TableReader& table, firmware::Quirks& quirks) {
@@ -147,6 +159,7 @@ void read_board_keys(TableReader& top, BoardProfile& board) {
     top.word("personality", board_personalities, board.personality);
     top.table("identity", [&](TableReader& t) { read_board_identity(t, board.identity); });
     top.table("timing", [&](TableReader& t) { read_board_timing(t, board.timing); });
+    top.table("corrections", [&](TableReader& t) { read_board_corrections(t, board.corrections); });
     top.table("quirks", [&](TableReader& t) { read_board_quirks(t, board.quirks); });
     top.table("uart", [&](TableReader& t) { read_board_uart(t, board); });
     top.table("navigation", [&](TableReader& t) { read_board_navigation(t, board); });

@@ -81,7 +81,7 @@ MspSensorGps msp_sensor_gps(const NavigationState& state) {
     const Fix& fix = state.epoch.fix;
     MspSensorGps message;
     message.fix_type = autopilot_fix_type(state);
-    message.satellites = used_satellites(fix);
+    message.satellites = reported_satellites(fix);
     if (state.time.week_and_tow) {
         const WeekAndTow stamp = gps_stamp(fix.time);
         message.gps_week = field<std::uint16_t>(static_cast<double>(stamp.week));
@@ -99,7 +99,7 @@ MspSensorGps msp_sensor_gps(const NavigationState& state) {
 MspSetRawGps msp_set_raw_gps(const NavigationState& state) {
     const Fix& fix = state.epoch.fix;
     MspSetRawGps message;
-    message.satellites = used_satellites(fix);
+    message.satellites = reported_satellites(fix);
     if (!has_solution(state)) return message;
     message.fix = 1;
     message.latitude = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
@@ -113,7 +113,7 @@ MavlinkGpsInput mavlink_gps_input(const NavigationState& state) {
     const Fix& fix = state.epoch.fix;
     MavlinkGpsInput message;
     message.fix_type = autopilot_fix_type(state);
-    message.satellites_visible = used_satellites(fix);
+    message.satellites_visible = reported_satellites(fix);
     if (state.time.week_and_tow) {
         const WeekAndTow stamp = gps_stamp(fix.time);
         message.time_week = field<std::uint16_t>(static_cast<double>(stamp.week));

@@ -35,7 +35,7 @@ inline std::uint8_t autopilot_fix_type(const NavigationState& state) {
     }
 }
 
-inline std::uint8_t used_satellites(const Fix& fix) { return field<std::uint8_t>(fix.satellites_used()); }
+inline std::uint8_t reported_satellites(const Fix& fix) { return field<std::uint8_t>(fix.satellites_used()); }
 
 /// Metres above mean sea level.
 inline double msl_height(const Fix& fix) {

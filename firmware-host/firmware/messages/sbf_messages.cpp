@@ -79,7 +79,7 @@ void put_sbf_solution(const NavigationState& state, SbfPvtGeodetic& to) {
     to.clock_drift = static_cast<float>(fix.clock_drift.value() / speed_of_light * 1e6);
     to.time_system = 0;
     to.datum = 0;
-    to.num_sv = used_satellites(fix);
+    to.num_sv = reported_satellites(fix);
     for (const SatelliteStatus& satellite : fix.satellites)
         if (satellite.used) to.signal_info |= 1u << sbf_signal_number(satellite.id.constellation);
     if (state.corrections.age) to.mean_corr_age = sbf_u2(state.corrections.age->value() * 100);
@@ -168,7 +168,7 @@ SbfDop sbf_dop(const NavigationState& state) {
     block.time = sbf_time(state);
     if (!has_solution(state)) return block;
     const Fix& fix = state.epoch.fix;
-    block.num_sv = used_satellites(fix);
+    block.num_sv = reported_satellites(fix);
     block.pdop = field<std::uint16_t>(fix.dop.pdop * 100);
     block.tdop = field<std::uint16_t>(fix.dop.tdop * 100);
     block.hdop = field<std::uint16_t>(fix.dop.hdop * 100);
@@ -181,7 +181,7 @@ SbfAttEuler sbf_attitude(const NavigationState& state) {
     block.time = sbf_time(state);
     const auto attitude = pair_attitude(state);
     if (!attitude) return block;
-    block.num_sv = used_satellites(state.epoch.fix);
+    block.num_sv = reported_satellites(state.epoch.fix);
     block.error = 0;
     block.mode = attitude->fixed ? 2 : 1;
     block.heading = static_cast<float>(attitude->heading_deg);
