@@ -40,9 +40,11 @@ std::size_t Outbox::queue(PortId port, const std::vector<Bytes>& messages, GpsTi
     for (const Bytes& message : messages) {
         if (!unit->transmit.queue(message, now)) {
             unit->status.transmit_full = true;
+            ++unit->status.messages_dropped;
             continue;
         }
         ++queued;
+        ++unit->status.messages_out;
         const auto usage = static_cast<int>(100 * unit->transmit.pending() / unit->transmit.buffer_bytes());
         unit->status.usage_percent = std::min(usage, 100);
         unit->status.peak_usage_percent = std::max(unit->status.peak_usage_percent, unit->status.usage_percent);

@@ -21,6 +21,10 @@ std::uint32_t Receiver::baud(PortId port) const {
     const PortUnit* unit = core_->unit(port);
     return unit == nullptr ? 0 : unit->transmit.baud();
 }
+PortStatus Receiver::port_status(PortId port) const {
+    const PortUnit* unit = core_->unit(port);
+    return unit == nullptr ? PortStatus{port} : unit->status;
+}
 const ReceiverSettings& Receiver::settings() const { return core_->settings(); }
 const ReceiverCounters& Receiver::counters() const { return core_->counters(); }
 const BoardProfile& Receiver::board() const { return core_->board(); }

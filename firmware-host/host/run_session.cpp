@@ -95,10 +95,10 @@ void RunSession::tell_wire(const Station& station, std::size_t wire) const {
 void RunSession::tell_counts(const Station& station) const {
     const RunCounts& counts = station.counts();
     messages_.info(fmt::format("{}{} epochs, {} with a fix, {} messages", prefix(station), counts.epochs,
-                               counts.epochs_with_fix, station.receiver().counters().messages_sent));
+                               counts.epochs_with_fix, station.messages_sent()));
     for (std::size_t i = 0; i < station.wires().size(); ++i)
         tell_wire(station, i);
-    if (const std::uint64_t dropped = station.receiver().counters().messages_dropped; dropped > 0) {
+    if (const std::uint64_t dropped = station.messages_dropped(); dropped > 0) {
         const PortSpeed speed = station.speed(firmware::PortId::uart1);
         messages_.warning(
             fmt::format("{}{} messages did not fit the receiver's transmit buffer: {} baud is too slow for this output",

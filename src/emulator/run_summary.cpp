@@ -40,11 +40,10 @@ Json ports_json(const std::vector<Wire>& wires) {
 
 // What one receiver counted; the first one's stands at the top of the file.
 void add_counts(Json& summary, const Station& station) {
-    const firmware::ReceiverCounters& receiver = station.receiver().counters();
     summary["epochs"] = station.counts().epochs;
     summary["epochs_with_fix"] = station.counts().epochs_with_fix;
-    summary["messages_sent"] = receiver.messages_sent;
-    summary["messages_dropped"] = receiver.messages_dropped;
+    summary["messages_sent"] = station.messages_sent();
+    summary["messages_dropped"] = station.messages_dropped();
     summary["ports"] = ports_json(station.wires());
     summary["lateness"] = lateness_json(station.counts().lateness);
 }

@@ -90,6 +90,28 @@ void Station::report(const Trace& trace, Nanoseconds lateness, bool safe) {
     follow_settings(trace.truth.time);
 }
 
+std::set<PortId> Station::wired_ports() const {
+    std::set<PortId> ports;
+    for (const Wire& wire : parts_.wires)
+        ports.insert(wire.port);
+    if (ports.empty()) ports.insert(default_port(parts_.receiver.board()));
+    return ports;
+}
+
+std::uint64_t Station::messages_sent() const {
+    std::uint64_t count = 0;
+    for (const PortId port : wired_ports())
+        count += parts_.receiver.port_status(port).messages_out;
+    return count;
+}
+
+std::uint64_t Station::messages_dropped() const {
+    std::uint64_t count = 0;
+    for (const PortId port : wired_ports())
+        count += parts_.receiver.port_status(port).messages_dropped;
+    return count;
+}
+
 void Station::keep_state(GpsTime now) {
     if (parts_.state && parts_.state->due(now)) parts_.state->keep(parts_.receiver.persistent_text(), now);
 }

@@ -6,7 +6,8 @@
 #include <array>
 #include <atomic>
 
-#include "firmware/nmea_handler.hpp"
+#include "firmware/config/config_handler.hpp"
+#include "firmware/messages/make_message.hpp"
 #include "skyloop/emulator/assembly.hpp"
 #include "skyloop/gnss/nominal_constellation.hpp"
 #include "skyloop/gnss/orbit.hpp"
@@ -187,16 +188,18 @@ void nmea_sentences(benchmark::State& state) {
     const Scenario scenario = open_sky(ErrorModelKind::baseline);
     auto navigation = load_navigation(scenario, bench_start);
     auto simulation = make_simulation(scenario, std::move(navigation->source), nullptr, bench_start);
-    const Epoch one = simulation->run(bench_start, {}).epoch;
+    firmware::NavigationState one;
+    one.epoch = simulation->run(bench_start, {}).epoch;
+    one.fix_ok = one.ever_had_fix = one.position_known = true;
+    one.time = {true, true, true, true, true, Seconds(25e-9)};
     firmware::BoardProfile board;
     board.constellations = {gps};
-    for (int i = 0; i < 8; ++i)
-        board.sentences.push_back({static_cast<firmware::NmeaSentence>(i), 1});
-    firmware::NmeaHandler handler(board);
+    const firmware::ConfigStore config(firmware::factory_config(board));
+    const firmware::ReportContext context{board, config, one};
     std::uint64_t count = 0;
-    std::uint64_t index = 0;
     for (auto _ : state)
-        count += handler.sentences(one, index++).size();
+        for (std::uint8_t sentence = 0; sentence < 9; ++sentence)
+            if (sentence != 6) count += make_message({0xF0, sentence}, context).size();
     state.counters["sentences/s"] = benchmark::Counter(static_cast<double>(count), benchmark::Counter::kIsRate);
 }
 BENCHMARK(nmea_sentences);

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "firmware/receiver.hpp"
-#include "skyloop/protocol/nmea_decode.hpp"
+#include "skyloop/protocol/nmea_sentence.hpp"
 #include "skyloop/scenario/board_file.hpp"
 
 namespace {
@@ -20,15 +20,19 @@ void require(bool promise) {
 
 // A receiver of this profile that has not found its position yet.
 void check_receiver(const firmware::BoardProfile& board) {
-    firmware::Receiver receiver(board, board.default_rate_hz);
+    firmware::Receiver receiver(board);
     const auto period = receiver.settings().navigation_period;
     require(period > Nanoseconds(0) && period <= std::chrono::seconds(10));
     Epoch epoch;
     epoch.fix.time = to_gps_time(2304, 0);
+    receiver.start(epoch.fix.time);
     receiver.on_epoch(epoch);
+    Bytes sent;
+    for (const firmware::Receiver::Sent& piece : receiver.output(epoch.fix.time + std::chrono::seconds(60)))
+        if (piece.port == firmware::PortId::uart1) sent.insert(sent.end(), piece.bytes.begin(), piece.bytes.end());
     SentenceSplitter splitter;
-    for (const std::string& line : splitter.feed(receiver.output(epoch.fix.time + std::chrono::seconds(60))))
-        require(decode_nmea(line).has_value());
+    for (const std::string& line : splitter.feed(sent))
+        require(parse_sentence(line).has_value());
 }
 
 }  // namespace

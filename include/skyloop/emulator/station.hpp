@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -76,6 +77,10 @@ public:
     [[nodiscard]] const firmware::Receiver& receiver() const { return parts_.receiver; }
     [[nodiscard]] PortSpeed speed(firmware::PortId port) const { return port_speed(parts_.receiver, port); }
     [[nodiscard]] const std::vector<Wire>& wires() const { return parts_.wires; }
+    /// Messages on the ports that have a wire; without any wire on the port of an unnamed one.
+    [[nodiscard]] std::uint64_t messages_sent() const;
+    /// Those among them that did not fit into the transmit buffer.
+    [[nodiscard]] std::uint64_t messages_dropped() const;
     [[nodiscard]] const Simulation& simulation() const { return parts_.simulation; }
     [[nodiscard]] const Recorder* recorder() const { return parts_.recorder ? &*parts_.recorder : nullptr; }
     [[nodiscard]] Recorder* recorder() { return parts_.recorder ? &*parts_.recorder : nullptr; }
@@ -83,6 +88,7 @@ public:
     [[nodiscard]] const RunCounts& counts() const { return counts_; }
 
 private:
+    [[nodiscard]] std::set<firmware::PortId> wired_ports() const;
     void hear(std::size_t wire, GpsTime now);
     void speak(const LoopTime& time);
     void follow_settings(GpsTime now);

@@ -52,13 +52,13 @@ TEST(Assembly, UnknownBoardsAreUsageErrors) {
 
 TEST(Assembly, TheScenarioChangesTheBoard) {
     const Assembly plain = assembled("");
-    EXPECT_EQ(plain.emulator->receiver().baud(), 9600U);
+    EXPECT_EQ(plain.emulator->receiver().baud(firmware::PortId::uart1), 9600U);
     EXPECT_EQ(plain.emulator->receiver().settings().navigation_period, std::chrono::seconds(1));
     const Assembly changed =
         assembled("[[receiver]]\nboard = \"ublox-m9\"\nrate_hz = 4\nbaud = 115200\nsentences = [\"ZDA\", \"RMC\"]");
     const firmware::Receiver& receiver = changed.emulator->receiver();
     EXPECT_EQ(receiver.board().name, "ublox-m9");
-    EXPECT_EQ(receiver.baud(), 115200U);
+    EXPECT_EQ(receiver.baud(firmware::PortId::uart1), 115200U);
     EXPECT_EQ(receiver.settings().navigation_period, std::chrono::milliseconds(250));
     ASSERT_EQ(receiver.board().sentences.size(), 2U);
     EXPECT_EQ(receiver.board().sentences[0].sentence, firmware::NmeaSentence::zda);

@@ -106,7 +106,7 @@ TEST(ReceiverCommands, AnswersAPollOnceWithoutAcknowledgement) {
 
 TEST(ReceiverCommands, AnswersFromTheLastEpoch) {
     Bench bench;
-    bench.wait(1500ms).write(encode_frame(nav_pvt_id, {})).wait(20ms);
+    bench.wait(1500ms).write(encode_frame(nav_pvt_id, {})).wait(60ms);
     ASSERT_EQ(bench.frames(nav_pvt_id).size(), 1U);
     const auto pvt = decode_payload<NavPvt>(bench.frames(nav_pvt_id)[0].payload);
     ASSERT_TRUE(pvt);
@@ -286,7 +286,7 @@ TEST(ReceiverCommands, StopsAndStartsNavigation) {
     EXPECT_TRUE(bench.receiver().settings().navigating);
     EXPECT_EQ(bench.receiver().settings().start, StartKind::hot);
     EXPECT_FALSE(bench.frames(nav_pvt_id).empty());
-    EXPECT_TRUE(bench.frames(ack_id).size() == 1U) << "only the VALSET is acknowledged";
+    EXPECT_TRUE(bench.frames(ack_id).empty()) << "neither is acknowledged";
 }
 
 TEST(ReceiverCommands, SaysWhoItIsWhenItIsSwitchedOn) {
@@ -309,7 +309,7 @@ TEST(ReceiverCommands, RemembersOverTheEndOfTheProcess) {
     Bench next;
     ASSERT_TRUE(next.receiver().restore(stored, "state"));
     EXPECT_EQ(next.receiver().baud(PortId::uart1), 57600U);
-    next.wait(3s);
+    next.wait(3500ms);
     EXPECT_EQ(next.frames(nav_pvt_id).size(), 3U);
     EXPECT_FALSE(next.receiver().restore("nonsense", "state"));
 }
