@@ -14,6 +14,13 @@
 
 namespace skyloop::firmware {
 
+/// Finds what clients send: UBX, sentences and RTCM 3.
+inline StreamSplitter command_splitter() {
+    StreamProtocols protocols;
+    protocols.impatient = true;
+    return StreamSplitter(protocols);
+}
+
 /// Both directions of one port, and what is counted of them.
 struct PortUnit {
     PortUnit(PortId port, std::uint32_t baud, std::uint32_t buffer_bytes) : id(port), transmit(baud, buffer_bytes) {
@@ -21,7 +28,7 @@ struct PortUnit {
     }
     PortId id;
     Port transmit;
-    StreamSplitter splitter;
+    StreamSplitter splitter = command_splitter();
     PortStatus status;
     GpsTime last_input{};
     std::uint32_t configured_baud = 0;  ///< to which it has been told to go

@@ -27,7 +27,7 @@ public:
     void start(GpsTime now);
     void input(PortId port, ByteSpan bytes, GpsTime now);
     void on_epoch(const Epoch& epoch);
-    std::vector<Sent> output(GpsTime now) { return outbox_.run(now); }
+    std::vector<Sent> output(GpsTime now);
     [[nodiscard]] const PortUnit* unit(PortId port) const;
     Result<void> restore(const std::string& text, const std::string& name);
 
@@ -48,6 +48,8 @@ private:
 
     // Input.
     PortUnit* find(PortId port);
+    void give_up_unfinished(PortUnit& unit, GpsTime now);
+    void work_off(PortUnit& unit, const std::vector<StreamPiece>& pieces, GpsTime now);
     void dispatch(PortUnit& unit, const StreamPiece& piece, GpsTime now);
     void dispatch_ubx(PortUnit& unit, ByteSpan frame, GpsTime now);
     void dispatch_sentence(PortUnit& unit, ByteSpan line, GpsTime now);

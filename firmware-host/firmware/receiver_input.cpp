@@ -58,18 +58,31 @@ void Receiver::Core::input(PortId port, ByteSpan bytes, GpsTime now) {
     PortUnit* unit = find(port);
     if (unit == nullptr || now < deaf_until_ || bytes.empty()) return;
     unit->status.bytes_in += bytes.size();
-    std::vector<StreamPiece> pieces;
-    if (now - unit->last_input > frame_timeout) pieces = unit->splitter.finish();
+    give_up_unfinished(*unit, now);
     unit->last_input = now;
-    for (StreamPiece& piece : unit->splitter.feed(bytes))
-        pieces.push_back(std::move(piece));
+    work_off(*unit, unit->splitter.feed(bytes), now);
+}
+
+void Receiver::Core::give_up_unfinished(PortUnit& unit, GpsTime now) {
+    if (now - unit.last_input <= frame_timeout) return;
+    unit.last_input = now;
+    work_off(unit, unit.splitter.finish(), now);
+}
+
+std::vector<Receiver::Sent> Receiver::Core::output(GpsTime now) {
+    for (PortUnit& unit : units_)
+        give_up_unfinished(unit, now);
+    return outbox_.run(now);
+}
+
+void Receiver::Core::work_off(PortUnit& unit, const std::vector<StreamPiece>& pieces, GpsTime now) {
     for (const StreamPiece& piece : pieces) {
-        count_input(unit->status, piece);
-        const std::uint32_t baud = unit->configured_baud;
-        dispatch(*unit, piece, now);
+        count_input(unit.status, piece);
+        const std::uint32_t baud = unit.configured_baud;
+        dispatch(unit, piece, now);
         // What follows was sent at a speed that the port no longer has.
-        if (unit->configured_baud != baud || now < deaf_until_) {
-            unit->splitter = StreamSplitter();
+        if (unit.configured_baud != baud || now < deaf_until_) {
+            unit.splitter = command_splitter();
             return;
         }
     }

@@ -111,7 +111,7 @@ void Receiver::Core::plan_speed_changes(GpsTime at) {
 void Receiver::Core::change_speed(PortId port, GpsTime at) {
     PortUnit& unit = *find(port);
     unit.transmit.set_baud(unit.configured_baud, at);
-    unit.splitter = StreamSplitter();
+    unit.splitter = command_splitter();
 }
 
 void Receiver::Core::send(PortId port, const std::vector<Bytes>& messages, GpsTime now) {

@@ -175,7 +175,7 @@ void StreamSplitter::search(bool at_end, std::vector<StreamPiece>& pieces) {
     std::size_t at = 0;
     while (at < bytes.size()) {
         const Candidate found = piece_at(bytes.subspan(at), protocols_);
-        if (found.verdict == Candidate::Verdict::unfinished && !at_end) break;
+        if (found.verdict == Candidate::Verdict::unfinished && !at_end && !is_overtaken(bytes.subspan(at))) break;
         if (found.verdict == Candidate::Verdict::bad) ++counts_.bad[index_of(found.kind)];
         if (found.verdict != Candidate::Verdict::whole) {
             keep_noise(bytes[at], pieces);
@@ -190,6 +190,16 @@ void StreamSplitter::search(bool at_end, std::vector<StreamPiece>& pieces) {
         at += found.size;
     }
     pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(at));
+}
+
+// Whether a whole UBX frame or sentence stands behind the first byte of something unfinished.
+bool StreamSplitter::is_overtaken(ByteSpan unfinished) const {
+    if (!protocols_.impatient) return false;
+    for (std::size_t i = 1; i < unfinished.size(); ++i) {
+        const Candidate inner = piece_at(unfinished.subspan(i), protocols_);
+        if (inner.verdict == Candidate::Verdict::whole && inner.kind != StreamKind::rtcm3) return true;
+    }
+    return false;
 }
 
 void StreamSplitter::keep_noise(std::uint8_t byte, std::vector<StreamPiece>& pieces) {

@@ -27,6 +27,9 @@ inline constexpr std::size_t stream_kind_count = 7;
 struct StreamProtocols {
     bool ubx = true, nmea = true, rtcm3 = true;
     bool msp = false, mavlink = false, sbf = false;
+    /// What is not yet whole is given up as soon as a whole UBX frame or sentence stands inside it. For receivers: a
+    /// false beginning must not swallow the commands that follow, and no client sends one frame inside another.
+    bool impatient = false;
 };
 
 /// What has been found so far, by StreamKind.
@@ -67,6 +70,7 @@ public:
 
 private:
     void search(bool at_end, std::vector<StreamPiece>& pieces);
+    [[nodiscard]] bool is_overtaken(ByteSpan unfinished) const;
     void keep_noise(std::uint8_t byte, std::vector<StreamPiece>& pieces);
     void flush_noise(std::vector<StreamPiece>& pieces);
 
