@@ -33,12 +33,12 @@ Bytes joined(const std::vector<Bytes>& frames) {
 std::vector<Bytes> dialogue() {
     CfgValset set;
     set.layers = 1;
-    set.pairs = {{0x20910007, 1}, {0x30210001, 200}};
+    set.pairs = {{0x20910007, 1}, {0x30210001, 1000}};
     CfgValgetPoll get;
     get.keys = {0x30210001};
     return {encode_frame(mon_ver, {}),
             encode_frame(CfgMsgCurrentPort{0x01, 0x07, 1}),
-            encode_frame(CfgRate{200, 1, 1}),
+            encode_frame(CfgRate{1000, 1, 1}),
             encode_frame(set),
             encode_frame(get),
             encode_frame(cfg_rate, {}),

@@ -215,7 +215,8 @@ bool is_signal_plan(const BoardProfile& board, const ConfigValues& values) {
     for (const SystemKeys& system : system_keys_of_signals) {
         if (!is_on(values, system.enable)) continue;
         const auto on = [&values](std::uint32_t key) { return key != 0 && is_on(values, key); };
-        if (std::none_of(system.first.begin(), system.first.end(), on)) return false;
+        // A system without a signal is not tracked. It is taken: clients change B1I for B1C key by key.
+        if (std::none_of(system.first.begin(), system.first.end(), on)) continue;
         if (system.constellation != Constellation::sbas) ++systems;
         if (system.is_major) ++major;
     }

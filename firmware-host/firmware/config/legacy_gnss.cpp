@@ -105,7 +105,7 @@ bool channels_suffice(const CfgGnss& message) {
 }
 
 /// An empty mask leaves the signals as they are: clients from before sigCfMask send none. False when the board has none
-/// of those asked for.
+/// of those asked for, or a major system is to do without its first.
 bool put_signals(const LegacyContext& context, LegacyChanges& changes, const CfgGnssItem& item) {
     const std::uint32_t asked = item.flags >> signal_shift & 0xFF;
     if (asked == 0) return true;
@@ -113,7 +113,8 @@ bool put_signals(const LegacyContext& context, LegacyChanges& changes, const Cfg
     const bool has_one = std::ranges::any_of(system->signals, [&](const BitKey& signal) {
         return (asked >> signal.bit & 1) != 0 && context.store.has(signal.key);
     });
-    if (!has_one) return (item.flags & 1) == 0;
+    const bool lacks_first = system->is_major && (asked >> system->signals.front().bit & 1) == 0;
+    if (!has_one || lacks_first) return (item.flags & 1) == 0;
     changes.put_bits(system->signals, asked);
     return true;
 }
