@@ -158,7 +158,8 @@ ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::Boa
     for (const Constellation c : entry.constellations.empty() ? board.constellations : entry.constellations) {
         const auto signals = emulated_signals(c);
         settings.signals.insert({c, signals[0]});
-        if ((entry.dual_frequency || board.dual_frequency) && signals.size() > 1) settings.signals.insert({c, signals[1]});
+        if ((entry.dual_frequency || board.dual_frequency) && signals.size() > 1)
+            settings.signals.insert({c, signals[1]});
     }
     return settings;
 }
