@@ -5,6 +5,7 @@
 #include <string>
 
 #include "firmware/config/config_handler.hpp"
+#include "firmware/config/legacy_keys.hpp"
 #include "firmware/message_class.hpp"
 #include "firmware/messages/nmea_report.hpp"
 #include "firmware/nmea_commands.hpp"
@@ -12,7 +13,6 @@
 namespace skyloop::firmware {
 namespace {
 
-constexpr std::uint8_t class_of_sentences = 0xF0, class_of_pubx = 0xF1;
 
 bool pubx_port_exists(const BoardProfile& board, PortId port) {
     return std::find(board.ports.begin(), board.ports.end(), port) != board.ports.end();
@@ -28,7 +28,7 @@ bool sends_message(const BoardProfile& board, UbxMessageId message) {
 void set_pubx_rates(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store) {
     constexpr int most = 255;
     const OutputMessage* message = find_output_message(sentence.field(1));
-    if (message == nullptr || message->id.message_class != class_of_sentences || !sends_message(board, message->id))
+    if (message == nullptr || message->id.message_class != class_nmea || !sends_message(board, message->id))
         return;
     std::array<int, port_count> rates{};
     for (std::size_t i = 0; i < rates.size(); ++i) {
@@ -74,6 +74,8 @@ void set_port_by_pubx(const SentenceView& sentence, const BoardProfile& board, C
         store.set(in_ram, item, static_cast<std::uint64_t>(*baud));
     }
     set_pubx_protocols(store, port, *in, true);
+    constexpr std::uint32_t rtcm2_bit = 2;
+    store.set(in_ram, legacy_key::rtcm2_in(port), *in >> rtcm2_bit & 1);
     set_pubx_protocols(store, port, *out, false);
 }
 
@@ -81,7 +83,7 @@ void set_port_by_pubx(const SentenceView& sentence, const BoardProfile& board, C
 std::vector<UbxMessageId> asked_by_pubx(const SentenceView& sentence) {
     const auto number = whole_number(sentence.field(0));
     if (sentence.fields.size() != 1 || !number || (*number != 0 && *number != 3 && *number != 4)) return {};
-    return {{class_of_pubx, static_cast<std::uint8_t>(*number)}};
+    return {{class_pubx, static_cast<std::uint8_t>(*number)}};
 }
 
 // "EIGPQ,RMC" and the like, from whatever talker.
@@ -109,7 +111,7 @@ CommandOutcome execute_ublox(const SentenceView& sentence, const BoardProfile& b
     CommandOutcome outcome;
     if (is_standard_poll(sentence)) {
         const OutputMessage* message = find_output_message(sentence.field(0));
-        if (message != nullptr && message->id.message_class == class_of_sentences && sends_message(board, message->id))
+        if (message != nullptr && message->id.message_class == class_nmea && sends_message(board, message->id))
             outcome.polled.push_back(message->id);
     } else if (sentence.address == "PUBX") {
         outcome.polled = asked_by_pubx(sentence);

@@ -82,6 +82,7 @@ TEST(PubxCommands, SetPortsAsDriversDo) {
     EXPECT_THAT(receiver.answers("PUBX,41,1,0003,0001,115200,0"), IsEmpty());
     EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 115200U);
     EXPECT_TRUE(in(1) && in(2) && !in(4));
+    EXPECT_FALSE(receiver.config.flag(0x10FD0021)) << "RTCM 2, which the mask does not name";
     EXPECT_TRUE(out(1) && !out(2) && !out(4));
     receiver.execute("PUBX,41,1,0023,0003,230400,0");
     EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 230400U);
