@@ -19,6 +19,7 @@ template <class Message>
 void expect_listed(Message message) {
     if constexpr (requires { message.ports.resize(1); }) message.ports.resize(1);
     if constexpr (requires { message.protocols.resize(1); }) message.protocols.resize(1);
+    if constexpr (requires { message.unique_id.resize(5); }) message.unique_id.resize(5);
     const Bytes payload = encode_payload(message);
     const auto listings = ubx_listings();
     EXPECT_TRUE(std::any_of(
