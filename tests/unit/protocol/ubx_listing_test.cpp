@@ -4,6 +4,7 @@
 
 #include "skyloop/protocol/decoded_message.hpp"
 #include "skyloop/protocol/message_listing.hpp"
+#include "skyloop/protocol/ubx_names.hpp"
 #include "support/ubx_message_types.hpp"
 
 namespace skyloop {
