@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "config_key_names.hpp"
 #include "input_stream.hpp"
 #include "messages.hpp"
 #include "run_options.hpp"
@@ -114,7 +115,8 @@ private:
         const std::uint64_t offset = offset_;
         offset_ += piece.bytes.size();
         if (piece.kind == StreamKind::noise || std::ferror(stdout) != 0) return;
-        const DecodedMessage message = decode_piece(piece);
+        DecodedMessage message = decode_piece(piece);
+        name_config_keys(message);
         const std::string line = (json_ ? json_line(message, offset) : text_line(message)) + '\n';
         std::fwrite(line.data(), 1, line.size(), stdout);
         if (flush) std::fflush(stdout);
@@ -171,10 +173,13 @@ int decode(const DecodeOptions& options) {
     Decoder decoder(options, wanted_of(options.protocols));
     const auto read = decode_stream(*input, options.input, decoder);
     decoder.finish();
+    // A file that is refused as a whole has no counts to tell.
+    if (!read && decoder.frames() == 0) return messages.error(read.error());
     decoder.print_counts();
-    messages.info(decoder.counts_text());
-    if (!read) return messages.error(read.error());
-    if (decoder.frames() > 0 || decoder.bytes() == 0 || stop_was_asked()) return 0;
+    if (decoder.frames() > 0 || decoder.bytes() == 0 || stop_was_asked()) {
+        messages.info(decoder.counts_text());
+        return read ? 0 : messages.error(read.error());
+    }
     return messages.error({ErrorCode::input, fmt::format("{}: no message of {} in its {} bytes", input->name(),
                                                          fmt::join(options.protocols, " "), decoder.bytes())});
 }

@@ -39,7 +39,7 @@ template <class Raw>
 DecodedValue value_of(Raw raw, const FieldName& name) {
     const auto number = static_cast<double>(raw);
     if (name.absent && number == *name.absent) return {};
-    if (name.decimal_digits != 0) return {number / tenth_power(name.decimal_digits)};
+    if (name.decimal_digits != 0) return {number * name.factor / tenth_power(name.decimal_digits)};
     if (name.binary_digits != 0) return {std::ldexp(number, -name.binary_digits)};
     return {raw};
 }
@@ -60,12 +60,15 @@ FieldName next_field_name(std::string_view& names) {
         name.absent = std::strtod(std::string(word.substr(mark + 1)).c_str(), nullptr);
         word = word.substr(0, mark);
     }
-    if (const std::size_t star = word.find("*1e-"); star != word.npos) {
-        name.decimal_digits = digits_of_scale(word.substr(star + 4));
+    if (const std::size_t star = word.find('*'); star != word.npos) {
+        const std::string_view scale = word.substr(star + 1);
+        if (scale.starts_with("2^-")) {
+            name.binary_digits = digits_of_scale(scale.substr(3));
+        } else {
+            name.factor = scale[0] - '0';
+            name.decimal_digits = digits_of_scale(scale.substr(3));
+        }
         word = word.substr(0, star);
-    } else if (const std::size_t power = word.find("*2^-"); power != word.npos) {
-        name.binary_digits = digits_of_scale(word.substr(power + 4));
-        word = word.substr(0, power);
     }
     name.hidden = word.starts_with('-');
     name.name = name.hidden ? word.substr(1) : word;

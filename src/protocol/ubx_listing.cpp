@@ -5,8 +5,12 @@
 
 #include "skyloop/protocol/message_listing.hpp"
 #include "skyloop/protocol/ubx_cfg.hpp"
+#include "skyloop/protocol/ubx_cfg_hardware.hpp"
+#include "skyloop/protocol/ubx_cfg_navigation.hpp"
+#include "skyloop/protocol/ubx_cfg_output.hpp"
 #include "skyloop/protocol/ubx_cfg_values.hpp"
 #include "skyloop/protocol/ubx_hardware.hpp"
+#include "skyloop/protocol/ubx_inertial.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
 #include "skyloop/protocol/ubx_names.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
@@ -14,6 +18,7 @@
 #include "skyloop/protocol/ubx_raw.hpp"
 #include "skyloop/protocol/ubx_relative.hpp"
 #include "skyloop/protocol/ubx_satellites.hpp"
+#include "skyloop/protocol/ubx_security.hpp"
 #include "skyloop/protocol/ubx_services.hpp"
 #include "skyloop/protocol/ubx_time.hpp"
 
@@ -73,18 +78,22 @@ bool fits() {
 template <class Message, Names names>
 constexpr UbxListing listed{Message::message_id, list_as<Message, names>, fits<Message, names>};
 
-// CFG-VALGET: the version tells the question from the answer, which may have the same length.
+// CFG-VALGET and SEC-SIG: the version tells the forms apart, which may have the same length.
 template <class Message, Names names, std::uint8_t version>
 std::optional<std::vector<DecodedField>> list_version(ByteSpan payload) {
     if (payload.empty() || payload[0] != version) return std::nullopt;
     return list_as<Message, names>(payload);
 }
 
+template <class Message, Names names, std::uint8_t version>
+constexpr UbxListing listed_version{Message::message_id, list_version<Message, names, version>, fits<Message, names>};
+
+constexpr Names mon_hw_names =
+    "pin_select pin_bank pin_direction pin_value noise agc antenna_status antenna_power flags -reserved used_mask "
+    "virtual_pins jamming_indicator -reserved pin_interrupts pull_up pull_down";
 constexpr Names satellite_names =
     "tow_s*1e-3 version -reserved satellites[gnss_id sv_id cno_dbhz elevation_deg!-91 azimuth_deg residual_m*1e-1 "
     "flags]";
-constexpr Names valget_poll_names = "version layer position keys";
-constexpr Names valget_names = "version layer position pairs[key value]";
 
 // One line a message.
 constexpr auto ubx_listing_table = std::to_array<UbxListing>({
@@ -147,9 +156,8 @@ constexpr auto ubx_listing_table = std::to_array<UbxListing>({
            "version channels_hardware channels_used systems[gnss_id channels_reserved channels_max -reserved "
            "flags]">,
     listed<CfgValset, "version layers transaction -reserved pairs[key value]">,
-    UbxListing{CfgValgetPoll::message_id, list_version<CfgValgetPoll, valget_poll_names, 0>,
-               fits<CfgValgetPoll, valget_poll_names>},
-    UbxListing{CfgValget::message_id, list_version<CfgValget, valget_names, 1>, fits<CfgValget, valget_names>},
+    listed_version<CfgValgetPoll, "version layer position keys", 0>,
+    listed_version<CfgValget, "version layer position pairs[key value]", 1>,
     listed<CfgValdel, "version layers transaction -reserved keys">,
     listed<MonVer, "software hardware extensions">,
     listed<TimTp, "tow_s*1e-3 tow_fraction_ms*2^-32 quantisation_ps week flags reference">,
@@ -195,6 +203,83 @@ constexpr auto ubx_listing_table = std::to_array<UbxListing>({
     listed<MonRf,
            "version -reserved blocks[id flags antenna_status antenna_power post_status -reserved noise agc "
            "jamming_indicator offset_i magnitude_i offset_q magnitude_q -reserved]">,
+    listed<NavAtt, "tow_s*1e-3 version -reserved roll_pitch_heading_deg*1e-5 roll_pitch_heading_acc_deg*1e-5">,
+    listed<NavTimeqzss, "tow_s*1e-3 qzss_tow_s tow_fraction_ns week leap_seconds valid t_acc_ns">,
+    listed<NavRelposned0,
+           "version -reserved station tow_s*1e-3 relative_ned_m*1e-2 relative_ned_hp_m*1e-4 -reserved "
+           "acc_ned_m*1e-4 flags">,
+    listed<NavEell, "tow_s*1e-3 version -reserved orientation_deg*1e-2 major_m*1e-3 minor_m*1e-3">,
+    listed<NavSlas,
+           "tow_s*1e-3 version -reserved station_lon_deg*1e-3 station_lat_deg*1e-3 station qzss_sv_id flags "
+           "satellites[gnss_id sv_id -reserved -reserved correction_m*1e-2]">,
+    listed<NavAopstatus, "tow_s*1e-3 config status -reserved">,
+    listed<NavPl,
+           "version risk_coefficient risk_exponent position_valid position_frame velocity_valid velocity_frame "
+           "time_valid invalidity_reasons -reserved tow_s*1e-3 position_level_m*1e-3 velocity_level_mps*1e-3 "
+           "position_orientation_deg*1e-2 velocity_orientation_deg*1e-2 time_level_ns -reserved">,
+    listed<RxmMeasx,
+           "version -reserved gps_tow_s*1e-3 glonass_tow_s*1e-3 beidou_tow_s*1e-3 -reserved qzss_tow_s*1e-3 "
+           "gps_tow_acc_ms*2^-4 glonass_tow_acc_ms*2^-4 beidou_tow_acc_ms*2^-4 -reserved qzss_tow_acc_ms*2^-4 flags "
+           "-reserved satellites[gnss_id sv_id cno_dbhz multipath doppler_mps*4e-2 doppler_hz*2e-1 whole_chips "
+           "fraction_chips*2^-10 code_phase_ms*2^-21 whole_code_phase_ms range_deviation_code -reserved]">,
+    listed<RxmSvsi, "tow_s*1e-3 week visible satellites[sv_id flags azimuth_deg elevation_deg age]">,
+    listed<RxmRlm, "version type sv_id -reserved beacon message parameters -reserved">,
+    listed<MonMsgpp, "messages skipped_bytes">,
+    listed<MonHw, mon_hw_names>,
+    listed<MonHwLong, mon_hw_names>,
+    listed<MonHwShort, mon_hw_names>,
+    listed<MonHw2,
+           "offset_i magnitude_i offset_q magnitude_q config_source -reserved low_level_config -reserved "
+           "post_status -reserved">,
+    listed<MonHw3, "version flags hardware -reserved pins[id mask virtual_pin -reserved]">,
+    listed<MonRxr, "flags">,
+    listed<MonPatch, "version entries patches[info comparator address data]">,
+    listed<MonSpan, "version -reserved blocks[spectrum_db*2^-2 span_hz resolution_hz centre_hz gain_db -reserved]">,
+    listed<MonSys,
+           "version boot_type cpu_percent cpu_peak_percent memory_percent memory_peak_percent io_percent "
+           "io_peak_percent run_time_s notices warnings errors temperature_c -reserved">,
+    listed<TimVrfy, "tow_s*1e-3 tow_fraction_ns delta_ms delta_ns week flags -reserved">,
+    listed<MgaAck, "type version info_code id payload_start">,
+    listed_version<SecSig1, "version -reserved jamming_flags -reserved spoofing_flags -reserved", 1>,
+    listed_version<SecSig2, "version flags -reserved centre_frequencies", 2>,
+    listed<SecSiglog, "version -reserved events[age_s*1e-3 detection event -reserved]">,
+    listed<EsfStatus, "tow_s*1e-3 version -reserved fusion_mode -reserved sensors[status1 status2 rate_hz faults]">,
+    listed<HnrPvt,
+           "tow_s*1e-3 year month day hour minute second valid nano_ns fix_type flags -reserved lon_deg*1e-7 "
+           "lat_deg*1e-7 height_m*1e-3 msl_m*1e-3 speed_mps*1e-3 speed_3d_mps*1e-3 course_deg*1e-5 heading_deg*1e-5 "
+           "h_acc_m*1e-3 v_acc_m*1e-3 speed_acc_mps*1e-3 course_acc_deg*1e-5 -reserved">,
+    listed<HnrAtt, "tow_s*1e-3 version -reserved roll_pitch_heading_deg*1e-5 roll_pitch_heading_acc_deg*1e-5">,
+    listed<HnrIns, "validity -reserved tow_s*1e-3 angular_rate_degps*1e-3 acceleration_mps2*1e-3">,
+    listed<CfgTp5,
+           "pulse version -reserved cable_delay_ns rf_group_delay_ns period period_locked length length_locked "
+           "user_delay_ns flags">,
+    listed<CfgItfm, "config config2">,
+    listed<CfgPms, "version power_setup period_s on_time_s -reserved">,
+    listed<CfgRxm, "-reserved power_mode">,
+    listed<CfgAnt, "flags pins">,
+    listed<CfgLogfilter, "version flags interval_s time_threshold_s speed_threshold_mps position_threshold_m">,
+    listed<UpdSos, "command -reserved">,
+    listed<UpdSosStatus, "command -reserved response -reserved">,
+    listed<CfgNavx5,
+           "version mask1 mask2 -reserved min_satellites max_satellites min_cno_dbhz -reserved initial_fix_3d "
+           "-reserved ack_aiding week_rollover attenuation_compensation -reserved use_ppp aop_config -reserved "
+           "aop_max_error_m -reserved use_adr">,
+    listed<CfgSbas, "mode usage channels_max scan_mode2 scan_mode1">,
+    listed<CfgOdo,
+           "version -reserved flags profile -reserved course_max_speed_mps*1e-1 course_max_acc_m -reserved "
+           "velocity_gain course_gain -reserved">,
+    listed<CfgDgnss, "mode -reserved">,
+    listed<CfgTmode3,
+           "version -reserved flags position position_hp -reserved position_acc_m*1e-4 survey_duration_s "
+           "survey_acc_m*1e-4 -reserved">,
+    listed<CfgInf, "protocols[protocol -reserved masks]">,
+    listed<CfgNmeaShort, "filter nmea_version listed_satellites flags">,
+    listed<CfgNmeaV0,
+           "filter nmea_version listed_satellites flags systems_off numbering main_talker gsv_talker version">,
+    listed<CfgNmea,
+           "filter nmea_version listed_satellites flags systems_off numbering main_talker gsv_talker version "
+           "beidou_talker -reserved">,
+    listed<CfgUsb, "vendor_id product_id -reserved power_ma flags vendor product serial_number">,
 });
 
 }  // namespace

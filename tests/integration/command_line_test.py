@@ -60,7 +60,8 @@ SCENARIO_MISTAKES = [
     ("[model.baseline]\nstatistic = \"mean\"\n", ["sample_std rms"]),
     ("[run]\nduration_s = 1e300\n", ["run.duration_s"]),
     ("[frame]\norigin = [46, 30, 0]\n[trajectory]\nkind = \"fixed\"\nat_level = [0, 0, 1e300]\n", ["s.toml:5", "at_level"]),
-    ("[[receiver]]\n[[receiver]]\n", ["s.toml:2", "this version runs one"]),
+    ("[[receiver]]\nname = \"a\"\n[[receiver]]\nname = \"a\"\n", ["s.toml:3:1", "second receiver called 'a'"]),
+    ("[[receiver]]\nbase = \"nobody\"\n", ["s.toml:2:8", "receiver.base", "'nobody'"]),
 ]
 
 

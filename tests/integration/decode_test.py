@@ -71,6 +71,21 @@ class DecodeTest(unittest.TestCase):
         self.assertIn(b"no message", done.stderr)
         self.assertEqual(decode(b"").returncode, 0)
 
+    def test_configuration_keys_have_names(self):
+        payload = bytes.fromhex("068a0f00" "00010000" "01002130" "c800" "ffff7710" "01")
+        first = second = 0
+        for byte in payload:
+            first = (first + byte) & 0xFF
+            second = (second + first) & 0xFF
+        done = decode(b"\xb5\x62" + payload + bytes([first, second]), "--format", "json")
+        pairs = json.loads(done.stdout.splitlines()[0])["fields"]["pairs"]
+        self.assertEqual(pairs, [{"key": 0x30210001, "name": "CFG-RATE-MEAS", "value": 200},
+                                 {"key": 0x1077FFFF, "name": None, "value": 1}])
+
+    def test_a_refusal_is_one_line(self):
+        done = decode(b"nothing in here\n")
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
     def test_gzip(self):
         with open_folder() as folder:
             path = pathlib.Path(folder, "log.gz")

@@ -1,8 +1,13 @@
-/// Every UBX message that a receiver sends and that has a layout.
+/// Every UBX message that has a layout: those that a receiver sends, and those that set it.
 #pragma once
 
 #include <optional>
 
+#include "skyloop/protocol/ubx_cfg.hpp"
+#include "skyloop/protocol/ubx_cfg_hardware.hpp"
+#include "skyloop/protocol/ubx_cfg_navigation.hpp"
+#include "skyloop/protocol/ubx_cfg_output.hpp"
+#include "skyloop/protocol/ubx_cfg_values.hpp"
 #include "skyloop/protocol/ubx_hardware.hpp"
 #include "skyloop/protocol/ubx_inertial.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
@@ -29,6 +34,12 @@ struct UbxTypes {
         return bytes;
     }
 
+    /// Calls the function with a fresh message of every type.
+    template <class Function>
+    static void for_each(const Function& function) {
+        (function(Message{}), ...);
+    }
+
 private:
     template <class M>
     static void try_one(const UbxFrameView& frame, std::optional<Bytes>& bytes) {
@@ -46,5 +57,11 @@ using UbxOutputTypes =
              MonMsgpp, MonRxbuf, MonTxbuf, MonHw, MonHwLong, MonHwShort, MonHw2, MonRxr, MonPatch, MonGnss, MonSpan,
              MonComms, MonHw3, MonRf, MonSys, TimTp, TimTm2, TimVrfy, MgaAck, SecUniqid, SecSig1, SecSig2, SecSiglog,
              EsfStatus, HnrPvt, HnrAtt, HnrIns>;
+
+/// Every UBX message of settings that has a layout, questions among them.
+using UbxSettingTypes = UbxTypes<CfgPrtPoll, CfgPrt, CfgMsgPoll, CfgMsgCurrentPort, CfgMsg, CfgRate, CfgNav5, CfgGnss,
+                                 CfgCfg, CfgRst, CfgTp5, CfgItfm, CfgPms, CfgRxm, CfgAnt, CfgLogfilter, UpdSos,
+                                 UpdSosStatus, CfgNavx5, CfgSbas, CfgOdo, CfgDgnss, CfgTmode3, CfgInf, CfgNmeaShort,
+                                 CfgNmeaV0, CfgNmea, CfgUsb, CfgValset, CfgValgetPoll, CfgValget, CfgValdel>;
 
 }  // namespace skyloop

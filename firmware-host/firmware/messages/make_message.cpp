@@ -18,6 +18,8 @@ std::vector<Bytes> make_message(UbxMessageId message, const ReportContext& conte
         case 0xF0:
         case 0xF1:
             return make_nmea_message(message, context);
+        case 0xF5:
+            return make_rtcm_message(message, context);
         default:
             return {};
     }

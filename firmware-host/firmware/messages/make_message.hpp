@@ -9,7 +9,7 @@
 namespace skyloop::firmware {
 
 /// The whole frames or sentences of one message, most often one: GSV has pages, RXM-SFRBX one for each subframe. Empty
-/// when there is nothing to say, or the message is not known. Classes F0 and F1 are NMEA and PUBX.
+/// when there is nothing to say, or the message is not known. Classes F0, F1 and F5 are NMEA, PUBX and RTCM.
 std::vector<Bytes> make_message(UbxMessageId message, const ReportContext& context);
 
 /// Of the classes NAV and TIM.
@@ -22,6 +22,9 @@ std::vector<Bytes> make_raw_message(UbxMessageId message, const ReportContext& c
 std::vector<Bytes> make_monitor_message(UbxMessageId message, const ReportContext& context);
 /// Of the classes F0 (NMEA) and F1 (PUBX 00, 03, 04).
 std::vector<Bytes> make_nmea_message(UbxMessageId message, const ReportContext& context);
+/// Of the class F5: RTCM 1005 of a station in fixed mode, MSM4 and MSM7 of GPS, GLONASS, Galileo and BeiDou, and 1230.
+/// Nothing before time is known, for a system without observations and for 1006, 4072.0 and 4072.1.
+std::vector<Bytes> make_rtcm_message(UbxMessageId message, const ReportContext& context);
 
 /// A text for people: level 0 error, 1 warning, 2 notice, 3 test, 4 debug, 7 user; as NMEA TXT and as UBX INF, by what
 /// the port's configuration lets through. A text that begins with "$" is a whole sentence, without checksum.

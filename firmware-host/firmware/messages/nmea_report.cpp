@@ -109,6 +109,14 @@ void add_groups(NmeaReport& r, const std::vector<Constellation>& listed) {
               [](const NmeaGroup& a, const NmeaGroup& b) { return a.system.system_id < b.system.system_id; });
 }
 
+// The solution weighed it and left it out. One below the mask has a residual too, but was never a candidate.
+bool is_considered(const NmeaReport& r, const SatelliteStatus& s) {
+    if (!s.residual || !s.healthy) return false;
+    const ConfigStore& config = r.context.config;
+    return !config.has(key::navspg_min_elev) ||
+           s.elevation.deg() >= static_cast<double>(config.signed_value(key::navspg_min_elev));
+}
+
 // With CFG-NMEA-CONSIDER satellites that the solution looked at and left out are counted too.
 void add_satellites(NmeaReport& r, const std::vector<Constellation>& enabled,
                     const std::vector<Constellation>& listed) {
@@ -118,7 +126,7 @@ void add_satellites(NmeaReport& r, const std::vector<Constellation>& enabled,
     const bool consider = r.context.config.flag(key::nmea_consider);
     for (const SatelliteStatus& s : r.fix().satellites) {
         if (!within(enabled, s)) continue;
-        const bool counted = s.used || (consider && s.residual.has_value());
+        const bool counted = s.used || (consider && is_considered(r, s));
         if (r.solved && counted) ++r.satellites_counted;
         if (!within(listed, s)) continue;
         r.satellites.push_back(s);

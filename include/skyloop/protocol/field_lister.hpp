@@ -1,8 +1,9 @@
 /// Field lists with names: the third use of `fields`, beside writing and reading.
 ///
 /// Names stand in one text, separated by spaces, one for each call's argument in the order of the field list:
-/// `name` as it is; `name*1e-7` or `name*2^-32` scaled; `name!65535` missing when the raw number is 65535; `-name` not
-/// shown; `name[a b c]` a list of groups with those names. A group inside a message takes its names in place.
+/// `name` as it is; `name*1e-7`, `name*4e-2` or `name*2^-32` scaled; `name!65535` missing when the raw number is 65535;
+/// `-name` not shown; `name[a b c]` a list of groups with those names. A group inside a message takes its names in
+/// place.
 #pragma once
 
 #include <array>
@@ -23,6 +24,7 @@ namespace skyloop {
 struct FieldName {
     std::string_view name;
     int decimal_digits = 0;        ///< of the scale: 7 for 1e-7
+    int factor = 1;                ///< of the scale: 4 for 4e-2
     int binary_digits = 0;         ///< 32 for 2^-32
     std::optional<double> absent;  ///< the raw number that means nothing
     bool hidden = false;

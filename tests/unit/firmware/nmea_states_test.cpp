@@ -206,6 +206,10 @@ TEST(NmeaConfiguration, CountsConsideredSatellites) {
     ASSERT_FALSE(rejected.used);
     rejected.residual = Metres(80);
     EXPECT_EQ(messages_of_kind<Gga>(receiver.message(gga_id)).at(0).satellites_used, 12);
+    // A satellite below the mask is not weighed at all, whatever its residual.
+    receiver.config.set(in_ram, key::navspg_min_elev, static_cast<std::uint8_t>(rejected.elevation.deg() + 1));
+    EXPECT_EQ(messages_of_kind<Gga>(receiver.message(gga_id)).at(0).satellites_used, 11);
+    receiver.config.set(in_ram, key::navspg_min_elev, 5);
     receiver.config.set(in_ram, key::nmea_consider, 0);
     EXPECT_EQ(messages_of_kind<Gga>(receiver.message(gga_id)).at(0).satellites_used, 11);
 }

@@ -1,0 +1,169 @@
+// Corrections for others, of a receiver that can be a base: RTCM 1005, MSM4, MSM7 and 1230 (RECEIVER.md 2.5, 4.2).
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+
+#include "firmware/config/config_keys.hpp"
+#include "firmware/messages/field_values.hpp"
+#include "firmware/messages/make_message.hpp"
+#include "skyloop/geo/geodetic.hpp"
+#include "skyloop/gnss/constants.hpp"
+#include "skyloop/protocol/rtcm3.hpp"
+#include "skyloop/protocol/rtcm3_msm.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint32_t rtcm_station_out = 0x30090001;  // CFG-RTCM-DF003_OUT
+constexpr std::uint32_t tmode_mode = 0x20030001, tmode_position_type = 0x20030002;
+constexpr std::uint32_t tmode_ecef = 0x40030003, tmode_ecef_hp = 0x20030006, tmode_geodetic = 0x40030009,
+                        tmode_geodetic_hp = 0x2003000C;
+constexpr std::uint64_t tmode_fixed = 2;
+
+// The messages of observations by their ids in class F5, which are what their numbers have beyond 1000.
+struct MsmOutput {
+    std::uint8_t id;
+    Constellation constellation;
+};
+constexpr std::array msm_outputs{MsmOutput{0x4A, Constellation::gps},     MsmOutput{0x4D, Constellation::gps},
+                                 MsmOutput{0x54, Constellation::glonass}, MsmOutput{0x57, Constellation::glonass},
+                                 MsmOutput{0x5E, Constellation::galileo}, MsmOutput{0x61, Constellation::galileo},
+                                 MsmOutput{0x7C, Constellation::beidou},  MsmOutput{0x7F, Constellation::beidou}};
+
+// DF395: the code that a u-blox receiver tracks (RTCM 10403.3, tables 3.5-91, 3.5-96, 3.5-99, 3.5-108); 0 for none.
+int msm_signal(Constellation constellation, Signal signal) {
+    switch (signal) {
+        case Signal::l1:
+        case Signal::g1:
+        case Signal::b1i:
+            return constellation == Constellation::beidou && signal == Signal::l1 ? 0 : 2;  // 1C 1C 2I
+        case Signal::l2:
+            return 16;  // 2L
+        case Signal::g2:
+        case Signal::b3i:
+            return 8;  // 2C 6I
+        case Signal::e5b:
+            return constellation == Constellation::beidou ? 14 : 15;  // 7I 7Q
+        case Signal::l5:
+            return 23;  // 5Q 5P
+        default:
+            return 0;
+    }
+}
+
+int rtcm_station_of(const ReportContext& context) {
+    return context.config.has(rtcm_station_out) ? static_cast<int>(context.config.value(rtcm_station_out) & 0xFFF) : 0;
+}
+
+GpsTime msm_time(const ReportContext& context) {
+    return std::chrono::round<std::chrono::milliseconds>(context.state.epoch.observations.receive_time);
+}
+
+std::uint32_t msm_epoch(Constellation constellation, const ReportContext& context) {
+    const auto of_week = [](GpsTime time) { return static_cast<std::uint32_t>(week_and_tow(time).tow / 1ms); };
+    const GpsTime time = msm_time(context);
+    if (constellation == Constellation::beidou) return of_week(time - 14s);
+    if (constellation != Constellation::glonass) return of_week(time);
+    constexpr std::uint32_t day_ms = 86'400'000;
+    const std::uint32_t moscow = of_week(time + 3h - std::chrono::seconds(context.state.epoch.fix.leap_seconds));
+    return moscow / day_ms << 27 | moscow % day_ms;
+}
+
+// Ranges are told for a whole millisecond of the receiver's clock.
+Rtcm3MsmCell msm_cell(const Observation& o, double past_millisecond_m) {
+    Rtcm3MsmCell cell;
+    cell.satellite = o.satellite.number;
+    cell.signal = msm_signal(o.satellite.constellation, o.signal);
+    cell.wavelength_m = speed_of_light / o.carrier.value();
+    cell.range_m = o.pseudorange->value() - past_millisecond_m;
+    if (o.carrier_phase) cell.phase_range_m = *o.carrier_phase * cell.wavelength_m - past_millisecond_m;
+    if (o.doppler) cell.phase_range_rate = -o.doppler->value() * cell.wavelength_m;
+    cell.lock_s = o.carrier_phase ? o.lock_time.value() : 0;
+    cell.half_cycle_unknown = !o.half_cycle_resolved;
+    cell.cno_dbhz = o.cn0.value();
+    if (o.satellite.constellation == Constellation::glonass)
+        cell.satellite_info = frequency_id(o.satellite, o.signal, o.carrier);
+    return cell;
+}
+
+std::vector<Rtcm3MsmCell> msm_cells(Constellation constellation, const ReportContext& context) {
+    const Observations& observations = context.state.epoch.observations;
+    const double past_s = std::chrono::duration<double>(observations.receive_time - msm_time(context)).count();
+    std::vector<Rtcm3MsmCell> cells;
+    for (const Observation& o : observations.signals)
+        if (o.satellite.constellation == constellation && o.pseudorange && msm_signal(constellation, o.signal) != 0)
+            cells.push_back(msm_cell(o, past_s * speed_of_light));
+    return cells;
+}
+
+// Whether the port sends a message of observations after this one.
+bool more_follow(std::uint8_t id, const ReportContext& context) {
+    return std::any_of(msm_outputs.begin(), msm_outputs.end(), [&](const MsmOutput& other) {
+        const auto rate = rate_key(UbxMessageId{0xF5, other.id}, context.port);
+        return other.id > id && rate && context.config.has(*rate) && context.config.value(*rate) > 0 &&
+               !msm_cells(other.constellation, context).empty();
+    });
+}
+
+Bytes observations_message(const MsmOutput& output, const ReportContext& context) {
+    Rtcm3MsmObservations message;
+    message.number = 1000 + output.id;
+    message.station = rtcm_station_of(context);
+    message.epoch = msm_epoch(output.constellation, context);
+    message.more = more_follow(output.id, context);
+    message.cells = msm_cells(output.constellation, context);
+    return encode(message);
+}
+
+// A whole number and what is beyond it in hundredths.
+double split_item(const ConfigStore& config, std::uint32_t whole, std::uint32_t beyond) {
+    return static_cast<double>(config.signed_value(whole)) + static_cast<double>(config.signed_value(beyond)) * 1e-2;
+}
+
+// Only a receiver that has been told where it stands says so (CFG-TMODE).
+std::vector<Bytes> station_message(const ReportContext& context) {
+    const ConfigStore& config = context.config;
+    if (!config.has(tmode_mode) || config.value(tmode_mode) != tmode_fixed) return {};
+    std::array<double, 3> cm_or_1e7{};
+    const bool geodetic = config.flag(tmode_position_type);
+    for (std::uint32_t i = 0; i < 3; ++i)
+        cm_or_1e7[i] = geodetic ? split_item(config, tmode_geodetic + i, tmode_geodetic_hp + i)
+                                : split_item(config, tmode_ecef + i, tmode_ecef_hp + i);
+    Rtcm3Station station;
+    station.station = rtcm_station_of(context);
+    for (std::size_t i = 0; i < 3; ++i)
+        station.position[i] = std::llround(cm_or_1e7[i] * 100);
+    if (geodetic) {
+        const Geodetic place = Geodetic::degrees(cm_or_1e7[0] * 1e-7, cm_or_1e7[1] * 1e-7, cm_or_1e7[2] * 1e-2);
+        const auto metres = to_ecef(place).vector();
+        for (std::size_t i = 0; i < 3; ++i)
+            station.position[i] = std::llround(metres[static_cast<Eigen::Index>(i)] * 1e4);
+    }
+    return {encode(station)};
+}
+
+}  // namespace
+
+std::vector<Bytes> make_rtcm_message(UbxMessageId message, const ReportContext& context) {
+    constexpr std::uint8_t id_1005 = 0x05, id_1230 = 0xE6;
+    if (message.id == id_1005) return station_message(context);
+    if (!context.state.time.week_and_tow || context.state.epoch.observations.signals.empty()) return {};
+    if (message.id == id_1230) {
+        // As a ZED-F9P sends it: the observations are aligned, and no bias is told.
+        Rtcm3GlonassBiases biases;
+        biases.station = rtcm_station_of(context);
+        biases.aligned = true;
+        return {encode(biases)};
+    }
+    const auto output = std::find_if(msm_outputs.begin(), msm_outputs.end(),
+                                     [&](const MsmOutput& candidate) { return candidate.id == message.id; });
+    if (output == msm_outputs.end()) return {};
+    Bytes frame = observations_message(*output, context);
+    if (frame.empty()) return {};
+    return {std::move(frame)};
+}
+
+}  // namespace skyloop::firmware

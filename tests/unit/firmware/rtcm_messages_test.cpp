@@ -1,0 +1,101 @@
+#include <gtest/gtest.h>
+
+#include "skyloop/geo/geodetic.hpp"
+#include "skyloop/protocol/rtcm3.hpp"
+#include "ubx_reports.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr UbxMessageId rtcm_1005{0xF5, 0x05}, rtcm_1077{0xF5, 0x4D}, rtcm_1087{0xF5, 0x57}, rtcm_1097{0xF5, 0x61},
+    rtcm_1127{0xF5, 0x7F}, rtcm_1230{0xF5, 0xE6};
+
+Observation rtcm_signal(SatelliteId satellite, Signal signal) {
+    Observation o;
+    o.satellite = satellite;
+    o.signal = signal;
+    o.carrier = carrier_frequency(signal);
+    o.cn0 = DbHz(41);
+    o.pseudorange = Metres(2.2e7);
+    o.carrier_phase = 1.15e8;
+    o.doppler = Hertz(-1000);
+    o.lock_time = Seconds(5);
+    return o;
+}
+
+UbxReport reference() {
+    UbxReport f9(9, "2024-03-05T22:49:23.000Z");
+    f9.state.epoch.observations.receive_time = f9.state.epoch.fix.time + 200us;
+    f9.state.epoch.observations.signals = {
+        rtcm_signal({Constellation::gps, 1}, Signal::l1), rtcm_signal({Constellation::gps, 1}, Signal::l2),
+        rtcm_signal({Constellation::glonass, 5}, Signal::g1), rtcm_signal({Constellation::beidou, 63}, Signal::b1i)};
+    return f9;
+}
+
+Rtcm3MsmHeader head_of(const UbxReport& f9, UbxMessageId id) {
+    const auto frames = make_rtcm_message(id, f9.context());
+    EXPECT_EQ(frames.size(), 1U);
+    if (frames.empty()) return {};
+    return decode_msm_header(*parse_rtcm3(frames.front())).value_or(Rtcm3MsmHeader{});
+}
+
+TEST(RtcmMessages, ObservationsAreInTheTimeOfTheirSystem) {
+    const UbxReport f9 = reference();
+    const auto gps = head_of(f9, rtcm_1077);
+    // Tuesday 22:49:23 UTC and 18 leap seconds.
+    const std::uint32_t tuesday = 2 * 86'400'000, of_day = (22 * 3600 + 49 * 60 + 23) * 1000;
+    EXPECT_EQ(gps.number, 1077);
+    EXPECT_EQ(gps.epoch, tuesday + of_day + 18'000);
+    EXPECT_EQ(gps.satellites, std::uint64_t{1} << 63);
+    EXPECT_EQ(gps.signals, 1U << 30 | 1U << 16);
+    EXPECT_EQ(head_of(f9, rtcm_1127).epoch, tuesday + of_day + 4'000);
+    // Moscow is three hours ahead: already Wednesday.
+    EXPECT_EQ(head_of(f9, rtcm_1087).epoch, 3U << 27 | (of_day + 3 * 3'600'000 - 86'400'000));
+    EXPECT_TRUE(make_rtcm_message(rtcm_1097, f9.context()).empty());
+}
+
+TEST(RtcmMessages, AllButTheLastOfThePortSayThatMoreFollow) {
+    UbxReport f9 = reference();
+    EXPECT_FALSE(head_of(f9, rtcm_1077).more);
+    f9.config.set(in_ram, *rate_key(rtcm_1127, PortId::uart1), 1);
+    EXPECT_TRUE(head_of(f9, rtcm_1077).more);
+    EXPECT_FALSE(head_of(f9, rtcm_1127).more);
+}
+
+TEST(RtcmMessages, NothingIsTrueBeforeTimeIsKnown) {
+    UbxReport f9 = reference();
+    f9.state.time = {};
+    for (const UbxMessageId id : {rtcm_1005, rtcm_1077, rtcm_1230})
+        EXPECT_TRUE(make_rtcm_message(id, f9.context()).empty());
+}
+
+// A ZED-F9P's 1230, as its users print it.
+TEST(RtcmMessages, BiasesAreThoseOfAZedF9p) {
+    const Bytes captured{0xD3, 0x00, 0x04, 0x4C, 0xE0, 0x00, 0x80, 0xED, 0xED, 0xD6};
+    EXPECT_EQ(make_rtcm_message(rtcm_1230, reference().context()), std::vector<Bytes>{captured});
+}
+
+TEST(RtcmMessages, OnlyAFixedStationTellsWhereItStands) {
+    UbxReport f9 = reference();
+    EXPECT_TRUE(make_rtcm_message(rtcm_1005, f9.context()).empty());
+    f9.config.set(in_ram, 0x20030001, 2);
+    f9.config.set(in_ram, 0x40030003, 378'000'000);
+    f9.config.set(in_ram, 0x20030006, 0xFD);  // -3
+    const auto station = [&] {
+        return decode_station(*parse_rtcm3(make_rtcm_message(rtcm_1005, f9.context()).at(0))).value();
+    };
+    EXPECT_EQ(station().position[0], 37'799'999'997);
+    f9.config.set(in_ram, 0x20030002, 1);
+    f9.config.set(in_ram, 0x40030009, 471'234'567);
+    f9.config.set(in_ram, 0x2003000C, 89);
+    f9.config.set(in_ram, 0x4003000A, 87'654'321);
+    f9.config.set(in_ram, 0x4003000B, 51'234);
+    const Eigen::Vector3d place = to_ecef(Geodetic::degrees(47.123456789, 8.7654321, 512.34)).vector();
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(static_cast<double>(station().position[static_cast<std::size_t>(i)]) * 1e-4, place[i], 1e-4);
+}
+
+}  // namespace
+}  // namespace skyloop::firmware

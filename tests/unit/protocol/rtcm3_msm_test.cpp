@@ -1,0 +1,136 @@
+#include "skyloop/protocol/rtcm3_msm.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "skyloop/base/bit_field.hpp"
+#include "skyloop/gnss/constants.hpp"
+#include "skyloop/protocol/rtcm3.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr double wavelength = speed_of_light / 1575.42e6;
+
+Rtcm3MsmCell msm_test_cell(int satellite, int signal, double range) {
+    Rtcm3MsmCell cell;
+    cell.satellite = satellite;
+    cell.signal = signal;
+    cell.range_m = range;
+    cell.phase_range_m = range + 3.25;
+    cell.phase_range_rate = -512.3456;
+    cell.wavelength_m = wavelength;
+    cell.lock_s = 12.345;
+    cell.cno_dbhz = 44.3;
+    return cell;
+}
+
+constexpr std::size_t fixed_header_bits = 169;
+
+// The one cell of an MSM7 as its fields say (RTCM 10403.3, tables 3.5-79 and 3.5-81).
+struct ReadCell {
+    double range_m, phase_m, rate;
+    std::uint64_t lock, half_cycle;
+    double cno;
+};
+ReadCell only_cell(const Bytes& frame) {
+    const auto message = parse_rtcm3(frame);
+    BitReader bits(message->payload);
+    bits.skip(fixed_header_bits + 1);
+    const double whole_ms = static_cast<double>(bits.get(8));
+    bits.skip(4);
+    const double rough = whole_ms + static_cast<double>(bits.get(10)) / 1024;
+    const double rough_rate = static_cast<double>(bits.get_signed(14));
+    const double ms = speed_of_light / 1000;
+    ReadCell cell{};
+    cell.range_m = (rough + static_cast<double>(bits.get_signed(20)) * std::exp2(-29)) * ms;
+    cell.phase_m = (rough + static_cast<double>(bits.get_signed(24)) * std::exp2(-31)) * ms;
+    cell.lock = bits.get(10);
+    cell.half_cycle = bits.get(1);
+    cell.cno = static_cast<double>(bits.get(10)) / 16;
+    cell.rate = rough_rate + static_cast<double>(bits.get_signed(15)) * 1e-4;
+    EXPECT_TRUE(bits.ok());
+    return cell;
+}
+
+TEST(Rtcm3Msm, TellsOneCellToTheResolutionOfItsFields) {
+    Rtcm3MsmObservations m;
+    m.cells = {msm_test_cell(7, 2, 22145739.3983)};
+    const ReadCell cell = only_cell(encode(m));
+    EXPECT_NEAR(cell.range_m, 22145739.3983, 3e-4);
+    EXPECT_NEAR(cell.phase_m, 22145742.6483, 8e-5);
+    EXPECT_NEAR(cell.rate, -512.3456, 6e-5);
+    EXPECT_EQ(cell.lock, 304U);  // 256 ms a step from 288 for 8192 ms on (table 3.5-75)
+    EXPECT_EQ(cell.half_cycle, 0U);
+    EXPECT_NEAR(cell.cno, 44.3, 0.032);
+}
+
+TEST(Rtcm3Msm, HeaderNamesSatellitesSignalsAndCells) {
+    Rtcm3MsmObservations m;
+    m.number = 1084;
+    m.station = 777;
+    m.epoch = 0x1234567;
+    m.more = true;
+    m.cells = {msm_test_cell(9, 8, 2.1e7), msm_test_cell(3, 2, 2.2e7), msm_test_cell(9, 2, 2.1e7)};
+    const Bytes frame = encode(m);
+    const auto header = decode_msm_header(*parse_rtcm3(frame));
+    ASSERT_TRUE(header);
+    EXPECT_EQ(header->number, 1084);
+    EXPECT_EQ(header->station, 777);
+    EXPECT_EQ(header->epoch, 0x1234567U);
+    EXPECT_TRUE(header->more);
+    EXPECT_EQ(header->satellites, std::uint64_t{1} << 61 | std::uint64_t{1} << 55);
+    EXPECT_EQ(header->signals, 1U << 30 | 1U << 24);
+    EXPECT_EQ(header->cells, (std::vector<bool>{true, false, true, true}));
+    // Two satellites of 18 bits and three cells of 48 (tables 3.5-78 and 3.5-80).
+    EXPECT_EQ(frame.size(), 6 + (fixed_header_bits + 4 + 2 * 18 + 3 * 48 + 7) / 8);
+}
+
+TEST(Rtcm3Msm, APhaseFarFromTheRangeComesNearerByWholeCycles) {
+    Rtcm3MsmObservations m;
+    m.cells = {msm_test_cell(7, 2, 2.2e7)};
+    m.cells[0].phase_range_m = 2.2e7 - 123456.789;
+    const ReadCell cell = only_cell(encode(m));
+    EXPECT_LT(std::abs(cell.phase_m - 2.2e7), 600);
+    const double cycles = (cell.phase_m - *m.cells[0].phase_range_m) / wavelength;
+    EXPECT_NEAR(cycles, std::round(cycles), 1e-3);
+}
+
+TEST(Rtcm3Msm, WithoutAPhaseTheFieldsSayThatThereIsNone) {
+    Rtcm3MsmObservations m;
+    m.cells = {msm_test_cell(7, 2, 2.2e7)};
+    m.cells[0].phase_range_m.reset();
+    m.cells[0].phase_range_rate.reset();
+    const auto frame = encode(m);
+    BitReader bits(parse_rtcm3(frame)->payload);
+    bits.skip(fixed_header_bits + 1 + 8 + 4 + 10);
+    EXPECT_EQ(bits.get_signed(14), -8192);
+    bits.skip(20);
+    EXPECT_EQ(bits.get_signed(24), -8388608);
+    bits.skip(10 + 1 + 10);
+    EXPECT_EQ(bits.get_signed(15), -16384);
+}
+
+TEST(Rtcm3Msm, NeverHasMoreThan64Cells) {
+    Rtcm3MsmObservations m;
+    for (int satellite = 1; satellite <= 40; ++satellite)
+        for (const int signal : {2, 16})
+            m.cells.push_back(msm_test_cell(satellite, signal, 2.2e7 + satellite));
+    const Bytes frame = encode(m);
+    const auto header = decode_msm_header(*parse_rtcm3(frame));
+    ASSERT_TRUE(header);
+    EXPECT_EQ(header->satellite_count(), 32);
+    EXPECT_EQ(header->cells.size(), 64U);
+}
+
+TEST(Rtcm3Msm, OtherKindsAndNothingAtAllAreNoMessage) {
+    Rtcm3MsmObservations m;
+    EXPECT_TRUE(encode(m).empty());
+    m.cells = {msm_test_cell(7, 2, 2.2e7)};
+    m.number = 1075;
+    EXPECT_TRUE(encode(m).empty());
+}
+
+}  // namespace
+}  // namespace skyloop

@@ -1,0 +1,91 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "skyloop/protocol/decoded_message.hpp"
+#include "skyloop/protocol/message_listing.hpp"
+#include "skyloop/protocol/ubx_names.hpp"
+#include "support/ubx_message_types.hpp"
+
+namespace skyloop {
+namespace {
+
+template <class Message>
+std::string listing_of(const Message& message) {
+    return text_line(decode_piece({StreamKind::ubx, encode_frame(message)}));
+}
+
+// A message with a layout but without a listing would show as hexadecimal digits.
+template <class Message>
+void expect_listed(Message message) {
+    if constexpr (requires { message.ports.resize(1); }) message.ports.resize(1);
+    if constexpr (requires { message.protocols.resize(1); }) message.protocols.resize(1);
+    if constexpr (requires { message.unique_id.resize(5); }) message.unique_id.resize(5);
+    const Bytes payload = encode_payload(message);
+    const auto listings = ubx_listings();
+    EXPECT_TRUE(std::any_of(
+        listings.begin(), listings.end(),
+        [&](const UbxListing& listing) { return listing.id == Message::message_id && listing.list(payload); }))
+        << to_string(Message::message_id) << " of " << payload.size() << " bytes";
+}
+
+TEST(UbxListing, EveryMessageThatLeavesAReceiverHasOne) {
+    UbxOutputTypes::for_each([](const auto& message) { expect_listed(message); });
+}
+
+TEST(UbxListing, EveryMessageOfSettingsHasOne) {
+    CfgValget answer;
+    answer.version = 1;
+    expect_listed(answer);
+    UbxSettingTypes::for_each([](const auto& message) {
+        if constexpr (!std::is_same_v<std::decay_t<decltype(message)>, CfgValget>) expect_listed(message);
+    });
+}
+
+// RECEIVER.md 3.2: both forms are 12 bytes long when two centre frequencies are there.
+TEST(UbxListing, TheVersionTellsTheFormsOfSecSigApart) {
+    SecSig1 old;
+    old.jam_flags = 3;
+    EXPECT_EQ(listing_of(old), "UBX SEC-SIG version=1 jamming_flags=3 spoofing_flags=0");
+    SecSig2 modern;
+    modern.sig_sec_flags = 9;
+    modern.centre_frequencies = {1575420, 1227600};
+    EXPECT_EQ(encode_payload(modern).size(), encode_payload(old).size());
+    EXPECT_EQ(listing_of(modern), "UBX SEC-SIG version=2 flags=9 centre_frequencies=[1575420 1227600]");
+}
+
+TEST(UbxListing, ScalesNeedNotBePowersOfTen) {
+    RxmMeasx m;
+    m.gps_tow_acc = 24;
+    RxmMeasxItem satellite;
+    satellite.doppler_ms = -3;
+    satellite.doppler_hz = 7;
+    satellite.code_phase = 1U << 20;
+    m.satellites = {satellite};
+    const std::string text = listing_of(m);
+    EXPECT_NE(text.find("gps_tow_acc_ms=1.5 "), text.npos) << text;
+    EXPECT_NE(text.find("doppler_mps=-0.12 doppler_hz=1.4 "), text.npos) << text;
+    EXPECT_NE(text.find("code_phase_ms=0.5 "), text.npos) << text;
+}
+
+TEST(UbxListing, SettingsOfTheReferenceStationAndTheSentences) {
+    CfgTmode3 mode;
+    mode.flags = 1;
+    mode.svin_min_dur = 300;
+    mode.svin_acc_limit = 50000;
+    EXPECT_EQ(listing_of(mode),
+              "UBX CFG-TMODE3 version=0 flags=1 position=[0 0 0] position_hp=[0 0 0] position_acc_m=0 "
+              "survey_duration_s=300 survey_acc_m=5");
+    CfgNmeaShort sentences;
+    sentences.core.nmea_version = 0x23;
+    EXPECT_EQ(listing_of(sentences), "UBX CFG-NMEA filter=0 nmea_version=35 listed_satellites=0 flags=0");
+}
+
+TEST(UbxListing, AttitudeIsInDegrees) {
+    NavAtt attitude;
+    attitude.angle = {100000, -250000, 35900000};
+    EXPECT_NE(listing_of(attitude).find(" roll_pitch_heading_deg=[1 -2.5 359] "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace skyloop
