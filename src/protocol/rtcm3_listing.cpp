@@ -3,68 +3,45 @@
 #include <array>
 #include <string>
 
+#include "skyloop/base/bit_field.hpp"
 #include "skyloop/protocol/message_listing.hpp"
 
 namespace skyloop {
 namespace {
 
-// Reads numbers of any width, most significant bit first (RTCM 10403.3, section 3.3). Beyond the end there are zeros.
-class BitReader {
-public:
-    explicit BitReader(ByteSpan bytes) : bytes_(bytes) {}
-
-    std::uint64_t bits(unsigned count) {
-        std::uint64_t value = 0;
-        for (unsigned i = 0; i < count; ++i, ++at_) {
-            const std::size_t byte = at_ / 8;
-            if (byte >= bytes_.size()) complete_ = false;
-            const unsigned bit = byte < bytes_.size() ? bytes_[byte] >> (7 - at_ % 8) & 1u : 0u;
-            value = value << 1 | bit;
-        }
-        return value;
-    }
-    std::int64_t signed_bits(unsigned count) {
-        const std::uint64_t value = bits(count);
-        return static_cast<std::int64_t>(value << (64 - count)) >> (64 - count);
-    }
-    std::string text() {
-        std::string characters;
-        for (std::uint64_t left = bits(8); left > 0 && complete_; --left)
-            characters += static_cast<char>(bits(8));
-        return characters;
-    }
-    [[nodiscard]] bool complete() const { return complete_; }
-
-private:
-    ByteSpan bytes_;
-    std::size_t at_ = 0;
-    bool complete_ = true;
-};
+// A text with its length in the byte before (RTCM 10403.3, DF029 and its like).
+std::string counted_text(BitReader& reader) {
+    std::string characters;
+    for (std::uint64_t left = reader.get(8); left > 0 && reader.ok(); --left)
+        characters += static_cast<char>(reader.get(8));
+    return characters;
+}
 
 class RtcmLister {
 public:
     explicit RtcmLister(ByteSpan payload) : reader_(payload) {}
 
     std::uint64_t number(std::string_view name, unsigned bits) {
-        const std::uint64_t value = reader_.bits(bits);
+        const std::uint64_t value = reader_.get(static_cast<int>(bits));
         fields_.push_back({std::string(name), {value}});
         return value;
     }
     void scaled(std::string_view names, unsigned bits, bool is_signed) {
         const FieldName name = next_field_name(names);
-        fields_.push_back({std::string(name.name), is_signed ? scaled_value(reader_.signed_bits(bits), name)
-                                                             : scaled_value(reader_.bits(bits), name)});
+        fields_.push_back({std::string(name.name), is_signed
+                                                       ? scaled_value(reader_.get_signed(static_cast<int>(bits)), name)
+                                                       : scaled_value(reader_.get(static_cast<int>(bits)), name)});
     }
-    void text(std::string_view name) { fields_.push_back({std::string(name), {reader_.text()}}); }
+    void text(std::string_view name) { fields_.push_back({std::string(name), {counted_text(reader_)}}); }
     /// The numbers of the bits that are set, the first being 1.
     void mask(std::string_view name, unsigned bits) {
         std::vector<DecodedValue> set;
         for (unsigned i = 1; i <= bits; ++i)
-            if (reader_.bits(1) != 0) set.push_back({std::uint64_t{i}});
+            if (reader_.get(1) != 0) set.push_back({std::uint64_t{i}});
         fields_.push_back({std::string(name), {std::move(set)}});
     }
-    void skip(unsigned bits) { reader_.bits(bits); }
-    [[nodiscard]] bool complete() const { return reader_.complete(); }
+    void skip(unsigned bits) { reader_.skip(bits); }
+    [[nodiscard]] bool complete() const { return reader_.ok(); }
     std::vector<DecodedField> take() { return std::move(fields_); }
 
 private:

@@ -58,7 +58,7 @@ public:
         for (int i = 0; i < width; ++i, ++at_) {
             const bool inside = at_ / 8 < bytes_.size();
             ok_ = ok_ && inside;
-            value = value << 1 | (inside ? bytes_[at_ / 8] >> (7 - at_ % 8) & 1u : 0u);
+            value = value << 1 | (inside ? static_cast<unsigned>(bytes_[at_ / 8]) >> (7 - at_ % 8) & 1u : 0u);
         }
         return value;
     }
