@@ -13,7 +13,6 @@
 namespace skyloop::firmware {
 namespace {
 
-
 bool pubx_port_exists(const BoardProfile& board, PortId port) {
     return std::find(board.ports.begin(), board.ports.end(), port) != board.ports.end();
 }
@@ -28,8 +27,7 @@ bool sends_message(const BoardProfile& board, UbxMessageId message) {
 void set_pubx_rates(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store) {
     constexpr int most = 255;
     const OutputMessage* message = find_output_message(sentence.field(1));
-    if (message == nullptr || message->id.message_class != class_nmea || !sends_message(board, message->id))
-        return;
+    if (message == nullptr || message->id.message_class != class_nmea || !sends_message(board, message->id)) return;
     std::array<int, port_count> rates{};
     for (std::size_t i = 0; i < rates.size(); ++i) {
         const auto rate = whole_number(sentence.field(2 + i));
@@ -74,8 +72,8 @@ void set_port_by_pubx(const SentenceView& sentence, const BoardProfile& board, C
         store.set(in_ram, item, static_cast<std::uint64_t>(*baud));
     }
     set_pubx_protocols(store, port, *in, true);
-    constexpr std::uint32_t rtcm2_bit = 2;
-    store.set(in_ram, legacy_key::rtcm2_in(port), *in >> rtcm2_bit & 1);
+    constexpr unsigned bit_of_rtcm2 = 2;
+    store.set(in_ram, legacy_key::rtcm2_in(port), *in >> bit_of_rtcm2 & 1);
     set_pubx_protocols(store, port, *out, false);
 }
 
