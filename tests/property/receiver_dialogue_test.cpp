@@ -5,6 +5,7 @@
 #include <malloc.h>
 
 #include <map>
+#include <ostream>
 
 #include "skyloop/base/random.hpp"
 #include "skyloop/protocol/nmea_sentence.hpp"
@@ -235,6 +236,9 @@ struct SentenceDialogue {
     const char* answer;  ///< how it begins
     std::uint32_t baud;
 };
+
+// GoogleTest shows the parameter, and CTest makes names of it.
+void PrintTo(const SentenceDialogue& dialogue, std::ostream* out) { *out << dialogue.board; }
 
 class SentenceEndurance : public testing::TestWithParam<SentenceDialogue> {};
 
