@@ -14,10 +14,10 @@ namespace skyloop {
 /// Writes fields one after the other.
 class BitWriter {
 public:
-    /// The lowest `width` (0 … 64) bits of `value`; of a negative number its two's complement.
+    /// The lowest `width` bits of `value`; of a negative number its two's complement. Beyond 64 bits they are 0.
     void put(std::uint64_t value, int width) {
         for (int bit = width - 1; bit >= 0; --bit)
-            bits_.push_back((value >> bit & 1) != 0);
+            bits_.push_back(bit < 64 && (value >> bit & 1) != 0);
     }
     void put_signed(std::int64_t value, int width) { put(static_cast<std::uint64_t>(value), width); }
     [[nodiscard]] std::size_t size() const { return bits_.size(); }
