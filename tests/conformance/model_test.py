@@ -15,7 +15,7 @@ GOOD = [("px4", "ublox-m9", "garbage"), ("px4", "ublox-m10", "whole", "deaf_at_f
         ("kumar_ros", "ublox-m8", "whole"), ("sparkfun", "ublox-m10", "whole"), ("ubloxcfg", "ublox-m9", "whole"),
         ("gpsd_probes", "ublox-m8", "whole"), ("gpsd_probes", "mtk3339", "whole"),
         ("px4_nmea", "nmea-generic", "whole"),
-        ("ardupilot_nmea", "mtk3339", "whole")]
+        ("ardupilot_nmea", "nmea-generic", "whole")]
 # Client, board, what the receiver does wrong, and words of the failure.
 BAD = [("px4", "ublox-m9", "twice_acked", "no acknowledgement that was not asked for"),
        ("px4", "ublox-m9", "wrong_date", "expected the date"),
