@@ -113,6 +113,10 @@ const LeapSeconds& LeapSeconds::announced() {
 
 LeapSeconds LeapSeconds::constant(int offset) { return LeapSeconds({{GpsTime::min(), offset}}); }
 
+LeapSeconds LeapSeconds::believed(GpsTime time, int offset) {
+    return announced().offset(time) == offset ? announced() : constant(offset);
+}
+
 int LeapSeconds::offset(GpsTime time) const {
     // From the end: nearly every question is about a time after the last step.
     for (auto step = steps_.rbegin(); step != steps_.rend(); ++step)

@@ -11,11 +11,6 @@ using namespace std::chrono_literals;
 
 constexpr Nanoseconds utc_rounding = 10ms;
 
-LeapSeconds leap_seconds_of(const ReportedTime& now) {
-    const LeapSeconds& announced = LeapSeconds::announced();
-    return announced.offset(now.time) == now.leap_seconds ? announced : LeapSeconds::constant(now.leap_seconds);
-}
-
 // Keys of CFG-SIGNAL (RECEIVER.md 3.5.1).
 constexpr std::uint32_t signal_bds_enabled = 0x10310022, signal_bds_b1i = 0x1031000D, signal_bds_b1c = 0x1031000F;
 
@@ -38,9 +33,9 @@ std::uint8_t galileo_signal(Signal signal) {
     return 0;  // E1 C
 }
 
-// Satellites in geostationary orbits send D2: C01 to C05 and from C59 on (BeiDou B1I ICD 3.0, table 4-1).
-std::uint8_t beidou_signal(int number, Signal signal, bool b1c_for_b1i) {
-    const bool d2 = number <= 5 || number >= 59;
+// Satellites in geostationary orbits send D2 (BeiDou B1I ICD 3.0, 5.1).
+std::uint8_t beidou_signal(SatelliteId satellite, Signal signal, bool b1c_for_b1i) {
+    const bool d2 = is_beidou_geo(satellite);
     switch (signal) {
         case Signal::e5b:
             return d2 ? 3 : 2;
@@ -84,7 +79,7 @@ UtcFields utc_fields(const ReportedTime& now) {
     const Nanoseconds since_epoch = now.time.time_since_epoch() + utc_rounding / 2;
     const GpsTime rounded(since_epoch - ((since_epoch % utc_rounding) + utc_rounding) % utc_rounding);
     UtcFields fields;
-    fields.utc = to_utc(rounded, leap_seconds_of(now));
+    fields.utc = to_utc(rounded, LeapSeconds::believed(now.time, now.leap_seconds));
     fields.nano =
         static_cast<std::int32_t>(fields.utc.nanosecond) + static_cast<std::int32_t>((now.time - rounded).count());
     return fields;
@@ -177,7 +172,7 @@ std::uint8_t signal_id(SatelliteId satellite, Signal signal, bool b1c_for_b1i) {
         case Constellation::galileo:
             return galileo_signal(signal);
         case Constellation::beidou:
-            return beidou_signal(satellite.number, signal, b1c_for_b1i);
+            return beidou_signal(satellite, signal, b1c_for_b1i);
         case Constellation::glonass:
             return signal == Signal::g2 ? 2 : 0;
         default:

@@ -213,11 +213,7 @@ NmeaFormat nmea_format(const BoardProfile& board, const ConfigStore& config) {
 
 UtcTime reported_utc(const ReportContext& context) {
     const Fix& fix = context.state.epoch.fix;
-    // During an announced leap second the receiver counts to 60; with any other belief it just subtracts.
-    const LeapSeconds& announced = LeapSeconds::announced();
-    const bool believed = announced.offset(fix.time) == fix.leap_seconds;
-    return rounded_utc(fix.time, context.board.time_decimals,
-                       believed ? announced : LeapSeconds::constant(fix.leap_seconds));
+    return rounded_utc(fix.time, context.board.time_decimals, LeapSeconds::believed(fix.time, fix.leap_seconds));
 }
 
 NmeaReport nmea_report(const ReportContext& context) {

@@ -12,13 +12,6 @@ namespace {
 constexpr std::int64_t gps_epoch_posix_s = 315964800;
 constexpr std::uint16_t every_ignore_flag = 0xFF;
 
-const LeapSeconds& believed_leap_seconds(const Fix& fix, LeapSeconds& constant) {
-    const LeapSeconds& announced = LeapSeconds::announced();
-    if (announced.offset(fix.time) == fix.leap_seconds) return announced;
-    constant = LeapSeconds::constant(fix.leap_seconds);
-    return constant;
-}
-
 void put_msp_position(const Fix& fix, MspSensorGps& to) {
     to.h_acc = field<std::uint16_t>(fix.horizontal_accuracy.value() * 100);
     to.v_acc = field<std::uint16_t>(fix.vertical_accuracy.value() * 100);
@@ -33,8 +26,7 @@ void put_msp_position(const Fix& fix, MspSensorGps& to) {
 }
 
 void put_msp_clock(const Fix& fix, MspSensorGps& to) {
-    LeapSeconds constant({});
-    const UtcTime utc = to_utc(to_gps_time(gps_stamp(fix.time)), believed_leap_seconds(fix, constant));
+    const UtcTime utc = to_utc(to_gps_time(gps_stamp(fix.time)), LeapSeconds::believed(fix.time, fix.leap_seconds));
     to.year = static_cast<std::uint16_t>(utc.year);
     to.month = static_cast<std::uint8_t>(utc.month);
     to.day = static_cast<std::uint8_t>(utc.day);

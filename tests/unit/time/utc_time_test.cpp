@@ -136,6 +136,14 @@ TEST(LeapSecondSteps, AConstantHoldsForAllTime) {
     EXPECT_EQ(to_utc(to_gps_time(utc, sixteen), sixteen), utc);
 }
 
+TEST(LeapSecondSteps, ABelieverOfTheAnnouncedOnesCountsToSixtyAndAnyOtherJustSubtracts) {
+    const GpsTime step = to_gps_time({2017, 1, 1, 0, 0, 0, 0}, announced()) - 1s;
+    const int before = announced().offset(step - 1s);
+    EXPECT_EQ(to_utc(step, LeapSeconds::believed(step, announced().offset(step))).second, 60);
+    EXPECT_EQ(to_utc(step, LeapSeconds::believed(step, before - 1)).second, 1);
+    EXPECT_EQ(LeapSeconds::believed(step, before - 1).offset(step), before - 1);
+}
+
 TEST(UtcRoundTrip, HoldsForRandomInstants) {
     RandomStream random(1, "test.utc_round_trip");
     const auto span = static_cast<double>((to_gps_time({2100, 1, 1, 0, 0, 0, 0}, announced()) - GpsTime(0s)).count());
