@@ -6,10 +6,19 @@
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "run_session.hpp"
+#include "skyloop/emulator/thread_priority.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::host {
 namespace {
+
+// With a client's deadlines to keep, the loop goes before programs that have none.
+void prepare_for_deadlines(const Messages& messages) {
+    const ThreadPriority granted = raise_thread_priority();
+    messages.detail(fmt::format("priority of the loop: {}", to_string(granted)));
+    if (granted != ThreadPriority::realtime)
+        messages.detail("for a real-time one: CAP_SYS_NICE, or a limit on rtprio of 10 or more (ulimit -r)");
+}
 
 int run_live(const RunOptions& options) {
     const Messages messages(options.verbosity);
@@ -24,6 +33,7 @@ int run_live(const RunOptions& options) {
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
 
+    if (!mode.virtual_time && options.priority == "auto") prepare_for_deadlines(messages);
     RunSession session(messages, *assembly);
     // Scripts wait for these lines to know the tty: they are said even when quiet.
     for (const Station& station : assembly->emulator->stations())
@@ -40,6 +50,10 @@ Action add_run_command(CLI::App& app) {
     auto options = std::make_shared<RunOptions>();
     add_run_options(*command, *options);
     command->add_option("--speed", options->speed, "Simulated seconds per second, or max");
+    command
+        ->add_option("--priority", options->priority,
+                     "Of the loop on this machine: auto (real-time where allowed), normal")
+        ->check(CLI::IsMember({"auto", "normal"}));
     command->add_option("--record", options->record, "Keep truth, fixes, satellites and bytes in this folder");
     return [options] { return run_live(*options); };
 }
