@@ -19,6 +19,16 @@ struct SignalArrival {
     Decibels relative_power;  ///< C/N0 over that of the satellite's first signal
 };
 
+/// One ray beside the direct one, or instead of it: reflected, diffracted, or both.
+struct Echo {
+    SkyDirection from;            ///< as the antenna hears it; elevations below 0 too
+    Metres excess;                ///< over the direct path
+    MetresPerSecond excess_rate;  ///< its derivative
+    double amplitude = 0;         ///< at the antenna's output, over that of an unobstructed direct ray
+    Angle phase;                  ///< that reflections add, without that of the excess
+    int reflections = 0;
+};
+
 /// One satellite's signals as they reach the antenna: what delayed them and what weakened them, each cause by itself.
 struct Arrival {
     SatelliteId id;
@@ -30,9 +40,12 @@ struct Arrival {
     InplaceVector<SignalArrival, most_signals> signals;  ///< the first one first
 
     bool line_of_sight = true;
-    int paths = 1;                     ///< rays that arrive; 0: the satellite is hidden
-    int reflections = 0;               ///< of the shortest path
-    Metres excess_path;                ///< of the shortest path over the direct one
+    int paths = 1;        ///< rays that arrive; 0: the satellite is hidden
+    int reflections = 0;  ///< of the shortest path
+    Metres excess_path;   ///< of the shortest path over the direct one
+    /// All rays but the direct one, strongest first; empty without a scene and in the baseline profile, where the
+    /// fields above tell everything.
+    std::vector<Echo> echoes;
     Metres signal_in_space_error;      ///< of orbit and clock against the broadcast, in the range
     MetresPerSecond range_rate_error;  ///< its derivative
     Metres iono_delay;                 ///< of the code of the first signal; the carrier is advanced by as much

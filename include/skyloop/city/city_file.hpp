@@ -1,0 +1,76 @@
+/// Cities from files.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/scene/city_model.hpp"
+
+namespace skyloop {
+
+/// Which axis of a file points where: three of x y z, each with an optional minus, for east, north and up. "x,y,z" is
+/// the usual one; "x,-z,y" glTF and other models with y up; "y,x,z" the left-handed levels of Unreal Engine (x north).
+struct FileAxes {
+    std::array<int, 3> axis{0, 1, 2};  ///< of the file for east, north, up
+    std::array<double, 3> sign{1, 1, 1};
+
+    /// Reads "x,y,z" and its kin. Fails with `usage` and what was found.
+    static Result<FileAxes> parse(std::string_view text);
+};
+
+/// How a file is to be read.
+struct CityFileSettings {
+    /// Where the frame lies; files in local coordinates need it for a place on Earth, files with geographic or
+    /// projected ones take the middle of what they hold when it is absent.
+    std::optional<Geodetic> origin;
+    std::optional<FileAxes> axes;             ///< absent: as the format says
+    double metres_per_unit = 1;               ///< 0.01 for levels in centimetres
+    std::string material = "concrete";        ///< of triangles of which the file tells none
+    double default_height = 9;                ///< of footprints without height or levels, m
+    double metres_per_level = 3;              ///< OpenStreetMap
+    std::size_t most_triangles = 50'000'000;  ///< a file with more is refused with an estimate of its memory
+};
+
+/// What was read, and what was not.
+struct CityFile {
+    CityModel model;
+    std::string format;                 ///< "obj", "cityjson", …
+    std::size_t buildings = 0;          ///< where the format tells them apart
+    std::size_t dropped = 0;            ///< facets or footprints that could not be used
+    std::vector<std::string> warnings;  ///< one clear line each: what was dropped and why, doubtful units
+};
+
+/// Reads a city by the ending of its name: .obj .ply .gltf .glb .geojson .json (CityJSON or GeoJSON) .osm .pbf .gml
+/// (CityGML) .xml (Mitsuba scene, with the .ply it names; CityGML), each also as .gz; a folder or .tar.gz with one
+/// Mitsuba scene.
+///
+/// Fails with `outside` when it cannot be opened, with `input` and FILE:LINE or the place when it is damaged, cut or
+/// empty.
+Result<CityFile> read_city(const std::filesystem::path& path, const CityFileSettings& settings);
+
+/// The same from memory; `name` is for messages. None opens another file.
+Result<CityFile> parse_obj(std::string_view text, std::string_view name, const CityFileSettings& settings);
+Result<CityFile> parse_ply(std::string_view bytes, std::string_view name, const CityFileSettings& settings);
+Result<CityFile> parse_gltf(std::string_view bytes, std::string_view name, const CityFileSettings& settings);
+Result<CityFile> parse_geojson(std::string_view text, std::string_view name, const CityFileSettings& settings);
+Result<CityFile> parse_cityjson(std::string_view text, std::string_view name, const CityFileSettings& settings);
+Result<CityFile> parse_citygml(std::string_view text, std::string_view name, const CityFileSettings& settings);
+/// OpenStreetMap, XML or PBF as `format` says ("osm", "osm.pbf").
+Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std::string_view name,
+                           const CityFileSettings& settings);
+
+/// A height grid (ESRI ASCII, .asc) as ground. Cells are geographic degrees when they fit on the globe, else metres
+/// from the frame's origin; `metres_per_unit` and `origin` apply.
+Result<CityFile> parse_height_grid(std::string_view text, std::string_view name, const CityFileSettings& settings);
+
+/// What is doubtful about a city as a whole: a few metres or a hundred kilometres wide, nothing higher than 3 m, walls
+/// below ground. Empty for most.
+std::vector<std::string> doubts_about(const CityModel& city);
+
+}  // namespace skyloop

@@ -1,0 +1,64 @@
+/// Buildings and trees between the satellites and the antenna.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skyloop/propagation/antenna_pattern.hpp"
+#include "skyloop/propagation/effect.hpp"
+#include "skyloop/scene/path_finder.hpp"
+
+namespace skyloop {
+
+/// What walls do to the signals.
+enum class SceneProfile {
+    /// The article's rule (MODELS.md R-21…R-23): a satellite in line of sight has no multipath; one that is not comes
+    /// over
+    /// the path with the fewest reflections, at most 16, half of the power lost at each; without any it is hidden.
+    baseline,
+    /// Fresnel reflection by material, ground, diffraction at edges, foliage, the antenna's pattern: all rays that
+    /// arrive
+    /// are echoes that the receiver's correlators sum up (MODELS.md 7.10).
+    modern,
+};
+
+/// How a scene acts.
+struct RayTracedSceneSettings {
+    SceneProfile profile = SceneProfile::modern;
+    PathSearchSettings search{};
+    double epochs_per_second = 1;             ///< decides the number of rays
+    AntennaPattern antenna{};                 ///< modern
+    Decibels opposite_hand_rejection{10};     ///< modern: of the antenna; 10 a patch, 20 a survey antenna
+    Metres wall_roughness{0.01};              ///< modern: rms height
+    bool diffraction = true, foliage = true;  ///< modern
+};
+
+/// Writes line_of_sight, paths, reflections, excess_path and reflection_loss, in the modern profile the echoes too.
+///
+/// State: the path finder's memory.
+class RayTracedScene : public PropagationEffect {
+public:
+    RayTracedScene(std::shared_ptr<const UrbanScene> scene, const RayTracedSceneSettings& settings);
+    void apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) override;
+
+    /// Of the last epoch, in the sky's order, in the scene's frame.
+    [[nodiscard]] const std::vector<SatellitePaths>& paths() const { return paths_; }
+    /// Where the antenna was then, m in the scene's frame.
+    [[nodiscard]] const Eigen::Vector3d& antenna() const { return observer_.position; }
+    [[nodiscard]] const UrbanScene& scene() const { return finder_.scene(); }
+    [[nodiscard]] const PathSearchCounters& counters() const { return finder_.counters(); }
+    /// One sentence when the antenna is inside a building or below the ground, where nothing arrives; nothing
+    /// otherwise.
+    [[nodiscard]] const std::optional<std::string>& notice() const { return notice_; }
+
+private:
+    PathFinder finder_;
+    RayTracedSceneSettings settings_;
+    SceneObserver observer_;
+    std::vector<SatellitePaths> paths_;
+    std::optional<std::string> notice_;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,78 @@
+/// Finds the paths of all satellites at one place, epoch after epoch.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "skyloop/scene/scene_path.hpp"
+#include "skyloop/scene/urban_scene.hpp"
+#include "skyloop/time/gps_time.hpp"
+
+namespace skyloop {
+
+/// What reflects, how far, and how paths are sought.
+struct PathSearchSettings {
+    int most_reflections = skyloop::most_reflections;  ///< 1 … 16
+    bool walls_reflect = true, roofs_reflect = false, ground_reflects = false;
+    bool blocked_only = true;  ///< paths of satellites in line of sight are not sought (the article, MODELS.md R-21)
+    /// Rays of a search, of the whole hemisphere; 0: as default_rays() says.
+    int rays = 0;
+    double cache_seconds = 2;   ///< how long a path is remembered that is no longer there
+    double tolerance_deg = 10;  ///< of an escaped ray to a satellite
+    int most_hops = 6;
+    /// Threads that search beside the caller; 0: the caller itself. The paths are the same.
+    int threads = 0;
+    /// A search of one epoch serves the next one (a worker has time until then); false: the same one, at once.
+    bool search_ahead = true;
+};
+
+/// Rays for an epoch rate: 65536 up to 10 Hz, 16384 at 25 Hz, between and beyond by the same work per second
+/// (CITY.md section 3), never less than 2048.
+int default_rays(double epochs_per_second);
+
+/// Counts since the beginning, and of the last epoch.
+struct PathSearchCounters {
+    std::uint64_t epochs = 0, rays = 0, segments = 0, candidates = 0, accepted = 0;
+    int rays_last = 0, cached_last = 0, found_last = 0;
+};
+
+/// Where the antenna is, in the scene's frame.
+struct SceneObserver {
+    GpsTime now;
+    Eigen::Vector3d position;                            ///< m
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
+};
+
+/// CITY.md section 2: cached paths first, then a banded lattice of rays, then hops to the fixed point.
+///
+/// State: remembered paths, the turn of the lattice, a running search. Deterministic: the same calls give the same
+/// paths, whatever the number of threads and their timing.
+class PathFinder {
+public:
+    PathFinder(std::shared_ptr<const UrbanScene> scene, const PathSearchSettings& settings);
+    ~PathFinder();
+    PathFinder(PathFinder&&) noexcept;
+    PathFinder& operator=(PathFinder&&) noexcept;
+
+    /// @returns one for each satellite, in their order
+    std::vector<SatellitePaths> epoch(const SceneObserver& observer, std::span<const SceneSatellite> satellites);
+
+    [[nodiscard]] const UrbanScene& scene() const;
+    [[nodiscard]] const PathSearchCounters& counters() const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+/// Every path up to a few reflections by trying all sequences of planes that see each other: slow, complete, and
+/// independent of PathFinder but for UrbanScene. For tests.
+///
+/// @param most_reflections 1 … 3; the cost grows with planes to that power
+std::vector<SatellitePaths> exhaustive_paths(const UrbanScene& scene, const SceneObserver& observer,
+                                             std::span<const SceneSatellite> satellites,
+                                             const PathSearchSettings& settings);
+
+}  // namespace skyloop
