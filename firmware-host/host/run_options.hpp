@@ -21,9 +21,9 @@ struct RunOptions {
     bool rebase_nav = false;
     std::optional<double> duration, rate;
     std::optional<std::uint64_t> seed;
-    std::string speed;   ///< run only: a number or "max"
+    std::string speed;              ///< run only: a number or "max"
     std::string priority = "auto";  ///< run only: "auto" or "normal"
-    std::string record;  ///< run: --record, simulate: --out
+    std::string record;             ///< run: --record, simulate: --out
     Verbosity verbosity;
 };
 

@@ -40,8 +40,8 @@ public:
     static const LeapSeconds& announced();
     /// The same offset at all times: what a receiver believes between two almanac pages.
     static LeapSeconds constant(int offset);
-    /// What a receiver counts by that believes `offset` at `time`: the announced ones where these agree, so that it counts
-    /// to 60 in a leap second; with any other belief it just subtracts.
+    /// What a receiver counts by that believes `offset` at `time`: the announced ones where these agree, so that it
+    /// counts to 60 in a leap second; with any other belief it just subtracts.
     static LeapSeconds believed(GpsTime time, int offset);
 
     /// GPST − UTC, s.
