@@ -9,12 +9,16 @@ namespace {
 
 constexpr std::uint32_t usb_full_speed = 12'000'000, i2c_fast_mode = 400'000;
 
-PortUnit* unit_of(std::vector<PortUnit>& units, PortId port) {
+}  // namespace
+
+PortUnit* find_unit(std::vector<PortUnit>& units, PortId port) {
     const auto found = std::find_if(units.begin(), units.end(), [&](const PortUnit& u) { return u.id == port; });
     return found == units.end() ? nullptr : &*found;
 }
 
-}  // namespace
+const PortUnit* find_unit(const std::vector<PortUnit>& units, PortId port) {
+    return find_unit(const_cast<std::vector<PortUnit>&>(units), port);
+}
 
 std::uint32_t configured_baud(const ConfigStore& store, PortId port) {
     switch (port) {
@@ -34,7 +38,7 @@ std::uint32_t configured_baud(const ConfigStore& store, PortId port) {
 void Outbox::plan(GpsTime at, Action action) { plans_.emplace(at, std::move(action)); }
 
 std::size_t Outbox::queue(PortId port, const std::vector<Bytes>& messages, GpsTime now) {
-    PortUnit* unit = unit_of(units_, port);
+    PortUnit* unit = find_unit(units_, port);
     if (unit == nullptr) return 0;
     std::size_t queued = 0;
     for (const Bytes& message : messages) {

@@ -34,6 +34,10 @@ struct PortUnit {
     std::uint32_t configured_baud = 0;  ///< to which it has been told to go
 };
 
+/// The one of that name, or null.
+PortUnit* find_unit(std::vector<PortUnit>& units, PortId port);
+const PortUnit* find_unit(const std::vector<PortUnit>& units, PortId port);
+
 /// The speed of a port by the configuration; of USB, I2C and SPI that of their bus (USB full speed; I2C fast mode).
 std::uint32_t configured_baud(const ConfigStore& store, PortId port);
 

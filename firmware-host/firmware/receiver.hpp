@@ -23,8 +23,6 @@ struct ReceiverCounters {
     std::uint64_t messages_sent = 0;
     std::uint64_t messages_dropped = 0;  ///< the transmit buffer was full
     std::uint64_t bytes_received = 0;
-    std::uint64_t commands = 0;  ///< messages of clients that were understood
-    std::uint64_t restarts = 0;
 };
 
 /// How a receiver begins.

@@ -22,10 +22,14 @@ enum ResetMode : std::uint8_t {
 // A speed that a line cannot have would divide by zero; the board's tables do not let one in, stored text may.
 constexpr std::uint32_t slowest_baud = 300;
 
+std::uint32_t line_baud(const ConfigStore& store, PortId port) {
+    return std::max(slowest_baud, configured_baud(store, port));
+}
+
 std::vector<PortUnit> make_units(const BoardProfile& board, const ConfigStore& store) {
     std::vector<PortUnit> units;
     for (const PortId port : board.ports) {
-        const std::uint32_t baud = std::max(slowest_baud, configured_baud(store, port));
+        const std::uint32_t baud = line_baud(store, port);
         units.emplace_back(port, baud, board.transmit_buffer_bytes);
         units.back().configured_baud = baud;
     }
@@ -54,10 +58,8 @@ Receiver::Core::Core(BoardProfile board, const ReceiverOptions& options)
 }
 
 void Receiver::Core::start(GpsTime now) {
-    Forgotten forgotten;
-    forgotten.ephemerides = options_.settings.start != StartKind::hot;
-    if (options_.settings.start == StartKind::cold) forgotten = Forgotten::by_mask(0xFFFF);
-    tracker_.start(now, forgotten, !options_.power_up && options_.settings.start == StartKind::hot);
+    tracker_.start(now, Forgotten::of(options_.settings.start),
+                   !options_.power_up && options_.settings.start == StartKind::hot);
     if (!options_.power_up) return;
     const GpsTime awake = advanced(now, board_.timing.boot);
     deaf_until_ = awake;
@@ -65,20 +67,10 @@ void Receiver::Core::start(GpsTime now) {
     outbox_.plan(awake, [this](GpsTime t) { send_banner(t); });
 }
 
-PortUnit* Receiver::Core::find(PortId port) {
-    const auto found = std::find_if(units_.begin(), units_.end(), [&](const PortUnit& u) { return u.id == port; });
-    return found == units_.end() ? nullptr : &*found;
-}
-
-const PortUnit* Receiver::Core::unit(PortId port) const {
-    const auto found = std::find_if(units_.begin(), units_.end(), [&](const PortUnit& u) { return u.id == port; });
-    return found == units_.end() ? nullptr : &*found;
-}
-
 Result<void> Receiver::Core::restore(const std::string& text, const std::string& name) {
     if (auto restored = store_.restore(text, name); !restored) return restored;
     for (PortUnit& unit : units_) {
-        unit.configured_baud = std::max(slowest_baud, configured_baud(store_, unit.id));
+        unit.configured_baud = line_baud(store_, unit.id);
         unit.transmit = Port(unit.configured_baud, board_.transmit_buffer_bytes);
     }
     adopt_settings();
@@ -106,7 +98,6 @@ void Receiver::Core::apply_changes(GpsTime now) {
 void Receiver::Core::restart_navigation(const Forgotten& forgotten, GpsTime now, Seconds silence) {
     settings_.start = forgotten.kind();
     ++settings_.restarts;
-    ++counters_.restarts;
     settings_.navigating = true;
     corrections_.reset();
     tracker_.start(now, forgotten);
@@ -120,7 +111,7 @@ void Receiver::Core::reset(std::uint16_t nav_bbr_mask, std::uint8_t mode, GpsTim
         case reset_hardware_after_shutdown:
             if (board_.quirks.hardware_reset_clears_battery) {
                 store_.clear(in_battery);
-                forgotten = Forgotten::by_mask(0xFFFF);
+                forgotten = Forgotten::of(StartKind::cold);
             }
             return reboot(forgotten, now);
         case reset_software:
@@ -145,7 +136,7 @@ void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now) {
     adopt_settings();
     for (PortUnit& unit : units_) {
         const PortId id = unit.id;
-        unit = PortUnit(id, std::max(slowest_baud, configured_baud(store_, id)), board_.transmit_buffer_bytes);
+        unit = PortUnit(id, line_baud(store_, id), board_.transmit_buffer_bytes);
         unit.configured_baud = unit.transmit.baud();
     }
     values_.cancel();

@@ -9,6 +9,7 @@
 
 #include "firmware/config/config_handler.hpp"
 #include "firmware/correction_input.hpp"
+#include "firmware/messages/make_message.hpp"
 #include "firmware/nmea_commands.hpp"
 #include "firmware/port_unit.hpp"
 #include "firmware/receiver.hpp"
@@ -28,7 +29,7 @@ public:
     void input(PortId port, ByteSpan bytes, GpsTime now);
     void on_epoch(const Epoch& epoch);
     std::vector<Sent> output(GpsTime now);
-    [[nodiscard]] const PortUnit* unit(PortId port) const;
+    [[nodiscard]] const PortUnit* unit(PortId port) const { return find_unit(units_, port); }
     Result<void> restore(const std::string& text, const std::string& name);
 
     [[nodiscard]] const Outbox& outbox() const { return outbox_; }
@@ -47,7 +48,6 @@ private:
     };
 
     // Input.
-    PortUnit* find(PortId port);
     void give_up_unfinished(PortUnit& unit, GpsTime now);
     void work_off(PortUnit& unit, const std::vector<StreamPiece>& pieces, GpsTime now);
     void dispatch(PortUnit& unit, const StreamPiece& piece, GpsTime now);
@@ -72,8 +72,7 @@ private:
     void send(PortId port, const std::vector<Bytes>& messages, GpsTime now);
     void send_text(int level, const std::string& text, GpsTime now);
     void send_epoch(const NavigationState& state, GpsTime now);
-    [[nodiscard]] std::vector<Bytes> due_messages(PortId port, const NavigationState& state,
-                                                  std::map<UbxMessageId, std::vector<Bytes>>& made) const;
+    [[nodiscard]] std::vector<Bytes> due_messages(PortId port, const NavigationState& state, EpochMessages& made) const;
     [[nodiscard]] bool lets_out(PortId port, UbxMessageId message) const;
     [[nodiscard]] GpsTime burst_time(GpsTime epoch);
     void tell_antenna_status(const NavigationState& state, GpsTime now);

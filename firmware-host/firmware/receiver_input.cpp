@@ -55,7 +55,7 @@ void count_input(PortStatus& status, const StreamPiece& piece) {
 
 void Receiver::Core::input(PortId port, ByteSpan bytes, GpsTime now) {
     counters_.bytes_received += bytes.size();
-    PortUnit* unit = find(port);
+    PortUnit* unit = find_unit(units_, port);
     if (unit == nullptr || now < deaf_until_ || bytes.empty()) return;
     unit->status.bytes_in += bytes.size();
     give_up_unfinished(*unit, now);
@@ -116,11 +116,9 @@ void Receiver::Core::configure(PortUnit& unit, const UbxFrameView& frame, GpsTim
     if (frame.id == cfg_rst) {
         const auto rst = decode_payload<CfgRst>(frame.payload);
         if (!rst) return reply(unit, {{}, verdict_frame(Verdict::refuse, frame.id), Seconds(0)}, now);
-        ++counters_.commands;
         return reset(rst->nav_bbr_mask, rst->reset_mode, now);
     }
     const ConfigOutcome outcome = configured(frame, unit.id);
-    if (outcome.verdict == Verdict::acknowledge) ++counters_.commands;
     apply_changes(now);
     reply(unit, {outcome.answers, verdict_frame(outcome.verdict, frame.id), outcome.work}, now);
 }
@@ -152,7 +150,6 @@ void Receiver::Core::command(PortUnit& unit, const UbxFrameView& frame, GpsTime 
     if (!known || frame.payload.size() > 1) return;
     std::vector<Bytes> answers = make_message(frame.id, context(unit.id));
     if (answers.empty()) return;
-    ++counters_.commands;
     reply(unit, {std::move(answers), std::nullopt, Seconds(0)}, now);
 }
 
@@ -176,14 +173,8 @@ void Receiver::Core::dispatch_sentence(PortUnit& unit, ByteSpan line, GpsTime no
     for (const UbxMessageId message : outcome.polled)
         for (Bytes& answer : make_message(message, context(unit.id)))
             outcome.answers.push_back(std::move(answer));
-    if (!outcome.answers.empty()) ++counters_.commands;
     reply(unit, {std::move(outcome.answers), std::nullopt, Seconds(0)}, now);
-    if (!outcome.restart) return;
-    Forgotten forgotten;
-    forgotten.ephemerides = *outcome.restart != StartKind::hot;
-    if (*outcome.restart == StartKind::cold) forgotten = Forgotten::by_mask(0xFFFF);
-    ++counters_.commands;
-    reboot(forgotten, now);
+    if (outcome.restart) reboot(Forgotten::of(*outcome.restart), now);
 }
 
 void Receiver::Core::dispatch_corrections(ByteSpan frame, GpsTime now) {

@@ -68,12 +68,11 @@ GpsTime Receiver::Core::answer_time(GpsTime now, Seconds work) {
 // swallows it, as the board's maker has it.
 void Receiver::Core::reply(PortUnit& unit, Reply out, GpsTime now) {
     const PortId port = unit.id;
-    const bool speed_changes = configured_baud(store_, port) != unit.configured_baud;
-    if (out.verdict && board_.quirks.speed_change != SpeedChangeAnswer::lost) out.answers.push_back(*out.verdict);
-    if (out.verdict && board_.quirks.speed_change == SpeedChangeAnswer::lost && !speed_changes)
-        out.answers.push_back(*out.verdict);
+    const bool swallowed =
+        board_.quirks.speed_change == SpeedChangeAnswer::lost && configured_baud(store_, port) != unit.configured_baud;
+    if (out.verdict && !swallowed) out.answers.push_back(*out.verdict);
     const bool anything = !out.answers.empty();
-    if (!anything && !speed_changes && configured_speeds_hold()) return;
+    if (!anything && configured_speeds_hold()) return;
     const GpsTime at = answer_time(now, out.work);
     const bool old_speed = board_.quirks.speed_change == SpeedChangeAnswer::at_old_speed;
     if (!old_speed) plan_speed_changes(at);
@@ -101,7 +100,7 @@ void Receiver::Core::plan_speed_changes(GpsTime at) {
         unit.configured_baud = baud;
         const PortId port = unit.id;
         outbox_.plan(at, [this, port, drain](GpsTime t) {
-            const Port& line = find(port)->transmit;
+            const Port& line = find_unit(units_, port)->transmit;
             const GpsTime when = drain ? line.drained_at().value_or(t) : line.between_bytes(t);
             outbox_.plan(when, [this, port](GpsTime then) { change_speed(port, then); });
         });
@@ -109,7 +108,7 @@ void Receiver::Core::plan_speed_changes(GpsTime at) {
 }
 
 void Receiver::Core::change_speed(PortId port, GpsTime at) {
-    PortUnit& unit = *find(port);
+    PortUnit& unit = *find_unit(units_, port);
     unit.transmit.set_baud(unit.configured_baud, at);
     unit.splitter = command_splitter();
 }
@@ -142,9 +141,9 @@ GpsTime Receiver::Core::burst_time(GpsTime epoch) {
 void Receiver::Core::on_epoch(const Epoch& epoch) {
     const GpsTime time = epoch.fix.time;
     if (time < silent_until_) return;
-    settings_.corrections = corrections_.status(time, store_).state;
-    const auto state =
-        std::make_shared<const NavigationState>(tracker_.update(epoch, store_, corrections_.status(time, store_)));
+    const CorrectionStatus corrections = corrections_.status(time, store_);
+    settings_.corrections = corrections.state;
+    const auto state = std::make_shared<const NavigationState>(tracker_.update(epoch, store_, corrections));
     ++counters_.epochs;
     if (!settings_.navigating) return;
     outbox_.plan(burst_time(time), [this, state](GpsTime t) { send_epoch(*state, t); });
@@ -152,7 +151,7 @@ void Receiver::Core::on_epoch(const Epoch& epoch) {
 
 void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {
     look_at_ports();
-    std::map<UbxMessageId, std::vector<Bytes>> made;
+    EpochMessages made(context(PortId::uart1, state));
     for (PortUnit& unit : units_) {
         const std::vector<Bytes> messages = due_messages(unit.id, state, made);
         if (unit.id == PortId::uart1)
@@ -166,16 +165,14 @@ void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {
     tell_antenna_status(state, now);
 }
 
-std::vector<Bytes> Receiver::Core::due_messages(PortId port, const NavigationState& state,
-                                                std::map<UbxMessageId, std::vector<Bytes>>& made) const {
+std::vector<Bytes> Receiver::Core::due_messages(PortId port, const NavigationState& state, EpochMessages& made) const {
     std::vector<Bytes> due;
     for (const UbxMessageId message : board_.messages) {
         const int rate = store_.rate(message, port);
         if (rate <= 0 || state.epoch_index % static_cast<std::uint64_t>(rate) != 0 || !lets_out(port, message))
             continue;
-        const auto [entry, is_new] = made.try_emplace(message);
-        if (is_new) entry->second = make_message(message, context(port, state));
-        due.insert(due.end(), entry->second.begin(), entry->second.end());
+        const std::vector<Bytes>& messages = made.of(message, port);
+        due.insert(due.end(), messages.begin(), messages.end());
     }
     return due;
 }

@@ -43,6 +43,13 @@ Forgotten Forgotten::by_mask(std::uint16_t mask) {
     return {bit(0), bit(1), bit(2), bit(3), bit(4), bit(5) || bit(6), bit(7), bit(8)};
 }
 
+Forgotten Forgotten::of(StartKind kind) {
+    if (kind == StartKind::cold) return by_mask(0xFFFF);
+    Forgotten forgotten;
+    forgotten.ephemerides = kind == StartKind::warm;
+    return forgotten;
+}
+
 StartKind Forgotten::kind() const {
     if (position || rtc) return StartKind::cold;
     return ephemerides ? StartKind::warm : StartKind::hot;

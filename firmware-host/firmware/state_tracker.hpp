@@ -13,6 +13,8 @@ struct Forgotten {
     bool ephemerides = false, almanac = false, health = false, ionosphere = false, position = false, clock = false,
          utc = false, rtc = false;
     static Forgotten by_mask(std::uint16_t nav_bbr_mask);
+    /// What is gone at a start of that kind: nothing, the ephemerides, everything.
+    static Forgotten of(StartKind kind);
     /// hot: nothing but the state of tracking; warm: ephemerides; cold: time or place too.
     [[nodiscard]] StartKind kind() const;
 };

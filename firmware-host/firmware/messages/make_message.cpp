@@ -1,5 +1,7 @@
 #include "firmware/messages/make_message.hpp"
 
+#include "firmware/message_class.hpp"
+
 namespace skyloop::firmware {
 
 std::vector<Bytes> make_message(UbxMessageId message, const ReportContext& context) {
@@ -17,12 +19,22 @@ std::vector<Bytes> make_message(UbxMessageId message, const ReportContext& conte
             return make_navigation_message(message, context);
         case 0xF0:
         case 0xF1:
-            return make_nmea_message(message, context);
+            return make_nmea_message(message, nmea_report(context));
         case 0xF5:
             return make_rtcm_message(message, context);
         default:
             return {};
     }
+}
+
+const std::vector<Bytes>& EpochMessages::of(UbxMessageId message, PortId port) {
+    const auto [entry, is_new] = made_.try_emplace(message);
+    if (!is_new && message.message_class != class_rtcm) return entry->second;
+    context_.port = port;
+    if (message.message_class != class_nmea && message.message_class != class_pubx)
+        return entry->second = make_message(message, context_);
+    if (!report_) report_.emplace(nmea_report(context_));
+    return entry->second = make_nmea_message(message, *report_);
 }
 
 }  // namespace skyloop::firmware

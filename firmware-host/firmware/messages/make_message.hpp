@@ -1,9 +1,12 @@
 /// From the receiver's state to the bytes of a message.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "firmware/messages/nmea_report.hpp"
 #include "firmware/navigation_state.hpp"
 
 namespace skyloop::firmware {
@@ -11,6 +14,20 @@ namespace skyloop::firmware {
 /// The whole frames or sentences of one message, most often one: GSV has pages, RXM-SFRBX one for each subframe. Empty
 /// when there is nothing to say, or the message is not known. Classes F0, F1 and F5 are NMEA, PUBX and RTCM.
 std::vector<Bytes> make_message(UbxMessageId message, const ReportContext& context);
+
+/// The messages of one epoch: each is made once, however many ports send it, and what sentences share as well.
+class EpochMessages {
+public:
+    /// @param context its parts must outlive this
+    explicit EpochMessages(const ReportContext& context) : context_(context) {}
+    /// What the port sends. RTCM alone differs by port: a frame tells whether more of the epoch follow.
+    const std::vector<Bytes>& of(UbxMessageId message, PortId port);
+
+private:
+    ReportContext context_;
+    std::optional<NmeaReport> report_;
+    std::map<UbxMessageId, std::vector<Bytes>> made_;
+};
 
 /// Of the classes NAV and TIM.
 std::vector<Bytes> make_navigation_message(UbxMessageId message, const ReportContext& context);
@@ -20,8 +37,6 @@ std::vector<Bytes> make_satellite_message(UbxMessageId message, const ReportCont
 std::vector<Bytes> make_raw_message(UbxMessageId message, const ReportContext& context);
 /// Of the classes MON and SEC.
 std::vector<Bytes> make_monitor_message(UbxMessageId message, const ReportContext& context);
-/// Of the classes F0 (NMEA) and F1 (PUBX 00, 03, 04).
-std::vector<Bytes> make_nmea_message(UbxMessageId message, const ReportContext& context);
 /// Of the class F5: RTCM 1005 of a station in fixed mode, MSM4 and MSM7 of GPS, GLONASS, Galileo and BeiDou, and 1230.
 /// Nothing before time is known, for a system without observations and for 1006, 4072.0 and 4072.1.
 std::vector<Bytes> make_rtcm_message(UbxMessageId message, const ReportContext& context);

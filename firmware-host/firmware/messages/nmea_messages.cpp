@@ -165,13 +165,12 @@ constexpr SentenceId sentence_ids[] = {{0x00, NmeaSentence::gga}, {0x01, NmeaSen
 
 }  // namespace
 
-std::vector<Bytes> make_nmea_message(UbxMessageId message, const ReportContext& context) {
-    if (message.message_class == class_pubx) return pubx_sentences(message.id, nmea_report(context));
+std::vector<Bytes> make_nmea_message(UbxMessageId message, const NmeaReport& report) {
+    if (message.message_class == class_pubx) return pubx_sentences(message.id, report);
     if (message.message_class != class_nmea) return {};
     const auto* known = std::find_if(std::begin(sentence_ids), std::end(sentence_ids),
                                      [&](const SentenceId& s) { return s.id == message.id; });
     if (known == std::end(sentence_ids)) return {};
-    const NmeaReport report = nmea_report(context);
     std::vector<Bytes> out;
     for (const NmeaMessage& m : messages_of(known->sentence, report))
         out.push_back(to_bytes(encode(m, report.format)));

@@ -51,6 +51,8 @@ struct NmeaReport {
 };
 
 NmeaReport nmea_report(const ReportContext& context);
+/// Sentences of the classes F0 (NMEA) and F1 (PUBX 00, 03, 04), as make_message() gives them.
+std::vector<Bytes> make_nmea_message(UbxMessageId message, const NmeaReport& report);
 
 /// Digits, version and forms of fields, from configuration and board.
 NmeaFormat nmea_format(const BoardProfile& board, const ConfigStore& config);
