@@ -106,15 +106,18 @@ class Client:
     def wait(self, match, milliseconds):
         """The first item that `match` takes, within that time after the last byte written; None when none came."""
         end = max(self.wire.written_until, time.monotonic()) + milliseconds / 1000
+        over = False
         while True:
             while self.pending:
                 item = self.pending.popleft()
                 if match(item):
                     return item
-            left = end - time.monotonic()
-            if left <= 0:
+            if over:
                 return None
-            data, at = self.wire.read(min(left, 0.05))
+            left = end - time.monotonic()
+            # What came while this process had to wait for the processor has come in time: one look more.
+            over = left <= 0
+            data, at = self.wire.read(min(max(left, 0.0), 0.05))
             if data:
                 self.take(data, at)
 
