@@ -34,7 +34,7 @@ struct SampleReceiver {
     /// One message, as text.
     [[nodiscard]] std::vector<std::string> message(std::uint8_t id, std::uint8_t message_class = 0xF0) const {
         std::vector<std::string> lines;
-        for (const Bytes& bytes : make_nmea_message({message_class, id}, context()))
+        for (const Bytes& bytes : make_message({message_class, id}, context()))
             lines.push_back(to_string(bytes));
         return lines;
     }
