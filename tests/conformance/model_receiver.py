@@ -70,6 +70,7 @@ class ModelReceiver(threading.Thread):
     # --- the line ---
 
     def run(self):
+        wire.take_priority()
         while not self.done:
             data = self.read()
             if data:
@@ -89,8 +90,13 @@ class ModelReceiver(threading.Thread):
     def client_speed(self):
         return wire.TERMIOS2.unpack(fcntl.ioctl(self.master, wire.TCGETS2, bytes(wire.TERMIOS2.size)))[7]
 
+    def patience(self):
+        """Seconds until something is to be done that no byte tells of."""
+        due = min([self.next_epoch] + [max(at, self.free_at - 0.002) for at, _ in self.queue[:1]])
+        return min(max(due - time.monotonic(), 0.0), 0.05)
+
     def read(self):
-        if not select.select([self.master], [], [], 0.001)[0]:
+        if not select.select([self.master], [], [], self.patience())[0]:
             return b""
         data = os.read(self.master, 4096)
         if self.client_speed() != self.speed or time.monotonic() < self.hears_from:

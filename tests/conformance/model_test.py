@@ -49,7 +49,7 @@ def outcome(client, board, writes="whole", *faults):
 class AgainstTheModel(unittest.TestCase):
     def test_all(self):
         # Processes, since each of them spends its time waiting and wants its deadlines kept.
-        with concurrent.futures.ProcessPoolExecutor(6) as pool:
+        with concurrent.futures.ProcessPoolExecutor(6, initializer=wire.take_priority) as pool:
             good = [(case, pool.submit(outcome, *case)) for case in GOOD]
             bad = [(case, pool.submit(outcome, case[0], case[1], "whole", case[2])) for case in BAD]
             for case, found in good:

@@ -4,7 +4,6 @@ Variants: whole (default), bytes, bursts, garbage: how the client writes. reopen
 receiver that has kept its configuration. restart: a new process after the first, and the same dialogue again.
 """
 import argparse
-import os
 import sys
 import time
 
@@ -14,14 +13,6 @@ from clients import CLIENTS
 from dialogue import Failure
 
 VARIANTS = wire.WRITES + ("reopen", "restart")
-
-
-def take_priority():
-    """A flight controller does not share its processor with what else runs here; without the right to it we do."""
-    try:
-        os.sched_setscheduler(0, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(1))
-    except PermissionError:
-        pass
 
 
 def dialogue(kind, board, tty, writes):
@@ -59,7 +50,7 @@ def main():
     parser.add_argument("board", choices=sorted(receiver.BOARDS))
     parser.add_argument("--variant", choices=VARIANTS, default="whole")
     options = parser.parse_args()
-    take_priority()
+    wire.take_priority()
     if f"{options.board} " not in receiver.skyloop("boards").stdout:
         receiver.skip(f"this skyloop has no board {options.board}")
     try:
