@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 
 namespace skyloop {
 
@@ -54,6 +56,14 @@ struct Query {
 };
 #endif
 
+/// Embree takes numbers alone, of which it can take squares; some builds of it stop the program for others.
+bool can_be_traced(const SceneRay& ray) {
+    const auto within = [](const Eigen::Vector3d& vector, double most) {
+        return std::abs(vector.x()) <= most && std::abs(vector.y()) <= most && std::abs(vector.z()) <= most;
+    };
+    return within(ray.origin, farthest) && within(ray.direction, 2);
+}
+
 void set_ray(RTCRay& ray, const SceneRay& from, float begin, float length) {
     ray.org_x = static_cast<float>(from.origin.x());
     ray.org_y = static_cast<float>(from.origin.y());
@@ -69,11 +79,13 @@ void set_ray(RTCRay& ray, const SceneRay& from, float begin, float length) {
     ray.flags = 0;
 }
 
-/// Lanes beyond the list are switched off, but hold numbers.
+/// Lanes beyond the list are switched off, and those of rays that are none; all hold numbers.
 void set_rays(RTCRay16& packet, int* valid, std::span<const SceneRay> rays) {
+    static const SceneRay unused{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
     for (std::size_t lane = 0; lane < TriangleTree::width; ++lane) {
-        valid[lane] = lane < rays.size() ? -1 : 0;
-        const SceneRay& ray = rays[lane < rays.size() ? lane : 0];
+        const bool used = lane < rays.size() && can_be_traced(rays[lane]);
+        valid[lane] = used ? -1 : 0;
+        const SceneRay& ray = used ? rays[lane] : unused;
         packet.org_x[lane] = static_cast<float>(ray.origin.x());
         packet.org_y[lane] = static_cast<float>(ray.origin.y());
         packet.org_z[lane] = static_cast<float>(ray.origin.z());
@@ -179,6 +191,7 @@ Result<std::unique_ptr<TriangleTree>> TriangleTree::build(std::span<const Eigen:
 }
 
 bool TriangleTree::occluded(const SceneRay& ray, float length) const {
+    if (!can_be_traced(ray)) return false;
     RTCRay query;
     set_ray(query, ray, 0, length);
     Query::occluded(parts_->scene, query);
@@ -195,6 +208,7 @@ void TriangleTree::occluded(std::span<const SceneRay> rays, std::span<std::uint8
 }
 
 TreeHit TriangleTree::nearest(const SceneRay& ray, float from) const {
+    if (!can_be_traced(ray)) return {};
     RTCRayHit query;
     set_ray(query.ray, ray, from, farthest);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
