@@ -24,7 +24,8 @@ struct ScenePlane {
     std::uint8_t material = 0;  ///< index of UrbanScene::materials()
 };
 
-/// A half-line in the scene's frame; `direction` is a unit vector.
+/// A half-line in the scene's frame; `direction` is a unit vector. A ray with a coordinate that is no number, or
+/// farther off than 1e9 m, meets nothing.
 struct SceneRay {
     Eigen::Vector3d origin;
     Eigen::Vector3d direction;

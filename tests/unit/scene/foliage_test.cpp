@@ -1,0 +1,123 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "skyloop/base/random.hpp"
+#include "skyloop/scene/urban_scene.hpp"
+
+namespace skyloop {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+FoliageVolume square_grove() { return {{{10, -5}, {20, -5}, {20, 5}, {10, 5}}, 2, 12, 1.0}; }
+
+double metres_in(const FoliageVolume& volume, const Vector3d& origin, const Vector3d& direction) {
+    return foliage_loss_db(std::span(&volume, 1), {origin, direction.normalized()});
+}
+
+TEST(Foliage, LevelRayCrossesTheWholeGrove) {
+    EXPECT_NEAR(metres_in(square_grove(), {0, 0, 5}, {1, 0, 0}), 10, 1e-12);
+    EXPECT_NEAR(metres_in(square_grove(), {0, -15, 5}, {1, 1, 0}), 10 * std::sqrt(2.0), 1e-12);
+}
+
+TEST(Foliage, SlantedRayComesInBelowAndLeavesByTheSide) {
+    // Rises one in two: at the base 4 m away, at the near side 5 m up, at the far side 10 m up.
+    EXPECT_NEAR(metres_in(square_grove(), {0, 0, 0}, {2, 0, 1}), 10 * std::sqrt(1.25), 1e-12);
+    // From below the grove, up through its base and out of its side 5 m higher.
+    EXPECT_NEAR(metres_in(square_grove(), {13, 0, 0}, {1, 0, 1}), 5 * std::sqrt(2.0), 1e-12);
+    // In by the side, out by the top.
+    EXPECT_NEAR(metres_in(square_grove(), {5, 0, 5}, {1, 0, 1}), 2 * std::sqrt(2.0), 1e-12);
+}
+
+TEST(Foliage, PlumbRayPassesFromBaseToTop) {
+    EXPECT_NEAR(metres_in(square_grove(), {15, 0, 0}, {0, 0, 1}), 10, 1e-12);
+    EXPECT_NEAR(metres_in(square_grove(), {15, 0, 50}, {0, 0, -1}), 10, 1e-12);
+    EXPECT_EQ(metres_in(square_grove(), {25, 0, 0}, {0, 0, 1}), 0);
+}
+
+TEST(Foliage, RayThatBeginsInsideCountsFromThere) {
+    EXPECT_NEAR(metres_in(square_grove(), {14, 0, 5}, {1, 0, 0}), 6, 1e-12);
+    EXPECT_NEAR(metres_in(square_grove(), {14, 0, 5}, {-1, 0, 0}), 4, 1e-12);
+    EXPECT_NEAR(metres_in(square_grove(), {15, 0, 5}, {0, 0, 1}), 7, 1e-12);
+}
+
+TEST(Foliage, WhatIsBehindOrBesideDoesNotCount) {
+    EXPECT_EQ(metres_in(square_grove(), {0, 0, 5}, {-1, 0, 0}), 0);
+    EXPECT_EQ(metres_in(square_grove(), {0, 0, 13}, {1, 0, 0}), 0);
+    EXPECT_EQ(metres_in(square_grove(), {0, 0, 1}, {1, 0, 0}), 0);
+    EXPECT_EQ(metres_in(square_grove(), {0, 0, 5}, {1, 2, 0}), 0);
+    EXPECT_EQ(metres_in(square_grove(), {0, 0, 13}, {1, 0, 0.1}), 0);
+}
+
+TEST(Foliage, EitherSenseOfTheRingIsTheSame) {
+    FoliageVolume turned = square_grove();
+    std::ranges::reverse(turned.ring);
+    EXPECT_NEAR(metres_in(turned, {0, 1, 3}, {3, 1, 1}), metres_in(square_grove(), {0, 1, 3}, {3, 1, 1}), 1e-12);
+}
+
+TEST(Foliage, AGapBetweenTwoArmsDoesNotCount) {
+    // A U open to the north, arms 2 m wide and 6 m apart.
+    const FoliageVolume horseshoe{{{0, 0}, {10, 0}, {10, 10}, {8, 10}, {8, 2}, {2, 2}, {2, 10}, {0, 10}}, 0, 10, 1.0};
+    EXPECT_NEAR(metres_in(horseshoe, {-5, 5, 1}, {1, 0, 0}), 4, 1e-12);
+    EXPECT_NEAR(metres_in(horseshoe, {-5, 1, 1}, {1, 0, 0}), 10, 1e-12);
+    EXPECT_NEAR(metres_in(horseshoe, {5, 20, 1}, {0, -1, 0}), 2, 1e-12);
+    EXPECT_NEAR(metres_in(horseshoe, {5, 5, 1}, {1, 0, 0}), 2, 1e-12);
+}
+
+TEST(Foliage, RayThroughTwoCornersCountsOnce) {
+    const FoliageVolume diamond{{{0, -5}, {5, 0}, {0, 5}, {-5, 0}}, 0, 10, 1.0};
+    EXPECT_NEAR(metres_in(diamond, {-20, 0, 1}, {1, 0, 0}), 10, 1e-12);
+    EXPECT_EQ(metres_in(diamond, {-20, 5, 1}, {1, 0, 0}), 0);
+}
+
+TEST(Foliage, LossesOfSeveralGrovesAddByTheirAttenuation) {
+    FoliageVolume thick = square_grove(), thin = square_grove();
+    thick.attenuation = 1.3;
+    thin.attenuation = 0.4;
+    for (Vector2d& corner : thin.ring)
+        corner.x() += 30;
+    const std::vector groves{thick, thin};
+    EXPECT_NEAR(foliage_loss_db(groves, {{0, 0, 5}, {1, 0, 0}}), 17, 1e-12);
+    EXPECT_NEAR(foliage_loss_db(groves, {{30, 0, 5}, {1, 0, 0}}), 4, 1e-12);
+    EXPECT_EQ(foliage_loss_db({}, {{0, 0, 5}, {1, 0, 0}}), 0);
+}
+
+TEST(Foliage, VolumesWithoutAnInsideLoseNothing) {
+    EXPECT_EQ(metres_in({{}, 0, 10, 1.0}, {0, 0, 5}, {1, 0, 0}), 0);
+    EXPECT_EQ(metres_in({{{10, -5}, {10, 5}}, 0, 10, 1.0}, {0, 0, 5}, {1, 0, 0}), 0);
+    FoliageVolume flat = square_grove();
+    flat.top = flat.base;
+    EXPECT_EQ(metres_in(flat, {0, 0, 2}, {1, 0, 0}), 0);
+    EXPECT_EQ(metres_in(flat, {0, 0, 0}, {7, 0, 1}), 0);
+}
+
+/// Length of a ray in a box along the axes, by its three pairs of planes.
+double metres_in_box(const Vector3d& low, const Vector3d& high, const SceneRay& ray) {
+    double first = 0, last = 1e9;
+    for (int i = 0; i < 3; ++i) {
+        const double a = (low[i] - ray.origin[i]) / ray.direction[i], b = (high[i] - ray.origin[i]) / ray.direction[i];
+        first = std::max(first, std::min(a, b));
+        last = std::min(last, std::max(a, b));
+    }
+    return std::max(0.0, last - first);
+}
+
+TEST(Foliage, AgreesWithTheClosedFormOfABoxForAnyRay) {
+    RandomStream random(4, "foliage");
+    const FoliageVolume grove = square_grove();
+    int crossed = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const SceneRay ray{{30 * random.uniform(), 30 * random.uniform() - 15, 20 * random.uniform()},
+                           Vector3d(random.normal(), random.normal(), random.normal()).normalized()};
+        const double metres = metres_in_box({10, -5, 2}, {20, 5, 12}, ray);
+        crossed += metres > 0;
+        ASSERT_NEAR(foliage_loss_db(std::span(&grove, 1), ray), metres, 1e-9) << i;
+    }
+    EXPECT_GT(crossed, 2'000);
+}
+
+}  // namespace
+}  // namespace skyloop
