@@ -1,5 +1,6 @@
 #include "search_crew.hpp"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -7,14 +8,14 @@
 
 namespace skyloop {
 SearchCrew::SearchCrew(int threads) {
-    const SignalsHeldBack held;
-    for (int i = 0; i < threads; ++i) {
+    with_signals_held_back([this, threads] {
         try {
-            threads_.emplace_back([this, worker = static_cast<std::size_t>(i)] { work(worker); });
+            for (std::size_t i = 0; i < static_cast<std::size_t>(std::max(0, threads)); ++i)
+                threads_.emplace_back([this, i] { work(i); });
         } catch (const std::system_error&) {
-            break;  // those that there are find the same paths
+            // Those that there are find the same paths.
         }
-    }
+    });
 }
 
 SearchCrew::~SearchCrew() {

@@ -1,25 +1,12 @@
 /// Threads that take no signals.
 #pragma once
 
-#include <csignal>
+#include <functional>
 
 namespace skyloop {
 
-/// While it lives, the calling thread takes no signals, nor ever do the threads that it starts meanwhile: a signal that
-/// ends the program must interrupt the thread that waits for it, not a helper.
-class SignalsHeldBack {
-public:
-    SignalsHeldBack() {
-        sigset_t all;
-        sigfillset(&all);
-        pthread_sigmask(SIG_SETMASK, &all, &before_);
-    }
-    ~SignalsHeldBack() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-    SignalsHeldBack(const SignalsHeldBack&) = delete;
-    SignalsHeldBack& operator=(const SignalsHeldBack&) = delete;
-
-private:
-    sigset_t before_{};
-};
+/// Runs `start` while the calling thread takes no signals; the threads that it starts never will. A signal that ends
+/// the program must interrupt the thread that waits for it, not a helper.
+void with_signals_held_back(const std::function<void()>& start);
 
 }  // namespace skyloop
