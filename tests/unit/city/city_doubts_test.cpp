@@ -5,7 +5,7 @@
 
 #include "skyloop/city/city_file.hpp"
 
-namespace skyloop {
+namespace skyloop::city_doubts_test {
 namespace {
 
 using ::testing::Contains;
@@ -61,4 +61,4 @@ TEST(DoubtsAbout, OverlooksCornersThatAreNoNumbersAndTerrainThatIsFlat) {
 }
 
 }  // namespace
-}  // namespace skyloop
+}  // namespace skyloop::city_doubts_test

@@ -2,7 +2,7 @@
 
 #include "skyloop/city/city_file.hpp"
 
-namespace skyloop {
+namespace skyloop::file_axes_test {
 namespace {
 
 TEST(FileAxes, ReadsWhichAxisPointsWhere) {
@@ -27,4 +27,4 @@ TEST(FileAxes, RefusesWhatNamesNotEachAxisOnce) {
 }
 
 }  // namespace
-}  // namespace skyloop
+}  // namespace skyloop::file_axes_test

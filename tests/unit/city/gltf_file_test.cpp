@@ -7,7 +7,7 @@
 
 #include "mesh_support.hpp"
 
-namespace skyloop {
+namespace skyloop::gltf_file_test {
 namespace {
 
 using test::refusal;
@@ -21,7 +21,7 @@ std::string wall_bytes() {
         std::memcpy(raw, &value, 4);
         bytes.append(raw, 4);
     }
-    for (const char corner : {0, 1, 2, 0, 2, 3})
+    for (const char corner : {'\0', '\1', '\2', '\0', '\2', '\3'})
         bytes += {corner, '\0'};
     return bytes;
 }
@@ -191,4 +191,4 @@ TEST(GltfFile, EveryCutOfAFileIsRefusedWithASentence) {
 }
 
 }  // namespace
-}  // namespace skyloop
+}  // namespace skyloop::gltf_file_test

@@ -5,7 +5,7 @@
 
 #include "mesh_support.hpp"
 
-namespace skyloop {
+namespace skyloop::height_grid_test {
 namespace {
 
 using test::refusal;
@@ -52,8 +52,8 @@ TEST(HeightGrid, PlacesDegreesOnTheGlobe) {
         "ncols 3\nnrows 3\nxllcenter 30.73\nyllcenter 46.47\ncellsize 0.001\n50 50 50\n50 50 50\n50 50 50\n";
     const auto file = read_grid(text);
     ASSERT_TRUE(file) << file.error().message;
-    EXPECT_NEAR(file->model.origin.latitude.degrees(), 46.471, 1e-12);
-    EXPECT_NEAR(file->model.origin.longitude.degrees(), 30.731, 1e-12);
+    EXPECT_NEAR(file->model.origin.latitude.deg(), 46.471, 1e-12);
+    EXPECT_NEAR(file->model.origin.longitude.deg(), 30.731, 1e-12);
     // A thousandth of a degree at 46.47°: 111.16 m north, 76.8 m east; all at the height of 50 m, less the curvature.
     const Eigen::Vector3d south_west = file->model.vertices[6];
     EXPECT_NEAR(south_west.x(), -76.8, 0.2);
@@ -93,4 +93,4 @@ TEST(HeightGrid, BelievesNoCountBeforeTheBytesAreThere) {
 }
 
 }  // namespace
-}  // namespace skyloop
+}  // namespace skyloop::height_grid_test

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <string>
 
 #include "skyloop/city/city_file.hpp"

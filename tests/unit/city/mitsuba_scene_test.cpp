@@ -8,7 +8,7 @@
 
 #include "mesh_support.hpp"
 
-namespace skyloop {
+namespace skyloop::mitsuba_scene_test {
 namespace {
 
 using test::refusal;
@@ -176,4 +176,4 @@ TEST(MitsubaScene, IsReadFromAFolderAndByItsName) {
 }
 
 }  // namespace
-}  // namespace skyloop
+}  // namespace skyloop::mitsuba_scene_test

@@ -5,7 +5,7 @@
 
 #include "mesh_support.hpp"
 
-namespace skyloop {
+namespace skyloop::obj_file_test {
 namespace {
 
 using test::refusal;
@@ -173,4 +173,4 @@ TEST(ObjFile, EveryCutOfAFileIsReadOrRefusedWithASentence) {
 }
 
 }  // namespace
-}  // namespace skyloop
+}  // namespace skyloop::obj_file_test

@@ -8,7 +8,7 @@
 
 #include "mesh_support.hpp"
 
-namespace skyloop {
+namespace skyloop::ply_file_test {
 namespace {
 
 using test::refusal;
@@ -156,4 +156,4 @@ TEST(PlyFile, RefusesMoreTrianglesThanAllowedBeforeItReadsThem) {
 }
 
 }  // namespace
-}  // namespace skyloop
+}  // namespace skyloop::ply_file_test

@@ -7,7 +7,7 @@
 #include "mesh_support.hpp"
 #include "support/oracle_table.hpp"
 
-namespace skyloop {
+namespace skyloop::read_city_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -116,4 +116,4 @@ TEST(RealCities, OdaibaIsReadCompressed) {
 }
 
 }  // namespace
-}  // namespace skyloop
+}  // namespace skyloop::read_city_test
