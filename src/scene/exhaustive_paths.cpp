@@ -19,7 +19,7 @@ constexpr double same_orientation = 1e-7;
 constexpr double near_satellite = 1e-3;  // rad: far more than a satellite's finite distance turns a ray
 
 template <class Vector>
-Vector mirrored(const Vector& point, const ScenePlane& plane) {
+Vector mirror_image(const Vector& point, const ScenePlane& plane) {
     const Vector normal = plane.normal.cast<typename Vector::Scalar>();
     return point - 2 * (normal.dot(point) - plane.offset) * normal;
 }
@@ -93,7 +93,7 @@ public:
     // The satellite mirrored by the last plane, then by the first; the way back cuts the first plane, then the last.
     void try_pairs(const std::vector<Reflector>& all) {
         for (const Reflector& b : all) {
-            const Eigen::Vector3d image = mirrored(satellite_.position, scene_.planes()[b.plane]);
+            const Eigen::Vector3d image = mirror_image(satellite_.position, scene_.planes()[b.plane]);
             for (const Reflector& a : all)
                 if (a.plane != b.plane && meets(a, image) && goes_on(a, b, image))
                     verify(sequence_of({a.plane, b.plane}));
@@ -190,7 +190,7 @@ private:
     [[nodiscard]] LongVector image_through(const Sequence& planes) const {
         LongVector image = satellite_.position.cast<long double>();
         for (std::size_t i = planes.size(); i-- > 0;)
-            image = mirrored(image, scene_.planes()[planes[i]]);
+            image = mirror_image(image, scene_.planes()[planes[i]]);
         return image;
     }
 
