@@ -54,7 +54,8 @@ std::vector<SatellitePaths> searched_paths(const std::shared_ptr<const UrbanScen
     return found;
 }
 
-void compare_at(const std::shared_ptr<const UrbanScene>& scene, const Eigen::Vector3d& place, int most, Recall& recall) {
+void compare_at(const std::shared_ptr<const UrbanScene>& scene, const Eigen::Vector3d& place, int most,
+                Recall& recall) {
     const auto sky = random_sky(satellites_of_sky, place, static_cast<std::uint64_t>(recall.all) + 77);
     SceneObserver observer;
     observer.now = to_gps_time(2300, 0.0);
@@ -127,8 +128,7 @@ CityModel cut_out(const CityModel& city, const Eigen::Vector2d& middle, double r
     part.origin = city.origin;
     part.materials = city.materials;
     for (const CityTriangle& t : city.triangles) {
-        const std::array corners{city.vertices[t.corners[0]], city.vertices[t.corners[1]],
-                                 city.vertices[t.corners[2]]};
+        const std::array corners{city.vertices[t.corners[0]], city.vertices[t.corners[1]], city.vertices[t.corners[2]]};
         const Eigen::Vector3d centre = (corners[0] + corners[1] + corners[2]) / 3;
         if (t.kind == SurfaceKind::ground || (centre.head<2>() - middle).norm() < radius)
             part.add_triangle(corners, t.kind, t.material);

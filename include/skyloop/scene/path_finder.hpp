@@ -21,6 +21,8 @@ struct PathSearchSettings {
     int rays = 0;
     double cache_seconds = 2;   ///< how long a path is remembered that is no longer there
     double tolerance_deg = 10;  ///< of an escaped ray to a satellite
+    /// Rays only where walls may lead them to a hidden satellite, by elevation; false: all of the hemisphere.
+    bool banded = true;
     int most_hops = 6;
     /// Threads that search beside the caller; 0: the caller itself. The paths are the same.
     int threads = 0;
