@@ -1,30 +1,11 @@
 #include "search_crew.hpp"
 
-#include <csignal>
 #include <system_error>
 #include <utility>
 
+#include "skyloop/base/signals_held_back.hpp"
+
 namespace skyloop {
-namespace {
-
-/// While it lives, threads that are made take no signals: those are for the thread that waits for them.
-class SignalsHeldBack {
-public:
-    SignalsHeldBack() {
-        sigset_t all;
-        sigfillset(&all);
-        pthread_sigmask(SIG_SETMASK, &all, &before_);
-    }
-    ~SignalsHeldBack() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-    SignalsHeldBack(const SignalsHeldBack&) = delete;
-    SignalsHeldBack& operator=(const SignalsHeldBack&) = delete;
-
-private:
-    sigset_t before_{};
-};
-
-}  // namespace
-
 SearchCrew::SearchCrew(int threads) {
     const SignalsHeldBack held;
     for (int i = 0; i < threads; ++i) {

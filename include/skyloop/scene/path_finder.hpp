@@ -26,7 +26,10 @@ struct PathSearchSettings {
     int most_hops = 6;
     /// Threads that search beside the caller; 0: the caller itself. The paths are the same.
     int threads = 0;
-    /// A search of one epoch serves the next one (a worker has time until then); false: the same one, at once.
+    /// A search of one epoch serves the next one (a worker has time until then): it is made for where the antenna and
+    /// the satellites will be if they go on as they do, and with 2048 rays while the antenna stands still. False: a
+    /// search serves the same epoch, at once. So does the first one in either case, and one after a jump by more than
+    /// 50 m or a gap longer than `cache_seconds`.
     bool search_ahead = true;
 };
 
@@ -36,8 +39,14 @@ int default_rays(double epochs_per_second);
 
 /// Counts since the beginning, and of the last epoch.
 struct PathSearchCounters {
-    std::uint64_t epochs = 0, rays = 0, segments = 0, candidates = 0, accepted = 0;
-    int rays_last = 0, cached_last = 0, found_last = 0;
+    std::uint64_t epochs = 0;
+    std::uint64_t rays = 0;        ///< of lattices
+    std::uint64_t segments = 0;    ///< stretches between reflections that were traced, of lattices and guesses
+    std::uint64_t candidates = 0;  ///< guessed sequences that were tried, remembered ones among them
+    std::uint64_t accepted = 0;    ///< paths answered
+    int rays_last = 0;             ///< of the search that served the last epoch
+    int cached_last = 0;           ///< sequences remembered when it began
+    int found_last = 0;            ///< sequences that the search added
 };
 
 /// Where the antenna is, in the scene's frame.
@@ -58,6 +67,9 @@ public:
     PathFinder(PathFinder&&) noexcept;
     PathFinder& operator=(PathFinder&&) noexcept;
 
+    /// A satellite, or an antenna, whose position is no number is not in sight and has no paths.
+    ///
+    /// @param satellites each once
     /// @returns one for each satellite, in their order
     std::vector<SatellitePaths> epoch(const SceneObserver& observer, std::span<const SceneSatellite> satellites);
 
