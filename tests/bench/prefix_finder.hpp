@@ -1,6 +1,8 @@
 /// What ours is measured against: the usual shooting and bouncing of rays.
 #pragma once
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "scene/path_tracing.hpp"
@@ -31,7 +33,7 @@ public:
         candidates_.clear();
         tried_.clear();
         if (!targets_.empty()) shoot(satellites);
-        verify(satellites, answer);
+        verify(answer);
         return answer;
     }
 
@@ -108,7 +110,7 @@ private:
         }
     }
 
-    void verify(std::span<const SceneSatellite>, std::vector<SatellitePaths>& answer) {
+    void verify(std::vector<SatellitePaths>& answer) {
         front_.clear();
         for (const Candidate& candidate : candidates_)
             front_.add(place_, candidate.unfolded.arrival);
