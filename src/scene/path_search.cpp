@@ -85,6 +85,7 @@ PathSearch::PathSearch(const UrbanScene& scene, const PathSearchSettings& settin
       rules_(reflection_rules(settings)),
       blocked_only_(settings.blocked_only),
       level_surfaces_(settings.roofs_reflect || settings.ground_reflects),
+      banded_(settings.banded),
       least_cosine_(std::cos(std::clamp(settings.tolerance_deg, 0.0, 180.0) * std::numbers::pi / 180)),
       moving_(lattices(rays_of(settings), elevations_change(scene, settings))),
       still_(lattices(std::min(rays_of(settings), still_rays), moving_.everywhere.has_value())),
@@ -122,6 +123,7 @@ void PathSearch::aim() {
     const double turn = turn_of(request_.number);
     directions_.clear();
     bands_.clear();
+    if (!banded_ && !targets_.empty()) bands_.push_back({level_surfaces_ ? -1.0 : 0.0, 1});
     for (const SearchTarget& target : targets_) {
         const double elevation = std::asin(std::clamp(target.direction.z(), -1.0, 1.0));
         add_bands(elevation, lattices.banded.spacing(), level_surfaces_, bands_);

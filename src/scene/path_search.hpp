@@ -61,7 +61,7 @@ private:
 
     const UrbanScene& scene_;
     ReflectionRules rules_;
-    bool blocked_only_, level_surfaces_;  ///< reflect
+    bool blocked_only_, level_surfaces_, banded_;  ///< level surfaces reflect
     double least_cosine_;
     Lattices moving_, still_;
     Request request_;

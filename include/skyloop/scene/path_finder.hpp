@@ -21,6 +21,8 @@ struct PathSearchSettings {
     int rays = 0;
     double cache_seconds = 2;   ///< how long a path is remembered that is no longer there
     double tolerance_deg = 10;  ///< of an escaped ray to a satellite
+    /// Rays only where walls may lead them to a hidden satellite, by elevation; false: all of the hemisphere.
+    bool banded = true;
     int most_hops = 6;
     /// Threads that search beside the caller; 0: the caller itself. The paths are the same.
     int threads = 0;
@@ -78,13 +80,5 @@ private:
     struct Parts;
     std::unique_ptr<Parts> parts_;
 };
-
-/// Every path up to a few reflections by trying all sequences of planes that see each other: slow, complete, and
-/// independent of PathFinder but for UrbanScene. For tests.
-///
-/// @param most_reflections 1 … 3; the cost grows with planes to that power
-std::vector<SatellitePaths> exhaustive_paths(const UrbanScene& scene, const SceneObserver& observer,
-                                             std::span<const SceneSatellite> satellites,
-                                             const PathSearchSettings& settings);
 
 }  // namespace skyloop
