@@ -79,7 +79,9 @@ std::vector<std::string> world_details(const NavigationSource& navigation, const
     std::vector<std::string> details{fmt::format("navigation: {}, {} satellites, {}", navigation.description(), navigation.satellites().size(),
                         navigation.klobuchar() ? "with ionosphere coefficients" : "without ionosphere coefficients"),
             fmt::format("geoid: {}", assembly.geoid ? "EGM96, 15 minutes" : "none")};
-    if (assembly.scene.scene) details.push_back("scene: " + assembly.scene.description);
+    if (assembly.scene.scene) 
+        details.push_back(
+            fmt::format("scene: {}{}", assembly.scene.description, assembly.scene.from_cache ? ", from the cache" : ""));
     return details;
 }
 

@@ -159,7 +159,7 @@ Result<LoadedScene> load_scene(const Scenario& scenario, const Geodetic& start, 
     loaded.scene = std::move(*scene);
     loaded.digest = city->digest;
     loaded.description = scene_description(city->names, *loaded.scene);
-    if (city->from_cache) loaded.description += ", from the cache";
+    loaded.from_cache = city->from_cache;
     loaded.warnings = std::move(city->warnings);
     for (const std::string& doubt : doubts_about(city->model))
         loaded.warnings.push_back("scene: " + doubt);

@@ -39,6 +39,7 @@ struct LoadedScene {
     std::shared_ptr<const UrbanScene> scene;
     std::string description;  ///< "munich.tar.gz, 38938 triangles, 12104 planes, 15 MB"
     std::uint64_t digest = 0;
+    bool from_cache = false;  ///< of one file at least
     std::vector<std::string> warnings;
 };
 
