@@ -19,6 +19,12 @@ inline constexpr std::string_view paper = "#ffffff";
 inline constexpr std::string_view panel = "#f6f8fb";
 inline constexpr std::string_view accent = "#b4540a";
 inline constexpr std::string_view unhealthy = "#8b95a1";
+inline constexpr std::string_view foliage = "#a9cf9d";
+inline constexpr std::string_view foliage_edge = "#6fa563";
+inline constexpr std::string_view line_of_sight = "#0a8f72";
+inline constexpr std::string_view reflected = "#e08a00";
+inline constexpr std::string_view blocked = "#b3403a";
+inline constexpr std::string_view skyline = "#c3cad3";
 
 /// One colour for each system, told apart by people with any kind of colour vision in pairs that meet in practice.
 constexpr std::string_view constellation_colour(Constellation constellation) {
