@@ -169,16 +169,17 @@ void draw_samples(SvgDocument& svg, const HeightSamples& samples, const PlanView
 void draw_trees(SvgDocument& svg, const UrbanScene& scene, const PlanView& view) {
     SvgPath path;
     for (const FoliageVolume& trees : scene.foliage())
-        if (const auto ring = clipped_polygon(trees.ring, view.area()); ring.size() >= 3) draw_outline(path, ring, view);
+        if (const auto ring = clipped_polygon(trees.ring, view.area()); ring.size() >= 3)
+            draw_outline(path, ring, view);
     if (!path.empty())
         svg.path(path, {.fill = style::foliage, .stroke = style::foliage_edge, .width = 0.8, .opacity = 0.75});
 }
 
 }  // namespace
 
-double draw_city(SvgDocument& svg, const UrbanScene& scene, const PlanView& view) {
+double draw_city(SvgDocument& svg, const UrbanScene& scene, const PlanView& view, bool blank_ground) {
     svg.begin_group("city");
-    svg.rectangle(view.corner(), view.size(), 0, {.fill = style::paper});
+    if (blank_ground) svg.rectangle(view.corner(), view.size(), 0, {.fill = style::paper});
     double highest = 0;
     if (const auto shapes = shapes_of(scene, view.area())) {
         draw_roofs(svg, *shapes, view);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "plot_style.hpp"
 
@@ -87,11 +86,8 @@ void draw_scale_and_north(SvgDocument& svg, const PlanView& view) {
     svg.line({low.x, low.y}, {low.x + length, low.y}, {.stroke = style::ink, .width = 2.5});
     for (const double x : {low.x, low.x + length})
         svg.line({x, low.y - 5}, {x, low.y + 5}, {.stroke = style::ink, .width = 1.5});
-    svg.text({.at = {low.x + length / 2, low.y - 11},
-              .text = text,
-              .size = 11.5,
-              .anchor = "middle",
-              .halo = style::paper});
+    svg.text(
+        {.at = {low.x + length / 2, low.y - 11}, .text = text, .size = 11.5, .anchor = "middle", .halo = style::paper});
     svg.end_group();
     const SvgPoint top{view.corner().x + view.size().x - 22, view.corner().y + 14};
     svg.begin_group("north");
@@ -102,12 +98,8 @@ void draw_scale_and_north(SvgDocument& svg, const PlanView& view) {
                  .line_to({top.x - 7, top.y + 22})
                  .close(),
              {.fill = style::ink, .stroke = style::paper, .width = 1.5});
-    svg.text({.at = {top.x, top.y + 32},
-              .text = "N",
-              .size = 12,
-              .anchor = "middle",
-              .bold = true,
-              .halo = style::paper});
+    svg.text(
+        {.at = {top.x, top.y + 32}, .text = "N", .size = 12, .anchor = "middle", .bold = true, .halo = style::paper});
     svg.end_group();
 }
 

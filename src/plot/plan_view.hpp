@@ -37,8 +37,9 @@ Eigen::AlignedBox2d ground_box(const UrbanScene& scene);
 
 /// Buildings shaded by height, walls as lines, trees green, the ground blank. Up to about 30,000 triangles are drawn as
 /// such; of more, heights are sampled and drawn as runs, so that the picture stays below a few megabytes.
+/// @param blank_ground false: what was drawn before shows between the buildings
 /// @returns the height that the darkest shade stands for, m
-double draw_city(SvgDocument& svg, const UrbanScene& scene, const PlanView& view);
+double draw_city(SvgDocument& svg, const UrbanScene& scene, const PlanView& view, bool blank_ground = true);
 
 /// A bar of a round length in the lower left corner of the view, and an arrow to the north in the upper right one.
 void draw_scale_and_north(SvgDocument& svg, const PlanView& view);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "skyloop/analysis/scene_sky.hpp"
 #include "skyloop/gnss/satellite.hpp"
 #include "skyloop/plot/svg_document.hpp"
 
@@ -45,6 +46,15 @@ constexpr std::string_view constellation_colour(Constellation constellation) {
             return "#0d8fb3";
     }
     return ink;
+}
+
+/// What a city does to a satellite: by colour, and by word.
+constexpr std::string_view reception_colour(Reception reception) {
+    return std::array{line_of_sight, reflected, blocked}[static_cast<std::size_t>(reception)];
+}
+constexpr std::string_view reception_word(Reception reception) {
+    return std::array<std::string_view, 3>{"line of sight", "reflected",
+                                           "blocked"}[static_cast<std::size_t>(reception)];
 }
 
 /// A sheet of paper of its own under the picture, so that it reads on a white page and on a dark one.
