@@ -102,6 +102,7 @@ std::string options_text(const RunOptions& o) {
                                       {"trajectory", o.trajectory},
                                       {"start", o.start},
                                       {"model", o.model},
+                                      {"scene", o.scene},
                                       {"board", o.board}})
         if (!value.empty()) text += fmt::format("\n--{} {}", name, value);
     if (o.rebase_nav) text += "\n--rebase-nav";
@@ -137,7 +138,8 @@ void add_run_options(CLI::App& command, RunOptions& options) {
     command.add_option("--trajectory", options.trajectory, "A .toml file with waypoints");
     command.add_option("--duration", options.duration, "Seconds");
     command.add_option("--model", options.model, fmt::format("{}; default modern", fmt::join(model_names(), " ")));
-    command.add_option("--scene", options.scene, "Buildings (not in this version)");
+    command.add_option("--scene", options.scene,
+                       "Buildings: .obj .ply .gltf .glb .geojson .json .osm .pbf .gml .xml, a folder or .tar.gz; or demo");
     command.add_option("--board", options.board, "Receiver profile, default ublox-m8; see skyloop boards");
     command.add_option("--rate", options.rate, "Navigation rate at start, Hz");
     command
@@ -174,7 +176,6 @@ Result<Geodetic> parse_place(const std::string& text) {
 }
 
 Result<Scenario> scenario_from(const RunOptions& options) {
-    if (!options.scene.empty()) return fail(ErrorCode::usage, "--scene: buildings are not in this version");
     if (!options.control.empty()) return fail(ErrorCode::usage, "--control: live control is not in this version");
     Scenario scenario;
     if (!options.scenario.empty()) {
@@ -184,6 +185,7 @@ Result<Scenario> scenario_from(const RunOptions& options) {
     }
     if (!options.nav.empty()) scenario.sky.navigation.assign(options.nav.begin(), options.nav.end());
     scenario.sky.rebase_navigation |= options.rebase_nav;
+    if (!options.scene.empty()) scenario.scene.buildings = {options.scene};
     if (options.seed) scenario.run.seed = *options.seed;
     scenario.source += options_text(options);
     for (const auto& apply : {apply_place, apply_time, apply_model, apply_receiver, apply_speed})

@@ -40,7 +40,13 @@ Result<World> make_world(const Scenario& scenario, const Messages& messages) {
     for (const std::string& warning : warnings)
         messages.warning(warning);
     const GpsTime start = navigation->start;
-    auto simulation = make_simulation(scenario, std::move(navigation->source), geoid.get(), start, data_folders());
+    const Geodetic place = make_trajectory(scenario.trajectory, start)->at(start).geodetic;
+    auto scene = load_scene(scenario, place, CityCache{data_folders().cache});
+    if (!scene) return fail(scene.error());
+    for (const std::string& warning : scene->warnings)
+        messages.warning(warning);
+    auto simulation = make_simulation(
+        scenario, {std::move(navigation->source), geoid.get(), start, data_folders(), 0, std::move(scene->scene)});
     if (!simulation) return fail(simulation.error());
     return World{std::move(geoid), std::move(*simulation), start};
 }
