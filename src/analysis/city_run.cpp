@@ -153,7 +153,7 @@ Result<CityRun> parse_city_run(std::string_view fixes, std::string_view satellit
         if (!time) return fail(time.error());
         if (!start) run.start = table.cell(columns->front());
         start = start.value_or(*time);
-        epoch->since_start = *time - *start;
+        epoch->since_start = difference(*time, *start);
         if (const auto found = counts->find(table.cell(columns->front())); found != counts->end()) {
             epoch->line_of_sight = found->second.line_of_sight;
             epoch->reflected = found->second.reflected;
