@@ -48,7 +48,9 @@ void add_cell(CityModel& city, const WindowWall& wall, std::array<int, 2> at, co
     for (std::size_t k = 0; k < 4; ++k) {
         const std::size_t next = (k + 1) % 4;
         city.add_quad({outer[k], outer[next], inner[next], inner[k]}, SurfaceKind::wall, house.walls);
-        city.add_quad({inner[k], inner[next], pane[next], pane[k]}, SurfaceKind::wall, house.walls);
+        // Sill and lintel lie flat.
+        const SurfaceKind reveal = k % 2 == 0 ? SurfaceKind::roof : SurfaceKind::wall;
+        city.add_quad({inner[k], inner[next], pane[next], pane[k]}, reveal, house.walls);
     }
     city.add_quad(pane, SurfaceKind::wall, windows.pane);
 }

@@ -67,12 +67,4 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
-/// Every path up to a few reflections by trying all sequences of planes that see each other: slow, complete, and
-/// independent of PathFinder but for UrbanScene. For tests.
-///
-/// @param most_reflections 1 … 3; the cost grows with planes to that power
-std::vector<SatellitePaths> exhaustive_paths(const UrbanScene& scene, const SceneObserver& observer,
-                                             std::span<const SceneSatellite> satellites,
-                                             const PathSearchSettings& settings);
-
 }  // namespace skyloop
