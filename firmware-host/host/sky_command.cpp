@@ -65,9 +65,21 @@ void add_trails(SkyPlot& plot, const World& world, const TruthState& truth) {
     }
 }
 
+// What buildings did to each satellite; nothing where none stand.
+std::optional<std::vector<SceneReception>> receptions_of(const Simulation& simulation) {
+    const RayTracedScene* city = simulation.city();
+    if (city == nullptr) return std::nullopt;
+    std::vector<SceneReception> receptions;
+    for (const SatellitePaths& found : city->paths())
+        receptions.push_back(scene_reception(city->scene(), found, city->antenna()));
+    return receptions;
+}
+
 std::string sky_svg(const SkyListing& listing, const World& world, const TruthState& truth) {
     SkyPlot plot = sky_plot(listing);
     add_trails(plot, world, truth);
+    if (const RayTracedScene* city = world.simulation.city())
+        plot.obstruction = sky_mask(city->scene(), city->antenna());
     return sky_plot_svg(plot);
 }
 
@@ -99,8 +111,9 @@ int show_sky(const SkyOptions& options) {
     ReceiverSettings receiver;
     receiver.elevation_mask = scenario->sky.elevation_mask.value_or(receiver.elevation_mask);
     const Trace trace = world->simulation.run(world->start, receiver);
-    const SkyListing listing =
-        sky_listing(trace.truth, trace.sky, receiver.elevation_mask, {&trace.arrivals, &trace.epoch.fix});
+    const auto receptions = receptions_of(world->simulation);
+    const SkyListing listing = sky_listing(trace.truth, trace.sky, receiver.elevation_mask,
+                                           {&trace.arrivals, &trace.epoch.fix, receptions ? &*receptions : nullptr});
     if (options.format == "svg")
         fmt::print("{}", sky_svg(listing, *world, trace.truth));
     else if (options.format == "json")
@@ -118,6 +131,7 @@ Action add_sky_command(CLI::App& app) {
     command->add_option("scenario", options->run.scenario, "Scenario file (TOML); without it embedded defaults");
     add_place_options(*command, options->run);
     command->add_option("--model", options->run.model, "Sensor model that decides which satellites are used");
+    add_scene_option(*command, options->run);
     command->add_option("--format", options->format, "text, json, csv or svg")
         ->check(CLI::IsMember({"text", "json", "csv", "svg"}));
     command->add_option("--mask", options->mask_deg, "Elevation mask, degrees")->check(CLI::Range(0.0, 90.0));

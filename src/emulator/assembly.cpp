@@ -76,12 +76,13 @@ Result<void> add_scene(const Scenario& scenario, const DataFolders& data, Assemb
 }
 
 std::vector<std::string> world_details(const NavigationSource& navigation, const Assembly& assembly) {
-    std::vector<std::string> details{fmt::format("navigation: {}, {} satellites, {}", navigation.description(), navigation.satellites().size(),
-                        navigation.klobuchar() ? "with ionosphere coefficients" : "without ionosphere coefficients"),
-            fmt::format("geoid: {}", assembly.geoid ? "EGM96, 15 minutes" : "none")};
-    if (assembly.scene.scene) 
-        details.push_back(
-            fmt::format("scene: {}{}", assembly.scene.description, assembly.scene.from_cache ? ", from the cache" : ""));
+    std::vector<std::string> details{
+        fmt::format("navigation: {}, {} satellites, {}", navigation.description(), navigation.satellites().size(),
+                    navigation.klobuchar() ? "with ionosphere coefficients" : "without ionosphere coefficients"),
+        fmt::format("geoid: {}", assembly.geoid ? "EGM96, 15 minutes" : "none")};
+    if (assembly.scene.scene)
+        details.push_back(fmt::format("scene: {}{}", assembly.scene.description,
+                                      assembly.scene.from_cache ? ", from the cache" : ""));
     return details;
 }
 
@@ -233,10 +234,9 @@ Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, con
     assembly.digest = scenario_digest(scenario, assembly.start, assembly.scene.digest);
     assembly.details = world_details(*navigation->source, assembly);
 
-    auto stations = make_stations(
-        {scenario, data, mode, std::move(navigation->source), assembly.geoid.get(), assembly.start,
-         assembly.scene.scene},
-        assembly);
+    auto stations = make_stations({scenario, data, mode, std::move(navigation->source), assembly.geoid.get(),
+                                   assembly.start, assembly.scene.scene},
+                                  assembly);
     if (!stations) return fail(stations.error());
     assembly.details.push_back(fmt::format("digest: {}", assembly.digest));
     // The pacer comes last, so that the clock starts when everything else is ready.

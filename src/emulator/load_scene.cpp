@@ -7,8 +7,8 @@
 
 #include "skyloop/base/digest.hpp"
 #include "skyloop/base/text_file.hpp"
-#include "skyloop/scene/generated_city.hpp"
 #include "skyloop/geo/local_frame.hpp"
+#include "skyloop/scene/generated_city.hpp"
 
 namespace skyloop {
 namespace {

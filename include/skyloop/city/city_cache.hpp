@@ -24,8 +24,8 @@ struct CityReading {
     bool from_cache = false;
 };
 
-/// Of the bytes of a city file. A folder counts with the files in it and in its folders; formats that name others (.xml,
-/// .gltf) with the .ply and .bin around them. Fails with `outside` when something cannot be read.
+/// Of the bytes of a city file. A folder counts with the files in it and in its folders; formats that name others
+/// (.xml, .gltf) with the .ply and .bin around them. Fails with `outside` when something cannot be read.
 Result<std::uint64_t> city_source_digest(const std::filesystem::path& path);
 
 /// As read_city(), but from the cache when it holds what these bytes and settings give; what was read is kept there. A

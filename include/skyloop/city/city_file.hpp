@@ -47,14 +47,20 @@ struct CityFile {
 };
 
 /// Reads a city by the ending of its name: .obj .ply .gltf .glb .geojson .json (CityJSON or GeoJSON) .osm .pbf .gml
-/// (CityGML) .xml (Mitsuba scene, with the .ply it names; CityGML), each also as .gz; a folder or .tar.gz with one
-/// Mitsuba scene.
+/// (CityGML) .xml (Mitsuba scene, with the .ply it names; CityGML; OpenStreetMap) .asc (height grid), each also as .gz;
+/// a folder, .tar or .tar.gz with one Mitsuba scene. Files that a scene or a .gltf names are read from its own folder
+/// alone. What doubts_about() says is among the warnings.
 ///
 /// Fails with `outside` when it cannot be opened, with `input` and FILE:LINE or the place when it is damaged, cut or
 /// empty.
 Result<CityFile> read_city(const std::filesystem::path& path, const CityFileSettings& settings);
 
 /// The same from memory; `name` is for messages. None opens another file.
+///
+/// Where a format of facets tells no kinds: a facet whose normal's up component is at most half its length is wall;
+/// else ground when its object, group or material is named so ("ground", "terrain", "Plane"), and roof otherwise. Roofs
+/// within 0.5 m of the lowest corner of all are ground when together they cover a quarter of the city's box and
+/// something stands 2 m above them. Materials go by their names ("itu_concrete", "Glass.003").
 Result<CityFile> parse_obj(std::string_view text, std::string_view name, const CityFileSettings& settings);
 Result<CityFile> parse_ply(std::string_view bytes, std::string_view name, const CityFileSettings& settings);
 Result<CityFile> parse_gltf(std::string_view bytes, std::string_view name, const CityFileSettings& settings);
@@ -65,12 +71,16 @@ Result<CityFile> parse_citygml(std::string_view text, std::string_view name, con
 Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std::string_view name,
                            const CityFileSettings& settings);
 
-/// A height grid (ESRI ASCII, .asc) as ground. Cells are geographic degrees when they fit on the globe, else metres
-/// from the frame's origin; `metres_per_unit` and `origin` apply.
+/// A tar archive, not compressed, with one Mitsuba scene and the .ply files that it names.
+Result<CityFile> parse_mitsuba_archive(std::string_view bytes, std::string_view name, const CityFileSettings& settings);
+
+/// A height grid (ESRI ASCII, .asc) as ground. Cells are geographic degrees when they fit on the globe and are at most
+/// 0.1° wide, heights then metres above the ellipsoid; else both are metres from the frame's origin. `metres_per_unit`
+/// and `origin` apply; `metres_per_unit` to heights alone where cells are degrees.
 Result<CityFile> parse_height_grid(std::string_view text, std::string_view name, const CityFileSettings& settings);
 
-/// What is doubtful about a city as a whole: a few metres or a hundred kilometres wide, nothing higher than 3 m, walls
-/// below ground. Empty for most.
+/// What is doubtful about a city as a whole: a few metres or a hundred kilometres wide, no more than 3 m tall or more
+/// than 1500, far from its origin, without walls, walls deep below ground. Empty for most.
 std::vector<std::string> doubts_about(const CityModel& city);
 
 }  // namespace skyloop

@@ -1,0 +1,284 @@
+#include "city_objects.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "skyloop/city/footprint.hpp"
+
+namespace skyloop {
+
+namespace {
+
+/// Bytes that a triangle takes in a CityModel and in a scene with its tree, planes and tables.
+constexpr double bytes_per_triangle = 300;
+/// Metres above its lowest point within which a level surface is the floor of a construction.
+constexpr double floor_thickness = 0.2;
+/// Metres from which a plant cover hides what is behind.
+constexpr double least_plants = 2;
+/// Area over that of its hull below which a plant cover is too ragged for one prism.
+constexpr double least_filling = 0.5;
+
+bool one_of(std::string_view word, std::initializer_list<std::string_view> words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// Twice the area as a vector.
+Eigen::Vector3d area_vector(const ObjectSurface& surface) {
+    const auto& ring = surface.rings.front();
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+        const Eigen::Vector3d a = ring[i] - ring[0], b = ring[i + 1] - ring[0];
+        sum += Eigen::Vector3d(a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x());
+    }
+    return sum;
+}
+
+double lowest_of(const std::vector<ObjectSurface>& surfaces) {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const ObjectSurface& surface : surfaces)
+        for (const auto& ring : surface.rings)
+            for (const Eigen::Vector3d& point : ring) lowest = std::min(lowest, point.z());
+    return lowest;
+}
+
+/// Level 0 alone tells no heights of a construction.
+const std::vector<ObjectSurface>* best_surfaces(const CityObject& object) {
+    if (object.levels.empty() || object.object_class == ObjectClass::ignored) return nullptr;
+    const auto& [level, surfaces] = *object.levels.rbegin();
+    const bool useful = level >= 10 || object.object_class != ObjectClass::construction;
+    return useful && !surfaces.empty() ? &surfaces : nullptr;
+}
+
+int best_level(const CityObject& object) { return best_surfaces(object) ? object.levels.rbegin()->first : -1; }
+
+/// Median height of the feet of buildings, else of everything: what stands for the ground.
+double ground_level(const std::vector<CityObject>& objects) {
+    std::vector<double> feet, all;
+    for (const CityObject& object : objects) {
+        const auto* surfaces = best_surfaces(object);
+        if (!surfaces) continue;
+        const double lowest = lowest_of(*surfaces);
+        if (!std::isfinite(lowest)) continue;
+        all.push_back(lowest);
+        if (object.building) feet.push_back(lowest);
+    }
+    std::vector<double>& heights = feet.empty() ? all : feet;
+    if (heights.empty()) return 0;
+    const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+    std::nth_element(heights.begin(), middle, heights.end());
+    return *middle;
+}
+
+/// The convex hull, anticlockwise (Andrew 1979).
+std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
+    const auto before = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+        return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+    };
+    std::sort(points.begin(), points.end(), before);
+    std::vector<Eigen::Vector2d> hull;
+    for (int half = 0; half < 2; ++half) {
+        const std::size_t start = hull.size();
+        for (const Eigen::Vector2d& p : points) {
+            while (hull.size() >= start + 2) {
+                const Eigen::Vector2d u = hull.back() - hull[hull.size() - 2], v = p - hull.back();
+                if (u.x() * v.y() - u.y() * v.x() > 0) break;
+                hull.pop_back();
+            }
+            hull.push_back(p);
+        }
+        if (!hull.empty()) hull.pop_back();
+        std::reverse(points.begin(), points.end());
+    }
+    return hull;
+}
+
+double hull_area(const std::vector<Eigen::Vector2d>& ring) {
+    double sum = 0;
+    for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+        const Eigen::Vector2d a = ring[i] - ring[0], b = ring[i + 1] - ring[0];
+        sum += a.x() * b.y() - a.y() * b.x();
+    }
+    return std::abs(sum) / 2;
+}
+
+/// Makes triangles and trees of objects.
+class ObjectBuilder {
+public:
+    ObjectBuilder(CityFile& file, const CityFileSettings& settings) : file_(file) {
+        CityModel& model = file.model;
+        if (settings.material != model.materials.front()) model.materials.front() = settings.material;
+    }
+
+    void add(const CityObject& object, const PlaceOnEarth& place);
+    std::size_t ragged = 0;
+
+private:
+    void add_construction(const std::vector<ObjectSurface>& surfaces);
+    bool add_plants(const std::vector<ObjectSurface>& surfaces, bool tree);
+    void add_surface(const ObjectSurface& surface, SurfaceKind kind);
+
+    CityFile& file_;
+};
+
+void ObjectBuilder::add(const CityObject& object, const PlaceOnEarth& place) {
+    std::vector<ObjectSurface> surfaces = *best_surfaces(object);
+    for (ObjectSurface& surface : surfaces)
+        for (auto& ring : surface.rings)
+            for (Eigen::Vector3d& point : ring) point = place(point);
+    if (object.object_class == ObjectClass::construction) {
+        add_construction(surfaces);
+        file_.buildings += object.building && !object.parent ? 1 : 0;
+    } else if (object.object_class == ObjectClass::terrain || !add_plants(surfaces, object.object_class == ObjectClass::tree)) {
+        for (const ObjectSurface& surface : surfaces) add_surface(surface, SurfaceKind::ground);
+    }
+}
+
+void ObjectBuilder::add_surface(const ObjectSurface& surface, SurfaceKind kind) {
+    const std::uint8_t material = surface.use == SurfaceUse::window ? file_.model.material_index("glass") : std::uint8_t{0};
+    if (!add_polygon(file_.model, surface.rings, kind, material)) ++file_.dropped;
+}
+
+void ObjectBuilder::add_construction(const std::vector<ObjectSurface>& surfaces) {
+    const double floor = lowest_of(surfaces) + floor_thickness;
+    const bool told = std::any_of(surfaces.begin(), surfaces.end(), [](const ObjectSurface& surface) {
+        return surface.use == SurfaceUse::wall || surface.use == SurfaceUse::roof;
+    });
+    for (const ObjectSurface& surface : surfaces) {
+        if (surface.use == SurfaceUse::floor || surface.use == SurfaceUse::hidden) continue;
+        if (told && surface.use == SurfaceUse::unknown) continue;  // a solid beside its own told surfaces
+        if (surface.use != SurfaceUse::unknown) {
+            add_surface(surface, surface.use == SurfaceUse::roof ? SurfaceKind::roof : SurfaceKind::wall);
+            continue;
+        }
+        const Eigen::Vector3d normal = area_vector(surface);
+        const bool level = std::abs(normal.z()) >= 0.5 * normal.norm();
+        const auto& ring = surface.rings.front();
+        const bool low = std::all_of(ring.begin(), ring.end(), [&](const auto& point) { return point.z() <= floor; });
+        if (!(level && low)) add_surface(surface, level ? SurfaceKind::roof : SurfaceKind::wall);
+    }
+}
+
+bool ObjectBuilder::add_plants(const std::vector<ObjectSurface>& surfaces, bool tree) {
+    std::vector<Eigen::Vector2d> points;
+    double area = 0, volume = 0, highest = -1e300;
+    const double lowest = lowest_of(surfaces);
+    for (const ObjectSurface& surface : surfaces) {
+        double mean = 0;
+        for (const Eigen::Vector3d& point : surface.rings.front()) {
+            points.emplace_back(point.head<2>());
+            mean += point.z() / static_cast<double>(surface.rings.front().size());
+            highest = std::max(highest, point.z());
+        }
+        const double flat = std::abs(area_vector(surface).z()) / 2;
+        area += flat;
+        volume += flat * (mean - lowest);
+    }
+    // A tree's surfaces lie around it: its top is the highest; a cover's mean height is that of its surface.
+    const double top = tree ? highest : lowest + (area > 0 ? volume / area : 0);
+    if (!(top - lowest >= least_plants)) return false;
+    const std::vector<Eigen::Vector2d> hull = convex_hull(std::move(points));
+    if (hull.size() < 3 || (!tree && area < least_filling * hull_area(hull))) {
+        ++ragged;
+        return true;
+    }
+    FoliageVolume& foliage = file_.model.foliage.emplace_back();
+    foliage.ring = hull;
+    foliage.base = lowest;
+    foliage.top = top;
+    return true;
+}
+
+/// True for each object that is not shown: what parts tell better, and parts that tell less than their whole.
+std::vector<bool> replaced_objects(const std::vector<CityObject>& objects) {
+    std::vector<int> parts(objects.size(), -1);
+    for (const CityObject& object : objects)
+        if (object.parent) parts[*object.parent] = std::max(parts[*object.parent], best_level(object));
+    std::vector<bool> replaced(objects.size());
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        const int own = best_level(objects[i]);
+        replaced[i] = own < 0 || parts[i] >= own;
+        if (objects[i].parent && best_level(objects[*objects[i].parent]) > parts[*objects[i].parent]) replaced[i] = true;
+    }
+    return replaced;
+}
+
+void warn_of_place(CityFile& file, const ReferenceSystem& system, std::pair<Eigen::Vector2d, double> origin, bool given) {
+    if (system.kind != CoordinateKind::projected) return;
+    file.warnings.push_back(fmt::format(
+        "coordinates are projected ({}): the frame's origin{} is at {:.3f}, {:.3f}, {:.3f} of the file{}", system.name,
+        given ? " as given" : "", origin.first.x(), origin.first.y(), origin.second,
+        given ? "" : "; its place on Earth is not known: give an origin"));
+}
+
+PlaceOnEarth::Extent extent_of(const std::vector<CityObject>& objects) {
+    PlaceOnEarth::Extent extent;
+    for (const CityObject& object : objects)
+        if (const auto* surfaces = best_surfaces(object))
+            for (const ObjectSurface& surface : *surfaces)
+                for (const Eigen::Vector3d& point : surface.rings.front()) extent.include(point.head<2>());
+    return extent;
+}
+
+}  // namespace
+
+ObjectClass object_class(std::string_view type) {
+    if (one_of(type, {"BuildingRoom", "BuildingFurniture", "BuildingUnit", "BuildingStorey", "BridgeRoom", "TunnelHollowSpace",
+                      "BridgeFurniture", "TunnelFurniture", "CityObjectGroup", "Room", "CityModel"}))
+        return ObjectClass::ignored;
+    if (one_of(type, {"TINRelief", "ReliefFeature", "LandUse", "Road", "Railway", "Track", "Square", "TransportSquare",
+                      "Waterway", "WaterBody", "TransportationComplex"}))
+        return ObjectClass::terrain;
+    if (type == "PlantCover") return ObjectClass::plants;
+    if (type == "SolitaryVegetationObject") return ObjectClass::tree;
+    return ObjectClass::construction;
+}
+
+SurfaceUse surface_use(std::string_view type) {
+    if (one_of(type, {"WallSurface", "Door", "DoorSurface"})) return SurfaceUse::wall;
+    if (one_of(type, {"RoofSurface", "OuterCeilingSurface", "OuterFloorSurface"})) return SurfaceUse::roof;
+    if (one_of(type, {"Window", "WindowSurface"})) return SurfaceUse::window;
+    if (type == "GroundSurface") return SurfaceUse::floor;
+    if (one_of(type, {"ClosureSurface", "InteriorWallSurface", "CeilingSurface", "FloorSurface", "interiorRoom"}))
+        return SurfaceUse::hidden;
+    return SurfaceUse::unknown;
+}
+
+tl::unexpected<Error> too_many_triangles(std::string_view name, const CityFileSettings& settings) {
+    const auto most = static_cast<double>(settings.most_triangles);
+    return fail(ErrorCode::input, fmt::format("{}: more than {} triangles, which would take some {:.1f} GB of memory; "
+                                              "raise the limit or cut the city smaller",
+                                              name, settings.most_triangles, most * bytes_per_triangle / 1e9));
+}
+
+Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std::string_view name,
+                                 const CityFileSettings& settings) {
+    CityFile file;
+    file.format = format;
+    file.dropped = read.dropped;
+    file.warnings = std::move(read.warnings);
+    const auto extent = extent_of(read.objects);
+    if (extent.empty()) return fail(ErrorCode::input, fmt::format("{}: no surface that could be used", name));
+    const ReferenceSystem system = read.system.value_or(ReferenceSystem{CoordinateKind::projected, false, "unnamed"});
+    const double ground = ground_level(read.objects);
+    const auto place = PlaceOnEarth::make(system, extent, ground, settings);
+    if (!place) return fail(place.error().code, fmt::format("{}: {}: {}", name, system.name, place.error().message));
+    file.model.origin = place->origin();
+    warn_of_place(file, system, {extent.middle(), ground}, settings.origin.has_value());
+    const std::vector<bool> replaced = replaced_objects(read.objects);
+    ObjectBuilder builder(file, settings);
+    for (std::size_t i = 0; i < read.objects.size(); ++i) {
+        if (!replaced[i]) builder.add(read.objects[i], *place);
+        if (file.model.triangles.size() > settings.most_triangles) return too_many_triangles(name, settings);
+    }
+    if (file.dropped > 0)
+        file.warnings.push_back(fmt::format("{} surfaces without area or with wrong corners were left out", file.dropped));
+    if (builder.ragged > 0)
+        file.warnings.push_back(fmt::format("{} plant covers of ragged outline were left out", builder.ragged));
+    if (file.model.triangles.empty() && file.model.foliage.empty())
+        return fail(ErrorCode::input, fmt::format("{}: no surface that could be used", name));
+    return file;
+}
+
+}  // namespace skyloop

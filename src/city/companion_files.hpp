@@ -1,0 +1,24 @@
+/// Files that another file names.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "skyloop/city/city_file.hpp"
+
+namespace skyloop {
+
+/// Gives the content of a file by its name inside the folder of the one that names it (name_inside() has been asked).
+/// Fails when there is none.
+using CompanionFiles = std::function<Result<std::string>(const std::string& inside)>;
+
+/// A Mitsuba scene (version 2 and 3): the shapes of kind "ply" that it names, their to_world transform, and
+/// materials by the identity of their bsdf; z is up. Shapes of other kinds are dropped with a warning.
+Result<CityFile> parse_mitsuba(std::string_view xml, std::string_view name, const CityFileSettings& settings,
+                               const CompanionFiles& companions);
+
+/// parse_gltf() with buffers in files beside it.
+Result<CityFile> parse_gltf_with(std::string_view bytes, std::string_view name, const CityFileSettings& settings,
+                                 const CompanionFiles& companions);
+
+}  // namespace skyloop

@@ -1,0 +1,61 @@
+/// A glTF 2.0 document and the bytes of its buffers, with every index and length checked.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "companion_files.hpp"
+
+namespace skyloop {
+
+/// Numbers of an accessor where they lie: checked to be inside their buffer.
+struct GltfNumbers {
+    std::string_view bytes;  ///< from the first one on
+    std::size_t count = 0, stride = 0;
+    unsigned components = 1;
+    int component_type = 0;  ///< 5120 … 5126
+    bool normalized = false;
+    /// @param index less than count @param component less than components
+    [[nodiscard]] double number(std::size_t index, unsigned component) const;
+};
+
+/// Khronos Group, glTF 2.0 specification, sections 3.4 (concepts), 3.6 (buffers), 4.4 (GLB).
+class GltfDocument {
+public:
+    /// Parses .gltf or .glb. `bytes` must outlive it. Fails with `input`: no JSON, another version, an extension that
+    /// changes shapes.
+    static Result<GltfDocument> parse(std::string_view bytes, std::string_view name, const CompanionFiles& companions);
+
+    [[nodiscard]] const nlohmann::json& root() const { return root_; }
+    /// An array of the document's root; an empty one where there is none.
+    [[nodiscard]] const nlohmann::json& list(const char* key) const;
+    /// The numbers of an accessor of `type` ("VEC3", "SCALAR"). Fails with `input` and what is wrong.
+    Result<GltfNumbers> numbers(std::uint64_t accessor, std::string_view type);
+    [[nodiscard]] tl::unexpected<Error> wrong(std::string_view what) const;
+
+private:
+    Result<void> take_chunks(std::string_view bytes);
+    Result<void> check_version() const;
+    Result<std::string_view> buffer(std::uint64_t index);
+    Result<std::string> load(const nlohmann::json& buffer);
+
+    std::string name_;
+    CompanionFiles companions_;
+    nlohmann::json root_;
+    std::optional<std::string_view> binary_;
+    std::vector<std::optional<std::string>> loaded_;
+    std::size_t loaded_bytes_ = 0;
+};
+
+/// A whole number that is not negative; nothing when there is none of that name.
+std::optional<std::uint64_t> gltf_index(const nlohmann::json& object, const char* key);
+/// A text; empty when there is none of that name.
+std::string gltf_text(const nlohmann::json& object, const char* key);
+/// All numbers of an array, `otherwise` when there is none of that name; empty when it holds something else.
+std::vector<double> gltf_numbers(const nlohmann::json& object, const char* key, std::vector<double> otherwise);
+
+}  // namespace skyloop

@@ -1,0 +1,217 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "city_text.hpp"
+#include "skyloop/city/city_file.hpp"
+#include "skyloop/geo/local_frame.hpp"
+
+namespace skyloop {
+namespace {
+
+// A cell so small in degrees, in a grid that fits on the globe, is geographic: 0.1° are 11 km, while no grid in metres
+// has cells of a decimetre.
+constexpr double largest_geographic_cell = 0.1;
+
+struct HeightGridHeader {
+    std::size_t columns = 0, rows = 0;
+    double west = 0, south = 0;  ///< of the middle of the south-western cell
+    double cell = 0;
+    double no_data = std::numeric_limits<double>::quiet_NaN();
+    [[nodiscard]] bool geographic() const {
+        const double east = west + static_cast<double>(columns) * cell,
+                     north = south + static_cast<double>(rows) * cell;
+        return cell <= largest_geographic_cell && west >= -180 && east <= 361 && south >= -90 && north <= 91;
+    }
+};
+
+class HeightGridReader {
+public:
+    HeightGridReader(std::string_view text, std::string_view name, const CityFileSettings& settings)
+        : text_(text), name_(name), settings_(settings), at_(text.data()), end_(at_ + text.size()) {}
+
+    Result<CityFile> read() {
+        if (auto done = read_header(); !done) return fail(std::move(done.error()));
+        if (auto done = read_heights(); !done) return fail(std::move(done.error()));
+        place_cells();
+        join_cells();
+        if (file_.model.triangles.empty())
+            return fail(ErrorCode::input, fmt::format("{}: no four neighbours have a height", name_));
+        file_.format = "height grid";
+        if (file_.dropped > 0)
+            file_.warnings.push_back(
+                fmt::format("{}: {} heights are no numbers and were left out", name_, file_.dropped));
+        if (settings_.axes)
+            file_.warnings.push_back(fmt::format("{}: axes mean nothing for a height grid, north is up there", name_));
+        return std::move(file_);
+    }
+
+private:
+    [[nodiscard]] std::string here() const {
+        return line_place(name_, text_, static_cast<std::size_t>(at_ - text_.data()));
+    }
+    static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+    std::string_view next_word() {
+        while (at_ != end_ && is_space(*at_))
+            ++at_;
+        const char* first = at_;
+        while (at_ != end_ && !is_space(*at_))
+            ++at_;
+        return {first, static_cast<std::size_t>(at_ - first)};
+    }
+    Result<double> next_number(std::string_view what) {
+        const std::string_view word = next_word();
+        const char* first = word.data();
+        const auto number = word.empty() ? std::nullopt : take_number(first, word.data() + word.size());
+        if (!number || first != word.data() + word.size())
+            return fail(ErrorCode::input, word.empty()
+                                              ? fmt::format("{}: ends where {} was expected", here(), what)
+                                              : fmt::format("{}: expected {}, found '{}'", here(), what, shown(word)));
+        return *number;
+    }
+
+    // Keywords in any order, until a number stands where one could be.
+    Result<void> read_header() {
+        constexpr std::array<std::string_view, 8> keys{"ncols",     "nrows",     "cellsize",  "xllcorner",
+                                                       "yllcorner", "xllcenter", "yllcenter", "nodata_value"};
+        std::array<double, 8> values{};
+        unsigned seen = 0;
+        for (;;) {
+            const char* before = at_;
+            const std::string key = lower_case(next_word());
+            const auto found = std::find(keys.begin(), keys.end(), key);
+            if (found == keys.end()) {
+                const bool letter = !key.empty() && key[0] >= 'a' && key[0] <= 'z' && key != "nan" && key != "inf";
+                if (letter || seen == 0)
+                    return fail(ErrorCode::input,
+                                fmt::format("{}: '{}' is no key of a height grid; expected ncols, nrows, "
+                                            "xllcorner, yllcorner, cellsize or NODATA_value",
+                                            here(), shown(key)));
+                at_ = before;
+                break;
+            }
+            const auto index = static_cast<std::size_t>(found - keys.begin());
+            const auto value = next_number(fmt::format("a number for {}", *found));
+            if (!value) return fail(value.error());
+            values[index] = *value;
+            seen |= 1U << index;
+        }
+        return take_header(values, seen);
+    }
+
+    Result<void> take_header(const std::array<double, 8>& values, unsigned seen) {
+        const auto has = [seen](unsigned key) { return (seen >> key & 1U) != 0; };
+        if (!has(0) || !has(1) || !has(2) || (!has(3) && !has(5)) || (!has(4) && !has(6)))
+            return fail(ErrorCode::input,
+                        fmt::format("{}: expected ncols, nrows, xllcorner, yllcorner and cellsize before "
+                                    "the heights",
+                                    here()));
+        const auto whole = [](double value) { return value >= 2 && value <= 1e9 && value == std::floor(value); };
+        if (!whole(values[0]) || !whole(values[1]))
+            return fail(ErrorCode::input, fmt::format("{}: a grid of {} by {} cells; expected 2 or more each way",
+                                                      name_, values[0], values[1]));
+        if (!(values[2] > 0 && values[2] < 1e7))
+            return fail(ErrorCode::input, fmt::format("{}: cellsize {}; expected more than 0", name_, values[2]));
+        header_.columns = static_cast<std::size_t>(values[0]);
+        header_.rows = static_cast<std::size_t>(values[1]);
+        header_.cell = values[2];
+        header_.west = has(5) ? values[5] : values[3] + values[2] / 2;
+        header_.south = has(6) ? values[6] : values[4] + values[2] / 2;
+        if (has(7)) header_.no_data = values[7];
+        if (!(std::abs(header_.west) < 1e9 && std::abs(header_.south) < 1e9))
+            return fail(ErrorCode::input,
+                        fmt::format("{}: its corner {}, {} lies nowhere", name_, header_.west, header_.south));
+        const std::size_t cells = header_.columns * header_.rows;
+        const std::size_t triangles = 2 * (header_.columns - 1) * (header_.rows - 1);
+        if (triangles > settings_.most_triangles || cells > std::numeric_limits<std::uint32_t>::max())
+            return fail(
+                ErrorCode::input,
+                fmt::format("{}: holds {} triangles, {} are the most that is read ({} would take {:.3g} GB of memory)",
+                            name_, triangles, settings_.most_triangles, triangles,
+                            static_cast<double>(triangles * sizeof(CityTriangle) + cells * 24) / 1e9));
+        const auto left = static_cast<std::size_t>(end_ - at_);
+        if (cells > (left + 1) / 2)
+            return fail(ErrorCode::input, fmt::format("{}: tells of {} by {} cells, but {} bytes are left", name_,
+                                                      header_.columns, header_.rows, left));
+        return {};
+    }
+
+    // Rows from north to south; a height that is absent or no number is NaN afterwards.
+    Result<void> read_heights() {
+        heights_.reserve(header_.columns * header_.rows);
+        for (std::size_t i = 0; i < header_.columns * header_.rows; ++i) {
+            const auto height = next_number("a height");
+            if (!height) return fail(height.error());
+            const bool absent = *height == header_.no_data;
+            const double metres = *height * settings_.metres_per_unit;
+            const bool usable = std::abs(metres) < 1e6;
+            if (!absent && !usable) ++file_.dropped;
+            heights_.push_back(absent || !usable ? std::nan("") : metres);
+        }
+        if (const std::string_view more = next_word(); !more.empty())
+            return fail(ErrorCode::input, fmt::format("{}: found '{}' after the last of {} by {} heights", here(),
+                                                      shown(more), header_.columns, header_.rows));
+        return {};
+    }
+
+    void place_cells() {
+        const bool geographic = header_.geographic();
+        const double middle_x = header_.west + header_.cell * static_cast<double>(header_.columns - 1) / 2;
+        const double middle_y = header_.south + header_.cell * static_cast<double>(header_.rows - 1) / 2;
+        file_.model.origin =
+            settings_.origin.value_or(geographic ? Geodetic::degrees(middle_y, middle_x, 0) : Geodetic{});
+        file_.model.materials = {settings_.material};
+        const LocalFrame frame(file_.model.origin);
+        numbers_.assign(heights_.size(), ~0U);
+        for (std::size_t i = 0; i < heights_.size(); ++i) {
+            if (std::isnan(heights_[i])) continue;
+            const double x = header_.west + header_.cell * static_cast<double>(i % header_.columns);
+            const double y = header_.south + header_.cell * static_cast<double>(header_.rows - 1 - i / header_.columns);
+            const double unit = settings_.metres_per_unit;
+            numbers_[i] = static_cast<std::uint32_t>(file_.model.vertices.size());
+            file_.model.vertices.push_back(geographic
+                                               ? frame.to_enu(to_ecef(Geodetic::degrees(y, x, heights_[i]))).vector()
+                                               : Eigen::Vector3d(x * unit, y * unit, heights_[i]));
+        }
+    }
+
+    // Two triangles between four neighbours; one where a fourth is absent.
+    void join_cells() {
+        const std::size_t columns = header_.columns;
+        for (std::size_t row = 0; row + 1 < header_.rows; ++row)
+            for (std::size_t column = 0; column + 1 < columns; ++column) {
+                const std::size_t north_west = row * columns + column, south_west = north_west + columns;
+                const std::array<std::uint32_t, 4> around{numbers_[south_west], numbers_[south_west + 1],
+                                                          numbers_[north_west + 1], numbers_[north_west]};
+                // Along the diagonal whose ends have heights.
+                const std::size_t turn = around[0] == ~0U || around[2] == ~0U ? 1 : 0;
+                add_ground({around[turn], around[turn + 1], around[turn + 2]});
+                add_ground({around[turn], around[turn + 2], around[(turn + 3) % 4]});
+            }
+    }
+    void add_ground(const std::array<std::uint32_t, 3>& corners) {
+        for (const std::uint32_t corner : corners)
+            if (corner == ~0U) return;
+        file_.model.triangles.push_back({corners, SurfaceKind::ground, 0});
+    }
+
+    std::string_view text_, name_;
+    const CityFileSettings& settings_;
+    const char* at_;
+    const char* end_;
+    HeightGridHeader header_;
+    std::vector<double> heights_;
+    std::vector<std::uint32_t> numbers_;  // of vertices, by cell
+    CityFile file_;
+};
+
+}  // namespace
+
+Result<CityFile> parse_height_grid(std::string_view text, std::string_view name, const CityFileSettings& settings) {
+    return HeightGridReader(text, name, settings).read();
+}
+
+}  // namespace skyloop

@@ -1,0 +1,71 @@
+/// From a file's coordinates to the frame of a city.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skyloop/city/city_file.hpp"
+#include "skyloop/geo/local_frame.hpp"
+
+namespace skyloop {
+
+/// What a file's numbers are.
+enum class CoordinateKind {
+    geographic,  ///< longitude, latitude (degrees), height (m)
+    projected,   ///< east, north, height of a map projection, m
+    local        ///< metres from the frame's origin as they stand
+};
+
+/// The kind of a named reference system and the order of its axes.
+struct ReferenceSystem {
+    CoordinateKind kind = CoordinateKind::projected;
+    bool latitude_first = false;
+    std::string name;  ///< for messages: "EPSG:7415"
+};
+
+/// Reads "EPSG:4326", "urn:ogc:def:crs:EPSG::25832", "http://www.opengis.net/def/crs/EPSG/0/6697" and CRS84; anything
+/// else counts as projected. Absent for an empty name.
+std::optional<ReferenceSystem> reference_system(std::string_view name);
+
+/// Takes coordinates of a file to metres east, north and up.
+///
+/// Geographic places lie in the tangent frame at `settings.origin`, else at the middle of the extent and the `ground`
+/// level; heights are subtracted as they stand, above the ellipsoid or above the sea. Projected ones count from the
+/// middle of the extent and the `ground` level, where `settings.origin` is taken to be: the convergence of the map's
+/// north and its scale are neglected.
+class PlaceOnEarth {
+public:
+    /// The box around what a file holds.
+    struct Extent {
+        Eigen::Vector2d lowest = Eigen::Vector2d::Constant(1e300), highest = Eigen::Vector2d::Constant(-1e300);
+        void include(const Eigen::Vector2d& place);
+        [[nodiscard]] bool empty() const { return !(lowest.x() <= highest.x()); }
+        [[nodiscard]] Eigen::Vector2d middle() const { return (lowest + highest) / 2; }
+        /// True when all of it are longitudes and latitudes within a few degrees.
+        [[nodiscard]] bool fits_degrees() const;
+    };
+
+    /// Fails with `input` when geographic coordinates are no degrees.
+    static Result<PlaceOnEarth> make(const ReferenceSystem& system, const Extent& extent, double ground,
+                                     const CityFileSettings& settings);
+
+    [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& place) const;
+    /// The place at the origin's level.
+    [[nodiscard]] Eigen::Vector3d on_ground(const Eigen::Vector2d& place) const {
+        return (*this)(Eigen::Vector3d(place.x(), place.y(), ground_));
+    }
+    [[nodiscard]] const Geodetic& origin() const { return origin_; }
+
+private:
+    CoordinateKind kind_ = CoordinateKind::local;
+    Geodetic origin_;
+    Eigen::Vector2d middle_ = Eigen::Vector2d::Zero();
+    double ground_ = 0;
+    double metres_per_unit_ = 1;
+    std::optional<LocalFrame> frame_;
+};
+
+}  // namespace skyloop

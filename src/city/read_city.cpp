@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+
+#include "city_text.hpp"
+#include "companion_files.hpp"
+#include "skyloop/base/text_file.hpp"
+#include "skyloop/city/city_file.hpp"
+#include "tar_archive.hpp"
+
+namespace skyloop {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Bytes after decompression: 50 million triangles as text.
+constexpr std::size_t max_city_file_size = std::size_t{4} << 30;
+
+// The files of a folder, those that links lead out of it excepted.
+CompanionFiles files_of_folder(const fs::path& folder) {
+    return [folder](const std::string& inside) -> Result<std::string> {
+        std::error_code error;
+        const fs::path root = fs::weakly_canonical(folder, error), path = fs::weakly_canonical(folder / inside, error);
+        if (std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first != root.end())
+            return fail(ErrorCode::input, fmt::format("{}: leads out of its folder", (folder / inside).string()));
+        return read_text_file(path, max_city_file_size);
+    };
+}
+
+// The name of an XML text's first element, without its namespace's prefix.
+std::string_view root_element(std::string_view xml) {
+    for (std::size_t at = xml.find('<'); at != std::string_view::npos; at = xml.find('<', at)) {
+        const std::string_view rest = xml.substr(at);
+        if (rest.starts_with("<!--")) {
+            at = xml.find("-->", at);
+        } else if (rest.starts_with("<?") || rest.starts_with("<!")) {
+            at = xml.find('>', at);
+        } else {
+            std::string_view element = rest.substr(1, std::min(rest.find_first_of(" \t\r\n/>"), rest.size()) - 1);
+            const std::size_t colon = element.find(':');
+            return colon == std::string_view::npos ? element : element.substr(colon + 1);
+        }
+        if (at == std::string_view::npos) break;
+    }
+    return {};
+}
+
+Result<CityFile> parse_xml(std::string_view text, const fs::path& path, const CityFileSettings& settings) {
+    const std::string name = path.string();
+    const std::string_view root = root_element(text);
+    if (root == "scene") return parse_mitsuba(text, name, settings, files_of_folder(path.parent_path()));
+    if (root == "osm") return parse_osm(text, "osm", name, settings);
+    if (root == "CityModel") return parse_citygml(text, name, settings);
+    return fail(ErrorCode::input,
+                fmt::format("{}: its first element is '{}'; expected scene (Mitsuba), CityModel (CityGML) "
+                            "or osm",
+                            name, shown(root)));
+}
+
+// True when a "type" of the document is CityJSON or CityJSONFeature.
+bool is_cityjson(std::string_view text) {
+    constexpr std::string_view value = "\"CityJSON";
+    for (std::size_t at = text.find(value); at != std::string_view::npos; at = text.find(value, at + 1)) {
+        const std::string_view before = text.substr(0, at);
+        const std::size_t colon = before.find_last_not_of(" \t\r\n");
+        if (colon == std::string_view::npos || before[colon] != ':') continue;
+        const std::size_t key = before.substr(0, colon).find_last_not_of(" \t\r\n");
+        if (key != std::string_view::npos && before.substr(0, key + 1).ends_with("\"type\"")) return true;
+    }
+    return false;
+}
+
+Result<CityFile> read_folder(const fs::path& folder, const CityFileSettings& settings) {
+    std::error_code error;
+    std::vector<fs::path> scenes;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        if (lower_case(entry->path().extension().string()) == ".xml") scenes.push_back(entry->path());
+    if (error) return fail(ErrorCode::outside, fmt::format("{}: {}", folder.string(), error.message()));
+    if (scenes.size() != 1)
+        return fail(ErrorCode::input,
+                    fmt::format("{}: holds {} .xml files; expected one Mitsuba scene", folder.string(), scenes.size()));
+    const auto text = read_text_file(scenes.front(), max_city_file_size);
+    if (!text) return fail(text.error());
+    return parse_xml(*text, scenes.front(), settings);
+}
+
+using Parser = Result<CityFile> (*)(std::string_view, const fs::path&, const CityFileSettings&);
+
+struct CityEnding {
+    std::string_view ending;
+    Parser parse;
+};
+
+template <Result<CityFile> (*parse)(std::string_view, std::string_view, const CityFileSettings&)>
+Result<CityFile> named(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
+    return parse(bytes, path.string(), settings);
+}
+Result<CityFile> gltf(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
+    return parse_gltf_with(bytes, path.string(), settings, files_of_folder(path.parent_path()));
+}
+Result<CityFile> json(std::string_view text, const fs::path& path, const CityFileSettings& settings) {
+    return (is_cityjson(text) ? parse_cityjson : parse_geojson)(text, path.string(), settings);
+}
+Result<CityFile> osm_xml(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
+    return parse_osm(bytes, "osm", path.string(), settings);
+}
+Result<CityFile> osm_pbf(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
+    return parse_osm(bytes, "osm.pbf", path.string(), settings);
+}
+
+constexpr std::array<CityEnding, 15> city_endings{{{".obj", named<parse_obj>},
+                                                   {".ply", named<parse_ply>},
+                                                   {".gltf", gltf},
+                                                   {".glb", gltf},
+                                                   {".geojson", named<parse_geojson>},
+                                                   {".city.json", named<parse_cityjson>},
+                                                   {".json", json},
+                                                   {".osm", osm_xml},
+                                                   {".pbf", osm_pbf},
+                                                   {".gml", named<parse_citygml>},
+                                                   {".xml", parse_xml},
+                                                   {".asc", named<parse_height_grid>},
+                                                   {".tar", named<parse_mitsuba_archive>},
+                                                   {".tgz", named<parse_mitsuba_archive>},
+                                                   {".cityjson", named<parse_cityjson>}}};
+
+Result<CityFile> read_by_ending(const fs::path& path, const CityFileSettings& settings) {
+    std::string name = lower_case(path.filename().string());
+    if (name.ends_with(".gz")) name.resize(name.size() - 3);
+    for (const CityEnding& known : city_endings) {
+        if (!name.ends_with(known.ending)) continue;
+        const auto bytes = read_text_file(path, max_city_file_size);
+        if (!bytes) return fail(bytes.error());
+        if (bytes->empty()) return fail(ErrorCode::input, fmt::format("{}: is empty", path.string()));
+        return known.parse(*bytes, path, settings);
+    }
+    std::string known_endings;
+    for (const CityEnding& known : city_endings)
+        known_endings += fmt::format(" {}", known.ending);
+    return fail(ErrorCode::input,
+                fmt::format("{}: its ending is of no known city; expected a folder or one of{}, each also "
+                            "as .gz",
+                            path.string(), known_endings));
+}
+
+}  // namespace
+
+Result<CityFile> parse_mitsuba_archive(std::string_view bytes, std::string_view name,
+                                       const CityFileSettings& settings) {
+    const auto members = tar_members(bytes, name);
+    if (!members) return fail(members.error());
+    std::string scene;
+    std::size_t scenes = 0;
+    for (const auto& [member, content] : *members)
+        if (lower_case(member).ends_with(".xml") && scenes++ == 0) scene = member;
+    if (scenes != 1)
+        return fail(ErrorCode::input, fmt::format("{}: holds {} .xml files; expected one Mitsuba scene", name, scenes));
+    const std::string folder = scene.substr(0, scene.rfind('/') + 1);
+    const CompanionFiles companions = [&](const std::string& inside) -> Result<std::string> {
+        const auto found = members->find(folder + inside);
+        if (found == members->end())
+            return fail(ErrorCode::input,
+                        fmt::format("names the file '{}', which the archive does not hold", shown(inside)));
+        return std::string(found->second);
+    };
+    return parse_mitsuba(members->at(scene), fmt::format("{}:{}", name, scene), settings, companions);
+}
+
+Result<CityFile> read_city(const fs::path& path, const CityFileSettings& settings) {
+    std::error_code error;
+    auto city = fs::is_directory(path, error) ? read_folder(path, settings) : read_by_ending(path, settings);
+    if (!city) return city;
+    for (std::string& doubt : doubts_about(city->model)) {
+        std::string line = fmt::format("{}: {}", path.string(), doubt);
+        const auto told = [&](const std::string& warning) { return warning == line || warning == doubt; };
+        if (std::none_of(city->warnings.begin(), city->warnings.end(), told)) city->warnings.push_back(std::move(line));
+    }
+    return city;
+}
+
+}  // namespace skyloop
