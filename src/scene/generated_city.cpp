@@ -17,7 +17,7 @@ constexpr double lot = 24, street = 20;
 constexpr double pitch_east = houses_wide * lot + street, pitch_north = houses_deep * lot + street;
 constexpr double ordinary_shrink = 0.95, turned_shrink = 0.75;
 constexpr double ordinary_yaw = 4, largest_turn = 25;  // degrees
-constexpr double least_height = 6, greatest_height = 150, greatest_windowed_height = 60;
+constexpr double lowest_house = 6, highest_house = 150, highest_windowed_house = 60;
 constexpr double eye_height = 1.6, off_centre = 4;
 constexpr double ground_beyond = 500;
 constexpr std::size_t places_wanted = 400;
@@ -94,8 +94,8 @@ private:
                 house.yaw = yaw;
                 house.width = lot * shrink * (0.85 + 0.12 * random_.uniform());
                 house.depth = lot * shrink * (0.85 + 0.12 * random_.uniform());
-                house.height = std::clamp(block_height * std::exp(0.3 * random_.normal()), least_height,
-                                          settings_.windows ? greatest_windowed_height : greatest_height);
+                house.height = std::clamp(block_height * std::exp(0.3 * random_.normal()), lowest_house,
+                                          settings_.windows ? highest_windowed_house : highest_house);
                 house.walls = static_cast<std::uint8_t>(random_.uniform() * 3);
                 add(house);
             }

@@ -1,6 +1,7 @@
 #include "path_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 

@@ -1,5 +1,7 @@
 #include "sight_lines.hpp"
 
+#include <cmath>
+
 namespace skyloop {
 
 void SightLines::look(const UrbanScene& scene, const Eigen::Vector3d& antenna,
@@ -10,7 +12,7 @@ void SightLines::look(const UrbanScene& scene, const Eigen::Vector3d& antenna,
     for (std::uint32_t i = 0; i < satellites.size(); ++i) {
         const Eigen::Vector3d way = satellites[i].position - antenna;
         const double length = way.norm();
-        if (!(length > 0 && length < 1e12)) continue;
+        if (!(length > 0 && std::isfinite(length))) continue;
         rays_.push_back({antenna, way / length});
         satellite_.push_back(i);
     }
