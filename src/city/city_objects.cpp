@@ -129,7 +129,7 @@ void ObjectBuilder::add(const CityObject& object, const PlaceOnEarth& place) {
             for (Eigen::Vector3d& point : ring) point = place(point);
     if (object.object_class == ObjectClass::construction) {
         add_construction(surfaces);
-        file_.buildings += object.building && !object.parent ? 1 : 0;
+        if (object.building && !object.parent) ++file_.buildings;
     } else if (object.object_class == ObjectClass::terrain || !add_plants(surfaces, object.object_class == ObjectClass::tree)) {
         for (const ObjectSurface& surface : surfaces) add_surface(surface, SurfaceKind::ground);
     }

@@ -17,7 +17,7 @@ constexpr double farthest_coordinate = 1e9;
 // Twice the area below which a triangle has no plane worth the name, m².
 constexpr double least_doubled_area = 1e-9;
 // Corners of a polygon that is not convex beyond which cutting it takes too long.
-constexpr std::size_t most_concave_corners = 2000;
+constexpr std::size_t most_concave_corners = 20'000;
 
 // Twice the area along the normal (Newell's sum), which a polygon that is not quite plane has, too.
 template <class At>

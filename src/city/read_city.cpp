@@ -94,37 +94,37 @@ struct CityEnding {
 };
 
 template <Result<CityFile> (*parse)(std::string_view, std::string_view, const CityFileSettings&)>
-Result<CityFile> named(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
+Result<CityFile> parse_named(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
     return parse(bytes, path.string(), settings);
 }
-Result<CityFile> gltf(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
+Result<CityFile> parse_gltf_file(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
     return parse_gltf_with(bytes, path.string(), settings, files_of_folder(path.parent_path()));
 }
-Result<CityFile> json(std::string_view text, const fs::path& path, const CityFileSettings& settings) {
+Result<CityFile> parse_any_json(std::string_view text, const fs::path& path, const CityFileSettings& settings) {
     return (is_cityjson(text) ? parse_cityjson : parse_geojson)(text, path.string(), settings);
 }
-Result<CityFile> osm_xml(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
+Result<CityFile> parse_osm_xml(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
     return parse_osm(bytes, "osm", path.string(), settings);
 }
-Result<CityFile> osm_pbf(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
+Result<CityFile> parse_osm_pbf(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
     return parse_osm(bytes, "osm.pbf", path.string(), settings);
 }
 
-constexpr std::array<CityEnding, 15> city_endings{{{".obj", named<parse_obj>},
-                                                   {".ply", named<parse_ply>},
-                                                   {".gltf", gltf},
-                                                   {".glb", gltf},
-                                                   {".geojson", named<parse_geojson>},
-                                                   {".city.json", named<parse_cityjson>},
-                                                   {".json", json},
-                                                   {".osm", osm_xml},
-                                                   {".pbf", osm_pbf},
-                                                   {".gml", named<parse_citygml>},
+constexpr std::array<CityEnding, 15> city_endings{{{".obj", parse_named<parse_obj>},
+                                                   {".ply", parse_named<parse_ply>},
+                                                   {".gltf", parse_gltf_file},
+                                                   {".glb", parse_gltf_file},
+                                                   {".geojson", parse_named<parse_geojson>},
+                                                   {".city.json", parse_named<parse_cityjson>},
+                                                   {".json", parse_any_json},
+                                                   {".osm", parse_osm_xml},
+                                                   {".pbf", parse_osm_pbf},
+                                                   {".gml", parse_named<parse_citygml>},
                                                    {".xml", parse_xml},
-                                                   {".asc", named<parse_height_grid>},
-                                                   {".tar", named<parse_mitsuba_archive>},
-                                                   {".tgz", named<parse_mitsuba_archive>},
-                                                   {".cityjson", named<parse_cityjson>}}};
+                                                   {".asc", parse_named<parse_height_grid>},
+                                                   {".tar", parse_named<parse_mitsuba_archive>},
+                                                   {".tgz", parse_named<parse_mitsuba_archive>},
+                                                   {".cityjson", parse_named<parse_cityjson>}}};
 
 Result<CityFile> read_by_ending(const fs::path& path, const CityFileSettings& settings) {
     std::string name = lower_case(path.filename().string());

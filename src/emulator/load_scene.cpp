@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "skyloop/base/digest.hpp"
-#include "skyloop/base/text_file.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/scene/generated_city.hpp"
 
@@ -59,17 +60,18 @@ void add_part(JoinedCity& city, const std::filesystem::path& path, CityFile part
         join_city(city.model, part.model);
 }
 
-Result<CityReading> read_terrain(const std::filesystem::path& path, const CityFileSettings& reading) {
-    const auto text = read_text_file(path);
-    if (!text) return fail(text.error());
+Result<CityReading> read_terrain(const std::filesystem::path& path, const CityFileSettings& reading,
+                                 const CityCache& cache) {
     // Units and axes are those of the buildings; a grid has its own.
     CityFileSettings settings;
     settings.origin = reading.origin;
     settings.material = terrain_material;
     settings.most_triangles = reading.most_triangles;
-    auto grid = parse_height_grid(*text, path.string(), settings);
-    if (!grid) return fail(grid.error());
-    return CityReading{std::move(*grid), fnv1a_64(*text), false};
+    auto grid = read_city(path, settings, cache);
+    if (grid && grid->file.format != "height grid")
+        return fail(ErrorCode::input, fmt::format("{}: is of format {}; expected terrain as a height grid (.asc)",
+                                                  path.string(), grid->file.format));
+    return grid;
 }
 
 // Where the trajectory starts, less the height of an antenna that is carried there.
@@ -99,6 +101,18 @@ void warn_of_scene(const UrbanScene& scene, const Geodetic& start, std::vector<s
             distance / 1000, scene.frame().origin().latitude.deg(), scene.frame().origin().longitude.deg()));
 }
 
+// Coordinates that say nothing of the Earth lie where the run starts, which is a guess.
+void warn_of_guessed_origin(const SceneEntry& entry, const JoinedCity& city, std::vector<std::string>& warnings) {
+    constexpr std::array<std::string_view, 4> local{"obj", "ply", "gltf", "mitsuba"};
+    if (entry.reading.origin) return;
+    for (std::size_t i = 0; i < city.names.size(); ++i)
+        if (std::find(local.begin(), local.end(), city.formats[i]) != local.end())
+            warnings.push_back(
+                fmt::format("scene: {} does not say where it lies; its origin is taken to be {} m below the start of "
+                            "the trajectory; scene.origin tells another",
+                            city.names[i], antenna_above_scene.value()));
+}
+
 // Of the opposite hand, by the antenna of the preset: a telephone's is polarised linearly and hears both alike.
 Decibels hand_rejection(ModernPreset preset) {
     switch (preset) {
@@ -118,6 +132,7 @@ Result<JoinedCity> read_scene_files(const SceneEntry& entry, const std::optional
                                     const CityCache& cache) {
     CityFileSettings reading = entry.reading;
     if (!reading.origin && start) reading.origin = below_antenna(*start);
+    const CityCache kept = entry.cache ? cache : CityCache{};
     JoinedCity city;
     for (const std::filesystem::path& path : entry.buildings) {
         if (path == demo_scene_name) {
@@ -126,7 +141,7 @@ Result<JoinedCity> read_scene_files(const SceneEntry& entry, const std::optional
             demo.format = demo_scene_name;
             add_part(city, path, std::move(demo), 0);
         } else {
-            auto read = entry.cache ? read_city(path, reading, cache) : read_city(path, reading, CityCache{});
+            auto read = read_city(path, reading, kept);
             if (!read) return fail(read.error());
             city.from_cache = city.from_cache || read->from_cache;
             add_part(city, path, std::move(read->file), read->digest);
@@ -135,7 +150,7 @@ Result<JoinedCity> read_scene_files(const SceneEntry& entry, const std::optional
         if (!reading.origin) reading.origin = city.model.origin;
     }
     if (!entry.terrain.empty()) {
-        auto terrain = read_terrain(entry.terrain, reading);
+        auto terrain = read_terrain(entry.terrain, reading, kept);
         if (!terrain) return fail(terrain.error());
         add_part(city, entry.terrain, std::move(terrain->file), terrain->digest);
     }
@@ -163,6 +178,7 @@ Result<LoadedScene> load_scene(const Scenario& scenario, const Geodetic& start, 
     loaded.warnings = std::move(city->warnings);
     for (const std::string& doubt : doubts_about(city->model))
         loaded.warnings.push_back("scene: " + doubt);
+    warn_of_guessed_origin(scenario.scene, *city, loaded.warnings);
     warn_of_scene(*loaded.scene, start, loaded.warnings);
     return loaded;
 }

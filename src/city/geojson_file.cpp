@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "json_text.hpp"
+#include "outlines.hpp"
+
+namespace skyloop {
+
+namespace {
+
+using nlohmann::json;
+
+/// Numbers beyond are places in a map projection, not metres from an origin.
+constexpr double farthest_local = 100'000;
+
+/// Reads GeoJSON (RFC 7946, and the "crs" member of the 2008 format).
+class GeoJsonReader {
+public:
+    GeoJsonReader(const CityFileSettings& settings, std::string_view name) : settings_(settings), name_(name) {}
+
+    Result<Outlines> read(const json& root);
+
+private:
+    void read_feature(const json& feature);
+    void read_geometry(const json& geometry, const OutlineUse& use);
+    void read_polygon(const json& rings, const OutlineUse& use);
+    [[nodiscard]] ReferenceSystem find_system(const json& root) const;
+
+    const CityFileSettings& settings_;
+    std::string_view name_;
+    Outlines found_;
+    std::size_t other_shapes_ = 0, other_uses_ = 0;
+};
+
+bool read_positions(const json& positions, std::vector<Eigen::Vector2d>& ring) {
+    if (!positions.is_array()) return false;
+    for (const json& position : positions) {
+        if (!position.is_array() || position.size() < 2 || !position[0].is_number() || !position[1].is_number()) return false;
+        ring.emplace_back(position[0].get<double>(), position[1].get<double>());
+    }
+    return true;
+}
+
+/// Texts and numbers, by keys in small letters.
+OutlineTags tags_of(const json& properties) {
+    OutlineTags tags;
+    if (!properties.is_object()) return tags;
+    for (const auto& [key, value] : properties.items()) {
+        std::string lower = key;
+        for (char& c : lower)
+            if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+        if (value.is_string()) tags.emplace(std::move(lower), value.get<std::string>());
+        if (value.is_number()) tags.emplace(std::move(lower), fmt::format("{}", value.get<double>()));
+        if (value.is_boolean()) tags.emplace(std::move(lower), value.get<bool>() ? "yes" : "no");
+    }
+    return tags;
+}
+
+void GeoJsonReader::read_polygon(const json& rings, const OutlineUse& use) {
+    Outline outline{{}, use};
+    bool good = rings.is_array() && !rings.empty();
+    for (std::size_t i = 0; good && i < rings.size(); ++i)
+        good = read_positions(rings[i], i == 0 ? outline.footprint.outer : outline.footprint.holes.emplace_back());
+    if (good)
+        found_.outlines.push_back(std::move(outline));
+    else
+        ++found_.dropped;
+}
+
+void GeoJsonReader::read_geometry(const json& geometry, const OutlineUse& use) {
+    const std::string_view type = text_member(geometry, "type");
+    if (type == "Polygon") {
+        read_polygon(member(geometry, "coordinates"), use);
+    } else if (type == "MultiPolygon") {
+        const json& polygons = member(geometry, "coordinates");
+        if (!polygons.is_array()) ++found_.dropped;
+        if (polygons.is_array())
+            for (const json& polygon : polygons) read_polygon(polygon, use);
+    } else if (type == "GeometryCollection") {
+        const json& geometries = member(geometry, "geometries");
+        // Nesting is bounded by parse_json().
+        if (geometries.is_array())
+            for (const json& inner : geometries) read_geometry(inner, use);
+    } else {
+        ++other_shapes_;
+    }
+}
+
+void GeoJsonReader::read_feature(const json& feature) {
+    const json& properties = member(feature, "properties");
+    OutlineTags tags = tags_of(properties);
+    tags.merge(tags_of(member(properties, "tags")));
+    const OutlineUse use = outline_use(tags, settings_, true);
+    if (use.kind == OutlineUse::Kind::none)
+        ++other_uses_;
+    else
+        read_geometry(member(feature, "geometry"), use);
+}
+
+ReferenceSystem GeoJsonReader::find_system(const json& root) const {
+    PlaceOnEarth::Extent extent;
+    for (const Outline& outline : found_.outlines)
+        for (const Eigen::Vector2d& point : outline.footprint.outer) extent.include(point);
+    const double farthest = extent.empty() ? 0 : std::max(extent.lowest.cwiseAbs().maxCoeff(), extent.highest.cwiseAbs().maxCoeff());
+    const ReferenceSystem metres{farthest > farthest_local ? CoordinateKind::projected : CoordinateKind::local, false, "metres"};
+    const auto named = reference_system(text_member(member(member(root, "crs"), "properties"), "name"));
+    // GeoJSON writes longitude first whatever the system says.
+    if (named && named->kind == CoordinateKind::geographic) return {CoordinateKind::geographic, false, named->name};
+    if (named) return {metres.kind, false, named->name};
+    return extent.fits_degrees() ? ReferenceSystem{CoordinateKind::geographic, false, "degrees"} : metres;
+}
+
+Result<Outlines> GeoJsonReader::read(const json& root) {
+    const std::string_view type = text_member(root, "type");
+    if (type == "FeatureCollection") {
+        const json& features = member(root, "features");
+        if (!features.is_array())
+            return fail(ErrorCode::input, fmt::format("{}: \"features\" is missing or no list", name_));
+        for (const json& feature : features) read_feature(feature);
+    } else if (type == "Feature") {
+        read_feature(root);
+    } else if (type == "Polygon" || type == "MultiPolygon" || type == "GeometryCollection") {
+        read_geometry(root, outline_use({}, settings_, true));
+    } else {
+        return fail(ErrorCode::input, fmt::format("{}: \"type\" is \"{:.40}\", expected \"FeatureCollection\", \"Feature\", "
+                                                  "\"Polygon\" or \"MultiPolygon\"",
+                                                  name_, type));
+    }
+    found_.system = find_system(root);
+    if (found_.system.kind != CoordinateKind::geographic)
+        found_.warnings.push_back(fmt::format(
+            "coordinates are taken as metres ({}) from {}", found_.system.name,
+            found_.system.kind == CoordinateKind::local ? "the origin" : "the middle of the file, where the origin is taken to be"));
+    if (other_shapes_ + other_uses_ > 0)
+        found_.warnings.push_back(fmt::format("{} shapes that are no polygons and {} features that are no buildings or "
+                                              "woods were left out",
+                                              other_shapes_, other_uses_));
+    return std::move(found_);
+}
+
+}  // namespace
+
+Result<CityFile> parse_geojson(std::string_view text, std::string_view name, const CityFileSettings& settings) {
+    const auto root = parse_json(text, name);
+    if (!root) return fail(root.error());
+    auto outlines = GeoJsonReader(settings, name).read(*root);
+    if (!outlines) return fail(outlines.error());
+    return city_of_outlines(std::move(*outlines), "geojson", name, settings);
+}
+
+}  // namespace skyloop

@@ -1,0 +1,20 @@
+/// JSON from strangers.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "skyloop/base/result.hpp"
+
+namespace skyloop {
+
+/// Fails with `input` and "NAME:LINE:COLUMN: …" for what is no JSON, is cut, or nests deeper than a hundred levels.
+Result<nlohmann::json> parse_json(std::string_view text, std::string_view name);
+
+/// A member of an object; null when it has none or is no object.
+const nlohmann::json& member(const nlohmann::json& value, const char* key);
+
+/// A text member, empty when there is none.
+std::string_view text_member(const nlohmann::json& value, const char* key);
+
+}  // namespace skyloop

@@ -1,0 +1,201 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <osmium/io/pbf_input.hpp>
+#include <osmium/io/xml_input.hpp>
+#include <osmium/osm/node.hpp>
+#include <osmium/osm/relation.hpp>
+#include <osmium/osm/way.hpp>
+#include <osmium/thread/pool.hpp>
+#include <unordered_map>
+
+#include "outlines.hpp"
+
+namespace skyloop {
+
+namespace {
+
+using NodeList = std::vector<osmium::object_id_type>;
+
+/// Nodes, ways and areas of a file; places of nodes may follow the ways that name them.
+class OsmReader {
+public:
+    explicit OsmReader(const CityFileSettings& settings) : settings_(settings) {}
+
+    /// Throws what libosmium throws.
+    void read(std::string_view bytes, const std::string& format);
+    Outlines outlines();
+
+private:
+    struct Way {
+        NodeList nodes;
+        std::optional<OutlineUse> use;
+    };
+    struct Area {
+        std::vector<osmium::object_id_type> outer, inner;
+        OutlineUse use;
+    };
+
+    void take(const osmium::Way& way);
+    void take(const osmium::Relation& relation);
+    [[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> ring_of(const NodeList& nodes) const;
+    [[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> rings_of(const std::vector<osmium::object_id_type>& members);
+    void add_area(const Area& area);
+
+    const CityFileSettings& settings_;
+    std::unordered_map<osmium::object_id_type, Eigen::Vector2d> places_;
+    std::map<osmium::object_id_type, Way> ways_;
+    std::vector<Area> areas_;
+    Outlines found_;
+};
+
+OutlineTags tags_of_object(const osmium::TagList& list) {
+    OutlineTags tags;
+    for (const osmium::Tag& tag : list) tags.emplace(tag.key(), tag.value());
+    return tags;
+}
+
+void OsmReader::take(const osmium::Way& way) {
+    Way& kept = ways_[way.id()];
+    kept = {};
+    for (const osmium::NodeRef& node : way.nodes()) kept.nodes.push_back(node.ref());
+    const OutlineUse use = outline_use(tags_of_object(way.tags()), settings_, false);
+    if (use.kind != OutlineUse::Kind::none) kept.use = use;
+}
+
+void OsmReader::take(const osmium::Relation& relation) {
+    const OutlineTags tags = tags_of_object(relation.tags());
+    const auto type = tags.find("type");
+    if (type == tags.end() || type->second != "multipolygon") return;
+    Area area;
+    area.use = outline_use(tags, settings_, false);
+    if (area.use.kind == OutlineUse::Kind::none) return;
+    for (const osmium::RelationMember& one : relation.members())
+        if (one.type() == osmium::item_type::way)
+            (std::string_view(one.role()) == "inner" ? area.inner : area.outer).push_back(one.ref());
+    areas_.push_back(std::move(area));
+}
+
+void OsmReader::read(std::string_view bytes, const std::string& format) {
+    const osmium::io::File file(bytes.data(), bytes.size(), format);
+    osmium::thread::Pool pool(1);
+    osmium::io::Reader reader(file, osmium::osm_entity_bits::nwr, osmium::io::read_meta::no, pool);
+    while (const osmium::memory::Buffer buffer = reader.read()) {
+        for (const auto& node : buffer.select<osmium::Node>())
+            if (node.location().valid()) places_[node.id()] = {node.location().lon(), node.location().lat()};
+        for (const auto& way : buffer.select<osmium::Way>()) take(way);
+        for (const auto& relation : buffer.select<osmium::Relation>()) take(relation);
+    }
+    reader.close();
+}
+
+std::optional<std::vector<Eigen::Vector2d>> OsmReader::ring_of(const NodeList& nodes) const {
+    if (nodes.size() < 4 || nodes.front() != nodes.back()) return std::nullopt;
+    std::vector<Eigen::Vector2d> ring;
+    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+        const auto found = places_.find(nodes[i]);
+        if (found == places_.end()) return std::nullopt;
+        ring.push_back(found->second);
+    }
+    return ring;
+}
+
+/// Joins ways at their ends to closed rings.
+std::vector<std::vector<Eigen::Vector2d>> OsmReader::rings_of(const std::vector<osmium::object_id_type>& members) {
+    std::vector<std::vector<Eigen::Vector2d>> rings;
+    std::vector<const NodeList*> open;
+    for (const auto id : members) {
+        const auto found = ways_.find(id);
+        if (found != ways_.end() && found->second.nodes.size() >= 2)
+            open.push_back(&found->second.nodes);
+        else
+            ++found_.dropped;
+    }
+    std::unordered_multimap<osmium::object_id_type, std::size_t> ends;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+        ends.emplace(open[i]->front(), i);
+        ends.emplace(open[i]->back(), i);
+    }
+    std::vector<bool> used(open.size());
+    for (std::size_t i = 0; i < open.size(); ++i) {
+        if (used[i]) continue;
+        used[i] = true;
+        NodeList ring = *open[i];
+        while (ring.front() != ring.back()) {
+            const auto [from, to] = ends.equal_range(ring.back());
+            const auto next = std::find_if(from, to, [&](const auto& end) { return !used[end.second]; });
+            if (next == to) break;
+            used[next->second] = true;
+            const NodeList& nodes = *open[next->second];
+            if (nodes.front() == ring.back())
+                ring.insert(ring.end(), nodes.begin() + 1, nodes.end());
+            else
+                ring.insert(ring.end(), nodes.rbegin() + 1, nodes.rend());
+        }
+        if (auto placed = ring_of(ring))
+            rings.push_back(std::move(*placed));
+        else
+            ++found_.dropped;
+    }
+    return rings;
+}
+
+bool around(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& p) {
+    bool inside = false;
+    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+        const Eigen::Vector2d &a = ring[i], &b = ring[j];
+        if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
+            inside = !inside;
+    }
+    return inside;
+}
+
+void OsmReader::add_area(const Area& area) {
+    const auto outers = rings_of(area.outer);
+    auto inners = rings_of(area.inner);
+    for (const auto& outer : outers) {
+        Outline outline{{outer, {}}, area.use};
+        for (auto& inner : inners) {
+            if (inner.empty()) continue;
+            const Eigen::Vector2d middle = (inner[0] + inner[1]) / 2;
+            if (outers.size() == 1 || around(outer, middle)) outline.footprint.holes.push_back(std::move(inner));
+        }
+        found_.outlines.push_back(std::move(outline));
+    }
+}
+
+Outlines OsmReader::outlines() {
+    found_.system = {CoordinateKind::geographic, false, "EPSG:4326"};
+    for (const auto& [id, way] : ways_) {
+        if (!way.use) continue;
+        if (auto ring = ring_of(way.nodes))
+            found_.outlines.push_back({{std::move(*ring), {}}, *way.use});
+        else
+            ++found_.dropped;
+    }
+    for (const Area& area : areas_) add_area(area);
+    return std::move(found_);
+}
+
+/// The first line of what libosmium says.
+std::string first_line(std::string_view what) { return std::string(what.substr(0, what.find_first_of("\r\n"))); }
+
+}  // namespace
+
+Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std::string_view name,
+                           const CityFileSettings& settings) {
+    if (format != "osm" && format != "osm.pbf" && format != "pbf")
+        return fail(ErrorCode::input, fmt::format("{}: unknown format \"{:.40}\", expected osm or osm.pbf", name, format));
+    if (bytes.empty()) return fail(ErrorCode::input, fmt::format("{}: the file is empty", name));
+    OsmReader reader(settings);
+    try {
+        reader.read(bytes, std::string(format));
+    } catch (const osmium::xml_error& error) {
+        return fail(ErrorCode::input, fmt::format("{}:{}: {}", name, error.line, first_line(error.what())));
+    } catch (const std::exception& error) {
+        return fail(ErrorCode::input, fmt::format("{}: damaged or cut: {}", name, first_line(error.what())));
+    }
+    return city_of_outlines(reader.outlines(), format == "osm" ? "osm" : "osm.pbf", name, settings);
+}
+
+}  // namespace skyloop

@@ -1,0 +1,138 @@
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "outlines.hpp"
+
+namespace skyloop {
+
+namespace {
+
+constexpr double tallest = 1000;  ///< m
+constexpr double foot = 0.3048;   ///< m
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    return text;
+}
+
+/// Takes a number off the front of a text.
+std::optional<double> take_number(std::string_view& text) {
+    double value = 0;
+    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
+    text.remove_prefix(static_cast<std::size_t>(rest - text.data()));
+    text = trimmed(text);
+    return value;
+}
+
+std::string_view tag(const OutlineTags& tags, std::string_view key) {
+    const auto found = tags.find(key);
+    return found == tags.end() ? std::string_view() : std::string_view(found->second);
+}
+
+template <std::size_t n>
+std::optional<double> first_length(const OutlineTags& tags, const std::array<std::string_view, n>& keys) {
+    for (const std::string_view key : keys)
+        if (const auto length = length_of_tag(tag(tags, key))) return length;
+    return std::nullopt;
+}
+
+constexpr std::array<std::string_view, 8> height_keys{"height",         "building:height", "render_height", "measuredheight",
+                                                      "building_height", "roof_height",    "hoehe",         "est_height"};
+constexpr std::array<std::string_view, 3> base_keys{"min_height", "building:min_height", "render_min_height"};
+constexpr std::array<std::string_view, 7> level_keys{"building:levels", "levels", "num_floors",    "floors",
+                                                     "storeys",         "stories", "building_levels"};
+constexpr std::array<std::string_view, 2> base_level_keys{"building:min_level", "min_level"};
+constexpr std::array<std::string_view, 4> material_keys{"building:material", "building:facade:material",
+                                                        "building:cladding", "material"};
+
+/// Words of tags and the names of surface_material().
+constexpr std::array<std::array<std::string_view, 2>, 26> material_words{{{"glass", "glass"},
+                                                                          {"mirror", "glass"},
+                                                                          {"brick", "brick"},
+                                                                          {"bricks", "brick"},
+                                                                          {"brickwork", "brick"},
+                                                                          {"clay", "brick"},
+                                                                          {"tiles", "brick"},
+                                                                          {"cement_block", "concrete"},
+                                                                          {"concrete", "concrete"},
+                                                                          {"reinforced_concrete", "concrete"},
+                                                                          {"plaster", "concrete"},
+                                                                          {"stucco", "concrete"},
+                                                                          {"stone", "marble"},
+                                                                          {"limestone", "marble"},
+                                                                          {"sandstone", "marble"},
+                                                                          {"granite", "marble"},
+                                                                          {"marble", "marble"},
+                                                                          {"wood", "wood"},
+                                                                          {"timber", "wood"},
+                                                                          {"timber_framing", "wood"},
+                                                                          {"metal", "metal"},
+                                                                          {"steel", "metal"},
+                                                                          {"metal_plates", "metal"},
+                                                                          {"copper", "metal"},
+                                                                          {"aluminium", "metal"},
+                                                                          {"tin", "metal"}}};
+
+std::string material_of(const OutlineTags& tags) {
+    for (const std::string_view key : material_keys)
+        for (const auto& [word, material] : material_words)
+            if (tag(tags, key) == word) return std::string(material);
+    return {};
+}
+
+bool affirmed(std::string_view value) { return !value.empty() && value != "no" && value != "false" && value != "0"; }
+
+OutlineUse::Kind kind_of(const OutlineTags& tags, bool any_polygon) {
+    using Kind = OutlineUse::Kind;
+    if (affirmed(tag(tags, "building:part"))) return Kind::part;
+    if (affirmed(tag(tags, "building"))) return Kind::building;
+    if (tags.contains("building")) return Kind::none;
+    if (tag(tags, "natural") == "wood" || tag(tags, "landuse") == "forest" || tag(tags, "landuse") == "orchard")
+        return Kind::trees;
+    if (!any_polygon) return Kind::none;
+    for (const std::string_view key : {"natural", "landuse", "leisure", "highway", "waterway", "boundary", "place"})
+        if (tags.find(key) != tags.end()) return Kind::none;
+    return Kind::building;
+}
+
+}  // namespace
+
+std::optional<double> length_of_tag(std::string_view text) {
+    text = trimmed(text);
+    auto value = take_number(text);
+    if (!value) return std::nullopt;
+    if (text == "ft" || text == "feet" || text == "'") {
+        *value *= foot;
+    } else if (text.starts_with('\'')) {
+        text.remove_prefix(1);
+        const auto inches = take_number(text);
+        if (!inches || text != "\"") return std::nullopt;
+        *value = (*value + *inches / 12) * foot;
+    } else if (!(text.empty() || text == "m" || text == "metres" || text == "meters")) {
+        return std::nullopt;
+    }
+    return *value >= 0 && *value <= tallest ? value : std::nullopt;
+}
+
+OutlineUse outline_use(const OutlineTags& tags, const CityFileSettings& settings, bool any_polygon) {
+    OutlineUse use;
+    use.kind = kind_of(tags, any_polygon);
+    if (use.kind == OutlineUse::Kind::none) return use;
+    use.material = material_of(tags);
+    use.top = first_length(tags, height_keys);
+    if (!use.top)
+        if (const auto levels = first_length(tags, level_keys)) use.top = *levels * settings.metres_per_level;
+    if (use.top && !(*use.top > 0 && *use.top <= tallest)) use.top.reset();
+    if (const auto base = first_length(tags, base_keys))
+        use.base = *base;
+    else if (const auto levels = first_length(tags, base_level_keys))
+        use.base = *levels * settings.metres_per_level;
+    const std::string_view building = tag(tags, use.kind == OutlineUse::Kind::part ? "building:part" : "building");
+    use.canopy = (building == "roof" || building == "carport") && use.base == 0;
+    return use;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,51 @@
+/// What GeoJSON and OpenStreetMap have in common: outlines with tags.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "place_on_earth.hpp"
+#include "skyloop/city/city_file.hpp"
+#include "skyloop/city/footprint.hpp"
+
+namespace skyloop {
+
+using OutlineTags = std::map<std::string, std::string, std::less<>>;
+
+/// What stands on an outline. Keys as in OpenStreetMap's "Simple 3D Buildings" and the names that other makers use.
+struct OutlineUse {
+    enum class Kind { none, building, part, trees } kind = Kind::none;
+    std::optional<double> top;  ///< m above the ground; absent where no tag tells it
+    double base = 0;            ///< m above the ground
+    bool canopy = false;        ///< a roof without walls
+    std::string material;       ///< empty where no tag tells it
+};
+/// @param any_polygon an outline whose tags name no use is a building
+OutlineUse outline_use(const OutlineTags& tags, const CityFileSettings& settings, bool any_polygon);
+
+/// A length: "12", "12.5 m", "40 ft", "39'6\""; m. Absent for what is none or no height of a thing, 0 … 1000 m.
+std::optional<double> length_of_tag(std::string_view text);
+
+/// An outline in the file's coordinates.
+struct Outline {
+    Footprint footprint;
+    OutlineUse use;
+};
+
+/// A file's outlines, and what could not be read of them.
+struct Outlines {
+    std::vector<Outline> outlines;
+    ReferenceSystem system;
+    std::size_t dropped = 0;  ///< outlines without area or with wrong corners
+    std::vector<std::string> warnings;
+};
+
+/// Places outlines and raises houses on them: the ground is level with the origin. Parts that cover at least half of a
+/// building's outline replace it. Buildings without a height are `settings.default_height` tall, woods 12 m.
+Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::string_view name,
+                                  const CityFileSettings& settings);
+
+}  // namespace skyloop

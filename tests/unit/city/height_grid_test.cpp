@@ -1,0 +1,96 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "mesh_support.hpp"
+
+namespace skyloop {
+namespace {
+
+using test::refusal;
+using ::testing::HasSubstr;
+
+Result<CityFile> read_grid(std::string_view text, const CityFileSettings& settings = {}) {
+    return parse_height_grid(text, "hills.asc", settings);
+}
+
+TEST(HeightGrid, StandsNorthUpInMetres) {
+    const auto file =
+        read_grid("ncols 3\nnrows 2\nxllcorner 100\nyllcorner 200\ncellsize 10\nNODATA_value -9999\n1 2 3\n4 5 60\n");
+    ASSERT_TRUE(file) << file.error().message;
+    test::expect_sound(*file);
+    EXPECT_EQ(file->format, "height grid");
+    EXPECT_EQ(file->model.vertices.size(), 6U);
+    EXPECT_EQ(test::count_of(file->model, SurfaceKind::ground), 4U);
+    // The last height of the last row: the south-eastern cell, by its middle.
+    EXPECT_EQ(test::highest_of(file->model), Eigen::Vector3d(125, 205, 60));
+    const auto middles = read_grid("NROWS 2\nNCOLS 2\nXLLCENTER 0\nYLLCENTER 0\nCELLSIZE 5\n1 2 3 9\n");
+    ASSERT_TRUE(middles);
+    EXPECT_EQ(test::highest_of(middles->model), Eigen::Vector3d(5, 0, 9));
+}
+
+TEST(HeightGrid, LeavesOutCellsWithoutData) {
+    const std::string head = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -9999\n";
+    for (const char* heights : {"-9999 1 1 1", "1 -9999 1 1", "1 1 -9999 1", "1 1 1 -9999"}) {
+        const auto file = read_grid(head + heights);
+        ASSERT_TRUE(file) << file.error().message;
+        EXPECT_EQ(file->model.triangles.size(), 1U) << heights;
+        EXPECT_EQ(file->model.vertices.size(), 3U);
+        EXPECT_EQ(file->dropped, 0U);
+        EXPECT_DOUBLE_EQ(test::area_of(file->model), 50);
+    }
+    const auto broken = read_grid(head + "nan 1 1 1");
+    ASSERT_TRUE(broken);
+    EXPECT_EQ(broken->dropped, 1U);
+    EXPECT_EQ(broken->warnings.size(), 1U);
+    EXPECT_THAT(refusal(read_grid(head + "-9999 -9999 1 1")), HasSubstr("no four neighbours"));
+}
+
+TEST(HeightGrid, PlacesDegreesOnTheGlobe) {
+    const std::string text =
+        "ncols 3\nnrows 3\nxllcenter 30.73\nyllcenter 46.47\ncellsize 0.001\n50 50 50\n50 50 50\n50 50 50\n";
+    const auto file = read_grid(text);
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_NEAR(file->model.origin.latitude.degrees(), 46.471, 1e-12);
+    EXPECT_NEAR(file->model.origin.longitude.degrees(), 30.731, 1e-12);
+    // A thousandth of a degree at 46.47°: 111.16 m north, 76.8 m east; all at the height of 50 m, less the curvature.
+    const Eigen::Vector3d south_west = file->model.vertices[6];
+    EXPECT_NEAR(south_west.x(), -76.8, 0.2);
+    EXPECT_NEAR(south_west.y(), -111.16, 0.05);
+    EXPECT_NEAR(south_west.z(), 50, 0.002);
+    CityFileSettings elsewhere;
+    elsewhere.origin = Geodetic::degrees(46.471, 30.731, 20);
+    const auto lower = read_grid(text, elsewhere);
+    ASSERT_TRUE(lower);
+    EXPECT_NEAR(lower->model.vertices[4].z(), 30, 1e-6);
+}
+
+TEST(HeightGrid, NamesTheLineOfWhatIsWrong) {
+    const std::string head = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+    EXPECT_THAT(refusal(read_grid("")), HasSubstr("hills.asc:1: '' is no key"));
+    EXPECT_THAT(refusal(read_grid("columns 2\n")), HasSubstr("hills.asc:1: 'columns' is no key"));
+    EXPECT_THAT(refusal(read_grid("ncols two\n")), HasSubstr("hills.asc:1: expected a number for ncols, found 'two'"));
+    EXPECT_THAT(refusal(read_grid("ncols 2\nnrows 2\n1 2 3 4\n")), HasSubstr("hills.asc:2: expected ncols, nrows"));
+    EXPECT_THAT(refusal(read_grid(head + "1 2\n3\n")), HasSubstr("ends where a height was expected"));
+    EXPECT_THAT(refusal(read_grid(head + "1 2\n3 high\n")), HasSubstr("hills.asc:7: expected a height, found 'high'"));
+    EXPECT_THAT(refusal(read_grid(head + "1 2\n3 4\n5\n")), HasSubstr("hills.asc:8: found '5' after the last"));
+    EXPECT_THAT(refusal(read_grid("ncols 1\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 1")),
+                HasSubstr("1 by 2 cells"));
+    EXPECT_THAT(refusal(read_grid("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize -1\n1 1 1 1")),
+                HasSubstr("cellsize -1"));
+    EXPECT_THAT(refusal(read_grid("ncols 2\nnrows 2\nxllcorner nan\nyllcorner 0\ncellsize 1\n1 1 1 1")),
+                HasSubstr("nowhere"));
+}
+
+TEST(HeightGrid, BelievesNoCountBeforeTheBytesAreThere) {
+    const auto head = [](std::string_view columns, std::string_view rows) {
+        return fmt::format("ncols {}\nnrows {}\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2 3 4\n", columns, rows);
+    };
+    EXPECT_THAT(refusal(read_grid(head("1000000000", "1000000000"))), HasSubstr("GB of memory"));
+    EXPECT_THAT(refusal(read_grid(head("1e300", "2"))), HasSubstr("cells"));
+    EXPECT_THAT(refusal(read_grid(head("5000", "5000"))), HasSubstr("bytes are left"));
+}
+
+}  // namespace
+}  // namespace skyloop
