@@ -39,7 +39,8 @@ private:
     void take(const osmium::Way& way);
     void take(const osmium::Relation& relation);
     [[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> ring_of(const NodeList& nodes) const;
-    [[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> rings_of(const std::vector<osmium::object_id_type>& members);
+    [[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> rings_of(
+        const std::vector<osmium::object_id_type>& members);
     void add_area(const Area& area);
 
     const CityFileSettings& settings_;
@@ -51,14 +52,16 @@ private:
 
 OutlineTags tags_of_object(const osmium::TagList& list) {
     OutlineTags tags;
-    for (const osmium::Tag& tag : list) tags.emplace(tag.key(), tag.value());
+    for (const osmium::Tag& tag : list)
+        tags.emplace(tag.key(), tag.value());
     return tags;
 }
 
 void OsmReader::take(const osmium::Way& way) {
     Way& kept = ways_[way.id()];
     kept = {};
-    for (const osmium::NodeRef& node : way.nodes()) kept.nodes.push_back(node.ref());
+    for (const osmium::NodeRef& node : way.nodes())
+        kept.nodes.push_back(node.ref());
     const OutlineUse use = outline_use(tags_of_object(way.tags()), settings_, false);
     if (use.kind != OutlineUse::Kind::none) kept.use = use;
 }
@@ -83,8 +86,10 @@ void OsmReader::read(std::string_view bytes, const std::string& format) {
     while (const osmium::memory::Buffer buffer = reader.read()) {
         for (const auto& node : buffer.select<osmium::Node>())
             if (node.location().valid()) places_[node.id()] = {node.location().lon(), node.location().lat()};
-        for (const auto& way : buffer.select<osmium::Way>()) take(way);
-        for (const auto& relation : buffer.select<osmium::Relation>()) take(relation);
+        for (const auto& way : buffer.select<osmium::Way>())
+            take(way);
+        for (const auto& relation : buffer.select<osmium::Relation>())
+            take(relation);
     }
     reader.close();
 }
@@ -173,7 +178,8 @@ Outlines OsmReader::outlines() {
         else
             ++found_.dropped;
     }
-    for (const Area& area : areas_) add_area(area);
+    for (const Area& area : areas_)
+        add_area(area);
     return std::move(found_);
 }
 
@@ -185,7 +191,8 @@ std::string first_line(std::string_view what) { return std::string(what.substr(0
 Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std::string_view name,
                            const CityFileSettings& settings) {
     if (format != "osm" && format != "osm.pbf" && format != "pbf")
-        return fail(ErrorCode::input, fmt::format("{}: unknown format \"{:.40}\", expected osm or osm.pbf", name, format));
+        return fail(ErrorCode::input,
+                    fmt::format("{}: unknown format \"{:.40}\", expected osm or osm.pbf", name, format));
     if (bytes.empty()) return fail(ErrorCode::input, fmt::format("{}: the file is empty", name));
     OsmReader reader(settings);
     try {

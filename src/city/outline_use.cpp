@@ -12,8 +12,10 @@ constexpr double tallest = 1000;  ///< m
 constexpr double foot = 0.3048;   ///< m
 
 std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    while (!text.empty() && text.front() == ' ')
+        text.remove_prefix(1);
+    while (!text.empty() && text.back() == ' ')
+        text.remove_suffix(1);
     return text;
 }
 
@@ -39,42 +41,31 @@ std::optional<double> first_length(const OutlineTags& tags, const std::array<std
     return std::nullopt;
 }
 
-constexpr std::array<std::string_view, 8> height_keys{"height",         "building:height", "render_height", "measuredheight",
-                                                      "building_height", "roof_height",    "hoehe",         "est_height"};
+constexpr std::array<std::string_view, 8> height_keys{"height",         "building:height", "render_height",
+                                                      "measuredheight", "building_height", "roof_height",
+                                                      "hoehe",          "est_height"};
 constexpr std::array<std::string_view, 3> base_keys{"min_height", "building:min_height", "render_min_height"};
-constexpr std::array<std::string_view, 7> level_keys{"building:levels", "levels", "num_floors",    "floors",
+constexpr std::array<std::string_view, 7> level_keys{"building:levels", "levels",  "num_floors",     "floors",
                                                      "storeys",         "stories", "building_levels"};
 constexpr std::array<std::string_view, 2> base_level_keys{"building:min_level", "min_level"};
 constexpr std::array<std::string_view, 4> material_keys{"building:material", "building:facade:material",
                                                         "building:cladding", "material"};
 
 /// Words of tags and the names of surface_material().
-constexpr std::array<std::array<std::string_view, 2>, 26> material_words{{{"glass", "glass"},
-                                                                          {"mirror", "glass"},
-                                                                          {"brick", "brick"},
-                                                                          {"bricks", "brick"},
-                                                                          {"brickwork", "brick"},
-                                                                          {"clay", "brick"},
-                                                                          {"tiles", "brick"},
-                                                                          {"cement_block", "concrete"},
-                                                                          {"concrete", "concrete"},
-                                                                          {"reinforced_concrete", "concrete"},
-                                                                          {"plaster", "concrete"},
-                                                                          {"stucco", "concrete"},
-                                                                          {"stone", "marble"},
-                                                                          {"limestone", "marble"},
-                                                                          {"sandstone", "marble"},
-                                                                          {"granite", "marble"},
-                                                                          {"marble", "marble"},
-                                                                          {"wood", "wood"},
-                                                                          {"timber", "wood"},
-                                                                          {"timber_framing", "wood"},
-                                                                          {"metal", "metal"},
-                                                                          {"steel", "metal"},
-                                                                          {"metal_plates", "metal"},
-                                                                          {"copper", "metal"},
-                                                                          {"aluminium", "metal"},
-                                                                          {"tin", "metal"}}};
+constexpr std::array<std::array<std::string_view, 2>, 26> material_words{
+    {{"glass", "glass"},        {"mirror", "glass"},
+     {"brick", "brick"},        {"bricks", "brick"},
+     {"brickwork", "brick"},    {"clay", "brick"},
+     {"tiles", "brick"},        {"cement_block", "concrete"},
+     {"concrete", "concrete"},  {"reinforced_concrete", "concrete"},
+     {"plaster", "concrete"},   {"stucco", "concrete"},
+     {"stone", "marble"},       {"limestone", "marble"},
+     {"sandstone", "marble"},   {"granite", "marble"},
+     {"marble", "marble"},      {"wood", "wood"},
+     {"timber", "wood"},        {"timber_framing", "wood"},
+     {"metal", "metal"},        {"steel", "metal"},
+     {"metal_plates", "metal"}, {"copper", "metal"},
+     {"aluminium", "metal"},    {"tin", "metal"}}};
 
 std::string material_of(const OutlineTags& tags) {
     for (const std::string_view key : material_keys)
