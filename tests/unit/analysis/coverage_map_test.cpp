@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "skyloop/gnss/constants.hpp"
+#include "skyloop/gnss/dop.hpp"
 #include "unit/analysis/scene_shapes.hpp"
 
 namespace skyloop {
@@ -112,7 +112,7 @@ TEST(CoverageMap, leaves_cells_inside_houses_empty) {
     for (const CoverageCell& cell : map.cells) {
         if (std::abs(std::abs(cell.position.x()) - 10) < 0.1) continue;
         EXPECT_EQ(cell.figures.has_value(), std::abs(cell.position.x()) < 10) << cell.position.transpose();
-        inside += cell.figures ? 0 : 1;
+        if (!cell.figures) ++inside;
     }
     EXPECT_GT(inside, 20u);
     EXPECT_THAT(coverage_csv(map), HasSubstr(",,,,,,,\n"));
