@@ -17,12 +17,24 @@ std::string count_text(std::uint64_t bytes) {
     return fmt::format("{:.1f} MB", static_cast<double>(bytes) * 1e-6);
 }
 
+// What buildings leave of the sky: satellites in sight of those above the horizon, and echoes.
+std::string city_text(const RayTracedScene& city) {
+    std::size_t in_sight = 0, reflected = 0;
+    for (const SatellitePaths& satellite : city.paths()) {
+        in_sight += satellite.line_of_sight ? 1 : 0;
+        reflected += satellite.paths.size();
+    }
+    return fmt::format("  {}/{} in sight, {} reflections, {} rays", in_sight, city.paths().size(), reflected,
+                       city.counters().rays_last);
+}
+
 std::string fix_text(const Status& status, const Station& station, bool of_several) {
     const Fix& fix = status.trace->epoch.fix;
     std::string text = of_several ? station.name() + " " : "";
     text += fmt::format("fix {:<4} {:>2}/{:<2} satellites", fix_type_name(fix.type), fix.satellites_used(),
                         fix.satellites.size());
     if (fix.has_position()) text += fmt::format("  HDOP {:.2f}", fix.dop.hdop);
+    if (const RayTracedScene* city = station.simulation().city()) text += city_text(*city);
     const auto period = static_cast<double>(station.receiver().settings().navigation_period.count());
     return text + fmt::format("  {:g} Hz", 1e9 / period);
 }

@@ -102,6 +102,7 @@ std::string options_text(const RunOptions& o) {
                                       {"trajectory", o.trajectory},
                                       {"start", o.start},
                                       {"model", o.model},
+                                      {"scene", o.scene},
                                       {"board", o.board}})
         if (!value.empty()) text += fmt::format("\n--{} {}", name, value);
     if (o.rebase_nav) text += "\n--rebase-nav";
@@ -131,13 +132,19 @@ void add_place_options(CLI::App& command, RunOptions& options) {
     command.add_option("--start", options.start, "ISO 8601 in UTC, or now");
 }
 
+void add_scene_option(CLI::App& command, RunOptions& options) {
+    command.add_option(
+        "--scene", options.scene,
+        "Buildings: .obj .ply .gltf .glb .geojson .json .osm .pbf .gml .xml, a folder or .tar.gz; or demo");
+}
+
 void add_run_options(CLI::App& command, RunOptions& options) {
     command.add_option("scenario", options.scenario, "Scenario file (TOML); without it embedded defaults");
     add_place_options(command, options);
     command.add_option("--trajectory", options.trajectory, "A .toml file with waypoints");
     command.add_option("--duration", options.duration, "Seconds");
     command.add_option("--model", options.model, fmt::format("{}; default modern", fmt::join(model_names(), " ")));
-    command.add_option("--scene", options.scene, "Buildings (not in this version)");
+    add_scene_option(command, options);
     command.add_option("--board", options.board, "Receiver profile, default ublox-m8; see skyloop boards");
     command.add_option("--rate", options.rate, "Navigation rate at start, Hz");
     command
@@ -151,7 +158,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
     add_verbosity_options(command, options.verbosity);
 }
 
-Result<Geodetic> parse_place(const std::string& text) {
+Result<Geodetic> parse_place(const std::string& text, std::string_view option) {
     double values[3] = {0, 0, 0};
     const char* at = text.data();
     const char* end = at + text.size();
@@ -164,7 +171,7 @@ Result<Geodetic> parse_place(const std::string& text) {
         if (*at != ',') break;
         ++at;
     }
-    const std::string asked = fmt::format("--at {}: ", text);
+    const std::string asked = fmt::format("{} {}: ", option, text);
     if (at != end || count < 1 || count > 2 || text.empty() || text.back() == ',')
         return fail(ErrorCode::usage,
                     asked + "expected LAT,LON or LAT,LON,HEIGHT in degrees and metres, such as 46.4775,30.7326,77");
@@ -174,7 +181,6 @@ Result<Geodetic> parse_place(const std::string& text) {
 }
 
 Result<Scenario> scenario_from(const RunOptions& options) {
-    if (!options.scene.empty()) return fail(ErrorCode::usage, "--scene: buildings are not in this version");
     if (!options.control.empty()) return fail(ErrorCode::usage, "--control: live control is not in this version");
     Scenario scenario;
     if (!options.scenario.empty()) {
@@ -184,6 +190,7 @@ Result<Scenario> scenario_from(const RunOptions& options) {
     }
     if (!options.nav.empty()) scenario.sky.navigation.assign(options.nav.begin(), options.nav.end());
     scenario.sky.rebase_navigation |= options.rebase_nav;
+    if (!options.scene.empty()) scenario.scene.buildings = {options.scene};
     if (options.seed) scenario.run.seed = *options.seed;
     scenario.source += options_text(options);
     for (const auto& apply : {apply_place, apply_time, apply_model, apply_receiver, apply_speed})

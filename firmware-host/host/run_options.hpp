@@ -30,13 +30,15 @@ struct RunOptions {
 void add_verbosity_options(CLI::App& command, Verbosity& verbosity);
 /// --at, --nav, --rebase-nav, --start: where and when.
 void add_place_options(CLI::App& command, RunOptions& options);
+/// --scene: what stands around.
+void add_scene_option(CLI::App& command, RunOptions& options);
 /// Everything that run and simulate share.
 void add_run_options(CLI::App& command, RunOptions& options);
 
 /// The scenario file, or embedded defaults, with the options laid over it.
 Result<Scenario> scenario_from(const RunOptions& options);
 
-/// Reads "LAT,LON" or "LAT,LON,HEIGHT": degrees and metres above the ellipsoid.
-Result<Geodetic> parse_place(const std::string& text);
+/// Reads "LAT,LON" or "LAT,LON,HEIGHT": degrees and metres above the ellipsoid. @param option for messages
+Result<Geodetic> parse_place(const std::string& text, std::string_view option = "--at");
 
 }  // namespace skyloop::host

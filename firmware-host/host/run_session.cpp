@@ -50,7 +50,13 @@ int RunSession::run(const Scenario& scenario) {
     Emulator& emulator = *assembly_.emulator;
     {
         Progress progress(!messages_.verbosity().quiet && !messages_.verbosity().json, assembly_.start, assembly_.end);
-        emulator.on_status([&](const Status& status) { progress.show(status, emulator); });
+        emulator.on_status([&](const Status& status) {
+            if (const auto notice = new_notice(status.station)) {
+                progress.clear();
+                messages_.warning(*notice);
+            }
+            progress.show(status, emulator);
+        });
         emulator.run_until(assembly_.end.value_or(GpsTime::max()), stop_asked);
     }
     if (Recorder* recorder = emulator.recorder())
@@ -65,6 +71,14 @@ int RunSession::run(const Scenario& scenario) {
         if (station.state() && station.state()->failure()) code = messages_.error(*station.state()->failure());
     }
     return code;
+}
+
+std::optional<std::string> RunSession::new_notice(std::size_t index) {
+    const Station& station = assembly_.emulator->stations()[index];
+    const RayTracedScene* city = station.simulation().city();
+    if (city == nullptr || !city->notice()) return std::nullopt;
+    if (!noticed_.insert(index).second) return std::nullopt;
+    return prefix(station) + *city->notice();
 }
 
 std::string RunSession::prefix(const Station& station) const {

@@ -1,6 +1,8 @@
 /// One run of an assembled emulator, from its first message to its exit code.
 #pragma once
 
+#include <optional>
+#include <set>
 #include <string>
 
 #include "messages.hpp"
@@ -23,10 +25,13 @@ public:
 private:
     void tell_counts(const Station& station) const;
     void tell_wire(const Station& station, std::size_t wire) const;
+    // What the buildings around a receiver have to say that has not been said yet.
+    std::optional<std::string> new_notice(std::size_t station);
     // "rover: " when there are several receivers.
     [[nodiscard]] std::string prefix(const Station& station) const;
     const Messages& messages_;
     Assembly& assembly_;
+    std::set<std::size_t> noticed_;  // stations whose notice has been said
 };
 
 /// From here on SIGINT, SIGTERM and SIGHUP end a run in order. Called before any port is opened, so that none is left.

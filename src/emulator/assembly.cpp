@@ -11,6 +11,7 @@
 #include "skyloop/base/digest.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/emulator/lever_arm.hpp"
+#include "skyloop/emulator/load_scene.hpp"
 #include "skyloop/error_model/make_error_model.hpp"
 #include "skyloop/error_model/model_effects.hpp"
 
@@ -51,10 +52,38 @@ EffectSettings effect_settings(const Scenario& scenario, const NavigationSource&
     return settings;
 }
 
+bool city_acts(const Scenario& scenario) { return scenario.model.sensor_model || scenario.model.modern.errors; }
+
+// Walls stand before the link budget, which is the last effect of every model.
+const RayTracedScene* add_city(std::vector<std::unique_ptr<PropagationEffect>>& effects, const Scenario& scenario,
+                               const SimulationSetup& setup) {
+    if (!setup.scene || !city_acts(scenario)) return nullptr;
+    auto city = std::make_unique<RayTracedScene>(setup.scene, scene_effect_settings(scenario, setup.epochs_per_second));
+    const RayTracedScene* added = city.get();
+    effects.insert(effects.end() - 1, std::move(city));
+    return added;
+}
+
+// What stands around, and what its user should be told of it.
+Result<void> add_scene(const Scenario& scenario, const DataFolders& data, Assembly& assembly) {
+    const Geodetic place = make_trajectory(scenario.trajectory, assembly.start)->at(assembly.start).geodetic;
+    auto loaded = load_scene(scenario, place, CityCache{data.cache});
+    if (!loaded) return fail(loaded.error());
+    assembly.scene = std::move(*loaded);
+    const std::vector<std::string>& warnings = assembly.scene.warnings;
+    assembly.warnings.insert(assembly.warnings.end(), warnings.begin(), warnings.end());
+    return {};
+}
+
 std::vector<std::string> world_details(const NavigationSource& navigation, const Assembly& assembly) {
-    return {fmt::format("navigation: {}, {} satellites, {}", navigation.description(), navigation.satellites().size(),
-                        navigation.klobuchar() ? "with ionosphere coefficients" : "without ionosphere coefficients"),
-            fmt::format("geoid: {}", assembly.geoid ? "EGM96, 15 minutes" : "none")};
+    std::vector<std::string> details{
+        fmt::format("navigation: {}, {} satellites, {}", navigation.description(), navigation.satellites().size(),
+                    navigation.klobuchar() ? "with ionosphere coefficients" : "without ionosphere coefficients"),
+        fmt::format("geoid: {}", assembly.geoid ? "EGM96, 15 minutes" : "none")};
+    if (assembly.scene.scene)
+        details.push_back(fmt::format("scene: {}{}", assembly.scene.description,
+                                      assembly.scene.from_cache ? ", from the cache" : ""));
+    return details;
 }
 
 std::string receiver_detail(const Station::Parts& parts) {
@@ -92,7 +121,7 @@ Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& 
 
 }  // namespace
 
-std::string scenario_digest(const Scenario& scenario, GpsTime start) {
+std::string scenario_digest(const Scenario& scenario, GpsTime start, std::uint64_t scene) {
     std::uint64_t digest = fnv1a_64(scenario.source);
     digest = fnv1a_64(fmt::format("start {} seed {}", start.time_since_epoch().count(), scenario.run.seed), digest);
     for (const auto& file : scenario.sky.navigation)
@@ -100,6 +129,7 @@ std::string scenario_digest(const Scenario& scenario, GpsTime start) {
     for (const ReceiverEntry& receiver : scenario.receivers)
         if (!receiver.state_file.empty() && std::filesystem::exists(receiver.state_file))
             if (const auto text = read_text_file(receiver.state_file)) digest = fnv1a_64(*text, digest);
+    if (scene != 0) digest = fnv1a_64(fmt::format("scene {:016x}", scene), digest);
     return fmt::format("{:016x}", digest);
 }
 
@@ -145,6 +175,8 @@ std::vector<std::string> scenario_warnings(const Scenario& scenario) {
             fmt::format("atmosphere.{}: of the sensor models; the modern model takes clouds and rain from [atmosphere] "
                         "and the rest from [model.modern]",
                         fmt::join(scenario.sensor_model_keys, ", atmosphere.")));
+    if (scenario.scene.given() && !city_acts(scenario))
+        warnings.push_back("scene: errors = \"none\" leaves the buildings out, whose echoes are errors");
     return warnings;
 }
 
@@ -172,8 +204,9 @@ Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSet
     if (!effects) return fail(effects.error());
     FixMaker fix_maker = scenario.model.sensor_model ? FixMaker(make_error_model(error_model_settings(scenario, setup)))
                                                      : FixMaker(measuring_receiver(scenario, setup));
+    const RayTracedScene* city = add_city(*effects, scenario, setup);
     return Simulation(
-        {make_antenna_path(scenario, setup), setup.navigation, std::move(*effects), std::move(fix_maker)});
+        {make_antenna_path(scenario, setup), setup.navigation, std::move(*effects), std::move(fix_maker), city});
 }
 
 Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation,
@@ -197,11 +230,13 @@ Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, con
     assembly.geoid = find_geoid(data, assembly.warnings);
     assembly.start = navigation->start;
     if (scenario.run.duration) assembly.end = advanced(assembly.start, *scenario.run.duration);
-    assembly.digest = scenario_digest(scenario, assembly.start);
+    if (const auto added = add_scene(scenario, data, assembly); !added) return fail(added.error());
+    assembly.digest = scenario_digest(scenario, assembly.start, assembly.scene.digest);
     assembly.details = world_details(*navigation->source, assembly);
 
-    auto stations = make_stations(
-        {scenario, data, mode, std::move(navigation->source), assembly.geoid.get(), assembly.start}, assembly);
+    auto stations = make_stations({scenario, data, mode, std::move(navigation->source), assembly.geoid.get(),
+                                   assembly.start, assembly.scene.scene},
+                                  assembly);
     if (!stations) return fail(stations.error());
     assembly.details.push_back(fmt::format("digest: {}", assembly.digest));
     // The pacer comes last, so that the clock starts when everything else is ready.

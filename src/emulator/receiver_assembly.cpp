@@ -71,8 +71,6 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     if (!board) return fail(board.error());
     auto wires = wires_of(entry, *board);
     if (!wires) return fail(wires.error());
-    auto simulation = make_simulation(scenario, {shared.navigation, shared.geoid, shared.start, shared.data, index});
-    if (!simulation) return fail(simulation.error());
     std::optional<StateFile> state;
     if (!entry.state_file.empty()) {
         auto opened = StateFile::open(entry.state_file);
@@ -86,6 +84,10 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     if (state && !state->text().empty())
         if (auto restored = receiver.restore(state->text(), state->path().string()); !restored)
             return fail(restored.error());
+    const double rate = 1e9 / static_cast<double>(receiver.settings().navigation_period.count());
+    auto simulation = make_simulation(
+        scenario, {shared.navigation, shared.geoid, shared.start, shared.data, index, shared.scene, rate});
+    if (!simulation) return fail(simulation.error());
     Station::Parts parts{std::move(*simulation), std::move(receiver), {}, {}};
     if (entry.rate_hz) warn_of_rate(*entry.rate_hz, parts.receiver, warnings);
     parts.name = receiver_name(scenario, index);

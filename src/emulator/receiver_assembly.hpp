@@ -18,6 +18,7 @@ struct SharedParts {
     std::shared_ptr<const NavigationSource> navigation;
     const Geoid* geoid = nullptr;
     GpsTime start;
+    std::shared_ptr<const UrbanScene> scene;  // null: nothing stands around
 };
 
 /// One receiver before anything is opened or emptied for it.

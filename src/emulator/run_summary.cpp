@@ -38,6 +38,28 @@ Json ports_json(const std::vector<Wire>& wires) {
     return ports;
 }
 
+Json scene_json(const LoadedScene& loaded) {
+    const SceneStatistics& s = loaded.scene->statistics();
+    return {{"description", loaded.description},
+            {"digest", fmt::format("{:016x}", loaded.digest)},
+            {"triangles", s.triangles},
+            {"planes", s.planes},
+            {"memory_bytes", s.memory}};
+}
+
+// What the search for paths counted.
+Json rays_json(const RayTracedScene& city) {
+    const PathSearchCounters& c = city.counters();
+    Json rays{{"epochs", c.epochs},
+              {"rays", c.rays},
+              {"rays_per_epoch", c.epochs > 0 ? static_cast<double>(c.rays) / static_cast<double>(c.epochs) : 0},
+              {"segments", c.segments},
+              {"candidates", c.candidates},
+              {"accepted", c.accepted}};
+    if (city.notice()) rays["notice"] = *city.notice();
+    return rays;
+}
+
 // What one receiver counted; the first one's stands at the top of the file.
 void add_counts(Json& summary, const Station& station) {
     summary["epochs"] = station.counts().epochs;
@@ -45,6 +67,7 @@ void add_counts(Json& summary, const Station& station) {
     summary["messages_sent"] = station.messages_sent();
     summary["messages_dropped"] = station.messages_dropped();
     summary["ports"] = ports_json(station.wires());
+    if (const RayTracedScene* city = station.simulation().city()) summary["path_search"] = rays_json(*city);
     summary["lateness"] = lateness_json(station.counts().lateness);
 }
 
@@ -75,6 +98,7 @@ std::string run_summary(const Scenario& scenario, const Assembly& assembly, std:
         {"start_utc", format_utc(to_utc(assembly.start, LeapSeconds::announced()))},
         {"simulated_s", difference(emulator.now(), assembly.start).value()},
     };
+    if (assembly.scene.scene) summary["scene"] = scene_json(assembly.scene);
     add_counts(summary, emulator.first());
     summary["warnings"] = assembly.warnings;
     if (emulator.stations().size() > 1) summary["receivers"] = receivers_json(emulator);

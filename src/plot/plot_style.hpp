@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "skyloop/analysis/scene_sky.hpp"
 #include "skyloop/gnss/satellite.hpp"
 #include "skyloop/plot/svg_document.hpp"
 
@@ -19,6 +20,12 @@ inline constexpr std::string_view paper = "#ffffff";
 inline constexpr std::string_view panel = "#f6f8fb";
 inline constexpr std::string_view accent = "#b4540a";
 inline constexpr std::string_view unhealthy = "#8b95a1";
+inline constexpr std::string_view foliage = "#a9cf9d";
+inline constexpr std::string_view foliage_edge = "#6fa563";
+inline constexpr std::string_view line_of_sight = "#0a8f72";
+inline constexpr std::string_view reflected = "#e08a00";
+inline constexpr std::string_view blocked = "#b3403a";
+inline constexpr std::string_view skyline = "#c3cad3";
 
 /// One colour for each system, told apart by people with any kind of colour vision in pairs that meet in practice.
 constexpr std::string_view constellation_colour(Constellation constellation) {
@@ -39,6 +46,15 @@ constexpr std::string_view constellation_colour(Constellation constellation) {
             return "#0d8fb3";
     }
     return ink;
+}
+
+/// What a city does to a satellite: by colour, and by word.
+constexpr std::string_view reception_colour(Reception reception) {
+    return std::array{line_of_sight, reflected, blocked}[static_cast<std::size_t>(reception)];
+}
+constexpr std::string_view reception_word(Reception reception) {
+    return std::array<std::string_view, 3>{"line of sight", "reflected",
+                                           "blocked"}[static_cast<std::size_t>(reception)];
 }
 
 /// A sheet of paper of its own under the picture, so that it reads on a white page and on a dark one.

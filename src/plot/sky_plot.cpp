@@ -55,9 +55,32 @@ std::string sky_subtitle(const SkyPlot& plot, std::size_t seen) {
     return text;
 }
 
+// Blocked cells, those on top of each other as one piece. A piece is wide enough to close the gap to its neighbour.
+void draw_obstruction(SvgDocument& svg, const SkyMask& mask) {
+    constexpr double overlap = 0.08;  // degrees
+    SvgPath path;
+    for (int azimuth = 0; azimuth < SkyMask::azimuths; ++azimuth)
+        for (int low = 0, high = 0; low < SkyMask::elevations; low = high) {
+            high = low + 1;
+            if (!mask.at(azimuth, low)) continue;
+            while (high < SkyMask::elevations && mask.at(azimuth, high))
+                ++high;
+            const Angle left = Angle::degrees(azimuth - overlap), right = Angle::degrees(azimuth + 1 + overlap);
+            path.move_to(sky_point(left, Angle::degrees(low)))
+                .line_to(sky_point(right, Angle::degrees(low)))
+                .line_to(sky_point(right, Angle::degrees(high)))
+                .line_to(sky_point(left, Angle::degrees(high)))
+                .close();
+        }
+    svg.begin_group("buildings", fmt::format("{:.0f} % of the sky is open", 100 * mask.open_share()));
+    if (!path.empty()) svg.path(path, {.fill = style::skyline});
+    svg.end_group();
+}
+
 void draw_sky_grid(SvgDocument& svg, const SkyPlot& plot) {
     svg.begin_group("grid");
     svg.circle(sky_centre, sky_plot_radius, {.fill = style::panel, .stroke = style::faint_ink, .width = 1.2});
+    if (plot.obstruction) draw_obstruction(svg, *plot.obstruction);
     for (int azimuth = 0; azimuth < 360; azimuth += 30) {
         const Angle a = Angle::degrees(azimuth);
         svg.line(sky_centre, sky_point(a, Angle()), {.stroke = azimuth % 90 == 0 ? style::grid : style::faint_grid});
@@ -85,6 +108,12 @@ void draw_sky_grid(SvgDocument& svg, const SkyPlot& plot) {
     svg.end_group();
 }
 
+std::string_view satellite_colour(const SkyPlotSatellite& satellite) {
+    if (!satellite.healthy) return style::unhealthy;
+    if (!satellite.reception) return style::constellation_colour(satellite.id.constellation);
+    return style::reception_colour(*satellite.reception);
+}
+
 void draw_trail(SvgDocument& svg, const SkyPlotSatellite& satellite) {
     SvgPath path;
     bool down = true;  // below the horizon the line is lifted
@@ -97,14 +126,12 @@ void draw_trail(SvgDocument& svg, const SkyPlotSatellite& satellite) {
         down = below;
     }
     if (!down) path.line_to(sky_point(satellite.azimuth, satellite.elevation));
-    const std::string_view colour =
-        satellite.healthy ? style::constellation_colour(satellite.id.constellation) : style::unhealthy;
+    const std::string_view colour = satellite_colour(satellite);
     svg.path(path, {.stroke = colour, .width = 1.3, .opacity = 0.4});
 }
 
 void draw_mark(SvgDocument& svg, SvgPoint p, double radius, const SkyPlotSatellite& satellite) {
-    const std::string_view colour =
-        satellite.healthy ? style::constellation_colour(satellite.id.constellation) : style::unhealthy;
+    const std::string_view colour = satellite_colour(satellite);
     if (satellite.used && satellite.healthy)
         svg.circle(p, radius, {.fill = colour, .stroke = style::paper, .width = 1.2});
     else
@@ -119,6 +146,7 @@ std::string satellite_tooltip(const SkyPlotSatellite& s) {
     std::string text =
         fmt::format("{}: azimuth {:.1f}°, elevation {:.1f}°", to_string(s.id), s.azimuth.deg(), s.elevation.deg());
     if (s.cn0) text += fmt::format(", {:.1f} dB-Hz", s.cn0->value());
+    if (s.reception) text += fmt::format(", {}", style::reception_word(*s.reception));
     return text + (!s.healthy ? ", unhealthy" : s.used ? ", used" : ", not used");
 }
 
@@ -170,7 +198,12 @@ void draw_system_legend(SvgDocument& svg, const SkyPlot& plot, const std::vector
     LegendRow row(svg, 672);
     std::set<Constellation> present;
     for (const SkyPlotSatellite& s : satellites)
-        present.insert(s.id.constellation);
+        if (!s.reception) present.insert(s.id.constellation);
+    if (plot.obstruction)
+        for (const Reception kind : {Reception::line_of_sight, Reception::reflected, Reception::blocked}) {
+            svg.circle(row.mark_place(6), 6, {.fill = style::reception_colour(kind)});
+            row.label(std::string(style::reception_word(kind)), 12);
+        }
     for (const Constellation c : present) {
         svg.circle(row.mark_place(6), 6, {.fill = style::constellation_colour(c)});
         row.label(std::string(constellation_title(c)), 12);
@@ -213,10 +246,16 @@ void draw_legend(SvgDocument& svg, const SkyPlot& plot, const std::vector<SkyPlo
 }  // namespace
 
 SkyPlot sky_plot(const SkyListing& listing) {
-    SkyPlot plot{listing.place, listing.time, listing.mask, listing.dop, {}, {}};
+    SkyPlot plot{listing.place, listing.time, listing.mask, listing.dop, {}, {}, {}};
     for (const SkyRow& row : listing.rows)
-        plot.satellites.push_back(
-            {row.view.id, row.view.azimuth, row.view.elevation, row.cn0, row.used, row.view.healthy, {}});
+        plot.satellites.push_back({row.view.id,
+                                   row.view.azimuth,
+                                   row.view.elevation,
+                                   row.cn0,
+                                   row.used,
+                                   row.view.healthy,
+                                   row.scene ? std::optional(row.scene->reception()) : std::nullopt,
+                                   {}});
     return plot;
 }
 

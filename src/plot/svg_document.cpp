@@ -143,6 +143,11 @@ void SvgDocument::path(const SvgPath& path, const SvgStyle& style) {
                          style_attributes(style));
 }
 
+void SvgDocument::runs(const SvgPath& path, std::string_view colour, double width) {
+    body_ += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"/>\n", path.data(),
+                         svg_escape(colour), svg_number(width));
+}
+
 void SvgDocument::text(const SvgText& text) {
     constexpr double half_height_of_capitals = 0.36;  // of the font size, for any common sans-serif
     body_ += fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"{}\" text-anchor=\"{}\" fill=\"{}\"",

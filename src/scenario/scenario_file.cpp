@@ -79,7 +79,6 @@ constexpr std::string_view sensor_model_atmosphere_keys[] = {"total_electron_con
 
 // What INTERFACE names and later versions will read.
 void refuse_later_keys(TableReader& top) {
-    top.refuse("scene", "buildings are not in this version");
     top.refuse("fault", "faults are not in this version");
     top.refuse("command", "commands are not in this version");
     top.refuse("expect", "verdicts are not in this version");
@@ -95,6 +94,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
         for (const std::string_view key : sensor_model_atmosphere_keys)
             if (t.has(key)) scenario.sensor_model_keys.emplace_back(key);
     });
+    top.table("scene", [&](TableReader& t) { read_scene_keys(t, scenario.scene, folder); });
     read_receivers(top, scenario, folder);
     refuse_later_keys(top);
 }

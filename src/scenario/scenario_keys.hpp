@@ -20,6 +20,9 @@ void read_constellation_list(TableReader& table, std::vector<Constellation>& con
 /// @param folder that paths are relative to
 void read_receivers(TableReader& top, Scenario& scenario, const std::filesystem::path& folder);
 
+/// Reads [scene]. @param folder that paths are relative to
+void read_scene_keys(TableReader& table, SceneEntry& scene, const std::filesystem::path& folder);
+
 /// Reads [frame] and [trajectory] of a file's top table.
 void read_trajectory_keys(TableReader& top, Scenario& scenario);
 

@@ -9,6 +9,7 @@
 
 #include "skyloop/base/result.hpp"
 #include "skyloop/emulator/emulator.hpp"
+#include "skyloop/emulator/load_scene.hpp"
 #include "skyloop/geo/geoid.hpp"
 #include "skyloop/scenario/scenario.hpp"
 
@@ -17,6 +18,7 @@ namespace skyloop {
 /// Where the program's own data lies: folders that may hold boards/ and geoids/, the first that has a thing wins.
 struct DataFolders {
     std::vector<std::filesystem::path> folders;
+    std::filesystem::path cache{};  ///< where cities are kept that take time to read; empty: nowhere
 };
 
 /// Where find_board() is to look.
@@ -39,6 +41,7 @@ struct Assembly {
     GpsTime start;
     std::optional<GpsTime> end;
     std::string digest;  ///< scenario_digest()
+    LoadedScene scene;   ///< what stands around; its warnings are among those below
     std::vector<std::string> warnings;
     std::vector<std::string> details;  ///< for those who ask: what was read, and from where
 };
@@ -47,8 +50,9 @@ struct Assembly {
 Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, const RunMode& mode);
 
 /// What a user gives that decides the bytes of a run, as 16 hexadecimal digits: the scenario's text with the options
-/// and trajectory file laid over it, seed, start and navigation files. The board file counts by its name only.
-std::string scenario_digest(const Scenario& scenario, GpsTime start);
+/// and trajectory file laid over it, seed, start, navigation files and scene. The board file counts by its name only.
+/// @param scene digest of the files of the scene; 0: there are none
+std::string scenario_digest(const Scenario& scenario, GpsTime start, std::uint64_t scene = 0);
 
 /// Broadcast orbits for a scenario: its files, or the nominal constellation, and when its run begins. Fails with
 /// `input` for files that hold nothing to use, with `usage` for settings that contradict each other.
@@ -74,6 +78,9 @@ struct SimulationSetup {
     GpsTime start;
     DataFolders data{};        ///< where the tables of the modern model's ionosphere lie
     std::size_t receiver = 0;  ///< whose antenna: its place in the scenario's list
+    /// What stands around; null: nothing, whatever the scenario says.
+    std::shared_ptr<const UrbanScene> scene{};
+    double epochs_per_second = 1;  ///< of the receiver, at start
 };
 /// The world of a scenario and its way to a fix. Receivers of one run share the world and its errors; what their own
 /// electronics add differs. Fails with `input` when scenario and world do not fit each other.

@@ -12,6 +12,7 @@
 #include "skyloop/measurement/measurement_engine.hpp"
 #include "skyloop/measurement/subframe_reception.hpp"
 #include "skyloop/propagation/effect.hpp"
+#include "skyloop/propagation/ray_traced_scene.hpp"
 #include "skyloop/pvt/navigation_engine.hpp"
 #include "skyloop/sky/observe_sky.hpp"
 #include "skyloop/trajectory/trajectory.hpp"
@@ -35,6 +36,7 @@ public:
         std::shared_ptr<const NavigationSource> navigation;       ///< that the antennas of a run share
         std::vector<std::unique_ptr<PropagationEffect>> effects;  ///< in the order in which they are applied
         FixMaker fix_maker;
+        const RayTracedScene* city = nullptr;  ///< one of the effects; null: nothing stands around
     };
     explicit Simulation(Parts parts);
 
@@ -46,6 +48,8 @@ public:
     [[nodiscard]] const NavigationSource& navigation() const { return *parts_.navigation; }
     /// Where the antenna is.
     [[nodiscard]] TruthState truth_at(GpsTime time) const { return parts_.trajectory->at(time); }
+    /// What the buildings did at the last epoch; null: nothing stands around.
+    [[nodiscard]] const RayTracedScene* city() const { return parts_.city; }
     /// True when the receiver measures: there are observations to write down.
     [[nodiscard]] bool measures() const { return std::holds_alternative<MeasuringReceiver>(parts_.fix_maker); }
 

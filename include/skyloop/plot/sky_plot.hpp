@@ -16,10 +16,11 @@ struct SkyPlotSatellite {
     SatelliteId id;
     Angle azimuth;
     Angle elevation;
-    std::optional<DbHz> cn0;          ///< the size of the mark
-    bool used = true;                 ///< a full mark, else a hollow one
-    bool healthy = true;              ///< else grey and crossed out
-    std::vector<SkyDirection> trail;  ///< where it has been, oldest first; drawn as a thin line
+    std::optional<DbHz> cn0;               ///< the size of the mark
+    bool used = true;                      ///< a full mark, else a hollow one
+    bool healthy = true;                   ///< else grey and crossed out
+    std::optional<Reception> reception{};  ///< in a city: decides the colour
+    std::vector<SkyDirection> trail;       ///< where it has been, oldest first; drawn as a thin line
 };
 
 /// Everything that the picture says.
@@ -29,7 +30,8 @@ struct SkyPlot {
     std::optional<Angle> mask;  ///< a dashed circle
     std::optional<Dop> dop;
     std::vector<SkyPlotSatellite> satellites;
-    std::string title;  ///< empty: made from the place
+    std::string title;                     ///< empty: made from the place
+    std::optional<SkyMask> obstruction{};  ///< what buildings hide, filled
 };
 
 /// The picture of a listing, without trails.
@@ -42,7 +44,8 @@ inline constexpr double sky_plot_centre_x = 320;
 inline constexpr double sky_plot_centre_y = 358;
 inline constexpr double sky_plot_radius = 248;
 
-/// The picture as an SVG document. Satellites below the horizon are left out.
+/// The picture as an SVG document. Satellites below the horizon are left out. In a city buildings stand around the
+/// zenith as they block the sky, and the satellites' colours tell line of sight, reflected and blocked.
 std::string sky_plot_svg(const SkyPlot& plot);
 
 }  // namespace skyloop

@@ -60,6 +60,8 @@ public:
     void ellipse(SvgPoint centre, SvgPoint half_axes, double rotation_deg, const SvgStyle& style);
     void line(SvgPoint from, SvgPoint to, const SvgStyle& style);
     void path(const SvgPath& path, const SvgStyle& style);
+    /// Straight strokes with blunt ends: the cells of a raster.
+    void runs(const SvgPath& path, std::string_view colour, double width);
     void text(const SvgText& text);
 
     /// The whole document; open groups are closed.

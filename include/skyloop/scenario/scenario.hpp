@@ -20,6 +20,7 @@
 #include "skyloop/propagation/link_budget_parameters.hpp"
 #include "skyloop/propagation/whole_path_parameters.hpp"
 #include "skyloop/scenario/modern_settings.hpp"
+#include "skyloop/scenario/scene_settings.hpp"
 #include "skyloop/trajectory/geometric_paths.hpp"
 
 namespace skyloop {
@@ -103,6 +104,7 @@ struct Scenario {
     TrajectorySettings trajectory = FixedSettings{};
     ModelSettings model;
     AtmosphereParameters atmosphere;
+    SceneEntry scene;
     std::vector<std::string>
         sensor_model_keys;  ///< keys of [atmosphere] that were given and act in sensor models alone
     std::vector<ReceiverEntry> receivers = std::vector<ReceiverEntry>(1);  ///< at least one

@@ -1,0 +1,249 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "commands.hpp"
+#include "data_folders.hpp"
+#include "messages.hpp"
+#include "run_options.hpp"
+#include "run_session.hpp"
+#include "skyloop/analysis/scene_sky.hpp"
+#include "skyloop/emulator/load_scene.hpp"
+#include "skyloop/plot/scene_plot.hpp"
+#include "skyloop/plot/sky_plot.hpp"
+
+namespace skyloop::host {
+namespace {
+
+struct SceneOptions {
+    std::string file, at, origin, axes, svg, sky_svg;
+    double unit_m = 1;
+    bool json = false;
+    Verbosity verbosity;
+};
+
+/// A place in the scene and what surrounds it.
+struct SceneViewpoint {
+    Geodetic place;
+    Eigen::Vector3d antenna;  ///< in the scene's frame, m
+    std::optional<double> ground;
+    bool enclosed = false;
+    SkyMask mask;
+};
+
+/// All that the command has to tell.
+struct SceneReport {
+    JoinedCity city;
+    std::shared_ptr<const UrbanScene> scene;
+    std::optional<SceneViewpoint> viewpoint;
+};
+
+Result<SceneEntry> scene_entry(const SceneOptions& options) {
+    SceneEntry entry;
+    entry.buildings = {options.file};
+    if (!(options.unit_m >= 1e-6 && options.unit_m <= 1e6))
+        return fail(ErrorCode::usage,
+                    fmt::format("--unit-m {}: expected metres from 0.000001 to 1000000", options.unit_m));
+    entry.reading.metres_per_unit = options.unit_m;
+    if (!options.origin.empty()) {
+        const auto origin = parse_place(options.origin, "--origin");
+        if (!origin) return fail(origin.error());
+        entry.reading.origin = *origin;
+    }
+    if (!options.axes.empty()) {
+        const auto axes = FileAxes::parse(options.axes);
+        if (!axes) return fail(ErrorCode::usage, fmt::format("--axes {}: {}", options.axes, axes.error().message));
+        entry.reading.axes = *axes;
+    }
+    if (!options.sky_svg.empty() && options.at.empty())
+        return fail(ErrorCode::usage, "--sky-svg needs a place: expected --at LAT,LON[,HEIGHT]");
+    return entry;
+}
+
+// A place without a height is that of an antenna above the ground there.
+SceneViewpoint viewpoint_at(Geodetic place, bool has_height, const UrbanScene& scene) {
+    SceneViewpoint view;
+    view.antenna = scene.frame().to_enu(to_ecef(place)).vector();
+    view.ground = scene.ground_at(view.antenna.x(), view.antenna.y());
+    if (!has_height) {
+        view.antenna.z() = view.ground.value_or(0) + antenna_above_scene.value();
+        place = to_geodetic(scene.frame().to_ecef(Position<Enu>(view.antenna.x(), view.antenna.y(), view.antenna.z())));
+    }
+    view.place = place;
+    view.enclosed = sees_no_sky(scene, view.antenna);
+    view.mask = sky_mask(scene, view.antenna);
+    return view;
+}
+
+Result<SceneReport> report_of(const SceneOptions& options) {
+    const auto entry = scene_entry(options);
+    if (!entry) return fail(entry.error());
+    std::optional<Geodetic> at;
+    if (!options.at.empty()) {
+        const auto place = parse_place(options.at);
+        if (!place) return fail(place.error());
+        at = *place;
+    }
+    auto city = read_scene_files(*entry, at, CityCache{data_folders().cache});
+    if (!city) return fail(city.error());
+    const SceneSettings settings{SceneSettings().merge_tolerance, entry->memory_limit_mb << 20};
+    auto scene = UrbanScene::build(city->model, settings);
+    if (!scene) return fail(scene.error().code, fmt::format("{}: {}", options.file, scene.error().message));
+    for (const std::string& doubt : doubts_about(city->model))
+        city->warnings.push_back(fmt::format("{}: {}", options.file, doubt));
+    SceneReport report{std::move(*city), std::move(*scene), std::nullopt};
+    const bool has_height = std::count(options.at.begin(), options.at.end(), ',') > 1;
+    if (at) report.viewpoint = viewpoint_at(*at, has_height, *report.scene);
+    return report;
+}
+
+// Those that triangles are made of, in the order of the model.
+std::vector<std::string> used_materials(const CityModel& model) {
+    std::set<std::size_t> used;
+    for (const CityTriangle& triangle : model.triangles)
+        used.insert(triangle.material);
+    std::vector<std::string> names;
+    for (const std::size_t index : used)
+        names.push_back(model.materials.at(index));
+    return names;
+}
+
+std::string place_text(const Geodetic& place) {
+    return fmt::format("{:.7f}, {:.7f}, {:.2f}", place.latitude.deg(), place.longitude.deg(),
+                       place.height.above_ellipsoid.value());
+}
+
+void print_viewpoint(const SceneViewpoint& view) {
+    fmt::print("at          {}: east {:.1f}, north {:.1f}, up {:.1f} m\n", place_text(view.place), view.antenna.x(),
+               view.antenna.y(), view.antenna.z());
+    if (view.ground) fmt::print("            {:.1f} m above the ground\n", view.antenna.z() - *view.ground);
+    if (view.enclosed)
+        fmt::print("            inside a building or below the ground: nothing arrives there\n");
+    else
+        fmt::print("            {:.0f} % of the sky is open\n", 100 * view.mask.open_share());
+}
+
+void print_report(const SceneReport& report) {
+    const SceneStatistics& s = report.scene->statistics();
+    fmt::print("format      {}{}\n", fmt::join(report.city.formats, ", "),
+               report.city.from_cache ? ", from the cache" : "");
+    fmt::print("origin      {}\n", place_text(report.scene->frame().origin()));
+    fmt::print("triangles   {}: wall {}, roof {}, ground {}\n", s.triangles, s.triangles_of_kind[0],
+               s.triangles_of_kind[1], s.triangles_of_kind[2]);
+    fmt::print("planes      {}\n", s.planes);
+    fmt::print("extent      east {:.1f} to {:.1f}, north {:.1f} to {:.1f}, up {:.1f} to {:.1f} m\n", s.lowest.x(),
+               s.highest.x(), s.lowest.y(), s.highest.y(), s.lowest.z(), s.highest.z());
+    if (report.city.buildings > 0) fmt::print("buildings   {}\n", report.city.buildings);
+    fmt::print("materials   {}\n", fmt::join(used_materials(report.city.model), ", "));
+    if (!report.scene->foliage().empty()) fmt::print("trees       {} volumes\n", report.scene->foliage().size());
+    fmt::print("memory      {:.1f} MB\n", static_cast<double>(s.memory) * 1e-6);
+    fmt::print("left out    {} that could not be used, {} without area, {} with a corner that is no number\n",
+               report.city.dropped, s.degenerate, s.not_finite);
+    if (report.viewpoint) print_viewpoint(*report.viewpoint);
+}
+
+nlohmann::ordered_json place_json(const Geodetic& place) {
+    return {place.latitude.deg(), place.longitude.deg(), place.height.above_ellipsoid.value()};
+}
+
+nlohmann::ordered_json viewpoint_json(const SceneViewpoint& view) {
+    nlohmann::ordered_json at{{"place", place_json(view.place)},
+                              {"east_m", view.antenna.x()},
+                              {"north_m", view.antenna.y()},
+                              {"up_m", view.antenna.z()}};
+    at["above_ground_m"] =
+        view.ground ? nlohmann::ordered_json(view.antenna.z() - *view.ground) : nlohmann::ordered_json(nullptr);
+    at["enclosed"] = view.enclosed;
+    at["open_sky"] = view.mask.open_share();
+    return at;
+}
+
+void print_json(const SceneReport& report) {
+    const SceneStatistics& s = report.scene->statistics();
+    nlohmann::ordered_json out{
+        {"files", report.city.names},
+        {"formats", report.city.formats},
+        {"origin", place_json(report.scene->frame().origin())},
+        {"triangles", s.triangles},
+        {"wall_triangles", s.triangles_of_kind[0]},
+        {"roof_triangles", s.triangles_of_kind[1]},
+        {"ground_triangles", s.triangles_of_kind[2]},
+        {"planes", s.planes},
+        {"lowest_m", {s.lowest.x(), s.lowest.y(), s.lowest.z()}},
+        {"highest_m", {s.highest.x(), s.highest.y(), s.highest.z()}},
+        {"buildings", report.city.buildings},
+        {"materials", used_materials(report.city.model)},
+        {"foliage_volumes", report.scene->foliage().size()},
+        {"memory_bytes", s.memory},
+        {"dropped", report.city.dropped},
+        {"without_area", s.degenerate},
+        {"not_finite", s.not_finite},
+        {"warnings", report.city.warnings},
+    };
+    if (report.viewpoint) out["at"] = viewpoint_json(*report.viewpoint);
+    fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+Result<void> write_picture(const std::string& path, const std::string& svg) {
+    std::ofstream stream(path, std::ios::binary);
+    stream << svg;
+    stream.close();
+    if (!stream) return fail(ErrorCode::outside, fmt::format("{}: cannot be written", path));
+    return {};
+}
+
+Result<void> write_pictures(const SceneOptions& options, const SceneReport& report) {
+    if (!options.svg.empty()) {
+        ScenePlot plot;
+        plot.title = fmt::format("{}", fmt::join(report.city.names, " + "));
+        if (report.viewpoint) plot.observer = report.viewpoint->antenna;
+        if (const auto written = write_picture(options.svg, scene_plot_svg(*report.scene, plot)); !written)
+            return written;
+    }
+    if (options.sky_svg.empty()) return {};
+    SkyPlot plot;
+    plot.place = report.viewpoint->place;
+    plot.time = wall_clock();
+    plot.title = fmt::format("{}: open sky at {}", report.city.names.front(), place_text(report.viewpoint->place));
+    plot.obstruction = report.viewpoint->mask;
+    return write_picture(options.sky_svg, sky_plot_svg(plot));
+}
+
+int show_scene(const SceneOptions& options) {
+    const Messages messages(options.verbosity);
+    const auto report = report_of(options);
+    if (!report) return messages.error(report.error());
+    for (const std::string& warning : report->city.warnings)
+        messages.warning(warning);
+    if (const auto written = write_pictures(options, *report); !written) return messages.error(written.error());
+    if (options.json)
+        print_json(*report);
+    else
+        print_report(*report);
+    return 0;
+}
+
+}  // namespace
+
+Action add_scene_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("scene", "What a city model holds; top view and sky visibility as SVG");
+    auto options = std::make_shared<SceneOptions>();
+    command->add_option("FILE", options->file, "City model, or demo")->required();
+    command->add_option("--at", options->at,
+                        "A place in it: LAT,LON[,HEIGHT]; without a height 1.5 m above the ground");
+    command->add_option("--origin", options->origin, "Where the origin of its coordinates lies: LAT,LON[,HEIGHT]");
+    command->add_option("--axes", options->axes, "Axes of the file for east, north and up: x,y,z; Unreal: y,x,z");
+    command->add_option("--unit-m", options->unit_m, "Metres of one unit of the file, default 1");
+    command->add_option("--svg", options->svg, "File for a top view");
+    command->add_option("--sky-svg", options->sky_svg, "File for the sky as seen from --at");
+    command->add_flag("--json", options->json, "JSON instead of text");
+    add_verbosity_options(*command, options->verbosity);
+    return [options] { return show_scene(*options); };
+}
+
+}  // namespace skyloop::host

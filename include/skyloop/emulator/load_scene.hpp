@@ -1,0 +1,56 @@
+/// The buildings of a scenario, from their files to what rays are traced in.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skyloop/city/city_cache.hpp"
+#include "skyloop/propagation/ray_traced_scene.hpp"
+#include "skyloop/scenario/scenario.hpp"
+
+namespace skyloop {
+
+/// Above the frame of a scene that has no origin stands the antenna at the start of the trajectory, as a pedestrian's.
+inline constexpr Metres antenna_above_scene{1.5};
+
+/// All files of a scene in one frame.
+struct JoinedCity {
+    CityModel model;
+    std::vector<std::string> names;    ///< of the files, without their folders
+    std::vector<std::string> formats;  ///< of each
+    std::size_t buildings = 0;         ///< where formats tell them apart
+    std::size_t dropped = 0;           ///< facets and footprints that could not be used
+    std::uint64_t digest = 0;          ///< of the bytes of all files
+    bool from_cache = false;           ///< of one at least
+    std::vector<std::string> warnings;
+};
+
+/// Reads the files of a scene and joins them. Fails as read_city() and parse_height_grid() do.
+/// @param start where the trajectory starts; a scene without an origin lies antenna_above_scene below it, and without
+/// either where its first file says
+Result<JoinedCity> read_scene_files(const SceneEntry& entry, const std::optional<Geodetic>& start,
+                                    const CityCache& cache);
+
+/// A scene that receivers share; without one nothing stands around.
+struct LoadedScene {
+    std::shared_ptr<const UrbanScene> scene;
+    std::string description;  ///< "munich.tar.gz, 38938 triangles, 12104 planes, 15 MB"
+    std::uint64_t digest = 0;
+    bool from_cache = false;  ///< of one file at least
+    std::vector<std::string> warnings;
+};
+
+/// Reads the scene of a scenario and makes it ready for rays. Fails with `input` when it would take more memory than
+/// allowed or nothing is in it, and as read_scene_files().
+Result<LoadedScene> load_scene(const Scenario& scenario, const Geodetic& start, const CityCache& cache);
+
+/// "munich.tar.gz, 38938 triangles, 12104 planes, 15 MB".
+std::string scene_description(const std::vector<std::string>& names, const UrbanScene& scene);
+
+/// What the scene does to the signals in the scenario's model.
+RayTracedSceneSettings scene_effect_settings(const Scenario& scenario, double epochs_per_second);
+
+}  // namespace skyloop

@@ -1,0 +1,208 @@
+#include "skyloop/emulator/load_scene.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "skyloop/base/digest.hpp"
+#include "skyloop/geo/local_frame.hpp"
+#include "skyloop/scene/generated_city.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::string_view terrain_material = "medium-ground";
+
+// Adds a city to another one; coordinates change when their frames differ.
+void join_city(CityModel& whole, const CityModel& part) {
+    const LocalFrame from(part.origin), to(whole.origin);
+    const bool same = part.origin.latitude == whole.origin.latitude &&
+                      part.origin.longitude == whole.origin.longitude && part.origin.height == whole.origin.height;
+    const auto moved = [&](const Eigen::Vector3d& v) -> Eigen::Vector3d {
+        return same ? v : to.to_enu(from.to_ecef(Position<Enu>(v.x(), v.y(), v.z()))).vector();
+    };
+    const auto first = static_cast<std::uint32_t>(whole.vertices.size());
+    for (const Eigen::Vector3d& vertex : part.vertices)
+        whole.vertices.push_back(moved(vertex));
+    std::vector<std::uint8_t> materials;
+    for (const std::string& name : part.materials)
+        materials.push_back(whole.material_index(name));
+    for (CityTriangle triangle : part.triangles) {
+        for (std::uint32_t& corner : triangle.corners)
+            corner += first;
+        triangle.material = materials.at(triangle.material);
+        whole.triangles.push_back(triangle);
+    }
+    for (FoliageVolume trees : part.foliage) {
+        const double shift = moved({0, 0, trees.base}).z() - trees.base;
+        for (Eigen::Vector2d& corner : trees.ring)
+            corner = moved({corner.x(), corner.y(), trees.base}).head<2>();
+        trees.base += shift;
+        trees.top += shift;
+        whole.foliage.push_back(std::move(trees));
+    }
+}
+
+void add_part(JoinedCity& city, const std::filesystem::path& path, CityFile part, std::uint64_t digest) {
+    const bool first = city.names.empty();
+    city.names.push_back(path.has_filename() ? path.filename().string() : path.parent_path().filename().string());
+    city.formats.push_back(part.format);
+    city.buildings += part.buildings;
+    city.dropped += part.dropped;
+    city.warnings.insert(city.warnings.end(), part.warnings.begin(), part.warnings.end());
+    city.digest = fnv1a_64(fmt::format("{:016x}", digest), city.digest);
+    if (first)
+        city.model = std::move(part.model);
+    else
+        join_city(city.model, part.model);
+}
+
+Result<CityReading> read_terrain(const std::filesystem::path& path, const CityFileSettings& reading,
+                                 const CityCache& cache) {
+    // Units and axes are those of the buildings; a grid has its own.
+    CityFileSettings settings;
+    settings.origin = reading.origin;
+    settings.material = terrain_material;
+    settings.most_triangles = reading.most_triangles;
+    auto grid = read_city(path, settings, cache);
+    if (grid && grid->file.format != "height grid")
+        return fail(ErrorCode::input, fmt::format("{}: is of format {}; expected terrain as a height grid (.asc)",
+                                                  path.string(), grid->file.format));
+    return grid;
+}
+
+// Where the trajectory starts, less the height of an antenna that is carried there.
+Geodetic below_antenna(Geodetic start) {
+    start.height.above_ellipsoid = start.height.above_ellipsoid - antenna_above_scene;
+    return start;
+}
+
+// Metres between a place and the box around a scene, over ground; 0 within.
+double distance_to_scene(const Geodetic& place, const UrbanScene& scene) {
+    const Eigen::Vector3d at = scene.frame().to_enu(to_ecef(place)).vector();
+    const SceneStatistics& box = scene.statistics();
+    const Eigen::Vector3d away = (box.lowest - at).cwiseMax(at - box.highest).cwiseMax(0);
+    return away.head<2>().norm();
+}
+
+void warn_of_scene(const UrbanScene& scene, const Geodetic& start, std::vector<std::string>& warnings) {
+    constexpr double far_m = 2000;
+    const SceneStatistics& s = scene.statistics();
+    if (s.not_finite > 0)
+        warnings.push_back(
+            fmt::format("scene: {} triangles have a corner that is no number; they are left out", s.not_finite));
+    if (const double distance = distance_to_scene(start, scene); distance > far_m)
+        warnings.push_back(fmt::format(
+            "scene: the antenna starts {:.1f} km away from the scene, whose origin is {:.6f}, {:.6f}; is it the right "
+            "place?",
+            distance / 1000, scene.frame().origin().latitude.deg(), scene.frame().origin().longitude.deg()));
+}
+
+// Coordinates that say nothing of the Earth lie where the run starts, which is a guess.
+void warn_of_guessed_origin(const SceneEntry& entry, const JoinedCity& city, std::vector<std::string>& warnings) {
+    constexpr std::array<std::string_view, 4> local{"obj", "ply", "gltf", "mitsuba"};
+    if (entry.reading.origin) return;
+    for (std::size_t i = 0; i < city.names.size(); ++i)
+        if (std::find(local.begin(), local.end(), city.formats[i]) != local.end())
+            warnings.push_back(
+                fmt::format("scene: {} does not say where it lies; its origin is taken to be {} m below the start of "
+                            "the trajectory; scene.origin tells another",
+                            city.names[i], antenna_above_scene.value()));
+}
+
+// Of the opposite hand, by the antenna of the preset: a telephone's is polarised linearly and hears both alike.
+Decibels hand_rejection(ModernPreset preset) {
+    switch (preset) {
+        case ModernPreset::survey:
+            return Decibels(20);
+        case ModernPreset::phone:
+            return Decibels(0);
+        case ModernPreset::consumer:
+            break;
+    }
+    return Decibels(10);
+}
+
+}  // namespace
+
+Result<JoinedCity> read_scene_files(const SceneEntry& entry, const std::optional<Geodetic>& start,
+                                    const CityCache& cache) {
+    CityFileSettings reading = entry.reading;
+    if (!reading.origin && start) reading.origin = below_antenna(*start);
+    const CityCache kept = entry.cache ? cache : CityCache{};
+    JoinedCity city;
+    for (const std::filesystem::path& path : entry.buildings) {
+        if (path == demo_scene_name) {
+            CityFile demo;
+            demo.model = demo_city(reading.origin.value_or(below_antenna(FixedSettings().at)));
+            demo.format = demo_scene_name;
+            add_part(city, path, std::move(demo), 0);
+        } else {
+            auto read = read_city(path, reading, kept);
+            if (!read) return fail(read.error());
+            city.from_cache = city.from_cache || read->from_cache;
+            add_part(city, path, std::move(read->file), read->digest);
+        }
+        // What follows lies in the frame of the first file.
+        if (!reading.origin) reading.origin = city.model.origin;
+    }
+    if (!entry.terrain.empty()) {
+        auto terrain = read_terrain(entry.terrain, reading, kept);
+        if (!terrain) return fail(terrain.error());
+        add_part(city, entry.terrain, std::move(terrain->file), terrain->digest);
+    }
+    return city;
+}
+
+std::string scene_description(const std::vector<std::string>& names, const UrbanScene& scene) {
+    const SceneStatistics& s = scene.statistics();
+    return fmt::format("{}, {} triangles, {} planes, {:.1f} MB", fmt::join(names, " + "), s.triangles, s.planes,
+                       static_cast<double>(s.memory) * 1e-6);
+}
+
+Result<LoadedScene> load_scene(const Scenario& scenario, const Geodetic& start, const CityCache& cache) {
+    LoadedScene loaded;
+    if (!scenario.scene.given()) return loaded;
+    auto city = read_scene_files(scenario.scene, start, cache);
+    if (!city) return fail(city.error());
+    const SceneSettings settings{SceneSettings().merge_tolerance, scenario.scene.memory_limit_mb << 20};
+    auto scene = UrbanScene::build(city->model, settings);
+    if (!scene) return fail(scene.error().code, fmt::format("scene: {}", scene.error().message));
+    loaded.scene = std::move(*scene);
+    loaded.digest = city->digest;
+    loaded.description = scene_description(city->names, *loaded.scene);
+    loaded.from_cache = city->from_cache;
+    loaded.warnings = std::move(city->warnings);
+    for (const std::string& doubt : doubts_about(city->model))
+        loaded.warnings.push_back("scene: " + doubt);
+    warn_of_guessed_origin(scenario.scene, *city, loaded.warnings);
+    warn_of_scene(*loaded.scene, start, loaded.warnings);
+    return loaded;
+}
+
+RayTracedSceneSettings scene_effect_settings(const Scenario& scenario, double epochs_per_second) {
+    const bool modern = !scenario.model.sensor_model;
+    const SceneEntry& entry = scenario.scene;
+    RayTracedSceneSettings settings;
+    settings.profile = modern ? SceneProfile::modern : SceneProfile::baseline;
+    settings.search.most_reflections = entry.reflections.value_or(modern ? 3 : most_reflections);
+    settings.search.roofs_reflect = entry.roofs_reflect;
+    settings.search.ground_reflects = entry.ground_reflects.value_or(modern);
+    settings.search.blocked_only = !modern;
+    settings.search.rays = entry.rays;
+    settings.search.threads = entry.threads;
+    settings.epochs_per_second = epochs_per_second;
+    settings.diffraction = entry.diffraction;
+    settings.foliage = entry.foliage;
+    if (!modern) return settings;
+    const ModernPropagationParameters& propagation = scenario.model.modern.propagation;
+    settings.antenna =
+        propagation.antenna.enabled ? propagation.link.antenna : AntennaPattern(Decibels(0), Decibels(0), 1);
+    settings.opposite_hand_rejection = hand_rejection(scenario.model.modern.preset);
+    return settings;
+}
+
+}  // namespace skyloop

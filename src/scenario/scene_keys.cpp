@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include "scenario_keys.hpp"
+#include "skyloop/base/spelling.hpp"
+#include "skyloop/propagation/fresnel.hpp"
+
+namespace skyloop {
+namespace {
+
+void read_scene_files(TableReader& table, SceneEntry& scene, const std::filesystem::path& folder) {
+    std::vector<std::string> files;
+    table.text_or_texts("buildings", files);
+    for (const std::string& file : files) {
+        if (file.empty()) table.mistake("buildings", "is an empty text; expected a file, or \"demo\"");
+        scene.buildings.push_back(file == demo_scene_name ? std::filesystem::path(file) : folder / file);
+    }
+    if (table.has("terrain")) {
+        std::string file;
+        table.text("terrain", file);
+        if (file.empty()) table.mistake("terrain", "is an empty text; expected a height grid (.asc)");
+        scene.terrain = folder / file;
+    }
+    if (!table.has("buildings") && !table.has("terrain"))
+        table.mistake_here("has neither buildings nor terrain; expected buildings = \"FILE\" or \"demo\"");
+}
+
+void read_surface_material(TableReader& table, std::string& material) {
+    std::vector<std::string_view> names;
+    for (const SurfaceMaterial& known : surface_materials())
+        names.push_back(known.name);
+    if (const auto index = table.choice("material", names)) material = names[*index];
+}
+
+// How coordinates and heights of the files are to be understood.
+void read_file_keys(TableReader& table, CityFileSettings& reading) {
+    reading.origin = table.place("origin");
+    if (table.has("axes")) {
+        std::string text;
+        table.text("axes", text);
+        const auto axes = FileAxes::parse(text);
+        if (axes)
+            reading.axes = *axes;
+        else if (!text.empty())
+            table.mistake("axes", axes.error().message);
+    }
+    table.number("unit_m", reading.metres_per_unit, {1e-6, 1e6});
+    read_surface_material(table, reading.material);
+    table.number("default_height_m", reading.default_height, {0.1, 1000});
+    table.number("metres_per_level", reading.metres_per_level, {0.1, 100});
+}
+
+void read_path_keys(TableReader& table, SceneEntry& scene) {
+    if (table.has("reflections")) {
+        int most = 1;
+        table.integer("reflections", most, {1, 16});
+        scene.reflections = most;
+    }
+    table.boolean("roofs_reflect", scene.roofs_reflect);
+    if (table.has("ground_reflects")) {
+        bool reflects = true;
+        table.boolean("ground_reflects", reflects);
+        scene.ground_reflects = reflects;
+    }
+    table.boolean("diffraction", scene.diffraction);
+    table.boolean("foliage", scene.foliage);
+    table.integer("rays", scene.rays, {0, 1 << 22});
+    table.integer("threads", scene.threads, {0, 64});
+    table.integer("memory_limit_mb", scene.memory_limit_mb, {0, 1 << 24});
+    table.boolean("cache", scene.cache);
+}
+
+}  // namespace
+
+void read_scene_keys(TableReader& table, SceneEntry& scene, const std::filesystem::path& folder) {
+    read_scene_files(table, scene, folder);
+    read_file_keys(table, scene.reading);
+    read_path_keys(table, scene);
+}
+
+}  // namespace skyloop
