@@ -1,5 +1,6 @@
 #include "path_search.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

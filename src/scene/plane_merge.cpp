@@ -10,11 +10,10 @@ namespace skyloop {
 
 namespace {
 
-constexpr double tile_size = 64;         ///< m
-constexpr double normal_cell = 0.05;     ///< of each component
-constexpr double offset_cell = 0.25;     ///< m
-constexpr double most_doubt = 0.005;     ///< of a normal that is sought; a facet of 0.4 m and a millimetre
-constexpr double most_offset_doubt = 1;  ///< m, of an offset that is sought
+constexpr double tile_size = 64;          ///< m
+constexpr double normal_cell = 0.05;      ///< of each component
+constexpr double least_tolerance = 1e-9;  ///< m; less is below what double precision tells of a city
+constexpr double most_doubt = 0.005;      ///< of a normal that is sought; a facet of 0.5 m and a millimetre
 
 /// A table of planes by a hashed key: several may have one key.
 class PlaneTable {
@@ -129,14 +128,14 @@ ScenePlane plane_through(const Facet& facet, double tolerance) {
 
 /// Whole cells from `low` to `high`.
 struct CellRange {
-    std::int32_t low, high;
+    std::int64_t low, high;
     CellRange(double value, double doubt, double cell)
-        : low(static_cast<std::int32_t>(std::floor((value - doubt) / cell))),
-          high(static_cast<std::int32_t>(std::floor((value + doubt) / cell))) {}
+        : low(static_cast<std::int64_t>(std::floor((value - doubt) / cell))),
+          high(static_cast<std::int64_t>(std::floor((value + doubt) / cell))) {}
 };
 
-std::uint64_t mixed(std::uint64_t hash, std::int32_t value) {
-    hash = (hash ^ static_cast<std::uint32_t>(value)) * 0xff51afd7ed558ccdULL;
+std::uint64_t mixed(std::uint64_t hash, std::int64_t value) {
+    hash = (hash ^ static_cast<std::uint64_t>(value)) * 0xff51afd7ed558ccdULL;
     return hash ^ hash >> 32U;
 }
 
@@ -144,18 +143,18 @@ std::uint64_t mixed(std::uint64_t hash, std::int32_t value) {
 struct Sought {
     Eigen::Vector3d normal;
     double normal_doubt = 0;
-    double offset = 0, offset_doubt = 0;
-    std::uint64_t salt = 0;  ///< of kind, material and tile
+    double offset = 0, offset_doubt = 0, offset_cell = 1;  ///< m
+    std::uint64_t salt = 0;                                ///< of kind, material and tile
 
     /// Calls `visit(key)` for all cells until it returns true.
     template <class Visit>
     bool any_key(const Visit& visit) const {
         const CellRange x(normal.x(), normal_doubt, normal_cell), y(normal.y(), normal_doubt, normal_cell),
             z(normal.z(), normal_doubt, normal_cell), d(offset, offset_doubt, offset_cell);
-        for (std::int32_t i = x.low; i <= x.high; ++i)
-            for (std::int32_t j = y.low; j <= y.high; ++j)
-                for (std::int32_t k = z.low; k <= z.high; ++k)
-                    for (std::int32_t l = d.low; l <= d.high; ++l)
+        for (std::int64_t i = x.low; i <= x.high; ++i)
+            for (std::int64_t j = y.low; j <= y.high; ++j)
+                for (std::int64_t k = z.low; k <= z.high; ++k)
+                    for (std::int64_t l = d.low; l <= d.high; ++l)
                         if (visit(mixed(mixed(mixed(mixed(salt, i), j), k), l))) return true;
         return false;
     }
@@ -171,32 +170,34 @@ struct Sought {
 /// A plane has two normals; the one on this side of a direction that no street runs at right angles to is taken.
 double side_of(const Eigen::Vector3d& normal) { return normal.dot(Eigen::Vector3d(0.6180, 0.7549, 0.2191)); }
 
+Eigen::Vector3d on_one_side(const Eigen::Vector3d& normal) { return side_of(normal) < 0 ? -normal : normal; }
+
 class PlaneMerge {
 public:
     PlaneMerge(std::size_t triangles, double tolerance)
-        : tolerance_(tolerance), tiles_(triangles / 2), everywhere_(triangles / 4) {}
+        : tolerance_(std::max(tolerance, least_tolerance)), tiles_(triangles / 2), everywhere_(triangles / 4) {}
+
+    [[nodiscard]] bool fits(const Facet& facet, std::uint32_t index) const {
+        const ScenePlane& plane = planes_[index];
+        return surface_of(plane.kind, plane.material) == facet.surface &&
+               std::abs(plane.normal.dot(facet.normal)) > 1 - 1e-5 &&
+               lies_in(facet, plane.normal, plane.offset, tolerance_);
+    }
 
     std::uint32_t plane_of(const Facet& facet) {
-        const auto fits = [&](std::uint32_t index) {
-            const ScenePlane& plane = planes_[index];
-            return surface_of(plane.kind, plane.material) == facet.surface &&
-                   std::abs(plane.normal.dot(facet.normal)) > 1 - 1e-5 &&
-                   lies_in(facet, plane.normal, plane.offset, tolerance_);
-        };
         const Eigen::Vector3d tile(std::floor(facet.centre.x() / tile_size), std::floor(facet.centre.y() / tile_size),
                                    std::floor(facet.centre.z() / tile_size));
         const Eigen::Vector3d middle = (tile.array() + 0.5) * tile_size;
-        std::uint64_t salt = mixed(0x9e3779b97f4a7c15ULL, static_cast<std::int32_t>(facet.surface));
+        std::uint64_t salt = mixed(0x9e3779b97f4a7c15ULL, facet.surface);
         const std::uint64_t whole = salt;
         for (const double number : tile)
-            salt = mixed(salt, static_cast<std::int32_t>(number));
+            salt = mixed(salt, static_cast<std::int64_t>(number));
 
-        const Sought here = sought(facet, middle, salt);
-        std::uint32_t found = find(tiles_, here, fits);
+        const Sought here = in_tile(facet, middle, salt);
+        std::uint32_t found = find(tiles_, here, facet);
         if (found != SceneHit::nothing) return found;
-        // New in this tile; far away there may be a facet of the same plane.
-        const Sought there = sought(facet, Eigen::Vector3d::Zero(), whole);
-        found = find(everywhere_, there, fits);
+        const Sought there = far_away(facet, whole);
+        found = find(everywhere_, there, facet);
         if (found == SceneHit::nothing) {
             found = static_cast<std::uint32_t>(planes_.size());
             planes_.push_back(plane_through(facet, tolerance_));
@@ -210,18 +211,24 @@ public:
 
 private:
     /// A facet within the tolerance of a plane may be turned against it by twice the tolerance over its height, and
-    /// so be off by that angle times the distance from where offsets are counted.
-    [[nodiscard]] Sought sought(const Facet& facet, const Eigen::Vector3d& about, std::uint64_t salt) const {
+    /// so be off by that angle times the distance from where offsets are counted, the middle of its tile.
+    [[nodiscard]] Sought in_tile(const Facet& facet, const Eigen::Vector3d& middle, std::uint64_t salt) const {
         const double doubt = std::min(most_doubt, 2.5 * tolerance_ / facet.height);
-        const Eigen::Vector3d arm = facet.centre - about;
-        const Eigen::Vector3d normal = side_of(facet.normal) < 0 ? Eigen::Vector3d(-facet.normal) : facet.normal;
-        return {normal, doubt, normal.dot(arm), std::min(most_offset_doubt, tolerance_ + doubt * arm.norm()), salt};
+        const Eigen::Vector3d arm = facet.centre - middle;
+        const Eigen::Vector3d normal = on_one_side(facet.normal);
+        return {normal, doubt, normal.dot(arm), tolerance_ + doubt * arm.norm(), 0.25, salt};
+    }
+    /// New in its tile; elsewhere there may be a facet of the same plane, if both are drawn well enough to tell at
+    /// such a distance. Offsets are exact then, and cells as small as keeps thousands of level roofs apart.
+    [[nodiscard]] Sought far_away(const Facet& facet, std::uint64_t salt) const {
+        const Eigen::Vector3d normal = on_one_side(facet.normal);
+        return {normal, 1e-6, normal.dot(facet.centre), tolerance_, 4 * tolerance_, salt};
     }
 
-    template <class Fits>
-    static std::uint32_t find(const PlaneTable& table, Sought sought, const Fits& fits) {
+    [[nodiscard]] std::uint32_t find(const PlaneTable& table, Sought sought, const Facet& facet) const {
         std::uint32_t found = SceneHit::nothing;
-        const auto look = [&](std::uint64_t key) { return (found = table.find(key, fits)) != SceneHit::nothing; };
+        const auto wanted = [&](std::uint32_t plane) { return fits(facet, plane); };
+        const auto look = [&](std::uint64_t key) { return (found = table.find(key, wanted)) != SceneHit::nothing; };
         if (!sought.any_key(look) && side_of(sought.normal) < 2 * sought.normal_doubt) {
             sought.normal = -sought.normal;
             sought.offset = -sought.offset;
@@ -275,9 +282,19 @@ MergedPlanes merge_planes(std::span<const Eigen::Vector3d> vertices, std::span<c
                           double tolerance) {
     PlaneMerge merge(triangles.size(), tolerance);
     MergedPlanes merged;
-    merged.plane_of.resize(triangles.size());
-    for (const std::uint32_t index : largest_first(vertices, triangles))
-        merged.plane_of[index] = merge.plane_of(facet_of(vertices, triangles[index]));
+    std::vector<std::uint32_t>& plane_of = merged.plane_of;
+    plane_of.resize(triangles.size(), SceneHit::nothing);
+    for (const std::uint32_t index : largest_first(vertices, triangles)) {
+        const Facet facet = facet_of(vertices, triangles[index]);
+        // Mostly the next triangle of the same polygon has been here already.
+        const auto neighbour = [&](std::uint32_t other) {
+            return other < plane_of.size() && plane_of[other] != SceneHit::nothing &&
+                   merge.fits(facet, plane_of[other]);
+        };
+        plane_of[index] = neighbour(index - 1)   ? plane_of[index - 1]
+                          : neighbour(index + 1) ? plane_of[index + 1]
+                                                 : merge.plane_of(facet);
+    }
     merged.planes = std::move(merge).take();
     renumber(merged);
     return merged;

@@ -12,6 +12,7 @@ TABLE = """\
 # comment
 base     :
 flow     : base
+scene    : base
 world    : base flow
 firmware : base flow     !flow/truth !flow/all
 host     : base flow world firmware
@@ -74,6 +75,11 @@ class CheckLayers(unittest.TestCase):
                                ("termios.h", "flow"), ("embree4/rtcore.h", "world"), ("hidapi/hidapi.h", "world")):
             with self.subTest(include):
                 self.expect(f"<{include}>", {f"src/{place}/x.cpp": f"#include <{include}>\n"})
+
+    def test_a_fence_around_one_file(self):
+        include = {"src/scene/other.cpp": "#include <embree3/rtcore.h>\n"}
+        self.expect("only in src/scene/triangle_tree.cpp", include)
+        self.assertEqual(self.errors(files={"src/scene/triangle_tree.cpp": "#include <embree3/rtcore.h>\n"}), [])
 
     def test_an_unknown_package(self):
         self.expect("of no package", {"src/base/x.cpp": "#include <curl/curl.h>\n"})

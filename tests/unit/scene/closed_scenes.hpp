@@ -1,7 +1,10 @@
 /// Scenes whose paths are known without tracing a ray.
 #pragma once
 
+#include <Eigen/Geometry>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -40,7 +43,8 @@ inline void add_house(CityModel& city, const Eigen::Vector2d& centre, const Eige
     city.add_quad({corner(0), corner(1), corner(2), corner(3)}, SurfaceKind::roof);
 }
 
-/// Houses on a grid, a street of 16 m between them, a bit askew, on level ground. Streets run along x = ±22, …
+/// Houses on a grid, a street of 16 m between them, a bit askew, on level ground. With an even number of houses a
+/// street runs along x = 0.
 inline CityModel house_grid_city(int per_side, unsigned seed, double askew = 0.06) {
     CityModel city = empty_scene_city();
     std::mt19937 random(seed);
@@ -111,18 +115,15 @@ inline std::vector<SatellitePaths> paths_at(const CityModel& city, const Eigen::
     return finder.epoch({scene_noon, antenna, Eigen::Vector3d::Zero()}, satellites);
 }
 
-/// Walls at x = 0 and x = width that let only those waves out, towards +x, that reflect `reflections` times, the last
-/// time at x = 0. `direction` points to the satellite.
+/// Walls at x = 0 and x = width, just so high that a wave towards +x that reflects `reflections` times, the last time
+/// at x = 0, comes out, and no other: after k widths of way across, waves that have reflected k times come from x = 0,
+/// and those that began at the other wall from x = width. `direction` points to the satellite.
 inline CityModel canyon_for(int reflections, double width, const Eigen::Vector3d& antenna,
                             const Eigen::Vector3d& direction) {
-    const double first = reflections % 2 == 1 ? antenna.x() : width - antenna.x();
-    const double climb = direction.z() / direction.x();
-    const double last = antenna.z() + (first + (reflections - 1) * width) * climb;
-    const double step = width * climb;
+    const double top = antenna.z() + reflections * width * direction.z() / direction.x();
     CityModel city = empty_scene_city();
-    add_wall(city, {0, -8000}, {0, 8000}, -5, last + 0.3 * step);
-    // The other wall is met one step before and passed one step later.
-    if (reflections > 1) add_wall(city, {width, -8000}, {width, 8000}, -5, last);
+    add_wall(city, {0, -8000}, {0, 8000}, -5, top);
+    add_wall(city, {width, -8000}, {width, 8000}, -5, top);
     return city;
 }
 

@@ -1,0 +1,1 @@
+#include "../src/scene/plane_merge.hpp"
