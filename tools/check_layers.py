@@ -25,7 +25,7 @@ FENCES = [
     ("spdlog", ("spdlog/",), {"host"}),
     ("GoogleTest", ("gtest/", "gmock/"), set()),
     ("Google Benchmark", ("benchmark/",), set()),
-    ("Embree", ("embree",), set()),
+    ("Embree", ("embree",), {"scene"}),
     ("libusb", ("libusb",), set()),
     ("hidapi", ("hidapi",), set()),
     ("Boost", ("boost/",), set()),

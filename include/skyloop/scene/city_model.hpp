@@ -16,7 +16,7 @@ namespace skyloop {
 /// What a surface is for: walls reflect in every profile, roofs and ground where a profile says so.
 enum class SurfaceKind : std::uint8_t { wall, roof, ground };
 
-constexpr std::array surface_kind_names{"wall", "roof", "ground"};
+inline constexpr std::array surface_kind_names{"wall", "roof", "ground"};
 
 /// One facet; corners are indices of CityModel::vertices. Either side of it reflects and blocks.
 struct CityTriangle {

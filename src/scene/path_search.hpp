@@ -1,0 +1,81 @@
+/// One search for paths that are not known yet.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "path_refiner.hpp"
+#include "ray_lattice.hpp"
+#include "search_crew.hpp"
+#include "sight_lines.hpp"
+
+namespace skyloop {
+
+/// A lattice of rays around the antenna; those that leave the city near a satellite propose the planes that they met,
+/// which are refined to paths. What it finds depends on what it was asked alone, not on the crew that helps.
+class PathSearch {
+public:
+    /// What to search: filled in before run().
+    struct Request {
+        Eigen::Vector3d antenna = Eigen::Vector3d::Zero();
+        std::vector<SceneSatellite> satellites;
+        std::uint64_t number = 0;  ///< of the search: turns the lattice
+        bool still = false;        ///< the place is known well: few rays will do
+    };
+    /// What it took.
+    struct Effort {
+        std::uint64_t rays = 0, segments = 0, candidates = 0;
+    };
+
+    PathSearch(const UrbanScene& scene, const PathSearchSettings& settings, std::size_t workers);
+    Request& request() { return request_; }
+    /// Sequences that need not be tried, by their keys.
+    KeySet& known() { return known_; }
+    void run(SearchCrew& crew);
+    [[nodiscard]] std::span<const SatelliteSequence> found() const { return found_; }
+    [[nodiscard]] const Effort& effort() const { return effort_; }
+
+private:
+    /// Rays that are sent where paths may begin, and a few everywhere when walls slope.
+    struct Lattices {
+        RayLattice banded;
+        std::optional<RayLattice> everywhere;
+    };
+    struct Proposal {
+        std::uint32_t target = 0;
+        PlaneSequence planes;
+    };
+    struct ChunkResult {
+        std::vector<Proposal> proposals;
+        std::uint64_t segments = 0;
+    };
+    struct Scratch {
+        Wavefront front;
+        KeySet proposed;
+    };
+    Lattices lattices(int rays, bool slopes) const;
+    void aim();
+    void trace_chunk(std::size_t chunk, std::size_t worker);
+
+    const UrbanScene& scene_;
+    ReflectionRules rules_;
+    bool blocked_only_, level_surfaces_;  ///< reflect
+    double least_cosine_;
+    Lattices moving_, still_;
+    Request request_;
+    KeySet known_;
+    SightLines sight_;
+    std::vector<SearchTarget> targets_;
+    std::vector<ElevationBand> bands_;
+    std::vector<Eigen::Vector3d> directions_;
+    std::vector<Scratch> scratch_;  ///< by worker
+    std::vector<ChunkResult> chunks_;
+    PathRefiner refiner_;
+    std::vector<FoundPath> paths_;
+    std::vector<SatelliteSequence> found_;
+    Effort effort_;
+};
+
+}  // namespace skyloop

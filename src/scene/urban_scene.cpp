@@ -1,0 +1,253 @@
+#include "skyloop/scene/urban_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "plane_merge.hpp"
+#include "triangle_tree.hpp"
+
+namespace skyloop {
+
+namespace {
+
+/// No city is larger, and single precision squares it safely, m.
+constexpr double largest_coordinate = 1e8;
+/// A triangle less high has no area to speak of, and no normal, m.
+constexpr double least_height = 1e-6;
+
+bool is_place(const Eigen::Vector3d& corner) {
+    // Written so that what is no number fails.
+    return std::ranges::all_of(corner, [](double value) { return std::abs(value) <= largest_coordinate; });
+}
+
+/// What is left of the triangles, and what is counted on the way.
+struct KeptTriangles {
+    std::vector<CityTriangle> triangles;
+    SceneStatistics statistics;
+    double wall_area = 0, sloped_area = 0;
+
+    void look_at(const CityTriangle& triangle, const std::array<Eigen::Vector3d, 3>& corners) {
+        if (!std::ranges::all_of(corners, is_place)) {
+            ++statistics.not_finite;
+            return;
+        }
+        const auto& [a, b, c] = corners;
+        const Eigen::Vector3d area = (b - a).cross(c - a);
+        const double longest =
+            std::sqrt(std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}));
+        if (!(area.norm() > least_height * longest)) {
+            ++statistics.degenerate;
+            return;
+        }
+        keep(triangle, corners, area);
+    }
+
+private:
+    void keep(const CityTriangle& triangle, const std::array<Eigen::Vector3d, 3>& corners,
+              const Eigen::Vector3d& area) {
+        constexpr double sine_of_slope = 1.745e-3;  // 0.1°
+        triangles.push_back(triangle);
+        ++statistics.triangles_of_kind[static_cast<std::size_t>(triangle.kind)];
+        for (const Eigen::Vector3d& corner : corners) {
+            statistics.lowest = statistics.lowest.cwiseMin(corner);
+            statistics.highest = statistics.highest.cwiseMax(corner);
+        }
+        if (triangle.kind != SurfaceKind::wall) return;
+        wall_area += area.norm();
+        if (std::abs(area.z()) > sine_of_slope * area.norm()) sloped_area += area.norm();
+    }
+};
+
+Result<KeptTriangles> kept_triangles(const CityModel& city) {
+    KeptTriangles kept;
+    kept.statistics.lowest.setConstant(std::numeric_limits<double>::infinity());
+    kept.statistics.highest.setConstant(-std::numeric_limits<double>::infinity());
+    kept.triangles.reserve(city.triangles.size());
+    for (std::size_t i = 0; i < city.triangles.size(); ++i) {
+        const CityTriangle& triangle = city.triangles[i];
+        std::array<Eigen::Vector3d, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t corner = triangle.corners[k];
+            if (corner >= city.vertices.size())
+                return fail(ErrorCode::input, fmt::format("triangle {} of the city has a corner {}, but there are {}",
+                                                          i, corner, city.vertices.size()));
+            corners[k] = city.vertices[corner];
+        }
+        if (triangle.material >= city.materials.size())
+            return fail(ErrorCode::input, fmt::format("triangle {} of the city is of material {}, but there are {}", i,
+                                                      triangle.material, city.materials.size()));
+        kept.look_at(triangle, corners);
+    }
+    if (kept.triangles.empty())
+        return fail(ErrorCode::input,
+                    fmt::format("the city has no triangle to build on: {} given, {} without area, {} with a corner "
+                                "that is no number or farther than 100,000 km",
+                                city.triangles.size(), kept.statistics.degenerate, kept.statistics.not_finite));
+    kept.statistics.triangles = kept.triangles.size();
+    kept.statistics.sloped_share = kept.wall_area > 0 ? kept.sloped_area / kept.wall_area : 0;
+    return kept;
+}
+
+}  // namespace
+
+struct UrbanScene::Parts {
+    explicit Parts(const CityModel& city)
+        : frame(city.origin), materials(city.materials), foliage(city.foliage), vertices(city.vertices) {}
+
+    LocalFrame frame;
+    std::vector<std::string> materials;
+    std::vector<FoliageVolume> foliage;
+    std::vector<Eigen::Vector3d> vertices;
+    std::vector<CityTriangle> triangles;
+    MergedPlanes merged;
+    SceneStatistics statistics;
+    std::unique_ptr<TriangleTree> tree;
+
+    [[nodiscard]] std::size_t table_memory() const {
+        return vertices.capacity() * sizeof(Eigen::Vector3d) + triangles.capacity() * sizeof(CityTriangle) +
+               merged.planes.capacity() * sizeof(ScenePlane) + merged.plane_of.capacity() * sizeof(std::uint32_t);
+    }
+
+    [[nodiscard]] std::array<Eigen::Vector3d, 3> corners(std::uint32_t index) const {
+        const auto& [a, b, c] = triangles[index].corners;
+        return {vertices[a], vertices[b], vertices[c]};
+    }
+
+    /// Makes an exact hit of what the tree found, and searches on behind a false one.
+    [[nodiscard]] SceneHit settled(const SceneRay& ray, TreeHit found) const;
+    [[nodiscard]] std::optional<double> exact_distance(const SceneRay& ray, const TreeHit& found) const;
+    [[nodiscard]] bool meets(const SceneRay& ray, std::uint32_t triangle) const;
+};
+
+/// True when a ray meets a triangle in double precision, give or take what single precision may move it by.
+bool UrbanScene::Parts::meets(const SceneRay& ray, std::uint32_t triangle) const {
+    const auto [a, b, c] = corners(triangle);
+    const double size = std::max(
+        {a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), c.cwiseAbs().maxCoeff(), ray.origin.cwiseAbs().maxCoeff()});
+    const double slack = 1e-3 + 4 * size * std::numeric_limits<float>::epsilon();
+    // Distance of the ray's line from each edge's line, positive inside for one sense of going around.
+    const auto side = [&ray](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+        const Eigen::Vector3d across = (to - from).cross(ray.direction);
+        const double length = across.norm();
+        return length > 0 ? across.dot(ray.origin - from) / length : 0.0;
+    };
+    const std::array sides{side(a, b), side(b, c), side(c, a)};
+    const auto [least, most] = std::ranges::minmax(sides);
+    return least >= -slack || most <= slack;
+}
+
+/// Distance to the merged plane; nothing for a false grazing hit.
+std::optional<double> UrbanScene::Parts::exact_distance(const SceneRay& ray, const TreeHit& found) const {
+    const ScenePlane& plane = merged.planes[merged.plane_of[found.triangle]];
+    const double near = 1e-2 + 1e-3 * static_cast<double>(found.distance);
+    const double distance = (plane.offset - plane.normal.dot(ray.origin)) / plane.normal.dot(ray.direction);
+    if (std::abs(distance - static_cast<double>(found.distance)) <= near) return std::max(distance, 0.0);
+    if (!meets(ray, found.triangle)) return std::nullopt;
+    // A true hit at so small an angle that a millimetre aside is far along the ray: the facet's own plane tells more.
+    const auto [a, b, c] = corners(found.triangle);
+    const Eigen::Vector3d normal = (b - a).cross(c - a);
+    const double own = normal.dot(a - ray.origin) / normal.dot(ray.direction);
+    return std::isfinite(own) && own >= 0 ? own : static_cast<double>(found.distance);
+}
+
+SceneHit UrbanScene::Parts::settled(const SceneRay& ray, TreeHit found) const {
+    constexpr int most_false_hits = 64;
+    for (int i = 0; i < most_false_hits && found.triangle != SceneHit::nothing; ++i) {
+        if (const auto distance = exact_distance(ray, found))
+            return {found.triangle, merged.plane_of[found.triangle], *distance};
+        found = tree->nearest(ray, std::nextafter(found.distance, std::numeric_limits<float>::infinity()));
+    }
+    return {};
+}
+
+UrbanScene::UrbanScene(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+UrbanScene::~UrbanScene() = default;
+
+Result<std::shared_ptr<const UrbanScene>> UrbanScene::build(const CityModel& city, const SceneSettings& settings) {
+    const auto begun = std::chrono::steady_clock::now();
+    const std::size_t estimate = estimated_memory(city.triangles.size());
+    if (settings.memory_limit > 0 && estimate > settings.memory_limit)
+        return fail(ErrorCode::input, fmt::format("a city of {} triangles takes about {} MB of memory, more than the "
+                                                  "{} MB allowed",
+                                                  city.triangles.size(), (estimate + 999'999) / 1'000'000,
+                                                  settings.memory_limit / 1'000'000));
+    auto kept = kept_triangles(city);
+    if (!kept) return fail(kept.error());
+    auto parts = std::make_unique<Parts>(city);
+    parts->triangles = std::move(kept->triangles);
+    parts->statistics = kept->statistics;
+    parts->merged = merge_planes(parts->vertices, parts->triangles, settings.merge_tolerance);
+    auto tree = TriangleTree::build(parts->vertices, parts->triangles);
+    if (!tree) return fail(tree.error());
+    parts->tree = std::move(*tree);
+    parts->statistics.planes = parts->merged.planes.size();
+    parts->statistics.memory = parts->table_memory() + parts->tree->memory();
+    parts->statistics.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    return std::shared_ptr<const UrbanScene>(new UrbanScene(std::move(parts)));
+}
+
+std::size_t UrbanScene::estimated_memory(std::size_t triangles) { return 300 * triangles; }
+
+const LocalFrame& UrbanScene::frame() const { return parts_->frame; }
+std::span<const ScenePlane> UrbanScene::planes() const { return parts_->merged.planes; }
+const std::vector<std::string>& UrbanScene::materials() const { return parts_->materials; }
+const std::vector<FoliageVolume>& UrbanScene::foliage() const { return parts_->foliage; }
+const SceneStatistics& UrbanScene::statistics() const { return parts_->statistics; }
+std::array<Eigen::Vector3d, 3> UrbanScene::triangle(std::uint32_t index) const { return parts_->corners(index); }
+std::uint32_t UrbanScene::plane_of(std::uint32_t triangle) const { return parts_->merged.plane_of[triangle]; }
+
+bool UrbanScene::blocked(const SceneRay& ray, double length) const {
+    return parts_->tree->occluded(ray, static_cast<float>(length));
+}
+
+void UrbanScene::blocked(std::span<const SceneRay> rays, std::span<std::uint8_t> answers) const {
+    for (std::size_t i = 0; i < rays.size(); i += TriangleTree::width) {
+        const std::size_t count = std::min(TriangleTree::width, rays.size() - i);
+        parts_->tree->occluded(rays.subspan(i, count), answers.subspan(i, count));
+    }
+}
+
+SceneHit UrbanScene::first_hit(const SceneRay& ray) const { return parts_->settled(ray, parts_->tree->nearest(ray)); }
+
+void UrbanScene::first_hits(std::span<const SceneRay> rays, std::span<SceneHit> hits, bool coherent) const {
+    for (std::size_t i = 0; i < rays.size(); i += TriangleTree::width) {
+        const std::size_t count = std::min(TriangleTree::width, rays.size() - i);
+        const auto found = parts_->tree->nearest(rays.subspan(i, count), coherent);
+        for (std::size_t lane = 0; lane < count; ++lane)
+            hits[i + lane] = parts_->settled(rays[i + lane], found[lane]);
+    }
+}
+
+namespace {
+
+/// A ray straight down from above everything.
+SceneRay plumb_line(const SceneStatistics& statistics, double east, double north) {
+    return {{east, north, statistics.highest.z() + 1}, {0, 0, -1}};
+}
+
+}  // namespace
+
+std::optional<double> UrbanScene::top_at(double east, double north) const {
+    const SceneRay ray = plumb_line(parts_->statistics, east, north);
+    const SceneHit hit = first_hit(ray);
+    if (!hit.any()) return std::nullopt;
+    return ray.origin.z() - hit.distance;
+}
+
+std::optional<double> UrbanScene::ground_at(double east, double north) const {
+    const SceneRay ray = plumb_line(parts_->statistics, east, north);
+    TreeHit found = parts_->tree->nearest(ray);
+    while (found.triangle != SceneHit::nothing) {
+        if (parts_->triangles[found.triangle].kind == SurfaceKind::ground)
+            if (const auto distance = parts_->exact_distance(ray, found)) return ray.origin.z() - *distance;
+        found = parts_->tree->nearest(ray, std::nextafter(found.distance, std::numeric_limits<float>::infinity()));
+    }
+    return std::nullopt;
+}
+
+}  // namespace skyloop
