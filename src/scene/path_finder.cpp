@@ -64,8 +64,8 @@ struct PathFinder::Parts {
     PathSearch search;  ///< the crew's while `searching`
     bool searching = false;
     std::uint64_t searches = 0;
-    Eigen::Vector3d searched = Eigen::Vector3d::Zero();              ///< place of the last search
-    std::optional<Eigen::Vector3d> searched_fully;                   ///< place of the last search of all rays
+    Eigen::Vector3d searched = Eigen::Vector3d::Zero();  ///< place of the last search
+    std::optional<Eigen::Vector3d> searched_fully;       ///< place of the last search of all rays
     std::optional<GpsTime> last_epoch;
     double interval = 0;  ///< since the epoch before, s; 0: too long to look ahead so far
 
@@ -124,7 +124,8 @@ void PathFinder::Parts::discover(const SceneObserver& observer, std::span<const 
 }
 
 void PathFinder::Parts::take_found(GpsTime now) {
-    for (const SatelliteSequence& path : search.found()) memory.add(path, now);
+    for (const SatelliteSequence& path : search.found())
+        memory.add(path, now);
     const PathSearch::Effort& effort = search.effort();
     counters.rays += effort.rays;
     counters.segments += effort.segments;
@@ -168,9 +169,8 @@ std::vector<SatellitePaths> PathFinder::Parts::results(const SceneObserver& obse
     for (const FoundPath& path : paths) {
         const SearchTarget& target = targets[path.target];
         const Eigen::Vector3d satellite_velocity = finite_or_zero(satellites[target.satellite].velocity);
-        answer[target.satellite].paths.push_back(
-            {path.planes, path.unfolded.arrival, path.unfolded.excess,
-             excess_rate(path, target, velocity, satellite_velocity)});
+        answer[target.satellite].paths.push_back({path.planes, path.unfolded.arrival, path.unfolded.excess,
+                                                  excess_rate(path, target, velocity, satellite_velocity)});
     }
     return answer;
 }

@@ -17,7 +17,8 @@ void PathMemory::forget_old(GpsTime now) {
 
 void PathMemory::propose_to(PathRefiner& refiner, std::span<const SearchTarget> targets) {
     places_.clear();
-    for (std::uint32_t i = 0; i < targets.size(); ++i) places_.emplace_back(targets[i].id, i);
+    for (std::uint32_t i = 0; i < targets.size(); ++i)
+        places_.emplace_back(targets[i].id, i);
     std::sort(places_.begin(), places_.end());
     for (const Entry& entry : entries_) {
         const auto place = std::lower_bound(places_.begin(), places_.end(), std::pair(entry.path.id, 0U));
@@ -40,7 +41,8 @@ void PathMemory::update(std::span<const FoundPath> paths, std::span<const Search
 }
 
 void PathMemory::mark(KeySet& tried) const {
-    for (const Entry& entry : entries_) tried.insert(entry.key);
+    for (const Entry& entry : entries_)
+        tried.insert(entry.key);
 }
 
 }  // namespace skyloop

@@ -84,7 +84,8 @@ void PathRefiner::settle(std::vector<FoundPath>& found) {
         next_guesses_.clear();
         next_front_.clear();
         segments_ += front_.trace(scene_, rules_, 0);
-        for (const EscapedRay& ray : front_.escaped()) judge(guesses_[ray.ray], ray, found);
+        for (const EscapedRay& ray : front_.escaped())
+            judge(guesses_[ray.ray], ray, found);
     }
 }
 

@@ -51,8 +51,8 @@ double reflecting_slope_share(const UrbanScene& scene, const ReflectionRules& ru
 
 bool elevations_change(const UrbanScene& scene, const PathSearchSettings& settings) {
     const bool walls_alone = !settings.roofs_reflect && !settings.ground_reflects;
-    const double share = walls_alone ? scene.statistics().sloped_share
-                                     : reflecting_slope_share(scene, reflection_rules(settings));
+    const double share =
+        walls_alone ? scene.statistics().sloped_share : reflecting_slope_share(scene, reflection_rules(settings));
     return share > sloped_walls;
 }
 
@@ -111,7 +111,8 @@ void PathSearch::run(SearchCrew& crew) {
     effort_.segments += refiner_.segments();
     effort_.candidates = refiner_.candidates();
     found_.clear();
-    for (const FoundPath& path : paths_) found_.push_back({targets_[path.target].id, path.planes});
+    for (const FoundPath& path : paths_)
+        found_.push_back({targets_[path.target].id, path.planes});
 }
 
 void PathSearch::aim() {
@@ -135,7 +136,8 @@ void PathSearch::trace_chunk(std::size_t chunk, std::size_t worker) {
     ChunkResult& result = chunks_[chunk];
     const std::size_t last = std::min(directions_.size(), (chunk + 1) * chunk_rays);
     scratch.front.clear();
-    for (std::size_t i = chunk * chunk_rays; i < last; ++i) scratch.front.add(request_.antenna, directions_[i]);
+    for (std::size_t i = chunk * chunk_rays; i < last; ++i)
+        scratch.front.add(request_.antenna, directions_[i]);
     result.segments = scratch.front.trace(scene_, rules_, coherent_rounds);
     result.proposals.clear();
     scratch.proposed.clear();

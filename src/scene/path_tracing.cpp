@@ -79,8 +79,7 @@ bool Wavefront::reflect(std::size_t at, const ScenePlane& plane, const SceneHit&
     const std::uint32_t number = number_[at];
     SceneRay& ray = rays_[at];
     const double towards = plane.normal.dot(ray.direction);
-    if (met_[number] >= most || std::abs(towards) < grazing || !(hit.distance > -least_clearance))
-        return false;
+    if (met_[number] >= most || std::abs(towards) < grazing || !(hit.distance > -least_clearance)) return false;
     planes_[number * planes_per_ray + met_[number]++] = hit.plane;
     ray.origin += ray.direction * hit.distance;
     const double clearance = std::max(least_clearance, relative_clearance * ray.origin.cwiseAbs().maxCoeff());

@@ -21,7 +21,8 @@ inline std::span<const std::uint32_t> planes_of(const PlaneSequence& sequence) {
 
 inline PlaneSequence to_sequence(std::span<const std::uint32_t> planes) {
     PlaneSequence sequence;
-    for (const std::uint32_t plane : planes) sequence.push_back(plane);
+    for (const std::uint32_t plane : planes)
+        sequence.push_back(plane);
     return sequence;
 }
 
@@ -67,7 +68,8 @@ private:
     [[nodiscard]] std::size_t slot(std::uint64_t key) const {
         const std::size_t mask = table_.size() - 1;
         std::size_t at = (key >> 20) & mask;
-        while (table_[at] != 0 && table_[at] != key) at = (at + 1) & mask;
+        while (table_[at] != 0 && table_[at] != key)
+            at = (at + 1) & mask;
         return at;
     }
     void grow() {

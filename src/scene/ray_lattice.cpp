@@ -17,9 +17,8 @@ Eigen::Vector3d fibonacci_point(std::size_t index, double count) {
 }
 
 bool within(std::span<const ElevationBand> bands, double height) {
-    return std::any_of(bands.begin(), bands.end(), [height](const ElevationBand& band) {
-        return height >= band.lowest && height <= band.highest;
-    });
+    return std::any_of(bands.begin(), bands.end(),
+                       [height](const ElevationBand& band) { return height >= band.lowest && height <= band.highest; });
 }
 
 }  // namespace
@@ -40,7 +39,8 @@ void merge_bands(std::vector<ElevationBand>& bands) {
 RayLattice::RayLattice(int points) : spacing_(std::sqrt(2 * std::numbers::pi / points)) {
     const auto count = static_cast<std::size_t>(points);
     points_.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) points_.push_back(fibonacci_point(i, points));
+    for (std::size_t i = 0; i < count; ++i)
+        points_.push_back(fibonacci_point(i, points));
     const auto rows = static_cast<std::size_t>(std::max(1.0, std::sqrt(points / 8.0)));
     for (std::size_t row = 0; row < rows; ++row) {
         const Row made{row * count / rows, (row + 1) * count / rows, points_[(row + 1) * count / rows - 1].z(),

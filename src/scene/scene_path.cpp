@@ -24,7 +24,8 @@ UnfoldedPath unfold(const UrbanScene& scene, std::span<const std::uint32_t> plan
     UnfoldedPath path;
     path.departure = way / length;
     path.arrival = path.departure;
-    for (std::size_t i = planes.size(); i > 0; --i) path.arrival = mirrored_direction(all[planes[i - 1]], path.arrival);
+    for (std::size_t i = planes.size(); i > 0; --i)
+        path.arrival = mirrored_direction(all[planes[i - 1]], path.arrival);
     // The difference of two lengths of 20,000 km would lose nine digits; the difference of their squares does not.
     const Eigen::Vector3d both = 2 * satellite - antenna - image;
     path.excess = (antenna - image).dot(both) / (length + (satellite - antenna).norm());

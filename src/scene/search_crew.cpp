@@ -66,7 +66,8 @@ void SearchCrew::wait() {
 
 void SearchCrew::share(std::size_t count, const Part& part) {
     if (threads_.size() < 2) {
-        for (std::size_t i = 0; i < count; ++i) part(i, 0);
+        for (std::size_t i = 0; i < count; ++i)
+            part(i, 0);
         return;
     }
     std::unique_lock lock(mutex_);

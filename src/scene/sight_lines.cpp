@@ -16,7 +16,8 @@ void SightLines::look(const UrbanScene& scene, const Eigen::Vector3d& antenna,
     }
     answers_.resize(rays_.size());
     scene.blocked(rays_, answers_);
-    for (std::size_t i = 0; i < rays_.size(); ++i) blocked_[satellite_[i]] = answers_[i];
+    for (std::size_t i = 0; i < rays_.size(); ++i)
+        blocked_[satellite_[i]] = answers_[i];
 }
 
 void SightLines::collect_targets(std::span<const SceneSatellite> satellites, bool blocked_only,
@@ -25,8 +26,7 @@ void SightLines::collect_targets(std::span<const SceneSatellite> satellites, boo
     for (std::size_t i = 0; i < rays_.size(); ++i) {
         const std::uint32_t satellite = satellite_[i];
         if (blocked_only && seen(satellite)) continue;
-        targets.push_back(
-            {satellites[satellite].id, satellite, satellites[satellite].position, rays_[i].direction});
+        targets.push_back({satellites[satellite].id, satellite, satellites[satellite].position, rays_[i].direction});
     }
 }
 
