@@ -4,10 +4,12 @@
 #include <cstdio>
 
 #include "commands.hpp"
-#include "data_folders.hpp"
 #include "run_session.hpp"
+#include "sky_parts.hpp"
 #include "skyloop/analysis/sky_listing.hpp"
 #include "skyloop/analysis/tracks_csv.hpp"
+#include "skyloop/plot/coverage_plot.hpp"
+#include "skyloop/plot/scene_plot.hpp"
 #include "skyloop/plot/sky_plot.hpp"
 #include "skyloop/plot/track_plot.hpp"
 #include "skyloop/sky/satellite_tracks.hpp"
@@ -15,41 +17,6 @@
 
 namespace skyloop::host {
 namespace {
-
-struct SkyOptions {
-    RunOptions run;
-    std::string format = "text";
-    std::optional<double> mask_deg;
-    double tracks_h = 0;
-    double step_s = 0;
-};
-
-/// The world of a scenario, without a receiver.
-struct World {
-    std::unique_ptr<Geoid> geoid;
-    Simulation simulation;
-    GpsTime start;
-};
-
-Result<World> make_world(const Scenario& scenario, const Messages& messages) {
-    auto navigation = load_navigation(scenario, wall_clock());
-    if (!navigation) return fail(navigation.error());
-    std::vector<std::string> warnings = scenario_warnings(scenario);
-    warnings.insert(warnings.end(), navigation->warnings.begin(), navigation->warnings.end());
-    auto geoid = find_geoid(data_folders(), warnings);
-    for (const std::string& warning : warnings)
-        messages.warning(warning);
-    const GpsTime start = navigation->start;
-    const Geodetic place = make_trajectory(scenario.trajectory, start)->at(start).geodetic;
-    auto scene = load_scene(scenario, place, CityCache{data_folders().cache});
-    if (!scene) return fail(scene.error());
-    for (const std::string& warning : scene->warnings)
-        messages.warning(warning);
-    auto simulation = make_simulation(
-        scenario, {std::move(navigation->source), geoid.get(), start, data_folders(), 0, std::move(scene->scene)});
-    if (!simulation) return fail(simulation.error());
-    return World{std::move(geoid), std::move(*simulation), start};
-}
 
 // Where each satellite was in the two hours before, drawn as a thin line behind it.
 void add_trails(SkyPlot& plot, const World& world, const TruthState& truth) {
@@ -65,26 +32,58 @@ void add_trails(SkyPlot& plot, const World& world, const TruthState& truth) {
     }
 }
 
-// What buildings did to each satellite; nothing where none stand.
-std::optional<std::vector<SceneReception>> receptions_of(const Simulation& simulation) {
-    const RayTracedScene* city = simulation.city();
-    if (city == nullptr) return std::nullopt;
+/// A place in the city and what arrives there.
+struct CityPlace {
+    Eigen::Vector3d antenna;  ///< in the scene's frame, m
+    std::vector<SceneSatellite> satellites;
     std::vector<SceneReception> receptions;
-    for (const SatellitePaths& found : city->paths())
-        receptions.push_back(scene_reception(city->scene(), found, city->antenna()));
-    return receptions;
+};
+
+// By the article's rule (MODELS.md R-21 … R-23) unless all paths are asked for, whatever the model: walls reflect, up
+// to 16 times, and only what is not in line of sight needs them.
+CityPlace city_place(const SkyOptions& options, const World& world, const Trace& trace) {
+    const LocalFrame& frame = world.scene->frame();
+    CityPlace place{frame.to_enu(trace.truth.position).vector(), scene_satellites(frame, trace.sky), {}};
+    PathSearchSettings search;
+    search.roofs_reflect = search.ground_reflects = options.all_paths;
+    search.blocked_only = !options.all_paths;
+    search.rays = 65536;
+    search.search_ahead = false;
+    PathFinder finder(world.scene, search);
+    // Each search turns its rays, and what it finds stays: a few of them miss nothing that one may.
+    constexpr int searches = 4;
+    std::vector<SatellitePaths> found;
+    for (int k = 0; k < searches; ++k)
+        found = finder.epoch({trace.truth.time, place.antenna}, place.satellites);
+    for (const SatellitePaths& paths : found)
+        place.receptions.push_back(scene_reception(*world.scene, paths, place.antenna));
+    return place;
 }
 
-std::string sky_svg(const SkyListing& listing, const World& world, const TruthState& truth) {
+std::string sky_svg(const SkyListing& listing, const World& world, const TruthState& truth,
+                    const std::optional<CityPlace>& city) {
     SkyPlot plot = sky_plot(listing);
     add_trails(plot, world, truth);
-    if (const RayTracedScene* city = world.simulation.city())
-        plot.obstruction = sky_mask(city->scene(), city->antenna());
+    if (city) plot.obstruction = sky_mask(*world.scene, city->antenna);
     return sky_plot_svg(plot);
 }
 
+std::string plan_svg(const World& world, const CityPlace& city, Angle mask) {
+    constexpr double radius = 250;  // m
+    ScenePlot plot;
+    plot.title = "Signals in the city";
+    plot.area = scene_plot_area(city.antenna, radius);
+    plot.observer = city.antenna;
+    for (std::size_t i = 0; i < city.satellites.size(); ++i) {
+        const Eigen::Vector3d towards = (city.satellites[i].position - city.antenna).normalized();
+        if (std::asin(towards.z()) >= mask.rad())
+            plot.rays.push_back(scene_plot_ray(city.receptions[i], city.satellites[i], city.antenna));
+    }
+    return scene_plot_svg(*world.scene, plot);
+}
+
 int print_tracks(const SkyOptions& options, const World& world) {
-    const double step = options.step_s > 0 ? options.step_s : 300;
+    const double step = options.step > 0 ? options.step : 300;
     const auto tracks =
         satellite_tracks(world.simulation.navigation(), {world.start, Seconds(options.tracks_h * 3600), Seconds(step)});
     if (options.format == "svg")
@@ -96,31 +95,76 @@ int print_tracks(const SkyOptions& options, const World& world) {
     return 0;
 }
 
-int show_sky(const SkyOptions& options) {
-    const Messages messages(options.run.verbosity);
-    auto scenario = scenario_from(options.run);
-    if (!scenario) return messages.error(scenario.error());
-    if (options.mask_deg) scenario->sky.elevation_mask = Angle::degrees(*options.mask_deg);
-    if (options.tracks_h > 0 && options.format != "csv" && options.format != "svg" && options.format != "text")
-        return messages.error({ErrorCode::usage, "--tracks comes as --format csv or svg"});
-    auto world = make_world(*scenario, messages);
-    if (!world) return messages.error(world.error());
-    if (options.tracks_h > 0) return print_tracks(options, *world);
+// What contradicts itself on the command line.
+std::optional<std::string> sky_misuse(const SkyOptions& options, const Scenario& scenario) {
+    if (options.tracks_h > 0 && options.format == "json") return "--tracks comes as --format csv or svg";
+    if (options.tracks_h > 0 && !options.grid.empty()) return "--tracks and --grid show different things; expected one";
+    if (options.view == "plan" && !scenario.scene.given()) return "--view plan shows buildings: expected --scene FILE";
+    if (options.view == "plan" && options.format != "svg") return "--view plan comes as --format svg";
+    return std::nullopt;
+}
 
+int print_sky(const SkyOptions& options, const Scenario& scenario, World& world, const Messages& messages) {
     // A receiver that tracks everything shows the whole sky.
     ReceiverSettings receiver;
-    receiver.elevation_mask = scenario->sky.elevation_mask.value_or(receiver.elevation_mask);
-    const Trace trace = world->simulation.run(world->start, receiver);
-    const auto receptions = receptions_of(world->simulation);
+    receiver.elevation_mask = scenario.sky.elevation_mask.value_or(receiver.elevation_mask);
+    const Trace trace = world.simulation.run(world.start, receiver);
+    std::optional<CityPlace> city;
+    if (world.scene) city = city_place(options, world, trace);
+    if (city && sees_no_sky(*world.scene, city->antenna))
+        messages.warning("the antenna is inside a building or below the ground: nothing arrives there directly");
     const SkyListing listing = sky_listing(trace.truth, trace.sky, receiver.elevation_mask,
-                                           {&trace.arrivals, &trace.epoch.fix, receptions ? &*receptions : nullptr});
+                                           {&trace.arrivals, &trace.epoch.fix, city ? &city->receptions : nullptr});
     if (options.format == "svg")
-        fmt::print("{}", sky_svg(listing, *world, trace.truth));
+        fmt::print("{}", city && options.view == "plan" ? plan_svg(world, *city, receiver.elevation_mask)
+                                                        : sky_svg(listing, world, trace.truth, city));
     else if (options.format == "json")
         fmt::print("{}", sky_json(listing));
     else
         fmt::print("{}", options.format == "csv" ? sky_csv(std::span(&listing, 1)) : sky_text(listing));
     return 0;
+}
+
+int show_sky(const SkyOptions& options) {
+    const Messages messages(options.run.verbosity);
+    auto scenario = scenario_from(options.run);
+    if (!scenario) return messages.error(scenario.error());
+    if (options.mask_deg) scenario->sky.elevation_mask = Angle::degrees(*options.mask_deg);
+    if (const auto misuse = sky_misuse(options, *scenario)) return messages.error({ErrorCode::usage, *misuse});
+    if (!options.run_folder.empty()) return show_city_run(options, *scenario, messages);
+    if (!options.grid.empty()) return show_coverage(options, *scenario, messages);
+    auto world = make_world(*scenario, options, messages);
+    if (!world) return messages.error(world.error());
+    if (options.tracks_h > 0) return print_tracks(options, *world);
+    return print_sky(options, *scenario, *world, messages);
+}
+
+void add_city_options(CLI::App& command, SkyOptions& options) {
+    command.add_flag("--all-paths", options.all_paths,
+                     "In a city also the reflections of satellites in line of sight, and those off roofs and ground");
+    command.add_option("--view", options.view, "Of the svg: sky, or plan, the city from above with the signals' ways")
+        ->check(CLI::IsMember({"sky", "plan"}));
+    command.add_option("--run", options.run_folder,
+                       "Draw a recorded run instead (svg): the folder that simulate --out or run --record wrote");
+}
+
+void add_grid_options(CLI::App& command, SkyOptions& options) {
+    command.add_option(
+        "--grid", options.grid,
+        "Map over an area (csv or svg): WEST,SOUTH,EAST,NORTH in degrees; cells by --step or --grid-size");
+    command.add_option("--grid-size", options.grid_size, "Cells along the longer side of the map, default 50")
+        ->check(CLI::Range(1, 1000));
+    command.add_option("--duration", options.run.duration, "Seconds that the map spans, default 0: one instant");
+    command.add_option("--interval", options.interval_s, "Seconds between the instants of the map, default 60")
+        ->check(CLI::Range(0.1, 86400.0));
+    command.add_option("--height", options.height_m, "Of the map's antennas above the ground, metres, default 1.5")
+        ->check(CLI::Range(0.01, 10000.0));
+    command.add_flag("--direct-only", options.direct_only, "A map of lines of sight alone: much faster");
+    command.add_option("--show", options.show, "What the map's svg shows: los, satellites, hdop, fix or error")
+        ->check(
+            CLI::IsMember(std::vector<std::string>(coverage_quantity_names.begin(), coverage_quantity_names.end())));
+    command.add_option("--threads", options.threads, "That make the map, default all cores; the bytes are the same")
+        ->check(CLI::Range(1, 256));
 }
 
 }  // namespace
@@ -137,8 +181,12 @@ Action add_sky_command(CLI::App& app) {
     command->add_option("--mask", options->mask_deg, "Elevation mask, degrees")->check(CLI::Range(0.0, 90.0));
     command->add_option("--tracks", options->tracks_h, "ECEF tracks of all satellites over so many hours (csv or svg)")
         ->check(CLI::Range(0.01, 24.0 * 14));
-    command->add_option("--step", options->step_s, "Seconds between points of a track, default 300")
-        ->check(CLI::Range(1.0, 86400.0));
+    command
+        ->add_option("--step", options->step,
+                     "--tracks: seconds between points, default 300; --grid: metres between cells")
+        ->check(CLI::Range(0.1, 86400.0));
+    add_city_options(*command, *options);
+    add_grid_options(*command, *options);
     add_verbosity_options(*command, options->run.verbosity);
     return [options] { return show_sky(*options); };
 }

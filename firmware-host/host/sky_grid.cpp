@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "sky_parts.hpp"
+#include "skyloop/analysis/coverage_map.hpp"
+#include "skyloop/plot/coverage_plot.hpp"
+
+namespace skyloop::host {
+namespace {
+
+constexpr double most_map_epochs = 10'000;
+
+Result<CoverageGrid> asked_grid(const SkyOptions& options) {
+    if (options.step > 0 && options.grid_size > 0)
+        return fail(ErrorCode::usage, "--step and --grid-size both say how large cells are; expected one of them");
+    if (options.step > 0) return CoverageGrid::parse(options.grid, Metres(options.step));
+    constexpr int default_cells = 50;
+    return CoverageGrid::parse(options.grid, options.grid_size > 0 ? options.grid_size : default_cells);
+}
+
+// The sky above the middle of the area: satellites are so far that it serves every cell.
+Result<std::vector<CoverageEpoch>> map_epochs(const SkyOptions& options, const World& world, const Geodetic& middle) {
+    const double duration = options.run.duration.value_or(0);
+    const double count = std::floor(duration / options.interval_s) + 1;
+    if (!(count <= most_map_epochs))
+        return fail(ErrorCode::usage, fmt::format("--interval {:g}: {:g} s make {:.0f} epochs; expected at most {:.0f}",
+                                                  options.interval_s, duration, count, most_map_epochs));
+    std::vector<CoverageEpoch> epochs;
+    TruthState truth;
+    truth.geodetic = middle;
+    truth.position = to_ecef(middle);
+    for (int k = 0; k < static_cast<int>(count); ++k) {
+        truth.time = advanced(world.start, Seconds(k * options.interval_s));
+        epochs.push_back({truth.time, world.simulation.view(truth)});
+    }
+    return epochs;
+}
+
+CoverageSettings map_settings(const SkyOptions& options, const Scenario& scenario) {
+    CoverageSettings settings;
+    settings.antenna_height = Metres(options.height_m);
+    settings.mask = scenario.sky.elevation_mask.value_or(settings.mask);
+    settings.reflections = !options.direct_only;
+    settings.search.most_reflections = scenario.scene.reflections.value_or(most_reflections);
+    settings.search.roofs_reflect = options.all_paths || scenario.scene.roofs_reflect;
+    settings.search.ground_reflects = options.all_paths || scenario.scene.ground_reflects.value_or(false);
+    if (scenario.scene.rays > 0) settings.search.rays = scenario.scene.rays;
+    // What an epoch found is tried first at the next one, however long that takes to come.
+    settings.search.cache_seconds = std::max(settings.search.cache_seconds, 2.5 * options.interval_s);
+    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+    settings.threads = options.threads > 0 ? options.threads : static_cast<int>(std::min(cores, 64U));
+    return settings;
+}
+
+bool stands_in(const UrbanScene& scene, const CoverageMap& map) {
+    const SceneStatistics& s = scene.statistics();
+    return std::any_of(map.cells.begin(), map.cells.end(), [&](const CoverageCell& cell) {
+        return cell.position.x() >= s.lowest.x() && cell.position.x() <= s.highest.x() &&
+               cell.position.y() >= s.lowest.y() && cell.position.y() <= s.highest.y();
+    });
+}
+
+CoverageQuantity shown_quantity(const std::string& name) {
+    const auto found = std::find(coverage_quantity_names.begin(), coverage_quantity_names.end(), name);
+    return static_cast<CoverageQuantity>(found - coverage_quantity_names.begin());
+}
+
+}  // namespace
+
+int show_coverage(const SkyOptions& options, Scenario scenario, const Messages& messages) {
+    const auto grid = asked_grid(options);
+    if (!grid) return messages.error(grid.error());
+    if (options.format == "json") return messages.error({ErrorCode::usage, "--grid comes as --format csv or svg"});
+    // Buildings without an origin stand in the middle of the area unless a place is named.
+    if (options.run.at.empty() && options.run.scenario.empty()) scenario.trajectory = FixedSettings{grid->middle()};
+    const auto world = make_world(scenario, options, messages);
+    if (!world) return messages.error(world.error());
+    const auto epochs = map_epochs(options, *world, grid->middle());
+    if (!epochs) return messages.error(epochs.error());
+    const CoverageSettings settings = map_settings(options, scenario);
+    messages.detail(fmt::format("{} cells, {} epochs, {} threads", grid->cells(), epochs->size(), settings.threads));
+    const CoverageMap map = coverage_map(world->scene, *grid, *epochs, settings);
+    if (world->scene && !stands_in(*world->scene, map))
+        messages.warning("--grid lies beside the buildings: nothing of the scene stands in it");
+    if (options.format == "svg")
+        fmt::print("{}", coverage_plot_svg(map, shown_quantity(options.show), world->scene.get()));
+    else
+        fmt::print("{}", coverage_csv(map));
+    return 0;
+}
+
+}  // namespace skyloop::host

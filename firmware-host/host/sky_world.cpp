@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "data_folders.hpp"
+#include "run_session.hpp"
+#include "sky_parts.hpp"
+#include "skyloop/analysis/city_run.hpp"
+#include "skyloop/emulator/load_scene.hpp"
+#include "skyloop/plot/city_run_plot.hpp"
+
+namespace skyloop::host {
+namespace {
+
+// --at LAT,LON names a place on a street: its height is that of the ground there.
+void stand_on_ground(Scenario& scenario, const UrbanScene& scene, const std::string& at) {
+    auto* fixed = std::get_if<FixedSettings>(&scenario.trajectory);
+    if (!fixed || at.empty() || std::count(at.begin(), at.end(), ',') > 1) return;
+    Eigen::Vector3d place = scene.frame().to_enu(to_ecef(fixed->at)).vector();
+    const auto ground = scene.ground_at(place.x(), place.y());
+    if (!ground) return;
+    place.z() = *ground + antenna_above_scene.value();
+    fixed->at.height = to_geodetic(scene.frame().to_ecef(Position<Enu>(place))).height;
+}
+
+}  // namespace
+
+Result<World> make_world(const Scenario& asked, const SkyOptions& options, const Messages& messages) {
+    Scenario scenario = asked;
+    auto navigation = load_navigation(scenario, wall_clock());
+    if (!navigation) return fail(navigation.error());
+    std::vector<std::string> warnings = scenario_warnings(scenario);
+    warnings.insert(warnings.end(), navigation->warnings.begin(), navigation->warnings.end());
+    auto geoid = find_geoid(data_folders(), warnings);
+    const GpsTime start = navigation->start;
+    const Geodetic place = make_trajectory(scenario.trajectory, start)->at(start).geodetic;
+    auto loaded = load_scene(scenario, place, CityCache{data_folders().cache});
+    if (!loaded) return fail(loaded.error());
+    warnings.insert(warnings.end(), loaded->warnings.begin(), loaded->warnings.end());
+    for (const std::string& warning : warnings)
+        messages.warning(warning);
+    if (loaded->scene) stand_on_ground(scenario, *loaded->scene, options.run.at);
+    auto simulation = make_simulation(
+        scenario, {std::move(navigation->source), geoid.get(), start, data_folders(), 0, loaded->scene});
+    if (!simulation) return fail(simulation.error());
+    return World{std::move(geoid), std::move(*simulation), start, loaded->scene};
+}
+
+int show_city_run(const SkyOptions& options, const Scenario& scenario, const Messages& messages) {
+    if (options.format != "svg") return messages.error({ErrorCode::usage, "--run comes as --format svg"});
+    const Angle mask = options.mask_deg ? Angle::degrees(*options.mask_deg) : Angle::degrees(5);
+    const auto run = read_city_run(options.run_folder, mask);
+    if (!run) return messages.error(run.error());
+    // Buildings without an origin stand where the run started, as they did in it.
+    const auto loaded = load_scene(scenario, run->epochs.front().truth, CityCache{data_folders().cache});
+    if (!loaded) return messages.error(loaded.error());
+    for (const std::string& warning : loaded->warnings)
+        messages.warning(warning);
+    fmt::print("{}", city_run_plot_svg(*run, loaded->scene.get(), "A run through the city"));
+    return 0;
+}
+
+}  // namespace skyloop::host
