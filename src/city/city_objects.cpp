@@ -30,7 +30,8 @@ Eigen::Vector3d area_vector(const ObjectSurface& surface) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
         const Eigen::Vector3d a = ring[i] - ring[0], b = ring[i + 1] - ring[0];
-        sum += Eigen::Vector3d(a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x());
+        sum += Eigen::Vector3d(a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
+                               a.x() * b.y() - a.y() * b.x());
     }
     return sum;
 }
@@ -39,7 +40,8 @@ double lowest_of(const std::vector<ObjectSurface>& surfaces) {
     double lowest = std::numeric_limits<double>::infinity();
     for (const ObjectSurface& surface : surfaces)
         for (const auto& ring : surface.rings)
-            for (const Eigen::Vector3d& point : ring) lowest = std::min(lowest, point.z());
+            for (const Eigen::Vector3d& point : ring)
+                lowest = std::min(lowest, point.z());
     return lowest;
 }
 
@@ -126,17 +128,21 @@ void ObjectBuilder::add(const CityObject& object, const PlaceOnEarth& place) {
     std::vector<ObjectSurface> surfaces = *best_surfaces(object);
     for (ObjectSurface& surface : surfaces)
         for (auto& ring : surface.rings)
-            for (Eigen::Vector3d& point : ring) point = place(point);
+            for (Eigen::Vector3d& point : ring)
+                point = place(point);
     if (object.object_class == ObjectClass::construction) {
         add_construction(surfaces);
         if (object.building && !object.parent) ++file_.buildings;
-    } else if (object.object_class == ObjectClass::terrain || !add_plants(surfaces, object.object_class == ObjectClass::tree)) {
-        for (const ObjectSurface& surface : surfaces) add_surface(surface, SurfaceKind::ground);
+    } else if (object.object_class == ObjectClass::terrain ||
+               !add_plants(surfaces, object.object_class == ObjectClass::tree)) {
+        for (const ObjectSurface& surface : surfaces)
+            add_surface(surface, SurfaceKind::ground);
     }
 }
 
 void ObjectBuilder::add_surface(const ObjectSurface& surface, SurfaceKind kind) {
-    const std::uint8_t material = surface.use == SurfaceUse::window ? file_.model.material_index("glass") : std::uint8_t{0};
+    const std::uint8_t material =
+        surface.use == SurfaceUse::window ? file_.model.material_index("glass") : std::uint8_t{0};
     if (!add_polygon(file_.model, surface.rings, kind, material)) ++file_.dropped;
 }
 
@@ -199,17 +205,19 @@ std::vector<bool> replaced_objects(const std::vector<CityObject>& objects) {
     for (std::size_t i = 0; i < objects.size(); ++i) {
         const int own = best_level(objects[i]);
         replaced[i] = own < 0 || parts[i] >= own;
-        if (objects[i].parent && best_level(objects[*objects[i].parent]) > parts[*objects[i].parent]) replaced[i] = true;
+        if (objects[i].parent && best_level(objects[*objects[i].parent]) > parts[*objects[i].parent])
+            replaced[i] = true;
     }
     return replaced;
 }
 
-void warn_of_place(CityFile& file, const ReferenceSystem& system, std::pair<Eigen::Vector2d, double> origin, bool given) {
+void warn_of_place(CityFile& file, const ReferenceSystem& system, std::pair<Eigen::Vector2d, double> origin,
+                   bool given) {
     if (system.kind != CoordinateKind::projected) return;
-    file.warnings.push_back(fmt::format(
-        "coordinates are projected ({}): the frame's origin{} is at {:.3f}, {:.3f}, {:.3f} of the file{}", system.name,
-        given ? " as given" : "", origin.first.x(), origin.first.y(), origin.second,
-        given ? "" : "; its place on Earth is not known: give an origin"));
+    file.warnings.push_back(
+        fmt::format("coordinates are projected ({}): the frame's origin{} is at {:.3f}, {:.3f}, {:.3f} of the file{}",
+                    system.name, given ? " as given" : "", origin.first.x(), origin.first.y(), origin.second,
+                    given ? "" : "; its place on Earth is not known: give an origin"));
 }
 
 PlaceOnEarth::Extent extent_of(const std::vector<CityObject>& objects) {
@@ -217,15 +225,17 @@ PlaceOnEarth::Extent extent_of(const std::vector<CityObject>& objects) {
     for (const CityObject& object : objects)
         if (const auto* surfaces = best_surfaces(object))
             for (const ObjectSurface& surface : *surfaces)
-                for (const Eigen::Vector3d& point : surface.rings.front()) extent.include(point.head<2>());
+                for (const Eigen::Vector3d& point : surface.rings.front())
+                    extent.include(point.head<2>());
     return extent;
 }
 
 }  // namespace
 
 ObjectClass object_class(std::string_view type) {
-    if (one_of(type, {"BuildingRoom", "BuildingFurniture", "BuildingUnit", "BuildingStorey", "BridgeRoom", "TunnelHollowSpace",
-                      "BridgeFurniture", "TunnelFurniture", "CityObjectGroup", "Room", "CityModel"}))
+    if (one_of(type,
+               {"BuildingRoom", "BuildingFurniture", "BuildingUnit", "BuildingStorey", "BridgeRoom",
+                "TunnelHollowSpace", "BridgeFurniture", "TunnelFurniture", "CityObjectGroup", "Room", "CityModel"}))
         return ObjectClass::ignored;
     if (one_of(type, {"TINRelief", "ReliefFeature", "LandUse", "Road", "Railway", "Track", "Square", "TransportSquare",
                       "Waterway", "WaterBody", "TransportationComplex"}))
@@ -273,7 +283,8 @@ Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std:
         if (file.model.triangles.size() > settings.most_triangles) return too_many_triangles(name, settings);
     }
     if (file.dropped > 0)
-        file.warnings.push_back(fmt::format("{} surfaces without area or with wrong corners were left out", file.dropped));
+        file.warnings.push_back(
+            fmt::format("{} surfaces without area or with wrong corners were left out", file.dropped));
     if (builder.ragged > 0)
         file.warnings.push_back(fmt::format("{} plant covers of ragged outline were left out", builder.ragged));
     if (file.model.triangles.empty() && file.model.foliage.empty())

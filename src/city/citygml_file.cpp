@@ -6,6 +6,7 @@
 #include <pugixml.hpp>
 
 #include "city_objects.hpp"
+#include "city_text.hpp"
 
 namespace skyloop {
 
@@ -46,16 +47,32 @@ private:
 
 /// Objects that stand for themselves.
 bool begins_object(std::string_view name) {
-    static constexpr std::array names{
-        std::string_view("Building"), std::string_view("BuildingPart"), std::string_view("BuildingInstallation"),
-        std::string_view("BuildingConstructiveElement"), std::string_view("OtherConstruction"),
-        std::string_view("Bridge"), std::string_view("BridgePart"), std::string_view("BridgeConstructionElement"),
-        std::string_view("BridgeInstallation"), std::string_view("Tunnel"), std::string_view("TunnelPart"),
-        std::string_view("CityFurniture"), std::string_view("GenericCityObject"), std::string_view("GenericOccupiedSpace"),
-        std::string_view("TINRelief"), std::string_view("LandUse"), std::string_view("Road"),
-        std::string_view("Railway"), std::string_view("Track"), std::string_view("Square"),
-        std::string_view("WaterBody"), std::string_view("PlantCover"), std::string_view("SolitaryVegetationObject"),
-        std::string_view("BuildingRoom"), std::string_view("Room"), std::string_view("BuildingFurniture")};
+    static constexpr std::array names{std::string_view("Building"),
+                                      std::string_view("BuildingPart"),
+                                      std::string_view("BuildingInstallation"),
+                                      std::string_view("BuildingConstructiveElement"),
+                                      std::string_view("OtherConstruction"),
+                                      std::string_view("Bridge"),
+                                      std::string_view("BridgePart"),
+                                      std::string_view("BridgeConstructionElement"),
+                                      std::string_view("BridgeInstallation"),
+                                      std::string_view("Tunnel"),
+                                      std::string_view("TunnelPart"),
+                                      std::string_view("CityFurniture"),
+                                      std::string_view("GenericCityObject"),
+                                      std::string_view("GenericOccupiedSpace"),
+                                      std::string_view("TINRelief"),
+                                      std::string_view("LandUse"),
+                                      std::string_view("Road"),
+                                      std::string_view("Railway"),
+                                      std::string_view("Track"),
+                                      std::string_view("Square"),
+                                      std::string_view("WaterBody"),
+                                      std::string_view("PlantCover"),
+                                      std::string_view("SolitaryVegetationObject"),
+                                      std::string_view("BuildingRoom"),
+                                      std::string_view("Room"),
+                                      std::string_view("BuildingFurniture")};
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
@@ -85,7 +102,8 @@ void CityGmlReader::visit(const pugi::xml_node& node, Context context) {
         return;
     }
     if (!found_.system)
-        if (const pugi::xml_attribute system = node.attribute("srsName")) found_.system = reference_system(system.value());
+        if (const pugi::xml_attribute system = node.attribute("srsName"))
+            found_.system = reference_system(system.value());
     const std::string_view name = local_name(node);
     if (name == "Polygon" || name == "PolygonPatch" || name == "Triangle" || name == "Rectangle") {
         add_polygon_of(node, context);
@@ -102,7 +120,8 @@ bool CityGmlReader::read_numbers(std::string_view text, std::vector<double>& num
     const char* const end = at + text.size();
     const auto separates = [](char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t' || c == ','; };
     for (;;) {
-        while (at != end && separates(*at)) ++at;
+        while (at != end && separates(*at))
+            ++at;
         if (at == end) return true;
         double value = 0;
         const auto [rest, error] = std::from_chars(at, end, value);
@@ -151,8 +170,8 @@ void CityGmlReader::add_polygon_of(const pugi::xml_node& node, const Context& co
 Result<CityObjects> CityGmlReader::read(const pugi::xml_document& document, std::string_view name) {
     const pugi::xml_node root = document.document_element();
     if (local_name(root) != "CityModel")
-        return fail(ErrorCode::input, fmt::format("{}: the root element is <{:.40}>, expected <CityModel> of CityGML", name,
-                                                  std::string_view(root.name())));
+        return fail(ErrorCode::input, fmt::format("{}: the root element is <{}>, expected <CityModel> of CityGML", name,
+                                                  shown(root.name())));
     visit(root, {});
     if (too_deep_)
         return fail(ErrorCode::input, fmt::format("{}: elements nest deeper than {} levels", name, deepest_elements));

@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "city_objects.hpp"
+#include "city_text.hpp"
 #include "json_text.hpp"
 
 namespace skyloop {
@@ -55,8 +56,7 @@ std::string CityJsonReader::read_vertices() {
     vertices_.reserve(vertices.size());
     for (const json& vertex : vertices) {
         Eigen::Vector3d place;
-        if (!number_triple(vertex, place))
-            return fmt::format("vertex {} is not of three numbers", vertices_.size());
+        if (!number_triple(vertex, place)) return fmt::format("vertex {} is not of three numbers", vertices_.size());
         place = place.cwiseProduct(scale) + shift;
         if (found_.system && found_.system->latitude_first) std::swap(place.x(), place.y());
         vertices_.push_back(place);
@@ -99,7 +99,8 @@ void CityJsonReader::read_shell(std::vector<ObjectSurface>& surfaces, const json
         }
         if (values.is_array() && i < values.size() && values[i].is_number_unsigned()) {
             const auto number = values[i].get<std::uint64_t>();
-            if (kinds.is_array() && number < kinds.size()) surface.use = surface_use(text_member(kinds[number], "type"));
+            if (kinds.is_array() && number < kinds.size())
+                surface.use = surface_use(text_member(kinds[number], "type"));
         }
         surfaces.push_back(std::move(surface));
     }
@@ -142,7 +143,8 @@ void CityJsonReader::read_object(CityObject& object, const json& value) {
     object.building = type == "Building" || type == "BuildingPart";
     const json& geometries = member(value, "geometry");
     if (!geometries.is_array() || object.object_class == ObjectClass::ignored) return;
-    for (const json& geometry : geometries) read_geometry(object, geometry);
+    for (const json& geometry : geometries)
+        read_geometry(object, geometry);
 }
 
 void CityJsonReader::link_parts(const std::unordered_map<std::string, std::size_t>& numbers) {
@@ -171,8 +173,7 @@ Result<CityObjects> CityJsonReader::read() {
         read_object(found_.objects.emplace_back(), value);
     }
     link_parts(numbers);
-    if (templates_ > 0)
-        found_.warnings.push_back(fmt::format("{} geometries by template were left out", templates_));
+    if (templates_ > 0) found_.warnings.push_back(fmt::format("{} geometries by template were left out", templates_));
     return std::move(found_);
 }
 
@@ -182,8 +183,8 @@ Result<CityFile> parse_cityjson(std::string_view text, std::string_view name, co
     const auto root = parse_json(text, name);
     if (!root) return fail(root.error());
     if (text_member(*root, "type") != "CityJSON")
-        return fail(ErrorCode::input, fmt::format("{}: \"type\" is \"{:.40}\", expected \"CityJSON\"", name,
-                                                  text_member(*root, "type")));
+        return fail(ErrorCode::input, fmt::format("{}: \"type\" is \"{}\", expected \"CityJSON\"", name,
+                                                  shown(text_member(*root, "type"))));
     auto objects = CityJsonReader(*root, name).read();
     if (!objects) return fail(objects.error());
     return city_of_objects(std::move(*objects), "cityjson", name, settings);

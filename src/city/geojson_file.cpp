@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "city_text.hpp"
 #include "json_text.hpp"
 #include "outlines.hpp"
 
@@ -36,7 +37,8 @@ private:
 bool read_positions(const json& positions, std::vector<Eigen::Vector2d>& ring) {
     if (!positions.is_array()) return false;
     for (const json& position : positions) {
-        if (!position.is_array() || position.size() < 2 || !position[0].is_number() || !position[1].is_number()) return false;
+        if (!position.is_array() || position.size() < 2 || !position[0].is_number() || !position[1].is_number())
+            return false;
         ring.emplace_back(position[0].get<double>(), position[1].get<double>());
     }
     return true;
@@ -76,12 +78,14 @@ void GeoJsonReader::read_geometry(const json& geometry, const OutlineUse& use) {
         const json& polygons = member(geometry, "coordinates");
         if (!polygons.is_array()) ++found_.dropped;
         if (polygons.is_array())
-            for (const json& polygon : polygons) read_polygon(polygon, use);
+            for (const json& polygon : polygons)
+                read_polygon(polygon, use);
     } else if (type == "GeometryCollection") {
         const json& geometries = member(geometry, "geometries");
         // Nesting is bounded by parse_json().
         if (geometries.is_array())
-            for (const json& inner : geometries) read_geometry(inner, use);
+            for (const json& inner : geometries)
+                read_geometry(inner, use);
     } else {
         ++other_shapes_;
     }
@@ -101,9 +105,12 @@ void GeoJsonReader::read_feature(const json& feature) {
 ReferenceSystem GeoJsonReader::find_system(const json& root) const {
     PlaceOnEarth::Extent extent;
     for (const Outline& outline : found_.outlines)
-        for (const Eigen::Vector2d& point : outline.footprint.outer) extent.include(point);
-    const double farthest = extent.empty() ? 0 : std::max(extent.lowest.cwiseAbs().maxCoeff(), extent.highest.cwiseAbs().maxCoeff());
-    const ReferenceSystem metres{farthest > farthest_local ? CoordinateKind::projected : CoordinateKind::local, false, "metres"};
+        for (const Eigen::Vector2d& point : outline.footprint.outer)
+            extent.include(point);
+    const double farthest =
+        extent.empty() ? 0 : std::max(extent.lowest.cwiseAbs().maxCoeff(), extent.highest.cwiseAbs().maxCoeff());
+    const ReferenceSystem metres{farthest > farthest_local ? CoordinateKind::projected : CoordinateKind::local, false,
+                                 "metres"};
     const auto named = reference_system(text_member(member(member(root, "crs"), "properties"), "name"));
     // GeoJSON writes longitude first whatever the system says.
     if (named && named->kind == CoordinateKind::geographic) return {CoordinateKind::geographic, false, named->name};
@@ -117,25 +124,29 @@ Result<Outlines> GeoJsonReader::read(const json& root) {
         const json& features = member(root, "features");
         if (!features.is_array())
             return fail(ErrorCode::input, fmt::format("{}: \"features\" is missing or no list", name_));
-        for (const json& feature : features) read_feature(feature);
+        for (const json& feature : features)
+            read_feature(feature);
     } else if (type == "Feature") {
         read_feature(root);
     } else if (type == "Polygon" || type == "MultiPolygon" || type == "GeometryCollection") {
         read_geometry(root, outline_use({}, settings_, true));
     } else {
-        return fail(ErrorCode::input, fmt::format("{}: \"type\" is \"{:.40}\", expected \"FeatureCollection\", \"Feature\", "
-                                                  "\"Polygon\" or \"MultiPolygon\"",
-                                                  name_, type));
+        return fail(ErrorCode::input,
+                    fmt::format("{}: \"type\" is \"{}\", expected \"FeatureCollection\", \"Feature\", "
+                                "\"Polygon\" or \"MultiPolygon\"",
+                                name_, shown(type)));
     }
     found_.system = find_system(root);
     if (found_.system.kind != CoordinateKind::geographic)
-        found_.warnings.push_back(fmt::format(
-            "coordinates are taken as metres ({}) from {}", found_.system.name,
-            found_.system.kind == CoordinateKind::local ? "the origin" : "the middle of the file, where the origin is taken to be"));
+        found_.warnings.push_back(fmt::format("coordinates are taken as metres ({}) from {}", found_.system.name,
+                                              found_.system.kind == CoordinateKind::local
+                                                  ? "the origin"
+                                                  : "the middle of the file, where the origin is taken to be"));
     if (other_shapes_ + other_uses_ > 0)
-        found_.warnings.push_back(fmt::format("{} shapes that are no polygons and {} features that are no buildings or "
-                                              "woods were left out",
-                                              other_shapes_, other_uses_));
+        found_.warnings.push_back(
+            fmt::format("{} shapes that are no polygons and {} features that are no buildings or "
+                        "woods were left out",
+                        other_shapes_, other_uses_));
     return std::move(found_);
 }
 

@@ -42,8 +42,8 @@ std::size_t too_deep_at(std::string_view text) {
 Result<nlohmann::json> parse_json(std::string_view text, std::string_view name) {
     const std::size_t deep = too_deep_at(text);
     if (deep != std::string_view::npos)
-        return fail(ErrorCode::input, fmt::format("{}:{}: nested deeper than {} levels", name, line_and_column(text, deep),
-                                                  deepest_nesting));
+        return fail(ErrorCode::input, fmt::format("{}:{}: nested deeper than {} levels", name,
+                                                  line_and_column(text, deep), deepest_nesting));
     try {
         return nlohmann::json::parse(text.begin(), text.end());
     } catch (const nlohmann::json::parse_error& error) {

@@ -9,6 +9,7 @@
 #include <osmium/thread/pool.hpp>
 #include <unordered_map>
 
+#include "city_text.hpp"
 #include "outlines.hpp"
 
 namespace skyloop {
@@ -39,7 +40,8 @@ private:
     void take(const osmium::Way& way);
     void take(const osmium::Relation& relation);
     [[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> ring_of(const NodeList& nodes) const;
-    [[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> rings_of(const std::vector<osmium::object_id_type>& members);
+    [[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> rings_of(
+        const std::vector<osmium::object_id_type>& members);
     void add_area(const Area& area);
 
     const CityFileSettings& settings_;
@@ -51,14 +53,16 @@ private:
 
 OutlineTags tags_of_object(const osmium::TagList& list) {
     OutlineTags tags;
-    for (const osmium::Tag& tag : list) tags.emplace(tag.key(), tag.value());
+    for (const osmium::Tag& tag : list)
+        tags.emplace(tag.key(), tag.value());
     return tags;
 }
 
 void OsmReader::take(const osmium::Way& way) {
     Way& kept = ways_[way.id()];
     kept = {};
-    for (const osmium::NodeRef& node : way.nodes()) kept.nodes.push_back(node.ref());
+    for (const osmium::NodeRef& node : way.nodes())
+        kept.nodes.push_back(node.ref());
     const OutlineUse use = outline_use(tags_of_object(way.tags()), settings_, false);
     if (use.kind != OutlineUse::Kind::none) kept.use = use;
 }
@@ -83,8 +87,10 @@ void OsmReader::read(std::string_view bytes, const std::string& format) {
     while (const osmium::memory::Buffer buffer = reader.read()) {
         for (const auto& node : buffer.select<osmium::Node>())
             if (node.location().valid()) places_[node.id()] = {node.location().lon(), node.location().lat()};
-        for (const auto& way : buffer.select<osmium::Way>()) take(way);
-        for (const auto& relation : buffer.select<osmium::Relation>()) take(relation);
+        for (const auto& way : buffer.select<osmium::Way>())
+            take(way);
+        for (const auto& relation : buffer.select<osmium::Relation>())
+            take(relation);
     }
     reader.close();
 }
@@ -173,19 +179,26 @@ Outlines OsmReader::outlines() {
         else
             ++found_.dropped;
     }
-    for (const Area& area : areas_) add_area(area);
+    for (const Area& area : areas_)
+        add_area(area);
     return std::move(found_);
 }
 
 /// The first line of what libosmium says.
-std::string first_line(std::string_view what) { return std::string(what.substr(0, what.find_first_of("\r\n"))); }
+std::string first_line(std::string_view what) {
+    std::string line(what.substr(0, what.find_first_of("\r\n")));
+    for (char& c : line)
+        if (static_cast<unsigned char>(c) < 0x20) c = '?';
+    return line;
+}
 
 }  // namespace
 
 Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std::string_view name,
                            const CityFileSettings& settings) {
     if (format != "osm" && format != "osm.pbf" && format != "pbf")
-        return fail(ErrorCode::input, fmt::format("{}: unknown format \"{:.40}\", expected osm or osm.pbf", name, format));
+        return fail(ErrorCode::input,
+                    fmt::format("{}: unknown format \"{}\", expected osm or osm.pbf", name, shown(format)));
     if (bytes.empty()) return fail(ErrorCode::input, fmt::format("{}: the file is empty", name));
     OsmReader reader(settings);
     try {

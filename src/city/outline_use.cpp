@@ -12,13 +12,15 @@ constexpr double tallest = 1000;  ///< m
 constexpr double foot = 0.3048;   ///< m
 
 std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    while (!text.empty() && text.front() == ' ')
+        text.remove_prefix(1);
+    while (!text.empty() && text.back() == ' ')
+        text.remove_suffix(1);
     return text;
 }
 
 /// Takes a number off the front of a text.
-std::optional<double> take_number(std::string_view& text) {
+std::optional<double> take_tag_number(std::string_view& text) {
     double value = 0;
     const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
@@ -39,42 +41,31 @@ std::optional<double> first_length(const OutlineTags& tags, const std::array<std
     return std::nullopt;
 }
 
-constexpr std::array<std::string_view, 8> height_keys{"height",         "building:height", "render_height", "measuredheight",
-                                                      "building_height", "roof_height",    "hoehe",         "est_height"};
+constexpr std::array<std::string_view, 8> height_keys{"height",         "building:height", "render_height",
+                                                      "measuredheight", "building_height", "roof_height",
+                                                      "hoehe",          "est_height"};
 constexpr std::array<std::string_view, 3> base_keys{"min_height", "building:min_height", "render_min_height"};
-constexpr std::array<std::string_view, 7> level_keys{"building:levels", "levels", "num_floors",    "floors",
+constexpr std::array<std::string_view, 7> level_keys{"building:levels", "levels",  "num_floors",     "floors",
                                                      "storeys",         "stories", "building_levels"};
 constexpr std::array<std::string_view, 2> base_level_keys{"building:min_level", "min_level"};
 constexpr std::array<std::string_view, 4> material_keys{"building:material", "building:facade:material",
                                                         "building:cladding", "material"};
 
 /// Words of tags and the names of surface_material().
-constexpr std::array<std::array<std::string_view, 2>, 26> material_words{{{"glass", "glass"},
-                                                                          {"mirror", "glass"},
-                                                                          {"brick", "brick"},
-                                                                          {"bricks", "brick"},
-                                                                          {"brickwork", "brick"},
-                                                                          {"clay", "brick"},
-                                                                          {"tiles", "brick"},
-                                                                          {"cement_block", "concrete"},
-                                                                          {"concrete", "concrete"},
-                                                                          {"reinforced_concrete", "concrete"},
-                                                                          {"plaster", "concrete"},
-                                                                          {"stucco", "concrete"},
-                                                                          {"stone", "marble"},
-                                                                          {"limestone", "marble"},
-                                                                          {"sandstone", "marble"},
-                                                                          {"granite", "marble"},
-                                                                          {"marble", "marble"},
-                                                                          {"wood", "wood"},
-                                                                          {"timber", "wood"},
-                                                                          {"timber_framing", "wood"},
-                                                                          {"metal", "metal"},
-                                                                          {"steel", "metal"},
-                                                                          {"metal_plates", "metal"},
-                                                                          {"copper", "metal"},
-                                                                          {"aluminium", "metal"},
-                                                                          {"tin", "metal"}}};
+constexpr std::array<std::array<std::string_view, 2>, 26> material_words{
+    {{"glass", "glass"},        {"mirror", "glass"},
+     {"brick", "brick"},        {"bricks", "brick"},
+     {"brickwork", "brick"},    {"clay", "brick"},
+     {"tiles", "brick"},        {"cement_block", "concrete"},
+     {"concrete", "concrete"},  {"reinforced_concrete", "concrete"},
+     {"plaster", "concrete"},   {"stucco", "concrete"},
+     {"stone", "marble"},       {"limestone", "marble"},
+     {"sandstone", "marble"},   {"granite", "marble"},
+     {"marble", "marble"},      {"wood", "wood"},
+     {"timber", "wood"},        {"timber_framing", "wood"},
+     {"metal", "metal"},        {"steel", "metal"},
+     {"metal_plates", "metal"}, {"copper", "metal"},
+     {"aluminium", "metal"},    {"tin", "metal"}}};
 
 std::string material_of(const OutlineTags& tags) {
     for (const std::string_view key : material_keys)
@@ -102,13 +93,13 @@ OutlineUse::Kind kind_of(const OutlineTags& tags, bool any_polygon) {
 
 std::optional<double> length_of_tag(std::string_view text) {
     text = trimmed(text);
-    auto value = take_number(text);
+    auto value = take_tag_number(text);
     if (!value) return std::nullopt;
     if (text == "ft" || text == "feet" || text == "'") {
         *value *= foot;
     } else if (text.starts_with('\'')) {
         text.remove_prefix(1);
-        const auto inches = take_number(text);
+        const auto inches = take_tag_number(text);
         if (!inches || text != "\"") return std::nullopt;
         *value = (*value + *inches / 12) * foot;
     } else if (!(text.empty() || text == "m" || text == "metres" || text == "meters")) {

@@ -38,7 +38,8 @@ Inner inner_of(const Footprint& footprint) {
     Inner inner;
     double largest = 0;
     std::vector<Eigen::Vector2d> points = footprint.outer;
-    for (const auto& hole : footprint.holes) points.insert(points.end(), hole.begin(), hole.end());
+    for (const auto& hole : footprint.holes)
+        points.insert(points.end(), hole.begin(), hole.end());
     for (const auto& [a, b, c] : triangulated(footprint)) {
         const Eigen::Vector2d u = points[b] - points[a], v = points[c] - points[a];
         const double area = std::abs(u.x() * v.y() - u.y() * v.x()) / 2;
@@ -74,7 +75,8 @@ private:
     static std::int64_t key(std::int64_t x, std::int64_t y) { return x * 4'000'000 + y; }
     void insert(std::size_t i) {
         PlaceOnEarth::Extent box;
-        for (const Eigen::Vector2d& point : outlines_[i].footprint.outer) box.include(point);
+        for (const Eigen::Vector2d& point : outlines_[i].footprint.outer)
+            box.include(point);
         if (box.empty() || std::max(box.lowest.cwiseAbs().maxCoeff(), box.highest.cwiseAbs().maxCoeff()) > 1e8) return;
         const auto [x0, y0] = cell(box.lowest);
         const auto [x1, y1] = cell(box.highest);
@@ -83,7 +85,8 @@ private:
             return;
         }
         for (auto x = x0; x <= x1; ++x)
-            for (auto y = y0; y <= y1; ++y) cells_[key(x, y)].push_back(i);
+            for (auto y = y0; y <= y1; ++y)
+                cells_[key(x, y)].push_back(i);
     }
 
     const std::vector<Outline>& outlines_;
@@ -143,7 +146,8 @@ void OutlineBuilder::add(const Outline& outline, double ground) {
     if (outline.use.canopy) base = std::max(0.0, top - canopy_thickness);
     // A base above an unknown top tells at least where the house begins.
     if (!outline.use.top && top <= base) top = base + settings_.metres_per_level;
-    const std::uint8_t material = outline.use.material.empty() ? std::uint8_t{0} : file_.model.material_index(outline.use.material);
+    const std::uint8_t material =
+        outline.use.material.empty() ? std::uint8_t{0} : file_.model.material_index(outline.use.material);
     if (!add_extruded(file_.model, outline.footprint, ground + base, ground + top, material)) {
         ++file_.dropped;
         return;
@@ -162,7 +166,8 @@ double place_footprint(Footprint& footprint, const PlaceOnEarth& place) {
         point = placed.head<2>();
     }
     for (auto& hole : footprint.holes)
-        for (Eigen::Vector2d& point : hole) point = place.on_ground(point).head<2>();
+        for (Eigen::Vector2d& point : hole)
+            point = place.on_ground(point).head<2>();
     return count > 0 ? sum / count : 0;
 }
 
@@ -171,7 +176,8 @@ void add_outline_warnings(CityFile& file, std::size_t without_height, const City
         file.warnings.push_back(fmt::format("{} of {} buildings have no height or levels: taken as {:g} m tall",
                                             without_height, file.buildings, settings.default_height));
     if (file.dropped > 0)
-        file.warnings.push_back(fmt::format("{} outlines without area or with wrong corners were left out", file.dropped));
+        file.warnings.push_back(
+            fmt::format("{} outlines without area or with wrong corners were left out", file.dropped));
 }
 
 }  // namespace
@@ -184,13 +190,15 @@ Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::s
     file.warnings = std::move(read.warnings);
     PlaceOnEarth::Extent extent;
     for (const Outline& outline : read.outlines)
-        for (const Eigen::Vector2d& point : outline.footprint.outer) extent.include(point);
+        for (const Eigen::Vector2d& point : outline.footprint.outer)
+            extent.include(point);
     if (extent.empty()) return fail(ErrorCode::input, fmt::format("{}: no outline of a building or wood", name));
     const auto place = PlaceOnEarth::make(read.system, extent, 0, settings);
     if (!place) return fail(place.error().code, fmt::format("{}: {}", name, place.error().message));
     file.model.origin = place->origin();
     std::vector<double> grounds;
-    for (Outline& outline : read.outlines) grounds.push_back(place_footprint(outline.footprint, *place));
+    for (Outline& outline : read.outlines)
+        grounds.push_back(place_footprint(outline.footprint, *place));
     const std::vector<bool> replaced = outlines_of_parts(read.outlines);
     OutlineBuilder builder(file, settings);
     for (std::size_t i = 0; i < read.outlines.size(); ++i) {
@@ -199,7 +207,8 @@ Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::s
     }
     add_outline_warnings(file, builder.without_height, settings);
     if (file.model.triangles.empty() && file.model.foliage.empty())
-        return fail(ErrorCode::input, fmt::format("{}: none of its {} outlines could be used", name, read.outlines.size()));
+        return fail(ErrorCode::input,
+                    fmt::format("{}: none of its {} outlines could be used", name, read.outlines.size()));
     return file;
 }
 

@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "city_text.hpp"
+
 namespace skyloop {
 
 namespace {
@@ -19,13 +21,15 @@ constexpr std::array geographic_codes{4258, 4269, 4283, 4326, 4612, 4937, 4939, 
                                       6667, 6668, 6697, 7842, 7843, 7844, 9057, 9755, 9782};
 
 std::optional<int> epsg_code(std::string_view name) {
-    std::string capitals(name.substr(0, name.find(',', name.find("EPSG") == std::string_view::npos ? 0 : name.find("EPSG"))));
+    std::string capitals(
+        name.substr(0, name.find(',', name.find("EPSG") == std::string_view::npos ? 0 : name.find("EPSG"))));
     const auto found = capitals.find("EPSG");
     if (found == std::string::npos) return std::nullopt;
     const auto end = capitals.find_last_of("0123456789");
     if (end == std::string::npos || end < found) return std::nullopt;
     auto start = end;
-    while (start > found && capitals[start - 1] >= '0' && capitals[start - 1] <= '9') --start;
+    while (start > found && capitals[start - 1] >= '0' && capitals[start - 1] <= '9')
+        --start;
     int code = 0;
     const auto [rest, error] = std::from_chars(capitals.data() + start, capitals.data() + end + 1, code);
     if (error != std::errc()) return std::nullopt;
@@ -39,8 +43,9 @@ std::optional<ReferenceSystem> reference_system(std::string_view name) {
     if (name.find("CRS84") != std::string_view::npos)
         return ReferenceSystem{CoordinateKind::geographic, false, "OGC:CRS84"};
     const std::optional<int> code = epsg_code(name);
-    if (!code) return ReferenceSystem{CoordinateKind::projected, false, std::string(name.substr(0, 80))};
-    const bool geographic = std::find(geographic_codes.begin(), geographic_codes.end(), *code) != geographic_codes.end();
+    if (!code) return ReferenceSystem{CoordinateKind::projected, false, shown(name)};
+    const bool geographic =
+        std::find(geographic_codes.begin(), geographic_codes.end(), *code) != geographic_codes.end();
     return ReferenceSystem{geographic ? CoordinateKind::geographic : CoordinateKind::projected, geographic,
                            fmt::format("EPSG:{}", *code)};
 }

@@ -22,6 +22,8 @@ skyloop_require(fmt libfmt-dev CONFIG)
 skyloop_require(spdlog libspdlog-dev CONFIG)
 skyloop_require(ZLIB zlib1g-dev)
 skyloop_require(pugixml libpugixml-dev CONFIG)
+skyloop_require(EXPAT libexpat1-dev)
+skyloop_require(Threads libc6-dev)
 if(SKYLOOP_TESTS OR SKYLOOP_FUZZ)
     skyloop_require(GTest libgtest-dev CONFIG)
 endif()
@@ -35,6 +37,7 @@ if(NOT TARGET GeographicLib::GeographicLib)
     target_link_libraries(GeographicLib::GeographicLib INTERFACE ${GeographicLib_LIBRARIES})
 endif()
 
+<<<<<<< HEAD
 # Embree 4, or 3.13 that Debian 12 has. Its own configuration wants the headers of its task scheduler as well, which
 # no user of its interface needs.
 function(skyloop_find_embree)
@@ -61,3 +64,15 @@ function(skyloop_find_embree)
         "skyloop needs Embree 3.13 or 4: apt-get install libembree-dev  (or run tools/start, which does)")
 endfunction()
 skyloop_find_embree()
+=======
+# Headers alone, without a CMake package of their own.
+find_path(SKYLOOP_OSMIUM_INCLUDE osmium/io/reader.hpp)
+find_path(SKYLOOP_PROTOZERO_INCLUDE protozero/pbf_reader.hpp)
+mark_as_advanced(SKYLOOP_OSMIUM_INCLUDE SKYLOOP_PROTOZERO_INCLUDE)
+if(NOT SKYLOOP_OSMIUM_INCLUDE OR NOT SKYLOOP_PROTOZERO_INCLUDE)
+    message(FATAL_ERROR "skyloop needs libosmium: apt-get install libosmium2-dev  (or run tools/start, which does)")
+endif()
+add_library(osmium::osmium INTERFACE IMPORTED GLOBAL)
+target_include_directories(osmium::osmium INTERFACE ${SKYLOOP_OSMIUM_INCLUDE} ${SKYLOOP_PROTOZERO_INCLUDE})
+target_link_libraries(osmium::osmium INTERFACE EXPAT::EXPAT ZLIB::ZLIB Threads::Threads)
+>>>>>>> wt-gis

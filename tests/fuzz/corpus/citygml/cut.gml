@@ -1,0 +1,1 @@
+<CityModel xmlns:gml="g"><gml:Envelope srsName="urn:ogc:def:crs:EPSG::6697"/><Building><boundedBy><RoofSurface><lod2MultiSurface><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>35 139 9 35.0001 139 9 35 139.0001 9</gml:posList></gml:LinearRin

@@ -1,0 +1,134 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "mesh_support.hpp"
+#include "skyloop/base/text_file.hpp"
+#include "skyloop/city/city_file.hpp"
+#include "support/oracle_table.hpp"
+
+namespace skyloop::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+std::string gml_file(std::string_view members, std::string_view system = "urn:ogc:def:crs:EPSG::25832") {
+    return fmt::format(R"(<?xml version="1.0"?><CityModel xmlns:gml="g" xmlns:bldg="b"><gml:boundedBy>
+        <gml:Envelope srsName="{}" srsDimension="3"/></gml:boundedBy>{}</CityModel>)",
+                       system, members);
+}
+
+std::string gml_polygon(std::string_view places, std::string_view hole = "") {
+    std::string text = fmt::format(
+        "<gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>{}</gml:posList></gml:LinearRing>"
+        "</gml:exterior>",
+        places);
+    if (!hole.empty()) text += fmt::format("<gml:interior><gml:LinearRing>{}</gml:LinearRing></gml:interior>", hole);
+    return text + "</gml:Polygon></gml:surfaceMember>";
+}
+
+const std::string roof_places = "0 0 9 10 0 9 10 10 9 0 10 9 0 0 9";
+const std::string wall_places = "0 0 1 10 0 1 10 0 9 0 0 9 0 0 1";
+const std::string floor_places = "0 0 1 10 0 1 10 10 1 0 10 1 0 0 1";
+
+Result<CityFile> read_citygml(std::string_view text) { return parse_citygml(text, "town.gml", {}); }
+
+std::string citygml_refusal(std::string_view text) {
+    const auto file = read_citygml(text);
+    EXPECT_FALSE(file);
+    if (file) return "";
+    EXPECT_EQ(file.error().code, ErrorCode::input);
+    EXPECT_EQ(file.error().message.find('\n'), std::string::npos);
+    EXPECT_THAT(file.error().message, StartsWith("town.gml"));
+    return file.error().message;
+}
+
+TEST(CityGml, TakesToldSurfacesOfTheHighestLevel) {
+    const auto file = read_citygml(gml_file(
+        "<m><bldg:Building><bldg:lod1Solid>" + gml_polygon("0 0 0 99 0 0 99 99 0") +
+        "</bldg:lod1Solid><bldg:boundedBy>" + "<bldg:RoofSurface><bldg:lod2MultiSurface>" +
+        gml_polygon(
+            roof_places,
+            "<gml:pos>2 2 9</gml:pos><gml:pos>4 2 9</gml:pos><gml:pos>4 4 9</gml:pos><gml:pos>2 4 9</gml:pos>") +
+        "</bldg:lod2MultiSurface></bldg:RoofSurface></"
+        "bldg:boundedBy><bldg:boundedBy><bldg:WallSurface><bldg:lod2MultiSurface>" +
+        gml_polygon(wall_places) + "</bldg:lod2MultiSurface></bldg:WallSurface></bldg:boundedBy><bldg:boundedBy>" +
+        "<bldg:GroundSurface><bldg:lod2MultiSurface>" + gml_polygon(floor_places) +
+        "</bldg:lod2MultiSurface></bldg:GroundSurface></bldg:boundedBy></bldg:Building></m>"));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->buildings, 1u);
+    EXPECT_DOUBLE_EQ(area_of(file->model), 96 + 80);
+    EXPECT_EQ(count_of(file->model, SurfaceKind::wall), 2u);
+    EXPECT_EQ(count_of(file->model, SurfaceKind::ground), 0u);
+    EXPECT_DOUBLE_EQ(highest_of(file->model).z(), 8);
+    EXPECT_THAT(file->warnings.at(0), HasSubstr("EPSG:25832"));
+}
+
+TEST(CityGml, TellsWallsAndRoofsOfASolidBySlope) {
+    const auto file =
+        read_citygml(gml_file("<bldg:Building><bldg:lod1Solid>" + gml_polygon(roof_places) + gml_polygon(wall_places) +
+                              gml_polygon(floor_places) + "</bldg:lod1Solid></bldg:Building>"));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(count_of(file->model, SurfaceKind::wall), 2u);
+    EXPECT_EQ(count_of(file->model, SurfaceKind::roof), 2u);
+}
+
+TEST(CityGml, ReadsGeographicPlacesAndRelief) {
+    const auto file =
+        read_citygml(gml_file("<Relief><TINRelief><gml:Triangle><gml:exterior><gml:LinearRing><gml:posList>35 139 3 "
+                              "35.001 139 3 35 139.001 3 "
+                              "</gml:posList></gml:LinearRing></gml:exterior></gml:Triangle></TINRelief></Relief>",
+                              "http://www.opengis.net/def/crs/EPSG/0/6697"));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(count_of(file->model, SurfaceKind::ground), 1u);
+    EXPECT_NEAR(file->model.origin.latitude.deg(), 35.0005, 1e-9);
+    EXPECT_NEAR(file->model.origin.longitude.deg(), 139.0005, 1e-9);
+    EXPECT_NEAR(file->model.origin.height.above_ellipsoid.value(), 3, 1e-9);
+    EXPECT_NEAR(file->model.vertices.at(1).y() - file->model.vertices.at(0).y(), 110.94, 0.02);
+}
+
+TEST(CityGml, DropsWrongPolygonsAndSaysSo) {
+    const auto file = read_citygml(gml_file(
+        "<Building><lod2MultiSurface>" + gml_polygon(roof_places) + gml_polygon("0 0 1 2") + gml_polygon("") +
+        gml_polygon("a b c 1 2 3 4 5 6") + gml_polygon("0 0 nan 1 0 0 1 1 0") + "</lod2MultiSurface></Building>"));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->dropped, 4u);
+    EXPECT_THAT(file->warnings, ::testing::Contains(HasSubstr("4 surfaces")));
+}
+
+TEST(CityGml, RefusesWithOneClearLine) {
+    EXPECT_THAT(citygml_refusal("<CityModel>\n<a>"), HasSubstr("town.gml:2"));
+    EXPECT_THAT(citygml_refusal(""), HasSubstr("no XML"));
+    EXPECT_THAT(citygml_refusal("<kml/>"), HasSubstr("<kml>"));
+    EXPECT_THAT(citygml_refusal("<CityModel/>"), HasSubstr("no surface"));
+    std::string deep = "<CityModel>";
+    for (int i = 0; i < 5000; ++i)
+        deep += "<a>";
+    for (int i = 0; i < 5000; ++i)
+        deep += "</a>";
+    EXPECT_THAT(citygml_refusal(deep + "</CityModel>"), HasSubstr("nest deeper"));
+}
+
+TEST(CityGml, ReadsYokosuka) {
+    SKYLOOP_REQUIRE_SHARED(path, "city/52397519_bldg_6697_op.gml");
+    const auto text = read_text_file(path);
+    ASSERT_TRUE(text);
+    const auto file = parse_citygml(*text, "yokosuka.gml", {});
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->buildings, 13u);
+    EXPECT_EQ(file->dropped, 0u);
+    EXPECT_GT(count_of(file->model, SurfaceKind::wall), 100u);
+    // The file states an envelope of 361 m by 301 m, 2.2 m to 21.7 m high.
+    EXPECT_NEAR(file->model.origin.latitude.deg(), 35.26, 0.002);
+    EXPECT_NEAR(file->model.origin.longitude.deg(), 139.739, 0.002);
+    for (const Eigen::Vector3d& vertex : file->model.vertices) {
+        EXPECT_LE(std::abs(vertex.x()), 151);
+        EXPECT_LE(std::abs(vertex.y()), 181);
+        EXPECT_LE(std::abs(vertex.z()), 19.6);
+    }
+}
+
+}  // namespace
+}  // namespace skyloop::test

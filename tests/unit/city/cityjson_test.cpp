@@ -1,0 +1,174 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "mesh_support.hpp"
+#include "skyloop/base/text_file.hpp"
+#include "skyloop/city/city_file.hpp"
+#include "support/oracle_table.hpp"
+
+namespace skyloop::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+Result<CityFile> read_cityjson(std::string_view text, const CityFileSettings& settings = {}) {
+    return parse_cityjson(text, "town.json", settings);
+}
+
+/// A cube of 10 m with its lower corner at 1000, 2000, 5.
+std::string cube_file(std::string_view objects, std::string_view system = "EPSG:7415") {
+    return fmt::format(
+        R"({{"type":"CityJSON","version":"2.0","metadata":{{"referenceSystem":"https://www.opengis.net/def/crs/{}"}},
+        "transform":{{"scale":[0.01,0.01,0.01],"translate":[1000,2000,5]}},"CityObjects":{{{}}},
+        "vertices":[[0,0,0],[1000,0,0],[1000,1000,0],[0,1000,0],[0,0,1000],[1000,0,1000],[1000,1000,1000],[0,1000,1000]]}})",
+        system, objects);
+}
+
+const std::string cube_shell = "[[[0,3,2,1]],[[4,5,6,7]],[[0,1,5,4]],[[1,2,6,5]],[[2,3,7,6]],[[3,0,4,7]]]";
+
+std::string solid(std::string_view lod, std::string_view semantics = "null") {
+    return fmt::format(R"({{"type":"Solid","lod":{},"boundaries":[{}],"semantics":{}}})", lod, cube_shell, semantics);
+}
+
+std::string cityjson_refusal(std::string_view text) {
+    const auto file = read_cityjson(text);
+    EXPECT_FALSE(file);
+    if (file) return "";
+    EXPECT_EQ(file.error().code, ErrorCode::input);
+    EXPECT_EQ(file.error().message.find('\n'), std::string::npos);
+    EXPECT_THAT(file.error().message, StartsWith("town.json"));
+    return file.error().message;
+}
+
+TEST(CityJson, PutsASolidInTheMiddleWithoutItsFloor) {
+    const auto file =
+        read_cityjson(cube_file(fmt::format(R"("a":{{"type":"Building","geometry":[{}]}})", solid("\"1\""))));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->buildings, 1u);
+    EXPECT_EQ(count_of(file->model, SurfaceKind::wall), 8u);
+    EXPECT_EQ(count_of(file->model, SurfaceKind::roof), 2u);
+    EXPECT_DOUBLE_EQ(area_of(file->model), 500);
+    for (const Eigen::Vector3d& vertex : file->model.vertices) {
+        EXPECT_NEAR(std::abs(vertex.x()), 5, 1e-9);
+        EXPECT_NEAR(std::abs(vertex.y()), 5, 1e-9);
+        EXPECT_TRUE(std::abs(vertex.z()) < 1e-9 || std::abs(vertex.z() - 10) < 1e-9);
+    }
+    ASSERT_EQ(file->warnings.size(), 1u);
+    EXPECT_THAT(file->warnings[0], HasSubstr("give an origin"));
+}
+
+TEST(CityJson, TakesTheHighestLevelAndWhatSemanticsTell) {
+    const std::string told = solid("\"2.2\"", R"({"surfaces":[{"type":"GroundSurface"},{"type":"RoofSurface"},
+        {"type":"WallSurface"},{"type":"Window"},{"type":"ClosureSurface"}],"values":[[0,1,2,2,3,4]]})");
+    const auto file = read_cityjson(cube_file(
+        fmt::format(R"("a":{{"type":"Building","geometry":[{},{},{}]}})", solid("1.3"), told, solid("\"0\""))));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(count_of(file->model, SurfaceKind::roof), 2u);
+    EXPECT_EQ(count_of(file->model, SurfaceKind::wall), 6u);
+    EXPECT_EQ(file->model.materials, (std::vector<std::string>{"concrete", "glass"}));
+}
+
+TEST(CityJson, PartsReplaceTheirWhole) {
+    const std::string objects = fmt::format(
+        R"("a":{{"type":"Building","children":["b"],"geometry":[{}]}},"b":{{"type":"BuildingPart","parents":["a"],"geometry":[{}]}})",
+        solid("1"), solid("2"));
+    const auto file = read_cityjson(cube_file(objects));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_DOUBLE_EQ(area_of(file->model), 500);
+    EXPECT_EQ(file->buildings, 1u);
+}
+
+TEST(CityJson, ReadsTerrainTreesAndTheRoomsOfNobody) {
+    const std::string flat = R"({"type":"CompositeSurface","lod":1,"boundaries":[[[0,1,2,3]]]})";
+    const auto file = read_cityjson(cube_file(fmt::format(
+        R"("g":{{"type":"TINRelief","geometry":[{0}]}},"t":{{"type":"SolitaryVegetationObject","geometry":[{1}]}},
+        "p":{{"type":"PlantCover","geometry":[{0}]}},"r":{{"type":"BuildingRoom","geometry":[{1}]}})",
+        flat, solid("2"))));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(count_of(file->model, SurfaceKind::ground), 4u);
+    EXPECT_EQ(file->model.triangles.size(), 4u);
+    ASSERT_EQ(file->model.foliage.size(), 1u);
+    EXPECT_EQ(file->model.foliage[0].ring.size(), 4u);
+    EXPECT_NEAR(file->model.foliage[0].top - file->model.foliage[0].base, 10, 1e-9);
+}
+
+TEST(CityJson, ReadsLatitudesAndLongitudes) {
+    const std::string text =
+        R"({"type":"CityJSON","version":"1.1","metadata":{"referenceSystem":"urn:ogc:def:crs:EPSG::4979"},
+        "CityObjects":{"a":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2]]]}]}},
+        "vertices":[[50,10,100],[50.0001,10,100],[50,10,130]]})";
+    CityFileSettings settings;
+    settings.origin = Geodetic::degrees(50, 10, 100);
+    const auto file = read_cityjson(text, settings);
+    ASSERT_TRUE(file) << file.error().message;
+    ASSERT_EQ(file->model.vertices.size(), 3u);
+    EXPECT_NEAR(file->model.vertices[0].norm(), 0, 1e-6);
+    EXPECT_NEAR(file->model.vertices[1].y(), curvature_radii(Angle::degrees(50)).meridian * Angle::degrees(1e-4).rad(),
+                1e-3);
+    EXPECT_NEAR(file->model.vertices[2].z(), 30, 1e-6);
+    EXPECT_EQ(count_of(file->model, SurfaceKind::wall), 1u);
+    const auto by_itself = read_cityjson(text);
+    ASSERT_TRUE(by_itself) << by_itself.error().message;
+    EXPECT_NEAR(by_itself->model.origin.latitude.deg(), 50.00005, 1e-9);
+    EXPECT_NEAR(by_itself->model.origin.height.above_ellipsoid.value(), 100, 1e-9);
+}
+
+TEST(CityJson, DropsWrongCornersAndSaysSo) {
+    const auto file = read_cityjson(cube_file(R"("a":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"2",
+        "boundaries":[[[0,1,5,4]],[[0,1,99]],[[0,-1,2]],[["a",1,2]],[[0,1]],[[0,0,0]],7]}]})"));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->dropped, 6u);
+    EXPECT_EQ(file->model.triangles.size(), 2u);
+    EXPECT_THAT(file->warnings, ::testing::Contains(HasSubstr("6 surfaces")));
+}
+
+TEST(CityJson, RefusesWithOneClearLine) {
+    EXPECT_THAT(cityjson_refusal("{"), HasSubstr("town.json:1:2"));
+    EXPECT_THAT(cityjson_refusal("{}"), HasSubstr("expected \"CityJSON\""));
+    EXPECT_THAT(cityjson_refusal(R"({"type":"CityJSON"})"), HasSubstr("\"vertices\""));
+    EXPECT_THAT(cityjson_refusal(R"({"type":"CityJSON","vertices":[[1,2]]})"), HasSubstr("vertex 0"));
+    EXPECT_THAT(cityjson_refusal(R"({"type":"CityJSON","vertices":[]})"), HasSubstr("\"CityObjects\""));
+    EXPECT_THAT(cityjson_refusal(R"({"type":"CityJSON","transform":{"scale":1},"vertices":[]})"),
+                HasSubstr("\"transform\""));
+    EXPECT_THAT(cityjson_refusal(cube_file("")), HasSubstr("no surface"));
+    EXPECT_THAT(cityjson_refusal(
+                    cube_file(fmt::format(R"("a":{{"type":"Building","geometry":[{}]}})", solid("1")), "EPSG:4326")),
+                HasSubstr("longitudes and latitudes"));
+}
+
+TEST(CityJson, ReadsDelft) {
+    SKYLOOP_REQUIRE_SHARED(path, "city/delft.json");
+    const auto text = read_text_file(path);
+    ASSERT_TRUE(text);
+    CityFileSettings settings;
+    settings.origin = Geodetic::degrees(52.01, 4.36, 45);
+    const auto file = parse_cityjson(*text, "delft.json", settings);
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->buildings, 160u);
+    EXPECT_GT(count_of(file->model, SurfaceKind::ground), 1000u);
+    EXPECT_GT(file->model.foliage.size(), 20u);
+    // The extent that the file states is 524.4 m by 327.8 m, up to 16.8 m.
+    for (const Eigen::Vector3d& vertex : file->model.vertices) {
+        EXPECT_LE(std::abs(vertex.x()), 262.3);
+        EXPECT_LE(std::abs(vertex.y()), 164);
+        EXPECT_LE(std::abs(vertex.z() - 8), 9);
+    }
+}
+
+TEST(CityJson, ReadsRotterdam) {
+    SKYLOOP_REQUIRE_SHARED(path, "city/rotterdam_subset.json");
+    const auto text = read_text_file(path);
+    ASSERT_TRUE(text);
+    const auto file = parse_cityjson(*text, "rotterdam.json", {});
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->buildings, 16u);
+    EXPECT_GT(count_of(file->model, SurfaceKind::wall), 200u);
+    EXPECT_GT(count_of(file->model, SurfaceKind::roof), 16u);
+    EXPECT_EQ(count_of(file->model, SurfaceKind::ground), 0u);
+}
+
+}  // namespace
+}  // namespace skyloop::test

@@ -1,0 +1,169 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "mesh_support.hpp"
+#include "skyloop/city/city_file.hpp"
+#include "skyloop/geo/local_frame.hpp"
+
+namespace skyloop::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+Result<CityFile> read_geojson(std::string_view text, const CityFileSettings& settings = {}) {
+    return parse_geojson(text, "town.geojson", settings);
+}
+
+std::string feature(std::string_view properties, std::string_view geometry) {
+    return fmt::format(R"({{"type":"Feature","properties":{},"geometry":{}}})", properties, geometry);
+}
+
+std::string collection(std::string_view features, std::string_view more = "") {
+    return fmt::format(R"({{"type":"FeatureCollection"{},"features":[{}]}})", more, features);
+}
+
+/// A square with sides of so many degrees at 10° E 50° N.
+std::string square(double side, double east = 0) {
+    return fmt::format(R"({{"type":"Polygon","coordinates":[[[{0},50],[{1},50],[{1},{2}],[{0},{2}],[{0},50]]]}})",
+                       10 + east, 10 + east + side, 50 + side);
+}
+
+std::string geojson_refusal(std::string_view text) {
+    const auto file = read_geojson(text);
+    EXPECT_FALSE(file);
+    if (file) return "";
+    EXPECT_EQ(file.error().code, ErrorCode::input);
+    EXPECT_EQ(file.error().message.find('\n'), std::string::npos);
+    EXPECT_THAT(file.error().message, StartsWith("town.geojson"));
+    return file.error().message;
+}
+
+TEST(GeoJson, RaisesAHouseInTheMiddleOfItsExtent) {
+    const auto file = read_geojson(collection(feature(R"({"height":12.5,"min_height":"2 m"})", square(0.001))));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->buildings, 1u);
+    EXPECT_TRUE(file->warnings.empty());
+    EXPECT_NEAR(file->model.origin.latitude.deg(), 50.0005, 1e-9);
+    EXPECT_NEAR(file->model.origin.longitude.deg(), 10.0005, 1e-9);
+    EXPECT_EQ(file->model.triangles.size(), 4u * 2 + 2);
+    // 111.229 m and 71.69 m a thousandth of a degree: M = 6 373 157 m… at 50° N, N cos 50° = 4 107 864 m.
+    double east = 0, north = 0;
+    for (const Eigen::Vector3d& vertex : file->model.vertices) {
+        east = std::max(east, vertex.x());
+        north = std::max(north, vertex.y());
+        EXPECT_TRUE(std::abs(vertex.z() - 2) < 0.01 || std::abs(vertex.z() - 12.5) < 0.01) << vertex.z();
+    }
+    const CurvatureRadii radii = curvature_radii(Angle::degrees(50));
+    EXPECT_NEAR(2 * north, radii.meridian * Angle::degrees(0.001).rad(), 0.01);
+    EXPECT_NEAR(2 * east, radii.prime_vertical * std::cos(Angle::degrees(50).rad()) * Angle::degrees(0.001).rad(),
+                0.01);
+}
+
+TEST(GeoJson, StandsAtTheGivenOrigin) {
+    CityFileSettings settings;
+    settings.origin = Geodetic::degrees(50, 10, 321);
+    const auto file = read_geojson(collection(feature(R"({"height":10})", square(0.001))), settings);
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->model.origin.height.above_ellipsoid.value(), 321);
+    EXPECT_NEAR(file->model.vertices.front().norm(), 0, 0.01);
+}
+
+TEST(GeoJson, ReadsLevelsMaterialsAndWoods) {
+    const auto file = read_geojson(
+        collection(feature(R"({"Building:Levels":"4","building":"yes","building:material":"glass"})", square(0.001)) +
+                   "," + feature(R"({"natural":"wood","height":"20"})", square(0.001, 0.01)) + "," +
+                   feature(R"({"landuse":"residential"})", square(0.1))));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->buildings, 1u);
+    EXPECT_NEAR(highest_of(file->model).z(), 12, 0.1);
+    EXPECT_EQ(file->model.materials.at(file->model.triangles.front().material), "glass");
+    ASSERT_EQ(file->model.foliage.size(), 1u);
+    EXPECT_NEAR(file->model.foliage.front().top - file->model.foliage.front().base, 20, 1e-9);
+    ASSERT_EQ(file->warnings.size(), 1u);
+    EXPECT_THAT(file->warnings[0], HasSubstr("1 features"));
+}
+
+TEST(GeoJson, CountsMissingHeightsInOneWarning) {
+    CityFileSettings settings;
+    settings.default_height = 7;
+    const auto file = read_geojson(
+        collection(feature("{}", square(0.001)) + "," + feature(R"({"height":"tall"})", square(0.001, 0.002)) + "," +
+                   feature(R"({"height":5})", square(0.001, 0.004)) + "," +
+                   feature(R"({"height":-5})", square(0.001, 0.006))),
+        settings);
+    ASSERT_TRUE(file) << file.error().message;
+    ASSERT_EQ(file->warnings.size(), 1u);
+    EXPECT_THAT(file->warnings[0], HasSubstr("3 of 4 buildings have no height"));
+    EXPECT_NEAR(highest_of(file->model).z(), 7, 0.1);
+}
+
+TEST(GeoJson, TakesMetresWhenNumbersAreNoDegrees) {
+    const auto local = read_geojson(feature(R"({"height":5})", R"({"type":"MultiPolygon","coordinates":[
+        [[[0,0],[40,0],[40,30],[0,30],[0,0]],[[10,10],[20,10],[20,20],[10,20]]],[[[100,0],[110,0],[110,10]]]]})"));
+    ASSERT_TRUE(local) << local.error().message;
+    EXPECT_EQ(local->buildings, 2u);
+    EXPECT_DOUBLE_EQ(area_of(local->model), 140 * 5 + 1100 + 40 * 5 + (20 + std::sqrt(200)) * 5 + 50);
+    EXPECT_THAT(local->warnings.at(0), HasSubstr("metres"));
+
+    const auto utm = read_geojson(collection(
+        feature(
+            R"({"height":5})",
+            R"({"type":"Polygon","coordinates":[[[500000,5500000],[500040,5500000],[500040,5500030],[500000,5500030]]]})"),
+        R"(,"crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::25832"}})"));
+    ASSERT_TRUE(utm) << utm.error().message;
+    EXPECT_DOUBLE_EQ(highest_of(utm->model).z(), 5);
+    EXPECT_DOUBLE_EQ(area_of(utm->model), 140 * 5 + 1200);
+    EXPECT_LE(utm->model.vertices.front().head<2>().norm(), 25.001);
+    EXPECT_THAT(utm->warnings.at(0), HasSubstr("EPSG:25832"));
+}
+
+TEST(GeoJson, PartsReplaceTheirBuilding) {
+    const std::string whole = feature(R"({"building":"yes","height":50})", square(0.001));
+    const std::string part = feature(R"({"building:part":"yes","height":20})", square(0.00099));
+    const std::string small_part = feature(R"({"building:part":"yes","height":20})", square(0.0001));
+    const auto replaced = read_geojson(collection(whole + "," + part));
+    ASSERT_TRUE(replaced) << replaced.error().message;
+    EXPECT_NEAR(highest_of(replaced->model).z(), 20, 0.1);
+    const auto kept = read_geojson(collection(small_part + "," + whole));
+    ASSERT_TRUE(kept) << kept.error().message;
+    EXPECT_NEAR(highest_of(kept->model).z(), 50, 0.1);
+    EXPECT_EQ(kept->buildings, 2u);
+}
+
+TEST(GeoJson, DropsWhatIsNoPolygonAndSaysSo) {
+    const auto file = read_geojson(
+        collection(feature(R"({"height":9})", square(0.001)) + "," +
+                   feature(R"({"height":9})", R"({"type":"Polygon","coordinates":[[[10,50],[10,50]]]})") + "," +
+                   feature(R"({"height":9})", R"({"type":"Polygon","coordinates":[[["a",50],[10,50],[11,51]]]})") +
+                   "," + feature(R"({"height":9})", R"({"type":"Polygon","coordinates":7})") + "," +
+                   feature(R"({"height":9})", R"({"type":"Point","coordinates":[10,50]})") + ",17"));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->dropped, 3u);
+    EXPECT_EQ(file->buildings, 1u);
+    EXPECT_THAT(file->warnings, ::testing::Contains(HasSubstr("3 outlines")));
+}
+
+TEST(GeoJson, RefusesWithOneClearLine) {
+    EXPECT_THAT(geojson_refusal("{\"type\":\"FeatureCollection\",\n\"features\":["),
+                HasSubstr("town.geojson:2:13: the text ends"));
+    EXPECT_THAT(geojson_refusal("{\"type\" \"Feature\"}"), HasSubstr("town.geojson:1:"));
+    EXPECT_THAT(geojson_refusal(R"({"type":"Topology"})"), HasSubstr("\"Topology\""));
+    EXPECT_THAT(geojson_refusal(R"({"type":"FeatureCollection","features":3})"), HasSubstr("\"features\""));
+    EXPECT_THAT(geojson_refusal(collection("")), HasSubstr("no outline"));
+    EXPECT_THAT(geojson_refusal("[1e999]"), HasSubstr("number"));
+    EXPECT_THAT(geojson_refusal(std::string(100'000, '[')), HasSubstr("nested deeper"));
+    EXPECT_THAT(geojson_refusal(""), HasSubstr("ends"));
+    EXPECT_THAT(geojson_refusal(feature("{}", R"({"type":"Polygon","coordinates":[[[0,0],[1e300,0],[1e300,1e300]]]})")),
+                HasSubstr("could be used"));
+    CityFileSettings few;
+    few.most_triangles = 9;
+    const auto file = read_geojson(feature("{}", square(0.001)), few);
+    ASSERT_FALSE(file);
+    EXPECT_THAT(file.error().message, HasSubstr("more than 9 triangles"));
+}
+
+}  // namespace
+}  // namespace skyloop::test

@@ -1,0 +1,202 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "mesh_support.hpp"
+#include "skyloop/base/text_file.hpp"
+#include "skyloop/city/city_file.hpp"
+#include "support/oracle_table.hpp"
+
+namespace skyloop::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+/// Nodes 1 … 8: two squares, 0.001° and inside it 0.0005° wide.
+const std::string osm_nodes = R"(
+<node id="1" lat="50" lon="10"/><node id="2" lat="50" lon="10.001"/><node id="3" lat="50.001" lon="10.001"/>
+<node id="4" lat="50.001" lon="10"/><node id="5" lat="50.0002" lon="10.0002"/><node id="6" lat="50.0002" lon="10.0007"/>
+<node id="7" lat="50.0007" lon="10.0007"/><node id="8" lat="50.0007" lon="10.0002"/>)";
+
+std::string osm_tags(std::initializer_list<std::pair<std::string_view, std::string_view>> tags) {
+    std::string text;
+    for (const auto& [key, value] : tags)
+        text += fmt::format(R"(<tag k="{}" v="{}"/>)", key, value);
+    return text;
+}
+
+std::string osm_way(int id, std::initializer_list<int> nodes, std::string_view tags = "") {
+    std::string text = fmt::format(R"(<way id="{}">)", id);
+    for (const int node : nodes)
+        text += fmt::format(R"(<nd ref="{}"/>)", node);
+    return text + std::string(tags) + "</way>";
+}
+
+std::string osm_file(std::string_view content) {
+    return fmt::format("<?xml version='1.0'?>\n<osm version=\"0.6\">{}{}</osm>", osm_nodes, content);
+}
+
+Result<CityFile> read_osm(std::string_view text) { return parse_osm(text, "osm", "town.osm", {}); }
+
+std::string osm_refusal(std::string_view bytes, std::string_view format = "osm") {
+    const auto file = parse_osm(bytes, format, "town.osm", {});
+    EXPECT_FALSE(file);
+    if (file) return "";
+    EXPECT_EQ(file.error().code, ErrorCode::input);
+    EXPECT_EQ(file.error().message.find('\n'), std::string::npos);
+    EXPECT_THAT(file.error().message, StartsWith("town.osm"));
+    return file.error().message;
+}
+
+double roof_area(const CityModel& city) {
+    CityModel roofs = city;
+    std::erase_if(roofs.triangles, [](const CityTriangle& t) { return t.kind != SurfaceKind::roof; });
+    return area_of(roofs);
+}
+
+/// Of a square of so many degrees at 50° N, m².
+double square_area(double side) {
+    const CurvatureRadii radii = curvature_radii(Angle::degrees(50));
+    const double step = Angle::degrees(side).rad();
+    return radii.meridian * step * radii.prime_vertical * std::cos(Angle::degrees(50).rad()) * step;
+}
+
+TEST(OpenStreetMap, RaisesWaysByHeightElseByLevels) {
+    const auto tall =
+        read_osm(osm_file(osm_way(1, {1, 2, 3, 4, 1}, osm_tags({{"building", "yes"}, {"height", "40'6&quot;"}}))));
+    ASSERT_TRUE(tall) << tall.error().message;
+    EXPECT_NEAR(highest_of(tall->model).z(), 40.5 * 0.3048, 0.01);
+    EXPECT_NEAR(roof_area(tall->model), square_area(0.001), 0.5);
+    EXPECT_EQ(tall->format, "osm");
+    const auto floors = read_osm(osm_file(osm_way(
+        1, {1, 2, 3, 4, 1}, osm_tags({{"building", "yes"}, {"building:levels", "5"}, {"building:min_level", "2"}}))));
+    ASSERT_TRUE(floors) << floors.error().message;
+    EXPECT_NEAR(highest_of(floors->model).z(), 15, 0.01);
+    for (const Eigen::Vector3d& vertex : floors->model.vertices)
+        EXPECT_GT(vertex.z(), 5.9);
+}
+
+TEST(OpenStreetMap, JoinsWaysOfAMultipolygonAroundItsCourtyard) {
+    const auto file = read_osm(osm_file(
+        osm_way(1, {1, 2, 3}) + osm_way(2, {1, 4, 3}) + osm_way(3, {5, 6, 7, 8, 5}) + R"(<relation id="1">
+        <member type="way" ref="1" role="outer"/><member type="way" ref="2" role="outer"/>
+        <member type="way" ref="3" role="inner"/>)" +
+        osm_tags({{"type", "multipolygon"}, {"building", "yes"}, {"height", "10"}, {"building:material", "brick"}}) +
+        "</relation>"));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->buildings, 1u);
+    EXPECT_NEAR(roof_area(file->model), square_area(0.001) - square_area(0.0005), 0.5);
+    EXPECT_EQ(count_of(file->model, SurfaceKind::wall), 16u);
+    EXPECT_EQ(file->model.materials.at(file->model.triangles.front().material), "brick");
+}
+
+TEST(OpenStreetMap, PlantsWoodsAndKeepsGladesOpen) {
+    const auto file = read_osm(osm_file(
+        osm_way(1, {1, 2, 3, 4, 1}) + osm_way(3, {5, 6, 7, 8, 5}) +
+        R"(<relation id="1"><member type="way" ref="1" role="outer"/><member type="way" ref="3" role="inner"/>)" +
+        osm_tags({{"type", "multipolygon"}, {"landuse", "forest"}}) + "</relation>"));
+    ASSERT_TRUE(file) << file.error().message;
+    ASSERT_EQ(file->model.foliage.size(), 1u);
+    EXPECT_EQ(file->model.foliage[0].ring.size(), 10u);
+    EXPECT_TRUE(file->model.triangles.empty());
+}
+
+TEST(OpenStreetMap, DropsOpenAndCutOutlinesAndSaysSo) {
+    const auto building = osm_tags({{"building", "yes"}, {"height", "10"}});
+    const auto file = read_osm(osm_file(osm_way(1, {1, 2, 3, 4, 1}, building) + osm_way(2, {1, 2, 3, 4}, building) +
+                                        osm_way(3, {1, 2, 99, 1}, building) +
+                                        osm_way(4, {5, 6, 7, 5}, osm_tags({{"building", "no"}}))));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->buildings, 1u);
+    EXPECT_EQ(file->dropped, 2u);
+    EXPECT_THAT(file->warnings, ::testing::ElementsAre(HasSubstr("2 outlines")));
+}
+
+TEST(OpenStreetMap, RefusesWithOneClearLine) {
+    EXPECT_THAT(osm_refusal(""), HasSubstr("empty"));
+    EXPECT_THAT(osm_refusal("<osm version='0.6'>\n<node"), HasSubstr("town.osm:2"));
+    EXPECT_THAT(osm_refusal("<html/>"), HasSubstr("town.osm"));
+    EXPECT_THAT(osm_refusal(osm_file("")), HasSubstr("no outline"));
+    EXPECT_THAT(osm_refusal("<osm version='0.6'><node id='1' lat='x' lon='9'/></osm>"), HasSubstr("damaged"));
+    EXPECT_THAT(osm_refusal("no blocks at all", "osm.pbf"), HasSubstr("damaged"));
+    EXPECT_THAT(osm_refusal("x", "o5m"), HasSubstr("\"o5m\""));
+}
+
+std::string varint(std::uint64_t value) {
+    std::string bytes;
+    for (; value >= 128; value >>= 7U)
+        bytes += static_cast<char>((value & 127U) | 128U);
+    return bytes + static_cast<char>(value);
+}
+
+/// For signed numbers, as protocol buffers write "sint64".
+std::uint64_t zigzag(std::int64_t value) { return static_cast<std::uint64_t>(value < 0 ? -2 * value - 1 : 2 * value); }
+
+std::string number_field(unsigned field, std::uint64_t value) { return varint(field << 3U) + varint(value); }
+
+std::string bytes_field(unsigned field, const std::string& bytes) {
+    return varint(field << 3U | 2U) + varint(bytes.size()) + bytes;
+}
+
+std::string packed(std::initializer_list<std::uint64_t> values) {
+    std::string bytes;
+    for (const std::uint64_t value : values)
+        bytes += varint(value);
+    return bytes;
+}
+
+/// A block of a PBF file, not compressed (wiki.openstreetmap.org/wiki/PBF_Format).
+std::string pbf_block(const std::string& type, const std::string& content) {
+    const std::string blob = bytes_field(1, content);
+    const std::string header = bytes_field(1, type) + number_field(3, blob.size());
+    return std::string(3, '\0') + static_cast<char>(header.size()) + header + blob;
+}
+
+/// A house of four nodes, 0.001° wide, and one way. Places count in 100 nanodegrees.
+std::string small_pbf() {
+    const std::string strings = bytes_field(1, "") + bytes_field(1, "building") + bytes_field(1, "yes") +
+                                bytes_field(1, "height") + bytes_field(1, "25");
+    std::string nodes;
+    const std::array<std::array<std::int64_t, 2>, 4> places{{{500'000'000, 100'000'000},
+                                                             {500'000'000, 100'010'000},
+                                                             {500'010'000, 100'010'000},
+                                                             {500'010'000, 100'000'000}}};
+    for (std::size_t i = 0; i < 4; ++i)
+        nodes += bytes_field(1, number_field(1, zigzag(static_cast<std::int64_t>(i) + 1)) +
+                                    number_field(8, zigzag(places[i][0])) + number_field(9, zigzag(places[i][1])));
+    const std::string way = number_field(1, 1) + bytes_field(2, packed({1, 3})) + bytes_field(3, packed({2, 4})) +
+                            bytes_field(8, packed({zigzag(1), zigzag(1), zigzag(1), zigzag(1), zigzag(-3)}));
+    const std::string header = bytes_field(4, "OsmSchema-V0.6");
+    return pbf_block("OSMHeader", header) +
+           pbf_block("OSMData", bytes_field(1, strings) + bytes_field(2, nodes) + bytes_field(2, bytes_field(3, way)));
+}
+
+TEST(OpenStreetMap, ReadsPbfWholeAndRefusesItCut) {
+    const std::string bytes = small_pbf();
+    ASSERT_GT(bytes.size(), 100u);
+    const auto file = parse_osm(bytes, "osm.pbf", "town.osm", {});
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->format, "osm.pbf");
+    EXPECT_EQ(file->buildings, 1u);
+    EXPECT_NEAR(highest_of(file->model).z(), 25, 0.01);
+    EXPECT_NEAR(roof_area(file->model), square_area(0.001), 0.5);
+    for (std::size_t size = 1; size < bytes.size(); size += 7)
+        osm_refusal(bytes.substr(0, size), "osm.pbf");
+}
+
+TEST(OpenStreetMap, ReadsAnExtractOfBavaria) {
+    SKYLOOP_REQUIRE_SHARED(path, "city/osm_sample_10.068_48.135.osm");
+    const auto text = read_text_file(path);
+    ASSERT_TRUE(text);
+    const auto file = parse_osm(*text, "osm", "sample.osm", {});
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->buildings + file->dropped, 34u);
+    EXPECT_GE(file->buildings, 30u);
+    EXPECT_THAT(file->warnings, ::testing::Contains(HasSubstr("have no height or levels")));
+    EXPECT_NEAR(file->model.origin.latitude.deg(), 48.136, 0.002);
+}
+
+}  // namespace
+}  // namespace skyloop::test
