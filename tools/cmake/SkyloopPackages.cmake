@@ -47,3 +47,30 @@ endif()
 add_library(osmium::osmium INTERFACE IMPORTED GLOBAL)
 target_include_directories(osmium::osmium INTERFACE ${SKYLOOP_OSMIUM_INCLUDE} ${SKYLOOP_PROTOZERO_INCLUDE})
 target_link_libraries(osmium::osmium INTERFACE EXPAT::EXPAT ZLIB::ZLIB Threads::Threads)
+
+# Embree 4, or 3.13 that Debian 12 has. Its own configuration wants the headers of its task scheduler as well, which
+# no user of its interface needs.
+function(skyloop_find_embree)
+    foreach(major IN ITEMS 4 3)
+        find_path(EMBREE${major}_INCLUDE_DIR embree${major}/rtcore.h)
+        find_library(EMBREE${major}_LIBRARY embree${major})
+        mark_as_advanced(EMBREE${major}_INCLUDE_DIR EMBREE${major}_LIBRARY)
+        if(NOT EMBREE${major}_INCLUDE_DIR OR NOT EMBREE${major}_LIBRARY)
+            continue()
+        endif()
+        file(STRINGS ${EMBREE${major}_INCLUDE_DIR}/embree${major}/rtcore_config.h version REGEX "RTC_VERSION_STRING")
+        string(REGEX REPLACE ".*\"([0-9.]+)\".*" "\\1" version "${version}")
+        if(version VERSION_LESS 3.13)
+            continue()
+        endif()
+        add_library(Embree::Embree UNKNOWN IMPORTED GLOBAL)
+        set_target_properties(Embree::Embree PROPERTIES
+            IMPORTED_LOCATION ${EMBREE${major}_LIBRARY}
+            INTERFACE_INCLUDE_DIRECTORIES ${EMBREE${major}_INCLUDE_DIR}
+            INTERFACE_COMPILE_DEFINITIONS SKYLOOP_EMBREE_MAJOR=${major})
+        return()
+    endforeach()
+    message(FATAL_ERROR
+        "skyloop needs Embree 3.13 or 4: apt-get install libembree-dev  (or run tools/start, which does)")
+endfunction()
+skyloop_find_embree()

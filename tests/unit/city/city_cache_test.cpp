@@ -24,7 +24,7 @@ protected:
     void put(const std::string& name, const std::string& content) const {
         std::ofstream(folder_ / name, std::ios::binary) << content;
     }
-    [[nodiscard]] CityReading read(const CityFileSettings& settings = {}) const {
+    CityReading read(const CityFileSettings& settings = {}) const {
         auto reading = read_city(folder_ / "a.obj", settings, cache());
         EXPECT_TRUE(reading) << reading.error().message;
         return reading ? std::move(*reading) : CityReading{};
