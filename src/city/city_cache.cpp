@@ -1,7 +1,6 @@
 #include "skyloop/city/city_cache.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -73,7 +72,9 @@ std::optional<CityFile> load_cached(const fs::path& path, std::uint64_t key) {
 void keep_cached(const fs::path& path, const std::string& bytes) {
     std::error_code refused;
     fs::create_directories(path.parent_path(), refused);
-    const fs::path fresh = fmt::format("{}.{}.new", path.string(), ::getpid());
+    // Two runs that keep the same city at once write different files.
+    const auto instant = std::chrono::system_clock::now().time_since_epoch().count();
+    const fs::path fresh = fmt::format("{}.{:x}.new", path.string(), instant);
     std::ofstream stream(fresh, std::ios::binary);
     stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     stream.close();

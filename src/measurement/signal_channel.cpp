@@ -16,10 +16,10 @@ double first_to_own_frequency(const ChannelInput& input) {
     return input.arrival.signals.front().carrier.value() / input.signal.carrier.value();
 }
 
-std::optional<DbHz> arriving_cn0(const ChannelInput& input) {
+std::optional<DbHz> arriving_cn0(const ChannelInput& input, Decibels by_echoes) {
     const Arrival& arrival = input.arrival;
     if (arrival.paths == 0 || !arrival.cn0 || !std::isfinite(arrival.cn0->value())) return std::nullopt;
-    return DbHz(arrival.cn0->value() + input.signal.relative_power.value());
+    return DbHz(arrival.cn0->value() + input.signal.relative_power.value() + by_echoes.value());
 }
 
 DbHz reported_cn0(DbHz cn0, Decibels resolution) {
@@ -50,9 +50,22 @@ SignalChannel::SignalChannel(const MeasurementParameters& parameters, std::uint6
     terms_.signal = signal;
 }
 
+void SignalChannel::hear_echoes(const ChannelInput& input, const ChannelEpoch& epoch) {
+    const MeasurementParameters& parameters = epoch.parameters;
+    const double factor = parameters.multipath.factor();
+    echoes_ = {};
+    if (!input.arrival.echoes_known || factor == 0) return;
+    echoes_ = correlator_multipath(input.arrival.echoes,
+                                   {code_loop_, parameters.phase_loop, input.signal.carrier, traits_.boc});
+    echoes_.code = echoes_.code * factor;
+    echoes_.phase = echoes_.phase * factor;
+    echoes_.strength = echoes_.strength * factor;
+}
+
 void SignalChannel::track(const ChannelInput& input, const ChannelEpoch& epoch) {
     visited_ = epoch.now;
-    const std::optional<DbHz> cn0 = arriving_cn0(input);
+    hear_echoes(input, epoch);
+    const std::optional<DbHz> cn0 = arriving_cn0(input, echoes_.strength);
     const SignalScintillation scintillation = scintillation_at(
         {input.arrival.amplitude_scintillation, input.arrival.phase_scintillation}, first_to_own_frequency(input));
     const bool had_phase = lock_.phase_locked();
@@ -90,10 +103,29 @@ void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& e
                                 (deviations_.phase.rad() * processes_.phase.value() +
                                  deviations_.scintillation.rad() * processes_.scintillation.value()));
     terms_.doppler_noise = deviations_.frequency * (parameters.doppler_noise.factor() * processes_.frequency.value());
+    if (input.arrival.echoes_known) {
+        terms_.multipath = echoes_.code;
+        terms_.phase_multipath = echoes_.phase;
+        return;
+    }
     // Without the line of sight the excess path is the error, and the scene has told it.
     const double multipath = input.arrival.line_of_sight ? parameters.multipath.factor() : 0;
     terms_.multipath = Metres(multipath * processes_.multipath.value() *
                               multipath_deviation(parameters.multipath_model, input.arrival.direction.elevation));
+    terms_.phase_multipath = parameters.multipath_model.phase_ratio * terms_.multipath;
+}
+
+// The count of cycles does not survive when another ray is tracked, nor when echoes that outdo it turn the phase over.
+bool SignalChannel::path_changed(const ChannelInput& input, const ChannelEpoch& epoch) const {
+    const Arrival& arrival = input.arrival;
+    if (arrival.line_of_sight != line_of_sight_) return true;
+    if (!arrival.echoes_known) return false;
+    const Metres half_wave(speed_of_light / input.signal.carrier.value() / 2);
+    const double steady = arrival.excess_rate.value() * epoch.since_last.value();
+    const double jump = (arrival.excess_path - excess_path_).value() - steady;
+    constexpr double beyond_any_motion = 0.5;  // m: what the rate leaves of a ray's change in an epoch
+    return std::abs(jump) > beyond_any_motion + 0.1 * std::abs(steady) ||
+           std::abs((terms_.phase_multipath - phase_multipath_).value()) > half_wave.value();
 }
 
 void SignalChannel::follow_cycles(const ChannelInput& input, const ChannelEpoch& epoch, bool had_phase) {
@@ -101,8 +133,10 @@ void SignalChannel::follow_cycles(const ChannelInput& input, const ChannelEpoch&
     if (!lock_.phase_locked()) return;
     const MeasurementParameters& parameters = epoch.parameters;
     const double factor = parameters.cycle_slips.factor();
-    const bool path_changed = input.arrival.line_of_sight != line_of_sight_;
+    const bool another_ray = path_changed(input, epoch);
     line_of_sight_ = input.arrival.line_of_sight;
+    excess_path_ = input.arrival.excess_path;
+    phase_multipath_ = terms_.phase_multipath;
     if (!had_phase) {
         count_.start(factor > 0 && !lock_.half_cycle_resolved());
         half_cycle_resolved_ = lock_.half_cycle_resolved();
@@ -111,7 +145,7 @@ void SignalChannel::follow_cycles(const ChannelInput& input, const ChannelEpoch&
         ever_counted_ = true;
         return;
     }
-    slipped_ = path_changed;
+    slipped_ = another_ray;
     if (factor > 0) {
         const double rate = parameters.slips_per_hour / seconds_per_hour +
                             slips_per_second(parameters.phase_loop, deviations_.total_phase());
@@ -144,7 +178,8 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     const double path = arrival.range.value() + epoch.clock_bias.value() - speed_of_light * arrival.clock_bias.value() +
                         arrival.signal_in_space_error.value() + arrival.tropo_delay.value() +
                         arrival.excess_path.value();
-    const double path_rate = arrival.range_rate.value() + arrival.range_rate_error.value() + epoch.clock_drift.value() -
+    const double path_rate = arrival.range_rate.value() + arrival.range_rate_error.value() +
+                             arrival.excess_rate.value() + epoch.clock_drift.value() -
                              speed_of_light * arrival.clock_drift;
     const double phase_ratio = parameters.multipath_model.phase_ratio;
     const double floor = parameters.multipath_model.floor.value();
@@ -153,16 +188,17 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     result.satellite = satellite_;
     result.signal = signal_;
     result.carrier = input.signal.carrier;
-    result.cn0 = reported_cn0(*arriving_cn0(input), parameters.cn0_resolution);
+    result.cn0 = reported_cn0(*arriving_cn0(input, echoes_.strength), parameters.cn0_resolution);
     result.pseudorange = Metres(path + speed_of_light * input.signal.group_delay.value() + iono +
                                 terms_.multipath.value() + terms_.code_noise.value());
     result.pseudorange_deviation = Metres(root_of_squares(deviations_.code.value(), floor));
     result.doppler = Hertz(-path_rate / wavelength + terms_.doppler_noise.value());
     result.doppler_deviation = deviations_.frequency;
     result.half_cycle_resolved = lock_.half_cycle_resolved();
+    if (arrival.echoes_known) result.correlation_distortion = std::abs(echoes_.distortion);
     if (epoch.corrected) result.correction = correction(input, Metres(iono));
     if (!lock_.phase_locked()) return result;
-    const double carrier_path = path - iono + phase_ratio * terms_.multipath.value() + terms_.phase_noise.value();
+    const double carrier_path = path - iono + terms_.phase_multipath.value() + terms_.phase_noise.value();
     result.carrier_phase = carrier_path / wavelength + count_.cycles();
     result.carrier_phase_deviation =
         root_of_squares(deviations_.total_phase().rad() / (2 * std::numbers::pi), phase_ratio * floor / wavelength);

@@ -11,6 +11,7 @@
 #include "skyloop/flow/arrivals.hpp"
 #include "skyloop/flow/measurement_terms.hpp"
 #include "skyloop/flow/observations.hpp"
+#include "skyloop/measurement/correlator_multipath.hpp"
 
 namespace skyloop {
 
@@ -59,6 +60,8 @@ public:
 
 private:
     void follow_cycles(const ChannelInput& input, const ChannelEpoch& epoch, bool had_phase);
+    void hear_echoes(const ChannelInput& input, const ChannelEpoch& epoch);
+    [[nodiscard]] bool path_changed(const ChannelInput& input, const ChannelEpoch& epoch) const;
     void draw_errors(const ChannelInput& input, const ChannelEpoch& epoch);
     [[nodiscard]] DifferentialCorrection correction(const ChannelInput& input, Metres iono) const;
 
@@ -79,7 +82,10 @@ private:
     bool ever_counted_ = false;
     bool half_cycle_resolved_ = false;
     bool slipped_ = false;
+    CorrelatorMultipath echoes_;  // of this epoch, where a scene tells them
+    // Of the epoch before: which ray was tracked, and how far its carrier was off.
     bool line_of_sight_ = true;
+    Metres excess_path_, phase_multipath_;
 };
 
 }  // namespace skyloop

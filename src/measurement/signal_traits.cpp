@@ -54,9 +54,10 @@ double chip_rate_ratio_of(Signal signal) {
 }  // namespace
 
 SignalTraits signal_traits(Constellation constellation, Signal signal) {
-    SignalTraits traits{chip_rate_ratio_of(signal), 1, false};
+    SignalTraits traits{chip_rate_ratio_of(signal), 1, false, false};
     const bool galileo = constellation == Constellation::galileo;
-    if (galileo && signal == Signal::l1) traits.jitter_ratio = boc_jitter_ratio;
+    traits.boc = galileo && signal == Signal::l1;
+    if (traits.boc) traits.jitter_ratio = boc_jitter_ratio;
     const bool navic = constellation == Constellation::navic;
     traits.pilot = galileo || signal == Signal::l2 || (signal == Signal::l5 && !navic);
     if (navic) traits.chip_rate_ratio = 1;  // SPS: BPSK(1) on L5 (IRNSS SIS ICD 1.1)

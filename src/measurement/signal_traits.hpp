@@ -14,6 +14,7 @@ namespace skyloop {
 struct SignalTraits {
     double chip_rate_ratio = 1;  ///< to 1.023 Mchip/s
     double jitter_ratio = 1;     ///< of the code's noise to that of BPSK at the same chip rate
+    bool boc = false;            ///< BOC(1,1): the peak of correlation is three times as steep, with side peaks
     bool pilot = false;          ///< tracked without data bits: the component named by rinex_signal_code()
 };
 

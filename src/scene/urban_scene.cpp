@@ -18,7 +18,7 @@ namespace {
 /// No city is larger, and single precision squares it safely, m.
 constexpr double largest_coordinate = 1e8;
 /// A triangle less high has no area to speak of, and no normal, m.
-constexpr double least_height = 1e-6;
+constexpr double least_triangle_height = 1e-6;
 
 bool is_place(const Eigen::Vector3d& corner) {
     // Written so that what is no number fails.
@@ -40,7 +40,7 @@ struct KeptTriangles {
         const Eigen::Vector3d area = (b - a).cross(c - a);
         const double longest =
             std::sqrt(std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}));
-        if (!(area.norm() > least_height * longest)) {
+        if (!(area.norm() > least_triangle_height * longest)) {
             ++statistics.degenerate;
             return;
         }

@@ -19,13 +19,14 @@ struct SignalArrival {
     Decibels relative_power;  ///< C/N0 over that of the satellite's first signal
 };
 
-/// One ray beside the direct one, or instead of it: reflected, diffracted, or both.
+/// One ray beside the one that is tracked: reflected, or bent around an edge. What is tracked is the direct ray, or the
+/// strongest one when the direct one is blocked.
 struct Echo {
     SkyDirection from;            ///< as the antenna hears it; elevations below 0 too
-    Metres excess;                ///< over the direct path
+    Metres excess;                ///< over the tracked ray; below 0 when that is not the first one to arrive
     MetresPerSecond excess_rate;  ///< its derivative
-    double amplitude = 0;         ///< at the antenna's output, over that of an unobstructed direct ray
-    Angle phase;                  ///< that reflections add, without that of the excess
+    double amplitude = 0;         ///< at the antenna's output and the first carrier, over that of the tracked ray
+    Angle phase;                  ///< by which it lags behind the tracked ray, beside what the excess does
     int reflections = 0;
 };
 
@@ -40,12 +41,12 @@ struct Arrival {
     InplaceVector<SignalArrival, most_signals> signals;  ///< the first one first
 
     bool line_of_sight = true;
-    int paths = 1;        ///< rays that arrive; 0: the satellite is hidden
-    int reflections = 0;  ///< of the shortest path
-    Metres excess_path;   ///< of the shortest path over the direct one
-    /// All rays but the direct one, strongest first; empty without a scene and in the baseline profile, where the
-    /// fields above tell everything.
-    std::vector<Echo> echoes;
+    int paths = 1;                     ///< rays that arrive; 0: the satellite is hidden
+    int reflections = 0;               ///< of the tracked ray
+    Metres excess_path;                ///< of the tracked ray over the direct one
+    MetresPerSecond excess_rate;       ///< its derivative
+    bool echoes_known = false;         ///< `echoes` is all multipath that there is: a scene tells it
+    std::vector<Echo> echoes;          ///< strongest first
     Metres signal_in_space_error;      ///< of orbit and clock against the broadcast, in the range
     MetresPerSecond range_rate_error;  ///< its derivative
     Metres iono_delay;                 ///< of the code of the first signal; the carrier is advanced by as much
@@ -56,7 +57,7 @@ struct Arrival {
     Decibels rain_loss;
     Decibels foliage_loss;
     Decibels iono_loss;
-    Decibels reflection_loss;
+    Decibels reflection_loss;            ///< of the tracked ray, by reflections and at edges
     Decibels antenna_gain;               ///< of the receiving antenna in this direction, dBic
     Decibels power_offset;               ///< of this satellite against the nominal power, with what changes in time
     Decibels interference_loss;          ///< of C/N0, by jamming

@@ -14,9 +14,10 @@ struct SignalTerms {
     SatelliteId satellite;
     Signal signal = Signal::l1;
     Metres code_noise;
-    Metres multipath;     ///< of the code
-    Metres phase_noise;   ///< of the carrier
-    Hertz doppler_noise;  ///< of the carrier
+    Metres multipath;        ///< of the code
+    Metres phase_multipath;  ///< of the carrier
+    Metres phase_noise;      ///< of the carrier
+    Hertz doppler_noise;     ///< of the carrier
 };
 
 /// All of one epoch; empty for models that measure nothing.

@@ -33,6 +33,8 @@ struct Observation {
     Metres pseudorange_deviation;         ///< 1 σ by the receiver's own knowledge of its loops
     double carrier_phase_deviation = 0;   ///< cycles
     Hertz doppler_deviation;
+    /// How skew the peak of correlation is, by wide correlators: 0 of a clean signal; nothing where it is not measured.
+    std::optional<double> correlation_distortion{};
     std::optional<DifferentialCorrection> correction{};  ///< while the receiver uses corrections
 };
 

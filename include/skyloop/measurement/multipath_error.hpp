@@ -10,7 +10,7 @@ namespace skyloop {
 /// An echo, against the direct signal.
 struct SignalEcho {
     double amplitude = 0;    ///< relative, not negative
-    double delay_chips = 0;  ///< later than the direct signal, not negative
+    double delay_chips = 0;  ///< later than the direct signal; below 0: earlier, where that is blocked
     Angle phase;             ///< of its carrier against that of the direct signal
 };
 

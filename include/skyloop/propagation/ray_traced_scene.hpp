@@ -15,27 +15,31 @@ namespace skyloop {
 /// What walls do to the signals.
 enum class SceneProfile {
     /// The article's rule (MODELS.md R-21…R-23): a satellite in line of sight has no multipath; one that is not comes
-    /// over
-    /// the path with the fewest reflections, at most 16, half of the power lost at each; without any it is hidden.
+    /// over the path with the fewest reflections, among equals the shortest, and loses half of its power at each;
+    /// without any it is hidden.
     baseline,
-    /// Fresnel reflection by material, ground, diffraction at edges, foliage, the antenna's pattern: all rays that
-    /// arrive
-    /// are echoes that the receiver's correlators sum up (MODELS.md 7.10).
+    /// Fresnel reflection by material, diffraction at edges, foliage, the antenna's pattern (MODELS.md 7.10). In sight
+    /// the direct ray is tracked, else the strongest one, if it is above −40 dB; all others are echoes that the
+    /// receiver's correlators sum up.
     modern,
 };
 
 /// How a scene acts.
 struct RayTracedSceneSettings {
     SceneProfile profile = SceneProfile::modern;
-    PathSearchSettings search{};
-    double epochs_per_second = 1;             ///< decides the number of rays
+    PathSearchSettings search{};              ///< the profile decides whether paths of blocked satellites alone matter
+    double epochs_per_second = 1;             ///< decides the number of rays where `search` does not
     AntennaPattern antenna{};                 ///< modern
     Decibels opposite_hand_rejection{10};     ///< modern: of the antenna; 10 a patch, 20 a survey antenna
     Metres wall_roughness{0.01};              ///< modern: rms height
     bool diffraction = true, foliage = true;  ///< modern
 };
 
-/// Writes line_of_sight, paths, reflections, excess_path and reflection_loss, in the modern profile the echoes too.
+/// Writes line_of_sight, paths, reflections, excess_path and reflection_loss, in the modern profile the echoes too, and
+/// adds to foliage_loss. It comes after the other losses and before the link budget.
+///
+/// Materials that surface_material() does not know are taken for concrete. Strengths are those of the first carrier.
+/// Rays that bend and are reflected as well are not followed.
 ///
 /// State: the path finder's memory.
 class RayTracedScene : public PropagationEffect {

@@ -103,7 +103,7 @@ TEST(ScenarioDocumentation, HasAllParts) {
          {"[run]", "[sky]", "[trajectory]", "[frame]", "[model.baseline]", "[model.constant-sigma]",
           "[model.satellite-count]", "[model.whole-path]", "[model.refraction]", "[model.modern]",
           "[model.modern.terms.NAME]", "[model.modern.ionosphere]", "[model.modern.solution]", "[atmosphere]",
-          "[[atmosphere.layer]]", "[[atmosphere.cloud]]", "[[receiver]]"})
+          "[[atmosphere.layer]]", "[[atmosphere.cloud]]", "[scene]", "[[receiver]]"})
         EXPECT_TRUE(keys.contains(heading)) << heading;
     EXPECT_TRUE(keys.at("[frame]").contains("reach_m"));
     EXPECT_TRUE(keys.at("[model.whole-path]").contains("vapour_db_per_km_per_g_m3"));

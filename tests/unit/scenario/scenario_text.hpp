@@ -136,6 +136,25 @@ base_m = 750
 thickness_m = 8000
 density_g_m3 = 1.125
 
+[scene]
+buildings = ["a.obj", "demo"]
+terrain = "hills.asc"
+origin = [48.5, 11.5, 520]
+axes = "y,x,z"
+unit_m = 0.01
+material = "brick"
+default_height_m = 12
+metres_per_level = 3.5
+reflections = 5
+roofs_reflect = true
+ground_reflects = false
+diffraction = false
+foliage = false
+rays = 4096
+threads = 0
+memory_limit_mb = 100
+cache = false
+
 [[receiver]]
 board = "ublox-f9p"
 port = ["pty:/tmp/gps", "file:out.nmea"]

@@ -1,0 +1,19 @@
+/// Waves that bend around edges.
+#pragma once
+
+#include "skyloop/base/units.hpp"
+
+namespace skyloop {
+
+/// Below this a wave passes clear of the edge.
+constexpr double knife_edge_clear = -0.78;
+
+/// Fresnel parameter of an edge against a source that is very far: θ √(2d ∕ λ) (MODELS.md 7.10).
+/// @param detour angle between the source and the edge; below 0 when the source is in sight
+/// @param distance of the edge
+double knife_edge_parameter(Angle detour, Metres distance, Hertz carrier);
+
+/// J(v) = 6.9 + 20 lg(√((v − 0.1)² + 1) + v − 0.1), 0 below −0.78 (ITU-R P.526; MODELS.md 7.10).
+Decibels knife_edge_loss(double v);
+
+}  // namespace skyloop

@@ -1,0 +1,112 @@
+#include "scene_rays.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "skyloop/propagation/knife_edge.hpp"
+#include "skyloop/propagation/reflected_wave.hpp"
+#include "skyloop/propagation/scene_edges.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr double faintest_ray = 0.01;  // −40 dB
+constexpr Angle knife_edge_lag =
+    Angle::degrees(45);  // of the bent ray deep in the shadow (ITU-R P.526, Fresnel integral)
+
+double amplitude_of(Decibels loss) { return std::pow(10, -loss.value() / 20); }
+
+SceneRay line_to(const ArrivingSatellite& arriving) {
+    const Eigen::Vector3d way = arriving.satellite.position - arriving.observer.position;
+    return {arriving.observer.position, way.normalized()};
+}
+
+Decibels foliage_loss(const UrbanScene& scene, const SceneRay& ray) {
+    return Decibels(foliage_loss_db(scene.foliage(), ray));
+}
+
+// |Q − P| + |S − Q| − |S − P| without the difference of two lengths of 20,000 km.
+double detour_length(const Eigen::Vector3d& antenna, const Eigen::Vector3d& edge, const Eigen::Vector3d& satellite) {
+    const double sum = (satellite - edge).norm() + (satellite - antenna).norm();
+    return (edge - antenna).norm() + (antenna - edge).dot(2 * satellite - antenna - edge) / sum;
+}
+
+}  // namespace
+
+SkyDirection sky_direction(const Eigen::Vector3d& enu) {
+    const double azimuth = std::atan2(enu.x(), enu.y());
+    return {Angle::radians(azimuth < 0 ? azimuth + 2 * std::numbers::pi : azimuth),
+            Angle::radians(std::atan2(enu.z(), std::hypot(enu.x(), enu.y())))};
+}
+
+SceneRays::SceneRays(const UrbanScene& scene, const RayTracedSceneSettings& settings)
+    : scene_(scene), settings_(settings) {
+    for (const std::string& name : scene.materials())
+        materials_.push_back(surface_material(name).value_or(*surface_material("concrete")));
+}
+
+double SceneRays::gain_over_direct(const ArrivingSatellite& arriving, const Eigen::Vector3d& from) const {
+    const auto gain = [&](const Eigen::Vector3d& direction) {
+        return settings_.antenna.gain(sky_direction(arriving.to_antenna * direction));
+    };
+    return amplitude_of(gain(line_to(arriving).direction) - gain(from));
+}
+
+ArrivingRay SceneRays::reflected(const ArrivingSatellite& arriving, const ScenePath& path) const {
+    std::vector<ReflectingSurface> surfaces;
+    for (const std::uint32_t index : path.planes) {
+        const ScenePlane& plane = scene_.planes()[index];
+        surfaces.push_back({plane.normal, complex_permittivity_p2040(materials_[plane.material], arriving.carrier)});
+    }
+    const CircularWave wave = reflected_wave(surfaces, path.arrival, arriving.carrier, settings_.wall_roughness);
+    const std::complex<double> heard = heard_by_right_hand(wave, settings_.opposite_hand_rejection);
+    return {path.arrival,
+            path.excess,
+            path.excess_rate,
+            std::abs(heard) * gain_over_direct(arriving, path.arrival),
+            Angle::radians(-std::arg(heard)),
+            path.reflections()};
+}
+
+void SceneRays::add_bent(const ArrivingSatellite& arriving, std::vector<ArrivingRay>& rays) const {
+    const SceneRay line = line_to(arriving);
+    const Eigen::Vector3d& antenna = arriving.observer.position;
+    for (const SceneEdge& edge : edges_around_obstacle(scene_, line)) {
+        const double v = knife_edge_parameter(edge.detour, edge.distance, arriving.carrier);
+        Decibels loss = knife_edge_loss(v);
+        if (settings_.foliage) loss += foliage_loss(scene_, {antenna, edge.direction});
+        const Eigen::Vector3d place = antenna + edge.distance.value() * edge.direction;
+        const Eigen::Vector3d onward = (arriving.satellite.position - place).normalized();
+        const double rate = (onward - line.direction).dot(arriving.satellite.velocity) -
+                            (edge.direction - line.direction).dot(arriving.observer.velocity);
+        rays.push_back({edge.direction, detour_length(antenna, place, arriving.satellite.position), rate,
+                        amplitude_of(loss) * gain_over_direct(arriving, edge.direction), knife_edge_lag, 0});
+    }
+}
+
+std::vector<ArrivingRay> SceneRays::beside_direct(const ArrivingSatellite& arriving) const {
+    std::vector<ArrivingRay> rays;
+    for (const ScenePath& path : arriving.found.paths)
+        rays.push_back(reflected(arriving, path));
+    if (!arriving.found.line_of_sight && settings_.diffraction) add_bent(arriving, rays);
+    rays.erase(std::remove_if(rays.begin(), rays.end(), [](const auto& r) { return !(r.amplitude >= faintest_ray); }),
+               rays.end());
+    std::stable_sort(rays.begin(), rays.end(), [](const ArrivingRay& a, const ArrivingRay& b) {
+        return a.amplitude != b.amplitude ? a.amplitude > b.amplitude : a.excess < b.excess;
+    });
+    return rays;
+}
+
+DirectLoss SceneRays::direct_loss(const ArrivingSatellite& arriving) const {
+    const SceneRay line = line_to(arriving);
+    DirectLoss loss;
+    if (settings_.foliage) loss.foliage = foliage_loss(scene_, line);
+    if (!settings_.diffraction) return loss;
+    for (const SceneEdge& edge : edges_near_sight(scene_, line))
+        loss.edges += knife_edge_loss(knife_edge_parameter(-edge.detour, edge.distance, arriving.carrier));
+    return loss;
+}
+
+}  // namespace skyloop

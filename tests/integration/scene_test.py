@@ -1,0 +1,56 @@
+"""Buildings in a run: satellites are blocked and reflected, and the same run gives the same bytes."""
+import csv
+import json
+import pathlib
+import unittest
+
+from session import open_folder, skyloop
+
+RUN = ["simulate", "--scene", "demo", "--start", "2026-03-01T09:00:00Z", "--duration", 10, "--out"]
+
+
+def rows(folder):
+    with open(pathlib.Path(folder, "satellites.csv"), encoding="ascii") as file:
+        return list(csv.DictReader(file))
+
+
+class SceneTest(unittest.TestCase):
+    def test_buildings_block_and_reflect(self):
+        for model in ("modern", "baseline"):
+            with self.subTest(model), open_folder() as folder:
+                skyloop(*RUN, folder, "--model", model)
+                found = rows(folder)
+                self.assertTrue(any(row["line_of_sight"] == "0" for row in found))
+                self.assertTrue(any(row["line_of_sight"] == "1" for row in found))
+                for row in found:
+                    if model == "baseline" and row["line_of_sight"] == "1":
+                        self.assertEqual(float(row["excess_path_m"]), 0)
+                    if row["paths"] == "0":
+                        self.assertEqual(row["used"], "0")
+                summary = json.loads(pathlib.Path(folder, "run.json").read_text(encoding="utf-8"))
+                self.assertGreater(summary["scene"]["triangles"], 100)
+                self.assertEqual(summary["path_search"]["epochs"], 10)
+
+    def test_the_same_run_gives_the_same_bytes(self):
+        with open_folder() as first, open_folder() as second:
+            for folder in (first, second):
+                skyloop(*RUN, folder)
+            for name in ("satellites.csv", "fixes.csv", "port0.out"):
+                self.assertEqual(pathlib.Path(first, name).read_bytes(), pathlib.Path(second, name).read_bytes(), name)
+
+    def test_scene_tells_what_the_model_holds(self):
+        with open_folder() as folder:
+            top, sky = pathlib.Path(folder, "top.svg"), pathlib.Path(folder, "sky.svg")
+            told = json.loads(skyloop("scene", "demo", "--at", "46.4774,30.7326", "--svg", top, "--sky-svg", sky, "--json").stdout)
+            self.assertGreater(told["wall_triangles"], 100)
+            self.assertFalse(told["at"]["enclosed"])
+            self.assertTrue(0 < told["at"]["open_sky"] < 1)
+            for picture in (top, sky):
+                self.assertIn("<svg", picture.read_text(encoding="utf-8"))
+
+    def test_check_reads_the_scene(self):
+        self.assertIn("scene       demo, ", skyloop("check", "--scene", "demo").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

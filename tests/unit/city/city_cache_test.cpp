@@ -1,0 +1,110 @@
+// Cities that were read are kept, and what is kept is believed only when it is whole and of the same source.
+#include "skyloop/city/city_cache.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace skyloop {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CityCacheTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = fs::path(::testing::TempDir()) / (std::string("skyloop_city_cache_") + test->name());
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+        put("a.obj", "v 0 0 0\nv 20 0 0\nv 0 0 20\nf 1 2 3\n");
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    void put(const std::string& name, const std::string& content) const {
+        std::ofstream(folder_ / name, std::ios::binary) << content;
+    }
+    CityReading read(const CityFileSettings& settings = {}) const {
+        auto reading = read_city(folder_ / "a.obj", settings, cache());
+        EXPECT_TRUE(reading) << reading.error().message;
+        return reading ? std::move(*reading) : CityReading{};
+    }
+    [[nodiscard]] CityCache cache() const { return {folder_ / "cache", 0}; }
+    [[nodiscard]] fs::path kept() const { return cached_city_path(folder_ / "a.obj", cache()); }
+    fs::path folder_;
+};
+
+TEST_F(CityCacheTest, TheSecondReadingComesFromTheCacheAndIsTheSame) {
+    const CityReading first = read();
+    EXPECT_FALSE(first.from_cache);
+    const CityReading second = read();
+    EXPECT_TRUE(second.from_cache);
+    EXPECT_EQ(second.digest, first.digest);
+    EXPECT_EQ(encode_city(second.file, 1), encode_city(first.file, 1));
+}
+
+TEST_F(CityCacheTest, AnotherSourceOrOtherSettingsAreReadAgain) {
+    const CityReading first = read();
+    CityFileSettings centimetres;
+    centimetres.metres_per_unit = 0.5;
+    EXPECT_FALSE(read(centimetres).from_cache);
+    EXPECT_FALSE(read().from_cache) << "the other settings took the place";
+    put("a.obj", "v 0 0 0\nv 20 0 0\nv 0 0 21\nf 1 2 3\n");
+    const CityReading changed = read();
+    EXPECT_FALSE(changed.from_cache);
+    EXPECT_NE(changed.digest, first.digest);
+}
+
+TEST_F(CityCacheTest, DamagedCutAndForeignFilesAreIgnoredAndReplaced) {
+    read();
+    std::ifstream stream(kept(), std::ios::binary);
+    const std::string whole{std::istreambuf_iterator<char>(stream), {}};
+    ASSERT_GT(whole.size(), 100U);
+    std::string damaged = whole;
+    damaged[whole.size() / 2] = static_cast<char>(damaged[whole.size() / 2] ^ 1);
+    for (const std::string& content :
+         {damaged, whole.substr(0, whole.size() - 1), whole.substr(0, 20), std::string("hello"), std::string()}) {
+        std::ofstream(kept(), std::ios::binary) << content;
+        EXPECT_FALSE(read().from_cache) << content.size();
+        EXPECT_TRUE(read().from_cache) << content.size();
+    }
+}
+
+TEST_F(CityCacheTest, AFolderThatCannotBeWrittenIsNoError) {
+    put("cache", "a file where the folder should be");
+    EXPECT_FALSE(read().from_cache);
+    EXPECT_FALSE(read().from_cache);
+}
+
+TEST_F(CityCacheTest, AMissingSourceIsToldByItsNameThoughItWasKept) {
+    read();
+    fs::remove(folder_ / "a.obj");
+    const auto missing = read_city(folder_ / "a.obj", {}, cache());
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().code, ErrorCode::outside);
+    EXPECT_THAT(missing.error().message, ::testing::HasSubstr("a.obj"));
+}
+
+TEST(CityEncoding, NoByteCanBeChangedOrLeftOut) {
+    CityFile file;
+    file.format = "obj";
+    file.warnings = {"one"};
+    file.model.add_triangle({Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 0, 1)},
+                            SurfaceKind::roof, file.model.material_index("glass"));
+    file.model.foliage.push_back({{{0, 0}, {1, 0}, {0, 1}}, 0, 9, 1.5});
+    const std::string bytes = encode_city(file, 7);
+    const auto decoded = decode_city(bytes, 7);
+    ASSERT_TRUE(decoded);
+    EXPECT_EQ(encode_city(*decoded, 7), bytes);
+    EXPECT_FALSE(decode_city(bytes, 8)) << "another key";
+    EXPECT_FALSE(decode_city(bytes + "x", 7));
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        std::string changed = bytes;
+        changed[i] = static_cast<char>(changed[i] ^ 0x10);
+        EXPECT_FALSE(decode_city(changed, 7)) << i;
+        EXPECT_FALSE(decode_city(std::string_view(bytes).substr(0, i), 7)) << i;
+    }
+}
+
+}  // namespace
+}  // namespace skyloop

@@ -1,0 +1,121 @@
+// What buildings a scenario names become in a run.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "run_parts.hpp"
+#include "skyloop/emulator/run_summary.hpp"
+#include "unit/transport/temporary_folder.hpp"
+
+namespace skyloop {
+namespace {
+
+using test::emulator_data;
+using test::emulator_scenario;
+using testing::Contains;
+using testing::HasSubstr;
+
+RunMode scene_mode() {
+    RunMode mode;
+    mode.virtual_time = true;
+    mode.open_ports = false;
+    mode.now = to_gps_time(2400, 0);
+    return mode;
+}
+
+Result<Assembly> with_scene(const std::string& text) {
+    return assemble(emulator_scenario(text), emulator_data(), scene_mode());
+}
+
+constexpr const char* demo_text = "[run]\nduration_s = 3\n[scene]\nbuildings = \"demo\"\nrays = 2048\n";
+
+TEST(SceneAssembly, TheDemoStandsBelowTheStartOfTheTrajectory) {
+    const auto assembly = with_scene(std::string(demo_text) + "[trajectory]\nkind = \"fixed\"\nat = [48, 11, 500]\n");
+    ASSERT_TRUE(assembly) << assembly.error().message;
+    ASSERT_TRUE(assembly->scene.scene);
+    const Geodetic origin = assembly->scene.scene->frame().origin();
+    EXPECT_NEAR(origin.latitude.deg(), 48, 1e-12);
+    EXPECT_NEAR(origin.height.above_ellipsoid.value(), 498.5, 1e-9);
+    EXPECT_THAT(assembly->details, Contains(HasSubstr("scene: demo, ")));
+}
+
+TEST(SceneAssembly, EveryModelHasItsBuildings) {
+    for (const std::string_view name : model_names()) {
+        auto assembly = with_scene(std::string(demo_text) + "[model]\nname = \"" + std::string(name) + "\"\n");
+        ASSERT_TRUE(assembly) << assembly.error().message;
+        const RayTracedScene* city = assembly->emulator->simulation().city();
+        ASSERT_NE(city, nullptr) << name;
+        const std::atomic<bool> stop{false};
+        assembly->emulator->run_until(*assembly->end, stop);
+        EXPECT_FALSE(city->paths().empty()) << name;
+        EXPECT_EQ(city->counters().epochs, 3U) << name;
+    }
+}
+
+TEST(SceneAssembly, ReceiversShareTheSceneAndNothingElse) {
+    const auto assembly = with_scene(std::string(demo_text) + "[[receiver]]\n[[receiver]]\n");
+    ASSERT_TRUE(assembly) << assembly.error().message;
+    const RayTracedScene* first = assembly->emulator->stations()[0].simulation().city();
+    const RayTracedScene* second = assembly->emulator->stations()[1].simulation().city();
+    EXPECT_NE(first, second);
+    EXPECT_EQ(&first->scene(), &second->scene());
+}
+
+TEST(SceneAssembly, WithoutErrorsTheBuildingsAreLeftOutWithAWarning) {
+    const auto assembly = with_scene(std::string(demo_text) + "[model]\nerrors = \"none\"\n");
+    ASSERT_TRUE(assembly) << assembly.error().message;
+    EXPECT_EQ(assembly->emulator->simulation().city(), nullptr);
+    EXPECT_THAT(assembly->warnings, Contains(HasSubstr("leaves the buildings out")));
+}
+
+TEST(SceneAssembly, TheProfileIsThatOfTheModel) {
+    Scenario scenario = emulator_scenario(demo_text);
+    const RayTracedSceneSettings modern = scene_effect_settings(scenario, 10);
+    EXPECT_EQ(modern.profile, SceneProfile::modern);
+    EXPECT_EQ(modern.search.most_reflections, 3);
+    EXPECT_TRUE(modern.search.ground_reflects);
+    EXPECT_EQ(modern.epochs_per_second, 10);
+    choose_model(scenario.model, "baseline");
+    const RayTracedSceneSettings baseline = scene_effect_settings(scenario, 1);
+    EXPECT_EQ(baseline.profile, SceneProfile::baseline);
+    EXPECT_EQ(baseline.search.most_reflections, 16);
+    EXPECT_FALSE(baseline.search.ground_reflects);
+    EXPECT_TRUE(baseline.search.blocked_only);
+}
+
+TEST(SceneAssembly, MissingAndDamagedFilesAreNamed) {
+    const test::TemporaryFolder folder;
+    const auto missing = with_scene("[scene]\nbuildings = \"/no/such/city.obj\"");
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().code, ErrorCode::outside);
+    EXPECT_THAT(missing.error().message, HasSubstr("/no/such/city.obj"));
+    std::ofstream(folder / "bad.obj") << "v 0 0 0\nf 1 2 3\n";
+    const auto damaged = with_scene("[scene]\nbuildings = \"" + (folder / "bad.obj").string() + "\"");
+    ASSERT_FALSE(damaged);
+    EXPECT_EQ(damaged.error().code, ErrorCode::input);
+    EXPECT_THAT(damaged.error().message, HasSubstr("bad.obj"));
+}
+
+TEST(SceneAssembly, TheDigestCoversTheFiles) {
+    const test::TemporaryFolder folder;
+    const auto digest = [&](const char* top) {
+        std::ofstream(folder / "a.obj") << "v 0 0 0\nv 50 0 0\nv 0 0 " << top << "\nf 1 2 3\n";
+        const auto assembly = with_scene("[scene]\nbuildings = \"" + (folder / "a.obj").string() + "\"");
+        EXPECT_TRUE(assembly) << assembly.error().message;
+        return assembly ? assembly->digest : "";
+    };
+    const std::string first = digest("20");
+    EXPECT_EQ(digest("20"), first);
+    EXPECT_NE(digest("21"), first);
+}
+
+TEST(SceneAssembly, TheSummaryTellsOfTheScene) {
+    const Scenario scenario = emulator_scenario(demo_text);
+    const auto assembly = assemble(scenario, emulator_data(), scene_mode());
+    ASSERT_TRUE(assembly) << assembly.error().message;
+    const std::string summary = run_summary(scenario, *assembly, "test");
+    for (const char* part : {"\"scene\"", "\"triangles\"", "\"path_search\"", "\"rays_per_epoch\""})
+        EXPECT_THAT(summary, HasSubstr(part));
+}
+
+}  // namespace
+}  // namespace skyloop
