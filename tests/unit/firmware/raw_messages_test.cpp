@@ -109,6 +109,23 @@ TEST(RxmMeasxMessage, HasTheCodePhaseOfTheTravelTime) {
     EXPECT_EQ(m.satellites[1].whole_chips, 3418);
 }
 
+TEST(RxmMeasxMessage, TellsHowSkewThePeakOfCorrelationIs) {
+    UbxReport f9 = measured();
+    auto& signals = f9.state.epoch.observations.signals;
+    signals.clear();
+    for (int n = 1; n <= 4; ++n)
+        signals.push_back(raw_signal({Constellation::gps, n}, Signal::l1, 22'345'678.9));
+    signals[1].correlation_distortion = 0.01;
+    signals[2].correlation_distortion = 0.1;
+    signals[3].correlation_distortion = 0.3;
+    const auto m = f9.report<RxmMeasx>();
+    ASSERT_EQ(m.satellites.size(), 4u);
+    EXPECT_EQ(m.satellites[0].mpath_indic, 1) << "not looked for";
+    EXPECT_EQ(m.satellites[1].mpath_indic, 1);
+    EXPECT_EQ(m.satellites[2].mpath_indic, 2);
+    EXPECT_EQ(m.satellites[3].mpath_indic, 3);
+}
+
 TEST(RxmSfrbxMessage, HasOneFrameForEachSubframe) {
     UbxReport f9(9);
     EXPECT_TRUE(f9.frames(RxmSfrbx::message_id).empty());
