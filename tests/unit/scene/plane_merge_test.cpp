@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 /// A rectangle with sides `along` and `across`.
 void add_facet(CityModel& city, const Vector3d& corner, const Vector3d& along, const Vector3d& across,
-               SurfaceKind kind = SurfaceKind::wall, std::uint8_t material = 0) {
-    city.add_quad({corner, corner + along, corner + along + across, corner + across}, kind, material);
+               SurfaceKind kind = SurfaceKind::wall) {
+    city.add_quad({corner, corner + along, corner + along + across, corner + across}, kind);
 }
 
 std::shared_ptr<const UrbanScene> merged(const CityModel& city, double tolerance = 1e-3) {
@@ -67,7 +67,7 @@ TEST(PlaneMerge, KindsAndMaterialsStayApart) {
     const std::uint8_t glass = city.material_index("glass");
     const Vector3d along(0, 10, 0), up(0, 0, 3);
     add_facet(city, {5, 0, 0}, along, up);
-    add_facet(city, {5, 0, 3}, along, up, SurfaceKind::wall, glass);
+    city.add_quad({Vector3d(5, 0, 3), {5, 10, 3}, {5, 10, 6}, {5, 0, 6}}, SurfaceKind::wall, glass);
     add_facet(city, {5, 0, 6}, along, up, SurfaceKind::roof);
     add_facet(city, {5, 0, 9}, along, up);
     const auto scene = merged(city);
