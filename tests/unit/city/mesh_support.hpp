@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <string>
 
 #include "skyloop/city/city_file.hpp"
