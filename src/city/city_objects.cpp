@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 
 #include "skyloop/city/footprint.hpp"
 
@@ -43,6 +45,15 @@ double lowest_of(const std::vector<ObjectSurface>& surfaces) {
             for (const Eigen::Vector3d& point : ring)
                 lowest = std::min(lowest, point.z());
     return lowest;
+}
+
+double highest_of(const std::vector<ObjectSurface>& surfaces) {
+    double highest = -std::numeric_limits<double>::infinity();
+    for (const ObjectSurface& surface : surfaces)
+        for (const auto& ring : surface.rings)
+            for (const Eigen::Vector3d& point : ring)
+                highest = std::max(highest, point.z());
+    return highest;
 }
 
 /// Level 0 alone tells no heights of a construction.
@@ -132,7 +143,6 @@ void ObjectBuilder::add(const CityObject& object, const PlaceOnEarth& place) {
                 point = place(point);
     if (object.object_class == ObjectClass::construction) {
         add_construction(surfaces);
-        if (object.building && !object.parent) ++file_.buildings;
     } else if (object.object_class == ObjectClass::terrain ||
                !add_plants(surfaces, object.object_class == ObjectClass::tree)) {
         for (const ObjectSurface& surface : surfaces)
@@ -147,7 +157,9 @@ void ObjectBuilder::add_surface(const ObjectSurface& surface, SurfaceKind kind) 
 }
 
 void ObjectBuilder::add_construction(const std::vector<ObjectSurface>& surfaces) {
-    const double floor = lowest_of(surfaces) + floor_thickness;
+    // What is thin as a whole, such as the deck of a bridge, has no floor of its own.
+    const double lowest = lowest_of(surfaces);
+    const double floor = highest_of(surfaces) > lowest + floor_thickness ? lowest + floor_thickness : lowest - 1;
     const bool told = std::any_of(surfaces.begin(), surfaces.end(), [](const ObjectSurface& surface) {
         return surface.use == SurfaceUse::wall || surface.use == SurfaceUse::roof;
     });
@@ -159,7 +171,7 @@ void ObjectBuilder::add_construction(const std::vector<ObjectSurface>& surfaces)
             continue;
         }
         const Eigen::Vector3d normal = area_vector(surface);
-        const bool level = std::abs(normal.z()) >= 0.5 * normal.norm();
+        const bool level = normal.z() != 0 && std::abs(normal.z()) >= 0.5 * normal.norm();
         const auto& ring = surface.rings.front();
         const bool low = std::all_of(ring.begin(), ring.end(), [&](const auto& point) { return point.z() <= floor; });
         if (!(level && low)) add_surface(surface, level ? SurfaceKind::roof : SurfaceKind::wall);
@@ -278,10 +290,14 @@ Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std:
     warn_of_place(file, system, {extent.middle(), ground}, settings.origin.has_value());
     const std::vector<bool> replaced = replaced_objects(read.objects);
     ObjectBuilder builder(file, settings);
+    std::set<std::size_t> buildings;
     for (std::size_t i = 0; i < read.objects.size(); ++i) {
-        if (!replaced[i]) builder.add(read.objects[i], *place);
+        if (replaced[i]) continue;
+        builder.add(read.objects[i], *place);
+        if (read.objects[i].building) buildings.insert(read.objects[i].parent.value_or(i));
         if (file.model.triangles.size() > settings.most_triangles) return too_many_triangles(name, settings);
     }
+    file.buildings = buildings.size();
     if (file.dropped > 0)
         file.warnings.push_back(
             fmt::format("{} surfaces without area or with wrong corners were left out", file.dropped));
