@@ -18,7 +18,7 @@ namespace skyloop {
 /// How a satellite's signal arrives.
 enum class Reception : std::uint8_t { line_of_sight, reflected, blocked };
 
-constexpr std::array reception_names{"line_of_sight", "reflected", "blocked"};
+inline constexpr std::array reception_names{"line_of_sight", "reflected", "blocked"};
 
 /// One reflected path with its geometry; lists go from the antenna outwards.
 struct ReflectedPath {

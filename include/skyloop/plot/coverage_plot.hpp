@@ -14,7 +14,7 @@ namespace skyloop {
 /// What is shown.
 enum class CoverageQuantity : std::uint8_t { line_of_sight, satellites, hdop, fix, error };
 
-constexpr std::array coverage_quantity_names{"los", "satellites", "hdop", "fix", "error"};
+inline constexpr std::array coverage_quantity_names{"los", "satellites", "hdop", "fix", "error"};
 
 /// The value of a cell; nothing where it has none.
 std::optional<double> coverage_value(const CoverageCell& cell, CoverageQuantity quantity);
