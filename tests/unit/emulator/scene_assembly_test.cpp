@@ -75,11 +75,11 @@ TEST(SceneAssembly, TheProfileIsThatOfTheModel) {
     EXPECT_TRUE(modern.search.ground_reflects);
     EXPECT_EQ(modern.epochs_per_second, 10);
     choose_model(scenario.model, "baseline");
-    const RayTracedSceneSettings baseline = scene_effect_settings(scenario, 1);
-    EXPECT_EQ(baseline.profile, SceneProfile::baseline);
-    EXPECT_EQ(baseline.search.most_reflections, 16);
-    EXPECT_FALSE(baseline.search.ground_reflects);
-    EXPECT_TRUE(baseline.search.blocked_only);
+    const RayTracedSceneSettings article = scene_effect_settings(scenario, 1);
+    EXPECT_EQ(article.profile, SceneProfile::baseline);
+    EXPECT_EQ(article.search.most_reflections, 16);
+    EXPECT_FALSE(article.search.ground_reflects);
+    EXPECT_TRUE(article.search.blocked_only);
 }
 
 TEST(SceneAssembly, MissingAndDamagedFilesAreNamed) {
