@@ -35,12 +35,12 @@ void read_surface_material(TableReader& table, std::string& material) {
 void read_file_keys(TableReader& table, CityFileSettings& reading) {
     reading.origin = table.place("origin");
     if (table.has("axes")) {
-        std::string text;
+        std::string text = "x,y,z";  // stays where the value is no text, which has been told
         table.text("axes", text);
         const auto axes = FileAxes::parse(text);
         if (axes)
             reading.axes = *axes;
-        else if (!text.empty())
+        else
             table.mistake("axes", axes.error().message);
     }
     table.number("unit_m", reading.metres_per_unit, {1e-6, 1e6});

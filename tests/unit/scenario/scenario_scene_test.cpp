@@ -58,6 +58,7 @@ TEST(ScenarioScene, MistakesAreToldWithTheirPlace) {
     EXPECT_THAT(mistakes_of("[scene]\nbuildings = \"\""), HasSubstr("scene.buildings: is an empty text"));
     EXPECT_THAT(mistakes_of("[scene]\nbuildings = \"demo\"\naxes = \"x,y\""),
                 StartsWith("test.toml:3:8: scene.axes: "));
+    EXPECT_THAT(mistakes_of("[scene]\nbuildings = \"demo\"\naxes = \"\""), StartsWith("test.toml:3:8: scene.axes: "));
     EXPECT_THAT(mistakes_of("[scene]\nbuildings = \"demo\"\nmaterial = \"bricks\""), HasSubstr("did you mean 'brick'"));
     EXPECT_THAT(mistakes_of("[scene]\nbuildings = \"demo\"\nreflections = 17"),
                 HasSubstr("scene.reflections: is 17; expected a whole number from 1 to 16"));
