@@ -67,7 +67,7 @@ class Maps(unittest.TestCase):
         maps = {skyloop("sky", *arguments, "--threads", threads).stdout for threads in (1, 2, 4)}
         self.assertEqual(len(maps), 1)
         rows = list(csv.DictReader(io.StringIO(maps.pop())))
-        self.assertEqual(len(rows), 64)
+        self.assertEqual(len(rows), 8 * 7)
         full = [row for row in rows if row["satellites"]]
         self.assertGreater(len(full), 10)
         for row in full:

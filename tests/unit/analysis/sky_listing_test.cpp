@@ -107,7 +107,7 @@ TEST(SkyListing, json_and_csv_hold_every_satellite) {
     EXPECT_THAT(csv, HasSubstr("time_utc,satellite,azimuth_deg,elevation_deg,range_m,range_rate_mps,"));
     EXPECT_THAT(
         csv, HasSubstr("\n2010-07-01T12:00:00.000Z,G12,270.000000,45.000000,21234567.891,-500.0000,2627.518,,0,0,1590,"
-                       "388800.000,42\n"));
+                       "388800.000,42,,,,\n"));
     EXPECT_THAT(csv, HasSubstr("R03,200.000000,70.000000,21234567.891,-500.0000,,,1,1,"));
 }
 
