@@ -114,7 +114,7 @@ bool passes(const SceneRay& ray, const std::array<Eigen::Vector3d, 3>& corners) 
     }
     const auto turn = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); };
     const auto [least, most] =
-        std::ranges::minmax({turn(seen[0], seen[1]), turn(seen[1], seen[2]), turn(seen[2], seen[0])});
+        std::minmax({turn(seen[0], seen[1]), turn(seen[1], seen[2]), turn(seen[2], seen[0])});
     if (least > 0 || most < 0) return true;
     const double slack = 1e-3 + 4 * size * static_cast<double>(std::numeric_limits<float>::epsilon());
     return std::min({distance_of_segment(seen[0], seen[1]), distance_of_segment(seen[1], seen[2]),
@@ -161,7 +161,7 @@ std::optional<double> UrbanScene::Parts::exact_distance(const SceneRay& ray, con
     const auto around = corners(found.triangle);
     if (!passes(ray, around)) return std::nullopt;
     const auto along = [&ray](const Eigen::Vector3d& corner) { return ray.direction.dot(corner - ray.origin); };
-    const auto [first, last] = std::ranges::minmax({along(around[0]), along(around[1]), along(around[2])});
+    const auto [first, last] = std::minmax({along(around[0]), along(around[1]), along(around[2])});
     return std::max(std::clamp(std::isfinite(exact) ? exact : rough, first, last), 0.0);
 }
 
