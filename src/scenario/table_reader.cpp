@@ -314,11 +314,12 @@ void TableReader::refuse(std::string_view key, const std::string& reason) {
 }
 
 void TableReader::finish() {
-    const std::vector<std::string_view> known(known_.begin(), known_.end());
+    std::vector<std::string_view> meant(known_.begin(), known_.end());
+    meant.insert(meant.end(), asked_for_.begin(), asked_for_.end());
     for (const auto& [key, node] : table_) {
         const std::string_view word = key.str();
-        if (std::find(known.begin(), known.end(), word) != known.end()) continue;
-        mistakes_.add(key.source(), fmt::format("{}: unknown key{}", path_of(word), did_you_mean(word, known)));
+        if (std::find(known_.begin(), known_.end(), word) != known_.end()) continue;
+        mistakes_.add(key.source(), fmt::format("{}: unknown key{}", path_of(word), did_you_mean(word, meant)));
     }
 }
 

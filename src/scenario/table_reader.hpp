@@ -112,7 +112,10 @@ public:
     /// Says why a key that other versions know is refused here.
     void refuse(std::string_view key, const std::string& reason);
 
-    [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
+    [[nodiscard]] bool has(std::string_view key) {
+        asked_for_.emplace_back(key);
+        return table_.contains(key);
+    }
     [[nodiscard]] bool is_boolean(std::string_view key) const { return table_[key].is_boolean(); }
     /// The keys that the table has.
     [[nodiscard]] std::vector<std::string> keys() const;
@@ -133,7 +136,8 @@ private:
     const toml::table& table_;
     std::string path_;
     MistakeList& mistakes_;
-    std::vector<std::string> known_;  // copies: a caller may compose a key
+    std::vector<std::string> known_;      // copies: a caller may compose a key
+    std::vector<std::string> asked_for_;  // whether they are there; may be meant by others, too
 };
 
 /// Parses TOML and reads its top table with `body`.

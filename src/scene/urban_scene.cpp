@@ -113,8 +113,7 @@ bool passes(const SceneRay& ray, const std::array<Eigen::Vector3d, 3>& corners) 
         size = std::max(size, corners[i].cwiseAbs().maxCoeff());
     }
     const auto turn = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); };
-    const auto [least, most] =
-        std::minmax({turn(seen[0], seen[1]), turn(seen[1], seen[2]), turn(seen[2], seen[0])});
+    const auto [least, most] = std::minmax({turn(seen[0], seen[1]), turn(seen[1], seen[2]), turn(seen[2], seen[0])});
     if (least > 0 || most < 0) return true;
     const double slack = 1e-3 + 4 * size * static_cast<double>(std::numeric_limits<float>::epsilon());
     return std::min({distance_of_segment(seen[0], seen[1]), distance_of_segment(seen[1], seen[2]),
