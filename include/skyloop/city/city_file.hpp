@@ -26,8 +26,8 @@ struct FileAxes {
 
 /// How a file is to be read.
 struct CityFileSettings {
-    /// Where the frame lies; files in local coordinates need it for a place on Earth, files with geographic or
-    /// projected ones take the middle of what they hold when it is absent.
+    /// Where the frame lies. When it is absent, files with geographic coordinates take the middle of what they hold;
+    /// local and projected ones lie at 0° N 0° E, the latter with a warning.
     std::optional<Geodetic> origin;
     std::optional<FileAxes> axes;             ///< absent: as the format says
     double metres_per_unit = 1;               ///< 0.01 for levels in centimetres
