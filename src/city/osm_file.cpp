@@ -146,16 +146,6 @@ std::vector<std::vector<Eigen::Vector2d>> OsmReader::rings_of(const std::vector<
     return rings;
 }
 
-bool around(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& p) {
-    bool inside = false;
-    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-        const Eigen::Vector2d &a = ring[i], &b = ring[j];
-        if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
-            inside = !inside;
-    }
-    return inside;
-}
-
 void OsmReader::add_area(const Area& area) {
     const auto outers = rings_of(area.outer);
     auto inners = rings_of(area.inner);
@@ -164,7 +154,7 @@ void OsmReader::add_area(const Area& area) {
         for (auto& inner : inners) {
             if (inner.empty()) continue;
             const Eigen::Vector2d middle = (inner[0] + inner[1]) / 2;
-            if (outers.size() == 1 || around(outer, middle)) outline.footprint.holes.push_back(std::move(inner));
+            if (outers.size() == 1 || inside_ring(outer, middle)) outline.footprint.holes.push_back(std::move(inner));
         }
         found_.outlines.push_back(std::move(outline));
     }

@@ -18,16 +18,6 @@ constexpr double tree_height = 12;      ///< m, of woods without a height
 constexpr double canopy_thickness = 1;  ///< m, of roofs without walls
 constexpr double cell_width = 100;      ///< m, of the grid in which parts look for their building
 
-bool inside_ring(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& p) {
-    bool inside = false;
-    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-        const Eigen::Vector2d &a = ring[i], &b = ring[j];
-        if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
-            inside = !inside;
-    }
-    return inside;
-}
-
 /// What a part is to the outline it lies in.
 struct Inner {
     Eigen::Vector2d point = Eigen::Vector2d::Zero();
@@ -181,6 +171,16 @@ void add_outline_warnings(CityFile& file, std::size_t without_height, const City
 }
 
 }  // namespace
+
+bool inside_ring(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& p) {
+    bool inside = false;
+    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+        const Eigen::Vector2d &a = ring[i], &b = ring[j];
+        if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
+            inside = !inside;
+    }
+    return inside;
+}
 
 Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::string_view name,
                                   const CityFileSettings& settings) {

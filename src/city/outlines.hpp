@@ -43,6 +43,9 @@ struct Outlines {
     std::vector<std::string> warnings;
 };
 
+/// Whether a place is inside of a ring, by the crossings of a line from it.
+bool inside_ring(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& place);
+
 /// Places outlines and raises houses on them: the ground is level with the origin. Parts that cover at least half of a
 /// building's outline replace it. Buildings without a height are `settings.default_height` tall, woods 12 m.
 Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::string_view name,
