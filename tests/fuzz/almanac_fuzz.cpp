@@ -1,20 +1,12 @@
 // Any bytes as an almanac: a clear error or usable records, never a crash, a hang or an orbit that is no number.
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
+#include "require.hpp"
 #include "skyloop/gnss/navigation_data.hpp"
 #include "skyloop/gnss/orbit.hpp"
 #include "skyloop/rinex/almanac_file.hpp"
-
-namespace {
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace skyloop;

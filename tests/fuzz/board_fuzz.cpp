@@ -1,22 +1,18 @@
 // Any bytes as a receiver profile: mistakes of one line each, or a profile that a receiver can be built from.
 #include <chrono>
 #include <cstdint>
-#include <cstdlib>
 #include <sstream>
 #include <string>
 #include <string_view>
 
 #include "firmware/receiver.hpp"
+#include "require.hpp"
 #include "skyloop/protocol/nmea_sentence.hpp"
 #include "skyloop/scenario/board_file.hpp"
 
 namespace {
 
 using namespace skyloop;
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
 
 // A receiver of this profile that has not found its position yet.
 void check_receiver(const firmware::BoardProfile& board) {

@@ -3,17 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 
+#include "require.hpp"
 #include "skyloop/city/city_file.hpp"
 
 namespace skyloop {
 
 using CityParser = Result<CityFile> (*)(std::string_view, std::string_view, const CityFileSettings&);
-
-inline void require(bool promise) {
-    if (!promise) std::abort();
-}
 
 inline void require_sound_model(const CityModel& model, const CityFileSettings& settings) {
     require(!model.triangles.empty() || !model.foliage.empty());

@@ -5,19 +5,15 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 
 #include "firmware/config/config_handler.hpp"
+#include "require.hpp"
 #include "skyloop/protocol/ubx_cfg_values.hpp"
 
 namespace {
 
 using namespace skyloop;
 using namespace skyloop::firmware;
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
 
 BoardProfile fuzz_board() {
     BoardProfile board;

@@ -1,19 +1,15 @@
 // Any bytes as a file of fixes: one clear sentence, or samples on the Earth.
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
+#include "require.hpp"
 #include "skyloop/analysis/comparison.hpp"
 #include "skyloop/analysis/fix_series.hpp"
 
 namespace {
 
 using namespace skyloop;
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
 
 bool on_earth(const Geodetic& place) {
     return std::abs(place.latitude.deg()) <= 90 + 1e-9 && std::abs(place.longitude.deg()) <= 180 + 1e-9 &&

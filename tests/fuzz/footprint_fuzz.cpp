@@ -1,18 +1,10 @@
 // Any numbers as an outline with holes: triangles of its points, within its box, never a crash or a hang.
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 
+#include "require.hpp"
 #include "skyloop/city/footprint.hpp"
-
-namespace {
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace skyloop;

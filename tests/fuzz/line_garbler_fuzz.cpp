@@ -1,17 +1,13 @@
 // Any bytes at any two speeds: how they are split over calls makes no difference, and nothing is made out of nothing.
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 
+#include "require.hpp"
 #include "skyloop/transport/line_garbler.hpp"
 
 namespace {
 
 using namespace skyloop;
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
 
 constexpr std::uint32_t bauds[] = {1200, 4800, 9600, 9900, 19200, 38400, 57600, 115200, 230400, 460800, 921600};
 

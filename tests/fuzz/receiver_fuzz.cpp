@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <cstdlib>
 
 #include "../unit/firmware/sample_epochs.hpp"
 #include "firmware/receiver.hpp"
+#include "require.hpp"
 #include "skyloop/protocol/stream_splitter.hpp"
 
 namespace {
@@ -13,10 +13,6 @@ namespace {
 using namespace skyloop;
 using namespace skyloop::firmware;
 using namespace std::chrono_literals;
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
 
 // The first byte chooses whose commands are understood, and the generation.
 BoardProfile fuzzed_board(std::uint8_t choice) {

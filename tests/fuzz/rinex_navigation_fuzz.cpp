@@ -1,9 +1,9 @@
 // Any bytes as a navigation file: a clear error or usable records, never a crash, a hang or an orbit that is no number.
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
+#include "require.hpp"
 #include "skyloop/geo/geodetic.hpp"
 #include "skyloop/gnss/foreign_records.hpp"
 #include "skyloop/gnss/navigation_data.hpp"
@@ -13,9 +13,7 @@
 
 namespace {
 
-void require(bool promise) {
-    if (!promise) std::abort();
-}
+using skyloop::require;
 
 bool one_line(std::string_view message) { return !message.empty() && message.find('\n') == std::string_view::npos; }
 

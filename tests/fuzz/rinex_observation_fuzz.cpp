@@ -2,19 +2,15 @@
 // anew, reads the same.
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
+#include "require.hpp"
 #include "skyloop/rinex/observation_file.hpp"
 #include "skyloop/rinex/observation_reader.hpp"
 
 namespace {
 
 using namespace skyloop;
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
 
 bool one_line(std::string_view message) { return !message.empty() && message.find('\n') == std::string_view::npos; }
 

@@ -2,18 +2,14 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 
 #include "firmware/correction_input.hpp"
+#include "require.hpp"
 #include "skyloop/protocol/rtcm3.hpp"
 #include "skyloop/protocol/stream_splitter.hpp"
 #include "skyloop/protocol/ubx_frame.hpp"
 
 namespace {
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
 
 void read(skyloop::ByteSpan frame) {
     using namespace skyloop;

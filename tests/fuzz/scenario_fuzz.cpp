@@ -1,20 +1,16 @@
 // Any bytes as a scenario: mistakes of one line each, or settings that can be run.
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <sstream>
 #include <string>
 #include <string_view>
 
+#include "require.hpp"
 #include "skyloop/scenario/scenario_file.hpp"
 
 namespace {
 
 using namespace skyloop;
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
 
 void check_place(const Geodetic& place) {
     require(std::abs(place.latitude.deg()) <= 90 && std::abs(place.longitude.deg()) <= 180 + 1e-9);
