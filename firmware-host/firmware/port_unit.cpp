@@ -11,15 +11,6 @@ constexpr std::uint32_t usb_full_speed = 12'000'000, i2c_fast_mode = 400'000;
 
 }  // namespace
 
-PortUnit* find_unit(std::vector<PortUnit>& units, PortId port) {
-    const auto found = std::find_if(units.begin(), units.end(), [&](const PortUnit& u) { return u.id == port; });
-    return found == units.end() ? nullptr : &*found;
-}
-
-const PortUnit* find_unit(const std::vector<PortUnit>& units, PortId port) {
-    return find_unit(const_cast<std::vector<PortUnit>&>(units), port);
-}
-
 std::uint32_t configured_baud(const ConfigStore& store, PortId port) {
     switch (port) {
         case PortId::uart1:

@@ -35,8 +35,13 @@ struct PortUnit {
 };
 
 /// The one of that name, or null.
-PortUnit* find_unit(std::vector<PortUnit>& units, PortId port);
-const PortUnit* find_unit(const std::vector<PortUnit>& units, PortId port);
+/// @param units a vector of PortUnit, constant or not
+template <class Units>
+auto find_unit(Units& units, PortId port) -> decltype(units.data()) {
+    for (auto& unit : units)
+        if (unit.id == port) return &unit;
+    return nullptr;
+}
 
 /// The speed of a port by the configuration; of USB, I2C and SPI that of their bus (USB full speed; I2C fast mode).
 std::uint32_t configured_baud(const ConfigStore& store, PortId port);
