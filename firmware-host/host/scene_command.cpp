@@ -94,8 +94,6 @@ Result<SceneReport> report_of(const SceneOptions& options) {
     const SceneSettings settings{SceneSettings().merge_tolerance, entry->memory_limit_mb << 20};
     auto scene = UrbanScene::build(city->model, settings);
     if (!scene) return fail(scene.error().code, fmt::format("{}: {}", options.file, scene.error().message));
-    for (const std::string& doubt : doubts_about(city->model))
-        city->warnings.push_back(fmt::format("{}: {}", options.file, doubt));
     SceneReport report{std::move(*city), std::move(*scene), std::nullopt};
     const bool has_height = std::count(options.at.begin(), options.at.end(), ',') > 1;
     if (at) report.viewpoint = viewpoint_at(*at, has_height, *report.scene);

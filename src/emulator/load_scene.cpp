@@ -176,8 +176,6 @@ Result<LoadedScene> load_scene(const Scenario& scenario, const Geodetic& start, 
     loaded.description = scene_description(city->names, *loaded.scene);
     loaded.from_cache = city->from_cache;
     loaded.warnings = std::move(city->warnings);
-    for (const std::string& doubt : doubts_about(city->model))
-        loaded.warnings.push_back("scene: " + doubt);
     warn_of_guessed_origin(scenario.scene, *city, loaded.warnings);
     warn_of_scene(*loaded.scene, start, loaded.warnings);
     return loaded;
@@ -191,7 +189,6 @@ RayTracedSceneSettings scene_effect_settings(const Scenario& scenario, double ep
     settings.search.most_reflections = entry.reflections.value_or(modern ? 3 : most_reflections);
     settings.search.roofs_reflect = entry.roofs_reflect;
     settings.search.ground_reflects = entry.ground_reflects.value_or(modern);
-    settings.search.blocked_only = !modern;
     settings.search.rays = entry.rays;
     settings.search.threads = entry.threads;
     settings.epochs_per_second = epochs_per_second;
