@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "skyloop/propagation/fresnel.hpp"
+#include "skyloop/scene/scene_path.hpp"
 
 namespace skyloop {
 namespace {
@@ -27,10 +28,6 @@ struct CircularBasis {
     }
     Field right, left;
 };
-
-Eigen::Vector3d mirrored(const Eigen::Vector3d& normal, const Eigen::Vector3d& direction) {
-    return direction - 2 * normal.dot(direction) * normal;
-}
 
 // Unit, in the plane of the surface and across the plane of incidence; any in it from straight ahead.
 Eigen::Vector3d across_incidence(const Eigen::Vector3d& normal, const Eigen::Vector3d& towards) {

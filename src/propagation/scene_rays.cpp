@@ -27,12 +27,6 @@ Decibels foliage_loss(const UrbanScene& scene, const SceneRay& ray) {
     return Decibels(foliage_loss_db(scene.foliage(), ray));
 }
 
-// |Q − P| + |S − Q| − |S − P| without the difference of two lengths of 20,000 km.
-double detour_length(const Eigen::Vector3d& antenna, const Eigen::Vector3d& edge, const Eigen::Vector3d& satellite) {
-    const double sum = (satellite - edge).norm() + (satellite - antenna).norm();
-    return (edge - antenna).norm() + (antenna - edge).dot(2 * satellite - antenna - edge) / sum;
-}
-
 }  // namespace
 
 SkyDirection sky_direction(const Eigen::Vector3d& enu) {
@@ -79,10 +73,11 @@ void SceneRays::add_bent(const ArrivingSatellite& arriving, std::vector<Arriving
         if (settings_.foliage) loss += foliage_loss(scene_, {antenna, edge.direction});
         const Eigen::Vector3d place = antenna + edge.distance.value() * edge.direction;
         const Eigen::Vector3d onward = (arriving.satellite.position - place).normalized();
-        const double rate = (onward - line.direction).dot(arriving.satellite.velocity) -
-                            (edge.direction - line.direction).dot(arriving.observer.velocity);
-        rays.push_back({edge.direction, detour_length(antenna, place, arriving.satellite.position), rate,
-                        amplitude_of(loss) * gain_over_direct(arriving, edge.direction), knife_edge_lag, 0});
+        const double detour = (place - antenna).norm() + nearer_by(antenna, place, arriving.satellite.position);
+        const double rate = excess_growth({edge.direction, onward, line.direction}, arriving.observer.velocity,
+                                          arriving.satellite.velocity);
+        rays.push_back({edge.direction, detour, rate, amplitude_of(loss) * gain_over_direct(arriving, edge.direction),
+                        knife_edge_lag, 0});
     }
 }
 

@@ -18,14 +18,6 @@ Eigen::Vector3d finite_or_zero(const Eigen::Vector3d& vector) {
     return vector.allFinite() ? vector : Eigen::Vector3d::Zero();
 }
 
-// How fast the excess grows. The way's gradient is −arrival at the antenna and +departure at the satellite, that of the
-// straight line −û and +û.
-double excess_rate(const FoundPath& path, const SearchTarget& target, const Eigen::Vector3d& velocity,
-                   const Eigen::Vector3d& satellite_velocity) {
-    return (path.unfolded.departure - target.direction).dot(satellite_velocity) -
-           (path.unfolded.arrival - target.direction).dot(velocity);
-}
-
 }  // namespace
 
 int default_rays(double epochs_per_second) {
@@ -169,8 +161,9 @@ std::vector<SatellitePaths> PathFinder::Parts::results(const SceneObserver& obse
     for (const FoundPath& path : paths) {
         const SearchTarget& target = targets[path.target];
         const Eigen::Vector3d satellite_velocity = finite_or_zero(satellites[target.satellite].velocity);
-        answer[target.satellite].paths.push_back({path.planes, path.unfolded.arrival, path.unfolded.excess,
-                                                  excess_rate(path, target, velocity, satellite_velocity)});
+        const UnfoldedPath& way = path.unfolded;
+        const double rate = excess_growth({way.arrival, way.departure, target.direction}, velocity, satellite_velocity);
+        answer[target.satellite].paths.push_back({path.planes, way.arrival, way.excess, rate});
     }
     return answer;
 }

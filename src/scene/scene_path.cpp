@@ -5,13 +5,16 @@
 #include "skyloop/scene/urban_scene.hpp"
 
 namespace skyloop {
-namespace {
 
-Eigen::Vector3d mirrored_direction(const ScenePlane& plane, const Eigen::Vector3d& direction) {
-    return direction - plane.normal * (2 * plane.normal.dot(direction));
+double nearer_by(const Eigen::Vector3d& b, const Eigen::Vector3d& a, const Eigen::Vector3d& satellite) {
+    const Eigen::Vector3d both = 2 * satellite - b - a;
+    return (b - a).dot(both) / ((satellite - a).norm() + (satellite - b).norm());
 }
 
-}  // namespace
+double excess_growth(const WayDirections& way, const Eigen::Vector3d& antenna_velocity,
+                     const Eigen::Vector3d& satellite_velocity) {
+    return (way.departure - way.direct).dot(satellite_velocity) - (way.arrival - way.direct).dot(antenna_velocity);
+}
 
 UnfoldedPath unfold(const UrbanScene& scene, std::span<const std::uint32_t> planes, const Eigen::Vector3d& antenna,
                     const Eigen::Vector3d& satellite) {
@@ -20,15 +23,12 @@ UnfoldedPath unfold(const UrbanScene& scene, std::span<const std::uint32_t> plan
     for (const std::uint32_t index : planes)
         image -= all[index].normal * (2 * (all[index].normal.dot(image) - all[index].offset));
     const Eigen::Vector3d way = satellite - image;
-    const double length = way.norm();
     UnfoldedPath path;
-    path.departure = way / length;
+    path.departure = way / way.norm();
     path.arrival = path.departure;
     for (std::size_t i = planes.size(); i > 0; --i)
-        path.arrival = mirrored_direction(all[planes[i - 1]], path.arrival);
-    // The difference of two lengths of 20,000 km would lose nine digits; the difference of their squares does not.
-    const Eigen::Vector3d both = 2 * satellite - antenna - image;
-    path.excess = (antenna - image).dot(both) / (length + (satellite - antenna).norm());
+        path.arrival = mirrored(all[planes[i - 1]].normal, path.arrival);
+    path.excess = nearer_by(antenna, image, satellite);
     return path;
 }
 
@@ -41,7 +41,7 @@ std::vector<Eigen::Vector3d> reflection_points(const UrbanScene& scene, const Sc
     for (const std::uint32_t index : path.planes) {
         const ScenePlane& plane = scene.planes()[index];
         place += direction * ((plane.offset - plane.normal.dot(place)) / plane.normal.dot(direction));
-        direction = mirrored_direction(plane, direction);
+        direction = mirrored(plane.normal, direction);
         points.push_back(place);
     }
     return points;
@@ -54,7 +54,7 @@ std::vector<double> incidence_cosines(const UrbanScene& scene, const ScenePath& 
     for (const std::uint32_t index : path.planes) {
         const ScenePlane& plane = scene.planes()[index];
         cosines.push_back(std::abs(plane.normal.dot(direction)));
-        direction = mirrored_direction(plane, direction);
+        direction = mirrored(plane.normal, direction);
     }
     return cosines;
 }

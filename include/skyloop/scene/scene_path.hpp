@@ -40,6 +40,26 @@ struct SatellitePaths {
     std::vector<ScenePath> paths;  ///< reflected ones, by number of reflections, then by excess
 };
 
+/// A direction after a mirror of that normal, unit both.
+inline Eigen::Vector3d mirrored(const Eigen::Vector3d& normal, const Eigen::Vector3d& direction) {
+    return direction - normal * (2 * normal.dot(direction));
+}
+
+/// |satellite − a| − |satellite − b|, m, by the difference of the squares: that of two lengths of 20,000 km would lose
+/// nine digits.
+double nearer_by(const Eigen::Vector3d& b, const Eigen::Vector3d& a, const Eigen::Vector3d& satellite);
+
+/// A way between satellite and antenna that is not the straight one: unit vectors, all towards the satellite's end.
+struct WayDirections {
+    Eigen::Vector3d arrival;    ///< from the antenna to where the signal comes from
+    Eigen::Vector3d departure;  ///< of the last stretch
+    Eigen::Vector3d direct;     ///< of the straight line
+};
+/// How fast the excess of a way grows, m/s: the way's gradient is −arrival at the antenna and +departure at the
+/// satellite, that of the straight line −direct and +direct (CITY.md section 2).
+double excess_growth(const WayDirections& way, const Eigen::Vector3d& antenna_velocity,
+                     const Eigen::Vector3d& satellite_velocity);
+
 /// Launch direction and excess length of a sequence of planes by image points, in closed form for the spherical wave:
 /// the image P' of the antenna, u = unit(S − P'), arrival = R1…Rk u, excess = (P − P')·(2S − P − P') ∕ (|S − P'| + |S −
 /// P|) (CITY.md section 1). Whether facets lie there is not asked.
