@@ -22,7 +22,7 @@ FENCES = [
     ("toml++", ("toml++/", "toml.hpp"), {"scenario"}),
     ("nlohmann/json", ("nlohmann/",), {"city", "emulator", "analysis", "host"}),
     ("pugixml", ("pugixml",), {"city"}),
-    ("libosmium", ("osmium/",), {"city"}),
+    ("libosmium", ("osmium/", "protozero/"), {"city"}),
     ("CLI11", ("CLI/", "CLI11"), {"host"}),
     ("spdlog", ("spdlog/",), {"host"}),
     ("GoogleTest", ("gtest/", "gmock/"), set()),

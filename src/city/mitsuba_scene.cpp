@@ -139,7 +139,9 @@ private:
         if (!bytes) return fail(bytes.error().code, fmt::format("{}: {}", place(shape), bytes.error().message));
         builder_.begin_mesh(*placed);
         const MeshPart part = builder_.part(material_of_shape(shape), std::array{id});
-        return add_ply(builder_, *bytes, *inside, part);
+        const auto added = add_ply(builder_, *bytes, *inside, part);
+        if (!added) return fail(added.error().code, fmt::format("{}: {}", place(shape), added.error().message));
+        return {};
     }
 
     std::string_view xml_, name_;

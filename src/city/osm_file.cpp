@@ -11,6 +11,7 @@
 
 #include "city_text.hpp"
 #include "outlines.hpp"
+#include "pbf_blobs.hpp"
 
 namespace skyloop {
 
@@ -190,6 +191,8 @@ Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std:
         return fail(ErrorCode::input,
                     fmt::format("{}: unknown format \"{}\", expected osm or osm.pbf", name, shown(format)));
     if (bytes.empty()) return fail(ErrorCode::input, fmt::format("{}: the file is empty", name));
+    if (format != "osm")
+        if (const auto whole = check_pbf_blobs(bytes, name); !whole) return fail(whole.error());
     OsmReader reader(settings);
     try {
         reader.read(bytes, std::string(format));

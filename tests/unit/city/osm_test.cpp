@@ -186,6 +186,15 @@ TEST(OpenStreetMap, ReadsPbfWholeAndRefusesItCut) {
         osm_refusal(bytes.substr(0, size), "osm.pbf");
 }
 
+TEST(OpenStreetMap, TellsWhereAPbfIsCut) {
+    const std::string bytes = small_pbf();
+    EXPECT_THAT(osm_refusal(bytes.substr(0, bytes.size() - 1), "osm.pbf"), HasSubstr("a blob is not whole"));
+    const std::string header_without_type = number_field(3, 5);
+    const std::string blob{0, 0, 0, static_cast<char>(header_without_type.size())};
+    EXPECT_THAT(osm_refusal(blob + header_without_type + "abcde", "osm.pbf"),
+                HasSubstr("at byte 0: a blob has no type; expected OSMHeader or OSMData"));
+}
+
 TEST(OpenStreetMap, ReadsAnExtractOfBavaria) {
     SKYLOOP_REQUIRE_SHARED(path, "city/osm_sample_10.068_48.135.osm");
     const auto text = read_text_file(path);
