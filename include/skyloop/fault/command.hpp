@@ -1,0 +1,50 @@
+/// What happens once in a run, whoever asks for it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/fault/parameters.hpp"
+
+namespace skyloop {
+
+/// The commands of this version.
+enum class CommandVerb {
+    start_fault,           ///< of `parameters`: kind, name, for_s …; or one of the scenario by its name
+    stop_fault,            ///< by name; of all occurrences
+    restart,               ///< the receiver's navigation: cold, warm, hot
+    reboot,                ///< the receiver
+    forget_configuration,  ///< of the receiver
+    set_baud,              ///< of the receiver's first UART
+    move_to,               ///< the vehicle's path is shifted so that it is there now
+    pause,                 ///< live runs: time stands still, and so does the receiver
+    resume,
+    step,   ///< a paused run goes on by so many seconds
+    speed,  ///< simulated seconds per second
+    note,   ///< a text for the record
+    stop    ///< the run ends
+};
+
+/// A command as it was given, checked.
+struct Command {
+    CommandVerb verb = CommandVerb::note;
+    Parameters parameters{};
+    std::string receiver{};  ///< empty: all
+    std::string source{};    ///< "scenario", "http", "mavlink": for the record
+};
+
+/// A command that can be asked for.
+struct CommandKind {
+    CommandVerb verb;
+    std::string name;     ///< "move_to"
+    std::string meaning;  ///< a sentence
+    std::vector<ParameterSpec> parameters;
+    bool live_only = false;    ///< nothing in virtual time
+    bool of_receiver = false;  ///< may be for one receiver alone
+};
+const std::vector<CommandKind>& command_kinds();
+const CommandKind* find_command_kind(std::string_view name);
+
+}  // namespace skyloop

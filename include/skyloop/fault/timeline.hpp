@@ -1,0 +1,118 @@
+/// When the entries of a scenario begin and end.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skyloop/base/units.hpp"
+#include "skyloop/geo/geodetic.hpp"
+#include "skyloop/time/gps_time.hpp"
+
+namespace skyloop {
+
+/// A state of the run that makes something begin; all that is given must hold at once, at an epoch of the first
+/// receiver, or when the client's message comes.
+struct Trigger {
+    std::optional<Metres> height_above, height_below;  ///< of the antenna above the ellipsoid
+    std::optional<MetresPerSecond> speed_above;        ///< over the ground
+    std::vector<std::array<double, 2>> inside{};  ///< a polygon of latitudes and longitudes, degrees; empty: anywhere
+    std::optional<Seconds> fix_for{};             ///< so long without a gap
+    std::string client_sends{};                   ///< "CFG-VALSET", "PUBX,41": name of a client's message; empty: none
+};
+
+/// One entry of the timeline, a fault or a command, by its times.
+struct TimelineEntry {
+    std::string name;
+    std::optional<Seconds> at{};                            ///< after the start of the run, or of `after`
+    std::optional<std::array<double, 2>> between{};         ///< s: drawn within these bounds in place of `at`
+    std::string after{};                                    ///< another entry, from whose beginning times count
+    bool after_end = false;                                 ///< … from whose end
+    std::optional<Trigger> when{};                          ///< times count from when this holds
+    bool again = false;                                     ///< a trigger acts each time it comes true, not once
+    std::optional<Seconds> every{};                         ///< begins anew after this
+    std::optional<int> times{};                             ///< in all; nothing: for ever
+    std::optional<Seconds> length{};                        ///< nothing: to the end of the run; of a command zero
+    std::optional<std::array<double, 2>> length_between{};  ///< s
+    Seconds ramp_in{0}, ramp_out{0};                        ///< within its length at the beginning; after it at the end
+    bool once = false;                                      ///< a command: begins and does not last
+    bool by_hand = false;                                   ///< begins only by begin()
+};
+
+/// What triggers look at, at an epoch of the first receiver.
+struct TriggerView {
+    std::optional<Geodetic> place{};  ///< of the antenna
+    MetresPerSecond speed{0};         ///< over the ground
+    bool has_fix = false;
+};
+
+/// One begins, one ends.
+struct TimelineEvent {
+    std::size_t entry = 0;
+    int occurrence = 1;
+    bool begins = true;
+    GpsTime time{};
+    bool by_hand = false;             ///< asked for while the run went on
+    std::optional<Seconds> length{};  ///< of this one, where it is not the entry's
+};
+
+/// Resolves entries to events.
+///
+/// Times are drawn from streams of their own, named by entry and occurrence, so that they do not depend on each other.
+/// State: what is under way and what is to come.
+class Timeline {
+public:
+    /// @param entries whose `after` name each other without a circle
+    Timeline(std::vector<TimelineEntry> entries, GpsTime start, std::uint64_t seed);
+
+    /// What begins and ends by `now`, in the order of time; at the same instant what ends comes first, then by entry.
+    std::vector<TimelineEvent> advance(GpsTime now);
+    /// Shows the run to the triggers; what they make begin comes with the next advance().
+    void look(GpsTime now, const TriggerView& view);
+    /// The same for a client's message, by its name.
+    void hear(GpsTime now, std::string_view client_message);
+    /// The next instant at which something is known to happen.
+    [[nodiscard]] std::optional<GpsTime> next_event() const;
+    /// Lets an entry begin now; false when it is under way. @param length nothing: the entry's own
+    bool begin(std::size_t entry, GpsTime now, std::optional<Seconds> length = std::nullopt);
+    /// Ends an entry now, as if its time were over; false when it is not under way.
+    bool end(std::size_t entry, GpsTime now);
+    [[nodiscard]] const std::vector<TimelineEntry>& entries() const { return entries_; }
+
+private:
+    struct Planned {
+        TimelineEvent event;
+        bool operator<(const Planned& other) const;
+    };
+    struct EntryState {
+        int begun = 0;  // occurrences, planned ones among them
+        std::set<int> under_way{};
+        bool triggered = false;  // its trigger has acted
+        bool held = false;       // … held at the last look
+    };
+    void plan_from(std::size_t entry, GpsTime origin);
+    void plan(std::size_t entry, GpsTime begin);
+    void plan_end(const TimelineEvent& begin);
+    void insert(const TimelineEvent& event);
+    void follow(const TimelineEvent& event);
+    void act(std::size_t entry, GpsTime now);
+    [[nodiscard]] std::optional<Seconds> length_of(const TimelineEvent& event) const;
+    [[nodiscard]] bool holds(const Trigger& trigger, GpsTime now) const;
+
+    std::vector<TimelineEntry> entries_;
+    std::uint64_t seed_;
+    std::vector<Planned> planned_;    // ascending
+    std::vector<EntryState> states_;  // of each entry
+    TriggerView last_view_;
+    std::optional<GpsTime> fix_since_;
+};
+
+/// Lines for people: what is known of each entry before the run, in the order of time.
+std::vector<std::string> timeline_text(const std::vector<TimelineEntry>& entries, GpsTime start, std::uint64_t seed,
+                                       Seconds span);
+
+}  // namespace skyloop

@@ -1,0 +1,18 @@
+/// The kinds of each layer, which fault_kinds() puts in a row.
+#pragma once
+
+#include <vector>
+
+#include "skyloop/fault/fault_kind.hpp"
+
+namespace skyloop {
+
+std::vector<FaultKind> reception_fault_kinds();  ///< outage, antenna, interference
+std::vector<FaultKind> spoofing_fault_kinds();   ///< false signals
+std::vector<FaultKind> satellite_fault_kinds();  ///< clocks, records, the air
+std::vector<FaultKind> position_fault_kinds();   ///< of the solution
+std::vector<FaultKind> time_fault_kinds();       ///< of the solution
+std::vector<FaultKind> receiver_fault_kinds();
+std::vector<FaultKind> wire_fault_kinds();
+
+}  // namespace skyloop

@@ -1,0 +1,195 @@
+#include "skyloop/fault/timeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "skyloop/base/random.hpp"
+
+namespace skyloop {
+namespace {
+
+// A period shorter than this would make more events than a run has instants.
+constexpr Seconds shortest_period{1e-3};
+
+double drawn(std::uint64_t seed, const std::string& stream, const std::array<double, 2>& bounds) {
+    RandomStream random(seed, stream);
+    return bounds[0] + (bounds[1] - bounds[0]) * random.uniform();
+}
+
+std::string stream_name(const TimelineEntry& entry, std::string_view of, int occurrence) {
+    return "timeline." + entry.name + "." + std::string(of) + "." + std::to_string(occurrence);
+}
+
+// Even-odd rule on latitude and longitude; an area smaller than half the Earth that does not hold a pole.
+bool is_inside(const Geodetic& place, const std::vector<std::array<double, 2>>& polygon) {
+    const double latitude = place.latitude.deg(), longitude = place.longitude.deg();
+    bool inside = false;
+    for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+        const auto [lat_a, lon_a] = polygon[i];
+        const auto [lat_b, lon_b] = polygon[j];
+        // Longitudes are counted from the place, so that an area across 180° is one.
+        const double a = std::remainder(lon_a - longitude, 360), b = std::remainder(lon_b - longitude, 360);
+        if ((lat_a > latitude) == (lat_b > latitude)) continue;
+        if (a + (b - a) * (latitude - lat_a) / (lat_b - lat_a) > 0) inside = !inside;
+    }
+    return inside;
+}
+
+}  // namespace
+
+bool Timeline::Planned::operator<(const Planned& other) const {
+    const auto key = [](const TimelineEvent& e) { return std::tuple(e.time, e.begins, e.entry, e.occurrence); };
+    return key(event) < key(other.event);
+}
+
+Timeline::Timeline(std::vector<TimelineEntry> entries, GpsTime start, std::uint64_t seed)
+    : entries_(std::move(entries)), seed_(seed), states_(entries_.size()) {
+    for (std::size_t i = 0; i < entries_.size(); ++i)
+        if (!entries_[i].when && entries_[i].after.empty() && !entries_[i].by_hand) plan_from(i, start);
+}
+
+void Timeline::plan_from(std::size_t index, GpsTime origin) {
+    const TimelineEntry& entry = entries_[index];
+    Seconds offset = entry.at.value_or(Seconds(0));
+    if (entry.between)
+        offset = Seconds(drawn(seed_, stream_name(entry, "begin", states_[index].begun + 1), *entry.between));
+    plan(index, advanced(origin, offset));
+}
+
+void Timeline::plan(std::size_t index, GpsTime begin) {
+    TimelineEvent event;
+    event.entry = index;
+    event.occurrence = ++states_[index].begun;
+    event.time = begin;
+    insert(event);
+}
+
+void Timeline::insert(const TimelineEvent& event) {
+    const Planned planned{event};
+    planned_.insert(std::upper_bound(planned_.begin(), planned_.end(), planned), planned);
+}
+
+std::optional<Seconds> Timeline::length_of(const TimelineEvent& event) const {
+    const TimelineEntry& entry = entries_[event.entry];
+    if (event.length) return event.length;
+    if (!entry.length_between) return entry.length;
+    return Seconds(drawn(seed_, stream_name(entry, "length", event.occurrence), *entry.length_between));
+}
+
+void Timeline::plan_end(const TimelineEvent& begin) {
+    const auto length = length_of(begin);
+    if (!length) return;
+    TimelineEvent end = begin;
+    end.begins = false;
+    end.time = advanced(begin.time, *length);
+    insert(end);
+}
+
+void Timeline::follow(const TimelineEvent& event) {
+    const TimelineEntry& entry = entries_[event.entry];
+    if (event.begins) {
+        if (!entry.once) {
+            states_[event.entry].under_way.insert(event.occurrence);
+            plan_end(event);
+        }
+        if (entry.every && !event.by_hand && (!entry.times || event.occurrence < *entry.times))
+            plan(event.entry, advanced(event.time, std::max(*entry.every, shortest_period)));
+    } else {
+        states_[event.entry].under_way.erase(event.occurrence);
+    }
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+        const bool from_end = entries_[i].after_end && !entry.once;
+        if (entries_[i].after == entry.name && from_end != event.begins) plan_from(i, event.time);
+    }
+}
+
+std::vector<TimelineEvent> Timeline::advance(GpsTime now) {
+    std::vector<TimelineEvent> due;
+    while (!planned_.empty() && planned_.front().event.time <= now) {
+        const TimelineEvent event = planned_.front().event;
+        planned_.erase(planned_.begin());
+        due.push_back(event);
+        follow(event);
+    }
+    return due;
+}
+
+std::optional<GpsTime> Timeline::next_event() const {
+    if (planned_.empty()) return std::nullopt;
+    return planned_.front().event.time;
+}
+
+bool Timeline::begin(std::size_t index, GpsTime now, std::optional<Seconds> length) {
+    if (!states_[index].under_way.empty()) return false;
+    TimelineEvent event;
+    event.entry = index;
+    event.occurrence = ++states_[index].begun;
+    event.time = now;
+    event.by_hand = true;
+    event.length = length;
+    insert(event);
+    return true;
+}
+
+bool Timeline::end(std::size_t index, GpsTime now) {
+    if (states_[index].under_way.empty()) return false;
+    std::erase_if(planned_, [&](const Planned& planned) {
+        return planned.event.entry == index && !planned.event.begins &&
+               states_[index].under_way.contains(planned.event.occurrence);
+    });
+    for (const int occurrence : states_[index].under_way) {
+        TimelineEvent event;
+        event.entry = index;
+        event.occurrence = occurrence;
+        event.begins = false;
+        event.time = now;
+        insert(event);
+    }
+    return true;
+}
+
+bool Timeline::holds(const Trigger& trigger, GpsTime now) const {
+    if (trigger.fix_for && !(fix_since_ && now >= advanced(*fix_since_, *trigger.fix_for))) return false;
+    if (trigger.speed_above && !(last_view_.speed > *trigger.speed_above)) return false;
+    if (!trigger.height_above && !trigger.height_below && trigger.inside.empty()) return true;
+    if (!last_view_.place) return false;
+    const Metres height = last_view_.place->height.above_ellipsoid;
+    if (trigger.height_above && !(height > *trigger.height_above)) return false;
+    if (trigger.height_below && !(height < *trigger.height_below)) return false;
+    return trigger.inside.empty() || is_inside(*last_view_.place, trigger.inside);
+}
+
+void Timeline::look(GpsTime now, const TriggerView& view) {
+    last_view_ = view;
+    if (!view.has_fix)
+        fix_since_.reset();
+    else if (!fix_since_)
+        fix_since_ = now;
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+        const auto& trigger = entries_[i].when;
+        if (!trigger || !trigger->client_sends.empty()) continue;
+        const bool held = std::exchange(states_[i].held, holds(*trigger, now));
+        const bool comes_true = states_[i].held && !held;
+        if (comes_true) act(i, now);
+    }
+}
+
+void Timeline::hear(GpsTime now, std::string_view client_message) {
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+        const auto& trigger = entries_[i].when;
+        if (trigger && !trigger->client_sends.empty() && trigger->client_sends == client_message &&
+            holds(*trigger, now))
+            act(i, now);
+    }
+}
+
+void Timeline::act(std::size_t index, GpsTime now) {
+    if (states_[index].triggered && !entries_[index].again) return;
+    states_[index].triggered = true;
+    plan_from(index, now);
+}
+
+}  // namespace skyloop

@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "skyloop/fault/timeline.hpp"
+
+namespace skyloop {
+namespace {
+
+// A list for people; who wants thousands of periods reads how often they come.
+constexpr std::size_t most_lines = 200;
+
+std::string seconds_text(double seconds) { return fmt::format("{:.3f} s", seconds); }
+
+std::string conditions(const Trigger& trigger) {
+    std::string text;
+    const auto add = [&](const std::string& part) { text += (text.empty() ? "" : " and ") + part; };
+    if (trigger.height_above) add(fmt::format("above {:g} m", trigger.height_above->value()));
+    if (trigger.height_below) add(fmt::format("below {:g} m", trigger.height_below->value()));
+    if (trigger.speed_above) add(fmt::format("faster than {:g} m/s", trigger.speed_above->value()));
+    if (!trigger.inside.empty()) add(fmt::format("inside a polygon of {} corners", trigger.inside.size()));
+    if (trigger.fix_for) add(fmt::format("after a fix for {:g} s", trigger.fix_for->value()));
+    if (!trigger.client_sends.empty()) add(fmt::format("the client sends {}", trigger.client_sends));
+    return text;
+}
+
+std::string line(const TimelineEvent& event, const TimelineEntry& entry, GpsTime start) {
+    const double at = static_cast<double>((event.time - start).count()) * 1e-9;
+    const std::string number = event.occurrence > 1 ? fmt::format(" (no. {})", event.occurrence) : "";
+    const std::string_view what = entry.once ? "" : event.begins ? " begins" : " ends";
+    return fmt::format("{:>14}  {}{}{}", seconds_text(at), entry.name, what, number);
+}
+
+}  // namespace
+
+std::vector<std::string> timeline_text(const std::vector<TimelineEntry>& entries, GpsTime start, std::uint64_t seed,
+                                       Seconds span) {
+    std::vector<std::string> lines;
+    Timeline timeline(entries, start, seed);
+    const GpsTime end = advanced(start, span);
+    std::size_t left_out = 0;
+    while (timeline.next_event() && *timeline.next_event() <= end && left_out < 100'000)
+        for (const TimelineEvent& event : timeline.advance(*timeline.next_event())) {
+            if (lines.size() < most_lines)
+                lines.push_back(line(event, entries[event.entry], start));
+            else
+                ++left_out;
+        }
+    if (left_out > 0) lines.push_back(fmt::format("{:>14}  and {} more", "", left_out));
+    for (const TimelineEntry& entry : entries)
+        if (entry.when) lines.push_back(fmt::format("{:>14}  {}: {}", "when", entry.name, conditions(*entry.when)));
+    return lines;
+}
+
+}  // namespace skyloop
