@@ -150,6 +150,14 @@ ParameterSpec place_parameter(std::string name, bool needed, std::string meaning
     return spec;
 }
 
+ParameterSpec polygon_parameter(std::string name, std::string meaning) {
+    ParameterSpec spec{std::move(name), ParameterType::numbers, std::move(meaning)};
+    spec.count_least = 6;
+    spec.least = -360;
+    spec.most = 360;
+    return spec;
+}
+
 ParameterSpec numbers_parameter(std::string name, std::optional<std::vector<double>> standard, ListLimits limits,
                                 std::string meaning) {
     ParameterSpec spec{std::move(name), ParameterType::numbers, std::move(meaning)};

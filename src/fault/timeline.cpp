@@ -23,17 +23,19 @@ std::string stream_name(const TimelineEntry& entry, std::string_view of, int occ
     return "timeline." + entry.name + "." + std::string(of) + "." + std::to_string(occurrence);
 }
 
-// Even-odd rule on latitude and longitude; an area smaller than half the Earth that does not hold a pole.
+// Even-odd rule on latitude and longitude; an area smaller than half the Earth that does not hold a pole. Longitudes
+// are counted from the place and from corner to corner, so that an area across 180° is one.
 bool is_inside(const Geodetic& place, const std::vector<std::array<double, 2>>& polygon) {
-    const double latitude = place.latitude.deg(), longitude = place.longitude.deg();
+    const double latitude = place.latitude.deg();
+    std::vector<double> east;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        east.push_back(i == 0 ? std::remainder(polygon[0][1] - place.longitude.deg(), 360)
+                              : east.back() + std::remainder(polygon[i][1] - polygon[i - 1][1], 360));
     bool inside = false;
     for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-        const auto [lat_a, lon_a] = polygon[i];
-        const auto [lat_b, lon_b] = polygon[j];
-        // Longitudes are counted from the place, so that an area across 180° is one.
-        const double a = std::remainder(lon_a - longitude, 360), b = std::remainder(lon_b - longitude, 360);
-        if ((lat_a > latitude) == (lat_b > latitude)) continue;
-        if (a + (b - a) * (latitude - lat_a) / (lat_b - lat_a) > 0) inside = !inside;
+        const double from = polygon[i][0], to = polygon[j][0];
+        if ((from > latitude) == (to > latitude)) continue;
+        if (east[i] + (east[j] - east[i]) * (latitude - from) / (to - from) > 0) inside = !inside;
     }
     return inside;
 }
@@ -53,6 +55,7 @@ Timeline::Timeline(std::vector<TimelineEntry> entries, GpsTime start, std::uint6
 
 void Timeline::plan_from(std::size_t index, GpsTime origin) {
     const TimelineEntry& entry = entries_[index];
+    if (entry.at_time) return plan(index, *entry.at_time);
     Seconds offset = entry.at.value_or(Seconds(0));
     if (entry.between)
         offset = Seconds(drawn(seed_, stream_name(entry, "begin", states_[index].begun + 1), *entry.between));

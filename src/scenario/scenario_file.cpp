@@ -77,13 +77,6 @@ constexpr std::string_view sensor_model_atmosphere_keys[] = {"total_electron_con
                                                              "earth_radius_m",
                                                              "layer"};
 
-// What INTERFACE names and later versions will read.
-void refuse_later_keys(TableReader& top) {
-    top.refuse("fault", "faults are not in this version");
-    top.refuse("command", "commands are not in this version");
-    top.refuse("expect", "verdicts are not in this version");
-}
-
 void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
     top.table("run", [&](TableReader& t) { read_run_keys(t, scenario.run); });
     top.table("sky", [&](TableReader& t) { read_sky_keys(t, scenario.sky, folder); });
@@ -96,7 +89,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     });
     top.table("scene", [&](TableReader& t) { read_scene_keys(t, scenario.scene, folder); });
     read_receivers(top, scenario, folder);
-    refuse_later_keys(top);
+    read_timeline(top, scenario);
 }
 
 }  // namespace

@@ -23,6 +23,9 @@ void read_receivers(TableReader& top, Scenario& scenario, const std::filesystem:
 /// Reads [scene]. @param folder that paths are relative to
 void read_scene_keys(TableReader& table, SceneEntry& scene, const std::filesystem::path& folder);
 
+/// Reads every [[fault]] and [[command]] of a scenario's top table, after its receivers.
+void read_timeline(TableReader& top, Scenario& scenario);
+
 /// Reads [frame] and [trajectory] of a file's top table.
 void read_trajectory_keys(TableReader& top, Scenario& scenario);
 

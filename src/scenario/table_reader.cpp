@@ -89,6 +89,13 @@ void TableReader::mistake(std::string_view key, const std::string& sentence) {
     mistakes_.add(node ? node->source() : table_.source(), fmt::format("{}: {}", path_of(key), sentence));
 }
 
+std::function<void(std::string_view, const std::string&)> TableReader::mistake_later() const {
+    return [table = &table_, path = path_, mistakes = &mistakes_](std::string_view key, const std::string& sentence) {
+        const toml::node* node = table->get(key);
+        mistakes->add(node ? node->source() : table->source(), fmt::format("{}.{}: {}", path, key, sentence));
+    };
+}
+
 void TableReader::mistake_at(const toml::node& node, std::string_view key, const std::string& sentence) {
     mistakes_.add(node.source(), fmt::format("{}: {}", path_of(key), sentence));
 }

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "skyloop/base/result.hpp"
+#include "skyloop/fault/parameters.hpp"
 #include "skyloop/geo/geodetic.hpp"
 
 namespace skyloop {
@@ -122,6 +123,11 @@ public:
     /// The caller has dealt with this key itself.
     void has_been_read(std::string_view key) { known_.emplace_back(key); }
     void mistake(std::string_view key, const std::string& sentence);
+    /// mistake() for what shows only when more of the file has been read. Valid while the file is read.
+    [[nodiscard]] std::function<void(std::string_view key, const std::string& sentence)> mistake_later() const;
+    /// Whatever stands there, as faults and commands take it; lists of lists of numbers become one list. Nothing, and a
+    /// mistake, for a table or a list that is neither of numbers nor of texts.
+    std::optional<ParameterValue> value(std::string_view key);
     void mistake_here(const std::string& sentence) { mistakes_.add(table_.source(), where() + sentence); }
     void finish();
 

@@ -52,6 +52,8 @@ ParameterSpec text_parameter(std::string name, std::string standard, std::string
 ParameterSpec texts_parameter(std::string name, std::string meaning);
 /// [latitude, longitude] or [latitude, longitude, height]: degrees, metres above the ellipsoid.
 ParameterSpec place_parameter(std::string name, bool needed, std::string meaning);
+/// A list of at least three pairs of latitude and longitude, degrees, flat or pair by pair.
+ParameterSpec polygon_parameter(std::string name, std::string meaning);
 /// Which numbers a list takes.
 struct ListLimits {
     std::size_t count = 2;  ///< exactly

@@ -28,6 +28,7 @@ struct Trigger {
 /// One entry of the timeline, a fault or a command, by its times.
 struct TimelineEntry {
     std::string name;
+    std::optional<GpsTime> at_time{};                       ///< in place of `at`
     std::optional<Seconds> at{};                            ///< after the start of the run, or of `after`
     std::optional<std::array<double, 2>> between{};         ///< s: drawn within these bounds in place of `at`
     std::string after{};                                    ///< another entry, from whose beginning times count

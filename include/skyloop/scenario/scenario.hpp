@@ -96,6 +96,20 @@ struct ReceiverEntry {
     std::optional<std::size_t> base;         ///< the receiver, by its place in the list, that carries the base antenna
 };
 
+/// A fault and when it works.
+struct FaultEntry {
+    TimelineEntry when;
+    std::string kind;  ///< of fault_kinds()
+    Parameters parameters;
+    std::vector<std::size_t> receivers;  ///< by their places in the list, ascending; all of them unless told otherwise
+};
+
+/// A command and when it is carried out.
+struct CommandEntry {
+    TimelineEntry when;
+    Command command;
+};
+
 struct Scenario {
     std::string name = "embedded defaults";
     std::string source;  ///< the text it was read from and the options laid over it, for a digest
@@ -108,8 +122,13 @@ struct Scenario {
     std::vector<std::string>
         sensor_model_keys;  ///< keys of [atmosphere] that were given and act in sensor models alone
     std::vector<ReceiverEntry> receivers = std::vector<ReceiverEntry>(1);  ///< at least one
+    std::vector<FaultEntry> faults;
+    std::vector<CommandEntry> commands;
     std::vector<std::string> warnings;  ///< what a reader should be told, e.g. a level that is too large for a plane
 };
+
+/// The timeline of a scenario: its faults, then its commands.
+std::vector<TimelineEntry> timeline_of(const Scenario& scenario);
 
 /// What messages call a receiver: its name, or receiver0 and so on by its place in the list.
 std::string receiver_name(const Scenario& scenario, std::size_t index);

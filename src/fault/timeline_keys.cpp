@@ -1,0 +1,199 @@
+#include "skyloop/fault/timeline_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "skyloop/base/spelling.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr double longest_s = 100 * 366.0 * 86400;  // a run's span stays far inside 64-bit nanoseconds
+constexpr double most_occurrences = 1e6;
+
+std::vector<ParameterSpec> beginning_keys() {
+    const ListLimits bounds{2, 0, longest_s};
+    return {
+        text_parameter("name", "", "what messages and other entries call it; else its kind, with a number"),
+        number_parameter("at_s", std::nullopt, 0, longest_s, "when it begins, seconds after the start of the run"),
+        text_parameter("at_utc", "", "when it begins, ISO 8601 in UTC"),
+        numbers_parameter("between_s", std::nullopt, bounds, "it begins at a random time within these, by the seed"),
+        text_parameter("after", "", "the name of an entry from whose beginning its times count"),
+        text_parameter("after_end_of", "", "the name of a fault from whose end its times count"),
+        number_parameter("every_s", std::nullopt, 1e-3, longest_s, "it begins again after this"),
+        number_parameter("times", std::nullopt, 1, most_occurrences, "how often in all; else without end"),
+        number_parameter("when_above_m", std::nullopt, -1e4, 1e8,
+                         "it begins when the antenna is higher than this above the ellipsoid"),
+        number_parameter("when_below_m", std::nullopt, -1e4, 1e8, "… lower than this"),
+        number_parameter("when_faster_mps", std::nullopt, 0, 1e5, "… faster than this over the ground"),
+        polygon_parameter("when_inside", "… inside this polygon, [[latitude, longitude], …]"),
+        number_parameter("when_fix_for_s", std::nullopt, 0, longest_s, "… when there has been a fix for so long"),
+        text_parameter("when_client_sends", "", "… when the client sends this message: \"CFG-VALSET\""),
+        flag_parameter("again", false, "it begins each time that its condition comes true, not the first time alone"),
+    };
+}
+
+std::vector<ParameterSpec> fault_keys() {
+    std::vector<ParameterSpec> keys = beginning_keys();
+    const ListLimits bounds{2, 0, longest_s};
+    keys.push_back(number_parameter("for_s", std::nullopt, 0, longest_s, "how long it lasts; else to the end"));
+    keys.push_back(
+        numbers_parameter("for_between_s", std::nullopt, bounds, "it lasts a random time within these, by the seed"));
+    keys.push_back(number_parameter("ramp_in_s", 0, 0, longest_s, "it grows to its strength within this"));
+    keys.push_back(number_parameter("ramp_out_s", 0, 0, longest_s, "it fades within this after its end"));
+    return keys;
+}
+
+template <class Quantity>
+std::optional<Quantity> quantity(const Parameters& keys, std::string_view name) {
+    const auto number = keys.optional_number(name);
+    return number ? std::optional(Quantity(*number)) : std::nullopt;
+}
+
+std::optional<std::array<double, 2>> bounds(const Parameters& keys, const std::string& name,
+                                            std::vector<ParameterMistake>& mistakes) {
+    const std::vector<double> numbers = keys.numbers(name);
+    if (numbers.size() != 2) return std::nullopt;
+    if (numbers[0] > numbers[1])
+        mistakes.push_back(
+            {name, fmt::format("runs from {:g} to {:g}; expected the smaller one first", numbers[0], numbers[1])});
+    return std::array{numbers[0], numbers[1]};
+}
+
+std::vector<std::array<double, 2>> polygon(const Parameters& keys, std::vector<ParameterMistake>& mistakes) {
+    const std::vector<double> numbers = keys.numbers("when_inside");
+    std::vector<std::array<double, 2>> corners;
+    for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)
+        corners.push_back({numbers[i], numbers[i + 1]});
+    if (!numbers.empty() && (numbers.size() % 2 != 0 || corners.size() < 3))
+        mistakes.push_back({"when_inside", fmt::format("holds {} numbers; expected at least three pairs of latitude "
+                                                       "and longitude",
+                                                       numbers.size())});
+    for (const auto& [latitude, longitude] : corners)
+        if (const auto place = place_from_degrees(latitude, longitude, 0); !place) {
+            mistakes.push_back({"when_inside", place.error()});
+            break;
+        }
+    return corners;
+}
+
+std::optional<Trigger> trigger(const Parameters& keys, std::vector<ParameterMistake>& mistakes) {
+    Trigger when;
+    when.height_above = quantity<Metres>(keys, "when_above_m");
+    when.height_below = quantity<Metres>(keys, "when_below_m");
+    when.speed_above = quantity<MetresPerSecond>(keys, "when_faster_mps");
+    when.inside = polygon(keys, mistakes);
+    when.fix_for = quantity<Seconds>(keys, "when_fix_for_s");
+    when.client_sends = keys.text("when_client_sends");
+    const bool any = when.height_above || when.height_below || when.speed_above || !when.inside.empty() ||
+                     when.fix_for || !when.client_sends.empty();
+    return any ? std::optional(when) : std::nullopt;
+}
+
+std::optional<GpsTime> utc(const Parameters& keys, std::vector<ParameterMistake>& mistakes) {
+    const std::string text = keys.text("at_utc");
+    if (text.empty()) return std::nullopt;
+    const auto time = parse_utc(text);
+    if (time) return to_gps_time(*time, LeapSeconds::announced());
+    mistakes.push_back({"at_utc", time.error().message});
+    return std::nullopt;
+}
+
+// Of several ways to say one thing only one may be used.
+void refuse_both(const Parameters& keys, std::initializer_list<std::string_view> names,
+                 std::vector<ParameterMistake>& mistakes) {
+    std::string_view first;
+    for (const std::string_view name : names) {
+        if (!keys.has(name)) continue;
+        const auto value = keys.values().find(name);
+        if (const auto* text = std::get_if<std::string>(&value->second); text != nullptr && text->empty()) continue;
+        if (!first.empty())
+            mistakes.push_back({std::string(name), fmt::format("stands beside '{}'; expected one of them", first)});
+        else
+            first = name;
+    }
+}
+
+void refuse_contradictions(const Parameters& keys, const TimelineEntry& entry,
+                           std::vector<ParameterMistake>& mistakes) {
+    refuse_both(keys, {"at_s", "at_utc", "between_s"}, mistakes);
+    refuse_both(keys, {"after", "after_end_of"}, mistakes);
+    refuse_both(keys, {"for_s", "for_between_s"}, mistakes);
+    const auto refuse = [&](const std::string& key, const std::string& sentence) {
+        mistakes.push_back({key, sentence});
+    };
+    if (entry.when && !entry.after.empty()) refuse("after", "stands beside a condition 'when_…'; expected one of them");
+    if (entry.at_time && (entry.when || !entry.after.empty()))
+        refuse("at_utc", "is a time of its own; expected none beside 'after' or 'when_…'");
+    if (entry.times && !entry.every) refuse("times", "says how often; expected 'every_s' beside it");
+    if (entry.again && !entry.when) refuse("again", "expected a condition 'when_…' beside it");
+    if (entry.again && entry.every) refuse("again", "stands beside 'every_s'; expected one of them");
+}
+
+}  // namespace
+
+const std::vector<ParameterSpec>& timeline_keys() {
+    static const std::vector<ParameterSpec> keys = fault_keys();
+    return keys;
+}
+
+const std::vector<ParameterSpec>& timeline_keys_of_commands() {
+    static const std::vector<ParameterSpec> keys = beginning_keys();
+    return keys;
+}
+
+TimelineReading read_timeline_entry(const Parameters& keys) {
+    TimelineReading reading;
+    TimelineEntry& entry = reading.entry;
+    entry.name = keys.text("name");
+    entry.at = quantity<Seconds>(keys, "at_s");
+    entry.at_time = utc(keys, reading.mistakes);
+    entry.between = bounds(keys, "between_s", reading.mistakes);
+    entry.after = keys.text("after");
+    entry.after_end = entry.after.empty() && !keys.text("after_end_of").empty();
+    if (entry.after_end) entry.after = keys.text("after_end_of");
+    entry.when = trigger(keys, reading.mistakes);
+    entry.again = keys.flag("again");
+    entry.every = quantity<Seconds>(keys, "every_s");
+    if (const auto times = keys.optional_number("times")) entry.times = static_cast<int>(*times);
+    entry.length = quantity<Seconds>(keys, "for_s");
+    entry.length_between = bounds(keys, "for_between_s", reading.mistakes);
+    entry.ramp_in = Seconds(keys.number("ramp_in_s"));
+    entry.ramp_out = Seconds(keys.number("ramp_out_s"));
+    refuse_contradictions(keys, entry, reading.mistakes);
+    return reading;
+}
+
+std::vector<std::pair<std::size_t, ParameterMistake>> timeline_mistakes(const std::vector<TimelineEntry>& entries) {
+    std::vector<std::pair<std::size_t, ParameterMistake>> mistakes;
+    std::vector<std::string_view> names;
+    for (const TimelineEntry& entry : entries)
+        names.push_back(entry.name);
+    const auto place_of = [&](const std::string& name) {
+        return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    };
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        const TimelineEntry& entry = entries[i];
+        if (place_of(entry.name) != i) mistakes.push_back({i, {"name", "is that of another entry"}});
+        if (entry.after.empty()) continue;
+        const std::string key = entry.after_end ? "after_end_of" : "after";
+        const std::size_t other = place_of(entry.after);
+        if (other == entries.size()) {
+            mistakes.push_back({i,
+                                {key, fmt::format("is '{}'; no entry has this name{}", entry.after,
+                                                  did_you_mean(entry.after, names))}});
+            continue;
+        }
+        if (entry.after_end && entries[other].once)
+            mistakes.push_back({i, {key, "names a command, which has no end; expected 'after'"}});
+        std::size_t at = i, steps = 0;
+        while (at < entries.size() && !entries[at].after.empty() && steps++ <= entries.size())
+            at = place_of(entries[at].after);
+        if (steps > entries.size()) mistakes.push_back({i, {key, "leads back to this entry in a circle"}});
+    }
+    return mistakes;
+}
+
+}  // namespace skyloop

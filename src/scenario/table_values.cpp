@@ -1,0 +1,54 @@
+// Values of any type, as tables of parameters take them.
+#include <fmt/format.h>
+
+#include "table_reader.hpp"
+
+namespace skyloop {
+namespace {
+
+// Adds the numbers of a list, and of lists in it.
+bool append_numbers(const toml::array& list, std::vector<double>& numbers) {
+    for (const toml::node& item : list) {
+        if (const auto* inner = item.as_array()) {
+            if (!append_numbers(*inner, numbers)) return false;
+        } else if (const auto number = item.is_number() ? item.value<double>() : std::nullopt) {
+            numbers.push_back(*number);
+        } else {
+            return false;
+        }
+    }
+    return true;
+}
+
+std::optional<std::vector<std::string>> all_texts(const toml::array& list) {
+    std::vector<std::string> texts;
+    for (const toml::node& item : list) {
+        const auto* text = item.as_string();
+        if (text == nullptr) return std::nullopt;
+        texts.push_back(text->get());
+    }
+    return texts;
+}
+
+}  // namespace
+
+std::optional<ParameterValue> TableReader::value(std::string_view key) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return std::nullopt;
+    if (const auto* flag = node->as_boolean()) return ParameterValue(flag->get());
+    if (const auto* text = node->as_string()) return ParameterValue(text->get());
+    if (node->is_number()) return ParameterValue(*node->value<double>());
+    if (node->is_date_time() || node->is_date() || node->is_time()) {
+        if (auto text = utc(key)) return ParameterValue(*text);
+        return std::nullopt;
+    }
+    if (const auto* list = node->as_array()) {
+        std::vector<double> numbers;
+        if (append_numbers(*list, numbers)) return ParameterValue(numbers);
+        if (auto texts = all_texts(*list)) return ParameterValue(*texts);
+    }
+    wrong_type(key, *node, "a number, a text, true or false, or a list of numbers or texts");
+    return std::nullopt;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,224 @@
+#include "skyloop/fault/timeline.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "skyloop/fault/timeline_keys.hpp"
+
+namespace skyloop::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+const GpsTime begin_of_run = to_gps_time(2300, 100'000.0);
+
+struct Happening {
+    std::string name;
+    double at;
+    bool begins;
+    bool operator==(const Happening&) const = default;
+};
+void PrintTo(const Happening& h, std::ostream* out) { *out << h.name << (h.begins ? "+" : "-") << h.at; }
+
+TimelineEntry entry(std::string name, double at, std::optional<double> length = std::nullopt) {
+    TimelineEntry made;
+    made.name = std::move(name);
+    made.at = Seconds(at);
+    if (length) made.length = Seconds(*length);
+    return made;
+}
+
+GpsTime after(double seconds) { return advanced(begin_of_run, Seconds(seconds)); }
+
+std::vector<Happening> happenings(Timeline& timeline, double until) {
+    std::vector<Happening> all;
+    for (const TimelineEvent& event : timeline.advance(after(until)))
+        all.push_back({timeline.entries()[event.entry].name,
+                       static_cast<double>((event.time - begin_of_run).count()) / 1e9, event.begins});
+    return all;
+}
+
+std::vector<Happening> happenings(std::vector<TimelineEntry> entries, double until, std::uint64_t seed = 1) {
+    Timeline timeline(std::move(entries), begin_of_run, seed);
+    return happenings(timeline, until);
+}
+
+TEST(Timeline, BeginsAndEndsInTheOrderOfTime) {
+    EXPECT_THAT(happenings({entry("b", 5, 10), entry("a", 1, 4)}, 100),
+                ElementsAre(Happening{"a", 1, true}, Happening{"a", 5, false}, Happening{"b", 5, true},
+                            Happening{"b", 15, false}));
+}
+
+TEST(Timeline, GivesTheSameHoweverOftenOneLooks) {
+    TimelineEntry often = entry("often", 0.5, 0.2);
+    often.every = Seconds(0.7);
+    often.times = 5;
+    const auto at_once = happenings({often, entry("a", 1, 2)}, 20);
+    Timeline timeline({often, entry("a", 1, 2)}, begin_of_run, 1);
+    std::vector<Happening> step_by_step;
+    for (int i = 0; i <= 2000; ++i)
+        for (const Happening& h : happenings(timeline, 0.01 * i))
+            step_by_step.push_back(h);
+    EXPECT_EQ(step_by_step, at_once);
+    EXPECT_THAT(at_once, SizeIs(12));
+}
+
+TEST(Timeline, CountsFromOtherEntries) {
+    TimelineEntry second = entry("second", 3, 1), third = entry("third", 0, 1);
+    second.after = "first";
+    third.after = "first";
+    third.after_end = true;
+    EXPECT_THAT(
+        happenings({second, third, entry("first", 10, 20)}, 100),
+        ElementsAre(Happening{"first", 10, true}, Happening{"second", 13, true}, Happening{"second", 14, false},
+                    Happening{"first", 30, false}, Happening{"third", 30, true}, Happening{"third", 31, false}));
+}
+
+TEST(Timeline, DrawsTimesByTheSeed) {
+    TimelineEntry random = entry("random", 0);
+    random.at.reset();
+    random.between = {10, 20};
+    random.length_between = {1, 2};
+    const auto one = happenings({random}, 100, 1), again = happenings({random, entry("other", 0)}, 100, 1),
+               other = happenings({random}, 100, 2);
+    ASSERT_THAT(one, SizeIs(2));
+    EXPECT_GE(one[0].at, 10);
+    EXPECT_LE(one[0].at, 20);
+    EXPECT_GE(one[1].at - one[0].at, 1 - 1e-9);
+    EXPECT_LE(one[1].at - one[0].at, 2 + 1e-9);
+    EXPECT_EQ(one[0].at, again[1].at) << "an entry beside it changes nothing";
+    EXPECT_NE(one[0].at, other[0].at);
+}
+
+TimelineEntry triggered(Trigger trigger) {
+    TimelineEntry made;
+    made.name = "triggered";
+    made.when = std::move(trigger);
+    made.length = Seconds(1);
+    return made;
+}
+
+TriggerView at(double latitude, double longitude, double height) {
+    return {Geodetic::degrees(latitude, longitude, height), MetresPerSecond(0), false};
+}
+
+TEST(Timeline, BeginsWhenAHeightIsReached) {
+    Trigger high;
+    high.height_above = Metres(100);
+    TimelineEntry made = triggered(high);
+    made.at = Seconds(2);
+    Timeline timeline({made}, begin_of_run, 1);
+    timeline.look(after(1), at(0, 0, 99));
+    EXPECT_FALSE(timeline.next_event());
+    timeline.look(after(2), at(0, 0, 101));
+    timeline.look(after(3), at(0, 0, 99));
+    timeline.look(after(4), at(0, 0, 101));
+    EXPECT_THAT(happenings(timeline, 50),
+                ElementsAre(Happening{"triggered", 4, true}, Happening{"triggered", 5, false}));
+}
+
+TEST(Timeline, BeginsAgainWhereItIsToldTo) {
+    Trigger low;
+    low.height_below = Metres(10);
+    TimelineEntry made = triggered(low);
+    made.again = true;
+    Timeline timeline({made}, begin_of_run, 1);
+    for (int i = 0; i < 6; ++i)
+        timeline.look(after(10 * i), at(0, 0, i % 2 == 0 ? 5 : 15));
+    EXPECT_THAT(happenings(timeline, 100), SizeIs(6));
+}
+
+TEST(Timeline, KnowsWhatLiesInsideAPolygonAcrossTheDateLine) {
+    Trigger inside;
+    inside.inside = {{-1, 179}, {-1, -179}, {1, -179}, {1, 179}};
+    for (const auto& [longitude, expected] : {std::pair{180.0, true}, {-179.5, true}, {178.0, false}, {0.0, false}}) {
+        Timeline timeline({triggered(inside)}, begin_of_run, 1);
+        timeline.look(after(1), at(0, longitude, 0));
+        EXPECT_EQ(timeline.next_event().has_value(), expected) << longitude;
+    }
+}
+
+TEST(Timeline, WaitsForAFixWithoutGaps) {
+    Trigger fix;
+    fix.fix_for = Seconds(5);
+    Timeline timeline({triggered(fix)}, begin_of_run, 1);
+    for (int i = 0; i <= 20; ++i) {
+        TriggerView view = at(0, 0, 0);
+        view.has_fix = i != 4;
+        timeline.look(after(i), view);
+    }
+    EXPECT_THAT(happenings(timeline, 100)[0], (Happening{"triggered", 10, true}));
+}
+
+TEST(Timeline, HearsTheClient) {
+    Trigger message;
+    message.client_sends = "CFG-VALSET";
+    Timeline timeline({triggered(message)}, begin_of_run, 1);
+    timeline.hear(after(1), "CFG-PRT");
+    EXPECT_FALSE(timeline.next_event());
+    timeline.hear(after(2.5), "CFG-VALSET");
+    EXPECT_THAT(happenings(timeline, 100)[0], (Happening{"triggered", 2.5, true}));
+}
+
+TEST(Timeline, IsLedByHand) {
+    TimelineEntry made = entry("by hand", 0, 100);
+    made.by_hand = true;
+    Timeline timeline({made}, begin_of_run, 1);
+    EXPECT_FALSE(timeline.next_event());
+    EXPECT_TRUE(timeline.begin(0, after(10), Seconds(3)));
+    EXPECT_THAT(happenings(timeline, 11), ElementsAre(Happening{"by hand", 10, true}));
+    EXPECT_FALSE(timeline.begin(0, after(12))) << "it is under way";
+    EXPECT_TRUE(timeline.end(0, after(12)));
+    EXPECT_THAT(happenings(timeline, 100), ElementsAre(Happening{"by hand", 12, false}));
+    EXPECT_FALSE(timeline.end(0, after(101))) << "it is over";
+}
+
+Parameters keys(std::map<std::string, ParameterValue, std::less<>> given) {
+    const CheckedParameters checked = check_parameters(timeline_keys(), given);
+    EXPECT_THAT(checked.mistakes, SizeIs(0));
+    return checked.parameters;
+}
+
+TEST(TimelineKeys, AreRead) {
+    const TimelineReading reading = read_timeline_entry(
+        keys({{"name", std::string("jam")}, {"at_s", 5.0}, {"for_s", 7.0}, {"ramp_in_s", 2.0}, {"every_s", 60.0}}));
+    EXPECT_THAT(reading.mistakes, SizeIs(0));
+    EXPECT_EQ(reading.entry.name, "jam");
+    EXPECT_EQ(reading.entry.at, Seconds(5));
+    EXPECT_EQ(reading.entry.length, Seconds(7));
+    EXPECT_EQ(reading.entry.ramp_in, Seconds(2));
+    EXPECT_EQ(reading.entry.every, Seconds(60));
+}
+
+TEST(TimelineKeys, ContradictionsAreTold) {
+    const auto mistakes = [](std::map<std::string, ParameterValue, std::less<>> given) {
+        const TimelineReading reading = read_timeline_entry(keys(std::move(given)));
+        return reading.mistakes.empty() ? "" : reading.mistakes.front().name + " " + reading.mistakes.front().sentence;
+    };
+    EXPECT_THAT(mistakes({{"at_s", 5.0}, {"between_s", std::vector<double>{1, 2}}}), HasSubstr("beside 'at_s'"));
+    EXPECT_THAT(mistakes({{"between_s", std::vector<double>{3, 2}}}), HasSubstr("the smaller one first"));
+    EXPECT_THAT(mistakes({{"times", 3.0}}), HasSubstr("every_s"));
+    EXPECT_THAT(mistakes({{"again", true}}), HasSubstr("when_"));
+    EXPECT_THAT(mistakes({{"after", std::string("x")}, {"when_above_m", 3.0}}), HasSubstr("expected one of them"));
+    EXPECT_THAT(mistakes({{"when_inside", std::vector<double>{1, 2, 3, 4, 5, 6, 7}}}), HasSubstr("three pairs"));
+    EXPECT_THAT(mistakes({{"when_inside", std::vector<double>{91, 2, 3, 4, 5, 6}}}), HasSubstr("latitude"));
+    EXPECT_THAT(mistakes({{"at_utc", std::string("noon")}}), HasSubstr("at_utc"));
+}
+
+TEST(TimelineKeys, EntriesThatDoNotFitTogetherAreTold) {
+    TimelineEntry a = entry("a", 0), b = entry("b", 0), c = entry("c", 0);
+    a.after = "b";
+    b.after = "a";
+    c.after = "bb";
+    const auto mistakes = timeline_mistakes({a, b, c, entry("c", 1)});
+    ASSERT_THAT(mistakes, SizeIs(4));
+    EXPECT_THAT(mistakes[0].second.sentence, HasSubstr("circle"));
+    EXPECT_THAT(mistakes[1].second.sentence, HasSubstr("circle"));
+    EXPECT_THAT(mistakes[2].second.sentence, HasSubstr("did you mean 'b'"));
+    EXPECT_THAT(mistakes[3].second.sentence, HasSubstr("another entry"));
+}
+
+}  // namespace
+}  // namespace skyloop::test
