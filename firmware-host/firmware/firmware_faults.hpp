@@ -22,14 +22,15 @@ struct FirmwareFaults {
     bool mute = false;                       ///< it sends nothing: no epochs, no answers, no texts
     bool unanswering = false;                ///< it executes what it hears and answers nothing
     std::set<UbxMessageId> unanswered{};     ///< it executes these and does not answer them
-    std::set<UbxMessageId> refused{};        ///< it answers these with ACK-NAK and does nothing else
+    std::set<UbxMessageId> refused{};        ///< it answers these with ACK-NAK, sentences not at all; nothing else
     std::set<std::uint32_t> refused_keys{};  ///< it refuses every CFG-VALSET that holds one of these
     std::set<UbxMessageId> withheld{};       ///< it does not send these with its epochs, whatever is configured
     std::optional<std::string> software{};   ///< swVersion of MON-VER
     std::optional<std::vector<std::string>> extensions{};  ///< of MON-VER
     Seconds answer_delay{0};                               ///< more before each answer
     Seconds solution_delay{0};                             ///< more from the epoch to its first byte
-    bool jamming_hidden = false;  ///< its interference monitor stays at "unknown", as firmware does that has it off
+    /// Its interference monitor (MON-HW, MON-RF) stays at "unknown", as firmware does that has it off.
+    bool jamming_hidden = false;
 };
 
 /// It starts anew: banner, stored configuration and speed, navigation as after a start of that kind.
@@ -41,7 +42,7 @@ struct Reboot {
 struct ForgetConfiguration {};
 /// The speed of its first UART is another one, as after a mistaken command of somebody else.
 struct ForceBaud {
-    std::uint32_t baud = 9600;
+    std::uint32_t baud = 9600;  ///< 0: that of before, unless it has been given another or was rebooted since
 };
 /// What happens to a receiver once.
 using ReceiverEvent = std::variant<Reboot, ForgetConfiguration, ForceBaud>;

@@ -41,6 +41,14 @@ struct MonitorStatus {
     AntennaStatus antenna = AntennaStatus::unknown;
     int antenna_power = 2;  ///< 0 off, 1 on, 2 unknown
     SpoofingIndication spoofing = SpoofingIndication::unknown;
+    /// MON-HW and MON-RF say "unknown" whatever `jamming_state` is, and SEC-SIG alone tells it (F9 HPG 1.50 and later).
+    bool jamming_hidden = false;
+};
+
+/// A leap second by which the receiver counts, though nobody has announced it. Offsets are GPST − UTC, s.
+struct LeapEvent {
+    GpsTime at;  ///< first instant at which `after` holds
+    int before = 18, after = 18;
 };
 
 /// The receiver at one epoch, as it reports itself. Free of the truth.
@@ -59,6 +67,11 @@ struct NavigationState {
     bool course_is_frozen = false;
     double odometer_m = 0, odometer_total_m = 0, odometer_deviation_m = 0;
     std::uint64_t epoch_index = 0;  ///< since the last start
+    std::optional<LeapEvent> leap_event{};
+    bool old_position_shown = false;  ///< sentences show it without a valid fix too, whatever is configured
+    int week_offset = 0;              ///< on week numbers alone: dates and times of week stay
+    int reports = 1;                  ///< how many times its messages are sent
+    Seconds report_delay{0};          ///< more until they are; those of later epochs may overtake them
 };
 
 /// What one port has done, for MON-COMMS, MON-TXBUF, MON-RXBUF and MON-IO.

@@ -12,7 +12,9 @@ Receiver& Receiver::operator=(Receiver&&) noexcept = default;
 
 void Receiver::start(GpsTime now) { core_->start(now); }
 void Receiver::input(PortId port, ByteSpan bytes, GpsTime now) { core_->input(port, bytes, now); }
-void Receiver::on_epoch(const Epoch& epoch) { core_->on_epoch(epoch); }
+void Receiver::on_epoch(const Epoch& epoch, const ReportEdit& edit) { core_->on_epoch(epoch, edit); }
+void Receiver::set_faults(const FirmwareFaults& faults) { core_->set_faults(faults); }
+void Receiver::happen(const ReceiverEvent& event, GpsTime now) { core_->happen(event, now); }
 std::vector<Receiver::Sent> Receiver::output(GpsTime now) { return core_->output(now); }
 std::optional<GpsTime> Receiver::drained_at() const { return core_->outbox().drained_at(); }
 

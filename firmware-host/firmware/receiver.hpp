@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/board_profile.hpp"
+#include "firmware/firmware_faults.hpp"
 #include "firmware/navigation_state.hpp"
 #include "skyloop/base/bytes.hpp"
 #include "skyloop/base/result.hpp"
@@ -50,7 +51,13 @@ public:
     /// Bytes that reach a port. Times of input(), on_epoch() and output() never go back.
     void input(PortId port, ByteSpan bytes, GpsTime now);
     /// A new solution: its messages are queued and begin to leave one solution latency after `epoch.fix.time`.
-    void on_epoch(const Epoch& epoch);
+    /// @param edit changes what is reported of it, now and to polls until the next; what the receiver itself goes on
+    ///        with stays as it is
+    void on_epoch(const Epoch& epoch, const ReportEdit& edit = {});
+    /// How it is broken from now on; `{}`: not at all.
+    void set_faults(const FirmwareFaults& faults);
+    /// Something befalls it, at a time as of input().
+    void happen(const ReceiverEvent& event, GpsTime now);
     /// Bytes of one port at one speed.
     struct Sent {
         PortId port = PortId::uart1;
@@ -71,7 +78,7 @@ public:
     [[nodiscard]] const ReceiverSettings& settings() const;
     [[nodiscard]] const ReceiverCounters& counters() const;
     [[nodiscard]] const BoardProfile& board() const;
-    /// What it reported last.
+    /// What it reported last, as edited.
     [[nodiscard]] const NavigationState& state() const;
     /// What outlives the process: battery-backed layer and flash.
     [[nodiscard]] std::string persistent_text() const;

@@ -19,13 +19,6 @@ enum ResetMode : std::uint8_t {
     start_navigation = 9
 };
 
-// A speed that a line cannot have would divide by zero; the board's tables do not let one in, stored text may.
-constexpr std::uint32_t slowest_baud = 300;
-
-std::uint32_t line_baud(const ConfigStore& store, PortId port) {
-    return std::max(slowest_baud, configured_baud(store, port));
-}
-
 std::vector<PortUnit> make_units(const BoardProfile& board, const ConfigStore& store) {
     std::vector<PortUnit> units;
     for (const PortId port : board.ports) {
@@ -37,6 +30,12 @@ std::vector<PortUnit> make_units(const BoardProfile& board, const ConfigStore& s
 }
 
 }  // namespace
+
+std::uint32_t line_baud(const ConfigStore& store, PortId port) {
+    // A speed that a line cannot have would divide by zero; the board's tables do not let one in, stored text may.
+    constexpr std::uint32_t slowest_baud = 300;
+    return std::max(slowest_baud, configured_baud(store, port));
+}
 
 Receiver::Core::Core(BoardProfile board, const ReceiverOptions& options)
     : board_(std::move(board)),
@@ -52,6 +51,7 @@ Receiver::Core::Core(BoardProfile board, const ReceiverOptions& options)
       latency_noise_(options.seed, "receiver.latency"),
       revision_(store_.revision()) {
     tracker_.start({}, {}, true);
+    report(tracker_.state());
     if (!board_.messages.empty()) return;
     for (const std::string_view name : nmea_sentence_names)
         board_.messages.push_back(find_output_message(name)->id);
@@ -60,6 +60,7 @@ Receiver::Core::Core(BoardProfile board, const ReceiverOptions& options)
 void Receiver::Core::start(GpsTime now) {
     tracker_.start(now, Forgotten::of(options_.settings.start),
                    !options_.power_up && options_.settings.start == StartKind::hot);
+    report(tracker_.state());
     if (!options_.power_up) return;
     const GpsTime awake = advanced(now, board_.timing.boot);
     deaf_until_ = awake;
@@ -101,6 +102,7 @@ void Receiver::Core::restart_navigation(const Forgotten& forgotten, GpsTime now,
     settings_.navigating = true;
     corrections_.reset();
     tracker_.start(now, forgotten);
+    report(tracker_.state());
     silent_until_ = std::max(silent_until_, advanced(now, silence));
 }
 
@@ -130,7 +132,7 @@ void Receiver::Core::reset(std::uint16_t nav_bbr_mask, std::uint8_t mode, GpsTim
 }
 
 // RAM and transmit queue are lost, the configuration is built from its layers, the banner comes at the stored speed.
-void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now) {
+void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now, bool banner) {
     outbox_.clear();
     store_.reload();
     adopt_settings();
@@ -140,12 +142,13 @@ void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now) {
         unit.configured_baud = unit.transmit.baud();
     }
     values_.cancel();
-    busy_until_ = now;
+    busy_until_ = last_answer_ = now;
+    forced_speed_.reset();
     told_antenna_.reset();
     const GpsTime awake = advanced(now, board_.timing.boot);
     deaf_until_ = awake;
     restart_navigation(forgotten, now, board_.timing.boot + board_.timing.first_epoch);
-    outbox_.plan(awake, [this](GpsTime t) { send_banner(t); });
+    if (banner) outbox_.plan(awake, [this](GpsTime t) { send_banner(t); });
 }
 
 }  // namespace skyloop::firmware

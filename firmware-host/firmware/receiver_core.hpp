@@ -9,6 +9,7 @@
 
 #include "firmware/config/config_handler.hpp"
 #include "firmware/correction_input.hpp"
+#include "firmware/firmware_faults.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/nmea_commands.hpp"
 #include "firmware/port_unit.hpp"
@@ -27,7 +28,9 @@ public:
 
     void start(GpsTime now);
     void input(PortId port, ByteSpan bytes, GpsTime now);
-    void on_epoch(const Epoch& epoch);
+    void on_epoch(const Epoch& epoch, const ReportEdit& edit);
+    void set_faults(const FirmwareFaults& faults) { faults_ = faults; }
+    void happen(const ReceiverEvent& event, GpsTime now);
     std::vector<Sent> output(GpsTime now);
     [[nodiscard]] const PortUnit* unit(PortId port) const { return find_unit(units_, port); }
     Result<void> restore(const std::string& text, const std::string& name);
@@ -37,7 +40,7 @@ public:
     [[nodiscard]] const BoardProfile& board() const { return board_; }
     [[nodiscard]] const ReceiverSettings& settings() const { return settings_; }
     [[nodiscard]] const ReceiverCounters& counters() const { return counters_; }
-    [[nodiscard]] const NavigationState& state() const { return tracker_.state(); }
+    [[nodiscard]] const NavigationState& state() const { return *reported_; }
 
 private:
     // What a client's message has led to, on its way out.
@@ -45,6 +48,7 @@ private:
         std::vector<Bytes> answers;
         std::optional<Bytes> verdict;  ///< ACK or NAK
         Seconds work{0};
+        UbxMessageId to{};  ///< the client's message; of a sentence without an id 00-00
     };
 
     // Input.
@@ -59,6 +63,16 @@ private:
     [[nodiscard]] ConfigOutcome configured(const UbxFrameView& frame, PortId from);
     void command(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
     void assist(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
+    void reset_odometer();
+
+    // Faults.
+    [[nodiscard]] bool refuses_items(const UbxFrameView& frame) const;
+    [[nodiscard]] bool stays_silent_to(UbxMessageId message) const;
+    [[nodiscard]] std::vector<Bytes> answers_of(UbxMessageId polled, PortId port);
+    void report(const NavigationState& state);
+    void forget_configuration(GpsTime now);
+    void force_baud(std::uint32_t baud, GpsTime now);
+    void change_speeds_at_once(GpsTime now);
 
     // Output.
     // What messages of now are made from.
@@ -81,7 +95,7 @@ private:
     void adopt_settings();
     void apply_changes(GpsTime now);
     void reset(std::uint16_t nav_bbr_mask, std::uint8_t mode, GpsTime now);
-    void reboot(const Forgotten& forgotten, GpsTime now);
+    void reboot(const Forgotten& forgotten, GpsTime now, bool banner = true);
     void restart_navigation(const Forgotten& forgotten, GpsTime now, Seconds silence);
     void send_banner(GpsTime now);
     void look_at_ports();
@@ -92,6 +106,7 @@ private:
     ValueConfig values_;
     LegacyConfig legacy_;
     StateTracker tracker_;
+    std::shared_ptr<const NavigationState> reported_;  ///< of the last epoch, edited; what polls are answered from
     CorrectionInput corrections_;
     std::vector<PortUnit> units_;
     std::vector<PortStatus> statuses_;
@@ -104,8 +119,21 @@ private:
     GpsTime deaf_until_{};        ///< the receiver boots: input is lost
     GpsTime silent_until_{};      ///< no epoch is reported
     GpsTime last_burst_{};
+    GpsTime last_answer_{};  ///< planned; later ones do not overtake it
     std::optional<AntennaStatus> told_antenna_;
+    FirmwareFaults faults_;
+    /// The speed that ForceBaud gave, and the one before.
+    struct ForcedSpeed {
+        std::uint32_t forced = 0, before = 0;
+    };
+    std::optional<ForcedSpeed> forced_speed_;
 };
+
+/// The speed of a port's line by the configuration; never so slow that it stands still.
+std::uint32_t line_baud(const ConfigStore& store, PortId port);
+
+/// The id of a client's sentence, for PUBX and the standard polls; 00-00 of others.
+UbxMessageId sentence_id(const SentenceView& sentence);
 
 /// What the store says to measurement and solution. Items that are as the factory left them leave `base` as it is.
 ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board, const ReceiverSettings& base);

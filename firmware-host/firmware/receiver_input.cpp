@@ -56,7 +56,7 @@ void count_input(PortStatus& status, const StreamPiece& piece) {
 void Receiver::Core::input(PortId port, ByteSpan bytes, GpsTime now) {
     counters_.bytes_received += bytes.size();
     PortUnit* unit = find_unit(units_, port);
-    if (unit == nullptr || now < deaf_until_ || bytes.empty()) return;
+    if (unit == nullptr || faults_.deaf || now < deaf_until_ || bytes.empty()) return;
     unit->status.bytes_in += bytes.size();
     give_up_unfinished(*unit, now);
     unit->last_input = now;
@@ -107,20 +107,21 @@ void Receiver::Core::dispatch(PortUnit& unit, const StreamPiece& piece, GpsTime 
 void Receiver::Core::dispatch_ubx(PortUnit& unit, ByteSpan bytes, GpsTime now) {
     const auto frame = parse_frame(bytes);
     if (!frame) return;
-    const std::uint8_t message_class = frame->id.message_class;
-    if (message_class == class_cfg) return configure(unit, *frame, now);
+    if (faults_.refused.contains(frame->id))
+        return reply(unit, {{}, verdict_frame(Verdict::refuse, frame->id), Seconds(0), frame->id}, now);
+    if (frame->id.message_class == class_cfg) return configure(unit, *frame, now);
     command(unit, *frame, now);
 }
 
 void Receiver::Core::configure(PortUnit& unit, const UbxFrameView& frame, GpsTime now) {
     if (frame.id == cfg_rst) {
         const auto rst = decode_payload<CfgRst>(frame.payload);
-        if (!rst) return reply(unit, {{}, verdict_frame(Verdict::refuse, frame.id), Seconds(0)}, now);
+        if (!rst) return reply(unit, {{}, verdict_frame(Verdict::refuse, frame.id), Seconds(0), frame.id}, now);
         return reset(rst->nav_bbr_mask, rst->reset_mode, now);
     }
     const ConfigOutcome outcome = configured(frame, unit.id);
     apply_changes(now);
-    reply(unit, {outcome.answers, verdict_frame(outcome.verdict, frame.id), outcome.work}, now);
+    reply(unit, {outcome.answers, verdict_frame(outcome.verdict, frame.id), outcome.work, frame.id}, now);
 }
 
 ConfigOutcome Receiver::Core::configured(const UbxFrameView& frame, PortId from) {
@@ -131,26 +132,30 @@ ConfigOutcome Receiver::Core::configured(const UbxFrameView& frame, PortId from)
     }
     if (board_.quirks.value_config == ValueConfigSupport::refuse) return refusal();
     if (board_.quirks.value_config == ValueConfigSupport::silence) return silent();
-    if (frame.id == cfg_valset) return values_.valset(frame.payload);
+    if (frame.id == cfg_valset) {
+        if (!refuses_items(frame)) return values_.valset(frame.payload);
+        values_.cancel();
+        return refusal();
+    }
     return frame.id == cfg_valget ? values_.valget(frame.payload) : values_.valdel(frame.payload);
 }
 
 // Everything but configuration: polls, and the few commands of other classes.
 void Receiver::Core::command(PortUnit& unit, const UbxFrameView& frame, GpsTime now) {
     if (frame.id == nav_resetodo && frame.payload.empty()) {
-        tracker_.reset_odometer();
+        reset_odometer();
         return;
     }
     if (frame.id.message_class == class_mga) return assist(unit, frame, now);
     // There is no log to work on.
     if (frame.id.message_class == class_log)
-        return reply(unit, {{}, verdict_frame(Verdict::refuse, frame.id), Seconds(0)}, now);
+        return reply(unit, {{}, verdict_frame(Verdict::refuse, frame.id), Seconds(0), frame.id}, now);
     const bool known = board_.polled.contains(frame.id) ||
                        std::find(board_.messages.begin(), board_.messages.end(), frame.id) != board_.messages.end();
     if (!known || frame.payload.size() > 1) return;
-    std::vector<Bytes> answers = make_message(frame.id, context(unit.id));
+    std::vector<Bytes> answers = answers_of(frame.id, unit.id);
     if (answers.empty()) return;
-    reply(unit, {std::move(answers), std::nullopt, Seconds(0)}, now);
+    reply(unit, {std::move(answers), std::nullopt, Seconds(0), frame.id}, now);
 }
 
 // Assistance is taken and, where the client wants to know, acknowledged (MGA-ACK-DATA0, type 1: it will be used). The
@@ -161,19 +166,22 @@ void Receiver::Core::assist(PortUnit& unit, const UbxFrameView& frame, GpsTime n
     if (!store_.flag(key::navspg_ackaiding)) return;
     Bytes payload{accepted, 0, 0, frame.id.id, 0, 0, 0, 0};
     std::copy_n(frame.payload.begin(), std::min<std::size_t>(4, frame.payload.size()), payload.begin() + 4);
-    reply(unit, {{encode_frame(mga_ack, payload)}, std::nullopt, Seconds(0)}, now);
+    reply(unit, {{encode_frame(mga_ack, payload)}, std::nullopt, Seconds(0), frame.id}, now);
 }
 
 void Receiver::Core::dispatch_sentence(PortUnit& unit, ByteSpan line, GpsTime now) {
     const std::string text = to_string(line);
     const auto sentence = parse_sentence(text);
     if (!sentence) return;
+    const UbxMessageId id = sentence_id(*sentence);
+    // Sentences have no refusal: nothing happens.
+    if (faults_.refused.contains(id)) return;
     CommandOutcome outcome = execute_sentence(*sentence, board_, store_, unit.id);
     apply_changes(now);
     for (const UbxMessageId message : outcome.polled)
         for (Bytes& answer : make_message(message, context(unit.id)))
             outcome.answers.push_back(std::move(answer));
-    reply(unit, {std::move(outcome.answers), std::nullopt, Seconds(0)}, now);
+    reply(unit, {std::move(outcome.answers), std::nullopt, Seconds(0), id}, now);
     if (outcome.restart) reboot(Forgotten::of(*outcome.restart), now);
 }
 
@@ -182,7 +190,7 @@ void Receiver::Core::dispatch_corrections(ByteSpan frame, GpsTime now) {
     const Bytes answer = corrections_.take(frame, now);
     const GpsTime at = answer_time(now, Seconds(0));
     for (const PortId port : board_.ports)
-        if (store_.rate(rxm_rtcm, port) > 0 && lets_out(port, rxm_rtcm))
+        if (store_.rate(rxm_rtcm, port) > 0 && lets_out(port, rxm_rtcm) && !faults_.withheld.contains(rxm_rtcm))
             outbox_.plan(at, [this, port, answer](GpsTime t) { send(port, {answer}, t); });
 }
 

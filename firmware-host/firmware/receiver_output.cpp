@@ -47,7 +47,7 @@ void Receiver::Core::look_at_ports() {
 
 ReportContext Receiver::Core::context(PortId port) {
     look_at_ports();
-    return context(port, tracker_.state());
+    return context(port, *reported_);
 }
 
 ReportContext Receiver::Core::context(PortId port, const NavigationState& state) const {
@@ -61,7 +61,8 @@ bool Receiver::Core::lets_out(PortId port, UbxMessageId message) const {
 // Commands are worked off one after the other; each takes the board's usual time and what it has to do besides.
 GpsTime Receiver::Core::answer_time(GpsTime now, Seconds work) {
     busy_until_ = advanced(advanced(std::max(now, busy_until_), board_.timing.answer), work);
-    return busy_until_;
+    last_answer_ = std::max(last_answer_, advanced(busy_until_, faults_.answer_delay));
+    return last_answer_;
 }
 
 // Answers leave before the verdict. A new speed of the port of arrival comes in force with the answer, or after it, or
@@ -70,7 +71,10 @@ void Receiver::Core::reply(PortUnit& unit, Reply out, GpsTime now) {
     const PortId port = unit.id;
     const bool swallowed =
         board_.quirks.speed_change == SpeedChangeAnswer::lost && configured_baud(store_, port) != unit.configured_baud;
-    if (out.verdict && !swallowed) out.answers.push_back(*out.verdict);
+    if (stays_silent_to(out.to))
+        out.answers.clear();
+    else if (out.verdict && !swallowed)
+        out.answers.push_back(*out.verdict);
     const bool anything = !out.answers.empty();
     if (!anything && configured_speeds_hold()) return;
     const GpsTime at = answer_time(now, out.work);
@@ -114,6 +118,7 @@ void Receiver::Core::change_speed(PortId port, GpsTime at) {
 }
 
 void Receiver::Core::send(PortId port, const std::vector<Bytes>& messages, GpsTime now) {
+    if (faults_.mute) return;
     const std::size_t queued = outbox_.queue(port, messages, now);
     counters_.messages_sent += queued;
     counters_.messages_dropped += messages.size() - queued;
@@ -133,20 +138,26 @@ GpsTime Receiver::Core::burst_time(GpsTime epoch) {
         jitter = deviation * std::clamp(latency_noise_.normal(), -3.0, 3.0);
         if (latency_noise_.uniform() < late_epochs) jitter += late_by_s;
     }
-    const double latency = std::max(0.0, board_.solution_latency.value() + jitter);
+    const double delay = std::max(0.0, faults_.solution_delay.value());
+    const double latency = std::max(0.0, board_.solution_latency.value() + jitter) + delay;
     last_burst_ = std::max(last_burst_, advanced(epoch, Seconds(latency)));
     return last_burst_;
 }
 
-void Receiver::Core::on_epoch(const Epoch& epoch) {
+void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     const GpsTime time = epoch.fix.time;
     if (time < silent_until_) return;
     const CorrectionStatus corrections = corrections_.status(time, store_);
     settings_.corrections = corrections.state;
-    const auto state = std::make_shared<const NavigationState>(tracker_.update(epoch, store_, corrections));
+    const auto state = std::make_shared<NavigationState>(tracker_.update(epoch, store_, corrections));
+    state->monitors.jamming_hidden = faults_.jamming_hidden;
+    if (edit) edit(*state);
+    reported_ = state;
     ++counters_.epochs;
     if (!settings_.navigating) return;
-    outbox_.plan(burst_time(time), [this, state](GpsTime t) { send_epoch(*state, t); });
+    const GpsTime burst = advanced(burst_time(time), state->report_delay);
+    for (int i = 0; i < state->reports; ++i)
+        outbox_.plan(burst, [this, state](GpsTime t) { send_epoch(*state, t); });
 }
 
 void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {
@@ -169,8 +180,8 @@ std::vector<Bytes> Receiver::Core::due_messages(PortId port, const NavigationSta
     std::vector<Bytes> due;
     for (const UbxMessageId message : board_.messages) {
         const int rate = store_.rate(message, port);
-        if (rate <= 0 || state.epoch_index % static_cast<std::uint64_t>(rate) != 0 || !lets_out(port, message))
-            continue;
+        const bool wanted = rate > 0 && !faults_.withheld.contains(message);
+        if (!wanted || state.epoch_index % static_cast<std::uint64_t>(rate) != 0 || !lets_out(port, message)) continue;
         const std::vector<Bytes>& messages = made.of(message, port);
         due.insert(due.end(), messages.begin(), messages.end());
     }

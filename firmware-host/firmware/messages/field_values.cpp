@@ -69,17 +69,22 @@ EpochTime epoch_time(GpsTime time) {
 
 ReportedTime reported_time(const ReportContext& context) {
     const NavigationState& state = context.state;
-    if (state.time.time) return {state.epoch.fix.time, state.epoch.fix.leap_seconds};
+    if (state.time.time) return {state.epoch.fix.time, state.epoch.fix.leap_seconds, state.leap_event};
     const auto week = static_cast<std::int64_t>(context.config.value(key::navspg_wknrollover) & 0xFFFFu);
     const std::chrono::milliseconds running(field<std::uint32_t>(state.since_start.value() * 1e3));
-    return {to_gps_time({week, Nanoseconds(0)}) + running, 0};
+    return {to_gps_time({week, Nanoseconds(0)}) + running, 0, std::nullopt};
+}
+
+LeapSeconds counted_leap_seconds(const ReportedTime& now) {
+    if (!now.leap_event) return LeapSeconds::believed(now.time, now.leap_seconds);
+    return LeapSeconds({{GpsTime{}, now.leap_event->before}, {now.leap_event->at, now.leap_event->after}});
 }
 
 UtcFields utc_fields(const ReportedTime& now) {
     const Nanoseconds since_epoch = now.time.time_since_epoch() + utc_rounding / 2;
     const GpsTime rounded(since_epoch - ((since_epoch % utc_rounding) + utc_rounding) % utc_rounding);
     UtcFields fields;
-    fields.utc = to_utc(rounded, LeapSeconds::believed(now.time, now.leap_seconds));
+    fields.utc = to_utc(rounded, counted_leap_seconds(now));
     fields.nano =
         static_cast<std::int32_t>(fields.utc.nanosecond) + static_cast<std::int32_t>((now.time - rounded).count());
     return fields;

@@ -47,12 +47,19 @@ struct EpochTime {
     std::int32_t f_tow = 0;   ///< ns, −500 000 … 500 000
 };
 EpochTime epoch_time(GpsTime time);
+/// A week number as the receiver counts it.
+inline double reported_week(const NavigationState& state, std::int64_t week) {
+    return static_cast<double>(week + state.week_offset);
+}
 
 /// The instant of the epoch as the receiver believes it, and how far GPS time is ahead of UTC.
 struct ReportedTime {
     GpsTime time;
     int leap_seconds = 18;
+    std::optional<LeapEvent> leap_event{};
 };
+/// What the receiver counts UTC by.
+LeapSeconds counted_leap_seconds(const ReportedTime& now);
 /// Before the first time from space a receiver without a clock of its own counts from the week that
 /// CFG-NAVSPG-WKNROLLOVER names (M9N 4.04: 2020-08-02, F9P: 2024-06-23; RECEIVER.md 4.9).
 ReportedTime reported_time(const ReportContext& context);

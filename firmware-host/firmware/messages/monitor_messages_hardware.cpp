@@ -20,6 +20,10 @@ constexpr std::size_t pin_count = 17;
 constexpr std::int8_t offset_i = 15, offset_q = 11;
 constexpr std::uint8_t magnitude_i = 149, magnitude_q = 146;
 
+int shown_jamming_state(const MonitorStatus& monitors) {
+    return monitors.jamming_hidden ? 0 : std::clamp(monitors.jamming_state, 0, 3);
+}
+
 template <class Message>
 Message hardware(const MonitorStatus& monitors) {
     Message m;
@@ -31,7 +35,7 @@ Message hardware(const MonitorStatus& monitors) {
     m.agc_cnt = std::min<std::uint16_t>(8191, field<std::uint16_t>(monitors.agc));
     m.a_status = static_cast<std::uint8_t>(monitors.antenna);
     m.a_power = field<std::uint8_t>(monitors.antenna_power);
-    m.flags = static_cast<std::uint8_t>(1 | std::clamp(monitors.jamming_state, 0, 3) << 2);
+    m.flags = static_cast<std::uint8_t>(1 | shown_jamming_state(monitors) << 2);
     m.used_mask = pins_used;
     std::copy_n(virtual_pins.begin(), m.vp.size(), m.vp.begin());
     m.jam_ind = field<std::uint8_t>(monitors.jamming_indicator);
@@ -90,7 +94,7 @@ MonRf radio(const ReportContext& context) {
     for (std::size_t block = 0; block < front_end_count(context); ++block) {
         MonRfItem item;
         item.block_id = static_cast<std::uint8_t>(block);
-        item.flags = static_cast<std::uint8_t>(std::clamp(monitors.jamming_state, 0, 3));
+        item.flags = static_cast<std::uint8_t>(shown_jamming_state(monitors));
         item.ant_status = static_cast<std::uint8_t>(monitors.antenna);
         item.ant_power = field<std::uint8_t>(monitors.antenna_power);
         item.noise_per_ms = field<std::uint16_t>(monitors.noise_per_ms);

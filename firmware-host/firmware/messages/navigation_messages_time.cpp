@@ -43,7 +43,7 @@ NavTimegps time_gps(const ReportContext& context) {
     const EpochTime now = epoch_time(reported.time);
     const NavigationState& state = context.state;
     NavTimegps m{now.i_tow, now.f_tow, 0, 0, gnss_time_valid(state), time_accuracy_ns(state)};
-    m.week = state.time.week_and_tow ? field<std::int16_t>(static_cast<double>(now.week)) : std::int16_t{0};
+    m.week = state.time.week_and_tow ? field<std::int16_t>(reported_week(context.state, now.week)) : std::int16_t{0};
     m.leap_s = field<std::int8_t>(state.epoch.fix.leap_seconds);
     return m;
 }
@@ -73,7 +73,7 @@ NavTimegal time_galileo(const ReportContext& context) {
     return {epoch_time(time).i_tow,
             now.seconds,
             now.rest,
-            field<std::int16_t>(static_cast<double>(now.week)),
+            field<std::int16_t>(reported_week(context.state, now.week)),
             field<std::int8_t>(context.state.epoch.fix.leap_seconds),
             gnss_time_valid(context.state),
             time_accuracy_ns(context.state)};
@@ -86,7 +86,7 @@ NavTimeqzss time_qzss(const ReportContext& context) {
     return {epoch_time(time).i_tow,
             now.seconds,
             now.rest,
-            field<std::int16_t>(static_cast<double>(now.week)),
+            field<std::int16_t>(reported_week(context.state, now.week)),
             field<std::int8_t>(context.state.epoch.fix.leap_seconds),
             gnss_time_valid(context.state),
             time_accuracy_ns(context.state)};
@@ -99,7 +99,7 @@ NavTimebds time_beidou(const ReportContext& context) {
     return {epoch_time(time).i_tow,
             now.seconds,
             now.rest,
-            field<std::int16_t>(static_cast<double>(now.week)),
+            field<std::int16_t>(reported_week(context.state, now.week)),
             field<std::int8_t>(context.state.epoch.fix.leap_seconds - ahead_of_gps_leaps),
             gnss_time_valid(context.state),
             time_accuracy_ns(context.state)};
@@ -125,24 +125,27 @@ NavTimeglo time_glonass(const ReportContext& context) {
     return m;
 }
 
+void put_leap_event(GpsTime now, const LeapSeconds::Step& event, int change, NavTimels& m) {
+    m.ls_change = field<std::int8_t>(event.from > now ? change : 0);
+    m.time_to_ls_event = field<std::int32_t>(std::chrono::duration<double>(event.from - now).count());
+    // The day at whose end it comes: 1 is Sunday, 7 Saturday.
+    const WeekAndTow day = week_and_tow(event.from - std::chrono::hours(12));
+    m.date_of_ls_gps_wn = field<std::uint16_t>(static_cast<double>(day.week));
+    m.date_of_ls_gps_dn = static_cast<std::uint16_t>(day.tow / std::chrono::hours(24) + 1);
+}
+
 // Of the last event or, once it is broadcast (half a year before, IERS Bulletin C), of the coming one.
-void put_leap_event(GpsTime now, NavTimels& m) {
+void put_announced_leap_event(GpsTime now, NavTimels& m) {
     constexpr auto announced_before = std::chrono::hours(24 * 182);
     const LeapSeconds::Step* event = nullptr;
     int change = 0, offset = 0;
     for (const LeapSeconds::Step& step : LeapSeconds::announced().steps()) {
         if (step.from - announced_before > now) break;
-        change = step.from > now ? step.offset - offset : 0;
+        change = step.offset - offset;
         offset = step.offset;
         event = &step;
     }
-    if (event == nullptr) return;
-    m.ls_change = field<std::int8_t>(change);
-    m.time_to_ls_event = field<std::int32_t>(std::chrono::duration<double>(event->from - now).count());
-    // The day at whose end it comes: 1 is Sunday, 7 Saturday.
-    const WeekAndTow day = week_and_tow(event->from - std::chrono::hours(12));
-    m.date_of_ls_gps_wn = field<std::uint16_t>(static_cast<double>(day.week));
-    m.date_of_ls_gps_dn = static_cast<std::uint16_t>(day.tow / std::chrono::hours(24) + 1);
+    if (event != nullptr) put_leap_event(now, *event, change, m);
 }
 
 NavTimels time_leap_seconds(const ReportContext& context) {
@@ -155,7 +158,11 @@ NavTimels time_leap_seconds(const ReportContext& context) {
     if (!context.state.time.leap_seconds) return m;
     m.src_of_curr_ls = m.src_of_ls_change = from_gps;
     m.valid = 3;
-    put_leap_event(reported.time, m);
+    const auto& own = reported.leap_event;
+    if (own)
+        put_leap_event(reported.time, {own->at, own->after}, own->after - own->before, m);
+    else
+        put_announced_leap_event(reported.time, m);
     return m;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "firmware/config/signal_keys.hpp"
+#include "firmware/messages/field_values.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -153,7 +154,7 @@ void add_time_and_date(NmeaReport& r) {
 
 void add_position_and_motion(NmeaReport& r) {
     const auto& [board, config, state, ports, port] = r.context;
-    const bool any = config.flag(key::nmea_out_invfix) && state.position_known;
+    const bool any = (config.flag(key::nmea_out_invfix) || state.old_position_shown) && state.position_known;
     const bool beyond_limits = r.solved && config.flag(key::nmea_out_mskfix);
     if (!r.valid && !any && !beyond_limits) return;
     const Fix& fix = r.fix();
@@ -213,7 +214,8 @@ NmeaFormat nmea_format(const BoardProfile& board, const ConfigStore& config) {
 
 UtcTime reported_utc(const ReportContext& context) {
     const Fix& fix = context.state.epoch.fix;
-    return rounded_utc(fix.time, context.board.time_decimals, LeapSeconds::believed(fix.time, fix.leap_seconds));
+    return rounded_utc(fix.time, context.board.time_decimals,
+                       counted_leap_seconds({fix.time, fix.leap_seconds, context.state.leap_event}));
 }
 
 NmeaReport nmea_report(const ReportContext& context) {

@@ -25,8 +25,10 @@ void put_msp_position(const Fix& fix, MspSensorGps& to) {
     to.vel_down = field<std::int32_t>(fix.velocity.down * 100);
 }
 
-void put_msp_clock(const Fix& fix, MspSensorGps& to) {
-    const UtcTime utc = to_utc(to_gps_time(gps_stamp(fix.time)), LeapSeconds::believed(fix.time, fix.leap_seconds));
+void put_msp_clock(const NavigationState& state, MspSensorGps& to) {
+    const Fix& fix = state.epoch.fix;
+    const UtcTime utc =
+        to_utc(to_gps_time(gps_stamp(fix.time)), counted_leap_seconds({fix.time, fix.leap_seconds, state.leap_event}));
     to.year = static_cast<std::uint16_t>(utc.year);
     to.month = static_cast<std::uint8_t>(utc.month);
     to.day = static_cast<std::uint8_t>(utc.day);
@@ -75,11 +77,11 @@ MspSensorGps msp_sensor_gps(const NavigationState& state) {
     message.fix_type = autopilot_fix_type(state);
     message.satellites = reported_satellites(fix);
     if (state.time.week_and_tow) {
-        const WeekAndTow stamp = gps_stamp(fix.time);
+        const WeekAndTow stamp = gps_stamp(state);
         message.gps_week = field<std::uint16_t>(static_cast<double>(stamp.week));
         message.ms_tow = whole_milliseconds(stamp);
     }
-    if (state.time.time && state.time.date) put_msp_clock(fix, message);
+    if (state.time.time && state.time.date) put_msp_clock(state, message);
     if (!has_solution(state)) return message;
     put_msp_position(fix, message);
     if (state.course) message.course = field<std::uint16_t>(state.course->deg() * 100);
@@ -107,7 +109,7 @@ MavlinkGpsInput mavlink_gps_input(const NavigationState& state) {
     message.fix_type = autopilot_fix_type(state);
     message.satellites_visible = reported_satellites(fix);
     if (state.time.week_and_tow) {
-        const WeekAndTow stamp = gps_stamp(fix.time);
+        const WeekAndTow stamp = gps_stamp(state);
         message.time_week = field<std::uint16_t>(static_cast<double>(stamp.week));
         message.time_week_ms = whole_milliseconds(stamp);
     }

@@ -15,7 +15,7 @@ constexpr std::uint32_t antenna_error = 1u << 5;
 
 SbfTime sbf_time(const NavigationState& state) {
     if (!state.time.week_and_tow) return {};
-    const WeekAndTow stamp = gps_stamp(state.epoch.fix.time);
+    const WeekAndTow stamp = gps_stamp(state);
     return {whole_milliseconds(stamp), field<std::uint16_t>(static_cast<double>(stamp.week))};
 }
 

@@ -1,0 +1,111 @@
+// What faults make of a receiver.
+#include <algorithm>
+#include <charconv>
+
+#include "firmware/config/message_names.hpp"
+#include "firmware/message_class.hpp"
+#include "firmware/messages/make_message.hpp"
+#include "firmware/receiver_core.hpp"
+#include "skyloop/protocol/ubx_cfg_values.hpp"
+#include "skyloop/protocol/ubx_mon.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+template <class... Cases>
+struct OneOf : Cases... {
+    using Cases::operator()...;
+};
+
+}  // namespace
+
+UbxMessageId sentence_id(const SentenceView& sentence) {
+    if (sentence.address != "PUBX") {
+        const auto polls = polled_messages();
+        const auto poll = std::find_if(polls.begin(), polls.end(), [&](const NamedMessage& m) {
+            return m.id.message_class == class_nmea && m.name == sentence.formatter();
+        });
+        return poll == polls.end() ? UbxMessageId{} : poll->id;
+    }
+    // PUBX,41 is F1-41: the digits are those of the id.
+    const std::string_view digits = sentence.field(0);
+    UbxMessageId id{class_pubx, 0};
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), id.id, 16);
+    const bool whole = !digits.empty() && error == std::errc() && end == digits.data() + digits.size();
+    return whole ? id : UbxMessageId{};
+}
+
+void Receiver::Core::happen(const ReceiverEvent& event, GpsTime now) {
+    std::visit(OneOf{[&](const Reboot& e) { reboot(Forgotten::of(e.kind), now, e.banner); },
+                     [&](const ForgetConfiguration&) { forget_configuration(now); },
+                     [&](const ForceBaud& e) { force_baud(e.baud, now); }},
+               event);
+}
+
+// Without a word: what was queued still leaves, at the speed that the factory gave.
+void Receiver::Core::forget_configuration(GpsTime now) {
+    store_.clear(in_battery | in_flash);
+    store_.reload();
+    values_.cancel();
+    forced_speed_.reset();
+    adopt_settings();
+    change_speeds_at_once(now);
+}
+
+void Receiver::Core::force_baud(std::uint32_t baud, GpsTime now) {
+    const auto current = static_cast<std::uint32_t>(store_.value(key::uart1_baudrate));
+    if (baud == 0) {
+        const bool holds = forced_speed_ && forced_speed_->forced == current;
+        if (holds) store_.set(in_ram, key::uart1_baudrate, forced_speed_->before);
+        forced_speed_.reset();
+    } else {
+        forced_speed_ = ForcedSpeed{baud, forced_speed_ ? forced_speed_->before : current};
+        store_.set(in_ram, key::uart1_baudrate, baud);
+    }
+    adopt_settings();
+    change_speeds_at_once(now);
+}
+
+void Receiver::Core::change_speeds_at_once(GpsTime now) {
+    for (PortUnit& unit : units_) {
+        const std::uint32_t baud = line_baud(store_, unit.id);
+        if (baud == unit.configured_baud) continue;
+        unit.configured_baud = baud;
+        const PortId port = unit.id;
+        outbox_.plan(unit.transmit.between_bytes(now), [this, port](GpsTime then) { change_speed(port, then); });
+    }
+}
+
+bool Receiver::Core::refuses_items(const UbxFrameView& frame) const {
+    if (faults_.refused_keys.empty()) return false;
+    const auto message = decode_payload<CfgValset>(frame.payload);
+    return message && std::any_of(message->pairs.begin(), message->pairs.end(),
+                                  [&](const ConfigPair& pair) { return faults_.refused_keys.contains(pair.key); });
+}
+
+bool Receiver::Core::stays_silent_to(UbxMessageId message) const {
+    return faults_.unanswering || faults_.unanswered.contains(message);
+}
+
+std::vector<Bytes> Receiver::Core::answers_of(UbxMessageId polled, PortId port) {
+    const ReportContext asked = context(port);
+    const bool disguised = faults_.software || faults_.extensions;
+    if (polled != MonVer::message_id || !disguised) return make_message(polled, asked);
+    BoardProfile board = board_;
+    if (faults_.software) board.identity.software = *faults_.software;
+    if (faults_.extensions) board.identity.extensions = *faults_.extensions;
+    return make_message(polled, {board, store_, asked.state, asked.ports, port});
+}
+
+void Receiver::Core::report(const NavigationState& state) {
+    reported_ = std::make_shared<const NavigationState>(state);
+}
+
+void Receiver::Core::reset_odometer() {
+    tracker_.reset_odometer();
+    NavigationState shown = *reported_;
+    shown.odometer_m = shown.odometer_deviation_m = 0;
+    report(shown);
+}
+
+}  // namespace skyloop::firmware
