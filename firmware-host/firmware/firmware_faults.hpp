@@ -38,6 +38,10 @@ struct Reboot {
     StartKind kind = StartKind::hot;
     bool banner = true;
 };
+/// Its navigation starts anew; configuration, ports and texts stay.
+struct RestartNavigation {
+    StartKind kind = StartKind::hot;
+};
 /// RAM, battery-backed memory and flash are as at the factory, speed and messages among it; navigation goes on.
 struct ForgetConfiguration {};
 /// The speed of its first UART is another one, as after a mistaken command of somebody else.
@@ -45,7 +49,7 @@ struct ForceBaud {
     std::uint32_t baud = 9600;  ///< 0: that of before, unless it has been given another or was rebooted since
 };
 /// What happens to a receiver once.
-using ReceiverEvent = std::variant<Reboot, ForgetConfiguration, ForceBaud>;
+using ReceiverEvent = std::variant<Reboot, RestartNavigation, ForgetConfiguration, ForceBaud>;
 
 /// Changes what a receiver is about to report of an epoch.
 using ReportEdit = std::function<void(NavigationState&)>;

@@ -11,6 +11,9 @@ constexpr Nanoseconds no_time{0};
 
 Emulator::Emulator(Parts parts, GpsTime start)
     : parts_(std::move(parts)), now_(start), traces_(parts_.stations.size()) {
+    for (std::size_t i = 0; i < parts_.stations.size(); ++i)
+        dialogues_.emplace_back(i, Dialogue::Listener{[this](const MessageSeen& seen) { parts_.director->show(seen); },
+                                                      [this](const BeliefSeen& seen) { parts_.director->show(seen); }});
     for (Station& station : parts_.stations)
         station.start(start);
 }
@@ -22,25 +25,55 @@ GpsTime Emulator::next_instant(GpsTime end) const {
         next = std::min(next, station.next_epoch());
         busy = busy || station.busy();
         wired = wired || !station.wires().empty();
+        if (const auto change = station.next_change()) next = std::min(next, std::max(now_, *change));
     }
+    if (parts_.director)
+        if (const auto event = parts_.director->next_event()) next = std::min(next, std::max(now_, *event));
+    if (const Nanoseconds often = look_every(); often > no_time) next = std::min(next, now_ + often);
     const Nanoseconds tick = parts_.pacer->tick(busy);
     if (tick > no_time && wired) next = std::min(next, now_ + tick);
     return next;
 }
 
 void Emulator::run_until(GpsTime end, const std::atomic<bool>& stop) {
-    while (now_ < end && !stop) {
+    while (now_ < end && !stop && !stopped()) {
+        if (parts_.pacer->paused()) {
+            Pacer::rest();
+            direct();
+            continue;
+        }
         const GpsTime next = next_instant(end);
         const auto lateness = parts_.pacer->wait_until(next);
         if (stop) break;
         if (!lateness) continue;
         now_ = next;
+        direct();
         exchange_bytes();
         if (now_ < end) run_epochs(*lateness);
         if (recording_failed()) break;
     }
     for (Station& station : parts_.stations)
         station.finish(now_);
+}
+
+void Emulator::direct() {
+    if (parts_.director) parts_.director->advance(now_, parts_.stations, *parts_.pacer);
+}
+
+void Emulator::add_observer(RunObserver* observer) {
+    if (!parts_.director) parts_.director.emplace(Director::Parts{});
+    parts_.director->add_observer(observer);
+}
+
+// Ends of wires that live in simulated time want to be looked at in virtual time too.
+Nanoseconds Emulator::look_every() const {
+    Nanoseconds shortest = no_time;
+    for (const Station& station : parts_.stations)
+        for (const Wire& wire : station.wires())
+            if (const Nanoseconds every = wire.link.transport().look_every();
+                every > no_time && (shortest == no_time || every < shortest))
+                shortest = every;
+    return shortest;
 }
 
 bool Emulator::recording_failed() const {
@@ -50,8 +83,10 @@ bool Emulator::recording_failed() const {
 
 void Emulator::exchange_bytes() {
     const LoopTime time{now_, parts_.pacer->monotonic_ns(now_)};
-    for (Station& station : parts_.stations) {
-        station.exchange(time);
+    const bool heard = parts_.director && parts_.director->wants_messages();
+    for (std::size_t i = 0; i < parts_.stations.size(); ++i) {
+        Station& station = parts_.stations[i];
+        station.exchange(time, heard ? &dialogues_[i] : nullptr);
         // As fast as the machine can, the end of the run is soon enough.
         if (!parts_.pacer->is_virtual()) station.keep_state(now_);
     }
@@ -71,6 +106,8 @@ void Emulator::run_epochs(Nanoseconds lateness) {
     for (std::size_t i = 0; i < stations.size(); ++i) {
         if (!traces_[i]) continue;
         stations[i].report(*traces_[i], lateness, !parts_.pacer->is_virtual());
+        if (parts_.director)
+            parts_.director->show(EpochSeen{now_, i, *traces_[i], stations[i].receiver().state(), lateness});
         if (status_) status_({now_, &*traces_[i], lateness, i});
     }
 }

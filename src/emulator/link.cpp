@@ -41,8 +41,8 @@ Bytes Link::heard_by_client(ByteSpan bytes, std::uint32_t receiver_baud, std::ui
 
 void Link::send(ByteSpan bytes, PortSpeed speed, bool at_rest) {
     const LineState line = transport_->line();
-    connected_ = line.connected;
-    if (!line.connected) {
+    connected_ = line.connected && plugged_;
+    if (!connected_) {
         counters_.bytes_unheard += bytes.size();
         return;
     }
@@ -57,11 +57,13 @@ void Link::send(ByteSpan bytes, PortSpeed speed, bool at_rest) {
 }
 
 void Link::look(GpsTime now) {
+    transport_->tell_time(now);
     const LineState line = transport_->line();
-    connected_ = line.connected;
+    connected_ = line.connected && plugged_;
     // What is left in the driver makes the client wait, as a slow line does.
     if (waiting_ >= driver_bytes) return;
     Bytes bytes = transport_->read();
+    if (!plugged_) bytes.clear();
     may_rest_ = bytes.empty();
     if (bytes.empty()) return;
     waiting_ += bytes.size();

@@ -19,15 +19,37 @@ std::int64_t steady_clock_ns() {
     return now.tv_sec * second_ns + now.tv_nsec;
 }
 
+void Pacer::rest() {
+    constexpr timespec twenty_ms{0, 20'000'000};
+    nanosleep(&twenty_ms, nullptr);
+}
+
 RealtimePacer::RealtimePacer(GpsTime start, std::int64_t start_steady_ns, double speed)
     : start_(start), start_ns_(start_steady_ns), speed_(speed) {
     // The default slack lets the kernel wake us 50 µs late to save power.
     prctl(PR_SET_TIMERSLACK, 1UL);
 }
 
+std::int64_t RealtimePacer::due_ns(GpsTime time) const {
+    return start_ns_ + std::llround(static_cast<double>((time - start_).count()) / speed_);
+}
+
+void RealtimePacer::set_speed(double speed, GpsTime now) {
+    start_ns_ = due_ns(now);
+    start_ = now;
+    speed_ = speed;
+}
+
+void RealtimePacer::resume(GpsTime now) {
+    if (paused()) {
+        start_ns_ = steady_clock_ns();
+        start_ = now;
+    }
+    Pacer::resume(now);
+}
+
 std::optional<Nanoseconds> RealtimePacer::wait_until(GpsTime time) {
-    const auto simulated = static_cast<double>((time - start_).count());
-    const std::int64_t due = start_ns_ + std::llround(simulated / speed_);
+    const std::int64_t due = due_ns(time);
     const timespec deadline{due / second_ns, due % second_ns};
     if (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr) == EINTR) return std::nullopt;
     return Nanoseconds(std::max<std::int64_t>(0, steady_clock_ns() - due));

@@ -91,6 +91,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     Station::Parts parts{std::move(*simulation), std::move(receiver), {}, {}};
     if (entry.rate_hz) warn_of_rate(*entry.rate_hz, parts.receiver, warnings);
     parts.name = receiver_name(scenario, index);
+    parts.seed = receiver_seed(scenario.run.seed, index);
     parts.state = std::move(state);
     parts.base = entry.base;
     if (entry.base) parts.moving_base.emplace(receiver_seed(scenario.run.seed, index));

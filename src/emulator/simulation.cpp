@@ -9,12 +9,13 @@ namespace {
 
 void make_fix(ErrorModel& model, Trace& trace) { trace.epoch.fix = model.fix(trace.truth, trace.sky, trace.arrivals); }
 
-void make_fix(MeasuringReceiver& receiver, Trace& trace, const ReceiverSettings& settings) {
+void make_fix(MeasuringReceiver& receiver, Trace& trace, const ReceiverSettings& settings, ActiveFaults* faults) {
     const Arrivals nothing;
     const Arrivals& heard = settings.navigating ? trace.arrivals : nothing;
     Measurement measured = receiver.measurement.measure(heard, trace.truth.time, settings);
     trace.measurement = std::move(measured.terms);
     trace.epoch.observations = std::move(measured.observations);
+    if (faults != nullptr) faults->edit_observations(trace);
     trace.epoch.fix = receiver.navigation.solve(trace.epoch.observations, settings);
 }
 
@@ -41,7 +42,7 @@ Simulation::Simulation(Parts parts) : parts_(std::move(parts)) {}
 
 SkyView Simulation::view(const TruthState& truth) const { return observe_sky(truth, *parts_.navigation); }
 
-Trace Simulation::run(GpsTime time, const ReceiverSettings& settings) {
+Trace Simulation::run(GpsTime time, const ReceiverSettings& settings, ActiveFaults* faults) {
     Trace trace;
     trace.truth = parts_.trajectory->at(time);
     trace.sky = observer_.observe(trace.truth, *parts_.navigation);
@@ -49,14 +50,16 @@ Trace Simulation::run(GpsTime time, const ReceiverSettings& settings) {
     trace.arrivals.antenna_speed = trace.truth.velocity.length();
     for (const auto& effect : parts_.effects)
         effect->apply(trace.arrivals, trace.sky, trace.truth);
+    if (faults != nullptr) faults->edit_arrivals(trace);
     if (auto* receiver = std::get_if<MeasuringReceiver>(&parts_.fix_maker))
-        make_fix(*receiver, trace, settings);
+        make_fix(*receiver, trace, settings, faults);
     else
         make_fix(*std::get<std::unique_ptr<ErrorModel>>(parts_.fix_maker), trace);
     if (measures() && settings.subframes)
         trace.epoch.subframes = subframes_.receive(trace.epoch.observations, *parts_.navigation, time);
     if (!settings.navigating) withhold(trace.epoch.fix);
     trace.epoch.front_end = front_end(trace.arrivals);
+    if (faults != nullptr) faults->edit_epoch(trace);
     return trace;
 }
 

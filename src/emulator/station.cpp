@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "skyloop/emulator/moved_path.hpp"
 #include "skyloop/emulator/wires.hpp"
 
 namespace skyloop {
@@ -15,6 +16,11 @@ PortSpeed speed_of(PortId port, std::uint32_t baud) { return firmware::is_uart(p
 
 PortSpeed port_speed(const firmware::Receiver& receiver, PortId port) { return speed_of(port, receiver.baud(port)); }
 
+Station::Station(Parts parts) : parts_(std::move(parts)) {
+    for (std::size_t i = 0; i < std::max<std::size_t>(parts_.wires.size(), 1); ++i)
+        faulty_wires_.emplace_back(parts_.seed, i);
+}
+
 void Station::start(GpsTime now) {
     parts_.receiver.start(now);
     grid_.start(now, parts_.receiver.settings().navigation_period);
@@ -26,38 +32,95 @@ bool Station::busy() const {
                        [](const Wire& w) { return w.link.connected() || w.link.input_pending(); });
 }
 
-void Station::exchange(const LoopTime& time) {
+void Station::exchange(const LoopTime& time, Dialogue* dialogue) {
+    follow_faults(time.now);
     for (std::size_t i = 0; i < parts_.wires.size(); ++i)
-        hear(i, time.now);
-    speak(time);
+        hear(i, time.now, dialogue);
+    speak(time, dialogue);
     follow_settings(time.now);
 }
 
-void Station::hear(std::size_t wire, GpsTime now) {
+// What has ended is taken back at the first look after it.
+void Station::follow_faults(GpsTime now) {
+    for (const firmware::ReceiverEvent& event : faults_.settle(now))
+        parts_.receiver.happen(event, now);
+    if (faults_.empty() && !faults_act_) return;
+    faults_act_ = !faults_.empty();
+    parts_.receiver.set_faults(faults_.firmware(now));
+    const WireConditions conditions = faults_.wire(now);
+    for (FaultyWire& wire : faulty_wires_)
+        wire.set(conditions, now);
+    for (Wire& wire : parts_.wires)
+        wire.link.set_plugged(!conditions.unplugged);
+}
+
+void Station::hear(std::size_t wire, GpsTime now, Dialogue* dialogue) {
     auto& [port, link] = parts_.wires[wire];
+    FaultyWire& faulty = faulty_wires_[wire];
     link.look(now);
-    while (const auto heard = link.receive(speed(port), now)) {
-        if (heard->empty()) continue;
-        parts_.receiver.input(port, *heard, now);
-        if (parts_.recorder) parts_.recorder->record_input(*heard, wire);
+    const auto line_speed = [&] {
+        const PortSpeed own = speed(port);
+        return own && faulty.line_baud() ? faulty.line_baud() : own;
+    };
+    const auto take = [&](Bytes bytes) {
+        const Bytes heard = faulty.to_receiver(std::move(bytes), now);
+        if (heard.empty()) return;
+        if (dialogue != nullptr) dialogue->client_said(wire, heard, now);
+        parts_.receiver.input(port, heard, now);
+        if (parts_.recorder) parts_.recorder->record_input(heard, wire);
+    };
+    while (auto heard = link.receive(line_speed(), now))
+        if (!heard->empty()) take(std::move(*heard));
+    if (faulty.input_pending()) take({});
+    if (dialogue == nullptr) return;
+    if (const auto belief = link.transport().new_belief()) dialogue->client_believes(wire, *belief, now);
+}
+
+PortId Station::port_of(std::size_t wire) const {
+    // Without a wire, what would leave by the port of an unnamed one is kept.
+    return parts_.wires.empty() ? default_port(parts_.receiver.board()) : parts_.wires[wire].port;
+}
+
+void Station::speak(const LoopTime& time, Dialogue* dialogue) {
+    const std::vector<firmware::Receiver::Sent> pieces = parts_.receiver.output(time.now);
+    const bool at_rest = !parts_.receiver.drained_at().has_value();
+    for (std::size_t i = 0; i < faulty_wires_.size(); ++i) {
+        std::vector<firmware::Receiver::Sent> own;
+        for (const firmware::Receiver::Sent& piece : pieces) {
+            if (piece.port != port_of(i)) continue;
+            if (dialogue != nullptr) dialogue->receiver_said(i, piece.bytes, time.now);
+            own.push_back(piece);
+        }
+        own = faulty_wires_[i].to_client(std::move(own), time.now);
+        if (i < parts_.wires.size()) send_on_wire(i, own, at_rest);
+        if (!parts_.recorder) continue;
+        for (const firmware::Receiver::Sent& piece : own)
+            parts_.recorder->record_output(piece.bytes, time, i);
     }
 }
 
-void Station::speak(const LoopTime& time) {
-    const std::vector<firmware::Receiver::Sent> pieces = parts_.receiver.output(time.now);
-    const bool at_rest = !parts_.receiver.drained_at().has_value();
-    for (auto& [port, link] : parts_.wires) {
-        for (const firmware::Receiver::Sent& piece : pieces)
-            if (piece.port == port) link.send(piece.bytes, speed_of(port, piece.baud), false);
-        link.send({}, speed(port), at_rest);
-    }
-    if (!parts_.recorder) return;
-    for (std::size_t i = 0; i < std::max<std::size_t>(parts_.wires.size(), 1); ++i) {
-        // Without a wire, what would leave by the port of an unnamed one is kept.
-        const PortId port = parts_.wires.empty() ? default_port(parts_.receiver.board()) : parts_.wires[i].port;
-        for (const firmware::Receiver::Sent& piece : pieces)
-            if (piece.port == port) parts_.recorder->record_output(piece.bytes, time, i);
-    }
+void Station::send_on_wire(std::size_t wire, const std::vector<firmware::Receiver::Sent>& pieces, bool at_rest) {
+    auto& [port, link] = parts_.wires[wire];
+    const std::optional<std::uint32_t> line_baud = faulty_wires_[wire].line_baud();
+    for (const firmware::Receiver::Sent& piece : pieces)
+        link.send(piece.bytes, speed_of(port, line_baud.value_or(piece.baud)), false);
+    const PortSpeed own = speed(port);
+    link.send({}, own && line_baud ? line_baud : own, at_rest);
+}
+
+void Station::happen(const firmware::ReceiverEvent& event, GpsTime now) { parts_.receiver.happen(event, now); }
+
+void Station::move_to(const Geodetic& place, GpsTime now) {
+    parts_.simulation.replace_trajectory([&](std::unique_ptr<Trajectory> path) {
+        return std::make_unique<MovedPath>(std::move(path), place, now);
+    });
+}
+
+std::optional<GpsTime> Station::next_change() const {
+    std::optional<GpsTime> next = faults_.next_faded();
+    for (const FaultyWire& wire : faulty_wires_)
+        if (const auto at = wire.next_at(); at && (!next || *at < *next)) next = at;
+    return next;
 }
 
 // What measurement and solution respect is handed to them with each epoch; the loop itself respects the period.
@@ -66,7 +129,7 @@ void Station::follow_settings(GpsTime now) { grid_.follow(now, parts_.receiver.s
 Trace Station::observe() {
     const GpsTime now = grid_.next();
     grid_.pass();
-    return parts_.simulation.run(now, parts_.receiver.settings());
+    return parts_.simulation.run(now, parts_.receiver.settings(), faults_.empty() ? nullptr : &faults_);
 }
 
 void Station::relate(Trace& trace, const Trace* base) {
@@ -79,7 +142,9 @@ void Station::relate(Trace& trace, const Trace* base) {
 }
 
 void Station::report(const Trace& trace, Nanoseconds lateness, bool safe) {
-    parts_.receiver.on_epoch(trace.epoch);
+    firmware::ReportEdit edit;
+    if (!faults_.empty()) edit = [&](firmware::NavigationState& state) { faults_.edit_report(state, trace); };
+    parts_.receiver.on_epoch(trace.epoch, edit);
     if (parts_.recorder) {
         parts_.recorder->record(trace, parts_.simulation.navigation());
         if (safe) parts_.recorder->flush();

@@ -125,6 +125,13 @@ std::optional<GpsTime> Timeline::next_event() const {
     return planned_.front().event.time;
 }
 
+std::size_t Timeline::add(TimelineEntry entry) {
+    entry.by_hand = true;
+    entries_.push_back(std::move(entry));
+    states_.emplace_back();
+    return entries_.size() - 1;
+}
+
 bool Timeline::begin(std::size_t index, GpsTime now, std::optional<Seconds> length) {
     if (!states_[index].under_way.empty()) return false;
     TimelineEvent event;

@@ -32,6 +32,7 @@ struct RunMode {
     std::optional<std::filesystem::path> record;  ///< where to keep the recording
     bool open_ports = true;                       ///< false: no wires, the recording alone
     bool first_ports_only = false;                ///< of several receivers only the first gets its wires
+    CommandQueue* live_commands = nullptr;        ///< where other threads ask for something; outlives the run
 };
 
 /// A run ready to go, and what its user should be told first.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "skyloop/emulator/director.hpp"
 #include "skyloop/emulator/pacer.hpp"
 #include "skyloop/emulator/station.hpp"
 
@@ -26,11 +27,14 @@ public:
     struct Parts {
         std::vector<Station> stations;  ///< at least one
         std::unique_ptr<Pacer> pacer;
+        std::optional<Director> director{};  ///< nothing happens but what the vehicle does
     };
     Emulator(Parts parts, GpsTime start);
 
     /// Called after each epoch.
     void on_status(std::function<void(const Status&)> callback) { status_ = std::move(callback); }
+    /// Tells an observer what happens; it outlives the run.
+    void add_observer(RunObserver* observer);
     /// Runs to `end`, or until `stop` is true, or until a recording fails.
     void run_until(GpsTime end, const std::atomic<bool>& stop);
 
@@ -47,12 +51,16 @@ public:
 
 private:
     [[nodiscard]] GpsTime next_instant(GpsTime end) const;
+    [[nodiscard]] Nanoseconds look_every() const;
     void exchange_bytes();
+    void direct();
+    [[nodiscard]] bool stopped() const { return parts_.director && parts_.director->stopped(); }
     void run_epochs(Nanoseconds lateness);
     [[nodiscard]] bool recording_failed() const;
 
     Parts parts_;
     GpsTime now_;
+    std::vector<Dialogue> dialogues_;  // one a station
     std::vector<std::optional<Trace>> traces_;  // of the present instant, one a station
     std::function<void(const Status&)> status_;
 };

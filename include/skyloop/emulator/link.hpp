@@ -50,7 +50,10 @@ public:
     /// one byte at a time, so that a command in them which changes the speed acts on the very next one.
     std::optional<Bytes> receive(PortSpeed speed, GpsTime now);
 
+    /// Pulls the plug, or puts it back: without it neither end hears the other.
+    void set_plugged(bool plugged) { plugged_ = plugged; }
     [[nodiscard]] const Transport& transport() const { return *transport_; }
+    [[nodiscard]] Transport& transport() { return *transport_; }
     [[nodiscard]] const LinkCounters& counters() const { return counters_; }
     [[nodiscard]] bool connected() const { return connected_; }
     /// Bytes are on their way to the receiver.
@@ -77,6 +80,7 @@ private:
     bool may_rest_ = false;    // nothing has come since the last look
     LinkCounters counters_;
     bool connected_ = false;
+    bool plugged_ = true;
 };
 
 }  // namespace skyloop

@@ -27,6 +27,18 @@ public:
     [[nodiscard]] bool is_virtual() const { return tick(true) == Nanoseconds(0); }
     /// Nanoseconds of a clock that never goes back, for the times of recorded bytes.
     [[nodiscard]] virtual std::int64_t monotonic_ns(GpsTime now) const = 0;
+
+    /// From now on so many simulated seconds pass in a second; nothing where time does not wait.
+    virtual void set_speed(double, GpsTime) {}
+    /// Time stands still until resume(); meanwhile nobody calls wait_until().
+    virtual void pause(GpsTime) { paused_ = true; }
+    virtual void resume(GpsTime) { paused_ = false; }
+    [[nodiscard]] bool paused() const { return paused_; }
+    /// Lets a paused run look for commands again after a while.
+    static void rest();
+
+private:
+    bool paused_ = false;
 };
 
 /// Does not wait: a day runs in seconds, and its clock is the simulated one.
@@ -53,9 +65,13 @@ public:
     std::optional<Nanoseconds> wait_until(GpsTime time) override;
     [[nodiscard]] Nanoseconds tick(bool bytes_pending) const override;
     [[nodiscard]] std::int64_t monotonic_ns(GpsTime now) const override;
+    void set_speed(double speed, GpsTime now) override;
+    void resume(GpsTime now) override;
 
 private:
-    GpsTime start_;
+    [[nodiscard]] std::int64_t due_ns(GpsTime time) const;
+
+    GpsTime start_;  // since speed_ holds
     std::int64_t start_ns_;
     double speed_;
 };

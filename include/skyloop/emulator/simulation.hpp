@@ -1,11 +1,13 @@
 /// One epoch, from where the antenna is to what the receiver believes.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <variant>
 #include <vector>
 
 #include "skyloop/error_model/error_model.hpp"
+#include "skyloop/fault/active_faults.hpp"
 #include "skyloop/flow/receiver_settings.hpp"
 #include "skyloop/flow/trace.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
@@ -42,12 +44,17 @@ public:
 
     /// Epochs come in ascending time. A receiver that is stopped tracks nothing and has no fix; the world, its clock
     /// and every random number go on. @param settings what the receiver is configured to do
-    Trace run(GpsTime time, const ReceiverSettings& settings);
+    /// @param faults edit what arrives, what is measured and what is solved; null: none
+    Trace run(GpsTime time, const ReceiverSettings& settings, ActiveFaults* faults = nullptr);
     /// What stands above an antenna, and nothing of what reaches it.
     [[nodiscard]] SkyView view(const TruthState& truth) const;
     [[nodiscard]] const NavigationSource& navigation() const { return *parts_.navigation; }
     /// Where the antenna is.
     [[nodiscard]] TruthState truth_at(GpsTime time) const { return parts_.trajectory->at(time); }
+    /// The antenna's path from now on. Whoever moves it says so to the device under test, or finds out what it does.
+    void replace_trajectory(const std::function<std::unique_ptr<Trajectory>(std::unique_ptr<Trajectory>)>& make) {
+        parts_.trajectory = make(std::move(parts_.trajectory));
+    }
     /// What the buildings did at the last epoch; null: nothing stands around.
     [[nodiscard]] const RayTracedScene* city() const { return parts_.city; }
     /// True when the receiver measures: there are observations to write down.

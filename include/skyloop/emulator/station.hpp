@@ -9,13 +9,16 @@
 #include <vector>
 
 #include "firmware/receiver.hpp"
+#include "skyloop/emulator/dialogue.hpp"
 #include "skyloop/emulator/epoch_grid.hpp"
+#include "skyloop/emulator/faulty_wire.hpp"
 #include "skyloop/emulator/lateness.hpp"
 #include "skyloop/emulator/link.hpp"
 #include "skyloop/emulator/moving_base.hpp"
 #include "skyloop/emulator/recorder.hpp"
 #include "skyloop/emulator/simulation.hpp"
 #include "skyloop/emulator/state_file.hpp"
+#include "skyloop/fault/active_faults.hpp"
 
 namespace skyloop {
 
@@ -49,13 +52,15 @@ public:
         std::optional<StateFile> state{};
         std::optional<std::size_t> base{};  ///< the station that carries the base antenna of the pair
         std::optional<MovingBase> moving_base{};
+        std::uint64_t seed = 1;  ///< of its own random numbers
     };
-    explicit Station(Parts parts) : parts_(std::move(parts)) {}
+    explicit Station(Parts parts);
 
     /// The receiver starts; before anything else.
     void start(GpsTime now);
     /// Carries bytes between receiver and wires, and follows what the client has configured by them.
-    void exchange(const LoopTime& time);
+    /// @param dialogue is shown the messages of both; null: nobody wants them
+    void exchange(const LoopTime& time, Dialogue* dialogue = nullptr);
     /// What is true, measured and solved at the epoch that is due.
     Trace observe();
     /// Adds the vector from the base antenna, and the type of fix that it makes.
@@ -70,6 +75,16 @@ public:
     void finish(GpsTime now);
 
     [[nodiscard]] GpsTime next_epoch() const { return grid_.next(); }
+    /// When a fault or a held byte wants to be looked at next.
+    [[nodiscard]] std::optional<GpsTime> next_change() const;
+    /// Faults of this receiver.
+    [[nodiscard]] ActiveFaults& faults() { return faults_; }
+    [[nodiscard]] const ActiveFaults& faults() const { return faults_; }
+    /// Something happens to the receiver.
+    void happen(const firmware::ReceiverEvent& event, GpsTime now);
+    /// Moves the vehicle: the path goes on from there.
+    void move_to(const Geodetic& place, GpsTime now);
+    [[nodiscard]] std::uint64_t seed() const { return parts_.seed; }
     /// Bytes are on their way or a client listens: the wires want to be looked at often.
     [[nodiscard]] bool busy() const;
     [[nodiscard]] std::optional<std::size_t> base() const { return parts_.base; }
@@ -89,11 +104,17 @@ public:
 
 private:
     [[nodiscard]] std::set<firmware::PortId> wired_ports() const;
-    void hear(std::size_t wire, GpsTime now);
-    void speak(const LoopTime& time);
+    void hear(std::size_t wire, GpsTime now, Dialogue* dialogue);
+    void speak(const LoopTime& time, Dialogue* dialogue);
+    void send_on_wire(std::size_t wire, const std::vector<firmware::Receiver::Sent>& pieces, bool at_rest);
+    void follow_faults(GpsTime now);
+    [[nodiscard]] firmware::PortId port_of(std::size_t wire) const;
     void follow_settings(GpsTime now);
 
     Parts parts_;
+    ActiveFaults faults_;
+    bool faults_act_ = false;              // on receiver or wires, at the last look
+    std::vector<FaultyWire> faulty_wires_;  // one more than none: what has no wire is recorded as if it had
     EpochGrid grid_;
     RunCounts counts_;
 };

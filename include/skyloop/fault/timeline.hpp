@@ -78,6 +78,8 @@ public:
     void hear(GpsTime now, std::string_view client_message);
     /// The next instant at which something is known to happen.
     [[nodiscard]] std::optional<GpsTime> next_event() const;
+    /// Adds an entry that begins by begin() alone. @return its place
+    std::size_t add(TimelineEntry entry);
     /// Lets an entry begin now; false when it is under way. @param length nothing: the entry's own
     bool begin(std::size_t entry, GpsTime now, std::optional<Seconds> length = std::nullopt);
     /// Ends an entry now, as if its time were over; false when it is not under way.

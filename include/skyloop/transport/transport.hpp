@@ -7,6 +7,7 @@
 #include <string>
 
 #include "skyloop/base/bytes.hpp"
+#include "skyloop/time/gps_time.hpp"
 
 namespace skyloop {
 
@@ -31,6 +32,16 @@ public:
     /// In virtual time nothing comes late: from now on write() may wait for a reader rather than lose bytes. Wires that
     /// have a client's own pace, such as a terminal, go on as before.
     virtual void allow_waiting() {}
+    /// The simulated time, before each look at the wire; for other ends that live in it.
+    virtual void tell_time(GpsTime) {}
+    /// How often such an end wants to be looked at in virtual time; zero: once an epoch is enough.
+    [[nodiscard]] virtual Nanoseconds look_every() const { return Nanoseconds(0); }
+    /// What such an end makes of what it hears, once after each change.
+    struct Belief {
+        bool trusts = false;  ///< it would navigate by this receiver
+        std::string reason;
+    };
+    virtual std::optional<Belief> new_belief() { return std::nullopt; }
     /// What has gone wrong with the wire since it was opened, in one sentence; empty while nothing has.
     [[nodiscard]] virtual std::string failure() const { return {}; }
     /// For people: "/path/to/tty (pty)".

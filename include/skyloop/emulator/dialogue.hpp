@@ -1,0 +1,45 @@
+/// Whole messages on the wires of one receiver, for whoever watches.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "skyloop/fault/run_observer.hpp"
+#include "skyloop/transport/transport.hpp"
+
+namespace skyloop {
+
+/// What a message is called: "CFG-VALSET", "UBX-0F-01" for one that no document names, "GGA", "PUBX,41", "RTCM-1005".
+std::string message_name(StreamKind kind, ByteSpan message);
+
+/// Finds messages in the bytes of both ends and shows them.
+///
+/// State: what is unfinished on each wire.
+class Dialogue {
+public:
+    struct Listener {
+        std::function<void(const MessageSeen&)> message;
+        std::function<void(const BeliefSeen&)> belief;
+    };
+    /// @param station whose wires they are
+    Dialogue(std::size_t station, Listener listener) : station_(station), listener_(std::move(listener)) {}
+
+    void client_said(std::size_t wire, ByteSpan bytes, GpsTime now);
+    void receiver_said(std::size_t wire, ByteSpan bytes, GpsTime now);
+    void client_believes(std::size_t wire, const Transport::Belief& belief, GpsTime now);
+
+private:
+    struct Ends {
+        StreamSplitter client, receiver;
+    };
+    Ends& ends(std::size_t wire);
+    void show(std::size_t wire, bool from_client, const std::vector<StreamPiece>& pieces, GpsTime now);
+
+    std::size_t station_;
+    Listener listener_;
+    std::vector<Ends> ends_;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,84 @@
+/// Faults and commands of a run, at their times.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skyloop/emulator/command_queue.hpp"
+#include "skyloop/fault/active_faults.hpp"
+#include "skyloop/fault/run_observer.hpp"
+#include "skyloop/fault/timeline.hpp"
+#include "skyloop/scenario/scenario.hpp"
+
+namespace skyloop {
+
+class Pacer;
+class Station;
+
+/// Carries out a scenario's timeline and what is asked for while the run goes on.
+///
+/// State: the timeline, live faults among it, and what observers have been told.
+class Director {
+public:
+    struct Parts {
+        std::vector<FaultEntry> faults;
+        std::vector<CommandEntry> commands;
+        GpsTime start{};
+        std::uint64_t seed = 1;
+        double speed = 1;              ///< simulated seconds per second, of a live run
+        CommandQueue* live = nullptr;  ///< may be absent; outlives the director
+    };
+    explicit Director(Parts parts);
+
+    /// Told what happens; outlives the director.
+    void add_observer(RunObserver* observer) { observers_.push_back(observer); }
+    /// Does what is due by `now`. @param pacer is told of pauses and speeds
+    void advance(GpsTime now, std::vector<Station>& stations, Pacer& pacer);
+    /// When something is known to happen next.
+    [[nodiscard]] std::optional<GpsTime> next_event() const;
+    /// Shows an epoch, after the firmware has seen it.
+    void show(const EpochSeen& seen);
+    void show(const MessageSeen& seen);
+    void show(const BeliefSeen& seen);
+    /// True when somebody watches the messages on the wires: an observer or a trigger.
+    [[nodiscard]] bool wants_messages() const;
+    /// A command asked for the end of the run.
+    [[nodiscard]] bool stopped() const { return stopped_; }
+
+private:
+    // An entry of the timeline is one of both.
+    struct Act {
+        std::optional<FaultEntry> fault;
+        std::optional<Command> command;
+    };
+    // Where something is done, and when.
+    struct Scene {
+        GpsTime now;
+        std::vector<Station>& stations;
+        Pacer& pacer;
+    };
+    void follow(const TimelineEvent& event, const Scene& scene);
+    void begin_fault(const TimelineEvent& event, Station& station);
+    void carry_out(const Command& command, std::string_view name, const Scene& scene);
+    static firmware::ReceiverEvent receiver_event(const Command& command);
+    void start_or_stop(const Command& command, const Scene& scene);
+    void begin_new_fault(const Command& command, const Scene& scene);
+    void set_pace(const Command& command, const Scene& scene);
+
+    Parts parts_;
+    Timeline timeline_;
+    std::vector<Act> acts_;  // of each entry
+    std::vector<RunObserver*> observers_;
+    bool hears_ = false;  // a trigger waits for a client's message
+    bool stopped_ = false;
+    double speed_ = 1, pace_ = 1;      // the run's own, and what faults make of it
+    std::optional<GpsTime> pause_at_;  // the end of a step
+};
+
+/// "jamming", where an entry has that name "jamming 2", and so on.
+std::string free_name(const std::vector<TimelineEntry>& entries, const std::string& wanted);
+
+}  // namespace skyloop

@@ -1,0 +1,42 @@
+/// What faults do to the bytes of one wire, both ways.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/receiver.hpp"
+#include "skyloop/fault/wire_damage.hpp"
+
+namespace skyloop {
+
+/// One wire of a receiver, between its port and its Link.
+///
+/// State: what is wrong, and the bytes that it holds.
+class FaultyWire {
+public:
+    /// @param number of the wire at its receiver
+    FaultyWire(std::uint64_t seed, std::size_t number);
+
+    void set(const WireConditions& conditions, GpsTime now);
+    [[nodiscard]] const WireConditions& conditions() const { return conditions_; }
+    /// What comes out towards the client by `now` when the receiver has sent these pieces of one port.
+    std::vector<firmware::Receiver::Sent> to_client(std::vector<firmware::Receiver::Sent> sent, GpsTime now);
+    /// What comes out towards the receiver by `now` when these bytes have entered.
+    Bytes to_receiver(Bytes bytes, GpsTime now);
+    /// The speed of the line, where it is not the receiver's.
+    [[nodiscard]] std::optional<std::uint32_t> line_baud() const { return conditions_.receiver_baud; }
+    /// When held bytes come out next.
+    [[nodiscard]] std::optional<GpsTime> next_at() const;
+    /// Bytes on their way to the receiver.
+    [[nodiscard]] bool input_pending() const { return to_receiver_.waiting() > 0; }
+
+private:
+    WireConditions conditions_;
+    WireDamage to_client_, to_receiver_;
+    std::uint32_t last_baud_ = 0;  // of the bytes that are held
+    bool break_begins_ = false;
+};
+
+}  // namespace skyloop

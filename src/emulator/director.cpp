@@ -1,0 +1,214 @@
+#include "skyloop/emulator/director.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "skyloop/emulator/pacer.hpp"
+#include "skyloop/emulator/station.hpp"
+#include "skyloop/fault/timeline_keys.hpp"
+
+namespace skyloop {
+namespace {
+
+bool waits_for_client(const TimelineEntry& entry) { return entry.when && !entry.when->client_sends.empty(); }
+
+std::optional<StartKind> start_kind(const std::string& word) {
+    if (word == "cold") return StartKind::cold;
+    return word == "warm" ? StartKind::warm : StartKind::hot;
+}
+
+}  // namespace
+
+std::string free_name(const std::vector<TimelineEntry>& entries, const std::string& wanted) {
+    const auto taken = [&](const std::string& name) {
+        return std::any_of(entries.begin(), entries.end(), [&](const TimelineEntry& e) { return e.name == name; });
+    };
+    std::string name = wanted;
+    for (int number = 2; taken(name); ++number)
+        name = fmt::format("{} {}", wanted, number);
+    return name;
+}
+
+Director::Director(Parts parts) : parts_(std::move(parts)), timeline_({}, parts_.start, parts_.seed) {
+    std::vector<TimelineEntry> entries;
+    for (FaultEntry& fault : parts_.faults) {
+        entries.push_back(fault.when);
+        acts_.push_back({std::move(fault), std::nullopt});
+    }
+    for (CommandEntry& command : parts_.commands) {
+        entries.push_back(command.when);
+        acts_.push_back({std::nullopt, std::move(command.command)});
+    }
+    speed_ = parts_.speed;
+    hears_ = std::any_of(entries.begin(), entries.end(), waits_for_client);
+    timeline_ = Timeline(std::move(entries), parts_.start, parts_.seed);
+}
+
+bool Director::wants_messages() const { return hears_ || !observers_.empty(); }
+
+std::optional<GpsTime> Director::next_event() const {
+    const auto next = timeline_.next_event();
+    if (!pause_at_ || (next && *next < *pause_at_)) return next;
+    return pause_at_;
+}
+
+void Director::advance(GpsTime now, std::vector<Station>& stations, Pacer& pacer) {
+    if (parts_.live != nullptr)
+        for (const Command& command : parts_.live->take())
+            carry_out(command, "", {now, stations, pacer});
+    for (const TimelineEvent& event : timeline_.advance(now))
+        follow(event, {event.time, stations, pacer});
+    if (pause_at_ && now >= *pause_at_) {
+        pause_at_.reset();
+        pacer.pause(now);
+    }
+    double pace = 1;
+    for (const Station& station : stations)
+        pace *= station.faults().empty() ? 1 : station.faults().pace(now).rate;
+    if (pace == pace_) return;
+    pace_ = pace;
+    pacer.set_speed(speed_ * pace_, now);
+}
+
+void Director::follow(const TimelineEvent& event, const Scene& scene) {
+    const Act& act = acts_[event.entry];
+    if (act.command) return carry_out(*act.command, timeline_.entries()[event.entry].name, scene);
+    for (const std::size_t receiver : act.fault->receivers)
+        if (event.begins)
+            begin_fault(event, scene.stations.at(receiver));
+        else
+            scene.stations.at(receiver).faults().end(event.entry, event.occurrence, event.time);
+    const FaultSeen seen{event.time, timeline_.entries()[event.entry].name, act.fault->kind, event.occurrence,
+                         event.begins};
+    for (RunObserver* observer : observers_)
+        observer->on_fault(seen);
+}
+
+void Director::begin_fault(const TimelineEvent& event, Station& station) {
+    const FaultEntry& entry = *acts_[event.entry].fault;
+    const TimelineEntry& times = timeline_.entries()[event.entry];
+    const std::string name =
+        event.occurrence == 1 ? times.name : fmt::format("{}#{}", times.name, event.occurrence);
+    auto fault = find_fault_kind(entry.kind)->make(entry.parameters, {station.seed(), name});
+    if (!fault) return;  // whoever made the entry has tried it
+    const FaultSpan span{event.entry, event.occurrence, event.time, times.ramp_in, times.ramp_out};
+    station.faults().begin(std::move(*fault), span);
+}
+
+void Director::carry_out(const Command& command, std::string_view name, const Scene& scene) {
+    const CommandSeen seen{scene.now, name, command};
+    for (RunObserver* observer : observers_)
+        observer->on_command(seen);
+    switch (command.verb) {
+        case CommandVerb::start_fault:
+        case CommandVerb::stop_fault:
+            return start_or_stop(command, scene);
+        case CommandVerb::pause:
+        case CommandVerb::resume:
+        case CommandVerb::step:
+        case CommandVerb::speed:
+            return set_pace(command, scene);
+        case CommandVerb::note:
+            return;
+        case CommandVerb::stop:
+            stopped_ = true;
+            return;
+        case CommandVerb::move_to:
+            for (Station& station : scene.stations) {
+                const Metres height = station.simulation().truth_at(scene.now).geodetic.height.above_ellipsoid;
+                if (const auto place = command.parameters.place("at", height)) station.move_to(*place, scene.now);
+            }
+            return;
+        case CommandVerb::restart:
+        case CommandVerb::reboot:
+        case CommandVerb::forget_configuration:
+        case CommandVerb::set_baud:
+            for (Station& station : scene.stations)
+                if (command.receiver.empty() || command.receiver == station.name())
+                    station.happen(receiver_event(command), scene.now);
+    }
+}
+
+firmware::ReceiverEvent Director::receiver_event(const Command& command) {
+    const StartKind start = start_kind(command.parameters.text("start")).value_or(StartKind::hot);
+    switch (command.verb) {
+        case CommandVerb::forget_configuration:
+            return firmware::ForgetConfiguration{};
+        case CommandVerb::set_baud:
+            return firmware::ForceBaud{static_cast<std::uint32_t>(command.parameters.number("baud"))};
+        case CommandVerb::restart:
+            return firmware::RestartNavigation{start};
+        default:
+            return firmware::Reboot{start, true};
+    }
+}
+
+void Director::start_or_stop(const Command& command, const Scene& scene) {
+    const std::string name = command.parameters.text("fault");
+    if (command.verb == CommandVerb::start_fault && command.parameters.has("kind"))
+        return begin_new_fault(command, scene);
+    const auto& entries = timeline_.entries();
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        if (acts_[i].command || (!name.empty() && entries[i].name != name)) continue;
+        if (command.verb == CommandVerb::stop_fault) {
+            timeline_.end(i, scene.now);
+            continue;
+        }
+        const auto length = command.parameters.optional_number("for_s");
+        timeline_.begin(i, scene.now, length ? std::optional(Seconds(*length)) : std::nullopt);
+    }
+}
+
+void Director::begin_new_fault(const Command& command, const Scene& scene) {
+    FaultEntry entry;
+    entry.kind = command.parameters.text("kind");
+    if (find_fault_kind(entry.kind) == nullptr) return;
+    entry.parameters = command.parameters;
+    entry.when = read_timeline_entry(command.parameters).entry;
+    entry.when.by_hand = true;
+    entry.when.name = free_name(timeline_.entries(), entry.when.name.empty() ? entry.kind : entry.when.name);
+    for (std::size_t i = 0; i < scene.stations.size(); ++i)
+        if (command.receiver.empty() || command.receiver == scene.stations[i].name()) entry.receivers.push_back(i);
+    const std::size_t index = timeline_.add(entry.when);
+    acts_.push_back({std::move(entry), std::nullopt});
+    timeline_.begin(index, scene.now);
+}
+
+void Director::set_pace(const Command& command, const Scene& scene) {
+    switch (command.verb) {
+        case CommandVerb::pause:
+            return scene.pacer.pause(scene.now);
+        case CommandVerb::resume:
+            pause_at_.reset();
+            return scene.pacer.resume(scene.now);
+        case CommandVerb::step:
+            pause_at_ = advanced(scene.now, Seconds(command.parameters.number("seconds")));
+            return scene.pacer.resume(scene.now);
+        default:
+            speed_ = command.parameters.number("factor");
+            return scene.pacer.set_speed(speed_ * pace_, scene.now);
+    }
+}
+
+void Director::show(const EpochSeen& seen) {
+    if (seen.station == 0) {
+        const TruthState& truth = seen.trace.truth;
+        timeline_.look(seen.now, {truth.geodetic, truth.velocity.length(), seen.trace.epoch.fix.has_position()});
+    }
+    for (RunObserver* observer : observers_)
+        observer->on_epoch(seen);
+}
+
+void Director::show(const MessageSeen& seen) {
+    if (seen.from_client && hears_) timeline_.hear(seen.now, seen.name);
+    for (RunObserver* observer : observers_)
+        observer->on_message(seen);
+}
+
+void Director::show(const BeliefSeen& seen) {
+    for (RunObserver* observer : observers_)
+        observer->on_belief(seen);
+}
+
+}  // namespace skyloop
