@@ -1,7 +1,190 @@
+// Wrong time: in the reports alone, since the receiver solves with the right one.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
 #include "catalogue_parts.hpp"
+#include "edit_shortcuts.hpp"
+#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
+namespace {
 
-std::vector<FaultKind> time_fault_kinds() { return {}; }
+using firmware::NavigationState;
+
+constexpr std::int64_t weeks_of_rollover = 1024;
+
+// Times before 1980 cannot be told: the reports stay at the beginning of GPS time.
+void shift_time(NavigationState& state, Nanoseconds by) {
+    Fix& fix = state.epoch.fix;
+    fix.time = std::max(GpsTime{}, fix.time + by);
+    GpsTime& measured = state.epoch.observations.receive_time;
+    measured = std::max(GpsTime{}, measured + by);
+}
+
+// A whole number, or what is wrong.
+Result<int> whole(const Parameters& parameters, std::string_view name) {
+    const double value = parameters.number(name);
+    if (value == std::floor(value)) return static_cast<int>(value);
+    return fail(ErrorCode::usage, fmt::format("{} is {}; expected a whole number", name, value));
+}
+
+Result<Fault> make_leap_second_wrong(const Parameters& parameters, const FaultContext&) {
+    const auto error = whole(parameters, "error_s");
+    if (!error) return fail(error.error());
+    const bool declared_valid = parameters.flag("declared_valid");
+    return fault_of_report([error = *error, declared_valid](NavigationState& state, const FaultMoment&) {
+        state.epoch.fix.leap_seconds += error;
+        state.time.leap_seconds = declared_valid;
+    });
+}
+
+// The end of the UTC day, as a count of GPS time with the offset of before.
+GpsTime end_of_utc_day(GpsTime time, int leap_seconds) {
+    const auto day = std::chrono::hours(24);
+    const Nanoseconds utc = time.time_since_epoch() - std::chrono::seconds(leap_seconds);
+    return GpsTime((utc / day + 1) * day + std::chrono::seconds(leap_seconds));
+}
+
+Result<Fault> make_leap_second_event(const Parameters& parameters, const FaultContext&) {
+    const int change = parameters.text("change") == "deleted" ? -1 : 1;
+    return fault_of_report(
+        [change, event = std::optional<firmware::LeapEvent>()](NavigationState& state, const FaultMoment&) mutable {
+            Fix& fix = state.epoch.fix;
+            if (!event) {
+                const int before = fix.leap_seconds;
+                event = firmware::LeapEvent{end_of_utc_day(fix.time, before) + std::chrono::seconds(change), before,
+                                            before + change};
+            }
+            state.leap_event = event;
+            if (fix.time >= event->at) fix.leap_seconds += change;
+        });
+}
+
+Result<Fault> make_week_rollover(const Parameters& parameters, const FaultContext&) {
+    const auto rollovers = whole(parameters, "rollovers");
+    if (!rollovers) return fail(rollovers.error());
+    return fault_of_report([back = *rollovers * weeks_of_rollover](NavigationState& state, const FaultMoment&) {
+        shift_time(state, -std::chrono::seconds(back * seconds_per_week));
+    });
+}
+
+// The week number alone is late, or early, at the end of the week.
+Result<Fault> make_week_order(const Parameters& parameters, const FaultContext&) {
+    return fault_of_report([lag = parameters.number("lag_s")](NavigationState& state, const FaultMoment&) {
+        const double tow = week_and_tow(state.epoch.fix.time).tow_seconds();
+        if (tow < lag) state.week_offset = -1;
+        if (tow >= static_cast<double>(seconds_per_week) + lag) state.week_offset = 1;
+    });
+}
+
+Result<Fault> make_time_step(const Parameters& parameters, const FaultContext&) {
+    return fault_of_report([step = parameters.number("step_s")](NavigationState& state, const FaultMoment& moment) {
+        shift_time(state, to_nanoseconds(Seconds(step * moment.strength)));
+    });
+}
+
+// The time of an epoch, counted from the first one of the fault.
+class FirstTime {
+public:
+    Seconds until(GpsTime time) {
+        if (!first_) first_ = time;
+        return difference(time, *first_);
+    }
+
+private:
+    std::optional<GpsTime> first_;
+};
+
+Result<Fault> make_time_backwards(const Parameters& parameters, const FaultContext&) {
+    return fault_of_report([rate = parameters.number("rate"), first = FirstTime()](NavigationState& state,
+                                                                                   const FaultMoment& moment) mutable {
+        const Seconds since = first.until(state.epoch.fix.time);
+        shift_time(state, to_nanoseconds(since * (-(1 + rate) * moment.strength)));
+    });
+}
+
+Result<Fault> make_time_drift(const Parameters& parameters, const FaultContext&) {
+    return fault_of_report([ppm = parameters.number("ppm"), first = FirstTime()](NavigationState& state,
+                                                                                 const FaultMoment& moment) mutable {
+        const Seconds since = first.until(state.epoch.fix.time);
+        shift_time(state, to_nanoseconds(since * (ppm * 1e-6 * moment.strength)));
+    });
+}
+
+Result<Fault> make_date_unknown(const Parameters& parameters, const FaultContext&) {
+    return fault_of_report([time_too = parameters.flag("time_too")](NavigationState& state, const FaultMoment&) {
+        state.time.date = state.time.leap_seconds = state.time.confirmed = false;
+        if (time_too) state.time.time = state.time.week_and_tow = false;
+    });
+}
+
+std::vector<FaultKind> calendar_kinds() {
+    using enum FaultLayer;
+    return {{"leap_second_wrong",
+             solution,
+             "The receiver believes a wrong number of leap seconds, and its UTC is off by as much.",
+             "A cold start: firmware counts by the number of its making until the satellites have told theirs.",
+             {number_parameter("error_s", -2, -30, 30, "too many leap seconds, s, whole"),
+              flag_parameter("declared_valid", false, "it says that the number was decoded")},
+             make_leap_second_wrong},
+            {"leap_second_event",
+             solution,
+             "A leap second comes at the end of the UTC day; NAV-TIMELS announces it from the start of the fault.",
+             "The IERS: the last was at the end of 2016, and clients' code for it is seldom run.",
+             {word_parameter("change", "inserted", {"inserted", "deleted"}, "23:59:60 is counted, or 23:59:59 is not")},
+             make_leap_second_event},
+            {"week_rollover",
+             solution,
+             "Dates lie 1024 weeks back; the time of week is right.",
+             "The ten bits of the week number: firmware resolves them about the date of its making.",
+             {number_parameter("rollovers", 1, 1, 2, "times 1024 weeks, whole")},
+             make_week_rollover},
+            {"week_order",
+             solution,
+             "At the end of the GPS week the week number changes after the time of week has begun anew, or before.",
+             "Week and time of week come in messages of different rates (ArduPilot #31914).",
+             {number_parameter("lag_s", 2, -3600, 3600, "week number after time of week, s; below 0 before")},
+             make_week_order}};
+}
+
+std::vector<FaultKind> clock_kinds() {
+    using enum FaultLayer;
+    return {{"time_step",
+             solution,
+             "The time jumps by a constant; the solution stays.",
+             "False signals that carry another time, or a clock that was set wrong after a restart.",
+             {number_parameter("step_s", 3600, -1e9, 1e9, "later than the true time, s")},
+             make_time_step},
+            {"time_backwards",
+             solution,
+             "The time runs backwards from the start of the fault on.",
+             "Recorded signals that are sent again, and firmware that corrects its clock in the wrong direction.",
+             {number_parameter("rate", 1, 0.001, 1000, "how fast, s per s")},
+             make_time_backwards},
+            {"time_drift",
+             solution,
+             "The time runs away from the true one; epochs keep their rate.",
+             "A receiver that has lost its satellites and counts by its crystal, or false signals.",
+             {number_parameter("ppm", 1000, -500'000, 500'000, "how much faster, 1e-6")},
+             make_time_drift},
+            {"date_unknown",
+             solution,
+             "The date is told to be unknown while there is a fix.",
+             "A receiver that has a fix before it has heard the week, as after a hot start without its clock.",
+             {flag_parameter("time_too", false, "the time of day is unknown as well")},
+             make_date_unknown}};
+}
+
+}  // namespace
+
+std::vector<FaultKind> time_fault_kinds() {
+    std::vector<FaultKind> all = calendar_kinds();
+    for (FaultKind& kind : clock_kinds())
+        all.push_back(std::move(kind));
+    return all;
+}
 
 }  // namespace skyloop
