@@ -18,8 +18,16 @@ double first_to_own_frequency(const ChannelInput& input) {
 
 std::optional<DbHz> arriving_cn0(const ChannelInput& input, Decibels by_echoes) {
     const Arrival& arrival = input.arrival;
-    if (arrival.paths == 0 || !arrival.cn0 || !std::isfinite(arrival.cn0->value())) return std::nullopt;
+    if (arrival.paths == 0 || !input.signal.arrives || !arrival.cn0 || !std::isfinite(arrival.cn0->value())) return std::nullopt;
     return DbHz(arrival.cn0->value() + input.signal.relative_power.value() + by_echoes.value());
+}
+
+// What may jump of a range, and how fast it changes when it does not.
+Metres added_path(const Arrival& arrival) {
+    return arrival.excess_path + arrival.signal_in_space_error + arrival.false_range;
+}
+MetresPerSecond added_rate(const Arrival& arrival) {
+    return arrival.excess_rate + arrival.range_rate_error + arrival.false_range_rate;
 }
 
 DbHz reported_cn0(DbHz cn0, Decibels resolution) {
@@ -115,17 +123,18 @@ void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& e
     terms_.phase_multipath = parameters.multipath_model.phase_ratio * terms_.multipath;
 }
 
-// The count of cycles does not survive when another ray is tracked, nor when echoes that outdo it turn the phase over.
+// The count of cycles does not survive when another ray is tracked, nor when echoes that outdo it turn the phase over,
+// nor when the satellite's clock or a false signal jumps.
 bool SignalChannel::path_changed(const ChannelInput& input, const ChannelEpoch& epoch) const {
     const Arrival& arrival = input.arrival;
     if (arrival.line_of_sight != line_of_sight_) return true;
+    const double steady = added_rate(arrival).value() * epoch.since_last.value();
+    const double jump = (added_path(arrival) - added_path_).value() - steady;
+    constexpr double beyond_any_motion = 0.5;  // m: what the rate leaves of a ray's change in an epoch
+    if (std::abs(jump) > beyond_any_motion + 0.1 * std::abs(steady)) return true;
     if (!arrival.echoes_known) return false;
     const Metres half_wave(speed_of_light / input.signal.carrier.value() / 2);
-    const double steady = arrival.excess_rate.value() * epoch.since_last.value();
-    const double jump = (arrival.excess_path - excess_path_).value() - steady;
-    constexpr double beyond_any_motion = 0.5;  // m: what the rate leaves of a ray's change in an epoch
-    return std::abs(jump) > beyond_any_motion + 0.1 * std::abs(steady) ||
-           std::abs((terms_.phase_multipath - phase_multipath_).value()) > half_wave.value();
+    return std::abs((terms_.phase_multipath - phase_multipath_).value()) > half_wave.value();
 }
 
 void SignalChannel::follow_cycles(const ChannelInput& input, const ChannelEpoch& epoch, bool had_phase) {
@@ -135,7 +144,7 @@ void SignalChannel::follow_cycles(const ChannelInput& input, const ChannelEpoch&
     const double factor = parameters.cycle_slips.factor();
     const bool another_ray = path_changed(input, epoch);
     line_of_sight_ = input.arrival.line_of_sight;
-    excess_path_ = input.arrival.excess_path;
+    added_path_ = added_path(input.arrival);
     phase_multipath_ = terms_.phase_multipath;
     if (!had_phase) {
         count_.start(factor > 0 && !lock_.half_cycle_resolved());
@@ -177,9 +186,9 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     const double iono = arrival.iono_delay.value() * ratio * ratio;
     const double path = arrival.range.value() + epoch.clock_bias.value() - speed_of_light * arrival.clock_bias.value() +
                         arrival.signal_in_space_error.value() + arrival.tropo_delay.value() +
-                        arrival.excess_path.value();
+                        arrival.excess_path.value() + arrival.false_range.value();
     const double path_rate = arrival.range_rate.value() + arrival.range_rate_error.value() +
-                             arrival.excess_rate.value() + epoch.clock_drift.value() -
+                             arrival.excess_rate.value() + arrival.false_range_rate.value() + epoch.clock_drift.value() -
                              speed_of_light * arrival.clock_drift;
     const double phase_ratio = parameters.multipath_model.phase_ratio;
     const double floor = parameters.multipath_model.floor.value();
@@ -195,6 +204,7 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     result.doppler = Hertz(-path_rate / wavelength + terms_.doppler_noise.value());
     result.doppler_deviation = deviations_.frequency;
     result.half_cycle_resolved = lock_.half_cycle_resolved();
+    result.called_unhealthy = arrival.called_unhealthy;
     if (arrival.echoes_known) result.correlation_distortion = std::abs(echoes_.distortion);
     if (epoch.corrected) result.correction = correction(input, Metres(iono));
     if (!lock_.phase_locked()) return result;

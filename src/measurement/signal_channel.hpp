@@ -83,9 +83,10 @@ private:
     bool half_cycle_resolved_ = false;
     bool slipped_ = false;
     CorrelatorMultipath echoes_;  // of this epoch, where a scene tells them
-    // Of the epoch before: which ray was tracked, and how far its carrier was off.
+    // Of the epoch before: which ray was tracked, what its path had in excess of the geometric one, and how far its
+    // carrier was off.
     bool line_of_sight_ = true;
-    Metres excess_path_, phase_multipath_;
+    Metres added_path_, phase_multipath_;
 };
 
 }  // namespace skyloop

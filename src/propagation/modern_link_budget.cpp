@@ -4,15 +4,14 @@
 #include <cassert>
 #include <cmath>
 
+#include "skyloop/gnss/interference.hpp"
 #include "skyloop/propagation/free_space.hpp"
-#include "skyloop/propagation/interference.hpp"
 #include "skyloop/propagation/spherical_path.hpp"
 
 namespace skyloop {
 namespace {
 
 constexpr Nanoseconds ripple_spacing = std::chrono::seconds(5);
-constexpr DecibelWatts nominal_power{-157};  // of a signal, that J/S refers to
 constexpr double geosynchronous_radius = 42164e3;
 
 double link_ratio(double decibels) { return std::pow(10, decibels / 10); }
@@ -64,18 +63,6 @@ DecibelWatts eirp_at(const std::vector<SatellitePowerPoint>& pattern, Angle off_
     const double fraction =
         (off_boresight - below.off_boresight).rad() / (above->off_boresight - below.off_boresight).rad();
     return below.eirp * (1 - fraction) + above->eirp * fraction;
-}
-
-double jammer_quality(JammerKind kind) {
-    switch (kind) {
-        case JammerKind::narrow_band:
-            return 1;
-        case JammerKind::wide_band:
-            return 2.2;
-        case JammerKind::matched:
-            break;
-    }
-    return 1.5;
 }
 
 // The Earth's radius that makes the antenna's distance from the centre right.
@@ -149,8 +136,8 @@ void ModernLinkBudget::set_cn0(Arrival& arrival, const TruthState& truth) const 
     arrival.cn0 = clear;
     if (!link_.jammer_to_signal || interference_factor_ == 0) return;
     // The jammer is as strong as it is; a weaker satellite suffers more.
-    const Decibels jammer_over_signal(nominal_power.value() + link_.jammer_to_signal->value() - signal);
-    const DbHz jammed = cn0_under_interference(clear, jammer_over_signal, {jammer_quality(link_.jammer)});
+    const Decibels jammer_over_signal(nominal_signal_power.value() + link_.jammer_to_signal->value() - signal);
+    const DbHz jammed = cn0_under_interference(clear, jammer_over_signal, {rejection_quality(link_.jammer)});
     arrival.interference_loss = Decibels(interference_factor_ * (clear - jammed).value());
     arrival.cn0 = clear - DbHz(arrival.interference_loss.value());
 }

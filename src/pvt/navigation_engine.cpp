@@ -120,6 +120,7 @@ std::optional<RangeEquation> NavigationEngine::State::equation(const Observation
                                                                GpsTime receive_time) {
     std::optional<Transmitter> t1 = transmitters().at(first.satellite, first.signal, receive_time, *first.pseudorange);
     if (!t1) return std::nullopt;
+    t1->healthy = t1->healthy && !first.called_unhealthy;
     RangeEquation e{first.satellite, *t1, *first.pseudorange, first.carrier, first.pseudorange_deviation, false};
     if (second == nullptr) return e;
     const auto t2 = transmitters().at(second->satellite, second->signal, receive_time, *second->pseudorange);

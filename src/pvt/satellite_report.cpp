@@ -54,7 +54,7 @@ void SatelliteReport::add_tracked(const ReportInput& input, std::vector<Satellit
         status.cn0 = o.cn0;
         const Ephemeris* record = received_.record(o.satellite, input.time);
         status.has_ephemeris = record != nullptr;
-        status.healthy = record == nullptr || is_healthy(*record);
+        status.healthy = !o.called_unhealthy && (record == nullptr || is_healthy(*record));
         list.push_back(status);
     }
     std::vector<char> solved(list.size());

@@ -17,6 +17,7 @@ struct SignalArrival {
     Hertz carrier;
     Seconds group_delay;      ///< of the satellite's hardware against its clock
     Decibels relative_power;  ///< C/N0 over that of the satellite's first signal
+    bool arrives = true;      ///< false: nothing of this signal reaches the antenna
 };
 
 /// One ray beside the one that is tracked: reflected, or bent around an edge. What is tracked is the direct ray, or the
@@ -49,6 +50,11 @@ struct Arrival {
     std::vector<Echo> echoes;          ///< strongest first
     Metres signal_in_space_error;      ///< of orbit and clock against the broadcast, in the range
     MetresPerSecond range_rate_error;  ///< its derivative
+    Metres false_range;               ///< what false signals add to the range, and a base station does not see
+    MetresPerSecond false_range_rate;  ///< its derivative
+    bool called_unhealthy = false;     ///< the satellite sends that it is not to be used, whatever its record says
+    /// A fault leaves too little of it for a sensor model, which has no loops that could lose it.
+    bool cut_off = false;
     Metres iono_delay;                 ///< of the code of the first signal; the carrier is advanced by as much
     Metres tropo_delay;
     Decibels free_space_loss;

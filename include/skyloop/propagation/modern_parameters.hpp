@@ -7,6 +7,7 @@
 #include "skyloop/base/error_term.hpp"
 #include "skyloop/base/units.hpp"
 #include "skyloop/gnss/global_troposphere.hpp"
+#include "skyloop/gnss/interference.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
 #include "skyloop/gnss/ntcm_g.hpp"
 #include "skyloop/propagation/antenna_pattern.hpp"
@@ -106,13 +107,6 @@ struct LossParameters {
     double canopy_db_per_m = 0.8;           ///< 0.6 … 1.0 at L1
     Decibels most_foliage{12};
     Decibels antenna_film{0};  ///< of water or ice on the antenna, 0 … 3 dB
-};
-
-/// A jammer's spectrum against that of the signal: how well a correlator rejects it (MODELS.md 7.7, Q).
-enum class JammerKind {
-    narrow_band,  ///< Q 1
-    matched,      ///< Q 1.5: the spectrum of the signal
-    wide_band,    ///< Q 2.2
 };
 
 /// Powers, noise and jamming (MODELS.md 7.7, 7.8).

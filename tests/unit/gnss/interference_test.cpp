@@ -1,4 +1,4 @@
-#include "skyloop/propagation/interference.hpp"
+#include "skyloop/gnss/interference.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,9 +5,21 @@
 
 namespace skyloop {
 
+/// A jammer's spectrum against that of the signal: how well a correlator rejects it (MODELS.md 7.7, Q).
+enum class JammerKind {
+    narrow_band,  ///< Q 1
+    matched,      ///< Q 1.5: the spectrum of the signal
+    wide_band,    ///< Q 2.2
+};
+/// Its Q.
+double rejection_quality(JammerKind kind);
+
+/// Power of a signal in an isotropic antenna that J/S refers to (MODELS.md 7.7).
+inline constexpr DecibelWatts nominal_signal_power{-157};
+
 /// How well a correlator rejects an interference (Kaplan and Hegarty, table of Q).
 struct InterferenceRejection {
-    double quality = 1.5;  ///< Q: 1 narrow-band, 1.5 matched to the signal's spectrum, 2.2 wide-band
+    double quality = 1.5;  ///< Q, rejection_quality()
     Hertz chip_rate{1.023e6};
 };
 
