@@ -6,11 +6,13 @@ namespace skyloop {
 namespace {
 
 bool visible(const Arrival& arrival, const SelectionRule& rule) {
-    return arrival.paths > 0 && !arrival.cut_off && (!rule.max_reflections || arrival.reflections <= *rule.max_reflections);
+    return arrival.paths > 0 && !arrival.cut_off &&
+           (!rule.max_reflections || arrival.reflections <= *rule.max_reflections);
 }
 
 bool usable(const SatelliteInView& satellite, const Arrival& arrival, const SelectionRule& rule) {
-    if (!satellite.healthy || arrival.called_unhealthy || arrival.cut_off || satellite.elevation < rule.elevation_mask) return false;
+    if (!satellite.healthy || arrival.called_unhealthy || arrival.cut_off || satellite.elevation < rule.elevation_mask)
+        return false;
     if (!rule.hidden_too && !visible(arrival, rule)) return false;
     return !rule.snr_cutoff || (arrival.cn0 && *arrival.cn0 >= *rule.snr_cutoff);
 }

@@ -13,8 +13,8 @@
 namespace skyloop {
 namespace {
 
-// Of a signal of nominal power in an isotropic antenna: −157 dBW over N0 of −204.6 dBW/Hz, less 2.5 dB of implementation
-// loss (MODELS.md 7.7).
+// Of a signal of nominal power in an isotropic antenna: −157 dBW over N0 of −204.6 dBW/Hz, less 2.5 dB of
+// implementation loss (MODELS.md 7.7).
 constexpr DbHz nominal_cn0{45.1};
 // By which a jammer that is ramped grows, evenly in dB.
 constexpr double ramp_range = 60;
@@ -122,7 +122,7 @@ Result<Fault> make_jamming(const Parameters& parameters, const FaultContext&) {
     const std::string spectrum = parameters.text("spectrum");
     jammer.kind = spectrum == "narrow" ? JammerKind::narrow_band
                   : spectrum == "wide" ? JammerKind::wide_band
-                                   : JammerKind::matched;
+                                       : JammerKind::matched;
     if (const auto error = read_source(parameters, jammer)) return fail(*error);
     if (const auto error = read_times(parameters, jammer)) return fail(*error);
     Fault fault;
@@ -157,10 +157,12 @@ std::vector<ParameterSpec> jamming_parameters() {
 FaultKind jamming_fault_kind() {
     FaultKind kind;
     kind.name = "jamming";
-    kind.effect = "The noise floor of the selected signals rises: C/N0 falls, then lock is lost, and the receiver's "
-                  "monitor sees interference.";
-    kind.cause = "Personal privacy devices in cars, military jamming near conflicts, a transmitter or a switching "
-                 "supply on board.";
+    kind.effect =
+        "The noise floor of the selected signals rises: C/N0 falls, then lock is lost, and the receiver's "
+        "monitor sees interference.";
+    kind.cause =
+        "Personal privacy devices in cars, military jamming near conflicts, a transmitter or a switching "
+        "supply on board.";
     kind.parameters = joined(jamming_parameters(), selector_parameters(true));
     kind.make = make_jamming;
     return kind;

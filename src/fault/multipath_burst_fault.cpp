@@ -15,9 +15,9 @@ struct MultipathBurst {
     SignalSelector selector;
     FaultContext context;
     double share = 0.5;
-    double excess = 60;     // m at most
+    double excess = 60;  // m at most
     double amplitude = 0.7;
-    double change = 5;      // s for which an echo lasts
+    double change = 5;  // s for which an echo lasts
 };
 
 // The echo of one satellite for one span of time; depends on nothing but their names.
@@ -43,12 +43,9 @@ std::optional<Echo> draw_echo(const MultipathBurst& burst, const Arrival& arriva
 Result<Fault> make_multipath_burst(const Parameters& parameters, const FaultContext& context) {
     auto selector = read_selector(parameters);
     if (!selector) return fail(selector.error());
-    MultipathBurst burst{std::move(*selector),
-                         context,
-                         parameters.number("share"),
-                         parameters.number("excess_m"),
-                         parameters.number("amplitude"),
-                         parameters.number("change_s")};
+    MultipathBurst burst{std::move(*selector),           context,
+                         parameters.number("share"),     parameters.number("excess_m"),
+                         parameters.number("amplitude"), parameters.number("change_s")};
     Fault fault;
     fault.arrivals = [burst = std::move(burst)](Arrivals& arrivals, const FaultMoment& moment) {
         for (Arrival& arrival : arrivals.satellites) {

@@ -16,7 +16,7 @@ Result<Fault> offset_pseudoranges(const Parameters& parameters, Offset offset) {
     if (!chosen) return fail(chosen.error());
     Fault fault;
     fault.observations = [chosen = std::move(*chosen), offset](Observations& observations,
-                                                             const FaultMoment& moment) mutable {
+                                                               const FaultMoment& moment) mutable {
         chosen.choose(observations, moment.sky);
         for (Observation& o : observations.signals)
             if (o.pseudorange && chosen.has(o.satellite))
@@ -114,10 +114,9 @@ private:
 };
 
 std::vector<ParameterSpec> cycle_slip_parameters() {
-    std::vector<ParameterSpec> specs{
-        number_parameter("slips_per_minute", 6, 0, 6000, "of each signal, on average"),
-        number_parameter("most_cycles", 10, 1, 1e6, "that one slip loses or wins"),
-        flag_parameter("flagged", true, "the receiver notices its slips and says so")};
+    std::vector<ParameterSpec> specs{number_parameter("slips_per_minute", 6, 0, 6000, "of each signal, on average"),
+                                     number_parameter("most_cycles", 10, 1, 1e6, "that one slip loses or wins"),
+                                     flag_parameter("flagged", true, "the receiver notices its slips and says so")};
     // Of the selectors, those that do not need the sky.
     for (ParameterSpec& spec : selector_parameters(true))
         if (spec.name == "constellations" || spec.name == "satellites" || spec.name == "signals")

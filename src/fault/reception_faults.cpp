@@ -26,9 +26,8 @@ void silence_signals(Arrival& arrival, const SignalSelector& selector) {
 }
 
 void attenuate(Arrival& arrival, const SignalSelector& selector, Decibels loss) {
-    arrival.power_offset -= weaken(arrival, [&](const SignalArrival& signal) {
-        return selector.takes(signal.signal) ? loss : Decibels(0);
-    });
+    arrival.power_offset -= weaken(
+        arrival, [&](const SignalArrival& signal) { return selector.takes(signal.signal) ? loss : Decibels(0); });
 }
 
 Result<Fault> make_outage(const Parameters& parameters, const FaultContext&) {
@@ -53,8 +52,9 @@ FaultKind outage() {
     FaultKind kind;
     kind.name = "outage";
     kind.effect = "The selected satellites or signals no longer arrive; ramped, they fade by up to 60 dB first.";
-    kind.cause = "Tunnels, hangars, a hand or a battery over the antenna, a system that fails as Galileo did in July "
-                 "2019.";
+    kind.cause =
+        "Tunnels, hangars, a hand or a battery over the antenna, a system that fails as Galileo did in July "
+        "2019.";
     kind.parameters = selector_parameters(true);
     kind.make = make_outage;
     return kind;
@@ -76,8 +76,9 @@ FaultKind cn0_drop() {
     FaultKind kind;
     kind.name = "cn0_drop";
     kind.effect = "The selected signals arrive weaker by some dB.";
-    kind.cause = "Water or ice on the antenna, a loose connector, banking that turns it away from a part of the sky, "
-                 "a noisy camera or video transmitter beside it.";
+    kind.cause =
+        "Water or ice on the antenna, a loose connector, banking that turns it away from a part of the sky, "
+        "a noisy camera or video transmitter beside it.";
     kind.parameters =
         joined({needed_number("attenuation_db", 0, 100, "dB that are taken off C/N0")}, selector_parameters(true));
     kind.make = make_cn0_drop;
@@ -87,7 +88,7 @@ FaultKind cn0_drop() {
 Result<Fault> make_antenna_fault(const Parameters& parameters, AntennaStatus status) {
     Fault fault;
     fault.arrivals = [loss = parameters.optional_number("attenuation_db")](Arrivals& arrivals,
-                                                                         const FaultMoment& moment) {
+                                                                           const FaultMoment& moment) {
         for (Arrival& arrival : arrivals.satellites) {
             if (!loss && moment.strength >= 1)
                 silence(arrival);

@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -21,7 +22,7 @@ Result<Fault> make_clock_fault(const Parameters& parameters, Ahead ahead) {
     if (!chosen) return fail(chosen.error());
     Fault fault;
     fault.arrivals = [chosen = std::move(*chosen), ahead, rates = RateOfChange()](Arrivals& arrivals,
-                                                                                const FaultMoment& moment) mutable {
+                                                                                  const FaultMoment& moment) mutable {
         chosen.choose(arrivals);
         const Metres shorter(speed_of_light * ahead(moment.since_start.value()) * moment.strength);
         for (Arrival& arrival : arrivals.satellites) {
@@ -36,8 +37,9 @@ Result<Fault> make_clock_fault(const Parameters& parameters, Ahead ahead) {
 FaultKind satellite_clock_step() {
     FaultKind kind;
     kind.name = "satellite_clock_step";
-    kind.effect = "The clock of a satellite jumps and its record does not tell: its range is off by the step, and the "
-                  "carrier's count breaks.";
+    kind.effect =
+        "The clock of a satellite jumps and its record does not tell: its range is off by the step, and the "
+        "carrier's count breaks.";
     kind.cause = "A failing or exchanged atomic clock on board.";
     kind.parameters = joined({needed_number("step_ns", -1e9, 1e9, "ns by which the clock jumps ahead; 1 ns is 0.3 m")},
                              chosen_satellite_parameters());
@@ -53,8 +55,9 @@ FaultKind satellite_clock_drift() {
     FaultKind kind;
     kind.name = "satellite_clock_drift";
     kind.effect = "The clock of a satellite runs away from its record: its range error grows.";
-    kind.cause = "A dying atomic clock, as that of GPS satellite SVN 23 on 2004-01-01, which led to hundreds of "
-                 "kilometres of range error.";
+    kind.cause =
+        "A dying atomic clock, as that of GPS satellite SVN 23 on 2004-01-01, which led to hundreds of "
+        "kilometres of range error.";
     kind.parameters = joined({needed_number("drift_ns_per_s", -1e6, 1e6, "ns that the clock gains each second")},
                              chosen_satellite_parameters());
     kind.make = [](const Parameters& parameters, const FaultContext&) {
@@ -93,7 +96,7 @@ Result<Fault> make_wrong_ephemeris(const Parameters& parameters, const FaultCont
     Fault fault;
     fault.arrivals = [chosen = std::move(*chosen), error, growth, rates = RateOfChange()](
                          Arrivals& arrivals, const FaultMoment& moment) mutable {
-        if (moment.truth == nullptr || moment.sky == nullptr) return;
+        if (!knows_the_sky(moment, arrivals)) return;
         chosen.choose(arrivals);
         const double grown = growth > 0 ? std::min(moment.since_start.value() / growth, 1.0) : 1;
         for (std::size_t i = 0; i < arrivals.satellites.size(); ++i) {
@@ -114,10 +117,12 @@ Result<Fault> make_wrong_ephemeris(const Parameters& parameters, const FaultCont
 FaultKind wrong_ephemeris() {
     FaultKind kind;
     kind.name = "wrong_ephemeris";
-    kind.effect = "The record that a satellite broadcasts puts it elsewhere: its range is off by what of that lies "
-                  "along the line of sight.";
-    kind.cause = "A bad upload, a manoeuvre without a warning, as GPS satellite PRN 30 on 2000-07-28 or GLONASS on "
-                 "2014-04-01.";
+    kind.effect =
+        "The record that a satellite broadcasts puts it elsewhere: its range is off by what of that lies "
+        "along the line of sight.";
+    kind.cause =
+        "A bad upload, a manoeuvre without a warning, as GPS satellite PRN 30 on 2000-07-28 or GLONASS on "
+        "2014-04-01.";
     kind.parameters =
         joined({number_parameter("along_track_m", std::nullopt, -1e6, 1e6, "m along the satellite's way"),
                 number_parameter("cross_track_m", std::nullopt, -1e6, 1e6, "m across it, along its angular momentum"),
@@ -171,8 +176,7 @@ void storm_over(Arrival& arrival, const StormFront& storm, double strength) {
     const double slant = single_layer_mapping(storm_shell, arrival.direction.elevation);
     const double carrier = arrival.signals.empty() ? carrier_frequency_l1 : arrival.signals[0].carrier.value();
     const double ratio = carrier_frequency_l1 / carrier;
-    const double added =
-        arrival.iono_delay.value() * (storm.factor - 1) + vertical * slant * ratio * ratio;
+    const double added = arrival.iono_delay.value() * (storm.factor - 1) + vertical * slant * ratio * ratio;
     // There is no less than no ionosphere.
     arrival.iono_delay = Metres(std::max(arrival.iono_delay.value() + strength * added, 0.0));
 }
@@ -180,8 +184,9 @@ void storm_over(Arrival& arrival, const StormFront& storm, double strength) {
 FaultKind ionospheric_storm() {
     FaultKind kind;
     kind.name = "ionospheric_storm";
-    kind.effect = "The ionosphere delays more than the receiver's broadcast correction knows: positions are off by "
-                  "metres, heights most.";
+    kind.effect =
+        "The ionosphere delays more than the receiver's broadcast correction knows: positions are off by "
+        "metres, heights most.";
     kind.cause = "Geomagnetic storms, as those of October 2003 and May 2024.";
     kind.parameters = {
         number_parameter("tec_factor", 1, 0, 20, "by which the day's electron content is multiplied"),
@@ -208,12 +213,14 @@ FaultKind ionospheric_storm() {
 FaultKind scintillation() {
     FaultKind kind;
     kind.name = "scintillation";
-    kind.effect = "Amplitude and phase of the selected signals flicker: ranges get noisy, cycles slip, and from S4 of "
-                  "0.71 on phases are lost.";
+    kind.effect =
+        "Amplitude and phase of the selected signals flicker: ranges get noisy, cycles slip, and from S4 of "
+        "0.71 on phases are lost.";
     kind.cause = "Bubbles in the equatorial ionosphere after sunset, aurora.";
-    kind.parameters = joined({number_parameter("s4", 0.6, 0, 1, "amplitude index at the first carrier"),
-                              number_parameter("sigma_phi_rad", 0.3, 0, 3, "rad, 1 σ of the phase at the first carrier")},
-                             selector_parameters(false));
+    kind.parameters =
+        joined({number_parameter("s4", 0.6, 0, 1, "amplitude index at the first carrier"),
+                number_parameter("sigma_phi_rad", 0.3, 0, 3, "rad, 1 σ of the phase at the first carrier")},
+               selector_parameters(false));
     kind.make = [](const Parameters& parameters, const FaultContext&) -> Result<Fault> {
         auto selector = read_selector(parameters);
         if (!selector) return fail(selector.error());
@@ -236,8 +243,8 @@ FaultKind scintillation() {
 }  // namespace
 
 std::vector<FaultKind> satellite_fault_kinds() {
-    std::vector<FaultKind> kinds{satellite_clock_step(), satellite_clock_drift(), wrong_ephemeris(),
-                                 unhealthy(),            ionospheric_storm(),     scintillation()};
+    std::vector<FaultKind> kinds{satellite_clock_step(), satellite_clock_drift(), wrong_ephemeris(), unhealthy(),
+                                 ionospheric_storm(),    scintillation()};
     for (FaultKind& kind : range_fault_kinds())
         kinds.push_back(std::move(kind));
     return kinds;

@@ -61,8 +61,7 @@ bool SignalSelector::takes(const Arrival& arrival) const {
     if (!constellations.empty() && !contains(constellations, arrival.id.constellation)) return false;
     if (!satellites.empty() && !contains(satellites, arrival.id)) return false;
     if (arrival.direction.elevation < elevation[0] || arrival.direction.elevation > elevation[1]) return false;
-    return !azimuth ||
-           turn_from((*azimuth)[0], arrival.direction.azimuth) <= turn_from((*azimuth)[0], (*azimuth)[1]);
+    return !azimuth || turn_from((*azimuth)[0], arrival.direction.azimuth) <= turn_from((*azimuth)[0], (*azimuth)[1]);
 }
 
 bool SignalSelector::takes(Signal signal) const { return signals.empty() || contains(signals, signal); }
@@ -77,8 +76,8 @@ std::vector<ParameterSpec> selector_parameters(bool signals) {
         number_parameter("elevation_from_deg", std::nullopt, -90, 90, "degrees, lower edge of a band of the sky"),
         number_parameter("elevation_to_deg", std::nullopt, -90, 90, "degrees, upper edge of the band")};
     if (signals)
-        specs.push_back(
-            words_parameter("signals", words_of(signal_words), "carriers that are hit; none given: all of a satellite"));
+        specs.push_back(words_parameter("signals", words_of(signal_words),
+                                        "carriers that are hit; none given: all of a satellite"));
     return specs;
 }
 
@@ -88,8 +87,7 @@ Result<SignalSelector> read_selector(const Parameters& parameters) {
         if (const auto constellation = constellation_from_name(name)) selector.constellations.push_back(*constellation);
     for (const std::string& word : parameters.texts("signals")) {
         const auto found = std::find(signal_words.begin(), signal_words.end(), word);
-        if (found != signal_words.end())
-            selector.signals.push_back(static_cast<Signal>(found - signal_words.begin()));
+        if (found != signal_words.end()) selector.signals.push_back(static_cast<Signal>(found - signal_words.begin()));
     }
     auto satellites = read_satellites(parameters);
     if (!satellites) return fail(satellites.error());
@@ -105,8 +103,9 @@ Result<SignalSelector> read_selector(const Parameters& parameters) {
 }
 
 std::vector<ParameterSpec> chosen_satellite_parameters() {
-    return {texts_parameter("satellites", "satellites that are hit, as G07; none given: the highest ones at the start"),
-            number_parameter("satellite_count", std::nullopt, 1, 200, "how many of the highest ones; 1 when not given")};
+    return {
+        texts_parameter("satellites", "satellites that are hit, as G07; none given: the highest ones at the start"),
+        number_parameter("satellite_count", std::nullopt, 1, 200, "how many of the highest ones; 1 when not given")};
 }
 
 Result<ChosenSatellites> ChosenSatellites::read(const Parameters& parameters) {

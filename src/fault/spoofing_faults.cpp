@@ -74,8 +74,7 @@ public:
         story.clock = {Metres(drifted), MetresPerSecond(pulling.value() > 0 ? drift_ * moment.strength : 0)};
         const double passed = last_ ? difference(moment.now, last_at_).value() : 0;
         if (passed > 0)
-            story.antenna.velocity =
-                Velocity<Ecef>(moment.truth->velocity.vector() + (offset - *last_) / passed);
+            story.antenna.velocity = Velocity<Ecef>(moment.truth->velocity.vector() + (offset - *last_) / passed);
         last_ = offset;
         last_at_ = moment.now;
         tell(arrivals, moment, selector_, story, advantage_ * moment.strength);
@@ -107,8 +106,7 @@ Result<Takeover> Takeover::read(const Parameters& parameters) {
     if (!to) return fail(to.error());
     const std::vector<double> offset = parameters.numbers("offset_m");
     const auto drift = parameters.optional_number("time_drift_ns_per_s");
-    if (*to && !offset.empty())
-        return fail(ErrorCode::usage, "both to and offset_m are given; expected one of them");
+    if (*to && !offset.empty()) return fail(ErrorCode::usage, "both to and offset_m are given; expected one of them");
     if (!*to && offset.empty() && !drift)
         return fail(ErrorCode::usage, "nothing is to be taken over; expected to, offset_m or time_drift_ns_per_s");
     Takeover takeover;
@@ -134,12 +132,14 @@ Result<Fault> make_takeover(const Parameters& parameters, const FaultContext&) {
 FaultKind spoof_takeover() {
     FaultKind kind;
     kind.name = "spoof_takeover";
-    kind.effect = "False signals begin in step with the true ones, are tracked in their place, and draw position and "
-                  "time away smoothly, all ranges consistent.";
+    kind.effect =
+        "False signals begin in step with the true ones, are tracked in their place, and draw position and "
+        "time away smoothly, all ranges consistent.";
     kind.cause = "A coordinated spoofer, as the University of Texas showed on a drone in 2012 and a yacht in 2013.";
     kind.parameters = joined(
         {place_parameter("to", false, "where the receiver shall believe to be in the end: degrees, metres"),
-         numbers_parameter("offset_m", std::nullopt, {3, -1e5, 1e5}, "in its place, m from the truth: north, east, down"),
+         numbers_parameter("offset_m", std::nullopt, {3, -1e5, 1e5},
+                           "in its place, m from the truth: north, east, down"),
          number_parameter("pull_off_mps", 2, 0.01, 1000, "m/s at which the position is drawn away, at most"),
          number_parameter("aligned_s", 10, 0, 1e5, "s for which the false signals stay in step with the true ones"),
          number_parameter("time_drift_ns_per_s", std::nullopt, -1e4, 1e4, "ns of time drawn away each second"),
@@ -159,7 +159,7 @@ Result<Fault> make_meaconing(const Parameters& parameters, const FaultContext&) 
     const Decibels advantage(parameters.number("power_advantage_db"));
     Fault fault;
     fault.arrivals = [selector = std::move(*selector), place = *place, delay, advantage](Arrivals& arrivals,
-                                                                                       const FaultMoment& moment) {
+                                                                                         const FaultMoment& moment) {
         if (!sees_the_sky(arrivals, moment)) return;
         const TruthState& truth = *moment.truth;
         FalseStory story{{truth.position, truth.velocity}, {delay * moment.strength, {}}};
@@ -179,14 +179,16 @@ Result<Fault> make_meaconing(const Parameters& parameters, const FaultContext&) 
 FaultKind meaconing() {
     FaultKind kind;
     kind.name = "meaconing";
-    kind.effect = "The receiver hears the sky of another antenna, delayed: it finds itself at that place, and its clock "
-                  "is late.";
+    kind.effect =
+        "The receiver hears the sky of another antenna, delayed: it finds itself at that place, and its clock "
+        "is late.";
     kind.cause = "A rebroadcast of real signals: repeaters in hangars and depots left on, or on purpose.";
-    kind.parameters = joined({place_parameter("rebroadcast_at", false,
-                                              "of the antenna whose sky is rebroadcast; not given: beside the receiver"),
-                              number_parameter("delay_us", 1, 0, 10000, "µs of the repeater, beside the way through the air"),
-                              advantage_parameter(), detected_after_parameter()},
-                             selector_parameters(false));
+    kind.parameters =
+        joined({place_parameter("rebroadcast_at", false,
+                                "of the antenna whose sky is rebroadcast; not given: beside the receiver"),
+                number_parameter("delay_us", 1, 0, 10000, "µs of the repeater, beside the way through the air"),
+                advantage_parameter(), detected_after_parameter()},
+               selector_parameters(false));
     kind.make = make_meaconing;
     kind.measuring_receivers_only = true;
     return kind;
@@ -217,8 +219,9 @@ FaultKind spoof_satellite() {
     FaultKind kind;
     kind.name = "spoof_satellite";
     kind.effect = "The range of one satellite, or a few, is false by a step, a ramp or both; the others are true.";
-    kind.cause = "A clumsy or partial spoofer, a signal simulator that leaks; what receiver autonomous integrity "
-                 "monitoring is for.";
+    kind.cause =
+        "A clumsy or partial spoofer, a signal simulator that leaks; what receiver autonomous integrity "
+        "monitoring is for.";
     kind.parameters = joined({number_parameter("step_m", std::nullopt, -1e6, 1e6, "m that the range is too long"),
                               number_parameter("ramp_mps", std::nullopt, -1000, 1000, "m/s by which that grows"),
                               advantage_parameter(), detected_after_parameter()},

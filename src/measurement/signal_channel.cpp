@@ -18,7 +18,8 @@ double first_to_own_frequency(const ChannelInput& input) {
 
 std::optional<DbHz> arriving_cn0(const ChannelInput& input, Decibels by_echoes) {
     const Arrival& arrival = input.arrival;
-    if (arrival.paths == 0 || !input.signal.arrives || !arrival.cn0 || !std::isfinite(arrival.cn0->value())) return std::nullopt;
+    if (arrival.paths == 0 || !input.signal.arrives || !arrival.cn0 || !std::isfinite(arrival.cn0->value()))
+        return std::nullopt;
     return DbHz(arrival.cn0->value() + input.signal.relative_power.value() + by_echoes.value());
 }
 
@@ -188,8 +189,8 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
                         arrival.signal_in_space_error.value() + arrival.tropo_delay.value() +
                         arrival.excess_path.value() + arrival.false_range.value();
     const double path_rate = arrival.range_rate.value() + arrival.range_rate_error.value() +
-                             arrival.excess_rate.value() + arrival.false_range_rate.value() + epoch.clock_drift.value() -
-                             speed_of_light * arrival.clock_drift;
+                             arrival.excess_rate.value() + arrival.false_range_rate.value() +
+                             epoch.clock_drift.value() - speed_of_light * arrival.clock_drift;
     const double phase_ratio = parameters.multipath_model.phase_ratio;
     const double floor = parameters.multipath_model.floor.value();
 

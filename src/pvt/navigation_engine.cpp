@@ -378,9 +378,7 @@ Fix NavigationEngine::State::solve(const Observations& observations, const Recei
         fill_coasting(fix);
     }
     // What is carried on is carried on from the last solution.
-    if (epoch.point || fix.type == FixType::none) {
-        last_ = fix;
-    }
+    if (epoch.point || fix.type == FixType::none) last_ = fix;
     std::optional<Position<Ecef>> place = position_;
     if (epoch.time_only) place = to_ecef(*parameters_.fixed_position);
     fix.satellites =

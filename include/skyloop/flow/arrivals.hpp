@@ -50,12 +50,12 @@ struct Arrival {
     std::vector<Echo> echoes;          ///< strongest first
     Metres signal_in_space_error;      ///< of orbit and clock against the broadcast, in the range
     MetresPerSecond range_rate_error;  ///< its derivative
-    Metres false_range;               ///< what false signals add to the range, and a base station does not see
+    Metres false_range;                ///< what false signals add to the range, and a base station does not see
     MetresPerSecond false_range_rate;  ///< its derivative
     bool called_unhealthy = false;     ///< the satellite sends that it is not to be used, whatever its record says
     /// A fault leaves too little of it for a sensor model, which has no loops that could lose it.
     bool cut_off = false;
-    Metres iono_delay;                 ///< of the code of the first signal; the carrier is advanced by as much
+    Metres iono_delay;  ///< of the code of the first signal; the carrier is advanced by as much
     Metres tropo_delay;
     Decibels free_space_loss;
     Decibels gas_loss;

@@ -55,7 +55,8 @@ TEST(ReceptionFaults, OutageFadesWhileItIsRamped) {
 
 TEST(ReceptionFaults, SelectorsThatContradictEachOtherAreRefused) {
     EXPECT_THAT(refusal_of("outage", {{"azimuth_from_deg", 10.}}), HasSubstr("one end"));
-    EXPECT_THAT(refusal_of("outage", {{"azimuth_from_deg", 10.}, {"azimuth_to_deg", 10.}}), HasSubstr("two directions"));
+    EXPECT_THAT(refusal_of("outage", {{"azimuth_from_deg", 10.}, {"azimuth_to_deg", 10.}}),
+                HasSubstr("two directions"));
     EXPECT_THAT(refusal_of("outage", {{"elevation_from_deg", 30.}, {"elevation_to_deg", 20.}}), HasSubstr("above"));
     EXPECT_THAT(refusal_of("outage", {{"satellites", Texts{"G7"}}}), HasSubstr("'G7'"));
     EXPECT_THAT(refusal_of("outage", {{"satellites", Texts{"G07"}}, {"constellations", Texts{"galileo"}}}),
@@ -69,8 +70,7 @@ TEST(ReceptionFaults, Cn0DropTakesDecibelsOffTheSelectedSignals) {
     EXPECT_NEAR(all.satellites[3].cn0->value(), 39, 1e-9);
     EXPECT_NEAR(all.satellites[3].signals[1].relative_power.value(), 0, 1e-9);
     EXPECT_NEAR(all.satellites[3].power_offset.value(), -6, 1e-9);
-    const Arrivals second =
-        bench.after(signal_fault("cn0_drop", {{"attenuation_db", 12.}, {"signals", Texts{"L2"}}}));
+    const Arrivals second = bench.after(signal_fault("cn0_drop", {{"attenuation_db", 12.}, {"signals", Texts{"L2"}}}));
     EXPECT_NEAR(second.satellites[3].cn0->value(), 45, 1e-9);
     EXPECT_NEAR(second.satellites[3].signals[1].relative_power.value(), -12, 1e-9);
     EXPECT_NEAR(second.satellites[3].signals[2].relative_power.value(), 0, 1e-9);
@@ -118,12 +118,11 @@ TEST(ReceptionFaults, JammersPulseAndSweep) {
 TEST(ReceptionFaults, AJammerAtAPlaceWeakensWithTheSquareOfItsDistance) {
     const auto ratio_at = [](double east_m) {
         const ArrivalBench bench;
-        const Geodetic there = to_geodetic(
-            LocalFrame(bench.truth.geodetic).to_ecef(Position<Enu>(east_m, 0, 0)));
+        const Geodetic there = to_geodetic(LocalFrame(bench.truth.geodetic).to_ecef(Position<Enu>(east_m, 0, 0)));
         const double height = there.height.above_ellipsoid.value();
         const Fault fault = signal_fault(
-            "jamming",
-            {{"jammer_at", std::vector<double>{there.latitude.deg(), there.longitude.deg(), height}}, {"eirp_dbw", 0.}});
+            "jamming", {{"jammer_at", std::vector<double>{there.latitude.deg(), there.longitude.deg(), height}},
+                        {"eirp_dbw", 0.}});
         return std::pow(10, bench.after(fault).satellites[0].interference_loss.value() / 10) - 1;
     };
     EXPECT_NEAR(ratio_at(1000) / ratio_at(2000), 4, 0.01);
@@ -156,8 +155,8 @@ TEST(ReceptionFaults, JammersThatAreNotToldAreRefused) {
 
 TEST(ReceptionFaults, AnAntennaThatIsBrokenHearsNothingAndSaysSo) {
     const ArrivalBench bench;
-    for (const auto& [name, status] : {std::pair("antenna_open", AntennaStatus::open),
-                                       std::pair("antenna_short", AntennaStatus::short_circuit)}) {
+    for (const auto& [name, status] :
+         {std::pair("antenna_open", AntennaStatus::open), std::pair("antenna_short", AntennaStatus::short_circuit)}) {
         const Fault fault = signal_fault(name);
         EXPECT_EQ(arriving(bench.after(fault)), 0);
         Epoch epoch;
@@ -185,7 +184,8 @@ TEST(ReceptionFaults, AMultipathBurstGivesEchoesToAShareOfTheSatellites) {
     EXPECT_NEAR(echoes, 200, 45);  // of 400, 4.5 σ
     // Within one span an echo moves by its rate, and the same name makes the same echoes.
     const Fault all = signal_fault("multipath_burst", {{"share", 1.}});
-    const Echo first = bench.after(all, 1).satellites[0].echoes[0], second = bench.after(all, 2).satellites[0].echoes[0];
+    const Echo first = bench.after(all, 1).satellites[0].echoes[0],
+               second = bench.after(all, 2).satellites[0].echoes[0];
     EXPECT_NEAR((second.excess - first.excess).value(), first.excess_rate.value(), 1e-9);
     EXPECT_EQ(first.phase, second.phase);
 }

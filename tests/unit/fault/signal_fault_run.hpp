@@ -137,9 +137,7 @@ inline FaultyRun faulty_run_at_rest(bool errors = true) {
 
 /// Reported less true position: east, north, up, m.
 inline Eigen::Vector3d fix_error_enu(const Trace& trace) {
-    return LocalFrame(trace.truth.geodetic)
-        .to_enu(to_ecef(trace.epoch.fix.position) - trace.truth.position)
-        .vector();
+    return LocalFrame(trace.truth.geodetic).to_enu(to_ecef(trace.epoch.fix.position) - trace.truth.position).vector();
 }
 
 inline const SatelliteStatus* status_of(const Trace& trace, SatelliteId id) {
@@ -165,8 +163,8 @@ struct ArrivalBench {
     /// @return the arrivals after the edit
     Arrivals after(const Fault& fault, double since_start = 0, double strength = 1) const {
         Arrivals edited = arrivals;
-        fault.arrivals(edited, {advanced(truth.time, Seconds(since_start)), Seconds(since_start), strength, &truth,
-                                &sky});
+        fault.arrivals(edited,
+                       {advanced(truth.time, Seconds(since_start)), Seconds(since_start), strength, &truth, &sky});
         return edited;
     }
 };
