@@ -27,6 +27,12 @@ Decibels weaken(Arrival& arrival, LossOf&& loss_of) {
     return first;
 }
 
+/// The moment tells where the antenna and its satellites are, in the order of the arrivals.
+inline bool knows_the_sky(const FaultMoment& moment, const Arrivals& arrivals) {
+    return moment.truth != nullptr && moment.sky != nullptr &&
+           moment.sky->satellites.size() == arrivals.satellites.size();
+}
+
 /// Seconds from the beginning of a fault until the receiver's own detector says that it is deceived.
 ParameterSpec detected_after_parameter();
 /// The edit that makes the detector say so; none when the parameter was not given.

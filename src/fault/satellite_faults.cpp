@@ -121,8 +121,8 @@ FaultKind wrong_ephemeris() {
         "The record that a satellite broadcasts puts it elsewhere: its range is off by what of that lies "
         "along the line of sight.";
     kind.cause =
-        "A bad upload, a manoeuvre without a warning, as GPS satellite PRN 30 on 2000-07-28 or GLONASS on "
-        "2014-04-01.";
+        "A bad upload, as to all of GLONASS on 2014-04-01, or a manoeuvre of a satellite that is still set "
+        "healthy.";
     kind.parameters =
         joined({number_parameter("along_track_m", std::nullopt, -1e6, 1e6, "m along the satellite's way"),
                 number_parameter("cross_track_m", std::nullopt, -1e6, 1e6, "m across it, along its angular momentum"),
@@ -138,7 +138,7 @@ FaultKind unhealthy() {
     FaultKind kind;
     kind.name = "unhealthy";
     kind.effect = "Satellites send that they are not to be used; they are tracked and not used.";
-    kind.cause = "Maintenance, or a failure that the ground has seen: GLONASS on 2014-04-02, Galileo in July 2019.";
+    kind.cause = "Maintenance, or a failure that the ground has seen: eight GLONASS satellites at once on 2014-04-14.";
     kind.parameters = selector_parameters(false);
     kind.make = [](const Parameters& parameters, const FaultContext&) -> Result<Fault> {
         auto selector = read_selector(parameters);

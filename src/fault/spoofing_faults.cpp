@@ -45,11 +45,6 @@ void tell(Arrivals& arrivals, const FaultMoment& moment, const SignalSelector& s
     }
 }
 
-bool sees_the_sky(const Arrivals& arrivals, const FaultMoment& moment) {
-    return moment.truth != nullptr && moment.sky != nullptr &&
-           moment.sky->satellites.size() == arrivals.satellites.size();
-}
-
 ParameterSpec advantage_parameter() {
     return number_parameter("power_advantage_db", 3, 0, 40, "dB of the false signals over the true ones");
 }
@@ -62,7 +57,7 @@ public:
     static Result<Takeover> read(const Parameters& parameters);
 
     void operator()(Arrivals& arrivals, const FaultMoment& moment) {
-        if (!sees_the_sky(arrivals, moment)) return;
+        if (!knows_the_sky(moment, arrivals)) return;
         const Eigen::Vector3d goal = goal_from(*moment.truth);
         if (!way_) way_ = SmoothWay{Metres(goal.norm()), pull_off_, pull_off_acceleration};
         const Seconds pulling = moment.since_start - aligned_;
@@ -160,7 +155,7 @@ Result<Fault> make_meaconing(const Parameters& parameters, const FaultContext&) 
     Fault fault;
     fault.arrivals = [selector = std::move(*selector), place = *place, delay, advantage](Arrivals& arrivals,
                                                                                          const FaultMoment& moment) {
-        if (!sees_the_sky(arrivals, moment)) return;
+        if (!knows_the_sky(moment, arrivals)) return;
         const TruthState& truth = *moment.truth;
         FalseStory story{{truth.position, truth.velocity}, {delay * moment.strength, {}}};
         // What is heard is the sky of the rebroadcaster's antenna, which stands; the way from it adds to all alike.
