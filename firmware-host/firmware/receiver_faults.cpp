@@ -37,6 +37,9 @@ UbxMessageId sentence_id(const SentenceView& sentence) {
 
 void Receiver::Core::happen(const ReceiverEvent& event, GpsTime now) {
     std::visit(OneOf{[&](const Reboot& e) { reboot(Forgotten::of(e.kind), now, e.banner); },
+                     [&](const RestartNavigation& e) {
+                         restart_navigation(Forgotten::of(e.kind), now, board_.timing.signal_restart);
+                     },
                      [&](const ForgetConfiguration&) { forget_configuration(now); },
                      [&](const ForceBaud& e) { force_baud(e.baud, now); }},
                event);

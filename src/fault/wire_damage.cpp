@@ -13,7 +13,7 @@ namespace skyloop {
 namespace {
 
 // Beyond these nothing changes that anyone could see, and sums stay within their types.
-constexpr double longest_delay_s = 1e6;
+constexpr double longest_held_s = 1e6;
 constexpr double most_bursts_per_s = 1000;
 constexpr int most_burst_bytes = 4096;
 constexpr double least_bytes_per_s = 1e-3, most_bytes_per_s = 1e9;
@@ -31,8 +31,8 @@ WireDirection sensible(WireDirection direction) {
     direction.garbage_bytes = std::clamp(direction.garbage_bytes, 0, most_burst_bytes);
     if (direction.garbage_bytes == 0) direction.garbage_per_s = 0;
     if (direction.garbage_per_s <= 0) direction.garbage_bytes = 0;
-    direction.delay = Seconds(amount_of(direction.delay.value(), longest_delay_s));
-    direction.jitter = Seconds(amount_of(direction.jitter.value(), longest_delay_s));
+    direction.delay = Seconds(amount_of(direction.delay.value(), longest_held_s));
+    direction.jitter = Seconds(amount_of(direction.jitter.value(), longest_held_s));
     if (direction.bytes_per_s && !std::isfinite(*direction.bytes_per_s)) direction.bytes_per_s.reset();
     if (direction.bytes_per_s && *direction.bytes_per_s < least_bytes_per_s) {
         direction.bytes_per_s.reset();

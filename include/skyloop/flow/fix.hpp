@@ -51,7 +51,7 @@ struct SatelliteStatus {
     std::optional<DbHz> cn0;  ///< nothing: in view, not tracked
     bool used = false;
     bool has_ephemeris = true;         ///< the receiver has a record of its orbit
-    bool healthy = true;               ///< by that record
+    bool healthy = true;               ///< by that record, and by what it sends now
     std::optional<Metres> residual{};  ///< of the pseudorange after the solution
 };
 

@@ -230,6 +230,66 @@ TEST(SignalFaultKinds, AreNamedAndExplained) {
     EXPECT_GE(count, 19);
 }
 
+// All numbers of the arrivals that faults change.
+std::vector<double> numbers_of(const Arrivals& arrivals) {
+    std::vector<double> numbers;
+    for (const Arrival& a : arrivals.satellites) {
+        numbers.insert(numbers.end(),
+                       {a.false_range.value(), a.false_range_rate.value(), a.iono_delay.value(),
+                        a.signal_in_space_error.value(), a.range_rate_error.value(), a.interference_loss.value(),
+                        a.cn0 ? a.cn0->value() : -1, a.amplitude_scintillation, a.phase_scintillation.rad(),
+                        static_cast<double>(a.paths), a.cut_off ? 1. : 0.});
+        for (const SignalArrival& signal : a.signals)
+            numbers.push_back(signal.relative_power.value());
+        for (const Echo& echo : a.echoes)
+            numbers.push_back(echo.amplitude);
+    }
+    return numbers;
+}
+
+// A ramp begins at nothing and ends at the whole.
+TEST(SignalFaultKinds, ChangeNothingAtAStrengthOfZero) {
+    const std::vector<std::pair<std::string, test::FaultValues>> faults{
+        {"outage", {}},
+        {"cn0_drop", {{"attenuation_db", 10.}}},
+        {"antenna_open", {}},
+        {"antenna_short", {}},
+        {"jamming", {{"j_to_s_db", 50.}}},
+        {"jamming", {{"jammer_at", std::vector<double>{46.48, 30.73}}, {"eirp_dbw", 0.}}},
+        {"multipath_burst", {{"share", 1.}}},
+        {"spoof_takeover",
+         {{"offset_m", std::vector<double>{100, 0, 0}}, {"aligned_s", 0.}, {"time_drift_ns_per_s", 10.}}},
+        {"meaconing", {{"rebroadcast_at", std::vector<double>{46.48, 30.73}}}},
+        {"spoof_satellite", {{"step_m", 100.}, {"ramp_mps", 1.}}},
+        {"satellite_clock_step", {{"step_ns", 100.}}},
+        {"satellite_clock_drift", {{"drift_ns_per_s", 100.}}},
+        {"wrong_ephemeris", {{"radial_m", 100.}}},
+        {"ionospheric_storm", {{"tec_factor", 3.}, {"vertical_delay_m", 5.}, {"gradient_mm_per_km", 100.}}},
+        {"scintillation", {}}};
+    const Trace trace = faulty_run_at_rest().until(0);
+    const std::vector<double> untouched = numbers_of(trace.arrivals);
+    for (const auto& [name, values] : faults) {
+        for (const double strength : {0., 0.5, 1.}) {
+            const Fault fault = signal_fault(name, values);
+            Arrivals edited = trace.arrivals;
+            // The second epoch: what is told by rates has one.
+            for (const double t : {0., 1.}) {
+                edited = trace.arrivals;
+                fault.arrivals(edited, {advanced(trace.truth.time, Seconds(t)), Seconds(20 + t), strength, &trace.truth,
+                                        &trace.sky});
+            }
+            const std::vector<double> numbers = numbers_of(edited);
+            double most = numbers.size() == untouched.size() ? 0 : 1e9;
+            for (std::size_t i = 0; most < 1e9 && i < numbers.size(); ++i)
+                most = std::max(most, std::abs(numbers[i] - untouched[i]));
+            if (strength == 0)
+                EXPECT_LT(most, 1e-9) << name;
+            else
+                EXPECT_GT(most, 0.1) << name << " at " << strength;
+        }
+    }
+}
+
 // The same seed and name give the same edits, whatever happened before.
 TEST(SignalFaultKinds, AreRepeatable) {
     const auto bytes = [](std::uint64_t seed) {
