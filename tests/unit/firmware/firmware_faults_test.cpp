@@ -1,0 +1,183 @@
+// The receiver's own part of faults: what is told against what it goes on with, and what befalls it.
+#include <gtest/gtest.h>
+
+#include "firmware/receiver.hpp"
+#include "sample_epochs.hpp"
+#include "skyloop/protocol/nmea_sentence.hpp"
+#include "skyloop/protocol/stream_splitter.hpp"
+#include "skyloop/protocol/ubx_cfg_values.hpp"
+#include "skyloop/protocol/ubx_nav.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr UbxMessageId solution{0x01, 0x07}, version_poll{0x0A, 0x04};
+
+// A receiver, a fix every second, and all bytes of its first UART.
+struct BrokenReceiver {
+    explicit BrokenReceiver(ReceiverOptions options = {}) : receiver(sample_ublox(), std::move(options)) {
+        fix = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500);
+        add_satellites(fix, Constellation::gps, 1, 12);
+        now = fix.time;
+        receiver.start(now);
+    }
+    void wait(Nanoseconds length, const ReportEdit& edit = {}) {
+        for (const GpsTime end = now + length; now < end;) {
+            now += 5ms;
+            if (now.time_since_epoch() % 1s == 0ns) {
+                fix.time = now;
+                receiver.on_epoch({fix}, edit);
+            }
+            for (const Receiver::Sent& sent : receiver.output(now))
+                if (sent.port == PortId::uart1) bytes.insert(bytes.end(), sent.bytes.begin(), sent.bytes.end());
+        }
+    }
+    void write(ByteSpan message) { receiver.input(PortId::uart1, message, now); }
+    void set(std::uint32_t item, std::uint64_t value, std::uint8_t layers = 1) {
+        CfgValset message;
+        message.layers = layers;
+        message.pairs = {{item, value}};
+        write(encode_frame(message));
+    }
+    std::vector<NavPvt> solutions() const {
+        std::vector<NavPvt> found;
+        StreamSplitter splitter;
+        for (const StreamPiece& piece : splitter.feed(bytes)) {
+            const auto frame = piece.kind == StreamKind::ubx ? parse_frame(piece.bytes) : std::nullopt;
+            if (frame && frame->id == solution) found.push_back(*decode_payload<NavPvt>(frame->payload));
+        }
+        return found;
+    }
+    Receiver receiver;
+    Fix fix;
+    GpsTime now;
+    Bytes bytes;
+};
+
+void say_lost(NavigationState& state) {
+    state.epoch.fix.type = FixType::none;
+    state.fix_ok = false;
+}
+
+TEST(FirmwareFaults, AnswersPollsFromWhatItReportsAndGoesOnWithWhatItKnows) {
+    BrokenReceiver r;
+    r.wait(1500ms, say_lost);
+    r.write(encode_frame(solution, {}));
+    r.wait(200ms);
+    ASSERT_EQ(r.solutions().size(), 1U);
+    EXPECT_EQ(r.solutions()[0].fix_type, 0);
+    EXPECT_EQ(r.receiver.state().epoch.fix.type, FixType::none);
+    r.wait(1s);
+    EXPECT_EQ(r.receiver.state().epoch.fix.type, FixType::fix_3d) << "nothing was lost";
+    EXPECT_EQ(r.receiver.state().epoch_index, 1U);
+}
+
+TEST(FirmwareFaults, EditsEachEpochOnce) {
+    BrokenReceiver r;
+    int calls = 0;
+    r.wait(5s, [&](NavigationState&) { ++calls; });
+    EXPECT_EQ(calls, 5);
+}
+
+TEST(FirmwareFaults, SendsTheBytesOfASoundReceiverWithoutFaults) {
+    BrokenReceiver sound, told;
+    for (BrokenReceiver* r : {&sound, &told})
+        r->set(0x20910007, 1);
+    told.receiver.set_faults({});
+    sound.wait(5s);
+    told.wait(5s, [](NavigationState&) {});
+    EXPECT_EQ(sound.bytes, told.bytes);
+    EXPECT_EQ(sound.solutions().size(), 5U);
+}
+
+TEST(FirmwareFaults, SwallowsItsBannerWhileItIsMute) {
+    for (const bool mute : {false, true}) {
+        BrokenReceiver r;
+        FirmwareFaults faults;
+        faults.mute = mute;
+        r.receiver.set_faults(faults);
+        r.receiver.happen(Reboot{}, r.now);
+        r.wait(3s);
+        EXPECT_EQ(r.bytes.empty(), mute);
+    }
+}
+
+TEST(FirmwareFaults, RebootsWithoutABannerAndHearsAgainAfterwards) {
+    BrokenReceiver r;
+    r.receiver.happen(Reboot{StartKind::cold, false}, r.now);
+    r.wait(100ms);
+    r.write(encode_frame(version_poll, {}));
+    r.wait(2s);
+    EXPECT_TRUE(r.bytes.empty()) << "it booted as it was asked";
+    r.write(encode_frame(version_poll, {}));
+    r.wait(200ms);
+    EXPECT_FALSE(r.bytes.empty());
+}
+
+TEST(FirmwareFaults, ForgetsEveryLayer) {
+    BrokenReceiver r;
+    r.set(0x30210001, 200, 7);
+    r.wait(1s);
+    EXPECT_EQ(r.receiver.settings().navigation_period, 200ms);
+    r.receiver.happen(ForgetConfiguration{}, r.now);
+    EXPECT_EQ(r.receiver.settings().navigation_period, 1s);
+    r.receiver.happen(Reboot{}, r.now);
+    EXPECT_EQ(r.receiver.settings().navigation_period, 1s) << "nothing was stored either";
+}
+
+TEST(FirmwareFaults, GivesTheSpeedOfBeforeBackOnceAndNotOverAReboot) {
+    BrokenReceiver r;
+    const auto baud = [&] {
+        r.wait(20ms);
+        return r.receiver.baud(PortId::uart1);
+    };
+    r.receiver.happen(ForceBaud{9600}, r.now);
+    EXPECT_EQ(baud(), 9600U);
+    r.receiver.happen(ForceBaud{19200}, r.now);
+    EXPECT_EQ(baud(), 19200U);
+    r.receiver.happen(ForceBaud{0}, r.now);
+    EXPECT_EQ(baud(), 38400U);
+    r.receiver.happen(ForceBaud{0}, r.now);
+    EXPECT_EQ(baud(), 38400U);
+    r.receiver.happen(ForceBaud{9600}, r.now);
+    r.receiver.happen(Reboot{}, r.now);
+    EXPECT_EQ(baud(), 38400U) << "the speed was in RAM";
+    r.receiver.happen(ForceBaud{0}, r.now);
+    EXPECT_EQ(baud(), 38400U);
+}
+
+TEST(FirmwareFaults, KeepsAnswersInOrderWhenTheirDelayEnds) {
+    BrokenReceiver r;
+    FirmwareFaults slow;
+    slow.answer_delay = Seconds(0.5);
+    r.receiver.set_faults(slow);
+    r.write(encode_frame(version_poll, {}));
+    r.receiver.set_faults({});
+    r.set(0x20910007, 1);
+    r.wait(400ms);
+    EXPECT_TRUE(r.bytes.empty()) << "the second answer waits for the first";
+    r.wait(300ms);
+    ASSERT_GT(r.bytes.size(), 4U);
+    EXPECT_EQ(r.bytes[2], version_poll.message_class);
+}
+
+TEST(FirmwareFaults, LeavesSentencesThatItRefusesAlone) {
+    BrokenReceiver r;
+    FirmwareFaults faults;
+    faults.refused = {{0xF1, 0x40}};
+    const Bytes rates = to_bytes(
+        Sentence("PUBX").text("40").text("GGA").text("0").text("1").text("0").text("0").text("0").text("0").finish());
+    r.receiver.set_faults(faults);
+    r.write(rates);
+    r.wait(2s);
+    EXPECT_TRUE(r.bytes.empty());
+    r.receiver.set_faults({});
+    r.write(rates);
+    r.wait(2s);
+    EXPECT_FALSE(r.bytes.empty()) << "GGA comes";
+}
+
+}  // namespace
+}  // namespace skyloop::firmware
