@@ -162,7 +162,7 @@ std::vector<FaultKind> clock_kinds() {
              solution,
              "The time runs backwards from the start of the fault on.",
              "Recorded signals that are sent again, and firmware that corrects its clock in the wrong direction.",
-             {number_parameter("rate", 1, 0.001, 1000, "how fast, s per s")},
+             {number_parameter("rate", 1, 0.001, 100, "how fast, s per s")},
              make_time_backwards},
             {"time_drift",
              solution,

@@ -1,12 +1,15 @@
 // The receiver's own part of faults: what is told against what it goes on with, and what befalls it.
 #include <gtest/gtest.h>
 
+#include "firmware/messages/other_protocols.hpp"
 #include "firmware/receiver.hpp"
 #include "sample_epochs.hpp"
 #include "skyloop/protocol/nmea_sentence.hpp"
 #include "skyloop/protocol/stream_splitter.hpp"
 #include "skyloop/protocol/ubx_cfg_values.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
+#include "skyloop/protocol/ubx_time.hpp"
+#include "ubx_reports.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -86,8 +89,8 @@ TEST(FirmwareFaults, SendsTheBytesOfASoundReceiverWithoutFaults) {
     for (BrokenReceiver* r : {&sound, &told})
         r->set(0x20910007, 1);
     told.receiver.set_faults({});
-    sound.wait(5s);
-    told.wait(5s, [](NavigationState&) {});
+    sound.wait(5500ms);
+    told.wait(5500ms, [](NavigationState&) {});
     EXPECT_EQ(sound.bytes, told.bytes);
     EXPECT_EQ(sound.solutions().size(), 5U);
 }
@@ -177,6 +180,23 @@ TEST(FirmwareFaults, LeavesSentencesThatItRefusesAlone) {
     r.write(rates);
     r.wait(2s);
     EXPECT_FALSE(r.bytes.empty()) << "GGA comes";
+}
+
+// Dates and times of week stay.
+TEST(FirmwareFaults, CountsWeeksApartInEveryMessageThatHasThem) {
+    UbxReport r(9);
+    const auto told = [&] {
+        return std::vector<int>{r.report<NavTimegps>().week, r.report<NavTimegal>().gal_wno, r.report<NavSol>().week,
+                                msp_sensor_gps(r.state).gps_week, mavlink_gps_input(r.state).time_week};
+    };
+    const std::vector<int> before = told();
+    const auto pvt = r.report<NavPvt>();
+    r.state.week_offset = -1;
+    const std::vector<int> after = told();
+    for (std::size_t i = 0; i < before.size(); ++i)
+        EXPECT_EQ(after[i], before[i] - 1) << i;
+    EXPECT_EQ(r.report<NavPvt>().day, pvt.day);
+    EXPECT_EQ(r.report<NavPvt>().i_tow, pvt.i_tow);
 }
 
 }  // namespace
