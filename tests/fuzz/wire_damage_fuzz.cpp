@@ -119,11 +119,11 @@ Bytes play(FuzzInput input, bool in_parts) {
                 break;
             }
             case 2:
-                now += std::chrono::milliseconds(16 * input.byte());
+                now += std::chrono::milliseconds(8 * input.byte());
                 take_all(wire, now, totals, heard);
                 break;
             default: {  // a flood
-                const Bytes flood(std::size_t{256} * input.byte(), input.byte());
+                const Bytes flood(std::size_t{64} * input.byte(), input.byte());
                 totals.put += flood.size();
                 wire.put(flood, now);
                 break;
