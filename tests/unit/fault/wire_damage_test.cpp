@@ -170,6 +170,19 @@ TEST(WireDamage, MergesAMessageWithTheNextOne) {
     EXPECT_TRUE(std::equal(rest.rbegin(), rest.rend(), expected.rbegin()));
 }
 
+TEST(WireDamage, SparesTheNextMessageWhenMergingHasEnded) {
+    for (const WireDirection& between : {WireDirection{}, damaged_direction([](WireDirection& d) { d.dead = true; })}) {
+        WireDamage wire(1, "wire");
+        wire.set(damaged_direction([](WireDirection& d) { d.merging = 1; }), wire_start);
+        wire.put(wire_message(0), wire_start);
+        EXPECT_LT(wire.take(wire_start).size(), wire_message(0).size());
+        wire.set(between, wire_time(0.1));
+        wire.set(damaged_direction([](WireDirection& d) { d.merging = 1e-12; }), wire_time(0.2));
+        wire.put(wire_message(2), wire_time(0.2));
+        EXPECT_EQ(wire.take(wire_time(0.2)), wire_message(2));
+    }
+}
+
 TEST(WireDamage, SendsMessagesTwice) {
     Bytes expected;
     for (int i = 0; i < 6; ++i) {
