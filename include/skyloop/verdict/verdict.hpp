@@ -1,0 +1,37 @@
+/// Whether a run did what was expected of it.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "skyloop/base/units.hpp"
+#include "skyloop/time/gps_time.hpp"
+
+namespace skyloop {
+
+/// How an expectation came out.
+enum class Outcome {
+    passed,
+    failed,
+    undecided,  ///< the run ended too soon to tell
+    not_run     ///< a probe in virtual time
+};
+/// As reports have them: "passed", "failed", "undecided", "not run".
+std::string_view outcome_name(Outcome outcome);
+
+/// What became of one expectation.
+struct Verdict {
+    std::string name;      ///< of the expectation
+    std::string expected;  ///< the sentence as it was understood, or the probe
+    Outcome outcome = Outcome::undecided;
+    std::string evidence;               ///< a sentence: "no fix came true 1.2 s after outage began"
+    std::optional<GpsTime> decided_at;  ///< nothing: only known once the run was over
+    Seconds run_time{0};                ///< of `decided_at`, or of the end, since the start of the run
+};
+
+/// Whether the run may be called a success: nothing failed, nothing is undecided.
+bool all_met(std::span<const Verdict> verdicts);
+
+}  // namespace skyloop
