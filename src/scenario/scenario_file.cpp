@@ -90,6 +90,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     top.table("scene", [&](TableReader& t) { read_scene_keys(t, scenario.scene, folder); });
     read_receivers(top, scenario, folder);
     read_timeline(top, scenario);
+    read_expectations(top, scenario.expectations);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "skyloop/scenario/scenario.hpp"
+#include "skyloop/verdict/expectation.hpp"
 #include "table_reader.hpp"
 
 namespace skyloop {
@@ -25,6 +26,9 @@ void read_scene_keys(TableReader& table, SceneEntry& scene, const std::filesyste
 
 /// Reads every [[fault]] and [[command]] of a scenario's top table, after its receivers.
 void read_timeline(TableReader& top, Scenario& scenario);
+/// Reads every [[expect]] of a scenario's top table. Whether the names of events and receivers are known is not looked
+/// at: event_mistake() and the scenario know that when everything has been read.
+void read_expectations(TableReader& top, std::vector<Expectation>& list);
 
 /// Reads [frame] and [trajectory] of a file's top table.
 void read_trajectory_keys(TableReader& top, Scenario& scenario);

@@ -25,6 +25,7 @@
 #include "skyloop/scenario/modern_settings.hpp"
 #include "skyloop/scenario/scene_settings.hpp"
 #include "skyloop/trajectory/geometric_paths.hpp"
+#include "skyloop/verdict/expectation.hpp"
 
 namespace skyloop {
 
@@ -127,6 +128,7 @@ struct Scenario {
     std::vector<ReceiverEntry> receivers = std::vector<ReceiverEntry>(1);  ///< at least one
     std::vector<FaultEntry> faults;
     std::vector<CommandEntry> commands;
+    std::vector<Expectation> expectations;                                 ///< what the run is judged by
     std::vector<std::string> warnings;  ///< what a reader should be told, e.g. a level that is too large for a plane
 };
 

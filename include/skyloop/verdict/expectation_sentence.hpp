@@ -31,7 +31,7 @@ struct SentenceMistake {
 ///     time       = "always" | "never" [window] | "at" span | span "after" event | "within" span "of" event | window
 ///     window     = ("throughout" | "during") event | "from" span "to" span ["after" event]
 ///                | "until" event | "after" event ["for" span]
-///     event      = ["the"] [("start" | "end") "of"] ["the"] (NAME | "run")
+///     event      = ["the"] [("start" | "end") "of" ["the"]] (NAME | "run")
 ///     span       = NUMBER "s"
 ///
 /// An event's time is its start unless "end of" is said. A NAME with blanks stands in quotes; `NAME#2` is its second

@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+
+#include "scenario_keys.hpp"
+#include "skyloop/verdict/expectation_sentence.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr double longest_probe_s = 1e6;
+
+constexpr std::string_view probe_keys[] = {"expect_exit", "json", "at_s", "within_s", "timeout_s"};
+
+void read_condition(TableReader& table, Probe& probe) {
+    if (!table.has("json")) return;
+    std::string text = "a == 0";  // stays where the value is no text, which has been told
+    table.text("json", text);
+    auto condition = parse_json_condition(text);
+    if (condition)
+        probe.condition = std::move(*condition);
+    else
+        table.mistake("json", fmt::format("at character {}: {}", condition.error().column, condition.error().sentence));
+}
+
+void read_probe(TableReader& table, Expectation& expectation) {
+    Probe& probe = expectation.probe.emplace();
+    table.text_or_texts("command", probe.command);
+    if (!probe.command.empty() && probe.command.front().empty())
+        table.mistake("command", "is an empty text; expected a program and its arguments, or a text for /bin/sh");
+    if (table.has("expect_exit")) {
+        int code = 0;
+        table.integer("expect_exit", code, {0, 255});
+        probe.expect_exit = code;
+    }
+    read_condition(table, probe);
+    table.quantity("at_s", probe.at, {0, longest_probe_s});
+    if (table.has("within_s")) {
+        Seconds within(0);
+        table.quantity("within_s", within, {0, longest_probe_s});
+        probe.within = within;
+    }
+    table.quantity("timeout_s", probe.timeout, {0.01, longest_probe_s});
+    if (!expectation.receiver.empty())
+        table.mistake("receiver", "is of a sentence (what); a command asks whom it likes");
+}
+
+void read_sentence(TableReader& table, Expectation& expectation) {
+    if (!table.has("what")) return table.mistake_here("says nothing; expected what = \"…\" or command = …");
+    expectation.what = "fix";  // stays where the value is no text, which has been told
+    table.text("what", expectation.what);
+    auto sentence = parse_expectation(expectation.what);
+    if (sentence)
+        expectation.sentence = std::move(*sentence);
+    else
+        table.mistake("what", fmt::format("at character {}: {}", sentence.error().column, sentence.error().sentence));
+    for (const std::string_view key : probe_keys)
+        if (table.has(key)) {
+            table.has_been_read(key);
+            table.mistake(key, "is of a command; expected command = … beside it, or none of it beside what");
+        }
+}
+
+void read_expectation(TableReader& table, Expectation& expectation) {
+    table.text("name", expectation.name);
+    table.text("receiver", expectation.receiver);
+    if (!table.has("command")) return read_sentence(table, expectation);
+    read_probe(table, expectation);
+    if (table.has("what")) {
+        table.has_been_read("what");
+        table.mistake("what", "stands beside command; expected one of them");
+    }
+}
+
+}  // namespace
+
+void read_expectations(TableReader& top, std::vector<Expectation>& list) {
+    top.tables("expect", [&list](TableReader& table) { read_expectation(table, list.emplace_back()); });
+}
+
+}  // namespace skyloop

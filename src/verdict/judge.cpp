@@ -1,0 +1,200 @@
+#include "skyloop/verdict/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "expectation_tracker.hpp"
+#include "probe_run.hpp"
+#include "skyloop/verdict/expectation_sentence.hpp"
+
+namespace skyloop {
+namespace {
+
+std::string_view verb_name(CommandVerb verb) {
+    for (const CommandKind& kind : command_kinds())
+        if (kind.verb == verb) return kind.name;
+    return "";
+}
+
+}  // namespace
+
+class Judge::State {
+    struct Follower {
+        std::size_t station;
+        ExpectationTracker tracker;
+    };
+    // One expectation at all receivers that it is about, or its probe.
+    struct Case {
+        Expectation expectation;
+        std::vector<Follower> followers{};
+        std::unique_ptr<ProbeRun> probe{};
+        std::optional<GpsTime> probe_over_at{};
+    };
+
+public:
+    State(std::vector<Expectation> expectations, JudgedRun run);
+    // What is seen now; never earlier than what was seen before.
+    GpsTime pass(GpsTime now);
+    template <class Look>
+    void at_station(std::size_t station, const Look& look);
+    void happen(const FaultSeen& seen);
+    std::vector<Verdict> finish(GpsTime now);
+    void start_probes(GpsTime now);
+
+private:
+    Verdict verdict_of(Case& one, GpsTime now);
+    Finding probe_finding(Case& one, GpsTime now);
+    Finding common_finding(Case& one, GpsTime now);
+
+    JudgedRun run_;
+    GpsTime now_;
+    std::vector<Case> cases_;
+    bool has_probes_ = false;
+};
+
+Judge::State::State(std::vector<Expectation> expectations, JudgedRun run) : run_(std::move(run)), now_(run_.start) {
+    for (Expectation& expectation : expectations) {
+        Case one{std::move(expectation)};
+        has_probes_ = has_probes_ || one.expectation.probe;
+        for (std::size_t i = 0; one.expectation.sentence && i < run_.receivers.size(); ++i)
+            if (one.expectation.receiver.empty() || one.expectation.receiver == run_.receivers[i])
+                one.followers.push_back({i, ExpectationTracker(*one.expectation.sentence, run_.start)});
+        cases_.push_back(std::move(one));
+    }
+}
+
+GpsTime Judge::State::pass(GpsTime now) {
+    now_ = std::max(now_, now);
+    for (Case& one : cases_)
+        for (Follower& follower : one.followers)
+            follower.tracker.advance(now_);
+    if (has_probes_ && run_.live) start_probes(now_);
+    return now_;
+}
+
+template <class Look>
+void Judge::State::at_station(std::size_t station, const Look& look) {
+    for (Case& one : cases_)
+        for (Follower& follower : one.followers)
+            if (follower.station == station && !follower.tracker.is_decided()) look(follower.tracker);
+}
+
+void Judge::State::happen(const FaultSeen& seen) {
+    for (Case& one : cases_)
+        for (Follower& follower : one.followers)
+            follower.tracker.event(now_, seen);
+}
+
+void Judge::State::start_probes(GpsTime now) {
+    for (Case& one : cases_) {
+        if (!one.expectation.probe) continue;
+        if (!one.probe && now >= advanced(run_.start, one.expectation.probe->at))
+            one.probe = std::make_unique<ProbeRun>(*one.expectation.probe, run_.probe_environment);
+        if (one.probe && !one.probe_over_at && one.probe->is_over()) one.probe_over_at = now;
+    }
+}
+
+Finding Judge::State::probe_finding(Case& one, GpsTime now) {
+    if (!run_.live) return {Outcome::not_run, "a probe needs a run against the clock, and this one was not", {}};
+    if (!one.probe)
+        return {
+            Outcome::undecided,
+            fmt::format("the run ended after {}, before the command was due", span_text(difference(now, run_.start))),
+            {}};
+    Finding finding = one.probe->finish();
+    finding.decided_at = one.probe_over_at;
+    return finding;
+}
+
+// It passes when it passes everywhere; the first that does not speaks for all.
+Finding Judge::State::common_finding(Case& one, GpsTime now) {
+    if (one.followers.empty())
+        return {Outcome::failed, fmt::format("no receiver is called '{}'", one.expectation.receiver), {}};
+    std::optional<Finding> worst;
+    for (Follower& follower : one.followers) {
+        Finding finding = follower.tracker.finish(now);
+        if (one.followers.size() > 1)
+            finding.evidence = fmt::format("{}: {}", run_.receivers[follower.station], finding.evidence);
+        const auto weight = [](const Finding& f) {
+            return f.outcome == Outcome::failed ? 2 : f.outcome == Outcome::undecided ? 1 : 0;
+        };
+        if (!worst || weight(finding) > weight(*worst)) worst = std::move(finding);
+    }
+    return *worst;
+}
+
+Verdict Judge::State::verdict_of(Case& one, GpsTime now) {
+    Finding finding = one.expectation.probe ? probe_finding(one, now) : common_finding(one, now);
+    Verdict verdict;
+    verdict.name = one.expectation.title();
+    if (one.expectation.probe)
+        verdict.expected = probe_text(*one.expectation.probe);
+    else if (one.expectation.sentence)
+        verdict.expected = expectation_text(*one.expectation.sentence);
+    verdict.outcome = finding.outcome;
+    verdict.evidence = std::move(finding.evidence);
+    verdict.decided_at = finding.decided_at;
+    verdict.run_time = difference(finding.decided_at.value_or(now), run_.start);
+    return verdict;
+}
+
+std::vector<Verdict> Judge::State::finish(GpsTime now) {
+    now_ = std::max(now_, now);
+    if (has_probes_ && run_.live) start_probes(now_);
+    std::vector<Verdict> verdicts;
+    for (Case& one : cases_)
+        verdicts.push_back(verdict_of(one, now_));
+    return verdicts;
+}
+
+Judge::Judge(std::vector<Expectation> expectations, JudgedRun run)
+    : state_(std::make_unique<State>(std::move(expectations), std::move(run))) {}
+
+Judge::~Judge() = default;
+
+void Judge::on_epoch(const EpochSeen& seen) {
+    const GpsTime now = state_->pass(seen.now);
+    state_->at_station(seen.station, [&](ExpectationTracker& tracker) {
+        if (is_of_epochs(tracker.subject().subject)) tracker.look(now, read_epoch(tracker.subject(), seen));
+    });
+}
+
+void Judge::on_message(const MessageSeen& seen) {
+    const GpsTime now = state_->pass(seen.now);
+    state_->at_station(seen.station, [&](ExpectationTracker& tracker) {
+        if (speaks_of(tracker.subject(), seen)) tracker.hear(now, seen.name);
+    });
+}
+
+void Judge::on_fault(const FaultSeen& seen) {
+    state_->pass(seen.now);
+    state_->happen(seen);
+}
+
+void Judge::on_command(const CommandSeen& seen) {
+    state_->pass(seen.now);
+    const std::string_view verb = verb_name(seen.command.verb);
+    state_->happen({seen.now, seen.name, verb, 1, true});
+    state_->happen({seen.now, seen.name, verb, 1, false});
+}
+
+void Judge::on_belief(const BeliefSeen& seen) {
+    const GpsTime now = state_->pass(seen.now);
+    state_->at_station(seen.station, [&](ExpectationTracker& tracker) {
+        const ExpectedSubject subject = tracker.subject().subject;
+        if (is_belief(subject))
+            tracker.look(now, {seen.trusts == (subject == ExpectedSubject::client_trusts), std::nullopt, seen.reason});
+    });
+}
+
+void Judge::advance(GpsTime now) { state_->pass(now); }
+
+std::vector<Verdict> Judge::finish(GpsTime now) { return state_->finish(now); }
+
+std::string Expectation::title() const {
+    if (!name.empty()) return name;
+    return !what.empty() || !probe ? what : probe_text(*probe);
+}
+
+}  // namespace skyloop

@@ -1,0 +1,44 @@
+/// A probe in a thread of its own.
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "expectation_tracker.hpp"
+#include "skyloop/verdict/expectation.hpp"
+
+namespace skyloop {
+
+/// "command 'gpspipe -w -n 5' exits 0".
+std::string probe_text(const Probe& probe);
+
+/// Runs the probe's command, anew until it succeeds where the probe says so, and keeps what came of it.
+class ProbeRun {
+public:
+    ProbeRun(Probe probe, std::vector<std::string> environment);
+    /// Kills what still runs.
+    ~ProbeRun();
+    ProbeRun(const ProbeRun&) = delete;
+    ProbeRun& operator=(const ProbeRun&) = delete;
+
+    [[nodiscard]] bool is_over() const { return over_; }
+    /// Kills what still runs and gives what came of it.
+    Finding finish();
+
+private:
+    void work();
+    bool try_once();
+    void keep(bool success, std::string evidence);
+
+    const Probe probe_;
+    const std::vector<std::string> environment_;
+    std::atomic<bool> cancelled_ = false, over_ = false;
+    std::mutex mutex_;
+    Finding finding_;  // guarded by mutex_
+    std::thread thread_;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,37 @@
+/// What is seen of a subject at one instant.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "skyloop/fault/run_observer.hpp"
+#include "skyloop/verdict/expectation.hpp"
+
+namespace skyloop {
+
+/// One look at a subject.
+struct Reading {
+    bool holds = false;
+    std::optional<double> number{};  ///< in the unit of the subject
+    std::string_view word{};         ///< where there is no number: "3d fix"
+};
+
+/// Whether the subject is read from epochs.
+bool is_of_epochs(ExpectedSubject subject);
+/// Whether it is what a scripted client believes.
+bool is_belief(ExpectedSubject subject);
+bool is_silence(ExpectedSubject subject);
+
+/// The subject at an epoch; it must be one of epochs.
+Reading read_epoch(const SubjectClause& subject, const EpochSeen& seen);
+/// Whether a message is one that the subject speaks of. Noise is no message.
+bool speaks_of(const SubjectClause& subject, const MessageSeen& seen);
+/// Whether a client's message changes the receiver's settings: UBX-CFG but for polls and CFG-VALGET, PUBX,40 and
+/// PUBX,41 (u-blox M8 protocol description UBX-13003221, section 31.3), the setting packets of PMTK (2xx, 3xx) and PAIR
+/// (050, 062, 066, 864), as RECEIVER.md lists them.
+bool is_reconfiguration(const MessageSeen& seen);
+/// "m", "dBHz", … of the subject's number.
+std::string_view unit_of(ExpectedSubject subject);
+
+}  // namespace skyloop
