@@ -232,14 +232,14 @@ void ExpectationTracker::happen(GpsTime now, bool begins) {
         under_way_ = std::max(0, under_way_ + (begins ? 1 : -1));
         event_came_ = event_came_ || begins;
         if (begins && under_way_ == 1) plan({now, std::nullopt, now});
-        if (!begins && under_way_ == 0 && stretch_) stretch_->closes = now;
+        if (!begins && under_way_ == 0 && stretch_) close(now);  // what is seen now, but later, is of after
     } else if (begins != time.event->end) {
         const bool first = !event_came_;
         event_came_ = true;
         if (time.rule != TimeRule::until_event)
             plan_at(now);
         else if (first && stretch_)
-            stretch_->closes = now;
+            close(now);
     }
     advance(now);
 }

@@ -1,0 +1,405 @@
+// Sentences over runs made by hand: each subject and each time, fulfilled and not.
+#include "skyloop/verdict/judge.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "seen_run.hpp"
+
+namespace skyloop {
+namespace {
+
+using test::no_fix;
+using test::SeenFix;
+using test::SeenRun;
+using testing::HasSubstr;
+
+constexpr auto passed = Outcome::passed, failed = Outcome::failed, undecided = Outcome::undecided;
+
+Outcome after_one_epoch(std::string_view what, const SeenFix& fix) {
+    return SeenRun(what).epoch(1, fix).end(2).outcome;
+}
+
+TEST(JudgeSubjects, FixesAreWhatIsReported) {
+    SeenFix fix;
+    EXPECT_EQ(after_one_epoch("fix", fix), passed);
+    EXPECT_EQ(after_one_epoch("no fix", fix), failed);
+    EXPECT_EQ(after_one_epoch("fix", no_fix), failed);
+    EXPECT_EQ(after_one_epoch("no fix", no_fix), passed);
+    EXPECT_EQ(after_one_epoch("3d fix", fix), passed);
+    EXPECT_EQ(after_one_epoch("2d fix", fix), failed);
+    fix.type = FixType::rtk_fixed;
+    EXPECT_EQ(after_one_epoch("rtk fixed", fix), passed);
+    EXPECT_EQ(after_one_epoch("3d fix", fix), passed) << "a fixed solution is three-dimensional";
+    EXPECT_EQ(after_one_epoch("rtk float", fix), failed);
+    fix.valid = false;
+    EXPECT_EQ(after_one_epoch("fix", fix), failed);
+    EXPECT_EQ(after_one_epoch("no fix", fix), passed);
+    EXPECT_EQ(after_one_epoch("time only", {FixType::time_only}), passed);
+    EXPECT_EQ(after_one_epoch("fix", {FixType::time_only}), failed);
+    EXPECT_EQ(after_one_epoch("dead reckoning", {FixType::dead_reckoning}), passed);
+}
+
+TEST(JudgeSubjects, NumbersAreComparedInTheirUnits) {
+    SeenFix fix;
+    fix.east_error_m = 7;
+    fix.up_error_m = -12;
+    fix.speed_error_mps = 0.5;
+    EXPECT_EQ(after_one_epoch("horizontal error above 6.9 m", fix), passed);
+    EXPECT_EQ(after_one_epoch("horizontal error above 7.1 m", fix), failed);
+    EXPECT_EQ(after_one_epoch("vertical error above 11.9 m", fix), passed);
+    EXPECT_EQ(after_one_epoch("vertical error below 11.9 m", fix), failed);
+    EXPECT_EQ(after_one_epoch("speed error at most 0.51 m/s", fix), passed);
+    EXPECT_EQ(after_one_epoch("speed error at most 0.49 m/s", fix), failed);
+    EXPECT_EQ(after_one_epoch("h_acc at least 3 m", fix), passed);
+    EXPECT_EQ(after_one_epoch("h_acc above 3 m", fix), failed);
+    EXPECT_EQ(after_one_epoch("v_acc above 5 m", fix), passed);
+    EXPECT_EQ(after_one_epoch("satellites at least 8", fix), passed);
+    EXPECT_EQ(after_one_epoch("satellites at least 9", fix), failed);
+    EXPECT_EQ(after_one_epoch("satellites at most 0", no_fix), passed);
+    EXPECT_EQ(after_one_epoch("C/N0 above 49 dBHz", fix), passed) << "46 … 53: mean 49.5";
+    EXPECT_EQ(after_one_epoch("C/N0 above 50 dBHz", fix), failed);
+    EXPECT_EQ(after_one_epoch("C/N0 of G08 above 52 dBHz", fix), passed);
+    EXPECT_EQ(after_one_epoch("C/N0 of E08 above 1 dBHz", fix), failed);
+    EXPECT_EQ(after_one_epoch("horizontal error below 100 m", no_fix), failed) << "there is no error without a fix";
+    EXPECT_THAT(SeenRun("horizontal error below 5 m always").epoch(1, fix).end(2).evidence, HasSubstr("7.00 m"));
+}
+
+TEST(JudgeSubjects, FlagsAreThoseOfTheMonitors) {
+    EXPECT_EQ(after_one_epoch("jamming flagged", {}), failed);
+    SeenFix fix;
+    fix.jamming = 2;
+    fix.spoofing = SpoofingIndication::indicated;
+    EXPECT_EQ(after_one_epoch("jamming flagged", fix), passed);
+    EXPECT_EQ(after_one_epoch("spoofing flagged", fix), passed);
+    EXPECT_EQ(after_one_epoch("spoofing flagged", {}), failed);
+}
+
+TEST(JudgeSubjects, MessagesGoByDirectionAndName) {
+    EXPECT_EQ(SeenRun("client sends CFG-VALSET").client(1, "CFG-VALSET").end(2).outcome, passed);
+    EXPECT_EQ(SeenRun("client sends cfg-*").client(1, "CFG-VALSET").end(2).outcome, passed);
+    EXPECT_EQ(SeenRun("client sends anything").client(1, "MON-VER").end(2).outcome, passed);
+    EXPECT_EQ(SeenRun("client sends anything").noise(1).end(2).outcome, failed);
+    EXPECT_EQ(SeenRun("client sends CFG-VALSET").client(1, "CFG-VALGET").end(2).outcome, failed);
+    EXPECT_EQ(SeenRun("client sends NAV-PVT").receiver(1, "NAV-PVT").end(2).outcome, failed);
+    EXPECT_EQ(SeenRun("receiver sends NAV-PVT").receiver(1, "NAV-PVT").end(2).outcome, passed);
+    EXPECT_THAT(SeenRun("client reconfigures").end(2).evidence, HasSubstr("(seen: nothing)"));
+}
+
+TEST(JudgeSubjects, APollIsNoReconfiguration) {
+    const auto after = [](std::string_view name, std::size_t payload) {
+        return SeenRun("client reconfigures").client(1, name, payload).end(2).outcome;
+    };
+    EXPECT_EQ(after("CFG-VALSET", 9), passed);
+    EXPECT_EQ(after("CFG-PRT", 20), passed);
+    EXPECT_EQ(after("CFG-PRT", 1), failed);
+    EXPECT_EQ(after("CFG-RATE", 0), failed);
+    EXPECT_EQ(after("CFG-VALGET", 8), failed);
+    EXPECT_EQ(after("CFG-MSG", 2), failed);
+    EXPECT_EQ(after("CFG-MSG", 3), passed);
+    EXPECT_EQ(after("MON-VER", 0), failed);
+    EXPECT_EQ(after("PUBX,41", 0), passed);
+    EXPECT_EQ(after("PUBX,00", 0), failed);
+    EXPECT_EQ(after("PMTK220", 0), passed);
+    EXPECT_EQ(after("PMTK605", 0), failed);
+}
+
+TEST(JudgeSubjects, BeliefsLastUntilTheyChange) {
+    EXPECT_EQ(SeenRun("client distrusts within 2 s of outage")
+                  .belief(1, true)
+                  .begins(5, "outage")
+                  .belief(6.5, false)
+                  .end(9)
+                  .outcome,
+              passed);
+    EXPECT_EQ(SeenRun("client distrusts within 1 s of outage")
+                  .belief(1, true)
+                  .begins(5, "outage")
+                  .belief(6.5, false)
+                  .end(9)
+                  .outcome,
+              failed);
+    EXPECT_EQ(SeenRun("client trusts within 1 s of outage").belief(1, true).begins(5, "outage").end(9).outcome, passed);
+    EXPECT_EQ(SeenRun("client trusts throughout outage")
+                  .belief(1, true)
+                  .begins(5, "outage")
+                  .ends(7, "outage")
+                  .belief(8, false)
+                  .end(9)
+                  .outcome,
+              passed);
+    const Verdict none = SeenRun("client distrusts never").end(9);
+    EXPECT_EQ(none.outcome, failed);
+    EXPECT_THAT(none.evidence, HasSubstr("no client told"));
+}
+
+TEST(JudgeSubjects, SilenceComesTrueAfterAWhileAndBreaksAtTheFirstMessage) {
+    EXPECT_EQ(SeenRun("receiver silent within 3 s of outage").receiver(4, "A").begins(5, "outage").end(9).outcome,
+              passed);
+    EXPECT_EQ(SeenRun("receiver silent within 1 s of outage").receiver(4.5, "A").begins(5, "outage").end(9).outcome,
+              failed);
+    EXPECT_EQ(SeenRun("client silent throughout outage")
+                  .client(4, "A")
+                  .begins(5, "outage")
+                  .ends(8, "outage")
+                  .client(9, "A")
+                  .end(10)
+                  .outcome,
+              passed);
+    EXPECT_EQ(
+        SeenRun("client silent throughout outage").begins(5, "outage").client(6, "A").ends(8, "outage").end(10).outcome,
+        failed);
+    SeenRun steady("receiver silent for 1.5 s never"), broken("receiver silent for 1.5 s never");
+    for (int second = 0; second <= 10; ++second) {
+        steady.receiver(second, "A");
+        if (second != 5) broken.receiver(second, "A");
+    }
+    EXPECT_EQ(steady.end(10).outcome, passed);
+    const Verdict gap = broken.end(10);
+    EXPECT_EQ(gap.outcome, failed);
+    EXPECT_EQ(gap.decided_at, test::at_second(5.5));
+}
+
+TEST(JudgeSubjects, RecurringMessagesMustNotPause) {
+    const std::string_view what = "receiver sends NAV-PVT every 1 s throughout outage";
+    SeenRun good(what), late(what);
+    good.begins(0.5, "outage");
+    late.begins(0.5, "outage");
+    for (int second = 1; second <= 5; ++second) {
+        good.receiver(second, "NAV-PVT");
+        late.receiver(second + (second == 4 ? 0.5 : 0.0), second == 4 ? "NAV-PVT" : "NAV-PVT");
+    }
+    EXPECT_EQ(good.ends(5.5, "outage").end(20).outcome, passed);
+    const Verdict verdict = late.ends(5.5, "outage").end(20);
+    EXPECT_EQ(verdict.outcome, failed);
+    EXPECT_NEAR(verdict.run_time.value(), 4, 1e-6);
+}
+
+TEST(JudgeTimes, WithinMustComeTrueInTime) {
+    const auto lost_at = [](double second) {
+        return SeenRun("no fix within 2 s of the outage")
+            .epoch(9)
+            .begins(10, "tunnel")
+            .epoch(10.5)
+            .epoch(second, no_fix)
+            .end(20);
+    };
+    const Verdict good = lost_at(11.2);
+    EXPECT_EQ(good.outcome, passed);
+    EXPECT_EQ(good.evidence, "came true 1.2 s after outage began (seen: no fix)");
+    EXPECT_EQ(good.decided_at, test::at_second(11.2));
+    EXPECT_EQ(lost_at(12).outcome, passed) << "the deadline belongs to the window";
+    const Verdict bad = lost_at(12.5);
+    EXPECT_EQ(bad.outcome, failed);
+    EXPECT_EQ(bad.evidence, "did not come true by 2 s after outage began (seen: 3d)");
+    EXPECT_EQ(bad.decided_at, test::at_second(12));
+}
+
+TEST(JudgeTimes, AnEpochOfBeforeTheEventDoesNotFulfilIt) {
+    EXPECT_EQ(SeenRun("fix within 2 s of reboot")
+                  .epoch(9)
+                  .command(9.5, "again", CommandVerb::reboot)
+                  .epoch(10, no_fix)
+                  .end(20)
+                  .outcome,
+              failed);
+    EXPECT_EQ(SeenRun("fix within 2 s of again")
+                  .epoch(9)
+                  .command(9.5, "again", CommandVerb::reboot)
+                  .epoch(11)
+                  .end(20)
+                  .outcome,
+              passed);
+}
+
+TEST(JudgeTimes, EachOccurrenceHasToBeAnswered) {
+    SeenRun run("client reconfigures within 1 s of outage");
+    run.begins(10, "outage", 1).client(10.4, "CFG-RST").begins(20, "outage", 2).client(20.8, "CFG-RST");
+    EXPECT_THAT(run.end(30).evidence,
+                HasSubstr("came true 2 times, at the latest 0.8 s after outage began (seen: CFG-RST)"));
+    SeenRun second("client reconfigures within 1 s of outage");
+    EXPECT_EQ(second.begins(10, "outage", 1).client(10.4, "CFG-RST").begins(20, "outage", 2).end(30).outcome, failed);
+    SeenRun only("client reconfigures within 1 s of outage#1");
+    EXPECT_EQ(only.begins(10, "outage", 1).client(10.4, "CFG-RST").begins(20, "outage", 2).end(30).outcome, passed);
+}
+
+TEST(JudgeTimes, TheEndOfAnEventIsAnEventToo) {
+    const std::string_view what = "fix within 3 s of the end of the outage";
+    EXPECT_EQ(SeenRun(what).begins(5, "outage").epoch(6).ends(10, "outage").epoch(12).end(20).outcome, passed);
+    EXPECT_EQ(SeenRun(what).begins(5, "outage").epoch(6).ends(10, "outage").epoch(14).end(20).outcome, failed);
+    const Verdict never = SeenRun(what).begins(5, "outage").epoch(6).end(20);
+    EXPECT_EQ(never.outcome, failed);
+    EXPECT_EQ(never.evidence, "outage never ended");
+}
+
+TEST(JudgeTimes, ThroughoutHoldsFromStartToEnd) {
+    const std::string_view what = "no fix throughout the outage";
+    EXPECT_EQ(SeenRun(what)
+                  .epochs(1, 4)
+                  .begins(5, "outage")
+                  .epochs(5, 9, no_fix)
+                  .ends(9.5, "outage")
+                  .epochs(10, 12)
+                  .end(13)
+                  .outcome,
+              passed);
+    const Verdict bad = SeenRun(what).begins(5, "outage").epochs(5, 7, no_fix).epoch(8).ends(9, "outage").end(13);
+    EXPECT_EQ(bad.outcome, failed);
+    EXPECT_EQ(bad.evidence, "did not hold 3 s after outage began (seen: 3d)");
+    EXPECT_EQ(SeenRun(what).begins(5, "outage").epochs(5, 9, no_fix).end(10).outcome, passed)
+        << "to the end of the run";
+    EXPECT_EQ(SeenRun(what).epochs(1, 9, no_fix).end(10).outcome, failed) << "it never began";
+    EXPECT_EQ(
+        SeenRun("client sends X during outage").begins(5, "outage").client(6, "X").ends(7, "outage").end(10).outcome,
+        passed);
+    EXPECT_EQ(
+        SeenRun("client sends X during outage").begins(5, "outage").ends(7, "outage").client(8, "X").end(10).outcome,
+        failed);
+}
+
+TEST(JudgeTimes, AlwaysAndNeverAreOfTheWholeRun) {
+    EXPECT_EQ(SeenRun("fix always").epochs(1, 9).end(10).outcome, passed);
+    EXPECT_EQ(SeenRun("fix always").epochs(1, 4).epoch(5, no_fix).epochs(6, 9).end(10).outcome, failed);
+    EXPECT_EQ(SeenRun("no fix never").epochs(1, 9).end(10).outcome, passed);
+    const Verdict seen = SeenRun("no fix never").epochs(1, 4).epoch(5, no_fix).end(10);
+    EXPECT_EQ(seen.evidence, "was true 5 s after the start of the run (seen: no fix)");
+    EXPECT_EQ(SeenRun("client reconfigures never").client(3, "MON-VER").end(10).outcome, passed);
+    EXPECT_EQ(SeenRun("client reconfigures never").client(3, "CFG-RST").end(10).outcome, failed);
+    EXPECT_EQ(SeenRun("client reconfigures never during outage")
+                  .client(3, "CFG-RST")
+                  .begins(4, "outage")
+                  .ends(5, "outage")
+                  .end(10)
+                  .outcome,
+              passed);
+    EXPECT_EQ(SeenRun("fix always").end(2).outcome, failed) << "nothing was seen";
+}
+
+TEST(JudgeTimes, WindowsAndInstantsByTheClock) {
+    EXPECT_EQ(SeenRun("fix from 3 s to 6 s").epochs(1, 2, no_fix).epochs(3, 6).epochs(7, 9, no_fix).end(10).outcome,
+              passed);
+    EXPECT_EQ(SeenRun("fix from 3 s to 6 s").epochs(1, 5).epoch(6, no_fix).end(10).outcome, failed);
+    EXPECT_EQ(SeenRun("client sends X from 3 s to 6 s").client(5, "X").end(10).outcome, passed);
+    EXPECT_EQ(SeenRun("client sends X from 3 s to 6 s").client(2, "X").client(7, "X").end(10).outcome, failed);
+    EXPECT_EQ(SeenRun("fix at 5 s").epochs(1, 4, no_fix).epoch(5).epochs(6, 9, no_fix).end(10).outcome, passed);
+    EXPECT_EQ(SeenRun("fix at 5 s").epochs(1, 4).epochs(5, 9, no_fix).end(10).outcome, failed);
+    EXPECT_EQ(SeenRun("fix at 5.5 s").epoch(5).epoch(6, no_fix).end(10).outcome, passed) << "as it last reported";
+    EXPECT_EQ(SeenRun("fix at 10 s").epochs(1, 10).end(10).outcome, passed);
+}
+
+TEST(JudgeTimes, WindowsAndInstantsByAnEvent) {
+    EXPECT_EQ(
+        SeenRun("no fix 2 s after the outage").begins(5, "outage").epochs(5, 6).epochs(7, 8, no_fix).end(10).outcome,
+        passed);
+    EXPECT_EQ(SeenRun("no fix 2 s after the outage").begins(5, "outage").epochs(5, 7).epoch(8, no_fix).end(10).outcome,
+              failed);
+    EXPECT_EQ(SeenRun("fix until the outage").epochs(1, 4).begins(5, "outage").epochs(5, 8, no_fix).end(10).outcome,
+              passed);
+    EXPECT_EQ(SeenRun("fix until the outage").epoch(1).epoch(2, no_fix).begins(5, "outage").end(10).outcome, failed);
+    EXPECT_EQ(SeenRun("fix until the outage").epochs(1, 9).end(10).evidence, "outage never began");
+    EXPECT_EQ(SeenRun("no fix after the outage").begins(5, "outage").epochs(5, 9, no_fix).end(10).outcome, passed);
+    EXPECT_EQ(SeenRun("no fix after the outage").begins(5, "outage").epochs(5, 8, no_fix).epoch(9).end(10).outcome,
+              failed);
+    EXPECT_EQ(
+        SeenRun("no fix after the outage for 3 s").begins(5, "outage").epochs(5, 8, no_fix).epoch(9).end(10).outcome,
+        passed);
+    EXPECT_EQ(SeenRun("no fix from 1 s to 3 s after outage")
+                  .begins(5, "outage")
+                  .epoch(5)
+                  .epochs(6, 8, no_fix)
+                  .epoch(9)
+                  .end(10)
+                  .outcome,
+              passed);
+}
+
+TEST(JudgeTimes, ARunThatEndsFirstFailsOrLeavesItOpen) {
+    const Verdict within = SeenRun("no fix within 9 s of outage").begins(5, "outage").epochs(5, 9).end(10);
+    EXPECT_EQ(within.outcome, failed);
+    EXPECT_THAT(within.evidence, HasSubstr("the run ended after 10 s, before the time was over"));
+    EXPECT_EQ(SeenRun("fix after the outage for 9 s").begins(5, "outage").epochs(5, 9).end(10).outcome, undecided);
+    EXPECT_EQ(SeenRun("fix at 30 s").epochs(1, 9).end(10).outcome, undecided);
+    EXPECT_EQ(SeenRun("fix from 20 s to 30 s").epochs(1, 9).end(10).outcome, undecided);
+}
+
+TEST(JudgeTimes, AReceiverThatMakesNoEpochsHasNoFix) {
+    EXPECT_EQ(SeenRun("fix always").epochs(1, 4).end(20).outcome, failed);
+    const Verdict lost = SeenRun("no fix within 6 s of outage").epochs(1, 4).begins(4.5, "outage").end(20);
+    EXPECT_EQ(lost.outcome, passed);
+    EXPECT_THAT(lost.evidence, HasSubstr("no epoch for 5 s"));
+}
+
+TEST(Judge, FollowsEachReceiverOrTheOneNamed) {
+    const auto run = [](std::string receiver) {
+        SeenRun seen({test::expectation_of("fix always", std::move(receiver))}, {"left", "right"});
+        for (int second = 1; second < 5; ++second)
+            seen.epoch(second, {}, 0).epoch(second, no_fix, 1);
+        return seen.end(5);
+    };
+    EXPECT_EQ(run("left").outcome, passed);
+    EXPECT_EQ(run("right").outcome, failed);
+    EXPECT_THAT(run("").evidence, HasSubstr("right: did not hold"));
+    EXPECT_THAT(run("middle").evidence, HasSubstr("no receiver is called 'middle'"));
+}
+
+TEST(Judge, KeepsABoundedNumberOfInstants) {
+    SeenRun run("fix 1000 s after outage");
+    for (int i = 1; i <= 2000; ++i)
+        run.begins(i * 0.1, "outage", i).ends(i * 0.1, "outage", i);
+    EXPECT_THAT(run.end(300).evidence, HasSubstr("more than 1024 instants"));
+}
+
+TEST(Judge, TimesThatGoBackCountAsNow) {
+    EXPECT_EQ(SeenRun("client sends X from 3 s to 6 s").epoch(7).client(5, "X").end(10).outcome, failed);
+}
+
+Verdict probe_verdict(const Probe& probe, bool live, double patience_s) {
+    Expectation expectation;
+    expectation.probe = probe;
+    Judge judge({expectation}, {test::run_start, {"receiver0"}, live, {"SKYLOOP_WORD=moon"}});
+    judge.advance(test::at_second(5));
+    for (double waited = 0; live && waited < patience_s; waited += 0.05) {
+        struct timespec pause {
+            0, 50'000'000
+        };
+        ::nanosleep(&pause, nullptr);
+        judge.advance(test::at_second(5 + waited));
+    }
+    return judge.finish(test::at_second(60)).front();
+}
+
+TEST(JudgeProbes, AreJudgedByExitCodeAndOutput) {
+    EXPECT_EQ(probe_verdict({{"true"}}, true, 0.5).outcome, passed);
+    const Verdict wrong = probe_verdict({{"echo so >&2; exit 3"}}, true, 0.5);
+    EXPECT_EQ(wrong.outcome, failed);
+    EXPECT_EQ(wrong.evidence, "the command ended with exit code 3; it printed: so");
+    Probe probe{{"/bin/sh", "-c", "echo '{\"w\":\"'$SKYLOOP_WORD'\"}'; exit 3"}};
+    probe.expect_exit = 3;
+    probe.condition = *parse_json_condition("w == moon");
+    EXPECT_EQ(probe_verdict(probe, true, 0.5).outcome, passed);
+    probe.condition = *parse_json_condition("w == sun");
+    EXPECT_THAT(probe_verdict(probe, true, 0.5).evidence, HasSubstr("no line of it fulfilled the condition"));
+}
+
+TEST(JudgeProbes, AConditionEndsAnEndlessCommand) {
+    Probe probe{{"while true; do echo '{\"mode\":3}'; sleep 0.02; done"}};
+    probe.condition = *parse_json_condition("mode >= 3");
+    const Verdict verdict = probe_verdict(probe, true, 1);
+    EXPECT_EQ(verdict.outcome, passed);
+    EXPECT_TRUE(verdict.decided_at);
+}
+
+TEST(JudgeProbes, AreKilledWithTheRunAndRefusedInVirtualTime) {
+    const Verdict killed = probe_verdict({{"sleep 100"}}, true, 0.2);
+    EXPECT_EQ(killed.outcome, failed);
+    EXPECT_THAT(killed.evidence, HasSubstr("killed as the run ended first"));
+    const Verdict refused = probe_verdict({{"true"}}, false, 0);
+    EXPECT_EQ(refused.outcome, Outcome::not_run);
+    EXPECT_THAT(refused.evidence, HasSubstr("against the clock"));
+    Probe late{{"true"}};
+    late.at = Seconds(1000);
+    EXPECT_EQ(probe_verdict(late, true, 0.1).outcome, undecided);
+}
+
+}  // namespace
+}  // namespace skyloop
