@@ -24,8 +24,9 @@ void read_condition(TableReader& table, Probe& probe) {
 void read_probe(TableReader& table, Expectation& expectation) {
     Probe& probe = expectation.probe.emplace();
     table.text_or_texts("command", probe.command);
-    if (!probe.command.empty() && probe.command.front().empty())
-        table.mistake("command", "is an empty text; expected a program and its arguments, or a text for /bin/sh");
+    if (probe.command.empty()) probe.command = {""};  // no list of texts, which has been told, or an empty one
+    if (probe.command.front().empty())
+        table.mistake("command", "names no program; expected a program and its arguments, or a text for /bin/sh");
     if (table.has("expect_exit")) {
         int code = 0;
         table.integer("expect_exit", code, {0, 255});

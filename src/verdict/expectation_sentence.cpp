@@ -40,6 +40,7 @@ private:
 
     void read_time();
     bool read_window();
+    void read_length();
     void read_from_to();
     void read_within();
     EventReference read_event();
@@ -224,11 +225,17 @@ bool SentenceParser::read_window() {
     } else if (words_.accept("after")) {
         time_.rule = TimeRule::after;
         time_.event = read_event();
-        if (words_.accept("for")) time_.until = read_span();
+        if (words_.accept("for")) read_length();
     } else {
         return false;
     }
     return true;
+}
+
+void SentenceParser::read_length() {
+    const std::size_t column = words_.column();
+    time_.until = read_span();
+    if (*time_.until <= Seconds(0)) words_.refuse(column, "a stretch of 0 s is none; expected more than 0 s");
 }
 
 void SentenceParser::read_from_to() {

@@ -117,6 +117,7 @@ TEST(ExpectationSentence, NumbersAreFiniteAndNotNegative) {
 
 TEST(ExpectationSentence, WhatMakesNoSenseTogetherIsRefused) {
     EXPECT_THAT(mistake_in("fix from 5 s to 5 s"), HasSubstr("ends before it begins"));
+    EXPECT_THAT(mistake_in("fix after the outage for 0 s"), HasSubstr("a stretch of 0 s is none"));
     EXPECT_THAT(mistake_in("client sends X throughout the outage"), HasSubstr("'every N s'"));
     EXPECT_THAT(mistake_in("client reconfigures always"), HasSubstr("at an instant"));
     EXPECT_THAT(mistake_in("client sends X at 5 s"), HasSubstr("at an instant"));
