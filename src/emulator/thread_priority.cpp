@@ -1,7 +1,10 @@
 #include "skyloop/emulator/thread_priority.hpp"
 
 #include <sched.h>
+#include <signal.h>
 #include <sys/resource.h>
+
+#include <utility>
 
 namespace skyloop {
 namespace {
@@ -9,6 +12,7 @@ namespace {
 // Above what has no deadline, below the kernel's own interrupt threads (50).
 constexpr int fifo_priority = 10;
 constexpr int raised_nice = -11;
+constexpr int background_nice = 5;
 
 }  // namespace
 
@@ -22,6 +26,18 @@ ThreadPriority raise_thread_priority() {
         setpriority(PRIO_PROCESS, 0, raised_nice) == 0)
         return ThreadPriority::raised;
     return ThreadPriority::normal;
+}
+
+std::thread background_thread(std::function<void()> work) {
+    sigset_t all{}, before{};
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);  // what a new thread inherits
+    std::thread thread([work = std::move(work)] {
+        setpriority(PRIO_PROCESS, 0, background_nice);  // of this thread alone, on Linux
+        work();
+    });
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    return thread;
 }
 
 std::string_view to_string(ThreadPriority priority) {

@@ -1,7 +1,9 @@
 /// How the operating system treats the thread that keeps simulated time.
 #pragma once
 
+#include <functional>
 #include <string_view>
+#include <thread>
 
 namespace skyloop {
 
@@ -18,5 +20,9 @@ ThreadPriority raise_thread_priority();
 
 /// "real-time", "raised" or "normal".
 std::string_view to_string(ThreadPriority priority);
+
+/// A thread beside the loop's, of which the loop feels as little as can be: it gives way to others, and the signals of
+/// the process go to those who wait for them.
+std::thread background_thread(std::function<void()> work);
 
 }  // namespace skyloop

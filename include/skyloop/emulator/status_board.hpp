@@ -1,0 +1,95 @@
+/// Where a run's state hangs for other threads to read.
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "skyloop/emulator/station.hpp"
+#include "skyloop/emulator/status_snapshot.hpp"
+#include "skyloop/fault/run_observer.hpp"
+
+namespace skyloop {
+
+/// What the board asks for when it makes a snapshot, by the loop's thread. Those that are empty are not asked.
+struct StatusSources {
+    std::function<PaceStatus()> pace{};
+    std::function<double(std::string_view fault)> strength{};  ///< 0 … 1 of an active one, by name
+    std::function<std::vector<VerdictStatus>()> verdicts{};
+    std::function<std::int64_t()> clock{};  ///< ns that never go back; nothing: the steady clock
+};
+
+/// What does not change during a run.
+struct StatusSetup {
+    std::string title;  ///< of the scenario
+    GpsTime start{};
+    std::optional<GpsTime> end{};
+    std::vector<TimelineBar> timeline{};  ///< what is known of it before the run
+};
+
+/// Collects what displays show of a run, and publishes it as immutable snapshots: at most ten a second while somebody
+/// watches, one a second otherwise, of real time.
+///
+/// The loop's thread never waits here: when a reader is just taking the last snapshot, the next one comes later.
+/// Between two snapshots an epoch costs a look at a clock, a message its copy. State: the last messages and events,
+/// what is under way, and each receiver at its last epoch that was looked at.
+class StatusBoard : public RunObserver {
+public:
+    /// @param stations of the run, which outlive the board; null: nothing is known of receivers but their epochs
+    StatusBoard(StatusSetup setup, const std::vector<Station>* stations, StatusSources sources = {});
+
+    void on_epoch(const EpochSeen& seen) override;
+    void on_message(const MessageSeen& seen) override;
+    void on_fault(const FaultSeen& seen) override;
+    void on_command(const CommandSeen& seen) override;
+    void on_belief(const BeliefSeen& seen) override;
+    /// To be called by the loop where no epoch comes for long, as in a pause: publishes what is due.
+    void look(GpsTime now);
+    /// The same at once, due or not: at the end of the run.
+    void publish_now(GpsTime now);
+
+    /// The last snapshot; never null. By any thread.
+    [[nodiscard]] std::shared_ptr<const StatusSnapshot> latest() const;
+    /// Somebody begins or ceases to watch. By any thread.
+    void watch() const { watchers_.fetch_add(1, std::memory_order_relaxed); }
+    void unwatch() const { watchers_.fetch_sub(1, std::memory_order_relaxed); }
+    [[nodiscard]] int watchers() const { return watchers_.load(std::memory_order_relaxed); }
+
+    static constexpr std::size_t most_dialogue_lines = 512, most_events = 256, most_live_bars = 128;
+
+private:
+    struct Belief {
+        std::size_t station = 0, wire = 0;
+        bool trusts = false;
+        std::string reason;
+    };
+    [[nodiscard]] std::int64_t clock() const;
+    [[nodiscard]] std::int64_t interval() const;
+    [[nodiscard]] ReceiverStatus& receiver(std::size_t station);
+    void take_epoch(const EpochSeen& seen, ReceiverStatus& status) const;
+    void take_wires(std::size_t station, ReceiverStatus& status) const;
+    void add_event(GpsTime now, std::string what, std::string text);
+    TimelineBar& bar_of(const FaultSeen& seen);
+    void publish(GpsTime now, std::int64_t clock_ns);
+
+    StatusSetup setup_;
+    const std::vector<Station>* stations_;
+    StatusSources sources_;
+    std::vector<ReceiverStatus> receivers_;
+    std::vector<std::int64_t> taken_at_;  // of each receiver, by the clock
+    std::vector<TimelineBar> bars_;
+    std::vector<Belief> beliefs_;
+    std::deque<std::shared_ptr<const DialogueLine>> dialogue_;
+    std::deque<std::shared_ptr<const EventLine>> events_;
+    std::uint64_t dialogue_count_ = 0, event_count_ = 0, snapshot_count_ = 0;
+    std::int64_t published_at_ = 0;
+    mutable std::atomic<int> watchers_{0};
+    mutable std::mutex mutex_;  // of latest_; the loop only tries it
+    std::shared_ptr<const StatusSnapshot> latest_;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,137 @@
+/// What displays are shown of a run, as plain data.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "skyloop/base/bytes.hpp"
+#include "skyloop/base/units.hpp"
+#include "skyloop/flow/fix.hpp"
+#include "skyloop/geo/geodetic.hpp"
+#include "skyloop/gnss/signal.hpp"
+#include "skyloop/protocol/stream_splitter.hpp"
+#include "skyloop/time/gps_time.hpp"
+
+namespace skyloop {
+
+/// One satellite above the antenna, and what the receiver makes of it.
+struct SatelliteSeen {
+    SatelliteId id;
+    Angle azimuth, elevation;
+    bool line_of_sight = true;
+    bool reflected = false;  ///< what is tracked has been reflected
+    bool blocked = false;    ///< nothing arrives
+    bool used = false;       ///< in the solution
+    bool healthy = true;     ///< by its broadcast
+    int paths = 1;           ///< rays that arrive
+    /// C/N0 of each signal that the receiver tracks; of a sensor model the first signal's alone.
+    std::vector<std::pair<Signal, DbHz>> signals;
+};
+
+/// One wire of a receiver.
+struct WireStatus {
+    std::string port;         ///< "uart1"
+    std::string description;  ///< "/dev/pts/3 (pty)"
+    std::optional<std::uint32_t> baud;
+    bool connected = false;                                     ///< a client listens
+    std::uint64_t bytes_out = 0, bytes_in = 0, bytes_lost = 0;  ///< lost: the client did not read in time
+    std::uint64_t bytes_unheard = 0, bytes_garbled = 0;         ///< nobody listened; at another speed
+    std::uint64_t messages_sent = 0, messages_dropped = 0;      ///< dropped: the transmit buffer was full
+    std::string belief;                                         ///< of a scripted client; empty: none
+    bool trusted = false;                                       ///< … it would navigate by this receiver
+};
+
+/// East, north, up.
+struct EnuError {
+    Metres east, north, up;
+};
+
+/// One receiver at its last epoch that was looked at.
+struct ReceiverStatus {
+    std::string name, board;
+    double rate_hz = 0;
+    GpsTime epoch{};
+    std::uint64_t epochs = 0;
+    Geodetic truth;
+    MetresPerSecond true_speed;     ///< over the ground
+    Fix fix;                        ///< as reported; its satellites are left out
+    bool fix_ok = false;            ///< within the user's limits (gnssFixOK)
+    std::optional<EnuError> error;  ///< reported − true, while there is a position
+    int satellites_used = 0;
+    int jamming_state = 0;  ///< 0 unknown, 1 ok, 2 warning, 3 critical
+    int spoofing = 0;       ///< as NAV-STATUS spoofDetState
+    Decibels interference;  ///< rise of the noise floor
+    Nanoseconds lateness{0};
+    std::vector<SatelliteSeen> satellites;
+    std::vector<WireStatus> wires;
+};
+
+/// A fault or command of the timeline, or a live one, with what is known of its times.
+struct TimelineBar {
+    std::string name, kind;  ///< "receiver_silent"; of a command its verb
+    bool command = false;
+    bool live = false;              ///< asked for while the run goes on
+    int occurrence = 0;             ///< 0: has not begun
+    std::optional<GpsTime> begins;  ///< or began
+    std::optional<GpsTime> ends;    ///< or ended
+    bool active = false;
+    double strength = 0;   ///< 0 … 1, while active
+    std::string receiver;  ///< empty: all
+    std::string words;     ///< how the scenario describes its times: "every 60 s"
+};
+
+/// What is known of one expectation.
+struct VerdictStatus {
+    std::string name, what;
+    std::string state;   ///< "pending", "passed", "failed"
+    std::string detail;  ///< why
+};
+
+/// A message on a wire, as kept for displays.
+struct DialogueLine {
+    std::uint64_t sequence = 0;  ///< from 1 on, without gaps
+    GpsTime time{};
+    std::size_t receiver = 0, wire = 0;
+    bool from_client = true;
+    StreamKind kind = StreamKind::ubx;
+    std::string name;
+    std::size_t size = 0;  ///< bytes of the message
+    Bytes bytes;           ///< the first of them, at most dialogue_bytes
+};
+inline constexpr std::size_t dialogue_bytes = 1024;
+
+/// Something that happened once.
+struct EventLine {
+    std::uint64_t sequence = 0;  ///< from 1 on, without gaps
+    GpsTime time{};
+    std::string what;  ///< "fault begins", "fault ends", "command", "belief"
+    std::string text;
+};
+
+/// How simulated time passes at the moment.
+struct PaceStatus {
+    bool paused = false;
+    double speed = 1;  ///< simulated seconds per second
+    bool virtual_time = false;
+};
+
+/// Everything at one instant. Immutable once published.
+struct StatusSnapshot {
+    std::uint64_t sequence = 0;  ///< grows with each snapshot
+    GpsTime time{}, start{};
+    std::optional<GpsTime> end;
+    int leap_seconds = 18;  ///< GPST − UTC, s
+    std::string title;      ///< of the scenario
+    PaceStatus pace;
+    std::vector<ReceiverStatus> receivers;
+    std::vector<TimelineBar> timeline;
+    std::vector<VerdictStatus> verdicts;
+    std::vector<std::shared_ptr<const DialogueLine>> dialogue;  ///< the last ones, ascending
+    std::vector<std::shared_ptr<const EventLine>> events;       ///< the last ones, ascending
+};
+
+}  // namespace skyloop

@@ -1,0 +1,75 @@
+// Who may ask: the checks of a request before anything of it is done.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "skyloop/control/control_request.hpp"
+
+namespace skyloop {
+namespace {
+
+// "[::1]:8080" is "[::1]".
+std::string_view without_port(std::string_view host) {
+    if (host.starts_with('[')) return host.substr(0, host.find(']') + 1);
+    return host.substr(0, host.find(':'));
+}
+
+bool is_ipv4(std::string_view host) {
+    return !host.empty() && std::count(host.begin(), host.end(), '.') == 3 &&
+           std::all_of(host.begin(), host.end(), [](char c) { return c == '.' || (c >= '0' && c <= '9'); });
+}
+
+// A name can be made to lead anywhere by whoever owns it; an address cannot.
+bool host_is_ours(std::string_view header, const AccessRules& rules) {
+    const std::string_view host = without_port(header);
+    if (host.empty()) return false;
+    if (host == "localhost" || host == "[::1]" || (is_ipv4(host) && host.starts_with("127."))) return true;
+    if (host == rules.host) return true;
+    return !rules.loopback && (is_ipv4(host) || (host.starts_with('[') && host.ends_with(']')));
+}
+
+// As long for a wrong token as for the right one, wherever the first difference stands.
+bool same_secret(std::string_view given, std::string_view wanted) {
+    if (given.size() != wanted.size()) return false;
+    unsigned difference = 0;
+    for (std::size_t i = 0; i < given.size(); ++i)
+        difference |= static_cast<unsigned char>(given[i] ^ wanted[i]);
+    return difference == 0;
+}
+
+bool shows_token(const ControlRequest& request, const std::string& token) {
+    constexpr std::string_view bearer = "Bearer ", subprotocol = "bearer.";
+    const std::string_view authorization = request.header("Authorization").value_or("");
+    if (authorization.starts_with(bearer)) return same_secret(authorization.substr(bearer.size()), token);
+    std::string_view list = request.header("Sec-WebSocket-Protocol").value_or("");
+    while (!list.empty()) {
+        std::string_view word = list.substr(0, list.find(','));
+        list.remove_prefix(std::min(word.size() + 1, list.size()));
+        while (word.starts_with(' '))
+            word.remove_prefix(1);
+        if (word.starts_with(subprotocol)) return same_secret(word.substr(subprotocol.size()), token);
+    }
+    return false;
+}
+
+}  // namespace
+
+std::optional<ControlResponse> refusal(const ControlRequest& request, const AccessRules& rules) {
+    const auto host = request.header("Host");
+    if (!host || !host_is_ours(*host, rules))
+        return error_response(421,
+                              fmt::format("the request is for host '{}'; expected {}", host.value_or("several"),
+                                          rules.loopback ? "127.0.0.1 or localhost" : "an address or " + rules.host));
+    const auto origin = request.header("Origin");
+    if (!origin || (!origin->empty() && *origin != fmt::format("http://{}", *host)))
+        return error_response(403, fmt::format("a page of '{}' may not ask; expected one of http://{}",
+                                               origin.value_or("several"), *host));
+    if (rules.token.empty() || !request.path().starts_with("/api/") || shows_token(request, rules.token))
+        return std::nullopt;
+    ControlResponse response =
+        error_response(401, "no token, or a wrong one; expected the header 'Authorization: Bearer TOKEN'");
+    response.headers.emplace_back("WWW-Authenticate", "Bearer");
+    return response;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "json_text.hpp"
+#include "page_files.hpp"
+#include "skyloop/control/command_json.hpp"
+#include "skyloop/control/control_request.hpp"
+#include "skyloop/control/status_json.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::string_view live_fault_prefix = "/api/faults/";
+
+ControlResponse json_response(std::string body, int status = 200) {
+    ControlResponse response;
+    response.status = status;
+    response.body = std::move(body);
+    response.headers.emplace_back("Cache-Control", "no-store");
+    return response;
+}
+
+std::string_view page_content_type(std::string_view path) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 5> types{
+        {{".html", "text/html; charset=utf-8"},
+         {".js", "text/javascript; charset=utf-8"},
+         {".css", "text/css; charset=utf-8"},
+         {".svg", "image/svg+xml"},
+         {".json", "application/json"}}};
+    for (const auto& [ending, type] : types)
+        if (path.ends_with(ending)) return type;
+    return "application/octet-stream";
+}
+
+std::optional<ControlResponse> page_answer(std::string_view path) {
+    if (path == "/") path = "/index.html";
+    for (const PageFile& file : page_files()) {
+        if (file.path != path) continue;
+        ControlResponse response;
+        response.content_type = page_content_type(path);
+        response.body = file.content;
+        // Nothing from elsewhere, no script inside the text, in nobody's frame.
+        response.headers = {{"Content-Security-Policy",
+                             "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
+                             "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+                            {"Referrer-Policy", "no-referrer"},
+                            {"Cache-Control", "no-cache"}};
+        return response;
+    }
+    return std::nullopt;
+}
+
+ControlResponse queued(const Result<Command>& command, const ControlSources& sources) {
+    if (!command) return error_response(422, command.error().message);
+    const std::string told = command_json(*command);
+    if (sources.push && sources.push(*command)) return json_response("{\"accepted\":" + told + "}", 202);
+    ControlResponse response = error_response(429, "too many commands wait already; expected fewer a second");
+    response.headers.emplace_back("Retry-After", "1");
+    return response;
+}
+
+// "%41" is "A"; nothing for what is no such text.
+std::optional<std::string> percent_decoded(std::string_view text) {
+    const auto digit = [](char c) {
+        if (c >= '0' && c <= '9') return c - '0';
+        if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+        return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+    };
+    std::string decoded;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] != '%') {
+            decoded += text[i];
+            continue;
+        }
+        if (i + 2 >= text.size() || digit(text[i + 1]) < 0 || digit(text[i + 2]) < 0) return std::nullopt;
+        decoded += static_cast<char>(digit(text[i + 1]) * 16 + digit(text[i + 2]));
+        i += 2;
+    }
+    return decoded;
+}
+
+ControlResponse stop_fault(const ControlRequest& request, const ControlSources& sources) {
+    const auto name = percent_decoded(request.path().substr(live_fault_prefix.size()));
+    if (!name || name->empty())
+        return error_response(400, "the path ends without the name of a fault; expected /api/faults/NAME");
+    const bool known =
+        sources.snapshot && std::any_of(sources.snapshot->timeline.begin(), sources.snapshot->timeline.end(),
+                                        [&](const TimelineBar& bar) { return !bar.command && bar.name == *name; });
+    if (!known)
+        return error_response(
+            404, fmt::format("no fault is called '{}'; GET /api/timeline lists them", name->substr(0, 60)));
+    Json json{{"command", "stop_fault"}, {"fault", *name}};
+    return queued(command_from_json(json_text(json), "http"), sources);
+}
+
+std::optional<ControlResponse> wrong_content(const ControlRequest& request) {
+    const std::string_view type = request.header("Content-Type").value_or("");
+    if (type.substr(0, type.find(';')) == "application/json") return std::nullopt;
+    return error_response(415, fmt::format("the body is '{}'; expected application/json", type));
+}
+
+ControlResponse get_answer(const ControlRequest& request, const ControlSources& sources) {
+    const std::string_view path = request.path();
+    if (path == "/api/faults") return json_response(fault_kinds_json());
+    if (path == "/api/commands") return json_response(command_kinds_json());
+    if (path == "/api/openapi.json") return json_response(openapi_json(sources.version));
+    if (path == "/api/scene")
+        return sources.scene != nullptr && !sources.scene->empty()
+                   ? json_response(*sources.scene)
+                   : error_response(404, "nothing stands around in this run: there is no scene");
+    if (path == "/api/stream") {
+        ControlResponse response = error_response(426, "a plain request; expected a WebSocket");
+        response.headers.emplace_back("Upgrade", "websocket");
+        return response;
+    }
+    if (!sources.snapshot) return error_response(503, "the run has not begun");
+    if (path == "/api/timeline") return json_response(timeline_json(*sources.snapshot));
+    return json_response(sources.status != nullptr ? *sources.status : recent_status_json(*sources.snapshot));
+}
+
+// The methods of a path below /api; empty: there is no such path.
+std::string_view methods_of(std::string_view path) {
+    if (path == "/api/commands" || path == "/api/faults") return "GET, POST";
+    for (const std::string_view known :
+         {"/api/status", "/api/timeline", "/api/scene", "/api/openapi.json", "/api/stream"})
+        if (path == known) return "GET";
+    return path.starts_with(live_fault_prefix) ? "DELETE" : "";
+}
+
+ControlResponse api_answer(const ControlRequest& request, const ControlSources& sources) {
+    const std::string_view methods = methods_of(request.path());
+    if (methods.empty())
+        return error_response(
+            404, fmt::format("no path '{}'; GET /api/openapi.json lists them", request.path().substr(0, 200)));
+    if (methods.find(request.method) == std::string_view::npos || request.method.empty()) {
+        ControlResponse response =
+            error_response(405, fmt::format("{} is not for {}; expected {}", request.method.substr(0, 20),
+                                            request.path().substr(0, 200), methods));
+        response.headers.emplace_back("Allow", methods);
+        return response;
+    }
+    if (request.method == "GET") return get_answer(request, sources);
+    if (request.method == "DELETE") return stop_fault(request, sources);
+    if (auto wrong = wrong_content(request)) return std::move(*wrong);
+    const auto read = request.path() == "/api/faults" ? live_fault_from_json : command_from_json;
+    return queued(read(request.body, "http"), sources);
+}
+
+}  // namespace
+
+ControlResponse answer(const ControlRequest& request, const AccessRules& rules, const ControlSources& sources) {
+    if (auto refused = refusal(request, rules)) return std::move(*refused);
+    if (request.body.size() > control_body_limit)
+        return error_response(
+            413, fmt::format("the body has {} bytes; expected at most {}", request.body.size(), control_body_limit));
+    if (request.path().starts_with("/api/")) return api_answer(request, sources);
+    if (request.method != "GET" && request.method != "HEAD") {
+        ControlResponse response = error_response(405, "only GET is for the page");
+        response.headers.emplace_back("Allow", "GET, HEAD");
+        return response;
+    }
+    if (auto page = page_answer(request.path())) return std::move(*page);
+    return error_response(404, fmt::format("no page '{}'; expected /", request.path().substr(0, 200)));
+}
+
+}  // namespace skyloop

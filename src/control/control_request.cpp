@@ -1,0 +1,51 @@
+#include "skyloop/control/control_request.hpp"
+
+#include <algorithm>
+
+#include "json_text.hpp"
+
+namespace skyloop {
+namespace {
+
+bool same_header(std::string_view a, std::string_view b) {
+    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [&](char left, char right) { return lower(left) == lower(right); });
+}
+
+}  // namespace
+
+std::optional<std::string_view> ControlRequest::header(std::string_view name) const {
+    std::optional<std::string_view> found;
+    for (const auto& [key, value] : headers) {
+        if (!same_header(key, name)) continue;
+        if (found) return std::nullopt;
+        found = value;
+    }
+    return found.value_or(std::string_view());
+}
+
+std::string_view ControlRequest::path() const { return std::string_view(target).substr(0, target.find('?')); }
+
+std::optional<std::string_view> ControlRequest::query(std::string_view key) const {
+    const std::size_t mark = target.find('?');
+    if (mark == std::string::npos) return std::nullopt;
+    std::string_view left = std::string_view(target).substr(mark + 1);
+    while (!left.empty()) {
+        const std::string_view pair = left.substr(0, left.find('&'));
+        left.remove_prefix(std::min(pair.size() + 1, left.size()));
+        const std::size_t equals = pair.find('=');
+        if (pair.substr(0, equals) == key)
+            return equals == std::string_view::npos ? std::string_view() : pair.substr(equals + 1);
+    }
+    return std::nullopt;
+}
+
+ControlResponse error_response(int status, std::string_view sentence) {
+    ControlResponse response;
+    response.status = status;
+    response.body = json_text({{"error", sentence}});
+    return response;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,261 @@
+#include "skyloop/emulator/status_board.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "skyloop/emulator/pacer.hpp"
+#include "skyloop/geo/local_frame.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::int64_t watched_interval_ns = 100'000'000, unwatched_interval_ns = 1'000'000'000;
+
+template <class Line>
+void keep_last(std::deque<std::shared_ptr<const Line>>& lines, Line line, std::size_t most) {
+    if (lines.size() >= most) lines.pop_front();
+    lines.push_back(std::make_shared<const Line>(std::move(line)));
+}
+
+// What the receiver tracks of a satellite; a sensor model measures nothing, and its C/N0 is that of its report.
+std::vector<std::pair<Signal, DbHz>> tracked_signals(const EpochSeen& seen, const SatelliteStatus* status,
+                                                     SatelliteId id) {
+    std::vector<std::pair<Signal, DbHz>> signals;
+    for (const Observation& one : seen.trace.epoch.observations.signals)
+        if (one.satellite == id) signals.emplace_back(one.signal, one.cn0);
+    if (signals.empty() && status != nullptr && status->cn0)
+        signals.emplace_back(first_signal(id.constellation), *status->cn0);
+    return signals;
+}
+
+const SatelliteStatus* reported_satellite(const EpochSeen& seen, SatelliteId id) {
+    const auto& reported = seen.reported.epoch.fix.satellites;
+    const auto found = std::find_if(reported.begin(), reported.end(), [&](const auto& s) { return s.id == id; });
+    return found == reported.end() ? nullptr : &*found;
+}
+
+SatelliteSeen satellite_seen(const EpochSeen& seen, std::size_t index) {
+    const SatelliteInView& view = seen.trace.sky.satellites[index];
+    SatelliteSeen shown;
+    shown.id = view.id;
+    shown.azimuth = view.azimuth;
+    shown.elevation = view.elevation;
+    shown.healthy = view.healthy;
+    if (index < seen.trace.arrivals.satellites.size() && seen.trace.arrivals.satellites[index].id == view.id) {
+        const Arrival& arrival = seen.trace.arrivals.satellites[index];
+        shown.line_of_sight = arrival.line_of_sight;
+        shown.paths = arrival.paths;
+        shown.blocked = arrival.paths == 0;
+        shown.reflected = !shown.blocked && arrival.reflections > 0;
+    }
+    const SatelliteStatus* status = reported_satellite(seen, view.id);
+    shown.used = status != nullptr && status->used;
+    shown.signals = tracked_signals(seen, status, view.id);
+    return shown;
+}
+
+EnuError enu_error(const TruthState& truth, const Fix& fix) {
+    const Eigen::Vector3d error = LocalFrame(truth.geodetic).to_enu(to_ecef(fix.position)).vector();
+    return {Metres(error.x()), Metres(error.y()), Metres(error.z())};
+}
+
+}  // namespace
+
+StatusBoard::StatusBoard(StatusSetup setup, const std::vector<Station>* stations, StatusSources sources)
+    : setup_(std::move(setup)), stations_(stations), sources_(std::move(sources)), bars_(setup_.timeline) {
+    for (std::size_t i = 0; stations_ != nullptr && i < stations_->size(); ++i) {
+        take_wires(i, receiver(i));
+        taken_at_[i] = 0;
+    }
+    publish(setup_.start, clock());
+    published_at_ = 0;  // the first epoch is shown at once
+}
+
+std::int64_t StatusBoard::clock() const { return sources_.clock ? sources_.clock() : steady_clock_ns(); }
+
+std::int64_t StatusBoard::interval() const { return watchers() > 0 ? watched_interval_ns : unwatched_interval_ns; }
+
+ReceiverStatus& StatusBoard::receiver(std::size_t station) {
+    if (station >= receivers_.size()) {
+        receivers_.resize(station + 1);
+        taken_at_.resize(station + 1, 0);
+    }
+    return receivers_[station];
+}
+
+void StatusBoard::take_epoch(const EpochSeen& seen, ReceiverStatus& status) const {
+    const Fix& fix = seen.reported.epoch.fix;
+    status.epoch = seen.now;
+    status.truth = seen.trace.truth.geodetic;
+    status.true_speed = seen.trace.arrivals.antenna_speed;
+    std::vector<SatelliteStatus> none;
+    status.fix = fix;
+    status.fix.satellites.swap(none);
+    status.fix_ok = seen.reported.fix_ok;
+    status.satellites_used = fix.satellites_used();
+    status.error.reset();
+    if (fix.has_position()) status.error = enu_error(seen.trace.truth, fix);
+    status.jamming_state = seen.reported.monitors.jamming_state;
+    status.spoofing = static_cast<int>(seen.reported.monitors.spoofing);
+    status.interference = seen.trace.epoch.front_end.interference;
+    status.lateness = seen.lateness;
+    status.satellites.clear();
+    for (std::size_t i = 0; i < seen.trace.sky.satellites.size(); ++i)
+        status.satellites.push_back(satellite_seen(seen, i));
+}
+
+void StatusBoard::take_wires(std::size_t station, ReceiverStatus& status) const {
+    if (stations_ == nullptr || station >= stations_->size()) return;
+    const Station& source = (*stations_)[station];
+    status.name = source.name();
+    status.board = source.receiver().board().name;
+    status.rate_hz = 1e9 / std::max(static_cast<double>(source.receiver().settings().navigation_period.count()), 1e6);
+    status.epochs = source.counts().epochs;
+    status.wires.clear();
+    for (const Wire& wire : source.wires()) {
+        WireStatus shown;
+        const LinkCounters& counts = wire.link.counters();
+        const firmware::PortStatus port = source.receiver().port_status(wire.port);
+        shown.port = firmware::port_names[static_cast<std::size_t>(wire.port)];
+        shown.description = wire.link.transport().description();
+        shown.baud = source.speed(wire.port);
+        shown.connected = wire.link.connected();
+        shown.bytes_out = counts.bytes_out;
+        shown.bytes_in = counts.bytes_in;
+        shown.bytes_lost = counts.bytes_lost;
+        shown.bytes_unheard = counts.bytes_unheard;
+        shown.bytes_garbled = counts.bytes_garbled;
+        shown.messages_sent = port.messages_out;
+        shown.messages_dropped = port.messages_dropped;
+        for (const Belief& belief : beliefs_)
+            if (belief.station == station && belief.wire == status.wires.size()) {
+                shown.belief = belief.reason;
+                shown.trusted = belief.trusts;
+            }
+        status.wires.push_back(std::move(shown));
+    }
+}
+
+void StatusBoard::on_epoch(const EpochSeen& seen) {
+    const std::int64_t clock_ns = clock();
+    ReceiverStatus& status = receiver(seen.station);
+    // Of the epochs between two snapshots nobody sees any but the last; a fast run need not pay for them.
+    if (clock_ns - taken_at_[seen.station] >= interval() * 9 / 10) {
+        take_epoch(seen, status);
+        taken_at_[seen.station] = clock_ns;
+    }
+    if (clock_ns - published_at_ >= interval()) publish(seen.now, clock_ns);
+}
+
+void StatusBoard::on_message(const MessageSeen& seen) {
+    DialogueLine line;
+    line.sequence = ++dialogue_count_;
+    line.time = seen.now;
+    line.receiver = seen.station;
+    line.wire = seen.wire;
+    line.from_client = seen.from_client;
+    line.kind = seen.kind;
+    line.name = seen.name.substr(0, 64);
+    line.size = seen.bytes.size();
+    const ByteSpan kept = seen.bytes.first(std::min(seen.bytes.size(), dialogue_bytes));
+    line.bytes.assign(kept.begin(), kept.end());
+    keep_last(dialogue_, std::move(line), most_dialogue_lines);
+}
+
+void StatusBoard::add_event(GpsTime now, std::string what, std::string text) {
+    keep_last(events_, EventLine{++event_count_, now, std::move(what), std::move(text)}, most_events);
+}
+
+// The bar of this occurrence; else the planned one of that name; else a new one.
+TimelineBar& StatusBoard::bar_of(const FaultSeen& seen) {
+    const auto same = [&](const TimelineBar& bar) { return !bar.command && bar.name == seen.name; };
+    for (TimelineBar& bar : bars_)
+        if (same(bar) && bar.occurrence == seen.occurrence) return bar;
+    for (TimelineBar& bar : bars_)
+        if (same(bar) && bar.occurrence == 0) return bar;
+    const std::size_t planned = setup_.timeline.size();
+    if (bars_.size() >= planned + most_live_bars) {
+        const auto over = std::find_if(bars_.begin() + static_cast<std::ptrdiff_t>(planned), bars_.end(),
+                                       [](const TimelineBar& bar) { return !bar.active; });
+        bars_.erase(over == bars_.end() ? bars_.begin() + static_cast<std::ptrdiff_t>(planned) : over);
+    }
+    TimelineBar& bar = bars_.emplace_back();
+    const bool scripted = std::any_of(setup_.timeline.begin(), setup_.timeline.end(), same);
+    bar.name = seen.name;
+    bar.kind = seen.kind;
+    bar.live = !scripted;
+    return bar;
+}
+
+void StatusBoard::on_fault(const FaultSeen& seen) {
+    TimelineBar& bar = bar_of(seen);
+    bar.occurrence = seen.occurrence;
+    bar.active = seen.begins;
+    if (seen.begins)
+        bar.begins = seen.now;
+    else
+        bar.ends = seen.now;
+    add_event(seen.now, seen.begins ? "fault begins" : "fault ends",
+              seen.occurrence > 1 ? fmt::format("{} ({}) #{}", seen.name, seen.kind, seen.occurrence)
+                                  : fmt::format("{} ({})", seen.name, seen.kind));
+}
+
+void StatusBoard::on_command(const CommandSeen& seen) {
+    std::string text(seen.name);
+    if (!seen.command.source.empty()) text += " by " + seen.command.source;
+    add_event(seen.now, "command", std::move(text));
+}
+
+void StatusBoard::on_belief(const BeliefSeen& seen) {
+    const auto same = [&](const Belief& b) { return b.station == seen.station && b.wire == seen.wire; };
+    auto found = std::find_if(beliefs_.begin(), beliefs_.end(), same);
+    if (found == beliefs_.end()) found = beliefs_.insert(beliefs_.end(), {seen.station, seen.wire, false, {}});
+    found->trusts = seen.trusts;
+    found->reason = seen.reason;
+    add_event(seen.now, "belief", fmt::format("{}: {}", seen.trusts ? "trusts" : "does not trust", seen.reason));
+}
+
+void StatusBoard::look(GpsTime now) {
+    const std::int64_t clock_ns = clock();
+    if (clock_ns - published_at_ >= interval()) publish(now, clock_ns);
+}
+
+void StatusBoard::publish_now(GpsTime now) { publish(now, clock()); }
+
+void StatusBoard::publish(GpsTime now, std::int64_t clock_ns) {
+    for (std::size_t i = 0; i < receivers_.size(); ++i)
+        take_wires(i, receivers_[i]);
+    auto snapshot = std::make_shared<StatusSnapshot>();
+    snapshot->sequence = snapshot_count_ + 1;
+    snapshot->time = now;
+    snapshot->start = setup_.start;
+    snapshot->end = setup_.end;
+    snapshot->title = setup_.title;
+    if (!receivers_.empty()) snapshot->leap_seconds = receivers_.front().fix.leap_seconds;
+    if (sources_.pace) snapshot->pace = sources_.pace();
+    if (sources_.verdicts) snapshot->verdicts = sources_.verdicts();
+    snapshot->receivers = receivers_;
+    snapshot->timeline = bars_;
+    for (TimelineBar& bar : snapshot->timeline)
+        bar.strength = !bar.active ? 0 : sources_.strength ? sources_.strength(bar.name) : 1;
+    snapshot->dialogue.assign(dialogue_.begin(), dialogue_.end());
+    snapshot->events.assign(events_.begin(), events_.end());
+    std::shared_ptr<const StatusSnapshot> next = std::move(snapshot);
+    {
+        const std::unique_lock lock(mutex_, std::try_to_lock);
+        if (!lock) return;  // a reader is at it: the next look tries again
+        latest_.swap(next);
+    }
+    ++snapshot_count_;
+    published_at_ = clock_ns;
+}
+
+std::shared_ptr<const StatusSnapshot> StatusBoard::latest() const {
+    const std::scoped_lock lock(mutex_);
+    return latest_;
+}
+
+}  // namespace skyloop

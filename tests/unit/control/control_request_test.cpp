@@ -1,0 +1,172 @@
+#include "skyloop/control/control_request.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "snapshots.hpp"
+
+namespace skyloop::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// A server without sockets.
+struct Desk {
+    AccessRules rules{"", "127.0.0.1", true};
+    std::vector<Command> pushed{};
+    bool full = false;
+
+    ControlResponse ask(const ControlRequest& request) {
+        ControlSources sources;
+        sources.snapshot = std::make_shared<const StatusSnapshot>(small_snapshot());
+        sources.push = [this](Command command) {
+            if (!full) pushed.push_back(std::move(command));
+            return !full;
+        };
+        sources.version = "1.2.3";
+        return answer(request, rules, sources);
+    }
+    ControlResponse get(std::string target) { return ask({"GET", std::move(target), {{"Host", "127.0.0.1:80"}}, {}}); }
+    ControlResponse post(std::string target, std::string body) {
+        return ask({"POST",
+                    std::move(target),
+                    {{"Host", "localhost"}, {"Content-Type", "application/json"}},
+                    std::move(body)});
+    }
+};
+
+std::string error_of(const ControlResponse& response) {
+    EXPECT_EQ(response.body.find('\n'), std::string::npos);
+    return nlohmann::json::parse(response.body).at("error").get<std::string>();
+}
+
+TEST(ControlRequest, AnswersWhatIsAsked) {
+    Desk desk;
+    for (const char* target : {"/api/status", "/api/faults", "/api/timeline", "/api/commands", "/api/openapi.json"}) {
+        const ControlResponse response = desk.get(target);
+        EXPECT_EQ(response.status, 200) << target;
+        EXPECT_TRUE(nlohmann::json::accept(response.body)) << target;
+    }
+    EXPECT_EQ(desk.get("/api/scene").status, 404);
+    EXPECT_EQ(desk.get("/api/stream").status, 426);
+    EXPECT_EQ(desk.get("/api/nothing").status, 404);
+    const ControlResponse page = desk.get("/");
+    EXPECT_EQ(page.content_type, "text/html; charset=utf-8");
+    EXPECT_THAT(page.body, HasSubstr("<title>"));
+    EXPECT_EQ(desk.get("/../etc/passwd").status, 404);
+}
+
+TEST(ControlRequest, QueuesCommands) {
+    Desk desk;
+    EXPECT_EQ(desk.post("/api/commands", R"({"command":"pause"})").status, 202);
+    ASSERT_EQ(desk.pushed.size(), 1U);
+    EXPECT_EQ(desk.pushed[0].verb, CommandVerb::pause);
+    const ControlResponse wrong = desk.post("/api/commands", R"({"command":"pauze"})");
+    EXPECT_EQ(wrong.status, 422);
+    EXPECT_THAT(error_of(wrong), HasSubstr("did you mean 'pause'?"));
+    EXPECT_EQ(desk.pushed.size(), 1U);
+    desk.full = true;
+    EXPECT_EQ(desk.post("/api/commands", R"({"command":"resume"})").status, 429);
+}
+
+TEST(ControlRequest, StopsAFaultByItsNameInThePath) {
+    Desk desk;
+    const auto remove = [&](std::string path) {
+        return desk.ask({"DELETE", std::move(path), {{"Host", "127.0.0.1"}}, {}}).status;
+    };
+    EXPECT_EQ(remove("/api/faults/wet%20plug"), 202);
+    ASSERT_EQ(desk.pushed.size(), 1U);
+    EXPECT_EQ(desk.pushed[0].verb, CommandVerb::stop_fault);
+    EXPECT_EQ(desk.pushed[0].parameters.text("fault"), "wet plug");
+    EXPECT_EQ(remove("/api/faults/dry"), 404);
+    EXPECT_EQ(remove("/api/faults/"), 400);
+    EXPECT_EQ(remove("/api/faults/%4"), 400);
+    EXPECT_EQ(remove("/api/status"), 405);
+    EXPECT_EQ(desk.pushed.size(), 1U);
+}
+
+TEST(ControlRequest, RefusesForeignHosts) {
+    Desk desk;
+    const auto status = [&](const std::string& host) {
+        return desk.ask({"GET", "/api/status", {{"Host", host}}, {}}).status;
+    };
+    for (const char* host : {"127.0.0.1:8080", "localhost", "[::1]:1"})
+        EXPECT_EQ(status(host), 200) << host;
+    for (const char* host : {"evil.example", "127.0.0.1.evil.example", "192.168.1.5", "", "localhost.evil.example"})
+        EXPECT_EQ(status(host), 421) << host;
+    EXPECT_EQ(desk.ask({"GET", "/api/status", {{"Host", "localhost"}, {"host", "evil"}}, {}}).status, 421);
+    desk.rules = {"", "0.0.0.0", false};
+    EXPECT_EQ(status("192.168.1.5:8080"), 200);
+    EXPECT_EQ(status("evil.example"), 421);
+}
+
+TEST(ControlRequest, RefusesPagesOfOtherSites) {
+    Desk desk;
+    const auto status = [&](const std::string& origin) {
+        return desk
+            .ask({"POST",
+                  "/api/commands",
+                  {{"Host", "127.0.0.1:8080"}, {"Origin", origin}, {"Content-Type", "application/json"}},
+                  R"({"command":"pause"})"})
+            .status;
+    };
+    EXPECT_EQ(status("http://127.0.0.1:8080"), 202);
+    EXPECT_EQ(status("http://evil.example"), 403);
+    EXPECT_EQ(status("http://127.0.0.1:9090"), 403);
+    EXPECT_EQ(status("https://127.0.0.1:8080"), 403);
+    EXPECT_EQ(status("null"), 403);
+    EXPECT_EQ(desk.pushed.size(), 1U);
+}
+
+TEST(ControlRequest, WantsTheTokenBelowApiAlone) {
+    Desk desk;
+    desk.rules.token = "s3cret";
+    const auto status = [&](std::string name, std::string value) {
+        return desk
+            .ask({"GET", "/api/status", {{"Host", "localhost"}, {std::move(name), std::move(value)}}, {}})
+            .status;
+    };
+    EXPECT_EQ(status("Authorization", "Bearer s3cret"), 200);
+    EXPECT_EQ(status("sec-websocket-protocol", "skyloop, bearer.s3cret"), 200);
+    EXPECT_EQ(status("Authorization", "Bearer s3creT"), 401);
+    EXPECT_EQ(status("Authorization", "Bearer s3cret0"), 401);
+    EXPECT_EQ(status("Authorization", "Bearer "), 401);
+    EXPECT_EQ(status("Authorization", "s3cret"), 401);
+    EXPECT_EQ(status("X-Other", ""), 401);
+    EXPECT_EQ(desk.get("/").status, 200);
+}
+
+TEST(ControlRequest, TakesJsonOfItsSizeAlone) {
+    Desk desk;
+    EXPECT_EQ(desk.ask({"POST",
+                        "/api/commands",
+                        {{"Host", "localhost"}, {"Content-Type", "text/plain"}},
+                        R"({"command":"pause"})"})
+                  .status,
+              415);
+    EXPECT_EQ(desk.post("/api/commands", std::string(70000, ' ')).status, 413);
+    EXPECT_EQ(desk.ask({"PUT", "/api/commands", {{"Host", "localhost"}}, {}}).status, 405);
+    EXPECT_TRUE(desk.pushed.empty());
+}
+
+TEST(ControlRequest, DescribesItselfByTheSameTables) {
+    const auto json = nlohmann::json::parse(openapi_json("1.2.3"));
+    EXPECT_EQ(json["openapi"], "3.1.0");
+    EXPECT_EQ(json["info"]["version"], "1.2.3");
+    EXPECT_EQ(json["components"]["schemas"]["Command"]["oneOf"].size(), command_kinds().size());
+    const auto& first = json["components"]["schemas"]["Command"]["oneOf"][0];
+    EXPECT_EQ(first["properties"]["command"]["const"], command_kinds()[0].name);
+    EXPECT_EQ(first["required"][0], "command");
+    EXPECT_TRUE(json["paths"]["/api/commands"].contains("post"));
+    EXPECT_TRUE(json["paths"]["/api/faults/{name}"].contains("delete"));
+    const auto& error = json["paths"]["/api/commands"]["post"]["responses"]["422"]["content"]["application/json"];
+    EXPECT_EQ(error["schema"]["$ref"], "#/components/schemas/Error");
+    EXPECT_EQ(json["components"]["schemas"]["Error"]["properties"]["error"]["type"], "string");
+}
+
+}  // namespace
+}  // namespace skyloop::test
