@@ -20,5 +20,6 @@ Action add_solve_command(CLI::App& app);
 Action add_boards_command(CLI::App& app);
 Action add_decode_command(CLI::App& app);
 Action add_scene_command(CLI::App& app);
+Action add_ctl_command(CLI::App& app);
 
 }  // namespace skyloop::host

@@ -20,10 +20,10 @@ namespace {
 
 using skyloop::host::Action;
 
-constexpr std::array<std::string_view, 9> commands{"run",   "simulate", "sky",    "check", "compare",
-                                                   "solve", "boards",   "decode", "scene"};
-constexpr std::array<std::string_view, 6> later_commands{"devices",       "replay", "trajectory",
-                                                         "scenario-from", "ctl",    "campaign"};
+constexpr std::array<std::string_view, 10> commands{"run",   "simulate", "sky",    "check", "compare",
+                                                    "solve", "boards",   "decode", "scene", "ctl"};
+constexpr std::array<std::string_view, 5> later_commands{"devices", "replay", "trajectory", "scenario-from",
+                                                         "campaign"};
 
 // CLI11 does not know which words may be meant; this says it in one line.
 int refuse_command(std::string_view word) {
@@ -41,7 +41,8 @@ int run_program(int argc, char** argv) {
     const std::array<Action (*)(CLI::App&), commands.size()> add{
         skyloop::host::add_run_command,    skyloop::host::add_simulate_command, skyloop::host::add_sky_command,
         skyloop::host::add_check_command,  skyloop::host::add_compare_command,  skyloop::host::add_solve_command,
-        skyloop::host::add_boards_command, skyloop::host::add_decode_command,   skyloop::host::add_scene_command};
+        skyloop::host::add_boards_command, skyloop::host::add_decode_command,   skyloop::host::add_scene_command,
+        skyloop::host::add_ctl_command};
     std::vector<Action> actions;
     for (const auto add_command : add)
         actions.push_back(add_command(app));

@@ -126,8 +126,7 @@ TEST(ControlRequest, WantsTheTokenBelowApiAlone) {
     Desk desk;
     desk.rules.token = "s3cret";
     const auto status = [&](std::string name, std::string value) {
-        return desk
-            .ask({"GET", "/api/status", {{"Host", "localhost"}, {std::move(name), std::move(value)}}, {}})
+        return desk.ask({"GET", "/api/status", {{"Host", "localhost"}, {std::move(name), std::move(value)}}, {}})
             .status;
     };
     EXPECT_EQ(status("Authorization", "Bearer s3cret"), 200);

@@ -56,7 +56,8 @@ inline StatusSnapshot small_snapshot() {
     snapshot.verdicts.push_back({"copes", "no fix within 2 s", "pending", ""});
     for (std::uint64_t i = 1; i <= 100; ++i)
         snapshot.dialogue.push_back(dialogue_line(i));
-    snapshot.events.push_back(std::make_shared<const EventLine>(EventLine{3, control_start, "fault begins", "wet plug"}));
+    snapshot.events.push_back(
+        std::make_shared<const EventLine>(EventLine{3, control_start, "fault begins", "wet plug"}));
     return snapshot;
 }
 

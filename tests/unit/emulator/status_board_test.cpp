@@ -1,0 +1,142 @@
+#include "skyloop/emulator/status_board.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace skyloop::test {
+namespace {
+
+constexpr GpsTime board_start{Nanoseconds(1'400'000'000'000'000'000)};
+
+/// A board with a clock that a test sets.
+struct BoardRig {
+    std::int64_t clock_ns = 10'000'000'000;
+    std::vector<TimelineBar> bars{};
+    StatusBoard board;
+
+    explicit BoardRig(std::vector<TimelineBar> timeline = {})
+        : board({"test", board_start, std::nullopt, std::move(timeline)}, nullptr, sources()) {}
+    StatusSources sources() {
+        StatusSources made;
+        made.clock = [this] { return clock_ns; };
+        made.strength = [](std::string_view) { return 0.25; };
+        return made;
+    }
+    void epoch(int index) {
+        Trace trace;
+        trace.truth.geodetic = Geodetic::degrees(48, 11, 500);
+        trace.sky.satellites.resize(1);
+        trace.sky.satellites[0].id = {Constellation::gps, 7};
+        trace.arrivals.satellites.resize(1);
+        trace.arrivals.satellites[0].id = {Constellation::gps, 7};
+        trace.arrivals.satellites[0].line_of_sight = false;
+        trace.arrivals.satellites[0].reflections = 1;
+        firmware::NavigationState reported;
+        reported.epoch.fix.type = FixType::fix_3d;
+        reported.epoch.fix.position = Geodetic::degrees(48, 11, 503);
+        SatelliteStatus status;
+        status.id = {Constellation::gps, 7};
+        status.cn0 = DbHz(41);
+        status.used = true;
+        reported.epoch.fix.satellites = {status};
+        board.on_epoch({board_start + std::chrono::milliseconds(100 * index), 0, trace, reported, Nanoseconds(5)});
+    }
+    [[nodiscard]] std::uint64_t sequence() const { return board.latest()->sequence; }
+};
+
+TEST(StatusBoard, ShowsAnEpoch) {
+    BoardRig rig;
+    rig.epoch(1);
+    const auto snapshot = rig.board.latest();
+    ASSERT_EQ(snapshot->receivers.size(), 1U);
+    const ReceiverStatus& receiver = snapshot->receivers[0];
+    ASSERT_TRUE(receiver.error);
+    EXPECT_NEAR(receiver.error->up.value(), 3, 1e-6);
+    EXPECT_NEAR(receiver.error->east.value(), 0, 1e-6);
+    EXPECT_EQ(receiver.satellites_used, 1);
+    ASSERT_EQ(receiver.satellites.size(), 1U);
+    EXPECT_TRUE(receiver.satellites[0].used);
+    EXPECT_TRUE(receiver.satellites[0].reflected);
+    EXPECT_FALSE(receiver.satellites[0].line_of_sight);
+    ASSERT_EQ(receiver.satellites[0].signals.size(), 1U);
+    EXPECT_EQ(receiver.satellites[0].signals[0].second.value(), 41);
+}
+
+TEST(StatusBoard, PublishesOnceASecondAndTenTimesWhileWatched) {
+    BoardRig rig;
+    rig.epoch(0);
+    const auto published_in_a_second = [&rig] {
+        const std::uint64_t before = rig.sequence();
+        for (int i = 0; i < 1000; ++i) {
+            rig.clock_ns += 1'000'000;
+            rig.epoch(i);
+        }
+        return rig.sequence() - before;
+    };
+    EXPECT_EQ(published_in_a_second(), 1U);
+    rig.board.watch();
+    EXPECT_EQ(published_in_a_second(), 10U);
+    rig.board.unwatch();
+    EXPECT_EQ(published_in_a_second(), 1U);
+}
+
+TEST(StatusBoard, ShowsAPausedRunWhenItIsLookedAt) {
+    BoardRig rig;
+    rig.epoch(0);
+    const std::uint64_t before = rig.sequence();
+    rig.board.look(board_start);
+    EXPECT_EQ(rig.sequence(), before);
+    rig.clock_ns += 1'000'000'000;
+    rig.board.look(board_start);
+    EXPECT_EQ(rig.sequence(), before + 1);
+}
+
+TEST(StatusBoard, KeepsTheLastMessagesAndTheirNumbers) {
+    BoardRig rig;
+    const Bytes long_message(5000, 0x55);
+    for (int i = 0; i < 2000; ++i)
+        rig.board.on_message({board_start, 0, 0, false, StreamKind::noise, "noise", long_message});
+    rig.board.publish_now(board_start);
+    const auto snapshot = rig.board.latest();
+    ASSERT_EQ(snapshot->dialogue.size(), StatusBoard::most_dialogue_lines);
+    EXPECT_EQ(snapshot->dialogue.back()->sequence, 2000U);
+    EXPECT_EQ(snapshot->dialogue.back()->size, 5000U);
+    EXPECT_EQ(snapshot->dialogue.back()->bytes.size(), dialogue_bytes);
+}
+
+TEST(StatusBoard, FollowsFaultsOnTheTimeline) {
+    TimelineBar planned;
+    planned.name = "outage";
+    planned.kind = "outage";
+    planned.begins = board_start + std::chrono::seconds(60);
+    BoardRig rig({planned});
+    rig.board.on_fault({board_start + std::chrono::seconds(61), "outage", "outage", 1, true});
+    rig.board.on_fault({board_start + std::chrono::seconds(62), "plug", "byte_loss", 1, true});
+    rig.board.on_fault({board_start + std::chrono::seconds(70), "outage", "outage", 1, false});
+    rig.board.publish_now(board_start);
+    const auto snapshot = rig.board.latest();
+    ASSERT_EQ(snapshot->timeline.size(), 2U);
+    EXPECT_FALSE(snapshot->timeline[0].active);
+    EXPECT_FALSE(snapshot->timeline[0].live);
+    EXPECT_EQ(snapshot->timeline[0].begins, board_start + std::chrono::seconds(61));
+    EXPECT_EQ(snapshot->timeline[0].ends, board_start + std::chrono::seconds(70));
+    EXPECT_TRUE(snapshot->timeline[1].active);
+    EXPECT_TRUE(snapshot->timeline[1].live);
+    EXPECT_EQ(snapshot->timeline[1].strength, 0.25);
+    EXPECT_EQ(snapshot->events.size(), 3U);
+}
+
+TEST(StatusBoard, StaysBoundedOverManyOccurrences) {
+    BoardRig rig;
+    for (int i = 1; i <= 1000; ++i)
+        for (const bool begins : {true, false})
+            rig.board.on_fault({board_start, "outage", "outage", i, begins});
+    rig.board.publish_now(board_start);
+    EXPECT_EQ(rig.board.latest()->timeline.size(), StatusBoard::most_live_bars);
+    EXPECT_EQ(rig.board.latest()->timeline.back().occurrence, 1000);
+    EXPECT_EQ(rig.board.latest()->events.size(), StatusBoard::most_events);
+}
+
+}  // namespace
+}  // namespace skyloop::test
