@@ -111,7 +111,7 @@ Result<ControlRequest> unknown_ctl_command(const std::string& word) {
     for (const CommandKind& kind : command_kinds())
         names.push_back(kind.name);
     return fail(ErrorCode::usage,
-                fmt::format("ctl: unknown command '{}'; see skyloop ctl --help{}", word, did_you_mean(word, names)));
+                fmt::format("ctl: unknown command '{}'{}; see skyloop ctl --help", word, did_you_mean(word, names)));
 }
 
 // What a command line asks for, but `watch`.

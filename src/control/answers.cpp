@@ -81,13 +81,20 @@ std::optional<std::string> percent_decoded(std::string_view text) {
     return decoded;
 }
 
+// One that a client has just begun may not be in a snapshot yet.
+bool has_fault(const ControlSources& sources, const std::string& name) {
+    if (sources.started != nullptr && sources.started->contains(name)) return true;
+    if (!sources.snapshot) return false;
+    const auto& bars = sources.snapshot->timeline;
+    return std::any_of(bars.begin(), bars.end(),
+                       [&](const TimelineBar& bar) { return !bar.command && bar.name == name; });
+}
+
 ControlResponse stop_fault(const ControlRequest& request, const ControlSources& sources) {
     const auto name = percent_decoded(request.path().substr(live_fault_prefix.size()));
     if (!name || name->empty())
         return error_response(400, "the path ends without the name of a fault; expected /api/faults/NAME");
-    const bool known =
-        sources.snapshot && std::any_of(sources.snapshot->timeline.begin(), sources.snapshot->timeline.end(),
-                                        [&](const TimelineBar& bar) { return !bar.command && bar.name == *name; });
+    const bool known = has_fault(sources, *name);
     if (!known)
         return error_response(
             404, fmt::format("no fault is called '{}'; GET /api/timeline lists them", name->substr(0, 60)));
@@ -129,12 +136,18 @@ std::string_view methods_of(std::string_view path) {
     return path.starts_with(live_fault_prefix) ? "DELETE" : "";
 }
 
+// @param words "GET, POST"
+bool is_one_of(std::string_view word, std::string_view words) {
+    return word.find(',') == std::string_view::npos &&
+           fmt::format(", {},", words).find(fmt::format(", {},", word)) != std::string::npos;
+}
+
 ControlResponse api_answer(const ControlRequest& request, const ControlSources& sources) {
     const std::string_view methods = methods_of(request.path());
     if (methods.empty())
         return error_response(
             404, fmt::format("no path '{}'; GET /api/openapi.json lists them", request.path().substr(0, 200)));
-    if (methods.find(request.method) == std::string_view::npos || request.method.empty()) {
+    if (!is_one_of(request.method, methods)) {
         ControlResponse response =
             error_response(405, fmt::format("{} is not for {}; expected {}", request.method.substr(0, 20),
                                             request.path().substr(0, 200), methods));

@@ -38,10 +38,16 @@ public:
     template <class Begin>
     ErrorCode wait(Begin begin, bool limited = true) {
         ErrorCode result;
+        bool called = false;
         if (limited) stream.expires_after(patience_);
-        begin([&result](ErrorCode error, auto&&...) { result = error; });
+        begin([&](ErrorCode error, auto&&...) {
+            result = error;
+            called = true;
+        });
         io_.restart();
-        io_.run();
+        // No longer than that: a refused stream's timer may still run.
+        while (!called && io_.run_one() > 0) {
+        }
         return result;
     }
 

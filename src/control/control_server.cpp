@@ -20,7 +20,7 @@ namespace {
 using boost::asio::ip::tcp;
 using boost::beast::error_code;
 
-constexpr std::size_t longest_token = 200;
+constexpr std::size_t longest_token = 200, most_started_names = 1000;
 constexpr std::chrono::milliseconds accept_pause{100};
 
 // Letters of RFC 6750's b64token that may also stand in a subprotocol's name and an address.
@@ -54,10 +54,19 @@ std::string shown_host(const std::string& host) {
 
 }  // namespace
 
+bool ServerCore::push(Command command) {
+    std::string name = command.verb == CommandVerb::start_fault ? command.parameters.text("name") : std::string();
+    if (!parts.commands.push(std::move(command))) return false;
+    if (started.size() >= most_started_names) started.clear();
+    if (!name.empty()) started.insert(std::move(name));
+    return true;
+}
+
 ControlSources ServerCore::sources(bool with_status) {
     ControlSources sources;
     sources.snapshot = parts.board.latest();
-    sources.push = [this](Command command) { return parts.commands.push(std::move(command)); };
+    sources.push = [this](Command command) { return push(std::move(command)); };
+    sources.started = &started;
     sources.scene = &parts.scene;
     sources.version = parts.version;
     if (!with_status || !sources.snapshot) return sources;

@@ -7,6 +7,7 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -32,9 +33,11 @@ struct ServerCore {
     std::uint64_t status_sequence = 0;
     std::string status_text;  ///< of that snapshot
     std::uint16_t port = 0;
+    std::set<std::string, std::less<>> started;  ///< names of faults that clients have begun, not too many
 
     /// What a request is answered with now. The status is made once a snapshot, however often it is asked for.
     ControlSources sources(bool with_status);
+    bool push(Command command);
 };
 
 /// A place among those that may be connected at once.

@@ -76,7 +76,9 @@ StatusBoard::StatusBoard(StatusSetup setup, const std::vector<Station>* stations
 
 std::int64_t StatusBoard::clock() const { return sources_.clock ? sources_.clock() : steady_clock_ns(); }
 
-std::int64_t StatusBoard::interval() const { return watchers() > 0 ? watched_interval_ns : unwatched_interval_ns; }
+std::int64_t StatusBoard::interval() const {
+    return watchers() > 0 || news_ ? watched_interval_ns : unwatched_interval_ns;
+}
 
 ReceiverStatus& StatusBoard::receiver(std::size_t station) {
     if (station >= receivers_.size()) {
@@ -166,6 +168,7 @@ void StatusBoard::on_message(const MessageSeen& seen) {
 }
 
 void StatusBoard::add_event(GpsTime now, std::string what, std::string text) {
+    news_ = true;
     keep_last(events_, EventLine{++event_count_, now, std::move(what), std::move(text)}, most_events);
 }
 
@@ -250,6 +253,7 @@ void StatusBoard::publish(GpsTime now, std::int64_t clock_ns) {
         latest_.swap(next);
     }
     ++snapshot_count_;
+    news_ = false;
     published_at_ = clock_ns;
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -49,9 +50,11 @@ struct AccessRules {
 struct ControlSources {
     std::shared_ptr<const StatusSnapshot> snapshot{};  ///< null: the run has not begun
     std::function<bool(Command)> push{};               ///< false: too many wait; empty: nothing is taken
-    const std::string* status = nullptr;               ///< recent_status_json() where it has been made; else null
-    const std::string* scene = nullptr;                ///< scene_json(); null: there is none
-    std::string_view version{};                        ///< of the program
+    /// Names of faults that clients have begun; null: none.
+    const std::set<std::string, std::less<>>* started = nullptr;
+    const std::string* status = nullptr;  ///< recent_status_json() where it has been made; else null
+    const std::string* scene = nullptr;   ///< scene_json(); null: there is none
+    std::string_view version{};           ///< of the program
 };
 
 /// {"error": "…"} with a status, in one line.

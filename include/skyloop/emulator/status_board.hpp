@@ -32,7 +32,7 @@ struct StatusSetup {
 };
 
 /// Collects what displays show of a run, and publishes it as immutable snapshots: at most ten a second while somebody
-/// watches, one a second otherwise, of real time.
+/// watches or after an event, one a second otherwise, of real time.
 ///
 /// The loop's thread never waits here: when a reader is just taking the last snapshot, the next one comes later.
 /// Between two snapshots an epoch costs a look at a clock, a message its copy. State: the last messages and events,
@@ -87,6 +87,7 @@ private:
     std::deque<std::shared_ptr<const EventLine>> events_;
     std::uint64_t dialogue_count_ = 0, event_count_ = 0, snapshot_count_ = 0;
     std::int64_t published_at_ = 0;
+    bool news_ = false;  // an event that no snapshot has yet
     mutable std::atomic<int> watchers_{0};
     mutable std::mutex mutex_;  // of latest_; the loop only tries it
     std::shared_ptr<const StatusSnapshot> latest_;

@@ -149,6 +149,13 @@ TEST(ControlRequest, TakesJsonOfItsSizeAlone) {
               415);
     EXPECT_EQ(desk.post("/api/commands", std::string(70000, ' ')).status, 413);
     EXPECT_EQ(desk.ask({"PUT", "/api/commands", {{"Host", "localhost"}}, {}}).status, 405);
+    for (const char* method : {"P", "", "T, P", "get"})
+        EXPECT_EQ(desk.ask({method,
+                            "/api/commands",
+                            {{"Host", "localhost"}, {"Content-Type", "application/json"}},
+                            R"({"command":"pause"})"})
+                      .status,
+                  405);
     EXPECT_TRUE(desk.pushed.empty());
 }
 

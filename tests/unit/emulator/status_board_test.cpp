@@ -12,7 +12,6 @@ constexpr GpsTime board_start{Nanoseconds(1'400'000'000'000'000'000)};
 /// A board with a clock that a test sets.
 struct BoardRig {
     std::int64_t clock_ns = 10'000'000'000;
-    std::vector<TimelineBar> bars{};
     StatusBoard board;
 
     explicit BoardRig(std::vector<TimelineBar> timeline = {})
@@ -79,6 +78,19 @@ TEST(StatusBoard, PublishesOnceASecondAndTenTimesWhileWatched) {
     EXPECT_EQ(published_in_a_second(), 10U);
     rig.board.unwatch();
     EXPECT_EQ(published_in_a_second(), 1U);
+}
+
+TEST(StatusBoard, ShowsNewsSoon) {
+    BoardRig rig;
+    rig.epoch(0);
+    const std::uint64_t before = rig.sequence();
+    rig.board.on_fault({board_start, "outage", "outage", 1, true});
+    rig.clock_ns += 100'000'000;
+    rig.board.look(board_start);
+    EXPECT_EQ(rig.sequence(), before + 1);
+    rig.clock_ns += 100'000'000;
+    rig.board.look(board_start);
+    EXPECT_EQ(rig.sequence(), before + 1);
 }
 
 TEST(StatusBoard, ShowsAPausedRunWhenItIsLookedAt) {
