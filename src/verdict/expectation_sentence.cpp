@@ -143,13 +143,13 @@ bool SentenceParser::read_cn0() {
 
 void SentenceParser::read_comparison(std::initializer_list<std::string_view> units) {
     if (words_.accept("below"))
-        subject_.comparison = Comparison::below;
+        subject_.comparison = Relation::below;
     else if (words_.accept("above"))
-        subject_.comparison = Comparison::above;
+        subject_.comparison = Relation::above;
     else if (words_.accept({"at", "least"}))
-        subject_.comparison = Comparison::at_least;
+        subject_.comparison = Relation::at_least;
     else if (words_.accept({"at", "most"}))
-        subject_.comparison = Comparison::at_most;
+        subject_.comparison = Relation::at_most;
     else
         words_.refuse();
     subject_.limit = words_.number(largest_limit).value_or(0);

@@ -15,15 +15,15 @@ using ConditionValue = std::variant<double, bool, std::string>;
 
 struct Operator {
     std::string_view sign;
-    Comparison comparison;
+    Relation comparison;
 };
 // The longer ones first: "<=" begins as "<".
-constexpr std::array<Operator, 6> operators{{{"==", Comparison::equal},
-                                             {"!=", Comparison::not_equal},
-                                             {"<=", Comparison::at_most},
-                                             {">=", Comparison::at_least},
-                                             {"<", Comparison::below},
-                                             {">", Comparison::above}}};
+constexpr std::array<Operator, 6> operators{{{"==", Relation::equal},
+                                             {"!=", Relation::not_equal},
+                                             {"<=", Relation::at_most},
+                                             {">=", Relation::at_least},
+                                             {"<", Relation::below},
+                                             {">", Relation::above}}};
 
 std::string_view trimmed(std::string_view text) {
     while (!text.empty() && (text.front() == ' ' || text.front() == '\t'))
@@ -91,19 +91,19 @@ const JsonValue* value_at(const JsonValue& object, const std::vector<std::string
 }
 
 template <class Value>
-bool compares(const Value& found, Comparison comparison, const Value& wanted) {
+bool compares(const Value& found, Relation comparison, const Value& wanted) {
     switch (comparison) {
-        case Comparison::below:
+        case Relation::below:
             return found < wanted;
-        case Comparison::above:
+        case Relation::above:
             return found > wanted;
-        case Comparison::at_least:
+        case Relation::at_least:
             return found >= wanted;
-        case Comparison::at_most:
+        case Relation::at_most:
             return found <= wanted;
-        case Comparison::equal:
+        case Relation::equal:
             return found == wanted;
-        case Comparison::not_equal:
+        case Relation::not_equal:
             return found != wanted;
     }
     return false;
@@ -117,7 +117,7 @@ bool value_fulfils(const JsonCondition& condition, const JsonValue& value) {
         return compares(value.get_ref<const std::string&>(), condition.comparison, *text);
     if (const auto* flag = std::get_if<bool>(&condition.value); flag != nullptr && value.is_boolean())
         return compares(value.get<bool>(), condition.comparison, *flag);
-    return condition.comparison == Comparison::not_equal;
+    return condition.comparison == Relation::not_equal;
 }
 
 bool names_class(const JsonValue& object, const std::string& part) {
@@ -146,7 +146,7 @@ tl::expected<JsonCondition, SentenceMistake> parse_json_condition(std::string_vi
             1, fmt::format("'{}' is no path; expected names with points between: tpv.mode", path_words));
     if (sign == std::string_view::npos)
         return condition_mistake(text.size() + 1, "the condition ends here; expected one of == != < <= > >=");
-    JsonCondition condition{*path, Comparison::equal, 0.0};
+    JsonCondition condition{*path, Relation::equal, 0.0};
     std::size_t length = 0;
     for (const Operator& known : operators)
         if (length == 0 && text.substr(sign).starts_with(known.sign)) {
@@ -163,7 +163,7 @@ tl::expected<JsonCondition, SentenceMistake> parse_json_condition(std::string_vi
                                                                 "text in quotes",
                                                                 value_words));
     condition.value = *value;
-    const bool ordered = condition.comparison != Comparison::equal && condition.comparison != Comparison::not_equal;
+    const bool ordered = condition.comparison != Relation::equal && condition.comparison != Relation::not_equal;
     if (ordered && !std::holds_alternative<double>(*value))
         return condition_mistake(sign + 1, "only numbers are larger or smaller; expected == or !=");
     return condition;

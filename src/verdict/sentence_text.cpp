@@ -18,19 +18,19 @@ std::string quoted_where_needed(const std::string& name) {
     return quote + name + quote;
 }
 
-std::string_view comparison_words(Comparison comparison) {
+std::string_view comparison_words(Relation comparison) {
     switch (comparison) {
-        case Comparison::below:
+        case Relation::below:
             return "below";
-        case Comparison::above:
+        case Relation::above:
             return "above";
-        case Comparison::at_least:
+        case Relation::at_least:
             return "at least";
-        case Comparison::at_most:
+        case Relation::at_most:
             return "at most";
-        case Comparison::equal:
+        case Relation::equal:
             return "equal to";
-        case Comparison::not_equal:
+        case Relation::not_equal:
             return "other than";
     }
     return "";

@@ -11,17 +11,17 @@ namespace {
 
 bool compared(double number, const SubjectClause& subject) {
     switch (subject.comparison) {
-        case Comparison::below:
+        case Relation::below:
             return number < subject.limit;
-        case Comparison::above:
+        case Relation::above:
             return number > subject.limit;
-        case Comparison::at_least:
+        case Relation::at_least:
             return number >= subject.limit;
-        case Comparison::at_most:
+        case Relation::at_most:
             return number <= subject.limit;
-        case Comparison::equal:
+        case Relation::equal:
             return number == subject.limit;
-        case Comparison::not_equal:
+        case Relation::not_equal:
             return number != subject.limit;
     }
     return false;

@@ -36,13 +36,13 @@ enum class ExpectedSubject {
 };
 
 /// How a number is compared. A number that is not there (an error without a fix) compares as false.
-enum class Comparison { below, above, at_least, at_most, equal, not_equal };
+enum class Relation { below, above, at_least, at_most, equal, not_equal };
 
 /// The subject of a sentence with what belongs to it.
 struct SubjectClause {
     ExpectedSubject subject = ExpectedSubject::fix;
     FixType fix_type = FixType::fix_3d;  ///< of fix_type
-    Comparison comparison = Comparison::below;
+    Relation comparison = Relation::below;
     double limit = 0;                        ///< m, m/s, dB-Hz or satellites
     std::optional<SatelliteId> satellite{};  ///< of cn0; nothing: the mean of all tracked
     std::string message{};                   ///< of …_sends; "CFG-*" for all that begin so, "anything"
@@ -90,7 +90,7 @@ struct ExpectedSentence {
 /// at the path does; a first part that equals the object's "class" (in any case) names the object.
 struct JsonCondition {
     std::vector<std::string> path;
-    Comparison comparison = Comparison::equal;
+    Relation comparison = Relation::equal;
     std::variant<double, bool, std::string> value;
 };
 

@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ExpectationSentence, FieldsAreWhatWasWritten) {
     const ExpectedSentence sentence = understood("C/N0 of E12 at least 35.5 dBHz within 2.5 s of the end of jam#3");
     EXPECT_EQ(sentence.subject.subject, ExpectedSubject::cn0);
-    EXPECT_EQ(sentence.subject.comparison, Comparison::at_least);
+    EXPECT_EQ(sentence.subject.comparison, Relation::at_least);
     EXPECT_EQ(sentence.subject.limit, 35.5);
     EXPECT_EQ(sentence.subject.satellite, (SatelliteId{Constellation::galileo, 12}));
     EXPECT_EQ(sentence.time.rule, TimeRule::within);
