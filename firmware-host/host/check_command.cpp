@@ -20,6 +20,17 @@ void print_receiver(const ReceiverEntry& entry, const Station& station, bool of_
         fmt::print("port        {}\n", port);
 }
 
+// Without an end, what the first hour brings.
+void print_timeline(const Scenario& scenario, const Assembly& assembly) {
+    const std::vector<TimelineEntry> entries = timeline_of(scenario);
+    const Seconds span = scenario.run.duration.value_or(Seconds(3600));
+    if (!entries.empty()) fmt::print("timeline\n");
+    for (const std::string& line : timeline_text(entries, assembly.start, scenario.run.seed, span))
+        fmt::print("  {}\n", line);
+    for (const Expectation& expectation : scenario.expectations)
+        fmt::print("expect      {}\n", expectation.title());
+}
+
 void print_plan(const Scenario& scenario, const Assembly& assembly) {
     const Emulator& emulator = *assembly.emulator;
     fmt::print("scenario    {}\n", scenario.name);
@@ -33,6 +44,7 @@ void print_plan(const Scenario& scenario, const Assembly& assembly) {
     for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
         print_receiver(scenario.receivers[i], emulator.stations()[i], scenario.receivers.size() > 1);
     fmt::print("seed        {}\n", scenario.run.seed);
+    print_timeline(scenario, assembly);
 }
 
 int check(const RunOptions& options) {

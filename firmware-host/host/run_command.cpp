@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "run_session.hpp"
+#include "run_watch.hpp"
 #include "skyloop/emulator/thread_priority.hpp"
 #include "skyloop/time/utc_time.hpp"
 
@@ -30,17 +31,23 @@ int run_live(const RunOptions& options) {
     mode.now = wall_clock();
     mode.now_steady_ns = steady_clock_ns();
     if (!options.record.empty()) mode.record = options.record;
+    CommandQueue commands;
+    mode.live_commands = &commands;
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
 
     if (!mode.virtual_time && options.priority == "auto") prepare_for_deadlines(messages);
+    const auto watch =
+        RunWatch::start(*scenario, *assembly, {options.control, options.token, !mode.virtual_time}, commands);
+    if (!watch) return messages.error(watch.error());
     RunSession session(messages, *assembly);
     // Scripts wait for these lines to know the tty: they are said even when quiet.
     for (const Station& station : assembly->emulator->stations())
         for (std::size_t i = 0; i < station.wires().size(); ++i)
             fmt::print(stderr, "{}: {}\n", session.port_name(station, i),
                        station.wires()[i].link.transport().description());
-    return session.run(*scenario);
+    if (!(*watch)->url().empty()) fmt::print(stderr, "control: {}\n", (*watch)->url());
+    return session.run(*scenario, **watch);
 }
 
 }  // namespace
@@ -54,6 +61,9 @@ Action add_run_command(CLI::App& app) {
         ->add_option("--priority", options->priority,
                      "Of the loop on this machine: auto (real-time where allowed), normal")
         ->check(CLI::IsMember({"auto", "normal"}));
+    command->add_option("--control", options->control,
+                        "HTTP control and the live page: [HOST:]PORT, on 127.0.0.1 unless a host is given");
+    command->add_option("--token", options->token, "That clients of --control must show; made at random off loopback");
     command->add_option("--record", options->record, "Keep truth, fixes, satellites and bytes in this folder");
     return [options] { return run_live(*options); };
 }

@@ -154,7 +154,6 @@ void add_run_options(CLI::App& command, RunOptions& options) {
         ->allow_extra_args(false);
     command.add_option("--state", options.state, "File that keeps what the receiver saves beyond the run");
     command.add_option("--seed", options.seed, "Default 1; the same scenario, seed and inputs give the same bytes");
-    command.add_option("--control", options.control, "HTTP control (not in this version)");
     add_verbosity_options(command, options.verbosity);
 }
 
@@ -181,7 +180,6 @@ Result<Geodetic> parse_place(const std::string& text, std::string_view option) {
 }
 
 Result<Scenario> scenario_from(const RunOptions& options) {
-    if (!options.control.empty()) return fail(ErrorCode::usage, "--control: live control is not in this version");
     Scenario scenario;
     if (!options.scenario.empty()) {
         auto read = read_scenario_file(options.scenario);

@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "progress.hpp"
+#include "run_watch.hpp"
 #include "skyloop/emulator/run_summary.hpp"
 #include "skyloop/time/utc_time.hpp"
 
@@ -46,7 +47,7 @@ RunSession::RunSession(const Messages& messages, Assembly& assembly) : messages_
         messages.warning(warning);
 }
 
-int RunSession::run(const Scenario& scenario) {
+int RunSession::run(const Scenario& scenario, RunWatch& watch) {
     Emulator& emulator = *assembly_.emulator;
     {
         Progress progress(!messages_.verbosity().quiet && !messages_.verbosity().json, assembly_.start, assembly_.end);
@@ -61,7 +62,7 @@ int RunSession::run(const Scenario& scenario) {
     }
     if (Recorder* recorder = emulator.recorder())
         recorder->record_summary(run_summary(scenario, assembly_, SKYLOOP_VERSION));
-    int code = 0;
+    int code = watch.finish(messages_);
     for (const Station& station : emulator.stations()) {
         tell_counts(station);
         for (const Wire& wire : station.wires())

@@ -11,13 +11,15 @@
 
 namespace skyloop::host {
 
+class RunWatch;
+
 /// Says the warnings, runs until the end or a signal, says what happened.
 class RunSession {
 public:
     /// @param assembly outlives the session
     RunSession(const Messages& messages, Assembly& assembly);
-    /// Exit code: 0, or 1 when a recording or a wire could not be written.
-    int run(const Scenario& scenario);
+    /// Exit code: 0, 3 when an expectation was not met, or 1 when a recording or a wire could not be written.
+    int run(const Scenario& scenario, RunWatch& watch);
 
     /// "port 0", "port 1 (uart2)", "rover: port 0": what messages call a wire.
     [[nodiscard]] std::string port_name(const Station& station, std::size_t wire) const;

@@ -3,6 +3,7 @@
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "run_session.hpp"
+#include "run_watch.hpp"
 
 namespace skyloop::host {
 namespace {
@@ -25,8 +26,11 @@ int simulate(const RunOptions& options) {
     mode.first_ports_only = true;
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
+    CommandQueue nobody;
+    const auto watch = RunWatch::start(*scenario, *assembly, {}, nobody);
+    if (!watch) return messages.error(watch.error());
     RunSession session(messages, *assembly);
-    return session.run(*scenario);
+    return session.run(*scenario, **watch);
 }
 
 }  // namespace

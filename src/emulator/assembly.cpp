@@ -241,10 +241,9 @@ Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, con
     assembly.details.push_back(fmt::format("digest: {}", assembly.digest));
     // The pacer comes last, so that the clock starts when everything else is ready.
     assembly.emulator = std::make_unique<Emulator>(
-        Emulator::Parts{
-            std::move(*stations), make_pacer(mode, assembly.start, scenario.run.speed),
-            Director(Director::Parts{scenario.faults, scenario.commands, assembly.start, scenario.run.seed,
-                                     scenario.run.speed, mode.live_commands})},
+        Emulator::Parts{std::move(*stations), make_pacer(mode, assembly.start, scenario.run.speed),
+                        Director(Director::Parts{scenario.faults, scenario.commands, assembly.start, scenario.run.seed,
+                                                 scenario.run.speed, mode.live_commands})},
         assembly.start);
     return assembly;
 }

@@ -88,8 +88,7 @@ void Director::follow(const TimelineEvent& event, const Scene& scene) {
 void Director::begin_fault(const TimelineEvent& event, Station& station) {
     const FaultEntry& entry = *acts_[event.entry].fault;
     const TimelineEntry& times = timeline_.entries()[event.entry];
-    const std::string name =
-        event.occurrence == 1 ? times.name : fmt::format("{}#{}", times.name, event.occurrence);
+    const std::string name = event.occurrence == 1 ? times.name : fmt::format("{}#{}", times.name, event.occurrence);
     auto fault = find_fault_kind(entry.kind)->make(entry.parameters, {station.seed(), name});
     if (!fault) return;  // whoever made the entry has tried it
     const FaultSpan span{event.entry, event.occurrence, event.time, times.ramp_in, times.ramp_out};

@@ -12,8 +12,8 @@ constexpr Nanoseconds no_time{0};
 Emulator::Emulator(Parts parts, GpsTime start)
     : parts_(std::move(parts)), now_(start), traces_(parts_.stations.size()) {
     for (std::size_t i = 0; i < parts_.stations.size(); ++i)
-        dialogues_.emplace_back(i, Dialogue::Listener{[this](const MessageSeen& seen) { parts_.director->show(seen); },
-                                                      [this](const BeliefSeen& seen) { parts_.director->show(seen); }});
+        dialogues_.emplace_back(i, Dialogue::Listener{[this](const MessageSeen& seen) { parts_.director.show(seen); },
+                                                      [this](const BeliefSeen& seen) { parts_.director.show(seen); }});
     for (Station& station : parts_.stations)
         station.start(start);
 }
@@ -27,8 +27,7 @@ GpsTime Emulator::next_instant(GpsTime end) const {
         wired = wired || !station.wires().empty();
         if (const auto change = station.next_change()) next = std::min(next, std::max(now_, *change));
     }
-    if (parts_.director)
-        if (const auto event = parts_.director->next_event()) next = std::min(next, std::max(now_, *event));
+    if (const auto event = parts_.director.next_event()) next = std::min(next, std::max(now_, *event));
     if (const Nanoseconds often = look_every(); often > no_time) next = std::min(next, now_ + often);
     const Nanoseconds tick = parts_.pacer->tick(busy);
     if (tick > no_time && wired) next = std::min(next, now_ + tick);
@@ -40,6 +39,7 @@ void Emulator::run_until(GpsTime end, const std::atomic<bool>& stop) {
         if (parts_.pacer->paused()) {
             Pacer::rest();
             direct();
+            if (rest_) rest_(now_);
             continue;
         }
         const GpsTime next = next_instant(end);
@@ -56,14 +56,7 @@ void Emulator::run_until(GpsTime end, const std::atomic<bool>& stop) {
         station.finish(now_);
 }
 
-void Emulator::direct() {
-    if (parts_.director) parts_.director->advance(now_, parts_.stations, *parts_.pacer);
-}
-
-void Emulator::add_observer(RunObserver* observer) {
-    if (!parts_.director) parts_.director.emplace(Director::Parts{});
-    parts_.director->add_observer(observer);
-}
+void Emulator::direct() { parts_.director.advance(now_, parts_.stations, *parts_.pacer); }
 
 // Ends of wires that live in simulated time want to be looked at in virtual time too.
 Nanoseconds Emulator::look_every() const {
@@ -83,7 +76,7 @@ bool Emulator::recording_failed() const {
 
 void Emulator::exchange_bytes() {
     const LoopTime time{now_, parts_.pacer->monotonic_ns(now_)};
-    const bool heard = parts_.director && parts_.director->wants_messages();
+    const bool heard = parts_.director.wants_messages();
     for (std::size_t i = 0; i < parts_.stations.size(); ++i) {
         Station& station = parts_.stations[i];
         station.exchange(time, heard ? &dialogues_[i] : nullptr);
@@ -106,8 +99,7 @@ void Emulator::run_epochs(Nanoseconds lateness) {
     for (std::size_t i = 0; i < stations.size(); ++i) {
         if (!traces_[i]) continue;
         stations[i].report(*traces_[i], lateness, !parts_.pacer->is_virtual());
-        if (parts_.director)
-            parts_.director->show(EpochSeen{now_, i, *traces_[i], stations[i].receiver().state(), lateness});
+        parts_.director.show(EpochSeen{now_, i, *traces_[i], stations[i].receiver().state(), lateness});
         if (status_) status_({now_, &*traces_[i], lateness, i});
     }
 }

@@ -111,9 +111,8 @@ void Station::send_on_wire(std::size_t wire, const std::vector<firmware::Receive
 void Station::happen(const firmware::ReceiverEvent& event, GpsTime now) { parts_.receiver.happen(event, now); }
 
 void Station::move_to(const Geodetic& place, GpsTime now) {
-    parts_.simulation.replace_trajectory([&](std::unique_ptr<Trajectory> path) {
-        return std::make_unique<MovedPath>(std::move(path), place, now);
-    });
+    parts_.simulation.replace_trajectory(
+        [&](std::unique_ptr<Trajectory> path) { return std::make_unique<MovedPath>(std::move(path), place, now); });
 }
 
 std::optional<GpsTime> Station::next_change() const {

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <array>
 
 #include "scenario_keys.hpp"
@@ -77,6 +80,25 @@ constexpr std::string_view sensor_model_atmosphere_keys[] = {"total_electron_con
                                                              "earth_radius_m",
                                                              "layer"};
 
+// What only the whole scenario knows of its expectations: its receivers, faults and commands.
+void check_expectations(TableReader& top, const Scenario& scenario) {
+    std::vector<std::string> entries, receivers;
+    for (const TimelineEntry& entry : timeline_of(scenario))
+        entries.push_back(entry.name);
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
+        receivers.push_back(receiver_name(scenario, i));
+    for (const Expectation& expectation : scenario.expectations) {
+        const std::string title = fmt::format("[[expect]] '{}': ", expectation.title());
+        if (expectation.sentence)
+            if (const std::string mistake = event_mistake(*expectation.sentence, entries); !mistake.empty())
+                top.mistake("expect", title + mistake);
+        if (!expectation.receiver.empty() &&
+            std::find(receivers.begin(), receivers.end(), expectation.receiver) == receivers.end())
+            top.mistake("expect", fmt::format("{}receiver '{}' is no receiver of this scenario; expected one of {}",
+                                              title, expectation.receiver, fmt::join(receivers, ", ")));
+    }
+}
+
 void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
     top.table("run", [&](TableReader& t) { read_run_keys(t, scenario.run); });
     top.table("sky", [&](TableReader& t) { read_sky_keys(t, scenario.sky, folder); });
@@ -91,6 +113,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     read_receivers(top, scenario, folder);
     read_timeline(top, scenario);
     read_expectations(top, scenario.expectations);
+    check_expectations(top, scenario);
 }
 
 }  // namespace

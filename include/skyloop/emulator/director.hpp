@@ -45,6 +45,8 @@ public:
     void show(const BeliefSeen& seen);
     /// True when somebody watches the messages on the wires: an observer or a trigger.
     [[nodiscard]] bool wants_messages() const;
+    /// Simulated seconds per second of a live run.
+    [[nodiscard]] double speed() const { return speed_ * pace_; }
     /// A command asked for the end of the run.
     [[nodiscard]] bool stopped() const { return stopped_; }
 

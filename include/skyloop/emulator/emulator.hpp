@@ -27,14 +27,16 @@ public:
     struct Parts {
         std::vector<Station> stations;  ///< at least one
         std::unique_ptr<Pacer> pacer;
-        std::optional<Director> director{};  ///< nothing happens but what the vehicle does
+        Director director{Director::Parts{}};  ///< without anything: what the vehicle does is all that happens
     };
     Emulator(Parts parts, GpsTime start);
 
     /// Called after each epoch.
     void on_status(std::function<void(const Status&)> callback) { status_ = std::move(callback); }
     /// Tells an observer what happens; it outlives the run.
-    void add_observer(RunObserver* observer);
+    void add_observer(RunObserver* observer) { parts_.director.add_observer(observer); }
+    /// Called again and again while time stands still.
+    void on_rest(std::function<void(GpsTime)> callback) { rest_ = std::move(callback); }
     /// Runs to `end`, or until `stop` is true, or until a recording fails.
     void run_until(GpsTime end, const std::atomic<bool>& stop);
 
@@ -48,21 +50,24 @@ public:
     [[nodiscard]] const Simulation& simulation() const { return first().simulation(); }
     [[nodiscard]] Recorder* recorder() { return parts_.stations.front().recorder(); }
     [[nodiscard]] GpsTime now() const { return now_; }
+    [[nodiscard]] bool paused() const { return parts_.pacer->paused(); }
+    [[nodiscard]] const Director& director() const { return parts_.director; }
 
 private:
     [[nodiscard]] GpsTime next_instant(GpsTime end) const;
     [[nodiscard]] Nanoseconds look_every() const;
     void exchange_bytes();
     void direct();
-    [[nodiscard]] bool stopped() const { return parts_.director && parts_.director->stopped(); }
+    [[nodiscard]] bool stopped() const { return parts_.director.stopped(); }
     void run_epochs(Nanoseconds lateness);
     [[nodiscard]] bool recording_failed() const;
 
     Parts parts_;
     GpsTime now_;
-    std::vector<Dialogue> dialogues_;  // one a station
+    std::vector<Dialogue> dialogues_;           // one a station
     std::vector<std::optional<Trace>> traces_;  // of the present instant, one a station
     std::function<void(const Status&)> status_;
+    std::function<void(GpsTime)> rest_;
 };
 
 }  // namespace skyloop

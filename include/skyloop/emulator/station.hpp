@@ -113,7 +113,7 @@ private:
 
     Parts parts_;
     ActiveFaults faults_;
-    bool faults_act_ = false;              // on receiver or wires, at the last look
+    bool faults_act_ = false;               // on receiver or wires, at the last look
     std::vector<FaultyWire> faulty_wires_;  // one more than none: what has no wire is recorded as if it had
     EpochGrid grid_;
     RunCounts counts_;

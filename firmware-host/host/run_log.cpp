@@ -1,0 +1,95 @@
+#include "run_log.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "skyloop/base/text_file.hpp"
+#include "skyloop/control/command_json.hpp"
+
+namespace skyloop::host {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* log_name = "commands.jsonl";
+
+Json line_at(GpsTime now, GpsTime start) {
+    return {{"gps_ns", now.time_since_epoch().count()}, {"time_s", static_cast<double>((now - start).count()) / 1e9}};
+}
+
+void write_line(OutputFile& file, const Json& line) {
+    file.write(line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+    // A line is rare, and what a killed run leaves behind should hold it.
+    file.flush();
+}
+
+}  // namespace
+
+Result<RunLog> RunLog::create(const std::filesystem::path& folder, GpsTime start) {
+    auto file = OutputFile::create(folder / log_name);
+    if (!file) return fail(file.error());
+    return RunLog(std::move(*file), start);
+}
+
+void RunLog::on_fault(const FaultSeen& seen) {
+    Json line = line_at(seen.now, start_);
+    line["event"] = seen.begins ? "fault_begins" : "fault_ends";
+    line["name"] = seen.name;
+    line["kind"] = seen.kind;
+    line["occurrence"] = seen.occurrence;
+    write_line(file_, line);
+}
+
+void RunLog::on_command(const CommandSeen& seen) {
+    Json line = line_at(seen.now, start_);
+    line["event"] = "command";
+    if (!seen.name.empty()) line["name"] = seen.name;
+    line["source"] = seen.command.source;
+    line["request"] = Json::parse(command_json(seen.command));
+    write_line(file_, line);
+}
+
+void RunLog::on_belief(const BeliefSeen& seen) {
+    Json line = line_at(seen.now, start_);
+    line["event"] = seen.trusts ? "client_trusts" : "client_distrusts";
+    line["station"] = seen.station;
+    line["wire"] = seen.wire;
+    line["reason"] = seen.reason;
+    write_line(file_, line);
+}
+
+Result<std::vector<CommandEntry>> read_live_commands(const std::filesystem::path& folder) {
+    const std::filesystem::path path = folder / log_name;
+    const auto text = read_text_file(path);
+    if (!text) return fail(text.error());
+    std::vector<CommandEntry> commands;
+    std::size_t number = 0;
+    for (std::size_t at = 0; at < text->size();) {
+        const std::size_t end = std::min(text->find('\n', at), text->size());
+        const std::string_view content = std::string_view(*text).substr(at, end - at);
+        at = end + 1;
+        ++number;
+        const Json line = Json::parse(content, nullptr, false);
+        // A run that was killed may have left half a line behind.
+        if (line.is_discarded() && at > text->size()) break;
+        const auto refuse = [&](const std::string& what) {
+            return fail(ErrorCode::input, fmt::format("{}:{}: {}", path.string(), number, what));
+        };
+        if (!line.is_object()) return refuse("is no JSON object");
+        if (line.value("event", "") != "command" || line.value("source", "") == "scenario") continue;
+        if (!line.contains("gps_ns") || !line["gps_ns"].is_number_integer() || !line.contains("request"))
+            return refuse("expected gps_ns and request");
+        auto command = command_from_json(line["request"].dump(), "repeated");
+        if (!command) return refuse(command.error().message);
+        CommandEntry entry;
+        entry.when.once = true;
+        entry.when.name = fmt::format("repeated {}", number);
+        entry.when.at_time = GpsTime(Nanoseconds(line["gps_ns"].get<std::int64_t>()));
+        entry.command = std::move(*command);
+        commands.push_back(std::move(entry));
+    }
+    return commands;
+}
+
+}  // namespace skyloop::host

@@ -1,0 +1,130 @@
+#include "run_watch.hpp"
+
+#include <fmt/format.h>
+
+#include "skyloop/control/status_json.hpp"
+#include "skyloop/verdict/reports.hpp"
+
+namespace skyloop::host {
+namespace {
+
+constexpr int expectations_not_met = 3;
+
+std::vector<std::string> receiver_names(const Emulator& emulator) {
+    std::vector<std::string> names;
+    for (const Station& station : emulator.stations())
+        names.push_back(station.name());
+    return names;
+}
+
+// The first wire's tty, for probes.
+std::vector<std::string> probe_environment(const Emulator& emulator) {
+    if (emulator.wires().empty()) return {};
+    const std::string description = emulator.wires().front().link.transport().description();
+    return {"SKYLOOP_PORT=" + description.substr(0, description.rfind(" ("))};
+}
+
+Result<void> write_report(const std::filesystem::path& path, const std::string& text) {
+    auto file = OutputFile::create(path);
+    if (!file) return fail(file.error());
+    file->write(text);
+    file->flush();
+    if (file->failure()) return fail(*file->failure());
+    return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RunWatch>> RunWatch::start(const Scenario& scenario, Assembly& assembly,
+                                                  const WatchOptions& options, CommandQueue& commands) {
+    std::unique_ptr<RunWatch> watch(new RunWatch(scenario, assembly));
+    if (const auto opened = watch->open_log(); !opened) return fail(opened.error());
+    watch->appoint_judge(options.live);
+    if (const auto opened = watch->open_control(options, commands); !opened) return fail(opened.error());
+    return watch;
+}
+
+Result<void> RunWatch::open_log() {
+    Emulator& emulator = *assembly_.emulator;
+    if (emulator.recorder() == nullptr) return {};
+    auto log = RunLog::create(emulator.recorder()->folder(), assembly_.start);
+    if (!log) return fail(log.error());
+    log_.emplace(std::move(*log));
+    emulator.add_observer(&*log_);
+    return {};
+}
+
+void RunWatch::appoint_judge(bool live) {
+    if (scenario_.expectations.empty()) return;
+    Emulator& emulator = *assembly_.emulator;
+    judge_ = std::make_unique<Judge>(scenario_.expectations, JudgedRun{assembly_.start, receiver_names(emulator), live,
+                                                                       probe_environment(emulator)});
+    emulator.add_observer(judge_.get());
+}
+
+std::vector<TimelineBar> RunWatch::planned_bars() const {
+    std::vector<TimelineBar> bars;
+    for (const FaultEntry& fault : scenario_.faults) {
+        TimelineBar bar;
+        bar.name = fault.when.name;
+        bar.kind = fault.kind;
+        bars.push_back(std::move(bar));
+    }
+    // What is known of their times before the run.
+    Timeline timeline(timeline_of(scenario_), assembly_.start, scenario_.run.seed);
+    const GpsTime end = assembly_.end.value_or(advanced(assembly_.start, Seconds(3600)));
+    for (const TimelineEvent& event : timeline.advance(end)) {
+        if (event.entry >= bars.size() || event.occurrence != 1) continue;
+        (event.begins ? bars[event.entry].begins : bars[event.entry].ends) = event.time;
+    }
+    return bars;
+}
+
+Result<void> RunWatch::open_control(const WatchOptions& options, CommandQueue& commands) {
+    if (options.control.empty()) return {};
+    auto where = parse_control_address(options.control);
+    if (!where) return fail(where.error());
+    where->token = options.token;
+    Emulator& emulator = *assembly_.emulator;
+    StatusSources sources;
+    sources.pace = [&emulator, live = options.live] {
+        return PaceStatus{emulator.paused(), emulator.director().speed(), !live};
+    };
+    board_ = std::make_unique<StatusBoard>(StatusSetup{scenario_.name, assembly_.start, assembly_.end, planned_bars()},
+                                           &emulator.stations(), sources);
+    emulator.add_observer(board_.get());
+    emulator.on_rest([this](GpsTime now) { board_->look(now); });
+    const std::string scene = assembly_.scene.scene ? scene_json(*assembly_.scene.scene) : std::string();
+    auto server = ControlServer::start(*where, {commands, *board_, scene, SKYLOOP_VERSION});
+    if (!server) return fail(server.error());
+    server_ = std::move(*server);
+    return {};
+}
+
+int RunWatch::finish(const Messages& messages) {
+    const GpsTime now = assembly_.emulator->now();
+    if (board_) board_->publish_now(now);
+    int code = 0;
+    if (judge_) code = report(messages, judge_->finish(now));
+    server_.reset();
+    if (log_ && log_->failure()) code = messages.error(*log_->failure());
+    return code;
+}
+
+int RunWatch::report(const Messages& messages, const std::vector<Verdict>& verdicts) const {
+    const Emulator& emulator = *assembly_.emulator;
+    ReportedRun run{
+        scenario_.name, scenario_.run.seed, assembly_.start, difference(emulator.now(), assembly_.start), {}};
+    const Recorder* recorder = emulator.stations().front().recorder();
+    if (recorder != nullptr) run.evidence = {"fixes.csv", "port0.out", "port0.in", "commands.jsonl"};
+    fmt::print("{}", verdict_text(verdicts, run));
+    int code = all_met(verdicts) ? 0 : expectations_not_met;
+    if (recorder == nullptr) return code;
+    for (const auto& [name, text] :
+         {std::pair{"verdicts.json", verdict_json(verdicts, run)}, {"junit.xml", junit_xml(verdicts, run)}})
+        if (const auto written = write_report(recorder->folder() / name, text); !written)
+            code = messages.error(written.error());
+    return code;
+}
+
+}  // namespace skyloop::host

@@ -1,0 +1,54 @@
+/// Who watches a run: its judge, its log, and whoever looks at it from outside.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "messages.hpp"
+#include "run_log.hpp"
+#include "skyloop/control/control_server.hpp"
+#include "skyloop/emulator/assembly.hpp"
+#include "skyloop/emulator/command_queue.hpp"
+#include "skyloop/emulator/status_board.hpp"
+#include "skyloop/verdict/judge.hpp"
+
+namespace skyloop::host {
+
+/// What is asked of a watch.
+struct WatchOptions {
+    std::string control;  ///< "[HOST:]PORT"; empty: nobody from outside
+    std::string token;    ///< for them; empty: by the rules of ControlOptions
+    bool live = false;    ///< against the clock
+};
+
+/// Watches the emulator of an assembly. It must end before the assembly does.
+class RunWatch {
+public:
+    /// @param commands that clients from outside ask for
+    static Result<std::unique_ptr<RunWatch>> start(const Scenario& scenario, Assembly& assembly,
+                                                   const WatchOptions& options, CommandQueue& commands);
+    /// What to open in a browser; empty: nothing.
+    [[nodiscard]] std::string url() const { return server_ ? server_->url() : std::string(); }
+    /// The run is over: says the verdicts, and leaves verdicts.json and junit.xml in the recording.
+    /// @return exit code: 3 where an expectation was not met
+    int finish(const Messages& messages);
+
+private:
+    RunWatch(const Scenario& scenario, Assembly& assembly) : scenario_(scenario), assembly_(assembly) {}
+    Result<void> open_log();
+    void appoint_judge(bool live);
+    Result<void> open_control(const WatchOptions& options, CommandQueue& commands);
+    [[nodiscard]] std::vector<TimelineBar> planned_bars() const;
+    int report(const Messages& messages, const std::vector<Verdict>& verdicts) const;
+
+    const Scenario& scenario_;
+    Assembly& assembly_;
+    std::optional<RunLog> log_;
+    std::unique_ptr<Judge> judge_;
+    std::unique_ptr<StatusBoard> board_;
+    std::unique_ptr<ControlServer> server_;  // before board_ is gone
+};
+
+}  // namespace skyloop::host
