@@ -33,6 +33,7 @@ int run_live(const RunOptions& options) {
     if (!options.record.empty()) mode.record = options.record;
     CommandQueue commands;
     mode.live_commands = &commands;
+    if (!options.repeat.empty()) mode.repeat = options.repeat;
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
 

@@ -24,6 +24,42 @@ void write_line(OutputFile& file, const Json& line) {
     file.flush();
 }
 
+// One line of the log; nothing for what is no live command.
+Result<std::optional<CommandEntry>> live_command(std::string_view text) {
+    const Json line = Json::parse(text, nullptr, false);
+    if (!line.is_object()) return fail(ErrorCode::input, "is no JSON object");
+    if (line.value("event", "") != "command" || line.value("source", "") == "scenario") return std::nullopt;
+    if (!line.contains("gps_ns") || !line["gps_ns"].is_number_integer() || !line.contains("request"))
+        return fail(ErrorCode::input, "expected gps_ns and request");
+    auto command = command_from_json(line["request"].dump(), "repeated");
+    if (!command) return fail(command.error());
+    CommandEntry entry;
+    entry.when.once = true;
+    entry.when.at_time = GpsTime(Nanoseconds(line["gps_ns"].get<std::int64_t>()));
+    entry.command = std::move(*command);
+    return entry;
+}
+
+Result<void> add_live_commands(const std::filesystem::path& path, Scenario& scenario) {
+    const auto text = read_text_file(path);
+    if (!text) return fail(text.error());
+    std::size_t number = 0;
+    for (std::size_t at = 0; at < text->size();) {
+        const std::size_t end = text->find('\n', at);
+        // A run that was killed may have left half a line behind.
+        if (end == std::string::npos) break;
+        ++number;
+        auto entry = live_command(std::string_view(*text).substr(at, end - at));
+        at = end + 1;
+        if (!entry)
+            return fail(ErrorCode::input, fmt::format("{}:{}: {}", path.string(), number, entry.error().message));
+        if (!*entry) continue;
+        (*entry)->when.name = fmt::format("repeated {}", number);
+        scenario.commands.push_back(std::move(**entry));
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<RunLog> RunLog::create(const std::filesystem::path& folder, GpsTime start) {
@@ -59,37 +95,15 @@ void RunLog::on_belief(const BeliefSeen& seen) {
     write_line(file_, line);
 }
 
-Result<std::vector<CommandEntry>> read_live_commands(const std::filesystem::path& folder) {
-    const std::filesystem::path path = folder / log_name;
+Result<void> repeat_run(const std::filesystem::path& folder, Scenario& scenario) {
+    const std::filesystem::path path = folder / "run.json";
     const auto text = read_text_file(path);
     if (!text) return fail(text.error());
-    std::vector<CommandEntry> commands;
-    std::size_t number = 0;
-    for (std::size_t at = 0; at < text->size();) {
-        const std::size_t end = std::min(text->find('\n', at), text->size());
-        const std::string_view content = std::string_view(*text).substr(at, end - at);
-        at = end + 1;
-        ++number;
-        const Json line = Json::parse(content, nullptr, false);
-        // A run that was killed may have left half a line behind.
-        if (line.is_discarded() && at > text->size()) break;
-        const auto refuse = [&](const std::string& what) {
-            return fail(ErrorCode::input, fmt::format("{}:{}: {}", path.string(), number, what));
-        };
-        if (!line.is_object()) return refuse("is no JSON object");
-        if (line.value("event", "") != "command" || line.value("source", "") == "scenario") continue;
-        if (!line.contains("gps_ns") || !line["gps_ns"].is_number_integer() || !line.contains("request"))
-            return refuse("expected gps_ns and request");
-        auto command = command_from_json(line["request"].dump(), "repeated");
-        if (!command) return refuse(command.error().message);
-        CommandEntry entry;
-        entry.when.once = true;
-        entry.when.name = fmt::format("repeated {}", number);
-        entry.when.at_time = GpsTime(Nanoseconds(line["gps_ns"].get<std::int64_t>()));
-        entry.command = std::move(*command);
-        commands.push_back(std::move(entry));
-    }
-    return commands;
+    const Json summary = Json::parse(*text, nullptr, false);
+    if (!summary.is_object() || !summary.contains("start_gps_ns") || !summary["start_gps_ns"].is_number_integer())
+        return fail(ErrorCode::input, fmt::format("{}: expected start_gps_ns", path.string()));
+    scenario.run.start = GpsTime(Nanoseconds(summary["start_gps_ns"].get<std::int64_t>()));
+    return add_live_commands(folder / log_name, scenario);
 }
 
 }  // namespace skyloop::host

@@ -29,8 +29,8 @@ private:
     GpsTime start_;
 };
 
-/// The live commands of a recording, to be carried out again at their instants. Fails with `outside` or `input`, naming
-/// file and line.
-Result<std::vector<CommandEntry>> read_live_commands(const std::filesystem::path& folder);
+/// Lets a run begin when a recorded one did, and carries out its live commands again at their instants. Fails with
+/// `outside` or `input`, naming file and line.
+Result<void> repeat_run(const std::filesystem::path& folder, Scenario& scenario);
 
 }  // namespace skyloop::host

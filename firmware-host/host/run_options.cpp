@@ -1,4 +1,5 @@
 #include "run_options.hpp"
+#include "run_log.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -153,6 +154,8 @@ void add_run_options(CLI::App& command, RunOptions& options) {
                     "uart2=pty; repeatable")
         ->allow_extra_args(false);
     command.add_option("--state", options.state, "File that keeps what the receiver saves beyond the run");
+    command.add_option("--repeat", options.repeat,
+                       "A recording: its start, its clients' bytes and its live commands happen again");
     command.add_option("--seed", options.seed, "Default 1; the same scenario, seed and inputs give the same bytes");
     add_verbosity_options(command, options.verbosity);
 }
@@ -190,6 +193,8 @@ Result<Scenario> scenario_from(const RunOptions& options) {
     scenario.sky.rebase_navigation |= options.rebase_nav;
     if (!options.scene.empty()) scenario.scene.buildings = {options.scene};
     if (options.seed) scenario.run.seed = *options.seed;
+    if (!options.repeat.empty())
+        if (const auto repeated = repeat_run(options.repeat, scenario); !repeated) return fail(repeated.error());
     scenario.source += options_text(options);
     for (const auto& apply : {apply_place, apply_time, apply_model, apply_receiver, apply_speed})
         if (const auto applied = apply(options, scenario); !applied) return fail(applied.error());

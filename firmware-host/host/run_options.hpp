@@ -23,6 +23,7 @@ struct RunOptions {
     std::optional<std::uint64_t> seed;
     std::string speed;              ///< run only: a number or "max"
     std::string priority = "auto";  ///< run only: "auto" or "normal"
+    std::string repeat;             ///< a recording to be repeated
     std::string token;              ///< run only: of --control
     std::string record;             ///< run: --record, simulate: --out
     Verbosity verbosity;

@@ -24,6 +24,7 @@ int simulate(const RunOptions& options) {
     // A scenario's pty belongs to a live run; only wires asked for here are opened.
     mode.open_ports = !options.ports.empty();
     mode.first_ports_only = true;
+    if (!options.repeat.empty()) mode.repeat = options.repeat;
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
     CommandQueue nobody;

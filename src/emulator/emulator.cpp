@@ -25,7 +25,7 @@ GpsTime Emulator::next_instant(GpsTime end) const {
         next = std::min(next, station.next_epoch());
         busy = busy || station.busy();
         wired = wired || !station.wires().empty();
-        if (const auto change = station.next_change()) next = std::min(next, std::max(now_, *change));
+        if (const auto change = station.next_change(now_)) next = std::min(next, std::max(now_, *change));
     }
     if (const auto event = parts_.director.next_event()) next = std::min(next, std::max(now_, *event));
     if (const Nanoseconds often = look_every(); often > no_time) next = std::min(next, now_ + often);

@@ -64,6 +64,21 @@ RinexRecordingSetup rinex_setup(const Station::Parts& parts, GpsTime start) {
     return setup;
 }
 
+// Where the recording of a receiver lies: the first one's in the folder itself.
+std::filesystem::path recording_of(const std::filesystem::path& folder, std::size_t index) {
+    return index == 0 ? folder : folder / fmt::format("receiver{}", index);
+}
+
+Result<std::vector<HeardBytes>> repeated_input(const std::filesystem::path& folder, std::size_t index,
+                                               const std::vector<WireRequest>& wires,
+                                               const firmware::BoardProfile& board) {
+    std::vector<firmware::PortId> ports;
+    for (const WireRequest& wire : wires)
+        ports.push_back(wire.port);
+    if (ports.empty()) ports.push_back(default_port(board));
+    return read_repeated_input(recording_of(folder, index), ports);
+}
+
 Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings) {
     const Scenario& scenario = shared.scenario;
     const ReceiverEntry& entry = scenario.receivers.at(index);
@@ -94,6 +109,11 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     parts.seed = receiver_seed(scenario.run.seed, index);
     parts.state = std::move(state);
     parts.base = entry.base;
+    if (shared.mode.repeat) {
+        auto heard = repeated_input(*shared.mode.repeat, index, *wires, parts.receiver.board());
+        if (!heard) return fail(heard.error());
+        parts.repeated = std::move(*heard);
+    }
     if (entry.base) parts.moving_base.emplace(receiver_seed(scenario.run.seed, index));
     return PlannedStation{std::move(parts), std::move(*wires)};
 }
@@ -133,8 +153,7 @@ Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::si
 
 Result<void> add_recorder(Station::Parts& parts, const SharedParts& shared, std::size_t index) {
     const std::filesystem::path& folder = *shared.mode.record;
-    auto recorder = Recorder::create(index == 0 ? folder : folder / fmt::format("receiver{}", index),
-                                     std::max<std::size_t>(parts.wires.size(), 1));
+    auto recorder = Recorder::create(recording_of(folder, index), std::max<std::size_t>(parts.wires.size(), 1));
     if (!recorder) return fail(recorder.error());
     if (parts.simulation.measures())
         if (const auto added = recorder->add_rinex(rinex_setup(parts, shared.start)); !added)

@@ -47,7 +47,7 @@ Result<void> Recorder::create_ports(std::size_t wires) {
     for (std::size_t wire = 0; wire < wires; ++wire) {
         PortFiles port;
         const std::pair<OutputFile*, const char*> files[] = {
-            {&port.out, "out"}, {&port.in, "in"}, {&port.times, "times"}};
+            {&port.out, "out"}, {&port.in, "in"}, {&port.times, "times"}, {&port.in_times, "in_times"}};
         for (const auto& [file, extension] : files) {
             auto created = OutputFile::create(name(wire, extension));
             if (!created) return fail(created.error());
@@ -58,7 +58,7 @@ Result<void> Recorder::create_ports(std::size_t wires) {
     // Of a former run with more wires.
     std::error_code reason;
     for (std::size_t wire = wires; std::filesystem::remove(name(wire, "out"), reason); ++wire)
-        for (const char* extension : {"in", "times"})
+        for (const char* extension : {"in", "times", "in_times"})
             std::filesystem::remove(name(wire, extension), reason);
     return {};
 }
@@ -85,7 +85,21 @@ void Recorder::record_output(ByteSpan bytes, const LoopTime& time, std::size_t w
     port.offset += bytes.size();
 }
 
-void Recorder::record_input(ByteSpan bytes, std::size_t wire) { ports_.at(wire).in.write(bytes); }
+// Bytes of one instant come one by one; they make one line.
+void Recorder::record_input(ByteSpan bytes, GpsTime now, std::size_t wire) {
+    PortFiles& port = ports_.at(wire);
+    if (port.heard_at != now) port.write_heard();
+    port.heard_at = now;
+    port.heard_bytes += bytes.size();
+    port.in.write(bytes);
+}
+
+void Recorder::PortFiles::write_heard() {
+    if (heard_bytes == 0) return;
+    in_times.write(fmt::format("{} {} {}\n", heard_at.time_since_epoch().count(), in_offset, heard_bytes));
+    in_offset += heard_bytes;
+    heard_bytes = 0;
+}
 
 void Recorder::record_summary(const std::string& content) {
     auto file = OutputFile::create(folder_ / "run.json");
@@ -101,7 +115,7 @@ void Recorder::record_summary(const std::string& content) {
 std::vector<const OutputFile*> Recorder::files() const {
     std::vector<const OutputFile*> files{&fixes_, &satellites_};
     for (const PortFiles& port : ports_)
-        files.insert(files.end(), {&port.out, &port.in, &port.times});
+        files.insert(files.end(), {&port.out, &port.in, &port.times, &port.in_times});
     if (rinex_) files.insert(files.end(), {&rinex_->observations(), &rinex_->navigation()});
     return files;
 }
@@ -109,9 +123,11 @@ std::vector<const OutputFile*> Recorder::files() const {
 void Recorder::flush() {
     fixes_.flush();
     satellites_.flush();
-    for (PortFiles& port : ports_)
-        for (OutputFile* file : {&port.out, &port.in, &port.times})
+    for (PortFiles& port : ports_) {
+        port.write_heard();
+        for (OutputFile* file : {&port.out, &port.in, &port.times, &port.in_times})
             file->flush();
+    }
     if (!rinex_) return;
     rinex_->observations().flush();
     rinex_->navigation().flush();

@@ -32,12 +32,26 @@ bool Station::busy() const {
                        [](const Wire& w) { return w.link.connected() || w.link.input_pending(); });
 }
 
+// Bytes that have crossed a wire by now did so under what was wrong with it before.
 void Station::exchange(const LoopTime& time, Dialogue* dialogue) {
-    follow_faults(time.now);
     for (std::size_t i = 0; i < parts_.wires.size(); ++i)
         hear(i, time.now, dialogue);
+    hear_again(time.now, dialogue);
     speak(time, dialogue);
+    follow_faults(time.now);
     follow_settings(time.now);
+}
+
+// Byte by byte, as it was heard: one may change the speed, and with it what the next means.
+void Station::hear_again(GpsTime now, Dialogue* dialogue) {
+    for (; heard_again_ < parts_.repeated.size() && parts_.repeated[heard_again_].at <= now; ++heard_again_) {
+        const HeardBytes& heard = parts_.repeated[heard_again_];
+        if (dialogue != nullptr) dialogue->client_said(heard.wire, heard.bytes, now);
+        for (const std::uint8_t byte : heard.bytes)
+            parts_.receiver.input(heard.port, ByteSpan(&byte, 1), now);
+        if (parts_.recorder && heard.wire < faulty_wires_.size())
+            parts_.recorder->record_input(heard.bytes, now, heard.wire);
+    }
 }
 
 // What has ended is taken back at the first look after it.
@@ -67,7 +81,7 @@ void Station::hear(std::size_t wire, GpsTime now, Dialogue* dialogue) {
         if (heard.empty()) return;
         if (dialogue != nullptr) dialogue->client_said(wire, heard, now);
         parts_.receiver.input(port, heard, now);
-        if (parts_.recorder) parts_.recorder->record_input(heard, wire);
+        if (parts_.recorder) parts_.recorder->record_input(heard, now, wire);
     };
     while (auto heard = link.receive(line_speed(), now))
         if (!heard->empty()) take(std::move(*heard));
@@ -115,10 +129,12 @@ void Station::move_to(const Geodetic& place, GpsTime now) {
         [&](std::unique_ptr<Trajectory> path) { return std::make_unique<MovedPath>(std::move(path), place, now); });
 }
 
-std::optional<GpsTime> Station::next_change() const {
+std::optional<GpsTime> Station::next_change(GpsTime now) const {
     std::optional<GpsTime> next = faults_.next_faded();
+    if (heard_again_ < parts_.repeated.size() && (!next || parts_.repeated[heard_again_].at < *next))
+        next = parts_.repeated[heard_again_].at;
     for (const FaultyWire& wire : faulty_wires_)
-        if (const auto at = wire.next_at(); at && (!next || *at < *next)) next = at;
+        if (const auto at = wire.next_at(now); at && (!next || *at < *next)) next = at;
     return next;
 }
 

@@ -28,7 +28,7 @@ MISUSES = [
     (["scene", "demo", "--axes", "x,y"], 2, ["--axes x,y"]),
     (["scene", "demo", "--origin", "91,0"], 2, ["--origin 91,0", "latitude is 91"]),
     (["scene", "demo", "--sky-svg", "x.svg"], 2, ["--sky-svg", "--at"]),
-    (["run", "--control", "8080"], 2, ["--control"]),
+    (["run", "--control", "nowhere"], 2, ["nowhere"]),
     (["run", "--trajectory", "x.gpx"], 2, ["--trajectory x.gpx", ".toml"]),
     (["run", "--port", "serial:/dev/ttyS0"], 2, ["serial"]),
     (["run", "--port", "pyt:x"], 2, ["did you mean 'pty'"]),

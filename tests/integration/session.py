@@ -52,17 +52,27 @@ class Emulator:
                 self.process.kill()
                 self.process.wait(timeout=20)
 
-    def _wait_for_port(self, patience=60):
+    def _wait_for_port(self):
+        return self.said(r"^port 0: (\S+) \(pty\)\n", patience=60)
+
+    def said(self, pattern, patience=20):
+        """Waits until stderr holds the pattern; gives its first group."""
         end = time.monotonic() + patience
         while time.monotonic() < end:
             if select.select([self.process.stderr], [], [], 0.2)[0]:
                 self.log += os.read(self.process.stderr.fileno(), 4096).decode()
-            found = re.search(r"^port 0: (\S+) \(pty\)\n", self.log, re.MULTILINE)
+            found = re.search(pattern, self.log, re.MULTILINE)
             if found:
                 return found.group(1)
             if self.process.poll() is not None:
                 raise AssertionError(f"skyloop ended {self.process.returncode}: {self.log}")
-        raise AssertionError(f"no port line within {patience} s: {self.log}")
+        raise AssertionError(f"nothing like {pattern} within {patience} s: {self.log}")
+
+    def finish(self, patience=30):
+        """Waits for the run to end by itself; gives the exit code."""
+        _, rest = self.process.communicate(timeout=patience)
+        self.log += rest.decode()
+        return self.process.returncode
 
     def stop(self, by=signal.SIGTERM):
         """Ends the run; gives the exit code and all that was said on stderr."""

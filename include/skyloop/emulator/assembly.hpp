@@ -26,13 +26,14 @@ std::vector<std::filesystem::path> board_folders(const DataFolders& data);
 
 /// How a run is driven.
 struct RunMode {
-    bool virtual_time = false;                    ///< as fast as possible, on the virtual clock
-    GpsTime now{};                                ///< the wall clock at start, GPST
-    std::int64_t now_steady_ns = 0;               ///< the steady clock at that instant
-    std::optional<std::filesystem::path> record;  ///< where to keep the recording
-    bool open_ports = true;                       ///< false: no wires, the recording alone
-    bool first_ports_only = false;                ///< of several receivers only the first gets its wires
-    CommandQueue* live_commands = nullptr;        ///< where other threads ask for something; outlives the run
+    bool virtual_time = false;                      ///< as fast as possible, on the virtual clock
+    GpsTime now{};                                  ///< the wall clock at start, GPST
+    std::int64_t now_steady_ns = 0;                 ///< the steady clock at that instant
+    std::optional<std::filesystem::path> record;    ///< where to keep the recording
+    bool open_ports = true;                         ///< false: no wires, the recording alone
+    bool first_ports_only = false;                  ///< of several receivers only the first gets its wires
+    std::optional<std::filesystem::path> repeat{};  ///< a recording whose clients' bytes are heard again
+    CommandQueue* live_commands = nullptr;          ///< where other threads ask for something; outlives the run
 };
 
 /// A run ready to go, and what its user should be told first.

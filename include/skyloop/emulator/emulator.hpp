@@ -33,6 +33,8 @@ public:
 
     /// Called after each epoch.
     void on_status(std::function<void(const Status&)> callback) { status_ = std::move(callback); }
+    /// Who leads the run from here on; before it begins.
+    void replace_director(Director director) { parts_.director = std::move(director); }
     /// Tells an observer what happens; it outlives the run.
     void add_observer(RunObserver* observer) { parts_.director.add_observer(observer); }
     /// Called again and again while time stands still.

@@ -36,7 +36,7 @@ public:
     /// Bytes that left the receiver by a wire's port.
     void record_output(ByteSpan bytes, const LoopTime& time, std::size_t wire = 0);
     /// Bytes that reached the receiver over a wire.
-    void record_input(ByteSpan bytes, std::size_t wire = 0);
+    void record_input(ByteSpan bytes, GpsTime now, std::size_t wire = 0);
     /// Writes run.json; `content` is its text.
     void record_summary(const std::string& content);
     /// Hands everything to the operating system, so that a killed run keeps it.
@@ -47,8 +47,11 @@ public:
 
 private:
     struct PortFiles {
-        OutputFile out, in, times;
-        std::uint64_t offset = 0;
+        OutputFile out, in, times, in_times;
+        std::uint64_t offset = 0, in_offset = 0;
+        GpsTime heard_at{};             // of input whose line is not written yet
+        std::uint64_t heard_bytes = 0;  // of it
+        void write_heard();
     };
     Recorder();
     Result<void> create_ports(std::size_t wires);

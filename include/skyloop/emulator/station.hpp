@@ -16,6 +16,7 @@
 #include "skyloop/emulator/link.hpp"
 #include "skyloop/emulator/moving_base.hpp"
 #include "skyloop/emulator/recorder.hpp"
+#include "skyloop/emulator/repeated_input.hpp"
 #include "skyloop/emulator/simulation.hpp"
 #include "skyloop/emulator/state_file.hpp"
 #include "skyloop/fault/active_faults.hpp"
@@ -52,7 +53,8 @@ public:
         std::optional<StateFile> state{};
         std::optional<std::size_t> base{};  ///< the station that carries the base antenna of the pair
         std::optional<MovingBase> moving_base{};
-        std::uint64_t seed = 1;  ///< of its own random numbers
+        std::uint64_t seed = 1;              ///< of its own random numbers
+        std::vector<HeardBytes> repeated{};  ///< input of an earlier run, to be heard again
     };
     explicit Station(Parts parts);
 
@@ -76,7 +78,8 @@ public:
 
     [[nodiscard]] GpsTime next_epoch() const { return grid_.next(); }
     /// When a fault or a held byte wants to be looked at next.
-    [[nodiscard]] std::optional<GpsTime> next_change() const;
+    /// @param now of the last look
+    [[nodiscard]] std::optional<GpsTime> next_change(GpsTime now) const;
     /// Faults of this receiver.
     [[nodiscard]] ActiveFaults& faults() { return faults_; }
     [[nodiscard]] const ActiveFaults& faults() const { return faults_; }
@@ -105,6 +108,7 @@ public:
 private:
     [[nodiscard]] std::set<firmware::PortId> wired_ports() const;
     void hear(std::size_t wire, GpsTime now, Dialogue* dialogue);
+    void hear_again(GpsTime now, Dialogue* dialogue);
     void speak(const LoopTime& time, Dialogue* dialogue);
     void send_on_wire(std::size_t wire, const std::vector<firmware::Receiver::Sent>& pieces, bool at_rest);
     void follow_faults(GpsTime now);
@@ -115,6 +119,7 @@ private:
     ActiveFaults faults_;
     bool faults_act_ = false;               // on receiver or wires, at the last look
     std::vector<FaultyWire> faulty_wires_;  // one more than none: what has no wire is recorded as if it had
+    std::size_t heard_again_ = 0;           // of parts_.repeated
     EpochGrid grid_;
     RunCounts counts_;
 };

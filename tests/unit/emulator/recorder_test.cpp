@@ -167,7 +167,7 @@ TEST(Recorder, TheTimesOfBytesFollowTheBytes) {
         recorder->record_output(to_bytes("abc"), {start, 100});
         recorder->record_output({}, {start, 150});
         recorder->record_output(to_bytes("de"), {start + std::chrono::milliseconds(1), 200});
-        recorder->record_input(to_bytes("in"));
+        recorder->record_input(to_bytes("in"), {});
     }
     EXPECT_EQ(content_of(folder / "run/port0.out"), "abcde");
     EXPECT_EQ(content_of(folder / "run/port0.in"), "in");

@@ -17,6 +17,10 @@ using testing::StartsWith;
 
 TEST(ScenarioExpect, SentencesAreRead) {
     const auto list = scenario_of(R"toml(
+[[receiver]]
+name = "left"
+[[fault]]
+kind = "outage"
 [[expect]]
 what = "no fix within 2 s of the outage"
 [[expect]]

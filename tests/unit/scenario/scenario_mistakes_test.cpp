@@ -141,10 +141,10 @@ TEST(ScenarioMistakes, TablesThatContradictThemselvesAreRefused) {
     EXPECT_THAT(mistakes_of("[model.satellite-count]\nsigma_m = [1, 2, 3]"), HasSubstr("has 3 numbers; expected 6"));
 }
 
-TEST(ScenarioMistakes, KeysOfLaterVersionsAreRefusedByName) {
-    for (const char* later : {"[[fault]]", "[[command]]"})
-        EXPECT_THAT(mistakes_of(later), AllOf(HasSubstr("not in this version"), Not(HasSubstr("unknown key"))))
-            << later;
+TEST(ScenarioMistakes, FaultsAndCommandsNeedAKind) {
+    for (const char* entry : {"[[fault]]", "[[command]]"})
+        EXPECT_THAT(mistakes_of(entry), AllOf(HasSubstr("has no kind; expected one of"), Not(HasSubstr("unknown key"))))
+            << entry;
 }
 
 TEST(ScenarioMistakes, AllAreToldInTheOrderOfTheFile) {

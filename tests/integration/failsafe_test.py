@@ -1,0 +1,154 @@
+"""Faults, verdicts and control as a user meets them: files, exit codes, a live run that is steered and then repeated."""
+import json
+import os
+import pathlib
+import unittest
+import xml.etree.ElementTree
+
+from pty_client_test import open_client, read_for
+from session import ROOT, Emulator, open_folder
+from session import skyloop as run_to_end
+
+SCENARIO = """[run]
+start = 2024-03-05T12:00:00Z
+duration_s = 60
+[model]
+name = "ideal"
+[[fault]]
+kind = "receiver_silent"
+name = "quiet"
+at_s = 20
+for_s = 5
+[[expect]]
+what = "receiver silent during quiet"
+[[expect]]
+what = "fix within 3 s of the end of quiet"
+"""
+POLL_MON_VER = bytes.fromhex("b5620a0400000e34")
+
+
+def skyloop(*arguments):
+    return run_to_end(*arguments, check=False)
+
+
+class VerdictsTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = open_folder()
+        self.scenario = pathlib.Path(self.folder.name, "quiet.toml")
+        self.out = pathlib.Path(self.folder.name, "out")
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def simulate(self, text):
+        self.scenario.write_text(text)
+        return skyloop("simulate", self.scenario, "--out", self.out)
+
+    def test_what_is_met_ends_well(self):
+        done = self.simulate(SCENARIO)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("2 of 2 expectations met", done.stdout)
+        suite = xml.etree.ElementTree.parse(self.out / "junit.xml").getroot()
+        self.assertEqual((suite.get("tests"), suite.get("failures")), ("2", "0"))
+        self.assertTrue(json.loads((self.out / "verdicts.json").read_text())["met"])
+        events = [json.loads(line) for line in (self.out / "commands.jsonl").read_text().splitlines()]
+        self.assertEqual([(e["event"], e["name"], e["time_s"]) for e in events],
+                         [("fault_begins", "quiet", 20.0), ("fault_ends", "quiet", 25.0)])
+
+    def test_what_is_not_met_ends_with_three(self):
+        done = self.simulate(SCENARIO + '[[expect]]\nwhat = "client reconfigures within 5 s of quiet"\n')
+        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+        self.assertIn("FAILED", done.stdout)
+        failure = xml.etree.ElementTree.parse(self.out / "junit.xml").getroot().find(".//failure")
+        self.assertIsNotNone(failure)
+
+    def test_mistakes_are_told_by_line_and_column(self):
+        cases = {
+            '[[fault]]\nkind = "outtage"\n': r"quiet.toml:2:\d+: fault.kind: is 'outtage'; did you mean 'outage'",
+            '[[fault]]\nkind = "outage"\natt_s = 5\n': r"quiet.toml:3:\d+: fault.att_s: unknown key; did you mean 'at_s'",
+            '[[fault]]\nkind = "outage"\nat_s = -5\n': r"quiet.toml:3:\d+: fault.at_s: is -5; expected a number",
+            '[[fault]]\nkind = "outage"\nat_s = nan\n': r"quiet.toml:3:\d+: fault.at_s: is nan; expected a number",
+            '[[fault]]\nkind = "outage"\nafter = "x"\n': r"fault.after: is 'x'; no entry has this name",
+            '[[fault]]\nat_s = 5\n': r"quiet.toml:1:\d+: .*has no kind; expected one of outage",
+            '[[fault]]\nkind = "outage"\nreceiver = "x"\n': r"'x' is no receiver of this scenario; expected some of receiver0",
+            '[[command]]\nkind = "set_baud"\n': r"command.baud: is missing; expected bit/s",
+            '[[command]]\nkind = "start_fault"\nfault = "x"\n': r"command.fault: is 'x'; no fault of this scenario",
+            '[[expect]]\nwhat = "fixx"\n': r"quiet.toml:2:\d+: expect.what: at character 1: 'fixx'",
+            '[[expect]]\nwhat = "fix after outtage"\n': r"outtage",
+        }
+        for text, expected in cases.items():
+            with self.subTest(text):
+                self.scenario.write_text(text)
+                done = skyloop("check", self.scenario)
+                self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+                self.assertRegex(done.stderr, expected)
+
+    def test_check_prints_the_timeline(self):
+        self.scenario.write_text(SCENARIO)
+        done = skyloop("check", self.scenario)
+        self.assertRegex(done.stdout, r"20\.000 s +quiet begins\n +25\.000 s +quiet ends")
+
+
+class CatalogueTest(unittest.TestCase):
+    def test_the_page_is_what_the_program_tells(self):
+        page = (ROOT / "docs/faults.md").read_text()
+        self.assertEqual(skyloop("faults", "--format", "markdown").stdout, page,
+                         "docs/faults.md is old: skyloop faults --format markdown > docs/faults.md")
+
+    def test_every_kind_has_an_effect_and_a_cause(self):
+        kinds = json.loads(skyloop("faults", "--format", "json").stdout)
+        self.assertGreater(len(kinds), 50)
+        for kind in kinds:
+            with self.subTest(kind["name"]):
+                self.assertRegex(kind["effect"], r"\w.*\.$")
+                self.assertRegex(kind["cause"], r"\w.*\.$")
+                self.assertIn(kind["name"], skyloop("faults", kind["name"]).stdout)
+
+    def test_an_unknown_kind_suggests_the_nearest(self):
+        done = skyloop("faults", "jaming")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("did you mean 'jamming'", done.stderr)
+
+
+class LiveTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = open_folder()
+        self.path = pathlib.Path(self.folder.name)
+        self.scenario = self.path / "live.toml"
+        self.scenario.write_text('[run]\nstart = 2024-03-05T12:00:00.5Z\n[model]\nname = "baseline"\n')
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def ctl(self, port, *arguments):
+        done = skyloop("ctl", port, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def test_a_live_run_is_steered_and_repeated_byte_by_byte(self):
+        first = self.path / "first"
+        with Emulator(str(self.scenario), "--port", "pty", "--record", str(first), "--control", "0",
+                      "--duration", "9") as emulator:
+            port = emulator.said(r"^control: http://127\.0\.0\.1:(\d+)/")
+            client = open_client(emulator.tty)
+            read_for(client, 1.5)
+            os.write(client, POLL_MON_VER)
+            self.assertIn(b"\xb5\x62\x0a\x04", read_for(client, 0.6))
+            self.ctl(port, "fault", "receiver_silent", "for_s=2")
+            read_for(client, 0.6)
+            self.assertIn("receiver_silent", self.ctl(port, "status"))
+            self.assertEqual(read_for(client, 0.8), b"")
+            self.ctl(port, "move", "46,8,500")
+            read_for(client, 6)
+            os.close(client)
+            self.assertEqual(emulator.finish(), 0, emulator.log)
+        again = self.path / "again"
+        done = skyloop("simulate", self.scenario, "--duration", 9, "--repeat", first, "--out", again)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for name in ("port0.out", "port0.in", "fixes.csv"):
+            self.assertEqual((again / name).read_bytes(), (first / name).read_bytes(), name)
+        self.assertIn(b"\xb5\x62\x0a\x04", (again / "port0.out").read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,203 @@
+// Faults and commands in a run: their beginning, their effect on the wire, their end without residue.
+#include "skyloop/emulator/director.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "run_parts.hpp"
+#include "skyloop/protocol/nmea_sentence.hpp"
+
+namespace skyloop::test {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+const std::atomic<bool> go_on{false};
+
+// What observers are told, a word each.
+class Witness : public RunObserver {
+public:
+    void on_epoch(const EpochSeen& seen) override {
+        ++epochs;
+        with_fix += seen.reported.fix_ok ? 1 : 0;
+    }
+    void on_fault(const FaultSeen& seen) override {
+        happened.push_back(std::string(seen.name) + (seen.begins ? " begins" : " ends"));
+    }
+    void on_command(const CommandSeen& seen) override { happened.push_back("command " + std::string(seen.name)); }
+    void on_message(const MessageSeen& seen) override {
+        if (seen.from_client) heard.emplace_back(seen.name);
+    }
+    int epochs = 0, with_fix = 0;
+    std::vector<std::string> happened, heard;
+};
+
+struct DirectedRun {
+    MemoryRun run;
+    Witness witness;
+    CommandQueue live;
+};
+
+std::unique_ptr<DirectedRun> directed(const std::string& toml, Nanoseconds tick = 0ns) {
+    const Scenario scenario =
+        emulator_scenario("[run]\nstart = 2024-03-05T12:00:00Z\n[model]\nname = \"ideal\"\n" + toml);
+    auto made = std::make_unique<DirectedRun>();
+    MemoryRunParts parts;
+    parts.tick = tick;
+    made->run = memory_run(scenario, std::move(parts));
+    Director::Parts director;
+    director.faults = scenario.faults;
+    director.commands = scenario.commands;
+    director.start = made->run.start;
+    director.live = &made->live;
+    made->run.emulator->replace_director(Director(std::move(director)));
+    made->run.emulator->add_observer(&made->witness);
+    return made;
+}
+
+void run_for(DirectedRun& directed, Nanoseconds span) {
+    directed.run.emulator->run_until(directed.run.emulator->now() + span, go_on);
+}
+
+std::string written(const DirectedRun& directed) { return to_string(ByteSpan(directed.run.wire->written())); }
+
+std::string sound_bytes(Nanoseconds span) {
+    const auto sound = directed("");
+    run_for(*sound, span);
+    return written(*sound);
+}
+
+TEST(Director, TellsWhatBeginsAndEnds) {
+    const auto run = directed(
+        "[[fault]]\nkind = \"receiver_silent\"\nname = \"quiet\"\nat_s = 2.5\nfor_s = 3\n"
+        "[[command]]\nkind = \"note\"\ntext = \"x\"\nafter_end_of = \"quiet\"\nat_s = 1\n");
+    run_for(*run, 10s);
+    EXPECT_THAT(run->witness.happened, ElementsAre("quiet begins", "quiet ends", "command note"));
+    EXPECT_EQ(run->witness.epochs, 10);
+}
+
+TEST(Director, ASilentReceiverSpeaksAgainAsIfNothingHadBeen) {
+    const auto run = directed("[[fault]]\nkind = \"receiver_silent\"\nat_s = 3.5\nfor_s = 4\n");
+    run_for(*run, 6s);
+    const std::size_t silent_from = written(*run).size();
+    run_for(*run, 1s);
+    EXPECT_EQ(written(*run).size(), silent_from);
+    run_for(*run, 20s);
+    const std::string sound = sound_bytes(27s), faulty = written(*run);
+    ASSERT_LT(faulty.size(), sound.size());
+    constexpr std::size_t tail = 2000;
+    ASSERT_GT(faulty.size(), tail);
+    EXPECT_EQ(faulty.substr(faulty.size() - tail), sound.substr(sound.size() - tail));
+}
+
+TEST(Director, AWireWithFaultsDamagesBytesAndNoOthers) {
+    const auto run = directed("[[fault]]\nkind = \"byte_loss\"\nat_s = 3.5\nfor_s = 4\nprobability = 0.2\n");
+    run_for(*run, 20s);
+    const std::string sound = sound_bytes(20s), faulty = written(*run);
+    EXPECT_LT(faulty.size(), sound.size());
+    EXPECT_GT(faulty.size(), sound.size() / 2);
+    EXPECT_EQ(faulty.substr(0, 400), sound.substr(0, 400));
+    EXPECT_EQ(faulty.substr(faulty.size() - 400), sound.substr(sound.size() - 400));
+}
+
+TEST(Director, AnUnpluggedWireCarriesNothing) {
+    const auto run = directed("[[fault]]\nkind = \"unplugged\"\nat_s = 3.5\nfor_s = 4\n");
+    run_for(*run, 5s);
+    const std::size_t before = written(*run).size();
+    run_for(*run, 2s);
+    EXPECT_EQ(written(*run).size(), before);
+    EXPECT_FALSE(run->run.emulator->wires().front().link.connected());
+    run_for(*run, 3s);
+    EXPECT_GT(written(*run).size(), before);
+}
+
+TEST(Director, ABreakIsOneZeroByte) {
+    const auto run = directed("[[fault]]\nkind = \"line_break\"\nat_s = 3.5\nfor_s = 4\n");
+    run_for(*run, 20s);
+    const std::string bytes = written(*run);
+    EXPECT_EQ(std::count(bytes.begin(), bytes.end(), '\0'), 1);
+}
+
+TEST(Director, AWrongSpeedOfTheLineGarbles) {
+    const auto run = directed(
+        "[[receiver]]\nbaud = 38400\n[[fault]]\nkind = \"speed_mismatch\"\nat_s = 3.5\nfor_s = 4\n"
+        "baud = 9600\n");
+    run->run.wire->set_line({true, 38400});
+    run_for(*run, 20s);
+    EXPECT_GT(run->run.emulator->wires().front().link.counters().bytes_garbled, 0u);
+    const std::string faulty = written(*run);
+    EXPECT_TRUE(parse_sentence(faulty.substr(faulty.rfind('$'))).has_value());
+}
+
+TEST(Director, CarriesOutLiveCommands) {
+    const auto run = directed("[[fault]]\nkind = \"receiver_silent\"\nname = \"quiet\"\nat_s = 1000\nfor_s = 5\n");
+    run_for(*run, 3s);
+    Command start{CommandVerb::start_fault, Parameters({{"fault", std::string("quiet")}}), "", "http"};
+    ASSERT_TRUE(run->live.push(start));
+    run_for(*run, 2s);
+    EXPECT_THAT(run->witness.happened, ElementsAre("command ", "quiet begins"));
+    ASSERT_TRUE(run->live.push({CommandVerb::stop_fault, Parameters({{"fault", std::string("quiet")}}), "", "http"}));
+    run_for(*run, 2s);
+    EXPECT_THAT(run->witness.happened, ElementsAre("command ", "quiet begins", "command ", "quiet ends"));
+}
+
+TEST(Director, BeginsFaultsThatNoScenarioNames) {
+    const auto run = directed("");
+    run_for(*run, 3s);
+    const FaultKind& kind = *find_fault_kind("receiver_silent");
+    auto values = check_parameters(kind.parameters, {}).parameters.values();
+    values.emplace("kind", std::string("receiver_silent"));
+    values.emplace("name", std::string("live"));
+    values.emplace("for_s", 2.0);
+    ASSERT_TRUE(run->live.push({CommandVerb::start_fault, Parameters(values), "", "http"}));
+    run_for(*run, 10s);
+    EXPECT_THAT(run->witness.happened, ElementsAre("command ", "live begins", "live ends"));
+}
+
+TEST(Director, MovesTheVehicle) {
+    const auto run = directed(
+        "[trajectory]\nkind = \"fixed\"\nat = [10, 20, 300]\n"
+        "[[command]]\nkind = \"move_to\"\nat_s = 5\nat = [11, 21]\n");
+    run_for(*run, 4s);
+    const auto place = [&] { return run->run.emulator->simulation().truth_at(run->run.emulator->now()).geodetic; };
+    EXPECT_NEAR(place().latitude.deg(), 10, 1e-9);
+    run_for(*run, 4s);
+    EXPECT_NEAR(place().latitude.deg(), 11, 1e-9);
+    EXPECT_NEAR(place().longitude.deg(), 21, 1e-9);
+    EXPECT_NEAR(place().height.above_ellipsoid.value(), 300, 1e-6);
+}
+
+TEST(Director, EndsARunThatIsToldTo) {
+    const auto run = directed("[[command]]\nkind = \"stop\"\nat_s = 4.5\n");
+    run_for(*run, 100s);
+    EXPECT_EQ(run->witness.epochs, 5);
+}
+
+TEST(Director, TriggersHearTheClient) {
+    const auto run =
+        directed("[[fault]]\nkind = \"receiver_silent\"\nwhen_client_sends = \"MON-VER\"\nfor_s = 2\n", 10ms);
+    run_for(*run, 2s);
+    const Bytes poll{0xB5, 0x62, 0x0A, 0x04, 0x00, 0x00, 0x0E, 0x34};
+    run->run.wire->feed(poll);
+    run_for(*run, 5s);
+    EXPECT_THAT(run->witness.heard, ElementsAre("MON-VER"));
+    EXPECT_THAT(run->witness.happened, ElementsAre("receiver_silent begins", "receiver_silent ends"));
+}
+
+TEST(Director, TheSameSeedGivesTheSameBytes) {
+    const std::string toml =
+        "[[fault]]\nkind = \"byte_loss\"\nbetween_s = [2, 6]\nfor_between_s = [1, 5]\nprobability = 0.3\n"
+        "[[fault]]\nkind = \"bit_flips\"\nat_s = 10\nfor_s = 5\n";
+    const auto one = directed(toml), often = directed(toml, 7ms);
+    run_for(*one, 20s);
+    run_for(*often, 20s);
+    EXPECT_EQ(written(*one), written(*often));
+    EXPECT_NE(written(*one), sound_bytes(20s));
+}
+
+}  // namespace
+}  // namespace skyloop::test

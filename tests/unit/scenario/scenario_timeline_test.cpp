@@ -1,0 +1,92 @@
+// [[fault]] and [[command]].
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scenario_text.hpp"
+#include "skyloop/scenario/scenario_file.hpp"
+
+namespace skyloop::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+TEST(ScenarioTimeline, FaultsAreReadWithTheirStandards) {
+    const Scenario scenario = scenario_of(R"toml(
+[[receiver]]
+name = "left"
+[[receiver]]
+name = "right"
+[[fault]]
+kind = "byte_loss"
+at_s = 5
+for_s = 2.5
+ramp_in_s = 1
+probability = 0.25
+receiver = "right"
+[[fault]]
+kind = "byte_loss"
+when_inside = [[47, 8], [47, 9], [48, 9]]
+probability = 0.5
+)toml");
+    ASSERT_THAT(scenario.faults, SizeIs(2));
+    const FaultEntry& first = scenario.faults[0];
+    EXPECT_EQ(first.when.name, "byte_loss");
+    EXPECT_EQ(first.when.at, Seconds(5));
+    EXPECT_EQ(first.when.length, Seconds(2.5));
+    EXPECT_EQ(first.when.ramp_in, Seconds(1));
+    EXPECT_EQ(first.parameters.number("probability"), 0.25);
+    EXPECT_EQ(first.parameters.text("direction"), "to_client");
+    EXPECT_THAT(first.receivers, ElementsAre(1));
+    const FaultEntry& second = scenario.faults[1];
+    EXPECT_EQ(second.when.name, "byte_loss 2");
+    ASSERT_TRUE(second.when.when);
+    EXPECT_THAT(second.when.when->inside, SizeIs(3));
+    EXPECT_THAT(second.receivers, ElementsAre(0, 1));
+}
+
+TEST(ScenarioTimeline, CommandsAreRead) {
+    const Scenario scenario = scenario_of(R"toml(
+[[command]]
+kind = "set_baud"
+baud = 9600
+at_utc = 2024-03-05T12:00:00Z
+receiver = "receiver0"
+)toml");
+    ASSERT_THAT(scenario.commands, SizeIs(1));
+    const CommandEntry& entry = scenario.commands[0];
+    EXPECT_EQ(entry.command.verb, CommandVerb::set_baud);
+    EXPECT_EQ(entry.command.parameters.number("baud"), 9600);
+    EXPECT_EQ(entry.command.receiver, "receiver0");
+    EXPECT_EQ(entry.command.source, "scenario");
+    EXPECT_TRUE(entry.when.once);
+    ASSERT_TRUE(entry.when.at_time);
+    EXPECT_THAT(timeline_of(scenario), SizeIs(1));
+}
+
+TEST(ScenarioTimeline, MistakesAreToldWhereTheyStand) {
+    const auto mistakes = [](std::string_view text) {
+        const auto scenario = read_scenario(text, "test.toml");
+        return scenario ? std::string() : scenario.error().message;
+    };
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nazimuth_from_deg = 400\n"),
+                HasSubstr("test.toml:3:20: fault.azimuth_from_deg: is 400; expected a number from -360 to 360"));
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nsignals = [\"L1\", 7]\n"),
+                HasSubstr("fault.signals: is a list"));
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nname = \"a\"\n[[command]]\nkind = \"note\"\nname = \"a\"\n"),
+                HasSubstr("test.toml:6:8: command.name: is that of another entry"));
+    EXPECT_THAT(
+        mistakes("[[fault]]\nkind = \"outage\"\nname = \"a\"\nafter = \"b\"\n[[fault]]\nkind = \"outage\"\nname "
+                 "= \"b\"\nafter = \"a\"\n"),
+        HasSubstr("in a circle"));
+    EXPECT_THAT(mistakes("[[command]]\nkind = \"pause\"\nreceiver = \"receiver0\"\n"),
+                HasSubstr("not for one receiver alone"));
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"saturated_uart\"\nbytes_per_s = 10\nbaud = 9600\n"),
+                HasSubstr("test.toml:1:1: [fault]"));
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"refuses_keys\"\nkeys = \"CFG-RATE-MESA\"\n"), HasSubstr("CFG-RATE-MEAS"));
+}
+
+}  // namespace
+}  // namespace skyloop::test
