@@ -128,7 +128,7 @@ struct Scenario {
     std::vector<ReceiverEntry> receivers = std::vector<ReceiverEntry>(1);  ///< at least one
     std::vector<FaultEntry> faults;
     std::vector<CommandEntry> commands;
-    std::vector<Expectation> expectations;                                 ///< what the run is judged by
+    std::vector<Expectation> expectations;  ///< what the run is judged by
     std::vector<std::string> warnings;  ///< what a reader should be told, e.g. a level that is too large for a plane
 };
 
