@@ -4,6 +4,7 @@
 
 #include "rinex_recording.hpp"
 #include "skyloop/base/digest.hpp"
+#include "skyloop/client/open_client.hpp"
 #include "skyloop/scenario/board_file.hpp"
 #include "skyloop/transport/open_transport.hpp"
 
@@ -141,7 +142,8 @@ Result<PlannedStation> plan_station(const SharedParts& shared, std::size_t index
 
 Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::size_t index) {
     for (const WireRequest& wire : station.wires) {
-        auto transport = open_transport(wire.uri);
+        const auto client = client_of_uri(wire.uri);
+        auto transport = client ? open_client(*client) : open_transport(wire.uri);
         if (!transport) return fail(of_receiver(transport.error(), shared.scenario, index));
         if (shared.mode.virtual_time) (*transport)->allow_waiting();
         const InputPace pace = shared.mode.virtual_time ? InputPace::at_once : InputPace::line;

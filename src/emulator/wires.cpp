@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "skyloop/base/spelling.hpp"
+#include "skyloop/client/open_client.hpp"
 #include "skyloop/transport/open_transport.hpp"
 
 namespace skyloop {
@@ -41,6 +42,10 @@ Result<WireRequest> parse_wire(std::string_view text, const BoardProfile& board)
             return fail(ErrorCode::usage, fmt::format("port '{}': {} has no port '{}'{}; expected {}", text, board.name,
                                                       name, did_you_mean(name, names), fmt::join(names, ", ")));
         wire.port = board.ports[static_cast<std::size_t>(found - names.begin())];
+    }
+    if (const auto client = client_of_uri(wire.uri)) {
+        if (const auto known = check_client(*client); !known) return fail(known.error());
+        return wire;
     }
     if (const auto uri = parse_port_uri(wire.uri); !uri) return fail(uri.error());
     return wire;

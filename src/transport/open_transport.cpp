@@ -12,7 +12,7 @@
 namespace skyloop {
 namespace {
 
-constexpr std::string_view offered = "pty[:LINK], file:PATH or -";
+constexpr std::string_view offered = "pty[:LINK], file:PATH, client:NAME or -";
 constexpr std::array<std::string_view, 2> known_schemes{"pty", "file"};
 constexpr std::array<std::string_view, 5> later_schemes{"tcp", "serial", "usbip", "usb", "hid"};
 

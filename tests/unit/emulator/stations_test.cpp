@@ -43,6 +43,7 @@ TEST(Wires, ANameChoosesThePort) {
     EXPECT_EQ(wire("uart1=-").uri, "-");
     EXPECT_EQ(wire("file:/tmp/a=b").uri, "file:/tmp/a=b") << "a path with an equals sign is no name";
     EXPECT_EQ(parse_wire("pty", board_with({PortId::usb}))->port, PortId::usb) << "the only one there is";
+    EXPECT_EQ(wire("client:naive-ubx").uri, "client:naive-ubx");
 }
 
 TEST(Wires, AnUnknownNameListsThePortsOfTheBoard) {
@@ -55,6 +56,7 @@ TEST(Wires, AnUnknownNameListsThePortsOfTheBoard) {
                                testing::EndsWith("expected uart1, usb")));
     EXPECT_FALSE(parse_wire("=pty", board));
     EXPECT_THAT(parse_wire("usb=tcp:1", board).error().message, HasSubstr("tcp"));
+    EXPECT_THAT(parse_wire("usb=client:nobody", board).error().message, HasSubstr("careful-ubx, naive-ubx"));
     EXPECT_FALSE(parse_wire("usb=", board));
 }
 

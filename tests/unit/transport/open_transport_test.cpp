@@ -29,8 +29,9 @@ TEST(OpenTransport, OpensWhatThisVersionHas) {
 }
 
 TEST(OpenTransport, RefusesClearly) {
-    EXPECT_EQ(refusal("tcp:2000").message,
-              "port 'tcp:2000': tcp: is not supported by this version; expected pty[:LINK], file:PATH or -");
+    EXPECT_EQ(
+        refusal("tcp:2000").message,
+        "port 'tcp:2000': tcp: is not supported by this version; expected pty[:LINK], file:PATH, client:NAME or -");
     for (const std::string uri : {"serial:/dev/ttyS0@9600", "usbip:3240", "usb:1546:01a8", "hid:10c4:ea80"})
         EXPECT_THAT(refusal(uri).message, HasSubstr("is not supported by this version")) << uri;
     EXPECT_THAT(refusal("ptty:gps0").message, HasSubstr("did you mean 'pty'?"));
