@@ -7,7 +7,17 @@
 
 namespace skyloop {
 
-void NaiveUbxClient::begin() { send(encode_frame(MonVer::message_id, {})); }
+namespace {
+
+constexpr Nanoseconds start_up_time = std::chrono::milliseconds(100);  // from its power to its first message
+
+}  // namespace
+
+void NaiveUbxClient::pass_time() {
+    if (asked_ || now() - begun_at_ < start_up_time) return;
+    asked_ = true;
+    send(encode_frame(MonVer::message_id, {}));
+}
 
 void NaiveUbxClient::hear(const StreamPiece& piece) {
     const auto frame = piece.kind == StreamKind::ubx ? parse_frame(piece.bytes) : std::nullopt;

@@ -12,12 +12,13 @@ public:
     NaiveUbxClient() : ScriptedClient("naive-ubx") {}
 
 protected:
-    void begin() override;
+    void begin() override { begun_at_ = now(); }
     void hear(const StreamPiece& piece) override;
-    void pass_time() override {}
+    void pass_time() override;
 
 private:
-    bool identified_ = false;
+    GpsTime begun_at_{};
+    bool asked_ = false, identified_ = false;
 };
 
 /// Listens at 9600 bit/s and takes each GGA that has a position, whatever its quality.
