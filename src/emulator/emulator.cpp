@@ -35,6 +35,10 @@ GpsTime Emulator::next_instant(GpsTime end) const {
 }
 
 void Emulator::run_until(GpsTime end, const std::atomic<bool>& stop) {
+    // What is wrong from the first instant on is so before the first byte.
+    direct();
+    for (Station& station : parts_.stations)
+        station.follow_faults(now_);
     while (now_ < end && !stop && !stopped()) {
         if (parts_.pacer->paused()) {
             Pacer::rest();

@@ -71,10 +71,10 @@ Result<Fault> make_jitter(const Parameters& parameters, const FaultContext&) {
 }
 
 Result<Fault> make_stall(const Parameters& parameters, const FaultContext&) {
-    const double hold = parameters.number("hold_s"), every = parameters.number("every_s");
+    const double hold = parameters.number("hold_s"), every = parameters.number("period_s");
     if (hold >= every)
         return fail(ErrorCode::usage,
-                    "stall: hold_s is not shorter than every_s; expected time for the bytes to come through");
+                    "stall: hold_s is not shorter than period_s; expected time for the bytes to come through");
     return worsened(parameters, [hold, every](WireDirection& direction, const FaultMoment& moment) {
         if (std::fmod(moment.since_start.value(), every) < hold * moment.strength) direction.stalled = true;
     });
@@ -193,7 +193,7 @@ void add_late_bytes(std::vector<FaultKind>& kinds) {
         wire_kind("stall", "Again and again nothing comes for a while, and then all of it in one burst.",
                   "A host blocked by flash writes or logging, or a USB bus that sleeps, drains its buffer late.",
                   {number_parameter("hold_s", 1, 0, 600, "how long nothing comes, s"),
-                   number_parameter("every_s", 5, 0.001, 3600, "from the start of a stall to the next one, s"),
+                   number_parameter("period_s", 5, 0.001, 3600, "from the start of a stall to the next one, s"),
                    wire_direction_parameter()},
                   make_stall));
 }

@@ -80,6 +80,8 @@ public:
     /// When a fault or a held byte wants to be looked at next.
     /// @param now of the last look
     [[nodiscard]] std::optional<GpsTime> next_change(GpsTime now) const;
+    /// Lets what is wrong now act on receiver and wires; exchange() does so, too.
+    void follow_faults(GpsTime now);
     /// Faults of this receiver.
     [[nodiscard]] ActiveFaults& faults() { return faults_; }
     [[nodiscard]] const ActiveFaults& faults() const { return faults_; }
@@ -111,7 +113,6 @@ private:
     void hear_again(GpsTime now, Dialogue* dialogue);
     void speak(const LoopTime& time, Dialogue* dialogue);
     void send_on_wire(std::size_t wire, const std::vector<firmware::Receiver::Sent>& pieces, bool at_rest);
-    void follow_faults(GpsTime now);
     [[nodiscard]] firmware::PortId port_of(std::size_t wire) const;
     void follow_settings(GpsTime now);
 

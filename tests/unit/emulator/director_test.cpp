@@ -104,6 +104,17 @@ TEST(Director, AWireWithFaultsDamagesBytesAndNoOthers) {
     EXPECT_EQ(faulty.substr(faulty.size() - 400), sound.substr(sound.size() - 400));
 }
 
+TEST(Director, AFaultFromTheStartOnIsThereBeforeTheFirstByte) {
+    const auto run = directed("[[fault]]\nkind = \"receiver_deaf\"\nat_s = 0\nfor_s = 3\n", 10ms);
+    const Bytes poll{0xB5, 0x62, 0x0A, 0x04, 0x00, 0x00, 0x0E, 0x34};
+    run->run.wire->feed(poll);
+    run_for(*run, 5s);
+    EXPECT_EQ(written(*run).find("\xB5\x62\x0A\x04"), std::string::npos);
+    run->run.wire->feed(poll);
+    run_for(*run, 1s);
+    EXPECT_NE(written(*run).find("\xB5\x62\x0A\x04"), std::string::npos);
+}
+
 TEST(Director, AnUnpluggedWireCarriesNothing) {
     const auto run = directed("[[fault]]\nkind = \"unplugged\"\nat_s = 3.5\nfor_s = 4\n");
     run_for(*run, 5s);

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
+#include "skyloop/fault/command.hpp"
+#include "skyloop/fault/fault_kind.hpp"
 #include "skyloop/fault/timeline_keys.hpp"
 
 namespace skyloop::test {
@@ -205,6 +209,18 @@ TEST(TimelineKeys, ContradictionsAreTold) {
     EXPECT_THAT(mistakes({{"when_inside", std::vector<double>{1, 2, 3, 4, 5, 6, 7}}}), HasSubstr("three pairs"));
     EXPECT_THAT(mistakes({{"when_inside", std::vector<double>{91, 2, 3, 4, 5, 6}}}), HasSubstr("latitude"));
     EXPECT_THAT(mistakes({{"at_utc", std::string("noon")}}), HasSubstr("at_utc"));
+}
+
+TEST(TimelineKeys, NoFaultOrCommandHasAParameterOfTheirNames) {
+    std::set<std::string> taken{"kind", "receiver", "what"};
+    for (const ParameterSpec& spec : timeline_keys())
+        taken.insert(spec.name);
+    for (const FaultKind& kind : fault_kinds())
+        for (const ParameterSpec& spec : kind.parameters)
+            EXPECT_FALSE(taken.contains(spec.name)) << kind.name << "." << spec.name;
+    for (const CommandKind& kind : command_kinds())
+        for (const ParameterSpec& spec : kind.parameters)
+            EXPECT_FALSE(taken.contains(spec.name)) << kind.name << "." << spec.name;
 }
 
 TEST(TimelineKeys, EntriesThatDoNotFitTogetherAreTold) {

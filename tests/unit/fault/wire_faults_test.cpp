@@ -169,7 +169,7 @@ TEST(WireFaults, JitterKeepsTheOrder) {
 }
 
 TEST(WireFaults, StallsComeAgainAndEndInABurst) {
-    const WireRun run = run_with(wire_fault("stall", {{"hold_s", 2.0}, {"every_s", 5.0}}), 60);
+    const WireRun run = run_with(wire_fault("stall", {{"hold_s", 2.0}, {"period_s", 5.0}}), 60);
     EXPECT_EQ(run.heard, run.sent);
     for (std::size_t tenth = 0; tenth < 600; ++tenth) {
         const std::size_t held_since = tenth - tenth % 50;
@@ -178,7 +178,7 @@ TEST(WireFaults, StallsComeAgainAndEndInABurst) {
         else
             EXPECT_EQ(run.by_tenths[tenth], run.sent_by_tenths[tenth]) << tenth;
     }
-    const auto impossible = try_wire_fault("stall", {{"hold_s", 5.0}, {"every_s", 5.0}});
+    const auto impossible = try_wire_fault("stall", {{"hold_s", 5.0}, {"period_s", 5.0}});
     ASSERT_FALSE(impossible);
     EXPECT_EQ(impossible.error().code, ErrorCode::usage);
 }
