@@ -1,0 +1,106 @@
+// Errors over time: reported minus true, by decades, with the faults behind them.
+import { colour } from "./appearance.js";
+import { context, once, polyline } from "./canvas.js";
+import { byId } from "./dom.js";
+import { clock, clockStep, roundMetres } from "./format.js";
+
+const left = 52;
+const right = 10;
+const top = 8;
+const bottom = 22;
+const least = 0.1; // m; what is smaller is drawn there
+
+export class ErrorPlot {
+    constructor() {
+        this.canvas = byId("errors");
+        this.span = Number(byId("error-span").value);
+        byId("error-span").onchange = (event) => {
+            this.span = Number(event.target.value);
+            this.paint();
+        };
+        this.paint = once(() => this.draw());
+        new ResizeObserver(this.paint).observe(this.canvas);
+    }
+
+    /** @param now s of the run */
+    show(history, bars, now) {
+        Object.assign(this, { history, bars, now });
+        this.paint();
+    }
+
+    draw() {
+        const area = context(this.canvas);
+        if (!area || !this.history) return;
+        const { pen, width, height } = area;
+        const first = this.history.samples[0]?.time ?? 0;
+        const seen = Math.max(this.now - first, 20);
+        const span = this.span ? Math.min(this.span, seen) : seen;
+        const begin = this.now - span;
+        // One from before the window, so that lines come in from its edge.
+        const from = this.history.samples.findIndex((sample) => sample.time >= begin);
+        const samples = from < 0 ? [] : this.history.samples.slice(Math.max(from - 1, 0));
+        const largest = samples.reduce((m, s) => Math.max(m, s.horizontal ?? 0, s.up ?? 0, s.claimed ?? 0), 10);
+        const decades = Math.ceil(Math.log10(Math.min(largest, 1e8) / least) - 1e-9);
+        const x = (time) => left + ((time - begin) / span) * (width - left - right);
+        const y = (value) =>
+            height - bottom - (Math.log10(Math.max(value, least) / least) / decades) * (height - top - bottom);
+        this.drawBehind(pen, { x, height, width, samples, begin });
+        this.drawGrid(pen, { x, y, height, width, decades, begin, span });
+        pen.save();
+        pen.beginPath();
+        pen.rect(left, 0, width - left - right, height);
+        pen.clip();
+        const line = (name, value, wide, dash = []) => {
+            pen.strokeStyle = colour(name);
+            pen.lineWidth = wide;
+            pen.setLineDash(dash);
+            polyline(pen, samples.map((s) => (s[value] === null ? null : [x(s.time), Math.max(y(s[value]), 1)])));
+        };
+        line("claimed", "claimed", 1.5, [5, 4]);
+        line("vertical", "up", 1.5);
+        line("fix", "horizontal", 2.5);
+        pen.restore();
+        pen.setLineDash([]);
+    }
+
+    drawBehind(pen, { x, height, width, samples, begin }) {
+        const band = (from, to, name) => {
+            const [a, b] = [Math.max(x(from), left), Math.min(x(to), width - right)];
+            if (b <= a) return;
+            pen.fillStyle = colour(name);
+            pen.fillRect(a, top, Math.max(b - a, 1), height - top - bottom);
+        };
+        for (const bar of this.bars)
+            if (bar.what === "fault" && bar.begins_s !== null && bar.begins_s <= this.now)
+                band(bar.begins_s, bar.active ? this.now : Math.min(bar.ends_s ?? this.now, this.now), "fault-soft");
+        for (let i = 0; i < samples.length; ++i)
+            if (!samples[i].ok)
+                band(Math.max(samples[i].time, begin), samples[i + 1]?.time ?? this.now, "nofix-soft");
+    }
+
+    drawGrid(pen, { x, y, height, width, decades, begin, span }) {
+        pen.strokeStyle = colour("grid");
+        pen.fillStyle = colour("ink-soft");
+        pen.lineWidth = 1;
+        pen.textBaseline = "middle";
+        pen.textAlign = "right";
+        pen.beginPath();
+        const every = Math.ceil((decades + 1) / Math.max(Math.floor((height - top - bottom) / 20), 2));
+        for (let decade = 0; decade <= decades; decade += every) {
+            const value = least * 10 ** decade;
+            const at = Math.round(y(value)) + 0.5;
+            pen.moveTo(left, at);
+            pen.lineTo(width - right, at);
+            pen.fillText(roundMetres(value), left - 6, Math.max(at, 8));
+        }
+        pen.textAlign = "center";
+        const step = clockStep((span * 80) / (width - left - right));
+        for (let time = Math.max(Math.ceil(begin / step) * step, 0); time <= this.now; time += step) {
+            const at = Math.round(x(time)) + 0.5;
+            pen.moveTo(at, top);
+            pen.lineTo(at, height - bottom);
+            if (at > left + 12 && at < width - 18) pen.fillText(clock(time), at, height - 9);
+        }
+        pen.stroke();
+    }
+}

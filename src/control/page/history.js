@@ -1,0 +1,58 @@
+// What the page has seen since it was opened: the stream tells of the moment alone.
+
+const mostSamples = 12_000;
+const earthRadius = 6378137; // WGS 84, semi-major axis, m
+const eccentricitySquared = 6.69437999014e-3; // WGS 84
+
+/** East and north of a place from an origin, m: radii of curvature, good to centimetres over some kilometres. */
+export function flat(place, origin) {
+    const rad = Math.PI / 180;
+    const sine = Math.sin(origin.lat_deg * rad);
+    const w = 1 - eccentricitySquared * sine * sine;
+    const meridian = (earthRadius * (1 - eccentricitySquared)) / w ** 1.5 + origin.height_m;
+    const normal = earthRadius / Math.sqrt(w) + origin.height_m;
+    const east = ((place.lon_deg - origin.lon_deg + 540) % 360) - 180;
+    return {
+        e: east * rad * normal * Math.cos(origin.lat_deg * rad),
+        n: (place.lat_deg - origin.lat_deg) * rad * meridian,
+    };
+}
+
+/** The place so far east and north of an origin: the inverse of `flat`. */
+export function unflat(point, origin) {
+    const unit = flat({ lat_deg: origin.lat_deg + 0.001, lon_deg: origin.lon_deg + 0.001 }, origin);
+    return {
+        lat_deg: origin.lat_deg + (point.n / unit.n) * 0.001,
+        lon_deg: origin.lon_deg + (point.e / unit.e) * 0.001,
+    };
+}
+
+/** Samples of one receiver, in ascending time. */
+export class History {
+    constructor() {
+        this.samples = [];
+    }
+
+    add(time, receiver) {
+        const last = this.samples.at(-1);
+        if (last && time < last.time) this.samples = []; // the program has begun anew
+        if (last && time === last.time) return;
+        const error = receiver.error;
+        this.samples.push({
+            time,
+            truth: receiver.truth,
+            fix: receiver.fix.place ?? null,
+            ok: receiver.fix.ok,
+            horizontal: error ? Math.hypot(error.east_m, error.north_m) : null,
+            up: error ? Math.abs(error.up_m) : null,
+            claimed: receiver.fix.h_acc_m ?? null,
+        });
+        if (this.samples.length > mostSamples) this.thin();
+    }
+
+    // Every other one of the older half goes.
+    thin() {
+        const half = this.samples.length / 2;
+        this.samples = this.samples.filter((sample, index) => index >= half || index % 2 === 0);
+    }
+}

@@ -1,0 +1,92 @@
+// The wires: what went over them, what did not arrive, what the client believes. And the verdicts of the run.
+import { byId, make, mark, say } from "./dom.js";
+import { bytes } from "./format.js";
+
+const window = 2; // s over which a rate is taken
+
+class Rates {
+    constructor() {
+        this.seen = new Map();
+    }
+
+    /** Bytes a second, by the page's own clock. */
+    of(key, count) {
+        const now = performance.now() / 1000;
+        const past = this.seen.get(key) ?? [];
+        if (past.length && past.at(-1).count > count) past.length = 0; // begun anew
+        past.push({ now, count });
+        while (past.length > 2 && now - past[0].now > window) past.shift();
+        this.seen.set(key, past);
+        const [first] = past;
+        return now - first.now > 0.5 ? (count - first.count) / (now - first.now) : 0;
+    }
+}
+
+// Of wires that were fine all the time, nothing is told.
+const losses = [
+    ["bytes_lost", "lost: the client did not read in time"],
+    ["bytes_unheard", "unheard: nobody listened"],
+    ["bytes_garbled", "garbled: at another speed"],
+];
+
+function wireParts() {
+    const [state, name, told, out, back, trouble, belief] = Array.from({ length: 7 }, () => make("span"));
+    name.className = "wire-name";
+    told.className = "wire-told";
+    trouble.className = "wire-trouble";
+    state.className = "badge";
+    belief.className = "wire-belief";
+    const flow = make("dl", { class: "wire-flow" }, make("div", {}, make("dt", {}, "to the client"), make("dd", {}, out)),
+        make("div", {}, make("dt", {}, "from the client"), make("dd", {}, back)));
+    const element = make("li", {}, make("div", { class: "wire-head" }, name, state), told, flow, trouble, belief);
+    return { element, state, name, told, out, back, trouble, belief };
+}
+
+/** Returns the function that shows a receiver's wires. */
+export function setUpWires() {
+    const rates = new Rates();
+    let shown = [];
+    return (receiver) => {
+        const list = byId("wires");
+        if (shown.length !== receiver.wires.length) {
+            shown = receiver.wires.map(wireParts);
+            list.replaceChildren(...shown.map((parts) => parts.element));
+        }
+        receiver.wires.forEach((wire, index) => {
+            const parts = shown[index];
+            const key = `${receiver.name} ${wire.port}`;
+            say(parts.name, wire.port);
+            say(parts.state, wire.connected ? "client connected" : "no client");
+            mark(parts.state, "state", wire.connected ? "good" : "");
+            say(parts.told, [wire.description, wire.baud ? `${wire.baud} bit/s` : null].filter(Boolean).join(", "));
+            const flow = (name) =>
+                `${bytes(wire[name])}, ${bytes(Math.max(rates.of(`${key} ${name}`, wire[name]), 0))}/s`;
+            say(parts.out, flow("bytes_out"));
+            say(parts.back, flow("bytes_in"));
+            const trouble = losses.filter(([name]) => wire[name] > 0).map(([name, text]) => `${bytes(wire[name])} ${text}`);
+            if (wire.messages_dropped)
+                trouble.push(`${wire.messages_dropped} messages dropped: the transmit buffer was full`);
+            say(parts.trouble, trouble.join("; "));
+            parts.trouble.hidden = trouble.length === 0;
+            say(parts.belief, wire.belief ? `client ${wire.trusted ? "trusts" : "does not trust"}: ${wire.belief}` : "");
+            mark(parts.belief, "state", wire.trusted ? "good" : "bad");
+            parts.belief.hidden = !wire.belief;
+        });
+    };
+}
+
+const verdictMarks = { passed: "good", failed: "bad" };
+
+export function showVerdicts(verdicts) {
+    byId("verdict-panel").hidden = verdicts.length === 0;
+    const key = JSON.stringify(verdicts);
+    const list = byId("verdicts");
+    if (list.dataset.key === key) return;
+    list.dataset.key = key;
+    list.replaceChildren(...verdicts.map((verdict) => {
+        const state = make("span", { class: "badge" }, verdict.state);
+        mark(state, "state", verdictMarks[verdict.state] ?? "");
+        const told = [verdict.what, verdict.detail].filter(Boolean).join(": ");
+        return make("li", {}, state, " ", make("b", {}, verdict.name || verdict.what), make("small", {}, told));
+    }));
+}
