@@ -153,7 +153,10 @@ export class Faults {
             ? await attempt(() => post("/api/commands", { command: kind.name, ...whole }), `${words(kind.name)}: given`)
             : await attempt(() => post("/api/faults", { kind: kind.name, name: this.freeName(kind.name), ...whole }),
                 `${words(kind.name)}: begun`);
-        if (done) this.choose(null);
+        if (!done) return;
+        byId("fault-search").value = "";
+        this.filter();
+        this.choose(null);
     }
 
     // Each live fault has its own row and its own Stop.

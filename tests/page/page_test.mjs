@@ -1,0 +1,224 @@
+// The live page in a real browser, of a real run: a fault is begun and stopped by hand, and the fix goes and comes back.
+// Ends with 77 where node, Chromium or playwright-core is missing. Pictures are kept in $SKYLOOP_PICTURES.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import fs from "node:fs";
+import { createRequire } from "node:module";
+import path from "node:path";
+import { LiveRun } from "./live_run.mjs";
+
+const skipped = 77;
+const whole = 240_000; // ms, all of it
+const here = import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname);
+const pictures = process.env.SKYLOOP_PICTURES;
+const chromium = process.env.SKYLOOP_CHROMIUM;
+const laptop = { width: 1440, height: 900 };
+const phone = { width: 390, height: 844 };
+
+function skip(why) {
+    console.log(`page/live is skipped: ${why}`);
+    process.exit(skipped);
+}
+
+/** playwright-core, from the build folder; fetched there when it is not. */
+function browserControl() {
+    const folder = process.env.SKYLOOP_NODE_FOLDER;
+    fs.mkdirSync(folder, { recursive: true });
+    fs.copyFileSync(path.join(here, "package.json"), path.join(folder, "package.json"));
+    const load = () => createRequire(path.join(folder, "package.json"))("playwright-core");
+    const wanted = JSON.parse(fs.readFileSync(path.join(here, "package.json"), "utf8")).dependencies["playwright-core"];
+    const manifest = path.join(folder, "node_modules/playwright-core/package.json");
+    if (fs.existsSync(manifest) && JSON.parse(fs.readFileSync(manifest, "utf8")).version === wanted) return load();
+    const quiet = ["--no-audit", "--no-fund", "--no-package-lock", "--ignore-scripts"];
+    const npm = spawnSync("npm", ["install", ...quiet], { cwd: folder, timeout: 90_000, encoding: "utf8" });
+    if (npm.status !== 0) skip(`npm cannot install playwright-core ${wanted}: ${npm.stderr ?? npm.error}`);
+    return load();
+}
+
+function keep(page, name, options = {}) {
+    return page.screenshot({ path: path.join(pictures, `${name}.png`), ...options });
+}
+
+async function fixIs(page, state) {
+    await page.locator(`#fix[data-state="${state}"]`).waitFor({ timeout: 60_000 });
+    return page.locator("#fix-word").innerText();
+}
+
+async function noOverflow(page, width) {
+    assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= width, `wider than ${width} px`);
+}
+
+// What the run shows before anything is done to it.
+async function everythingIsThere(page) {
+    assert.match(await fixIs(page, "fix"), /3D|DGNSS|RTK/);
+    assert.ok((await page.locator("#sky .sat").count()) >= 6, "satellites in the sky");
+    assert.ok((await page.locator("#bars rect").count()) >= 6, "bars of C/N0");
+    assert.ok((await page.locator("#sky .sat-blocked, #sky .sat-reflected").count()) >= 1, "a city hides something");
+    await page.locator("#timeline .row", { hasText: "lossy cable" }).waitFor();
+    await page.locator("#wires", { hasText: "client connected" }).waitFor();
+    const inked = (id) => page.evaluate((name) => {
+        const canvas = document.getElementById(name);
+        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+        return new Set(new Uint32Array(data.buffer)).size;
+    }, id);
+    assert.ok((await inked("track")) > 3, "the map is drawn");
+    assert.ok((await inked("errors")) > 3, "the errors are drawn");
+    await noOverflow(page, laptop.width);
+}
+
+async function dialogueIsFiltered(page) {
+    await page.locator("#dialogue-from").selectOption("client");
+    await page.locator("#dialogue .from-client", { hasText: "MON-VER" }).first().waitFor();
+    assert.equal(await page.locator("#dialogue .from-receiver").count(), 0);
+    await page.locator("#dialogue-from").selectOption("");
+    await page.locator("#dialogue-text").fill("mon-ver");
+    const answer = page.locator("#dialogue .from-receiver", { hasText: "MON-VER" }).first();
+    await answer.waitFor();
+    await answer.locator("summary").click();
+    await answer.locator("code", { hasText: "b5620a04" }).waitFor();
+    await page.locator("#dialogue-text").fill("");
+}
+
+async function clickedFaultTakesTheFix(page) {
+    await page.locator('#fault-kinds [data-kind="outage"]').click();
+    await keep(page, "form");
+    await page.locator("#fault-begin").click();
+    await page.locator("#ask-yes").waitFor();
+    await keep(page, "question");
+    // A no is a no.
+    await page.keyboard.press("Escape");
+    await page.locator("#ask").waitFor({ state: "hidden" });
+    assert.equal(await page.locator("#active li").count(), 0);
+    await page.locator("#fault-begin").click();
+    await page.locator("#ask-yes").click();
+    await page.locator("#active li", { hasText: "outage" }).waitFor();
+    assert.equal(await fixIs(page, "nofix"), "NO FIX");
+    await page.locator("#timeline .row[data-state=active]", { hasText: "outage" }).waitFor();
+    await page.locator("#events", { hasText: "fault begins" }).waitFor();
+    await keep(page, "no_fix");
+    await page.locator("#active button", { hasText: "Stop" }).click();
+    await fixIs(page, "fix");
+    await page.locator("#active li").first().waitFor({ state: "detached" });
+    await keep(page, "back");
+    await keep(page, "laptop", { fullPage: true });
+}
+
+// No mouse: a fault is found, filled in, begun and stopped; time is stopped and goes on.
+async function keyboardIsEnough(page) {
+    const keys = page.keyboard;
+    await page.locator("body").focus();
+    await page.evaluate(() => document.activeElement?.blur());
+    await keys.press("/");
+    await keys.type("no version");
+    await keys.press("Enter");
+    await keys.type("twelve");
+    await keys.press("Enter");
+    await page.locator("#fault-fields .mistake", { hasText: "no number" }).waitFor();
+    await keys.press("ControlOrMeta+a");
+    await keys.type("60");
+    await keys.press("Enter");
+    assert.match(await page.locator("#ask-text").innerText(), /for_s = 60/);
+    await keys.press("Enter");
+    await page.locator("#active li", { hasText: "no version" }).waitFor();
+    await page.evaluate(() => document.activeElement?.blur());
+    await keys.press("x");
+    await page.locator("#active li").first().waitFor({ state: "detached" });
+    await keys.press("Space");
+    await page.locator('#pace[data-paused="true"]').waitFor();
+    const before = await page.locator("#now").innerText();
+    await keys.press("s");
+    await page.waitForFunction((text) => document.getElementById("now").textContent !== text, before);
+    await keys.press("Space");
+    await page.locator('#pace[data-paused="false"]').waitFor();
+}
+
+async function darkIsDark(browser, url) {
+    const page = await browser.newPage({ viewport: laptop, colorScheme: "dark" });
+    await page.goto(url);
+    await fixIs(page, "fix");
+    const ground = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).map(Number));
+    assert.ok(Math.max(...(await ground())) < 60, "a dark ground");
+    await page.waitForTimeout(3000);
+    await keep(page, "dark");
+    await page.locator("#scheme").click(); // chosen by hand: light
+    assert.ok(Math.min(...(await ground())) > 200, "a light ground");
+    await page.close();
+}
+
+async function phoneFits(browser, url) {
+    const page = await browser.newPage({ viewport: phone, deviceScaleFactor: 2, hasTouch: true, isMobile: true });
+    await page.goto(url);
+    await fixIs(page, "fix");
+    await noOverflow(page, phone.width);
+    await keep(page, "phone");
+    await page.locator("#nav-faults").tap();
+    await page.locator("#fault-kinds summary", { hasText: "Signals" }).tap();
+    for (const target of await page.locator("#fault-kinds button:visible, nav button").all()) {
+        const box = await target.boundingBox();
+        assert.ok(box.height >= 40, `a touch target of ${box.height} px`);
+    }
+    await page.locator('#fault-kinds [data-kind="jamming"]').tap();
+    await noOverflow(page, phone.width);
+    assert.ok(await page.locator("#fix").isVisible(), "the state stays in sight");
+    await keep(page, "phone_form");
+    await page.close();
+}
+
+// The program ends: the page says so, instead of showing the past as if it were now.
+async function endIsTold(page, run) {
+    await page.locator("#stop-run").click();
+    await page.locator("#ask-yes").click();
+    await run.ended;
+    await page.locator("#lost", { hasText: "ended or cannot be reached" }).waitFor();
+}
+
+async function test(browser, run) {
+    const mistakes = [];
+    const page = await browser.newPage({ viewport: laptop, colorScheme: "light" });
+    page.setDefaultTimeout(20_000);
+    page.on("pageerror", (error) => mistakes.push(String(error)));
+    page.on("console", (message) => message.type() === "error" && mistakes.push(message.text()));
+    page.on("request", (request) =>
+        request.url().startsWith(run.url) || request.url().startsWith("blob:") || mistakes.push(`foreign: ${request.url()}`));
+    await page.goto(run.url);
+    await everythingIsThere(page);
+    await dialogueIsFiltered(page);
+    await clickedFaultTakesTheFix(page);
+    await keyboardIsEnough(page);
+    await darkIsDark(browser, run.url);
+    await phoneFits(browser, run.url);
+    assert.deepEqual(mistakes, []);
+    await endIsTold(page, run);
+}
+
+if (!chromium || !fs.existsSync(chromium)) skip("there is no Chromium; apt-get install chromium");
+const { chromium: driver } = browserControl();
+fs.mkdirSync(pictures, { recursive: true });
+const run = new LiveRun(process.env.SKYLOOP, path.join(here, "live_page.toml"));
+let browser = null;
+const bound = setTimeout(async () => {
+    console.error("page/live takes too long");
+    await browser?.close();
+    await run.end();
+    process.exit(1);
+}, whole);
+try {
+    await run.begin();
+    browser = await driver.launch({
+        executablePath: chromium,
+        args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+            "--disable-component-update", "--disable-sync"],
+    });
+    await test(browser, run);
+    console.log(`page/live: passed; pictures in ${pictures}`);
+} catch (error) {
+    console.error(error);
+    console.error(`the program said: ${run.log}`);
+    for (const context of browser?.contexts() ?? [])
+        for (const page of context.pages()) await keep(page, "failed").catch(() => {});
+    process.exitCode = 1;
+} finally {
+    clearTimeout(bound);
+    await browser?.close();
+    await run.end();
+}
