@@ -100,6 +100,7 @@ async function clickedFaultTakesTheFix(page) {
     await fixIs(page, "fix");
     await page.locator("#active li").first().waitFor({ state: "detached" });
     await keep(page, "back");
+    await page.evaluate(() => scrollTo(0, 0));
     await keep(page, "laptop", { fullPage: true });
 }
 
@@ -127,9 +128,18 @@ async function keyboardIsEnough(page) {
     await page.locator('#pace[data-paused="true"]').waitFor();
     const before = await page.locator("#now").innerText();
     await keys.press("s");
-    await page.waitForFunction((text) => document.getElementById("now").textContent !== text, before);
+    // While it steps it is not paused; afterwards it is again.
+    const another = (text) => document.getElementById("now").textContent !== text;
+    await page.waitForFunction(another, before);
+    await page.waitForTimeout(2000);
+    await page.locator('#pace[data-paused="true"]').waitFor();
+    const stepped = await page.locator("#now").innerText();
+    await page.waitForTimeout(1500);
+    assert.equal(await page.locator("#now").innerText(), stepped, "one step, and no more");
     await keys.press("Space");
-    await page.locator('#pace[data-paused="false"]').waitFor();
+    await page.waitForTimeout(2500);
+    assert.equal(await page.locator("#pace").getAttribute("data-paused"), "false");
+    assert.notEqual(await page.locator("#now").innerText(), stepped);
 }
 
 async function darkIsDark(browser, url) {

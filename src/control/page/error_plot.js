@@ -35,7 +35,7 @@ export class ErrorPlot {
         const first = this.history.samples[0]?.time ?? 0;
         const seen = Math.max(this.now - first, 20);
         const span = this.span ? Math.min(this.span, seen) : seen;
-        const begin = this.now - span;
+        const begin = Math.max(this.now - span, 0);
         // One from before the window, so that lines come in from its edge.
         const from = this.history.samples.findIndex((sample) => sample.time >= begin);
         const samples = from < 0 ? [] : this.history.samples.slice(Math.max(from - 1, 0));
