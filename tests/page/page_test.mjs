@@ -95,6 +95,7 @@ async function clickedFaultTakesTheFix(page) {
     assert.equal(await fixIs(page, "nofix"), "NO FIX");
     await page.locator("#timeline .row[data-state=active]", { hasText: "outage" }).waitFor();
     await page.locator("#events", { hasText: "fault begins" }).waitFor();
+    await page.evaluate(() => scrollTo(0, 0));
     await keep(page, "no_fix");
     await page.locator("#active button", { hasText: "Stop" }).click();
     await fixIs(page, "fix");
