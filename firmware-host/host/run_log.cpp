@@ -80,7 +80,7 @@ void RunLog::on_fault(const FaultSeen& seen) {
 void RunLog::on_command(const CommandSeen& seen) {
     Json line = line_at(seen.now, start_);
     line["event"] = "command";
-    if (!seen.name.empty()) line["name"] = seen.name;
+    line["name"] = seen.name;
     line["source"] = seen.command.source;
     line["request"] = Json::parse(command_json(seen.command));
     write_line(file_, line);

@@ -70,6 +70,13 @@ std::vector<TimelineBar> RunWatch::planned_bars() const {
         bar.kind = fault.kind;
         bars.push_back(std::move(bar));
     }
+    for (const CommandEntry& command : scenario_.commands) {
+        TimelineBar bar;
+        bar.name = command.when.name;
+        bar.kind = command_name(command.command.verb);
+        bar.command = true;
+        bars.push_back(std::move(bar));
+    }
     // What is known of their times before the run.
     Timeline timeline(timeline_of(scenario_), assembly_.start, scenario_.run.seed);
     const GpsTime end = assembly_.end.value_or(advanced(assembly_.start, Seconds(3600)));

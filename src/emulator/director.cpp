@@ -56,7 +56,7 @@ std::optional<GpsTime> Director::next_event() const {
 void Director::advance(GpsTime now, std::vector<Station>& stations, Pacer& pacer) {
     if (parts_.live != nullptr)
         for (const Command& command : parts_.live->take())
-            carry_out(command, "", {now, stations, pacer});
+            carry_out(command, command_name(command.verb), {now, stations, pacer});
     for (const TimelineEvent& event : timeline_.advance(now))
         follow(event, {event.time, stations, pacer});
     if (pause_at_ && now >= *pause_at_) {

@@ -81,4 +81,10 @@ const CommandKind* find_command_kind(std::string_view name) {
     return found == kinds.end() ? nullptr : &*found;
 }
 
+std::string_view command_name(CommandVerb verb) {
+    for (const CommandKind& kind : command_kinds())
+        if (kind.verb == verb) return kind.name;
+    return "";
+}
+
 }  // namespace skyloop

@@ -46,5 +46,7 @@ struct CommandKind {
 };
 const std::vector<CommandKind>& command_kinds();
 const CommandKind* find_command_kind(std::string_view name);
+/// "move_to"
+std::string_view command_name(CommandVerb verb);
 
 }  // namespace skyloop

@@ -150,10 +150,11 @@ TEST(Director, CarriesOutLiveCommands) {
     Command start{CommandVerb::start_fault, Parameters({{"fault", std::string("quiet")}}), "", "http"};
     ASSERT_TRUE(run->live.push(start));
     run_for(*run, 2s);
-    EXPECT_THAT(run->witness.happened, ElementsAre("command ", "quiet begins"));
+    EXPECT_THAT(run->witness.happened, ElementsAre("command start_fault", "quiet begins"));
     ASSERT_TRUE(run->live.push({CommandVerb::stop_fault, Parameters({{"fault", std::string("quiet")}}), "", "http"}));
     run_for(*run, 2s);
-    EXPECT_THAT(run->witness.happened, ElementsAre("command ", "quiet begins", "command ", "quiet ends"));
+    EXPECT_THAT(run->witness.happened,
+                ElementsAre("command start_fault", "quiet begins", "command stop_fault", "quiet ends"));
 }
 
 TEST(Director, BeginsFaultsThatNoScenarioNames) {
@@ -166,7 +167,7 @@ TEST(Director, BeginsFaultsThatNoScenarioNames) {
     values.emplace("for_s", 2.0);
     ASSERT_TRUE(run->live.push({CommandVerb::start_fault, Parameters(values), "", "http"}));
     run_for(*run, 10s);
-    EXPECT_THAT(run->witness.happened, ElementsAre("command ", "live begins", "live ends"));
+    EXPECT_THAT(run->witness.happened, ElementsAre("command start_fault", "live begins", "live ends"));
 }
 
 TEST(Director, MovesTheVehicle) {
