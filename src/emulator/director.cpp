@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "skyloop/emulator/pacer.hpp"
 #include "skyloop/emulator/station.hpp"
@@ -16,6 +17,16 @@ bool waits_for_client(const TimelineEntry& entry) { return entry.when && !entry.
 std::optional<StartKind> start_kind(const std::string& word) {
     if (word == "cold") return StartKind::cold;
     return word == "warm" ? StartKind::warm : StartKind::hot;
+}
+
+// All receivers have one clock: a fault of several must not act on it several times.
+double faulty_pace(const std::vector<Station>& stations, GpsTime now) {
+    double pace = 1;
+    for (const Station& station : stations) {
+        const double own = station.faults().empty() ? 1 : station.faults().pace(now).rate;
+        if (std::abs(own - 1) > std::abs(pace - 1)) pace = own;
+    }
+    return pace;
 }
 
 }  // namespace
@@ -63,9 +74,7 @@ void Director::advance(GpsTime now, std::vector<Station>& stations, Pacer& pacer
         pause_at_.reset();
         pacer.pause(now);
     }
-    double pace = 1;
-    for (const Station& station : stations)
-        pace *= station.faults().empty() ? 1 : station.faults().pace(now).rate;
+    const double pace = faulty_pace(stations, now);
     if (pace == pace_) return;
     pace_ = pace;
     pacer.set_speed(speed_ * pace_, now);

@@ -28,8 +28,7 @@ Reading read_epoch(const SubjectClause& subject, const EpochSeen& seen);
 /// Whether a message is one that the subject speaks of. Noise is no message.
 bool speaks_of(const SubjectClause& subject, const MessageSeen& seen);
 /// Whether a client's message changes the receiver's settings: UBX-CFG but for polls and CFG-VALGET, PUBX,40 and
-/// PUBX,41 (u-blox M8 protocol description UBX-13003221, section 31.3), the setting packets of PMTK (2xx, 3xx) and PAIR
-/// (050, 062, 066, 864), as RECEIVER.md lists them.
+/// PUBX,41, the setting packets of PMTK (2xx, 3xx) and PAIR (050, 062, 066, 864) (RECEIVER.md section 5).
 bool is_reconfiguration(const MessageSeen& seen);
 /// "m", "dBHz", … of the subject's number.
 std::string_view unit_of(ExpectedSubject subject);
