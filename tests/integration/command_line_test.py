@@ -60,7 +60,7 @@ SCENARIO_MISTAKES = [
     ("[[atmosphere.cloud]]\nkind = \"thunderstrom\"\n", ["s.toml:2", "did you mean 'thunderstorm'"]),
     ("[sky]\nelevation_mask_deg = \"five\"\n", ["s.toml:2", "is a text", "number"]),
     ("[sky]\nelevation_mask_deg = nan\n", ["s.toml:2", "nan"]),
-    ("[[fault]]\nkind = \"outage\"\n", ["s.toml:1", "faults are not in this version"]),
+    ("[[fault]]\nkind = \"outtage\"\n", ["s.toml:2", "fault.kind", "did you mean 'outage'"]),
     ("[run\n", ["s.toml:1"]),
     ("[model.baseline]\nstatistic = \"mean\"\n", ["sample_std rms"]),
     ("[run]\nduration_s = 1e300\n", ["run.duration_s"]),

@@ -20,7 +20,7 @@ name = "quiet"
 at_s = 20
 for_s = 5
 [[expect]]
-what = "receiver silent during quiet"
+what = "receiver silent from 1 s to 4 s after quiet"
 [[expect]]
 what = "fix within 3 s of the end of quiet"
 """

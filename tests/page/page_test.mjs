@@ -74,8 +74,13 @@ async function dialogueIsFiltered(page) {
     await page.locator("#dialogue-text").fill("mon-ver");
     const answer = page.locator("#dialogue .from-receiver", { hasText: "MON-VER" }).first();
     await answer.waitFor();
-    await answer.locator("summary").click();
-    await answer.locator("code", { hasText: "b5620a04" }).waitFor();
+    const bytes = answer.locator("code", { hasText: "b5620a04" });
+    // A newer answer may take the place of the first one while it is opened.
+    for (let tries = 0; tries < 20 && !(await bytes.isVisible()); ++tries) {
+        await answer.locator("summary").click();
+        await page.waitForTimeout(200);
+    }
+    await bytes.waitFor();
     await page.locator("#dialogue-text").fill("");
 }
 

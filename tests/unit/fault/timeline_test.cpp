@@ -218,6 +218,9 @@ TEST(TimelineKeys, NoFaultOrCommandHasAParameterOfTheirNames) {
     for (const FaultKind& kind : fault_kinds())
         for (const ParameterSpec& spec : kind.parameters)
             EXPECT_FALSE(taken.contains(spec.name)) << kind.name << "." << spec.name;
+    taken = {"kind", "receiver", "what"};
+    for (const ParameterSpec& spec : timeline_keys_of_commands())
+        taken.insert(spec.name);
     for (const CommandKind& kind : command_kinds())
         for (const ParameterSpec& spec : kind.parameters)
             EXPECT_FALSE(taken.contains(spec.name)) << kind.name << "." << spec.name;
