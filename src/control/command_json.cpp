@@ -110,19 +110,14 @@ Result<Command> command_from_json(std::string_view text, std::string_view source
     if (!checked.mistakes.empty()) return fail(mistakes_error(checked.mistakes));
     if (kind->verb == CommandVerb::start_fault && checked.parameters.text("fault").empty())
         return fail(ErrorCode::input, "'fault' is missing; expected the name of a fault of the scenario, or 'kind'");
-    if (kind->verb == CommandVerb::move_to) {
-        const auto at = checked.parameters.numbers("at");
-        const auto place = place_from_degrees(at[0], at[1], at.size() > 2 ? at[2] : 0);
-        if (!place) return fail(ErrorCode::input, "'at': " + place.error());
-    }
     command.parameters = std::move(checked.parameters);
+    if (const auto mistake = place_mistake(command)) return fail(ErrorCode::input, "'at': " + *mistake);
     return command;
 }
 
 std::string command_json(const Command& command) {
     Json json;
-    for (const CommandKind& kind : command_kinds())
-        if (kind.verb == command.verb) json["command"] = kind.name;
+    json["command"] = command_name(command.verb);
     if (!command.receiver.empty()) json["receiver"] = command.receiver;
     for (const auto& [name, value] : command.parameters.values())
         json[name] = to_json(value);

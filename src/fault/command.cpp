@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "skyloop/geo/geodetic.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -85,6 +87,13 @@ std::string_view command_name(CommandVerb verb) {
     for (const CommandKind& kind : command_kinds())
         if (kind.verb == verb) return kind.name;
     return "";
+}
+
+std::optional<std::string> place_mistake(const Command& command) {
+    const std::vector<double> at = command.parameters.numbers("at");
+    if (command.verb != CommandVerb::move_to || at.size() < 2) return std::nullopt;
+    const auto place = place_from_degrees(at[0], at[1], at.size() > 2 ? at[2] : 0);
+    return place ? std::nullopt : std::optional(place.error());
 }
 
 }  // namespace skyloop

@@ -138,6 +138,7 @@ void read_command(TableReader& table, Scenario& scenario) {
     if (kind != nullptr) {
         entry.command.verb = kind->verb;
         entry.command.parameters = own_parameters(table, kind->parameters, timeline_keys_of_commands(), given.own);
+        if (const auto mistake = place_mistake(entry.command)) table.mistake("at", *mistake);
         if (table.has("receiver") && !kind->of_receiver)
             table.mistake("receiver",
                           fmt::format("'{}' is not for one receiver alone; expected no 'receiver'", kind->name));

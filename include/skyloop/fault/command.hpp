@@ -1,6 +1,7 @@
 /// What happens once in a run, whoever asks for it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,5 +49,7 @@ const std::vector<CommandKind>& command_kinds();
 const CommandKind* find_command_kind(std::string_view name);
 /// "move_to"
 std::string_view command_name(CommandVerb verb);
+/// What is wrong with the place, `at`, to which a command moves the vehicle; nothing of others.
+std::optional<std::string> place_mistake(const Command& command);
 
 }  // namespace skyloop

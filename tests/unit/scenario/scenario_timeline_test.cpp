@@ -83,6 +83,8 @@ TEST(ScenarioTimeline, MistakesAreToldWhereTheyStand) {
         HasSubstr("in a circle"));
     EXPECT_THAT(mistakes("[[command]]\nkind = \"pause\"\nreceiver = \"receiver0\"\n"),
                 HasSubstr("not for one receiver alone"));
+    EXPECT_THAT(mistakes("[[command]]\nkind = \"move_to\"\nat = [91, 0]\n"),
+                HasSubstr("test.toml:3:6: command.at: latitude is 91"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"saturated_uart\"\nbytes_per_s = 10\nbaud = 9600\n"),
                 HasSubstr("test.toml:1:1: [fault]"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"refuses_keys\"\nkeys = \"CFG-RATE-MESA\"\n"), HasSubstr("CFG-RATE-MEAS"));
