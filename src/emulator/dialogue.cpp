@@ -68,11 +68,11 @@ Dialogue::Ends& Dialogue::ends(std::size_t wire) {
 }
 
 void Dialogue::client_said(std::size_t wire, ByteSpan bytes, GpsTime now) {
-    show(wire, true, ends(wire).client.feed(bytes), now);
+    if (listening_) show(wire, true, ends(wire).client.feed(bytes), now);
 }
 
 void Dialogue::receiver_said(std::size_t wire, ByteSpan bytes, GpsTime now) {
-    show(wire, false, ends(wire).receiver.feed(bytes), now);
+    if (listening_) show(wire, false, ends(wire).receiver.feed(bytes), now);
 }
 
 void Dialogue::show(std::size_t wire, bool from_client, const std::vector<StreamPiece>& pieces, GpsTime now) {

@@ -56,7 +56,10 @@ Director::Director(Parts parts) : parts_(std::move(parts)), timeline_({}, parts_
     timeline_ = Timeline(std::move(entries), parts_.start, parts_.seed);
 }
 
-bool Director::wants_messages() const { return hears_ || !observers_.empty(); }
+bool Director::wants_messages() const {
+    return hears_ || std::any_of(observers_.begin(), observers_.end(),
+                                 [](const RunObserver* observer) { return observer->wants_messages(); });
+}
 
 std::optional<GpsTime> Director::next_event() const {
     const auto next = timeline_.next_event();

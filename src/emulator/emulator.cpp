@@ -83,7 +83,8 @@ void Emulator::exchange_bytes() {
     const bool heard = parts_.director.wants_messages();
     for (std::size_t i = 0; i < parts_.stations.size(); ++i) {
         Station& station = parts_.stations[i];
-        station.exchange(time, heard ? &dialogues_[i] : nullptr);
+        dialogues_[i].listen(heard);
+        station.exchange(time, &dialogues_[i]);
         // As fast as the machine can, the end of the run is soon enough.
         if (!parts_.pacer->is_virtual()) station.keep_state(now_);
     }

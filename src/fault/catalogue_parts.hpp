@@ -1,11 +1,22 @@
 /// The kinds of each layer, which fault_kinds() puts in a row.
 #pragma once
 
+#include <initializer_list>
+#include <utility>
 #include <vector>
 
 #include "skyloop/fault/fault_kind.hpp"
 
 namespace skyloop {
+
+/// The kinds that each of these gives, one list after the other.
+inline std::vector<FaultKind> all_kinds_of(std::initializer_list<std::vector<FaultKind> (*)()> parts) {
+    std::vector<FaultKind> all;
+    for (auto* const part : parts)
+        for (FaultKind& kind : part())
+            all.push_back(std::move(kind));
+    return all;
+}
 
 std::vector<FaultKind> reception_fault_kinds();  ///< outage, antenna, interference
 std::vector<FaultKind> spoofing_fault_kinds();   ///< false signals

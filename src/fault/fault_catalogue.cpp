@@ -1,26 +1,14 @@
 #include <algorithm>
-#include <iterator>
 
 #include "catalogue_parts.hpp"
 #include "skyloop/fault/fault_kind.hpp"
 
 namespace skyloop {
-namespace {
-
-std::vector<FaultKind> all_kinds() {
-    std::vector<FaultKind> all;
-    for (auto* const part : {reception_fault_kinds, spoofing_fault_kinds, satellite_fault_kinds, position_fault_kinds,
-                             time_fault_kinds, receiver_fault_kinds, wire_fault_kinds}) {
-        std::vector<FaultKind> kinds = part();
-        std::move(kinds.begin(), kinds.end(), std::back_inserter(all));
-    }
-    return all;
-}
-
-}  // namespace
 
 const std::vector<FaultKind>& fault_kinds() {
-    static const std::vector<FaultKind> kinds = all_kinds();
+    static const std::vector<FaultKind> kinds =
+        all_kinds_of({reception_fault_kinds, spoofing_fault_kinds, satellite_fault_kinds, position_fault_kinds,
+                      time_fault_kinds, receiver_fault_kinds, wire_fault_kinds});
     return kinds;
 }
 

@@ -1,7 +1,6 @@
 // Errors of the solution itself: they are made before the firmware sees the epoch, and so pass through its own logic.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 
 #include "catalogue_parts.hpp"
@@ -236,12 +235,7 @@ std::vector<FaultKind> motion_and_quality_kinds() {
 }  // namespace
 
 std::vector<FaultKind> position_fault_kinds() {
-    std::vector<FaultKind> all = place_error_kinds();
-    for (auto* const part : {motion_and_quality_kinds, report_fault_kinds, epoch_fault_kinds}) {
-        std::vector<FaultKind> kinds = part();
-        std::move(kinds.begin(), kinds.end(), std::back_inserter(all));
-    }
-    return all;
+    return all_kinds_of({place_error_kinds, motion_and_quality_kinds, report_fault_kinds, epoch_fault_kinds});
 }
 
 }  // namespace skyloop

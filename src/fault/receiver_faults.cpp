@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "catalogue_parts.hpp"
 #include "edit_shortcuts.hpp"
@@ -279,12 +278,7 @@ std::vector<FaultKind> slowness_kinds() {
 }  // namespace
 
 std::vector<FaultKind> receiver_fault_kinds() {
-    std::vector<FaultKind> all = silence_kinds();
-    for (auto* const part : {refusal_kinds, restart_kinds, slowness_kinds}) {
-        std::vector<FaultKind> kinds = part();
-        std::move(kinds.begin(), kinds.end(), std::back_inserter(all));
-    }
-    return all;
+    return all_kinds_of({silence_kinds, refusal_kinds, restart_kinds, slowness_kinds});
 }
 
 }  // namespace skyloop

@@ -180,11 +180,6 @@ std::vector<FaultKind> clock_kinds() {
 
 }  // namespace
 
-std::vector<FaultKind> time_fault_kinds() {
-    std::vector<FaultKind> all = calendar_kinds();
-    for (FaultKind& kind : clock_kinds())
-        all.push_back(std::move(kind));
-    return all;
-}
+std::vector<FaultKind> time_fault_kinds() { return all_kinds_of({calendar_kinds, clock_kinds}); }
 
 }  // namespace skyloop

@@ -9,15 +9,6 @@
 #include "skyloop/verdict/expectation_sentence.hpp"
 
 namespace skyloop {
-namespace {
-
-std::string_view verb_name(CommandVerb verb) {
-    for (const CommandKind& kind : command_kinds())
-        if (kind.verb == verb) return kind.name;
-    return "";
-}
-
-}  // namespace
 
 class Judge::State {
     struct Follower {
@@ -38,6 +29,7 @@ public:
     GpsTime pass(GpsTime now);
     template <class Look>
     void at_station(std::size_t station, const Look& look);
+    [[nodiscard]] bool hears() const { return hears_; }
     void happen(const FaultSeen& seen);
     std::vector<Verdict> finish(GpsTime now);
     void start_probes(GpsTime now);
@@ -50,13 +42,14 @@ private:
     JudgedRun run_;
     GpsTime now_;
     std::vector<Case> cases_;
-    bool has_probes_ = false;
+    bool has_probes_ = false, hears_ = false;
 };
 
 Judge::State::State(std::vector<Expectation> expectations, JudgedRun run) : run_(std::move(run)), now_(run_.start) {
     for (Expectation& expectation : expectations) {
         Case one{std::move(expectation)};
         has_probes_ = has_probes_ || one.expectation.probe;
+        hears_ = hears_ || (one.expectation.sentence && is_of_messages(one.expectation.sentence->subject.subject));
         for (std::size_t i = 0; one.expectation.sentence && i < run_.receivers.size(); ++i)
             if (one.expectation.receiver.empty() || one.expectation.receiver == run_.receivers[i])
                 one.followers.push_back({i, ExpectationTracker(*one.expectation.sentence, run_.start)});
@@ -167,6 +160,8 @@ void Judge::on_message(const MessageSeen& seen) {
     });
 }
 
+bool Judge::wants_messages() const { return state_->hears(); }
+
 void Judge::on_fault(const FaultSeen& seen) {
     state_->pass(seen.now);
     state_->happen(seen);
@@ -174,7 +169,7 @@ void Judge::on_fault(const FaultSeen& seen) {
 
 void Judge::on_command(const CommandSeen& seen) {
     state_->pass(seen.now);
-    const std::string_view verb = verb_name(seen.command.verb);
+    const std::string_view verb = command_name(seen.command.verb);
     state_->happen({seen.now, seen.name, verb, 1, true});
     state_->happen({seen.now, seen.name, verb, 1, false});
 }

@@ -120,6 +120,8 @@ bool is_belief(ExpectedSubject subject) {
     return subject == ExpectedSubject::client_trusts || subject == ExpectedSubject::client_distrusts;
 }
 
+bool is_of_messages(ExpectedSubject subject) { return !is_of_epochs(subject) && !is_belief(subject); }
+
 bool is_silence(ExpectedSubject subject) {
     return subject == ExpectedSubject::client_silent || subject == ExpectedSubject::receiver_silent;
 }

@@ -21,6 +21,8 @@ struct Reading {
 bool is_of_epochs(ExpectedSubject subject);
 /// Whether it is what a scripted client believes.
 bool is_belief(ExpectedSubject subject);
+/// Whether it is read from messages: neither of the two.
+bool is_of_messages(ExpectedSubject subject);
 bool is_silence(ExpectedSubject subject);
 
 /// The subject at an epoch; it must be one of epochs.

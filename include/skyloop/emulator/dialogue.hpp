@@ -26,6 +26,9 @@ public:
     /// @param station whose wires they are
     Dialogue(std::size_t station, Listener listener) : station_(station), listener_(std::move(listener)) {}
 
+    /// Without an ear for messages it tells of clients' beliefs alone.
+    void listen(bool to_messages) { listening_ = to_messages; }
+
     void client_said(std::size_t wire, ByteSpan bytes, GpsTime now);
     void receiver_said(std::size_t wire, ByteSpan bytes, GpsTime now);
     void client_believes(std::size_t wire, const Transport::Belief& belief, GpsTime now);
@@ -39,6 +42,7 @@ private:
 
     std::size_t station_;
     Listener listener_;
+    bool listening_ = true;
     std::vector<Ends> ends_;
 };
 

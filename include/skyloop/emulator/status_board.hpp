@@ -44,6 +44,7 @@ public:
 
     void on_epoch(const EpochSeen& seen) override;
     void on_message(const MessageSeen& seen) override;
+    [[nodiscard]] bool wants_messages() const override { return true; }
     void on_fault(const FaultSeen& seen) override;
     void on_command(const CommandSeen& seen) override;
     void on_belief(const BeliefSeen& seen) override;

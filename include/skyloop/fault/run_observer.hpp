@@ -62,6 +62,8 @@ public:
     virtual ~RunObserver() = default;
     virtual void on_epoch(const EpochSeen&) {}
     virtual void on_message(const MessageSeen&) {}
+    /// Whether on_message() is of use to it: finding the messages in all bytes costs time. Fixed from the beginning.
+    [[nodiscard]] virtual bool wants_messages() const { return false; }
     virtual void on_fault(const FaultSeen&) {}
     virtual void on_command(const CommandSeen&) {}
     virtual void on_belief(const BeliefSeen&) {}

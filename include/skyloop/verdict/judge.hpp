@@ -35,6 +35,8 @@ public:
 
     void on_epoch(const EpochSeen& seen) override;
     void on_message(const MessageSeen& seen) override;
+    /// True where an expectation is about messages, or silence.
+    [[nodiscard]] bool wants_messages() const override;
     void on_fault(const FaultSeen& seen) override;
     void on_command(const CommandSeen& seen) override;
     void on_belief(const BeliefSeen& seen) override;

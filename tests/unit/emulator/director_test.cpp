@@ -32,6 +32,8 @@ public:
     void on_message(const MessageSeen& seen) override {
         if (seen.from_client) heard.emplace_back(seen.name);
     }
+    [[nodiscard]] bool wants_messages() const override { return curious; }
+    bool curious = true;
     int epochs = 0, with_fix = 0;
     std::vector<std::string> happened, heard;
 };
