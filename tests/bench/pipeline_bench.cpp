@@ -16,6 +16,7 @@
 #include "skyloop/sky/observe_sky.hpp"
 #include "skyloop/time/utc_time.hpp"
 #include "support/four_systems.hpp"
+#include "support/oracle_table.hpp"
 
 namespace {
 
@@ -36,7 +37,7 @@ Scenario open_sky(std::optional<ErrorModelKind> sensor_model) {
     return scenario;
 }
 
-DataFolders bench_data() { return {{std::filesystem::path(SKYLOOP_BINARY_DIR) / "share" / "skyloop"}}; }
+DataFolders bench_data() { return {{test::built_data()}}; }
 
 double peak_megabytes() {
     rusage usage{};

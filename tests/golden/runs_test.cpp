@@ -13,6 +13,7 @@
 
 #include "skyloop/emulator/assembly.hpp"
 #include "skyloop/scenario/scenario_file.hpp"
+#include "support/oracle_table.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
 namespace skyloop {
@@ -88,7 +89,7 @@ Table simulated(const fs::path& file) {
     mode.virtual_time = true;
     mode.open_ports = false;
     mode.record = folder / "run";
-    auto assembly = assemble(*scenario, {{fs::path(SKYLOOP_BINARY_DIR) / "share/skyloop"}}, mode);
+    auto assembly = assemble(*scenario, {{test::built_data()}}, mode);
     EXPECT_TRUE(assembly) << assembly.error().message;
     if (!assembly) return {};
     EXPECT_THAT(assembly->warnings, testing::IsEmpty());

@@ -83,4 +83,6 @@ std::optional<fs::path> shared_data(const std::string& relative_path) {
     return path;
 }
 
+fs::path built_data() { return fs::path(SKYLOOP_BINARY_DIR) / "share/skyloop"; }
+
 }  // namespace skyloop::test

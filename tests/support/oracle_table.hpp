@@ -37,6 +37,9 @@ bool shared_oracles_present();
 /// A file or folder of the shared data, or nothing where it is absent: then the test must GTEST_SKIP and name it.
 std::optional<std::filesystem::path> shared_data(const std::string& relative_path);
 
+/// The folder of the data that the build has made or copied: geoids, boards, navigation.
+std::filesystem::path built_data();
+
 }  // namespace skyloop::test
 
 /// Skips the test by name where a file of the shared data is absent; otherwise defines `variable` as its path.

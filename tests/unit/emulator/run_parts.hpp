@@ -18,6 +18,7 @@
 #include "skyloop/scenario/board_file.hpp"
 #include "skyloop/scenario/scenario_file.hpp"
 #include "skyloop/transport/memory.hpp"
+#include "support/oracle_table.hpp"
 
 namespace skyloop::test {
 
@@ -41,9 +42,7 @@ inline Scenario emulator_scenario(std::string_view text) {
 }
 
 /// Boards from the sources; the geoid where the build has made it.
-inline DataFolders emulator_data() {
-    return {{std::filesystem::path(SKYLOOP_SOURCE_DIR), std::filesystem::path(SKYLOOP_BINARY_DIR) / "share/skyloop"}};
-}
+inline DataFolders emulator_data() { return {{std::filesystem::path(SKYLOOP_SOURCE_DIR), built_data()}}; }
 
 inline std::string content_of(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const fs::path grid_file = fs::path(SKYLOOP_BINARY_DIR) / "share/skyloop/geoids/egm96-15.pgm";
+const fs::path grid_file = test::built_data() / "geoids/egm96-15.pgm";
 
 double undulation_m(const Geoid& geoid, double latitude, double longitude) {
     return geoid.undulation(Angle::degrees(latitude), Angle::degrees(longitude)).value();

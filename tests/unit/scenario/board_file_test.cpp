@@ -1,4 +1,5 @@
 #include "skyloop/scenario/board_file.hpp"
+#include "support/oracle_table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -70,7 +71,7 @@ TEST(BoardFile, ShippedBoardsHaveTheMakersFactorySettings) {
 }
 
 TEST(BoardFile, TheBuildTreeHoldsTheBoards) {
-    const std::vector<fs::path> built{fs::path(SKYLOOP_BINARY_DIR) / "share/skyloop/boards"};
+    const std::vector<fs::path> built{test::built_data() / "boards"};
     EXPECT_EQ(list_boards(built), list_boards(shipped_boards));
 }
 
