@@ -20,6 +20,7 @@ Action add_solve_command(CLI::App& app);
 Action add_boards_command(CLI::App& app);
 Action add_decode_command(CLI::App& app);
 Action add_faults_command(CLI::App& app);
+Action add_schema_command(CLI::App& app);
 Action add_scene_command(CLI::App& app);
 Action add_ctl_command(CLI::App& app);
 

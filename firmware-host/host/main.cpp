@@ -20,8 +20,8 @@ namespace {
 
 using skyloop::host::Action;
 
-constexpr std::array<std::string_view, 11> commands{"run",    "simulate", "sky",   "check",  "compare", "solve",
-                                                    "boards", "decode",   "scene", "faults", "ctl"};
+constexpr std::array<std::string_view, 12> commands{"run",    "simulate", "sky",   "check",  "compare", "solve",
+                                                    "boards", "decode",   "scene", "faults", "schema", "ctl"};
 constexpr std::array<std::string_view, 5> later_commands{"devices", "replay", "trajectory", "scenario-from",
                                                          "campaign"};
 
@@ -42,7 +42,7 @@ int run_program(int argc, char** argv) {
         skyloop::host::add_run_command,    skyloop::host::add_simulate_command, skyloop::host::add_sky_command,
         skyloop::host::add_check_command,  skyloop::host::add_compare_command,  skyloop::host::add_solve_command,
         skyloop::host::add_boards_command, skyloop::host::add_decode_command,   skyloop::host::add_scene_command,
-        skyloop::host::add_faults_command, skyloop::host::add_ctl_command};
+        skyloop::host::add_faults_command, skyloop::host::add_schema_command,   skyloop::host::add_ctl_command};
     std::vector<Action> actions;
     for (const auto add_command : add)
         actions.push_back(add_command(app));

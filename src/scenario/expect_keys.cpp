@@ -40,12 +40,14 @@ void read_probe(TableReader& table, Expectation& expectation) {
         probe.within = within;
     }
     table.quantity("timeout_s", probe.timeout, {0.01, longest_probe_s});
+    table.note_not_both("command", "receiver");
     if (!expectation.receiver.empty())
         table.mistake("receiver", "is of a sentence (what); a command asks whom it likes");
 }
 
 void read_sentence(TableReader& table, Expectation& expectation) {
-    if (!table.has("what")) return table.mistake_here("says nothing; expected what = \"…\" or command = …");
+    table.needs_one_of({"what", "command"}, "says nothing; expected what = \"…\" or command = …");
+    if (!table.has("what") && !table.recording()) return;
     expectation.what = "fix";  // stays where the value is no text, which has been told
     table.text("what", expectation.what);
     auto sentence = parse_expectation(expectation.what);
@@ -53,11 +55,12 @@ void read_sentence(TableReader& table, Expectation& expectation) {
         expectation.sentence = std::move(*sentence);
     else
         table.mistake("what", fmt::format("at character {}: {}", sentence.error().column, sentence.error().sentence));
-    for (const std::string_view key : probe_keys)
-        if (table.has(key)) {
-            table.has_been_read(key);
-            table.mistake(key, "is of a command; expected command = … beside it, or none of it beside what");
-        }
+    for (const std::string_view key : probe_keys) {
+        table.note_not_both("what", key);
+        if (!table.has(key)) continue;
+        table.has_been_read(key);
+        table.mistake(key, "is of a command; expected command = … beside it, or none of it beside what");
+    }
 }
 
 void read_expectation(TableReader& table, Expectation& expectation) {
@@ -65,6 +68,7 @@ void read_expectation(TableReader& table, Expectation& expectation) {
     table.text("receiver", expectation.receiver);
     if (!table.has("command")) return read_sentence(table, expectation);
     read_probe(table, expectation);
+    table.note_not_both("what", "command");
     if (table.has("what")) {
         table.has_been_read("what");
         table.mistake("what", "stands beside command; expected one of them");

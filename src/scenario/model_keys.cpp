@@ -14,7 +14,7 @@ void read_baseline(TableReader& table, ModelSettings& settings) {
     BaselineParameters& p = settings.baseline;
     LinkBudgetParameters& link = settings.link;
     static constexpr std::array<Words, 2> presets{"strict", "calibrated"};
-    if (const auto preset = table.choice("preset", presets))
+    if (const auto preset = table.choice("preset", presets, presets.front()))
         p = *preset == 0 ? BaselineParameters::strict() : BaselineParameters::calibrated();
     table.quantity("snr_cutoff_dbhz", p.snr_cutoff, {-100, 100});
     table.integer("max_reflections", p.max_reflections, {0, 16});
@@ -42,7 +42,8 @@ void read_simple_models(TableReader& model, ModelSettings& settings) {
         table.quantity("vertical_sigma_m", settings.constant_sigma.vertical_sigma, {0, 1e6});
     });
     model.table("satellite-count", [&](TableReader& table) {
-        const auto sigma = table.numbers("sigma_m", settings.satellite_count.sigma_m.size());
+        const auto& standard = settings.satellite_count.sigma_m;
+        const auto sigma = table.numbers("sigma_m", standard.size(), standard);
         if (!sigma) return;
         if (*std::min_element(sigma->begin(), sigma->end()) < 0)
             return table.mistake(
@@ -108,7 +109,7 @@ void read_clouds(TableReader& atmosphere, AtmosphereParameters& p) {
         kinds.push_back(deck.kind);
     atmosphere.tables("cloud", [&](TableReader& table) {
         const auto kind = table.choice("kind", kinds);
-        if (!table.has("kind")) table.mistake_here("has no kind; expected fog, stratus, … thunderstorm");
+        table.needs_one_of({"kind"}, "has no kind; expected fog, stratus, … thunderstorm");
         CloudDeck deck = catalogue[kind.value_or(0)];
         Metres thickness = deck.top - deck.base;
         table.quantity("base_m", deck.base, {0, 30000});
@@ -134,6 +135,7 @@ void read_environment(TableReader& atmosphere, AtmosphereParameters& p) {
         names.push_back(e.name);
     if (const auto index = atmosphere.choice("environment", names))
         p.environment_noise = environment_catalogue()[*index].noise;
+    atmosphere.note_not_both("environment", "environment_noise_db");
     if (atmosphere.has("environment") && atmosphere.has("environment_noise_db"))
         atmosphere.mistake("environment_noise_db", "stands beside environment; expected one of the two");
     atmosphere.quantity("environment_noise_db", p.environment_noise, {0, 100});
@@ -154,7 +156,7 @@ void read_ionosphere(TableReader& atmosphere, AtmosphereParameters& p) {
 }  // namespace
 
 void read_model_keys(TableReader& model, ModelSettings& settings, const std::filesystem::path& folder) {
-    if (const auto index = model.choice("name", model_names())) choose_model(settings, model_names()[*index]);
+    if (const auto index = model.choice("name", model_names(), model_name(settings))) choose_model(settings, model_names()[*index]);
     static constexpr std::array<Word<bool>, 2> errors{{{"all", true}, {"none", false}}};
     if (model.has("errors") && settings.sensor_model)
         model.mistake("errors",

@@ -116,8 +116,10 @@ void read_solution(TableReader& table, ModernSettings& settings) {
 }  // namespace
 
 void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder) {
-    const auto preset = modern.choice("preset", modern_preset_names);
-    const auto surroundings = modern.choice("surroundings", surroundings_names);
+    const auto preset =
+        modern.choice("preset", modern_preset_names, modern_preset_names[static_cast<std::size_t>(settings.preset)]);
+    const auto surroundings = modern.choice("surroundings", surroundings_names,
+                                            surroundings_names[static_cast<std::size_t>(settings.surroundings)]);
     const bool errors = settings.errors;
     settings = ModernSettings::of(preset ? static_cast<ModernPreset>(*preset) : settings.preset,
                                   surroundings ? static_cast<Surroundings>(*surroundings) : settings.surroundings);

@@ -58,7 +58,7 @@ void read_place_and_power_keys(TableReader& receiver, ReceiverEntry& entry, cons
     receiver.text("state_file", state_file);
     if (!state_file.empty()) entry.state_file = folder / state_file;
     constexpr double longest_arm_m = 1000;
-    if (const auto offset = receiver.numbers("antenna_offset_m", 3)) {
+    if (const auto offset = receiver.numbers("antenna_offset_m", 3, entry.antenna_offset)) {
         std::copy(offset->begin(), offset->end(), entry.antenna_offset.begin());
         if (std::any_of(offset->begin(), offset->end(), [](double part) { return !(std::abs(part) <= longest_arm_m); }))
             receiver.mistake("antenna_offset_m", fmt::format("expected numbers from -{0:g} to {0:g}", longest_arm_m));

@@ -99,6 +99,8 @@ void check_expectations(TableReader& top, const Scenario& scenario) {
     }
 }
 
+}  // namespace
+
 void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
     top.table("run", [&](TableReader& t) { read_run_keys(t, scenario.run); });
     top.table("sky", [&](TableReader& t) { read_sky_keys(t, scenario.sky, folder); });
@@ -115,8 +117,6 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     read_expectations(top, scenario.expectations);
     check_expectations(top, scenario);
 }
-
-}  // namespace
 
 void read_constellation_list(TableReader& table, std::vector<Constellation>& constellations) {
     const auto found = table.choices("constellations", constellation_names);

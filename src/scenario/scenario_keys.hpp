@@ -7,6 +7,9 @@
 
 namespace skyloop {
 
+/// Everything in a scenario. @param folder that paths are relative to
+void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder);
+
 /// @param folder that paths are relative to
 void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder);
 /// Those of the world: air, antenna, interference.

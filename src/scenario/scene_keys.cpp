@@ -20,15 +20,15 @@ void read_scene_files(TableReader& table, SceneEntry& scene, const std::filesyst
         if (file.empty()) table.mistake("terrain", "is an empty text; expected a height grid (.asc)");
         scene.terrain = folder / file;
     }
-    if (!table.has("buildings") && !table.has("terrain"))
-        table.mistake_here("has neither buildings nor terrain; expected buildings = \"FILE\" or \"demo\"");
+    table.needs_one_of({"buildings", "terrain"},
+                       "has neither buildings nor terrain; expected buildings = \"FILE\" or \"demo\"");
 }
 
 void read_surface_material(TableReader& table, std::string& material) {
     std::vector<std::string_view> names;
     for (const SurfaceMaterial& known : surface_materials())
         names.push_back(known.name);
-    if (const auto index = table.choice("material", names)) material = names[*index];
+    if (const auto index = table.choice("material", names, material)) material = names[*index];
 }
 
 // How coordinates and heights of the files are to be understood.

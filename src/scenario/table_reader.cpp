@@ -85,6 +85,7 @@ std::string TableReader::path_of(std::string_view key) const {
 }
 
 void TableReader::mistake(std::string_view key, const std::string& sentence) {
+    if (recording() && key == "kind") recorder_->refuse_kind(path_);
     const toml::node* node = table_.get(key);
     mistakes_.add(node ? node->source() : table_.source(), fmt::format("{}: {}", path_of(key), sentence));
 }
@@ -105,6 +106,7 @@ void TableReader::wrong_type(std::string_view key, const toml::node& node, std::
 }
 
 void TableReader::number(std::string_view key, double& value, NumberRange range) {
+    if (recording()) note(key, number_entry(KeyType::number, range, value));
     const toml::node* node = find(key);
     if (!node) return;
     const auto found = node->value<double>();
@@ -127,6 +129,7 @@ std::optional<std::int64_t> TableReader::whole_number(std::string_view key, Numb
 }
 
 void TableReader::boolean(std::string_view key, bool& value) {
+    if (recording()) note(key, {.type = KeyType::flag, .standard = value});
     const toml::node* node = find(key);
     if (!node) return;
     const auto* found = node->as_boolean();
@@ -135,6 +138,7 @@ void TableReader::boolean(std::string_view key, bool& value) {
 }
 
 void TableReader::text(std::string_view key, std::string& value) {
+    if (recording()) note(key, {.type = KeyType::text, .standard = value});
     const toml::node* node = find(key);
     if (!node) return;
     const auto* found = node->as_string();
@@ -143,6 +147,7 @@ void TableReader::text(std::string_view key, std::string& value) {
 }
 
 std::optional<std::string> TableReader::utc(std::string_view key) {
+    if (recording()) note(key, {.type = KeyType::time});
     const toml::node* node = find(key);
     if (!node) return std::nullopt;
     if (const auto* written = node->as_string()) return written->get();
@@ -156,6 +161,7 @@ std::optional<std::string> TableReader::utc(std::string_view key) {
 }
 
 void TableReader::texts(std::string_view key, std::vector<std::string>& values) {
+    if (recording()) note(key, {.type = KeyType::texts, .count_least = 1});
     const toml::node* node = find(key);
     if (!node) return;
     const auto* list = node->as_array();
@@ -171,6 +177,7 @@ void TableReader::texts(std::string_view key, std::vector<std::string>& values) 
 }
 
 void TableReader::text_or_texts(std::string_view key, std::vector<std::string>& values) {
+    if (recording()) note(key, {.type = KeyType::text_or_texts, .count_least = 1});
     const toml::node* node = table_.get(key);
     if (node == nullptr || !node->is_string()) return texts(key, values);
     std::string single;
@@ -178,7 +185,9 @@ void TableReader::text_or_texts(std::string_view key, std::vector<std::string>& 
     values = {single};
 }
 
-std::optional<std::vector<double>> TableReader::numbers(std::string_view key, std::size_t count) {
+std::optional<std::vector<double>> TableReader::numbers(std::string_view key, std::size_t count,
+                                                        std::span<const double> standard) {
+    if (recording()) note(key, numbers_entry(count, standard));
     const toml::node* node = find(key);
     if (!node) return std::nullopt;
     const std::string expected = fmt::format("a list of {} numbers", count);
@@ -202,6 +211,7 @@ std::optional<std::vector<double>> TableReader::numbers(std::string_view key, st
 }
 
 std::optional<Geodetic> TableReader::place(std::string_view key) {
+    if (recording()) note(key, {.type = KeyType::place, .count_least = 2, .count_most = 3});
     const auto* list = table_.get(key) ? table_.get(key)->as_array() : nullptr;
     const std::size_t count = list && list->size() == 2 ? 2 : 3;
     const auto values = numbers(key, count);
@@ -211,7 +221,10 @@ std::optional<Geodetic> TableReader::place(std::string_view key) {
     return *place;
 }
 
-std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<const std::string_view> words) {
+std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<const std::string_view> words,
+                                               std::string_view standard) {
+    if (recording() && key == "kind") return note_kinds(words, standard);
+    if (recording()) note(key, word_entry(words, standard));
     const toml::node* node = find(key);
     std::string word;
     text(key, word);
@@ -228,6 +241,8 @@ std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<c
 std::optional<std::vector<std::size_t>> TableReader::choices(std::string_view key,
                                                              std::span<const std::string_view> words,
                                                              std::string_view wanted) {
+    if (recording())
+        note(key, {.type = KeyType::words, .count_least = 1, .choices = {words.begin(), words.end()}});
     const toml::node* node = find(key);
     if (!node) return std::nullopt;
     const std::string expected =
@@ -256,6 +271,7 @@ std::optional<std::vector<std::size_t>> TableReader::choices(std::string_view ke
 }
 
 std::optional<std::vector<std::int64_t>> TableReader::whole_numbers(std::string_view key, NumberRange range) {
+    if (recording()) note(key, number_entry(KeyType::whole_numbers, range));
     const toml::node* node = find(key);
     if (!node) return std::nullopt;
     const std::string expected = "a list, each entry " + range_words(range, "a whole number");
@@ -284,6 +300,7 @@ std::vector<std::string> TableReader::keys() const {
 }
 
 void TableReader::table(std::string_view key, const std::function<void(TableReader&)>& body) {
+    if (recording()) return record_inner(key, {.type = KeyType::table}, body);
     const toml::node* node = find(key);
     if (!node) return;
     const auto* inner = node->as_table();
@@ -293,7 +310,8 @@ void TableReader::table(std::string_view key, const std::function<void(TableRead
     reader.finish();
 }
 
-void TableReader::tables(std::string_view key, const std::function<void(TableReader&)>& body) {
+void TableReader::tables(std::string_view key, const std::function<void(TableReader&)>& body, std::size_t fewest) {
+    if (recording()) return record_inner(key, {.type = KeyType::tables, .count_least = fewest, .needed = fewest > 0}, body);
     const toml::node* node = find(key);
     if (!node) return;
     const auto* list = node->as_array();

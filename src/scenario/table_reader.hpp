@@ -8,6 +8,7 @@
 #include <concepts>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <span>
@@ -15,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "key_recorder.hpp"
 #include "skyloop/base/result.hpp"
 #include "skyloop/fault/parameters.hpp"
 #include "skyloop/geo/geodetic.hpp"
@@ -59,8 +61,9 @@ struct Word {
 /// range is a mistake. `finish()` makes every key that nobody asked for a mistake that suggests the nearest known one.
 class TableReader {
 public:
-    TableReader(const toml::table& table, std::string path, MistakeList& mistakes)
-        : table_(table), path_(std::move(path)), mistakes_(mistakes) {}
+    /// @param recorder notes each key that is asked for; the table is then empty. Null: the table is read
+    TableReader(const toml::table& table, std::string path, MistakeList& mistakes, KeyRecorder* recorder = nullptr)
+        : table_(table), path_(std::move(path)), mistakes_(mistakes), recorder_(recorder) {}
 
     void number(std::string_view key, double& value, NumberRange range = {});
     void boolean(std::string_view key, bool& value);
@@ -71,16 +74,21 @@ public:
     /// A whole number. `range` lies within what Integer holds.
     template <std::integral Integer>
     void integer(std::string_view key, Integer& value, NumberRange range) {
+        if (recording()) note(key, number_entry(KeyType::whole_number, range, static_cast<double>(value)));
         if (const auto found = whole_number(key, range)) value = static_cast<Integer>(*found);
     }
     /// A list of exactly `count` numbers.
-    std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count);
+    /// @param standard what they are when the key is absent, for the catalogue of keys alone
+    std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count,
+                                               std::span<const double> standard = {});
     /// [latitude, longitude] or [latitude, longitude, height]: degrees, metres above the ellipsoid.
     std::optional<Geodetic> place(std::string_view key);
     /// A UTC time as ISO 8601 text, given as a text or as a TOML date and time.
     std::optional<std::string> utc(std::string_view key);
     /// One of the given words; gives its index.
-    std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> words);
+    /// @param standard the word that stands for an absent key, for the catalogue of keys alone
+    std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> words,
+                                      std::string_view standard = {});
     /// A list of some of the given words, at least one and none twice; gives their indices in the order of the list.
     /// @param wanted what a mistake says was expected, when the words are too many to list
     std::optional<std::vector<std::size_t>> choices(std::string_view key, std::span<const std::string_view> words,
@@ -93,7 +101,10 @@ public:
     void word(std::string_view key, const std::array<Word<Value>, count>& words, Value& value) {
         std::array<std::string_view, count> known;
         std::transform(words.begin(), words.end(), known.begin(), [](const Word<Value>& w) { return w.word; });
-        if (const auto index = choice(key, known)) value = words[*index].value;
+        const auto now =
+            std::find_if(words.begin(), words.end(), [&](const Word<Value>& word) { return word.value == value; });
+        const std::string_view standard = now == words.end() ? std::string_view() : now->word;
+        if (const auto index = choice(key, known, standard)) value = words[*index].value;
     }
 
     /// A quantity of one unit, kept in `Quantity`.
@@ -107,7 +118,8 @@ public:
     /// Reads a sub-table with `body` and finishes it.
     void table(std::string_view key, const std::function<void(TableReader&)>& body);
     /// Reads each table of a list with `body` and finishes it.
-    void tables(std::string_view key, const std::function<void(TableReader&)>& body);
+    /// @param fewest that the caller takes, for the catalogue of keys alone
+    void tables(std::string_view key, const std::function<void(TableReader&)>& body, std::size_t fewest = 0);
     /// Shows each table of a list to `body` as it stands, unchecked; mistakes are for tables() to find.
     void look_at_tables(std::string_view key, const std::function<void(const toml::table&)>& body) const;
     /// Says why a key that other versions know is refused here.
@@ -115,8 +127,11 @@ public:
 
     [[nodiscard]] bool has(std::string_view key) {
         asked_for_.emplace_back(key);
-        return table_.contains(key);
+        if (recording()) recorder_->look_for(path_, key);
+        return recording() ? recorder_->given() : table_.contains(key);
     }
+    /// The sentence is a mistake of the table when none of these keys is there.
+    void needs_one_of(std::initializer_list<std::string_view> keys, const std::string& sentence);
     [[nodiscard]] bool is_boolean(std::string_view key) const { return table_[key].is_boolean(); }
     /// The keys that the table has.
     [[nodiscard]] std::vector<std::string> keys() const;
@@ -131,7 +146,22 @@ public:
     void mistake_here(const std::string& sentence) { mistakes_.add(table_.source(), where() + sentence); }
     void finish();
 
+    /// Whether nothing is read, and the keys that are asked for are noted.
+    [[nodiscard]] bool recording() const { return recorder_ != nullptr; }
+    /// For the catalogue of keys: these are taken, as `value` gives them and check_parameters() checks them.
+    void note_parameters(const std::vector<ParameterSpec>& specs);
+    /// For the catalogue of keys: the caller refuses the one beside the other.
+    void note_not_both(std::string_view key, std::string_view other);
+    /// For the catalogue of keys: `kind`, one of these words, decides what else the table takes.
+    /// @return the one to read with; nothing when nothing is recorded
+    std::optional<std::size_t> note_kinds(std::span<const std::string_view> words, std::string_view standard = {});
+
 private:
+    void note(std::string_view key, KeyEntry entry);
+    void record_inner(std::string_view key, KeyEntry entry, const std::function<void(TableReader&)>& body);
+    static KeyEntry word_entry(std::span<const std::string_view> words, std::string_view standard);
+    static KeyEntry numbers_entry(std::size_t count, std::span<const double> standard);
+    static KeyEntry number_entry(KeyType type, NumberRange range, std::optional<double> standard = {});
     const toml::node* find(std::string_view key);
     std::optional<std::int64_t> whole_number(std::string_view key, NumberRange range);
     void mistake_at(const toml::node& node, std::string_view key, const std::string& sentence);
@@ -142,6 +172,7 @@ private:
     const toml::table& table_;
     std::string path_;
     MistakeList& mistakes_;
+    KeyRecorder* recorder_;
     std::vector<std::string> known_;      // copies: a caller may compose a key
     std::vector<std::string> asked_for_;  // whether they are there; may be meant by others, too
 };

@@ -25,16 +25,17 @@ struct EntryMistakes {
 
 template <class Kind>
 const Kind* read_kind(TableReader& table, const std::vector<Kind>& kinds) {
+    std::vector<std::string_view> names;
+    for (const Kind& kind : kinds)
+        names.push_back(kind.name);
+    const auto recorded = table.note_kinds(names);
+    table.needs_one_of({"kind"}, fmt::format("has no kind; expected one of {}", fmt::join(names, ", ")));
+    if (recorded) return &kinds[*recorded];
     std::string name;
     table.text("kind", name);
     const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& kind) { return kind.name == name; });
     if (found != kinds.end()) return &*found;
-    std::vector<std::string_view> names;
-    for (const Kind& kind : kinds)
-        names.push_back(kind.name);
-    if (!table.has("kind"))
-        table.mistake_here(fmt::format("has no kind; expected one of {}", fmt::join(names, ", ")));
-    else
+    if (table.has("kind"))
         table.mistake("kind", fmt::format("is '{}'{}; expected one of {}", name, did_you_mean(name, names),
                                           fmt::join(names, ", ")));
     return nullptr;
@@ -66,6 +67,7 @@ void tell(TableReader& table, const std::vector<ParameterMistake>& mistakes) {
 // Unknown keys suggest those of the timeline too.
 Parameters own_parameters(TableReader& table, const std::vector<ParameterSpec>& own,
                           const std::vector<ParameterSpec>& timeline, const GivenValues& given) {
+    table.note_parameters(own);
     CheckedParameters checked = check_parameters(own, given);
     std::vector<std::string_view> known{"kind", "receiver"};
     for (const auto* specs : {&own, &timeline})
@@ -79,6 +81,7 @@ Parameters own_parameters(TableReader& table, const std::vector<ParameterSpec>& 
 }
 
 TimelineEntry read_times(TableReader& table, const std::vector<ParameterSpec>& keys, const GivenValues& given) {
+    table.note_parameters(keys);
     const CheckedParameters checked = check_parameters(keys, given);
     tell(table, checked.mistakes);
     TimelineReading reading = read_timeline_entry(checked.parameters);
@@ -139,10 +142,10 @@ void read_command(TableReader& table, Scenario& scenario) {
         entry.command.verb = kind->verb;
         entry.command.parameters = own_parameters(table, kind->parameters, timeline_keys_of_commands(), given.own);
         if (const auto mistake = place_mistake(entry.command)) table.mistake("at", *mistake);
-        if (table.has("receiver") && !kind->of_receiver)
-            table.mistake("receiver",
-                          fmt::format("'{}' is not for one receiver alone; expected no 'receiver'", kind->name));
-        if (table.has("receiver")) {
+        if (!kind->of_receiver) {
+            table.refuse("receiver",
+                         fmt::format("'{}' is not for one receiver alone; expected no 'receiver'", kind->name));
+        } else if (table.has("receiver")) {
             const auto chosen = read_receiver_choice(table, scenario);
             if (chosen.size() == 1) entry.command.receiver = receiver_name(scenario, chosen.front());
         }

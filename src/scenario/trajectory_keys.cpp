@@ -18,6 +18,7 @@ public:
         const std::string level_key = key + "_level";
         const auto on_earth = table.place(key);
         const auto in_level = table.numbers(level_key, 3);
+        table.note_not_both(key, level_key);
         if (on_earth && in_level)
             table.mistake(level_key, fmt::format("stands beside {}; expected one of the two", key));
         if (!in_level) return on_earth;
@@ -58,7 +59,7 @@ std::optional<LevelFrame> read_frame(TableReader& top) {
     top.table("frame", [&](TableReader& table) {
         LevelPlacement placement;
         const auto origin = table.place("origin");
-        if (!table.has("origin")) table.mistake_here("has no origin; expected origin = [latitude, longitude, height]");
+        table.needs_one_of({"origin"}, "has no origin; expected origin = [latitude, longitude, height]");
         if (origin) placement.origin = *origin;
         double yaw = 0;
         table.number("yaw_deg", yaw, {-360, 360});
@@ -80,28 +81,27 @@ Angle read_heading(TableReader& table) {
 void read_fixed(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
     FixedSettings fixed;
     fixed.heading = read_heading(table);
-    if (const auto at = places.read(table, "at"))
-        fixed.at = *at;
-    else if (!table.has("at") && !table.has("at_level"))
-        table.mistake_here("kind \"fixed\" has no place; expected at = [latitude, longitude, height]");
+    if (const auto at = places.read(table, "at")) fixed.at = *at;
+    table.needs_one_of({"at", "at_level"},
+                       "kind \"fixed\" has no place; expected at = [latitude, longitude, height]");
     trajectory = fixed;
 }
 
 void read_waypoints(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
     WaypointSettings path;
     path.heading = read_heading(table);
-    table.tables("waypoint", [&](TableReader& row) {
+    const auto read_corner = [&](TableReader& row) {
         Waypoint corner;
         if (!path.corners.empty()) corner.speed = path.corners.back().speed;
-        if (const auto at = places.read(row, "at"))
-            corner.place = *at;
-        else if (!row.has("at") && !row.has("at_level"))
-            row.mistake_here("has no place; expected at = [latitude, longitude, height]");
+        if (const auto at = places.read(row, "at")) corner.place = *at;
+        row.needs_one_of({"at", "at_level"}, "has no place; expected at = [latitude, longitude, height]");
         row.quantity("speed_mps", corner.speed, {1e-3, 12000});
         row.quantity("hold_s", corner.hold, {0, 1e7});
         path.corners.push_back(corner);
-    });
-    if (path.corners.size() < 2)
+    };
+    constexpr std::size_t fewest_corners = 2;
+    table.tables("waypoint", read_corner, fewest_corners);
+    if (path.corners.size() < fewest_corners)
         table.mistake_here(fmt::format(
             "kind \"waypoints\" has {} waypoints; expected two or more [[trajectory.waypoint]]", path.corners.size()));
     trajectory = path;
@@ -110,10 +110,9 @@ void read_waypoints(TableReader& table, PlaceReader& places, TrajectorySettings&
 void read_circle(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
     CircleSettings circle;
     circle.heading = read_heading(table);
-    if (const auto centre = places.read(table, "centre"))
-        circle.shape.centre = *centre;
-    else if (!table.has("centre") && !table.has("centre_level"))
-        table.mistake_here("kind \"circle\" has no centre; expected centre = [latitude, longitude, height]");
+    if (const auto centre = places.read(table, "centre")) circle.shape.centre = *centre;
+    table.needs_one_of({"centre", "centre_level"},
+                       "kind \"circle\" has no centre; expected centre = [latitude, longitude, height]");
     table.quantity("radius_m", circle.shape.radius, {0.1, 1e6});
     table.quantity("speed_mps", circle.shape.speed, {-12000, 12000});
     double azimuth = 0;
@@ -129,8 +128,7 @@ void read_trajectory_keys(TableReader& top, Scenario& scenario) {
     top.table("trajectory", [&](TableReader& table) {
         static constexpr std::array<std::string_view, 5> kinds{"fixed", "waypoints", "circle", "file", "live"};
         const auto kind = table.choice("kind", kinds);
-        if (!table.has("kind"))
-            table.mistake_here("has no kind; expected kind = \"fixed\", \"waypoints\" or \"circle\"");
+        table.needs_one_of({"kind"}, "has no kind; expected kind = \"fixed\", \"waypoints\" or \"circle\"");
         switch (kind.value_or(kinds.size())) {
             case 0:
                 return read_fixed(table, places, scenario.trajectory);

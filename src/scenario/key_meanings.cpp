@@ -1,0 +1,116 @@
+#include "key_meanings.hpp"
+
+#include <algorithm>
+
+namespace skyloop {
+namespace {
+
+constexpr KeyMeaning run_meanings[] = {
+    {"", "run", "when, how long, how fast"},
+    {"run", "start", "when the run begins: ISO 8601 in UTC, or \"now\"", "now, or the first epoch of the navigation data"},
+    {"run", "duration_s", "length of the run", "until stopped"},
+    {"run", "seed", "the same scenario, seed and inputs give the same bytes"},
+    {"run", "speed", "`skyloop run` only: simulated seconds per second"},
+    {"", "sky", "which satellites there are"},
+    {"sky", "navigation", "navigation files: RINEX 2, 3 or 4, YUMA or SEM almanac, gzip too", "nominal constellation"},
+    {"sky", "rebase_navigation", "move the data by whole days to the start time, keeping its time of day"},
+    {"sky", "constellations", "which systems of the data send", "all; gps and qzss for sensor models"},
+    {"sky", "elevation_mask_deg", "a satellite exactly at the mask is used", "the board's; 5 for sensor models"},
+    {"sky", "ephemeris_rule", "the newest healthy record that is not of the future, or the nearest one", "by the model"},
+    {"sky", "ephemeris_validity_s", "largest age of any record", "by the system"},
+    {"", "frame", "where the coordinates of a game level lie on the Earth"},
+    {"frame", "origin", "of the level: latitude, longitude, height"},
+    {"frame", "yaw_deg", "azimuth of the level's X axis, clockwise from north"},
+    {"frame", "unit_m", "length of one level unit; 0.01 for centimetres"},
+    {"frame", "left_handed", "true: Y points to the right of X"},
+    {"frame", "reach_m", "a warning tells of points further from the origin, where a plane leaves the curved Earth"},
+    {"", "trajectory", "where the vehicle is", "fixed, in Odessa"},
+    {"trajectory", "kind", "the shape of the way"},
+    {"trajectory", "heading_deg",
+     "where the vehicle looks until it moves, clockwise from north; then it looks where it goes"},
+    {"trajectory", "at", "the place: latitude, longitude, height above the ellipsoid", "none"},
+    {"trajectory", "at_level", "the place in the coordinates of [frame], instead of `at`: x, y, z", "none"},
+    {"trajectory", "waypoint", "the corners of the way, at least two"},
+    {"trajectory.waypoint", "at", "the corner: latitude, longitude, height above the ellipsoid", "none"},
+    {"trajectory.waypoint", "at_level", "the corner in the coordinates of [frame], instead of `at`: x, y, z", "none"},
+    {"trajectory.waypoint", "speed_mps", "from here to the next corner", "the last one given, at first 10"},
+    {"trajectory.waypoint", "hold_s", "stop here before leaving"},
+    {"trajectory", "centre", "of the circle: latitude, longitude, height above the ellipsoid", "none"},
+    {"trajectory", "centre_level", "the centre in the coordinates of [frame], instead of `centre`: x, y, z", "none"},
+    {"trajectory", "radius_m", "of the circle"},
+    {"trajectory", "speed_mps", "along the circle; a negative one runs anticlockwise"},
+    {"trajectory", "start_azimuth_deg", "from the centre to the place at the start, clockwise from north"},
+    {"", "scene", "buildings and ground around the antenna"},
+    {"scene", "buildings", "city models (.obj .ply .gltf .glb .geojson .json .osm .pbf .gml .xml), or \"demo\"", "none"},
+    {"scene", "terrain", "height grid (.asc) that becomes ground", "none"},
+    {"scene", "origin", "of the files' frame: latitude, longitude, height", "1.5 m below the start of the trajectory"},
+    {"scene", "axes", "the file's axes that point east, north and up: \"x,y,z\", \"x,-z,y\", \"y,x,z\"",
+     "as the format says"},
+    {"scene", "unit_m", "length of one unit of the file; 0.01 for centimetres"},
+    {"scene", "material", "of surfaces of which the file tells none"},
+    {"scene", "default_height_m", "of outlines without height or levels"},
+    {"scene", "metres_per_level", "m, of outlines with levels"},
+    {"scene", "reflections", "most of one path", "16; modern 3"},
+    {"scene", "roofs_reflect", "roofs besides walls"},
+    {"scene", "ground_reflects", "ground besides walls", "modern alone"},
+    {"scene", "diffraction", "modern: rays around edges"},
+    {"scene", "foliage", "modern: the trees of the model weaken what passes them"},
+    {"scene", "rays", "of a search over the whole hemisphere; 0: by the epoch rate"},
+    {"scene", "threads", "of each receiver, that search beside the loop; the bytes do not depend on it"},
+    {"scene", "memory_limit_mb", "a scene that would take more is refused; 0: no limit"},
+    {"scene", "cache", "keep models that take time to read for the next run"},
+    {"", "receiver", "the receivers on the vehicle", "one, an ublox-m8 on a pty"},
+    {"receiver", "name", "what messages and `base` call it", "receiver0, receiver1, …"},
+    {"receiver", "board", "a profile of `skyloop boards`"},
+    {"receiver", "port", "wires: pty[:LINK], file:PATH, -, client:NAME; NAME= before it says which port", "a pty"},
+    {"receiver", "rate_hz", "navigation rate at the factory", "the board's"},
+    {"receiver", "baud", "bit/s of UART1 at the factory", "the board's"},
+    {"receiver", "sentences", "NMEA sentences at the factory, each every epoch", "the board's"},
+    {"receiver", "constellations", "systems that it tracks from the factory on", "the board's"},
+    {"receiver", "dual_frequency", "it tracks the second signal of each system too; false leaves it to the board"},
+    {"receiver", "start", "what it knows at the start: everything; time, place and almanac; nothing"},
+    {"receiver", "dynamic_model", "how it expects to move; a fix beyond its limits of height and speed is withheld"},
+    {"receiver", "static_hold_mps", "slower than this, the position is held; 0: never"},
+    {"receiver", "power_up", "it is switched on at the start of the run; false: it has been on for long"},
+    {"receiver", "state_file", "keeps what the receiver saves for the next run", "none"},
+    {"receiver", "antenna_offset_m", "from the point that follows the trajectory to the antenna: forward, right, down"},
+    {"receiver", "base", "name of the receiver that carries the base antenna of a pair", "none"},
+    {"", "fault", "what goes wrong; lasts (docs/failsafe.md)"},
+    {"fault", "kind", "which fault, see docs/faults.md"},
+    {"fault", "receiver", "names of the receivers that it is for", "all"},
+    {"", "command", "what happens once (docs/failsafe.md)"},
+    {"command", "kind", "which command, see docs/faults.md"},
+    {"command", "receiver", "name of the receiver that it is for", "all"},
+    {"", "expect", "what the run is judged by (docs/failsafe.md)"},
+    {"expect", "name", "what verdicts call it", "its sentence or its command"},
+    {"expect", "receiver", "name of the receiver that the sentence is about", "each"},
+    {"expect", "what", "a sentence: \"fix within 30 s of the end of outage\"", "none"},
+    {"expect", "command", "a program and its arguments, or a text for /bin/sh", "none"},
+    {"expect", "expect_exit", "exit code that the command should have", "0, or any beside json"},
+    {"expect", "json", "one JSON line that the command prints must fulfil this: \"tpv.mode >= 3\"", "none"},
+    {"expect", "at_s", "when the command is started, after the start of the run"},
+    {"expect", "within_s", "it is started anew until it succeeds, for so long", "once"},
+    {"expect", "timeout_s", "of each start of the command; then it is killed"},
+};
+
+const KeyMeaning* find_in(std::span<const KeyMeaning> meanings, std::string_view table, std::string_view key) {
+    const auto found = std::find_if(meanings.begin(), meanings.end(), [&](const KeyMeaning& meaning) {
+        const bool of_any = meaning.table.ends_with(".*");
+        const std::string_view above = table.substr(0, table.rfind('.') + 1);
+        const bool here = of_any ? above == meaning.table.substr(0, meaning.table.size() - 1) : meaning.table == table;
+        return here && meaning.key == key;
+    });
+    return found == meanings.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::span<const KeyMeaning> run_key_meanings() { return run_meanings; }
+
+const KeyMeaning* find_key_meaning(std::string_view table, std::string_view key) {
+    for (const auto meanings : {run_key_meanings(), model_key_meanings(), modern_key_meanings()})
+        if (const KeyMeaning* found = find_in(meanings, table, key)) return found;
+    return nullptr;
+}
+
+}  // namespace skyloop
