@@ -20,7 +20,7 @@ FENCES = [
     ("zlib", ("zlib.h", "zconf.h"), {"base"}),
     ("GeographicLib", ("GeographicLib/",), {"geo"}),
     ("toml++", ("toml++/", "toml.hpp"), {"scenario"}),
-    ("nlohmann/json", ("nlohmann/",), {"city", "verdict", "emulator", "analysis", "control", "host"}),
+    ("nlohmann/json", ("nlohmann/",), {"city", "verdict", "emulator", "analysis", "control", "scenario", "host"}),
     ("pugixml", ("pugixml",), {"city", "src/verdict/reports.cpp"}),
     ("libosmium", ("osmium/", "protozero/"), {"city"}),
     ("CLI11", ("CLI/", "CLI11"), {"host"}),

@@ -21,7 +21,7 @@ namespace {
 using skyloop::host::Action;
 
 constexpr std::array<std::string_view, 12> commands{"run",    "simulate", "sky",   "check",  "compare", "solve",
-                                                    "boards", "decode",   "scene", "faults", "schema", "ctl"};
+                                                    "boards", "decode",   "scene", "faults", "schema",  "ctl"};
 constexpr std::array<std::string_view, 5> later_commands{"devices", "replay", "trajectory", "scenario-from",
                                                          "campaign"};
 

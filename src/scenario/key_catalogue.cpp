@@ -99,6 +99,19 @@ const std::vector<KeyTable>& scenario_key_tables() {
     return tables;
 }
 
+std::vector<std::string> words_without_key() {
+    std::vector<std::string> lost;
+    for (const auto meanings : {run_key_meanings(), model_key_meanings(), modern_key_meanings()})
+        for (const KeyMeaning& meaning : meanings) {
+            bool used = false;
+            for (const KeyTable& table : scenario_key_tables())
+                for (const KeyEntry& key : table.keys)
+                    used |= find_key_meaning(table.path, key.name) == &meaning;
+            if (!used) lost.push_back(std::string(meaning.table) + "." + std::string(meaning.key));
+        }
+    return lost;
+}
+
 std::string_view key_unit(std::string_view key) {
     if (key == "ppm") return "ppm";
     const auto* const found = std::find_if(unit_suffixes.begin(), unit_suffixes.end(),

@@ -3,6 +3,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
+#include <map>
 
 #include "skyloop/scenario/key_catalogue.hpp"
 
@@ -94,8 +96,7 @@ std::string default_of(const KeyEntry& key) {
 
 std::string key_row(const KeyEntry& key) {
     const std::string_view unit = key_unit(key.name);
-    const std::string kinds =
-        key.kinds.empty() ? std::string() : fmt::format("`{}`: ", fmt::join(key.kinds, "`, `"));
+    const std::string kinds = key.kinds.empty() ? std::string() : fmt::format("`{}`: ", fmt::join(key.kinds, "`, `"));
     return fmt::format("| `{}` | {} | {} | {} | {}{} |\n", key.name, unit, taken_by(key), default_of(key), kinds,
                        key.meaning);
 }
@@ -109,8 +110,11 @@ std::string rules_of(const KeyTable& table) {
     };
     for (const KeyRule& rule : table.one_of)
         sentences += fmt::format("One of `{}` is needed{}. ", fmt::join(rule.keys, "`, `"), with(rule));
+    std::map<std::string, std::vector<std::string>> apart;
     for (const KeyRule& rule : table.not_both)
-        sentences += fmt::format("`{}` do not stand together. ", fmt::join(rule.keys, "` and `"));
+        apart[rule.keys.front()].push_back(rule.keys.back());
+    for (const auto& [key, others] : apart)
+        sentences += fmt::format("`{}` does not stand beside `{}`. ", key, fmt::join(others, "`, `"));
     if (sentences.empty()) return sentences;
     sentences.back() = '\n';
     return sentences + "\n";
@@ -122,9 +126,11 @@ bool listed(const KeyTable& table, const KeyEntry& key) {
     return !is_heading(key) && !(elsewhere && !key.kinds.empty());
 }
 
-std::string table_part(const KeyTable& table, std::string_view heading, std::string_view meaning) {
-    std::string part = fmt::format("## {0}{1}{2}\n\n{3}.\n\n", table.list ? "[[" : "[", heading, table.list ? "]]" : "]",
-                                   meaning);
+std::string table_part(const KeyTable& table, std::string_view heading, std::string meaning) {
+    if (!meaning.empty())
+        meaning.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(meaning.front())));
+    std::string part =
+        fmt::format("## {0}{1}{2}\n\n{3}.\n\n", table.list ? "[[" : "[", heading, table.list ? "]]" : "]", meaning);
     std::string rows;
     for (const KeyEntry& key : table.keys)
         if (listed(table, key)) rows += key_row(key);

@@ -8,8 +8,8 @@ namespace skyloop {
 
 /// One key, or one table, by its place.
 struct KeyMeaning {
-    std::string_view table;          ///< its path; a last part of `*` stands for any
-    std::string_view key;            ///<
+    std::string_view table;  ///< its path; a last part of `*` stands for any
+    std::string_view key;
     std::string_view meaning;        ///< half a sentence
     std::string_view standard = {};  ///< what an absent key stands for, where that is no fixed value
 };

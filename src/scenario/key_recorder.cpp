@@ -8,8 +8,7 @@ namespace {
 
 // Kinds that are all there are say nothing; of those that this version refuses nothing is said.
 void tidy_kinds(std::vector<std::string>& kinds, const std::vector<std::string>& all) {
-    std::erase_if(kinds,
-                  [&](const std::string& kind) { return std::find(all.begin(), all.end(), kind) == all.end(); });
+    std::erase_if(kinds, [&](const std::string& kind) { return std::find(all.begin(), all.end(), kind) == all.end(); });
     if (kinds.size() == all.size()) kinds.clear();
 }
 
@@ -17,9 +16,9 @@ template <class Item>
 void tidy_items(std::vector<Item>& items, const std::vector<std::string>& all) {
     std::erase_if(items, [&](Item& item) {
         const bool had_kinds = !item.kinds.empty();
-        const bool of_refused_only = had_kinds && std::none_of(item.kinds.begin(), item.kinds.end(), [&](const auto& k) {
-                                         return std::find(all.begin(), all.end(), k) != all.end();
-                                     });
+        const bool of_refused_only =
+            had_kinds && std::none_of(item.kinds.begin(), item.kinds.end(),
+                                      [&](const auto& k) { return std::find(all.begin(), all.end(), k) != all.end(); });
         tidy_kinds(item.kinds, all);
         return of_refused_only;
     });
@@ -64,8 +63,11 @@ std::optional<std::string> KeyRecorder::kind_of(const Noted& noted) const {
 void KeyRecorder::note(const std::string& path, KeyEntry entry) {
     Noted& noted = of(path);
     const auto kind = kind_of(noted);
-    // A first reading, which learns the kinds, may have noted a key before its table was known to have kinds.
-    if (!turn_ || !kind || !noted.seen.emplace(*kind, entry.name).second) return;
+    // The first readings only learn which tables have kinds.
+    if (!turn_ || !kind) return;
+    if (given_ && std::find(noted.order.begin(), noted.order.end(), entry.name) == noted.order.end())
+        noted.order.push_back(entry.name);
+    if (!noted.seen.emplace(*kind, entry.name).second) return;
     auto& keys = noted.table.keys;
     auto at = std::find_if(keys.begin(), keys.end(), [&](const KeyEntry& other) { return other.same_as(entry); });
     if (at == keys.end()) at = keys.insert(keys.end(), std::move(entry));
@@ -124,6 +126,9 @@ KeyTable KeyRecorder::finished(const Noted& noted) {
             if (rule.keys == std::vector<std::string>{key.name} && rule.kinds == key.kinds) key.needed = true;
         if (key.needed) key.standard.reset();
     }
+    const auto place = [&](const KeyEntry& key) { return std::find(noted.order.begin(), noted.order.end(), key.name); };
+    std::stable_sort(table.keys.begin(), table.keys.end(),
+                     [&](const KeyEntry& a, const KeyEntry& b) { return place(a) < place(b); });
     std::erase_if(table.one_of, [](const KeyRule& rule) { return rule.keys.size() == 1; });
     return table;
 }

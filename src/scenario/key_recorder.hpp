@@ -48,9 +48,11 @@ private:
         std::set<std::string> refused{};   // of them
         std::set<std::string> looked_for{};
         std::set<std::pair<std::string, std::string>> seen{};  // kind, key
+        std::vector<std::string> order{};                      // of names, as a reader asks that finds all of them
     };
     Noted& of(const std::string& path);
-    // The word that is read with, "" in a table without kinds; nothing: the table has kinds, and this is the turn of none.
+    // The word that is read with, "" in a table without kinds; nothing: the table has kinds, and this is the turn of
+    // none.
     [[nodiscard]] std::optional<std::string> kind_of(const Noted& noted) const;
     [[nodiscard]] static KeyTable finished(const Noted& noted);
     void add_with_inner(const std::string& path, std::vector<KeyTable>& tables) const;

@@ -1,5 +1,6 @@
-// JSON Schema of scenario files (https://json-schema.org/draft-07). The draft is that of the editors: taplo, which serves
-// TOML in VS Code, Zed, Helix and Neovim, and Visual Studio Code's own JSON take draft 7 without being told.
+// JSON Schema of scenario files (https://json-schema.org/draft-07). The draft is that of the editors: taplo 0.9, which
+// serves TOML in VS Code, Zed, Helix and Neovim, silently passes over `prefixItems` and what stands beside a `$ref` in
+// schemas of draft 2020-12.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -73,7 +74,9 @@ Schema place_schema(const KeyEntry& key) {
                                            between(-1e4, 1e7, "height above the ellipsoid, m")}));
 }
 
-Schema one_or_more(Schema single, Schema list) { return {{"anyOf", Schema::array({std::move(single), std::move(list)})}}; }
+Schema one_or_more(Schema single, Schema list) {
+    return {{"anyOf", Schema::array({std::move(single), std::move(list)})}};
+}
 
 // What a key takes, without words for people. A table is a reference that the caller sets.
 Schema value_schema(const KeyEntry& key) {

@@ -156,7 +156,8 @@ void read_ionosphere(TableReader& atmosphere, AtmosphereParameters& p) {
 }  // namespace
 
 void read_model_keys(TableReader& model, ModelSettings& settings, const std::filesystem::path& folder) {
-    if (const auto index = model.choice("name", model_names(), model_name(settings))) choose_model(settings, model_names()[*index]);
+    if (const auto index = model.choice("name", model_names(), model_name(settings)))
+        choose_model(settings, model_names()[*index]);
     static constexpr std::array<Word<bool>, 2> errors{{{"all", true}, {"none", false}}};
     if (model.has("errors") && settings.sensor_model)
         model.mistake("errors",

@@ -241,8 +241,7 @@ std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<c
 std::optional<std::vector<std::size_t>> TableReader::choices(std::string_view key,
                                                              std::span<const std::string_view> words,
                                                              std::string_view wanted) {
-    if (recording())
-        note(key, {.type = KeyType::words, .count_least = 1, .choices = {words.begin(), words.end()}});
+    if (recording()) note(key, {.type = KeyType::words, .count_least = 1, .choices = {words.begin(), words.end()}});
     const toml::node* node = find(key);
     if (!node) return std::nullopt;
     const std::string expected =
@@ -311,7 +310,8 @@ void TableReader::table(std::string_view key, const std::function<void(TableRead
 }
 
 void TableReader::tables(std::string_view key, const std::function<void(TableReader&)>& body, std::size_t fewest) {
-    if (recording()) return record_inner(key, {.type = KeyType::tables, .count_least = fewest, .needed = fewest > 0}, body);
+    if (recording())
+        return record_inner(key, {.type = KeyType::tables, .count_least = fewest, .needed = fewest > 0}, body);
     const toml::node* node = find(key);
     if (!node) return;
     const auto* list = node->as_array();

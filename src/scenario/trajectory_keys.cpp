@@ -82,8 +82,7 @@ void read_fixed(TableReader& table, PlaceReader& places, TrajectorySettings& tra
     FixedSettings fixed;
     fixed.heading = read_heading(table);
     if (const auto at = places.read(table, "at")) fixed.at = *at;
-    table.needs_one_of({"at", "at_level"},
-                       "kind \"fixed\" has no place; expected at = [latitude, longitude, height]");
+    table.needs_one_of({"at", "at_level"}, "kind \"fixed\" has no place; expected at = [latitude, longitude, height]");
     trajectory = fixed;
 }
 

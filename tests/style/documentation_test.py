@@ -52,7 +52,7 @@ def read(name):
 
 def scenario_sources():
     return [path.read_text(encoding="utf-8") for path in sorted((ROOT / "src/scenario").glob("*.cpp"))
-            if not path.name.startswith("board_")]
+            if not path.name.startswith(("board_", "key_"))]
 
 
 def board_sources():

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "scenario_text.hpp"
+#include "skyloop/scenario/key_catalogue.hpp"
 
 namespace skyloop {
 namespace {
@@ -128,12 +129,17 @@ TEST(ScenarioDocumentation, NamesEveryKeyThatTheReaderKnows) {
     std::string document;
     for (const std::string& line : document_lines())
         document += line + "\n";
-    std::istringstream text{std::string(test::every_key_text)};
-    for (std::string line; std::getline(text, line);) {
-        const std::string key = line.substr(0, line.find(" = "));
-        if (!is_key(key)) continue;
-        EXPECT_NE(document.find("`" + key + "`"), std::string::npos) << key;
-    }
+    std::size_t count = 0;
+    for (const KeyTable& table : scenario_key_tables())
+        for (const KeyEntry& key : table.keys) {
+            // Headings, and the page of faults, hold the others.
+            const bool here = key.type != KeyType::table && key.type != KeyType::tables && table.path != "fault" &&
+                              table.path != "command";
+            if (!here) continue;
+            EXPECT_NE(document.find("`" + key.name + "`"), std::string::npos) << table.path << "." << key.name;
+            ++count;
+        }
+    EXPECT_GT(count, 250U);
 }
 
 }  // namespace
