@@ -25,18 +25,16 @@ KeyType key_type_of(const ParameterSpec& spec) {
 }
 
 KeyEntry entry_of(const ParameterSpec& spec) {
-    KeyEntry entry{.name = spec.name,
-                   .type = key_type_of(spec),
-                   .least = spec.least,
-                   .most = spec.most,
-                   .count_least = spec.count_least,
-                   .count_most = spec.count_most,
-                   .choices = spec.choices,
-                   .standard = spec.standard,
-                   .needed = spec.needed,
-                   .meaning = spec.meaning};
-    if (entry.type == KeyType::word_or_words || entry.type == KeyType::text_or_texts) entry.count_least = 1;
-    return entry;
+    return {.name = spec.name,
+            .type = key_type_of(spec),
+            .least = spec.least,
+            .most = spec.most,
+            .count_least = spec.count_least,
+            .count_most = spec.count_most,
+            .choices = spec.choices,
+            .standard = spec.standard,
+            .needed = spec.needed,
+            .meaning = spec.meaning};
 }
 
 }  // namespace
