@@ -50,7 +50,9 @@ void list_mavlink(const MavlinkFrameView& frame, DecodedMessage& message) {
     message.id = fmt::format("{}", frame.message);
     const bool known =
         list_mavlink_as<MavlinkHeartbeat>(frame, message) || list_mavlink_as<MavlinkGpsInput>(frame, message) ||
-        list_mavlink_as<MavlinkGpsRawInt>(frame, message) || list_mavlink_as<MavlinkGpsRtcmData>(frame, message);
+        list_mavlink_as<MavlinkGpsRawInt>(frame, message) || list_mavlink_as<MavlinkGpsRtcmData>(frame, message) ||
+        list_mavlink_as<MavlinkCommandLong>(frame, message) || list_mavlink_as<MavlinkCommandInt>(frame, message) ||
+        list_mavlink_as<MavlinkCommandAck>(frame, message);
     if (!known) return keep_payload(frame.payload, message);
     const auto number = [](unsigned value) { return DecodedValue{std::uint64_t{value}}; };
     std::vector<DecodedField> fields{{"system", number(frame.source.system)},

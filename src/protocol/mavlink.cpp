@@ -42,6 +42,12 @@ std::optional<std::uint8_t> mavlink_crc_extra(std::uint32_t message) {
             return MavlinkHeartbeat::crc_extra;
         case MavlinkGpsRawInt::message_id:
             return MavlinkGpsRawInt::crc_extra;
+        case MavlinkCommandInt::message_id:
+            return MavlinkCommandInt::crc_extra;
+        case MavlinkCommandLong::message_id:
+            return MavlinkCommandLong::crc_extra;
+        case MavlinkCommandAck::message_id:
+            return MavlinkCommandAck::crc_extra;
         case MavlinkGpsInput::message_id:
             return MavlinkGpsInput::crc_extra;
         case MavlinkGpsRtcmData::message_id:
@@ -107,6 +113,21 @@ std::optional<MavlinkFrameView> parse_mavlink(ByteSpan bytes) {
     const std::uint16_t crc = crc16_x25({&*extra, 1}, crc16_x25(bytes.subspan(1, covered - 1)));
     if (bytes[covered] != (crc & 0xFF) || bytes[covered + 1] != crc >> 8) return std::nullopt;
     return frame;
+}
+
+std::vector<MavlinkFrameView> mavlink_frames(ByteSpan datagram) {
+    std::vector<MavlinkFrameView> frames;
+    while (!datagram.empty()) {
+        const auto size = mavlink_frame_size(datagram);
+        if (!size) {
+            datagram = datagram.subspan(1);
+            continue;
+        }
+        if (*size > datagram.size()) break;
+        if (const auto frame = parse_mavlink(datagram.first(*size))) frames.push_back(*frame);
+        datagram = datagram.subspan(*size);
+    }
+    return frames;
 }
 
 }  // namespace skyloop

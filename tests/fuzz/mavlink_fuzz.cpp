@@ -26,6 +26,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check_mavlink_return<MavlinkGpsInput>(bytes);
     check_mavlink_return<MavlinkGpsRawInt>(bytes);
     check_mavlink_return<MavlinkGpsRtcmData>(bytes);
+    check_mavlink_return<MavlinkCommandLong>(bytes);
+    check_mavlink_return<MavlinkCommandInt>(bytes);
+    check_mavlink_return<MavlinkCommandAck>(bytes);
     if (const auto frame = parse_mavlink(bytes); frame && frame->payload.size() > 0xFF) std::abort();
+    std::size_t found = 0;
+    for (const MavlinkFrameView& frame : mavlink_frames(bytes)) {
+        found += mavlink_crc_size + frame.payload.size();
+        check_mavlink_return<MavlinkHeartbeat>(frame.payload);
+    }
+    if (found > size) std::abort();
     return 0;
 }

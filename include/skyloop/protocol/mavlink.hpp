@@ -4,11 +4,13 @@
 /// with the fields in the order of the wire (by descending size, extensions behind).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "skyloop/protocol/field_list.hpp"
 
@@ -57,6 +59,10 @@ std::optional<std::uint32_t> mavlink_message_id(ByteSpan bytes);
 /// understood are not.
 std::optional<MavlinkFrameView> parse_mavlink(ByteSpan bytes);
 
+/// The frames of one datagram, in their order. What is no frame is passed over; so are frames of unknown messages, with
+/// wrong checksums or flags, by the length in their head. The views live as long as the bytes.
+std::vector<MavlinkFrameView> mavlink_frames(ByteSpan datagram);
+
 /// HEARTBEAT: a component is alive.
 struct MavlinkHeartbeat {
     static constexpr std::uint32_t message_id = 0;
@@ -66,7 +72,7 @@ struct MavlinkHeartbeat {
     static constexpr std::string_view field_names =
         "custom_mode type autopilot base_mode system_status mavlink_version";
     std::uint32_t custom_mode = 0;
-    std::uint8_t type = 29;      ///< 29: MAV_TYPE_GPS
+    std::uint8_t type = 41;      ///< 41: MAV_TYPE_GPS
     std::uint8_t autopilot = 8;  ///< 8: none
     std::uint8_t base_mode = 0;
     std::uint8_t system_status = 4;  ///< 4: active
@@ -77,6 +83,77 @@ struct MavlinkHeartbeat {
         v(m.custom_mode, m.type, m.autopilot, m.base_mode, m.system_status, m.mavlink_version);
     }
 };
+
+/// COMMAND_LONG: asks a component to do something; what the parameters mean depends on the command (MAV_CMD).
+struct MavlinkCommandLong {
+    static constexpr std::uint32_t message_id = 76;
+    static constexpr std::uint8_t crc_extra = 152;
+    static constexpr std::size_t base_size = 33;
+    static constexpr std::string_view message_name = "COMMAND_LONG";
+    static constexpr std::string_view field_names =
+        "param1 param2 param3 param4 param5 param6 param7 command target_system target_component confirmation";
+    float param1 = 0, param2 = 0, param3 = 0, param4 = 0, param5 = 0, param6 = 0, param7 = 0;
+    std::uint16_t command = 0;
+    std::uint8_t target_system = 0;     ///< 0: all
+    std::uint8_t target_component = 0;  ///< 0: all
+    std::uint8_t confirmation = 0;      ///< how often it has been sent before
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.param1, m.param2, m.param3, m.param4, m.param5, m.param6, m.param7, m.command, m.target_system,
+          m.target_component, m.confirmation);
+    }
+};
+
+/// COMMAND_INT: as COMMAND_LONG, with a place in whole numbers.
+struct MavlinkCommandInt {
+    static constexpr std::uint32_t message_id = 75;
+    static constexpr std::uint8_t crc_extra = 158;
+    static constexpr std::size_t base_size = 35;
+    static constexpr std::string_view message_name = "COMMAND_INT";
+    static constexpr std::string_view field_names =
+        "param1 param2 param3 param4 x y z command target_system target_component frame current autocontinue";
+    float param1 = 0, param2 = 0, param3 = 0, param4 = 0;
+    std::int32_t x = 0;  ///< 1e-7 deg of latitude or 1e-4 m, by `frame`
+    std::int32_t y = 0;  ///< … of longitude
+    float z = 0;         ///< m
+    std::uint16_t command = 0;
+    std::uint8_t target_system = 0;     ///< 0: all
+    std::uint8_t target_component = 0;  ///< 0: all
+    std::uint8_t frame = 0;
+    std::uint8_t current = 0;
+    std::uint8_t autocontinue = 0;
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.param1, m.param2, m.param3, m.param4, m.x, m.y, m.z, m.command, m.target_system, m.target_component,
+          m.frame, m.current, m.autocontinue);
+    }
+};
+
+/// COMMAND_ACK: what becomes of a command.
+struct MavlinkCommandAck {
+    static constexpr std::uint32_t message_id = 77;
+    static constexpr std::uint8_t crc_extra = 143;
+    static constexpr std::size_t base_size = 3;
+    static constexpr std::string_view message_name = "COMMAND_ACK";
+    static constexpr std::string_view field_names =
+        "command result progress result_param2 target_system target_component";
+    std::uint16_t command = 0;
+    std::uint8_t result = 0;         ///< MavlinkResult
+    std::uint8_t progress = 0;       ///< %; this and what follows are extensions
+    std::int32_t result_param2 = 0;  ///< depends on the command
+    std::uint8_t target_system = 0;  ///< of who has asked
+    std::uint8_t target_component = 0;
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.command, m.result, m.progress, m.result_param2, m.target_system, m.target_component);
+    }
+};
+
+/// MAV_RESULT of common.xml, as far as it is used here.
+enum class MavlinkResult : std::uint8_t { accepted = 0, temporarily_rejected = 1, denied = 2, unsupported = 3 };
 
 /// GPS_INPUT: a receiver's solution for an autopilot.
 struct MavlinkGpsInput {

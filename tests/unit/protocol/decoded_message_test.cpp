@@ -44,6 +44,9 @@ TEST(DecodedMessage, EveryOtherMessageHasAsManyNamesAsFields) {
     EXPECT_TRUE(names_fit<MavlinkGpsInput>());
     EXPECT_TRUE(names_fit<MavlinkGpsRawInt>());
     EXPECT_TRUE(names_fit<MavlinkGpsRtcmData>());
+    EXPECT_TRUE(names_fit<MavlinkCommandLong>());
+    EXPECT_TRUE(names_fit<MavlinkCommandInt>());
+    EXPECT_TRUE(names_fit<MavlinkCommandAck>());
     EXPECT_TRUE(names_fit<SbfPosCovGeodetic>());
     EXPECT_TRUE(names_fit<SbfVelCovGeodetic>());
     EXPECT_TRUE(names_fit<SbfDop>());

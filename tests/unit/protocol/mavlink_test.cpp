@@ -24,6 +24,15 @@ std::uint8_t extra_of(const std::string& message, const std::vector<DefinedField
     return static_cast<std::uint8_t>((crc & 0xFF) ^ crc >> 8);
 }
 
+std::string hex_of(const Bytes& bytes) {
+    std::string text;
+    for (const std::uint8_t byte : bytes) {
+        text += "0123456789abcdef"[byte >> 4];
+        text += "0123456789abcdef"[byte & 15];
+    }
+    return text;
+}
+
 TEST(Mavlink, ChecksumIsTheCatalogues) { EXPECT_EQ(crc16_x25(to_bytes("123456789")), 0x6F91); }
 
 TEST(Mavlink, ExtraBytesFollowFromTheDefinitions) {
@@ -70,11 +79,96 @@ TEST(Mavlink, ExtraBytesFollowFromTheDefinitions) {
               MavlinkGpsRtcmData::crc_extra);
 }
 
+TEST(Mavlink, ExtraBytesOfCommandsFollowFromTheDefinitions) {
+    const std::string u8 = "uint8_t", u16 = "uint16_t", i32 = "int32_t", real = "float";
+    EXPECT_EQ(extra_of("COMMAND_LONG", {{real, "param1"},
+                                        {real, "param2"},
+                                        {real, "param3"},
+                                        {real, "param4"},
+                                        {real, "param5"},
+                                        {real, "param6"},
+                                        {real, "param7"},
+                                        {u16, "command"},
+                                        {u8, "target_system"},
+                                        {u8, "target_component"},
+                                        {u8, "confirmation"}}),
+              MavlinkCommandLong::crc_extra);
+    EXPECT_EQ(extra_of("COMMAND_INT", {{real, "param1"},
+                                       {real, "param2"},
+                                       {real, "param3"},
+                                       {real, "param4"},
+                                       {i32, "x"},
+                                       {i32, "y"},
+                                       {real, "z"},
+                                       {u16, "command"},
+                                       {u8, "target_system"},
+                                       {u8, "target_component"},
+                                       {u8, "frame"},
+                                       {u8, "current"},
+                                       {u8, "autocontinue"}}),
+              MavlinkCommandInt::crc_extra);
+    EXPECT_EQ(extra_of("COMMAND_ACK", {{u16, "command"}, {u8, "result"}}), MavlinkCommandAck::crc_extra);
+}
+
+// Frames as node-mavlink 2.3.0 with mavlink-mappings 1.0.0 writes them.
+TEST(Mavlink, FramesAreThoseOfAnotherImplementation) {
+    MavlinkHeartbeat beat;
+    beat.custom_mode = 3;
+    beat.type = 2;
+    beat.autopilot = 3;
+    beat.base_mode = 209;
+    EXPECT_EQ(hex_of(encode_mavlink({1, 1, 7}, beat)), "fd090000070101000000030000000203d10403a3f5");
+    EXPECT_EQ(hex_of(encode_mavlink_v1({1, 1, 7}, 0, encode_payload(beat))), "fe0907010100030000000203d10403fdf4");
+    MavlinkCommandLong command;
+    command.command = 420;
+    command.param1 = 4;
+    command.param2 = 1;
+    command.param3 = 2;
+    command.target_system = 245;
+    command.target_component = 191;
+    EXPECT_EQ(hex_of(encode_mavlink({255, 190, 9}, command)),
+              "fd20000009ffbe4c0000000080400000803f0000004000000000000000000000000000000000a401f5bfa4d0");
+    MavlinkCommandInt place;
+    place.command = 420;
+    place.param1 = 4;
+    place.param2 = 7;
+    place.param3 = 1;
+    place.target_system = 245;
+    place.target_component = 191;
+    EXPECT_EQ(hex_of(encode_mavlink({255, 190, 10}, place)),
+              "fd2000000affbe4b0000000080400000e0400000803f00000000000000000000000000000000a401f5bf5c9a");
+    MavlinkCommandAck ack;
+    ack.command = 420;
+    ack.result = 3;
+    ack.target_system = 255;
+    ack.target_component = 190;
+    EXPECT_EQ(hex_of(encode_mavlink({245, 191, 11}, ack)), "fd0a00000bf5bf4d0000a401030000000000ffbeb5b1");
+}
+
+TEST(Mavlink, ADatagramIsReadFrameByFrame) {
+    const Bytes beat = encode_mavlink({1, 1, 0}, MavlinkHeartbeat{}), ack = encode_mavlink({}, MavlinkCommandAck{});
+    Bytes broken = ack, unknown = ack, datagram = to_bytes("xy");
+    broken[10] ^= 1;
+    unknown[7] = 2;  // SYSTEM_TIME, which is not known here
+    for (const Bytes& frame : {beat, broken, unknown, ack})
+        datagram.insert(datagram.end(), frame.begin(), frame.end());
+    const auto frames = mavlink_frames(datagram);
+    ASSERT_EQ(frames.size(), 2u);
+    EXPECT_EQ(frames[0].message, 0u);
+    EXPECT_EQ(frames[1].message, 77u);
+    datagram.pop_back();
+    EXPECT_EQ(mavlink_frames(datagram).size(), 1u) << "the last is cut short";
+    EXPECT_TRUE(mavlink_frames({}).empty());
+}
+
 TEST(Mavlink, PayloadsHaveTheSizesOfTheDefinitions) {
     EXPECT_EQ(wire_size(MavlinkHeartbeat{}), 9u);
     EXPECT_EQ(wire_size(MavlinkGpsInput{}), 65u);
     EXPECT_EQ(wire_size(MavlinkGpsRawInt{}), 52u);
     EXPECT_EQ(wire_size(MavlinkGpsRtcmData{}), 182u);
+    EXPECT_EQ(wire_size(MavlinkCommandLong{}), 33u);
+    EXPECT_EQ(wire_size(MavlinkCommandInt{}), 35u);
+    EXPECT_EQ(wire_size(MavlinkCommandAck{}), 10u);
 }
 
 TEST(Mavlink, VersionTwoLeavesZerosAtTheEndOut) {
@@ -109,7 +203,7 @@ TEST(Mavlink, VersionOneCarriesThePayloadWhole) {
     ASSERT_TRUE(view);
     EXPECT_EQ(view->version, 1);
     EXPECT_EQ(view->source.sequence, 9);
-    EXPECT_EQ(decode_mavlink<MavlinkHeartbeat>(view->payload).type, 29);
+    EXPECT_EQ(decode_mavlink<MavlinkHeartbeat>(view->payload).type, 41);
 }
 
 TEST(Mavlink, EveryChangedByteIsNoticed) {
