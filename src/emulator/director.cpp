@@ -12,6 +12,9 @@
 namespace skyloop {
 namespace {
 
+// At one instant: commands that start what starts them would go on for ever.
+constexpr int most_rounds = 16;
+
 bool waits_for_client(const TimelineEntry& entry) { return entry.when && !entry.when->client_sends.empty(); }
 
 std::optional<StartKind> start_kind(const std::string& word) {
@@ -71,8 +74,14 @@ void Director::advance(GpsTime now, std::vector<Station>& stations, Pacer& pacer
     if (parts_.live != nullptr)
         for (const Command& command : parts_.live->take())
             carry_out(command, command_name(command.verb), {now, stations, pacer});
-    for (const TimelineEvent& event : timeline_.advance(now))
-        follow(event, {event.time, stations, pacer});
+    // What a command begins is due at once, whether the command comes from outside or from the timeline: a repeated run
+    // must not be an epoch behind.
+    for (int round = 0; round < most_rounds; ++round) {
+        const std::vector<TimelineEvent> due = timeline_.advance(now);
+        if (due.empty()) break;
+        for (const TimelineEvent& event : due)
+            follow(event, {event.time, stations, pacer});
+    }
     if (pause_at_ && now >= *pause_at_) {
         pause_at_.reset();
         pacer.pause(now);
@@ -122,6 +131,8 @@ void Director::carry_out(const Command& command, std::string_view name, const Sc
             return set_pace(command, scene);
         case CommandVerb::note:
             return;
+        case CommandVerb::vehicle_state:
+            return timeline_.tell(vehicle_state_of(command.parameters));
         case CommandVerb::stop:
             stopped_ = true;
             return;

@@ -7,23 +7,34 @@
 namespace skyloop {
 namespace {
 
+// What is not given is not known.
+std::vector<ParameterSpec> vehicle_parameters() {
+    ParameterSpec armed = flag_parameter("armed", false, "motors may turn");
+    armed.standard.reset();
+    return {text_parameter("mode", "", "name of its mode: \"AUTO\""),
+            number_parameter("custom_mode", std::nullopt, 0, 4294967295.0, "its number in HEARTBEAT"), armed};
+}
+
 std::vector<CommandKind> run_commands() {
     using Verb = CommandVerb;
-    return {{Verb::start_fault,
-             "start_fault",
-             "Begins a fault of the scenario now, by its name.",
-             {text_parameter("fault", "", "name of a fault of the scenario"),
-              number_parameter("for_s", std::nullopt, 0, 1e9, "how long; else as the scenario says")}},
-            {Verb::stop_fault,
-             "stop_fault",
-             "Ends a fault now; its ramp out still runs.",
-             {text_parameter("fault", "", "name of a fault; empty: all")}},
-            {Verb::move_to,
-             "move_to",
-             "The vehicle is moved: its path goes on from there.",
-             {place_parameter("at", true, "[latitude, longitude] or [latitude, longitude, height]")}},
-            {Verb::note, "note", "A text for the record.", {text_parameter("text", "", "what is to be written down")}},
-            {Verb::stop, "stop", "The run ends.", {}}};
+    return {
+        {Verb::start_fault,
+         "start_fault",
+         "Begins a fault of the scenario now, by its name.",
+         {text_parameter("fault", "", "name of a fault of the scenario"),
+          number_parameter("for_s", std::nullopt, 0, 1e9, "how long; else as the scenario says")}},
+        {Verb::stop_fault,
+         "stop_fault",
+         "Ends a fault now; its ramp out still runs.",
+         {text_parameter("fault", "", "name of a fault; empty: all")}},
+        {Verb::move_to,
+         "move_to",
+         "The vehicle is moved: its path goes on from there.",
+         {place_parameter("at", true, "[latitude, longitude] or [latitude, longitude, height]")}},
+        {Verb::vehicle_state, "vehicle_state",
+         "What the vehicle's autopilot tells of itself, for triggers: of --mavlink, or by hand.", vehicle_parameters()},
+        {Verb::note, "note", "A text for the record.", {text_parameter("text", "", "what is to be written down")}},
+        {Verb::stop, "stop", "The run ends.", {}}};
 }
 
 std::vector<CommandKind> receiver_commands() {
@@ -87,6 +98,26 @@ std::string_view command_name(CommandVerb verb) {
     for (const CommandKind& kind : command_kinds())
         if (kind.verb == verb) return kind.name;
     return "";
+}
+
+VehicleState vehicle_state_of(const Parameters& parameters) {
+    VehicleState vehicle;
+    vehicle.mode = parameters.text("mode");
+    if (const auto number = parameters.optional_number("custom_mode"))
+        vehicle.custom_mode = static_cast<std::uint32_t>(*number);
+    if (parameters.has("armed")) vehicle.armed = parameters.flag("armed");
+    return vehicle;
+}
+
+Command vehicle_state_command(const VehicleState& vehicle, std::string_view source) {
+    std::map<std::string, ParameterValue, std::less<>> values{{"mode", vehicle.mode}};
+    if (vehicle.custom_mode) values["custom_mode"] = static_cast<double>(*vehicle.custom_mode);
+    if (vehicle.armed) values["armed"] = *vehicle.armed;
+    Command command;
+    command.verb = CommandVerb::vehicle_state;
+    command.parameters = Parameters(std::move(values));
+    command.source = source;
+    return command;
 }
 
 std::optional<std::string> place_mistake(const Command& command) {

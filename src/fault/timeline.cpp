@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "skyloop/base/random.hpp"
+#include "skyloop/protocol/mavlink_modes.hpp"
 
 namespace skyloop {
 namespace {
@@ -161,7 +162,14 @@ bool Timeline::end(std::size_t index, GpsTime now) {
     return true;
 }
 
+bool Timeline::vehicle_holds(const Trigger& trigger) const {
+    if (!trigger.vehicle_mode.empty() && !is_mavlink_mode(vehicle_.mode, trigger.vehicle_mode)) return false;
+    if (trigger.custom_mode && vehicle_.custom_mode != trigger.custom_mode) return false;
+    return !trigger.armed || vehicle_.armed == trigger.armed;
+}
+
 bool Timeline::holds(const Trigger& trigger, GpsTime now) const {
+    if (!vehicle_holds(trigger)) return false;
     if (trigger.fix_for && !(fix_since_ && now >= advanced(*fix_since_, *trigger.fix_for))) return false;
     if (trigger.speed_above && !(last_view_.speed > *trigger.speed_above)) return false;
     if (!trigger.height_above && !trigger.height_below && trigger.inside.empty()) return true;

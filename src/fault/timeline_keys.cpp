@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "skyloop/base/spelling.hpp"
+#include "skyloop/protocol/mavlink_modes.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
@@ -12,6 +14,14 @@ namespace {
 
 constexpr double longest_s = 100 * 366.0 * 86400;  // a run's span stays far inside 64-bit nanoseconds
 constexpr double most_occurrences = 1e6;
+constexpr double largest_custom_mode = 4294967295.0;
+
+// Neither true nor false when it is not given.
+ParameterSpec armed_parameter() {
+    ParameterSpec spec = flag_parameter("when_armed", true, "… when the vehicle is armed (true), or is not (false)");
+    spec.standard.reset();
+    return spec;
+}
 
 std::vector<ParameterSpec> beginning_keys() {
     const ListLimits bounds{2, 0, longest_s};
@@ -31,6 +41,10 @@ std::vector<ParameterSpec> beginning_keys() {
         polygon_parameter("when_inside", "… inside this polygon, [[latitude, longitude], …]"),
         number_parameter("when_fix_for_s", std::nullopt, 0, longest_s, "… when there has been a fix for so long"),
         text_parameter("when_client_sends", "", "… when the client sends this message: \"CFG-VALSET\""),
+        text_parameter("when_mavlink_mode", "", "… when the vehicle's mode is this, by its name: \"AUTO\", \"RTL\""),
+        number_parameter("when_custom_mode", std::nullopt, 0, largest_custom_mode,
+                         "… when it is this, by the number custom_mode of HEARTBEAT"),
+        armed_parameter(),
         flag_parameter("again", false, "it begins each time that its condition comes true, not the first time alone"),
     };
 }
@@ -79,6 +93,26 @@ std::vector<std::array<double, 2>> polygon(const Parameters& keys, std::vector<P
     return corners;
 }
 
+void read_vehicle_conditions(const Parameters& keys, Trigger& when, std::vector<ParameterMistake>& mistakes) {
+    when.vehicle_mode = keys.text("when_mavlink_mode");
+    const std::vector<std::string>& known = mavlink_mode_names();
+    const bool is_known = std::any_of(
+        known.begin(), known.end(), [&](const std::string& name) { return is_mavlink_mode(name, when.vehicle_mode); });
+    if (!when.vehicle_mode.empty() && !is_known)
+        mistakes.push_back(
+            {"when_mavlink_mode",
+             fmt::format("is '{}'; expected a mode of ArduCopter, ArduPlane, Rover or PX4, or "
+                         "when_custom_mode{}",
+                         when.vehicle_mode,
+                         did_you_mean(when.vehicle_mode, std::vector<std::string_view>(known.begin(), known.end())))});
+    if (const auto number = keys.optional_number("when_custom_mode")) {
+        if (*number != std::floor(*number))
+            mistakes.push_back({"when_custom_mode", fmt::format("is {:g}; expected a whole number", *number)});
+        when.custom_mode = static_cast<std::uint32_t>(*number);
+    }
+    if (keys.has("when_armed")) when.armed = keys.flag("when_armed");
+}
+
 std::optional<Trigger> trigger(const Parameters& keys, std::vector<ParameterMistake>& mistakes) {
     Trigger when;
     when.height_above = quantity<Metres>(keys, "when_above_m");
@@ -87,8 +121,9 @@ std::optional<Trigger> trigger(const Parameters& keys, std::vector<ParameterMist
     when.inside = polygon(keys, mistakes);
     when.fix_for = quantity<Seconds>(keys, "when_fix_for_s");
     when.client_sends = keys.text("when_client_sends");
+    read_vehicle_conditions(keys, when, mistakes);
     const bool any = when.height_above || when.height_below || when.speed_above || !when.inside.empty() ||
-                     when.fix_for || !when.client_sends.empty();
+                     when.fix_for || !when.client_sends.empty() || when.needs_vehicle();
     return any ? std::optional(when) : std::nullopt;
 }
 

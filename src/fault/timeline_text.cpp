@@ -20,6 +20,9 @@ std::string conditions(const Trigger& trigger) {
     if (trigger.speed_above) add(fmt::format("faster than {:g} m/s", trigger.speed_above->value()));
     if (!trigger.inside.empty()) add(fmt::format("inside a polygon of {} corners", trigger.inside.size()));
     if (trigger.fix_for) add(fmt::format("after a fix for {:g} s", trigger.fix_for->value()));
+    if (!trigger.vehicle_mode.empty()) add(fmt::format("the vehicle's mode is {}", trigger.vehicle_mode));
+    if (trigger.custom_mode) add(fmt::format("the vehicle's custom_mode is {}", *trigger.custom_mode));
+    if (trigger.armed) add(*trigger.armed ? "the vehicle is armed" : "the vehicle is disarmed");
     if (!trigger.client_sends.empty()) add(fmt::format("the client sends {}", trigger.client_sends));
     return text;
 }

@@ -8,6 +8,7 @@
 
 #include "skyloop/base/result.hpp"
 #include "skyloop/fault/parameters.hpp"
+#include "skyloop/fault/timeline.hpp"
 
 namespace skyloop {
 
@@ -22,10 +23,11 @@ enum class CommandVerb {
     move_to,               ///< the vehicle's path is shifted so that it is there now
     pause,                 ///< live runs: time stands still, and so does the receiver
     resume,
-    step,   ///< a paused run goes on by so many seconds
-    speed,  ///< simulated seconds per second
-    note,   ///< a text for the record
-    stop    ///< the run ends
+    step,           ///< a paused run goes on by so many seconds
+    speed,          ///< simulated seconds per second
+    vehicle_state,  ///< what the vehicle's autopilot tells of itself, for triggers
+    note,           ///< a text for the record
+    stop            ///< the run ends
 };
 
 /// A command as it was given, checked.
@@ -49,6 +51,10 @@ const std::vector<CommandKind>& command_kinds();
 const CommandKind* find_command_kind(std::string_view name);
 /// "move_to"
 std::string_view command_name(CommandVerb verb);
+/// The state that a command vehicle_state tells.
+VehicleState vehicle_state_of(const Parameters& parameters);
+/// The command that tells a state. @param source of it
+Command vehicle_state_command(const VehicleState& vehicle, std::string_view source);
 /// What is wrong with the place, `at`, to which a command moves the vehicle; nothing of others.
 std::optional<std::string> place_mistake(const Command& command);
 

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "skyloop/base/units.hpp"
@@ -23,6 +24,20 @@ struct Trigger {
     std::vector<std::array<double, 2>> inside{};  ///< a polygon of latitudes and longitudes, degrees; empty: anywhere
     std::optional<Seconds> fix_for{};             ///< so long without a gap
     std::string client_sends{};                   ///< "CFG-VALSET", "PUBX,41": name of a client's message; empty: none
+    std::string vehicle_mode{};                   ///< "AUTO": by is_mavlink_mode(); empty: any
+    std::optional<std::uint32_t> custom_mode{};   ///< the vehicle's mode as HEARTBEAT's number
+    std::optional<bool> armed{};                  ///< the vehicle is armed, or is not
+
+    /// It asks for something that the vehicle's autopilot has to tell.
+    [[nodiscard]] bool needs_vehicle() const { return !vehicle_mode.empty() || custom_mode || armed; }
+};
+
+/// What is known of the vehicle, as the HEARTBEAT of its autopilot tells it.
+struct VehicleState {
+    std::string mode{};                          ///< mavlink_mode_name(); empty: not known
+    std::optional<std::uint32_t> custom_mode{};  ///< nothing: not known
+    std::optional<bool> armed{};
+    bool operator==(const VehicleState&) const = default;
 };
 
 /// One entry of the timeline, a fault or a command, by its times.
@@ -76,6 +91,8 @@ public:
     void look(GpsTime now, const TriggerView& view);
     /// The same for a client's message, by its name.
     void hear(GpsTime now, std::string_view client_message);
+    /// The vehicle's state from now on; triggers see it at the next look().
+    void tell(VehicleState vehicle) { vehicle_ = std::move(vehicle); }
     /// The next instant at which something is known to happen.
     [[nodiscard]] std::optional<GpsTime> next_event() const;
     /// Adds an entry that begins by begin() alone. @return its place
@@ -105,12 +122,14 @@ private:
     void act(std::size_t entry, GpsTime now);
     [[nodiscard]] std::optional<Seconds> length_of(const TimelineEvent& event) const;
     [[nodiscard]] bool holds(const Trigger& trigger, GpsTime now) const;
+    [[nodiscard]] bool vehicle_holds(const Trigger& trigger) const;
 
     std::vector<TimelineEntry> entries_;
     std::uint64_t seed_;
     std::vector<Planned> planned_;    // ascending
     std::vector<EntryState> states_;  // of each entry
     TriggerView last_view_;
+    VehicleState vehicle_;
     std::optional<GpsTime> fix_since_;
 };
 

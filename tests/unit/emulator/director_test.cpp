@@ -202,6 +202,28 @@ TEST(Director, TriggersHearTheClient) {
     EXPECT_THAT(run->witness.happened, ElementsAre("receiver_silent begins", "receiver_silent ends"));
 }
 
+TEST(Director, TriggersFollowTheVehicle) {
+    const auto run = directed(
+        "[[fault]]\nkind = \"receiver_silent\"\nwhen_mavlink_mode = \"AUTO\"\nwhen_armed = true\nfor_s = 2\n"
+        "[[command]]\nkind = \"vehicle_state\"\nat_s = 2.5\nmode = \"AUTO\"\narmed = false\n"
+        "[[command]]\nkind = \"vehicle_state\"\nat_s = 4.5\nmode = \"AUTO\"\narmed = true\n");
+    run_for(*run, 4900ms);
+    EXPECT_THAT(run->witness.happened, ElementsAre("command vehicle_state", "command vehicle_state 2"));
+    run_for(*run, 5s);
+    EXPECT_THAT(run->witness.happened, ElementsAre("command vehicle_state", "command vehicle_state 2",
+                                                   "receiver_silent begins", "receiver_silent ends"));
+}
+
+TEST(Director, WhatACommandStartsIsThereAtTheSameInstant) {
+    const auto run = directed(
+        "[[fault]]\nkind = \"receiver_silent\"\nname = \"quiet\"\nat_s = 90\n"
+        "[[command]]\nkind = \"start_fault\"\nfault = \"quiet\"\nat_s = 4\n");
+    run_for(*run, 4s);
+    const std::size_t before = written(*run).size();
+    run_for(*run, 3s);
+    EXPECT_LT(written(*run).size(), before + 20) << "the epoch at 4 s is not sent";
+}
+
 TEST(Director, TheSameSeedGivesTheSameBytes) {
     const std::string toml =
         "[[fault]]\nkind = \"byte_loss\"\nbetween_s = [2, 6]\nfor_between_s = [1, 5]\nprobability = 0.3\n"

@@ -166,6 +166,38 @@ TEST(Timeline, HearsTheClient) {
     EXPECT_THAT(happenings(timeline, 100)[0], (Happening{"triggered", 2.5, true}));
 }
 
+// Looks once a second from 1 s on, each time with the next state of the vehicle.
+bool begins_with(const Trigger& trigger, const std::vector<VehicleState>& states) {
+    Timeline timeline({triggered(trigger)}, begin_of_run, 1);
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        timeline.tell(states[i]);
+        EXPECT_FALSE(timeline.next_event()) << "not before the look";
+        timeline.look(after(static_cast<double>(i + 1)), at(0, 0, 0));
+    }
+    return timeline.next_event().has_value();
+}
+
+TEST(Timeline, FollowsTheVehiclesMode) {
+    Trigger automatic, number, armed, disarmed, both;
+    automatic.vehicle_mode = "auto";
+    number.custom_mode = 3;
+    armed.armed = true;
+    disarmed.armed = false;
+    both.vehicle_mode = "AUTO";
+    both.armed = true;
+    for (const Trigger& trigger : {automatic, number, armed, disarmed, both})
+        EXPECT_FALSE(begins_with(trigger, {VehicleState{}})) << "nothing is known";
+    EXPECT_TRUE(begins_with(automatic, {{"LOITER", 5, true}, {"AUTO", 3, true}}));
+    EXPECT_TRUE(begins_with(automatic, {{"AUTO.MISSION", 0x04040000, true}})) << "of PX4";
+    EXPECT_FALSE(begins_with(automatic, {{"AUTOTUNE", 15, true}}));
+    EXPECT_TRUE(begins_with(number, {{"", 3, false}}));
+    EXPECT_FALSE(begins_with(number, {{"AUTO", 10, false}}));
+    EXPECT_TRUE(begins_with(armed, {{"", std::nullopt, true}}));
+    EXPECT_TRUE(begins_with(disarmed, {{"", std::nullopt, false}}));
+    EXPECT_FALSE(begins_with(both, {{"LOITER", 5, true}, {"AUTO", 3, false}}));
+    EXPECT_TRUE(begins_with(both, {{"AUTO", 3, false}, {"AUTO", 3, true}}));
+}
+
 TEST(Timeline, IsLedByHand) {
     TimelineEntry made = entry("by hand", 0, 100);
     made.by_hand = true;
@@ -224,6 +256,29 @@ TEST(TimelineKeys, NoFaultOrCommandHasAParameterOfTheirNames) {
     for (const CommandKind& kind : command_kinds())
         for (const ParameterSpec& spec : kind.parameters)
             EXPECT_FALSE(taken.contains(spec.name)) << kind.name << "." << spec.name;
+}
+
+TimelineReading reading_of(std::map<std::string, ParameterValue, std::less<>> given) {
+    const CheckedParameters checked = check_parameters(timeline_keys(), given);
+    EXPECT_THAT(checked.mistakes, SizeIs(0));
+    return read_timeline_entry(checked.parameters);
+}
+
+TEST(TimelineKeys, AskForTheVehicle) {
+    const TimelineReading good =
+        reading_of({{"when_mavlink_mode", std::string("rtl")}, {"when_custom_mode", 6.0}, {"when_armed", false}});
+    EXPECT_THAT(good.mistakes, SizeIs(0));
+    ASSERT_TRUE(good.entry.when && good.entry.when->needs_vehicle());
+    EXPECT_EQ(good.entry.when->vehicle_mode, "rtl");
+    EXPECT_EQ(good.entry.when->custom_mode, 6u);
+    EXPECT_EQ(good.entry.when->armed, false);
+    EXPECT_FALSE(reading_of({}).entry.when) << "what is not given asks for nothing";
+    const auto mode = reading_of({{"when_mavlink_mode", std::string("LOITRE")}}).mistakes;
+    ASSERT_THAT(mode, SizeIs(1));
+    EXPECT_THAT(mode[0].sentence, HasSubstr("did you mean 'LOITER'"));
+    const auto number = reading_of({{"when_custom_mode", 1.5}}).mistakes;
+    ASSERT_THAT(number, SizeIs(1));
+    EXPECT_THAT(number[0].sentence, HasSubstr("expected a whole number"));
 }
 
 TEST(TimelineKeys, EntriesThatDoNotFitTogetherAreTold) {
