@@ -56,8 +56,9 @@ int check(const RunOptions& options) {
     mode.now_steady_ns = steady_clock_ns();
     mode.virtual_time = true;
     mode.open_ports = false;
-    const auto assembly = assemble(*scenario, data_folders(), mode);
+    auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
+    if (const auto warning = vehicle_warning(*scenario)) assembly->warnings.push_back(*warning);
     for (const std::string& warning : assembly->warnings)
         messages.warning(warning);
     if (!options.verbosity.quiet) print_plan(*scenario, *assembly);

@@ -37,9 +37,11 @@ int run_live(const RunOptions& options) {
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
 
+    const auto waiting = options.mavlink.empty() ? vehicle_warning(*scenario) : std::nullopt;
+    if (waiting) assembly->warnings.push_back(*waiting);
     if (!mode.virtual_time && options.priority == "auto") prepare_for_deadlines(messages);
-    const auto watch =
-        RunWatch::start(*scenario, *assembly, {options.control, options.token, !mode.virtual_time}, commands);
+    const auto watch = RunWatch::start(*scenario, *assembly,
+                                       {options.control, options.token, options.mavlink, !mode.virtual_time}, commands);
     if (!watch) return messages.error(watch.error());
     RunSession session(messages, *assembly);
     // Scripts wait for these lines to know the tty: they are said even when quiet.
@@ -48,6 +50,7 @@ int run_live(const RunOptions& options) {
             fmt::print(stderr, "{}: {}\n", session.port_name(station, i),
                        station.wires()[i].link.transport().description());
     if (!(*watch)->url().empty()) fmt::print(stderr, "control: {}\n", (*watch)->url());
+    if (!(*watch)->mavlink().empty()) fmt::print(stderr, "mavlink: {}\n", (*watch)->mavlink());
     return session.run(*scenario, **watch);
 }
 
@@ -65,6 +68,9 @@ Action add_run_command(CLI::App& app) {
     command->add_option("--control", options->control,
                         "HTTP control and the live page: [HOST:]PORT, on 127.0.0.1 unless a host is given");
     command->add_option("--token", options->token, "That clients of --control must show; made at random off loopback");
+    command->add_option("--mavlink", options.mavlink,
+                        "Speak MAVLink with the vehicle and its ground stations: udp:[HOST:]PORT listens, on 127.0.0.1 "
+                        "unless a host is given, udpout:HOST:PORT speaks first");
     command->add_option("--record", options->record, "Keep truth, fixes, satellites and bytes in this folder");
     return [options] { return run_live(*options); };
 }

@@ -183,6 +183,19 @@ Result<Geodetic> parse_place(const std::string& text, std::string_view option) {
     return *place;
 }
 
+std::optional<std::string> vehicle_warning(const Scenario& scenario) {
+    for (const CommandEntry& command : scenario.commands)
+        if (command.command.verb == CommandVerb::vehicle_state) return std::nullopt;
+    std::vector<std::string> waiting;
+    for (const TimelineEntry& entry : timeline_of(scenario))
+        if (entry.when && entry.when->needs_vehicle()) waiting.push_back("'" + entry.name + "'");
+    if (waiting.empty()) return std::nullopt;
+    return fmt::format(
+        "{} will not begin: the vehicle's state is not known; expected skyloop run --mavlink, or commands "
+        "vehicle_state",
+        fmt::join(waiting, ", "));
+}
+
 Result<Scenario> scenario_from(const RunOptions& options) {
     Scenario scenario;
     if (!options.scenario.empty()) {

@@ -25,6 +25,7 @@ struct RunOptions {
     std::string priority = "auto";  ///< run only: "auto" or "normal"
     std::string repeat;             ///< a recording to be repeated
     std::string token;              ///< run only: of --control
+    std::string mavlink;            ///< run only: where MAVLink is spoken; empty: nowhere
     std::string record;             ///< run: --record, simulate: --out
     Verbosity verbosity;
 };
@@ -39,6 +40,10 @@ void add_run_options(CLI::App& command, RunOptions& options);
 
 /// The scenario file, or embedded defaults, with the options laid over it.
 Result<Scenario> scenario_from(const RunOptions& options);
+
+/// What to tell of entries that wait for the vehicle's state in a run where neither MAVLink nor a command tells it;
+/// nothing where there are none.
+std::optional<std::string> vehicle_warning(const Scenario& scenario);
 
 /// Reads "LAT,LON" or "LAT,LON,HEIGHT": degrees and metres above the ellipsoid. @param option for messages
 Result<Geodetic> parse_place(const std::string& text, std::string_view option = "--at");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "skyloop/control/status_json.hpp"
+#include "skyloop/emulator/thread_priority.hpp"
 #include "skyloop/verdict/reports.hpp"
 
 namespace skyloop::host {
@@ -42,6 +43,7 @@ Result<std::unique_ptr<RunWatch>> RunWatch::start(const Scenario& scenario, Asse
     if (const auto opened = watch->open_log(); !opened) return fail(opened.error());
     watch->appoint_judge(options.live);
     if (const auto opened = watch->open_control(options, commands); !opened) return fail(opened.error());
+    if (const auto opened = watch->open_mavlink(options.mavlink, commands); !opened) return fail(opened.error());
     return watch;
 }
 
@@ -110,12 +112,25 @@ Result<void> RunWatch::open_control(const WatchOptions& options, CommandQueue& c
     return {};
 }
 
+Result<void> RunWatch::open_mavlink(const std::string& address, CommandQueue& commands) {
+    if (address.empty()) return {};
+    const auto where = parse_mavlink_address(address);
+    if (!where) return fail(where.error());
+    MavlinkParts parts{receiver_names(*assembly_.emulator),
+                       [&commands](Command command) { return commands.push(std::move(command)); }, background_thread};
+    auto endpoint = MavlinkEndpoint::start(*where, std::move(parts));
+    if (!endpoint) return fail(endpoint.error());
+    mavlink_ = std::move(*endpoint);
+    return {};
+}
+
 int RunWatch::finish(const Messages& messages) {
     const GpsTime now = assembly_.emulator->now();
     if (board_) board_->publish_now(now);
     int code = 0;
     if (judge_) code = report(messages, judge_->finish(now));
     server_.reset();
+    mavlink_.reset();
     if (log_ && log_->failure()) code = messages.error(*log_->failure());
     return code;
 }

@@ -12,6 +12,7 @@
 #include "skyloop/emulator/assembly.hpp"
 #include "skyloop/emulator/command_queue.hpp"
 #include "skyloop/emulator/status_board.hpp"
+#include "skyloop/feed/mavlink_endpoint.hpp"
 #include "skyloop/verdict/judge.hpp"
 
 namespace skyloop::host {
@@ -20,6 +21,7 @@ namespace skyloop::host {
 struct WatchOptions {
     std::string control;  ///< "[HOST:]PORT"; empty: nobody from outside
     std::string token;    ///< for them; empty: by the rules of ControlOptions
+    std::string mavlink;  ///< "udp:14550"; empty: none
     bool live = false;    ///< against the clock
 };
 
@@ -31,6 +33,8 @@ public:
                                                    const WatchOptions& options, CommandQueue& commands);
     /// What to open in a browser; empty: nothing.
     [[nodiscard]] std::string url() const { return server_ ? server_->url() : std::string(); }
+    /// Where MAVLink is spoken; empty: nowhere.
+    [[nodiscard]] std::string mavlink() const { return mavlink_ ? mavlink_->description() : std::string(); }
     /// The run is over: says the verdicts, and leaves verdicts.json and junit.xml in the recording.
     /// @return exit code: 3 where an expectation was not met
     int finish(const Messages& messages);
@@ -40,6 +44,7 @@ private:
     Result<void> open_log();
     void appoint_judge(bool live);
     Result<void> open_control(const WatchOptions& options, CommandQueue& commands);
+    Result<void> open_mavlink(const std::string& address, CommandQueue& commands);
     [[nodiscard]] std::vector<TimelineBar> planned_bars() const;
     int report(const Messages& messages, const std::vector<Verdict>& verdicts) const;
 
@@ -49,6 +54,7 @@ private:
     std::unique_ptr<Judge> judge_;
     std::unique_ptr<StatusBoard> board_;
     std::unique_ptr<ControlServer> server_;  // before board_ is gone
+    std::unique_ptr<MavlinkEndpoint> mavlink_;
 };
 
 }  // namespace skyloop::host

@@ -27,6 +27,7 @@ int simulate(const RunOptions& options) {
     if (!options.repeat.empty()) mode.repeat = options.repeat;
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
+    if (const auto warning = vehicle_warning(*scenario)) assembly->warnings.push_back(*warning);
     CommandQueue nobody;
     const auto watch = RunWatch::start(*scenario, *assembly, {}, nobody);
     if (!watch) return messages.error(watch.error());

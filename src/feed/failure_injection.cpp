@@ -1,0 +1,95 @@
+#include "skyloop/feed/failure_injection.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "skyloop/fault/fault_kind.hpp"
+
+namespace skyloop {
+namespace {
+
+// A whole number that a float of a command holds; nothing for NaN, infinities, fractions and what no enum has.
+std::optional<int> whole_number(float value) {
+    constexpr float largest = 65535;
+    if (!(value >= 0 && value <= largest) || value != std::floor(value)) return std::nullopt;
+    return static_cast<int>(value);
+}
+
+const FailureFault* find_failure(int type) {
+    const auto& all = failure_faults();
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const FailureFault& f) { return static_cast<int>(f.type) == type; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+// What each type means by common.xml, and what a receiver does then.
+const std::vector<FailureFault>& failure_faults() {
+    static const std::vector<FailureFault> faults{
+        {FailureType::off, "off", "receiver_silent", {}},
+        {FailureType::stuck, "stuck", "freeze", {}},
+        // Half of all bits inverted: nothing is left of what was sent.
+        {FailureType::garbage, "garbage", "bit_flips", {{"probability", 0.5}}},
+        {FailureType::wrong, "wrong", "position_step", {{"north_m", 100.0}}},
+        {FailureType::slow, "slow", "dropped_epochs", {{"probability", 0.8}}},
+        {FailureType::delayed, "delayed", "solution_latency", {{"delay_s", 1.0}}},
+        {FailureType::intermittent, "intermittent", "stall", {{"hold_s", 3.0}, {"period_s", 6.0}}}};
+    return faults;
+}
+
+FailureInjector::FailureInjector(std::vector<std::string> receivers, CommandSink push)
+    : receivers_(std::move(receivers)), injected_(receivers_.size()), push_(std::move(push)) {}
+
+MavlinkResult FailureInjector::inject(float unit, float type, float instance) {
+    const auto which_unit = whole_number(unit), which_type = whole_number(type), which = whole_number(instance);
+    if (!which_unit || !which_type || !which) return MavlinkResult::denied;
+    if (*which_unit != failure_unit_gps) return MavlinkResult::unsupported;
+    const FailureFault* fault = find_failure(*which_type);
+    if (fault == nullptr && *which_type != static_cast<int>(FailureType::ok)) return MavlinkResult::unsupported;
+    const auto number = static_cast<std::size_t>(*which);
+    if (number > receivers_.size()) return MavlinkResult::denied;
+    const std::size_t first = number == 0 ? 0 : number - 1, last = number == 0 ? receivers_.size() : number;
+    for (std::size_t i = first; i < last; ++i) {
+        const FailureType wanted = fault == nullptr ? FailureType::ok : fault->type;
+        if (injected_[i].type == wanted) continue;
+        if (!stop(i) || (fault != nullptr && !start(i, *fault))) return MavlinkResult::temporarily_rejected;
+    }
+    return MavlinkResult::accepted;
+}
+
+bool FailureInjector::stop(std::size_t receiver) {
+    Injected& injected = injected_[receiver];
+    if (injected.type == FailureType::ok) return true;
+    Command command;
+    command.verb = CommandVerb::stop_fault;
+    command.parameters = Parameters({{"fault", injected.name}});
+    command.source = "mavlink";
+    if (!push_(std::move(command))) return false;
+    injected = {};
+    return true;
+}
+
+bool FailureInjector::start(std::size_t receiver, const FailureFault& fault) {
+    // Names are found again by the command that stops.
+    const std::string name = fmt::format("mavlink {} {}", fault.word, started_ + 1);
+    auto values = check_parameters(find_fault_kind(fault.kind)->parameters, fault.parameters).parameters.values();
+    values["kind"] = std::string(fault.kind);
+    values["name"] = name;
+    values["ramp_in_s"] = 0.0;
+    values["ramp_out_s"] = 0.0;
+    Command command;
+    command.verb = CommandVerb::start_fault;
+    command.parameters = Parameters(std::move(values));
+    command.receiver = receivers_[receiver];
+    command.source = "mavlink";
+    if (!push_(std::move(command))) return false;
+    ++started_;
+    injected_[receiver] = {fault.type, name};
+    return true;
+}
+
+}  // namespace skyloop
