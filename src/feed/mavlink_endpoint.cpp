@@ -49,7 +49,7 @@ Result<MavlinkAddress> parse_mavlink_address(std::string_view text) {
     if (colon != std::string_view::npos) {
         host = rest.substr(0, colon);
         port = rest.substr(colon + 1);
-        const bool in_brackets = host.size() > 2 && host.starts_with('[') && host.ends_with(']');
+        const bool in_brackets = host.size() >= 2 && host.starts_with('[') && host.ends_with(']');
         if (in_brackets)
             host = host.substr(1, host.size() - 2);
         else if (host.find(':') != std::string_view::npos)

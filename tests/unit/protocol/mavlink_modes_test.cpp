@@ -8,7 +8,7 @@
 namespace skyloop {
 namespace {
 
-constexpr std::uint8_t plane = 1, quadrotor = 2, rover = 10, quadplane = 20, station = 6;
+constexpr std::uint8_t fixed_wing = 1, quadrotor = 2, ground_rover = 10, quadplane = 20, ground_control = 6;
 
 std::string mode_of(std::uint8_t autopilot, std::uint8_t type, std::uint32_t custom_mode, std::uint8_t base_mode = 1) {
     MavlinkHeartbeat beat;
@@ -21,24 +21,24 @@ std::string mode_of(std::uint8_t autopilot, std::uint8_t type, std::uint32_t cus
 
 TEST(MavlinkModes, OneNumberIsAnotherModeOnAnotherVehicle) {
     EXPECT_EQ(mode_of(3, quadrotor, 3), "AUTO");
-    EXPECT_EQ(mode_of(3, plane, 10), "AUTO");
-    EXPECT_EQ(mode_of(3, rover, 10), "AUTO");
-    EXPECT_EQ(mode_of(3, plane, 3), "TRAINING");
-    EXPECT_EQ(mode_of(3, rover, 3), "STEERING");
+    EXPECT_EQ(mode_of(3, fixed_wing, 10), "AUTO");
+    EXPECT_EQ(mode_of(3, ground_rover, 10), "AUTO");
+    EXPECT_EQ(mode_of(3, fixed_wing, 3), "TRAINING");
+    EXPECT_EQ(mode_of(3, ground_rover, 3), "STEERING");
     EXPECT_EQ(mode_of(3, quadplane, 19), "QLOITER");
     EXPECT_EQ(mode_of(3, quadrotor, 8), "") << "ArduCopter has no mode 8";
 }
 
 TEST(MavlinkModes, Px4HasSubmodesOfAuto) {
     EXPECT_EQ(mode_of(12, quadrotor, 3U << 16), "POSCTL");
-    EXPECT_EQ(mode_of(12, plane, 4U << 16 | 4U << 24), "AUTO.MISSION");
-    EXPECT_EQ(mode_of(12, plane, 4U << 16 | 99U << 24), "AUTO");
-    EXPECT_EQ(mode_of(12, plane, 99U << 16), "");
+    EXPECT_EQ(mode_of(12, fixed_wing, 4U << 16 | 4U << 24), "AUTO.MISSION");
+    EXPECT_EQ(mode_of(12, fixed_wing, 4U << 16 | 99U << 24), "AUTO");
+    EXPECT_EQ(mode_of(12, fixed_wing, 99U << 16), "");
 }
 
 TEST(MavlinkModes, WithoutACustomModeThereIsNoName) {
     EXPECT_EQ(mode_of(3, quadrotor, 3, 0), "");
-    EXPECT_EQ(mode_of(3, station, 3), "");
+    EXPECT_EQ(mode_of(3, ground_control, 3), "");
     EXPECT_EQ(mode_of(8, quadrotor, 3), "");
 }
 
