@@ -170,7 +170,7 @@ class MavlinkTest(unittest.TestCase):
             for _ in range(100):
                 wild.send(injection(GPS, 1 + sent % 7) if sent % 2 else bytes(broken))
                 sent += 1
-            time.sleep(0.005)
+            time.sleep(0.002)
         print(f"{sent / 3:.0f} datagrams a second were sent")
         # Its own socket's queue is full of what came before.
         time.sleep(0.5)

@@ -215,13 +215,13 @@ TEST(Director, TriggersFollowTheVehicle) {
 }
 
 TEST(Director, WhatACommandStartsIsThereAtTheSameInstant) {
-    const auto run = directed(
-        "[[fault]]\nkind = \"receiver_silent\"\nname = \"quiet\"\nat_s = 90\n"
-        "[[command]]\nkind = \"start_fault\"\nfault = \"quiet\"\nat_s = 4\n");
-    run_for(*run, 4s);
-    const std::size_t before = written(*run).size();
-    run_for(*run, 3s);
-    EXPECT_LT(written(*run).size(), before + 20) << "the epoch at 4 s is not sent";
+    const std::string step = "[[fault]]\nkind = \"position_step\"\nname = \"off\"\n";
+    const auto started = directed(step + "at_s = 90\n[[command]]\nkind = \"start_fault\"\nfault = \"off\"\nat_s = 4\n");
+    const auto planned = directed(step + "at_s = 4\n");
+    run_for(*started, 7s);
+    run_for(*planned, 7s);
+    EXPECT_EQ(written(*started), written(*planned)) << "the epoch at 4 s is off in both";
+    EXPECT_NE(written(*started), sound_bytes(7s));
 }
 
 TEST(Director, TheSameSeedGivesTheSameBytes) {
