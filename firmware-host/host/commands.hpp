@@ -23,5 +23,6 @@ Action add_faults_command(CLI::App& app);
 Action add_schema_command(CLI::App& app);
 Action add_scene_command(CLI::App& app);
 Action add_ctl_command(CLI::App& app);
+Action add_replay_command(CLI::App& app);
 
 }  // namespace skyloop::host

@@ -51,6 +51,7 @@ int run_live(const RunOptions& options) {
                        station.wires()[i].link.transport().description());
     if (!(*watch)->url().empty()) fmt::print(stderr, "control: {}\n", (*watch)->url());
     if (!(*watch)->mavlink().empty()) fmt::print(stderr, "mavlink: {}\n", (*watch)->mavlink());
+    if (options.wait_for_client) session.await_clients();
     return session.run(*scenario, **watch);
 }
 
@@ -65,6 +66,7 @@ Action add_run_command(CLI::App& app) {
         ->add_option("--priority", options->priority,
                      "Of the loop on this machine: auto (real-time where allowed), normal")
         ->check(CLI::IsMember({"auto", "normal"}));
+    command->add_flag("--wait-for-client", options->wait_for_client, "Time begins when each port has a client");
     command->add_option("--control", options->control,
                         "HTTP control and the live page: [HOST:]PORT, on 127.0.0.1 unless a host is given");
     command->add_option("--token", options->token, "That clients of --control must show; made at random off loopback");

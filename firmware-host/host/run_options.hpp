@@ -26,6 +26,7 @@ struct RunOptions {
     std::string repeat;             ///< a recording to be repeated
     std::string token;              ///< run only: of --control
     std::string mavlink;            ///< run only: where MAVLink is spoken; empty: nowhere
+    bool wait_for_client = false;   ///< run only: time begins when each port has a client
     std::string record;             ///< run: --record, simulate: --out
     Verbosity verbosity;
 };

@@ -47,6 +47,11 @@ RunSession::RunSession(const Messages& messages, Assembly& assembly) : messages_
         messages.warning(warning);
 }
 
+void RunSession::await_clients() const {
+    messages_.info("waiting for a client on each port");
+    assembly_.emulator->await_clients(stop_asked);
+}
+
 int RunSession::run(const Scenario& scenario, RunWatch& watch) {
     Emulator& emulator = *assembly_.emulator;
     {
@@ -105,6 +110,8 @@ void RunSession::tell_wire(const Station& station, std::size_t wire) const {
                                       counted.bytes_garbled, station.speed(port).value_or(0)));
     if (counted.bytes_lost > 0)
         messages_.warning(fmt::format("{}: {} bytes were lost: the client read too slowly", name, counted.bytes_lost));
+    if (const std::string notice = link.transport().notice(); !notice.empty())
+        messages_.warning(fmt::format("{}: {}", name, notice));
 }
 
 void RunSession::tell_counts(const Station& station) const {

@@ -18,6 +18,8 @@ class RunSession {
 public:
     /// @param assembly outlives the session
     RunSession(const Messages& messages, Assembly& assembly);
+    /// Time stands still until each port has a client, or the run is to end.
+    void await_clients() const;
     /// Exit code: 0, 3 when an expectation was not met, or 1 when a recording or a wire could not be written.
     int run(const Scenario& scenario, RunWatch& watch);
 

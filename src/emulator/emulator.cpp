@@ -34,6 +34,24 @@ GpsTime Emulator::next_instant(GpsTime end) const {
     return next;
 }
 
+bool Emulator::all_connected() {
+    bool all = true;
+    for (Station& station : parts_.stations)
+        for (std::size_t i = 0; i < station.wires().size(); ++i)
+            all = station.transport(i).line().connected && all;
+    return all;
+}
+
+void Emulator::await_clients(const std::atomic<bool>& stop) {
+    if (parts_.pacer->is_virtual()) return;
+    parts_.pacer->pause(now_);
+    while (!stop && !all_connected()) {
+        Pacer::rest();
+        if (rest_) rest_(now_);
+    }
+    parts_.pacer->resume(now_);
+}
+
 void Emulator::run_until(GpsTime end, const std::atomic<bool>& stop) {
     // What is wrong from the first instant on is so before the first byte.
     direct();

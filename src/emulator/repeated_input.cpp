@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string_view>
 
+#include "recorded_numbers.hpp"
 #include "skyloop/base/text_file.hpp"
 
 namespace skyloop {
@@ -17,19 +17,11 @@ struct InputLine {
     std::uint64_t offset = 0, length = 0;
 };
 
-template <class Number>
-bool read_cell(std::string_view& rest, Number& value) {
-    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-    if (error != std::errc()) return false;
-    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
-    if (rest.starts_with(' ')) rest.remove_prefix(1);
-    return true;
-}
-
 std::optional<InputLine> read_line(std::string_view text) {
-    InputLine line;
-    const bool whole = read_cell(text, line.gps_ns) && read_cell(text, line.offset) && read_cell(text, line.length);
-    return whole && text.empty() ? std::optional(line) : std::nullopt;
+    const auto numbers = recorded_numbers<3>(text);
+    if (!numbers || (*numbers)[1] < 0 || (*numbers)[2] < 0) return std::nullopt;
+    return InputLine{(*numbers)[0], static_cast<std::uint64_t>((*numbers)[1]),
+                     static_cast<std::uint64_t>((*numbers)[2])};
 }
 
 Result<void> add_port(const std::filesystem::path& folder, std::size_t wire, firmware::PortId port,

@@ -16,8 +16,8 @@ def free_port():
 class Gpsd:
     """gpsd in the foreground on one tty, and a client of its JSON."""
 
-    def __init__(self, tty, *options):
-        self.port = free_port()
+    def __init__(self, tty, *options, port=None):
+        self.port = port or free_port()
         self.process = subprocess.Popen([shutil.which("gpsd"), "-N", "-n", *options, "-S", str(self.port), tty],
                                         stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         self.stream = None

@@ -37,23 +37,24 @@ def open_folder():
 
 
 class Emulator:
-    """`skyloop run` in the background; `tty` is the path of its first port."""
+    """`skyloop run`, or another command that has ports, in the background; `tty` is the path of its first port."""
 
-    def __init__(self, *arguments):
+    def __init__(self, *arguments, command="run"):
         # Unbuffered: a line that waits in a buffer of ours is one that select() does not tell of.
-        self.process = subprocess.Popen([SKYLOOP, "run", *map(str, arguments)], stdin=subprocess.DEVNULL,
+        self.process = subprocess.Popen([SKYLOOP, command, *map(str, arguments)], stdin=subprocess.DEVNULL,
                                         stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, bufsize=0)
         self.log = ""
         self.tty = None
         try:
-            self.tty = self._wait_for_port()
+            self.tty = self.port(0)
         finally:
             if self.tty is None:
                 self.process.kill()
                 self.process.wait(timeout=20)
 
-    def _wait_for_port(self):
-        return self.said(r"^port 0: (\S+) \(pty\)\n", patience=60)
+    def port(self, number):
+        """The path, or the address, of a port."""
+        return self.said(rf"^port {number}: (\S+) \((?:pty|tcp|file)\)\n", patience=60)
 
     def said(self, pattern, patience=20):
         """Waits until stderr holds the pattern; gives its first group."""

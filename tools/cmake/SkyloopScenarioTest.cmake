@@ -40,7 +40,7 @@ function(skyloop_scenario_test name)
     add_test(NAME ${name}
              COMMAND ${Python3_EXECUTABLE} ${SKYLOOP_SCENARIO_TEST_RUNNER} --program ${program} --scenario ${scenario}
                      --folder ${CMAKE_CURRENT_BINARY_DIR}/skyloop/${name} --timeout ${arg_TIMEOUT}
-                     --options "${arg_OPTIONS}" ${client})
+                     "--options=${arg_OPTIONS}" ${client})
     math(EXPR patience "${arg_TIMEOUT} + 30")
     set_tests_properties(${name} PROPERTIES TIMEOUT ${patience})
 endfunction()

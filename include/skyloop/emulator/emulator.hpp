@@ -39,6 +39,8 @@ public:
     void add_observer(RunObserver* observer) { parts_.director.add_observer(observer); }
     /// Called again and again while time stands still.
     void on_rest(std::function<void(GpsTime)> callback) { rest_ = std::move(callback); }
+    /// Waits until each wire has a client, or until `stop` is true; real time begins then, and no byte is lost before.
+    void await_clients(const std::atomic<bool>& stop);
     /// Runs to `end`, or until `stop` is true, or until a recording fails.
     void run_until(GpsTime end, const std::atomic<bool>& stop);
 
@@ -58,6 +60,7 @@ public:
 private:
     [[nodiscard]] GpsTime next_instant(GpsTime end) const;
     [[nodiscard]] Nanoseconds look_every() const;
+    [[nodiscard]] bool all_connected();
     void exchange_bytes();
     void direct();
     [[nodiscard]] bool stopped() const { return parts_.director.stopped(); }

@@ -97,6 +97,7 @@ public:
     [[nodiscard]] const firmware::Receiver& receiver() const { return parts_.receiver; }
     [[nodiscard]] PortSpeed speed(firmware::PortId port) const { return port_speed(parts_.receiver, port); }
     [[nodiscard]] const std::vector<Wire>& wires() const { return parts_.wires; }
+    [[nodiscard]] Transport& transport(std::size_t wire) { return parts_.wires.at(wire).link.transport(); }
     /// Messages on the ports that have a wire; without any wire on the port of an unnamed one.
     [[nodiscard]] std::uint64_t messages_sent() const;
     /// Those among them that did not fit into the transmit buffer.

@@ -44,6 +44,8 @@ public:
     virtual std::optional<Belief> new_belief() { return std::nullopt; }
     /// What has gone wrong with the wire since it was opened, in one sentence; empty while nothing has.
     [[nodiscard]] virtual std::string failure() const { return {}; }
+    /// What its owner should know at the end of a run, in one sentence; empty: nothing.
+    [[nodiscard]] virtual std::string notice() const { return {}; }
     /// For people: "/path/to/tty (pty)".
     [[nodiscard]] virtual std::string description() const = 0;
 };

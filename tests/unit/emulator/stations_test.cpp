@@ -55,7 +55,7 @@ TEST(Wires, AnUnknownNameListsThePortsOfTheBoard) {
                 testing::AllOf(testing::StartsWith("port 'uart2=pty': test-board has no port 'uart2'"),
                                testing::EndsWith("expected uart1, usb")));
     EXPECT_FALSE(parse_wire("=pty", board));
-    EXPECT_THAT(parse_wire("usb=tcp:1", board).error().message, HasSubstr("tcp"));
+    EXPECT_THAT(parse_wire("usb=serial:1", board).error().message, HasSubstr("serial"));
     EXPECT_THAT(parse_wire("usb=client:nobody", board).error().message, HasSubstr("careful-ubx, naive-ubx"));
     EXPECT_FALSE(parse_wire("usb=", board));
 }

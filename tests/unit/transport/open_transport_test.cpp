@@ -25,13 +25,19 @@ TEST(OpenTransport, OpensWhatThisVersionHas) {
     EXPECT_THAT(open_transport("pty").value()->description(), StartsWith("/dev/pts/"));
     EXPECT_EQ(open_transport("pty:" + (folder / "gps0").string()).value()->description(),
               (folder / "gps0").string() + " (pty)");
+    EXPECT_THAT(open_transport("tcp:0").value()->description(), StartsWith("127.0.0.1:"));
     EXPECT_THAT(open_transport("file:" + (folder / "a:b").string()).value()->description(), EndsWith("a:b (file)"));
 }
 
 TEST(OpenTransport, RefusesClearly) {
-    EXPECT_EQ(
-        refusal("tcp:2000").message,
-        "port 'tcp:2000': tcp: is not supported by this version; expected pty[:LINK], file:PATH, client:NAME or -");
+    EXPECT_EQ(refusal("usbip:3240").message,
+              "port 'usbip:3240': usbip: is not supported by this version; expected pty[:LINK], tcp:[HOST:]PORT, "
+              "file:PATH, client:NAME or -");
+    EXPECT_EQ(refusal("tcp:host").message,
+              "port 'tcp:host': address 'host': a port from 0 to 65535 is missing; expected [HOST:]PORT, an IPv6 address "
+              "in brackets");
+    EXPECT_THAT(refusal("tcp:").message, HasSubstr("a port is missing"));
+    EXPECT_EQ(refusal("tcp:70000").code, ErrorCode::usage);
     for (const std::string uri : {"serial:/dev/ttyS0@9600", "usbip:3240", "usb:1546:01a8", "hid:10c4:ea80"})
         EXPECT_THAT(refusal(uri).message, HasSubstr("is not supported by this version")) << uri;
     EXPECT_THAT(refusal("ptty:gps0").message, HasSubstr("did you mean 'pty'?"));
@@ -41,7 +47,7 @@ TEST(OpenTransport, RefusesClearly) {
     EXPECT_THAT(refusal("pty:").message, HasSubstr("a path is missing"));
     EXPECT_THAT(refusal("file").message, HasSubstr("a path is missing"));
     EXPECT_THAT(refusal("file:").message, HasSubstr("a path is missing"));
-    EXPECT_EQ(refusal("tcp:2000").code, ErrorCode::usage);
+    EXPECT_EQ(refusal("serial:/dev/ttyS0").code, ErrorCode::usage);
     EXPECT_EQ(refusal("file:/no/such/folder/x").code, ErrorCode::outside);
 }
 
