@@ -76,6 +76,22 @@ class TcpClientTest(unittest.TestCase):
             client.sendall(bytes.fromhex("b5620a0400000e34"))  # a poll of MON-VER
             self.assertIn(bytes.fromhex("b5620a04"), read_for(client, 3)[0])
 
+    def test_time_waits_for_a_client(self):
+        with self.emulator("--wait-for-client", "--duration", 2, "--speed", 2) as emulator:
+            time.sleep(1.5)
+            self.assertIsNone(emulator.process.poll(), "nobody has come yet")
+            with connect(emulator.tty) as client:
+                data, closed = read_for(client, 20)
+            self.assertTrue(closed)
+            self.assertIn(b"GGA,000000.", data, "the first epoch, though long ago")
+            self.assertEqual(emulator.finish(), 0, emulator.log)
+            self.assertIn(" 0 while nobody listened", emulator.log)
+
+    def test_waiting_ends_with_a_signal(self):
+        with self.emulator("--wait-for-client") as emulator:
+            emulator.said(r"(waiting for a client)")
+            self.assertEqual(emulator.stop(), 0, emulator.log)
+
     def test_a_second_client_is_closed_and_told_of(self):
         with self.emulator() as emulator, connect(emulator.tty) as first:
             self.assertFalse(read_for(first, 1.2)[1])
