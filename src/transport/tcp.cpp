@@ -16,8 +16,9 @@ namespace skyloop {
 namespace {
 
 constexpr int waiting_clients = 8;
-// Bounds how old the bytes of a slow client grow. Each write of some bytes a millisecond travels alone and takes some 2 kB
-// until it is acknowledged, which clients may put off for 40 ms and more: much less would lose bytes of a client that reads.
+// Bounds how old the bytes of a slow client grow. Each write of some bytes a millisecond travels alone and takes some 2
+// kB until it is acknowledged, which clients may put off for 40 ms and more: much less would lose bytes of a client
+// that reads.
 constexpr int send_buffer_bytes = 262144;
 constexpr unsigned patience_ms = 60000;  // with a client that acknowledges nothing
 constexpr int keep_alive_idle_s = 30, keep_alive_every_s = 10, keep_alive_tries = 3;

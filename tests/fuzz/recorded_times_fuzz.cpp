@@ -25,6 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require((last.offset + last.length < recorded_bytes) <= !port->warning.empty());
     const auto part = part_of({std::move(*port)}, Nanoseconds(1'000'000), Nanoseconds(2'000'000'000));
     for (std::size_t i = 0; part && i < part->front().writes.size(); ++i)
-        require(part->front().writes[i].at >= Nanoseconds(0) && part->front().writes[i].at < Nanoseconds(2'000'000'000));
+        require(part->front().writes[i].at >= Nanoseconds(0) &&
+                part->front().writes[i].at < Nanoseconds(2'000'000'000));
     return 0;
 }

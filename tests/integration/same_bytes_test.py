@@ -46,6 +46,18 @@ between_s = [3, 6]
 for_between_s = [2, 8]
 probability = 0.001
 [[fault]]
+kind = "wire_jitter"
+at_s = 15.5
+for_s = 4
+[[fault]]
+kind = "duplicate_messages"
+at_s = 16
+for_s = 4
+[[fault]]
+kind = "stall"
+at_s = 21
+for_s = 1
+[[fault]]
 kind = "receiver_silent"
 at_s = 18
 for_s = 2

@@ -22,7 +22,8 @@ import threading
 import time
 import xml.etree.ElementTree
 
-PORT_LINE = re.compile(r"^port (\d+): (\S+) \(pty\)", re.MULTILINE)
+# "port 0: /tmp/gps0 (pty)", "rover: port 1 (uart2): 127.0.0.1:2000 (tcp)"
+PORT_LINE = re.compile(r"^(?:.+: )?port \d+(?: \(\w+\))?: (.+) \((?:pty|tcp)\)$", re.MULTILINE)
 MET, NOT_MET, REFUSED = 0, 3, 2  # exit codes
 
 
@@ -53,7 +54,7 @@ def read_verdicts(path):
 
 
 class SkyloopRun:
-    """A running emulator; `ttys` are the paths of its ports, `tty` the first of them."""
+    """A running emulator; `ttys` are its ports in order, each the path of a pty or the address of a TCP port; `tty` the first."""
 
     def __init__(self, scenario, folder, *options, ports=1, patience=60):
         self.folder = pathlib.Path(folder)
@@ -88,13 +89,13 @@ class SkyloopRun:
             over = self.process.poll() is not None
             if over:
                 self._reader.join(timeout=5)
-            found = dict(PORT_LINE.findall(self.log))
+            found = PORT_LINE.findall(self.log)
             if len(found) >= ports:
-                return [found[number] for number in sorted(found, key=int)]
+                return found
             if over:
                 raise RuntimeError(f"skyloop ended with exit code {self.process.returncode}: {self.log}")
             time.sleep(0.02)
-        raise TimeoutError(f"expected {ports} pty port(s) within {patience} s, found {len(found)}: {self.log}")
+        raise TimeoutError(f"expected {ports} port(s) within {patience} s, found {len(found)}: {self.log}")
 
     def wait(self, timeout=600):
         """Waits for the end of the scenario; gives the exit code."""

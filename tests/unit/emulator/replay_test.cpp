@@ -27,9 +27,7 @@ std::string refused_times(const std::string& times) {
 }
 
 // 3 bytes at 1 s, 4 at 1.02 s, 3 at 1.05 s.
-RecordedPort ten_bytes() {
-    return *recorded("1000000000 5 0 3\n1020000000 6 3 4\n1050000000 7 7 3\n", "abcdefghij");
-}
+RecordedPort ten_bytes() { return *recorded("1000000000 5 0 3\n1020000000 6 3 4\n1050000000 7 7 3\n", "abcdefghij"); }
 
 TEST(RecordedOutput, ReadsTimes) {
     const RecordedPort port = ten_bytes();
@@ -44,8 +42,9 @@ TEST(RecordedOutput, PlaysWhatAKilledRunLeft) {
     const auto half = recorded("10 5 0 3\n20 6 3", "abcdefghij");
     ASSERT_TRUE(half);
     EXPECT_EQ(half->writes.size(), 1U);
-    EXPECT_EQ(half->warning,
-              "port0.times: the recording was cut short: its last line is not whole, 7 bytes without a time are left out");
+    EXPECT_EQ(
+        half->warning,
+        "port0.times: the recording was cut short: its last line is not whole, 7 bytes without a time are left out");
     const auto nothing = recorded("", "");
     ASSERT_TRUE(nothing);
     EXPECT_EQ(nothing->warning, "");

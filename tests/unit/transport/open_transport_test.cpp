@@ -33,9 +33,10 @@ TEST(OpenTransport, RefusesClearly) {
     EXPECT_EQ(refusal("usbip:3240").message,
               "port 'usbip:3240': usbip: is not supported by this version; expected pty[:LINK], tcp:[HOST:]PORT, "
               "file:PATH, client:NAME or -");
-    EXPECT_EQ(refusal("tcp:host").message,
-              "port 'tcp:host': address 'host': a port from 0 to 65535 is missing; expected [HOST:]PORT, an IPv6 address "
-              "in brackets");
+    EXPECT_EQ(
+        refusal("tcp:host").message,
+        "port 'tcp:host': address 'host': a port from 0 to 65535 is missing; expected [HOST:]PORT, an IPv6 address "
+        "in brackets");
     EXPECT_THAT(refusal("tcp:").message, HasSubstr("a port is missing"));
     EXPECT_EQ(refusal("tcp:70000").code, ErrorCode::usage);
     for (const std::string uri : {"serial:/dev/ttyS0@9600", "usbip:3240", "usb:1546:01a8", "hid:10c4:ea80"})

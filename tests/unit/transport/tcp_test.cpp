@@ -92,7 +92,8 @@ TEST(TcpAddress, ReadsHostAndPort) {
     EXPECT_EQ(parse_tcp_address("0.0.0.0:0")->host, "0.0.0.0");
     EXPECT_EQ(parse_tcp_address("[::1]:65535")->host, "::1");
     EXPECT_EQ(parse_tcp_address("[::1]:65535")->port, 65535);
-    for (const std::string text : {"", ":", "host", "host:", ":2000", "65536", "-1", "2000x", "::1:2000", "[]:1", "a:+1"}) {
+    for (const std::string text :
+         {"", ":", "host", "host:", ":2000", "65536", "-1", "2000x", "::1:2000", "[]:1", "a:+1"}) {
         const auto address = parse_tcp_address(text);
         ASSERT_FALSE(address) << text;
         EXPECT_EQ(address.error().code, ErrorCode::usage);
@@ -150,9 +151,9 @@ TEST(TcpTransport, AHalfClosedClientListensOnAndGivesWay) {
     EXPECT_EQ(half.read(10), "still here");
     const TcpClient next(wire->port());
     EXPECT_TRUE(half.closed() || comes_true([&] {
-        wire->line();
-        return half.closed();
-    }));
+                    wire->line();
+                    return half.closed();
+                }));
     wire->write(to_bytes("new"));
     EXPECT_EQ(next.read(3), "new");
     EXPECT_EQ(wire->turned_away(), 0U);

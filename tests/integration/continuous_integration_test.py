@@ -11,11 +11,11 @@ from session import ROOT, SKYLOOP, open_folder
 
 MET = """[run]
 start = 2026-03-01T00:00:00Z
-duration_s = 12
+duration_s = 9
 [model]
 name = "ideal"
 [[expect]]
-what = "fix within 10 s of the run"
+what = "fix within 8 s of the run"
 """
 NOT_MET = MET + '[[expect]]\nwhat = "client sends CFG-VALSET within 5 s of the run"\n'
 ANSWERED = MET + '[[expect]]\nwhat = "client sends MON-VER within 8 s of the run"\n'
@@ -34,7 +34,7 @@ PYTEST = """import os, tty
 import pytest
 from skyloop_pytest import ExpectationsNotMet
 
-OPTIONS = ("--speed", "6")
+OPTIONS = ("--speed", "9")
 
 @pytest.mark.skyloop_scenario("met.toml", *OPTIONS)
 def test_met(skyloop_run):
@@ -43,7 +43,7 @@ def test_met(skyloop_run):
     assert skyloop_run.wait() == 0
     skyloop_run.check()
     assert [v.outcome for v in skyloop_run.verdicts] == ["passed"]
-    assert skyloop_run.summary["epochs"] == 12
+    assert skyloop_run.summary["epochs"] == 9
     assert (skyloop_run.folder / "port0.out").stat().st_size > 0
 
 @pytest.mark.skyloop_scenario("not_met.toml", *OPTIONS)
@@ -92,7 +92,7 @@ def run_scripts(document):
     return scripts
 
 
-class HelpersTest(unittest.TestCase):
+class ContinuousIntegrationTest(unittest.TestCase):
     def setUp(self):
         self.folder = open_folder()
         self.path = pathlib.Path(self.folder.name)
@@ -146,8 +146,8 @@ class HelpersTest(unittest.TestCase):
             self.skipTest("cmake is not installed; apt-get install cmake")
         for line, words in (("skyloop_scenario_test(x)", "expected SCENARIO FILE"),
                             ("skyloop_scenario_test(x SCENARIO met.toml TIMOUT 3)", "is not understood")):
-            (self.path / "CMakeLists.txt").write_text(CMAKE.format(root=ROOT, python="", folder="").split("skyloop_")[0] + line)
-            done = self.run_in_folder("cmake", "-S", ".", "-B", "misuse")
+            (self.path / "misuse.cmake").write_text(f"include({ROOT}/tools/cmake/SkyloopScenarioTest.cmake)\n{line}\n")
+            done = self.run_in_folder("cmake", "-P", "misuse.cmake")
             self.assertNotEqual(done.returncode, 0)
             self.assertIn(words, " ".join(done.stderr.split()))
 
