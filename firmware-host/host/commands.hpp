@@ -24,5 +24,6 @@ Action add_schema_command(CLI::App& app);
 Action add_scene_command(CLI::App& app);
 Action add_ctl_command(CLI::App& app);
 Action add_replay_command(CLI::App& app);
+Action add_scenario_from_command(CLI::App& app);
 
 }  // namespace skyloop::host

@@ -20,10 +20,10 @@ namespace {
 
 using skyloop::host::Action;
 
-constexpr std::array<std::string_view, 13> commands{"run",    "simulate", "sky",   "check",  "compare", "solve",
+constexpr std::array<std::string_view, 14> commands{"run",    "simulate", "sky",   "check",  "compare", "solve",
                                                     "boards", "decode",   "scene", "faults", "schema",  "ctl",
-                                                    "replay"};
-constexpr std::array<std::string_view, 4> later_commands{"devices", "trajectory", "scenario-from", "campaign"};
+                                                    "replay", "scenario-from"};
+constexpr std::array<std::string_view, 3> later_commands{"devices", "trajectory", "campaign"};
 
 // CLI11 does not know which words may be meant; this says it in one line.
 int refuse_command(std::string_view word) {
@@ -43,7 +43,7 @@ int run_program(int argc, char** argv) {
         skyloop::host::add_check_command,  skyloop::host::add_compare_command,  skyloop::host::add_solve_command,
         skyloop::host::add_boards_command, skyloop::host::add_decode_command,   skyloop::host::add_scene_command,
         skyloop::host::add_faults_command, skyloop::host::add_schema_command,   skyloop::host::add_ctl_command,
-        skyloop::host::add_replay_command};
+        skyloop::host::add_replay_command, skyloop::host::add_scenario_from_command};
     std::vector<Action> actions;
     for (const auto add_command : add)
         actions.push_back(add_command(app));

@@ -7,6 +7,7 @@
 #include "sky_parts.hpp"
 #include "skyloop/analysis/city_run.hpp"
 #include "skyloop/emulator/load_scene.hpp"
+#include "skyloop/emulator/load_track.hpp"
 #include "skyloop/plot/city_run_plot.hpp"
 
 namespace skyloop::host {
@@ -33,6 +34,9 @@ Result<World> make_world(const Scenario& asked, const SkyOptions& options, const
     warnings.insert(warnings.end(), navigation->warnings.begin(), navigation->warnings.end());
     auto geoid = find_geoid(data_folders(), warnings);
     const GpsTime start = navigation->start;
+    const auto track = load_track(scenario, geoid.get(), start);
+    if (!track) return fail(track.error());
+    warnings.insert(warnings.end(), track->warnings.begin(), track->warnings.end());
     const Geodetic place = make_trajectory(scenario.trajectory, start)->at(start).geodetic;
     auto loaded = load_scene(scenario, place, CityCache{data_folders().cache});
     if (!loaded) return fail(loaded.error());

@@ -12,8 +12,10 @@
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/emulator/lever_arm.hpp"
 #include "skyloop/emulator/load_scene.hpp"
+#include "skyloop/emulator/load_track.hpp"
 #include "skyloop/error_model/make_error_model.hpp"
 #include "skyloop/error_model/model_effects.hpp"
+#include "skyloop/trajectory/recorded_path.hpp"
 
 namespace skyloop {
 namespace {
@@ -80,6 +82,7 @@ std::vector<std::string> world_details(const NavigationSource& navigation, const
         fmt::format("navigation: {}, {} satellites, {}", navigation.description(), navigation.satellites().size(),
                     navigation.klobuchar() ? "with ionosphere coefficients" : "without ionosphere coefficients"),
         fmt::format("geoid: {}", assembly.geoid ? "EGM96, 15 minutes" : "none")};
+    if (!assembly.trajectory.empty()) details.push_back("trajectory: " + assembly.trajectory);
     if (assembly.scene.scene)
         details.push_back(fmt::format("scene: {}{}", assembly.scene.description,
                                       assembly.scene.from_cache ? ", from the cache" : ""));
@@ -129,6 +132,8 @@ std::string scenario_digest(const Scenario& scenario, GpsTime start, std::uint64
     for (const ReceiverEntry& receiver : scenario.receivers)
         if (!receiver.state_file.empty() && std::filesystem::exists(receiver.state_file))
             if (const auto text = read_text_file(receiver.state_file)) digest = fnv1a_64(*text, digest);
+    if (const auto* file = std::get_if<FileSettings>(&scenario.trajectory))
+        if (const auto text = read_text_file(file->path)) digest = fnv1a_64(*text, digest);
     if (scene != 0) digest = fnv1a_64(fmt::format("scene {:016x}", scene), digest);
     return fmt::format("{:016x}", digest);
 }
@@ -143,6 +148,9 @@ std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, 
                           },
                           [&](const CircleSettings& circle) -> std::unique_ptr<Trajectory> {
                               return std::make_unique<Circle>(start, circle.shape);
+                          },
+                          [&](const FileSettings& file) -> std::unique_ptr<Trajectory> {
+                              return std::make_unique<RecordedPath>(*file.track, file.gaps, first_row_at(file, start));
                           },
                       },
                       settings);
@@ -221,7 +229,8 @@ std::vector<std::filesystem::path> board_folders(const DataFolders& data) {
     return folders;
 }
 
-Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, const RunMode& mode) {
+Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const RunMode& mode) {
+    Scenario scenario = asked;
     Assembly assembly;
     assembly.warnings = scenario_warnings(scenario);
     auto navigation = load_navigation(scenario, mode.now);
@@ -230,6 +239,10 @@ Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, con
     assembly.geoid = find_geoid(data, assembly.warnings);
     assembly.start = navigation->start;
     if (scenario.run.duration) assembly.end = advanced(assembly.start, *scenario.run.duration);
+    const auto track = load_track(scenario, assembly.geoid.get(), assembly.start);
+    if (!track) return fail(track.error());
+    assembly.warnings.insert(assembly.warnings.end(), track->warnings.begin(), track->warnings.end());
+    assembly.trajectory = track->description;
     if (const auto added = add_scene(scenario, data, assembly); !added) return fail(added.error());
     assembly.digest = scenario_digest(scenario, assembly.start, assembly.scene.digest);
     assembly.details = world_details(*navigation->source, assembly);

@@ -104,7 +104,7 @@ void check_expectations(TableReader& top, const Scenario& scenario) {
 void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
     top.table("run", [&](TableReader& t) { read_run_keys(t, scenario.run); });
     top.table("sky", [&](TableReader& t) { read_sky_keys(t, scenario.sky, folder); });
-    read_trajectory_keys(top, scenario);
+    read_trajectory_keys(top, scenario, folder);
     top.table("model", [&](TableReader& t) { read_model_keys(t, scenario.model, folder); });
     top.table("atmosphere", [&](TableReader& t) {
         read_atmosphere_keys(t, scenario.atmosphere);
@@ -149,7 +149,7 @@ Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& fil
     Scenario scenario;
     const auto read = read_toml(*text, file.string(), [&](TableReader& top) {
         if (!top.has("trajectory")) top.mistake_here("no [trajectory] table in this file");
-        read_trajectory_keys(top, scenario);
+        read_trajectory_keys(top, scenario, file.parent_path());
     });
     if (!read) return fail(read.error());
     return scenario.trajectory;

@@ -33,7 +33,7 @@ void read_timeline(TableReader& top, Scenario& scenario);
 /// at: event_mistake() and the scenario know that when everything has been read.
 void read_expectations(TableReader& top, std::vector<Expectation>& list);
 
-/// Reads [frame] and [trajectory] of a file's top table.
-void read_trajectory_keys(TableReader& top, Scenario& scenario);
+/// Reads [frame] and [trajectory] of a file's top table. @param folder that paths are relative to
+void read_trajectory_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder);
 
 }  // namespace skyloop

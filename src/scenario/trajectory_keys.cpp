@@ -120,14 +120,32 @@ void read_circle(TableReader& table, PlaceReader& places, TrajectorySettings& tr
     trajectory = circle;
 }
 
+void read_file(TableReader& table, const std::filesystem::path& folder, TrajectorySettings& trajectory) {
+    static constexpr std::array<std::string_view, 2> clocks{"run", "recorded"};
+    FileSettings file;
+    file.heading = read_heading(table);
+    std::string path;
+    table.text("path", path);
+    if (path.empty())
+        table.mistake_here("kind \"file\" has no path; expected path = \"track.csv\"");
+    else if (std::filesystem::path(path).extension() != ".csv")
+        table.mistake("path", fmt::format("is '{}'; expected a file that ends in .csv (skyloop scenario-from makes one "
+                                          "of a receiver's log)",
+                                          path));
+    file.path = folder / path;
+    file.keeps_time = table.choice("time", clocks).value_or(0) == 1;
+    table.quantity("gap_s", file.gap, {1e-3, 1e7});
+    trajectory = file;
+}
+
 }  // namespace
 
-void read_trajectory_keys(TableReader& top, Scenario& scenario) {
+void read_trajectory_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
     PlaceReader places(read_frame(top), scenario);
     top.table("trajectory", [&](TableReader& table) {
         static constexpr std::array<std::string_view, 5> kinds{"fixed", "waypoints", "circle", "file", "live"};
         const auto kind = table.choice("kind", kinds);
-        table.needs_one_of({"kind"}, "has no kind; expected kind = \"fixed\", \"waypoints\" or \"circle\"");
+        table.needs_one_of({"kind"}, "has no kind; expected kind = \"fixed\", \"waypoints\", \"circle\" or \"file\"");
         switch (kind.value_or(kinds.size())) {
             case 0:
                 return read_fixed(table, places, scenario.trajectory);
@@ -136,16 +154,14 @@ void read_trajectory_keys(TableReader& top, Scenario& scenario) {
             case 2:
                 return read_circle(table, places, scenario.trajectory);
             case 3:
-                table.refuse("path", "recorded trajectories are not in this version");
-                break;
+                return read_file(table, folder, scenario.trajectory);
             case 4:
                 table.refuse("source", "live trajectories are not in this version");
                 break;
             default:
                 return;
         }
-        table.mistake("kind",
-                      "recorded and live trajectories are not in this version; expected fixed, waypoints or circle");
+        table.mistake("kind", "live trajectories are not in this version; expected fixed, waypoints, circle or file");
     });
 }
 

@@ -42,8 +42,9 @@ struct Assembly {
     std::unique_ptr<Emulator> emulator;
     GpsTime start;
     std::optional<GpsTime> end;
-    std::string digest;  ///< scenario_digest()
-    LoadedScene scene;   ///< what stands around; its warnings are among those below
+    std::string digest;      ///< scenario_digest()
+    std::string trajectory;  ///< what the recorded path is; empty: it is none
+    LoadedScene scene;       ///< what stands around; its warnings are among those below
     std::vector<std::string> warnings;
     std::vector<std::string> details;  ///< for those who ask: what was read, and from where
 };
@@ -66,7 +67,7 @@ struct LoadedNavigation {
 };
 Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now);
 
-/// The trajectory of a scenario, begun at `start`.
+/// The trajectory of a scenario, begun at `start`. That of a file must have been loaded by load_track().
 std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, GpsTime start);
 
 struct SimulationSetup;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,6 +26,7 @@
 #include "skyloop/scenario/modern_settings.hpp"
 #include "skyloop/scenario/scene_settings.hpp"
 #include "skyloop/trajectory/geometric_paths.hpp"
+#include "skyloop/trajectory/track.hpp"
 #include "skyloop/verdict/expectation.hpp"
 
 namespace skyloop {
@@ -60,7 +62,16 @@ struct CircleSettings {
     Circle::Shape shape{};
     Angle heading{};
 };
-using TrajectorySettings = std::variant<FixedSettings, WaypointSettings, CircleSettings>;
+/// A recorded path. Its file is read by load_track() (emulator/load_track.hpp), which needs the geoid.
+struct FileSettings {
+    std::filesystem::path path{};
+    Angle heading{};
+    bool keeps_time = false;  ///< the rows keep their own GPS time; else the first one is the start of the run
+    Seconds gap{10};          ///< stretches without rows longer than this are told and bridged
+    std::shared_ptr<const Track> track{};  ///< clean; null until it has been loaded
+    std::vector<TrackGap> gaps{};
+};
+using TrajectorySettings = std::variant<FixedSettings, WaypointSettings, CircleSettings, FileSettings>;
 
 /// How the fix is made, and the numbers of all ways.
 struct ModelSettings {

@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "commands.hpp"
+#include "data_folders.hpp"
+#include "messages.hpp"
+#include "run_options.hpp"
+#include "skyloop/base/text_file.hpp"
+#include "skyloop/emulator/assembly.hpp"
+#include "skyloop/emulator/output_file.hpp"
+#include "skyloop/logs/log_events.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop::host {
+namespace {
+
+struct ScenarioFromOptions {
+    std::string log, out = ".";
+    std::size_t receiver = 0;
+    double drop_db = 6, satellite_drop_db = 10, least_s = 3, satellite_least_s = 5;
+    Verbosity verbosity;
+};
+
+Result<void> write_text(const std::filesystem::path& file, const std::string& text) {
+    auto out = OutputFile::create(file.string());
+    if (!out) return fail(out.error());
+    out->write(text);
+    out->flush();
+    return {};
+}
+
+void print_summary(const ReceiverLog& log, const LogEvents& events, const LogScenario& made) {
+    static constexpr std::string_view names[] = {"outages",    "silences",        "changes of the type of fix",
+                                                 "C/N0 drops", "weak satellites", "lost satellites"};
+    const auto utc = [](GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 3); };
+    fmt::print("log         {}, {}{}\n", log.name, log.format, log.receiver.empty() ? "" : ", " + log.receiver);
+    fmt::print("epochs      {} from {} to {}, every {:g} s, {} with a place\n", log.epochs.size(),
+               utc(log.epochs.front().time), utc(log.epochs.back().time),
+               std::chrono::duration<double>(events.period).count(), made.places);
+    for (std::size_t kind = 0; kind < std::size(names); ++kind) {
+        std::size_t count = 0;
+        double seconds = 0;
+        for (const LogEvent& event : events.events) {
+            if (static_cast<std::size_t>(event.kind) != kind) continue;
+            ++count;
+            seconds += std::chrono::duration<double>(event.lasts).count();
+        }
+        if (count > 0) fmt::print("faults      {} {}, {:g} s together\n", count, names[kind], seconds);
+    }
+    if (events.events.empty()) fmt::print("faults      none: nothing went wrong in it\n");
+}
+
+int make_scenario(const ScenarioFromOptions& options) {
+    const Messages messages(options.verbosity);
+    constexpr std::size_t largest = std::size_t{1} << 30;
+    const auto text = read_text_file(options.log, largest);
+    if (!text) return messages.error(text.error());
+    std::vector<std::string> warnings;
+    const auto geoid = find_geoid(data_folders(), warnings);
+    const ByteSpan bytes(reinterpret_cast<const std::uint8_t*>(text->data()), text->size());
+    const auto log = read_receiver_log(bytes, options.log, {geoid.get(), options.receiver});
+    if (!log) return messages.error(log.error());
+    EventLimits limits;
+    limits.drop_db = options.drop_db;
+    limits.satellite_drop_db = options.satellite_drop_db;
+    limits.least = Seconds(options.least_s);
+    limits.satellite_least = Seconds(options.satellite_least_s);
+    const LogEvents events = find_events(*log, limits);
+    const auto made = scenario_of_log(*log, events);
+    if (!made) return messages.error(made.error());
+    for (const auto* notes : {&log->notes, &events.notes})
+        for (const std::string& note : *notes)
+            messages.warning(log->name + ": " + note);
+    const std::filesystem::path folder = options.out;
+    std::error_code refused;
+    std::filesystem::create_directories(folder, refused);
+    if (refused)
+        return messages.error(
+            {ErrorCode::outside, fmt::format("{}: cannot be made: {}", options.out, refused.message())});
+    if (!made->track.empty())
+        if (const auto done = write_text(folder / "track.csv", made->track); !done) return messages.error(done.error());
+    if (const auto done = write_text(folder / "scenario.toml", made->scenario); !done)
+        return messages.error(done.error());
+    if (!options.verbosity.quiet) print_summary(*log, events, *made);
+    if (!options.verbosity.quiet) fmt::print("written     {}\n", (folder / "scenario.toml").string());
+    return 0;
+}
+
+}  // namespace
+
+Action add_scenario_from_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("scenario-from", "Turn a receiver's log into a scenario that is like it");
+    auto options = std::make_shared<ScenarioFromOptions>();
+    command->add_option("log", options->log, "UBX, NMEA, PX4 ULog or ArduPilot DataFlash; gzip is read too")
+        ->required();
+    command->add_option("--out", options->out, "Folder for scenario.toml and track.csv; default: this one");
+    command->add_option("--gps", options->receiver, "Which receiver of an autopilot's log, from 0")
+        ->check(CLI::Range(0, 9));
+    command->add_option("--drop-db", options->drop_db, "From how many dB on a drop of all C/N0 counts; default 6")
+        ->check(CLI::Range(1.0, 60.0));
+    command
+        ->add_option("--satellite-drop-db", options->satellite_drop_db,
+                     "From how many dB on a drop of one satellite counts; default 10")
+        ->check(CLI::Range(1.0, 60.0));
+    command->add_option("--least", options->least_s, "Seconds that a drop of all lasts; default 3")
+        ->check(CLI::Range(0.0, 1e6));
+    command
+        ->add_option("--satellite-least", options->satellite_least_s,
+                     "Seconds that one satellite is weak or away; default 5")
+        ->check(CLI::Range(0.0, 1e6));
+    add_verbosity_options(*command, options->verbosity);
+    return [options] { return make_scenario(*options); };
+}
+
+}  // namespace skyloop::host

@@ -1,0 +1,60 @@
+/// What a receiver, or the autopilot behind it, has written down: epochs of one form, whatever the log was.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skyloop/base/bytes.hpp"
+#include "skyloop/base/result.hpp"
+#include "skyloop/flow/fix.hpp"
+#include "skyloop/geo/geoid.hpp"
+
+namespace skyloop {
+
+/// A satellite that the receiver tracked.
+struct LoggedSatellite {
+    SatelliteId id;
+    double cn0_dbhz = 0;  ///< of its strongest signal
+    std::optional<int> elevation_deg{};
+};
+
+/// One epoch of a log.
+struct LogEpoch {
+    GpsTime time;
+    FixType type = FixType::none;
+    std::optional<Geodetic> place{};
+    std::optional<VelocityNed> velocity{};
+    std::optional<int> satellites_used{};
+    std::optional<Metres> horizontal_accuracy{}, vertical_accuracy{};  ///< as the receiver estimates them
+    bool lists_satellites = false;              ///< the log says of this epoch which satellites were tracked
+    std::vector<LoggedSatellite> satellites{};  ///< ascending
+
+    /// Neither of the signals now: none, the time alone, or reckoned on without them.
+    [[nodiscard]] bool is_lost() const {
+        return type == FixType::none || type == FixType::time_only || type == FixType::dead_reckoning;
+    }
+};
+
+/// A log as it was read. Epochs are ascending in time, each time once.
+struct ReceiverLog {
+    std::string name;      ///< of the file
+    std::string format;    ///< "UBX", "NMEA", "ULog" or "DataFlash"
+    std::string receiver;  ///< what the log says of the receiver; may be empty
+    std::string board;     ///< the profile that this suggests; empty: none
+    std::vector<LogEpoch> epochs;
+    std::vector<std::string> notes;  ///< what was left out and why, a sentence each
+};
+
+/// How a log is read.
+struct LogReading {
+    const Geoid* geoid = nullptr;  ///< for heights above sea level where the log does not tell the undulation
+    std::size_t receiver = 0;      ///< of several in one log, from 0
+};
+
+/// Reads a log of any of the four kinds, told by its content. Fails with `input` and one sentence that begins with the
+/// name: when it is none of them, when nothing in it has a time, or when the asked receiver is not in it.
+Result<ReceiverLog> read_receiver_log(ByteSpan bytes, const std::string& name, const LogReading& reading);
+
+}  // namespace skyloop

@@ -1,0 +1,19 @@
+/// Tracks as tables of text.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "skyloop/geo/geoid.hpp"
+#include "skyloop/trajectory/track.hpp"
+
+namespace skyloop {
+
+/// Reads a table whose first line names its columns (FEEDS.md 1.2; docs/scenario.md lists the names): a time, a place
+/// and, when there, velocity and attitude. Columns are parted by comma, semicolon, tab or blanks; lines that begin with
+/// `#` or `%` are comments; an empty cell or `nan` is absent. Rows without a time or a place are left out and told.
+/// @param geoid for heights above sea level; null: a file with such heights fails
+/// Fails with `input`: NAME:LINE, the column, what was found and what was expected.
+Result<Track> read_track_csv(std::string_view text, const std::string& name, const Geoid* geoid);
+
+}  // namespace skyloop

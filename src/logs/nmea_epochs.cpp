@@ -1,0 +1,206 @@
+#include "nmea_epochs.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "skyloop/protocol/nmea_decode.hpp"
+#include "skyloop/protocol/nmea_satellites.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop {
+namespace {
+
+double nmea_seconds(const NmeaTime& time) {
+    return time.hour * 3600.0 + time.minute * 60.0 + time.second + time.nanosecond * 1e-9;
+}
+
+// NMEA 0183 v4.11, GGA, field 6; 3 is the precise service, 7 and 8 are set by hand and simulated.
+FixType fix_type_of_quality(int quality) {
+    switch (quality) {
+        case 1:
+        case 3:
+        case 7:
+        case 8:
+            return FixType::fix_3d;
+        case 2:
+            return FixType::dgnss;
+        case 4:
+            return FixType::rtk_fixed;
+        case 5:
+            return FixType::rtk_float;
+        case 6:
+            return FixType::dead_reckoning;
+        default:
+            return FixType::none;
+    }
+}
+
+FixType fix_type_of_mode(NmeaMode mode) {
+    switch (mode) {
+        case NmeaMode::none:
+            return FixType::none;
+        case NmeaMode::differential:
+            return FixType::dgnss;
+        case NmeaMode::estimated:
+            return FixType::dead_reckoning;
+        case NmeaMode::rtk_float:
+            return FixType::rtk_float;
+        case NmeaMode::rtk_fixed:
+            return FixType::rtk_fixed;
+        default:
+            return FixType::fix_3d;
+    }
+}
+
+}  // namespace
+
+void NmeaEpochs::take(std::string_view sentence) {
+    if (sentence.size() < 6 || sentence[1] == 'P') return;
+    const Result<NmeaMessage> message = decode_nmea(sentence);
+    if (!message) {
+        static constexpr std::string_view read[] = {"RMC", "GGA", "GNS", "GSA", "GSV", "ZDA"};
+        const std::string_view kind = sentence.substr(3, 3);
+        if (std::find(std::begin(read), std::end(read), kind) != std::end(read)) ++senseless_;
+        return;
+    }
+    if (const auto* rmc = std::get_if<Rmc>(&*message)) take_rmc(*rmc);
+    if (const auto* gga = std::get_if<Gga>(&*message)) take_gga(*gga);
+    if (const auto* gns = std::get_if<Gns>(&*message)) take_gns(*gns);
+    if (const auto* gsv = std::get_if<Gsv>(&*message)) take_gsv(*gsv);
+    if (const auto* zda = std::get_if<Zda>(&*message)) {
+        take_time(zda->time);
+        if (row_ && zda->time && zda->date) row_->date = zda->date;
+    }
+    if (const auto* gsa = std::get_if<Gsa>(&*message); gsa && row_) {
+        row_->two_dimensional |= gsa->fix_mode == 2;
+        row_->listed_used += static_cast<int>(gsa->satellites.size());
+    }
+    const std::string talker(sentence.substr(1, 2));
+    if (std::find(talkers_.begin(), talkers_.end(), talker) == talkers_.end()) talkers_.push_back(talker);
+}
+
+void NmeaEpochs::take_time(const std::optional<NmeaTime>& time) {
+    if (!time) return;
+    const double seconds = nmea_seconds(*time);
+    // 1 ms: sentences of one epoch may show different numbers of digits.
+    if (row_ && std::abs(row_->seconds - seconds) < 1e-3) return;
+    finish_row();
+    row_.emplace();
+    row_->seconds = seconds;
+}
+
+void NmeaEpochs::take_rmc(const Rmc& rmc) {
+    take_time(rmc.time);
+    if (!row_ || !rmc.time) return;
+    if (rmc.date) row_->date = rmc.date;
+    if (rmc.speed) row_->speed_mps = rmc.speed->value();
+    if (rmc.course) row_->course_rad = rmc.course->rad();
+    if (row_->has_gga) return;
+    row_->position = rmc.position;
+    row_->epoch.type = !rmc.valid ? FixType::none : rmc.mode ? fix_type_of_mode(*rmc.mode) : FixType::fix_3d;
+}
+
+void NmeaEpochs::take_gga(const Gga& gga) {
+    take_time(gga.time);
+    if (!row_ || !gga.time) return;
+    row_->has_gga = true;
+    row_->position = gga.position;
+    row_->altitude = gga.altitude;
+    row_->separation = gga.geoid_separation;
+    row_->epoch.type = gga.position ? fix_type_of_quality(gga.quality) : FixType::none;
+    row_->epoch.satellites_used = gga.satellites_used;
+}
+
+void NmeaEpochs::take_gns(const Gns& gns) {
+    take_time(gns.time);
+    if (!row_ || !gns.time || row_->has_gga) return;
+    row_->position = gns.position;
+    row_->altitude = gns.altitude;
+    row_->separation = gns.geoid_separation;
+    row_->epoch.satellites_used = gns.satellites_used;
+    FixType best = FixType::none;
+    for (const NmeaMode mode : gns.modes)
+        best = std::max(best, fix_type_of_mode(mode));
+    row_->epoch.type = gns.position ? best : FixType::none;
+}
+
+void NmeaEpochs::take_gsv(const Gsv& gsv) {
+    if (!row_) return;
+    row_->epoch.lists_satellites = true;
+    for (const GsvSatellite& satellite : gsv.satellites) {
+        if (!satellite.number || !satellite.cn0_dbhz) continue;
+        const auto id = satellite_from_nmea(*satellite.number, gsv.talker);
+        if (!id) continue;
+        add_satellite(row_->epoch.satellites, {*id, static_cast<double>(*satellite.cn0_dbhz), satellite.elevation_deg});
+    }
+}
+
+void NmeaEpochs::finish_row() {
+    if (row_) rows_.push_back(std::move(*row_));
+    row_.reset();
+}
+
+// Altitude and the sentence's own undulation undo what the receiver did (FEEDS.md 1.5).
+void NmeaEpochs::place(Row& row) {
+    LogEpoch& epoch = row.epoch;
+    if (epoch.type == FixType::none || !row.position) return;
+    if (row.two_dimensional && (epoch.type == FixType::fix_3d || epoch.type == FixType::dgnss))
+        epoch.type = FixType::fix_2d;
+    if (row.listed_used > epoch.satellites_used.value_or(0)) epoch.satellites_used = row.listed_used;
+    if (!row.altitude) return static_cast<void>(++without_height_);
+    const Angle latitude = row.position->latitude, longitude = row.position->longitude;
+    if (!row.separation) ++without_separation_;
+    const Metres undulation = row.separation ? *row.separation
+                              : geoid_       ? geoid_->undulation(latitude, longitude)
+                                             : Metres(0);
+    epoch.place = logged_place(latitude.deg(), longitude.deg(), (*row.altitude + undulation).value());
+    // Up is not told: two thirds of a velocity are none.
+}
+
+// A row belongs to the day that puts it within half a day of the last date that was said, or of the first one.
+bool NmeaEpochs::date_rows() {
+    const auto dated = std::find_if(rows_.begin(), rows_.end(), [](const Row& row) { return row.date.has_value(); });
+    if (dated == rows_.end()) return false;
+    constexpr double half_day = 43200;
+    NmeaDate date = *dated->date;
+    double said = dated->seconds;
+    for (Row& row : rows_) {
+        if (row.date) date = *row.date, said = row.seconds;
+        const UtcTime midnight{date.year, date.month, date.day, 0, 0, 0, 0};
+        const double days = row.seconds - said > half_day ? -1 : said - row.seconds > half_day ? 1 : 0;
+        row.epoch.time =
+            advanced(to_gps_time(midnight, LeapSeconds::announced()), Seconds(row.seconds + days * 2 * half_day));
+    }
+    return true;
+}
+
+Result<ReceiverLog> NmeaEpochs::finish(const std::string& name) {
+    finish_row();
+    if (!rows_.empty() && !date_rows())
+        return fail(ErrorCode::input,
+                    fmt::format("{}: {} epochs and no date in them; expected RMC or ZDA sentences with one", name,
+                                rows_.size()));
+    for (Row& row : rows_) {
+        place(row);
+        log_.epochs.push_back(std::move(row.epoch));
+    }
+    log_.format = "NMEA";
+    if (!talkers_.empty()) {
+        std::sort(talkers_.begin(), talkers_.end());
+        log_.receiver = fmt::format("talkers {}", fmt::join(talkers_, ", "));
+        log_.board = "nmea-generic";
+    }
+    add_note(log_, senseless_, "sentences with fields that make no sense were left out");
+    add_note(log_, without_height_, "fixes without an altitude have no place");
+    add_note(log_, without_separation_,
+             geoid_ ? "fixes without a geoid separation took it from EGM96"
+                    : "fixes without a geoid separation: their heights above sea level stand for heights above the "
+                      "ellipsoid, the geoid's grid not being there");
+    return std::move(log_);
+}
+
+}  // namespace skyloop

@@ -1,0 +1,48 @@
+/// Epochs out of NMEA 0183 sentences.
+#pragma once
+
+#include "log_parts.hpp"
+#include "skyloop/protocol/nmea_messages.hpp"
+
+namespace skyloop {
+
+/// Takes sentences one after the other. Those of one time of day are one epoch, with the sentences without a time that
+/// follow them. The date is that of RMC or ZDA, counted on over midnight; epochs before the first date are dated by it.
+class NmeaEpochs {
+public:
+    explicit NmeaEpochs(const LogReading& reading) : geoid_(reading.geoid) {}
+    /// A sentence whose checksum holds.
+    void take(std::string_view sentence);
+    /// Everything, as a log; finish_log() has not been called on it.
+    Result<ReceiverLog> finish(const std::string& name);
+    [[nodiscard]] std::size_t fixes() const { return rows_.size() + (row_ ? 1 : 0); }
+
+private:
+    struct Row {
+        double seconds = 0;  // of the day
+        std::optional<NmeaDate> date;
+        LogEpoch epoch;
+        bool has_gga = false, two_dimensional = false;
+        std::optional<NmeaPosition> position;
+        std::optional<Metres> altitude, separation;
+        std::optional<double> speed_mps, course_rad;
+        int listed_used = 0;
+    };
+    void take_time(const std::optional<NmeaTime>& time);
+    void take_rmc(const Rmc& rmc);
+    void take_gga(const Gga& gga);
+    void take_gns(const Gns& gns);
+    void take_gsv(const Gsv& gsv);
+    void finish_row();
+    void place(Row& row);
+    bool date_rows();
+
+    const Geoid* geoid_;
+    ReceiverLog log_;
+    std::optional<Row> row_;
+    std::vector<Row> rows_;
+    std::vector<std::string> talkers_;
+    std::size_t senseless_ = 0, without_separation_ = 0, without_height_ = 0;
+};
+
+}  // namespace skyloop

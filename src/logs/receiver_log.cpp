@@ -1,0 +1,71 @@
+#include "skyloop/logs/receiver_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "log_parts.hpp"
+
+namespace skyloop {
+
+std::optional<Geodetic> logged_place(double latitude_deg, double longitude_deg, double height_m) {
+    // 0, 0 is where receivers put what they do not know.
+    if (latitude_deg == 0 && longitude_deg == 0) return std::nullopt;
+    const auto place = place_from_degrees(latitude_deg, longitude_deg, height_m);
+    return place ? std::optional(*place) : std::nullopt;
+}
+
+void add_satellite(std::vector<LoggedSatellite>& satellites, const LoggedSatellite& satellite) {
+    if (!(satellite.cn0_dbhz > 0)) return;
+    const auto at = std::lower_bound(satellites.begin(), satellites.end(), satellite,
+                                     [](const LoggedSatellite& a, const LoggedSatellite& b) { return a.id < b.id; });
+    if (at == satellites.end() || at->id != satellite.id)
+        satellites.insert(at, satellite);
+    else if (satellite.cn0_dbhz > at->cn0_dbhz)
+        *at = satellite;
+}
+
+void add_note(ReceiverLog& log, std::size_t count, const std::string& what) {
+    if (count > 0) log.notes.push_back(fmt::format("{} {}", count, what));
+}
+
+Result<ReceiverLog> finish_log(ReceiverLog log) {
+    constexpr auto longest = std::chrono::hours(7 * 24);
+    std::vector<LogEpoch>& epochs = log.epochs;
+    if (!epochs.empty()) {
+        std::vector<GpsTime> times;
+        for (const LogEpoch& epoch : epochs)
+            times.push_back(epoch.time);
+        const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+        std::nth_element(times.begin(), middle, times.end());
+        const auto astray = [&](const LogEpoch& e) {
+            return (e.time > *middle ? e.time - *middle : *middle - e.time) > longest;
+        };
+        add_note(log, std::erase_if(epochs, astray), "epochs more than a week from the middle one were left out");
+    }
+    std::size_t repeated = 0;
+    std::vector<LogEpoch> kept;
+    for (LogEpoch& epoch : epochs) {
+        if (!kept.empty() && epoch.time <= kept.back().time)
+            ++repeated;
+        else
+            kept.push_back(std::move(epoch));
+    }
+    epochs = std::move(kept);
+    add_note(log, repeated, "epochs that repeat a time or go back were left out");
+    if (epochs.empty())
+        return fail(ErrorCode::input,
+                    fmt::format("{}: no epoch of a receiver with a date and time ({}); expected NAV-PVT, NAV-SOL or "
+                                "NAV-TIMEGPS, RMC and GGA, vehicle_gps_position or GPS records",
+                                log.name, log.format));
+    return log;
+}
+
+Result<ReceiverLog> read_receiver_log(ByteSpan bytes, const std::string& name, const LogReading& reading) {
+    if (bytes.empty()) return fail(ErrorCode::input, fmt::format("{}: is empty; expected a receiver's log", name));
+    if (is_ulog(bytes)) return read_ulog(bytes, name, reading);
+    if (is_dataflash(bytes)) return read_dataflash(bytes, name, reading);
+    return read_stream_log(bytes, name, reading);
+}
+
+}  // namespace skyloop

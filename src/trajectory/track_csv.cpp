@@ -1,0 +1,305 @@
+#include "skyloop/trajectory/track_csv.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "skyloop/geo/local_frame.hpp"
+#include "skyloop/time/utc_time.hpp"
+#include "track_columns.hpp"
+
+namespace skyloop {
+namespace {
+
+using Cells = std::vector<std::string_view>;
+using enum TrackQuantity;
+
+std::string_view trimmed_cell(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(" \t\r\"");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
+}
+
+// With a blank as separator, several blanks count as one.
+void split_row(std::string_view line, char separator, Cells& cells) {
+    cells.clear();
+    if (separator == ' ') line = trimmed_cell(line);
+    for (;;) {
+        const std::size_t end = line.find(separator);
+        cells.push_back(trimmed_cell(line.substr(0, end)));
+        if (end == std::string_view::npos) return;
+        line.remove_prefix(end + 1);
+        while (separator == ' ' && line.starts_with(' '))
+            line.remove_prefix(1);
+    }
+}
+
+char separator_of(std::string_view header) {
+    for (const char candidate : {',', ';', '\t'})
+        if (header.find(candidate) != std::string_view::npos) return candidate;
+    return ' ';
+}
+
+// Whole seconds beyond which a time is none: the year 2261, the end of GpsTime, less a margin.
+constexpr double latest_s = 9e9;
+
+class TrackTable {
+public:
+    TrackTable(const std::string& name, const Geoid* geoid) : geoid_(geoid) { track_.name = name; }
+    Result<Track> read(std::string_view text);
+
+private:
+    Result<void> take_line(std::string_view line);
+    Result<void> take_row();
+    Result<std::optional<double>> number(TrackQuantity quantity);
+    Result<std::optional<Nanoseconds>> time();
+    Result<std::optional<Nanoseconds>> counted_time(TrackQuantity quantity);
+    Result<std::optional<Nanoseconds>> utc_time();
+    Result<std::optional<Nanoseconds>> gps_time();
+    Result<std::optional<Position<Ecef>>> place();
+    Result<std::optional<Position<Ecef>>> geodetic_place();
+    Result<void> add_velocity(TrackPoint& point);
+    Result<void> add_attitude(TrackPoint& point);
+    void add_notes();
+    [[nodiscard]] tl::unexpected<Error> refusal(const std::string& what) const {
+        return fail(ErrorCode::input, fmt::format("{}:{}: {}", track_.name, line_, what));
+    }
+    [[nodiscard]] std::string_view cell(TrackQuantity quantity) const {
+        const std::size_t index = columns_[quantity]->index;
+        return index < cells_.size() ? cells_[index] : std::string_view();
+    }
+    [[nodiscard]] static bool absent(std::string_view text) {
+        return text.empty() || text == "nan" || text == "NaN" || text == "NAN";
+    }
+
+    const Geoid* geoid_;
+    Track track_;
+    std::size_t line_ = 0, without_time_ = 0, without_place_ = 0, without_fix_ = 0, rows_ = 0;
+    char separator_ = ',';
+    bool has_header_ = false;
+    TrackColumns columns_;
+    Cells cells_;
+};
+
+Result<Track> TrackTable::read(std::string_view text) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        ++line_;
+        if (auto taken = take_line(text.substr(0, end)); !taken) return fail(std::move(taken.error()));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    if (!has_header_)
+        return fail(ErrorCode::input,
+                    fmt::format("{}: no line with the names of the columns; expected one such as t_s,lat_deg,lon_deg,"
+                                "h_ell_m and rows of numbers",
+                                track_.name));
+    add_notes();
+    return std::move(track_);
+}
+
+Result<void> TrackTable::take_line(std::string_view line) {
+    constexpr std::size_t longest = 65536;
+    if (line.size() > longest) return refusal(fmt::format("a line of {} characters; expected a table", line.size()));
+    const std::string_view plain = trimmed_cell(line);
+    if (plain.empty() || plain.front() == '#' || plain.front() == '%') return {};
+    if (has_header_) {
+        split_row(line, separator_, cells_);
+        return take_row();
+    }
+    separator_ = separator_of(plain);
+    split_row(line, separator_, cells_);
+    auto columns = TrackColumns::of(cells_);
+    if (!columns) return refusal(columns.error().message);
+    columns_ = std::move(*columns);
+    if (columns_.has(altitude) && !columns_.has(height) && !columns_.has(x) && !geoid_)
+        return refusal(
+            fmt::format("{} needs the geoid, whose grid is not there; expected h_ell_m, metres above the "
+                        "ellipsoid",
+                        columns_[altitude]->name));
+    if (!columns_.has(since_start)) track_.origin = GpsTime{};
+    has_header_ = true;
+    return {};
+}
+
+Result<void> TrackTable::take_row() {
+    ++rows_;
+    if (columns_.has(fix)) {
+        const auto told = number(fix);
+        if (!told) return fail(told.error());
+        if (*told && **told < 2) return ++without_fix_, Result<void>();
+    }
+    const auto when = time();
+    if (!when) return fail(when.error());
+    const auto where = place();
+    if (!where) return fail(where.error());
+    if (!*when) return ++without_time_, Result<void>();
+    if (!*where) return ++without_place_, Result<void>();
+    TrackPoint point{**when, **where, {}, {}, line_};
+    if (const auto added = add_velocity(point); !added) return added;
+    if (const auto added = add_attitude(point); !added) return added;
+    track_.points.push_back(point);
+    return {};
+}
+
+Result<std::optional<double>> TrackTable::number(TrackQuantity quantity) {
+    if (!columns_.has(quantity)) return std::nullopt;
+    std::string_view text = cell(quantity);
+    if (absent(text)) return std::nullopt;
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double value = 0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        return refusal(fmt::format("{} is '{}'; expected a number with a decimal point", columns_[quantity]->name,
+                                   cell(quantity).substr(0, 40)));
+    return value * columns_[quantity]->scale;
+}
+
+// Nanoseconds of a count: whole counts stay whole, which a double of them would not.
+Result<std::optional<Nanoseconds>> TrackTable::counted_time(TrackQuantity quantity) {
+    const auto seconds = number(quantity);
+    if (!seconds) return fail(seconds.error());
+    if (!*seconds) return std::nullopt;
+    if (std::abs(**seconds) > latest_s)
+        return refusal(
+            fmt::format("{} is '{}'; expected less than {:g} s", columns_[quantity]->name, cell(quantity), latest_s));
+    const std::string_view text = cell(quantity);
+    std::int64_t whole = 0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), whole);
+    if (status == std::errc() && end == text.data() + text.size())
+        return Nanoseconds(whole * std::llround(columns_[quantity]->scale * 1e9));
+    return to_nanoseconds(Seconds(**seconds));
+}
+
+Result<std::optional<Nanoseconds>> TrackTable::utc_time() {
+    const std::string_view text = cell(utc);
+    if (absent(text)) return std::nullopt;
+    const auto parsed = parse_utc(text);
+    if (!parsed) return refusal(fmt::format("{}: {}", columns_[utc]->name, parsed.error().message));
+    return skyloop::to_gps_time(*parsed, LeapSeconds::announced()).time_since_epoch();
+}
+
+Result<std::optional<Nanoseconds>> TrackTable::gps_time() {
+    const auto week = number(gps_week), seconds = number(tow);
+    if (!week) return fail(week.error());
+    if (!seconds) return fail(seconds.error());
+    if (!*week || !*seconds) return std::nullopt;
+    if (**week < 0 || **week > 10000 || **week != std::floor(**week) || std::abs(**seconds) > latest_s / 10)
+        return refusal(fmt::format("gps_week is '{}' and tow_s '{}'; expected a week of 0 to 10000 and seconds in it",
+                                   cell(gps_week), cell(tow)));
+    return skyloop::to_gps_time(static_cast<std::int64_t>(**week), **seconds).time_since_epoch();
+}
+
+Result<std::optional<Nanoseconds>> TrackTable::time() {
+    if (columns_.has(since_start)) return counted_time(since_start);
+    if (columns_.has(gps_week) && columns_.has(tow)) return gps_time();
+    if (columns_.has(utc)) return utc_time();
+    const auto counted = counted_time(posix);
+    if (!counted || !*counted) return counted;
+    constexpr Nanoseconds posix_of_gps = std::chrono::seconds(315964800);
+    return from_utc_count(**counted - posix_of_gps, LeapSeconds::announced()).time_since_epoch();
+}
+
+Result<std::optional<Position<Ecef>>> TrackTable::place() {
+    if (!(columns_.has(x) && columns_.has(y) && columns_.has(z))) return geodetic_place();
+    double values[3];
+    const TrackQuantity axes[] = {x, y, z};
+    for (int i = 0; i < 3; ++i) {
+        const auto value = number(axes[i]);
+        if (!value) return fail(value.error());
+        if (!*value) return std::nullopt;
+        values[i] = **value;
+    }
+    const Position<Ecef> point(values[0], values[1], values[2]);
+    const double radius = point.vector().norm();
+    if (!(radius > 6.3e6 && radius < 1.7e7))
+        return refusal(
+            fmt::format("the place lies {:.0f} m from the Earth's centre; expected 6300000 to 17000000", radius));
+    return point;
+}
+
+Result<std::optional<Position<Ecef>>> TrackTable::geodetic_place() {
+    const auto lat = number(latitude), lon = number(longitude), ellipsoidal = number(height), msl = number(altitude);
+    for (const auto* value : {&lat, &lon, &ellipsoidal, &msl})
+        if (!*value) return fail(value->error());
+    if (!*lat || !*lon || !(*ellipsoidal || *msl)) return std::nullopt;
+    if (!*ellipsoidal && !geoid_)
+        return refusal(
+            "a height above sea level alone; expected one above the ellipsoid, the geoid's grid not being there");
+    const auto checked = place_from_degrees(**lat, **lon, ellipsoidal->value_or(msl->value_or(0)));
+    if (!checked) return refusal(checked.error());
+    Geodetic where = *checked;
+    if (!*ellipsoidal)
+        where.height.above_ellipsoid = Metres(**msl) + geoid_->undulation(where.latitude, where.longitude);
+    return to_ecef(where);
+}
+
+Result<void> TrackTable::add_velocity(TrackPoint& point) {
+    constexpr double fastest = 12000;  // m/s: faster than any orbit, a mistake of units
+    double values[7];
+    bool there[7];
+    const TrackQuantity all[] = {north, east, down, up, speed, course, climb};
+    for (int i = 0; i < 7; ++i) {
+        const auto value = number(all[i]);
+        if (!value) return fail(value.error());
+        there[i] = value->has_value();
+        values[i] = value->value_or(0);
+        if (i != 5 && std::abs(values[i]) > fastest)
+            return refusal(
+                fmt::format("{} is '{}'; expected at most {:g} m/s", columns_[all[i]]->name, cell(all[i]), fastest));
+    }
+    const LocalFrame frame(to_geodetic(point.position));
+    const double rises = there[2] ? -values[2] : there[3] ? values[3] : values[6];
+    const bool vertical = there[2] || there[3] || there[6];
+    if (there[0] && there[1] && vertical) {
+        point.velocity = frame.to_ecef(Velocity<Enu>(values[1], values[0], rises));
+    } else if (there[4] && there[5] && vertical) {
+        const double azimuth = Angle::degrees(values[5]).rad();
+        point.velocity =
+            frame.to_ecef(Velocity<Enu>(values[4] * std::sin(azimuth), values[4] * std::cos(azimuth), rises));
+    }
+    return {};
+}
+
+Result<void> TrackTable::add_attitude(TrackPoint& point) {
+    const auto r = number(roll), p = number(pitch), w = number(yaw);
+    for (const auto* value : {&r, &p, &w})
+        if (!*value) return fail(value->error());
+    if (*r && *p && *w) point.attitude = TrackAttitude{Angle::degrees(**r), Angle::degrees(**p), Angle::degrees(**w)};
+    return {};
+}
+
+void TrackTable::add_notes() {
+    const auto tell = [&](std::size_t number_of, std::string_view what) {
+        if (number_of > 0) track_.notes.push_back(fmt::format("{} of {} rows {}", number_of, rows_, what));
+    };
+    tell(without_time_, "have no time and were left out");
+    tell(without_place_, "have no place and were left out");
+    tell(without_fix_, "have a fix below 2 and were left out");
+    const auto with_velocity = static_cast<std::size_t>(
+        std::count_if(track_.points.begin(), track_.points.end(), [](const TrackPoint& p) { return p.velocity; }));
+    if (with_velocity > 0 && with_velocity < track_.points.size())
+        track_.notes.push_back(
+            fmt::format("{} of {} rows have a velocity; the others take theirs from their neighbours", with_velocity,
+                        track_.points.size()));
+    const auto any = [&](TrackQuantity a, TrackQuantity b) { return columns_.has(a) || columns_.has(b); };
+    if (with_velocity == 0 && (any(north, east) || any(speed, course)))
+        track_.notes.push_back(
+            "no row has a whole velocity (north, east and down or up, or speed, course and climb); velocities are "
+            "taken from the places");
+    if (any(roll, yaw) || columns_.has(pitch))
+        track_.notes.push_back("attitude is read and not used: the antenna's offset follows the course, upright");
+    if (!columns_.unused().empty())
+        track_.notes.push_back(fmt::format("columns without a meaning here: {}", fmt::join(columns_.unused(), ", ")));
+}
+
+}  // namespace
+
+Result<Track> read_track_csv(std::string_view text, const std::string& name, const Geoid* geoid) {
+    return TrackTable(name, geoid).read(text);
+}
+
+}  // namespace skyloop
