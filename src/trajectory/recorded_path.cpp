@@ -160,7 +160,7 @@ bool contradicts(const Knot& from, const Knot& to) {
 std::vector<Knot> knots_of(const Track& track) {
     std::vector<Knot> knots;
     knots.reserve(track.points.size());
-    for (const TrackPoint& point : track.points) {
+    for (const TrackRow& point : track.points) {
         Knot knot;
         knot.time = in_seconds(point.time - track.points.front().time);
         knot.position = point.position.vector();

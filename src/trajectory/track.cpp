@@ -7,7 +7,7 @@
 namespace skyloop {
 namespace {
 
-std::string told_line(const TrackPoint& point) {
+std::string told_line(const TrackRow& point) {
     return point.line > 0 ? fmt::format(", first in line {}", point.line) : std::string();
 }
 
@@ -15,7 +15,7 @@ std::string told_line(const TrackPoint& point) {
 struct LeftOut {
     std::size_t count = 0;
     std::string first_line;
-    void add(const TrackPoint& point) {
+    void add(const TrackRow& point) {
         if (count++ == 0) first_line = told_line(point);
     }
 };
@@ -43,9 +43,9 @@ std::vector<TrackGap> gaps_of(Track& track, Seconds longest) {
 
 Result<std::vector<TrackGap>> clean_track(Track& track, Seconds gap) {
     LeftOut repeated, backward;
-    std::vector<TrackPoint> kept;
+    std::vector<TrackRow> kept;
     kept.reserve(track.points.size());
-    for (const TrackPoint& point : track.points) {
+    for (const TrackRow& point : track.points) {
         if (kept.empty() || point.time > kept.back().time) {
             kept.push_back(point);
         } else if (point.time == kept.back().time) {

@@ -61,8 +61,8 @@ private:
     Result<std::optional<Nanoseconds>> gps_time();
     Result<std::optional<Position<Ecef>>> place();
     Result<std::optional<Position<Ecef>>> geodetic_place();
-    Result<void> add_velocity(TrackPoint& point);
-    Result<void> add_attitude(TrackPoint& point);
+    Result<void> add_velocity(TrackRow& point);
+    Result<void> add_attitude(TrackRow& point);
     void add_notes();
     [[nodiscard]] tl::unexpected<Error> refusal(const std::string& what) const {
         return fail(ErrorCode::input, fmt::format("{}:{}: {}", track_.name, line_, what));
@@ -138,7 +138,7 @@ Result<void> TrackTable::take_row() {
     if (!where) return fail(where.error());
     if (!*when) return ++without_time_, Result<void>();
     if (!*where) return ++without_place_, Result<void>();
-    TrackPoint point{**when, **where, {}, {}, line_};
+    TrackRow point{**when, **where, {}, {}, line_};
     if (const auto added = add_velocity(point); !added) return added;
     if (const auto added = add_attitude(point); !added) return added;
     track_.points.push_back(point);
@@ -237,7 +237,7 @@ Result<std::optional<Position<Ecef>>> TrackTable::geodetic_place() {
     return to_ecef(where);
 }
 
-Result<void> TrackTable::add_velocity(TrackPoint& point) {
+Result<void> TrackTable::add_velocity(TrackRow& point) {
     constexpr double fastest = 12000;  // m/s: faster than any orbit, a mistake of units
     double values[7];
     bool there[7];
@@ -264,7 +264,7 @@ Result<void> TrackTable::add_velocity(TrackPoint& point) {
     return {};
 }
 
-Result<void> TrackTable::add_attitude(TrackPoint& point) {
+Result<void> TrackTable::add_attitude(TrackRow& point) {
     const auto r = number(roll), p = number(pitch), w = number(yaw);
     for (const auto* value : {&r, &p, &w})
         if (!*value) return fail(value->error());
@@ -280,7 +280,7 @@ void TrackTable::add_notes() {
     tell(without_place_, "have no place and were left out");
     tell(without_fix_, "have a fix below 2 and were left out");
     const auto with_velocity = static_cast<std::size_t>(
-        std::count_if(track_.points.begin(), track_.points.end(), [](const TrackPoint& p) { return p.velocity; }));
+        std::count_if(track_.points.begin(), track_.points.end(), [](const TrackRow& p) { return p.velocity; }));
     if (with_velocity > 0 && with_velocity < track_.points.size())
         track_.notes.push_back(
             fmt::format("{} of {} rows have a velocity; the others take theirs from their neighbours", with_velocity,

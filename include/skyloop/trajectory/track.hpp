@@ -19,7 +19,7 @@ struct TrackAttitude {
 };
 
 /// One row of a recorded path. Every reader of a format gives these and nothing else.
-struct TrackPoint {
+struct TrackRow {
     Nanoseconds time{0};  ///< since Track::origin
     Position<Ecef> position;
     std::optional<Velocity<Ecef>> velocity;
@@ -30,8 +30,8 @@ struct TrackPoint {
 /// A recorded path as it was read.
 struct Track {
     std::string name;               ///< of the file, for messages
-    std::optional<GpsTime> origin;  ///< GPS time of TrackPoint::time 0; nothing: the file counts from its own start
-    std::vector<TrackPoint> points;
+    std::optional<GpsTime> origin;  ///< GPS time of TrackRow::time 0; nothing: the file counts from its own start
+    std::vector<TrackRow> points;
     std::vector<std::string> notes;  ///< what its user should be told, a sentence each, without the name of the file
 };
 

@@ -1,0 +1,27 @@
+// Any text as a track: a clear error, or a path that is finite everywhere.
+#include <cstdint>
+#include <string_view>
+
+#include "require.hpp"
+#include "skyloop/trajectory/recorded_path.hpp"
+#include "skyloop/trajectory/track_csv.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace skyloop;
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    auto track = read_track_csv(text, "fuzz.csv", nullptr);
+    if (!track) {
+        require(track.error().message.starts_with("fuzz.csv:"));
+        require(track.error().message.find('\n') == std::string::npos);
+        return 0;
+    }
+    const auto gaps = clean_track(*track, Seconds(10));
+    if (!gaps) return 0;
+    const GpsTime start = to_gps_time(2304, 0.0);
+    const RecordedPath path(*track, *gaps, start);
+    for (int i = -1; i <= 21; ++i) {
+        const TruthState state = path.at(advanced(start, Seconds(path.duration().value() * i / 20)));
+        require(state.position.vector().allFinite() && state.velocity.vector().allFinite());
+    }
+    return 0;
+}

@@ -1,0 +1,329 @@
+// Logs of every kind, from bytes made here by the published layouts.
+#include "skyloop/logs/receiver_log.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+
+#include "skyloop/base/text_file.hpp"
+#include "skyloop/protocol/ubx_mon.hpp"
+#include "skyloop/protocol/ubx_nav.hpp"
+#include "skyloop/protocol/ubx_satellites.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop {
+namespace {
+
+using testing::HasSubstr;
+
+// Little-endian bytes, one value after the other.
+class ByteWriter {
+public:
+    template <class Number>
+    ByteWriter& put(Number value) {
+        const auto* raw = reinterpret_cast<const std::uint8_t*>(&value);
+        bytes.insert(bytes.end(), raw, raw + sizeof(Number));
+        return *this;
+    }
+    ByteWriter& text(std::string_view value, std::size_t size = 0) {
+        bytes.insert(bytes.end(), value.begin(), value.end());
+        if (size > value.size()) bytes.resize(bytes.size() + size - value.size());
+        return *this;
+    }
+    Bytes bytes;
+};
+
+ReceiverLog read_whole(const Bytes& bytes, std::size_t receiver = 0) {
+    auto log = read_receiver_log(bytes, "x.log", {nullptr, receiver});
+    EXPECT_TRUE(log.has_value()) << (log ? "" : log.error().message);
+    return log ? std::move(*log) : ReceiverLog{};
+}
+
+std::string refusal_of(const Bytes& bytes, std::size_t receiver = 0) {
+    const auto log = read_receiver_log(bytes, "x.log", {nullptr, receiver});
+    EXPECT_FALSE(log.has_value());
+    if (log) return {};
+    EXPECT_EQ(log.error().message.find('\n'), std::string::npos);
+    EXPECT_TRUE(log.error().message.starts_with("x.log: ")) << log.error().message;
+    return log.error().message;
+}
+
+const GpsTime log_noon = to_gps_time(UtcTime{2024, 3, 5, 12, 0, 0, 0}, LeapSeconds::announced());
+
+NavPvt pvt_at(unsigned second, std::uint8_t fix, std::uint8_t flags) {
+    NavPvt pvt;
+    pvt.i_tow = 216'018'000 + second * 1000;
+    pvt.year = 2024, pvt.month = 3, pvt.day = 5, pvt.hour = 12, pvt.second = static_cast<std::uint8_t>(second);
+    pvt.valid = 7;
+    pvt.fix_type = fix, pvt.flags = flags, pvt.num_sv = 9;
+    pvt.lat = 470000000, pvt.lon = 80000000, pvt.height = 500000;
+    pvt.vel_n = 1000, pvt.h_acc = 1500;
+    return pvt;
+}
+
+void append(Bytes& to, const Bytes& more) { to.insert(to.end(), more.begin(), more.end()); }
+
+TEST(UbxLog, ReadsSolutionsSatellitesAndVersion) {
+    MonVer version;
+    std::memcpy(version.hw_version.data(), "000A0000", 8);
+    std::memcpy(version.sw_version.data(), "ROM SPG 5.10", 12);
+    Bytes bytes = encode_frame(version);
+    append(bytes, encode_frame(pvt_at(0, 3, 1)));
+    NavSat sat;
+    sat.i_tow = 216'018'000, sat.version = 1;
+    sat.satellites = {{0, 7, 44, 40, 0, 0, 0}, {6, 3, 0, 10, 0, 0, 0}, {2, 5, 39, 20, 0, 0, 0}};
+    append(bytes, encode_frame(sat));
+    append(bytes, encode_frame(pvt_at(1, 0, 0)));
+    append(bytes, encode_frame(pvt_at(2, 3, 0x83)));
+    const ReceiverLog log = read_whole(bytes);
+    EXPECT_EQ(log.format, "UBX");
+    EXPECT_EQ(log.board, "ublox-m10");
+    ASSERT_EQ(log.epochs.size(), 3u);
+    EXPECT_EQ(log.epochs[0].time, log_noon);
+    EXPECT_EQ(log.epochs[0].type, FixType::fix_3d);
+    EXPECT_NEAR(log.epochs[0].place->latitude.deg(), 47, 1e-9);
+    EXPECT_NEAR(log.epochs[0].place->height.above_ellipsoid.value(), 500, 1e-9);
+    EXPECT_EQ(log.epochs[0].velocity->north, 1);
+    ASSERT_EQ(log.epochs[0].satellites.size(), 2u);
+    EXPECT_EQ(to_string(log.epochs[0].satellites[0].id), "G07");
+    EXPECT_EQ(to_string(log.epochs[0].satellites[1].id), "E05");
+    EXPECT_TRUE(log.epochs[1].is_lost());
+    EXPECT_FALSE(log.epochs[1].place.has_value());
+    EXPECT_EQ(log.epochs[2].type, FixType::rtk_fixed);
+}
+
+TEST(UbxLog, CountsDamageAndKeepsTheRest) {
+    Bytes bytes = encode_frame(pvt_at(0, 3, 1));
+    Bytes broken = encode_frame(pvt_at(1, 3, 1));
+    broken[20] ^= 0xFF;
+    append(bytes, broken);
+    append(bytes, encode_frame(pvt_at(2, 3, 1)));
+    append(bytes, encode_frame(pvt_at(2, 3, 1)));
+    append(bytes, encode_frame(pvt_at(1, 3, 1)));  // back in time
+    const Bytes cut = encode_frame(pvt_at(3, 3, 1));
+    bytes.insert(bytes.end(), cut.begin(), cut.begin() + 40);
+    const ReceiverLog log = read_whole(bytes);
+    EXPECT_EQ(log.epochs.size(), 2u);
+    EXPECT_THAT(log.notes, testing::Contains(HasSubstr("1 epochs that repeat a time or go back")));
+    EXPECT_THAT(log.notes, testing::Contains(HasSubstr("wrong checksum")));
+}
+
+TEST(UbxLog, OldReceiversTellInSeveralMessages) {
+    NavSol sol;
+    sol.i_tow = 1000, sol.week = 1500, sol.gps_fix = 3, sol.flags = 0x0D, sol.num_sv = 7;
+    NavPosllh llh;
+    llh.i_tow = 1000, llh.lat = 470000000, llh.lon = 80000000, llh.height = 123000;
+    NavVelned velocity;
+    velocity.i_tow = 1000, velocity.vel_e = 250;
+    Bytes bytes = encode_frame(sol);
+    append(bytes, encode_frame(llh));
+    append(bytes, encode_frame(velocity));
+    const ReceiverLog log = read_whole(bytes);
+    ASSERT_EQ(log.epochs.size(), 1u);
+    EXPECT_EQ(log.epochs[0].time, to_gps_time(1500, 1.0));
+    EXPECT_NEAR(log.epochs[0].place->height.above_ellipsoid.value(), 123, 1e-6);
+    EXPECT_EQ(log.epochs[0].velocity->east, 2.5);
+}
+
+std::string sentence_of(const std::string& body) {
+    unsigned sum = 0;
+    for (const char c : body)
+        sum ^= static_cast<unsigned char>(c);
+    char tail[8];
+    std::snprintf(tail, sizeof tail, "*%02X\r\n", sum);
+    return "$" + body + tail;
+}
+
+TEST(NmeaLog, DatesEpochsOverMidnight) {
+    std::string text;
+    text += sentence_of("GNGGA,235959.00,4700.00000,N,00800.00000,E,1,08,1.0,450.0,M,50.0,M,,");
+    text += sentence_of("GPGSV,1,1,02,07,40,100,44,08,05,200,");
+    text += sentence_of("GNGGA,000000.00,4700.00000,N,00800.00000,E,4,08,1.0,450.0,M,50.0,M,,");
+    text += sentence_of("GNRMC,000000.00,A,4700.00000,N,00800.00000,E,0.0,,060324,,,R");
+    text += sentence_of("GNGGA,000001.00,,,,,0,00,99.9,,M,,M,,");
+    const ReceiverLog log = read_whole(to_bytes(text));
+    ASSERT_EQ(log.epochs.size(), 3u);
+    EXPECT_EQ(log.format, "NMEA");
+    EXPECT_EQ(log.epochs[1].time, to_gps_time(UtcTime{2024, 3, 6, 0, 0, 0, 0}, LeapSeconds::announced()));
+    EXPECT_EQ(log.epochs[1].time - log.epochs[0].time, std::chrono::seconds(1));
+    EXPECT_EQ(log.epochs[0].satellites.size(), 1u);
+    EXPECT_NEAR(log.epochs[0].place->height.above_ellipsoid.value(), 500, 1e-9);
+    EXPECT_EQ(log.epochs[1].type, FixType::rtk_fixed);
+    EXPECT_TRUE(log.epochs[2].is_lost());
+    EXPECT_THAT(refusal_of(to_bytes(sentence_of("GNGGA,000001.00,,,,,0,00,99.9,,M,,M,,"))), HasSubstr("no date"));
+}
+
+ByteWriter& ulog_message(ByteWriter& log, char type, const Bytes& payload) {
+    log.put(static_cast<std::uint16_t>(payload.size())).put(type);
+    append(log.bytes, payload);
+    return log;
+}
+
+ByteWriter ulog_head(std::uint8_t incompatible = 0) {
+    ByteWriter log;
+    log.text("ULog").put(std::uint8_t{0x01}).put(std::uint8_t{0x12}).put(std::uint8_t{0x35}).put(std::uint8_t{1});
+    log.put(std::uint64_t{1000});
+    ByteWriter flags;
+    flags.bytes.resize(40);
+    flags.bytes[8] = incompatible;
+    ulog_message(log, 'B', flags.bytes);
+    return log;
+}
+
+// Records of one topic, as PX4 1.13 names its fields, with a nested format and trailing padding.
+ByteWriter ulog_of(unsigned records, std::uint8_t instance) {
+    ByteWriter log = ulog_head();
+    ulog_message(log, 'F', to_bytes("inner:float a;uint8_t[2] b;"));
+    ulog_message(log, 'F',
+                 to_bytes("sensor_gps:uint64_t timestamp;uint64_t time_utc_usec;int32_t lat;int32_t lon;int32_t alt;"
+                          "int32_t alt_ellipsoid;inner[2] more;float vel_n_m_s;float vel_e_m_s;float vel_d_m_s;"
+                          "uint8_t fix_type;uint8_t satellites_used;uint8_t[2] _padding0;"));
+    ulog_message(log, 'A', ByteWriter().put(instance).put(std::uint16_t{5}).text("sensor_gps").bytes);
+    for (unsigned i = 0; i < records; ++i) {
+        ByteWriter record;
+        record.put(std::uint16_t{5}).put(std::uint64_t{2'000'000 + i * 200'000u});
+        record.put(i == 0 ? std::uint64_t{0} : std::uint64_t{1'709'640'000'000'000} + i * 200'000u);
+        record.put(std::int32_t{470000000}).put(std::int32_t{80000000}).put(std::int32_t{450000});
+        record.put(std::int32_t{500000});
+        record.bytes.resize(record.bytes.size() + 12);
+        record.put(1.0F).put(2.0F).put(-3.0F).put(std::uint8_t{3}).put(std::uint8_t{11});
+        ulog_message(log, 'D', record.bytes);
+    }
+    ulog_message(log, 'O', ByteWriter().put(std::uint16_t{35}).bytes);
+    return log;
+}
+
+TEST(Ulog, ReadsRecordsByName) {
+    const ReceiverLog log = read_whole(ulog_of(4, 1).bytes, 1);
+    EXPECT_EQ(log.format, "ULog");
+    ASSERT_EQ(log.epochs.size(), 4u);  // the first by the autopilot's clock
+    EXPECT_EQ(log.epochs[1].time - log_noon, std::chrono::milliseconds(200));
+    EXPECT_EQ(log.epochs[0].time, log_noon);
+    EXPECT_NEAR(log.epochs[0].place->height.above_ellipsoid.value(), 500, 1e-9);
+    EXPECT_EQ(log.epochs[0].velocity->down, -3);
+    EXPECT_EQ(*log.epochs[0].satellites_used, 11);
+    EXPECT_THAT(log.notes, testing::Contains(HasSubstr("1 dropouts of the logger, 35 ms")));
+}
+
+TEST(Ulog, PassesOverDamageAndRefusesTheUnknown) {
+    EXPECT_THAT(refusal_of(ulog_of(4, 1).bytes, 0), HasSubstr("of receiver 0"));
+    EXPECT_THAT(refusal_of(ulog_head(0x02).bytes), HasSubstr("unknown incompatible flag bits 0x02"));
+    EXPECT_THAT(refusal_of(ulog_head().bytes), HasSubstr("without records of vehicle_gps_position"));
+    Bytes start = ulog_head().bytes;
+    start.resize(10);
+    EXPECT_THAT(refusal_of(start), HasSubstr("header of 10 bytes"));
+    ByteWriter log = ulog_of(4, 0);
+    log.bytes.resize(log.bytes.size() - 30);  // in the last record
+    EXPECT_EQ(read_whole(log.bytes).epochs.size(), 3u);
+    // Formats that hold themselves, or more than memory does.
+    for (const std::string format :
+         {"sensor_gps:sensor_gps a;", "sensor_gps:uint8_t[4000000000] a;", "sensor_gps:x[9999] a;"}) {
+        ByteWriter hostile = ulog_head();
+        ulog_message(hostile, 'F', to_bytes("x:x[9999] a;"));
+        ulog_message(hostile, 'F', to_bytes(format));
+        ulog_message(hostile, 'A', ByteWriter().put(std::uint8_t{0}).put(std::uint16_t{5}).text("sensor_gps").bytes);
+        EXPECT_THAT(refusal_of(hostile.bytes), HasSubstr("without records")) << format;
+    }
+}
+
+// The length of a record follows from its letters.
+void dataflash_format(ByteWriter& log, std::uint8_t type, std::string_view name, std::string_view letters,
+                      std::string_view columns) {
+    std::uint8_t length = 3;
+    for (const char letter : letters)
+        length = static_cast<std::uint8_t>(length + (letter == 'Q'                    ? 8
+                                                     : letter == 'B'                  ? 1
+                                                     : letter == 'H' || letter == 'C' ? 2
+                                                                                      : 4));
+    log.put(std::uint8_t{0xA3}).put(std::uint8_t{0x95}).put(std::uint8_t{128}).put(type).put(length);
+    log.text(name, 4).text(letters, 16).text(columns, 64);
+}
+
+void dataflash_gps(ByteWriter& log, std::uint8_t instance, std::uint32_t ms, std::uint8_t status) {
+    log.put(std::uint8_t{0xA3}).put(std::uint8_t{0x95}).put(std::uint8_t{130}).put(std::uint64_t{ms} * 1000);
+    log.put(instance).put(status).put(ms).put(std::uint16_t{2304}).put(std::uint8_t{12}).put(std::int32_t{470000000});
+    log.put(std::int32_t{80000000}).put(std::int32_t{45000}).put(10.0F).put(90.0F).put(-1.0F);
+}
+
+ByteWriter dataflash_log(bool with_undulation) {
+    ByteWriter log;
+    dataflash_format(log, 130, "GPS", "QBBIHBLLefff", "TimeUS,I,Status,GMS,GWk,NSats,Lat,Lng,Alt,Spd,GCrs,VZ");
+    dataflash_format(log, 131, "GPA", "QBCCf", "TimeUS,I,HAcc,VAcc,Und");
+    for (std::uint32_t i = 0; i < 5; ++i) {
+        dataflash_gps(log, 0, 216'018'000 + i * 200, i == 2 ? 1 : 6);
+        dataflash_gps(log, 1, 216'018'000 + i * 200, 3);
+        log.put(std::uint8_t{0xA3}).put(std::uint8_t{0x95}).put(std::uint8_t{131}).put(std::uint64_t{0});
+        log.put(std::uint8_t{0}).put(std::uint16_t{150}).put(std::uint16_t{250});
+        log.put(with_undulation ? -50.0F : 0.0F);
+    }
+    return log;
+}
+
+TEST(Dataflash, ReadsTheAskedReceiver) {
+    const ReceiverLog log = read_whole(dataflash_log(true).bytes);
+    EXPECT_EQ(log.format, "DataFlash");
+    ASSERT_EQ(log.epochs.size(), 5u);
+    EXPECT_EQ(log.epochs[0].time, log_noon);
+    EXPECT_EQ(log.epochs[0].type, FixType::rtk_fixed);
+    EXPECT_TRUE(log.epochs[2].is_lost());
+    EXPECT_NEAR(log.epochs[0].place->height.above_ellipsoid.value(), 500, 1e-6);  // Alt 450 less Und −50
+    EXPECT_NEAR(log.epochs[4].place->height.above_ellipsoid.value(), 500, 1e-6);
+    EXPECT_NEAR(log.epochs[0].velocity->east, 10, 1e-6);
+    EXPECT_NEAR(log.epochs[0].horizontal_accuracy->value(), 1.5, 1e-9);
+    EXPECT_EQ(read_whole(dataflash_log(true).bytes, 1).epochs.at(2).type, FixType::fix_3d);
+}
+
+TEST(Dataflash, RefusesWhatItCannotPlace) {
+    EXPECT_THAT(refusal_of(dataflash_log(false).bytes), HasSubstr("the geoid's grid is not there"));
+    EXPECT_THAT(refusal_of(dataflash_log(true).bytes, 2), HasSubstr("without GPS records of receiver 2"));
+    Bytes cut = dataflash_log(true).bytes;
+    cut.resize(cut.size() - 5);
+    EXPECT_THAT(read_whole(cut).notes, testing::Contains(HasSubstr("cut by the end")));
+}
+
+TEST(ReceiverLogs, RefuseWhatIsNone) {
+    EXPECT_THAT(refusal_of({}), HasSubstr("is empty"));
+    EXPECT_THAT(refusal_of(Bytes(100000, 0)), HasSubstr("expected a UBX, NMEA, ULog or DataFlash log"));
+    EXPECT_THAT(refusal_of(to_bytes("hello\n")), HasSubstr("0 UBX messages and 0 NMEA sentences in 6 bytes"));
+    EXPECT_THAT(refusal_of(encode_frame(pvt_at(0, 3, 1)), 1), HasSubstr("--gps 1 is not in it"));
+}
+
+// Counts of MEASURED.md and MANIFEST.md.
+struct RealLog {
+    std::string path, format;
+    std::size_t least_epochs, most_epochs, least_fixes, most_fixes;
+};
+
+class RealLogs : public testing::TestWithParam<RealLog> {};
+
+TEST_P(RealLogs, LoadWithTheCountsThatWereMeasured) {
+    const std::filesystem::path file = std::filesystem::path(SKYLOOP_SHARED_DATA) / GetParam().path;
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+    const auto text = read_text_file(file);
+    ASSERT_TRUE(text.has_value());
+    const ReceiverLog log = read_whole(to_bytes(*text));
+    EXPECT_EQ(log.format, GetParam().format);
+    EXPECT_GE(log.epochs.size(), GetParam().least_epochs);
+    EXPECT_LE(log.epochs.size(), GetParam().most_epochs);
+    std::size_t fixes = 0;
+    for (const LogEpoch& epoch : log.epochs)
+        if (!epoch.is_lost()) ++fixes;
+    EXPECT_GE(fixes, GetParam().least_fixes);
+    EXPECT_LE(fixes, GetParam().most_fixes);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Measured, RealLogs,
+    testing::Values(
+        // NAV-SOL: 2555 fixes of 3687 s, then the survey ends and the position is fixed (time only).
+        RealLog{"receivers/galway_20181015_m8p_static/base-20181015-1654.ubx.gz", "UBX", 3680, 3687, 2555, 2555},
+        RealLog{"receivers/besancon_20250425_ublox/16dBatt_no_interference_coldstart.ubx.gz", "UBX", 552, 582, 552,
+                552},
+        RealLog{"receivers/bend_f9t/F9T-L2-5min.ubx.gz", "UBX", 299, 300, 299, 299},
+        RealLog{"receivers/indoor_neo6m_20240726/gps_data_20240726_122435.log.gz", "NMEA", 3759, 3840, 3759, 3759},
+        RealLog{"tracks/sample_log_small.ulg", "ULog", 32, 32, 0, 32}));
+
+}  // namespace
+}  // namespace skyloop

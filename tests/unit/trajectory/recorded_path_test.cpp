@@ -1,0 +1,160 @@
+// The curve through a track: it keeps the rows, its velocity is its slope, and nothing jumps.
+#include "skyloop/trajectory/recorded_path.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "skyloop/geo/local_frame.hpp"
+
+namespace skyloop {
+namespace {
+
+const GpsTime recorded_start = to_gps_time(2304, 216000.0);
+const LocalFrame recorded_frame(Geodetic::degrees(47, 8, 500));
+
+using PathLaw = std::function<Eigen::Vector3d(double)>;  // east, north, up of a time in s
+
+Track track_of(const PathLaw& law, const std::vector<double>& times, bool with_velocity) {
+    Track track;
+    track.name = "law";
+    for (const double t : times) {
+        TrackRow row;
+        row.time = to_nanoseconds(Seconds(t));
+        row.position = recorded_frame.to_ecef(Position<Enu>(law(t)));
+        const Eigen::Vector3d slope = (law(t + 1e-4) - law(t - 1e-4)) / 2e-4;
+        if (with_velocity) row.velocity = recorded_frame.to_ecef(Velocity<Enu>(slope.x(), slope.y(), slope.z()));
+        track.points.push_back(row);
+    }
+    return track;
+}
+
+std::vector<double> evenly(double from, double to, double step) {
+    std::vector<double> times;
+    for (double t = from; t <= to + 1e-9; t += step)
+        times.push_back(t);
+    return times;
+}
+
+RecordedPath path_of(Track& track, Seconds gap = Seconds(10)) {
+    const auto gaps = clean_track(track, gap);
+    EXPECT_TRUE(gaps.has_value());
+    return RecordedPath(track, *gaps, recorded_start);
+}
+
+Eigen::Vector3d local(const RecordedPath& path, double t) {
+    return recorded_frame.to_enu(path.at(advanced(recorded_start, Seconds(t))).position).vector();
+}
+
+Eigen::Vector3d velocity_at(const RecordedPath& path, double t) {
+    return path.at(advanced(recorded_start, Seconds(t))).velocity.vector();
+}
+
+PathLaw circle_of(double radius, double speed) {
+    return [=](double t) {
+        return Eigen::Vector3d(radius * std::sin(speed * t / radius), radius * std::cos(speed * t / radius), 0.5 * t);
+    };
+}
+
+TEST(RecordedPath, KeepsTurnsAsTightAsTheTableSays) {
+    // FEEDS.md 1.13.1: R 60 m, 20 m/s, 1 Hz: 1.8 µm with p, v and a; here a is estimated from v.
+    const PathLaw law = circle_of(60, 20);
+    Track track = track_of(law, evenly(0, 60, 1), true);
+    const RecordedPath path = path_of(track);
+    double worst = 0;
+    for (double t = 5; t < 55; t += 0.01)
+        worst = std::max(worst, (local(path, t) - law(t)).norm());
+    EXPECT_LT(worst, 0.05);
+    EXPECT_EQ(path.contradictions(), 0u);
+    EXPECT_NEAR(path.duration().value(), 60, 1e-9);
+}
+
+TEST(RecordedPath, PassesThroughEveryRowSmoothly) {
+    std::mt19937 dice(7);
+    std::uniform_real_distribution<double> step(0.15, 1.9), size(-1, 1);
+    for (int round = 0; round < 20; ++round) {
+        const double a = 40 * size(dice), b = 30 * size(dice), c = 5 * size(dice),
+                     w = 0.05 + 0.1 * std::abs(size(dice));
+        const PathLaw law = [=](double t) {
+            return Eigen::Vector3d(a * std::sin(w * t) + 3 * t, b * std::cos(w * t), c * std::sin(2 * w * t));
+        };
+        std::vector<double> times{0};
+        while (times.size() < 80)
+            times.push_back(times.back() + step(dice));
+        Track track = track_of(law, times, round % 2 == 0);
+        const RecordedPath path = path_of(track);
+        for (const double t : times)
+            ASSERT_LT((local(path, t) - law(t)).norm(), 0.01) << "row at " << t;
+        Eigen::Vector3d before = velocity_at(path, 1e-3);
+        for (double t = 0.02; t < times.back() - 0.02; t += 0.02) {
+            const Eigen::Vector3d now = velocity_at(path, t);
+            ASSERT_LT((now - before).norm() / 0.02, 60) << "acceleration at " << t;
+            before = now;
+            const Eigen::Vector3d slope = (path.at(advanced(recorded_start, Seconds(t + 1e-3))).position -
+                                           path.at(advanced(recorded_start, Seconds(t - 1e-3))).position)
+                                              .vector() /
+                                          2e-3;
+            ASSERT_LT((slope - now).norm(), 1e-3) << "velocity at " << t;
+        }
+    }
+}
+
+TEST(RecordedPath, StandsBeforeAndAfter) {
+    const PathLaw law = circle_of(60, 20);
+    Track track = track_of(law, evenly(0, 10, 1), true);
+    const RecordedPath path = path_of(track);
+    EXPECT_LT((local(path, -100) - law(0)).norm(), 1e-6);
+    EXPECT_LT((local(path, 1e6) - law(10)).norm(), 1e-6);
+    EXPECT_EQ(velocity_at(path, -100).norm(), 0);
+    EXPECT_EQ(velocity_at(path, 1e6).norm(), 0);
+}
+
+TEST(RecordedPath, CrossesGapsWithoutAJump) {
+    // East at one height over the curved Earth.
+    const PathLaw law = [](double t) {
+        return Eigen::Vector3d(20 * t, t < 500 ? 0 : 5 * (t - 900), -std::pow(20 * t, 2) / (2 * 6.388e6));
+    };
+    std::vector<double> times = evenly(0, 50, 1);
+    for (const double t : evenly(900, 950, 1))
+        times.push_back(t);
+    Track track = track_of(law, times, true);
+    const auto gaps = clean_track(track, Seconds(10));
+    ASSERT_TRUE(gaps.has_value());
+    ASSERT_EQ(gaps->size(), 1u);
+    EXPECT_THAT(track.notes, testing::ElementsAre(testing::HasSubstr("no row between 50.000 s and 900.000 s")));
+    const RecordedPath path(track, *gaps, recorded_start);
+    for (double t = 0.05; t < 949.9; t += 0.05) {
+        ASSERT_LT((velocity_at(path, t + 0.025) - velocity_at(path, t - 0.025)).norm(), 0.5) << t;
+        ASSERT_LT((local(path, t + 0.025) - local(path, t - 0.025)).norm(), 0.05 * 30) << t;
+        // The chord of 17 km dips 5.7 m; the path does not.
+        const auto height = path.at(advanced(recorded_start, Seconds(t))).geodetic.height.above_ellipsoid.value();
+        ASSERT_GT(height, 499) << t;
+    }
+}
+
+TEST(CleanTrack, TellsWhatItLeavesOut) {
+    Track track = track_of(circle_of(60, 20), {0, 1, 1, 2, 1.5, 3}, false);
+    for (std::size_t i = 0; i < track.points.size(); ++i)
+        track.points[i].line = i + 2;
+    const auto gaps = clean_track(track, Seconds(10));
+    ASSERT_TRUE(gaps.has_value());
+    EXPECT_EQ(track.points.size(), 4u);
+    EXPECT_THAT(track.notes, testing::ElementsAre(testing::HasSubstr("1 rows repeat the time"),
+                                                  testing::HasSubstr("1 rows go back in time and were left out, first "
+                                                                     "in line 6")));
+    Track single = track_of(circle_of(60, 20), {4, 4}, false);
+    EXPECT_THAT(clean_track(single, Seconds(10)).error().message, testing::HasSubstr("expected two or more"));
+}
+
+TEST(RecordedPath, TellsOfVelocitiesThatAreNotThose) {
+    Track track = track_of(circle_of(60, 20), evenly(0, 20, 1), true);
+    for (TrackRow& row : track.points)
+        row.velocity = Velocity<Ecef>(3 * row.velocity->vector());
+    const RecordedPath path = path_of(track);
+    EXPECT_EQ(path.contradictions(), 20u);
+}
+
+}  // namespace
+}  // namespace skyloop
