@@ -41,8 +41,10 @@ private:
     void find_weak(SatelliteId id, const Strength& strength);
     void find_away(SatelliteId id, const Strength& strength);
 
+    // A receiver that solves the time alone, at a place that it was told, has its signals.
     [[nodiscard]] bool lost(std::size_t i) const {
-        return epochs_[i].is_lost() || (epochs_[i].lists_satellites && epochs_[i].satellites.empty());
+        return (epochs_[i].is_lost() && epochs_[i].type != FixType::time_only) ||
+               (epochs_[i].lists_satellites && epochs_[i].satellites.empty());
     }
     [[nodiscard]] Nanoseconds at(std::size_t i) const { return epochs_[i].time - epochs_.front().time; }
     // Of the epochs before `end`: the next epoch begins, or would.
@@ -104,8 +106,8 @@ void EventFinder::find_losses() {
          [&](std::size_t begin, std::size_t end) { add_loss(begin, end); });
 }
 
-// The signals are back before the fix is: where satellites are listed they tell when, and the emulated receiver takes
-// its own time from there.
+// The signals are back before the receiver shows it, by the time that it takes to find them: where satellites are
+// listed the lists tell that, else the fix. From there on the emulated receiver takes its own time.
 void EventFinder::add_loss(std::size_t begin, std::size_t end) {
     std::size_t first = end, last = begin;
     bool listed = true;
@@ -115,22 +117,18 @@ void EventFinder::add_loss(std::size_t begin, std::size_t end) {
         first = std::min(first, i);
         last = i;
     }
+    const bool tracked = listed && first == end;
+    if (!listed || tracked) first = begin, last = end - 1;
     LogEvent event;
     event.kind = LogEventKind::signals_lost;
-    if (listed && first < end) {
-        event.at = at(first);
-        event.lasts = after(last + 1) - event.at;
-        event.seen =
-            fmt::format("{} epochs without a fix, {} of them without any satellite", end - begin, last + 1 - first);
-    } else {
-        event.at = at(begin);
-        const Nanoseconds whole = after(end) - event.at;
-        event.lasts = whole;
-        if (!listed && end < epochs_.size())
-            event.lasts = std::max(found_.period, whole - to_nanoseconds(limits_.reacquisition));
-        event.seen = fmt::format("{} epochs without a fix{}", end - begin,
-                                 listed ? " though satellites are tracked" : ", and no list of satellites");
-    }
+    event.at = at(first);
+    event.lasts = after(last + 1) - event.at;
+    if (!tracked && last + 1 < epochs_.size())
+        event.lasts = std::max(found_.period, event.lasts - to_nanoseconds(limits_.reacquisition));
+    event.seen = fmt::format("{} epochs without a fix, ", end - begin);
+    event.seen += tracked  ? "though satellites are tracked"
+                  : listed ? fmt::format("{} of them without any satellite", last + 1 - first)
+                           : "and no list of satellites";
     add(std::move(event));
 }
 

@@ -57,19 +57,22 @@ std::string fault_text(const LogEvent& event) {
 
 // The rows of the track. Places of epochs without signals are the receiver's guess: the path is bridged there.
 std::string track_text(const ReceiverLog& log, std::size_t& places) {
-    std::string text = "gps_week,tow_s,lat_deg,lon_deg,h_ell_m,vn_mps,ve_mps,vd_mps\n";
+    const bool velocities = std::any_of(log.epochs.begin(), log.epochs.end(),
+                                        [](const LogEpoch& epoch) { return epoch.velocity.has_value(); });
+    std::string text = "gps_week,tow_s,lat_deg,lon_deg,h_ell_m";
+    text += velocities ? ",vn_mps,ve_mps,vd_mps\n" : "\n";
     for (const LogEpoch& epoch : log.epochs) {
         if (!epoch.place || epoch.is_lost()) continue;
         ++places;
         const WeekAndTow split = week_and_tow(epoch.time);
         text +=
-            fmt::format("{},{:.6f},{:.9f},{:.9f},{:.4f},", split.week, split.tow_seconds(), epoch.place->latitude.deg(),
+            fmt::format("{},{:.6f},{:.9f},{:.9f},{:.4f}", split.week, split.tow_seconds(), epoch.place->latitude.deg(),
                         epoch.place->longitude.deg(), epoch.place->height.above_ellipsoid.value());
         if (epoch.velocity)
-            text += fmt::format("{:.4f},{:.4f},{:.4f}\n", epoch.velocity->north, epoch.velocity->east,
+            text += fmt::format(",{:.4f},{:.4f},{:.4f}\n", epoch.velocity->north, epoch.velocity->east,
                                 epoch.velocity->down);
         else
-            text += ",,\n";
+            text += velocities ? ",,,\n" : "\n";
     }
     return text;
 }

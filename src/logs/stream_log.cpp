@@ -38,6 +38,9 @@ Result<ReceiverLog> read_stream_log(ByteSpan bytes, const std::string& name, con
     Result<ReceiverLog> log = ubx.has_solutions() ? Result<ReceiverLog>(ubx.finish()) : nmea.finish(name);
     if (!log) return log;
     log->name = name;
+    if (!ubx.has_solutions())
+        if (const ReceiverLog told = ubx.finish(); !told.board.empty())
+            log->receiver = told.receiver, log->board = told.board;
     const std::uint64_t bad =
         counts.bad[static_cast<std::size_t>(StreamKind::ubx)] + counts.bad[static_cast<std::size_t>(StreamKind::nmea)];
     add_note(*log, bad, "messages or sentences with a wrong checksum were left out");

@@ -13,7 +13,7 @@ public:
     void take(const UbxFrameView& frame);
     /// Everything, as a log; finish_log() has not been called on it.
     ReceiverLog finish();
-    [[nodiscard]] bool has_solutions() const { return solutions_ > 0; }
+    [[nodiscard]] bool has_solutions() const { return solutions_ > 0 || (epoch_ && (epoch_->solution || epoch_->llh)); }
 
 private:
     struct Epoch {

@@ -18,7 +18,7 @@ struct EventLimits {
     Seconds satellite_least{5};            ///< how long one satellite is weak or away
     int elevation_deg = 10;                ///< of single satellites: lower ones come and go by themselves
     Seconds window{300};                   ///< before and after, over which a satellite's own level is the median
-    Seconds reacquisition{1};              ///< that a receiver needs after an outage, where no satellites are listed
+    Seconds reacquisition{1};              ///< from the return of the signals until a receiver shows it
     std::size_t most_of_satellites = 200;  ///< events of single satellites that are kept
     std::size_t most_of_types = 500;       ///< changes of the type that are kept
 };

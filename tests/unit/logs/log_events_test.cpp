@@ -47,13 +47,26 @@ TEST(LogEvents, FindAnOutageByItsSatellites) {
     ReceiverLog log = sound_log(100);
     for (std::size_t i = 30; i < 43; ++i)
         lose(log.epochs[i]);
-    for (std::size_t i = 40; i < 43; ++i)  // tracked again, not yet used
+    for (std::size_t i = 41; i < 43; ++i)  // tracked again, not yet used
         log.epochs[i].satellites = log.epochs[0].satellites;
     const LogEvents found = find_events(log, {});
     ASSERT_EQ(found.events.size(), 1u);
     EXPECT_EQ(found.events[0].kind, LogEventKind::signals_lost);
     EXPECT_EQ(found.events[0].at, seconds(30));
     EXPECT_EQ(found.events[0].lasts, seconds(10));
+}
+
+TEST(LogEvents, TakeNoLossForTimeAlone) {
+    ReceiverLog log = sound_log(100);
+    for (std::size_t i = 30; i < 40; ++i)
+        log.epochs[i].type = FixType::time_only;
+    for (std::size_t i = 95; i < 100; ++i)
+        lose(log.epochs[i]);
+    const LogEvents found = find_events(log, {});
+    ASSERT_EQ(found.events.size(), 2u);
+    EXPECT_EQ(found.events[0].kind, LogEventKind::fix_type);
+    EXPECT_EQ(found.events[1].at, seconds(95));
+    EXPECT_EQ(found.events[1].lasts, seconds(5));  // nobody saw it return
 }
 
 TEST(LogEvents, LeaveTimeToReacquireWhereNothingIsListed) {
@@ -123,16 +136,16 @@ TEST(LogEvents, TellADropOfAllFromOneOfASatellite) {
 TEST(LogScenario, WritesWhatItFound) {
     ReceiverLog log = sound_log(100);
     log.name = "evil\n[run]\".ubx";
-    for (std::size_t i = 30; i < 40; ++i)
+    for (std::size_t i = 30; i < 41; ++i)
         lose(log.epochs[i]);
     const auto made = scenario_of_log(log, find_events(log, {}));
     ASSERT_TRUE(made.has_value());
-    EXPECT_EQ(made->places, 90u);
+    EXPECT_EQ(made->places, 89u);
     EXPECT_THAT(made->scenario, HasSubstr("start = \"2024-03-05T12:00:00.000000000Z\"\nduration_s = 100\n"));
     EXPECT_THAT(made->scenario, HasSubstr("kind = \"outage\"\nat_s = 30\nfor_s = 10\n"));
     EXPECT_THAT(made->scenario, HasSubstr("evil?[run]\".ubx"));
     EXPECT_THAT(made->scenario, HasSubstr("time = \"recorded\""));
-    EXPECT_THAT(made->track, HasSubstr("\n2304,216018.000000,47.000000000,8.000000000,500.0000,,,\n"));
+    EXPECT_THAT(made->track, HasSubstr("\n2304,216018.000000,47.000000000,8.000000000,500.0000\n"));
     ReceiverLog nowhere = sound_log(3);
     for (LogEpoch& epoch : nowhere.epochs)
         lose(epoch);

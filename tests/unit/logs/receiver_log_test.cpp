@@ -254,9 +254,10 @@ ByteWriter dataflash_log(bool with_undulation) {
     for (std::uint32_t i = 0; i < 5; ++i) {
         dataflash_gps(log, 0, 216'018'000 + i * 200, i == 2 ? 1 : 6);
         dataflash_gps(log, 1, 216'018'000 + i * 200, 3);
-        log.put(std::uint8_t{0xA3}).put(std::uint8_t{0x95}).put(std::uint8_t{131}).put(std::uint64_t{0});
-        log.put(std::uint8_t{0}).put(std::uint16_t{150}).put(std::uint16_t{250});
-        log.put(with_undulation ? -50.0F : 0.0F);
+        for (std::uint8_t instance = 0; instance < 2; ++instance) {
+            log.put(std::uint8_t{0xA3}).put(std::uint8_t{0x95}).put(std::uint8_t{131}).put(std::uint64_t{0});
+            log.put(instance).put(std::uint16_t{150}).put(std::uint16_t{250}).put(with_undulation ? -50.0F : 0.0F);
+        }
     }
     return log;
 }
@@ -314,16 +315,23 @@ TEST_P(RealLogs, LoadWithTheCountsThatWereMeasured) {
     EXPECT_LE(fixes, GetParam().most_fixes);
 }
 
+TEST(RealDataflash, AsksForTheGeoidWhereTheLogHasNoUndulation) {
+    const std::filesystem::path file = std::filesystem::path(SKYLOOP_SHARED_DATA) / "tracks/test.BIN";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+    EXPECT_THAT(refusal_of(to_bytes(*read_text_file(file))), HasSubstr("the geoid's grid is not there"));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Measured, RealLogs,
     testing::Values(
-        // NAV-SOL: 2555 fixes of 3687 s, then the survey ends and the position is fixed (time only).
-        RealLog{"receivers/galway_20181015_m8p_static/base-20181015-1654.ubx.gz", "UBX", 3680, 3687, 2555, 2555},
+        // 582 s of besancon begin with 14 epochs without a week. NAV-SOL: 2555 fixes of 3687 s, then the survey ends
+        // and the position is fixed (time only).
+        RealLog{"receivers/galway_20181015_m8p_static/base-20181015-1654.ubx.gz", "UBX", 3687, 3687, 2555, 2555},
         RealLog{"receivers/besancon_20250425_ublox/16dBatt_no_interference_coldstart.ubx.gz", "UBX", 552, 582, 552,
                 552},
-        RealLog{"receivers/bend_f9t/F9T-L2-5min.ubx.gz", "UBX", 299, 300, 299, 299},
-        RealLog{"receivers/indoor_neo6m_20240726/gps_data_20240726_122435.log.gz", "NMEA", 3759, 3840, 3759, 3759},
-        RealLog{"tracks/sample_log_small.ulg", "ULog", 32, 32, 0, 32}));
+        RealLog{"receivers/bend_f9t/F9T-L2-5min.ubx.gz", "UBX", 299, 299, 299, 299},
+        RealLog{"receivers/indoor_neo6m_20240726/gps_data_20240726_122435.log.gz", "NMEA", 3840, 3840, 3759, 3759},
+        RealLog{"tracks/sample_log_small.ulg", "ULog", 32, 32, 32, 32}));
 
 }  // namespace
 }  // namespace skyloop
