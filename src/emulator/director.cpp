@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/start_kind.hpp"
 #include "skyloop/emulator/pacer.hpp"
 #include "skyloop/emulator/station.hpp"
 #include "skyloop/fault/timeline_keys.hpp"
@@ -16,11 +17,6 @@ namespace {
 constexpr int most_rounds = 16;
 
 bool waits_for_client(const TimelineEntry& entry) { return entry.when && !entry.when->client_sends.empty(); }
-
-std::optional<StartKind> start_kind(const std::string& word) {
-    if (word == "cold") return StartKind::cold;
-    return word == "warm" ? StartKind::warm : StartKind::hot;
-}
 
 // All receivers have one clock: a fault of several must not act on it several times.
 double faulty_pace(const std::vector<Station>& stations, GpsTime now) {
@@ -153,7 +149,7 @@ void Director::carry_out(const Command& command, std::string_view name, const Sc
 }
 
 firmware::ReceiverEvent Director::receiver_event(const Command& command) {
-    const StartKind start = start_kind(command.parameters.text("start")).value_or(StartKind::hot);
+    const StartKind start = firmware::start_kind(command.parameters.text("start")).value_or(StartKind::hot);
     switch (command.verb) {
         case CommandVerb::forget_configuration:
             return firmware::ForgetConfiguration{};
@@ -211,6 +207,17 @@ void Director::set_pace(const Command& command, const Scene& scene) {
             speed_ = command.parameters.number("factor");
             return scene.pacer.set_speed(speed_ * pace_, scene.now);
     }
+}
+
+double Director::strength(std::string_view fault, int occurrence, GpsTime now,
+                          const std::vector<Station>& stations) const {
+    double most = 0;
+    const auto& entries = timeline_.entries();
+    for (const Station& station : stations)
+        for (std::size_t i = 0; i < entries.size() && !station.faults().empty(); ++i)
+            if (acts_[i].fault && entries[i].name == fault)
+                most = std::max(most, station.faults().strength(i, occurrence, now));
+    return most;
 }
 
 void Director::show(const EpochSeen& seen) {

@@ -46,6 +46,12 @@ std::optional<GpsTime> ActiveFaults::next_faded() const {
     return next;
 }
 
+double ActiveFaults::strength(std::size_t entry, int occurrence, GpsTime now) const {
+    for (const Running& running : running_)
+        if (running.span.entry == entry && running.span.occurrence == occurrence) return moment(running, now).strength;
+    return 0;
+}
+
 // Both ramps are straight; one that ends before it has grown fades from where it is.
 FaultMoment ActiveFaults::moment(const Running& running, GpsTime now) {
     const auto grown = [&](GpsTime at) {

@@ -10,22 +10,23 @@
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/message_names.hpp"
 #include "skyloop/base/spelling.hpp"
+#include "skyloop/protocol/ubx_names.hpp"
 
 namespace skyloop {
 namespace {
 
 using firmware::NamedMessage;
 
-// What clients send that stands in no other table: u-blox F9 interface description HPG 1.32, section 3, and M8
-// interface description, 32 and 31.3.
-constexpr NamedMessage more_messages[] = {
-    {{0x06, 0x04}, "CFG-RST"},    {{0x06, 0x8A}, "CFG-VALSET"},   {{0x06, 0x8B}, "CFG-VALGET"},
-    {{0x06, 0x8C}, "CFG-VALDEL"}, {{0x01, 0x10}, "NAV-RESETODO"}, {{0xF1, 0x40}, "PUBX-40"},
-    {{0xF1, 0x41}, "PUBX-41"},
-};
+// What clients send that stands in no other table of the firmware: u-blox F9 interface description HPG 1.32, section 3,
+// and M8 interface description, 32 and 31.3: CFG-RST, CFG-VALSET, CFG-VALGET, CFG-VALDEL, NAV-RESETODO, PUBX-40 and
+// -41.
+constexpr UbxMessageId more_messages[] = {{0x06, 0x04}, {0x06, 0x8A}, {0x06, 0x8B}, {0x06, 0x8C},
+                                          {0x01, 0x10}, {0xF1, 0x40}, {0xF1, 0x41}};
 
 std::vector<NamedMessage> named_messages() {
-    std::vector<NamedMessage> all(std::begin(more_messages), std::end(more_messages));
+    std::vector<NamedMessage> all;
+    for (const UbxMessageId id : more_messages)
+        if (const auto name = ubx_message_name(id)) all.push_back({id, *name});
     for (const auto& list : {firmware::polled_messages(), firmware::legacy_messages()})
         all.insert(all.end(), list.begin(), list.end());
     for (const firmware::OutputMessage& message : firmware::output_messages())

@@ -6,6 +6,7 @@
 
 #include "catalogue_parts.hpp"
 #include "edit_shortcuts.hpp"
+#include "firmware/start_kind.hpp"
 #include "message_lookup.hpp"
 
 namespace skyloop {
@@ -15,10 +16,6 @@ using firmware::FirmwareFaults;
 
 constexpr UbxMessageId mon_ver{0x0A, 0x04};
 constexpr double longest_delay_s = 3600;
-
-StartKind start_of(std::string_view word) {
-    return word == "cold" ? StartKind::cold : word == "warm" ? StartKind::warm : StartKind::hot;
-}
 
 Result<Fault> make_receiver_silent(const Parameters&, const FaultContext&) {
     return fault_of_firmware([](FirmwareFaults& faults, const FaultMoment&) { faults.mute = true; });
@@ -91,7 +88,8 @@ Result<Fault> make_forgets_configuration(const Parameters&, const FaultContext&)
 
 Result<Fault> make_reboots(const Parameters& parameters, const FaultContext&) {
     Fault fault;
-    fault.at_start.emplace_back(firmware::Reboot{start_of(parameters.text("start")), parameters.flag("banner")});
+    const StartKind start = firmware::start_kind(parameters.text("start")).value_or(StartKind::hot);
+    fault.at_start.emplace_back(firmware::Reboot{start, parameters.flag("banner")});
     return fault;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "catalogue_parts.hpp"
+#include "firmware/start_kind.hpp"
 
 namespace skyloop {
 namespace {
@@ -113,9 +114,8 @@ Result<Fault> make_power_cut(const Parameters& parameters, const FaultContext&) 
     fault.firmware = [](firmware::FirmwareFaults& faults, const FaultMoment& moment) {
         if (moment.strength > 0) faults.deaf = faults.mute = true;
     };
-    const std::string start = parameters.text("start");
     firmware::Reboot reboot;
-    reboot.kind = start == "hot" ? StartKind::hot : start == "warm" ? StartKind::warm : StartKind::cold;
+    reboot.kind = firmware::start_kind(parameters.text("start")).value_or(StartKind::cold);
     fault.at_end.emplace_back(reboot);
     return fault;
 }

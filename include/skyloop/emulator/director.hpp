@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "skyloop/emulator/command_queue.hpp"
@@ -47,6 +48,10 @@ public:
     [[nodiscard]] bool wants_messages() const;
     /// Simulated seconds per second of a live run.
     [[nodiscard]] double speed() const { return speed_ * pace_; }
+    /// How strong an occurrence of a fault is: 0 … 1 along its ramps, 0 when it is not at work; of several receivers
+    /// the strongest.
+    [[nodiscard]] double strength(std::string_view fault, int occurrence, GpsTime now,
+                                  const std::vector<Station>& stations) const;
     /// A command asked for the end of the run.
     [[nodiscard]] bool stopped() const { return stopped_; }
 

@@ -30,6 +30,8 @@ public:
     std::vector<firmware::ReceiverEvent> settle(GpsTime now);
     /// When the next one has faded; nothing: none is fading.
     [[nodiscard]] std::optional<GpsTime> next_faded() const;
+    /// Of one occurrence: 0 … 1 along its ramps; 0 when it is not at work.
+    [[nodiscard]] double strength(std::size_t entry, int occurrence, GpsTime now) const;
     [[nodiscard]] bool empty() const { return running_.empty(); }
 
     /// What an epoch is edited with; `trace` tells what is true, and its time.

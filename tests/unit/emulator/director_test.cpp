@@ -172,6 +172,21 @@ TEST(Director, BeginsFaultsThatNoScenarioNames) {
     EXPECT_THAT(run->witness.happened, ElementsAre("command start_fault", "live begins", "live ends"));
 }
 
+TEST(Director, KnowsHowStrongAFaultIs) {
+    const auto run = directed(
+        "[[fault]]\nkind = \"position_step\"\nname = \"jump\"\nat_s = 2\nfor_s = 6\nramp_in_s = 4\nramp_out_s = 2\n");
+    const auto strength = [&](int occurrence = 1) {
+        const Emulator& emulator = *run->run.emulator;
+        return emulator.director().strength("jump", occurrence, emulator.now(), emulator.stations());
+    };
+    const double expected[] = {0, 0, 0, 0.25, 0.5, 0.75, 1, 1, 1, 0.5, 0, 0};  // of each second
+    for (const double wanted : expected) {
+        EXPECT_NEAR(strength(), wanted, 1e-6) << (run->run.emulator->now() - run->run.start).count() * 1e-9 << " s";
+        EXPECT_EQ(strength(2), 0) << "it comes but once";
+        run_for(*run, 1s);
+    }
+}
+
 TEST(Director, MovesTheVehicle) {
     const auto run = directed(
         "[trajectory]\nkind = \"fixed\"\nat = [10, 20, 300]\n"
