@@ -26,6 +26,17 @@ std::vector<std::string> probe_environment(const Emulator& emulator) {
     return {"SKYLOOP_PORT=" + description.substr(0, description.rfind(" ("))};
 }
 
+// What displays show of them. @param going_on the run: what is undecided is pending
+std::vector<VerdictStatus> verdict_states(const std::vector<Verdict>& verdicts, bool going_on) {
+    std::vector<VerdictStatus> states;
+    for (const Verdict& verdict : verdicts) {
+        const bool pending = going_on && verdict.outcome == Outcome::undecided;
+        states.push_back({verdict.name, verdict.expected,
+                          pending ? "pending" : std::string(outcome_name(verdict.outcome)), verdict.evidence});
+    }
+    return states;
+}
+
 Result<void> write_report(const std::filesystem::path& path, const std::string& text) {
     auto file = OutputFile::create(path);
     if (!file) return fail(file.error());
@@ -101,6 +112,11 @@ Result<void> RunWatch::open_control(const WatchOptions& options, CommandQueue& c
     sources.pace = [&emulator, live = options.live] {
         return PaceStatus{emulator.paused(), emulator.director().speed(), !live};
     };
+    sources.strength = [&emulator](std::string_view fault, int occurrence, GpsTime now) {
+        return emulator.director().strength(fault, occurrence, now, emulator.stations());
+    };
+    if (judge_)
+        sources.verdicts = [this] { return verdict_states(verdicts_ ? *verdicts_ : judge_->so_far(), !verdicts_); };
     board_ = std::make_unique<StatusBoard>(StatusSetup{scenario_.name, assembly_.start, assembly_.end, planned_bars()},
                                            &emulator.stations(), sources);
     emulator.add_observer(board_.get());
@@ -126,9 +142,10 @@ Result<void> RunWatch::open_mavlink(const std::string& address, CommandQueue& co
 
 int RunWatch::finish(const Messages& messages) {
     const GpsTime now = assembly_.emulator->now();
+    if (judge_) verdicts_ = judge_->finish(now);
     if (board_) board_->publish_now(now);
     int code = 0;
-    if (judge_) code = report(messages, judge_->finish(now));
+    if (verdicts_) code = report(messages, *verdicts_);
     server_.reset();
     mavlink_.reset();
     if (log_ && log_->failure()) code = messages.error(*log_->failure());

@@ -52,6 +52,7 @@ private:
     Assembly& assembly_;
     std::optional<RunLog> log_;
     std::unique_ptr<Judge> judge_;
+    std::optional<std::vector<Verdict>> verdicts_;  // once the run is over
     std::unique_ptr<StatusBoard> board_;
     std::unique_ptr<ControlServer> server_;  // before board_ is gone
     std::unique_ptr<MavlinkEndpoint> mavlink_;

@@ -243,7 +243,10 @@ void StatusBoard::publish(GpsTime now, std::int64_t clock_ns) {
     snapshot->receivers = receivers_;
     snapshot->timeline = bars_;
     for (TimelineBar& bar : snapshot->timeline)
-        bar.strength = !bar.active ? 0 : sources_.strength ? sources_.strength(bar.name) : 1;
+        if (sources_.strength && !bar.command && bar.occurrence > 0)
+            bar.strength = sources_.strength(bar.name, bar.occurrence, now);
+        else
+            bar.strength = bar.active ? 1 : 0;
     snapshot->dialogue.assign(dialogue_.begin(), dialogue_.end());
     snapshot->events.assign(events_.begin(), events_.end());
     std::shared_ptr<const StatusSnapshot> next = std::move(snapshot);

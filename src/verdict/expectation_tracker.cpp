@@ -244,6 +244,12 @@ void ExpectationTracker::happen(GpsTime now, bool begins) {
     advance(now);
 }
 
+Finding ExpectationTracker::so_far() const {
+    if (finding_) return *finding_;
+    const bool nothing_open = stretches_ > 0 && !stretch_ && planned_.empty();
+    return nothing_open ? summary() : Finding{};
+}
+
 Finding ExpectationTracker::finish(GpsTime now) {
     advance(now);
     if (!finding_) last_until_end(now);

@@ -38,6 +38,10 @@ public:
     void event(GpsTime now, const FaultSeen& seen);
     Finding finish(GpsTime now);
 
+    /// How it stands: failed for good; passed where every stretch that has come was, though another may come;
+    /// undecided, without evidence, while one lasts or none has come.
+    [[nodiscard]] Finding so_far() const;
+
     [[nodiscard]] const SubjectClause& subject() const { return sentence_.subject; }
     /// True when nothing can change it any more.
     [[nodiscard]] bool is_decided() const { return finding_.has_value(); }

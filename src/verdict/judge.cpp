@@ -32,12 +32,16 @@ public:
     [[nodiscard]] bool hears() const { return hears_; }
     void happen(const FaultSeen& seen);
     std::vector<Verdict> finish(GpsTime now);
+    [[nodiscard]] std::vector<Verdict> so_far() const;
     void start_probes(GpsTime now);
 
 private:
     Verdict verdict_of(Case& one, GpsTime now);
     Finding probe_finding(Case& one, GpsTime now);
     Finding common_finding(Case& one, GpsTime now);
+    [[nodiscard]] Finding worst_of(const Case& one, const std::vector<Finding>& findings) const;
+    [[nodiscard]] Finding finding_so_far(const Case& one) const;
+    [[nodiscard]] Verdict verdict_with(const Case& one, Finding finding, GpsTime now) const;
 
     JudgedRun run_;
     GpsTime now_;
@@ -100,25 +104,47 @@ Finding Judge::State::probe_finding(Case& one, GpsTime now) {
     return finding;
 }
 
-// It passes when it passes everywhere; the first that does not speaks for all.
 Finding Judge::State::common_finding(Case& one, GpsTime now) {
-    if (one.followers.empty())
+    std::vector<Finding> findings;
+    for (Follower& follower : one.followers)
+        findings.push_back(follower.tracker.finish(now));
+    return worst_of(one, findings);
+}
+
+// It passes when it passes everywhere; the first that does not speaks for all.
+Finding Judge::State::worst_of(const Case& one, const std::vector<Finding>& findings) const {
+    if (findings.empty())
         return {Outcome::failed, fmt::format("no receiver is called '{}'", one.expectation.receiver), {}};
-    std::optional<Finding> worst;
-    for (Follower& follower : one.followers) {
-        Finding finding = follower.tracker.finish(now);
-        if (one.followers.size() > 1)
-            finding.evidence = fmt::format("{}: {}", run_.receivers[follower.station], finding.evidence);
-        const auto weight = [](const Finding& f) {
-            return f.outcome == Outcome::failed ? 2 : f.outcome == Outcome::undecided ? 1 : 0;
-        };
-        if (!worst || weight(finding) > weight(*worst)) worst = std::move(finding);
+    const auto weight = [](const Finding& f) {
+        return f.outcome == Outcome::failed ? 2 : f.outcome == Outcome::undecided ? 1 : 0;
+    };
+    std::size_t worst = 0;
+    for (std::size_t i = 1; i < findings.size(); ++i)
+        if (weight(findings[i]) > weight(findings[worst])) worst = i;
+    Finding finding = findings[worst];
+    if (findings.size() > 1 && !finding.evidence.empty())
+        finding.evidence = fmt::format("{}: {}", run_.receivers[one.followers[worst].station], finding.evidence);
+    return finding;
+}
+
+Finding Judge::State::finding_so_far(const Case& one) const {
+    if (one.expectation.probe) {
+        if (!one.probe_over_at) return {};
+        Finding finding = one.probe->found();
+        finding.decided_at = one.probe_over_at;
+        return finding;
     }
-    return *worst;
+    std::vector<Finding> findings;
+    for (const Follower& follower : one.followers)
+        findings.push_back(follower.tracker.so_far());
+    return worst_of(one, findings);
 }
 
 Verdict Judge::State::verdict_of(Case& one, GpsTime now) {
-    Finding finding = one.expectation.probe ? probe_finding(one, now) : common_finding(one, now);
+    return verdict_with(one, one.expectation.probe ? probe_finding(one, now) : common_finding(one, now), now);
+}
+
+Verdict Judge::State::verdict_with(const Case& one, Finding finding, GpsTime now) const {
     Verdict verdict;
     verdict.name = one.expectation.title();
     if (one.expectation.probe)
@@ -130,6 +156,13 @@ Verdict Judge::State::verdict_of(Case& one, GpsTime now) {
     verdict.decided_at = finding.decided_at;
     verdict.run_time = difference(finding.decided_at.value_or(now), run_.start);
     return verdict;
+}
+
+std::vector<Verdict> Judge::State::so_far() const {
+    std::vector<Verdict> verdicts;
+    for (const Case& one : cases_)
+        verdicts.push_back(verdict_with(one, finding_so_far(one), now_));
+    return verdicts;
 }
 
 std::vector<Verdict> Judge::State::finish(GpsTime now) {
@@ -184,6 +217,8 @@ void Judge::on_belief(const BeliefSeen& seen) {
 }
 
 void Judge::advance(GpsTime now) { state_->pass(now); }
+
+std::vector<Verdict> Judge::so_far() const { return state_->so_far(); }
 
 std::vector<Verdict> Judge::finish(GpsTime now) { return state_->finish(now); }
 

@@ -25,6 +25,8 @@ public:
     ProbeRun& operator=(const ProbeRun&) = delete;
 
     [[nodiscard]] bool is_over() const { return over_; }
+    /// What came of it, once it is over; until then undecided.
+    [[nodiscard]] Finding found() const { return over_ ? finding_ : Finding{}; }
     /// Kills what still runs and gives what came of it.
     Finding finish();
 

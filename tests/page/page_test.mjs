@@ -110,6 +110,61 @@ async function clickedFaultTakesTheFix(page) {
     await keep(page, "laptop", { fullPage: true });
 }
 
+function verdict(page, name) {
+    return page.locator("#verdicts li", { hasText: name });
+}
+
+// Before anything has been done to the fix.
+async function verdictsStand(page) {
+    await page.locator("#verdict-panel").waitFor();
+    await verdict(page, "a fix at the start").locator(".badge", { hasText: "passed" }).waitFor();
+    await verdict(page, "no gap").locator(".badge", { hasText: "pending" }).waitFor();
+    assert.match(await verdict(page, "a fix at the start").locator(".evidence").innerText(), /came true/);
+    assert.equal(await page.locator("#verdict-count").innerText(), "2 pending, 1 passed");
+}
+
+// An outage after the first half minute has broken one of them for good; the evidence is told.
+async function verdictsFall(page) {
+    await page.waitForFunction(() => document.getElementById("verdict-count").textContent.includes("failed"), null,
+        { timeout: 60_000 });
+    await verdict(page, "no gap").locator(".badge", { hasText: "failed" }).waitFor();
+    assert.match(await verdict(page, "no gap").locator(".evidence").innerText(), /did not hold/);
+    await page.evaluate(() => document.activeElement?.blur());
+    await page.keyboard.press("v");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "verdicts");
+    await page.locator("#verdict-panel").scrollIntoViewIfNeeded();
+    await keep(page, "verdicts");
+}
+
+function percents(text) {
+    return Number(/(\d+) %/.exec(text)?.[1] ?? NaN);
+}
+
+// A fault that grows slowly and fades: a number, a bar in the row, a level beside its name.
+async function rampsShowTheirStrength(page) {
+    const told = await page.evaluate(async () => (await fetch("/api/faults", {
+        method: "POST", headers: { "Content-Type": "application/json" },
+        body: JSON.stringify({ kind: "cn0_drop", name: "icing", attenuation_db: 6, ramp_in_s: 30, ramp_out_s: 8 }),
+    })).status);
+    assert.equal(told, 202);
+    const row = page.locator("#timeline .row", { hasText: "icing" });
+    const state = row.locator(".row-state", { hasText: /^active, \d+ %$/ });
+    await state.waitFor();
+    const first = percents(await state.innerText());
+    await page.locator("#active li", { hasText: "icing" }).locator("meter").waitFor();
+    await page.waitForFunction((least) => {
+        const text = document.querySelector('#active li[data-fault="icing"] .active-told')?.textContent ?? "";
+        return Number(/(\d+) %/.exec(text)?.[1]) >= least;
+    }, first + 10);
+    assert.equal(await row.locator("rect.level").count(), 1);
+    await page.evaluate(() => scrollTo(0, 0));
+    await keep(page, "ramp");
+    await page.locator("#active li", { hasText: "icing" }).locator("button").click();
+    await row.locator(".row-state", { hasText: /^fading, \d+ %$/ }).waitFor();
+    await row.locator(".row-state", { hasText: /^over$/ }).waitFor();
+    await page.locator("#active li").first().waitFor({ state: "detached" });
+}
+
 // No mouse: a fault is found, filled in, begun and stopped; time is stopped and goes on.
 async function keyboardIsEnough(page) {
     const keys = page.keyboard;
@@ -156,6 +211,8 @@ async function darkIsDark(browser, url) {
     assert.ok(Math.max(...(await ground())) < 60, "a dark ground");
     await page.waitForTimeout(3000);
     await keep(page, "dark");
+    await page.locator("#verdict-panel").scrollIntoViewIfNeeded();
+    await keep(page, "dark_verdicts");
     await page.locator("#scheme").click(); // chosen by hand: light
     assert.ok(Math.min(...(await ground())) > 200, "a light ground");
     await page.close();
@@ -167,6 +224,10 @@ async function phoneFits(browser, url) {
     await fixIs(page, "fix");
     await noOverflow(page, phone.width);
     await keep(page, "phone");
+    await page.locator("#nav-verdicts").tap();
+    await page.waitForTimeout(800); // it scrolls smoothly
+    assert.ok((await page.locator("#verdict-panel").boundingBox()).y < phone.height, "the verdicts are in sight");
+    await keep(page, "phone_verdicts");
     await page.locator("#nav-faults").tap();
     await page.locator("#fault-kinds summary", { hasText: "Signals" }).tap();
     for (const target of await page.locator("#fault-kinds button:visible, nav button").all()) {
@@ -199,7 +260,12 @@ async function test(browser, run) {
     await page.goto(run.url);
     await everythingIsThere(page);
     await dialogueIsFiltered(page);
+    await verdictsStand(page);
+    await page.waitForFunction(() => /:3[1-9]|:[45]/.test(document.getElementById("timeline-now").textContent), null,
+        { timeout: 60_000 });
     await clickedFaultTakesTheFix(page);
+    await verdictsFall(page);
+    await rampsShowTheirStrength(page);
     await keyboardIsEnough(page);
     await darkIsDark(browser, run.url);
     await phoneFits(browser, run.url);

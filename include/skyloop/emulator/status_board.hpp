@@ -18,7 +18,8 @@ namespace skyloop {
 /// What the board asks for when it makes a snapshot, by the loop's thread. Those that are empty are not asked.
 struct StatusSources {
     std::function<PaceStatus()> pace{};
-    std::function<double(std::string_view fault)> strength{};  ///< 0 … 1 of an active one, by name
+    /// 0 … 1 of an occurrence by the fault's name, at an instant; also of one that fades after its end.
+    std::function<double(std::string_view fault, int occurrence, GpsTime now)> strength{};
     std::function<std::vector<VerdictStatus>()> verdicts{};
     std::function<std::int64_t()> clock{};  ///< ns that never go back; nothing: the steady clock
 };

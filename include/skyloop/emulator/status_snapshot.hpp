@@ -79,7 +79,7 @@ struct TimelineBar {
     std::optional<GpsTime> begins;  ///< or began
     std::optional<GpsTime> ends;    ///< or ended
     bool active = false;
-    double strength = 0;   ///< 0 … 1, while active
+    double strength = 0;   ///< 0 … 1, while active and while it fades afterwards
     std::string receiver;  ///< empty: all
     std::string words;     ///< how the scenario describes its times: "every 60 s"
 };
@@ -87,7 +87,7 @@ struct TimelineBar {
 /// What is known of one expectation.
 struct VerdictStatus {
     std::string name, what;
-    std::string state;   ///< "pending", "passed", "failed"
+    std::string state;   ///< "pending", "passed", "failed"; at the end of a run "undecided", "not run"
     std::string detail;  ///< why
 };
 

@@ -43,6 +43,10 @@ public:
     /// Time goes on without anything to see. Starts the probes that are due.
     void advance(GpsTime now);
 
+    /// How it stands, in the order of the expectations: failed for good; passed so far, where another occurrence may
+    /// still fail; undecided, without evidence, while it cannot be told. Never waits; for the thread that observes.
+    [[nodiscard]] std::vector<Verdict> so_far() const;
+
     /// The run is over: one verdict per expectation, in their order. Probes that still run are killed and fail. Called
     /// once; nothing may be observed afterwards. Waits for the ends of killed probes, at most some tenths of a second.
     std::vector<Verdict> finish(GpsTime now);

@@ -25,9 +25,11 @@ export function colour(name) {
     return colours.getPropertyValue(`--${name}`).trim();
 }
 
+const darkSystem = matchMedia("(prefers-color-scheme: dark)");
+
 function show(scheme) {
-    if (scheme === "auto") delete document.documentElement.dataset.scheme;
-    else document.documentElement.dataset.scheme = scheme;
+    const dark = scheme === "auto" ? darkSystem.matches : scheme === "dark";
+    document.documentElement.dataset.scheme = dark ? "dark" : "light";
     byId("scheme").textContent = { auto: "Auto", light: "Light", dark: "Dark" }[scheme];
 }
 
@@ -45,12 +47,12 @@ export function watchScheme(redraw) {
     let scheme = stored();
     const change = () => {
         colours = null;
+        show(scheme);
         redraw();
     };
     show(scheme);
     byId("scheme").onclick = () => {
         scheme = schemes[(schemes.indexOf(scheme) + 1) % schemes.length];
-        show(scheme);
         try {
             localStorage.setItem("skyloop.scheme", scheme);
         } catch {
@@ -58,5 +60,5 @@ export function watchScheme(redraw) {
         }
         change();
     };
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", change);
+    darkSystem.addEventListener("change", change);
 }

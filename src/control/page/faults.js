@@ -3,7 +3,7 @@ import { ask, attempt } from "./ask.js";
 import { get, post, stopFault } from "./connection.js";
 import { byId, make, mark, say } from "./dom.js";
 import { formFor } from "./form.js";
-import { words } from "./format.js";
+import { percent, words } from "./format.js";
 
 const layerTitles = {
     signals: "Signals", solution: "Solution", receiver: "Receiver", wire: "Wire", command: "Commands, at once",
@@ -185,8 +185,10 @@ export class Faults {
     show(status) {
         this.bars = status.timeline;
         this.receivers = status.receivers.map((receiver) => receiver.name);
-        this.active = status.timeline.filter((bar) => bar.active && bar.what === "fault");
-        byId("stop-all").disabled = this.active.length === 0;
+        const known = status.timeline.filter((bar) => bar.what === "fault");
+        // One that fades while another of its name is at work is not worth a line of its own.
+        this.active = known.filter((bar) => bar.active || (bar.strength > 0 && !known.some((other) => other.name === bar.name && other.active)));
+        byId("stop-all").disabled = !this.active.some((bar) => bar.active);
         byId("active-none").hidden = this.active.length > 0;
         mark(byId("nav-faults"), "active", this.active.length > 0);
         say(byId("nav-faults"), this.active.length ? `Faults ${this.active.length}` : "Faults");
@@ -201,12 +203,17 @@ export class Faults {
         if (!item) {
             const stop = make("button", { type: "button", class: "danger", "aria-label": `Stop ${bar.name}` }, "Stop");
             stop.onclick = () => this.stop(bar.name);
-            item = make("li", {}, make("b", {}, words(bar.name)), make("span", { class: "active-told" }), stop);
+            item = make("li", {}, make("b", {}, words(bar.name)), make("span", { class: "active-told" }),
+                make("meter", { min: 0, max: 1, hidden: true, "aria-label": `Strength of ${bar.name}` }), stop);
             item.dataset.fault = bar.name;
             list.append(item);
         }
-        const left = bar.ends_s !== null && bar.ends_s > now ? `${Math.ceil(bar.ends_s - now)} s left` : "until stopped";
-        const strength = bar.strength < 0.995 ? `${Math.round(bar.strength * 100)} %, ` : "";
+        const left = !bar.active ? "fading" : bar.ends_s !== null && bar.ends_s > now ? `${Math.ceil(bar.ends_s - now)} s left` : "until stopped";
+        const strength = bar.strength < 0.995 ? `${percent(bar.strength)}, ` : "";
         say(item.querySelector(".active-told"), strength + left);
+        const level = item.querySelector("meter");
+        level.hidden = bar.strength >= 0.995;
+        level.value = bar.strength;
+        item.querySelector("button").disabled = !bar.active;
     }
 }

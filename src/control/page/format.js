@@ -43,6 +43,11 @@ export function utc(text) {
     return `${text.slice(0, 10)} ${text.slice(11, 19)} UTC`;
 }
 
+/** 0.4 -> "40 %". */
+export function percent(share) {
+    return `${Math.round(share * 100)} %`;
+}
+
 /** "receiver_silent" -> "receiver silent". */
 export function words(name) {
     return name.replaceAll("_", " ");

@@ -14,7 +14,8 @@ import { setUpSkyPlot } from "./sky_plot.js";
 import { fixState, showState } from "./state.js";
 import { Timeline } from "./timeline.js";
 import { TrackMap } from "./track.js";
-import { setUpWires, showVerdicts } from "./wires.js";
+import { showVerdicts } from "./verdicts.js";
+import { setUpWires } from "./wires.js";
 
 const rate = 5; // snapshots a second
 
@@ -117,6 +118,7 @@ setUpKeys({
     },
     x: () => faults.stopAll(),
     m: () => byId("track").focus(),
+    v: () => byId("verdicts").focus(),
     d: () => byId("dialogue-text").focus(),
     h: () => byId("dialogue-hold").click(),
 });

@@ -1,6 +1,6 @@
 // Faults and commands over the time of the run, a row each.
 import { byId, draw, make, mark, say } from "./dom.js";
-import { clock, clockStep, words } from "./format.js";
+import { clock, clockStep, percent, words } from "./format.js";
 
 const ahead = 30; // s shown after now in a run without an end
 const width = 1000;
@@ -17,11 +17,21 @@ function groupOf(bars) {
 
 function stateOf(row, now) {
     if (row.some((bar) => bar.active)) return "active";
+    if (row.some((bar) => bar.strength > 0)) return "fading";
     if (row.some((bar) => bar.begins_s === null || bar.begins_s > now)) return "planned";
     return "over";
 }
 
-const stateWords = { active: "active", planned: "to come", over: "over" };
+const stateWords = { active: "active", fading: "fading", planned: "to come", over: "over" };
+
+// What one reads beside a row: "active", "active, 40 %", "every 60 s".
+function stateText(row, state) {
+    const waits = row.find((bar) => bar.begins_s === null);
+    if (state === "planned" && waits) return waits.words || "waits";
+    const strength = Math.max(...row.map((bar) => bar.strength));
+    return state === "fading" || (state === "active" && strength < 0.995)
+        ? `${stateWords[state]}, ${percent(strength)}` : stateWords[state];
+}
 
 export class Timeline {
     /** @param act {stop(name), start(name)} */
@@ -64,8 +74,7 @@ export class Timeline {
     update(shown, row, now) {
         const state = stateOf(row, now);
         mark(shown.element, "state", state);
-        const waits = row.find((bar) => bar.begins_s === null);
-        say(shown.state, state === "planned" && waits ? waits.words || "waits" : stateWords[state]);
+        say(shown.state, stateText(row, state));
         const [first] = row;
         const does = first.what === "command" ? "" : state === "active" ? "stop" : first.live ? "" : "start";
         mark(shown.button, "does", does);
@@ -86,10 +95,16 @@ export class Timeline {
         const from = this.x(bar.begins_s);
         if (bar.what === "command") return [draw("rect", { x: from - 2, y: 4, width: 5, height: 18, class: "bar-command" })];
         const to = bar.ends_s !== null && !(bar.active && bar.ends_s < now) ? bar.ends_s : bar.active ? now : this.end;
-        const kind = bar.active ? "bar-active" : bar.begins_s > now ? "bar-planned" : "bar-over";
+        const kind = bar.active ? "bar-active" : bar.strength > 0 ? "bar-fading" : bar.begins_s > now ? "bar-planned" : "bar-over";
         const shapes = [draw("rect", { x: from, y: 4, width: Math.max(this.x(to) - from, 3), height: 18, class: kind })];
         if (bar.active && bar.ends_s !== null && bar.ends_s > now)
             shapes.push(draw("rect", { x: from, y: 4, width: Math.max(this.x(now) - from, 3), height: 18, class: "bar-done" }));
+        // How strong it is now, as a level at the end of what has passed.
+        if (bar.strength > 0 && bar.strength < 0.995) {
+            const height = rowHeight * bar.strength;
+            shapes.push(draw("rect", { x: this.x(now) - 14, y: 0, width: 14, height: rowHeight, class: "level-ground" }),
+                draw("rect", { x: this.x(now) - 14, y: rowHeight - height, width: 14, height, class: "level" }));
+        }
         return shapes;
     }
 

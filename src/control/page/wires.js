@@ -1,4 +1,4 @@
-// The wires: what went over them, what did not arrive, what the client believes. And the verdicts of the run.
+// The wires: what went over them, what did not arrive, what the client believes.
 import { byId, make, mark, say } from "./dom.js";
 import { bytes } from "./format.js";
 
@@ -73,20 +73,4 @@ export function setUpWires() {
             parts.belief.hidden = !wire.belief;
         });
     };
-}
-
-const verdictMarks = { passed: "good", failed: "bad" };
-
-export function showVerdicts(verdicts) {
-    byId("verdict-panel").hidden = verdicts.length === 0;
-    const key = JSON.stringify(verdicts);
-    const list = byId("verdicts");
-    if (list.dataset.key === key) return;
-    list.dataset.key = key;
-    list.replaceChildren(...verdicts.map((verdict) => {
-        const state = make("span", { class: "badge" }, verdict.state);
-        mark(state, "state", verdictMarks[verdict.state] ?? "");
-        const told = [verdict.what, verdict.detail].filter(Boolean).join(": ");
-        return make("li", {}, state, " ", make("b", {}, verdict.name || verdict.what), make("small", {}, told));
-    }));
 }

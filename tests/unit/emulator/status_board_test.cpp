@@ -12,6 +12,7 @@ constexpr GpsTime board_start{Nanoseconds(1'400'000'000'000'000'000)};
 /// A board with a clock that a test sets.
 struct BoardRig {
     std::int64_t clock_ns = 10'000'000'000;
+    double strength = 0.25;
     StatusBoard board;
 
     explicit BoardRig(std::vector<TimelineBar> timeline = {})
@@ -19,7 +20,7 @@ struct BoardRig {
     StatusSources sources() {
         StatusSources made;
         made.clock = [this] { return clock_ns; };
-        made.strength = [](std::string_view) { return 0.25; };
+        made.strength = [this](std::string_view, int, GpsTime) { return strength; };
         return made;
     }
     void epoch(int index) {
@@ -136,7 +137,20 @@ TEST(StatusBoard, FollowsFaultsOnTheTimeline) {
     EXPECT_TRUE(snapshot->timeline[1].active);
     EXPECT_TRUE(snapshot->timeline[1].live);
     EXPECT_EQ(snapshot->timeline[1].strength, 0.25);
+    EXPECT_EQ(snapshot->timeline[0].strength, 0.25) << "it fades";
     EXPECT_EQ(snapshot->events.size(), 3U);
+    rig.strength = 0;
+    rig.board.publish_now(board_start);
+    EXPECT_EQ(rig.board.latest()->timeline[0].strength, 0);
+}
+
+TEST(StatusBoard, ShowsTheVerdictsOfItsSource) {
+    StatusSources sources;
+    sources.verdicts = [] { return std::vector<VerdictStatus>{{"a", "fix always", "pending", ""}}; };
+    StatusBoard board({"test", board_start, std::nullopt, {}}, nullptr, sources);
+    board.publish_now(board_start);
+    ASSERT_EQ(board.latest()->verdicts.size(), 1U);
+    EXPECT_EQ(board.latest()->verdicts[0].state, "pending");
 }
 
 TEST(StatusBoard, StaysBoundedOverManyOccurrences) {

@@ -9,6 +9,7 @@
 namespace skyloop {
 namespace {
 
+using test::expectation_of;
 using test::no_fix;
 using test::SeenFix;
 using test::SeenRun;
@@ -399,6 +400,40 @@ TEST(JudgeProbes, AreKilledWithTheRunAndRefusedInVirtualTime) {
     Probe late{{"true"}};
     late.at = Seconds(1000);
     EXPECT_EQ(probe_verdict(late, true, 0.1).outcome, undecided);
+}
+
+TEST(JudgeSoFar, KnowsWhatNothingCanChangeAnyMore) {
+    SeenRun lasting("fix always");
+    EXPECT_EQ(lasting.so_far().outcome, undecided);
+    lasting.epochs(1, 3);
+    EXPECT_EQ(lasting.so_far().outcome, undecided) << "it may fail yet";
+    EXPECT_EQ(lasting.so_far().evidence, "");
+    lasting.epoch(4, no_fix);
+    EXPECT_EQ(lasting.so_far().outcome, failed);
+    EXPECT_EQ(lasting.so_far().run_time.value(), 4);
+    const std::string evidence = lasting.so_far().evidence;
+    EXPECT_NE(evidence, "");
+    EXPECT_EQ(lasting.end(10).evidence, evidence) << "the end tells the same";
+}
+
+TEST(JudgeSoFar, PassesWhatEachOccurrenceSoFarFulfilled) {
+    SeenRun run("fix within 3 s of outage");
+    run.epochs(1, 9);
+    EXPECT_EQ(run.so_far().outcome, undecided) << "no outage has come";
+    run.begins(10, "outage").epoch(11, no_fix);
+    EXPECT_EQ(run.so_far().outcome, undecided) << "there is time";
+    run.epoch(12);
+    EXPECT_EQ(run.so_far().outcome, passed);
+    EXPECT_THAT(run.so_far().evidence, HasSubstr("2 s after outage began"));
+    run.begins(20, "outage").epoch(24, no_fix);
+    EXPECT_EQ(run.so_far().outcome, failed) << "the second one lasted too long";
+}
+
+TEST(JudgeSoFar, OfSeveralReceiversTheWorstSpeaks) {
+    SeenRun run({expectation_of("fix always")}, {"front", "rear"});
+    run.epoch(1).epoch(1, no_fix, 1);
+    EXPECT_EQ(run.so_far().outcome, failed);
+    EXPECT_THAT(run.so_far().evidence, testing::StartsWith("rear: "));
 }
 
 }  // namespace

@@ -101,6 +101,8 @@ public:
         judge_.on_belief({at_second(second), 0, 0, trusts, trusts ? "3d fix" : "no message for 2.0 s"});
         return *this;
     }
+    /// What is known of the only expectation so far.
+    [[nodiscard]] Verdict so_far() const { return judge_.so_far().at(0); }
     Verdict end(double second) { return judge_.finish(at_second(second)).front(); }
     Judge& judge() { return judge_; }
 
