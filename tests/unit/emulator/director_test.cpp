@@ -181,7 +181,7 @@ TEST(Director, KnowsHowStrongAFaultIs) {
     };
     const double expected[] = {0, 0, 0, 0.25, 0.5, 0.75, 1, 1, 1, 0.5, 0, 0};  // of each second
     for (const double wanted : expected) {
-        EXPECT_NEAR(strength(), wanted, 1e-6) << (run->run.emulator->now() - run->run.start).count() * 1e-9 << " s";
+        EXPECT_NEAR(strength(), wanted, 1e-6) << difference(run->run.emulator->now(), run->run.start).value() << " s";
         EXPECT_EQ(strength(2), 0) << "it comes but once";
         run_for(*run, 1s);
     }
