@@ -126,14 +126,13 @@ void read_file(TableReader& table, const std::filesystem::path& folder, Trajecto
     file.heading = read_heading(table);
     std::string path;
     table.text("path", path);
-    if (path.empty())
-        table.mistake_here("kind \"file\" has no path; expected path = \"track.csv\"");
-    else if (std::filesystem::path(path).extension() != ".csv")
+    table.needs_one_of({"path"}, "kind \"file\" has no path; expected path = \"track.csv\"");
+    if (table.has("path") && !table.recording() && std::filesystem::path(path).extension() != ".csv")
         table.mistake("path", fmt::format("is '{}'; expected a file that ends in .csv (skyloop scenario-from makes one "
                                           "of a receiver's log)",
                                           path));
     file.path = folder / path;
-    file.keeps_time = table.choice("time", clocks).value_or(0) == 1;
+    file.keeps_time = table.choice("time", clocks, clocks[0]).value_or(0) == 1;
     table.quantity("gap_s", file.gap, {1e-3, 1e7});
     trajectory = file;
 }
