@@ -147,7 +147,11 @@ void read_command(TableReader& table, Scenario& scenario) {
                          fmt::format("'{}' is not for one receiver alone; expected no 'receiver'", kind->name));
         } else if (table.has("receiver")) {
             const auto chosen = read_receiver_choice(table, scenario);
-            if (chosen.size() == 1) entry.command.receiver = receiver_name(scenario, chosen.front());
+            if (chosen.size() == 1)
+                entry.command.receiver = receiver_name(scenario, chosen.front());
+            else if (chosen.size() < scenario.receivers.size())
+                table.mistake("receiver",
+                              fmt::format("names {} receivers; expected one, or none for all of them", chosen.size()));
         }
     }
     entry.command.source = "scenario";

@@ -83,6 +83,9 @@ TEST(ScenarioTimeline, MistakesAreToldWhereTheyStand) {
         HasSubstr("in a circle"));
     EXPECT_THAT(mistakes("[[command]]\nkind = \"pause\"\nreceiver = \"receiver0\"\n"),
                 HasSubstr("not for one receiver alone"));
+    EXPECT_THAT(mistakes("[[receiver]]\n[[receiver]]\n[[receiver]]\n[[command]]\nkind = \"reboot\"\n"
+                         "receiver = [\"receiver0\", \"receiver1\"]\n"),
+                HasSubstr("test.toml:6:12: command.receiver: names 2 receivers"));
     EXPECT_THAT(mistakes("[[command]]\nkind = \"move_to\"\nat = [91, 0]\n"),
                 HasSubstr("test.toml:3:6: command.at: latitude is 91"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"saturated_uart\"\nbytes_per_s = 10\nbaud = 9600\n"),
