@@ -6,18 +6,11 @@
 #include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/receiver_core.hpp"
+#include "skyloop/base/overloaded.hpp"
 #include "skyloop/protocol/ubx_cfg_values.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
 
 namespace skyloop::firmware {
-namespace {
-
-template <class... Cases>
-struct OneOf : Cases... {
-    using Cases::operator()...;
-};
-
-}  // namespace
 
 UbxMessageId sentence_id(const SentenceView& sentence) {
     if (sentence.address != "PUBX") {
@@ -36,12 +29,12 @@ UbxMessageId sentence_id(const SentenceView& sentence) {
 }
 
 void Receiver::Core::happen(const ReceiverEvent& event, GpsTime now) {
-    std::visit(OneOf{[&](const Reboot& e) { reboot(Forgotten::of(e.kind), now, e.banner); },
-                     [&](const RestartNavigation& e) {
-                         restart_navigation(Forgotten::of(e.kind), now, board_.timing.signal_restart);
-                     },
-                     [&](const ForgetConfiguration&) { forget_configuration(now); },
-                     [&](const ForceBaud& e) { force_baud(e.baud, now); }},
+    std::visit(Overloaded{[&](const Reboot& e) { reboot(Forgotten::of(e.kind), now, e.banner); },
+                          [&](const RestartNavigation& e) {
+                              restart_navigation(Forgotten::of(e.kind), now, board_.timing.signal_restart);
+                          },
+                          [&](const ForgetConfiguration&) { forget_configuration(now); },
+                          [&](const ForceBaud& e) { force_baud(e.baud, now); }},
                event);
 }
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "skyloop/base/digest.hpp"
+#include "skyloop/base/overloaded.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/emulator/lever_arm.hpp"
 #include "skyloop/emulator/load_scene.hpp"
@@ -19,14 +20,6 @@
 
 namespace skyloop {
 namespace {
-
-template <class... Cases>
-struct Overloaded : Cases... {
-    using Cases::operator()...;
-};
-// Clang 14 does not yet deduce it for aggregates.
-template <class... Cases>
-Overloaded(Cases...) -> Overloaded<Cases...>;
 
 ErrorModelSettings error_model_settings(const Scenario& scenario, const SimulationSetup& setup) {
     const ModelSettings& model = scenario.model;
