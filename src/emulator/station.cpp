@@ -69,7 +69,8 @@ void Station::follow_faults(GpsTime now) {
 }
 
 void Station::hear(std::size_t wire, GpsTime now, Dialogue* dialogue) {
-    auto& [port, link] = parts_.wires[wire];
+    const PortId port = parts_.wires[wire].port;
+    Link& link = parts_.wires[wire].link;
     FaultyWire& faulty = faulty_wires_[wire];
     link.look(now);
     const auto line_speed = [&] {
