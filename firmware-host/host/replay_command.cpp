@@ -61,10 +61,12 @@ Result<Replay::Parts> replay_parts(const ReplayOptions& options, const Messages&
     return parts;
 }
 
-int tell_end(const Messages& messages, const Replay& replay) {
+int tell_end(const Messages& messages, Replay& replay) {
     int code = 0;
     for (std::size_t i = 0; i < replay.links().size(); ++i) {
-        const Link& link = replay.links()[i];
+        Link& link = replay.links()[i];
+        for (const std::string& news : link.transport().take_news())
+            messages.warning(fmt::format("port {}: {}", i, news));
         const LinkCounters& counted = link.counters();
         messages.info(fmt::format("port {}: {} bytes out, {} in, {} while nobody listened", i, counted.bytes_out,
                                   counted.bytes_in, counted.bytes_unheard));
@@ -108,9 +110,9 @@ Action add_replay_command(CLI::App& app) {
     auto options = std::make_shared<ReplayOptions>();
     command->add_option("RECORDING", options->recording, "Folder of run --record or simulate --out, or a file of bytes")
         ->required();
-    command->add_option(
-        "--port", options->ports,
-        "Where the bytes go: pty[:LINK], tcp:[HOST:]PORT, file:PATH or -; one a recorded port, in order");
+    command->add_option("--port", options->ports,
+                        "Where the bytes go: pty[:LINK], serial:DEVICE[@BAUD], tcp:[HOST:]PORT, file:PATH or -; one a "
+                        "recorded port, in order");
     command->add_option("--speed", options->speed, "Recorded seconds per second")->check(CLI::Range(1e-3, 1e3));
     command->add_option("--from", options->from, "Seconds after the first recorded byte")->check(CLI::Range(0.0, 1e9));
     command->add_option("--duration", options->duration, "Recorded seconds")->check(CLI::Range(1e-3, 1e9));

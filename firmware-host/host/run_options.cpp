@@ -156,10 +156,10 @@ void add_run_options(CLI::App& command, RunOptions& options) {
     command.add_option("--board", options.board, "Receiver profile, default ublox-m8; see skyloop boards");
     command.add_option("--rate", options.rate, "Navigation rate at start, Hz");
     command
-        .add_option(
-            "--port", options.ports,
-            "Where the bytes go: pty[:LINK] file:PATH - client:NAME; NAME=… is the board's port of that name, such as "
-            "uart2=pty; repeatable")
+        .add_option("--port", options.ports,
+                    "Where the bytes go: pty[:LINK] serial:DEVICE[@BAUD] tcp:[HOST:]PORT file:PATH - client:NAME; "
+                    "NAME=… is the "
+                    "board's port of that name, such as uart2=pty; repeatable")
         ->allow_extra_args(false);
     command.add_option("--state", options.state, "File that keeps what the receiver saves beyond the run");
     command.add_option("--repeat", options.repeat,

@@ -61,6 +61,10 @@ int RunSession::run(const Scenario& scenario, RunWatch& watch) {
                 progress.clear();
                 messages_.warning(*notice);
             }
+            for (const std::string& news : wire_news(status.station)) {
+                progress.clear();
+                messages_.warning(news);
+            }
             progress.show(status, emulator);
         });
         emulator.run_until(assembly_.end.value_or(GpsTime::max()), stop_asked);
@@ -68,6 +72,9 @@ int RunSession::run(const Scenario& scenario, RunWatch& watch) {
     if (Recorder* recorder = emulator.recorder())
         recorder->record_summary(run_summary(scenario, assembly_, SKYLOOP_VERSION));
     int code = watch.finish(messages_);
+    for (std::size_t i = 0; i < emulator.stations().size(); ++i)
+        for (const std::string& news : wire_news(i))
+            messages_.warning(news);
     for (const Station& station : emulator.stations()) {
         tell_counts(station);
         for (const Wire& wire : station.wires())
@@ -85,6 +92,15 @@ std::optional<std::string> RunSession::new_notice(std::size_t index) {
     if (city == nullptr || !city->notice()) return std::nullopt;
     if (!noticed_.insert(index).second) return std::nullopt;
     return prefix(station) + *city->notice();
+}
+
+std::vector<std::string> RunSession::wire_news(std::size_t index) {
+    Station& station = assembly_.emulator->stations()[index];
+    std::vector<std::string> all;
+    for (std::size_t i = 0; i < station.wires().size(); ++i)
+        for (const std::string& news : station.transport(i).take_news())
+            all.push_back(fmt::format("{}: {}", port_name(station, i), news));
+    return all;
 }
 
 std::string RunSession::prefix(const Station& station) const {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "messages.hpp"
 #include "run_options.hpp"
@@ -31,6 +32,8 @@ private:
     void tell_wire(const Station& station, std::size_t wire) const;
     // What the buildings around a receiver have to say that has not been said yet.
     std::optional<std::string> new_notice(std::size_t station);
+    // What has happened to its wires since the last call.
+    std::vector<std::string> wire_news(std::size_t station);
     // "rover: " when there are several receivers.
     [[nodiscard]] std::string prefix(const Station& station) const;
     const Messages& messages_;

@@ -26,7 +26,13 @@ Link::Link(std::unique_ptr<Transport> transport, PortSpeed speed, InputPace pace
       to_client_(speed.value_or(any_baud), speed.value_or(any_baud)),
       to_receiver_(speed.value_or(any_baud), speed.value_or(any_baud)),
       pace_(pace) {
-    if (speed) transport_->set_receiver_baud(*speed);
+    tell_speed(speed);
+}
+
+void Link::tell_speed(PortSpeed speed) {
+    if (!speed || told_ == speed) return;
+    told_ = speed;
+    transport_->set_receiver_baud(*speed);
 }
 
 Bytes Link::heard_by_client(ByteSpan bytes, std::uint32_t receiver_baud, std::uint32_t client_baud, bool at_rest) {
@@ -40,6 +46,7 @@ Bytes Link::heard_by_client(ByteSpan bytes, std::uint32_t receiver_baud, std::ui
 }
 
 void Link::send(ByteSpan bytes, PortSpeed speed, bool at_rest) {
+    tell_speed(speed);
     const LineState line = transport_->line();
     connected_ = line.connected && plugged_;
     if (!connected_) {

@@ -12,9 +12,14 @@
 namespace skyloop {
 namespace {
 
-constexpr std::string_view offered = "pty[:LINK], tcp:[HOST:]PORT, file:PATH, client:NAME or -";
-constexpr std::array<std::string_view, 3> known_schemes{"pty", "tcp", "file"};
-constexpr std::array<std::string_view, 4> later_schemes{"serial", "usbip", "usb", "hid"};
+constexpr std::string_view offered = "pty[:LINK], serial:DEVICE[@BAUD], tcp:[HOST:]PORT, file:PATH, client:NAME or -";
+constexpr std::array<std::string_view, 4> known_schemes{"pty", "serial", "tcp", "file"};
+constexpr std::array<std::string_view, 3> later_schemes{"usbip", "usb", "hid"};
+
+std::string_view missing_part(std::string_view scheme) {
+    if (scheme == "tcp") return "a port";
+    return scheme == "serial" ? "a device" : "a path";
+}
 
 template <class Wire>
 Result<std::unique_ptr<Transport>> as_transport(Result<std::unique_ptr<Wire>> wire) {
@@ -25,22 +30,27 @@ Result<std::unique_ptr<Transport>> as_transport(Result<std::unique_ptr<Wire>> wi
 }  // namespace
 
 Result<PortUri> parse_port_uri(std::string_view uri) {
-    if (uri == "-") return PortUri{WireKind::standard_output, {}, {}};
+    if (uri == "-") return PortUri{WireKind::standard_output, {}, {}, {}};
     const std::size_t colon = uri.find(':');
     const std::string_view scheme = uri.substr(0, colon);
     const bool has_rest = colon != std::string_view::npos;
     const std::string_view rest = has_rest ? uri.substr(colon + 1) : std::string_view();
-    if (scheme == "pty" && !has_rest) return PortUri{WireKind::pty, {}, {}};
-    if (scheme == "pty" && !rest.empty()) return PortUri{WireKind::pty, std::string(rest), {}};
+    if (scheme == "pty" && !has_rest) return PortUri{WireKind::pty, {}, {}, {}};
+    if (scheme == "pty" && !rest.empty()) return PortUri{WireKind::pty, std::string(rest), {}, {}};
     if (scheme == "tcp" && !rest.empty()) {
         auto address = parse_tcp_address(rest);
         if (!address) return fail(address.error().code, fmt::format("port '{}': {}", uri, address.error().message));
-        return PortUri{WireKind::tcp, {}, std::move(*address)};
+        return PortUri{WireKind::tcp, {}, std::move(*address), {}};
     }
-    if (scheme == "file" && !rest.empty()) return PortUri{WireKind::file, std::string(rest), {}};
+    if (scheme == "serial" && !rest.empty()) {
+        auto serial = parse_serial_address(rest);
+        if (!serial) return fail(serial.error().code, fmt::format("port '{}': {}", uri, serial.error().message));
+        return PortUri{WireKind::serial, {}, {}, std::move(*serial)};
+    }
+    if (scheme == "file" && !rest.empty()) return PortUri{WireKind::file, std::string(rest), {}, {}};
     if (std::find(known_schemes.begin(), known_schemes.end(), scheme) != known_schemes.end())
-        return fail(ErrorCode::usage, fmt::format("port '{}': {} is missing; expected {}", uri,
-                                                  scheme == "tcp" ? "a port" : "a path", offered));
+        return fail(ErrorCode::usage,
+                    fmt::format("port '{}': {} is missing; expected {}", uri, missing_part(scheme), offered));
     if (has_rest && std::find(later_schemes.begin(), later_schemes.end(), scheme) != later_schemes.end())
         return fail(ErrorCode::usage,
                     fmt::format("port '{}': {}: is not supported by this version; expected {}", uri, scheme, offered));
@@ -54,6 +64,8 @@ Result<std::unique_ptr<Transport>> open_transport(std::string_view uri) {
     switch (port->kind) {
         case WireKind::pty:
             return as_transport(port->path.empty() ? PtyTransport::open() : PtyTransport::open(port->path));
+        case WireKind::serial:
+            return as_transport(SerialTransport::open(port->serial));
         case WireKind::tcp:
             return as_transport(TcpTransport::listen(port->address));
         case WireKind::file:

@@ -1,7 +1,5 @@
 #include "skyloop/transport/pty.hpp"
 
-// <termios.h> knows no speeds beside its constants and cannot be included together with termios2.
-#include <asm/termbits.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -17,6 +15,8 @@
 #include <cstring>
 #include <utility>
 
+#include "line_settings.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -24,52 +24,21 @@ namespace fs = std::filesystem;
 
 constexpr std::uint32_t initial_baud = 9600;
 
-struct SpeedCode {
-    std::uint32_t baud;
-    tcflag_t code;
-};
-// Clients that know no BOTHER read these back as what they are.
-constexpr std::array<SpeedCode, 10> speed_codes{{{4800, B4800},
-                                                 {9600, B9600},
-                                                 {19200, B19200},
-                                                 {38400, B38400},
-                                                 {57600, B57600},
-                                                 {115200, B115200},
-                                                 {230400, B230400},
-                                                 {460800, B460800},
-                                                 {921600, B921600},
-                                                 {1000000, B1000000}}};
-
 tl::unexpected<Error> refused(const std::string& what) {
     return fail(ErrorCode::outside, fmt::format("{}: {}", what, std::strerror(errno)));
-}
-
-tcflag_t speed_code(std::uint32_t baud) {
-    for (const SpeedCode& s : speed_codes)
-        if (s.baud == baud) return s.code;
-    return BOTHER;
 }
 
 bool set_speed(int master, std::uint32_t baud) {
     termios2 settings{};
     if (::ioctl(master, TCGETS2, &settings) != 0) return false;
-    const tcflag_t code = speed_code(baud);
-    settings.c_cflag &= ~static_cast<tcflag_t>(CBAUD | (CBAUD << IBSHIFT));
-    settings.c_cflag |= code;
-    settings.c_ispeed = settings.c_ospeed = baud;
+    put_speed(settings, baud);
     return ::ioctl(master, TCSETS2, &settings) == 0;
 }
 
-// No echo, no line editing, no translation: bytes as on a wire.
 bool set_raw(int master) {
     termios2 settings{};
     if (::ioctl(master, TCGETS2, &settings) != 0) return false;
-    settings.c_iflag = 0;
-    settings.c_oflag = 0;
-    settings.c_lflag = 0;
-    settings.c_cflag = (settings.c_cflag & ~static_cast<tcflag_t>(CSIZE | PARENB)) | CS8 | CREAD | CLOCAL;
-    settings.c_cc[VMIN] = 1;
-    settings.c_cc[VTIME] = 0;
+    make_raw(settings);
     return ::ioctl(master, TCSETS2, &settings) == 0;
 }
 

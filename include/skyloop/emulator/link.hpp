@@ -68,6 +68,7 @@ private:
     };
     // What the client's UART makes of the bytes at its own speed.
     Bytes heard_by_client(ByteSpan bytes, std::uint32_t receiver_baud, std::uint32_t client_baud, bool at_rest);
+    void tell_speed(PortSpeed speed);
     Bytes take_piece(const Piece& piece, PortSpeed speed, std::size_t count);
 
     std::unique_ptr<Transport> transport_;
@@ -79,6 +80,7 @@ private:
     GpsTime line_free_{};      // when the client's line has carried all that was heard
     bool may_rest_ = false;    // nothing has come since the last look
     LinkCounters counters_;
+    PortSpeed told_;  // to the wire
     bool connected_ = false;
     bool plugged_ = true;
 };

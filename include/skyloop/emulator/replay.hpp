@@ -33,6 +33,7 @@ public:
     void play(const Stop& stop);
 
     [[nodiscard]] const std::vector<Link>& links() const { return links_; }
+    [[nodiscard]] std::vector<Link>& links() { return links_; }
     /// How much later than due writes left.
     [[nodiscard]] const LatenessHistogram& lateness() const { return lateness_; }
     [[nodiscard]] std::uint64_t writes() const { return writes_; }

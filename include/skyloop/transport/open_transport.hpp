@@ -6,25 +6,28 @@
 #include <string_view>
 
 #include "skyloop/base/result.hpp"
+#include "skyloop/transport/serial.hpp"
 #include "skyloop/transport/tcp.hpp"
 #include "skyloop/transport/transport.hpp"
 
 namespace skyloop {
 
 /// The wires of this version.
-enum class WireKind { pty, tcp, file, standard_output };
+enum class WireKind { pty, serial, tcp, file, standard_output };
 
 /// A wire as it was asked for, not opened.
 struct PortUri {
     WireKind kind = WireKind::pty;
     std::string path;  ///< the link of a pty, or empty; the path of a file
     TcpAddress address{};
+    SerialAddress serial{};
 };
 /// Fails with `usage` and a sentence that quotes the URI.
 Result<PortUri> parse_port_uri(std::string_view uri);
 
-/// Opens `pty`, `pty:LINK`, `tcp:[HOST:]PORT`, `file:PATH` or `-` (standard output). Fails with `usage` for anything
-/// else, with `outside` when the system refuses; the sentence names the URI, the address or the path.
+/// Opens `pty`, `pty:LINK`, `serial:DEVICE[@BAUD][,8N1][,rtscts]`, `tcp:[HOST:]PORT`, `file:PATH` or `-` (standard
+/// output). Fails with `usage` for anything else, with `outside` when the system refuses; the sentence names the URI,
+/// the address, the device or the path.
 Result<std::unique_ptr<Transport>> open_transport(std::string_view uri);
 
 }  // namespace skyloop

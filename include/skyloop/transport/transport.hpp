@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "skyloop/base/bytes.hpp"
 #include "skyloop/time/gps_time.hpp"
@@ -27,7 +28,8 @@ public:
     /// What has come in since the last call.
     virtual Bytes read() = 0;
     virtual LineState line() = 0;
-    /// Tells the wire the receiver's own speed, so that a client that sets none finds the right one.
+    /// Tells the wire the receiver's own speed: at first, so that a client that sets none finds the right one, and
+    /// after each change, before the first bytes of the new speed.
     virtual void set_receiver_baud(std::uint32_t) {}
     /// In virtual time nothing comes late: from now on write() may wait for a reader rather than lose bytes. Wires that
     /// have a client's own pace, such as a terminal, go on as before.
@@ -42,6 +44,8 @@ public:
         std::string reason;
     };
     virtual std::optional<Belief> new_belief() { return std::nullopt; }
+    /// What has happened to the wire since the last call and its owner should hear at once, in sentences.
+    virtual std::vector<std::string> take_news() { return {}; }
     /// What has gone wrong with the wire since it was opened, in one sentence; empty while nothing has.
     [[nodiscard]] virtual std::string failure() const { return {}; }
     /// What its owner should know at the end of a run, in one sentence; empty: nothing.

@@ -31,15 +31,15 @@ TEST(OpenTransport, OpensWhatThisVersionHas) {
 
 TEST(OpenTransport, RefusesClearly) {
     EXPECT_EQ(refusal("usbip:3240").message,
-              "port 'usbip:3240': usbip: is not supported by this version; expected pty[:LINK], tcp:[HOST:]PORT, "
-              "file:PATH, client:NAME or -");
+              "port 'usbip:3240': usbip: is not supported by this version; expected pty[:LINK], serial:DEVICE[@BAUD], "
+              "tcp:[HOST:]PORT, file:PATH, client:NAME or -");
     EXPECT_EQ(
         refusal("tcp:host").message,
         "port 'tcp:host': address 'host': a port from 0 to 65535 is missing; expected [HOST:]PORT, an IPv6 address "
         "in brackets");
     EXPECT_THAT(refusal("tcp:").message, HasSubstr("a port is missing"));
     EXPECT_EQ(refusal("tcp:70000").code, ErrorCode::usage);
-    for (const std::string uri : {"serial:/dev/ttyS0@9600", "usbip:3240", "usb:1546:01a8", "hid:10c4:ea80"})
+    for (const std::string uri : {"usbip:3240", "usb:1546:01a8", "hid:10c4:ea80"})
         EXPECT_THAT(refusal(uri).message, HasSubstr("is not supported by this version")) << uri;
     EXPECT_THAT(refusal("ptty:gps0").message, HasSubstr("did you mean 'pty'?"));
     EXPECT_THAT(refusal("gps0").message, HasSubstr("no such kind of port"));
@@ -48,7 +48,10 @@ TEST(OpenTransport, RefusesClearly) {
     EXPECT_THAT(refusal("pty:").message, HasSubstr("a path is missing"));
     EXPECT_THAT(refusal("file").message, HasSubstr("a path is missing"));
     EXPECT_THAT(refusal("file:").message, HasSubstr("a path is missing"));
-    EXPECT_EQ(refusal("serial:/dev/ttyS0").code, ErrorCode::usage);
+    EXPECT_THAT(refusal("serial:").message, HasSubstr("a device is missing"));
+    EXPECT_THAT(refusal("serial:/dev/ttyS0@quick").message,
+                StartsWith("port 'serial:/dev/ttyS0@quick': line '/dev/ttyS0@quick': the speed 'quick'"));
+    EXPECT_EQ(refusal("serial:/dev/no-such-tty").code, ErrorCode::outside);
     EXPECT_EQ(refusal("file:/no/such/folder/x").code, ErrorCode::outside);
 }
 
