@@ -68,7 +68,10 @@ constexpr KeyMeaning run_meanings[] = {
     {"", "receiver", "the receivers on the vehicle", "one, an ublox-m8 on a pty"},
     {"receiver", "name", "what messages and `base` call it", "receiver0, receiver1, …"},
     {"receiver", "board", "a profile of `skyloop boards`"},
-    {"receiver", "port", "wires: pty[:LINK], file:PATH, -, client:NAME; NAME= before it says which port", "a pty"},
+    {"receiver", "port",
+     "wires: pty[:LINK], serial:DEVICE[@BAUD], tcp:[HOST:]PORT, file:PATH, -, client:NAME; NAME= before it says which "
+     "port",
+     "a pty"},
     {"receiver", "rate_hz", "navigation rate at the factory", "the board's"},
     {"receiver", "baud", "bit/s of UART1 at the factory", "the board's"},
     {"receiver", "sentences", "NMEA sentences at the factory, each every epoch", "the board's"},
