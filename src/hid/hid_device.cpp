@@ -1,0 +1,139 @@
+#include "skyloop/hid/hid_device.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "hid_api.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::size_t longest_report = 4096;  // bytes; those of the devices here have 64
+
+// hidapi speaks in wide characters; a USB device's texts are UTF-16 and in practice ASCII.
+std::string narrow(const wchar_t* text) {
+    std::string result;
+    for (; text != nullptr && *text != L'\0'; ++text)
+        result += *text > 0 && *text < 0x80 ? static_cast<char>(*text) : '?';
+    return result;
+}
+
+// The bus and ports of a hidraw node, by its place in sysfs: …/1-1.2/1-1.2:1.0/0003:16C0:05DF.0001/hidraw/hidraw0.
+std::string port_path_of_node(const std::string& node) {
+    const auto name = std::filesystem::path(node).filename();
+    std::error_code none;
+    auto place = std::filesystem::canonical(std::filesystem::path("/sys/class/hidraw") / name / "device", none);
+    for (; !none && place.has_relative_path(); place = place.parent_path())
+        if (const std::string folder = place.filename();
+            folder.find(':') != std::string::npos && folder.find('-') < folder.find(':'))
+            return folder.substr(0, folder.find(':'));
+    return {};
+}
+
+// hidapi's libusb backend calls a device "1-1.2:1.0", by its interface.
+std::string port_path_of(HidBackend backend, const std::string& path) {
+    return backend == HidBackend::hidraw ? port_path_of_node(path) : path.substr(0, path.find(':'));
+}
+
+struct Found {
+    std::string path;
+    UsbDeviceInfo info;
+};
+
+std::vector<Found> enumerate(const HidApi& api, UsbIds ids) {
+    std::vector<Found> found;
+    hid_device_info* list = api.enumerate(ids.vendor, ids.product);
+    for (const hid_device_info* device = list; device != nullptr; device = device->next)
+        found.push_back({device->path,
+                         {ids, narrow(device->manufacturer_string), narrow(device->product_string),
+                          narrow(device->serial_number), port_path_of(api.backend, device->path)}});
+    api.free_enumeration(list);
+    return found;
+}
+
+}  // namespace
+
+Result<HidDevice> HidDevice::open(const UsbAddress& address, HidBackend backend) {
+    const auto api = hid_api(backend);
+    if (!api) return fail(api.error());
+    const std::vector<Found> devices = enumerate(**api, address.ids);
+    const auto found =
+        std::find_if(devices.begin(), devices.end(), [&](const Found& device) { return address.matches(device.info); });
+    if (found == devices.end())
+        return fail(ErrorCode::outside, fmt::format("no HID device {} is plugged in", to_string(address)));
+    hid_device* device = (*api)->open_path(found->path.c_str());
+    if (device != nullptr) return HidDevice(**api, device, found->info);
+    const bool denied =
+        backend == HidBackend::hidraw && ::access(found->path.c_str(), R_OK | W_OK) != 0 && errno == EACCES;
+    return fail(ErrorCode::outside,
+                fmt::format("cannot open HID device {} ({}): {}", to_string(address), found->path,
+                            denied ? "no permission; a udev rule gives it: skyloop devices shows the line"
+                                   : narrow((*api)->error(nullptr))));
+}
+
+Result<HidDevice> HidDevice::open(const UsbAddress& address) {
+    auto through_kernel = open(address, HidBackend::hidraw);
+    if (through_kernel) return through_kernel;
+    auto past_it = open(address, HidBackend::libusb);
+    // The first refusal tells more: the second one is asked only because of it.
+    return past_it ? std::move(past_it) : std::move(through_kernel);
+}
+
+HidDevice::HidDevice(HidDevice&& other) noexcept
+    : api_(other.api_), device_(std::exchange(other.device_, nullptr)), info_(std::move(other.info_)) {}
+
+HidDevice& HidDevice::operator=(HidDevice&& other) noexcept {
+    std::swap(api_, other.api_);
+    std::swap(device_, other.device_);
+    std::swap(info_, other.info_);
+    return *this;
+}
+
+HidDevice::~HidDevice() {
+    if (device_ != nullptr) api_->close(static_cast<hid_device*>(device_));
+}
+
+HidBackend HidDevice::backend() const { return api_->backend; }
+
+Error HidDevice::last_error(const char* what) const {
+    return {ErrorCode::outside, fmt::format("HID device {}: cannot {}: {}", to_string(info_.ids), what,
+                                            narrow(api_->error(static_cast<hid_device*>(device_))))};
+}
+
+Result<void> HidDevice::write(ByteSpan report) {
+    if (api_->write(static_cast<hid_device*>(device_), report.data(), report.size()) < 0)
+        return fail(last_error("send a report"));
+    return {};
+}
+
+Result<void> HidDevice::send_feature(ByteSpan report) {
+    if (api_->send_feature_report(static_cast<hid_device*>(device_), report.data(), report.size()) < 0)
+        return fail(last_error("send a feature report"));
+    return {};
+}
+
+Result<Bytes> HidDevice::get_feature(std::uint8_t id, std::size_t size) {
+    Bytes report(std::max<std::size_t>(size, 1));
+    report.front() = id;
+    const int got = api_->get_feature_report(static_cast<hid_device*>(device_), report.data(), report.size());
+    if (got < 0) return fail(last_error("read a feature report"));
+    report.resize(static_cast<std::size_t>(got));
+    return report;
+}
+
+Result<Bytes> HidDevice::read(std::chrono::milliseconds wait) {
+    Bytes report(longest_report);
+    const int got = api_->read_timeout(static_cast<hid_device*>(device_), report.data(), report.size(),
+                                       static_cast<int>(wait.count()));
+    if (got < 0) return fail(last_error("read a report"));
+    report.resize(static_cast<std::size_t>(got));
+    return report;
+}
+
+}  // namespace skyloop
