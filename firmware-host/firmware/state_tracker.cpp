@@ -9,10 +9,6 @@
 namespace skyloop::firmware {
 namespace {
 
-double seconds_between(GpsTime later, GpsTime earlier) {
-    return std::chrono::duration<double>(later - earlier).count();
-}
-
 // Of a receiver that finds no satellite for its first fix: what it shows after how long, s (RECEIVER.md 4.8, the middle
 // of the ranges).
 constexpr double first_satellite_cold = 3, first_satellite_warm = 1.5, first_satellite_hot = 0.5;
@@ -90,7 +86,7 @@ const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStor
     state_.epoch = epoch;
     Fix& fix = state_.epoch.fix;
     constexpr double long_ago_s = 3600;
-    state_.since_start = Seconds(started_ ? seconds_between(fix.time, *started_) : long_ago_s);
+    state_.since_start = started_ ? difference(fix.time, *started_) : Seconds(long_ago_s);
     measured_ |= !epoch.observations.signals.empty();
     if (is_tracking(fix) && !first_tracking_) first_tracking_ = fix.time;
 
@@ -189,7 +185,7 @@ void StateTracker::coast(const Fix& before) {
     }
     if (!state_.position_known) return;
     const Fix now = fix;
-    const double step = std::max(0.0, seconds_between(now.time, before.time));
+    const double step = std::max(0.0, difference(now.time, before.time).value());
     fix = last_fix_;
     fix.time = now.time;
     fix.leap_seconds = now.leap_seconds;
@@ -197,7 +193,7 @@ void StateTracker::coast(const Fix& before) {
     for (SatelliteStatus& s : fix.satellites)
         s.used = false;
     fix.type = now.type;
-    const bool coasting = last_good_ && seconds_between(now.time, *last_good_) <= board_.timing.coasting.value();
+    const bool coasting = last_good_ && difference(now.time, *last_good_).value() <= board_.timing.coasting.value();
     if (coasting) {
         fix.type = FixType::dead_reckoning;
         fix.position = moved(last_fix_.position, last_fix_.velocity, step);
@@ -237,7 +233,7 @@ void StateTracker::freeze_course() {
 void StateTracker::count_distance(const Fix& before) {
     const Fix& fix = state_.epoch.fix;
     if (!fix.has_position() || !before.has_position() || state_.course_is_frozen) return;
-    const double step = fix.speed.value() * std::max(0.0, seconds_between(fix.time, before.time));
+    const double step = fix.speed.value() * std::max(0.0, difference(fix.time, before.time).value());
     state_.odometer_m += step;
     state_.odometer_total_m += step;
     state_.odometer_deviation_m += step * fix.speed_accuracy.value() / std::max(1.0, fix.speed.value());

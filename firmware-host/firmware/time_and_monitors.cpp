@@ -54,9 +54,7 @@ constexpr double quiet_indicator = 14, indicator_per_db = 9, quiet_gain = 4200, 
 void StateTracker::learn_time(const ConfigStore&) {
     TimeKnowledge& time = state_.time;
     Fix& fix = state_.epoch.fix;
-    const auto since = [&](const std::optional<GpsTime>& t) {
-        return t ? std::chrono::duration<double>(fix.time - *t).count() : -1.0;
-    };
+    const auto since = [&](const std::optional<GpsTime>& t) { return t ? difference(fix.time, *t).value() : -1.0; };
     const bool solved = last_good_ == fix.time;
     const double tracking = since(first_tracking_);
     time.time = time.time || tracking >= time_after_s || solved;

@@ -24,8 +24,6 @@ struct ReplayOptions {
     Verbosity verbosity;
 };
 
-Nanoseconds in_ns(double seconds) { return Nanoseconds(static_cast<std::int64_t>(seconds * 1e9)); }
-
 Result<std::vector<RecordedPort>> recorded_ports(const ReplayOptions& options) {
     std::error_code error;
     if (std::filesystem::is_directory(options.recording, error)) return read_recorded_output(options.recording);
@@ -47,7 +45,8 @@ Result<Replay::Parts> replay_parts(const ReplayOptions& options, const Messages&
                                                   options.ports.size(), ports->size(), options.recording));
     for (const RecordedPort& port : *ports)
         if (!port.warning.empty()) messages.warning(port.warning);
-    auto part = part_of(std::move(*ports), in_ns(options.from), in_ns(options.duration));
+    auto part =
+        part_of(std::move(*ports), to_nanoseconds(Seconds(options.from)), to_nanoseconds(Seconds(options.duration)));
     if (!part) return fail(part.error().code, fmt::format("{}: {}", options.recording, part.error().message));
     Replay::Parts parts;
     parts.ports = std::move(*part);

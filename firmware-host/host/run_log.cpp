@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* log_name = "commands.jsonl";
 
 Json line_at(GpsTime now, GpsTime start) {
-    return {{"gps_ns", now.time_since_epoch().count()}, {"time_s", static_cast<double>((now - start).count()) / 1e9}};
+    return {{"gps_ns", now.time_since_epoch().count()}, {"time_s", difference(now, start).value()}};
 }
 
 void write_line(OutputFile& file, const Json& line) {

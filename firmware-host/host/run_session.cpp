@@ -35,9 +35,7 @@ bool stop_was_asked() { return stop_asked; }
 
 GpsTime wall_clock() {
     using namespace std::chrono;
-    constexpr seconds gps_epoch_unix(315964800);  // 1980-01-06T00:00:00Z
-    const Nanoseconds utc = duration_cast<Nanoseconds>(system_clock::now().time_since_epoch()) - gps_epoch_unix;
-    return from_utc_count(utc, LeapSeconds::announced());
+    return from_posix(duration_cast<Nanoseconds>(system_clock::now().time_since_epoch()), LeapSeconds::announced());
 }
 
 RunSession::RunSession(const Messages& messages, Assembly& assembly) : messages_(messages), assembly_(assembly) {

@@ -38,15 +38,15 @@ void print_summary(const ReceiverLog& log, const LogEvents& events, const LogSce
     const auto utc = [](GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 3); };
     fmt::print("log         {}, {}{}\n", log.name, log.format, log.receiver.empty() ? "" : ", " + log.receiver);
     fmt::print("epochs      {} from {} to {}, every {:g} s, {} with a place\n", log.epochs.size(),
-               utc(log.epochs.front().time), utc(log.epochs.back().time),
-               std::chrono::duration<double>(events.period).count(), made.places);
+               utc(log.epochs.front().time), utc(log.epochs.back().time), to_seconds(events.period).value(),
+               made.places);
     for (std::size_t kind = 0; kind < std::size(names); ++kind) {
         std::size_t count = 0;
         double seconds = 0;
         for (const LogEvent& event : events.events) {
             if (static_cast<std::size_t>(event.kind) != kind) continue;
             ++count;
-            seconds += std::chrono::duration<double>(event.lasts).count();
+            seconds += to_seconds(event.lasts).value();
         }
         if (count > 0) fmt::print("faults      {} {}, {:g} s together\n", count, names[kind], seconds);
     }

@@ -26,7 +26,7 @@ std::optional<Seconds> sampling_interval(const std::vector<FixSample>& samples) 
     if (steps.empty()) return std::nullopt;
     const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
     std::nth_element(steps.begin(), middle, steps.end());
-    return Seconds(std::chrono::duration<double>(*middle).count());
+    return to_seconds(*middle);
 }
 
 bool blank(std::string_view text) { return text.find_first_not_of(" \t\r\n") == std::string_view::npos; }

@@ -61,7 +61,7 @@ std::optional<std::string> MotionChecks::doubt_step(const HeardSolution& s, cons
     const double speed = std::hypot(v[0], v[1]);
     if (speed > limits.frozen_speed_mps && s.heard - same_since_ > to_nanoseconds(Seconds(limits.frozen_s)))
         return fmt::format("the position stands still at {:.1f} m/s", speed);
-    const double passed = std::chrono::duration<double>(s.heard - last_->heard).count();
+    const double passed = difference(s.heard, last_->heard).value();
     const double change = speed_between(v, *last_->velocity_mps);
     // A tenth of a second is the shortest period of these clients' epochs; bursts after a stall come closer.
     if (change > limits.acceleration_mps2 * std::max(passed, 0.1))
@@ -72,7 +72,7 @@ std::optional<std::string> MotionChecks::doubt_step(const HeardSolution& s, cons
 std::optional<std::string> MotionChecks::doubt_window(const HeardSolution& s, const HealthLimits& limits) {
     // Velocities belong to the told times, not to those at which messages happened to arrive.
     const double passed = s.seconds && last_->seconds ? wrapped_difference(*s.seconds, *last_->seconds, s.seconds_wrap)
-                                                      : std::chrono::duration<double>(s.heard - last_->heard).count();
+                                                      : difference(s.heard, last_->heard).value();
     const double dt = std::abs(passed) < longest_gap_s ? passed : 0;
     const auto& now = *s.velocity_mps;
     const auto& before = *last_->velocity_mps;

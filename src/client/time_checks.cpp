@@ -17,9 +17,9 @@ constexpr double even_s = 0.05;        // a deviation that stays within this is 
 constexpr double calendar_slack_s = 0.6;
 
 double clock_seconds(const HeardSolution& s) {
-    return std::chrono::duration<double>(s.heard.time_since_epoch() %
-                                         Nanoseconds(std::chrono::seconds(static_cast<std::int64_t>(s.seconds_wrap))))
-        .count();
+    return to_seconds(s.heard.time_since_epoch() %
+                      Nanoseconds(std::chrono::seconds(static_cast<std::int64_t>(s.seconds_wrap))))
+        .value();
 }
 
 std::optional<std::string> doubt_calendar(const HeardSolution& s, const HealthLimits& limits) {
@@ -72,7 +72,7 @@ std::optional<std::string> TimeChecks::doubt_lag(const HeardSolution& s, const H
         base_ = offset;
     }
     const double later = wrapped_difference(offset, base_, s.seconds_wrap);
-    if (std::chrono::duration<double>(s.heard - *lag_since_).count() < learning_s) {
+    if (difference(s.heard, *lag_since_).value() < learning_s) {
         if (later < 0 && later > -limits.time_jump_s) base_ = offset;
         if (std::abs(later) < limits.time_jump_s) return std::nullopt;
     }
@@ -85,7 +85,7 @@ std::optional<std::string> TimeChecks::doubt_lag(const HeardSolution& s, const H
         off_since_ = s.heard;
         off_by_ = offset;
     }
-    if (std::chrono::duration<double>(s.heard - *off_since_).count() > limits.settled_s) {
+    if (difference(s.heard, *off_since_).value() > limits.settled_s) {
         forget();
         return std::nullopt;
     }

@@ -31,7 +31,7 @@ double LeverArm::yaw_rate(GpsTime time) const {
     const auto before = course(time - half_step), after = course(time + half_step);
     if (!before || !after) return 0;
     const double turned = std::remainder(*after - *before, 2 * pi);
-    const double rate = turned / std::chrono::duration<double>(2 * half_step).count();
+    const double rate = turned / to_seconds(2 * half_step).value();
     return std::abs(rate) > fastest_rad_per_s ? 0 : rate;
 }
 

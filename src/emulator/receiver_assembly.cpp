@@ -47,7 +47,7 @@ RinexRecordingSetup rinex_setup(const Station::Parts& parts, GpsTime start) {
     const NavigationSource& navigation = parts.simulation.navigation();
     RinexRecordingSetup setup;
     setup.observations.approximate_position = parts.simulation.truth_at(start).position;
-    setup.observations.interval = Seconds(static_cast<double>(settings.navigation_period.count()) * 1e-9);
+    setup.observations.interval = to_seconds(settings.navigation_period);
     setup.observations.first_epoch = start;
     setup.observations.receiver = parts.receiver.board().name;
     for (const SatelliteId satellite : navigation.satellites()) {

@@ -114,8 +114,7 @@ Result<std::vector<RecordedPort>> part_of(std::vector<RecordedPort> ports, Nanos
     }
     if (!any)
         return fail(ErrorCode::usage, fmt::format("nothing was sent from {:.3f} s on; the recording is {:.3f} s long",
-                                                  static_cast<double>(from.count()) * 1e-9,
-                                                  static_cast<double>((last - first).count()) * 1e-9));
+                                                  to_seconds(from).value(), to_seconds(last - first).value()));
     return ports;
 }
 

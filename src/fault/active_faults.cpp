@@ -6,8 +6,6 @@
 namespace skyloop {
 namespace {
 
-double seconds_between(GpsTime from, GpsTime to) { return static_cast<double>((to - from).count()) * 1e-9; }
-
 void append(std::vector<firmware::ReceiverEvent>& events, const std::vector<firmware::ReceiverEvent>& more) {
     events.insert(events.end(), more.begin(), more.end());
 }
@@ -56,15 +54,15 @@ double ActiveFaults::strength(std::size_t entry, int occurrence, GpsTime now) co
 FaultMoment ActiveFaults::moment(const Running& running, GpsTime now) {
     const auto grown = [&](GpsTime at) {
         const double ramp = running.span.ramp_in.value();
-        return ramp <= 0 ? 1.0 : std::clamp(seconds_between(running.span.begin, at) / ramp, 0.0, 1.0);
+        return ramp <= 0 ? 1.0 : std::clamp(difference(at, running.span.begin).value() / ramp, 0.0, 1.0);
     };
     FaultMoment moment;
     moment.now = now;
-    moment.since_start = Seconds(seconds_between(running.span.begin, now));
+    moment.since_start = difference(now, running.span.begin);
     moment.strength = grown(running.end ? std::min(*running.end, now) : now);
     if (running.end && now > *running.end) {
         const double ramp = running.span.ramp_out.value();
-        const double left = ramp <= 0 ? 0.0 : std::clamp(1 - seconds_between(*running.end, now) / ramp, 0.0, 1.0);
+        const double left = ramp <= 0 ? 0.0 : std::clamp(1 - difference(now, *running.end).value() / ramp, 0.0, 1.0);
         moment.strength *= left;
     }
     return moment;

@@ -28,7 +28,7 @@ std::string conditions(const Trigger& trigger) {
 }
 
 std::string line(const TimelineEvent& event, const TimelineEntry& entry, GpsTime start) {
-    const double at = static_cast<double>((event.time - start).count()) * 1e-9;
+    const double at = difference(event.time, start).value();
     const std::string number = event.occurrence > 1 ? fmt::format(" (no. {})", event.occurrence) : "";
     const std::string_view what = entry.once ? "" : event.begins ? " begins" : " ends";
     return fmt::format("{:>14}  {}{}{}", seconds_text(at), entry.name, what, number);

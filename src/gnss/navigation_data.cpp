@@ -176,7 +176,7 @@ KeplerEphemeris moved_by_days(const KeplerEphemeris& record, std::int64_t days) 
     const auto time_of_week = [&](GpsTime t) { return beidou ? bdt_week_and_tow(t).tow : week_and_tow(t).tow; };
     const double rate = beidou ? earth_rotation_rate_beidou : earth_rotation_rate;
     const Nanoseconds change = time_of_week(moved.toe) - time_of_week(record.toe);
-    const double omega0 = record.omega0 + rate * std::chrono::duration<double>(change).count();
+    const double omega0 = record.omega0 + rate * to_seconds(change).value();
     if (change != Nanoseconds(0)) moved.omega0 = std::remainder(omega0, 2 * std::numbers::pi);
     return moved;
 }

@@ -198,8 +198,7 @@ void DataflashReader::take_format(ByteSpan record) {
         offset += size;
     }
     if (format.length < dataflash_head || type == dataflash_fmt) return;
-    if (format.name == "GPS" && format.columns.contains("I")) format.instance = "I";
-    if (format.name == "GPA" && format.columns.contains("I")) format.instance = "I";
+    if ((format.name == "GPS" || format.name == "GPA") && format.columns.contains("I")) format.instance = "I";
     formats_[type] = std::move(format);
 }
 

@@ -8,14 +8,6 @@
 namespace skyloop {
 namespace {
 
-double event_seconds(Nanoseconds span) { return std::chrono::duration<double>(span).count(); }
-
-double middle_of(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 // A satellite's C/N0 over the epochs of the log.
 struct Strength {
     std::vector<double> cn0;  // 0: not tracked
@@ -180,7 +172,7 @@ void EventFinder::collect_strengths() {
 void EventFinder::set_level(Strength& strength) const {
     constexpr std::size_t most = 121, fewest = 5;
     strength.level.assign(epochs_.size(), 0);
-    const double period_s = std::max(1e-3, event_seconds(found_.period));
+    const double period_s = std::max(1e-3, to_seconds(found_.period).value());
     const auto half = static_cast<std::size_t>(std::max(1.0, limits_.window.value() / period_s));
     const std::size_t stride = std::max<std::size_t>(1, 2 * half / most), hold = std::max<std::size_t>(1, half / 10);
     for (std::size_t begin = 0; begin < epochs_.size(); begin += hold) {

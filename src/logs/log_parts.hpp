@@ -1,6 +1,7 @@
 /// What the readers of the kinds of log share.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <map>
@@ -17,6 +18,14 @@ Number number_at(ByteSpan bytes, std::size_t at) {
     Number value{};
     std::memcpy(&value, bytes.data() + at, sizeof(Number));
     return value;
+}
+
+/// The middle one, or the upper of two; of at least one. Their order changes.
+template <class Value>
+Value middle_of(std::vector<Value>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
 }
 
 /// The place, or nothing for numbers that are none. Degrees; metres above the ellipsoid.

@@ -10,7 +10,7 @@
 namespace skyloop {
 namespace {
 
-std::string seconds_text(Nanoseconds span) { return fmt::format("{}", std::chrono::duration<double>(span).count()); }
+std::string seconds_text(Nanoseconds span) { return fmt::format("{}", to_seconds(span).value()); }
 
 // Text of a log inside a comment: one line, printable.
 std::string plain_text(std::string_view text) {

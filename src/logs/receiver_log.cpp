@@ -36,11 +36,8 @@ Result<ReceiverLog> finish_log(ReceiverLog log) {
         std::vector<GpsTime> times;
         for (const LogEpoch& epoch : epochs)
             times.push_back(epoch.time);
-        const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-        std::nth_element(times.begin(), middle, times.end());
-        const auto astray = [&](const LogEpoch& e) {
-            return (e.time > *middle ? e.time - *middle : *middle - e.time) > longest;
-        };
+        const GpsTime middle = middle_of(times);
+        const auto astray = [&](const LogEpoch& e) { return std::chrono::abs(e.time - middle) > longest; };
         add_note(log, std::erase_if(epochs, astray), "epochs more than a week from the middle one were left out");
     }
     std::size_t repeated = 0;

@@ -61,9 +61,7 @@ FixType ubx_fix_type(unsigned type, unsigned flags, unsigned carrier) {
 std::optional<std::int64_t> week_of_date(const NavPvt& pvt) {
     constexpr unsigned date_and_time = 3;
     const UtcTime utc{pvt.year, pvt.month, pvt.day, pvt.hour, pvt.minute, pvt.second, 0};
-    if ((pvt.valid & date_and_time) != date_and_time || utc.year < 1980 || utc.year > 2199 ||
-        !parse_utc(format_utc(utc, 0)))
-        return std::nullopt;
+    if ((pvt.valid & date_and_time) != date_and_time || !is_calendar_time(utc)) return std::nullopt;
     const WeekAndTow split = week_and_tow(to_gps_time(utc, LeapSeconds::announced()));
     const double late = split.tow_seconds() - pvt.i_tow / 1000.0;
     constexpr double half = static_cast<double>(seconds_per_week) / 2;

@@ -33,9 +33,7 @@ FixType ulog_fix_type(double type) {
 std::optional<GpsTime> ulog_time(double utc_us) {
     constexpr double since_2000_us = 946684800e6, until_2100_us = 4102444800e6;
     if (!(utc_us > since_2000_us && utc_us < until_2100_us)) return std::nullopt;
-    constexpr std::int64_t posix_of_gps_us = 315964800'000000;
-    return from_utc_count(std::chrono::microseconds(static_cast<std::int64_t>(utc_us) - posix_of_gps_us),
-                          LeapSeconds::announced());
+    return from_posix(std::chrono::microseconds(static_cast<std::int64_t>(utc_us)), LeapSeconds::announced());
 }
 
 class UlogEpochs {
@@ -62,9 +60,7 @@ std::optional<double> UlogEpochs::boot_offset_us() const {
         if (ulog_time(utc)) offsets.push_back(utc - record.value("timestamp").value_or(0));
     }
     if (offsets.empty()) return std::nullopt;
-    const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
-    std::nth_element(offsets.begin(), middle, offsets.end());
-    return *middle;
+    return middle_of(offsets);
 }
 
 void UlogEpochs::place(const UlogRecord& record, LogEpoch& epoch) {

@@ -4,22 +4,18 @@
 #include <cmath>
 
 namespace skyloop {
-namespace {
-
-Seconds spacing_in_seconds(Nanoseconds spacing) { return Seconds(std::chrono::duration<double>(spacing).count()); }
-
-}  // namespace
+namespace {}  // namespace
 
 KnottedProcess::KnottedProcess(GaussMarkovParameters parameters, Nanoseconds spacing, RandomStream stream)
     : parameters_(parameters),
       spacing_(spacing),
       stream_(stream),
-      step_(gauss_markov_step(parameters, spacing_in_seconds(spacing))) {}
+      step_(gauss_markov_step(parameters, to_seconds(spacing))) {}
 
 KnottedProcess KnottedProcess::walk(double per_root_second, Nanoseconds spacing, RandomStream stream) {
     KnottedProcess process({per_root_second, Seconds(0)}, spacing, stream);
     process.walk_ = true;
-    process.step_ = {1, per_root_second * std::sqrt(spacing_in_seconds(spacing).value())};
+    process.step_ = {1, per_root_second * std::sqrt(to_seconds(spacing).value())};
     return process;
 }
 
@@ -28,7 +24,7 @@ void KnottedProcess::draw(std::int64_t steps) {
     if (steps > 1) {
         const double count = static_cast<double>(steps);
         step = walk_ ? GaussMarkovStep{1, step_.noise * std::sqrt(count)}
-                     : gauss_markov_step(parameters_, spacing_in_seconds(spacing_) * count);
+                     : gauss_markov_step(parameters_, to_seconds(spacing_) * count);
     }
     newest_ = step.phi * newest_ + step.noise * stream_.normal();
     std::rotate(values_.begin(), values_.begin() + 1, values_.end());
@@ -64,7 +60,7 @@ double KnottedProcess::at(GpsTime time) {
     const double slope_from = (to - before) / 2, slope_to = (after - from) / 2;
     const double c2 = 3 * (to - from) - 2 * slope_from - slope_to;
     const double c3 = 2 * (from - to) + slope_from + slope_to;
-    rate_ = (slope_from + u * (2 * c2 + u * 3 * c3)) / spacing_in_seconds(spacing_).value();
+    rate_ = (slope_from + u * (2 * c2 + u * 3 * c3)) / to_seconds(spacing_).value();
     return from + u * (slope_from + u * (c2 + u * c3));
 }
 

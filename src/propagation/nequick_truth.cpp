@@ -42,8 +42,8 @@ public:
             content.to = at(knot + 1, satellite, truth);
             content.knot = knot;
         }
-        const double fraction = difference(truth.time, GpsTime(knot * nequick_spacing)).value() /
-                                std::chrono::duration<double>(nequick_spacing).count();
+        const double fraction =
+            difference(truth.time, GpsTime(knot * nequick_spacing)).value() / to_seconds(nequick_spacing).value();
         return ionosphere_group_delay(content.from * (1 - fraction) + content.to * fraction, carrier);
     }
 

@@ -93,16 +93,17 @@ bool read_fraction(std::string_view& text, std::uint32_t& nanosecond) {
     return digits >= 1 && digits <= 9;
 }
 
-bool valid_calendar(const UtcTime& t) {
-    const std::chrono::year_month_day date =
-        std::chrono::year(t.year) / static_cast<int>(t.month) / static_cast<int>(t.day);
-    if (!date.ok() || Days(date) < gps_epoch || t.year >= 2200) return false;
-    // A leap second can only be the last second of a month (ITU-R TF.460-6).
-    if (t.second == 60) return t.hour == 23 && t.minute == 59 && date == date.year() / date.month() / std::chrono::last;
-    return t.hour < 24 && t.minute < 60 && t.second < 60;
-}
-
 }  // namespace
+
+bool is_calendar_time(const UtcTime& utc) {
+    const std::chrono::year_month_day date =
+        std::chrono::year(utc.year) / static_cast<int>(utc.month) / static_cast<int>(utc.day);
+    if (!date.ok() || Days(date) < gps_epoch || utc.year >= 2200) return false;
+    // A leap second can only be the last second of a month (ITU-R TF.460-6).
+    if (utc.second == 60)
+        return utc.hour == 23 && utc.minute == 59 && date == date.year() / date.month() / std::chrono::last;
+    return utc.hour < 24 && utc.minute < 60 && utc.second < 60;
+}
 
 double UtcTime::seconds_of_day() const { return hour * 3600.0 + minute * 60.0 + second + nanosecond * 1e-9; }
 
@@ -158,6 +159,10 @@ GpsTime from_utc_count(Nanoseconds count, const LeapSeconds& leap_seconds) {
     return GpsTime(count);
 }
 
+GpsTime from_posix(Nanoseconds since_1970, const LeapSeconds& leap_seconds) {
+    return from_utc_count(since_1970 - std::chrono::seconds(gps_epoch_posix_s), leap_seconds);
+}
+
 GpsTime gps_calendar_time(int year, unsigned month, unsigned day, unsigned hour, unsigned minute, double second) {
     return GpsTime(since_gps_epoch(year, month, day) + std::chrono::hours(hour) + std::chrono::minutes(minute) +
                    to_nanoseconds(Seconds(second)));
@@ -185,7 +190,7 @@ Result<UtcTime> parse_utc(std::string_view text) {
                       read_mark(rest, ":") && read_number(rest, 2, t.second) && read_fraction(rest, t.nanosecond);
     if (read) read_mark(rest, "Z");
     t.year = static_cast<int>(year);
-    if (!read || !rest.empty() || !valid_calendar(t))
+    if (!read || !rest.empty() || !is_calendar_time(t))
         return fail(
             ErrorCode::usage,
             fmt::format(

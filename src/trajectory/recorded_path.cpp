@@ -14,16 +14,11 @@ namespace {
 using Knot = RecordedPath::Knot;
 using Coefficients = Eigen::Matrix<double, 3, 6>;
 
-double in_seconds(Nanoseconds span) { return std::chrono::duration<double>(span).count(); }
-
-// Velocity and acceleration of a parabola fitted to five neighbours (FEEDS.md 1.13.2, step 2).
-void fit_parabola(std::span<Knot> knots, std::size_t at, std::vector<Eigen::Vector3d>& velocities) {
+// The velocity of a parabola fitted to five neighbours (FEEDS.md 1.13.2, step 2).
+Eigen::Vector3d velocity_of_parabola(std::span<const Knot> knots, std::size_t at) {
     const std::size_t width = std::min<std::size_t>(5, knots.size());
     const std::size_t first = std::min(at < 2 ? 0 : at - 2, knots.size() - width);
-    if (width < 3) {
-        velocities[at] = (knots[1].position - knots[0].position) / (knots[1].time - knots[0].time);
-        return;
-    }
+    if (width < 3) return (knots[1].position - knots[0].position) / (knots[1].time - knots[0].time);
     // In units of the window's span, so that the columns are alike in size.
     const double span = knots[first + width - 1].time - knots[first].time;
     Eigen::MatrixXd design(static_cast<Eigen::Index>(width), 3), places(static_cast<Eigen::Index>(width), 3);
@@ -34,7 +29,7 @@ void fit_parabola(std::span<Knot> knots, std::size_t at, std::vector<Eigen::Vect
         places.row(row) = (knots[first + i].position - knots[at].position).transpose();
     }
     const Eigen::MatrixXd fit = design.colPivHouseholderQr().solve(places);
-    velocities[at] = fit.row(1).transpose() / span;
+    return fit.row(1).transpose() / span;
 }
 
 // Of the velocities, with unequal steps; one-sided at the ends (FEEDS.md 1.13.2, step 1).
@@ -60,13 +55,8 @@ void fill_in(std::span<Knot> knots) {
             knot.acceleration.setZero();
         return;
     }
-    std::vector<Eigen::Vector3d> velocities(knots.size());
-    for (std::size_t i = 0; i < knots.size(); ++i) {
-        if (knots[i].has_velocity) continue;
-        fit_parabola(knots, i, velocities);
-    }
     for (std::size_t i = 0; i < knots.size(); ++i)
-        if (!knots[i].has_velocity) knots[i].velocity = velocities[i];
+        if (!knots[i].has_velocity) knots[i].velocity = velocity_of_parabola(knots, i);
     estimate_accelerations(knots);
 }
 
@@ -162,7 +152,7 @@ std::vector<Knot> knots_of(const Track& track) {
     knots.reserve(track.points.size());
     for (const TrackRow& point : track.points) {
         Knot knot;
-        knot.time = in_seconds(point.time - track.points.front().time);
+        knot.time = to_seconds(point.time - track.points.front().time).value();
         knot.position = point.position.vector();
         knot.has_velocity = point.velocity.has_value();
         knot.velocity = knot.has_velocity ? point.velocity->vector() : Eigen::Vector3d::Zero();

@@ -31,8 +31,8 @@ std::vector<TrackGap> gaps_of(Track& track, Seconds longest) {
             track.notes.push_back(
                 fmt::format("no row between {:.3f} s and {:.3f} s of the track; the path is bridged "
                             "there",
-                            static_cast<double>((from - track.points.front().time).count()) / 1e9,
-                            static_cast<double>((to - track.points.front().time).count()) / 1e9));
+                            to_seconds(from - track.points.front().time).value(),
+                            to_seconds(to - track.points.front().time).value()));
     }
     if (gaps.size() > most_told)
         track.notes.push_back(fmt::format("{} more such gaps are bridged", gaps.size() - most_told));

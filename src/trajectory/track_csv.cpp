@@ -199,8 +199,7 @@ Result<std::optional<Nanoseconds>> TrackTable::time() {
     if (columns_.has(utc)) return utc_time();
     const auto counted = counted_time(posix);
     if (!counted || !*counted) return counted;
-    constexpr Nanoseconds posix_of_gps = std::chrono::seconds(315964800);
-    return from_utc_count(**counted - posix_of_gps, LeapSeconds::announced()).time_since_epoch();
+    return from_posix(**counted, LeapSeconds::announced()).time_since_epoch();
 }
 
 Result<std::optional<Position<Ecef>>> TrackTable::place() {

@@ -127,7 +127,7 @@ NavTimeglo time_glonass(const ReportContext& context) {
 
 void put_leap_event(GpsTime now, const LeapSeconds::Step& event, int change, NavTimels& m) {
     m.ls_change = field<std::int8_t>(event.from > now ? change : 0);
-    m.time_to_ls_event = field<std::int32_t>(std::chrono::duration<double>(event.from - now).count());
+    m.time_to_ls_event = field<std::int32_t>(difference(event.from, now).value());
     // The day at whose end it comes: 1 is Sunday, 7 Saturday.
     const WeekAndTow day = week_and_tow(event.from - std::chrono::hours(12));
     m.date_of_ls_gps_wn = field<std::uint16_t>(static_cast<double>(day.week));

@@ -8,8 +8,6 @@
 namespace skyloop::firmware {
 namespace {
 
-// 1980-01-06 as POSIX counts: 3657 days, s.
-constexpr std::int64_t gps_epoch_posix_s = 315964800;
 constexpr std::uint16_t every_ignore_flag = 0xFF;
 
 void put_msp_position(const Fix& fix, MspSensorGps& to) {

@@ -91,7 +91,7 @@ Rtcm3MsmCell msm_cell(const Observation& o, double past_millisecond_m) {
 
 std::vector<Rtcm3MsmCell> msm_cells(Constellation constellation, const ReportContext& context) {
     const Observations& observations = context.state.epoch.observations;
-    const double past_s = std::chrono::duration<double>(observations.receive_time - msm_time(context)).count();
+    const double past_s = difference(observations.receive_time, msm_time(context)).value();
     std::vector<Rtcm3MsmCell> cells;
     for (const Observation& o : observations.signals)
         if (o.satellite.constellation == constellation && o.pseudorange && msm_signal(constellation, o.signal) != 0)

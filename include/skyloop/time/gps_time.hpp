@@ -38,8 +38,10 @@ GpsTime to_gps_time(const WeekAndTow& value);
 /// @param tow_seconds s; may lie outside the week (it carries), rounded to the nearest nanosecond
 GpsTime to_gps_time(std::int64_t week, double tow_seconds);
 
+/// A span of whole nanoseconds as a floating-point number of seconds.
+inline Seconds to_seconds(Nanoseconds span) { return Seconds(std::chrono::duration<double>(span).count()); }
 /// The difference a − b as a floating-point number of seconds.
-inline Seconds difference(GpsTime a, GpsTime b) { return Seconds(std::chrono::duration<double>(a - b).count()); }
+inline Seconds difference(GpsTime a, GpsTime b) { return to_seconds(a - b); }
 /// A span of seconds as whole nanoseconds, rounded to nearest. It must be finite and shorter than 292 years.
 Nanoseconds to_nanoseconds(Seconds span);
 /// `time` moved by `span`, rounded to the nearest nanosecond.

@@ -56,6 +56,10 @@ UtcTime to_utc(GpsTime time, const LeapSeconds& leap_seconds);
 GpsTime to_gps_time(const UtcTime& utc, const LeapSeconds& leap_seconds);
 /// GPS time of a count of UTC since 1980-01-06T00:00:00Z that leaves leap seconds out, as POSIX and GLONASS count.
 GpsTime from_utc_count(Nanoseconds count, const LeapSeconds& leap_seconds);
+/// 1980-01-06T00:00:00Z, the epoch of GPS time, as POSIX counts (IEEE 1003.1, 4.16), s.
+inline constexpr std::int64_t gps_epoch_posix_s = 315964800;
+/// GPS time of a POSIX time, which leaves leap seconds out.
+GpsTime from_posix(Nanoseconds since_1970, const LeapSeconds& leap_seconds);
 /// The calendar of GPS time itself, without leap seconds, as RINEX epochs are written.
 GpsTime gps_calendar_time(int year, unsigned month, unsigned day, unsigned hour, unsigned minute, double second);
 UtcTime gps_calendar(GpsTime time);
@@ -65,9 +69,12 @@ double day_of_year(const UtcTime& utc);
 /// Modified Julian date of the day, without fraction.
 std::int64_t modified_julian_day(const UtcTime& utc);
 
+/// Whether a calendar has this day and a clock this time, from 1980-01-06 to 2199; a second of 60 is taken at 23:59 on
+/// the last day of a month only.
+bool is_calendar_time(const UtcTime& utc);
 /// Reads ISO 8601 in UTC from 1980-01-06 to 2199: 2024-03-05T12:00:00Z, with a fraction of up to nine digits; `T` may
-/// be a space and `Z` be left out. A second of 60 is taken at 23:59 on the last day of a month only. Fails with `usage`
-/// and a sentence that quotes the text.
+/// be a space and `Z` be left out. Fails with `usage`, and a sentence that quotes the text, for anything else and for
+/// what is no calendar time.
 Result<UtcTime> parse_utc(std::string_view text);
 /// ISO 8601 with `decimals` (0 … 9) digits of fraction, cut off and not rounded as a clock shows them, and a final Z.
 std::string format_utc(const UtcTime& utc, int decimals = 3);

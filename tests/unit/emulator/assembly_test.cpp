@@ -115,8 +115,8 @@ TEST(Assembly, PortsAreOpenedOnlyWhenAskedFor) {
     open.open_ports = true;
     EXPECT_EQ(assembled(receiver, open).emulator->wires().size(), 1U);
     EXPECT_TRUE(std::filesystem::exists(folder / "out.nmea"));
-    EXPECT_THAT(refusal("[[receiver]]\nport = \"serial:1\"", open).message, HasSubstr("serial"));
-    EXPECT_THAT(refusal("[[receiver]]\nport = \"serial:1\"").message, HasSubstr("serial")) << "though none is opened";
+    EXPECT_THAT(refusal("[[receiver]]\nport = \"pigeon:1\"", open).message, HasSubstr("pigeon"));
+    EXPECT_THAT(refusal("[[receiver]]\nport = \"pigeon:1\"").message, HasSubstr("pigeon")) << "though none is opened";
 }
 
 TEST(Assembly, ARecordingThatCannotBeMadeIsTheOutsideWorldsFailure) {

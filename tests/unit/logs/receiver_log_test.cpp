@@ -12,6 +12,7 @@
 #include "skyloop/protocol/ubx_nav.hpp"
 #include "skyloop/protocol/ubx_satellites.hpp"
 #include "skyloop/time/utc_time.hpp"
+#include "support/oracle_table.hpp"
 
 namespace skyloop {
 namespace {
@@ -300,8 +301,7 @@ struct RealLog {
 class RealLogs : public testing::TestWithParam<RealLog> {};
 
 TEST_P(RealLogs, LoadWithTheCountsThatWereMeasured) {
-    const std::filesystem::path file = std::filesystem::path(SKYLOOP_SHARED_DATA) / GetParam().path;
-    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+    SKYLOOP_REQUIRE_SHARED(file, GetParam().path);
     const auto text = read_text_file(file);
     ASSERT_TRUE(text.has_value());
     const ReceiverLog log = read_whole(to_bytes(*text));
@@ -316,8 +316,7 @@ TEST_P(RealLogs, LoadWithTheCountsThatWereMeasured) {
 }
 
 TEST(RealDataflash, AsksForTheGeoidWhereTheLogHasNoUndulation) {
-    const std::filesystem::path file = std::filesystem::path(SKYLOOP_SHARED_DATA) / "tracks/test.BIN";
-    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+    SKYLOOP_REQUIRE_SHARED(file, "tracks/test.BIN");
     EXPECT_THAT(refusal_of(to_bytes(*read_text_file(file))), HasSubstr("the geoid's grid is not there"));
 }
 
