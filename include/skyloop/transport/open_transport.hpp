@@ -13,7 +13,7 @@
 namespace skyloop {
 
 /// The wires of this version.
-enum class WireKind { pty, serial, tcp, file, standard_output };
+enum class WireKind { pty, serial, tcp, tcp_connect, rfc2217, file, standard_output };
 
 /// A wire as it was asked for, not opened.
 struct PortUri {
@@ -25,8 +25,8 @@ struct PortUri {
 /// Fails with `usage` and a sentence that quotes the URI.
 Result<PortUri> parse_port_uri(std::string_view uri);
 
-/// Opens `pty`, `pty:LINK`, `serial:DEVICE[@BAUD][,8N1][,rtscts]`, `tcp:[HOST:]PORT`, `file:PATH` or `-` (standard
-/// output). Fails with `usage` for anything else, with `outside` when the system refuses; the sentence names the URI,
+/// Opens `pty`, `pty:LINK`, `serial:DEVICE[@BAUD][,8N1][,rtscts]`, `tcp:[HOST:]PORT`, `tcp-connect:HOST:PORT`,
+/// `rfc2217:[HOST:]PORT`, `file:PATH` or `-` (standard output). Fails with `usage` for anything else, with `outside` when the system refuses; the sentence names the URI,
 /// the address, the device or the path.
 Result<std::unique_ptr<Transport>> open_transport(std::string_view uri);
 

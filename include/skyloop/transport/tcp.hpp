@@ -35,6 +35,8 @@ public:
     std::size_t write(ByteSpan bytes) override;
     Bytes read() override;
     LineState line() override;
+    /// At first a warning when others than this machine's programs can connect.
+    std::vector<std::string> take_news() override;
     [[nodiscard]] std::string notice() const override;
     /// "127.0.0.1:40123 (tcp)".
     [[nodiscard]] std::string description() const override;
@@ -43,6 +45,8 @@ public:
     [[nodiscard]] std::uint16_t port() const { return address_.port; }
     /// Clients that were closed at once, because there was one already.
     [[nodiscard]] std::uint64_t turned_away() const { return turned_away_; }
+    /// Clients that there have been, the present one included. What read() gives is all of the latest.
+    [[nodiscard]] std::uint64_t connections() const { return connections_; }
 
 private:
     TcpTransport(FileDescriptor server, TcpAddress address)
@@ -56,7 +60,8 @@ private:
     FileDescriptor client_;
     bool client_finished_ = false;  // it sends no more; perhaps it still listens
     Bytes unread_;                  // heard while looking after clients; what one wrote before it went is heard, too
-    std::uint64_t turned_away_ = 0;
+    std::uint64_t turned_away_ = 0, connections_ = 0;
+    std::vector<std::string> news_;
 };
 
 }  // namespace skyloop

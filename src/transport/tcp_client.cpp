@@ -1,0 +1,132 @@
+#include "skyloop/transport/tcp_client.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <utility>
+
+#include "tcp_socket.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::int64_t try_every_ns = second_ns / 2;
+constexpr std::int64_t answer_patience_ns = 5 * second_ns;
+
+std::int64_t client_clock_ns() {
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    return now.tv_sec * second_ns + now.tv_nsec;
+}
+
+}  // namespace
+
+struct TcpClientTransport::Route {
+    AddressList all;
+    const addrinfo* next = nullptr;
+};
+
+TcpClientTransport::TcpClientTransport(TcpAddress address, std::unique_ptr<Route> route)
+    : address_(std::move(address)), route_(std::move(route)) {}
+
+TcpClientTransport::~TcpClientTransport() = default;
+
+Result<std::unique_ptr<TcpClientTransport>> TcpClientTransport::open(const TcpAddress& address) {
+    if (address.port == 0)
+        return fail(ErrorCode::usage, fmt::format("tcp-connect {}: port 0 cannot be called; expected 1 to 65535",
+                                                  shown_address(address)));
+    auto found = look_up(address, false);
+    if (!found) return fail(found.error());
+    auto route = std::make_unique<Route>();
+    route->all = std::move(*found);
+    std::unique_ptr<TcpClientTransport> wire(new TcpClientTransport(address, std::move(route)));
+    wire->begin_attempt(client_clock_ns());
+    return wire;
+}
+
+void TcpClientTransport::begin_attempt(std::int64_t now_ns) {
+    attempt_began_ns_ = now_ns;
+    const addrinfo* where = route_->next != nullptr ? route_->next : route_->all.get();
+    route_->next = where->ai_next;
+    socket_ = make_socket(*where);
+    if (!socket_.open()) return give_up(errno);
+    prepare_connection(socket_.value());
+    if (::connect(socket_.value(), where->ai_addr, where->ai_addrlen) == 0) return connected();
+    if (errno != EINPROGRESS && errno != EINTR) give_up(errno);
+}
+
+void TcpClientTransport::follow_attempt(std::int64_t now_ns) {
+    pollfd state{socket_.value(), POLLOUT, 0};
+    if (::poll(&state, 1, 0) <= 0) {
+        if (now_ns - attempt_began_ns_ >= answer_patience_ns) give_up(ETIMEDOUT);
+        return;
+    }
+    int reason = 0;
+    socklen_t size = sizeof reason;
+    if (::getsockopt(socket_.value(), SOL_SOCKET, SO_ERROR, &reason, &size) != 0) reason = errno;
+    if (reason != 0) return give_up(reason);
+    connected();
+}
+
+void TcpClientTransport::give_up(int reason) {
+    socket_ = FileDescriptor();
+    if (!std::exchange(attempted_, true))
+        news_.push_back(
+            fmt::format("{}: {}; it is tried every 0.5 s", shown_address(address_), std::strerror(reason)));
+}
+
+void TcpClientTransport::connected() {
+    connected_ = true;
+    attempted_ = false;
+    ++connections_;
+    news_.push_back(fmt::format("{}: connected", shown_address(address_)));
+}
+
+void TcpClientTransport::lose() {
+    socket_ = FileDescriptor();
+    connected_ = false;
+    attempted_ = true;  // the sentence below says what will be done
+    attempt_began_ns_ = client_clock_ns();
+    news_.push_back(fmt::format("{}: the connection is lost; it is tried every 0.5 s", shown_address(address_)));
+}
+
+void TcpClientTransport::follow() {
+    if (connected_) {
+        if (receive_available(socket_.value(), unread_) != StreamState::open) lose();
+        return;
+    }
+    const std::int64_t now_ns = client_clock_ns();
+    if (socket_.open()) return follow_attempt(now_ns);
+    if (now_ns - attempt_began_ns_ >= try_every_ns) begin_attempt(now_ns);
+}
+
+std::size_t TcpClientTransport::write(ByteSpan bytes) {
+    follow();
+    if (!connected_) return bytes.size();
+    StreamState state = StreamState::open;
+    const std::size_t taken = send_available(socket_.value(), bytes, state);
+    if (state != StreamState::gone) return taken;
+    lose();
+    return bytes.size();
+}
+
+Bytes TcpClientTransport::read() {
+    follow();
+    return std::exchange(unread_, {});
+}
+
+LineState TcpClientTransport::line() {
+    follow();
+    return {connected_, std::nullopt};
+}
+
+std::vector<std::string> TcpClientTransport::take_news() { return std::exchange(news_, {}); }
+
+std::string TcpClientTransport::description() const { return shown_address(address_) + " (tcp-connect)"; }
+
+}  // namespace skyloop
