@@ -12,10 +12,12 @@ constexpr std::uint8_t binary = 0, suppress_go_ahead = 3, com_port = 44;
 constexpr std::array<std::uint8_t, 3> known_options{binary, suppress_go_ahead, com_port};
 
 // Commands of the client: RFC 2217, section 2. The server's answers have 100 more.
+namespace com_command {
 constexpr std::uint8_t signature = 0, baud_rate = 1, data_size = 2, parity = 3, stop_size = 4, set_control = 5,
                        line_state = 6, modem_state = 7, flow_suspend = 8, flow_resume = 9, line_state_mask = 10,
                        modem_state_mask = 11, purge_data = 12;
 constexpr std::uint8_t of_server = 100;
+}  // namespace com_command
 
 // NOTIFY-MODEMSTATE: carrier, data set ready and clear to send. The emulated device is always there.
 constexpr std::uint8_t lines_up = 128 | 32 | 16;
@@ -105,7 +107,7 @@ void ComPortServer::take_sub(std::uint8_t byte) {
     }
     if (state_ == State::sub_command && byte == se) {
         state_ = State::data;
-        const bool new_speed = sub_.size() > 1 && sub_[0] == com_port && sub_[1] == baud_rate;
+        const bool new_speed = sub_.size() > 1 && sub_[0] == com_port && sub_[1] == com_command::baud_rate;
         held_ = new_speed && !data_.empty();
         if (!held_) finish_sub();
         return;
@@ -140,7 +142,7 @@ void ComPortServer::negotiate(std::uint8_t verb, std::uint8_t option) {
     }
     if (option == com_port && wanted) {
         // The client speaks of the option as its own, some servers' clients of ours: either is an agreement.
-        if (!std::exchange(agreed_, true)) answer_byte(of_server + modem_state, lines_up);
+        if (!std::exchange(agreed_, true)) answer_byte(com_command::of_server + com_command::modem_state, lines_up);
     }
     bool& stands = about_theirs ? mine->theirs : mine->ours;
     if (stands == wanted) return;
@@ -165,19 +167,19 @@ void ComPortServer::answer_option(std::uint8_t command, ByteSpan value) {
 
 void ComPortServer::carry_out(std::uint8_t command, ByteSpan value) {
     switch (command) {
-        case signature:
+        case com_command::signature:
             // With a text the client tells its own name, without one it asks for ours.
-            if (value.empty()) answer_option(of_server + signature, to_bytes(signature_));
+            if (value.empty()) answer_option(com_command::of_server + com_command::signature, to_bytes(signature_));
             return;
-        case baud_rate:
+        case com_command::baud_rate:
             return set_baud(value);
-        case modem_state:
-            return answer_byte(of_server + modem_state, lines_up);
-        case line_state:
-            return answer_byte(of_server + line_state, transmitter_empty);
-        case flow_suspend:
-        case flow_resume:
-            settings_.suspended = command == flow_suspend;
+        case com_command::modem_state:
+            return answer_byte(com_command::of_server + com_command::modem_state, lines_up);
+        case com_command::line_state:
+            return answer_byte(com_command::of_server + com_command::line_state, transmitter_empty);
+        case com_command::flow_suspend:
+        case com_command::flow_resume:
+            settings_.suspended = command == com_command::flow_suspend;
             return;
         default:
             if (value.size() == 1) carry_out_on_line(command, value[0]);
@@ -188,22 +190,22 @@ void ComPortServer::carry_out(std::uint8_t command, ByteSpan value) {
 void ComPortServer::carry_out_on_line(std::uint8_t command, std::uint8_t value) {
     const auto set = [&](std::uint8_t& setting, std::uint8_t least, std::uint8_t most) {
         if (value >= least && value <= most) setting = value;
-        answer_byte(static_cast<std::uint8_t>(of_server + command), setting);
+        answer_byte(static_cast<std::uint8_t>(com_command::of_server + command), setting);
     };
     switch (command) {
-        case data_size:
+        case com_command::data_size:
             return set(settings_.data_bits, 5, 8);
-        case parity:
+        case com_command::parity:
             return set(settings_.parity, 1, 5);
-        case stop_size:
+        case com_command::stop_size:
             return set(settings_.stop_bits, 1, 3);
-        case set_control:
+        case com_command::set_control:
             return control(value);
-        case line_state_mask:
-        case modem_state_mask:
+        case com_command::line_state_mask:
+        case com_command::modem_state_mask:
             // The states never change, so that a mask takes nothing away.
-            return answer_byte(static_cast<std::uint8_t>(of_server + command), value);
-        case purge_data:
+            return answer_byte(static_cast<std::uint8_t>(com_command::of_server + command), value);
+        case com_command::purge_data:
             return purge(value);
         default:
             return;
@@ -218,33 +220,34 @@ void ComPortServer::set_baud(ByteSpan value) {
     if (asked >= least_baud && asked <= most_baud) settings_.baud = asked;
     const std::uint32_t now = settings_.baud.value_or(own_baud_);
     const auto byte = [&](unsigned shift) { return static_cast<std::uint8_t>(now >> shift); };
-    answer_option(of_server + baud_rate, Bytes{byte(24), byte(16), byte(8), byte(0)});
+    answer_option(com_command::of_server + com_command::baud_rate, Bytes{byte(24), byte(16), byte(8), byte(0)});
 }
 
 // RFC 2217, section 3, SET-CONTROL: each group has a value that asks for the present state.
 void ComPortServer::control(std::uint8_t value) {
     const auto line = [&](bool& state, std::uint8_t ask) {
         if (value != ask) state = value == ask + 1;
-        answer_byte(of_server + set_control, static_cast<std::uint8_t>(state ? ask + 1 : ask + 2));
+        answer_byte(com_command::of_server + com_command::set_control,
+                    static_cast<std::uint8_t>(state ? ask + 1 : ask + 2));
     };
     constexpr std::uint8_t ask_break = 4, ask_dtr = 7, ask_rts = 10, ask_inbound = 13, last_inbound = 16;
     if (value < ask_break) {
         if (value != 0) settings_.flow = value;
-        return answer_byte(of_server + set_control, settings_.flow);
+        return answer_byte(com_command::of_server + com_command::set_control, settings_.flow);
     }
     if (value < ask_dtr) return line(settings_.sends_break, ask_break);
     if (value < ask_rts) return line(settings_.dtr, ask_dtr);
     if (value < ask_inbound) return line(settings_.rts, ask_rts);
     if (value <= last_inbound && value != ask_inbound) settings_.inbound_flow = value;
     // Flow control by DCD, DTR or DSR, 17 to 19, the port does not have: the answer says what it has.
-    answer_byte(of_server + set_control, settings_.inbound_flow);
+    answer_byte(com_command::of_server + com_command::set_control, settings_.inbound_flow);
 }
 
 // 1: what waits for the client, which here is nothing but the socket's own; 2: what waits for the device; 3: both.
 void ComPortServer::purge(std::uint8_t value) {
     if (value < 1 || value > 3) return;
     if (value != 1) data_.clear();
-    answer_byte(of_server + purge_data, value);
+    answer_byte(com_command::of_server + com_command::purge_data, value);
 }
 
 }  // namespace skyloop

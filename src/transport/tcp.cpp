@@ -83,8 +83,8 @@ Result<std::unique_ptr<TcpTransport>> TcpTransport::listen(const TcpAddress& add
         actual.port = port_of_socket(server.value());
         std::unique_ptr<TcpTransport> wire(new TcpTransport(std::move(server), std::move(actual)));
         if (!is_loopback(*where->ai_addr))
-            wire->news_.push_back(fmt::format(
-                "{}: whoever reaches this machine can read and configure the receiver", wire->description()));
+            wire->news_.push_back(fmt::format("{}: whoever reaches this machine can read and configure the receiver",
+                                              wire->description()));
         return wire;
     }
     return fail(ErrorCode::outside,

@@ -76,8 +76,7 @@ void TcpClientTransport::follow_attempt(std::int64_t now_ns) {
 void TcpClientTransport::give_up(int reason) {
     socket_ = FileDescriptor();
     if (!std::exchange(attempted_, true))
-        news_.push_back(
-            fmt::format("{}: {}; it is tried every 0.5 s", shown_address(address_), std::strerror(reason)));
+        news_.push_back(fmt::format("{}: {}; it is tried every 0.5 s", shown_address(address_), std::strerror(reason)));
 }
 
 void TcpClientTransport::connected() {

@@ -28,11 +28,11 @@ struct ComPortSettings {
 
 /// Takes a client's stream apart into data and commands, and answers the commands.
 ///
-/// Telnet as of RFC 854 and 855: options binary (RFC 856), echo refused, suppress go ahead (RFC 858) and COM-PORT-OPTION
-/// (44, RFC 2217); every other option is refused. An option that stands already is not answered again, so that no
-/// negotiation runs in a circle. Commands of any content change nothing or what they say; a value that the port cannot
-/// have is answered with the one that it has. A subnegotiation beyond 128 bytes is passed over. Answers that nobody
-/// takes are kept up to 64 kB, further ones are dropped.
+/// Telnet as of RFC 854 and 855: options binary (RFC 856), echo refused, suppress go ahead (RFC 858) and
+/// COM-PORT-OPTION (44, RFC 2217); every other option is refused. An option that stands already is not answered again,
+/// so that no negotiation runs in a circle. Commands of any content change nothing or what they say; a value that the
+/// port cannot have is answered with the one that it has. A subnegotiation beyond 128 bytes is passed over. Answers
+/// that nobody takes are kept up to 64 kB, further ones are dropped.
 ///
 /// State: where in a command the stream is, the options, the settings, and what waits to be taken.
 class ComPortServer {

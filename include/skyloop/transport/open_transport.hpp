@@ -26,8 +26,8 @@ struct PortUri {
 Result<PortUri> parse_port_uri(std::string_view uri);
 
 /// Opens `pty`, `pty:LINK`, `serial:DEVICE[@BAUD][,8N1][,rtscts]`, `tcp:[HOST:]PORT`, `tcp-connect:HOST:PORT`,
-/// `rfc2217:[HOST:]PORT`, `file:PATH` or `-` (standard output). Fails with `usage` for anything else, with `outside` when the system refuses; the sentence names the URI,
-/// the address, the device or the path.
+/// `rfc2217:[HOST:]PORT`, `file:PATH` or `-` (standard output). Fails with `usage` for anything else, with `outside`
+/// when the system refuses; the sentence names the URI, the address, the device or the path.
 Result<std::unique_ptr<Transport>> open_transport(std::string_view uri);
 
 }  // namespace skyloop

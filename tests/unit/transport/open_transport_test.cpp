@@ -26,19 +26,25 @@ TEST(OpenTransport, OpensWhatThisVersionHas) {
     EXPECT_EQ(open_transport("pty:" + (folder / "gps0").string()).value()->description(),
               (folder / "gps0").string() + " (pty)");
     EXPECT_THAT(open_transport("tcp:0").value()->description(), StartsWith("127.0.0.1:"));
+    EXPECT_THAT(open_transport("rfc2217:0").value()->description(), EndsWith(" (rfc2217)"));
+    EXPECT_THAT(open_transport("tcp-connect:[::1]:9").value()->description(), StartsWith("[::1]:9 (tcp-connect)"));
     EXPECT_THAT(open_transport("file:" + (folder / "a:b").string()).value()->description(), EndsWith("a:b (file)"));
 }
 
 TEST(OpenTransport, RefusesClearly) {
     EXPECT_EQ(refusal("usbip:3240").message,
               "port 'usbip:3240': usbip: is not supported by this version; expected pty[:LINK], serial:DEVICE[@BAUD], "
-              "tcp:[HOST:]PORT, file:PATH, client:NAME or -");
+              "tcp:[HOST:]PORT, tcp-connect:HOST:PORT, rfc2217:[HOST:]PORT, file:PATH, client:NAME or -");
     EXPECT_EQ(
         refusal("tcp:host").message,
         "port 'tcp:host': address 'host': a port from 0 to 65535 is missing; expected [HOST:]PORT, an IPv6 address "
         "in brackets");
     EXPECT_THAT(refusal("tcp:").message, HasSubstr("a port is missing"));
     EXPECT_EQ(refusal("tcp:70000").code, ErrorCode::usage);
+    EXPECT_THAT(refusal("rfc2217").message, HasSubstr("a port is missing"));
+    EXPECT_THAT(refusal("tcp-connect:").message, HasSubstr("a host and its port is missing"));
+    for (const std::string uri : {"tcp-connect:2000", "tcp-connect:host:0"})
+        EXPECT_THAT(refusal(uri).message, HasSubstr("'" + uri + "': whom to call is missing")) << uri;
     for (const std::string uri : {"usbip:3240", "usb:1546:01a8", "hid:10c4:ea80"})
         EXPECT_THAT(refusal(uri).message, HasSubstr("is not supported by this version")) << uri;
     EXPECT_THAT(refusal("ptty:gps0").message, HasSubstr("did you mean 'pty'?"));

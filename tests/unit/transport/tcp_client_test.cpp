@@ -1,0 +1,98 @@
+#include "skyloop/transport/tcp_client.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tcp_peer.hpp"
+
+namespace skyloop {
+namespace {
+
+using test::becomes_true;
+using test::TcpListener;
+using test::TcpPeer;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+
+std::unique_ptr<TcpClientTransport> calling(std::uint16_t port) {
+    auto wire = TcpClientTransport::open({"127.0.0.1", port});
+    EXPECT_TRUE(wire) << wire.error().message;
+    return std::move(*wire);
+}
+
+std::string taken_in(Transport& wire, std::size_t least) {
+    std::string all;
+    EXPECT_TRUE(becomes_true([&] {
+        all += to_string(wire.read());
+        return all.size() >= least;
+    }));
+    return all;
+}
+
+TEST(TcpClientTransport, CarriesBytesBothWays) {
+    const TcpListener server;
+    const auto wire = calling(server.port());
+    const TcpPeer peer = server.accept();
+    EXPECT_TRUE(becomes_true([&] { return wire->line().connected; }));
+    EXPECT_EQ(wire->line().baud, std::nullopt);
+    EXPECT_EQ(wire->write(to_bytes("$GNGLL\r\n")), 8U);
+    EXPECT_EQ(peer.read(8), "$GNGLL\r\n");
+    peer.write("poll");
+    EXPECT_EQ(taken_in(*wire, 4), "poll");
+    EXPECT_EQ(wire->description(), "127.0.0.1:" + std::to_string(server.port()) + " (tcp-connect)");
+}
+
+TEST(TcpClientTransport, CallsAgainWhenTheServerHasGone) {
+    const TcpListener server;
+    const auto wire = calling(server.port());
+    {
+        TcpPeer first = server.accept();
+        EXPECT_TRUE(becomes_true([&] { return wire->line().connected; }));
+        first.write("last words");
+        first.close();
+    }
+    EXPECT_EQ(taken_in(*wire, 10), "last words");
+    EXPECT_TRUE(becomes_true([&] { return !wire->line().connected; }));
+    EXPECT_EQ(wire->write(to_bytes("to nobody")), 9U);
+    EXPECT_TRUE(becomes_true([&] { return wire->line().connected; }));
+    const TcpPeer second = server.accept();
+    EXPECT_EQ(wire->write(to_bytes("fresh")), 5U);
+    EXPECT_EQ(second.read(5), "fresh") << "and nothing of before";
+    EXPECT_EQ(wire->connections(), 2U);
+    EXPECT_THAT(wire->take_news(), ElementsAre(HasSubstr("connected"), HasSubstr("the connection is lost; it is tried"),
+                                               HasSubstr("connected")));
+    EXPECT_TRUE(wire->take_news().empty());
+}
+
+TEST(TcpClientTransport, WaitsForAServerThatComesLater) {
+    const std::uint16_t port = TcpListener().port();
+    const auto wire = calling(port);
+    EXPECT_TRUE(becomes_true([&] {
+        wire->line();
+        const auto news = wire->take_news();
+        return news.size() == 1 && news[0].find("Connection refused; it is tried every 0.5 s") != std::string::npos;
+    }));
+    const TcpListener server(port);
+    EXPECT_TRUE(becomes_true([&] { return wire->line().connected; }));
+    EXPECT_THAT(wire->take_news(), ElementsAre(EndsWith(": connected"))) << "a failure of a row is told once";
+}
+
+TEST(TcpClientTransport, SurvivesAResetWhileItWrites) {
+    const TcpListener server;
+    const auto wire = calling(server.port());
+    TcpPeer peer = server.accept();
+    EXPECT_TRUE(becomes_true([&] { return wire->line().connected; }));
+    peer.reset();
+    EXPECT_TRUE(becomes_true([&] {
+        EXPECT_EQ(wire->write(to_bytes("epoch")), 5U);
+        return !wire->line().connected;
+    }));
+}
+
+TEST(TcpClientTransport, RefusesWhatCannotBeCalled) {
+    EXPECT_EQ(TcpClientTransport::open({"127.0.0.1", 0}).error().code, ErrorCode::usage);
+    EXPECT_EQ(TcpClientTransport::open({"no.such.host.invalid", 2000}).error().code, ErrorCode::outside);
+}
+
+}  // namespace
+}  // namespace skyloop
