@@ -7,18 +7,21 @@
 #include "data_folders.hpp"
 #include "run_session.hpp"
 #include "run_watch.hpp"
-#include "skyloop/emulator/thread_priority.hpp"
+#include "skyloop/emulator/deadline_grants.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::host {
 namespace {
 
 // With a client's deadlines to keep, the loop goes before programs that have none.
-void prepare_for_deadlines(const Messages& messages) {
-    const ThreadPriority granted = raise_thread_priority();
-    messages.detail(fmt::format("priority of the loop: {}", to_string(granted)));
-    if (granted != ThreadPriority::realtime)
-        messages.detail("for a real-time one: CAP_SYS_NICE, or a limit on rtprio of 10 or more (ulimit -r)");
+DeadlineGrants keep_deadlines(const Messages& messages) {
+    DeadlineGrants grants = prepare_for_deadlines();
+    messages.detail(fmt::format("priority of the loop: {}", to_string(grants.priority)));
+    messages.detail(fmt::format("memory: {}; timer slack: {} ns", grants.memory_locked ? "locked" : "not locked",
+                                grants.timer_slack_ns));
+    for (const std::string& sentence : grants.missing)
+        messages.detail(sentence);
+    return grants;
 }
 
 int run_live(const RunOptions& options) {
@@ -39,7 +42,7 @@ int run_live(const RunOptions& options) {
 
     const auto waiting = options.mavlink.empty() ? vehicle_warning(*scenario) : std::nullopt;
     if (waiting) assembly->warnings.push_back(*waiting);
-    if (!mode.virtual_time && options.priority == "auto") prepare_for_deadlines(messages);
+    if (!mode.virtual_time && options.priority == "auto") assembly->deadlines = keep_deadlines(messages);
     const auto watch = RunWatch::start(*scenario, *assembly,
                                        {options.control, options.token, options.mavlink, !mode.virtual_time}, commands);
     if (!watch) return messages.error(watch.error());

@@ -125,8 +125,12 @@ std::string scenario_digest(const Scenario& scenario, GpsTime start, std::uint64
     for (const ReceiverEntry& receiver : scenario.receivers)
         if (!receiver.state_file.empty() && std::filesystem::exists(receiver.state_file))
             if (const auto text = read_text_file(receiver.state_file)) digest = fnv1a_64(*text, digest);
-    if (const auto* file = std::get_if<FileSettings>(&scenario.trajectory))
-        if (const auto text = read_text_file(file->path)) digest = fnv1a_64(*text, digest);
+    std::vector<const TrajectorySettings*> ways{&scenario.trajectory};
+    for (const ReceiverEntry& receiver : scenario.receivers)
+        if (receiver.trajectory) ways.push_back(&*receiver.trajectory);
+    for (const TrajectorySettings* way : ways)
+        if (const auto* file = std::get_if<FileSettings>(way))
+            if (const auto text = read_text_file(file->path)) digest = fnv1a_64(*text, digest);
     if (scene != 0) digest = fnv1a_64(fmt::format("scene {:016x}", scene), digest);
     return fmt::format("{:016x}", digest);
 }
@@ -152,9 +156,10 @@ std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, 
 std::unique_ptr<Trajectory> make_antenna_path(const Scenario& scenario, const SimulationSetup& setup) {
     const auto& [forward, right, down] = scenario.receivers.at(setup.receiver).antenna_offset;
     const AntennaOffset offset{forward, right, down};
-    auto vehicle = make_trajectory(scenario.trajectory, setup.start);
+    const TrajectorySettings& way = trajectory_of(scenario, setup.receiver);
+    auto vehicle = make_trajectory(way, setup.start);
     if (offset == AntennaOffset{}) return vehicle;
-    const Angle heading = std::visit([](const auto& path) { return path.heading; }, scenario.trajectory);
+    const Angle heading = std::visit([](const auto& path) { return path.heading; }, way);
     return std::make_unique<LeverArm>(std::move(vehicle), offset, heading);
 }
 

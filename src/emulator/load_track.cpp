@@ -34,14 +34,9 @@ std::vector<std::string> track_warnings(const FileSettings& file, const Recorded
     return warnings;
 }
 
-}  // namespace
-
-GpsTime first_row_at(const FileSettings& file, GpsTime start) {
-    return file.keeps_time && file.track->origin ? *file.track->origin + file.track->points.front().time : start;
-}
-
-Result<LoadedTrack> load_track(Scenario& scenario, const Geoid* geoid, GpsTime start) {
-    auto* file = std::get_if<FileSettings>(&scenario.trajectory);
+// One path; nothing to load unless it is of a file.
+Result<LoadedTrack> load_one(TrajectorySettings& way, const Scenario& scenario, const Geoid* geoid, GpsTime start) {
+    auto* file = std::get_if<FileSettings>(&way);
     if (!file) return LoadedTrack{};
     const auto text = read_text_file(file->path);
     if (!text) return fail(text.error());
@@ -61,6 +56,29 @@ Result<LoadedTrack> load_track(Scenario& scenario, const Geoid* geoid, GpsTime s
     return LoadedTrack{
         fmt::format("{}, {} rows in {:.3f} s", file->track->name, file->track->points.size(), path.duration().value()),
         track_warnings(*file, path, scenario, start)};
+}
+
+}  // namespace
+
+GpsTime first_row_at(const FileSettings& file, GpsTime start) {
+    return file.keeps_time && file.track->origin ? *file.track->origin + file.track->points.front().time : start;
+}
+
+Result<LoadedTrack> load_track(Scenario& scenario, const Geoid* geoid, GpsTime start) {
+    auto loaded = load_one(scenario.trajectory, scenario, geoid, start);
+    if (!loaded) return loaded;
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i) {
+        if (!scenario.receivers[i].trajectory) continue;
+        const auto own = load_one(*scenario.receivers[i].trajectory, scenario, geoid, start);
+        const std::string whose = fmt::format("receiver '{}': ", receiver_name(scenario, i));
+        if (!own) return fail(own.error().code, whose + own.error().message);
+        for (const std::string& warning : own->warnings)
+            loaded->warnings.push_back(whose + warning);
+        if (own->description.empty()) continue;
+        if (!loaded->description.empty()) loaded->description += "; ";
+        loaded->description += whose + own->description;
+    }
+    return loaded;
 }
 
 }  // namespace skyloop

@@ -60,6 +60,14 @@ Json rays_json(const RayTracedScene& city) {
     return rays;
 }
 
+// What the system gave a loop in real time.
+Json grants_json(const DeadlineGrants& grants) {
+    return {{"priority", to_string(grants.priority)},
+            {"memory_locked", grants.memory_locked},
+            {"timer_slack_ns", grants.timer_slack_ns},
+            {"missing", grants.missing}};
+}
+
 // What one receiver counted; the first one's stands at the top of the file.
 void add_counts(Json& summary, const Station& station) {
     summary["epochs"] = station.counts().epochs;
@@ -101,6 +109,7 @@ std::string run_summary(const Scenario& scenario, const Assembly& assembly, std:
     };
     if (assembly.scene.scene) summary["scene"] = scene_json(assembly.scene);
     add_counts(summary, emulator.first());
+    if (assembly.deadlines) summary["real_time"] = grants_json(*assembly.deadlines);
     summary["warnings"] = assembly.warnings;
     if (emulator.stations().size() > 1) summary["receivers"] = receivers_json(emulator);
     return summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

@@ -69,8 +69,9 @@ constexpr KeyMeaning run_meanings[] = {
     {"receiver", "name", "what messages and `base` call it", "receiver0, receiver1, …"},
     {"receiver", "board", "a profile of `skyloop boards`"},
     {"receiver", "port",
-     "wires: pty[:LINK], serial:DEVICE[@BAUD], tcp:[HOST:]PORT, file:PATH, -, client:NAME; NAME= before it says which "
-     "port",
+     "wires: pty[:LINK], serial:DEVICE[@BAUD], tcp:[HOST:]PORT, tcp-connect:HOST:PORT, rfc2217:[HOST:]PORT, file:PATH, "
+     "-, "
+     "client:NAME; NAME= before it says which port",
      "a pty"},
     {"receiver", "rate_hz", "navigation rate at the factory", "the board's"},
     {"receiver", "baud", "bit/s of UART1 at the factory", "the board's"},
@@ -83,6 +84,7 @@ constexpr KeyMeaning run_meanings[] = {
     {"receiver", "power_up", "it is switched on at the start of the run; false: it has been on for long"},
     {"receiver", "state_file", "keeps what the receiver saves for the next run", "none"},
     {"receiver", "antenna_offset_m", "from the point that follows the trajectory to the antenna: forward, right, down"},
+    {"receiver", "trajectory", "where the vehicle is that this receiver rides on", "the scenario's"},
     {"receiver", "base", "name of the receiver that carries the base antenna of a pair", "none"},
     {"", "fault", "what goes wrong; lasts (docs/failsafe.md)"},
     {"fault", "kind", "which fault, see docs/faults.md"},
@@ -117,6 +119,9 @@ const KeyMeaning* find_in(std::span<const KeyMeaning> meanings, std::string_view
 std::span<const KeyMeaning> run_key_meanings() { return run_meanings; }
 
 const KeyMeaning* find_key_meaning(std::string_view table, std::string_view key) {
+    // A receiver's own way has the keys of the scenario's.
+    if (constexpr std::string_view above = "receiver."; table.starts_with("receiver.trajectory"))
+        table.remove_prefix(above.size());
     for (const auto meanings : {run_key_meanings(), model_key_meanings(), modern_key_meanings()})
         if (const KeyMeaning* found = find_in(meanings, table, key)) return found;
     return nullptr;

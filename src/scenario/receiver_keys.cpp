@@ -100,7 +100,12 @@ std::string receiver_name(const Scenario& scenario, std::size_t index) {
     return name.empty() ? default_receiver_name(index) : name;
 }
 
-void read_receivers(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
+const TrajectorySettings& trajectory_of(const Scenario& scenario, std::size_t index) {
+    const std::optional<TrajectorySettings>& own = scenario.receivers.at(index).trajectory;
+    return own ? *own : scenario.trajectory;
+}
+
+void read_receivers(TableReader& top, Scenario& scenario, const TrajectoryContext& context) {
     // A rover may stand before its base, so the names are read before the rest.
     std::vector<std::string> names;
     top.look_at_tables("receiver", [&](const toml::table& table) {
@@ -114,7 +119,8 @@ void read_receivers(TableReader& top, Scenario& scenario, const std::filesystem:
         ReceiverEntry& entry = scenario.receivers.back();
         read_output_keys(receiver, entry);
         read_navigation_keys(receiver, entry);
-        read_place_and_power_keys(receiver, entry, folder);
+        read_place_and_power_keys(receiver, entry, context.folder);
+        entry.trajectory = read_trajectory_keys(receiver, context, scenario.warnings);
         read_base(receiver, names, scenario);
     });
 }

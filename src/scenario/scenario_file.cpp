@@ -104,7 +104,8 @@ void check_expectations(TableReader& top, const Scenario& scenario) {
 void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
     top.table("run", [&](TableReader& t) { read_run_keys(t, scenario.run); });
     top.table("sky", [&](TableReader& t) { read_sky_keys(t, scenario.sky, folder); });
-    read_trajectory_keys(top, scenario, folder);
+    const TrajectoryContext context{read_frame(top), folder};
+    if (auto path = read_trajectory_keys(top, context, scenario.warnings)) scenario.trajectory = std::move(*path);
     top.table("model", [&](TableReader& t) { read_model_keys(t, scenario.model, folder); });
     top.table("atmosphere", [&](TableReader& t) {
         read_atmosphere_keys(t, scenario.atmosphere);
@@ -112,7 +113,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
             if (t.has(key)) scenario.sensor_model_keys.emplace_back(key);
     });
     top.table("scene", [&](TableReader& t) { read_scene_keys(t, scenario.scene, folder); });
-    read_receivers(top, scenario, folder);
+    read_receivers(top, scenario, context);
     read_timeline(top, scenario);
     read_expectations(top, scenario.expectations);
     check_expectations(top, scenario);
@@ -146,13 +147,14 @@ Result<Scenario> read_scenario_file(const std::filesystem::path& file) {
 Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& file) {
     const auto text = read_text_file(file);
     if (!text) return fail(text.error());
-    Scenario scenario;
+    std::optional<TrajectorySettings> trajectory;
+    std::vector<std::string> warnings;
     const auto read = read_toml(*text, file.string(), [&](TableReader& top) {
         if (!top.has("trajectory")) top.mistake_here("no [trajectory] table in this file");
-        read_trajectory_keys(top, scenario, file.parent_path());
+        trajectory = read_trajectory_keys(top, {read_frame(top), file.parent_path()}, warnings);
     });
     if (!read) return fail(read.error());
-    return scenario.trajectory;
+    return trajectory.value_or(FixedSettings{});
 }
 
 }  // namespace skyloop

@@ -1,6 +1,7 @@
 /// The keys of each part of a scenario file, and those that board files share.
 #pragma once
 
+#include "skyloop/geo/level_frame.hpp"
 #include "skyloop/scenario/scenario.hpp"
 #include "skyloop/verdict/expectation.hpp"
 #include "table_reader.hpp"
@@ -20,9 +21,14 @@ void read_atmosphere_keys(TableReader& atmosphere, AtmosphereParameters& paramet
 /// Reads the list `constellations` of a scenario's [sky] or a board's [navigation].
 void read_constellation_list(TableReader& table, std::vector<Constellation>& constellations);
 
+/// What trajectories of one file share.
+struct TrajectoryContext {
+    std::optional<LevelFrame> level;  ///< of [frame]
+    std::filesystem::path folder;     ///< that paths are relative to
+};
+
 /// Reads every [[receiver]] of a scenario's top table.
-/// @param folder that paths are relative to
-void read_receivers(TableReader& top, Scenario& scenario, const std::filesystem::path& folder);
+void read_receivers(TableReader& top, Scenario& scenario, const TrajectoryContext& context);
 
 /// Reads [scene]. @param folder that paths are relative to
 void read_scene_keys(TableReader& table, SceneEntry& scene, const std::filesystem::path& folder);
@@ -33,7 +39,11 @@ void read_timeline(TableReader& top, Scenario& scenario);
 /// at: event_mistake() and the scenario know that when everything has been read.
 void read_expectations(TableReader& top, std::vector<Expectation>& list);
 
-/// Reads [frame] and [trajectory] of a file's top table. @param folder that paths are relative to
-void read_trajectory_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder);
+/// Reads [frame] of a file's top table.
+std::optional<LevelFrame> read_frame(TableReader& top);
+/// Reads the table `trajectory` within another; nothing when it is not there.
+/// @param warnings what a reader should be told is added
+std::optional<TrajectorySettings> read_trajectory_keys(TableReader& parent, const TrajectoryContext& context,
+                                                       std::vector<std::string>& warnings);
 
 }  // namespace skyloop

@@ -11,7 +11,8 @@ namespace {
 // Reads places that may be given on the Earth or in the coordinates of a game level.
 class PlaceReader {
 public:
-    PlaceReader(std::optional<LevelFrame> level, Scenario& scenario) : level_(std::move(level)), scenario_(scenario) {}
+    PlaceReader(const std::optional<LevelFrame>& level, std::vector<std::string>& warnings)
+        : level_(level), warnings_(warnings) {}
 
     // `key` = [lat, lon, height], or `key`_level = [x, y, z].
     std::optional<Geodetic> read(TableReader& table, const std::string& key) {
@@ -41,7 +42,7 @@ public:
 private:
     void warn_beyond_reach(const Position<Level>& point) {
         const LevelPlacement& placement = level_->placement();
-        scenario_.warnings.push_back(
+        warnings_.push_back(
             fmt::format("level point ({:g}, {:g}, {:g}) lies {:.0f} m from the frame's origin; beyond {:.0f} m a plane "
                         "leaves the curved "
                         "Earth (by {:.1f} m there): anchor the frame nearer",
@@ -50,27 +51,9 @@ private:
                         point.vector().head<2>().squaredNorm() * std::pow(placement.unit.value(), 2) / (2 * 6371e3)));
     }
 
-    std::optional<LevelFrame> level_;
-    Scenario& scenario_;
+    const std::optional<LevelFrame>& level_;
+    std::vector<std::string>& warnings_;
 };
-
-std::optional<LevelFrame> read_frame(TableReader& top) {
-    std::optional<LevelFrame> frame;
-    top.table("frame", [&](TableReader& table) {
-        LevelPlacement placement;
-        const auto origin = table.place("origin");
-        table.needs_one_of({"origin"}, "has no origin; expected origin = [latitude, longitude, height]");
-        if (origin) placement.origin = *origin;
-        double yaw = 0;
-        table.number("yaw_deg", yaw, {-360, 360});
-        placement.yaw = Angle::degrees(yaw);
-        table.quantity("unit_m", placement.unit, {1e-6, 1e6});
-        table.boolean("left_handed", placement.left_handed);
-        table.quantity("reach_m", placement.reach, NumberRange::positive());
-        frame.emplace(placement);
-    });
-    return frame;
-}
 
 Angle read_heading(TableReader& table) {
     double heading = 0;
@@ -137,31 +120,58 @@ void read_file(TableReader& table, const std::filesystem::path& folder, Trajecto
     trajectory = file;
 }
 
+void read_kind(TableReader& table, PlaceReader& places, const std::filesystem::path& folder,
+               TrajectorySettings& trajectory) {
+    static constexpr std::array<std::string_view, 5> kinds{"fixed", "waypoints", "circle", "file", "live"};
+    const auto kind = table.choice("kind", kinds);
+    table.needs_one_of({"kind"}, "has no kind; expected kind = \"fixed\", \"waypoints\", \"circle\" or \"file\"");
+    switch (kind.value_or(kinds.size())) {
+        case 0:
+            return read_fixed(table, places, trajectory);
+        case 1:
+            return read_waypoints(table, places, trajectory);
+        case 2:
+            return read_circle(table, places, trajectory);
+        case 3:
+            return read_file(table, folder, trajectory);
+        case 4:
+            table.refuse("source", "live trajectories are not in this version");
+            break;
+        default:
+            return;
+    }
+    table.mistake("kind", "live trajectories are not in this version; expected fixed, waypoints, circle or file");
+}
+
 }  // namespace
 
-void read_trajectory_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
-    PlaceReader places(read_frame(top), scenario);
-    top.table("trajectory", [&](TableReader& table) {
-        static constexpr std::array<std::string_view, 5> kinds{"fixed", "waypoints", "circle", "file", "live"};
-        const auto kind = table.choice("kind", kinds);
-        table.needs_one_of({"kind"}, "has no kind; expected kind = \"fixed\", \"waypoints\", \"circle\" or \"file\"");
-        switch (kind.value_or(kinds.size())) {
-            case 0:
-                return read_fixed(table, places, scenario.trajectory);
-            case 1:
-                return read_waypoints(table, places, scenario.trajectory);
-            case 2:
-                return read_circle(table, places, scenario.trajectory);
-            case 3:
-                return read_file(table, folder, scenario.trajectory);
-            case 4:
-                table.refuse("source", "live trajectories are not in this version");
-                break;
-            default:
-                return;
-        }
-        table.mistake("kind", "live trajectories are not in this version; expected fixed, waypoints, circle or file");
+std::optional<LevelFrame> read_frame(TableReader& top) {
+    std::optional<LevelFrame> frame;
+    top.table("frame", [&](TableReader& table) {
+        LevelPlacement placement;
+        const auto origin = table.place("origin");
+        table.needs_one_of({"origin"}, "has no origin; expected origin = [latitude, longitude, height]");
+        if (origin) placement.origin = *origin;
+        double yaw = 0;
+        table.number("yaw_deg", yaw, {-360, 360});
+        placement.yaw = Angle::degrees(yaw);
+        table.quantity("unit_m", placement.unit, {1e-6, 1e6});
+        table.boolean("left_handed", placement.left_handed);
+        table.quantity("reach_m", placement.reach, NumberRange::positive());
+        frame.emplace(placement);
     });
+    return frame;
+}
+
+std::optional<TrajectorySettings> read_trajectory_keys(TableReader& parent, const TrajectoryContext& context,
+                                                       std::vector<std::string>& warnings) {
+    std::optional<TrajectorySettings> trajectory;
+    PlaceReader places(context.level, warnings);
+    parent.table("trajectory", [&](TableReader& table) {
+        trajectory.emplace();
+        read_kind(table, places, context.folder, *trajectory);
+    });
+    return trajectory;
 }
 
 }  // namespace skyloop

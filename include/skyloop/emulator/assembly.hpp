@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "skyloop/base/result.hpp"
+#include "skyloop/emulator/deadline_grants.hpp"
 #include "skyloop/emulator/emulator.hpp"
 #include "skyloop/emulator/load_scene.hpp"
 #include "skyloop/geo/geoid.hpp"
@@ -46,7 +47,8 @@ struct Assembly {
     std::string trajectory;  ///< what the recorded path is; empty: it is none
     LoadedScene scene;       ///< what stands around; its warnings are among those below
     std::vector<std::string> warnings;
-    std::vector<std::string> details;  ///< for those who ask: what was read, and from where
+    std::optional<DeadlineGrants> deadlines{};  ///< that its loop was given; nothing: it has none to keep
+    std::vector<std::string> details;           ///< for those who ask: what was read, and from where
 };
 
 /// Takes a scenario apart and gives each part its piece.

@@ -108,7 +108,8 @@ struct ReceiverEntry {
     bool power_up = false;                   ///< it is switched on at the start of the run: banner, then `start`
     std::filesystem::path state_file;        ///< keeps battery-backed memory and flash; empty: nothing does
     std::array<double, 3> antenna_offset{};  ///< forward, right, down from the point that follows the trajectory, m
-    std::optional<std::size_t> base;         ///< the receiver, by its place in the list, that carries the base antenna
+    std::optional<TrajectorySettings> trajectory{};  ///< of the vehicle it rides on; nothing: the scenario's
+    std::optional<std::size_t> base;  ///< the receiver, by its place in the list, that carries the base antenna
 };
 
 /// A fault and when it works.
@@ -145,6 +146,9 @@ struct Scenario {
 
 /// The timeline of a scenario: its faults, then its commands.
 std::vector<TimelineEntry> timeline_of(const Scenario& scenario);
+
+/// The path of the vehicle that a receiver rides on: its own, or the scenario's.
+const TrajectorySettings& trajectory_of(const Scenario& scenario, std::size_t index);
 
 /// What messages call a receiver: its name, or receiver0 and so on by its place in the list.
 std::string receiver_name(const Scenario& scenario, std::size_t index);

@@ -83,5 +83,35 @@ TEST(ScenarioReceivers, TheHeadingBelongsToEveryKindOfPath) {
                 HasSubstr("trajectory.heading_deg"));
 }
 
+TEST(ScenarioReceivers, EachMayRideOnAVehicleOfItsOwn) {
+    const Scenario s = scenario_of(
+        "[frame]\norigin = [10, 20, 30]\n"
+        "[trajectory]\nkind = \"fixed\"\nat = [1, 2, 3]\n"
+        "[[receiver]]\n"
+        "[[receiver]]\nname = \"boat\"\n[receiver.trajectory]\nkind = \"circle\"\ncentre_level = [0, 0, 0]\n"
+        "heading_deg = 90\n"
+        "[[receiver]]\n[receiver.trajectory]\nkind = \"waypoints\"\n"
+        "[[receiver.trajectory.waypoint]]\nat = [4, 5, 6]\n[[receiver.trajectory.waypoint]]\nat = [4, 5.1, 6]\n"
+        "[[receiver]]\n[receiver.trajectory]\nkind = \"file\"\npath = \"way.csv\"\n");
+    ASSERT_EQ(s.receivers.size(), 4U);
+    EXPECT_FALSE(s.receivers[0].trajectory);
+    EXPECT_EQ(&trajectory_of(s, 0), &s.trajectory);
+    const auto& circle = std::get<CircleSettings>(trajectory_of(s, 1));
+    EXPECT_NEAR(circle.shape.centre.latitude.deg(), 10, 1e-9) << "the level of the one [frame]";
+    EXPECT_NEAR(circle.heading.deg(), 90, 1e-9);
+    EXPECT_EQ(std::get<WaypointSettings>(trajectory_of(s, 2)).corners.size(), 2U);
+    EXPECT_EQ(std::get<FileSettings>(trajectory_of(s, 3)).path, "folder/way.csv");
+}
+
+TEST(ScenarioReceivers, MistakesInAnOwnTrajectoryNameItsKey) {
+    EXPECT_THAT(mistakes_of("[[receiver]]\n[receiver.trajectory]\nkind = \"fixed\"\n"),
+                HasSubstr("test.toml:2:1: [receiver.trajectory] kind \"fixed\" has no place"));
+    EXPECT_THAT(mistakes_of("[[receiver]]\n[receiver.trajectory]\nkind = \"circle\"\ncentre = [1, 2, 3]\nradius = 5\n"),
+                HasSubstr("receiver.trajectory.radius"));
+    EXPECT_THAT(mistakes_of("[[receiver]]\n[receiver.trajectory]\nkind = \"live\"\n"),
+                HasSubstr("not in this version"));
+    EXPECT_THAT(mistakes_of("[[receiver]]\ntrajectory = 5\n"), HasSubstr("receiver.trajectory"));
+}
+
 }  // namespace
 }  // namespace skyloop

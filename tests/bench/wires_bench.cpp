@@ -1,0 +1,275 @@
+/// Bytes on time: receivers in real time on pseudo-terminals, against a bare sleep and a bare write of the same run.
+///
+/// SKYLOOP_BENCH_SECONDS is how long each lasts, 20 unless given. The first two seconds do not count: clients
+/// configure.
+#include <benchmark/benchmark.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <thread>
+
+#include "skyloop/base/text_file.hpp"
+#include "skyloop/emulator/assembly.hpp"
+#include "skyloop/protocol/ubx_frame.hpp"
+#include "skyloop/time/utc_time.hpp"
+#include "skyloop/transport/pty.hpp"
+#include "support/oracle_table.hpp"
+
+namespace {
+
+using namespace skyloop;
+
+constexpr std::int64_t wire_ms = 1'000'000;
+constexpr std::int64_t wire_second = 1000 * wire_ms;
+constexpr std::int64_t settled_after = 2 * wire_second;
+
+// Who runs: so many receivers of one board.
+struct Fleet {
+    std::size_t receivers;
+    const char* board;
+    int rate_hz;
+    unsigned baud;
+    [[nodiscard]] std::int64_t period() const { return wire_second / rate_hz; }
+};
+
+// Durations, ns, and what share of them is below.
+class Durations {
+public:
+    void add(std::int64_t ns) { all_.push_back(ns); }
+    [[nodiscard]] std::size_t count() const { return all_.size(); }
+    /// In µs. @param share 0 … 1
+    [[nodiscard]] double at(double share) {
+        if (all_.empty()) return std::nan("");
+        std::sort(all_.begin(), all_.end());
+        const auto index = static_cast<std::size_t>(std::ceil(share * static_cast<double>(all_.size()))) - 1;
+        return static_cast<double>(all_[std::min(index, all_.size() - 1)]) * 1e-3;
+    }
+
+private:
+    std::vector<std::int64_t> all_;
+};
+
+double wire_seconds() {
+    const char* const given = std::getenv("SKYLOOP_BENCH_SECONDS");
+    return given != nullptr ? std::max(3.0, std::atof(given)) : 20;
+}
+
+double cpu_of_thread() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// NAV-PVT and NAV-SAT each epoch, and nothing else: CFG-PRT (protocols UBX in, UBX out) and CFG-MSG.
+Bytes configuration(unsigned baud) {
+    const auto byte = [&](unsigned shift) { return static_cast<std::uint8_t>(baud >> shift); };
+    Bytes all = encode_frame(
+        {0x06, 0x00}, Bytes{1, 0, 0, 0, 0xD0, 8, 0, 0, byte(0), byte(8), byte(16), byte(24), 1, 0, 1, 0, 0, 0, 0, 0});
+    for (const std::uint8_t message : {0x07, 0x35}) {
+        const Bytes frame = encode_frame({0x06, 0x01}, Bytes{0x01, message, 1});
+        all.insert(all.end(), frame.begin(), frame.end());
+    }
+    return all;
+}
+
+// What every measurement of one run shares.
+struct Clockwork {
+    std::int64_t base = 0;    // steady clock at the first epoch
+    std::int64_t period = 0;  // of the epochs
+    std::atomic<bool> over{false};
+    [[nodiscard]] bool settled(std::int64_t now) const { return now - base >= settled_after; }
+    [[nodiscard]] std::int64_t since_epoch(std::int64_t now) const { return (now - base) % period; }
+    [[nodiscard]] std::int64_t epoch(std::int64_t now) const { return (now - base) / period; }
+};
+
+// Sleeps as the loop does, half a period beside it, and writes 100 bytes on a terminal of its own each time.
+struct BareLoop {
+    std::unique_ptr<PtyTransport> wire = PtyTransport::open().value();
+    std::atomic<std::int64_t> written_at{0};
+    Durations lateness;
+
+    void run(const Clockwork& clock) {
+        (void)raise_thread_priority();
+        const Bytes block(100, 0x55);
+        for (std::int64_t due = clock.base + clock.period / 2; !clock.over; due += clock.period) {
+            const timespec deadline{due / wire_second, due % wire_second};
+            clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr);
+            const std::int64_t now = steady_clock_ns();
+            if (clock.settled(now)) lateness.add(now - due);
+            wire->line();
+            written_at = steady_clock_ns();
+            wire->write(block);
+        }
+    }
+};
+
+// All clients in one thread: when their bytes came.
+class Readers {
+public:
+    Readers(const Emulator& emulator, const std::string& bare, unsigned baud) {
+        for (const Station& station : emulator.stations()) {
+            const std::string description = station.wires().front().link.transport().description();
+            open(description.substr(0, description.find(' ')));
+            const Bytes commands = configuration(baud);
+            if (::write(ends_.back().fd, commands.data(), commands.size()) < 0) ends_.back().events = 0;
+        }
+        open(bare);
+        last_.resize(ends_.size(), 0);
+    }
+    ~Readers() {
+        for (const pollfd& end : ends_)
+            ::close(end.fd);
+    }
+    Readers(const Readers&) = delete;
+    Readers& operator=(const Readers&) = delete;
+
+    void run(const Clockwork& clock, const BareLoop& bare) {
+        (void)raise_thread_priority();
+        while (!clock.over) {
+            if (::poll(ends_.data(), ends_.size(), 100) <= 0) continue;
+            const std::int64_t now = steady_clock_ns();
+            for (std::size_t i = 0; i < ends_.size(); ++i)
+                if ((ends_[i].revents & POLLIN) != 0) take(i, now, clock, bare);
+        }
+    }
+
+    Durations first_byte, bare_read, gaps;
+    std::map<std::int64_t, std::int64_t> first_of_epoch;  // of the first port: ns since the epoch
+    std::uint64_t bytes = 0, epochs = 0, epochs_with_gap = 0;
+
+private:
+    void open(const std::string& path) {
+        ends_.push_back({::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC), POLLIN, 0});
+    }
+    void take(std::size_t index, std::int64_t now, const Clockwork& clock, const BareLoop& bare) {
+        std::array<char, 4096> piece{};
+        const ssize_t count = ::read(ends_[index].fd, piece.data(), piece.size());
+        if (count <= 0 || !clock.settled(now)) return;
+        if (index + 1 == ends_.size()) return bare_read.add(now - bare.written_at);
+        bytes += static_cast<std::uint64_t>(count);
+        const std::int64_t last = std::exchange(last_[index], now);
+        if (last == 0 || clock.epoch(last) != clock.epoch(now)) {
+            first_byte.add(clock.since_epoch(now));
+            if (index == 0) first_of_epoch[clock.epoch(now)] = clock.since_epoch(now);
+            ++epochs;
+            gap_seen_.erase(index);
+            return;
+        }
+        gaps.add(now - last);
+        constexpr std::int64_t longest_gap = 5 * wire_ms;
+        if (now - last > longest_gap && gap_seen_.emplace(index, true).second) ++epochs_with_gap;
+    }
+
+    std::vector<pollfd> ends_;
+    std::vector<std::int64_t> last_;  // byte of each
+    std::map<std::size_t, bool> gap_seen_;
+};
+
+// The profile of a board that may go at this rate: its file with another limit.
+std::string board_for(const Fleet& fleet, const std::filesystem::path& folder) {
+    const auto source =
+        std::filesystem::path(SKYLOOP_SOURCE_DIR) / "boards/receivers" / (std::string(fleet.board) + ".toml");
+    std::string text = read_text_file(source).value();
+    const std::string key = "max_rate_hz = ";
+    const std::size_t at = text.find(key) + key.size();
+    text.replace(at, text.find_first_not_of("0123456789", at) - at, std::to_string(fleet.rate_hz));
+    const auto copy = folder / (std::string(fleet.board) + ".toml");
+    std::ofstream(copy) << text;
+    return copy.string();
+}
+
+Assembly assemble_fleet(const Fleet& fleet, const std::filesystem::path& folder, Clockwork& clock) {
+    Scenario scenario;
+    RunMode mode;
+    mode.now = to_gps_time({2026, 3, 1, 12, 0, 0, 0}, LeapSeconds::announced());
+    scenario.run.start = mode.now;
+    scenario.run.duration = Seconds(wire_seconds());
+    ReceiverEntry entry;
+    entry.board = board_for(fleet, folder);
+    entry.rate_hz = fleet.rate_hz;
+    entry.baud = fleet.baud;
+    scenario.receivers.assign(fleet.receivers, entry);
+    for (std::size_t i = 0; i < fleet.receivers; ++i) {
+        Circle::Shape shape;
+        shape.centre = Geodetic::degrees(46.5, 30.7 + 0.001 * static_cast<double>(i), 100);
+        scenario.receivers[i].trajectory = CircleSettings{shape, {}};
+    }
+    // Time begins when everything is ready.
+    mode.now_steady_ns = clock.base = steady_clock_ns() + 3 * wire_second;
+    clock.period = fleet.period();
+    return std::move(assemble(scenario, {{SKYLOOP_SOURCE_DIR, test::built_data()}}, mode).value());
+}
+
+// p50, p99 and p99.9, µs, and how many times those of the bare loop.
+void tell(benchmark::State& state, const std::string& name, Durations& ours, Durations& bare) {
+    for (const auto& [label, share] : {std::pair{"p50", 0.5}, {"p99", 0.99}, {"p99.9", 0.999}}) {
+        state.counters[fmt::format("{}_{}_us", name, label)] = ours.at(share);
+        state.counters[fmt::format("{}_{}_bare_us", name, label)] = bare.at(share);
+        state.counters[fmt::format("{}_{}_ratio", name, label)] = ours.at(share) / bare.at(share);
+    }
+}
+
+void receivers_on_time(benchmark::State& state, const Fleet& fleet) {
+    const auto folder = std::filesystem::temp_directory_path() / fmt::format("skyloop-bench-{}", ::getpid());
+    std::filesystem::create_directories(folder);
+    Clockwork clock;
+    const Assembly assembly = assemble_fleet(fleet, folder, clock);
+    Emulator& emulator = *assembly.emulator;
+    BareLoop bare;
+    Readers readers(emulator, bare.wire->terminal(), fleet.baud);
+    Durations lateness, from_truth;
+    std::map<std::int64_t, std::int64_t> late;  // of each epoch
+    emulator.on_status([&](const Status& status) {
+        const std::int64_t due = clock.base + (status.now - assembly.start).count();
+        if (status.station != 0 || !clock.settled(due)) return;
+        lateness.add(status.lateness.count());
+        late[clock.epoch(due)] = status.lateness.count();
+    });
+    double cpu = 0;
+    for (auto _ : state) {
+        std::thread reader([&] { readers.run(clock, bare); }), sleeper([&] { bare.run(clock); });
+        std::thread([&] {
+            state.counters["real_time_priority"] = prepare_for_deadlines().priority == ThreadPriority::realtime;
+            const double before = cpu_of_thread();
+            emulator.run_until(*assembly.end, clock.over);
+            cpu = cpu_of_thread() - before;
+        }).join();
+        clock.over = true;
+        sleeper.join();
+        reader.join();
+    }
+    std::filesystem::remove_all(folder);
+    for (const auto& [epoch, first] : readers.first_of_epoch)
+        if (const auto found = late.find(epoch); found != late.end()) from_truth.add(first - found->second);
+    tell(state, "lateness", lateness, bare.lateness);
+    tell(state, "first_byte", readers.first_byte, readers.bare_read);
+    tell(state, "truth_to_byte", from_truth, readers.bare_read);
+    state.counters["core_share"] = cpu / wire_seconds();
+    state.counters["epochs_with_gap_over_5ms"] =
+        static_cast<double>(readers.epochs_with_gap) / static_cast<double>(std::max<std::uint64_t>(readers.epochs, 1));
+    state.counters["longest_gap_us"] = readers.gaps.at(1);
+    state.counters["epochs_heard"] = static_cast<double>(readers.epochs);
+    state.counters["bytes_per_epoch"] =
+        static_cast<double>(readers.bytes) / static_cast<double>(std::max<std::uint64_t>(readers.epochs, 1));
+    state.counters["samples"] = static_cast<double>(lateness.count());
+}
+BENCHMARK_CAPTURE(receivers_on_time, m9_64_ptys_10_hz, Fleet{64, "ublox-m9", 10, 115200})
+    ->Iterations(1)
+    ->UseRealTime()
+    ->Unit(benchmark::kSecond);
+BENCHMARK_CAPTURE(receivers_on_time, f9p_1_pty_25_hz, Fleet{1, "ublox-f9p", 25, 230400})
+    ->Iterations(1)
+    ->UseRealTime()
+    ->Unit(benchmark::kSecond);
+
+}  // namespace
