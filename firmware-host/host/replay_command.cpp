@@ -110,7 +110,8 @@ Action add_replay_command(CLI::App& app) {
     command->add_option("RECORDING", options->recording, "Folder of run --record or simulate --out, or a file of bytes")
         ->required();
     command->add_option("--port", options->ports,
-                        "Where the bytes go: pty[:LINK], serial:DEVICE[@BAUD], tcp:[HOST:]PORT, file:PATH or -; one a "
+                        "Where the bytes go: pty[:LINK], serial:DEVICE[@BAUD], tcp:[HOST:]PORT, tcp-connect:HOST:PORT, "
+                        "rfc2217:[HOST:]PORT, file:PATH or -; one a "
                         "recorded port, in order");
     command->add_option("--speed", options->speed, "Recorded seconds per second")->check(CLI::Range(1e-3, 1e3));
     command->add_option("--from", options->from, "Seconds after the first recorded byte")->check(CLI::Range(0.0, 1e9));

@@ -63,9 +63,11 @@ std::size_t Rfc2217Transport::write(ByteSpan bytes) {
     return taken;
 }
 
+// What stood there at the last look: with bytes that came since, the speed may have changed.
 Bytes Rfc2217Transport::read() {
+    Bytes data = port_.take_data();
     follow();
-    return port_.take_data();
+    return data;
 }
 
 LineState Rfc2217Transport::line() {

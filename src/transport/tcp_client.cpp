@@ -24,6 +24,17 @@ std::int64_t client_clock_ns() {
     return now.tv_sec * second_ns + now.tv_nsec;
 }
 
+// A free port of the system's own choice may be called from the very same port: then the two ends are one (RFC 9293,
+// section 3.5, simultaneous open), and no server could ever have the port.
+bool calls_itself(int socket) {
+    sockaddr_storage own{}, other{};
+    socklen_t own_size = sizeof own, other_size = sizeof other;
+    if (::getsockname(socket, reinterpret_cast<sockaddr*>(&own), &own_size) != 0 ||
+        ::getpeername(socket, reinterpret_cast<sockaddr*>(&other), &other_size) != 0)
+        return false;
+    return own_size == other_size && std::memcmp(&own, &other, own_size) == 0;
+}
+
 }  // namespace
 
 struct TcpClientTransport::Route {
@@ -80,6 +91,7 @@ void TcpClientTransport::give_up(int reason) {
 }
 
 void TcpClientTransport::connected() {
+    if (calls_itself(socket_.value())) return give_up(ECONNREFUSED);
     connected_ = true;
     attempted_ = false;
     ++connections_;

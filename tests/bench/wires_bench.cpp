@@ -75,7 +75,7 @@ Bytes configuration(unsigned baud) {
     const auto byte = [&](unsigned shift) { return static_cast<std::uint8_t>(baud >> shift); };
     Bytes all = encode_frame(
         {0x06, 0x00}, Bytes{1, 0, 0, 0, 0xD0, 8, 0, 0, byte(0), byte(8), byte(16), byte(24), 1, 0, 1, 0, 0, 0, 0, 0});
-    for (const std::uint8_t message : {0x07, 0x35}) {
+    for (const std::uint8_t message : {std::uint8_t{0x07}, std::uint8_t{0x35}}) {
         const Bytes frame = encode_frame({0x06, 0x01}, Bytes{0x01, message, 1});
         all.insert(all.end(), frame.begin(), frame.end());
     }

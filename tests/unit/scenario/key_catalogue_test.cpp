@@ -43,7 +43,9 @@ std::string frame_of(const KeyTable& table, const std::string& kind) {
     if (dot != std::string::npos) {
         const KeyTable& above = table_of(table.path.substr(0, dot));
         const KeyEntry& own = key_of(above.path, table.path.substr(dot + 1));
-        if (!own.kinds.empty()) text = frame_of(above, own.kinds.front());
+        // A table of a list stands below a heading of that list.
+        if (!own.kinds.empty() || above.list)
+            text = frame_of(above, own.kinds.empty() ? std::string() : own.kinds.front());
     }
     text += heading_of(table);
     return kind.empty() ? text : text + "kind = \"" + kind + "\"\n";
