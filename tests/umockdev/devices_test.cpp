@@ -1,7 +1,6 @@
 // Devices as libusb and both backends of hidapi find them, and what is said where one may not be opened.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "mock_cdc_acm.hpp"
@@ -107,8 +106,7 @@ TEST(UsbDevices, WithoutPermissionTheSentenceNamesTheNode) {
     ASSERT_TRUE(context);
     const auto found = find_usb_device(*context, *parse_usb_address("1546:01a8"));
     ASSERT_TRUE(found);
-    ASSERT_EQ(chmod(bed.root().c_str(), 0755), 0);
-    ASSERT_EQ(chmod((bed.root() + node_of(ublox())).c_str(), 0), 0);
+    bed.forbid(ublox());
     constexpr uid_t nobody = 65534;
     const uid_t self = geteuid();
     ASSERT_EQ(seteuid(self == 0 ? nobody : self), 0);  // the superuser may open everything

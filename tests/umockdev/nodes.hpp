@@ -10,8 +10,8 @@
 
 namespace skyloop::mock {
 
-/// /dev/bus/usb/BBB/NNN: URBs of all kinds, claims, drivers (linux/usbdevice_fs.h).
-std::unique_ptr<Node> make_usbfs_node(std::shared_ptr<MockDevice> device);
+/// /dev/bus/usb/BBB/NNN: URBs of all kinds, claims, drivers (linux/usbdevice_fs.h). It answers for the texts itself.
+std::unique_ptr<Node> make_usbfs_node(const DeviceSpec& spec, std::shared_ptr<MockDevice> device);
 /// /dev/hidrawN (linux/hidraw.h): feature reports become the device's control transfers, output reports go to its
 /// endpoint 0x01 and input reports come from 0x81.
 std::unique_ptr<Node> make_hidraw_node(std::shared_ptr<MockDevice> device, const Bytes& report_descriptor);

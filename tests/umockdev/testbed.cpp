@@ -1,7 +1,7 @@
 #include "testbed.hpp"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <umockdev.h>
 
 #include <stdexcept>
@@ -88,7 +88,7 @@ void Testbed::attach(const std::string& node, std::unique_ptr<Node> answers) {
 
 void Testbed::plug_in(const DeviceSpec& spec, std::shared_ptr<MockDevice> device) {
     add(describe_device(spec));  // which tells of it, too
-    attach(node_of(spec), make_usbfs_node(device));
+    attach(node_of(spec), make_usbfs_node(spec, device));
     const std::string path = device_path(spec);
     state_->paths[path] = {path};
     state_->nodes_of[path] = {node_of(spec)};
@@ -147,6 +147,14 @@ void Testbed::add_tty(const DeviceSpec& spec, int interface, const std::string& 
                     tty, name, spec.port, interface, serial ? 166 : 188));
     std::vector<std::string>& paths = state_->paths.at(path);
     paths.insert(paths.begin(), tty);
+}
+
+void Testbed::forbid(const DeviceSpec& spec) {
+    const std::string node = node_of(spec);
+    const bool done = ::chmod(root().c_str(), 0755) == 0 && ::chmod((root() + node).c_str(), 0) == 0 &&
+                      // umockdev's own socket is no part of the play: it asks there whatever open(2) said.
+                      ::chmod((root() + "/ioctl/" + node).c_str(), 0777) == 0;
+    expect(done, nullptr);
 }
 
 std::string Testbed::root() const {

@@ -2,6 +2,7 @@
 #include <sys/ioctl.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -32,7 +33,8 @@ Setup setup_of(const Urb& urb) {
 
 class UsbfsNode : public HandlerNode {
 public:
-    explicit UsbfsNode(std::shared_ptr<MockDevice> device) : device_(std::move(device)) {}
+    UsbfsNode(DeviceSpec spec, std::shared_ptr<MockDevice> device)
+        : spec_(std::move(spec)), device_(std::move(device)) {}
     ~UsbfsNode() override {
         for (std::list<Urb>* const list : {&waiting_, &done_})
             for (Urb& urb : *list)
@@ -53,11 +55,13 @@ private:
     void reap(UMockdevIoctlClient* client);
     void finish_what_can();
     bool finish(Urb& urb);
+    MockDevice::Answer control_answer(const Setup& setup, ByteSpan sent);
     void drivers(UMockdevIoctlClient* client, unsigned request);
     void claim_without_driver(UMockdevIoctlData* argument);
     int driver_call(UMockdevIoctlData* argument);
     int driver_name(UMockdevIoctlData* argument);
 
+    DeviceSpec spec_;
     std::shared_ptr<MockDevice> device_;
     std::list<Urb> waiting_;
     std::list<Urb> done_;
@@ -167,6 +171,21 @@ void UsbfsNode::discard(UMockdevIoctlClient* client) {
     answer(client, 0);
 }
 
+// Texts are answered for every device: those of its description (USB 2.0, section 9.6.7), in US English.
+MockDevice::Answer UsbfsNode::control_answer(const Setup& setup, ByteSpan sent) {
+    constexpr std::uint8_t get_descriptor = 6, text = 3;
+    if (setup.type != to_host || setup.request != get_descriptor || setup.value >> 8 != text)
+        return device_->control(setup, sent);
+    const std::size_t index = setup.value & 0xff;
+    if (index == 0) return {MockDevice::Status::done, {4, text, 0x09, 0x04}};
+    const std::array<std::string, 3> texts{spec_.manufacturer, spec_.product, spec_.serial};
+    if (index > texts.size() || texts[index - 1].empty()) return MockDevice::stall();
+    Bytes answer{static_cast<std::uint8_t>(2 + 2 * texts[index - 1].size()), text};
+    for (const char c : texts[index - 1])
+        answer.insert(answer.end(), {static_cast<std::uint8_t>(c), 0});
+    return {MockDevice::Status::done, answer};
+}
+
 // Whether the device has dealt with it.
 bool UsbfsNode::finish(Urb& urb) {
     usbdevfs_urb& head = urb.head();
@@ -179,7 +198,7 @@ bool UsbfsNode::finish(Urb& urb) {
     const std::size_t room = urb.bytes().size() - (control ? setup_size : 0);
     std::uint8_t* const place = urb.buffer->data + (control ? setup_size : 0);
     const ByteSpan sent = in ? ByteSpan() : ByteSpan(place, room);
-    const MockDevice::Answer answer = control ? device_->control(setup_of(urb), sent)
+    const MockDevice::Answer answer = control ? control_answer(setup_of(urb), sent)
                                       : in    ? device_->in(head.endpoint, room)
                                               : device_->out(head.endpoint, sent);
     if (answer.status == MockDevice::Status::busy) return false;
@@ -223,8 +242,8 @@ void UsbfsNode::reap(UMockdevIoctlClient* client) {
 
 }  // namespace
 
-std::unique_ptr<Node> make_usbfs_node(std::shared_ptr<MockDevice> device) {
-    return std::make_unique<UsbfsNode>(std::move(device));
+std::unique_ptr<Node> make_usbfs_node(const DeviceSpec& spec, std::shared_ptr<MockDevice> device) {
+    return std::make_unique<UsbfsNode>(spec, std::move(device));
 }
 
 }  // namespace skyloop::mock
