@@ -33,15 +33,14 @@ Result<HidApi> load(HidBackend backend) {
                                                     library.file, library.package));
     HidApi api{};
     api.backend = backend;
-    int (*initialize)() = nullptr;
-    const bool whole = find(loaded, "hid_init", initialize) && find(loaded, "hid_enumerate", api.enumerate) &&
-                       find(loaded, "hid_free_enumeration", api.free_enumeration) &&
-                       find(loaded, "hid_open_path", api.open_path) && find(loaded, "hid_close", api.close) &&
-                       find(loaded, "hid_write", api.write) && find(loaded, "hid_read_timeout", api.read_timeout) &&
-                       find(loaded, "hid_send_feature_report", api.send_feature_report) &&
-                       find(loaded, "hid_get_feature_report", api.get_feature_report) &&
-                       find(loaded, "hid_error", api.error);
-    if (!whole || initialize() != 0)
+    const bool whole =
+        find(loaded, "hid_init", api.initialize) && find(loaded, "hid_exit", api.finish) &&
+        find(loaded, "hid_enumerate", api.enumerate) && find(loaded, "hid_free_enumeration", api.free_enumeration) &&
+        find(loaded, "hid_open_path", api.open_path) && find(loaded, "hid_close", api.close) &&
+        find(loaded, "hid_write", api.write) && find(loaded, "hid_read_timeout", api.read_timeout) &&
+        find(loaded, "hid_send_feature_report", api.send_feature_report) &&
+        find(loaded, "hid_get_feature_report", api.get_feature_report) && find(loaded, "hid_error", api.error);
+    if (!whole || api.initialize() != 0)
         return fail(ErrorCode::outside, fmt::format("cannot use HID devices: {} {}", library.file,
                                                     whole ? "does not start" : "is no hidapi"));
     return api;

@@ -10,6 +10,8 @@ namespace skyloop {
 
 struct HidApi {
     HidBackend backend;
+    decltype(&hid_init) initialize;
+    decltype(&hid_exit) finish;
     decltype(&hid_enumerate) enumerate;
     decltype(&hid_free_enumeration) free_enumeration;
     decltype(&hid_open_path) open_path;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -41,13 +43,36 @@ std::string port_path_of(HidBackend backend, const std::string& path) {
     return backend == HidBackend::hidraw ? port_path_of_node(path) : path.substr(0, path.find(':'));
 }
 
+// The node that a device is opened by; empty when sysfs does not tell.
+std::string node_of(HidBackend backend, const std::string& path) {
+    if (backend == HidBackend::hidraw) return path;
+    const auto device = std::filesystem::path("/sys/bus/usb/devices") / port_path_of(backend, path);
+    int bus = 0, number = 0;
+    if (!(std::ifstream(device / "busnum") >> bus) || !(std::ifstream(device / "devnum") >> number)) return {};
+    return fmt::format("/dev/bus/usb/{:03}/{:03}", bus, number);
+}
+
+// hidapi opens, closes and lists devices of one backend in one thread at a time only.
+struct Usage {
+    std::mutex mutex{};
+    int open = 0;  // devices
+};
+
+Usage& usage(HidBackend backend) {
+    static Usage hidraw, libusb;
+    return backend == HidBackend::hidraw ? hidraw : libusb;
+}
+
 struct Found {
     std::string path;
     UsbDeviceInfo info;
 };
 
-std::vector<Found> enumerate(const HidApi& api, UsbIds ids) {
+std::vector<Found> enumerate(const HidApi& api, UsbIds ids, const Usage& used) {
     std::vector<Found> found;
+    // Where no udevd runs, a session of libusb sees what was plugged in when it began. It can begin anew while nothing
+    // of it is open.
+    if (used.open == 0 && api.finish() == 0) (void)api.initialize();
     hid_device_info* list = api.enumerate(ids.vendor, ids.product);
     for (const hid_device_info* device = list; device != nullptr; device = device->next)
         found.push_back({device->path,
@@ -62,19 +87,26 @@ std::vector<Found> enumerate(const HidApi& api, UsbIds ids) {
 Result<HidDevice> HidDevice::open(const UsbAddress& address, HidBackend backend) {
     const auto api = hid_api(backend);
     if (!api) return fail(api.error());
-    const std::vector<Found> devices = enumerate(**api, address.ids);
+    Usage& used = usage(backend);
+    const std::lock_guard lock(used.mutex);
+    const std::vector<Found> devices = enumerate(**api, address.ids, used);
     const auto found =
         std::find_if(devices.begin(), devices.end(), [&](const Found& device) { return address.matches(device.info); });
     if (found == devices.end())
         return fail(ErrorCode::outside, fmt::format("no HID device {} is plugged in", to_string(address)));
     hid_device* device = (*api)->open_path(found->path.c_str());
-    if (device != nullptr) return HidDevice(**api, device, found->info);
-    const bool denied =
-        backend == HidBackend::hidraw && ::access(found->path.c_str(), R_OK | W_OK) != 0 && errno == EACCES;
+    if (device != nullptr) {
+        ++used.open;
+        return HidDevice(**api, device, found->info);
+    }
+    const std::string node = node_of(backend, found->path);
+    const bool denied = !node.empty() && ::access(node.c_str(), R_OK | W_OK) != 0 && errno == EACCES;
+    // The libusb backend has no words for it.
+    const std::string reason =
+        backend == HidBackend::hidraw ? narrow((*api)->error(nullptr)) : "it is gone, or another program holds it";
     return fail(ErrorCode::outside,
-                fmt::format("cannot open HID device {} ({}): {}", to_string(address), found->path,
-                            denied ? "no permission; a udev rule gives it: skyloop devices shows the line"
-                                   : narrow((*api)->error(nullptr))));
+                fmt::format("cannot open HID device {} ({}): {}", to_string(address), node.empty() ? found->path : node,
+                            denied ? "no permission; a udev rule gives it: skyloop devices shows the line" : reason));
 }
 
 Result<HidDevice> HidDevice::open(const UsbAddress& address) {
@@ -96,14 +128,22 @@ HidDevice& HidDevice::operator=(HidDevice&& other) noexcept {
 }
 
 HidDevice::~HidDevice() {
-    if (device_ != nullptr) api_->close(static_cast<hid_device*>(device_));
+    if (device_ == nullptr) return;
+    Usage& used = usage(api_->backend);
+    const std::lock_guard lock(used.mutex);
+    api_->close(static_cast<hid_device*>(device_));
+    --used.open;
 }
 
 HidBackend HidDevice::backend() const { return api_->backend; }
 
 Error HidDevice::last_error(const char* what) const {
-    return {ErrorCode::outside, fmt::format("HID device {}: cannot {}: {}", to_string(info_.ids), what,
-                                            narrow(api_->error(static_cast<hid_device*>(device_))))};
+    // The libusb backend has no words for it.
+    const std::string reason = api_->backend == HidBackend::hidraw
+                                   ? narrow(api_->error(static_cast<hid_device*>(device_)))
+                                   : "it refused, or is gone";
+    return {ErrorCode::outside,
+            fmt::format("HID device {} at {}: cannot {}: {}", to_string(info_.ids), info_.port_path, what, reason)};
 }
 
 Result<void> HidDevice::write(ByteSpan report) {

@@ -6,43 +6,82 @@
 #include <array>
 
 #include "skyloop/base/spelling.hpp"
+#include "skyloop/hid/cp2110.hpp"
 #include "skyloop/transport/file.hpp"
 #include "skyloop/transport/pty.hpp"
 #include "skyloop/transport/rfc2217.hpp"
 #include "skyloop/transport/tcp_client.hpp"
+#include "skyloop/usb/cdc_acm.hpp"
 
 namespace skyloop {
 namespace {
 
-constexpr std::string_view offered =
-    "pty[:LINK], serial:DEVICE[@BAUD], tcp:[HOST:]PORT, tcp-connect:HOST:PORT, rfc2217:[HOST:]PORT, file:PATH, "
-    "client:NAME or -";
-constexpr std::array<std::string_view, 6> known_schemes{"pty", "serial", "tcp", "tcp-connect", "rfc2217", "file"};
-constexpr std::array<std::string_view, 3> later_schemes{"usbip", "usb", "hid"};
+struct Scheme {
+    std::string_view name;
+    WireKind kind;
+    std::string_view shape;  // as it is offered
+    std::string_view rest;   // what stands behind the colon
+};
+constexpr std::array<Scheme, 8> schemes{
+    {{"pty", WireKind::pty, "pty[:LINK]", "a path"},
+     {"serial", WireKind::serial, "serial:DEVICE[@BAUD]", "a device"},
+     {"usb", WireKind::usb, "usb:VID:PID[:SERIAL]", "a device"},
+     {"hid", WireKind::hid, "hid:VID:PID[:SERIAL]", "a device"},
+     {"tcp", WireKind::tcp, "tcp:[HOST:]PORT", "a port"},
+     {"tcp-connect", WireKind::tcp_connect, "tcp-connect:HOST:PORT", "a host and its port"},
+     {"rfc2217", WireKind::rfc2217, "rfc2217:[HOST:]PORT", "a port"},
+     {"file", WireKind::file, "file:PATH", "a path"}}};
 
-std::string_view missing_part(std::string_view scheme) {
-    if (scheme == "tcp" || scheme == "rfc2217") return "a port";
-    if (scheme == "tcp-connect") return "a host and its port";
-    return scheme == "serial" ? "a device" : "a path";
+std::string offered() {
+    std::string text;
+    for (const Scheme& scheme : schemes)
+        text += fmt::format("{}, ", scheme.shape);
+    return text + "client:NAME or -";
 }
 
-std::optional<WireKind> network_kind(std::string_view scheme) {
-    if (scheme == "tcp") return WireKind::tcp;
-    if (scheme == "tcp-connect") return WireKind::tcp_connect;
-    if (scheme == "rfc2217") return WireKind::rfc2217;
-    return std::nullopt;
+// The control model of USB knows no RTS/CTS; a device that has it decides for itself.
+Result<UsbBridgeAddress> parse_bridge(WireKind kind, std::string_view rest) {
+    auto bridge = parse_usb_bridge_address(rest);
+    if (bridge && kind == WireKind::usb && bridge->format.rtscts)
+        return fail(ErrorCode::usage, "a CDC-ACM device takes no rtscts");
+    return bridge;
 }
 
-// @param rest of the URI, behind its scheme
-Result<PortUri> network_uri(WireKind kind, std::string_view uri, std::string_view rest) {
+Result<TcpAddress> parse_network(WireKind kind, std::string_view rest) {
     auto address = parse_tcp_address(rest);
-    if (!address) return fail(address.error().code, fmt::format("port '{}': {}", uri, address.error().message));
-    const bool calls = kind == WireKind::tcp_connect;
-    if (calls && (rest.find(':') == std::string_view::npos || address->port == 0))
-        return fail(ErrorCode::usage, fmt::format("port '{}': whom to call is missing; expected tcp-connect:HOST:PORT, "
-                                                  "the port from 1 to 65535, an IPv6 address in brackets",
-                                                  uri));
-    return PortUri{kind, {}, std::move(*address), {}};
+    if (address && kind == WireKind::tcp_connect && (rest.find(':') == std::string_view::npos || address->port == 0))
+        return fail(ErrorCode::usage,
+                    "whom to call is missing; expected tcp-connect:HOST:PORT, the port from 1 to 65535, an IPv6 address "
+                    "in brackets");
+    return address;
+}
+
+template <class Part>
+Result<void> take(Result<Part> read, Part& part) {
+    if (!read) return fail(read.error());
+    part = std::move(*read);
+    return {};
+}
+
+// @param rest of the URI, behind its scheme; not empty
+Result<void> read_rest(std::string_view rest, PortUri& port) {
+    switch (port.kind) {
+        case WireKind::serial:
+            return take(parse_serial_address(rest), port.serial);
+        case WireKind::usb:
+        case WireKind::hid:
+            return take(parse_bridge(port.kind, rest), port.bridge);
+        case WireKind::tcp:
+        case WireKind::tcp_connect:
+        case WireKind::rfc2217:
+            return take(parse_network(port.kind, rest), port.address);
+        case WireKind::pty:
+        case WireKind::file:
+        case WireKind::standard_output:
+            break;
+    }
+    port.path = rest;
+    return {};
 }
 
 template <class Wire>
@@ -54,28 +93,27 @@ Result<std::unique_ptr<Transport>> as_transport(Result<std::unique_ptr<Wire>> wi
 }  // namespace
 
 Result<PortUri> parse_port_uri(std::string_view uri) {
-    if (uri == "-") return PortUri{WireKind::standard_output, {}, {}, {}};
+    PortUri port;
+    if (uri == "-") return port.kind = WireKind::standard_output, port;
     const std::size_t colon = uri.find(':');
-    const std::string_view scheme = uri.substr(0, colon);
-    const bool has_rest = colon != std::string_view::npos;
-    const std::string_view rest = has_rest ? uri.substr(colon + 1) : std::string_view();
-    if (scheme == "pty" && !has_rest) return PortUri{WireKind::pty, {}, {}, {}};
-    if (scheme == "pty" && !rest.empty()) return PortUri{WireKind::pty, std::string(rest), {}, {}};
-    if (const auto kind = network_kind(scheme); kind && !rest.empty()) return network_uri(*kind, uri, rest);
-    if (scheme == "serial" && !rest.empty()) {
-        auto serial = parse_serial_address(rest);
-        if (!serial) return fail(serial.error().code, fmt::format("port '{}': {}", uri, serial.error().message));
-        return PortUri{WireKind::serial, {}, {}, std::move(*serial)};
+    const std::string_view name = uri.substr(0, colon);
+    const auto scheme =
+        std::find_if(schemes.begin(), schemes.end(), [&](const Scheme& known) { return known.name == name; });
+    if (scheme == schemes.end()) {
+        std::array<std::string_view, schemes.size()> names;
+        std::transform(schemes.begin(), schemes.end(), names.begin(), [](const Scheme& known) { return known.name; });
+        return fail(ErrorCode::usage, fmt::format("port '{}': no such kind of port{}; expected {}", uri,
+                                                  did_you_mean(name, names), offered()));
     }
-    if (scheme == "file" && !rest.empty()) return PortUri{WireKind::file, std::string(rest), {}, {}};
-    if (std::find(known_schemes.begin(), known_schemes.end(), scheme) != known_schemes.end())
+    port.kind = scheme->kind;
+    if (colon == std::string_view::npos && port.kind == WireKind::pty) return port;
+    const std::string_view rest = colon == std::string_view::npos ? std::string_view() : uri.substr(colon + 1);
+    if (rest.empty())
         return fail(ErrorCode::usage,
-                    fmt::format("port '{}': {} is missing; expected {}", uri, missing_part(scheme), offered));
-    if (has_rest && std::find(later_schemes.begin(), later_schemes.end(), scheme) != later_schemes.end())
-        return fail(ErrorCode::usage,
-                    fmt::format("port '{}': {}: is not supported by this version; expected {}", uri, scheme, offered));
-    return fail(ErrorCode::usage, fmt::format("port '{}': no such kind of port{}; expected {}", uri,
-                                              did_you_mean(scheme, known_schemes), offered));
+                    fmt::format("port '{}': {} is missing; expected {}", uri, scheme->rest, offered()));
+    if (const auto read = read_rest(rest, port); !read)
+        return fail(read.error().code, fmt::format("port '{}': {}", uri, read.error().message));
+    return port;
 }
 
 Result<std::unique_ptr<Transport>> open_transport(std::string_view uri) {
@@ -86,6 +124,11 @@ Result<std::unique_ptr<Transport>> open_transport(std::string_view uri) {
             return as_transport(port->path.empty() ? PtyTransport::open() : PtyTransport::open(port->path));
         case WireKind::serial:
             return as_transport(SerialTransport::open(port->serial));
+        case WireKind::usb:
+            return as_transport(UsbBridgeTransport::open(port->bridge, open_cdc_acm, "usb"));
+        case WireKind::hid:
+            return as_transport(UsbBridgeTransport::open(
+                port->bridge, [](const auto& device, const auto& line) { return open_cp2110(device, line); }, "hid"));
         case WireKind::tcp:
             return as_transport(TcpTransport::listen(port->address));
         case WireKind::tcp_connect:

@@ -5,11 +5,10 @@
 #include <signal.h>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <chrono>
 #include <utility>
 
+#include "line_options.hpp"
 #include "serial_line.hpp"
 
 namespace skyloop {
@@ -18,7 +17,6 @@ namespace {
 constexpr std::int64_t search_every_ns = 500'000'000;
 constexpr std::int64_t drain_patience_ns = 1'000'000'000;
 constexpr std::uint32_t speed_of_no_speed = 115200;  // for a port that has none, such as a receiver's USB
-constexpr std::uint32_t lowest_baud = 50, highest_baud = 12'000'000;
 // As a terminal's driver holds. Speed changes take milliseconds, in which a fast line sends some hundred bytes.
 constexpr std::size_t most_waiting = 4096;
 constexpr int lasting_trouble = 4;  // attempts: a node is often there before its rights are
@@ -32,20 +30,6 @@ auto in_background(Work work) {
     auto future = std::async(std::launch::async, std::move(work));
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
     return future;
-}
-
-// "8N1"; nothing for anything else.
-std::optional<SerialFormat> read_format(std::string_view text) {
-    if (text.size() != 3) return std::nullopt;
-    const char parity = static_cast<char>(std::toupper(static_cast<unsigned char>(text[1])));
-    SerialFormat format;
-    if (text[0] != '7' && text[0] != '8') return std::nullopt;
-    if (parity != 'N' && parity != 'E' && parity != 'O') return std::nullopt;
-    if (text[2] != '1' && text[2] != '2') return std::nullopt;
-    format.data_bits = text[0] - '0';
-    format.stop_bits = text[2] - '0';
-    if (parity != 'N') format.parity = parity == 'E' ? Parity::even : Parity::odd;
-    return format;
 }
 
 struct AddressText {
@@ -70,27 +54,6 @@ AddressText split_address(std::string_view text) {
     return parts;
 }
 
-// Nothing when it was understood; else what is wrong.
-std::string read_options(std::string_view text, SerialFormat& format) {
-    bool shaped = false;
-    for (std::size_t at = 0; at <= text.size();) {
-        const std::size_t end = std::min(text.find(',', at), text.size());
-        const std::string_view option = text.substr(at, end - at);
-        at = end + 1;
-        if (option == "rtscts") {
-            if (std::exchange(format.rtscts, true)) return "option 'rtscts' is there twice";
-            continue;
-        }
-        const auto shape = read_format(option);
-        if (!shape) return fmt::format("option '{}' is not understood", option);
-        if (std::exchange(shaped, true)) return fmt::format("option '{}' is a second format", option);
-        const bool rtscts = format.rtscts;
-        format = *shape;
-        format.rtscts = rtscts;
-    }
-    return {};
-}
-
 }  // namespace
 
 Result<SerialAddress> parse_serial_address(std::string_view text) {
@@ -104,15 +67,11 @@ Result<SerialAddress> parse_serial_address(std::string_view text) {
     address.device = parts.device;
     if (address.device.filename().empty()) return refused("the device is missing");
     if (parts.baud) {
-        std::uint32_t baud = 0;
-        const char* const last = parts.baud->data() + parts.baud->size();
-        const auto [end, error] = std::from_chars(parts.baud->data(), last, baud);
-        if (error != std::errc() || end != last || baud < lowest_baud || baud > highest_baud)
-            return refused(fmt::format("the speed '{}' is not understood", *parts.baud));
-        address.baud = baud;
+        address.baud = read_baud(*parts.baud);
+        if (!address.baud) return refused(fmt::format("the speed '{}' is not understood", *parts.baud));
     }
     if (parts.options)
-        if (const std::string wrong = read_options(*parts.options, address.format); !wrong.empty())
+        if (const std::string wrong = read_line_options(*parts.options, address.format); !wrong.empty())
             return refused(wrong);
     return address;
 }

@@ -179,8 +179,7 @@ bool SerialLine::gone() {
 }
 
 std::int64_t SerialLine::character_ns() const {
-    const int bits = 1 + format_.data_bits + (format_.parity == Parity::none ? 0 : 1) + format_.stop_bits;
-    return bits * s_in_ns / std::max<std::int64_t>(baud_, 1) + 1;
+    return format_.bits_per_byte() * s_in_ns / std::max<std::int64_t>(baud_, 1) + 1;
 }
 
 bool SerialLine::drained() {

@@ -9,11 +9,12 @@
 #include "skyloop/transport/serial.hpp"
 #include "skyloop/transport/tcp.hpp"
 #include "skyloop/transport/transport.hpp"
+#include "skyloop/transport/usb_bridge.hpp"
 
 namespace skyloop {
 
 /// The wires of this version.
-enum class WireKind { pty, serial, tcp, tcp_connect, rfc2217, file, standard_output };
+enum class WireKind { pty, serial, usb, hid, tcp, tcp_connect, rfc2217, file, standard_output };
 
 /// A wire as it was asked for, not opened.
 struct PortUri {
@@ -21,13 +22,15 @@ struct PortUri {
     std::string path;  ///< the link of a pty, or empty; the path of a file
     TcpAddress address{};
     SerialAddress serial{};
+    UsbBridgeAddress bridge{};  ///< of usb and hid
 };
 /// Fails with `usage` and a sentence that quotes the URI.
 Result<PortUri> parse_port_uri(std::string_view uri);
 
-/// Opens `pty`, `pty:LINK`, `serial:DEVICE[@BAUD][,8N1][,rtscts]`, `tcp:[HOST:]PORT`, `tcp-connect:HOST:PORT`,
-/// `rfc2217:[HOST:]PORT`, `file:PATH` or `-` (standard output). Fails with `usage` for anything else, with `outside`
-/// when the system refuses; the sentence names the URI, the address, the device or the path.
+/// Opens `pty`, `pty:LINK`, `serial:DEVICE[@BAUD][,8N1][,rtscts]`, `usb:VID:PID[:SERIAL|@PORT][,BAUD][,8N1]`, `hid:` the
+/// same with [,rtscts], `tcp:[HOST:]PORT`, `tcp-connect:HOST:PORT`, `rfc2217:[HOST:]PORT`, `file:PATH` or `-` (standard
+/// output). Fails with `usage` for anything else, with `outside` when the system refuses; the sentence names the URI,
+/// the address, the device or the path.
 Result<std::unique_ptr<Transport>> open_transport(std::string_view uri);
 
 }  // namespace skyloop

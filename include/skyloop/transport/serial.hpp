@@ -11,22 +11,13 @@
 #include <string_view>
 #include <vector>
 
+#include "skyloop/base/line_format.hpp"
 #include "skyloop/base/result.hpp"
 #include "skyloop/transport/serial_search.hpp"
 #include "skyloop/transport/serial_system.hpp"
 #include "skyloop/transport/transport.hpp"
 
 namespace skyloop {
-
-enum class Parity { none, even, odd };
-
-/// How a byte lies on the line.
-struct SerialFormat {
-    int data_bits = 8;  ///< 7 or 8
-    Parity parity = Parity::none;
-    int stop_bits = 1;    ///< 1 or 2
-    bool rtscts = false;  ///< each end sends only while the other lets it
-};
 
 /// A line as it was asked for.
 struct SerialAddress {

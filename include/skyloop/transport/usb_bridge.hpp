@@ -1,0 +1,79 @@
+/// A serial line behind a USB device that this program drives itself: CDC-ACM over libusb, CP2110 over hidapi.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/transport/transport.hpp"
+#include "skyloop/usb/serial_bridge.hpp"
+
+namespace skyloop {
+
+/// A bridge as it was asked for.
+struct UsbBridgeAddress {
+    UsbAddress device;
+    std::optional<std::uint32_t> baud;  ///< of the line until a client changes the receiver's; bit/s
+    SerialFormat format{};
+};
+/// Reads "VID:PID[:SERIAL|@PORT][,BAUD][,8N1][,rtscts]", as parse_usb_address and a serial line's options. A comma ends
+/// the serial number. Fails with `usage` and a sentence that quotes the text.
+Result<UsbBridgeAddress> parse_usb_bridge_address(std::string_view text);
+
+/// A bridge of either kind as a wire.
+///
+/// It is connected for as long as its device is there, and has the receiver's speed as a SerialTransport has it. A
+/// device that is unplugged is looked for every 500 ms, in another thread, and taken again: by its serial number, at
+/// its old port first, or without one by its port.
+class UsbBridgeTransport : public Transport {
+public:
+    /// Opens a device of this address; called from other threads, too, one call at a time.
+    using Opener = std::function<Result<std::unique_ptr<SerialBridge>>(const UsbAddress&, const BridgeLine&)>;
+    /// `kind` is for people: "usb", "hid". Fails as `open` does.
+    static Result<std::unique_ptr<UsbBridgeTransport>> open(const UsbBridgeAddress& address, Opener opener,
+                                                            std::string_view kind);
+
+    std::size_t write(ByteSpan bytes) override;
+    Bytes read() override;
+    LineState line() override;
+    void set_receiver_baud(std::uint32_t baud) override;
+    std::vector<std::string> take_news() override;
+    /// "1546:01a8 (usb)".
+    [[nodiscard]] std::string description() const override;
+
+private:
+    using Clock = std::chrono::steady_clock;
+    struct Attempt {
+        std::unique_ptr<SerialBridge> bridge;
+        std::uint32_t baud = 0;
+        std::string trouble{};  // why a device that is there cannot be had; empty when none is there
+    };
+
+    UsbBridgeTransport(UsbBridgeAddress address, Opener opener, std::string_view kind);
+    void follow();
+    void lose();
+    void search();
+    static Attempt attempt(const Opener& opener, const std::vector<UsbAddress>& places, const BridgeLine& line);
+    void finish_attempt();
+
+    UsbBridgeAddress address_;
+    Opener opener_;
+    std::string kind_;
+    std::unique_ptr<SerialBridge> bridge_{};  // none while the device is away
+    UsbDeviceInfo known_{};
+    std::uint32_t baud_;                        // of the line
+    std::optional<std::uint32_t> told_baud_{};  // the receiver's
+    std::future<Attempt> attempt_{};
+    Clock::time_point next_search_{};
+    std::string trouble_{};
+    int same_trouble_ = 0;  // attempts in a row
+    std::vector<std::string> news_{};
+};
+
+}  // namespace skyloop

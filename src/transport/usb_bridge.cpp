@@ -1,0 +1,164 @@
+#include "skyloop/transport/usb_bridge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "line_options.hpp"
+#include "skyloop/base/signals_held_back.hpp"
+#include "skyloop/usb/usb_context.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr auto bridge_search_every = std::chrono::milliseconds(500);
+constexpr int bridge_lasting_trouble = 4;                   // attempts: a node is often there before its rights are
+constexpr std::uint32_t bridge_speed_of_no_speed = 115200;  // for a receiver's port that has none
+
+// Where a lost device may be, the likeliest first. Cheap devices share one serial number: the port tells them apart.
+std::vector<UsbAddress> addresses_to_try(const UsbAddress& asked, const UsbDeviceInfo& known) {
+    std::vector<UsbAddress> all{{known.ids, known.serial, known.port_path}};
+    if (!known.serial.empty() && asked.port_path.empty()) all.push_back({known.ids, known.serial, {}});
+    return all;
+}
+
+}  // namespace
+
+Result<UsbBridgeAddress> parse_usb_bridge_address(std::string_view text) {
+    const auto refused = [&](const std::string& what) {
+        return fail(
+            ErrorCode::usage,
+            fmt::format("device '{}': {}; expected VID:PID[:SERIAL|@PORT][,BAUD][,8N1][,rtscts], BAUD {} to {}, "
+                        "the format 7 or 8, N, E or O, 1 or 2",
+                        text, what, lowest_baud, highest_baud));
+    };
+    const std::size_t comma = std::min(text.find(','), text.size());
+    auto device = parse_usb_address(text.substr(0, comma));
+    if (!device) return fail(std::move(device.error()));
+    UsbBridgeAddress address{std::move(*device), std::nullopt, {}};
+    if (comma == text.size()) return address;
+    std::string_view options = text.substr(comma + 1);
+    const std::string_view first = options.substr(0, options.find(','));
+    const bool is_number =
+        !first.empty() && std::all_of(first.begin(), first.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (is_number) {
+        address.baud = read_baud(first);
+        if (!address.baud) return refused(fmt::format("the speed '{}' is not understood", first));
+        if (first.size() == options.size()) return address;
+        options.remove_prefix(first.size() + 1);
+    }
+    if (const std::string wrong = read_line_options(options, address.format); !wrong.empty()) return refused(wrong);
+    return address;
+}
+
+UsbBridgeTransport::UsbBridgeTransport(UsbBridgeAddress address, Opener opener, std::string_view kind)
+    : address_(std::move(address)),
+      opener_(std::move(opener)),
+      kind_(kind),
+      baud_(address_.baud.value_or(bridge_speed_of_no_speed)) {}
+
+Result<std::unique_ptr<UsbBridgeTransport>> UsbBridgeTransport::open(const UsbBridgeAddress& address, Opener opener,
+                                                                     std::string_view kind) {
+    std::unique_ptr<UsbBridgeTransport> wire(new UsbBridgeTransport(address, std::move(opener), kind));
+    auto bridge = wire->opener_(address.device, {wire->baud_, address.format});
+    if (!bridge) return fail(std::move(bridge.error()));
+    wire->bridge_ = std::move(*bridge);
+    wire->known_ = wire->bridge_->info();
+    return wire;
+}
+
+void UsbBridgeTransport::follow() {
+    if (!bridge_) return search();
+    if (bridge_->gone()) lose();
+}
+
+// To close it may take its time, and so is none of the loop's.
+void UsbBridgeTransport::lose() {
+    for (std::string& news : bridge_->take_news())
+        news_.push_back(std::move(news));
+    news_.push_back(fmt::format("{} is gone; it is looked for every 0.5 s", description()));
+    next_search_ = Clock::now() + bridge_search_every;
+    with_signals_held_back([this] {
+        attempt_ = std::async(std::launch::async, [old = std::move(bridge_)]() mutable {
+            old.reset();
+            return Attempt{};
+        });
+    });
+}
+
+void UsbBridgeTransport::search() {
+    if (attempt_.valid()) {
+        if (attempt_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) finish_attempt();
+        return;
+    }
+    if (Clock::now() < next_search_) return;
+    next_search_ = Clock::now() + bridge_search_every;
+    with_signals_held_back([this] {
+        attempt_ = std::async(std::launch::async, &UsbBridgeTransport::attempt, opener_,
+                              addresses_to_try(address_.device, known_), BridgeLine{baud_, address_.format});
+    });
+}
+
+UsbBridgeTransport::Attempt UsbBridgeTransport::attempt(const Opener& opener, const std::vector<UsbAddress>& places,
+                                                        const BridgeLine& line) {
+    Attempt attempt{nullptr, line.baud, {}};
+    for (const UsbAddress& place : places) {
+        auto bridge = opener(place, line);
+        if (bridge) return {std::move(*bridge), line.baud, {}};
+        const auto context = open_usb();
+        if (context && find_usb_device(*context, place)) attempt.trouble = bridge.error().message;
+    }
+    return attempt;
+}
+
+void UsbBridgeTransport::finish_attempt() {
+    Attempt attempt = attempt_.get();
+    if (!attempt.bridge) {
+        same_trouble_ = !attempt.trouble.empty() && attempt.trouble == trouble_ ? same_trouble_ + 1 : 1;
+        trouble_ = attempt.trouble;
+        if (!trouble_.empty() && same_trouble_ == bridge_lasting_trouble) news_.push_back(trouble_);
+        return;
+    }
+    bridge_ = std::move(attempt.bridge);
+    known_ = bridge_->info();
+    news_.push_back(fmt::format("{} is back, at {}", description(), known_.port_path));
+    // The receiver's speed may have changed while it was opened.
+    if (attempt.baud != baud_) bridge_->set_baud(baud_);
+}
+
+void UsbBridgeTransport::set_receiver_baud(std::uint32_t baud) {
+    const std::optional<std::uint32_t> before = std::exchange(told_baud_, baud);
+    // Until the receiver's speed changes the line has the one that was asked for.
+    if (address_.baud && (!before || *before == baud)) return;
+    baud_ = baud;
+    if (bridge_) bridge_->set_baud(baud);
+}
+
+std::size_t UsbBridgeTransport::write(ByteSpan bytes) {
+    follow();
+    return bridge_ ? bridge_->write(bytes) : bytes.size();
+}
+
+Bytes UsbBridgeTransport::read() {
+    follow();
+    return bridge_ ? bridge_->read() : Bytes{};
+}
+
+LineState UsbBridgeTransport::line() {
+    follow();
+    return {bridge_ != nullptr, std::nullopt};
+}
+
+std::vector<std::string> UsbBridgeTransport::take_news() {
+    if (bridge_)
+        for (std::string& news : bridge_->take_news())
+            news_.push_back(std::move(news));
+    return std::exchange(news_, {});
+}
+
+std::string UsbBridgeTransport::description() const {
+    return fmt::format("{} ({})", to_string(address_.device), kind_);
+}
+
+}  // namespace skyloop
