@@ -69,6 +69,15 @@ struct Identity {
     std::vector<std::string> version_answers;  ///< to PMTK605, PAIR020: sentences from $, without checksum
 };
 
+/// What its USB port says it is (USB 2.0, table 9-8); on u-blox also what CFG-USB answers.
+struct UsbDescription {
+    std::uint16_t vendor_id = 0, product_id = 0;
+    std::uint16_t release = 0x0100;  ///< bcdDevice: 0x0301 is 3.01
+    std::string manufacturer;        ///< at most 31 characters, as of the other texts
+    std::string product;
+    std::string serial;  ///< empty: it has none
+};
+
 /// Times of starting and answering.
 struct Timing {
     Seconds boot{0.5};                                       ///< from power to the first byte
@@ -136,7 +145,8 @@ struct BoardProfile {
     std::uint32_t baud = 9600;  ///< of UART1 at the factory
     std::uint32_t transmit_buffer_bytes = 4096;
     std::vector<PortId> ports{PortId::uart1};
-    std::vector<std::uint32_t> bauds;  ///< that it can be set to, ascending; empty: any
+    std::optional<UsbDescription> usb;  ///< nothing: it has no USB of its own
+    std::vector<std::uint32_t> bauds;   ///< that it can be set to, ascending; empty: any
 
     std::vector<Constellation> constellations;  ///< enabled at the factory
     bool dual_frequency = false;                ///< tracks the second signal of each system from the factory on

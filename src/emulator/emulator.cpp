@@ -60,6 +60,7 @@ void Emulator::run_until(GpsTime end, const std::atomic<bool>& stop) {
     while (now_ < end && !stop && !stopped()) {
         if (parts_.pacer->paused()) {
             Pacer::rest();
+            (void)all_connected();  // a host on the wire must be answered while time rests
             direct();
             if (rest_) rest_(now_);
             continue;

@@ -63,6 +63,10 @@ void Link::send(ByteSpan bytes, PortSpeed speed, bool at_rest) {
     if (client_baud != receiver_baud) counters_.bytes_garbled += taken;
 }
 
+void Link::set_plugged(bool plugged) {
+    if (std::exchange(plugged_, plugged) != plugged) transport_->set_plugged(plugged);
+}
+
 void Link::look(GpsTime now) {
     transport_->tell_time(now);
     const LineState line = transport_->line();

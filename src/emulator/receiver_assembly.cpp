@@ -42,6 +42,17 @@ void warn_of_rate(double asked, const firmware::Receiver& receiver, std::vector<
         warnings.push_back(fmt::format("{:g} Hz is less than a receiver can do; it runs at {:.4g} Hz", asked, actual));
 }
 
+void warn_of_missing_usb(const std::vector<WireRequest>& wires, const firmware::BoardProfile& board,
+                         std::vector<std::string>& warnings) {
+    for (const WireRequest& wire : wires) {
+        if (!wire.uri.starts_with("usbip:") || (wire.port == firmware::PortId::usb && board.usb)) continue;
+        warnings.push_back(
+            fmt::format("{}: {}; it shows {} behind a generic serial adapter, {}", wire.uri,
+                        board.usb ? "this is not the board's USB port" : board.name + " has no USB of its own",
+                        firmware::port_names[static_cast<std::size_t>(wire.port)], to_string(UsbFace{}.ids)));
+    }
+}
+
 RinexRecordingSetup rinex_setup(const Station::Parts& parts, GpsTime start) {
     const ReceiverSettings& settings = parts.receiver.settings();
     const NavigationSource& navigation = parts.simulation.navigation();
@@ -95,6 +106,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     }
     firmware::ReceiverOptions options{entry.rate_hz.value_or(0), receiver_settings(scenario, *board, index),
                                       receiver_seed(scenario.run.seed, index), entry.power_up};
+    warn_of_missing_usb(*wires, *board, warnings);
     warn_of_untracked(scenario, *board, options.settings, warnings);
     firmware::Receiver receiver(std::move(*board), std::move(options));
     if (state && !state->text().empty())
@@ -143,7 +155,8 @@ Result<PlannedStation> plan_station(const SharedParts& shared, std::size_t index
 Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::size_t index) {
     for (const WireRequest& wire : station.wires) {
         const auto client = client_of_uri(wire.uri);
-        auto transport = client ? open_client(*client) : open_transport(wire.uri);
+        auto transport = client ? open_client(*client)
+                                : open_transport(wire.uri, usb_face(station.parts.receiver.board(), wire.port));
         if (!transport) return fail(of_receiver(transport.error(), shared.scenario, index));
         if (shared.mode.virtual_time) (*transport)->allow_waiting();
         const InputPace pace = shared.mode.virtual_time ? InputPace::at_once : InputPace::line;

@@ -29,6 +29,12 @@ firmware::PortId default_port(const BoardProfile& board) {
     return has_uart1 || board.ports.empty() ? PortId::uart1 : board.ports.front();
 }
 
+UsbFace usb_face(const BoardProfile& board, PortId port) {
+    if (port != PortId::usb || !board.usb) return {};
+    const firmware::UsbDescription& usb = *board.usb;
+    return {{usb.vendor_id, usb.product_id}, usb.release, usb.manufacturer, usb.product, usb.serial};
+}
+
 Result<WireRequest> parse_wire(std::string_view text, const BoardProfile& board) {
     // A path may hold "=" too: it stands behind the colon of its scheme.
     const std::size_t equals = text.find('=');
@@ -47,7 +53,10 @@ Result<WireRequest> parse_wire(std::string_view text, const BoardProfile& board)
         if (const auto known = check_client(*client); !known) return fail(known.error());
         return wire;
     }
-    if (const auto uri = parse_port_uri(wire.uri); !uri) return fail(uri.error());
+    const auto uri = parse_port_uri(wire.uri);
+    if (!uri) return fail(uri.error());
+    const bool has_usb = std::find(board.ports.begin(), board.ports.end(), PortId::usb) != board.ports.end();
+    if (uri->kind == WireKind::usbip && !named && has_usb) wire.port = PortId::usb;
     return wire;
 }
 

@@ -107,6 +107,29 @@ void read_board_uart(TableReader& uart, BoardProfile& board) {
     }
 }
 
+// A text that CFG-USB holds with a zero behind it.
+void read_usb_text(TableReader& usb, std::string_view key, std::string& text) {
+    constexpr std::size_t most_characters = 31;
+    usb.text(key, text);
+    const bool plain = std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
+    if (text.size() > most_characters || !plain)
+        usb.mistake(key, fmt::format("is '{}'; expected at most {} characters of ASCII", text, most_characters));
+}
+
+void read_board_usb(TableReader& usb, BoardProfile& board) {
+    constexpr NumberRange sixteen_bits{0, 0xFFFF};
+    firmware::UsbDescription description;
+    const bool both = usb.has("vendor_id") && usb.has("product_id");
+    usb.integer("vendor_id", description.vendor_id, sixteen_bits);
+    usb.integer("product_id", description.product_id, sixteen_bits);
+    usb.integer("release", description.release, sixteen_bits);
+    read_usb_text(usb, "manufacturer", description.manufacturer);
+    read_usb_text(usb, "product", description.product);
+    read_usb_text(usb, "serial", description.serial);
+    if (!both) usb.mistake_here("has not both vendor_id and product_id");
+    board.usb = std::move(description);
+}
+
 void read_board_navigation(TableReader& navigation, BoardProfile& board) {
     read_constellation_list(navigation, board.constellations);
     navigation.boolean("dual_frequency", board.dual_frequency);
@@ -162,6 +185,7 @@ void read_board_keys(TableReader& top, BoardProfile& board) {
     top.table("corrections", [&](TableReader& t) { read_board_corrections(t, board.corrections); });
     top.table("quirks", [&](TableReader& t) { read_board_quirks(t, board.quirks); });
     top.table("uart", [&](TableReader& t) { read_board_uart(t, board); });
+    top.table("usb", [&](TableReader& t) { read_board_usb(t, board); });
     top.table("navigation", [&](TableReader& t) { read_board_navigation(t, board); });
     top.table("nmea", [&](TableReader& t) { read_board_nmea(t, board); });
     top.table("ubx", [&](TableReader& t) { read_board_ubx(t, board); });

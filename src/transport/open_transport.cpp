@@ -11,6 +11,7 @@
 #include "skyloop/transport/pty.hpp"
 #include "skyloop/transport/rfc2217.hpp"
 #include "skyloop/transport/tcp_client.hpp"
+#include "skyloop/transport/usbip_server.hpp"
 #include "skyloop/usb/cdc_acm.hpp"
 
 namespace skyloop {
@@ -22,11 +23,12 @@ struct Scheme {
     std::string_view shape;  // as it is offered
     std::string_view rest;   // what stands behind the colon
 };
-constexpr std::array<Scheme, 8> schemes{
+constexpr std::array<Scheme, 9> schemes{
     {{"pty", WireKind::pty, "pty[:LINK]", "a path"},
      {"serial", WireKind::serial, "serial:DEVICE[@BAUD]", "a device"},
      {"usb", WireKind::usb, "usb:VID:PID[:SERIAL]", "a device"},
      {"hid", WireKind::hid, "hid:VID:PID[:SERIAL]", "a device"},
+     {"usbip", WireKind::usbip, "usbip:[HOST:]PORT", "a port"},
      {"tcp", WireKind::tcp, "tcp:[HOST:]PORT", "a port"},
      {"tcp-connect", WireKind::tcp_connect, "tcp-connect:HOST:PORT", "a host and its port"},
      {"rfc2217", WireKind::rfc2217, "rfc2217:[HOST:]PORT", "a port"},
@@ -71,6 +73,7 @@ Result<void> read_rest(std::string_view rest, PortUri& port) {
         case WireKind::usb:
         case WireKind::hid:
             return take(parse_bridge(port.kind, rest), port.bridge);
+        case WireKind::usbip:
         case WireKind::tcp:
         case WireKind::tcp_connect:
         case WireKind::rfc2217:
@@ -116,7 +119,7 @@ Result<PortUri> parse_port_uri(std::string_view uri) {
     return port;
 }
 
-Result<std::unique_ptr<Transport>> open_transport(std::string_view uri) {
+Result<std::unique_ptr<Transport>> open_transport(std::string_view uri, const UsbFace& face) {
     const auto port = parse_port_uri(uri);
     if (!port) return fail(port.error());
     switch (port->kind) {
@@ -129,6 +132,8 @@ Result<std::unique_ptr<Transport>> open_transport(std::string_view uri) {
         case WireKind::hid:
             return as_transport(UsbBridgeTransport::open(
                 port->bridge, [](const auto& device, const auto& line) { return open_cp2110(device, line); }, "hid"));
+        case WireKind::usbip:
+            return as_transport(UsbipTransport::listen(port->address, face));
         case WireKind::tcp:
             return as_transport(TcpTransport::listen(port->address));
         case WireKind::tcp_connect:

@@ -54,7 +54,7 @@ class Emulator:
 
     def port(self, number):
         """The path, or the address, of a port."""
-        return self.said(rf"^port {number}(?: \(\w+\))?: (\S+) \((?:pty|serial|tcp|tcp-connect|rfc2217|file)\)\n", patience=60)
+        return self.said(rf"^port {number}(?: \(\w+\))?: (\S+) \([a-z0-9-]+\)\n", patience=60)
 
     def said(self, pattern, patience=20):
         """Waits until stderr holds the pattern; gives its first group."""

@@ -5,6 +5,7 @@
 
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/key_tables.hpp"
+#include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/signal_keys.hpp"
 #include "skyloop/protocol/ubx_cfg_values.hpp"
 
@@ -117,6 +118,23 @@ void write_sentences(const BoardProfile& board, FactoryWriter& writer) {
         for (std::uint32_t port = 0; port < port_count; ++port)
             writer.set(message.i2c_key + port, rate);
     }
+}
+
+// What CFG-USB answers: texts lie in four items of eight characters, the first one lowest.
+void write_usb(const UsbDescription& usb, FactoryWriter& writer) {
+    writer.set(legacy_key::usb_vendor_id, usb.vendor_id);
+    writer.set(legacy_key::usb_product_id, usb.product_id);
+    const auto write_text = [&](std::uint32_t first_key, std::string_view text) {
+        for (std::uint32_t part = 0; part < 4; ++part) {
+            std::uint64_t value = 0;
+            for (std::size_t i = 0; i < 8 && 8 * part + i < text.size(); ++i)
+                value |= std::uint64_t{static_cast<unsigned char>(text[8 * part + i])} << (8 * i);
+            writer.set(first_key + part, value);
+        }
+    };
+    write_text(legacy_key::usb_vendor_string, usb.manufacturer);
+    write_text(legacy_key::usb_product_string, usb.product);
+    write_text(legacy_key::usb_serial_number, usb.serial);
 }
 
 std::uint64_t measurement_period_ms(const BoardProfile& board) {
@@ -240,6 +258,7 @@ ConfigValues factory_config(const BoardProfile& board) {
     writer.set(key::nmea_main_talker, number_of_talker(board.main_talker));
     writer.set(key::itfm_enable, board.quirks.default_interference_monitor);
     writer.set(key::ant_voltage_control, board.quirks.voltage_control);
+    if (board.usb) write_usb(*board.usb, writer);
     write_signals(board, writer);
     write_sentences(board, writer);
     for (const auto& [key, value] : board.config)

@@ -51,7 +51,7 @@ public:
     std::optional<Bytes> receive(PortSpeed speed, GpsTime now);
 
     /// Pulls the plug, or puts it back: without it neither end hears the other.
-    void set_plugged(bool plugged) { plugged_ = plugged; }
+    void set_plugged(bool plugged);
     [[nodiscard]] const Transport& transport() const { return *transport_; }
     [[nodiscard]] Transport& transport() { return *transport_; }
     [[nodiscard]] const LinkCounters& counters() const { return counters_; }

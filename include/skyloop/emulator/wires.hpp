@@ -8,6 +8,7 @@
 #include "skyloop/base/result.hpp"
 #include "skyloop/emulator/station.hpp"
 #include "skyloop/scenario/scenario.hpp"
+#include "skyloop/transport/cdc_acm_device.hpp"
 
 namespace skyloop {
 
@@ -20,8 +21,12 @@ struct WireRequest {
 /// The port of a wire without a name: UART1, or the first port of a board that has no UART1.
 firmware::PortId default_port(const firmware::BoardProfile& board);
 
+/// What a board's USB port shows of itself; any other port stands behind a generic serial adapter.
+UsbFace usb_face(const firmware::BoardProfile& board, firmware::PortId port);
+
 /// What stands before "=" names the port, what stands behind is a URI of a transport; without a name it is the
-/// default_port(). Fails with `usage`: the sentence quotes the text and lists the board's ports.
+/// default_port(), of a USB/IP wire the USB port of a board that has one. Fails with `usage`: the sentence quotes the
+/// text and lists the board's ports.
 Result<WireRequest> parse_wire(std::string_view text, const firmware::BoardProfile& board);
 
 /// The wires of one receiver, as they were asked for; opens none. Without any in the scenario it is one pty.

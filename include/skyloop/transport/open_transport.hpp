@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "skyloop/base/result.hpp"
+#include "skyloop/transport/cdc_acm_device.hpp"
 #include "skyloop/transport/serial.hpp"
 #include "skyloop/transport/tcp.hpp"
 #include "skyloop/transport/transport.hpp"
@@ -14,7 +15,7 @@
 namespace skyloop {
 
 /// The wires of this version.
-enum class WireKind { pty, serial, usb, hid, tcp, tcp_connect, rfc2217, file, standard_output };
+enum class WireKind { pty, serial, usb, hid, usbip, tcp, tcp_connect, rfc2217, file, standard_output };
 
 /// A wire as it was asked for, not opened.
 struct PortUri {
@@ -28,9 +29,10 @@ struct PortUri {
 Result<PortUri> parse_port_uri(std::string_view uri);
 
 /// Opens `pty`, `pty:LINK`, `serial:DEVICE[@BAUD][,8N1][,rtscts]`, `usb:VID:PID[:SERIAL|@PORT][,BAUD][,8N1]`, `hid:` the
-/// same with [,rtscts], `tcp:[HOST:]PORT`, `tcp-connect:HOST:PORT`, `rfc2217:[HOST:]PORT`, `file:PATH` or `-` (standard
-/// output). Fails with `usage` for anything else, with `outside` when the system refuses; the sentence names the URI,
-/// the address, the device or the path.
-Result<std::unique_ptr<Transport>> open_transport(std::string_view uri);
+/// same with [,rtscts], `usbip:[HOST:]PORT`, `tcp:[HOST:]PORT`, `tcp-connect:HOST:PORT`, `rfc2217:[HOST:]PORT`,
+/// `file:PATH` or `-` (standard output). Fails with `usage` for anything else, with `outside` when the system refuses; the
+/// sentence names the URI, the address, the device or the path.
+/// @param face of the device that a USB/IP wire shows
+Result<std::unique_ptr<Transport>> open_transport(std::string_view uri, const UsbFace& face = {});
 
 }  // namespace skyloop

@@ -34,6 +34,9 @@ public:
     /// In virtual time nothing comes late: from now on write() may wait for a reader rather than lose bytes. Wires that
     /// have a client's own pace, such as a terminal, go on as before.
     virtual void allow_waiting() {}
+    /// Pulls the plug of a wire whose other end can see that, or puts it back. Others go on: nothing is sent or heard
+    /// then.
+    virtual void set_plugged(bool) {}
     /// The simulated time, before each look at the wire; for other ends that live in it.
     virtual void tell_time(GpsTime) {}
     /// How often such an end wants to be looked at in virtual time; zero: once an epoch is enough.
@@ -50,6 +53,8 @@ public:
     [[nodiscard]] virtual std::string failure() const { return {}; }
     /// What its owner should know at the end of a run, in one sentence; empty: nothing.
     [[nodiscard]] virtual std::string notice() const { return {}; }
+    /// What is known of the other end and its settings, in a few words that change as it does; empty: nothing.
+    [[nodiscard]] virtual std::string other_end() const { return {}; }
     /// For people: "/path/to/tty (pty)".
     [[nodiscard]] virtual std::string description() const = 0;
 };
