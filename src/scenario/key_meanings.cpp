@@ -69,9 +69,8 @@ constexpr KeyMeaning run_meanings[] = {
     {"receiver", "name", "what messages and `base` call it", "receiver0, receiver1, …"},
     {"receiver", "board", "a profile of `skyloop boards`"},
     {"receiver", "port",
-     "wires: pty[:LINK], serial:DEVICE[@BAUD], tcp:[HOST:]PORT, tcp-connect:HOST:PORT, rfc2217:[HOST:]PORT, file:PATH, "
-     "-, "
-     "client:NAME; NAME= before it says which port",
+     "wires: pty[:LINK], serial:DEVICE[@BAUD], usb:VID:PID, hid:VID:PID, usbip:[HOST:]PORT, tcp:[HOST:]PORT, "
+     "tcp-connect:HOST:PORT, rfc2217:[HOST:]PORT, file:PATH, -, client:NAME; NAME= before it says which port",
      "a pty"},
     {"receiver", "rate_hz", "navigation rate at the factory", "the board's"},
     {"receiver", "baud", "bit/s of UART1 at the factory", "the board's"},
