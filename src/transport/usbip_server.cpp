@@ -79,9 +79,12 @@ void UsbipTransport::tell(std::string news) {
 
 void UsbipTransport::follow() {
     const std::int64_t now = usbip_clock_ns();
-    accept_visitors(now);
-    std::erase_if(visitors_, [&](const auto& visitor) { return !serve(*visitor, now); });
+    // First whoever has gone: the next one may be there already.
     if (importer_) follow_importer(now);
+    accept_visitors(now);
+    const std::uint64_t imports_before = imports_;
+    std::erase_if(visitors_, [&](const auto& visitor) { return !serve(*visitor, now); });
+    if (imports_ != imports_before) follow_importer(now);
 }
 
 void UsbipTransport::accept_visitors(std::int64_t now_ns) {
@@ -94,15 +97,14 @@ void UsbipTransport::accept_visitors(std::int64_t now_ns) {
     }
 }
 
-// False when nothing is left to do with it. One that was answered closes first, or is closed when its time is over.
+// False when nothing is left to do with it.
 bool UsbipTransport::serve(Visitor& visitor, std::int64_t now_ns) {
     const int socket = visitor.connection.socket.value();
-    TcpStream state = visitor.answered && visitor.heard.size() >= most_request_bytes
-                          ? TcpStream::broken
-                          : hear_tcp(socket, visitor.heard, most_request_bytes);
+    TcpStream state = hear_tcp(socket, visitor.heard, most_request_bytes);
     if (!visitor.answered && !answer_request(visitor)) return false;
     const std::size_t count = send_tcp(socket, visitor.answer, state);
     visitor.answer.erase(visitor.answer.begin(), visitor.answer.begin() + static_cast<std::ptrdiff_t>(count));
+    if (visitor.answered && visitor.answer.empty()) return false;
     if (state == TcpStream::open && now_ns < visitor.until_ns) return true;
     if (!visitor.answered && !visitor.heard.empty())
         tell(fmt::format("{} is closed: it did not end its request", visitor.connection.peer));

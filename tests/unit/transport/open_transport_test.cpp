@@ -28,26 +28,29 @@ TEST(OpenTransport, OpensWhatThisVersionHas) {
     EXPECT_THAT(open_transport("tcp:0").value()->description(), StartsWith("127.0.0.1:"));
     EXPECT_THAT(open_transport("rfc2217:0").value()->description(), EndsWith(" (rfc2217)"));
     EXPECT_THAT(open_transport("tcp-connect:[::1]:9").value()->description(), StartsWith("[::1]:9 (tcp-connect)"));
+    EXPECT_THAT(open_transport("usbip:0").value()->description(), EndsWith(" (usbip)"));
     EXPECT_THAT(open_transport("file:" + (folder / "a:b").string()).value()->description(), EndsWith("a:b (file)"));
 }
 
 TEST(OpenTransport, RefusesClearly) {
-    EXPECT_EQ(refusal("usbip:3240").message,
-              "port 'usbip:3240': usbip: is not supported by this version; expected pty[:LINK], serial:DEVICE[@BAUD], "
-              "tcp:[HOST:]PORT, tcp-connect:HOST:PORT, rfc2217:[HOST:]PORT, file:PATH, client:NAME or -");
     EXPECT_EQ(
         refusal("tcp:host").message,
         "port 'tcp:host': address 'host': a port from 0 to 65535 is missing; expected [HOST:]PORT, an IPv6 address "
         "in brackets");
     EXPECT_THAT(refusal("tcp:").message, HasSubstr("a port is missing"));
+    EXPECT_THAT(refusal("usbip:").message, HasSubstr("a port is missing"));
     EXPECT_EQ(refusal("tcp:70000").code, ErrorCode::usage);
     EXPECT_THAT(refusal("rfc2217").message, HasSubstr("a port is missing"));
     EXPECT_THAT(refusal("tcp-connect:").message, HasSubstr("a host and its port is missing"));
     for (const std::string uri : {"tcp-connect:2000", "tcp-connect:host:0"})
         EXPECT_THAT(refusal(uri).message, HasSubstr("'" + uri + "': whom to call is missing")) << uri;
-    for (const std::string uri : {"usbip:3240", "usb:1546:01a8", "hid:10c4:ea80"})
-        EXPECT_THAT(refusal(uri).message, HasSubstr("is not supported by this version")) << uri;
     EXPECT_THAT(refusal("ptty:gps0").message, HasSubstr("did you mean 'pty'?"));
+    EXPECT_EQ(refusal("can:0").message,
+              "port 'can:0': no such kind of port; expected pty[:LINK], serial:DEVICE[@BAUD], usb:VID:PID[:SERIAL], "
+              "hid:VID:PID[:SERIAL], usbip:[HOST:]PORT, tcp:[HOST:]PORT, tcp-connect:HOST:PORT, rfc2217:[HOST:]PORT, "
+              "file:PATH, client:NAME or -");
+    EXPECT_THAT(refusal("usb:1546").message, HasSubstr("port 'usb:1546': "));
+    EXPECT_THAT(refusal("usb:1546:01a8,rtscts").message, HasSubstr("takes no rtscts"));
     EXPECT_THAT(refusal("gps0").message, HasSubstr("no such kind of port"));
     EXPECT_THAT(refusal("").message, HasSubstr("no such kind of port"));
     EXPECT_THAT(refusal("memory").message, HasSubstr("no such kind of port"));

@@ -14,14 +14,14 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t frame_ms = 1'000'000;
 
 // A session whose host hears what is answered, at once.
 class HostedSession {
 public:
     HostedSession() : session_({}, UsbipDevice{}) {}
     // One look later.
-    void run(std::int64_t later_ns = ms) { session_.run(now_ += later_ns); }
+    void run(std::int64_t later_ns = frame_ms) { session_.run(now_ += later_ns); }
     void send(const Bytes& command) {
         session_.hear(command);
         run();
@@ -84,7 +84,7 @@ TEST(UsbipSession, ListensOnceDataArePolled) {
     ASSERT_EQ(replies.size(), 1U);
     EXPECT_EQ(replies[0].sequence, 2U);
     EXPECT_EQ(replies[0].data, "$GPGGA");
-    host.run(10'000 * ms);
+    host.run(10'000 * frame_ms);
     EXPECT_TRUE(host->listening()) << "a slow reader is one all the same";
 }
 
@@ -112,7 +112,7 @@ TEST(UsbipSession, StopsListeningWithTheLastPoll) {
     EXPECT_EQ(host.replies().back().status, -104);
     EXPECT_TRUE(host->listening()) << "a program that polls with a timeout does so again soon";
     host->put(to_bytes("stale"));
-    host.run(100 * ms);
+    host.run(100 * frame_ms);
     EXPECT_FALSE(host->listening());
     host.poll(4);
     EXPECT_TRUE(host.replies().empty()) << "nothing stale";
@@ -139,7 +139,7 @@ TEST(UsbipSession, HearsTheHost) {
     host.send(test::submit_out(4, Bytes(10, 'y')));
     EXPECT_EQ(host.replies().size(), 1U) << "the second waits until the first has been read";
     EXPECT_EQ(host->take_received().size(), 5000U);
-    host.run(20 * ms);
+    host.run(20 * frame_ms);
     EXPECT_EQ(host.replies().size(), 1U);
     EXPECT_EQ(to_string(host->take_received()), "yyyyyyyyyy");
 }
@@ -147,7 +147,7 @@ TEST(UsbipSession, HearsTheHost) {
 TEST(UsbipSession, KeepsThePaceOfAFullSpeedBus) {
     HostedSession host;
     host.configure();
-    host.run(1000 * ms);
+    host.run(1000 * frame_ms);
     std::size_t moved = 0;
     for (std::uint32_t i = 0; i < 1000; ++i) {
         host.poll(100 + i, CdcAcmDevice::data_in, 65536);
@@ -202,7 +202,7 @@ TEST(UsbipSession, CancelsEachKindOfTransfer) {
     host.send(test::submit_out(6, Bytes(1, 'y')));
     host.forget();
     EXPECT_EQ(host->pending(), 3U);
-    for (const std::uint32_t target : {3, 4, 6}) {
+    for (const std::uint32_t target : {3U, 4U, 6U}) {
         host.send(test::unlink(100 + target, target));
         EXPECT_EQ(host.replies().at(0).status, -104);
         host.send(test::unlink(200 + target, target));
@@ -210,7 +210,7 @@ TEST(UsbipSession, CancelsEachKindOfTransfer) {
     }
     EXPECT_EQ(host->pending(), 0U);
     host->take_received();
-    host.run(20 * ms);
+    host.run(20 * frame_ms);
     EXPECT_TRUE(host->take_received().empty()) << "what was cancelled does not arrive";
 }
 
