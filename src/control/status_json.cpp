@@ -55,6 +55,7 @@ Json satellite_json(const SatelliteSeen& satellite) {
 Json wire_json(const WireStatus& wire) {
     return {{"port", wire.port},
             {"description", wire.description},
+            {"other_end", wire.other_end},
             {"baud", or_null(wire.baud, [](std::uint32_t baud) { return baud; })},
             {"connected", wire.connected},
             {"bytes_out", wire.bytes_out},

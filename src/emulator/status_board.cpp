@@ -123,6 +123,7 @@ void StatusBoard::take_wires(std::size_t station, ReceiverStatus& status) const 
         const firmware::PortStatus port = source.receiver().port_status(wire.port);
         shown.port = firmware::port_names[static_cast<std::size_t>(wire.port)];
         shown.description = wire.link.transport().description();
+        shown.other_end = wire.link.transport().other_end();
         shown.baud = source.speed(wire.port);
         shown.connected = wire.link.connected();
         shown.bytes_out = counts.bytes_out;

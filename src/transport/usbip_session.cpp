@@ -13,6 +13,9 @@ constexpr std::int64_t bus_bytes_per_ms = 19 * 64, ns_per_ms = 1'000'000;
 constexpr std::int64_t most_budget = 20 * bus_bytes_per_ms;
 constexpr std::int64_t silence_of_listener_ns = 100 * ns_per_ms;
 constexpr std::size_t most_pending = 256;       // transfers; Linux has 16 each way and one for the line's state
+// Of commands that are followed at one look: a client that floods must not hold the loop. Linux sends a dozen at most
+// in the millisecond between two looks.
+constexpr int most_commands = 256;
 constexpr std::size_t most_received = 4096;     // as a terminal's driver holds
 constexpr std::size_t most_output = 1U << 18U;  // bytes that the client leaves unread
 
@@ -41,7 +44,7 @@ bool UsbipSession::overwhelmed() const {
 }
 
 void UsbipSession::follow_commands() {
-    while (mistake_.empty() && !overwhelmed()) {
+    for (int i = 0; i < most_commands && mistake_.empty() && !overwhelmed(); ++i) {
         auto parsed = parse_usbip_command(ByteSpan(heard_).subspan(parsed_));
         mistake_ = std::move(parsed.mistake);
         if (!parsed.message) break;

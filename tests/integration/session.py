@@ -69,6 +69,14 @@ class Emulator:
                 raise AssertionError(f"skyloop ended {self.process.returncode}: {self.log}")
         raise AssertionError(f"nothing like {pattern} within {patience} s: {self.log}")
 
+    def listen(self):
+        """Takes what has been said meanwhile: a pipe that is full holds the program up."""
+        while select.select([self.process.stderr], [], [], 0)[0]:
+            piece = os.read(self.process.stderr.fileno(), 65536)
+            if not piece:
+                return
+            self.log += piece.decode()
+
     def finish(self, patience=30):
         """Waits for the run to end by itself; gives the exit code."""
         _, rest = self.process.communicate(timeout=patience)

@@ -36,6 +36,7 @@ struct SatelliteSeen {
 struct WireStatus {
     std::string port;         ///< "uart1"
     std::string description;  ///< "/dev/pts/3 (pty)"
+    std::string other_end;    ///< "attached by 10.0.0.7:51022, 115200 8N1, DTR"; empty: nothing is known
     std::optional<std::uint32_t> baud;
     bool connected = false;                                     ///< a client listens
     std::uint64_t bytes_out = 0, bytes_in = 0, bytes_lost = 0;  ///< lost: the client did not read in time

@@ -58,7 +58,7 @@ export function setUpWires() {
             say(parts.name, wire.port);
             say(parts.state, wire.connected ? "client connected" : "no client");
             mark(parts.state, "state", wire.connected ? "good" : "");
-            say(parts.told, [wire.description, wire.baud ? `${wire.baud} bit/s` : null].filter(Boolean).join(", "));
+            say(parts.told, [wire.description, wire.baud ? `${wire.baud} bit/s` : null, wire.other_end].filter(Boolean).join(", "));
             const flow = (name) =>
                 `${bytes(wire[name])}, ${bytes(Math.max(rates.of(`${key} ${name}`, wire[name]), 0))}/s`;
             say(parts.out, flow("bytes_out"));

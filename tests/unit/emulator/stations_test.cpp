@@ -43,7 +43,22 @@ TEST(Wires, ANameChoosesThePort) {
     EXPECT_EQ(wire("uart1=-").uri, "-");
     EXPECT_EQ(wire("file:/tmp/a=b").uri, "file:/tmp/a=b") << "a path with an equals sign is no name";
     EXPECT_EQ(parse_wire("pty", board_with({PortId::usb}))->port, PortId::usb) << "the only one there is";
+    EXPECT_EQ(wire("usbip:3240").port, PortId::usb);
+    EXPECT_EQ(wire("uart2=usbip:3240").port, PortId::uart2);
+    EXPECT_EQ(parse_wire("usbip:3240", board_with({PortId::uart1}))->port, PortId::uart1) << "it has no USB";
     EXPECT_EQ(wire("client:naive-ubx").uri, "client:naive-ubx");
+}
+
+TEST(Wires, OnlyTheUsbPortShowsTheBoard) {
+    using firmware::PortId;
+    auto board = board_with({PortId::uart1, PortId::usb});
+    EXPECT_EQ(usb_face(board, PortId::usb).ids, UsbFace{}.ids);
+    board.usb = firmware::UsbDescription{0x1546, 0x01a8, 0x0301, "maker", "receiver", "A1"};
+    const UsbFace face = usb_face(board, PortId::usb);
+    EXPECT_EQ(to_string(face.ids), "1546:01a8");
+    EXPECT_EQ(face.release, 0x0301);
+    EXPECT_EQ(face.manufacturer + "/" + face.product + "/" + face.serial, "maker/receiver/A1");
+    EXPECT_EQ(to_string(usb_face(board, PortId::uart1).ids), "0525:a4a7") << "a serial adapter";
 }
 
 TEST(Wires, AnUnknownNameListsThePortsOfTheBoard) {

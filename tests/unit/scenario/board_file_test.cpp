@@ -33,6 +33,21 @@ std::vector<std::string> sentence_names(const BoardProfile& board) {
     return names;
 }
 
+TEST(BoardFile, TellsTheUsbPort) {
+    const auto m8 = find_board("ublox-m8", shipped_boards);
+    ASSERT_TRUE(m8 && m8->usb);
+    EXPECT_EQ(m8->usb->vendor_id, 0x1546);
+    EXPECT_EQ(m8->usb->product_id, 0x01a8);
+    EXPECT_EQ(find_board("ublox-6", shipped_boards)->usb->product_id, 0x01a6);
+    EXPECT_EQ(find_board("ublox-f9p", shipped_boards)->usb->product_id, 0x01a9);
+    EXPECT_EQ(find_board("septentrio-sbf", shipped_boards)->usb->vendor_id, 0x152a);
+    EXPECT_FALSE(find_board("ublox-m10", shipped_boards)->usb) << "it has no USB of its own";
+    EXPECT_THAT(board_refusal("[usb]\nvendor_id = 1\n"), HasSubstr("usb: has not both vendor_id and product_id"));
+    EXPECT_THAT(board_refusal("[usb]\nvendor_id = 1\nproduct_id = 65536\n"), HasSubstr(":3:14: usb.product_id"));
+    EXPECT_THAT(board_refusal("[usb]\nvendor_id = 1\nproduct_id = 2\nproduct = \"" + std::string(32, 'x') + "\"\n"),
+                HasSubstr("expected at most 31 characters of ASCII"));
+}
+
 TEST(BoardFile, EveryShippedBoardIsRead) {
     const auto names = list_boards(shipped_boards);
     EXPECT_THAT(names, ElementsAre("airoha-ag33xx", "mavlink-gps-input", "msp-gps", "mtk3339", "nmea-generic",
