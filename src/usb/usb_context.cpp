@@ -20,6 +20,10 @@ std::string port_path_of(libusb_device* device) {
     return fmt::format("{}-{}", bus, fmt::join(ports.begin(), ports.begin() + count, "."));
 }
 
+std::string node_of(libusb_device* device) {
+    return fmt::format("/dev/bus/usb/{:03}/{:03}", libusb_get_bus_number(device), libusb_get_device_address(device));
+}
+
 // The first line of an attribute of the device in sysfs; empty where there is none.
 std::string attribute(const std::string& port_path, const char* name) {
     std::ifstream file(std::filesystem::path("/sys/bus/usb/devices") / port_path / name);
@@ -88,7 +92,13 @@ Result<std::vector<UsbDevice>> list_usb_devices(const UsbContext& context) {
 UsbDeviceInfo describe(const UsbDevice& device) {
     libusb_device_descriptor descriptor{};
     libusb_get_device_descriptor(device.get(), &descriptor);  // cached by libusb: never fails
-    UsbDeviceInfo info{{descriptor.idVendor, descriptor.idProduct}, {}, {}, {}, port_path_of(device.get())};
+    UsbDeviceInfo info{{descriptor.idVendor, descriptor.idProduct},
+                       {},
+                       {},
+                       {},
+                       port_path_of(device.get()),
+                       node_of(device.get()),
+                       descriptor.bDeviceClass};
     info.manufacturer = attribute(info.port_path, "manufacturer");
     info.product = attribute(info.port_path, "product");
     info.serial = attribute(info.port_path, "serial");
@@ -120,11 +130,9 @@ Result<UsbHandle> open_usb_device(const UsbContext& context, const UsbDevice& de
     if (result == LIBUSB_SUCCESS)
         return UsbHandle(handle, [context](libusb_device_handle* opened) { libusb_close(opened); });
     const UsbDeviceInfo info = describe(device);
-    const std::string node = fmt::format("/dev/bus/usb/{:03}/{:03}", libusb_get_bus_number(device.get()),
-                                         libusb_get_device_address(device.get()));
     return fail(
         ErrorCode::outside,
-        fmt::format("cannot open USB device {} at {} ({}): {}{}", to_string(info.ids), info.port_path, node,
+        fmt::format("cannot open USB device {} at {} ({}): {}{}", to_string(info.ids), info.port_path, info.node,
                     usb_error_text(result),
                     result == LIBUSB_ERROR_ACCESS ? "; a udev rule gives it: skyloop devices shows the line" : ""));
 }

@@ -25,10 +25,12 @@ std::optional<UsbIds> parse_usb_ids(std::string_view text);
 /// What was read of one device that is plugged in.
 struct UsbDeviceInfo {
     UsbIds ids;
-    std::string manufacturer;  ///< empty: it tells none, or may not be opened
-    std::string product;       ///< likewise
-    std::string serial;        ///< likewise
-    std::string port_path;     ///< bus and ports, "1-1.2", as the kernel writes it; a root hub is "usb1"
+    std::string manufacturer;       ///< empty: it tells none, or may not be opened
+    std::string product;            ///< likewise
+    std::string serial;             ///< likewise
+    std::string port_path;          ///< bus and ports, "1-1.2", as the kernel writes it; a root hub is "usb1"
+    std::string node = {};          ///< "/dev/bus/usb/001/004", by which it is opened
+    std::uint8_t device_class = 0;  ///< bDeviceClass (USB 2.0, table 9-8): 9 is a hub, 0 is told by its interfaces
 };
 
 /// Which device is meant: one of these ids, with that serial number and at that port where they are given.
