@@ -34,8 +34,8 @@ FENCES = [
     # What talks to the kernel is a wire, a file, a terminal or a program that is run; all else is arithmetic.
     ("the operating system",
      ("sys/", "asm/", "linux/", "net/", "netinet/", "arpa/", "fcntl.h", "unistd.h", "termios.h", "poll.h", "pty.h",
-      "pthread.h", "signal.h", "netdb.h", "sched.h", "dirent.h", "csignal", "spawn.h", "dlfcn.h"),
-     {"base", "hid", "transport", "emulator", "host", "src/feed/mavlink_endpoint.cpp", "src/verdict/process.cpp"}),
+      "pthread.h", "signal.h", "netdb.h", "sched.h", "dirent.h", "csignal", "spawn.h", "dlfcn.h", "grp.h", "pwd.h"),
+     {"base", "devices", "hid", "transport", "emulator", "host", "src/feed/mavlink_endpoint.cpp", "src/verdict/process.cpp"}),
 ]
 PUBLIC = {"Eigen", "tl::expected"}
 

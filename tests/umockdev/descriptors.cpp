@@ -21,7 +21,7 @@ Bytes descriptors(const DeviceSpec& device) {
                      1,
                      0x00,
                      0x02,
-                     0,
+                     device.device_class,
                      0,
                      0,
                      64,
