@@ -19,6 +19,7 @@ Action add_compare_command(CLI::App& app);
 Action add_solve_command(CLI::App& app);
 Action add_boards_command(CLI::App& app);
 Action add_decode_command(CLI::App& app);
+Action add_devices_command(CLI::App& app);
 Action add_faults_command(CLI::App& app);
 Action add_schema_command(CLI::App& app);
 Action add_scene_command(CLI::App& app);
