@@ -5,8 +5,8 @@
 
 #include <chrono>
 
+#include "skyloop/base/process.hpp"
 #include "skyloop/verdict/expectation_sentence.hpp"
-#include "skyloop/verdict/process.hpp"
 
 namespace skyloop {
 namespace {

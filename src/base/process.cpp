@@ -1,4 +1,4 @@
-#include "skyloop/verdict/process.hpp"
+#include "skyloop/base/process.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // Programs of the host, well behaved and not.
-#include "skyloop/verdict/process.hpp"
+#include "skyloop/base/process.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
