@@ -35,7 +35,7 @@ FENCES = [
     ("the operating system",
      ("sys/", "asm/", "linux/", "net/", "netinet/", "arpa/", "fcntl.h", "unistd.h", "termios.h", "poll.h", "pty.h",
       "pthread.h", "signal.h", "netdb.h", "sched.h", "dirent.h", "csignal", "spawn.h", "dlfcn.h", "grp.h", "pwd.h"),
-     {"base", "devices", "hid", "transport", "emulator", "host", "src/feed/mavlink_endpoint.cpp", "src/verdict/process.cpp"}),
+     {"actuator", "base", "devices", "hid", "transport", "emulator", "host", "src/feed/mavlink_endpoint.cpp"}),
 ]
 PUBLIC = {"Eigen", "tl::expected"}
 

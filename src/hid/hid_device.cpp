@@ -84,6 +84,15 @@ std::vector<Found> enumerate(const HidApi& api, UsbIds ids, const Usage& used) {
 
 }  // namespace
 
+Result<std::vector<UsbDeviceInfo>> HidDevice::list(UsbIds ids, HidBackend backend) {
+    const auto api = hid_api(backend);
+    if (!api) return fail(api.error());
+    std::vector<UsbDeviceInfo> devices;
+    for (Found& found : enumerate(**api, ids))
+        devices.push_back(std::move(found.info));
+    return devices;
+}
+
 Result<HidDevice> HidDevice::open(const UsbAddress& address, HidBackend backend) {
     const auto api = hid_api(backend);
     if (!api) return fail(api.error());

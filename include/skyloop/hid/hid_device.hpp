@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "skyloop/base/bytes.hpp"
 #include "skyloop/base/result.hpp"
@@ -23,6 +24,9 @@ struct HidApi;  // the functions of one backend
 /// overlap in time.
 class HidDevice {
 public:
+    /// What has these ids, as one backend sees it: without permission the texts may be missing. Fails with `outside`:
+    /// no hidapi on this machine.
+    static Result<std::vector<UsbDeviceInfo>> list(UsbIds ids, HidBackend backend);
     /// The first device of that address, through hidraw, else through libusb. Fails with `outside`: there is none, no
     /// permission (the sentence names the node and what gives it), or no hidapi on this machine.
     static Result<HidDevice> open(const UsbAddress& address);

@@ -1,0 +1,32 @@
+/// What cuts the power, or a line, of a real device, and puts it back.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "skyloop/base/result.hpp"
+
+namespace skyloop {
+
+/// What a device under test gets by way of an actuator.
+enum class PowerState { on, cut };
+
+/// One switch. Its functions may wait, for seconds when the hardware does not answer, and so are never called by the
+/// thread of the loop. A destroyed actuator leaves the power as it is.
+class Actuator {
+public:
+    virtual ~Actuator() = default;
+    /// Both succeed only when the hardware took the order and, where it can be asked, says that it followed. Both may
+    /// be called again in the state that they lead to. Fail with `outside` and a sentence that names the actuator.
+    virtual Result<void> cut() = 0;
+    virtual Result<void> restore() = 0;
+    /// As the hardware tells; nothing where it cannot be asked. Fails with `outside`.
+    virtual Result<std::optional<PowerState>> state() = 0;
+    /// For people: "relay 1 of USBRelay2 (16c0:05df at 1-1.2)".
+    [[nodiscard]] virtual std::string description() const = 0;
+};
+
+/// "on" or "cut".
+inline const char* to_string(PowerState state) { return state == PowerState::on ? "on" : "cut"; }
+
+}  // namespace skyloop

@@ -1,0 +1,40 @@
+/// Puts the power back when the program no longer can.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+
+namespace skyloop {
+
+/// A process of its own that outlives a crash, or a kill -9, of the program that started it: when that is gone, it
+/// restores by fresh handles what had been cut, says so on stderr, and ends. It is in a session of its own and takes no
+/// signal that ends programs in order, so that a Ctrl-C, or a signal to the program's process group, does not take it
+/// along. What takes it along: whoever kills every process of a container or of a service, and the loss of the machine.
+class PowerWatchdog {
+public:
+    /// Forks: to be called before the program has any other thread. @param wards URIs of open_actuator()
+    /// Fails with `outside` when the system has no process to spare.
+    static Result<std::unique_ptr<PowerWatchdog>> start(std::vector<std::string> wards);
+    /// Lets it go: it restores what is still noted as cut. Waits for its end.
+    ~PowerWatchdog();
+    PowerWatchdog(const PowerWatchdog&) = delete;
+    PowerWatchdog& operator=(const PowerWatchdog&) = delete;
+
+    /// Before a ward is cut. Fails with `outside` when the watchdog is gone: then nothing should be cut.
+    Result<void> note_cut(std::size_t ward);
+    /// After it has been restored.
+    void note_restored(std::size_t ward);
+
+private:
+    PowerWatchdog(int child, int socket) : child_(child), socket_(socket) {}
+    [[nodiscard]] bool note(char what, std::size_t ward) const;
+
+    int child_;
+    int socket_;
+};
+
+}  // namespace skyloop

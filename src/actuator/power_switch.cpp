@@ -1,0 +1,129 @@
+#include "skyloop/actuator/power_switch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "skyloop/base/signals_held_back.hpp"
+
+namespace skyloop {
+namespace {
+
+// Relays click at the pace of the machine's clock, whatever that of the simulation is.
+using SwitchClock = std::chrono::steady_clock;
+
+constexpr std::uint64_t end_of_thread = std::uint64_t{1} << 63;
+constexpr std::uint64_t most_waiting = 64;  // orders: what is further behind leaves out pairs
+constexpr int tries_of_an_order = 3;
+constexpr std::chrono::milliseconds before_next_try{100};
+
+PowerState wanted_after(std::uint64_t orders) { return (orders & 1) != 0 ? PowerState::cut : PowerState::on; }
+
+}  // namespace
+
+Result<std::unique_ptr<PowerSwitch>> PowerSwitch::start(Parts parts) {
+    std::unique_ptr<PowerSwitch> one(new PowerSwitch(std::move(parts)));
+    auto actuator = one->parts_.open();
+    if (!actuator) return fail(actuator.error());
+    one->actuator_ = std::move(*actuator);
+    one->description_ = one->actuator_->description();
+    if (const auto restored = one->actuator_->restore(); !restored) return fail(restored.error());
+    with_signals_held_back([&] { one->thread_ = std::thread([self = one.get()] { self->work(); }); });
+    return one;
+}
+
+PowerSwitch::~PowerSwitch() { finish(); }
+
+void PowerSwitch::want(PowerState state) {
+    const std::uint64_t orders = orders_.load(std::memory_order_relaxed);
+    if (wanted_after(orders) == state) return;
+    orders_.fetch_add(1);
+    orders_.notify_one();
+}
+
+void PowerSwitch::finish() {
+    if (!thread_.joinable()) return;
+    orders_.fetch_or(end_of_thread);
+    orders_.notify_one();
+    thread_.join();
+}
+
+void PowerSwitch::work() {
+    std::uint64_t done = 0;
+    for (;;) {
+        orders_.wait(done);
+        const std::uint64_t orders = orders_.load();
+        if ((orders & end_of_thread) != 0) break;
+        if (orders == done) continue;
+        if (orders - done > most_waiting) {
+            const std::uint64_t left_out = (orders - done - most_waiting + 1) & ~std::uint64_t{1};
+            done += left_out;
+            tell(fmt::format("{} orders were left out: it switches too slowly for them", left_out));
+        }
+        follow(wanted_after(++done));
+    }
+    if (!known_on_) follow(PowerState::on);
+    actuator_.reset();
+}
+
+void PowerSwitch::follow(PowerState wanted) {
+    const auto begin = SwitchClock::now();
+    const Result<void> done = try_repeatedly(wanted);
+    const std::chrono::duration<double, std::milli> took = SwitchClock::now() - begin;
+    const std::lock_guard lock(told_mutex_);
+    counts_.slowest_ms = std::max(counts_.slowest_ms, took.count());
+    if (done) {
+        ++(wanted == PowerState::cut ? counts_.cuts : counts_.restores);
+        return;
+    }
+    ++counts_.failures;
+    news_.push_back(
+        fmt::format("the power was not {}: {}", wanted == PowerState::cut ? "cut" : "restored", done.error().message));
+}
+
+Result<void> PowerSwitch::try_repeatedly(PowerState wanted) {
+    // Before the first bit moves: from then on somebody has to put it back, whatever becomes of this process.
+    if (wanted == PowerState::cut && parts_.watchdog != nullptr)
+        if (auto noted = parts_.watchdog->note_cut(parts_.ward); !noted) return noted;
+    if (wanted == PowerState::cut) known_on_ = false;
+    Result<void> done;
+    for (int i = 0; i < tries_of_an_order; ++i) {
+        if (i > 0) std::this_thread::sleep_for(before_next_try);
+        done = try_once(wanted);
+        if (done) break;
+        actuator_.reset();  // what is plugged in again needs a fresh one
+    }
+    if (!done || wanted == PowerState::cut) return done;
+    known_on_ = true;
+    if (parts_.watchdog != nullptr) parts_.watchdog->note_restored(parts_.ward);
+    return done;
+}
+
+Result<void> PowerSwitch::try_once(PowerState wanted) {
+    if (!actuator_) {
+        auto opened = parts_.open();
+        if (!opened) return fail(opened.error());
+        actuator_ = std::move(*opened);
+    }
+    return wanted == PowerState::cut ? actuator_->cut() : actuator_->restore();
+}
+
+void PowerSwitch::tell(std::string news) {
+    const std::lock_guard lock(told_mutex_);
+    news_.push_back(std::move(news));
+}
+
+std::vector<std::string> PowerSwitch::take_news() {
+    const std::unique_lock lock(told_mutex_, std::try_to_lock);
+    if (!lock) return {};
+    return std::exchange(news_, {});
+}
+
+PowerCounts PowerSwitch::counts() const {
+    const std::lock_guard lock(told_mutex_);
+    return counts_;
+}
+
+}  // namespace skyloop
