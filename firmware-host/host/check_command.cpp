@@ -18,6 +18,7 @@ void print_receiver(const ReceiverEntry& entry, const Station& station, bool of_
                receiver.board().baud, 1e9 / static_cast<double>(receiver.settings().navigation_period.count()));
     for (const std::string& port : entry.ports)
         fmt::print("port        {}\n", port);
+    if (!entry.power.empty()) fmt::print("power       {}\n", entry.power);
 }
 
 // Without an end, what the first hour brings.

@@ -20,9 +20,9 @@ namespace {
 
 using skyloop::host::Action;
 
-constexpr std::array<std::string_view, 15> commands{"run",    "simulate", "sky",    "check",         "compare",
-                                                    "solve",  "boards",   "decode", "scene",         "faults",
-                                                    "schema", "ctl",      "replay", "scenario-from", "devices"};
+constexpr std::array<std::string_view, 16> commands{"run",    "simulate",      "sky",     "check",  "compare", "solve",
+                                                    "boards", "decode",        "scene",   "faults", "schema",  "ctl",
+                                                    "replay", "scenario-from", "devices", "power"};
 constexpr std::array<std::string_view, 2> later_commands{"trajectory", "campaign"};
 
 // CLI11 does not know which words may be meant; this says it in one line.
@@ -39,14 +39,12 @@ int run_program(int argc, char** argv) {
     app.set_version_flag("--version", "skyloop " SKYLOOP_VERSION);
     app.require_subcommand(1);
     const std::array<Action (*)(CLI::App&), commands.size()> add{
-        skyloop::host::add_run_command,     skyloop::host::add_simulate_command,
-        skyloop::host::add_sky_command,     skyloop::host::add_check_command,
-        skyloop::host::add_compare_command, skyloop::host::add_solve_command,
-        skyloop::host::add_boards_command,  skyloop::host::add_decode_command,
-        skyloop::host::add_scene_command,   skyloop::host::add_faults_command,
-        skyloop::host::add_schema_command,  skyloop::host::add_ctl_command,
-        skyloop::host::add_replay_command,  skyloop::host::add_scenario_from_command,
-        skyloop::host::add_devices_command};
+        skyloop::host::add_run_command,    skyloop::host::add_simulate_command,      skyloop::host::add_sky_command,
+        skyloop::host::add_check_command,  skyloop::host::add_compare_command,       skyloop::host::add_solve_command,
+        skyloop::host::add_boards_command, skyloop::host::add_decode_command,        skyloop::host::add_scene_command,
+        skyloop::host::add_faults_command, skyloop::host::add_schema_command,        skyloop::host::add_ctl_command,
+        skyloop::host::add_replay_command, skyloop::host::add_scenario_from_command, skyloop::host::add_devices_command,
+        skyloop::host::add_power_command};
     std::vector<Action> actions;
     for (const auto add_command : add)
         actions.push_back(add_command(app));

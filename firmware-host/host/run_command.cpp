@@ -24,6 +24,18 @@ DeadlineGrants keep_deadlines(const Messages& messages) {
     return grants;
 }
 
+// Before anything starts a thread. @return null where there is nothing to watch over
+Result<std::unique_ptr<PowerWatchdog>> watch_power(const Scenario& scenario, const RunMode& mode) {
+    std::vector<std::string> wards;
+    bool any = false;
+    for (const ReceiverEntry& receiver : scenario.receivers) {
+        wards.push_back(receiver.power);
+        any = any || !receiver.power.empty();
+    }
+    if (!any || mode.virtual_time) return nullptr;
+    return PowerWatchdog::start(std::move(wards));
+}
+
 int run_live(const RunOptions& options) {
     const Messages messages(options.verbosity);
     const auto scenario = scenario_from(options);
@@ -37,6 +49,9 @@ int run_live(const RunOptions& options) {
     CommandQueue commands;
     mode.live_commands = &commands;
     if (!options.repeat.empty()) mode.repeat = options.repeat;
+    const auto watchdog = watch_power(*scenario, mode);
+    if (!watchdog) return messages.error(watchdog.error());
+    mode.power_watchdog = watchdog->get();
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
 

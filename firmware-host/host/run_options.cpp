@@ -77,6 +77,7 @@ Result<void> apply_receiver(const RunOptions& options, Scenario& scenario) {
     if (!options.board.empty()) first.board = options.board;
     if (!options.ports.empty()) first.ports = options.ports;
     if (!options.state.empty()) first.state_file = options.state;
+    if (!options.power.empty()) first.power = options.power;
     if (options.rate) {
         if (!(*options.rate >= 0.01 && *options.rate <= 100))
             return fail(ErrorCode::usage, fmt::format("--rate {}: expected 0.01 to 100 Hz", *options.rate));
@@ -162,6 +163,9 @@ void add_run_options(CLI::App& command, RunOptions& options) {
                     "NAME=… is the "
                     "board's port of that name, such as uart2=pty; repeatable")
         ->allow_extra_args(false);
+    command.add_option("--power", options.power,
+                       "What the fault power_cut switches in a live run: relay:VID:PID/N gpio:VID:PID/N hub:PORT_PATH "
+                       "line:DEVICE/rts line:DEVICE/dtr command:CUT|RESTORE");
     command.add_option("--state", options.state, "File that keeps what the receiver saves beyond the run");
     command.add_option("--repeat", options.repeat,
                        "A recording: its start, its clients' bytes and its live commands happen again");

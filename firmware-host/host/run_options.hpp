@@ -16,7 +16,7 @@ namespace skyloop::host {
 /// What was typed; empty or absent: the scenario's own.
 struct RunOptions {
     std::string scenario;
-    std::string at, trajectory, start, model, board, state, scene, control;
+    std::string at, trajectory, start, model, board, state, scene, control, power;
     std::vector<std::string> nav, ports;
     bool rebase_nav = false;
     std::optional<double> duration, rate;

@@ -75,6 +75,12 @@ int RunSession::run(const Scenario& scenario, RunWatch& watch) {
             messages_.warning(news);
     for (const Station& station : emulator.stations()) {
         tell_counts(station);
+        tell_power(station);
+        if (station.power() != nullptr && station.power()->counts().failures > 0)
+            code = messages_.error(
+                {ErrorCode::outside,
+                 fmt::format("{}power {}: what was to be cut was not, or not restored, {} times", prefix(station),
+                             station.power()->name(), station.power()->counts().failures)});
         for (const Wire& wire : station.wires())
             if (const std::string failure = wire.link.transport().failure(); !failure.empty())
                 code = messages_.error({ErrorCode::outside, failure});
@@ -98,7 +104,18 @@ std::vector<std::string> RunSession::wire_news(std::size_t index) {
     for (std::size_t i = 0; i < station.wires().size(); ++i)
         for (const std::string& news : station.transport(i).take_news())
             all.push_back(fmt::format("{}: {}", port_name(station, i), news));
+    if (station.power() != nullptr)
+        for (const std::string& news : station.power()->take_news())
+            all.push_back(fmt::format("{}power {}: {}", prefix(station), station.power()->name(), news));
     return all;
+}
+
+void RunSession::tell_power(const Station& station) const {
+    if (station.power() == nullptr) return;
+    const PowerCounts counts = station.power()->counts();
+    messages_.info(fmt::format("{}power {}: {} times cut, {} times restored, {} failures, {:.1f} ms at worst",
+                               prefix(station), station.power()->name(), counts.cuts, counts.restores, counts.failures,
+                               counts.slowest_ms));
 }
 
 std::string RunSession::prefix(const Station& station) const {

@@ -32,8 +32,9 @@ private:
     void tell_wire(const Station& station, std::size_t wire) const;
     // What the buildings around a receiver have to say that has not been said yet.
     std::optional<std::string> new_notice(std::size_t station);
-    // What has happened to its wires since the last call.
+    // What has happened to its wires and its power since the last call.
     std::vector<std::string> wire_news(std::size_t station);
+    void tell_power(const Station& station) const;
     // "rover: " when there are several receivers.
     [[nodiscard]] std::string prefix(const Station& station) const;
     const Messages& messages_;

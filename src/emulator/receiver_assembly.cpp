@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "rinex_recording.hpp"
+#include "skyloop/actuator/actuator_uri.hpp"
 #include "skyloop/base/digest.hpp"
 #include "skyloop/client/open_client.hpp"
 #include "skyloop/scenario/board_file.hpp"
@@ -91,6 +92,31 @@ Result<std::vector<HeardBytes>> repeated_input(const std::filesystem::path& fold
     return read_repeated_input(recording_of(folder, index), ports);
 }
 
+// What is known of the actuator before it is opened.
+Result<void> check_power(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings) {
+    const std::vector<ReceiverEntry>& receivers = shared.scenario.receivers;
+    const std::string& power = receivers[index].power;
+    if (power.empty()) return {};
+    if (const auto known = parse_actuator_uri(power); !known) return fail(known.error());
+    for (std::size_t i = 0; i < index; ++i)
+        if (receivers[i].power == power)
+            return fail(ErrorCode::usage, fmt::format("power '{}' is that of {} too; expected an actuator of its own",
+                                                      power, receiver_name(shared.scenario, i)));
+    if (shared.mode.virtual_time)
+        warnings.push_back(
+            fmt::format("power {}: skyloop run switches it, at the clock's pace; in virtual time nothing "
+                        "does",
+                        power));
+    return {};
+}
+
+// Opened, and the power on.
+Result<std::unique_ptr<PowerSwitch>> power_of(const std::string& uri, const SharedParts& shared, std::size_t index) {
+    auto power = PowerSwitch::start({uri, [uri] { return open_actuator(uri); }, shared.mode.power_watchdog, index});
+    if (!power) return fail(power.error().code, fmt::format("power {}: {}", uri, power.error().message));
+    return power;
+}
+
 Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings) {
     const Scenario& scenario = shared.scenario;
     const ReceiverEntry& entry = scenario.receivers.at(index);
@@ -98,6 +124,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     if (!board) return fail(board.error());
     auto wires = wires_of(entry, *board);
     if (!wires) return fail(wires.error());
+    if (const auto known = check_power(shared, index, warnings); !known) return fail(known.error());
     std::optional<StateFile> state;
     if (!entry.state_file.empty()) {
         auto opened = StateFile::open(entry.state_file);
@@ -163,6 +190,11 @@ Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::si
         station.parts.wires.push_back(
             {wire.port, Link(std::move(*transport), port_speed(station.parts.receiver, wire.port), pace)});
     }
+    const std::string& uri = shared.scenario.receivers.at(index).power;
+    if (uri.empty() || shared.mode.virtual_time) return {};
+    auto power = power_of(uri, shared, index);
+    if (!power) return fail(of_receiver(power.error(), shared.scenario, index));
+    station.parts.power = std::move(*power);
     return {};
 }
 

@@ -30,7 +30,7 @@ struct PlannedStation {
 /// Builds the receiver of this place in the scenario's list. Fails with `usage` or `input`, naming the receiver when
 /// there are several.
 Result<PlannedStation> plan_station(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings);
-/// Opens its wires.
+/// Opens its wires and, against the clock, its actuator.
 Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::size_t index);
 /// Makes the files of its recording: the first receiver's in the folder itself, the others' in receiver1 and so on.
 Result<void> add_recorder(Station::Parts& parts, const SharedParts& shared, std::size_t index);

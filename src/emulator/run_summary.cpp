@@ -68,6 +68,12 @@ Json grants_json(const DeadlineGrants& grants) {
             {"missing", grants.missing}};
 }
 
+Json power_json(const PowerSwitch& power) {
+    const PowerCounts counts = power.counts();
+    return {{"actuator", power.name()},    {"description", power.description()}, {"cuts", counts.cuts},
+            {"restores", counts.restores}, {"failures", counts.failures},        {"slowest_ms", counts.slowest_ms}};
+}
+
 // What one receiver counted; the first one's stands at the top of the file.
 void add_counts(Json& summary, const Station& station) {
     summary["epochs"] = station.counts().epochs;
@@ -75,6 +81,7 @@ void add_counts(Json& summary, const Station& station) {
     summary["messages_sent"] = station.messages_sent();
     summary["messages_dropped"] = station.messages_dropped();
     summary["ports"] = ports_json(station.wires());
+    if (station.power() != nullptr) summary["power"] = power_json(*station.power());
     if (const RayTracedScene* city = station.simulation().city()) summary["path_search"] = rays_json(*city);
     summary["lateness"] = lateness_json(station.counts().lateness);
 }

@@ -66,6 +66,7 @@ void Station::follow_faults(GpsTime now) {
         wire.set(conditions, now);
     for (Wire& wire : parts_.wires)
         wire.link.set_plugged(!conditions.unplugged);
+    if (parts_.power) parts_.power->want(conditions.power_cut ? PowerState::cut : PowerState::on);
 }
 
 void Station::hear(std::size_t wire, GpsTime now, Dialogue* dialogue) {
@@ -200,6 +201,7 @@ void Station::keep_state(GpsTime now) {
 void Station::finish(GpsTime now) {
     if (parts_.recorder) parts_.recorder->flush();
     if (parts_.state) parts_.state->keep(parts_.receiver.persistent_text(), now);
+    if (parts_.power) parts_.power->finish();
 }
 
 }  // namespace skyloop

@@ -109,7 +109,7 @@ MakeWireFault whole_wire(bool WireConditions::*which) {
 Result<Fault> make_power_cut(const Parameters& parameters, const FaultContext&) {
     Fault fault;
     fault.wire = [](WireConditions& wire, const FaultMoment& moment) {
-        if (moment.strength > 0) wire.to_client.dead = wire.to_receiver.dead = true;
+        if (moment.strength > 0) wire.to_client.dead = wire.to_receiver.dead = wire.power_cut = true;
     };
     fault.firmware = [](firmware::FirmwareFaults& faults, const FaultMoment& moment) {
         if (moment.strength > 0) faults.deaf = faults.mute = true;
@@ -228,11 +228,14 @@ void add_broken_wires(std::vector<FaultKind>& kinds) {
         wire_kind("unplugged", "Neither end hears the other, as with the cable pulled.",
                   "Vibration works a connector loose, or a USB hub resets and its devices vanish for a while.", {},
                   whole_wire(&WireConditions::unplugged)));
-    kinds.push_back(wire_kind("power_cut", "The receiver is without power, and starts anew when it returns.",
-                              "A brown-out of the supply rail, a tripped fuse or a bad crimp of the supply lead.",
-                              {word_parameter("start", "cold", {"hot", "warm", "cold"},
-                                              "how it starts afterwards: cold without a backup battery")},
-                              make_power_cut));
+    kinds.push_back(
+        wire_kind("power_cut",
+                  "The receiver is without power, and starts anew when it returns. In a live run its actuator, "
+                  "`power` of its [[receiver]], is switched too.",
+                  "A brown-out of the supply rail, a tripped fuse or a bad crimp of the supply lead.",
+                  {word_parameter("start", "cold", {"hot", "warm", "cold"},
+                                  "how it starts afterwards: cold without a backup battery")},
+                  make_power_cut));
     kinds.push_back(wire_kind(
         "speed_mismatch", "The receiver's line runs at another speed than the one it was set to.",
         "A receiver that restarted unnoticed speaks at its default speed while its client does not.",

@@ -134,7 +134,8 @@ Result<std::vector<DeviceProfile>> read_devices(std::string_view toml_text, std:
                 if (const std::string wrong = clash(earlier, device); !wrong.empty()) table.mistake_here(wrong);
             devices.push_back(device);
         });
-        if (top.has("device") && devices.empty()) top.mistake("device", "holds none; expected tables headed [[device]]");
+        if (top.has("device") && devices.empty())
+            top.mistake("device", "holds none; expected tables headed [[device]]");
     });
     if (!read) return fail(read.error());
     return devices;

@@ -72,6 +72,10 @@ constexpr KeyMeaning run_meanings[] = {
      "wires: pty[:LINK], serial:DEVICE[@BAUD], usb:VID:PID, hid:VID:PID, usbip:[HOST:]PORT, tcp:[HOST:]PORT, "
      "tcp-connect:HOST:PORT, rfc2217:[HOST:]PORT, file:PATH, -, client:NAME; NAME= before it says which port",
      "a pty"},
+    {"receiver", "power",
+     "the actuator that the fault power_cut switches in a live run: relay:, gpio:, hub:, line: or command: "
+     "(docs/actuators.md)",
+     "none"},
     {"receiver", "rate_hz", "navigation rate at the factory", "the board's"},
     {"receiver", "baud", "bit/s of UART1 at the factory", "the board's"},
     {"receiver", "sentences", "NMEA sentences at the factory, each every epoch", "the board's"},

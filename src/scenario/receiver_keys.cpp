@@ -19,6 +19,7 @@ void add_once(std::vector<firmware::NmeaSentence>& sentences, firmware::NmeaSent
 void read_output_keys(TableReader& receiver, ReceiverEntry& entry) {
     receiver.text("board", entry.board);
     receiver.text_or_texts("port", entry.ports);
+    receiver.text("power", entry.power);
     if (receiver.has("rate_hz")) {
         double rate = 1;
         receiver.number("rate_hz", rate, {0.01, 100});

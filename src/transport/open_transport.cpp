@@ -52,9 +52,10 @@ Result<UsbBridgeAddress> parse_bridge(WireKind kind, std::string_view rest) {
 Result<TcpAddress> parse_network(WireKind kind, std::string_view rest) {
     auto address = parse_tcp_address(rest);
     if (address && kind == WireKind::tcp_connect && (rest.find(':') == std::string_view::npos || address->port == 0))
-        return fail(ErrorCode::usage,
-                    "whom to call is missing; expected tcp-connect:HOST:PORT, the port from 1 to 65535, an IPv6 address "
-                    "in brackets");
+        return fail(
+            ErrorCode::usage,
+            "whom to call is missing; expected tcp-connect:HOST:PORT, the port from 1 to 65535, an IPv6 address "
+            "in brackets");
     return address;
 }
 

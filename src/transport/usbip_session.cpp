@@ -12,7 +12,7 @@ constexpr std::int64_t bus_bytes_per_ms = 19 * 64, ns_per_ms = 1'000'000;
 // What the bus may catch up after a late look.
 constexpr std::int64_t most_budget = 20 * bus_bytes_per_ms;
 constexpr std::int64_t silence_of_listener_ns = 100 * ns_per_ms;
-constexpr std::size_t most_pending = 256;       // transfers; Linux has 16 each way and one for the line's state
+constexpr std::size_t most_pending = 256;  // transfers; Linux has 16 each way and one for the line's state
 // Of commands that are followed at one look: a client that floods must not hold the loop. Linux sends a dozen at most
 // in the millisecond between two looks.
 constexpr int most_commands = 256;

@@ -46,7 +46,8 @@ Result<HubPorts> ask_ports(libusb_device_handle* hub, bool superspeed, const std
     const int size =
         libusb_control_transfer(hub, from_hub, LIBUSB_REQUEST_GET_DESCRIPTOR, static_cast<std::uint16_t>(type << 8), 0,
                                 answer.data(), static_cast<std::uint16_t>(answer.size()), hub_patience_ms);
-    if (size < 0) return no_hub_port(port_path, "what is there is no hub, or does not describe itself: " + usb_error_text(size));
+    if (size < 0)
+        return no_hub_port(port_path, "what is there is no hub, or does not describe itself: " + usb_error_text(size));
     const auto ports = hub_ports(ByteSpan(answer).first(static_cast<std::size_t>(size)));
     if (!ports) return no_hub_port(port_path, "the hub does not describe itself as the standard wants");
     return *ports;

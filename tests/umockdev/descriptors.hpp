@@ -14,10 +14,10 @@ struct DeviceSpec {
     UsbIds ids;
     std::string manufacturer;
     std::string product;
-    std::string serial;        ///< empty: it has none
-    Bytes configuration;       ///< of the configuration descriptor, whole (configuration())
-    std::string port = "1";    ///< of bus 1; that of a hub, "3.2", needs the hub "3"
-    std::uint8_t address = 4;  ///< a plugged-in device gets a new one each time
+    std::string serial;             ///< empty: it has none
+    Bytes configuration;            ///< of the configuration descriptor, whole (configuration())
+    std::string port = "1";         ///< of bus 1; that of a hub, "3.2", needs the hub "3"
+    std::uint8_t address = 4;       ///< a plugged-in device gets a new one each time
     std::uint8_t device_class = 0;  ///< 9: a hub
 };
 /// /dev/bus/usb/001/NNN.

@@ -35,6 +35,7 @@ struct RunMode {
     bool first_ports_only = false;                  ///< of several receivers only the first gets its wires
     std::optional<std::filesystem::path> repeat{};  ///< a recording whose clients' bytes are heard again
     CommandQueue* live_commands = nullptr;          ///< where other threads ask for something; outlives the run
+    PowerWatchdog* power_watchdog = nullptr;        ///< over the actuators, by receiver; outlives the run; null: none
 };
 
 /// A run ready to go, and what its user should be told first.

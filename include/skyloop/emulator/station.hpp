@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "firmware/receiver.hpp"
+#include "skyloop/actuator/power_switch.hpp"
 #include "skyloop/emulator/dialogue.hpp"
 #include "skyloop/emulator/epoch_grid.hpp"
 #include "skyloop/emulator/faulty_wire.hpp"
@@ -53,8 +54,9 @@ public:
         std::optional<StateFile> state{};
         std::optional<std::size_t> base{};  ///< the station that carries the base antenna of the pair
         std::optional<MovingBase> moving_base{};
-        std::uint64_t seed = 1;              ///< of its own random numbers
-        std::vector<HeardBytes> repeated{};  ///< input of an earlier run, to be heard again
+        std::uint64_t seed = 1;                ///< of its own random numbers
+        std::vector<HeardBytes> repeated{};    ///< input of an earlier run, to be heard again
+        std::unique_ptr<PowerSwitch> power{};  ///< of a real device, switched by power_cut; null: none
     };
     explicit Station(Parts parts);
 
@@ -105,6 +107,9 @@ public:
     [[nodiscard]] const Simulation& simulation() const { return parts_.simulation; }
     [[nodiscard]] const Recorder* recorder() const { return parts_.recorder ? &*parts_.recorder : nullptr; }
     [[nodiscard]] Recorder* recorder() { return parts_.recorder ? &*parts_.recorder : nullptr; }
+    /// Of a real device; null: none.
+    [[nodiscard]] PowerSwitch* power() { return parts_.power.get(); }
+    [[nodiscard]] const PowerSwitch* power() const { return parts_.power.get(); }
     [[nodiscard]] const std::optional<StateFile>& state() const { return parts_.state; }
     [[nodiscard]] const RunCounts& counts() const { return counts_; }
 

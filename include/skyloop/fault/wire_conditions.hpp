@@ -34,6 +34,7 @@ struct WireConditions {
     WireDirection to_client, to_receiver;
     bool unplugged = false;   ///< neither end hears the other, as with the cable pulled
     bool line_break = false;  ///< the line is held at space: the client hears zero bytes with framing errors
+    bool power_cut = false;   ///< the receiver has no power: what is behind its actuator is to have none either
     std::optional<std::uint32_t> receiver_baud;  ///< the line runs at this speed, whatever the receiver believes
 
     [[nodiscard]] bool operator==(const WireConditions&) const = default;

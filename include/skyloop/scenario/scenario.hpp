@@ -97,6 +97,7 @@ struct ReceiverEntry {
     std::string name;  ///< empty: receiver0, receiver1, …
     std::string board = "ublox-m8";
     std::vector<std::string> ports;                 ///< URIs, after the name of a port and "=" or alone; empty: one pty
+    std::string power;                              ///< URI of the actuator that power_cut switches; empty: none
     std::optional<double> rate_hz;                  ///< nothing: the board's
     std::optional<std::uint32_t> baud;              ///< nothing: the board's
     std::vector<firmware::NmeaSentence> sentences;  ///< empty: the board's

@@ -28,10 +28,10 @@ struct PortUri {
 /// Fails with `usage` and a sentence that quotes the URI.
 Result<PortUri> parse_port_uri(std::string_view uri);
 
-/// Opens `pty`, `pty:LINK`, `serial:DEVICE[@BAUD][,8N1][,rtscts]`, `usb:VID:PID[:SERIAL|@PORT][,BAUD][,8N1]`, `hid:` the
-/// same with [,rtscts], `usbip:[HOST:]PORT`, `tcp:[HOST:]PORT`, `tcp-connect:HOST:PORT`, `rfc2217:[HOST:]PORT`,
-/// `file:PATH` or `-` (standard output). Fails with `usage` for anything else, with `outside` when the system refuses; the
-/// sentence names the URI, the address, the device or the path.
+/// Opens `pty`, `pty:LINK`, `serial:DEVICE[@BAUD][,8N1][,rtscts]`, `usb:VID:PID[:SERIAL|@PORT][,BAUD][,8N1]`, `hid:`
+/// the same with [,rtscts], `usbip:[HOST:]PORT`, `tcp:[HOST:]PORT`, `tcp-connect:HOST:PORT`, `rfc2217:[HOST:]PORT`,
+/// `file:PATH` or `-` (standard output). Fails with `usage` for anything else, with `outside` when the system refuses;
+/// the sentence names the URI, the address, the device or the path.
 /// @param face of the device that a USB/IP wire shows
 Result<std::unique_ptr<Transport>> open_transport(std::string_view uri, const UsbFace& face = {});
 
