@@ -17,8 +17,8 @@ TEST(HubPorts, AreReadFromTheDescriptor) {
     EXPECT_EQ(superspeed->count, 2);
     EXPECT_TRUE(superspeed->switched_one_by_one);
     // All together; and the two values that say not at all.
-    for (const std::uint8_t mode : {0xA8, 0xAA, 0xAB})
-        EXPECT_FALSE(hub_ports(Bytes{9, 0x29, 4, mode, 0x00, 50, 100, 0, 0xFF})->switched_one_by_one);
+    for (const Bytes& mode : {Bytes{0xA8}, Bytes{0xAA}, Bytes{0xAB}})
+        EXPECT_FALSE(hub_ports(Bytes{9, 0x29, 4, mode[0], 0x00, 50, 100, 0, 0xFF})->switched_one_by_one);
     for (const Bytes& other : {Bytes{}, Bytes{9, 0x29, 4}, Bytes{9, 0x22, 4, 0xA9, 0, 50, 100, 0, 0xFF},
                                Bytes{3, 0x29, 4, 0xA9, 0, 50, 100, 0, 0xFF}})
         EXPECT_FALSE(hub_ports(other));
