@@ -28,10 +28,21 @@ public:
     }
 
 private:
-    // The answer to a command. What came before it was for somebody else.
+    // What has come for somebody else, another program or another pin of the chip, would be taken for an answer.
+    Result<void> forget_old_answers() {
+        constexpr int most_waiting = 64;  // reports that the kernel keeps
+        for (int i = 0; i < most_waiting; ++i) {
+            const auto old = device_.read(std::chrono::milliseconds(0));
+            if (!old) return fail(old.error());
+            if (old->empty()) break;
+        }
+        return {};
+    }
+    // The answer to a command.
     Result<Bytes> ask(const Bytes& command) {
         constexpr std::chrono::milliseconds patience{500};
         constexpr int most_strangers = 4;
+        if (const auto forgotten = forget_old_answers(); !forgotten) return fail(forgotten.error());
         if (const auto sent = device_.write(command); !sent) return fail(sent.error());
         for (int i = 0; i <= most_strangers; ++i) {
             auto answer = device_.read(patience);

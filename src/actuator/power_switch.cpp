@@ -25,7 +25,9 @@ PowerState wanted_after(std::uint64_t orders) { return (orders & 1) != 0 ? Power
 
 Result<std::unique_ptr<PowerSwitch>> PowerSwitch::start(Parts parts) {
     std::unique_ptr<PowerSwitch> one(new PowerSwitch(std::move(parts)));
-    auto actuator = one->parts_.open();
+    // Libraries of USB start threads of their own, too.
+    Result<std::unique_ptr<Actuator>> actuator;
+    with_signals_held_back([&] { actuator = one->parts_.open(); });
     if (!actuator) return fail(actuator.error());
     one->actuator_ = std::move(*actuator);
     one->description_ = one->actuator_->description();

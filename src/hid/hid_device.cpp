@@ -52,7 +52,8 @@ std::string node_of(HidBackend backend, const std::string& path) {
     return fmt::format("/dev/bus/usb/{:03}/{:03}", bus, number);
 }
 
-// hidapi opens, closes and lists devices of one backend in one thread at a time only.
+// hidapi opens, closes and lists devices of one backend in one thread at a time only, and keeps the words for its last
+// mistake in one place for all of them.
 struct Usage {
     std::mutex mutex{};
     int open = 0;  // devices
@@ -87,8 +88,10 @@ std::vector<Found> enumerate(const HidApi& api, UsbIds ids, const Usage& used) {
 Result<std::vector<UsbDeviceInfo>> HidDevice::list(UsbIds ids, HidBackend backend) {
     const auto api = hid_api(backend);
     if (!api) return fail(api.error());
+    Usage& used = usage(backend);
+    const std::lock_guard lock(used.mutex);
     std::vector<UsbDeviceInfo> devices;
-    for (Found& found : enumerate(**api, ids))
+    for (Found& found : enumerate(**api, ids, used))
         devices.push_back(std::move(found.info));
     return devices;
 }

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <semaphore>
 
-#include "scratch_folder.hpp"
+#include "told_orders.hpp"
 
 namespace skyloop {
 namespace {

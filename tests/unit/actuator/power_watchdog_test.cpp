@@ -11,7 +11,7 @@
 #include <fstream>
 #include <functional>
 
-#include "scratch_folder.hpp"
+#include "told_orders.hpp"
 
 namespace skyloop {
 namespace {
@@ -39,8 +39,8 @@ std::unique_ptr<PowerWatchdog> watch(std::vector<std::string> wards) {
 }
 
 TEST(PowerWatchdog, RestoresAfterAKill) {
-    const ScratchFolder folder;
-    const std::string first = folder / "first", second = folder / "second";
+    const test::TemporaryFolder folder;
+    const std::string first = (folder / "first").string(), second = (folder / "second").string();
     const int by = die_in([&] {
         const auto watchdog = watch({command_into(first), command_into(second)});
         static_cast<void>(watchdog->note_cut(1));
@@ -52,8 +52,8 @@ TEST(PowerWatchdog, RestoresAfterAKill) {
 }
 
 TEST(PowerWatchdog, OutlivesWhatEndsItsProgramInOrder) {
-    const ScratchFolder folder;
-    const std::string file = folder / "state";
+    const test::TemporaryFolder folder;
+    const std::string file = (folder / "state").string();
     const int by = die_in([&] {
         ::setpgid(0, 0);
         const auto watchdog = watch({command_into(file)});
@@ -66,8 +66,8 @@ TEST(PowerWatchdog, OutlivesWhatEndsItsProgramInOrder) {
 }
 
 TEST(PowerWatchdog, LeavesAloneWhatHasBeenRestored) {
-    const ScratchFolder folder;
-    const std::string file = folder / "state";
+    const test::TemporaryFolder folder;
+    const std::string file = (folder / "state").string();
     EXPECT_EQ(die_in([&] {
                   const auto watchdog = watch({command_into(file)});
                   static_cast<void>(watchdog->note_cut(0));
@@ -78,8 +78,8 @@ TEST(PowerWatchdog, LeavesAloneWhatHasBeenRestored) {
 }
 
 TEST(PowerWatchdog, RestoresWhatIsStillNotedAtTheEnd) {
-    const ScratchFolder folder;
-    const std::string file = folder / "state";
+    const test::TemporaryFolder folder;
+    const std::string file = (folder / "state").string();
     EXPECT_EQ(die_in([&] {
                   const auto watchdog = watch({command_into(file)});
                   static_cast<void>(watchdog->note_cut(0));

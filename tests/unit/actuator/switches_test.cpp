@@ -7,8 +7,8 @@
 
 #include <cerrno>
 
-#include "scratch_folder.hpp"
 #include "skyloop/actuator/modem_line.hpp"
+#include "told_orders.hpp"
 
 namespace skyloop {
 namespace {
@@ -22,8 +22,8 @@ std::unique_ptr<Actuator> opened(const std::string& uri) {
 }
 
 TEST(CommandSwitch, RunsTheProgramsAndAsksTheThird) {
-    const ScratchFolder folder;
-    const std::string file = folder / "state";
+    const test::TemporaryFolder folder;
+    const std::string file = (folder / "state").string();
     const auto actuator = opened("command:sh -c 'echo cut >\"$1\"' - '" + file + "'|sh -c 'echo on >\"$1\"' - '" +
                                  file + "'|cat '" + file + "'");
     ASSERT_TRUE(actuator);

@@ -256,6 +256,7 @@ TEST(WireFaults, APowerCutSilencesTheReceiverAndRestartsIt) {
     const WireConditions conditions = conditions_of(fault);
     EXPECT_TRUE(conditions.to_client.dead);
     EXPECT_TRUE(conditions.to_receiver.dead);
+    EXPECT_TRUE(conditions.power_cut) << "a real one behind it is cut too";
     firmware::FirmwareFaults faults;
     ASSERT_TRUE(fault.firmware);
     fault.firmware(faults, moment_of(1));
