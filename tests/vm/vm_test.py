@@ -1,0 +1,137 @@
+"""skyloop and a real kernel's drivers: a serial adapter (ftdi_sio) on the pty, the adapter pulled and put back, skyloop inside
+the machine with that adapter as its own wire. One machine serves all tests; its transcript is printed and kept.
+"""
+import os
+import pathlib
+import re
+import sys
+import tempfile
+import time
+import unittest
+
+import kernel as kernels
+import machine as machines
+from machine import Initramfs, Machine
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "integration"))
+from pty_client_test import good_share  # noqa: E402
+from serial_test import Autopilot, port_settings  # noqa: E402
+from session import SKYLOOP, Emulator, skip  # noqa: E402
+
+ARTIFACTS = pathlib.Path(os.environ.get("SKYLOOP_ARTIFACTS", pathlib.Path(tempfile.gettempdir(), "skyloop-vm")))
+START = ("--start", "2026-03-01T00:00:00Z", "--model", "ideal")
+
+
+def probed(text):
+    """What serial_probe told, as numbers where they are."""
+    values = dict(re.findall(r"(\w+)=(\S+)", text))
+    return {name: float(value) if re.fullmatch(r"-?[\d.]+", value) else value for name, value in values.items()}
+
+
+class VirtualMachineTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.began = time.monotonic()
+        cls.folder = tempfile.TemporaryDirectory(prefix="skyloop-vm-")
+        cls.addClassCleanup(cls.folder.cleanup)
+        initramfs = Initramfs(cls.folder.name, KERNEL)
+        initramfs.compiled("serial_probe")
+        initramfs.program(machines.kernels.tool("usbip"))
+        initramfs.program(SKYLOOP, strip=True)
+        cls.gps = cls.enterClassContext(Emulator("--board", "ublox-m9", "--port", f"pty:{cls.folder.name}/gps0", *START))
+        cls.autopilot = Autopilot(pathlib.Path(cls.folder.name, "autopilot"))
+        cls.addClassCleanup(cls.autopilot.unplug)
+        cls.machine = Machine(KERNEL, initramfs.archive(), cls.folder.name,
+                              ["-chardev", f"serial,id=gps,path={cls.gps.tty}",
+                               "-device", "usb-serial,id=adapter0,chardev=gps,bus=usb.0,port=1,serial=GPS0",
+                               "-chardev", f"serial,id=autopilot,path={cls.autopilot.link}"])
+        cls.addClassCleanup(cls.tell)
+        cls.ready = time.monotonic() - cls.began
+
+    @classmethod
+    def tell(cls):
+        """Ends the machine and shows what happened in it."""
+        on = cls.machine.close()
+        ARTIFACTS.mkdir(parents=True, exist_ok=True)
+        text = (f"Linux {cls.machine.release}, up and asked {cls.ready:.1f} s after the beginning, on for {on:.1f} s\n"
+                f"{cls.machine.text()}")
+        (ARTIFACTS / "transcript.txt").write_text(text)
+        (ARTIFACTS / "console.txt").write_text(cls.machine.console_text())
+        print(text)
+
+    def setUp(self):
+        self.machine.say(f"--- {self.id().rpartition('.')[2]}")
+
+    def probe(self, device, speed, seconds, *epochs):
+        text = self.machine.run(f"serial_probe {device} {speed} {seconds} {' '.join(map(str, epochs))}", patience=seconds * 3 + 20)
+        return probed(text)
+
+    def adapter(self, number, chardev):
+        """Plugs a serial adapter (FT232) in; its tty appears under any name."""
+        self.machine.monitor.command("device_add", driver="usb-serial", id=f"adapter{number}", chardev=chardev, bus="usb.0",
+                                     port=str(number + 1), serial=f"GPS{number}")
+        self.machine.say(f"(adapter {number} plugged in)")
+
+    def pull(self, number):
+        self.machine.monitor.command("device_del", id=f"adapter{number}")
+        self.machine.say(f"(adapter {number} pulled)")
+
+    def test_1_adapter_at_the_right_speed_and_at_a_wrong_one(self):
+        self.machine.wait_for("test -c /dev/ttyUSB0")
+        self.machine.run("cat /sys/bus/usb-serial/devices/ttyUSB0/latency_timer")
+        self.probe("/dev/ttyUSB0", 38400, 2)  # what waited in QEMU from before
+        right = self.probe("/dev/ttyUSB0", 38400, 8)
+        self.assertGreater(right["sentences"], 30)
+        self.assertEqual([right["broken"], right["gaps"], right["ended"]], [0, 0, "-"])
+        self.assertGreaterEqual(right["answers"], 6)
+        wrong = self.probe("/dev/ttyUSB0", 57600, 4)
+        self.assertGreater(wrong["bytes"], 500)
+        self.assertEqual([wrong["sentences"], wrong["answers"]], [0, 0])
+        self.probe("/dev/ttyUSB0", 38400, 2)
+        self.assertEqual(self.probe("/dev/ttyUSB0", 38400, 3)["broken"], 0)
+
+    def test_2_adapter_pulled_and_put_back(self):
+        probe = self.machine.start("serial_probe /dev/ttyUSB0 38400 30")
+        time.sleep(2)
+        self.pull(0)
+        self.machine.wait_for(f"grep -q ended= {probe}")
+        self.assertEqual(probed(self.machine.run(f"cat {probe}"))["ended"], "hung")
+        self.machine.wait_for("test ! -e /dev/ttyUSB0")
+        self.adapter(0, "gps")
+        self.machine.wait_for("test -c /dev/ttyUSB0")
+        self.probe("/dev/ttyUSB0", 38400, 2)
+        again = self.probe("/dev/ttyUSB0", 38400, 4)
+        self.assertGreater(again["sentences"], 10)
+        self.assertEqual([again["broken"], again["gaps"]], [0, 0])
+
+    def test_3_program_inside_follows_its_adapter(self):
+        self.adapter(1, "autopilot")
+        self.machine.wait_for("test -c /dev/ttyUSB1")
+        run = self.machine.start("skyloop run --board ublox-m9 --port serial:/dev/ttyUSB1 --duration 60 " + " ".join(START))
+        heard = self.autopilot.read_for(30, until=b"GGA")
+        self.machine.run(f"cat {run}")
+        self.assertIn(b"GGA", heard)
+        self.assertEqual(self.autopilot.speed(), 38400)
+        self.assertGreater(good_share(self.autopilot.read_for(4)), 0.99)
+        self.assertEqual(self.machine.run("cat /sys/bus/usb-serial/devices/ttyUSB1/latency_timer"), "1")
+        self.autopilot.write(port_settings(115200))
+        answered = self.autopilot.read_for(5, until=b"\xb5\x62\x05\x01\x02\x00\x06\x00")
+        self.assertIn(b"\xb5\x62\x05\x01\x02\x00\x06\x00", answered)
+        self.assertEqual(self.autopilot.speed(), 115200)
+        self.pull(1)
+        self.machine.wait_for(f"grep -qi 'lost\\|gone\\|unplugged' {run}")
+        self.adapter(1, "autopilot")
+        self.autopilot.read_for(20, until=b"GGA")
+        self.assertGreater(good_share(self.autopilot.read_for(4)), 0.99)
+        self.assertEqual(self.autopilot.speed(), 115200)
+        self.machine.stop(run, by="INT")
+
+
+if __name__ == "__main__":
+    absent = machines.missing()
+    if absent:
+        skip(f"{absent} is not installed")
+    KERNEL = kernels.find(ARTIFACTS.parent / "vm-kernel")
+    if KERNEL is None:
+        skip(f"no Debian kernel with its modules is installed, and no package lies in {kernels.CACHE}: tools/fetch_kernel")
+    unittest.main(verbosity=2)
