@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <map>
 #include <mutex>
 
 #include "eventually.hpp"
@@ -109,7 +110,7 @@ class HidWire : public testing::TestWithParam<HidBackend> {
 protected:
     void plug_in(const DeviceSpec& spec) {
         bed.plug_in(spec, device);
-        if (GetParam() == HidBackend::hidraw) bed.add_hidraw(spec, 0, device, report_descriptor);
+        if (GetParam() == HidBackend::hidraw) bed.add_hidraw(spec, hidraw_nodes++, device, report_descriptor);
     }
     // Without a /dev/hidrawN the wire finds the device through libusb.
     void open(const std::string& options = "") {
@@ -130,6 +131,7 @@ protected:
     mock::Testbed bed;
     std::shared_ptr<MockCp2110> device = std::make_shared<MockCp2110>();
     std::unique_ptr<Transport> wire;
+    int hidraw_nodes = 0;
 };
 
 TEST_P(HidWire, SetsTheUartAndPutsItBack) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <umockdev.h>
+#include <unistd.h>
 
 #include <stdexcept>
 
@@ -59,6 +60,7 @@ void expect(bool done, GError* error) {
 struct Testbed::State {
     UMockdevTestbed* bed = umockdev_testbed_new();
     std::map<std::string, std::unique_ptr<Node>> nodes{};
+    std::vector<std::unique_ptr<Node>> pulled_nodes{};        // somebody may have them open still
     std::map<std::string, std::vector<std::string>> paths{};  // of a device: those below it, and its own last
     std::map<std::string, std::vector<std::string>> nodes_of{};
     std::map<std::string, std::shared_ptr<MockDevice>> devices{};
@@ -106,7 +108,7 @@ void Testbed::unplug(const DeviceSpec& spec) {
         umockdev_testbed_remove_device(state_->bed, ("/sys" + one).c_str());
     for (const std::string& node : state_->nodes_of.at(path)) {
         umockdev_testbed_detach_ioctl(state_->bed, node.c_str(), nullptr);
-        state_->nodes.erase(node);
+        state_->pulled_nodes.push_back(std::move(state_->nodes.extract(node).mapped()));
     }
     state_->paths.erase(path);
     state_->nodes_of.erase(path);
@@ -130,6 +132,8 @@ void Testbed::add_hidraw(const DeviceSpec& spec, int number, std::shared_ptr<Moc
     add(text);
     const std::string node = fmt::format("/dev/hidraw{}", number);
     attach(node, make_hidraw_node(std::move(device), report));
+    // The node is a terminal, which poll(2) finds ready once something lies in it; reads are answered by the device.
+    expect(::write(umockdev_testbed_get_dev_fd(state_->bed, node.c_str()), "\n", 1) == 1, nullptr);
     std::vector<std::string>& paths = state_->paths.at(path);
     paths.insert(paths.begin(), {fmt::format("{}/hidraw/hidraw{}", below, number), below});
     state_->nodes_of.at(path).push_back(node);

@@ -29,9 +29,9 @@ public:
     void plug_in(const DeviceSpec& spec, std::shared_ptr<MockDevice> device);
     /// Every call to it fails from now on, then it goes, with a uevent.
     void unplug(const DeviceSpec& spec);
-    /// The kernel's HID driver makes /dev/hidrawN of a HID device that has been plugged in.
+    /// The kernel's HID driver makes /dev/hidrawN of a HID device that has been plugged in. umockdev takes each N once.
     void add_hidraw(const DeviceSpec& spec, int number, std::shared_ptr<MockDevice> device, const Bytes& report);
-    /// The kernel's driver makes the line `name`, "ttyACM0", of its interface; nothing answers there.
+    /// The kernel's driver makes the line `name`, "ttyACM0", of its interface; nothing answers there. Each name once.
     void add_tty(const DeviceSpec& spec, int interface, const std::string& name, const std::string& driver);
     /// From now on only the superuser may open its node.
     void forbid(const DeviceSpec& spec);

@@ -44,13 +44,15 @@ TEST(OpenTransport, RefusesClearly) {
     EXPECT_THAT(refusal("tcp-connect:").message, HasSubstr("a host and its port is missing"));
     for (const std::string uri : {"tcp-connect:2000", "tcp-connect:host:0"})
         EXPECT_THAT(refusal(uri).message, HasSubstr("'" + uri + "': whom to call is missing")) << uri;
+    EXPECT_THAT(refusal("usb:").message, HasSubstr("a device is missing"));
+    EXPECT_THAT(refusal("hid:10c4").message, StartsWith("port 'hid:10c4': '10c4' names no USB device"));
+    EXPECT_EQ(refusal("usb:1546:01a8,rtscts").message, "port 'usb:1546:01a8,rtscts': a CDC-ACM device takes no rtscts");
+    EXPECT_EQ(refusal("hid:ffff:fffe").code, ErrorCode::outside);
     EXPECT_THAT(refusal("ptty:gps0").message, HasSubstr("did you mean 'pty'?"));
     EXPECT_EQ(refusal("can:0").message,
               "port 'can:0': no such kind of port; expected pty[:LINK], serial:DEVICE[@BAUD], usb:VID:PID[:SERIAL], "
               "hid:VID:PID[:SERIAL], usbip:[HOST:]PORT, tcp:[HOST:]PORT, tcp-connect:HOST:PORT, rfc2217:[HOST:]PORT, "
               "file:PATH, client:NAME or -");
-    EXPECT_THAT(refusal("usb:1546").message, HasSubstr("port 'usb:1546': "));
-    EXPECT_THAT(refusal("usb:1546:01a8,rtscts").message, HasSubstr("takes no rtscts"));
     EXPECT_THAT(refusal("gps0").message, HasSubstr("no such kind of port"));
     EXPECT_THAT(refusal("").message, HasSubstr("no such kind of port"));
     EXPECT_THAT(refusal("memory").message, HasSubstr("no such kind of port"));
