@@ -110,7 +110,7 @@ TEST(Fleet, ATrackOfOneReceiverIsLoadedAndPartOfTheDigest) {
     const test::TemporaryFolder folder;
     const auto digest = [&](const std::string& last_longitude) {
         std::ofstream(folder / "way.csv")
-            << "time_s,lat_deg,lon_deg,height_m\n0,10,20,100\n4,10," << last_longitude << ",100\n";
+            << "t_s,lat_deg,lon_deg,height_m\n0,10,20,100\n4,10," << last_longitude << ",100\n";
         RunMode mode;
         mode.virtual_time = true;
         mode.open_ports = false;

@@ -91,7 +91,9 @@ public:
         fs::remove(device());
         master_ = FileDescriptor();
     }
-    void put_back() override { plug_in(); }
+    void put_back() override {
+        if (!master_.open()) plug_in();
+    }
     std::string heard() override { return all_of(master_.value()); }
 
 private:
