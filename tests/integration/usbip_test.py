@@ -111,6 +111,11 @@ class UsbipTest(unittest.TestCase):
             data = host.read_for(2.2)
             self.assertGreaterEqual(data.count(b"\xb5\x62\x01\x07\x5c\x00"), 2)
             self.assertNotIn(b"$G", data)
+            host.write(ubx(0x06, 0x1B))  # CFG-USB
+            told = host.read_for(1)
+            told = told[told.index(b"\xb5\x62\x06\x1b"):]
+            self.assertEqual(struct.unpack("<HH", told[6:10]), (0x1546, 0x01A9))
+            self.assertEqual(told[50:82].rstrip(b"\0"), b"u-blox GNSS receiver")
             host.write(ubx(0x06, 0x00, b"\x03"))  # CFG-PRT of port 3
             self.assertIn(b"\xb5\x62\x06\x00\x14\x00\x03", host.read_for(1))
             self.assertEqual(emulator.stop(), 0, emulator.log)

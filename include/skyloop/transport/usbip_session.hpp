@@ -34,7 +34,7 @@ public:
     [[nodiscard]] bool wants_bytes() const { return heard_.size() < most_heard; }
     /// Acts on what was heard. Steady time, ns, never less than before.
     void run(std::int64_t now_ns);
-    /// Has the client sent a reply that is not the device's.
+    /// Sends the client bytes of the server's own, before the answers to come.
     void reply(ByteSpan bytes) { output_.insert(output_.end(), bytes.begin(), bytes.end()); }
     /// Bytes that the client is to be sent.
     [[nodiscard]] ByteSpan output() const { return ByteSpan(output_).subspan(sent_); }

@@ -90,6 +90,20 @@ TEST(Link, WhatNobodyHearsIsCountedAndGone) {
     EXPECT_EQ(joined.link.counters().bytes_unheard, sentence_bytes.size());
 }
 
+struct PluggableWire : MemoryTransport {
+    void set_plugged(bool plugged) override { seen.push_back(plugged); }
+    std::vector<bool> seen;
+};
+
+TEST(Link, AWireSeesItsPlugPulledOnce) {
+    auto transport = std::make_unique<PluggableWire>();
+    const PluggableWire& wire = *transport;
+    Link link(std::move(transport), receiver_baud);
+    for (const bool plugged : {true, false, false, true, true})
+        link.set_plugged(plugged);
+    EXPECT_EQ(wire.seen, (std::vector<bool>{false, true}));
+}
+
 TEST(Link, ASlowClientLosesBytes) {
     JoinedLink joined = joined_link(std::nullopt);
     joined.wire->set_room(10);
