@@ -1,48 +1,17 @@
 #include "skyloop/transport/tcp.hpp"
 
 #include <fmt/format.h>
-#include <sys/socket.h>
 
-#include <array>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <utility>
 
+#include "tcp_listener.hpp"
 #include "tcp_socket.hpp"
 
 namespace skyloop {
 namespace {
 
-constexpr int waiting_clients = 8;
-
-// Gives a listening socket, or nothing with errno set.
-FileDescriptor listen_at(const addrinfo& where) {
-    FileDescriptor server = make_socket(where);  // its clients inherit the buffer
-    if (!server.open()) return {};
-    // A run that follows another finds its port free, though old connections still linger in TIME_WAIT.
-    set_socket_option(server.value(), SOL_SOCKET, SO_REUSEADDR, 1);
-    if (::bind(server.value(), where.ai_addr, where.ai_addrlen) != 0 ||
-        ::listen(server.value(), waiting_clients) != 0) {
-        const int reason = errno;
-        server = FileDescriptor();
-        errno = reason;
-    }
-    return server;
-}
-
-std::uint16_t port_of_socket(int socket) {
-    sockaddr_storage name{};
-    socklen_t size = sizeof name;
-    if (::getsockname(socket, reinterpret_cast<sockaddr*>(&name), &size) != 0) return 0;
-    std::array<char, NI_MAXSERV> service{};
-    if (::getnameinfo(reinterpret_cast<sockaddr*>(&name), size, nullptr, 0, service.data(), service.size(),
-                      NI_NUMERICSERV) != 0)
-        return 0;
-    unsigned port = 0;
-    std::from_chars(service.data(), service.data() + std::strlen(service.data()), port);
-    return static_cast<std::uint16_t>(port);
-}
+constexpr int most_at_once = 8;  // clients that are let in or turned away in one look
 
 }  // namespace
 
@@ -71,25 +40,22 @@ Result<TcpAddress> parse_tcp_address(std::string_view text) {
     return address;
 }
 
+TcpTransport::TcpTransport(std::unique_ptr<TcpListener> server) : server_(std::move(server)) {}
+
+TcpTransport::~TcpTransport() = default;
+
 Result<std::unique_ptr<TcpTransport>> TcpTransport::listen(const TcpAddress& address) {
-    const auto found = look_up(address, true);
-    if (!found) return fail(found.error());
-    int reason = 0;
-    for (const addrinfo* where = found->get(); where != nullptr; where = where->ai_next) {
-        FileDescriptor server = listen_at(*where);
-        reason = errno;
-        if (!server.open()) continue;
-        TcpAddress actual = address;
-        actual.port = port_of_socket(server.value());
-        std::unique_ptr<TcpTransport> wire(new TcpTransport(std::move(server), std::move(actual)));
-        if (!is_loopback(*where->ai_addr))
-            wire->news_.push_back(fmt::format("{}: whoever reaches this machine can read and configure the receiver",
-                                              wire->description()));
-        return wire;
-    }
-    return fail(ErrorCode::outside,
-                fmt::format("tcp {}: cannot be listened at: {}", shown_address(address), std::strerror(reason)));
+    auto server = TcpListener::open(address, "tcp");
+    if (!server) return fail(server.error());
+    const bool loopback = server->loopback();
+    std::unique_ptr<TcpTransport> wire(new TcpTransport(std::make_unique<TcpListener>(std::move(*server))));
+    if (!loopback)
+        wire->news_.push_back(
+            fmt::format("{}: whoever reaches this machine can read and configure the receiver", wire->description()));
+    return wire;
 }
+
+std::uint16_t TcpTransport::port() const { return server_->address().port; }
 
 void TcpTransport::drop_client() {
     client_ = FileDescriptor();
@@ -105,19 +71,18 @@ void TcpTransport::follow_clients() {
         if (state == StreamState::gone) drop_client();
     }
     const bool may_change = unread_.empty();
-    for (int i = 0; i < waiting_clients; ++i) {
+    for (int i = 0; i < most_at_once; ++i) {
         const bool taken = client_.open() && !client_finished_;
         if (!taken && !may_change) return;
-        FileDescriptor next(::accept4(server_.value(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
-        if (!next.open()) return;
+        auto next = server_->accept();
+        if (!next) return;
         if (taken) {
             ++turned_away_;
             continue;
         }
         drop_client();
-        client_ = std::move(next);
+        client_ = std::move(next->socket);
         ++connections_;
-        prepare_connection(client_.value());
     }
 }
 
@@ -149,6 +114,6 @@ std::string TcpTransport::notice() const {
                        turned_away_, turned_away_ == 1 ? "" : "s", turned_away_ == 1 ? "was" : "were");
 }
 
-std::string TcpTransport::description() const { return shown_address(address_) + " (tcp)"; }
+std::string TcpTransport::description() const { return shown_address(server_->address()) + " (tcp)"; }
 
 }  // namespace skyloop

@@ -14,9 +14,8 @@ namespace skyloop {
 
 /// A connection that has come.
 struct AcceptedTcp {
-    FileDescriptor
-        socket;        ///< waits for nothing; small writes leave at once; a vanished peer is given up after a minute
-    std::string peer;  ///< "127.0.0.1:40123"
+    FileDescriptor socket;  ///< neither waits nor outlives exec; see prepare_connection()
+    std::string peer;       ///< "127.0.0.1:40123"
 };
 
 /// Where connections come.
@@ -37,13 +36,5 @@ private:
     TcpAddress address_;
     bool loopback_ = true;
 };
-
-/// How a connection stands after bytes were moved.
-enum class TcpStream { open, ended, broken };
-
-/// Appends to `heard` what has come, as long as it has fewer than `most` bytes.
-TcpStream hear_tcp(int socket, Bytes& heard, std::size_t most);
-/// Sends what the socket takes and gives how much; `state` becomes `broken` when there is no connection any more.
-std::size_t send_tcp(int socket, ByteSpan bytes, TcpStream& state);
 
 }  // namespace skyloop

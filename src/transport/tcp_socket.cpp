@@ -5,6 +5,7 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 
@@ -25,14 +26,15 @@ void set_socket_option(int socket, int level, int name, int value) {
     (void)::setsockopt(socket, level, name, &value, sizeof value);
 }
 
-Result<AddressList> look_up(const TcpAddress& address, bool to_listen) {
+Result<AddressList> look_up(const TcpAddress& address, const std::string& scheme, bool to_listen) {
     addrinfo wanted{};
     wanted.ai_socktype = SOCK_STREAM;
     wanted.ai_flags = AI_NUMERICSERV | (to_listen ? AI_PASSIVE : 0);
     addrinfo* first = nullptr;
     if (const int error = ::getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &wanted, &first);
         error != 0)
-        return fail(ErrorCode::outside, fmt::format("tcp {}: {}", shown_address(address), ::gai_strerror(error)));
+        return fail(ErrorCode::outside,
+                    fmt::format("{} {}: {}", scheme, shown_address(address), ::gai_strerror(error)));
     return AddressList(first);
 }
 
@@ -65,10 +67,10 @@ void prepare_connection(int socket) {
     set_socket_option(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, static_cast<int>(patience_ms));
 }
 
-StreamState receive_available(int socket, Bytes& bytes) {
+StreamState receive_available(int socket, Bytes& bytes, std::size_t most) {
     std::array<std::uint8_t, 4096> piece;
-    while (bytes.size() < most_read_at_once) {
-        const ssize_t count = ::recv(socket, piece.data(), piece.size(), MSG_DONTWAIT);
+    while (bytes.size() < most) {
+        const ssize_t count = ::recv(socket, piece.data(), std::min(piece.size(), most - bytes.size()), MSG_DONTWAIT);
         if (count > 0)
             bytes.insert(bytes.end(), piece.begin(), piece.begin() + count);
         else if (count == 0)

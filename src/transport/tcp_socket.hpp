@@ -21,9 +21,10 @@ struct AddressListDeleter {
 };
 using AddressList = std::unique_ptr<addrinfo, AddressListDeleter>;
 
-/// Every address that a host has. May wait for a name server. Fails with `outside`.
+/// Every address that a host has. May wait for a name server. Fails with `outside` and a sentence that begins with
+/// `scheme`.
 /// @param to_listen addresses of this machine
-Result<AddressList> look_up(const TcpAddress& address, bool to_listen);
+Result<AddressList> look_up(const TcpAddress& address, const std::string& scheme, bool to_listen);
 
 /// "127.0.0.1:2000", "[::1]:2000".
 std::string shown_address(const TcpAddress& address);
@@ -43,9 +44,9 @@ void set_socket_option(int socket, int level, int name, int value);
 /// How a connection stands after a look.
 enum class StreamState { open, finished, gone };
 
-/// Appends what is there, up to most_read_at_once in all; tells whether the other end has shut its sending side
-/// (`finished`) or broken the connection (`gone`).
-StreamState receive_available(int socket, Bytes& bytes);
+/// Appends what is there, up to `most` bytes in all; tells whether the other end has shut its sending side (`finished`)
+/// or broken the connection (`gone`).
+StreamState receive_available(int socket, Bytes& bytes, std::size_t most = most_read_at_once);
 /// Gives how many bytes the socket took; `state` becomes `gone` when the connection is broken.
 std::size_t send_available(int socket, ByteSpan bytes, StreamState& state);
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tcp_listener.hpp"
+#include "tcp_socket.hpp"
 
 namespace skyloop {
 namespace {
@@ -100,12 +101,12 @@ void UsbipTransport::accept_visitors(std::int64_t now_ns) {
 // False when nothing is left to do with it.
 bool UsbipTransport::serve(Visitor& visitor, std::int64_t now_ns) {
     const int socket = visitor.connection.socket.value();
-    TcpStream state = hear_tcp(socket, visitor.heard, most_request_bytes);
+    StreamState state = receive_available(socket, visitor.heard, most_request_bytes);
     if (!visitor.answered && !answer_request(visitor)) return false;
-    const std::size_t count = send_tcp(socket, visitor.answer, state);
+    const std::size_t count = send_available(socket, visitor.answer, state);
     visitor.answer.erase(visitor.answer.begin(), visitor.answer.begin() + static_cast<std::ptrdiff_t>(count));
     if (visitor.answered && visitor.answer.empty()) return false;
-    if (state == TcpStream::open && now_ns < visitor.until_ns) return true;
+    if (state == StreamState::open && now_ns < visitor.until_ns) return true;
     if (!visitor.answered && !visitor.heard.empty())
         tell(fmt::format("{} is closed: it did not end its request", visitor.connection.peer));
     return false;
@@ -150,20 +151,20 @@ void UsbipTransport::import_by(Visitor& visitor) {
 void UsbipTransport::follow_importer(std::int64_t now_ns) {
     UsbipSession& session = importer_->session;
     const int socket = importer_->connection.socket.value();
-    TcpStream state = TcpStream::open;
+    StreamState state = StreamState::open;
     if (session.wants_bytes()) {
         Bytes heard;
-        state = hear_tcp(socket, heard, usbip_most_data);
+        state = receive_available(socket, heard, usbip_most_data);
         session.hear(heard);
     }
     session.run(now_ns);
-    session.sent(send_tcp(socket, session.output(), state));
+    session.sent(send_available(socket, session.output(), state));
     if (const auto duration = session.device().take_break())
         tell(fmt::format("{} {}", importer_->connection.peer, break_news(*duration)));
     if (!session.mistake().empty()) return end_import("is closed: " + session.mistake());
-    if (state == TcpStream::open) return;
-    end_import(state == TcpStream::ended && !session.inside_message() ? "has detached"
-                                                                      : "is gone in the middle of a message");
+    if (state == StreamState::open) return;
+    end_import(state == StreamState::finished && !session.inside_message() ? "has detached"
+                                                                           : "is gone in the middle of a message");
 }
 
 // What the host wrote before it went is heard.

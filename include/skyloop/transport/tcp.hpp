@@ -21,6 +21,8 @@ struct TcpAddress {
 /// Reads "PORT", "HOST:PORT" or "[IPV6]:PORT". Fails with `usage` and a sentence that quotes the text.
 Result<TcpAddress> parse_tcp_address(std::string_view text);
 
+class TcpListener;
+
 /// A server whose one client at a time is the other end of the wire.
 ///
 /// Nothing is written while nobody is connected; a client never reads what an earlier one left. A further client is
@@ -31,6 +33,7 @@ class TcpTransport : public Transport {
 public:
     /// Fails with `outside` when the host is unknown or the system refuses. A host name may take its time to look up.
     static Result<std::unique_ptr<TcpTransport>> listen(const TcpAddress& address);
+    ~TcpTransport() override;
 
     std::size_t write(ByteSpan bytes) override;
     Bytes read() override;
@@ -42,21 +45,19 @@ public:
     [[nodiscard]] std::string description() const override;
 
     /// Where it listens; never 0.
-    [[nodiscard]] std::uint16_t port() const { return address_.port; }
+    [[nodiscard]] std::uint16_t port() const;
     /// Clients that were closed at once, because there was one already.
     [[nodiscard]] std::uint64_t turned_away() const { return turned_away_; }
     /// Clients that there have been, the present one included. What read() gives is all of the latest.
     [[nodiscard]] std::uint64_t connections() const { return connections_; }
 
 private:
-    TcpTransport(FileDescriptor server, TcpAddress address)
-        : server_(std::move(server)), address_(std::move(address)) {}
+    explicit TcpTransport(std::unique_ptr<TcpListener> server);
 
     void follow_clients();
     void drop_client();
 
-    FileDescriptor server_;
-    TcpAddress address_;
+    std::unique_ptr<TcpListener> server_;
     FileDescriptor client_;
     bool client_finished_ = false;  // it sends no more; perhaps it still listens
     Bytes unread_;                  // heard while looking after clients; what one wrote before it went is heard, too
