@@ -47,6 +47,8 @@ Bytes Link::heard_by_client(ByteSpan bytes, std::uint32_t receiver_baud, std::ui
 
 void Link::send(ByteSpan bytes, PortSpeed speed, bool at_rest) {
     tell_speed(speed);
+    // With nothing to say and nothing on its way the system need not be asked: this is called every millisecond.
+    if (bytes.empty() && (!at_rest || to_client_.resting())) return;
     const LineState line = transport_->line();
     connected_ = line.connected && plugged_;
     if (!connected_) {

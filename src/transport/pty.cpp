@@ -46,11 +46,11 @@ FileDescriptor open_slave(int master) {
     return FileDescriptor(::ioctl(master, TIOCGPTPEER, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
 }
 
-// Once the terminal has been open, "hung up" says that nobody has it open now.
-bool hung_up(int master) {
-    pollfd state{master, 0, 0};
+// Of the master: "hung up" says, once the terminal has been open, that nobody has it open now.
+short poll_master(int master) {
+    pollfd state{master, POLLIN, 0};
     ::poll(&state, 1, 0);
-    return (state.revents & POLLHUP) != 0;
+    return state.revents;
 }
 
 }  // namespace
@@ -128,10 +128,20 @@ bool PtyTransport::read_events() {
     return alone;
 }
 
+// One system call while nobody comes or goes: it is made every millisecond for each port.
 void PtyTransport::follow_clients() {
-    const bool somebody_new = read_events();
+    std::array<pollfd, 2> ends{{{master_.value(), POLLIN, 0}, {events_.value(), POLLIN, 0}}};
+    ::poll(ends.data(), events_.open() ? 2 : 1, 0);
+    short master = ends[0].revents;
+    bool somebody_new = false;
+    if ((ends[1].revents & POLLIN) != 0) {
+        somebody_new = read_events();
+        master = poll_master(master_.value());  // not older than what was reported
+    }
+    readable_ = (master & POLLIN) != 0;
+    looked_ = true;
     // The kernel joins equal events that follow each other, so the count may drift; the hang-up state never does.
-    if (hung_up(master_.value())) {
+    if ((master & POLLHUP) != 0) {
         clients_ = 0;
         counted_early_ = false;
     } else if (clients_ == 0) {
@@ -154,7 +164,7 @@ void PtyTransport::forget_unread() {
 }
 
 std::size_t PtyTransport::write(ByteSpan bytes) {
-    follow_clients();
+    if (!std::exchange(looked_, false)) follow_clients();
     if (clients_ == 0) return bytes.size();
     std::size_t taken = 0;
     while (taken < bytes.size()) {
@@ -173,6 +183,8 @@ std::size_t PtyTransport::write(ByteSpan bytes) {
 
 Bytes PtyTransport::read() {
     constexpr std::size_t most = 65536;  // a client that writes without end must not hold us here
+    if (!std::exchange(looked_, false)) follow_clients();
+    if (!readable_) return {};
     Bytes all;
     std::array<std::uint8_t, 4096> piece;
     while (all.size() < most) {

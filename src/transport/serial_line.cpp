@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <linux/serial.h>
 #include <linux/tty_flags.h>
+#include <sys/ioctl.h>
 
 #include <algorithm>
 #include <array>

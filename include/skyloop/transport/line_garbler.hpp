@@ -27,6 +27,8 @@ public:
     Bytes pass(ByteSpan sent);
     /// The line rests at its high level for longer than a byte: what the listener makes of what was still on its way.
     Bytes idle();
+    /// Nothing is on its way: idle() would give nothing and change nothing.
+    [[nodiscard]] bool resting() const { return line_.empty() && state_ == State::hunting; }
     /// Bytes whose stop bit was low.
     [[nodiscard]] std::uint64_t framing_errors() const { return framing_errors_; }
 
