@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <filesystem>
+
 #include "mock_cdc_acm.hpp"
 #include "skyloop/hid/hid_device.hpp"
 #include "skyloop/usb/usb_context.hpp"
@@ -56,6 +58,17 @@ DeviceSpec hub() {
     return {{0x1d6b, 0x0002}, "", "hub", "", mock::configuration(1, mock::interface(0, 0, {9, 0, 0})), "3", 5};
 }
 
+// The superuser may open everything.
+class AsNobody {
+public:
+    AsNobody() { EXPECT_EQ(setresuid(other_, other_, self_), 0); }
+    ~AsNobody() { EXPECT_EQ(setresuid(self_, self_, self_), 0); }
+
+private:
+    uid_t self_ = geteuid();
+    uid_t other_ = self_ == 0 ? 65534 : self_;
+};
+
 TEST(UsbDevices, AreListedWithTheirTexts) {
     mock::Testbed bed;
     bed.plug_in(ublox(), std::make_shared<MockDevice>());
@@ -107,15 +120,45 @@ TEST(UsbDevices, WithoutPermissionTheSentenceNamesTheNode) {
     const auto found = find_usb_device(*context, *parse_usb_address("1546:01a8"));
     ASSERT_TRUE(found);
     bed.forbid(ublox());
-    constexpr uid_t nobody = 65534;
-    const uid_t self = geteuid();
-    ASSERT_EQ(seteuid(self == 0 ? nobody : self), 0);  // the superuser may open everything
+    const AsNobody nobody;
     const auto handle = open_usb_device(*context, *found);
-    ASSERT_EQ(seteuid(self), 0);
     ASSERT_FALSE(handle);
     EXPECT_EQ(handle.error().message,
               "cannot open USB device 1546:01a8 at 1-1 (/dev/bus/usb/001/004): no permission; a udev rule gives it: "
               "skyloop devices shows the line");
+}
+
+std::size_t open_descriptors() {
+    const std::filesystem::directory_iterator all("/proc/self/fd");
+    return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+}
+
+// A session each time, as where no udevd tells of changes; and one that lives through all of it.
+TEST(UsbDevices, ComeAndGoAHundredTimes) {
+    mock::Testbed bed;
+    const auto witness = open_usb();
+    ASSERT_TRUE(witness);
+    const auto address = *parse_usb_address("1546:01a8");
+    std::size_t descriptors = 0;
+    for (int round = 0; round < 100; ++round) {
+        DeviceSpec spec = ublox();
+        spec.address = static_cast<std::uint8_t>(4 + round);
+        bed.plug_in(spec, std::make_shared<MockDevice>());
+        {
+            const auto context = open_usb();
+            ASSERT_TRUE(context);
+            const auto found = find_usb_device(*context, address);
+            ASSERT_TRUE(found) << round;
+            ASSERT_TRUE(open_usb_device(*context, *found)) << round;
+        }
+        bed.unplug(spec);
+        const auto context = open_usb();
+        ASSERT_TRUE(context);
+        ASSERT_FALSE(find_usb_device(*context, address)) << round;
+        if (round == 9) descriptors = open_descriptors();
+    }
+    EXPECT_LE(open_descriptors(), descriptors);
+    ASSERT_TRUE(list_usb_devices(*witness));
 }
 
 class HidDevices : public testing::TestWithParam<HidBackend> {};
@@ -139,6 +182,21 @@ TEST_P(HidDevices, CarryReportsBothWays) {
     ASSERT_TRUE(hid->write(Bytes{0, 1, 2, 3, 4, 5, 6, 7, 8}));
     EXPECT_EQ(device->written, (Bytes{1, 2, 3, 4, 5, 6, 7, 8}));
     EXPECT_EQ(hid->read(std::chrono::milliseconds(0)).value(), Bytes{});
+}
+
+TEST_P(HidDevices, WithoutPermissionTheSentenceNamesTheNode) {
+    mock::Testbed bed;
+    auto device = std::make_shared<MockReports>();
+    bed.plug_in(hub(), std::make_shared<MockDevice>());
+    bed.plug_in(relay(), device);
+    bed.add_hidraw(relay(), 0, device, eight_bytes_report);
+    bed.forbid(relay());
+    const AsNobody nobody;
+    const auto hid = HidDevice::open(*parse_usb_address("16c0:05df"), GetParam());
+    ASSERT_FALSE(hid);
+    const std::string node = GetParam() == HidBackend::hidraw ? "/dev/hidraw0" : "/dev/bus/usb/001/006";
+    EXPECT_EQ(hid.error().message, "cannot open HID device 16c0:05df (" + node +
+                                       "): no permission; a udev rule gives it: skyloop devices shows the line");
 }
 
 TEST_P(HidDevices, AreAbsentInOneSentence) {

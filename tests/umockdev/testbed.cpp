@@ -154,10 +154,11 @@ void Testbed::add_tty(const DeviceSpec& spec, int interface, const std::string& 
 }
 
 void Testbed::forbid(const DeviceSpec& spec) {
-    const std::string node = node_of(spec);
-    const bool done = ::chmod(root().c_str(), 0755) == 0 && ::chmod((root() + node).c_str(), 0) == 0 &&
-                      // umockdev's own socket is no part of the play: it asks there whatever open(2) said.
-                      ::chmod((root() + "/ioctl/" + node).c_str(), 0777) == 0;
+    bool done = ::chmod(root().c_str(), 0777) == 0;  // whoever listens to udev makes a socket there
+    for (const std::string& node : state_->nodes_of.at(device_path(spec)))
+        done = done && ::chmod((root() + node).c_str(), 0) == 0 &&
+               // umockdev's own socket is no part of the play: it asks there whatever open(2) said.
+               ::chmod((root() + "/ioctl/" + node).c_str(), 0777) == 0;
     expect(done, nullptr);
 }
 

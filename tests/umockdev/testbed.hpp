@@ -33,7 +33,7 @@ public:
     void add_hidraw(const DeviceSpec& spec, int number, std::shared_ptr<MockDevice> device, const Bytes& report);
     /// The kernel's driver makes the line `name`, "ttyACM0", of its interface; nothing answers there. Each name once.
     void add_tty(const DeviceSpec& spec, int interface, const std::string& name, const std::string& driver);
-    /// From now on only the superuser may open its node.
+    /// From now on only the superuser may open its nodes.
     void forbid(const DeviceSpec& spec);
     /// Where sysfs is while the testbed lives, and where device nodes are: paths such as /sys and /dev are led there.
     [[nodiscard]] std::string root() const;
