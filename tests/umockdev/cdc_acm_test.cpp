@@ -168,7 +168,7 @@ TEST_F(UsbWire, RecoversFromStalls) {
 TEST_F(UsbWire, TellsWhenNothingIsTakenAndGoesOnAfterwards) {
     open();
     device->take_data(false);
-    EXPECT_EQ(wire->write(counting(20'000)), 4096U + 16384U - 4096U) << "what the buffer holds";
+    EXPECT_EQ(wire->write(counting(20'000)), 16384U) << "what the buffer holds";
     EXPECT_TRUE(tells("has taken no data for 1000 ms"));
     EXPECT_TRUE(wire->line().connected);
     device->take_data(true);
@@ -180,19 +180,19 @@ TEST_F(UsbWire, TellsWhenNothingIsTakenAndGoesOnAfterwards) {
     }());
 }
 
+// A transfer that gets no answer ends after 1 s; calls that waited for one would not be done within the test's limit.
 TEST_F(UsbWire, NeverWaitsForADeviceThatDoesNotAnswer) {
     open();
     device->take_data(false);
-    auto longest = std::chrono::steady_clock::duration::zero();
-    for (int i = 0; i < 200; ++i) {
-        const auto begin = std::chrono::steady_clock::now();
-        wire->write(counting(100));
-        (void)wire->read();
-        (void)wire->line();
-        longest = std::max(longest, std::chrono::steady_clock::now() - begin);
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::size_t taken = 0;
+    for (int i = 0; i < 400; ++i) {
+        taken += wire->write(counting(100));
+        EXPECT_TRUE(wire->read().empty());
+        EXPECT_TRUE(wire->line().connected);
     }
-    EXPECT_LT(longest, std::chrono::milliseconds(500)) << "the limit of a transfer is 1 s";
+    EXPECT_GE(taken, 16384U);
+    EXPECT_LE(taken, 16384U + 4096U) << "one transfer and what the buffer holds";
+    EXPECT_THAT(device->heard(), IsEmpty());
 }
 
 TEST_F(UsbWire, HoldsTheDeviceUpWhileNobodyReads) {
