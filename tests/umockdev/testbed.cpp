@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "nodes.hpp"
 
@@ -43,9 +44,13 @@ std::string describe_device(const DeviceSpec& spec) {
     return text + fmt::format("H: descriptors={}\n\n", hexadecimal(descriptors(spec)));
 }
 
+std::string path_of(const DeviceSpec& spec, int interface) {
+    return fmt::format("{}/1-{}:1.{}", device_path(spec), spec.port, interface);
+}
+
 std::string describe_interface(const DeviceSpec& spec, int number) {
-    return fmt::format("P: {}/1-{}:1.{}\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_interface\nA: bInterfaceNumber={:02}\\n\n\n",
-                       device_path(spec), spec.port, number, number);
+    return fmt::format("P: {}\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_interface\nA: bInterfaceNumber={:02}\\n\n\n",
+                       path_of(spec, number), number);
 }
 
 void expect(bool done, GError* error) {
@@ -63,6 +68,7 @@ struct Testbed::State {
     std::vector<std::unique_ptr<Node>> pulled_nodes{};        // somebody may have them open still
     std::map<std::string, std::vector<std::string>> paths{};  // of a device: those below it, and its own last
     std::map<std::string, std::vector<std::string>> nodes_of{};
+    std::map<std::string, std::vector<std::string>> lines_of{};  // nodes where nothing answers
     std::map<std::string, std::shared_ptr<MockDevice>> devices{};
 };
 
@@ -99,6 +105,8 @@ void Testbed::plug_in(const DeviceSpec& spec, std::shared_ptr<MockDevice> device
 
 void Testbed::unplug(const DeviceSpec& spec) {
     const std::string path = device_path(spec);
+    for (const std::string& line : std::exchange(state_->lines_of[path], {}))
+        (void)::unlink((root() + line).c_str());
     state_->devices.at(path)->present = false;
     for (const std::string& one : state_->paths.at(path)) {
         const std::string whole = "/sys" + one;
@@ -109,6 +117,7 @@ void Testbed::unplug(const DeviceSpec& spec) {
     for (const std::string& node : state_->nodes_of.at(path)) {
         umockdev_testbed_detach_ioctl(state_->bed, node.c_str(), nullptr);
         state_->pulled_nodes.push_back(std::move(state_->nodes.extract(node).mapped()));
+        (void)::unlink((root() + node).c_str());
     }
     state_->paths.erase(path);
     state_->nodes_of.erase(path);
@@ -118,7 +127,7 @@ void Testbed::unplug(const DeviceSpec& spec) {
 void Testbed::add_hidraw(const DeviceSpec& spec, int number, std::shared_ptr<MockDevice> device, const Bytes& report) {
     const std::string path = device_path(spec);
     const std::string hid = fmt::format("0003:{:04X}:{:04X}.{:04X}", spec.ids.vendor, spec.ids.product, number + 1);
-    const std::string below = fmt::format("{}/1-{}:1.0/{}", path, spec.port, hid);
+    const std::string below = path_of(spec, 0) + '/' + hid;
     const std::string name = fmt::format("{} {}", spec.manufacturer, spec.product);
     const std::string id = fmt::format("HID_ID=0003:{:08X}:{:08X}", spec.ids.vendor, spec.ids.product);
     const std::string physical = fmt::format("HID_PHYS=usb-0000:00:14.0-{}/input0", spec.port);
@@ -135,13 +144,13 @@ void Testbed::add_hidraw(const DeviceSpec& spec, int number, std::shared_ptr<Moc
     // The node is a terminal, which poll(2) finds ready once something lies in it; reads are answered by the device.
     expect(::write(umockdev_testbed_get_dev_fd(state_->bed, node.c_str()), "\n", 1) == 1, nullptr);
     std::vector<std::string>& paths = state_->paths.at(path);
-    paths.insert(paths.begin(), {fmt::format("{}/hidraw/hidraw{}", below, number), below});
+    paths.insert(paths.begin(), {fmt::format("{}/hidraw/hidraw{}", below, number), below, path_of(spec, 0)});
     state_->nodes_of.at(path).push_back(node);
 }
 
 void Testbed::add_tty(const DeviceSpec& spec, int interface, const std::string& name, const std::string& driver) {
     const std::string path = device_path(spec);
-    const std::string below = fmt::format("{}/1-{}:1.{}", path, spec.port, interface);
+    const std::string below = path_of(spec, interface);
     const bool serial = driver == "cdc_acm";  // a USB-serial driver puts a device of its own between
     const std::string tty =
         serial ? fmt::format("{}/tty/{}", below, name) : fmt::format("{0}/{1}/tty/{1}", below, name);
@@ -150,7 +159,8 @@ void Testbed::add_tty(const DeviceSpec& spec, int interface, const std::string& 
                     "E: MAJOR={4}\nE: MINOR=0\n\n",
                     tty, name, spec.port, interface, serial ? 166 : 188));
     std::vector<std::string>& paths = state_->paths.at(path);
-    paths.insert(paths.begin(), tty);
+    paths.insert(paths.begin(), {tty, below});
+    state_->lines_of[path].push_back("/dev/" + name);
 }
 
 void Testbed::forbid(const DeviceSpec& spec) {
