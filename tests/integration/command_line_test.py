@@ -30,7 +30,7 @@ MISUSES = [
     (["scene", "demo", "--sky-svg", "x.svg"], 2, ["--sky-svg", "--at"]),
     (["run", "--control", "nowhere"], 2, ["nowhere"]),
     (["run", "--trajectory", "x.gpx"], 2, ["--trajectory x.gpx", ".toml"]),
-    (["run", "--port", "serial:/dev/ttyS0"], 2, ["serial"]),
+    (["run", "--port", "serial:"], 2, ["serial:", "a device is missing"]),
     (["run", "--port", "pyt:x"], 2, ["did you mean 'pty'"]),
     (["run", "--port", "pty:/no/such/folder/gps0"], 1, ["/no/such/folder/gps0"]),
     (["run", "--board", "ublox-m88"], 2, ["ublox-m88", "did you mean"]),

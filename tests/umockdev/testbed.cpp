@@ -117,7 +117,6 @@ void Testbed::unplug(const DeviceSpec& spec) {
     for (const std::string& node : state_->nodes_of.at(path)) {
         umockdev_testbed_detach_ioctl(state_->bed, node.c_str(), nullptr);
         state_->pulled_nodes.push_back(std::move(state_->nodes.extract(node).mapped()));
-        (void)::unlink((root() + node).c_str());
     }
     state_->paths.erase(path);
     state_->nodes_of.erase(path);
