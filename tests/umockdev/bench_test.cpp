@@ -211,9 +211,11 @@ std::size_t open_descriptors() {
 
 // umockdev's own thread closes what it needed for a device a little later than the device is gone.
 bool comes_down_to(std::size_t most, const std::function<std::size_t()>& count) {
-    for (int i = 0; i < 100 && count() > most; ++i)
+    for (int i = 0; i < 100; ++i) {
+        if (count() <= most) return true;
         std::this_thread::sleep_for(milliseconds(50));
-    return count() <= most;
+    }
+    return false;
 }
 
 // Bytes in use; what freed memory waits in caches is none of it.
