@@ -33,7 +33,7 @@ Result<std::unique_ptr<PowerWatchdog>> watch_power(const Scenario& scenario, con
         any = any || !receiver.power.empty();
     }
     if (!any || mode.virtual_time) return nullptr;
-    return PowerWatchdog::start(std::move(wards));
+    return PowerWatchdog::start(wards);
 }
 
 int run_live(const RunOptions& options) {

@@ -23,7 +23,7 @@ public:
 
 private:
     Result<void> set(PowerState wanted) {
-        if (const auto done = port_.set_power(wanted == PowerState::on); !done) return done;
+        if (auto done = port_.set_power(wanted == PowerState::on); !done) return done;
         const auto now = state();
         if (!now) return fail(now.error());
         if (**now != wanted)

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -11,10 +10,10 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <cstring>
 #include <thread>
-#include <utility>
 
 #include "skyloop/actuator/actuator_uri.hpp"
 
@@ -83,7 +82,7 @@ void restore_ward(const std::string& uri) {
 
 }  // namespace
 
-Result<std::unique_ptr<PowerWatchdog>> PowerWatchdog::start(std::vector<std::string> wards) {
+Result<std::unique_ptr<PowerWatchdog>> PowerWatchdog::start(const std::vector<std::string>& wards) {
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
         return fail(ErrorCode::outside, fmt::format("no watchdog over the power: {}", std::strerror(errno)));

@@ -18,7 +18,7 @@ class PowerWatchdog {
 public:
     /// Forks: to be called before the program has any other thread. @param wards URIs of open_actuator()
     /// Fails with `outside` when the system has no process to spare.
-    static Result<std::unique_ptr<PowerWatchdog>> start(std::vector<std::string> wards);
+    static Result<std::unique_ptr<PowerWatchdog>> start(const std::vector<std::string>& wards);
     /// Lets it go: it restores what is still noted as cut. Waits for its end.
     ~PowerWatchdog();
     PowerWatchdog(const PowerWatchdog&) = delete;

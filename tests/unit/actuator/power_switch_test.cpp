@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <semaphore>
 
@@ -23,8 +24,8 @@ struct Hardware {
     std::vector<std::string> orders;
     int opened = 0;
     int failing_cuts = 0, failing_restores = 0, failing_opens = 0;  // of the next
-    bool slow = false;
-    std::binary_semaphore go{0};  // a slow order waits for it
+    std::atomic<bool> slow{false};
+    std::counting_semaphore<> go{0};  // a slow order waits for it
 
     Result<void> carry_out(const std::string& order, int& failing) {
         if (slow) go.acquire();
