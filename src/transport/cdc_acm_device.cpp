@@ -68,7 +68,9 @@ std::optional<UsbLineCoding> read_coding(ByteSpan data) {
     constexpr std::uint8_t most_stop_bits = 2, most_parity = 4;
     if (data.size() != line_coding_bytes) return std::nullopt;
     UsbLineCoding coding;
-    coding.baud = data[0] | data[1] << 8 | data[2] << 16 | static_cast<std::uint32_t>(data[3]) << 24;
+    coding.baud = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        coding.baud |= std::uint32_t{data[i]} << 8 * i;
     coding.stop_bits = data[4];
     coding.parity = data[5];
     coding.data_bits = data[6];

@@ -42,9 +42,10 @@ public:
         std::vector<Reply> all;
         for (std::size_t at = 0; at + usbip_header_bytes <= bytes.size();) {
             const auto word = [&](std::size_t i) {
-                const auto* b = &bytes[at + 4 * i];
-                return static_cast<std::uint32_t>(b[0]) << 24U | static_cast<std::uint32_t>(b[1]) << 16U | b[2] << 8U |
-                       b[3];
+                std::uint32_t value = 0;
+                for (std::size_t k = 0; k < 4; ++k)
+                    value = value << 8U | bytes[at + 4 * i + k];
+                return value;
             };
             Reply reply{word(0), word(1), static_cast<std::int32_t>(word(5)), {}};
             const std::size_t size = in_.contains(reply.sequence) && reply.command == 3 ? word(6) : 0;
