@@ -42,7 +42,8 @@ TEST(BoardFile, TellsTheUsbPort) {
     EXPECT_EQ(find_board("ublox-f9p", shipped_boards)->usb->product_id, 0x01a9);
     EXPECT_EQ(find_board("septentrio-sbf", shipped_boards)->usb->vendor_id, 0x152a);
     EXPECT_FALSE(find_board("ublox-m10", shipped_boards)->usb) << "it has no USB of its own";
-    EXPECT_THAT(board_refusal("[usb]\nvendor_id = 1\n"), HasSubstr("usb: has not both vendor_id and product_id"));
+    EXPECT_THAT(board_refusal("[usb]\nvendor_id = 1\n"),
+                HasSubstr(":1:1: [usb] has not both vendor_id and product_id"));
     EXPECT_THAT(board_refusal("[usb]\nvendor_id = 1\nproduct_id = 65536\n"), HasSubstr(":3:14: usb.product_id"));
     EXPECT_THAT(board_refusal("[usb]\nvendor_id = 1\nproduct_id = 2\nproduct = \"" + std::string(32, 'x') + "\"\n"),
                 HasSubstr("expected at most 31 characters of ASCII"));
