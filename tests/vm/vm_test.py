@@ -1,9 +1,12 @@
 """skyloop and a real kernel's drivers: a serial adapter (ftdi_sio) on the pty, the adapter pulled and put back, skyloop inside
-the machine with that adapter as its own wire. One machine serves all tests; its transcript is printed and kept.
+the machine with that adapter as its own wire, and a USB receiver (cdc_acm) over USB/IP. One machine serves all tests; its
+transcript is printed and kept.
 """
 import os
 import pathlib
 import re
+import shutil
+import socket
 import sys
 import tempfile
 import time
@@ -13,8 +16,9 @@ import kernel as kernels
 import machine as machines
 from machine import Initramfs, Machine
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "integration"))
-from pty_client_test import good_share  # noqa: E402
+TESTS = pathlib.Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TESTS / "integration"), str(TESTS / "conformance")]
+import ubx  # noqa: E402
 from serial_test import Autopilot, port_settings  # noqa: E402
 from session import SKYLOOP, Emulator, skip  # noqa: E402
 
@@ -28,6 +32,19 @@ def probed(text):
     return {name: float(value) if re.fullmatch(r"-?[\d.]+", value) else value for name, value in values.items()}
 
 
+def heard_sentences(data):
+    """How many sentences are whole, and how many bytes between the first and the last of them belong to nothing."""
+    parser = ubx.Parser()
+    whole = [item for item in parser.feed(data[data.find(b"$"):]) if isinstance(item, ubx.Sentence)]
+    return len(whole), len(parser.noise)
+
+
+def free_port():
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
+
+
 class VirtualMachineTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -38,6 +55,7 @@ class VirtualMachineTest(unittest.TestCase):
         initramfs.compiled("serial_probe")
         initramfs.program(machines.kernels.tool("usbip"))
         initramfs.program(SKYLOOP, strip=True)
+        shutil.copytree(pathlib.Path(SKYLOOP).parents[1] / "share/skyloop/boards", initramfs.root / "share/skyloop/boards")
         cls.gps = cls.enterClassContext(Emulator("--board", "ublox-m9", "--port", f"pty:{cls.folder.name}/gps0", *START))
         cls.autopilot = Autopilot(pathlib.Path(cls.folder.name, "autopilot"))
         cls.addClassCleanup(cls.autopilot.unplug)
@@ -112,19 +130,80 @@ class VirtualMachineTest(unittest.TestCase):
         self.machine.run(f"cat {run}")
         self.assertIn(b"GGA", heard)
         self.assertEqual(self.autopilot.speed(), 38400)
-        self.assertGreater(good_share(self.autopilot.read_for(4)), 0.99)
+        self.autopilot_hears_sentences()
         self.assertEqual(self.machine.run("cat /sys/bus/usb-serial/devices/ttyUSB1/latency_timer"), "1")
         self.autopilot.write(port_settings(115200))
         answered = self.autopilot.read_for(5, until=b"\xb5\x62\x05\x01\x02\x00\x06\x00")
         self.assertIn(b"\xb5\x62\x05\x01\x02\x00\x06\x00", answered)
         self.assertEqual(self.autopilot.speed(), 115200)
         self.pull(1)
-        self.machine.wait_for(f"grep -qi 'lost\\|gone\\|unplugged' {run}")
+        self.machine.wait_for(f"grep -q 'is gone' {run}")
         self.adapter(1, "autopilot")
-        self.autopilot.read_for(20, until=b"GGA")
-        self.assertGreater(good_share(self.autopilot.read_for(4)), 0.99)
+        self.machine.wait_for(f"grep -q 'is back' {run}")
+        self.autopilot.read_for(5, until=b"GGA")
+        self.autopilot_hears_sentences()
         self.assertEqual(self.autopilot.speed(), 115200)
-        self.machine.stop(run, by="INT")
+        said = self.machine.stop(run, by="INT")
+        self.assertNotIn("did not send", said)
+
+    def autopilot_hears_sentences(self):
+        whole, noise = heard_sentences(self.autopilot.read_for(4))
+        self.machine.say(f"(the autopilot has heard {whole} sentences and {noise} other bytes)")
+        self.assertGreater(whole, 20)
+        self.assertEqual(noise, 0)
+
+    def usbip_receiver(self, *arguments):
+        """skyloop as a USB receiver for other machines, and the options by which `usbip` finds it."""
+        port = free_port()
+        emulator = self.enterContext(Emulator("--board", "ublox-m8", "--port", f"usb=usbip:127.0.0.1:{port}", *START, *arguments))
+        return emulator, f"--tcp-port {port}"
+
+    def attach(self, options):
+        self.machine.run(f"timeout 20 usbip {options} attach -r {machines.HOST} -b 1-1")
+        self.machine.wait_for("test -c /dev/ttyACM0")
+
+    def test_4_usb_receiver_is_attached_detached_and_attached_again(self):
+        emulator, options = self.usbip_receiver()
+        self.assertIn("1546:01a8", self.machine.run(f"timeout 20 usbip {options} list -r {machines.HOST}"))
+        for speed in (9600, 460800):
+            self.attach(options)
+            heard = self.probe("/dev/ttyACM0", speed, 5)
+            self.assertGreaterEqual(heard["epochs"], 4)
+            self.assertEqual([heard["broken"], heard["gaps"], heard["ended"]], [0, 0, "-"])
+            self.assertEqual(heard["answers"], heard["asked"])
+            self.machine.run("usbip detach -p 0")
+            self.machine.wait_for("test ! -e /dev/ttyACM0")
+        self.assertEqual(emulator.stop(), 0, emulator.log)
+        self.assertEqual(len(re.findall("attached by", emulator.log)), 2)
+        self.machine.say(f"(skyloop: {emulator.log.splitlines()[-2:]})")
+
+    def test_5_usb_receiver_that_vanishes_hangs_up(self):
+        emulator, options = self.usbip_receiver()
+        self.attach(options)
+        probe = self.machine.start("serial_probe /dev/ttyACM0 115200 30")
+        self.machine.run("sleep 2")
+        emulator.stop()
+        self.machine.wait_for(f"grep -q ended= {probe}")
+        heard = probed(self.machine.run(f"cat {probe}"))
+        self.assertGreater(heard["sentences"], 5)
+        self.assertNotEqual(heard["ended"], "-")
+        self.machine.wait_for("test ! -e /dev/ttyACM0")
+
+    def test_6_as_much_of_an_hour_as_the_machine_has_time_for(self):
+        emulator, options = self.usbip_receiver("--speed", "60", "--wait-for-client")
+        seconds = int(min(90, self.machine.until - time.monotonic() - 15))
+        self.assertGreater(seconds, 5, "the machine has taken its whole life for the other tests")
+        self.attach(options)
+        heard = self.probe("/dev/ttyACM0", 115200, seconds, 3600)
+        self.machine.run("usbip detach -p 0")
+        self.assertEqual(emulator.stop(), 0, emulator.log)
+        lost = int((re.search(r"(\d+) bytes were lost", emulator.log) or [0, 0])[1])
+        self.machine.say(f"({heard['epochs']:g} s of simulated time in {heard['seconds']:g} s; {lost} bytes were lost, as the machine "
+                         "read too slowly)")
+        self.assertGreaterEqual(heard["epochs"], min(3600, 30 * (seconds - 3)))
+        self.assertGreaterEqual(heard["answers"], heard["asked"] - (1 if lost == 0 else 5))
+        if lost == 0:
+            self.assertEqual([heard["broken"], heard["gaps"]], [0, 0])
 
 
 if __name__ == "__main__":
