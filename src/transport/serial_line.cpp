@@ -75,6 +75,10 @@ Result<void> SerialLine::set_up(std::uint32_t baud) {
     if (system_->control(file_.value(), TCSETS2, &settings) != 0)
         return refused(fmt::format("does not take its settings: {}", std::strerror(errno)));
     if (const auto fast = set_speed(baud); !fast) return fast;
+    // Nothing is under way yet: a driver that says otherwise says it always (ftdi_sio on adapters that answer with the
+    // modem lines alone).
+    unsigned status = 0;
+    tells_empty_ = system_->control(file_.value(), TIOCSERGETLSR, &status) == 0 && (status & TIOCSER_TEMT) != 0;
     termios2 actual{};
     if (system_->control(file_.value(), TCGETS2, &actual) == 0 && !has_format(actual, format_))
         remark_ = "the driver has not taken the data bits, parity, stop bits or flow control that were asked for";
@@ -188,7 +192,7 @@ bool SerialLine::drained() {
     int queued = 0;
     unsigned status = 0;
     const bool in_buffer = system_->control(file_.value(), TIOCOUTQ, &queued) == 0 && queued > 0;
-    const bool tells = system_->control(file_.value(), TIOCSERGETLSR, &status) == 0;
+    const bool tells = tells_empty_ && system_->control(file_.value(), TIOCSERGETLSR, &status) == 0;
     if (in_buffer || now < busy_until_ns_ || (tells && (status & TIOCSER_TEMT) == 0)) {
         empty_since_ns_.reset();
         return false;

@@ -61,6 +61,7 @@ private:
     std::filesystem::path timer_file_;
     std::string remark_;
     bool gone_ = false;
+    bool tells_empty_ = false;        // the driver knows when the last byte has left
     std::int64_t busy_until_ns_ = 0;  // by the count of bytes and the speed
     std::optional<std::int64_t> empty_since_ns_;
 };
