@@ -72,6 +72,13 @@ class Initramfs:
         if strip:
             subprocess.run(["strip", target], timeout=120, check=True)
 
+    def loaded(self, name):
+        """A library that a program loads by its name while it runs; left out where this machine does not have it."""
+        found = re.search(rf"{re.escape(name)} .*x86-64.* => (\S+)",
+                          subprocess.run([kernels.tool("ldconfig"), "-p"], capture_output=True, text=True, timeout=30).stdout)
+        for library in [found.group(1), *libraries(found.group(1))] if found else []:
+            self.file(library, str(library).lstrip("/"))
+
     def compiled(self, name):
         """A program of the folder `guest`."""
         command = ["gcc", "-static", "-O2", "-Wall", "-Wextra", "-Werror", HERE / f"guest/{name}.c", "-o",

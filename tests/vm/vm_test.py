@@ -20,9 +20,10 @@ TESTS = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS / "integration"), str(TESTS / "conformance")]
 import ubx  # noqa: E402
 from serial_test import Autopilot, port_settings  # noqa: E402
-from session import SKYLOOP, Emulator, skip  # noqa: E402
+from session import SKYLOOP, Emulator, skip, skyloop  # noqa: E402
 
 ARTIFACTS = pathlib.Path(os.environ.get("SKYLOOP_ARTIFACTS", pathlib.Path(tempfile.gettempdir(), "skyloop-vm")))
+PLACES = ["1", "2", "4.1"]  # where each adapter is plugged in; 4 is the hub
 START = ("--start", "2026-03-01T00:00:00Z", "--model", "ideal")
 
 
@@ -53,6 +54,8 @@ class VirtualMachineTest(unittest.TestCase):
         cls.addClassCleanup(cls.folder.cleanup)
         initramfs = Initramfs(cls.folder.name, KERNEL)
         initramfs.compiled("serial_probe")
+        initramfs.compiled("uhid_devices")
+        initramfs.loaded("libhidapi-hidraw.so.0")
         initramfs.program(machines.kernels.tool("usbip"))
         initramfs.program(SKYLOOP, strip=True)
         shutil.copytree(pathlib.Path(SKYLOOP).parents[1] / "share/skyloop/boards", initramfs.root / "share/skyloop/boards")
@@ -62,7 +65,8 @@ class VirtualMachineTest(unittest.TestCase):
         cls.machine = Machine(KERNEL, initramfs.archive(), cls.folder.name,
                               ["-chardev", f"serial,id=gps,path={cls.gps.tty}",
                                "-device", "usb-serial,id=adapter0,chardev=gps,bus=usb.0,port=1,serial=GPS0",
-                               "-chardev", f"serial,id=autopilot,path={cls.autopilot.link}"])
+                               "-chardev", f"serial,id=autopilot,path={cls.autopilot.link}",
+                               "-device", "usb-hub,id=hub0,bus=usb.0,port=4,port-power=on"])
         cls.addClassCleanup(cls.tell)
         cls.ready = time.monotonic() - cls.began
 
@@ -87,7 +91,7 @@ class VirtualMachineTest(unittest.TestCase):
     def adapter(self, number, chardev):
         """Plugs a serial adapter (FT232) in; its tty appears under any name."""
         self.machine.monitor.command("device_add", driver="usb-serial", id=f"adapter{number}", chardev=chardev, bus="usb.0",
-                                     port=str(number + 1), serial=f"GPS{number}")
+                                     port=PLACES[number], serial=f"GPS{number}")
         self.machine.say(f"(adapter {number} plugged in)")
 
     def pull(self, number):
@@ -145,6 +149,7 @@ class VirtualMachineTest(unittest.TestCase):
         self.assertEqual(self.autopilot.speed(), 115200)
         said = self.machine.stop(run, by="INT")
         self.assertNotIn("did not send", said)
+        self.pull(1)
 
     def autopilot_hears_sentences(self):
         whole, noise = heard_sentences(self.autopilot.read_for(4))
@@ -189,7 +194,35 @@ class VirtualMachineTest(unittest.TestCase):
         self.assertNotEqual(heard["ended"], "-")
         self.machine.wait_for("test ! -e /dev/ttyACM0")
 
-    def test_6_as_much_of_an_hour_as_the_machine_has_time_for(self):
+    def power(self, uri, order):
+        """Runs `skyloop power`, where the program has it."""
+        if not re.search(r"^ +power\b", skyloop("--help").stdout, re.MULTILINE):
+            self.skipTest("this skyloop has no command `power`")
+        return self.machine.run(f"skyloop power {uri} {order}", patience=40)
+
+    def test_6_relay_of_a_hid_board(self):
+        devices = self.machine.start("uhid_devices")
+        self.machine.wait_for("test -c /dev/hidraw1")
+        self.power("relay:16c0:05df/2", "off")
+        self.assertIn("cut", self.power("relay:16c0:05df/2", "state"))
+        self.power("relay:16c0:05df/2", "on")
+        self.assertNotIn("cut", self.power("relay:16c0:05df/2", "state"))
+        self.assertEqual(re.findall(r"relays (\d)", self.machine.stop(devices)), ["2", "0"])
+
+    def test_7_power_of_a_hub_port(self):
+        self.adapter(2, "autopilot")
+        self.machine.wait_for("grep -qs GPS2 /sys/bus/usb/devices/*/serial")
+        place = self.machine.run("cd /sys/bus/usb/devices && grep -ls GPS2 */serial").split("/")[0]
+        node = self.machine.run(f"for i in $(seq 100); do ls -d /sys/bus/usb/devices/{place}:1.0/ttyUSB* && break; usleep 100000; done 2>/dev/null")
+        self.assertIn("ttyUSB", node)
+        self.power(f"hub:{place}", "off")
+        self.machine.wait_for(f"test ! -e {node}")
+        self.assertIn("cut", self.power(f"hub:{place}", "state"))
+        self.power(f"hub:{place}", "on")
+        self.machine.wait_for(f"ls -d /sys/bus/usb/devices/{place}:1.0/ttyUSB*")
+        self.pull(2)
+
+    def test_9_as_much_of_an_hour_as_the_machine_has_time_for(self):
         emulator, options = self.usbip_receiver("--speed", "60", "--wait-for-client")
         seconds = int(min(90, self.machine.until - time.monotonic() - 15))
         self.assertGreater(seconds, 5, "the machine has taken its whole life for the other tests")

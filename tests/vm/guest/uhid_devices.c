@@ -55,7 +55,7 @@ static int create(int device) {
     struct uhid_create2_req* made = &event.u.create2;
     made->bus = 3;  // USB
     if (device == RELAY) {
-        strcpy((char*)made->name, "www.dcttech.com USBRelay2");
+        strcpy((char*)made->name, "USBRelay2");
         made->vendor = 0x16C0;
         made->product = 0x05DF;
         made->rd_size = (uint16_t)relay_descriptor(made->rd_data);
