@@ -8,7 +8,7 @@ namespace skyloop {
 namespace {
 
 using test::becomes_true;
-using test::TcpListener;
+using test::PlayedServer;
 using test::TcpPeer;
 using testing::ElementsAre;
 using testing::EndsWith;
@@ -30,7 +30,7 @@ std::string taken_in(Transport& wire, std::size_t least) {
 }
 
 TEST(TcpClientTransport, CarriesBytesBothWays) {
-    const TcpListener server;
+    const PlayedServer server;
     const auto wire = calling(server.port());
     const TcpPeer peer = server.accept();
     EXPECT_TRUE(becomes_true([&] { return wire->line().connected; }));
@@ -43,7 +43,7 @@ TEST(TcpClientTransport, CarriesBytesBothWays) {
 }
 
 TEST(TcpClientTransport, CallsAgainWhenTheServerHasGone) {
-    const TcpListener server;
+    const PlayedServer server;
     const auto wire = calling(server.port());
     {
         TcpPeer first = server.accept();
@@ -65,20 +65,20 @@ TEST(TcpClientTransport, CallsAgainWhenTheServerHasGone) {
 }
 
 TEST(TcpClientTransport, WaitsForAServerThatComesLater) {
-    const std::uint16_t port = TcpListener().port();
+    const std::uint16_t port = PlayedServer().port();
     const auto wire = calling(port);
     EXPECT_TRUE(becomes_true([&] {
         wire->line();
         const auto news = wire->take_news();
         return news.size() == 1 && news[0].find("Connection refused; it is tried every 0.5 s") != std::string::npos;
     }));
-    const TcpListener server(port);
+    const PlayedServer server(port);
     EXPECT_TRUE(becomes_true([&] { return wire->line().connected; }));
     EXPECT_THAT(wire->take_news(), ElementsAre(EndsWith(": connected"))) << "a failure of a row is told once";
 }
 
 TEST(TcpClientTransport, SurvivesAResetWhileItWrites) {
-    const TcpListener server;
+    const PlayedServer server;
     const auto wire = calling(server.port());
     TcpPeer peer = server.accept();
     EXPECT_TRUE(becomes_true([&] { return wire->line().connected; }));

@@ -63,9 +63,9 @@ private:
 };
 
 /// A server on the loopback address.
-class TcpListener {
+class PlayedServer {
 public:
-    explicit TcpListener(std::uint16_t port = 0) : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    explicit PlayedServer(std::uint16_t port = 0) : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
         const int yes = 1;
         ::setsockopt(socket_.value(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
         sockaddr_in where = TcpPeer::loopback(port);
