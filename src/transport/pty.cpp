@@ -139,7 +139,6 @@ void PtyTransport::follow_clients() {
         master = poll_master(master_.value());  // not older than what was reported
     }
     readable_ = (master & POLLIN) != 0;
-    looked_ = true;
     // The kernel joins equal events that follow each other, so the count may drift; the hang-up state never does.
     if ((master & POLLHUP) != 0) {
         clients_ = 0;
@@ -198,6 +197,7 @@ Bytes PtyTransport::read() {
 
 LineState PtyTransport::line() {
     follow_clients();
+    looked_ = true;
     termios2 settings{};
     LineState state{clients_ > 0, std::nullopt};
     if (::ioctl(master_.value(), TCGETS2, &settings) == 0 && settings.c_ospeed != 0) state.baud = settings.c_ospeed;

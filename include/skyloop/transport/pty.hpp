@@ -60,7 +60,7 @@ private:
     bool counted_early_ = false;
     bool unread_possible_ = false;  ///< bytes were written that a client may have left
     bool speed_set_ = false;
-    bool looked_ = false;    ///< follow_clients() was called for the next read() or write()
+    bool looked_ = false;    ///< line() has just looked, also for the read() or write() that follows
     bool readable_ = false;  ///< bytes were there then
 };
 
