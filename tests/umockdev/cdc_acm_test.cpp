@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <iostream>
 #include <numeric>
 
 #include "eventually.hpp"
@@ -9,6 +11,7 @@
 #include "skyloop/transport/open_transport.hpp"
 #include "skyloop/usb/cdc_acm.hpp"
 #include "testbed.hpp"
+#include "what_is_held.hpp"
 
 namespace skyloop {
 namespace {
@@ -244,19 +247,29 @@ TEST_F(UsbWire, UnpluggedAndBackByItsPort) {
     EXPECT_THAT(other->codings(), IsEmpty());
 }
 
+// SKYLOOP_UNPLUGS says how often; each takes half a second, until the device is looked for.
 TEST_F(UsbWire, UnpluggedInTheMiddleOfAStreamManyTimes) {
+    constexpr int warm = 5;
+    const char* const given = std::getenv("SKYLOOP_UNPLUGS");
+    const int rounds = given != nullptr ? std::atoi(given) : 10;
+    const auto numbered = [](int round) { return board("A1", "1", static_cast<std::uint8_t>(4 + round % 100)); };
     open();
-    for (std::uint8_t round = 0; round < 10; ++round) {
+    std::size_t descriptors = 0, memory = 0;
+    for (int round = 0; round < rounds; ++round) {
+        if (round == warm) descriptors = mock::open_descriptors(), memory = mock::memory_in_use();
         device->say(counting(5000));
         wire->write(counting(5000));
         (void)wire->read();
-        bed.unplug(board("A1", "1", static_cast<std::uint8_t>(4 + round)));
+        bed.unplug(numbered(round));
         news.clear();
-        ASSERT_TRUE(tells("is gone")) << int{round};
+        ASSERT_TRUE(tells("is gone")) << round;
         device = std::make_shared<MockCdcAcm>();
-        bed.plug_in(board("A1", "1", static_cast<std::uint8_t>(5 + round)), device);
-        ASSERT_TRUE(tells("is back")) << int{round};
+        bed.plug_in(numbered(round + 1), device);
+        ASSERT_TRUE(tells("is back")) << round;
     }
+    EXPECT_TRUE(mock::comes_down_to(descriptors, mock::open_descriptors))
+        << mock::open_descriptors() << " after " << descriptors;
+    std::cout << rounds << " times unplugged: " << mock::memory_in_use() << " bytes in use after " << memory << '\n';
 }
 
 TEST_F(UsbWire, ToldWhenTheSpeedCannotBeSet) {

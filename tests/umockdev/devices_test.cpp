@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
-
 #include "mock_cdc_acm.hpp"
 #include "skyloop/hid/hid_device.hpp"
 #include "skyloop/usb/usb_context.hpp"
 #include "testbed.hpp"
+#include "what_is_held.hpp"
 
 namespace skyloop {
 namespace {
@@ -128,11 +127,6 @@ TEST(UsbDevices, WithoutPermissionTheSentenceNamesTheNode) {
               "skyloop devices shows the line");
 }
 
-std::size_t open_descriptors() {
-    const std::filesystem::directory_iterator all("/proc/self/fd");
-    return static_cast<std::size_t>(std::distance(begin(all), end(all)));
-}
-
 // A session each time, as where no udevd tells of changes; and one that lives through all of it.
 TEST(UsbDevices, ComeAndGoAHundredTimes) {
     mock::Testbed bed;
@@ -155,9 +149,9 @@ TEST(UsbDevices, ComeAndGoAHundredTimes) {
         const auto context = open_usb();
         ASSERT_TRUE(context);
         ASSERT_FALSE(find_usb_device(*context, address)) << round;
-        if (round == 9) descriptors = open_descriptors();
+        if (round == 9) descriptors = mock::open_descriptors();
     }
-    EXPECT_LE(open_descriptors(), descriptors);
+    EXPECT_TRUE(mock::comes_down_to(descriptors, mock::open_descriptors));
     ASSERT_TRUE(list_usb_devices(*witness));
 }
 
