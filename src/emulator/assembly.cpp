@@ -204,9 +204,10 @@ ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::Boa
 
 Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSetup& setup) {
     const NavigationSource& navigation = *setup.navigation;
-    auto effects = scenario.model.sensor_model
-                       ? effects_for(*scenario.model.sensor_model, effect_settings(scenario, navigation, setup.geoid))
-                       : modern_effects_of(scenario, navigation, {setup.geoid, setup.start, setup.data});
+    auto effects =
+        scenario.model.sensor_model
+            ? effects_for(*scenario.model.sensor_model, effect_settings(scenario, navigation, setup.geoid))
+            : modern_effects_of(scenario, navigation, {setup.geoid, setup.start, setup.data, setup.gas_losses});
     if (!effects) return fail(effects.error());
     FixMaker fix_maker = scenario.model.sensor_model ? FixMaker(make_error_model(error_model_settings(scenario, setup)))
                                                      : FixMaker(measuring_receiver(scenario, setup));

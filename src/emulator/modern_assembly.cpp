@@ -41,6 +41,7 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
     context.nequick_folder = nequick_folder(world.data);
     context.geoid = world.geoid;
     context.seed = scenario.run.seed;
+    context.gas_losses = world.gas_losses;
     return modern_effects(settings.propagation, context);
 }
 

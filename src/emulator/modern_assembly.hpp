@@ -13,6 +13,7 @@ struct WorldData {
     const Geoid* geoid = nullptr;
     GpsTime start;
     DataFolders data;
+    std::shared_ptr<GasLossTable> gas_losses;
 };
 
 /// The effects of the modern profile, from a scenario's settings. Fails with `input` when a file they need is missing

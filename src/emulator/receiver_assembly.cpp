@@ -140,8 +140,8 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
         if (auto restored = receiver.restore(state->text(), state->path().string()); !restored)
             return fail(restored.error());
     const double rate = 1e9 / static_cast<double>(receiver.settings().navigation_period.count());
-    auto simulation = make_simulation(
-        scenario, {shared.navigation, shared.geoid, shared.start, shared.data, index, shared.scene, rate});
+    auto simulation = make_simulation(scenario, {shared.navigation, shared.geoid, shared.start, shared.data, index,
+                                                 shared.scene, rate, shared.gas_losses});
     if (!simulation) return fail(simulation.error());
     Station::Parts parts{std::move(*simulation), std::move(receiver), {}, {}};
     if (entry.rate_hz) warn_of_rate(*entry.rate_hz, parts.receiver, warnings);

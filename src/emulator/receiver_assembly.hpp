@@ -19,6 +19,7 @@ struct SharedParts {
     const Geoid* geoid = nullptr;
     GpsTime start;
     std::shared_ptr<const UrbanScene> scene;  // null: nothing stands around
+    std::shared_ptr<GasLossTable> gas_losses = std::make_shared<GasLossTable>();
 };
 
 /// One receiver before anything is opened or emptied for it.

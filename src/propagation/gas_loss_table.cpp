@@ -81,7 +81,7 @@ void GasLoss::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& tr
     if (factor_ == 0) return;
     const Metres height = sea_level_height(truth.geodetic, geoid_).above_sea_level;
     for (std::size_t i = 0; i < sky.satellites.size(); ++i)
-        arrivals.satellites[i].gas_loss = table_.loss(sky.satellites[i].elevation, height) * factor_;
+        arrivals.satellites[i].gas_loss = table_->loss(sky.satellites[i].elevation, height) * factor_;
 }
 
 }  // namespace skyloop

@@ -34,7 +34,7 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects(const Mod
                                                            context.seed));
     effects.push_back(std::make_unique<IonosphereDelay>(std::move(*truth), parameters, residual, context.seed));
     effects.push_back(std::make_unique<TroposphereDelay>(parameters, air, site, context.seed));
-    effects.push_back(std::make_unique<GasLoss>(parameters.gas, context.geoid));
+    effects.push_back(std::make_unique<GasLoss>(parameters.gas, context.geoid, context.gas_losses));
     effects.push_back(std::make_unique<CloudLoss>(air.clouds, parameters.clouds, context.geoid));
     effects.push_back(std::make_unique<RainLoss>(air.rain, parameters, context.geoid));
     effects.push_back(std::make_unique<FoliageLoss>(parameters.loss_model, parameters.foliage));

@@ -12,6 +12,7 @@
 #include "skyloop/emulator/emulator.hpp"
 #include "skyloop/emulator/load_scene.hpp"
 #include "skyloop/geo/geoid.hpp"
+#include "skyloop/propagation/atmosphere_losses.hpp"
 #include "skyloop/scenario/scenario.hpp"
 
 namespace skyloop {
@@ -87,6 +88,8 @@ struct SimulationSetup {
     /// What stands around; null: nothing, whatever the scenario says.
     std::shared_ptr<const UrbanScene> scene{};
     double epochs_per_second = 1;  ///< of the receiver, at start
+    /// Of the modern model; receivers of one run share it.
+    std::shared_ptr<GasLossTable> gas_losses = std::make_shared<GasLossTable>();
 };
 /// The world of a scenario and its way to a fix. Receivers of one run share the world and its errors; what their own
 /// electronics add differs. Fails with `input` when scenario and world do not fit each other.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "skyloop/geo/geoid.hpp"
@@ -36,13 +37,16 @@ private:
 class GasLoss : public PropagationEffect {
 public:
     /// @param geoid must outlive this; without one, the ellipsoidal height stands in
-    GasLoss(const ErrorTerm& term, const Geoid* geoid) : factor_(term.factor()), geoid_(geoid) {}
+    /// @param table of L1, shared with others of the same thread
+    GasLoss(const ErrorTerm& term, const Geoid* geoid,
+            std::shared_ptr<GasLossTable> table = std::make_shared<GasLossTable>())
+        : factor_(term.factor()), geoid_(geoid), table_(std::move(table)) {}
     void apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) override;
 
 private:
     double factor_;
     const Geoid* geoid_;
-    GasLossTable table_;
+    std::shared_ptr<GasLossTable> table_;
 };
 
 /// Writes the cloud loss: the liquid water of each deck over the straight path through it, ITU-R P.840-8. The water is

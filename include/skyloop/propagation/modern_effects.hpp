@@ -12,6 +12,7 @@
 #include "skyloop/geo/geoid.hpp"
 #include "skyloop/gnss/ionosphere_maps.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
+#include "skyloop/propagation/atmosphere_losses.hpp"
 #include "skyloop/propagation/atmosphere_parameters.hpp"
 #include "skyloop/propagation/effect.hpp"
 #include "skyloop/propagation/modern_parameters.hpp"
@@ -39,6 +40,8 @@ struct ModernContext {
     const Geoid* geoid = nullptr;               ///< must outlive the effects; without one heights stay ellipsoidal
     LeapSeconds leap_seconds = LeapSeconds::announced();
     std::uint64_t seed = 1;
+    /// Of L1. Its rows take milliseconds each: receivers of one thread share them.
+    std::shared_ptr<GasLossTable> gas_losses = std::make_shared<GasLossTable>();
 };
 
 /// The effects in the order of their application: signal in space, ionosphere, troposphere, losses, scintillation,
