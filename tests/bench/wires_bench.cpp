@@ -133,8 +133,9 @@ public:
     Readers(const Readers&) = delete;
     Readers& operator=(const Readers&) = delete;
 
+    // At no raised priority: the kernel's thread that hands bytes from one end of a terminal to the other has none
+    // either, and would wait for this one where there are two cores.
     void run(const Clockwork& clock, const BareLoop& bare) {
-        (void)raise_thread_priority();
         while (!clock.over) {
             if (::poll(ends_.data(), ends_.size(), 100) <= 0) continue;
             const std::int64_t now = steady_clock_ns();
