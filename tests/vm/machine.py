@@ -100,7 +100,7 @@ class Initramfs:
 class Machine:
     """The running machine. `lines` is its transcript: (seconds since the start, text)."""
 
-    def __init__(self, kernel, initramfs, folder, devices=(), life=175):
+    def __init__(self, kernel, initramfs, folder, devices=(), *, life):
         self.began = time.monotonic()
         self.until = self.began + life
         self.lines, self.rest, self.jobs = [], b"", itertools.count()

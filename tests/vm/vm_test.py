@@ -23,6 +23,8 @@ from serial_test import Autopilot, port_settings  # noqa: E402
 from session import SKYLOOP, Emulator, skip, skyloop  # noqa: E402
 
 ARTIFACTS = pathlib.Path(os.environ.get("SKYLOOP_ARTIFACTS", pathlib.Path(tempfile.gettempdir(), "skyloop-vm")))
+LIFE = int(os.environ.get("SKYLOOP_VM_SECONDS", 175))  # of the machine
+SPEED = int(os.environ.get("SKYLOOP_VM_SPEED", 60))  # of the hour over USB/IP
 PLACES = ["1", "2", "4.1"]  # where each adapter is plugged in; 4 is the hub
 START = ("--start", "2026-03-01T00:00:00Z", "--model", "ideal")
 
@@ -66,7 +68,7 @@ class VirtualMachineTest(unittest.TestCase):
                               ["-chardev", f"serial,id=gps,path={cls.gps.tty}",
                                "-device", "usb-serial,id=adapter0,chardev=gps,bus=usb.0,port=1,serial=GPS0",
                                "-chardev", f"serial,id=autopilot,path={cls.autopilot.link}",
-                               "-device", "usb-hub,id=hub0,bus=usb.0,port=4,port-power=on"])
+                               "-device", "usb-hub,id=hub0,bus=usb.0,port=4,port-power=on"], life=LIFE)
         cls.addClassCleanup(cls.tell)
         cls.ready = time.monotonic() - cls.began
 
@@ -111,6 +113,12 @@ class VirtualMachineTest(unittest.TestCase):
         self.assertEqual([wrong["sentences"], wrong["answers"]], [0, 0])
         self.probe("/dev/ttyUSB0", 38400, 2)
         self.assertEqual(self.probe("/dev/ttyUSB0", 38400, 3)["broken"], 0)
+
+    def test_1_adapter_is_known(self):
+        self.machine.wait_for("test -c /dev/ttyUSB0")
+        listed = self.machine.run("skyloop devices")
+        self.assertRegex(listed, r"0403:6001 +bridge +/dev/ttyUSB0 +FTDI FT232R")
+        self.assertIn("serial GPS0", listed)
 
     def test_2_adapter_pulled_and_put_back(self):
         probe = self.machine.start("serial_probe /dev/ttyUSB0 38400 30")
@@ -222,9 +230,21 @@ class VirtualMachineTest(unittest.TestCase):
         self.machine.wait_for(f"ls -d /sys/bus/usb/devices/{place}:1.0/ttyUSB*")
         self.pull(2)
 
+    def test_8_bridge_of_hidraw_is_a_wire(self):
+        """The bridge sends back each byte that it is given."""
+        devices = self.machine.start("uhid_devices")
+        self.machine.wait_for("test -c /dev/hidraw1")
+        said = self.machine.run("skyloop run --board ublox-m9 --port hid:10c4:ea80 --duration 8 " + " ".join(START), patience=60)
+        told = self.machine.stop(devices)
+        self.assertIn("enabled 1", told)
+        self.assertIn("uart 38400 parity 0 flow 0 data 3 stop 0", told)
+        out, back = map(int, re.search(r"port 0: (\d+) bytes out, (\d+) in", said).groups())
+        self.assertGreater(out, 2000)
+        self.assertGreater(back, 0.8 * out)
+
     def test_9_as_much_of_an_hour_as_the_machine_has_time_for(self):
-        emulator, options = self.usbip_receiver("--speed", "60", "--wait-for-client")
-        seconds = int(min(90, self.machine.until - time.monotonic() - 15))
+        emulator, options = self.usbip_receiver("--speed", str(SPEED), "--wait-for-client")
+        seconds = int(min(3600 / SPEED + 30, self.machine.until - time.monotonic() - 15))
         self.assertGreater(seconds, 5, "the machine has taken its whole life for the other tests")
         self.attach(options)
         heard = self.probe("/dev/ttyACM0", 115200, seconds, 3600)
@@ -233,7 +253,7 @@ class VirtualMachineTest(unittest.TestCase):
         lost = int((re.search(r"(\d+) bytes were lost", emulator.log) or [0, 0])[1])
         self.machine.say(f"({heard['epochs']:g} s of simulated time in {heard['seconds']:g} s; {lost} bytes were lost, as the machine "
                          "read too slowly)")
-        self.assertGreaterEqual(heard["epochs"], min(3600, 30 * (seconds - 3)))
+        self.assertGreaterEqual(heard["epochs"], min(3600, SPEED / 2 * (seconds - 3)))
         self.assertGreaterEqual(heard["answers"], heard["asked"] - (1 if lost == 0 else 5))
         if lost == 0:
             self.assertEqual([heard["broken"], heard["gaps"]], [0, 0])
