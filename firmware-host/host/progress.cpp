@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <utility>
 
 #include "skyloop/time/utc_time.hpp"
 
@@ -51,10 +52,15 @@ std::string bytes_text(const std::vector<Station>& stations) {
     return wired ? "  " + count_text(bytes) : "";
 }
 
+void rewrite_line(const std::string& line) {
+    std::fprintf(stderr, "\r\033[K%s", line.c_str());
+    std::fflush(stderr);
+}
+
 }  // namespace
 
-Progress::Progress(bool wanted, GpsTime start, std::optional<GpsTime> end)
-    : active_(wanted && isatty(STDERR_FILENO) == 1), start_(start), end_(end) {}
+Progress::Progress(bool wanted, GpsTime start, std::optional<GpsTime> end, JobThread& writer)
+    : active_(wanted && isatty(STDERR_FILENO) == 1), start_(start), end_(end), writer_(writer) {}
 
 Progress::~Progress() { clear(); }
 
@@ -76,15 +82,13 @@ void Progress::show(const Status& status, const Emulator& emulator) {
     if (end_)
         line +=
             fmt::format("  {:.0f} %", 100 * difference(status.now, start_).value() / difference(*end_, start_).value());
-    std::fprintf(stderr, "\r\033[K%s", line.c_str());
-    std::fflush(stderr);
+    writer_.run([line = std::move(line)] { rewrite_line(line); });
     on_screen_ = true;
 }
 
 void Progress::clear() {
     if (!on_screen_) return;
-    std::fputs("\r\033[K", stderr);
-    std::fflush(stderr);
+    writer_.run([] { rewrite_line({}); });
     on_screen_ = false;
 }
 

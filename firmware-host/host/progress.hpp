@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "skyloop/base/job_thread.hpp"
 #include "skyloop/emulator/emulator.hpp"
 
 namespace skyloop::host {
@@ -13,8 +14,8 @@ namespace skyloop::host {
 /// One line that is rewritten in place; silent when stderr is not a terminal.
 class Progress {
 public:
-    /// @param end of the run, for a percentage
-    Progress(bool wanted, GpsTime start, std::optional<GpsTime> end);
+    /// @param end of the run, for a percentage  @param writer writes the line, and outlives this
+    Progress(bool wanted, GpsTime start, std::optional<GpsTime> end, JobThread& writer);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -28,6 +29,7 @@ private:
     bool active_;
     GpsTime start_;
     std::optional<GpsTime> end_;
+    JobThread& writer_;
     std::vector<std::string> fixes_;  // of each receiver, as last seen
     std::int64_t shown_ns_ = 0;
     bool on_screen_ = false;

@@ -52,21 +52,7 @@ void RunSession::await_clients() const {
 
 int RunSession::run(const Scenario& scenario, RunWatch& watch) {
     Emulator& emulator = *assembly_.emulator;
-    {
-        Progress progress(!messages_.verbosity().quiet && !messages_.verbosity().json, assembly_.start, assembly_.end);
-        emulator.on_status([&](const Status& status) {
-            if (const auto notice = new_notice(status.station)) {
-                progress.clear();
-                messages_.warning(*notice);
-            }
-            for (const std::string& news : wire_news(status.station)) {
-                progress.clear();
-                messages_.warning(news);
-            }
-            progress.show(status, emulator);
-        });
-        emulator.run_until(assembly_.end.value_or(GpsTime::max()), stop_asked);
-    }
+    go(emulator);
     if (Recorder* recorder = emulator.recorder())
         recorder->record_summary(run_summary(scenario, assembly_, SKYLOOP_VERSION));
     int code = watch.finish(messages_);
@@ -88,6 +74,27 @@ int RunSession::run(const Scenario& scenario, RunWatch& watch) {
         if (station.state() && station.state()->failure()) code = messages_.error(*station.state()->failure());
     }
     return code;
+}
+
+void RunSession::go(Emulator& emulator) {
+    constexpr std::size_t most_lines = 1000;
+    JobThread writer(most_lines);
+    Progress progress(!messages_.verbosity().quiet && !messages_.verbosity().json, assembly_.start, assembly_.end,
+                      writer);
+    const auto tell = [&](std::string news) {
+        progress.clear();
+        writer.run([this, news = std::move(news)] { messages_.warning(news); });
+    };
+    emulator.on_status([&](const Status& status) {
+        if (auto notice = new_notice(status.station)) tell(std::move(*notice));
+        for (std::string& news : wire_news(status.station))
+            tell(std::move(news));
+        progress.show(status, emulator);
+    });
+    emulator.run_until(assembly_.end.value_or(GpsTime::max()), stop_asked);
+    emulator.on_status({});
+    if (const std::size_t lines = writer.left_out(); lines > 0)
+        tell(fmt::format("{} lines were left out: what the run said was read too slowly", lines));
 }
 
 std::optional<std::string> RunSession::new_notice(std::size_t index) {

@@ -28,6 +28,8 @@ public:
     [[nodiscard]] std::string port_name(const Station& station, std::size_t wire) const;
 
 private:
+    // The loop. What it says meanwhile is written by a thread of its own.
+    void go(Emulator& emulator);
     void tell_counts(const Station& station) const;
     void tell_wire(const Station& station, std::size_t wire) const;
     // What the buildings around a receiver have to say that has not been said yet.
