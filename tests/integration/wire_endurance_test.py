@@ -17,31 +17,32 @@ RESET = struct.pack("ii", 1, 0)  # SO_LINGER: closes with a reset
 
 
 def first_bytes(readable, take):
-    """Waits until something has come; gives it."""
-    end = time.monotonic() + 10
-    while time.monotonic() < end:
-        if select.select([readable], [], [], 1)[0]:
-            data = take()
-            if data:
-                return data
-    raise AssertionError("no byte within 10 s")
+    """Waits until something has come, or the other end has closed; gives it."""
+    if not select.select([readable], [], [], 10)[0]:
+        raise AssertionError("no byte within 10 s")
+    return take()
 
 
 def pull_pty(path):
     """A client that hears something and is gone."""
     descriptor = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
     try:
-        first_bytes(descriptor, lambda: os.read(descriptor, 65536))
+        if not first_bytes(descriptor, lambda: os.read(descriptor, 65536)):
+            raise AssertionError("the terminal has hung up")
     finally:
         os.close(descriptor)
 
 
 def pull_tcp(address):
-    """A connection that hears something and is reset."""
+    """A connection that hears something and is reset. It may have overtaken the reset of the one before, and be turned away."""
     host, port = address.rsplit(":", 1)
-    with socket.create_connection((host, int(port)), timeout=10) as client:
-        first_bytes(client, lambda: client.recv(65536))
-        client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, RESET)
+    for _ in range(100):
+        with socket.create_connection((host, int(port)), timeout=10) as client:
+            if first_bytes(client, lambda: client.recv(65536)):
+                client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, RESET)
+                return
+        time.sleep(0.01)
+    raise AssertionError("turned away a hundred times")
 
 
 def used(pid):
