@@ -40,7 +40,11 @@ static int open_line(const char* device, unsigned speed) {
     settings.c_ispeed = settings.c_ospeed = speed;
     settings.c_cc[VMIN] = 1;
     settings.c_cc[VTIME] = 0;
-    return ioctl(line_descriptor, TCSETS2, &settings) < 0 ? -1 : line_descriptor;
+    if (ioctl(line_descriptor, TCSETS2, &settings) < 0) {
+        return -1;
+    }
+    // What came before went through a line discipline that changes line ends.
+    return ioctl(line_descriptor, TCFLSH, TCIFLUSH) < 0 ? -1 : line_descriptor;
 }
 
 /// A sentence without `$`, from the address to the checksum.
