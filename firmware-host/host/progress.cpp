@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
 #include <utility>
 
+#include "skyloop/base/steady_clock.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::host {
@@ -70,7 +70,7 @@ void Progress::show(const Status& status, const Emulator& emulator) {
     const auto& stations = emulator.stations();
     fixes_.resize(stations.size());
     fixes_[status.station] = fix_text(status, stations[status.station], stations.size() > 1);
-    const std::int64_t now_ns = std::chrono::steady_clock::now().time_since_epoch().count();
+    const std::int64_t now_ns = steady_clock_ns();
     if (on_screen_ && now_ns - shown_ns_ < pause_ns) return;
     shown_ns_ = now_ns;
 

@@ -66,9 +66,7 @@ Result<ActuatorUri> parse_gpio(std::string_view uri, std::string_view rest) {
 }
 
 Result<ActuatorUri> parse_hub(std::string_view uri, std::string_view rest) {
-    // Known to whoever reads addresses, by way of one with ids.
-    if (!parse_usb_address("0000:0000@" + std::string(rest)))
-        return not_understood(uri, "hub:PORT_PATH, bus and ports, such as hub:1-1.4");
+    if (!is_usb_port_path(rest)) return not_understood(uri, "hub:PORT_PATH, bus and ports, such as hub:1-1.4");
     return HubPortAddress{std::string(rest)};
 }
 

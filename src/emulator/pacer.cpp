@@ -13,12 +13,6 @@ constexpr std::int64_t second_ns = 1'000'000'000;
 
 }  // namespace
 
-std::int64_t steady_clock_ns() {
-    timespec now{};
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return now.tv_sec * second_ns + now.tv_nsec;
-}
-
 void Pacer::rest() {
     constexpr timespec twenty_ms{0, 20'000'000};
     nanosleep(&twenty_ms, nullptr);

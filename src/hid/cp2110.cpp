@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "skyloop/base/signals_held_back.hpp"
+#include "skyloop/base/steady_clock.hpp"
 #include "skyloop/usb/bridge_buffers.hpp"
 
 namespace skyloop {
@@ -26,11 +27,6 @@ constexpr std::int64_t most_in_fifo = 256;
 constexpr int reports_a_turn = 8;  // to the device before it is listened to again
 constexpr std::int64_t cp2110_last_bytes_ns = 200'000'000;
 constexpr auto turn = std::chrono::milliseconds(1);
-
-std::int64_t cp2110_now_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
 
 class Cp2110 : public SerialBridge {
 public:
@@ -64,9 +60,6 @@ private:
     void listen();
     void put_back();
     bool answers() { return device_.get_feature(uart_enable, uart_enable_size).has_value(); }
-    [[nodiscard]] std::int64_t byte_ns() const {
-        return line_.format.bits_per_byte() * std::int64_t{1'000'000'000} / std::max<std::int64_t>(line_.baud, 1) + 1;
-    }
 
     HidDevice device_;
     BridgeLine line_;
@@ -105,9 +98,9 @@ void Cp2110::work() {
 
 bool Cp2110::has_more_to_do() {
     if (!stop_) return true;
-    if (stop_asked_ == 0) stop_asked_ = cp2110_now_ns();
+    if (stop_asked_ == 0) stop_asked_ = steady_clock_ns();
     const bool waits = piece_ || buffers_.output_waits() || !line_is_empty();
-    return waits && cp2110_now_ns() < stop_asked_ + cp2110_last_bytes_ns;
+    return waits && steady_clock_ns() < stop_asked_ + cp2110_last_bytes_ns;
 }
 
 void Cp2110::send_output() {
@@ -118,7 +111,7 @@ void Cp2110::send_output() {
             if (!line_is_empty()) return;
             change_speed();
         }
-        if (busy_until_ - cp2110_now_ns() > most_in_fifo * byte_ns()) return;
+        if (busy_until_ - steady_clock_ns() > most_in_fifo * line_.byte_ns()) return;
         send_report();
     }
 }
@@ -134,7 +127,8 @@ void Cp2110::send_report() {
         return;
     }
     told_no_data_ = false;
-    busy_until_ = std::max(busy_until_, cp2110_now_ns()) + static_cast<std::int64_t>(piece_->bytes.size()) * byte_ns();
+    busy_until_ =
+        std::max(busy_until_, steady_clock_ns()) + static_cast<std::int64_t>(piece_->bytes.size()) * line_.byte_ns();
     piece_.reset();
 }
 
@@ -154,11 +148,11 @@ void Cp2110::warn_of_speed() {
 
 // By the count of bytes, then by its own word, then a character later: the FIFO is empty before the UART is.
 bool Cp2110::line_is_empty() {
-    if (cp2110_now_ns() < busy_until_ + byte_ns()) return false;
+    if (steady_clock_ns() < busy_until_ + line_.byte_ns()) return false;
     const auto status = device_.get_feature(uart_status, uart_status_size);
     const bool holds = status && status->size() >= 3 && status->front() == uart_status &&
                        ((*status)[1] != 0 || (*status)[2] != 0);  // bytes in the transmit FIFO
-    if (holds) busy_until_ = cp2110_now_ns();
+    if (holds) busy_until_ = steady_clock_ns();
     return !holds;
 }
 

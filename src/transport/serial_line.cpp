@@ -18,7 +18,6 @@ namespace skyloop {
 namespace {
 
 constexpr std::int64_t ms_in_ns = 1'000'000;
-constexpr std::int64_t s_in_ns = 1'000'000'000;
 constexpr std::int64_t last_bytes_patience_ns = 200 * ms_in_ns;
 // An adapter that cannot be asked holds a packet for a frame of USB 2.0 full speed (section 5.2.1, 1 ms) on its way,
 // and another where the two clocks meet.
@@ -183,9 +182,7 @@ bool SerialLine::gone() {
     return gone_;
 }
 
-std::int64_t SerialLine::character_ns() const {
-    return format_.bits_per_byte() * s_in_ns / std::max<std::int64_t>(baud_, 1) + 1;
-}
+std::int64_t SerialLine::character_ns() const { return format_.byte_ns(baud_); }
 
 bool SerialLine::drained() {
     const std::int64_t now = system_->now_ns();

@@ -6,7 +6,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <ctime>
+#include "skyloop/base/steady_clock.hpp"
 
 namespace skyloop {
 
@@ -38,10 +38,6 @@ bool SerialSystem::gone(int descriptor) {
     return (state.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
 }
 
-std::int64_t SerialSystem::now_ns() {
-    timespec now{};
-    ::clock_gettime(CLOCK_MONOTONIC, &now);
-    return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
-}
+std::int64_t SerialSystem::now_ns() { return steady_clock_ns(); }
 
 }  // namespace skyloop

@@ -6,9 +6,9 @@
 
 #include <cerrno>
 #include <cstring>
-#include <ctime>
 #include <utility>
 
+#include "skyloop/base/steady_clock.hpp"
 #include "tcp_socket.hpp"
 
 namespace skyloop {
@@ -17,12 +17,6 @@ namespace {
 constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::int64_t try_every_ns = second_ns / 2;
 constexpr std::int64_t answer_patience_ns = 5 * second_ns;
-
-std::int64_t client_clock_ns() {
-    timespec now{};
-    ::clock_gettime(CLOCK_MONOTONIC, &now);
-    return now.tv_sec * second_ns + now.tv_nsec;
-}
 
 // A free port of the system's own choice may be called from the very same port: then the two ends are one (RFC 9293,
 // section 3.5, simultaneous open), and no server could ever have the port.
@@ -56,7 +50,7 @@ Result<std::unique_ptr<TcpClientTransport>> TcpClientTransport::open(const TcpAd
     auto route = std::make_unique<Route>();
     route->all = std::move(*found);
     std::unique_ptr<TcpClientTransport> wire(new TcpClientTransport(address, std::move(route)));
-    wire->begin_attempt(client_clock_ns());
+    wire->begin_attempt(steady_clock_ns());
     return wire;
 }
 
@@ -102,7 +96,7 @@ void TcpClientTransport::lose() {
     socket_ = FileDescriptor();
     connected_ = false;
     attempted_ = true;  // the sentence below says what will be done
-    attempt_began_ns_ = client_clock_ns();
+    attempt_began_ns_ = steady_clock_ns();
     news_.push_back(fmt::format("{}: the connection is lost; it is tried every 0.5 s", shown_address(address_)));
 }
 
@@ -111,7 +105,7 @@ void TcpClientTransport::follow() {
         if (receive_available(socket_.value(), unread_) != StreamState::open) lose();
         return;
     }
-    const std::int64_t now_ns = client_clock_ns();
+    const std::int64_t now_ns = steady_clock_ns();
     if (socket_.open()) return follow_attempt(now_ns);
     if (now_ns - attempt_began_ns_ >= try_every_ns) begin_attempt(now_ns);
 }

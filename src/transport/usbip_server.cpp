@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
+#include "skyloop/base/steady_clock.hpp"
 #include "tcp_listener.hpp"
 #include "tcp_socket.hpp"
 
@@ -16,11 +16,6 @@ constexpr std::size_t most_visitors = 8;
 constexpr std::int64_t visitor_patience_ns = 5'000'000'000;
 constexpr std::size_t most_request_bytes = 4096;  // a request and the first commands behind it
 constexpr std::size_t most_news = 32;
-
-std::int64_t usbip_clock_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
 
 std::string break_news(std::uint16_t duration_ms) {
     constexpr std::uint16_t until_told = 0xFFFF, ended = 0;  // PSTN 1.2, section 6.3.13
@@ -79,7 +74,7 @@ void UsbipTransport::tell(std::string news) {
 }
 
 void UsbipTransport::follow() {
-    const std::int64_t now = usbip_clock_ns();
+    const std::int64_t now = steady_clock_ns();
     // First whoever has gone: the next one may be there already.
     if (importer_) follow_importer(now);
     accept_visitors(now);
@@ -179,7 +174,7 @@ std::size_t UsbipTransport::write(ByteSpan bytes) {
     follow();
     if (!importer_) return bytes.size();
     const std::size_t taken = importer_->session.put(bytes);
-    follow_importer(usbip_clock_ns());
+    follow_importer(steady_clock_ns());
     return taken;
 }
 
@@ -223,10 +218,6 @@ std::string UsbipTransport::other_end() const {
     return text;
 }
 
-std::string UsbipTransport::description() const {
-    const TcpAddress& address = listener_->address();
-    const bool v6 = address.host.find(':') != std::string::npos;
-    return fmt::format("{}{}{}:{} (usbip)", v6 ? "[" : "", address.host, v6 ? "]" : "", address.port);
-}
+std::string UsbipTransport::description() const { return shown_address(listener_->address()) + " (usbip)"; }
 
 }  // namespace skyloop

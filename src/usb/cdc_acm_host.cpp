@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "skyloop/base/signals_held_back.hpp"
+#include "skyloop/base/steady_clock.hpp"
 
 namespace skyloop {
 namespace {
@@ -27,21 +27,12 @@ constexpr int most_errors = 50;  // in a row: half a second in which the device 
 // What the device may hold beyond the count of bytes: a frame of USB full speed and one more where two clocks meet.
 constexpr std::int64_t unknown_fifo = 2 * ms;
 
-std::int64_t monotonic_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
 // PSTN 1.2, table 17: speed, stop bits (0: 1, 2: 2), parity (1: odd, 2: even), data bits.
 std::array<std::uint8_t, line_coding_size> line_coding(const BridgeLine& line) {
     const auto byte = [&](int shift) { return static_cast<std::uint8_t>(line.baud >> shift & 0xff); };
     const std::uint8_t stop = line.format.stop_bits == 2 ? 2 : 0;
     const std::uint8_t parity = line.format.parity == Parity::none ? 0 : line.format.parity == Parity::odd ? 1 : 2;
     return {byte(0), byte(8), byte(16), byte(24), stop, parity, static_cast<std::uint8_t>(line.format.data_bits)};
-}
-
-std::int64_t byte_ns(const BridgeLine& line) {
-    return line.format.bits_per_byte() * s / std::max<std::int64_t>(line.baud, 1) + 1;
 }
 
 }  // namespace
@@ -157,7 +148,7 @@ void CdcAcmHost::set_baud(std::uint32_t baud) {
 
 void CdcAcmHost::work() {
     while (!buffers_.gone() && has_more_to_do()) {
-        if (monotonic_ns() >= rest_until_) {
+        if (steady_clock_ns() >= rest_until_) {
             clear_stalls();
             ask_for_data();
             send_output();
@@ -169,9 +160,9 @@ void CdcAcmHost::work() {
 
 bool CdcAcmHost::has_more_to_do() {
     if (!stop_) return true;
-    if (stop_asked_ == 0) stop_asked_ = monotonic_ns();
+    if (stop_asked_ == 0) stop_asked_ = steady_clock_ns();
     const bool waits = piece_ || out_.flying || coding_.flying || buffers_.output_waits();
-    return waits && monotonic_ns() < stop_asked_ + last_bytes;
+    return waits && steady_clock_ns() < stop_asked_ + last_bytes;
 }
 
 void CdcAcmHost::ask_for_data() {
@@ -191,7 +182,7 @@ void CdcAcmHost::send_output() {
     if (!piece_) return;
     if (piece_->baud != line_.baud) {
         // The bytes of the old speed must have left the device's UART, which cannot be asked.
-        if (monotonic_ns() < busy_until_) return;
+        if (steady_clock_ns() < busy_until_) return;
         line_.baud = piece_->baud;
         if (shape_.control_interface) return send_line_coding();
     }
@@ -250,7 +241,7 @@ void CdcAcmHost::handle_events() {
     const bool waits_for_line = piece_ && !out_.flying && !coding_.flying;
     const bool soon = rest_until_ > 0 || waits_for_line || stop_ || in_stalled_ || out_stalled_;
     timeval wait{0, soon ? 1000 : 200'000};
-    if (rest_until_ > 0 && monotonic_ns() >= rest_until_) rest_until_ = 0;
+    if (rest_until_ > 0 && steady_clock_ns() >= rest_until_) rest_until_ = 0;
     (void)libusb_handle_events_timeout_completed(context_.get(), &wait, nullptr);
 }
 
@@ -264,15 +255,15 @@ void CdcAcmHost::end_transfers() {
         if (transfer.flying) (void)libusb_cancel_transfer(transfer.transfer);
     if (out_.flying) (void)libusb_cancel_transfer(out_.transfer);
     if (coding_.flying) (void)libusb_cancel_transfer(coding_.transfer);
-    const std::int64_t end = monotonic_ns() + s;  // a kernel that does not give them back must not hold us
-    while (any_flying() && monotonic_ns() < end) {
+    const std::int64_t end = steady_clock_ns() + s;  // a kernel that does not give them back must not hold us
+    while (any_flying() && steady_clock_ns() < end) {
         timeval wait{0, 10'000};
         (void)libusb_handle_events_timeout_completed(context_.get(), &wait, nullptr);
     }
 }
 
 void CdcAcmHost::count_error(int status) {
-    rest_until_ = monotonic_ns() + rest_after_error;
+    rest_until_ = steady_clock_ns() + rest_after_error;
     if (++errors_ < most_errors) return;
     buffers_.tell(fmt::format("{} answers no more ({})", name_,
                               status == LIBUSB_TRANSFER_STALL ? "it stalls" : "transfers fail"));
@@ -313,12 +304,12 @@ void CdcAcmHost::data_left(libusb_transfer* transfer) {
     host.piece_->bytes.erase(host.piece_->bytes.begin(),
                              host.piece_->bytes.begin() + static_cast<std::ptrdiff_t>(count));
     if (host.piece_->bytes.empty()) host.piece_.reset();
-    const std::int64_t now = monotonic_ns();
+    const std::int64_t now = steady_clock_ns();
     if (count > 0) {
         host.errors_ = 0;
         host.told_no_data_ = false;
         host.busy_until_ =
-            std::max(host.busy_until_, now + unknown_fifo) + static_cast<std::int64_t>(count) * byte_ns(host.line_);
+            std::max(host.busy_until_, now + unknown_fifo) + static_cast<std::int64_t>(count) * host.line_.byte_ns();
     }
     if (transfer->status == LIBUSB_TRANSFER_NO_DEVICE) return host.lose();
     if (transfer->status == LIBUSB_TRANSFER_STALL) host.out_stalled_ = true;

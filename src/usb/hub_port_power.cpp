@@ -23,8 +23,7 @@ struct PortPlace {
 
 // "1-1.4" is port 4 of 1-1; "1-2" is port 2 of usb1.
 std::optional<PortPlace> port_place(const std::string& path) {
-    const auto address = parse_usb_address("0000:0000@" + path);  // reads port paths
-    if (!address) return std::nullopt;
+    if (!is_usb_port_path(path)) return std::nullopt;
     const std::size_t dot = path.rfind('.'), dash = path.find('-');
     const std::size_t last = dot == std::string::npos ? dash : dot;
     PortPlace place;

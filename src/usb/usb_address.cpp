@@ -18,8 +18,9 @@ std::optional<std::uint16_t> hexadecimal(std::string_view text) {
     return value;
 }
 
-// "1-1.2": the bus, and the ports from its root hub outwards.
-bool is_port_path(std::string_view text) {
+}  // namespace
+
+bool is_usb_port_path(std::string_view text) {
     const std::size_t dash = text.find('-');
     if (dash == 0 || dash == std::string_view::npos || dash + 1 == text.size()) return false;
     const auto digits = [](std::string_view part) {
@@ -33,8 +34,6 @@ bool is_port_path(std::string_view text) {
         rest = rest.substr(dot + 1);
     }
 }
-
-}  // namespace
 
 std::string to_string(UsbIds ids) { return fmt::format("{:04x}:{:04x}", ids.vendor, ids.product); }
 
@@ -56,7 +55,7 @@ Result<UsbAddress> parse_usb_address(std::string_view text) {
     const std::string_view rest = ids ? text.substr(ids_size) : std::string_view();
     if (ids && rest.empty()) return UsbAddress{*ids, {}, {}};
     if (ids && rest.size() > 1 && rest.front() == ':') return UsbAddress{*ids, std::string(rest.substr(1)), {}};
-    if (ids && rest.front() == '@' && is_port_path(rest.substr(1)))
+    if (ids && rest.front() == '@' && is_usb_port_path(rest.substr(1)))
         return UsbAddress{*ids, {}, std::string(rest.substr(1))};
     return fail(ErrorCode::usage,
                 fmt::format("'{}' names no USB device; expected VID:PID, VID:PID:SERIAL or VID:PID@PORT, such as "

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "skyloop/base/steady_clock.hpp"
 #include "skyloop/time/gps_time.hpp"
 
 namespace skyloop {
@@ -52,9 +53,6 @@ public:
 private:
     GpsTime start_;
 };
-
-/// The steady clock now.
-std::int64_t steady_clock_ns();
 
 /// Maps simulated time to the steady clock, at a chosen rate.
 class RealtimePacer : public Pacer {

@@ -15,6 +15,7 @@ namespace skyloop {
 struct BridgeLine {
     std::uint32_t baud = 0;  ///< bit/s
     SerialFormat format{};
+    [[nodiscard]] std::int64_t byte_ns() const { return format.byte_ns(baud); }
 };
 
 /// A bridge that is open. A thread of its own talks to the device; none of these functions waits for it. To destroy it

@@ -33,6 +33,9 @@ struct UsbDeviceInfo {
     std::uint8_t device_class = 0;  ///< bDeviceClass (USB 2.0, table 9-8): 9 is a hub, 0 is told by its interfaces
 };
 
+/// "1-1.2": the bus, and the ports from its root hub outwards.
+bool is_usb_port_path(std::string_view text);
+
 /// Which device is meant: one of these ids, with that serial number and at that port where they are given.
 struct UsbAddress {
     UsbIds ids;
