@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 
 namespace skyloop {
 namespace {
@@ -70,6 +71,13 @@ Result<std::string> read_text_file(const std::filesystem::path& path, std::size_
         return fail(ErrorCode::input,
                     fmt::format("{}: gzip data ends early, after {} bytes of text", name, text.size()));
     return text;
+}
+
+std::string first_line_of(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    std::string line;
+    std::getline(in, line);
+    return line;
 }
 
 }  // namespace skyloop

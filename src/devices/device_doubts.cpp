@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "device_nodes.hpp"
+#include "skyloop/base/text_file.hpp"
 
 namespace skyloop {
 namespace {

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "device_nodes.hpp"
+#include "skyloop/base/text_file.hpp"
 #include "skyloop/usb/usb_context.hpp"
 
 namespace skyloop {

@@ -1,4 +1,5 @@
 #include "device_nodes.hpp"
+#include "skyloop/base/text_file.hpp"
 
 #include <grp.h>
 #include <pwd.h>
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <functional>
 
 namespace skyloop {
@@ -113,13 +113,6 @@ void add_nodes_of_interface(const fs::path& interface, const SystemFolders& fold
 }
 
 }  // namespace
-
-std::string first_line_of(const fs::path& file) {
-    std::ifstream in(file);
-    std::string line;
-    std::getline(in, line);
-    return line;
-}
 
 fs::path sysfs_of_usb(const SystemFolders& folders, const std::string& port_path) {
     return folders.sysfs / "bus" / "usb" / "devices" / port_path;

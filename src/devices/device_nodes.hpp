@@ -8,8 +8,6 @@
 
 namespace skyloop {
 
-/// The first line of a file; empty when there is none.
-std::string first_line_of(const std::filesystem::path& file);
 /// Where sysfs tells of the device at this port path.
 std::filesystem::path sysfs_of_usb(const SystemFolders& folders, const std::string& port_path);
 /// Of the device at the port of `usb`, serial lines first.

@@ -1,7 +1,8 @@
 #include "skyloop/transport/serial_search.hpp"
 
 #include <algorithm>
-#include <fstream>
+
+#include "skyloop/base/text_file.hpp"
 
 namespace skyloop {
 namespace {
@@ -10,14 +11,6 @@ namespace fs = std::filesystem;
 
 fs::path class_entry(const SerialSystem& system, const std::string& name) {
     return system.sysfs() / "class" / "tty" / name;
-}
-
-// The first line of a file of sysfs; empty when there is none.
-std::string first_line(const fs::path& file) {
-    std::ifstream in(file);
-    std::string line;
-    std::getline(in, line);
-    return line;
 }
 
 bool same_kind(const UsbIdentity& a, const UsbIdentity& b) {
@@ -62,9 +55,9 @@ std::optional<UsbIdentity> usb_identity(const SerialSystem& system, const fs::pa
         if (const std::size_t colon = name.find(':'); colon != std::string::npos && identity.interface.empty())
             identity.interface = name.substr(colon + 1);
         if (!there(at / "idVendor")) continue;
-        identity.vendor = first_line(at / "idVendor");
-        identity.product = first_line(at / "idProduct");
-        identity.serial = first_line(at / "serial");
+        identity.vendor = first_line_of(at / "idVendor");
+        identity.product = first_line_of(at / "idProduct");
+        identity.serial = first_line_of(at / "serial");
         identity.port_path = name;
         return identity;
     }

@@ -5,8 +5,9 @@
 
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <utility>
+
+#include "skyloop/base/text_file.hpp"
 
 namespace skyloop {
 namespace {
@@ -24,12 +25,8 @@ std::string node_of(libusb_device* device) {
     return fmt::format("/dev/bus/usb/{:03}/{:03}", libusb_get_bus_number(device), libusb_get_device_address(device));
 }
 
-// The first line of an attribute of the device in sysfs; empty where there is none.
 std::string attribute(const std::string& port_path, const char* name) {
-    std::ifstream file(std::filesystem::path("/sys/bus/usb/devices") / port_path / name);
-    std::string line;
-    std::getline(file, line);
-    return line;
+    return first_line_of(std::filesystem::path("/sys/bus/usb/devices") / port_path / name);
 }
 
 std::string text_descriptor(libusb_device_handle* handle, std::uint8_t index) {

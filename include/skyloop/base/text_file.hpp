@@ -1,4 +1,4 @@
-/// Reading whole text files, gzip-compressed or not.
+/// Reading text files.
 #pragma once
 
 #include <cstddef>
@@ -16,5 +16,8 @@ inline constexpr std::size_t max_text_file_size = std::size_t{256} << 20;
 /// Fails with `outside` when it cannot be opened or read, with `input` when it is larger than `max_size` or its
 /// compressed data is damaged.
 Result<std::string> read_text_file(const std::filesystem::path& path, std::size_t max_size = max_text_file_size);
+
+/// The first line of a small file, as those of sysfs and procfs are; empty when there is none.
+std::string first_line_of(const std::filesystem::path& file);
 
 }  // namespace skyloop
