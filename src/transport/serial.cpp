@@ -1,11 +1,8 @@
 #include "skyloop/transport/serial.hpp"
 
 #include <fmt/format.h>
-#include <pthread.h>
-#include <signal.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "line_options.hpp"
@@ -14,23 +11,10 @@
 namespace skyloop {
 namespace {
 
-constexpr std::int64_t search_every_ns = 500'000'000;
 constexpr std::int64_t drain_patience_ns = 1'000'000'000;
 constexpr std::uint32_t speed_of_no_speed = 115200;  // for a port that has none, such as a receiver's USB
 // As a terminal's driver holds. Speed changes take milliseconds, in which a fast line sends some hundred bytes.
 constexpr std::size_t most_waiting = 4096;
-constexpr int lasting_trouble = 4;  // attempts: a node is often there before its rights are
-
-// A new thread that is none of the loop's business: it is to take none of the process's signals.
-template <class Work>
-auto in_background(Work work) {
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    auto future = std::async(std::launch::async, std::move(work));
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    return future;
-}
 
 struct AddressText {
     std::string_view device;
@@ -108,45 +92,27 @@ void SerialTransport::lose() {
     if (!waiting_.empty()) baud_ = waiting_.back().baud;
     waiting_.clear();
     waiting_bytes_ = 0;
-    trouble_.clear();
-    same_trouble_ = 0;
-    next_search_ns_ = system_->now_ns() + search_every_ns;
-    attempt_ = in_background([old = std::move(line_)]() mutable {
-        old.reset();
-        return Attempt{};
-    });
+    search_.begin(std::move(line_), system_->now_ns());
 }
 
 void SerialTransport::search() {
-    if (attempt_.valid()) {
-        if (attempt_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) finish_attempt();
-        return;
-    }
-    if (system_->now_ns() < next_search_ns_) return;
-    next_search_ns_ = system_->now_ns() + search_every_ns;
-    attempt_ = in_background([system = system_, address = address_, identity = identity_, baud = baud_] {
-        Attempt attempt;
-        for (const std::filesystem::path& place : places_to_look(*system, address.device, identity)) {
-            auto line = SerialLine::open(system, place, address.format, baud);
-            if (line) return Attempt{std::move(*line), baud, {}};
-            attempt.trouble = line.error().message;
-        }
-        return attempt;
+    auto found = search_.look(system_->now_ns(), [this] {
+        return [system = system_, address = address_, identity = identity_, baud = baud_] {
+            Search::Attempt attempt;
+            for (const std::filesystem::path& place : places_to_look(*system, address.device, identity)) {
+                auto line = SerialLine::open(system, place, address.format, baud);
+                if (line) return Search::Attempt{std::move(*line), baud, {}};
+                attempt.trouble = line.error().message;
+            }
+            return attempt;
+        };
     });
-}
-
-void SerialTransport::finish_attempt() {
-    Attempt attempt = attempt_.get();
-    if (attempt.line) {
-        news_.push_back(fmt::format("{} is back, as {}", address_.device.string(), attempt.line->device().string()));
-        adopt(std::move(attempt.line));
-        // The receiver's speed may have changed while the line was opened.
-        ask_speed(std::exchange(baud_, attempt.baud));
-        return;
-    }
-    same_trouble_ = !attempt.trouble.empty() && attempt.trouble == trouble_ ? same_trouble_ + 1 : 1;
-    trouble_ = attempt.trouble;
-    if (!trouble_.empty() && same_trouble_ == lasting_trouble) news_.push_back(trouble_);
+    if (!found) return;
+    if (!found->end) return news_.push_back(std::move(found->trouble));
+    news_.push_back(fmt::format("{} is back, as {}", address_.device.string(), found->end->device().string()));
+    adopt(std::move(found->end));
+    // The receiver's speed may have changed while the line was opened.
+    ask_speed(std::exchange(baud_, found->baud));
 }
 
 void SerialTransport::set_receiver_baud(std::uint32_t baud) {

@@ -6,14 +6,12 @@
 #include <utility>
 
 #include "line_options.hpp"
-#include "skyloop/base/signals_held_back.hpp"
+#include "skyloop/base/steady_clock.hpp"
 #include "skyloop/usb/usb_context.hpp"
 
 namespace skyloop {
 namespace {
 
-constexpr auto bridge_search_every = std::chrono::milliseconds(500);
-constexpr int bridge_lasting_trouble = 4;                   // attempts: a node is often there before its rights are
 constexpr std::uint32_t bridge_speed_of_no_speed = 115200;  // for a receiver's port that has none
 
 // Where a lost device may be, the likeliest first. Cheap devices share one serial number: the port tells them apart.
@@ -78,31 +76,27 @@ void UsbBridgeTransport::lose() {
     for (std::string& news : bridge_->take_news())
         news_.push_back(std::move(news));
     news_.push_back(fmt::format("{} is gone; it is looked for every 0.5 s", description()));
-    next_search_ = Clock::now() + bridge_search_every;
-    with_signals_held_back([this] {
-        attempt_ = std::async(std::launch::async, [old = std::move(bridge_)]() mutable {
-            old.reset();
-            return Attempt{};
-        });
-    });
+    search_.begin(std::move(bridge_), steady_clock_ns());
 }
 
 void UsbBridgeTransport::search() {
-    if (attempt_.valid()) {
-        if (attempt_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) finish_attempt();
-        return;
-    }
-    if (Clock::now() < next_search_) return;
-    next_search_ = Clock::now() + bridge_search_every;
-    with_signals_held_back([this] {
-        attempt_ = std::async(std::launch::async, &UsbBridgeTransport::attempt, opener_,
-                              addresses_to_try(address_.device, known_), BridgeLine{baud_, address_.format});
+    auto found = search_.look(steady_clock_ns(), [this] {
+        return [opener = opener_, places = addresses_to_try(address_.device, known_),
+                line = BridgeLine{baud_, address_.format}] { return attempt(opener, places, line); };
     });
+    if (!found) return;
+    if (!found->end) return news_.push_back(std::move(found->trouble));
+    bridge_ = std::move(found->end);
+    known_ = bridge_->info();
+    news_.push_back(fmt::format("{} is back, at {}", description(), known_.port_path));
+    // The receiver's speed may have changed while it was opened.
+    if (found->baud != baud_) bridge_->set_baud(baud_);
 }
 
-UsbBridgeTransport::Attempt UsbBridgeTransport::attempt(const Opener& opener, const std::vector<UsbAddress>& places,
-                                                        const BridgeLine& line) {
-    Attempt attempt{nullptr, line.baud, {}};
+UsbBridgeTransport::Search::Attempt UsbBridgeTransport::attempt(const Opener& opener,
+                                                                const std::vector<UsbAddress>& places,
+                                                                const BridgeLine& line) {
+    Search::Attempt attempt;
     for (const UsbAddress& place : places) {
         auto bridge = opener(place, line);
         if (bridge) return {std::move(*bridge), line.baud, {}};
@@ -110,21 +104,6 @@ UsbBridgeTransport::Attempt UsbBridgeTransport::attempt(const Opener& opener, co
         if (context && find_usb_device(*context, place)) attempt.trouble = bridge.error().message;
     }
     return attempt;
-}
-
-void UsbBridgeTransport::finish_attempt() {
-    Attempt attempt = attempt_.get();
-    if (!attempt.bridge) {
-        same_trouble_ = !attempt.trouble.empty() && attempt.trouble == trouble_ ? same_trouble_ + 1 : 1;
-        trouble_ = attempt.trouble;
-        if (!trouble_.empty() && same_trouble_ == bridge_lasting_trouble) news_.push_back(trouble_);
-        return;
-    }
-    bridge_ = std::move(attempt.bridge);
-    known_ = bridge_->info();
-    news_.push_back(fmt::format("{} is back, at {}", description(), known_.port_path));
-    // The receiver's speed may have changed while it was opened.
-    if (attempt.baud != baud_) bridge_->set_baud(baud_);
 }
 
 void UsbBridgeTransport::set_receiver_baud(std::uint32_t baud) {

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 
 #include "skyloop/base/line_format.hpp"
 #include "skyloop/base/result.hpp"
+#include "skyloop/transport/device_search.hpp"
 #include "skyloop/transport/serial_search.hpp"
 #include "skyloop/transport/serial_system.hpp"
 #include "skyloop/transport/transport.hpp"
@@ -75,18 +75,13 @@ private:
         std::uint32_t baud = 0;
         Bytes bytes;
     };
-    struct Attempt {
-        std::unique_ptr<SerialLine> line;
-        std::uint32_t baud = 0;
-        std::string trouble;  // why a device that is there cannot be had; empty when none is there
-    };
+    using Search = DeviceSearch<SerialLine>;
 
     SerialTransport(SerialAddress address, std::shared_ptr<SerialSystem> system);
     void adopt(std::unique_ptr<SerialLine> line);
     void follow();
     void lose();
     void search();
-    void finish_attempt();
     void send_waiting();
     void ask_speed(std::uint32_t baud);
     bool change_speed(std::uint32_t baud);
@@ -101,10 +96,7 @@ private:
     std::deque<Segment> waiting_;
     std::size_t waiting_bytes_ = 0;
     std::int64_t change_asked_ns_ = 0;
-    std::future<Attempt> attempt_;
-    std::int64_t next_search_ns_ = 0;
-    std::string trouble_;
-    int same_trouble_ = 0;  // attempts in a row
+    Search search_;
     std::vector<std::string> news_;
     std::uint64_t held_back_ = 0;  // bytes refused while CTS was low
 };

@@ -1,9 +1,7 @@
 /// A serial line behind a USB device that this program drives itself: CDC-ACM over libusb, CP2110 over hidapi.
 #pragma once
 
-#include <chrono>
 #include <functional>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "skyloop/base/result.hpp"
+#include "skyloop/transport/device_search.hpp"
 #include "skyloop/transport/transport.hpp"
 #include "skyloop/usb/serial_bridge.hpp"
 
@@ -48,19 +47,13 @@ public:
     [[nodiscard]] std::string description() const override;
 
 private:
-    using Clock = std::chrono::steady_clock;
-    struct Attempt {
-        std::unique_ptr<SerialBridge> bridge;
-        std::uint32_t baud = 0;
-        std::string trouble{};  // why a device that is there cannot be had; empty when none is there
-    };
+    using Search = DeviceSearch<SerialBridge>;
 
     UsbBridgeTransport(UsbBridgeAddress address, Opener opener, std::string_view kind);
     void follow();
     void lose();
     void search();
-    static Attempt attempt(const Opener& opener, const std::vector<UsbAddress>& places, const BridgeLine& line);
-    void finish_attempt();
+    static Search::Attempt attempt(const Opener& opener, const std::vector<UsbAddress>& places, const BridgeLine& line);
 
     UsbBridgeAddress address_;
     Opener opener_;
@@ -69,10 +62,7 @@ private:
     UsbDeviceInfo known_{};
     std::uint32_t baud_;                        // of the line
     std::optional<std::uint32_t> told_baud_{};  // the receiver's
-    std::future<Attempt> attempt_{};
-    Clock::time_point next_search_{};
-    std::string trouble_{};
-    int same_trouble_ = 0;  // attempts in a row
+    Search search_{};
     std::vector<std::string> news_{};
 };
 
