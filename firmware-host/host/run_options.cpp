@@ -26,17 +26,12 @@ Result<void> apply_place(const RunOptions& options, Scenario& scenario) {
     }
     if (options.trajectory.empty()) return {};
     const std::filesystem::path file = options.trajectory;
-    if (file.extension() == ".csv") {
+    if (file.extension() != ".toml") {
         FileSettings track;
         track.path = file;
         scenario.trajectory = track;
         return {};
     }
-    if (file.extension() != ".toml")
-        return fail(ErrorCode::usage,
-                    fmt::format("--trajectory {}: expected a .toml file with a [trajectory] or a .csv file with rows; "
-                                "skyloop scenario-from makes one of a receiver's log",
-                                options.trajectory));
     auto trajectory = read_trajectory_file(file);
     if (!trajectory) return fail(trajectory.error());
     scenario.trajectory = std::move(*trajectory);
@@ -150,7 +145,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
     command.add_option("scenario", options.scenario, "Scenario file (TOML); without it embedded defaults");
     add_place_options(command, options);
     command.add_option("--trajectory", options.trajectory,
-                       "A .toml file with a [trajectory], or a .csv file with the rows of a track");
+                       "A .toml file with a [trajectory], or a track: .csv, .gpx, …");
     command.add_option("--duration", options.duration, "Seconds");
     command.add_option("--model", options.model, fmt::format("{}; default modern", fmt::join(model_names(), " ")));
     add_scene_option(command, options);

@@ -4,8 +4,8 @@
 
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/time/utc_time.hpp"
+#include "skyloop/tracks/read_track.hpp"
 #include "skyloop/trajectory/recorded_path.hpp"
-#include "skyloop/trajectory/track_csv.hpp"
 
 namespace skyloop {
 namespace {
@@ -40,7 +40,8 @@ Result<LoadedTrack> load_one(TrajectorySettings& way, const Scenario& scenario, 
     if (!file) return LoadedTrack{};
     const auto text = read_text_file(file->path);
     if (!text) return fail(text.error());
-    auto track = read_track_csv(*text, file->path.string(), geoid);
+    const ByteSpan bytes(reinterpret_cast<const std::uint8_t*>(text->data()), text->size());
+    auto track = read_track(bytes, file->path.string(), {geoid});
     if (!track) return fail(track.error());
     auto gaps = clean_track(*track, file->gap);
     if (!gaps) return fail(gaps.error());

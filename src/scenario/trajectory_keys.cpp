@@ -1,146 +1,42 @@
+#include "trajectory_kinds.hpp"
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
-#include <cmath>
-
-#include "scenario_keys.hpp"
+#include <string_view>
 
 namespace skyloop {
 namespace {
 
-// Reads places that may be given on the Earth or in the coordinates of a game level.
-class PlaceReader {
-public:
-    PlaceReader(const std::optional<LevelFrame>& level, std::vector<std::string>& warnings)
-        : level_(level), warnings_(warnings) {}
-
-    // `key` = [lat, lon, height], or `key`_level = [x, y, z].
-    std::optional<Geodetic> read(TableReader& table, const std::string& key) {
-        const std::string level_key = key + "_level";
-        const auto on_earth = table.place(key);
-        const auto in_level = table.numbers(level_key, 3);
-        table.note_not_both(key, level_key);
-        if (on_earth && in_level)
-            table.mistake(level_key, fmt::format("stands beside {}; expected one of the two", key));
-        if (!in_level) return on_earth;
-        if (!level_) {
-            table.mistake(level_key, "needs a [frame] that says where the level lies");
-            return std::nullopt;
-        }
-        const Position<Level> point((*in_level)[0], (*in_level)[1], (*in_level)[2]);
-        const Geodetic place = to_geodetic(level_->to_ecef(point));
-        const auto checked =
-            place_from_degrees(place.latitude.deg(), place.longitude.deg(), place.height.above_ellipsoid.value());
-        if (!checked) {
-            table.mistake(level_key, checked.error());
-            return std::nullopt;
-        }
-        if (level_->beyond_reach(point)) warn_beyond_reach(point);
-        return place;
-    }
-
-private:
-    void warn_beyond_reach(const Position<Level>& point) {
-        const LevelPlacement& placement = level_->placement();
-        warnings_.push_back(
-            fmt::format("level point ({:g}, {:g}, {:g}) lies {:.0f} m from the frame's origin; beyond {:.0f} m a plane "
-                        "leaves the curved "
-                        "Earth (by {:.1f} m there): anchor the frame nearer",
-                        point.vector().x(), point.vector().y(), point.vector().z(),
-                        point.vector().head<2>().norm() * placement.unit.value(), placement.reach.value(),
-                        point.vector().head<2>().squaredNorm() * std::pow(placement.unit.value(), 2) / (2 * 6371e3)));
-    }
-
-    const std::optional<LevelFrame>& level_;
-    std::vector<std::string>& warnings_;
+// What a kind's reader may need.
+struct KindReading {
+    TableReader& table;
+    PlaceReader& places;
+    const std::filesystem::path& folder;
+    TrajectorySettings& trajectory;
 };
 
-Angle read_heading(TableReader& table) {
-    double heading = 0;
-    table.number("heading_deg", heading, {-360, 360});
-    return Angle::degrees(heading);
-}
+struct TrajectoryKind {
+    std::string_view name;
+    void (*read)(const KindReading&);
+};
 
-void read_fixed(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
-    FixedSettings fixed;
-    fixed.heading = read_heading(table);
-    if (const auto at = places.read(table, "at")) fixed.at = *at;
-    table.needs_one_of({"at", "at_level"}, "kind \"fixed\" has no place; expected at = [latitude, longitude, height]");
-    trajectory = fixed;
-}
+constexpr std::array kinds{
+    TrajectoryKind{"fixed", [](const KindReading& k) { read_fixed(k.table, k.places, k.trajectory); }},
+    TrajectoryKind{"waypoints", [](const KindReading& k) { read_waypoints(k.table, k.places, k.trajectory); }},
+    TrajectoryKind{"circle", [](const KindReading& k) { read_circle(k.table, k.places, k.trajectory); }},
+    TrajectoryKind{"file", [](const KindReading& k) { read_file_track(k.table, k.folder, k.trajectory); }},
+};
 
-void read_waypoints(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
-    WaypointSettings path;
-    path.heading = read_heading(table);
-    const auto read_corner = [&](TableReader& row) {
-        Waypoint corner;
-        if (!path.corners.empty()) corner.speed = path.corners.back().speed;
-        if (const auto at = places.read(row, "at")) corner.place = *at;
-        row.needs_one_of({"at", "at_level"}, "has no place; expected at = [latitude, longitude, height]");
-        row.quantity("speed_mps", corner.speed, {1e-3, 12000});
-        row.quantity("hold_s", corner.hold, {0, 1e7});
-        path.corners.push_back(corner);
-    };
-    constexpr std::size_t fewest_corners = 2;
-    table.tables("waypoint", read_corner, fewest_corners);
-    if (path.corners.size() < fewest_corners)
-        table.mistake_here(fmt::format(
-            "kind \"waypoints\" has {} waypoints; expected two or more [[trajectory.waypoint]]", path.corners.size()));
-    trajectory = path;
-}
-
-void read_circle(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
-    CircleSettings circle;
-    circle.heading = read_heading(table);
-    if (const auto centre = places.read(table, "centre")) circle.shape.centre = *centre;
-    table.needs_one_of({"centre", "centre_level"},
-                       "kind \"circle\" has no centre; expected centre = [latitude, longitude, height]");
-    table.quantity("radius_m", circle.shape.radius, {0.1, 1e6});
-    table.quantity("speed_mps", circle.shape.speed, {-12000, 12000});
-    double azimuth = 0;
-    table.number("start_azimuth_deg", azimuth, {-360, 360});
-    circle.shape.start_azimuth = Angle::degrees(azimuth);
-    trajectory = circle;
-}
-
-void read_file(TableReader& table, const std::filesystem::path& folder, TrajectorySettings& trajectory) {
-    static constexpr std::array<std::string_view, 2> clocks{"run", "recorded"};
-    FileSettings file;
-    file.heading = read_heading(table);
-    std::string path;
-    table.text("path", path);
-    table.needs_one_of({"path"}, "kind \"file\" has no path; expected path = \"track.csv\"");
-    if (table.has("path") && !table.recording() && std::filesystem::path(path).extension() != ".csv")
-        table.mistake("path", fmt::format("is '{}'; expected a file that ends in .csv (skyloop scenario-from makes one "
-                                          "of a receiver's log)",
-                                          path));
-    file.path = folder / path;
-    file.keeps_time = table.choice("time", clocks, clocks[0]).value_or(0) == 1;
-    table.quantity("gap_s", file.gap, {1e-3, 1e7});
-    trajectory = file;
-}
-
-void read_kind(TableReader& table, PlaceReader& places, const std::filesystem::path& folder,
-               TrajectorySettings& trajectory) {
-    static constexpr std::array<std::string_view, 5> kinds{"fixed", "waypoints", "circle", "file", "live"};
-    const auto kind = table.choice("kind", kinds);
-    table.needs_one_of({"kind"}, "has no kind; expected kind = \"fixed\", \"waypoints\", \"circle\" or \"file\"");
-    switch (kind.value_or(kinds.size())) {
-        case 0:
-            return read_fixed(table, places, trajectory);
-        case 1:
-            return read_waypoints(table, places, trajectory);
-        case 2:
-            return read_circle(table, places, trajectory);
-        case 3:
-            return read_file(table, folder, trajectory);
-        case 4:
-            table.refuse("source", "live trajectories are not in this version");
-            break;
-        default:
-            return;
-    }
-    table.mistake("kind", "live trajectories are not in this version; expected fixed, waypoints, circle or file");
+void read_kind(const KindReading& reading) {
+    std::vector<std::string_view> names;
+    for (const TrajectoryKind& kind : kinds)
+        names.push_back(kind.name);
+    const auto kind = reading.table.choice("kind", names);
+    reading.table.needs_one_of({"kind"},
+                               fmt::format("has no kind; expected kind = \"{}\"", fmt::join(names, "\", \"")));
+    if (kind) kinds[*kind].read(reading);
 }
 
 }  // namespace
@@ -169,7 +65,7 @@ std::optional<TrajectorySettings> read_trajectory_keys(TableReader& parent, cons
     PlaceReader places(context.level, warnings);
     parent.table("trajectory", [&](TableReader& table) {
         trajectory.emplace();
-        read_kind(table, places, context.folder, *trajectory);
+        read_kind({table, places, context.folder, *trajectory});
     });
     return trajectory;
 }

@@ -267,7 +267,8 @@ Result<void> TrackTable::add_attitude(TrackRow& point) {
     const auto r = number(roll), p = number(pitch), w = number(yaw);
     for (const auto* value : {&r, &p, &w})
         if (!*value) return fail(value->error());
-    if (*r && *p && *w) point.attitude = TrackAttitude{Angle::degrees(**r), Angle::degrees(**p), Angle::degrees(**w)};
+    if (*r && *p && *w)
+        point.attitude = Attitude::roll_pitch_yaw(Angle::degrees(**r), Angle::degrees(**p), Angle::degrees(**w));
     return {};
 }
 

@@ -1,11 +1,21 @@
 /// Where the antenna really is.
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
+
+#include "skyloop/geo/attitude.hpp"
 #include "skyloop/geo/frames.hpp"
 #include "skyloop/geo/geodetic.hpp"
 #include "skyloop/time/gps_time.hpp"
 
 namespace skyloop {
+
+/// How the vehicle stands and turns.
+struct Orientation {
+    Attitude attitude{};
+    Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();  ///< against the Earth, in the body's axes, rad/s
+};
 
 /// The true state of the antenna at one instant. `geodetic` is `position` in other words, computed once.
 struct TruthState {
@@ -13,6 +23,7 @@ struct TruthState {
     Position<Ecef> position;
     Velocity<Ecef> velocity;
     Geodetic geodetic;
+    std::optional<Orientation> orientation{};  ///< of its vehicle; nothing: the path does not tell
 };
 
 }  // namespace skyloop

@@ -8,28 +8,26 @@
 
 #include "skyloop/base/result.hpp"
 #include "skyloop/base/units.hpp"
+#include "skyloop/geo/attitude.hpp"
 #include "skyloop/geo/frames.hpp"
 #include "skyloop/time/gps_time.hpp"
 
 namespace skyloop {
-
-/// How a body stands: roll, pitch and yaw turn north-east-down into forward-right-down (z, then y, then x).
-struct TrackAttitude {
-    Angle roll, pitch, yaw;
-};
 
 /// One row of a recorded path. Every reader of a format gives these and nothing else.
 struct TrackRow {
     Nanoseconds time{0};  ///< since Track::origin
     Position<Ecef> position;
     std::optional<Velocity<Ecef>> velocity;
-    std::optional<TrackAttitude> attitude;
+    std::optional<Attitude> attitude;
     std::size_t line = 0;  ///< of the file, where it has lines
+    bool jump = false;     ///< the source says that it begins anew here: no way leads from the row before to this one
 };
 
 /// A recorded path as it was read.
 struct Track {
     std::string name;               ///< of the file, for messages
+    std::string format;             ///< "CSV", "GPX 1.1", "ULog, vehicle_local_position"
     std::optional<GpsTime> origin;  ///< GPS time of TrackRow::time 0; nothing: the file counts from its own start
     std::vector<TrackRow> points;
     std::vector<std::string> notes;  ///< what its user should be told, a sentence each, without the name of the file

@@ -1,0 +1,62 @@
+/// How live sources of truth speak.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skyloop/base/bytes.hpp"
+#include "skyloop/base/result.hpp"
+#include "skyloop/fault/command.hpp"
+#include "skyloop/geo/geoid.hpp"
+#include "skyloop/trajectory/truth_sample.hpp"
+
+namespace skyloop {
+
+/// What came of the bytes that a dialect heard.
+struct FeedNews {
+    std::vector<TruthSample> samples{};       ///< in the order in which they came
+    std::vector<Bytes> answers{};             ///< for the sender
+    std::vector<Command> commands{};          ///< that the source asks of the run, after the samples
+    std::optional<Nanoseconds> step_until{};  ///< lock-step: the run may go on to this time of the source's clock
+    std::optional<bool> paused{};             ///< the source's clock stands still, or goes on
+    bool ended = false;                       ///< the source says goodbye
+    std::size_t refused = 0;                  ///< statements that were whole and could not be used
+    std::string refusal{};                    ///< why, of the first of them, a sentence
+};
+
+/// How a source's "height above the sea" is meant, which knows no geoid (FEEDS.md 1.15).
+enum class SeaLevel { geoid, ellipsoid };
+
+/// What a dialect is told of its surroundings.
+struct FeedContext {
+    const Geoid* geoid = nullptr;  ///< outlives the dialect; null: heights above the sea are taken as ellipsoidal
+    SeaLevel sea_level = SeaLevel::geoid;
+    std::optional<Geodetic> origin{};  ///< of sources that count in local metres
+    std::string vehicle{};             ///< that is wanted, of sources that must be asked for one; empty: any
+    double rate_hz = 50;               ///< asked of sources that can be asked
+};
+
+/// One kind of source, without a socket and without a clock: bytes in, samples and answers out.
+///
+/// State: what is left of a message that came in pieces, and what earlier messages said.
+class FeedDialect {
+public:
+    virtual ~FeedDialect() = default;
+    /// Takes a datagram, or the next piece of a stream. Any bytes may come; nothing is thrown.
+    /// @param received_ns when, on our steady clock
+    virtual FeedNews hear(ByteSpan bytes, std::int64_t received_ns) = 0;
+    /// What is to be said unasked: at first when the connection stands, then every second (subscriptions, heartbeats).
+    virtual std::vector<Bytes> say() { return {}; }
+    /// The connection was lost: what was left of a message is forgotten.
+    virtual void reconnected() {}
+};
+
+/// The dialects by name: "json", "flightgear", … Null for an unknown one.
+std::unique_ptr<FeedDialect> make_dialect(std::string_view name, const FeedContext& context);
+
+}  // namespace skyloop
