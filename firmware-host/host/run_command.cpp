@@ -69,6 +69,7 @@ int run_live(const RunOptions& options) {
                        station.wires()[i].link.transport().description());
     if (!(*watch)->url().empty()) fmt::print(stderr, "control: {}\n", (*watch)->url());
     if (!(*watch)->mavlink().empty()) fmt::print(stderr, "mavlink: {}\n", (*watch)->mavlink());
+    session.await_feeds();
     if (options.wait_for_client) session.await_clients();
     return session.run(*scenario, **watch);
 }

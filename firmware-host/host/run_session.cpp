@@ -45,6 +45,16 @@ RunSession::RunSession(const Messages& messages, Assembly& assembly) : messages_
         messages.warning(warning);
 }
 
+void RunSession::await_feeds() const {
+    LiveFeeds* feeds = assembly_.emulator->feeds();
+    if (feeds == nullptr) return;
+    for (const std::string& source : feeds->descriptions())
+        fmt::print(stderr, "truth: {}\n", source);
+    if (feeds->all_heard()) return;
+    messages_.info(feeds->waits_for());
+    assembly_.emulator->await_feeds(stop_asked);
+}
+
 void RunSession::await_clients() const {
     messages_.info("waiting for a client on each port");
     assembly_.emulator->await_clients(stop_asked);
@@ -59,6 +69,7 @@ int RunSession::run(const Scenario& scenario, RunWatch& watch) {
     for (std::size_t i = 0; i < emulator.stations().size(); ++i)
         for (const std::string& news : wire_news(i))
             messages_.warning(news);
+    tell_feeds();
     for (const Station& station : emulator.stations()) {
         tell_counts(station);
         tell_power(station);
@@ -89,6 +100,9 @@ void RunSession::go(Emulator& emulator) {
         if (auto notice = new_notice(status.station)) tell(std::move(*notice));
         for (std::string& news : wire_news(status.station))
             tell(std::move(news));
+        if (LiveFeeds* feeds = emulator.feeds())
+            for (std::string& news : feeds->take_news())
+                tell(std::move(news));
         progress.show(status, emulator);
     });
     emulator.run_until(assembly_.end.value_or(GpsTime::max()), stop_asked);
@@ -123,6 +137,26 @@ void RunSession::tell_power(const Station& station) const {
     messages_.info(fmt::format("{}power {}: {} times cut, {} times restored, {} failures, {:.1f} ms at worst",
                                prefix(station), station.power()->name(), counts.cuts, counts.restores, counts.failures,
                                counts.slowest_ms));
+}
+
+void RunSession::tell_feeds() const {
+    LiveFeeds* feeds = assembly_.emulator->feeds();
+    if (feeds == nullptr) return;
+    for (const std::string& news : feeds->take_news())
+        messages_.warning(news);
+    for (const FeedReport& report : feeds->reports()) {
+        const auto& [description, clock, counts, paths, rate, age] = report;
+        const double mean_ms = age.epochs > 0 ? age.sum_ms / static_cast<double>(age.epochs) : 0;
+        messages_.info(fmt::format(
+            "{}: {} samples in {} messages, {} refused, {} late, {} jumps, {} silences{}; at epochs "
+            "the newest was {:.1f} ms old on average, {:.1f} ms at worst",
+            description, counts.samples, counts.messages, counts.refused + paths.refused, paths.late, paths.jumps,
+            paths.holds, rate ? fmt::format(", {:.3f} of its seconds in one of ours", *rate) : "", mean_ms,
+            age.largest_ms));
+        if (const std::uint64_t lost = counts.overflowed + counts.dropped_by_kernel; lost > 0)
+            messages_.warning(
+                fmt::format("{}: {} messages were lost: they came faster than they were read", description, lost));
+    }
 }
 
 std::string RunSession::prefix(const Station& station) const {

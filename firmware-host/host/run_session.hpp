@@ -19,6 +19,9 @@ class RunSession {
 public:
     /// @param assembly outlives the session
     RunSession(const Messages& messages, Assembly& assembly);
+    /// Says which sources fly the vehicles, and lets time stand still until each has spoken where nothing else says
+    /// where its vehicle is.
+    void await_feeds() const;
     /// Time stands still until each port has a client, or the run is to end.
     void await_clients() const;
     /// Exit code: 0, 3 when an expectation was not met, or 1 when a recording or a wire could not be written.
@@ -37,6 +40,7 @@ private:
     // What has happened to its wires and its power since the last call.
     std::vector<std::string> wire_news(std::size_t station);
     void tell_power(const Station& station) const;
+    void tell_feeds() const;
     // "rover: " when there are several receivers.
     [[nodiscard]] std::string prefix(const Station& station) const;
     const Messages& messages_;

@@ -70,6 +70,22 @@ Result<void> add_scene(const Scenario& scenario, const DataFolders& data, Assemb
     return {};
 }
 
+Result<std::unique_ptr<LiveFeeds>> open_feeds(Scenario& scenario, const RunMode& mode, Assembly& assembly) {
+    auto feeds = LiveFeeds::open(scenario, assembly.geoid.get());
+    if (!feeds || !*feeds) return feeds;
+    if (mode.virtual_time)
+        return fail(ErrorCode::usage,
+                    "a live trajectory needs time that passes; expected skyloop run, without --speed max");
+    if ((*feeds)->leads() && scenario.run.speed != 1)
+        return fail(ErrorCode::usage,
+                    fmt::format("the source leads the run's time, and speed = {:g} would, too; expected "
+                                "one of them",
+                                scenario.run.speed));
+    for (const std::string& source : (*feeds)->descriptions())
+        assembly.details.push_back("live trajectory: " + source);
+    return feeds;
+}
+
 std::vector<std::string> world_details(const NavigationSource& navigation, const Assembly& assembly) {
     std::vector<std::string> details{
         fmt::format("navigation: {}, {} satellites, {}", navigation.description(), navigation.satellites().size(),
@@ -87,7 +103,8 @@ std::string receiver_detail(const Station::Parts& parts) {
     return fmt::format("receiver: {}, {} baud, {} sentences", board.name, board.baud, board.sentences.size());
 }
 
-std::unique_ptr<Pacer> make_pacer(const RunMode& mode, GpsTime start, double speed) {
+std::unique_ptr<Pacer> make_pacer(const RunMode& mode, GpsTime start, double speed, const LiveFeeds* feeds) {
+    if (feeds != nullptr && feeds->leads()) return std::make_unique<LedPacer>(start);
     if (mode.virtual_time) return std::make_unique<VirtualPacer>(start);
     // A run that begins now keeps the wall clock's time; what loading took is not to shift it.
     return std::make_unique<RealtimePacer>(start, start == mode.now ? mode.now_steady_ns : steady_clock_ns(), speed);
@@ -148,6 +165,9 @@ std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, 
                           },
                           [&](const FileSettings& file) -> std::unique_ptr<Trajectory> {
                               return std::make_unique<RecordedPath>(*file.track, file.gaps, first_row_at(file, start));
+                          },
+                          [](const LiveSettings& live) -> std::unique_ptr<Trajectory> {
+                              return std::make_unique<SharedPath>(live.path);
                           },
                       },
                       settings);
@@ -242,9 +262,12 @@ Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const 
     if (!track) return fail(track.error());
     assembly.warnings.insert(assembly.warnings.end(), track->warnings.begin(), track->warnings.end());
     assembly.trajectory = track->description;
+    auto feeds = open_feeds(scenario, mode, assembly);
+    if (!feeds) return fail(feeds.error());
     if (const auto added = add_scene(scenario, data, assembly); !added) return fail(added.error());
     assembly.digest = scenario_digest(scenario, assembly.start, assembly.scene.digest);
-    assembly.details = world_details(*navigation->source, assembly);
+    for (std::string& detail : world_details(*navigation->source, assembly))
+        assembly.details.push_back(std::move(detail));
 
     auto stations = make_stations({scenario, data, mode, std::move(navigation->source), assembly.geoid.get(),
                                    assembly.start, assembly.scene.scene},
@@ -253,9 +276,10 @@ Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const 
     assembly.details.push_back(fmt::format("digest: {}", assembly.digest));
     // The pacer comes last, so that the clock starts when everything else is ready.
     assembly.emulator = std::make_unique<Emulator>(
-        Emulator::Parts{std::move(*stations), make_pacer(mode, assembly.start, scenario.run.speed),
+        Emulator::Parts{std::move(*stations), make_pacer(mode, assembly.start, scenario.run.speed, feeds->get()),
                         Director(Director::Parts{scenario.faults, scenario.commands, assembly.start, scenario.run.seed,
-                                                 scenario.run.speed, mode.live_commands})},
+                                                 scenario.run.speed, mode.live_commands}),
+                        std::move(*feeds)},
         assembly.start);
     return assembly;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "firmware/start_kind.hpp"
 #include "skyloop/emulator/pacer.hpp"
@@ -70,6 +71,8 @@ void Director::advance(GpsTime now, std::vector<Station>& stations, Pacer& pacer
     if (parts_.live != nullptr)
         for (const Command& command : parts_.live->take())
             carry_out(command, command_name(command.verb), {now, stations, pacer});
+    for (const Command& command : std::exchange(asked_, {}))
+        carry_out(command, command_name(command.verb), {now, stations, pacer});
     // What a command begins is due at once, whether the command comes from outside or from the timeline: a repeated run
     // must not be an epoch behind.
     for (int round = 0; round < most_rounds; ++round) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "skyloop/base/steady_clock.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -16,6 +18,7 @@ Emulator::Emulator(Parts parts, GpsTime start)
                                                       [this](const BeliefSeen& seen) { parts_.director.show(seen); }});
     for (Station& station : parts_.stations)
         station.start(start);
+    if (parts_.feeds) parts_.feeds->begin(start, parts_.pacer->due_at(start));
 }
 
 GpsTime Emulator::next_instant(GpsTime end) const {
@@ -31,6 +34,9 @@ GpsTime Emulator::next_instant(GpsTime end) const {
     if (const Nanoseconds often = look_every(); often > no_time) next = std::min(next, now_ + often);
     const Nanoseconds tick = parts_.pacer->tick(busy);
     if (tick > no_time && wired) next = std::min(next, now_ + tick);
+    // What the leader has let the run do is done to the end before he is told so.
+    if (parts_.feeds && parts_.feeds->leads())
+        if (const auto horizon = parts_.feeds->horizon(); horizon && *horizon > now_) next = std::min(next, *horizon);
     return next;
 }
 
@@ -52,12 +58,25 @@ void Emulator::await_clients(const std::atomic<bool>& stop) {
     parts_.pacer->resume(now_);
 }
 
+void Emulator::await_feeds(const std::atomic<bool>& stop) {
+    if (!parts_.feeds || parts_.feeds->all_heard()) return;
+    parts_.pacer->pause(now_);
+    while (!stop && !parts_.feeds->all_heard()) {
+        Pacer::rest();
+        (void)all_connected();  // a host on the wire must be answered while time rests
+        hear_feeds();
+        if (rest_) rest_(now_);
+    }
+    parts_.pacer->resume(now_);
+}
+
 void Emulator::run_until(GpsTime end, const std::atomic<bool>& stop) {
     // What is wrong from the first instant on is so before the first byte.
     direct();
     for (Station& station : parts_.stations)
         station.follow_faults(now_);
     while (now_ < end && !stop && !stopped()) {
+        hear_feeds();
         if (parts_.pacer->paused()) {
             Pacer::rest();
             (void)all_connected();  // a host on the wire must be answered while time rests
@@ -66,6 +85,12 @@ void Emulator::run_until(GpsTime end, const std::atomic<bool>& stop) {
             continue;
         }
         const GpsTime next = next_instant(end);
+        if (!may_go_to(next)) {
+            (void)all_connected();
+            direct();
+            if (rest_) rest_(now_);
+            continue;
+        }
         const auto lateness = parts_.pacer->wait_until(next);
         if (stop) break;
         if (!lateness) continue;
@@ -77,6 +102,31 @@ void Emulator::run_until(GpsTime end, const std::atomic<bool>& stop) {
     }
     for (Station& station : parts_.stations)
         station.finish(now_);
+}
+
+void Emulator::hear_feeds() {
+    if (!parts_.feeds) return;
+    auto due_ns = parts_.pacer->due_at(now_);
+    if (due_ns && parts_.pacer->paused()) due_ns = steady_clock_ns();  // time stands still: this is when it goes on
+    for (Command& command : parts_.feeds->pump(now_, due_ns))
+        parts_.director.ask(std::move(command));
+}
+
+// Waits a little where a source leads the run's time and has not come so far.
+bool Emulator::may_go_to(GpsTime next) {
+    if (!parts_.feeds || !parts_.feeds->leads()) return true;
+    const auto horizon = parts_.feeds->horizon();
+    if (horizon && next <= *horizon) return true;
+    parts_.feeds->rest(bytes_out());
+    return false;
+}
+
+std::uint64_t Emulator::bytes_out() const {
+    std::uint64_t bytes = 0;
+    for (const Station& station : parts_.stations)
+        for (const Wire& wire : station.wires())
+            bytes += wire.link.counters().bytes_out;
+    return bytes;
 }
 
 void Emulator::direct() { parts_.director.advance(now_, parts_.stations, *parts_.pacer); }
@@ -116,6 +166,7 @@ void Emulator::run_epochs(Nanoseconds lateness) {
         traces_[i].reset();
         if (stations[i].next_epoch() == now_) traces_[i] = stations[i].observe();
     }
+    if (parts_.feeds) parts_.feeds->note_epoch(now_);
     for (std::size_t i = 0; i < stations.size(); ++i) {
         const auto base = stations[i].base();
         if (traces_[i] && base) stations[i].relate(*traces_[i], traces_[*base] ? &*traces_[*base] : nullptr);

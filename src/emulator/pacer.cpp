@@ -11,11 +11,18 @@ namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
 
+// 1 ms keeps the byte rate smooth from 9600 to 921600 bit/s; without bytes only the client's opening is to be seen.
+constexpr double busy_tick_ns = 1e6, idle_tick_ns = 5e6;
+
 }  // namespace
 
 void Pacer::rest() {
     constexpr timespec twenty_ms{0, 20'000'000};
     nanosleep(&twenty_ms, nullptr);
+}
+
+Nanoseconds LedPacer::tick(bool bytes_pending) const {
+    return Nanoseconds(std::llround(bytes_pending ? busy_tick_ns : idle_tick_ns));
 }
 
 RealtimePacer::RealtimePacer(GpsTime start, std::int64_t start_steady_ns, double speed)
@@ -50,10 +57,7 @@ std::optional<Nanoseconds> RealtimePacer::wait_until(GpsTime time) {
 }
 
 Nanoseconds RealtimePacer::tick(bool bytes_pending) const {
-    // 1 ms keeps the byte rate smooth from 9600 to 921600 bit/s; without bytes only the client's opening is to be seen.
-    constexpr double busy_ns = 1e6;
-    constexpr double idle_ns = 5e6;
-    return Nanoseconds(std::llround((bytes_pending ? busy_ns : idle_ns) * speed_));
+    return Nanoseconds(std::llround((bytes_pending ? busy_tick_ns : idle_tick_ns) * speed_));
 }
 
 std::int64_t RealtimePacer::monotonic_ns(GpsTime) const { return steady_clock_ns(); }

@@ -74,6 +74,30 @@ Json power_json(const PowerSwitch& power) {
             {"restores", counts.restores}, {"failures", counts.failures},        {"slowest_ms", counts.slowest_ms}};
 }
 
+// What flew the vehicles.
+Json feeds_json(const LiveFeeds& feeds) {
+    Json all = Json::array();
+    for (const FeedReport& r : feeds.reports())
+        all.push_back({{"source", r.description},
+                       {"clock", r.clock},
+                       {"messages", r.counts.messages},
+                       {"bytes", r.counts.bytes},
+                       {"samples", r.counts.samples},
+                       {"refused", r.counts.refused + r.paths.refused},
+                       {"strangers", r.counts.strangers},
+                       {"overflowed", r.counts.overflowed},
+                       {"dropped_by_kernel", r.counts.dropped_by_kernel},
+                       {"restarts", r.counts.restarts},
+                       {"late", r.paths.late},
+                       {"jumps", r.paths.jumps},
+                       {"coasts", r.paths.coasts},
+                       {"holds", r.paths.holds},
+                       {"rate", r.rate ? Json(*r.rate) : Json(nullptr)},
+                       {"age_mean_ms", r.age.epochs > 0 ? r.age.sum_ms / static_cast<double>(r.age.epochs) : 0},
+                       {"age_largest_ms", r.age.largest_ms}});
+    return all;
+}
+
 // What one receiver counted; the first one's stands at the top of the file.
 void add_counts(Json& summary, const Station& station) {
     summary["epochs"] = station.counts().epochs;
@@ -116,6 +140,7 @@ std::string run_summary(const Scenario& scenario, const Assembly& assembly, std:
     };
     if (assembly.scene.scene) summary["scene"] = scene_json(assembly.scene);
     add_counts(summary, emulator.first());
+    if (emulator.feeds() != nullptr) summary["feeds"] = feeds_json(*emulator.feeds());
     if (assembly.deadlines) summary["real_time"] = grants_json(*assembly.deadlines);
     summary["warnings"] = assembly.warnings;
     if (emulator.stations().size() > 1) summary["receivers"] = receivers_json(emulator);

@@ -32,6 +32,7 @@ Angle read_heading(TableReader& table);
 void read_fixed(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory);
 void read_waypoints(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory);
 void read_circle(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory);
+void read_live(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory);
 void read_file_track(TableReader& table, const std::filesystem::path& folder, TrajectorySettings& trajectory);
 
 }  // namespace skyloop

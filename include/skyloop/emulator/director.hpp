@@ -36,6 +36,8 @@ public:
 
     /// Told what happens; outlives the director.
     void add_observer(RunObserver* observer) { observers_.push_back(observer); }
+    /// Asks for something at the next advance(); by the loop's thread.
+    void ask(Command command) { asked_.push_back(std::move(command)); }
     /// Does what is due by `now`. @param pacer is told of pauses and speeds
     void advance(GpsTime now, std::vector<Station>& stations, Pacer& pacer);
     /// When something is known to happen next.
@@ -79,6 +81,7 @@ private:
     Timeline timeline_;
     std::vector<Act> acts_;  // of each entry
     std::vector<RunObserver*> observers_;
+    std::vector<Command> asked_;
     bool hears_ = false;  // a trigger waits for a client's message
     bool stopped_ = false;
     double speed_ = 1, pace_ = 1;      // the run's own, and what faults make of it

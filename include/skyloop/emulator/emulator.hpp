@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "skyloop/emulator/director.hpp"
+#include "skyloop/emulator/live_feeds.hpp"
 #include "skyloop/emulator/pacer.hpp"
 #include "skyloop/emulator/station.hpp"
 
@@ -28,6 +29,7 @@ public:
         std::vector<Station> stations;  ///< at least one
         std::unique_ptr<Pacer> pacer;
         Director director{Director::Parts{}};  ///< without anything: what the vehicle does is all that happens
+        std::unique_ptr<LiveFeeds> feeds{};    ///< who flies the vehicles; null: nobody from outside
     };
     Emulator(Parts parts, GpsTime start);
 
@@ -41,6 +43,8 @@ public:
     void on_rest(std::function<void(GpsTime)> callback) { rest_ = std::move(callback); }
     /// Waits until each wire has a client, or until `stop` is true; real time begins then, and no byte is lost before.
     void await_clients(const std::atomic<bool>& stop);
+    /// Waits until each vehicle that has no place yet is told one, or until `stop` is true; time begins then.
+    void await_feeds(const std::atomic<bool>& stop);
     /// Runs to `end`, or until `stop` is true, or until a recording fails.
     void run_until(GpsTime end, const std::atomic<bool>& stop);
 
@@ -56,6 +60,9 @@ public:
     [[nodiscard]] GpsTime now() const { return now_; }
     [[nodiscard]] bool paused() const { return parts_.pacer->paused(); }
     [[nodiscard]] const Director& director() const { return parts_.director; }
+    /// Null: nobody flies the vehicles from outside.
+    [[nodiscard]] LiveFeeds* feeds() { return parts_.feeds.get(); }
+    [[nodiscard]] const LiveFeeds* feeds() const { return parts_.feeds.get(); }
 
 private:
     [[nodiscard]] GpsTime next_instant(GpsTime end) const;
@@ -63,6 +70,9 @@ private:
     [[nodiscard]] bool all_connected();
     void exchange_bytes();
     void direct();
+    void hear_feeds();
+    [[nodiscard]] bool may_go_to(GpsTime next);
+    [[nodiscard]] std::uint64_t bytes_out() const;
     [[nodiscard]] bool stopped() const { return parts_.director.stopped(); }
     void run_epochs(Nanoseconds lateness);
     [[nodiscard]] bool recording_failed() const;

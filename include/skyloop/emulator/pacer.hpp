@@ -26,6 +26,8 @@ public:
     [[nodiscard]] virtual Nanoseconds tick(bool bytes_pending) const = 0;
     /// True when instants pass as fast as they can be computed.
     [[nodiscard]] bool is_virtual() const { return tick(true) == Nanoseconds(0); }
+    /// The steady clock's reading at which `time` is due; nothing where time does not follow that clock.
+    [[nodiscard]] virtual std::optional<std::int64_t> due_at(GpsTime) const { return std::nullopt; }
     /// Nanoseconds of a clock that never goes back, for the times of recorded bytes.
     [[nodiscard]] virtual std::int64_t monotonic_ns(GpsTime now) const = 0;
 
@@ -54,6 +56,19 @@ private:
     GpsTime start_;
 };
 
+/// Time that somebody else leads: the loop asks him before each instant, and instants pass as soon as they may. The
+/// wires are looked at as often as in real time, in simulated time.
+class LedPacer : public Pacer {
+public:
+    explicit LedPacer(GpsTime start) : start_(start) {}
+    std::optional<Nanoseconds> wait_until(GpsTime) override { return Nanoseconds(0); }
+    [[nodiscard]] Nanoseconds tick(bool bytes_pending) const override;
+    [[nodiscard]] std::int64_t monotonic_ns(GpsTime now) const override { return (now - start_).count(); }
+
+private:
+    GpsTime start_;
+};
+
 /// Maps simulated time to the steady clock, at a chosen rate.
 class RealtimePacer : public Pacer {
 public:
@@ -62,6 +77,7 @@ public:
     RealtimePacer(GpsTime start, std::int64_t start_steady_ns, double speed);
     std::optional<Nanoseconds> wait_until(GpsTime time) override;
     [[nodiscard]] Nanoseconds tick(bool bytes_pending) const override;
+    [[nodiscard]] std::optional<std::int64_t> due_at(GpsTime time) const override { return due_ns(time); }
     [[nodiscard]] std::int64_t monotonic_ns(GpsTime now) const override;
     void set_speed(double speed, GpsTime now) override;
     void resume(GpsTime now) override;

@@ -26,6 +26,8 @@
 #include "skyloop/scenario/modern_settings.hpp"
 #include "skyloop/scenario/scene_settings.hpp"
 #include "skyloop/trajectory/geometric_paths.hpp"
+#include "skyloop/trajectory/live_path.hpp"
+#include "skyloop/trajectory/source_clock.hpp"
 #include "skyloop/trajectory/track.hpp"
 #include "skyloop/verdict/expectation.hpp"
 
@@ -71,7 +73,25 @@ struct FileSettings {
     std::shared_ptr<const Track> track{};  ///< clean; null until it has been loaded
     std::vector<TrackGap> gaps{};
 };
-using TrajectorySettings = std::variant<FixedSettings, WaypointSettings, CircleSettings, FileSettings>;
+/// What becomes of a run whose source of truth is silent for long.
+enum class LostSource { hold, outage, pause, stop };
+/// A path that another program flies at this moment. It becomes a LivePath when the source is opened, by open_feeds()
+/// (emulator/live_feeds.hpp).
+struct LiveSettings {
+    std::string source{};   ///< "udp-json:5000": parse_feed_address()
+    std::string vehicle{};  ///< which one of the source's; empty: the first that it speaks of
+    Angle heading{};
+    std::optional<Geodetic> at{};  ///< where the vehicle stands until the source speaks; nothing: the run waits for it
+    ClockMode clock = ClockMode::realtime;
+    bool sea_is_ellipsoid = false;     ///< what the source calls height above the sea is height above the ellipsoid
+    std::optional<Geodetic> origin{};  ///< of sources that count in local metres
+    std::optional<double> rate_hz{};   ///< asked of sources that can be asked
+    Seconds delay{0};                  ///< LivePathSettings::delay
+    Seconds lost_after{5};             ///< of silence
+    LostSource when_lost = LostSource::hold;
+    std::shared_ptr<LivePath> path{};  ///< null until it has been opened
+};
+using TrajectorySettings = std::variant<FixedSettings, WaypointSettings, CircleSettings, FileSettings, LiveSettings>;
 
 /// How the fix is made, and the numbers of all ways.
 struct ModelSettings {

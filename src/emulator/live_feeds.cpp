@@ -1,0 +1,254 @@
+#include "skyloop/emulator/live_feeds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+#include "skyloop/base/steady_clock.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::array<std::string_view, 3> clock_names{"realtime", "follow", "lock_step"};
+
+Command plain_command(CommandVerb verb) {
+    Command command;
+    command.verb = verb;
+    command.source = "feed";
+    return command;
+}
+
+Command lost_signals(const std::string& name) {
+    auto values = check_parameters(find_fault_kind("outage")->parameters, {}).parameters.values();
+    values["kind"] = std::string("outage");
+    values["name"] = name;
+    values["ramp_in_s"] = 0.0;
+    values["ramp_out_s"] = 0.0;
+    Command command = plain_command(CommandVerb::start_fault);
+    command.parameters = Parameters(std::move(values));
+    return command;
+}
+
+FeedSettings feed_settings(const LiveSettings& live, const Geoid* geoid) {
+    FeedSettings settings;
+    settings.context.geoid = geoid;
+    settings.context.sea_level = live.sea_is_ellipsoid ? SeaLevel::ellipsoid : SeaLevel::geoid;
+    settings.context.origin = live.origin;
+    settings.context.vehicle = live.vehicle;
+    settings.context.rate_hz = live.rate_hz.value_or(settings.context.rate_hz);
+    settings.clock = live.clock;
+    settings.path.before = live.at.value_or(FixedSettings().at);
+    settings.path.delay = live.delay;
+    return settings;
+}
+
+}  // namespace
+
+struct LiveFeeds::Source {
+    LiveSettings settings;  // of the first that named it
+    std::unique_ptr<TruthFeed> feed;
+    std::vector<std::shared_ptr<LivePath>> paths;
+    bool waited_for = false;     // somebody has no place without it
+    std::uint64_t messages = 0;  // at the last look
+    std::int64_t heard_ns = 0;   // when they had become more
+    bool lost = false;
+    int times_lost = 0;
+    SampleAge age;
+};
+
+void SampleAge::add(Nanoseconds age) {
+    const double ms = std::max(0.0, static_cast<double>(age.count()) * 1e-6);
+    ++epochs;
+    sum_ms += ms;
+    largest_ms = std::max(largest_ms, ms);
+}
+
+LiveFeeds::LiveFeeds() = default;
+LiveFeeds::~LiveFeeds() = default;
+
+Result<LiveFeeds::Source*> LiveFeeds::source_of(const LiveSettings& settings, const Geoid* geoid) {
+    for (const auto& source : sources_) {
+        if (source->settings.source != settings.source) continue;
+        if (source->settings.clock != settings.clock)
+            return fail(ErrorCode::usage,
+                        fmt::format("trajectory.source \"{}\" is asked for with clock = \"{}\" and with "
+                                    "clock = \"{}\"; expected one of them",
+                                    settings.source, clock_names[static_cast<std::size_t>(source->settings.clock)],
+                                    clock_names[static_cast<std::size_t>(settings.clock)]));
+        return source.get();
+    }
+    const auto address = parse_feed_address(settings.source);
+    if (!address) return fail(address.error().code, "trajectory.source: " + address.error().message);
+    const bool leads = settings.clock != ClockMode::realtime;
+    if (leads && leader_ != nullptr)
+        return fail(ErrorCode::usage,
+                    fmt::format("two sources would lead the run's time, {} and {}; expected clock = \"realtime\" for "
+                                "all but one",
+                                leader_->description(), settings.source));
+    auto feed = TruthFeed::open(*address, feed_settings(settings, geoid));
+    if (!feed) return fail(feed.error());
+    auto source = std::make_unique<Source>();
+    source->settings = settings;
+    source->feed = std::move(*feed);
+    if (leads) leader_ = source->feed.get();
+    sources_.push_back(std::move(source));
+    return sources_.back().get();
+}
+
+Result<std::unique_ptr<LiveFeeds>> LiveFeeds::open(Scenario& scenario, const Geoid* geoid) {
+    std::vector<LiveSettings*> wanted;
+    // The vehicle that every receiver has left is nobody's.
+    const bool all_own = std::all_of(scenario.receivers.begin(), scenario.receivers.end(),
+                                     [](const ReceiverEntry& r) { return r.trajectory.has_value(); });
+    if (auto* live = std::get_if<LiveSettings>(&scenario.trajectory); live && !all_own) wanted.push_back(live);
+    for (ReceiverEntry& receiver : scenario.receivers)
+        if (receiver.trajectory)
+            if (auto* live = std::get_if<LiveSettings>(&*receiver.trajectory)) wanted.push_back(live);
+    if (wanted.empty()) return nullptr;
+    std::unique_ptr<LiveFeeds> feeds(new LiveFeeds);
+    for (LiveSettings* live : wanted) {
+        const auto source = feeds->source_of(*live, geoid);
+        if (!source) return fail(source.error());
+        live->path = (*source)->feed->path(live->vehicle);
+        (*source)->paths.push_back(live->path);
+        (*source)->waited_for = (*source)->waited_for || !live->at;
+    }
+    if (feeds->leader_ == nullptr && scenario.run.speed != 1)
+        return fail(ErrorCode::usage,
+                    fmt::format("a live trajectory with clock = \"realtime\" runs at speed 1, not at {:g}; expected "
+                                "clock = \"follow\" where the source runs at another",
+                                scenario.run.speed));
+    return feeds;
+}
+
+void LiveFeeds::begin(GpsTime start, std::optional<std::int64_t> due_ns) {
+    const std::int64_t now_ns = steady_clock_ns();
+    for (const auto& source : sources_) {
+        source->heard_ns = now_ns;
+        source->feed->begin(start, due_ns.value_or(now_ns));
+    }
+}
+
+std::vector<Command> LiveFeeds::pump(GpsTime now, std::optional<std::int64_t> due_ns) {
+    std::vector<Command> commands;
+    for (const auto& source : sources_) {
+        if (due_ns) source->feed->set_run(now, *due_ns);
+        for (Command& command : source->feed->pump())
+            commands.push_back(std::move(command));
+        look_for_silence(*source, commands);
+        for (std::string& news : source->feed->take_news())
+            news_.push_back(std::move(news));
+    }
+    return commands;
+}
+
+// By the wall clock: a source that leads stops the run's own.
+void LiveFeeds::look_for_silence(Source& source, std::vector<Command>& commands) {
+    const std::int64_t now_ns = steady_clock_ns();
+    const std::uint64_t messages = source.feed->counts().samples;
+    const std::string fault = fmt::format("{} lost {}", source.settings.source, source.times_lost);
+    if (messages != source.messages) {
+        source.messages = messages;
+        source.heard_ns = now_ns;
+        if (!source.lost) return;
+        source.lost = false;
+        news_.push_back(fmt::format("{}: heard again", source.feed->description()));
+        if (source.settings.when_lost == LostSource::pause) commands.push_back(plain_command(CommandVerb::resume));
+        if (source.settings.when_lost != LostSource::outage) return;
+        commands.push_back(plain_command(CommandVerb::stop_fault));
+        commands.back().parameters = Parameters({{"fault", fault}});
+        return;
+    }
+    const double silent_s = static_cast<double>(now_ns - source.heard_ns) * 1e-9;
+    const bool over = source.feed->ended();
+    // What has never spoken is waited for, not lost.
+    if (source.lost || messages == 0 || (!over && silent_s < source.settings.lost_after.value())) return;
+    source.lost = true;
+    ++source.times_lost;
+    static constexpr std::array<std::string_view, 4> consequences{"the vehicle stands still", "the signals are gone",
+                                                                  "time stands still", "the run ends"};
+    news_.push_back(fmt::format("{}: {}; {}", source.feed->description(),
+                                over ? "has said goodbye" : fmt::format("nothing heard for {:.1f} s", silent_s),
+                                consequences[static_cast<std::size_t>(source.settings.when_lost)]));
+    switch (source.settings.when_lost) {
+        case LostSource::hold:
+            return;
+        case LostSource::outage:
+            return commands.push_back(
+                lost_signals(fmt::format("{} lost {}", source.settings.source, source.times_lost)));
+        case LostSource::pause:
+            return commands.push_back(plain_command(CommandVerb::pause));
+        case LostSource::stop:
+            return commands.push_back(plain_command(CommandVerb::stop));
+    }
+}
+
+std::optional<GpsTime> LiveFeeds::horizon() const { return leader_->horizon(); }
+
+void LiveFeeds::rest(std::uint64_t bytes_out) {
+    constexpr std::chrono::milliseconds little_while{50};
+    const auto reached = leader_->horizon();
+    if (reached && reached != answered_) {
+        answered_ = reached;
+        leader_->stepped(bytes_out - bytes_told_);
+        bytes_told_ = bytes_out;
+    }
+    (void)leader_->wait(little_while);
+}
+
+bool LiveFeeds::all_heard() const {
+    return std::all_of(sources_.begin(), sources_.end(), [](const auto& source) {
+        return !source->waited_for || std::all_of(source->paths.begin(), source->paths.end(),
+                                                  [](const auto& path) { return path->newest().has_value(); });
+    });
+}
+
+std::string LiveFeeds::waits_for() const {
+    std::string names;
+    for (const auto& source : sources_)
+        if (source->waited_for) names += (names.empty() ? "waiting for " : ", ") + source->feed->description();
+    return names;
+}
+
+void LiveFeeds::note_epoch(GpsTime now) {
+    for (const auto& source : sources_)
+        for (const auto& path : source->paths)
+            if (const auto newest = path->newest()) source->age.add(now - *newest);
+}
+
+std::vector<std::string> LiveFeeds::take_news() { return std::exchange(news_, {}); }
+
+std::vector<std::string> LiveFeeds::descriptions() const {
+    std::vector<std::string> all;
+    for (const auto& source : sources_)
+        all.push_back(source->feed->description());
+    return all;
+}
+
+std::vector<FeedReport> LiveFeeds::reports() const {
+    std::vector<FeedReport> reports;
+    for (const auto& source : sources_) {
+        FeedReport report{
+            source->feed->description(),  std::string(clock_names[static_cast<std::size_t>(source->settings.clock)]),
+            source->feed->counts(),       {},
+            source->feed->clock().rate(), source->age};
+        std::vector<const LivePath*> counted;
+        for (const auto& path : source->paths) {
+            if (std::find(counted.begin(), counted.end(), path.get()) != counted.end()) continue;
+            counted.push_back(path.get());
+            const LivePathCounts& c = path->counts();
+            report.paths.samples += c.samples;
+            report.paths.late += c.late;
+            report.paths.refused += c.refused;
+            report.paths.jumps += c.jumps;
+            report.paths.coasts += c.coasts;
+            report.paths.holds += c.holds;
+        }
+        reports.push_back(std::move(report));
+    }
+    return reports;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,30 @@
+#include "trajectory_kinds.hpp"
+
+#include <array>
+#include <string_view>
+
+namespace skyloop {
+
+void read_live(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
+    static constexpr std::array<std::string_view, 3> clocks{"realtime", "follow", "lock_step"};
+    static constexpr std::array<std::string_view, 2> seas{"geoid", "ellipsoid"};
+    static constexpr std::array<std::string_view, 4> ends{"hold", "outage", "pause", "stop"};
+    LiveSettings live;
+    live.heading = read_heading(table);
+    table.text("source", live.source);
+    table.needs_one_of({"source"}, "kind \"live\" has no source; expected source = \"udp-json:29990\" or another");
+    table.text("vehicle", live.vehicle);
+    live.at = places.read(table, "at");
+    live.clock = static_cast<ClockMode>(table.choice("clock", clocks, clocks[0]).value_or(0));
+    live.sea_is_ellipsoid = table.choice("sea_level", seas, seas[0]).value_or(0) == 1;
+    live.origin = places.read(table, "origin");
+    double rate = 0;
+    table.number("source_rate_hz", rate, {0.1, 1000});
+    if (table.has("source_rate_hz")) live.rate_hz = rate;
+    table.quantity("delay_s", live.delay, {0, 10});
+    table.quantity("lost_after_s", live.lost_after, {0.1, 1e7});
+    live.when_lost = static_cast<LostSource>(table.choice("when_lost", ends, ends[0]).value_or(0));
+    trajectory = live;
+}
+
+}  // namespace skyloop
