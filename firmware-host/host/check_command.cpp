@@ -58,6 +58,7 @@ int check(const RunOptions& options) {
     mode.now_steady_ns = steady_clock_ns();
     mode.virtual_time = true;
     mode.open_ports = false;
+    mode.only_checked = true;
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
     if (const auto warning = vehicle_warning(*scenario)) assembly->warnings.push_back(*warning);

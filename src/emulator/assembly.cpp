@@ -71,6 +71,10 @@ Result<void> add_scene(const Scenario& scenario, const DataFolders& data, Assemb
 }
 
 Result<std::unique_ptr<LiveFeeds>> open_feeds(Scenario& scenario, const RunMode& mode, Assembly& assembly) {
+    if (mode.only_checked) {
+        if (const auto checked = LiveFeeds::check(scenario); !checked) return fail(checked.error());
+        return nullptr;
+    }
     auto feeds = LiveFeeds::open(scenario, assembly.geoid.get());
     if (!feeds || !*feeds) return feeds;
     if (mode.virtual_time)

@@ -44,6 +44,18 @@ FeedSettings feed_settings(const LiveSettings& live, const Geoid* geoid) {
     return settings;
 }
 
+std::vector<LiveSettings*> live_settings(Scenario& scenario) {
+    std::vector<LiveSettings*> wanted;
+    // The vehicle that every receiver has left is nobody's.
+    const bool all_own = std::all_of(scenario.receivers.begin(), scenario.receivers.end(),
+                                     [](const ReceiverEntry& r) { return r.trajectory.has_value(); });
+    if (auto* live = std::get_if<LiveSettings>(&scenario.trajectory); live && !all_own) wanted.push_back(live);
+    for (ReceiverEntry& receiver : scenario.receivers)
+        if (receiver.trajectory)
+            if (auto* live = std::get_if<LiveSettings>(&*receiver.trajectory)) wanted.push_back(live);
+    return wanted;
+}
+
 }  // namespace
 
 struct LiveFeeds::Source {
@@ -98,14 +110,7 @@ Result<LiveFeeds::Source*> LiveFeeds::source_of(const LiveSettings& settings, co
 }
 
 Result<std::unique_ptr<LiveFeeds>> LiveFeeds::open(Scenario& scenario, const Geoid* geoid) {
-    std::vector<LiveSettings*> wanted;
-    // The vehicle that every receiver has left is nobody's.
-    const bool all_own = std::all_of(scenario.receivers.begin(), scenario.receivers.end(),
-                                     [](const ReceiverEntry& r) { return r.trajectory.has_value(); });
-    if (auto* live = std::get_if<LiveSettings>(&scenario.trajectory); live && !all_own) wanted.push_back(live);
-    for (ReceiverEntry& receiver : scenario.receivers)
-        if (receiver.trajectory)
-            if (auto* live = std::get_if<LiveSettings>(&*receiver.trajectory)) wanted.push_back(live);
+    const std::vector<LiveSettings*> wanted = live_settings(scenario);
     if (wanted.empty()) return nullptr;
     std::unique_ptr<LiveFeeds> feeds(new LiveFeeds);
     for (LiveSettings* live : wanted) {
@@ -121,6 +126,15 @@ Result<std::unique_ptr<LiveFeeds>> LiveFeeds::open(Scenario& scenario, const Geo
                                 "clock = \"follow\" where the source runs at another",
                                 scenario.run.speed));
     return feeds;
+}
+
+Result<void> LiveFeeds::check(Scenario& scenario) {
+    for (LiveSettings* live : live_settings(scenario)) {
+        const auto address = parse_feed_address(live->source);
+        if (!address) return fail(address.error().code, "trajectory.source: " + address.error().message);
+        live->path = std::make_shared<LivePath>(feed_settings(*live, nullptr).path);
+    }
+    return {};
 }
 
 void LiveFeeds::begin(GpsTime start, std::optional<std::int64_t> due_ns) {

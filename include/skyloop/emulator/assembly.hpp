@@ -33,6 +33,7 @@ struct RunMode {
     std::int64_t now_steady_ns = 0;                 ///< the steady clock at that instant
     std::optional<std::filesystem::path> record;    ///< where to keep the recording
     bool open_ports = true;                         ///< false: no wires, the recording alone
+    bool only_checked = false;                      ///< nothing will run: live sources are not opened
     bool first_ports_only = false;                  ///< of several receivers only the first gets its wires
     std::optional<std::filesystem::path> repeat{};  ///< a recording whose clients' bytes are heard again
     CommandQueue* live_commands = nullptr;          ///< where other threads ask for something; outlives the run

@@ -42,6 +42,9 @@ public:
     /// Fails with `usage` for what contradicts itself, with `outside` for what cannot be opened.
     static Result<std::unique_ptr<LiveFeeds>> open(Scenario& scenario, const Geoid* geoid);
 
+    /// Looks at what open() would: the vehicles stand where they are until their sources speak. Fails with `usage`.
+    static Result<void> check(Scenario& scenario);
+
     /// The run starts. @param due_ns the steady clock at that instant; nothing: a source leads
     void begin(GpsTime start, std::optional<std::int64_t> due_ns);
     /// Takes what has come, never waits. @param due_ns the steady clock's reading at which `now` is due
