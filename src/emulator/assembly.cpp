@@ -171,6 +171,8 @@ std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, 
                               return std::make_unique<RecordedPath>(*file.track, file.gaps, first_row_at(file, start));
                           },
                           [](const LiveSettings& live) -> std::unique_ptr<Trajectory> {
+                              // The vehicle that every receiver has left has no source.
+                              if (!live.path) return std::make_unique<FixedPoint>(live.at.value_or(FixedSettings().at));
                               return std::make_unique<SharedPath>(live.path);
                           },
                       },
