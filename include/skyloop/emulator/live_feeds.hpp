@@ -41,6 +41,9 @@ public:
     /// Opens every source that the scenario names and puts its paths into the settings. Null: it names none.
     /// Fails with `usage` for what contradicts itself, with `outside` for what cannot be opened.
     static Result<std::unique_ptr<LiveFeeds>> open(Scenario& scenario, const Geoid* geoid);
+    ~LiveFeeds();
+    LiveFeeds(const LiveFeeds&) = delete;
+    LiveFeeds& operator=(const LiveFeeds&) = delete;
 
     /// Looks at what open() would: the vehicles stand where they are until their sources speak. Fails with `usage`.
     static Result<void> check(Scenario& scenario);
@@ -76,10 +79,6 @@ private:
     Result<Source*> source_of(const LiveSettings& settings, const Geoid* geoid);
     void look_for_silence(Source& source, std::vector<Command>& commands);
 
-public:
-    ~LiveFeeds();
-
-private:
     std::vector<std::unique_ptr<Source>> sources_;
     TruthFeed* leader_ = nullptr;
     std::optional<GpsTime> answered_;
