@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <type_traits>
 
@@ -59,7 +60,8 @@ FixType fix_type_of_mode(NmeaMode mode) {
 }  // namespace
 
 void NmeaEpochs::take(std::string_view sentence) {
-    if (sentence.size() < 6 || sentence[1] == 'P') return;
+    if (sentence.size() < 6) return;
+    if (sentence[1] == 'P') return take_maker(sentence);
     const Result<NmeaMessage> message = decode_nmea(sentence);
     if (!message) {
         static constexpr std::string_view read[] = {"RMC", "GGA", "GNS", "GSA", "GSV", "ZDA"};
@@ -79,6 +81,7 @@ void NmeaEpochs::take(std::string_view sentence) {
         row_->two_dimensional |= gsa->fix_mode == 2;
         row_->listed_used += static_cast<int>(gsa->satellites.size());
     }
+    take_motion(*message);
     const std::string talker(sentence.substr(1, 2));
     if (std::find(talkers_.begin(), talkers_.end(), talker) == talkers_.end()) talkers_.push_back(talker);
 }
@@ -97,8 +100,9 @@ void NmeaEpochs::take_rmc(const Rmc& rmc) {
     take_time(rmc.time);
     if (!row_ || !rmc.time) return;
     if (rmc.date) row_->date = rmc.date;
-    if (rmc.speed) row_->speed_mps = rmc.speed->value();
-    if (rmc.course) row_->course_rad = rmc.course->rad();
+    if (rmc.speed) row_->epoch.motion.ground_speed = rmc.speed;
+    if (rmc.course) row_->epoch.motion.course = rmc.course;
+    take_ground(rmc.position);
     if (row_->has_gga) return;
     row_->position = rmc.position;
     row_->epoch.type = !rmc.valid ? FixType::none : rmc.mode ? fix_type_of_mode(*rmc.mode) : FixType::fix_3d;
@@ -108,6 +112,7 @@ void NmeaEpochs::take_gga(const Gga& gga) {
     take_time(gga.time);
     if (!row_ || !gga.time) return;
     row_->has_gga = true;
+    take_ground(gga.position);
     row_->position = gga.position;
     row_->altitude = gga.altitude;
     row_->separation = gga.geoid_separation;
@@ -118,6 +123,7 @@ void NmeaEpochs::take_gga(const Gga& gga) {
 void NmeaEpochs::take_gns(const Gns& gns) {
     take_time(gns.time);
     if (!row_ || !gns.time || row_->has_gga) return;
+    take_ground(gns.position);
     row_->position = gns.position;
     row_->altitude = gns.altitude;
     row_->separation = gns.geoid_separation;
@@ -136,6 +142,52 @@ void NmeaEpochs::take_gsv(const Gsv& gsv) {
         const auto id = satellite_from_nmea(*satellite.number, gsv.talker);
         if (!id) continue;
         add_satellite(row_->epoch.satellites, {*id, static_cast<double>(*satellite.cn0_dbhz), satellite.elevation_deg});
+    }
+}
+
+void NmeaEpochs::take_ground(const std::optional<NmeaPosition>& position) {
+    if (!position) return;
+    row_->epoch.motion.latitude = position->latitude;
+    row_->epoch.motion.longitude = position->longitude;
+}
+
+// Sentences without a time are of the epoch before them.
+void NmeaEpochs::take_motion(const NmeaMessage& message) {
+    if (!row_) return;
+    LogMotion& motion = row_->epoch.motion;
+    if (const auto* vtg = std::get_if<Vtg>(&message)) {
+        if (vtg->speed && !motion.ground_speed) motion.ground_speed = vtg->speed;
+        if (vtg->course && !motion.course) motion.course = vtg->course;
+    }
+    if (const auto* hdt = std::get_if<Hdt>(&message); hdt && hdt->heading) motion.heading = hdt->heading;
+    if (const auto* ths = std::get_if<Ths>(&message); ths && ths->heading && ths->mode != 'V')
+        motion.heading = ths->heading;
+}
+
+// PUBX,00 (u-blox M8 interface description, 31.3.2): field 12 is the velocity downwards, m/s. PASHR (Trimble and
+// others, "attitude data"): time, true heading, T, roll and pitch, degrees, the right side down and the bow up
+// positive.
+void NmeaEpochs::take_maker(std::string_view sentence) {
+    const auto parts = parse_sentence(sentence);
+    if (!parts || !row_) return;
+    const auto number = [&](std::size_t field) -> std::optional<double> {
+        if (field >= parts->fields.size()) return std::nullopt;
+        const std::string_view text = parts->fields[field];
+        double value = 0;
+        const std::size_t sign = text.starts_with('+') ? 1 : 0;
+        const auto [end, status] = std::from_chars(text.data() + sign, text.data() + text.size(), value);
+        const bool whole = status == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+        return whole ? std::optional(value) : std::nullopt;
+    };
+    LogMotion& motion = row_->epoch.motion;
+    if (parts->address == "PUBX" && !parts->fields.empty() && parts->fields[0] == "00") {
+        if (const auto down = number(12); down && std::abs(*down) < 12000) motion.climb = MetresPerSecond(-*down);
+    } else if (parts->address == "PASHR" && parts->fields.size() > 4 && parts->fields[2] == "T") {
+        const auto heading = number(1), roll = number(3), pitch = number(4);
+        if (!heading || !roll || !pitch) return;
+        motion.heading = Angle::degrees(*heading);
+        motion.roll = Angle::degrees(*roll);
+        motion.pitch = Angle::degrees(*pitch);
     }
 }
 
@@ -161,19 +213,29 @@ void NmeaEpochs::place(Row& row) {
     // Up is not told: two thirds of a velocity are none.
 }
 
-// A row belongs to the day that puts it within half a day of the last date that was said, or of the first one.
+// A row without a date is of the day of the row before, or of the next one where the time of day falls by more than
+// half a day (FEEDS.md 1.5); those before the first date are counted back from it.
 bool NmeaEpochs::date_rows() {
     const auto dated = std::find_if(rows_.begin(), rows_.end(), [](const Row& row) { return row.date.has_value(); });
-    if (dated == rows_.end()) return false;
+    log_.dated = dated != rows_.end();
+    if (!log_.dated && !undated_) return false;
     constexpr double half_day = 43200;
-    NmeaDate date = *dated->date;
-    double said = dated->seconds;
-    for (Row& row : rows_) {
-        if (row.date) date = *row.date, said = row.seconds;
+    const auto days_from = [&](const Row& before, const Row& row) {
+        const double step = row.seconds - before.seconds;
+        return step < -half_day ? 1 : step > half_day ? -1 : 0;
+    };
+    NmeaDate date = log_.dated ? *dated->date : NmeaDate{};
+    int days = 0;  // after `date`
+    for (auto row = rows_.begin(); row < dated; ++row)
+        if (log_.dated) days -= days_from(*row, *(row + 1));
+    for (auto row = rows_.begin(); row != rows_.end(); ++row) {
+        if (row != rows_.begin()) days += days_from(*(row - 1), *row);
+        if (row->date) date = *row->date, days = 0;
+        constexpr int most_days = 10000;  // more are nonsense, which finish_log() leaves out
+        days = std::clamp(days, -most_days, most_days);
         const UtcTime midnight{date.year, date.month, date.day, 0, 0, 0, 0};
-        const double days = row.seconds - said > half_day ? -1 : said - row.seconds > half_day ? 1 : 0;
-        row.epoch.time =
-            advanced(to_gps_time(midnight, LeapSeconds::announced()), Seconds(row.seconds + days * 2 * half_day));
+        row->epoch.time =
+            advanced(to_gps_time(midnight, LeapSeconds::announced()), Seconds(row->seconds + days * 2 * half_day));
     }
     return true;
 }

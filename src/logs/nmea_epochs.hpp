@@ -10,7 +10,7 @@ namespace skyloop {
 /// follow them. The date is that of RMC or ZDA, counted on over midnight; epochs before the first date are dated by it.
 class NmeaEpochs {
 public:
-    explicit NmeaEpochs(const LogReading& reading) : geoid_(reading.geoid) {}
+    explicit NmeaEpochs(const LogReading& reading) : geoid_(reading.geoid), undated_(reading.undated) {}
     /// A sentence whose checksum holds.
     void take(std::string_view sentence);
     /// Everything, as a log; finish_log() has not been called on it.
@@ -25,7 +25,6 @@ private:
         bool has_gga = false, two_dimensional = false;
         std::optional<NmeaPosition> position;
         std::optional<Metres> altitude, separation;
-        std::optional<double> speed_mps, course_rad;
         int listed_used = 0;
     };
     void take_time(const std::optional<NmeaTime>& time);
@@ -33,11 +32,15 @@ private:
     void take_gga(const Gga& gga);
     void take_gns(const Gns& gns);
     void take_gsv(const Gsv& gsv);
+    void take_motion(const NmeaMessage& message);
+    void take_maker(std::string_view sentence);
+    void take_ground(const std::optional<NmeaPosition>& position);
     void finish_row();
     void place(Row& row);
     bool date_rows();
 
     const Geoid* geoid_;
+    bool undated_;
     ReceiverLog log_;
     std::optional<Row> row_;
     std::vector<Row> rows_;

@@ -2,9 +2,13 @@
 
 #include "track_formats.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 
 #include "skyloop/trajectory/track_csv.hpp"
+#include "text_track.hpp"
+#include "xml_tree.hpp"
 
 namespace skyloop {
 namespace {
@@ -18,7 +22,31 @@ struct TrackFormat {
 
 Result<Track> read_csv(const TrackFile& file) { return read_track_csv(file.text, file.name, file.reading.geoid); }
 
+// By the root of XML; a file in another encoding than UTF-8 shows none, and is told by its ending.
+bool is_xml_of(const TrackFile& file, std::string_view root, std::string_view ending) {
+    const std::string_view name = xml_root_name(file.text);
+    return name.empty() ? lower_case(file.name).ends_with(ending) : name == root;
+}
+
+bool is_kmz(const TrackFile& file) { return file.text.starts_with("PK\x03\x04"); }
+
+bool is_other_xml(const TrackFile& file) { return !xml_root_name(file.text).empty(); }
+
+Result<Track> refuse_xml(const TrackFile& file) {
+    return fail(ErrorCode::input,
+                fmt::format("{}: XML whose root is <{}>; expected <gpx> or <kml>, which gpsbabel makes of most others: "
+                            "gpsbabel -t -i FORMAT -f FILE -o gpx,gpxver=1.0 -F track.gpx",
+                            file.name, on_one_line(std::string(xml_root_name(file.text)))));
+}
+
 constexpr TrackFormat formats[] = {
+    {{".gpx"}, [](const TrackFile& file) { return is_xml_of(file, "gpx", ".gpx"); }, read_gpx},
+    {{".kml"}, [](const TrackFile& file) { return is_xml_of(file, "kml", ".kml"); }, read_kml},
+    {{}, is_other_xml, refuse_xml},
+    {{".kmz"}, is_kmz, read_kmz},
+    {{".igc"}, is_igc, read_igc},
+    {{".pos"}, is_table_dialect, read_table_dialect},
+    {{".nmea", ".log"}, is_nmea_track, read_nmea_track},
     {{".csv", ".txt", ""}, [](const TrackFile&) { return true; }, read_csv},
 };
 

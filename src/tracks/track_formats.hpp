@@ -13,4 +13,14 @@ struct TrackFile {
     const TrackReading& reading;
 };
 
+Result<Track> read_gpx(const TrackFile& file);
+Result<Track> read_kml(const TrackFile& file);
+Result<Track> read_kmz(const TrackFile& file);
+bool is_igc(const TrackFile& file);
+Result<Track> read_igc(const TrackFile& file);
+bool is_nmea_track(const TrackFile& file);
+Result<Track> read_nmea_track(const TrackFile& file);
+bool is_table_dialect(const TrackFile& file);
+Result<Track> read_table_dialect(const TrackFile& file);
+
 }  // namespace skyloop

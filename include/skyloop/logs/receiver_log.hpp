@@ -20,6 +20,14 @@ struct LoggedSatellite {
     std::optional<int> elevation_deg{};
 };
 
+/// What some logs tell of the motion beside, or instead of, a whole place and velocity. NMEA tells it so.
+struct LogMotion {
+    std::optional<Angle> latitude{}, longitude{};  ///< whatever the type of the fix, with or without a height
+    std::optional<MetresPerSecond> ground_speed{}, climb{};
+    std::optional<Angle> course{};  ///< from true north
+    std::optional<Angle> heading{}, roll{}, pitch{};
+};
+
 /// One epoch of a log.
 struct LogEpoch {
     GpsTime time;
@@ -30,6 +38,7 @@ struct LogEpoch {
     std::optional<Metres> horizontal_accuracy{}, vertical_accuracy{};  ///< as the receiver estimates them
     bool lists_satellites = false;              ///< the log says of this epoch which satellites were tracked
     std::vector<LoggedSatellite> satellites{};  ///< ascending
+    LogMotion motion{};
 
     /// Neither of the signals now: none, the time alone, or reckoned on without them.
     [[nodiscard]] bool is_lost() const {
@@ -44,6 +53,7 @@ struct ReceiverLog {
     std::string receiver;  ///< what the log says of the receiver; may be empty
     std::string board;     ///< the profile that this suggests; empty: none
     std::vector<LogEpoch> epochs;
+    bool dated = true;               ///< false: no date in it, and the first epoch is of the day 1980-01-06
     std::vector<std::string> notes;  ///< what was left out and why, a sentence each
 };
 
@@ -51,6 +61,7 @@ struct ReceiverLog {
 struct LogReading {
     const Geoid* geoid = nullptr;  ///< for heights above sea level where the log does not tell the undulation
     std::size_t receiver = 0;      ///< of several in one log, from 0
+    bool undated = false;          ///< NMEA without a date is read too
 };
 
 /// Reads a log of any of the four kinds, told by its content. Fails with `input` and one sentence that begins with the

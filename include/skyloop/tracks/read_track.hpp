@@ -1,12 +1,14 @@
 /// Recorded paths of every format that is read.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "skyloop/base/bytes.hpp"
 #include "skyloop/base/result.hpp"
+#include "skyloop/geo/geodetic.hpp"
 #include "skyloop/geo/geoid.hpp"
 #include "skyloop/trajectory/track.hpp"
 
@@ -14,7 +16,8 @@ namespace skyloop {
 
 /// How a track is read.
 struct TrackReading {
-    const Geoid* geoid = nullptr;  ///< for heights above the sea; null: a file with such heights fails
+    const Geoid* geoid = nullptr;      ///< for heights above the sea; null: a file with such heights fails
+    std::optional<Geodetic> origin{};  ///< of local metres, and of heights above the ground; nothing: these fail
 };
 
 /// Reads a track; its format is told by its content, and by the ending of its name where the content says nothing.

@@ -1,0 +1,244 @@
+// Tables that programs and receivers write with names of their own over the columns.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "table_cells.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr double named_foot = 0.3048, named_knot = 1852.0 / 3600;
+
+// Columns of a row by name, each absent one as nothing. After a failure all that follows is nothing.
+class NamedRow {
+public:
+    explicit NamedRow(const TableCells& table) : table_(table) {}
+    std::optional<double> number(std::string_view name, double scale = 1) {
+        if (fault_) return std::nullopt;
+        const auto value = table_.number(table_.column(name));
+        if (!value) fault_ = value.error();
+        return value && *value ? std::optional(**value * scale) : std::nullopt;
+    }
+    [[nodiscard]] std::string_view text(std::string_view name) const { return table_.cell(table_.column(name)); }
+    [[nodiscard]] const std::optional<Error>& fault() const { return fault_; }
+
+private:
+    const TableCells& table_;
+    std::optional<Error> fault_;
+};
+
+// A dialect: its rows one by one.
+using RowTaker = Result<void> (*)(TextTrack&, const TableCells&);
+
+// Latitude and longitude of columns with these names; false: left out, as one of them is empty.
+bool named_place(TextTrack& track, NamedRow& columns, std::array<std::string_view, 2> names, TextRow& row) {
+    const auto latitude = columns.number(names[0]), longitude = columns.number(names[1]);
+    if (latitude && longitude) {
+        row.latitude_deg = *latitude, row.longitude_deg = *longitude;
+        return true;
+    }
+    if (!columns.fault()) track.leave_out("have no place", row.line);
+    return false;
+}
+
+// Garmin G1000 (the file's own lines of units): local time and its offset from UTC; AltGPS, feet above WGS 84; ground
+// track and heading from magnetic north, MagVar their variation, east positive; vertical speed in feet a minute.
+Result<void> take_g1000_row(TextTrack& track, const TableCells& table) {
+    NamedRow columns(table);
+    TextRow row;
+    row.line = table.line();
+    const std::string_view date = columns.text("Lcl Date"), clock = columns.text("Lcl Time");
+    if (date.empty() || clock.empty()) return track.leave_out("have no time", row.line), Result<void>();
+    const auto time = parse_iso_time(fmt::format("{:.20} {:.20}{:.10}", date, clock, columns.text("UTCOfst")));
+    if (!time || !time->in_range)
+        return table.refusal(
+            fmt::format("the time is '{:.20} {:.20} {:.10}'; expected one as 2014-03-29, 22:50:22, "
+                        "+00:00",
+                        date, clock, columns.text("UTCOfst")));
+    row.time = time->time.time_since_epoch();
+    if (!named_place(track, columns, {"Latitude", "Longitude"}, row))
+        return columns.fault() ? Result<void>(fail(*columns.fault())) : Result<void>();
+    row.ellipsoidal_m = columns.number("AltGPS", named_foot);
+    if (!row.ellipsoidal_m) row.sea_level_m = columns.number("AltMSL", named_foot);
+    row.speed_mps = columns.number("GndSpd", named_knot);
+    row.climb_mps = columns.number("VSpdG", named_foot / 60);
+    const auto variation = columns.number("MagVar"), course = columns.number("TRK"), heading = columns.number("HDG");
+    const auto roll = columns.number("Roll"), pitch = columns.number("Pitch");
+    if (variation && course) row.course_deg = *course + *variation;
+    if (variation && heading && roll && pitch)
+        row.attitude = Attitude::roll_pitch_yaw(Angle::degrees(*roll), Angle::degrees(*pitch),
+                                                Angle::degrees(*heading + *variation));
+    if (columns.fault()) return fail(*columns.fault());
+    return track.add(row);
+}
+
+// The table of Hazer's gpstool (com-diag-hazer, yodel): TIM, POSIX seconds of the fix; MSL and GEO, metres above sea
+// level and above the ellipsoid; SOG in knots, COG from true north.
+Result<void> take_yodel_row(TextTrack& track, const TableCells& table) {
+    NamedRow columns(table);
+    TextRow row;
+    row.line = table.line();
+    const auto fix = columns.number("FIX");
+    if (fix && *fix < 2) return track.leave_out("have a fix below 2", row.line), Result<void>();
+    const auto time = posix_since_1980(columns.text("TIM"));
+    if (!time) return table.refusal(fmt::format("TIM is '{:.40}'; expected POSIX seconds", columns.text("TIM")));
+    row.time = *time;
+    if (!named_place(track, columns, {"LAT", "LON"}, row))
+        return columns.fault() ? Result<void>(fail(*columns.fault())) : Result<void>();
+    row.ellipsoidal_m = columns.number("GEO");
+    if (!row.ellipsoidal_m) row.sea_level_m = columns.number("MSL");
+    row.speed_mps = columns.number("SOG", named_knot);
+    row.course_deg = columns.number("COG");
+    if (columns.fault()) return fail(*columns.fault());
+    return track.add(row);
+}
+
+// gpsbabel's unicsv: date and time in UTC in two columns, metres above sea level, m/s.
+Result<void> take_unicsv_row(TextTrack& track, const TableCells& table) {
+    NamedRow columns(table);
+    TextRow row;
+    row.line = table.line();
+    const std::string_view date = columns.text("Date"), clock = columns.text("Time");
+    if (date.empty() || clock.empty()) return track.leave_out("have no time", row.line), Result<void>();
+    const auto time = parse_iso_time(fmt::format("{:.20} {:.20}", date, clock));
+    if (!time)
+        return table.refusal(
+            fmt::format("the time is '{:.20} {:.20}'; expected one as 2024/03/05, 12:00:00.25", date, clock));
+    if (!time->in_range)
+        return track.leave_out("have a time before 1980-01-06 or after 2199", row.line), Result<void>();
+    row.time = time->time.time_since_epoch();
+    if (!named_place(track, columns, {"Latitude", "Longitude"}, row))
+        return columns.fault() ? Result<void>(fail(*columns.fault())) : Result<void>();
+    row.sea_level_m = columns.number("Altitude");
+    row.speed_mps = columns.number("Speed");
+    row.course_deg = columns.number("Course");
+    if (columns.fault()) return fail(*columns.fault());
+    return track.add(row);
+}
+
+// Nanoseconds since 1980 of a whole count of POSIX nanoseconds, which a double cannot hold.
+std::optional<Nanoseconds> posix_nanoseconds(std::string_view text) {
+    std::int64_t count = 0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), count);
+    constexpr std::int64_t second = 1'000'000'000;
+    if (status != std::errc() || end != text.data() + text.size() || count < gps_epoch_posix_s * second ||
+        count >= 7'258'118'400 * second)
+        return std::nullopt;
+    return from_posix(Nanoseconds(count), LeapSeconds::announced()).time_since_epoch();
+}
+
+// The ground truth of EuRoC (its README): POSIX nanoseconds, place in a room, m, whose axes it takes z up; the columns
+// that follow are of an inertial sensor with axes of its own.
+Result<void> take_euroc_row(TextTrack& track, const TableCells& table) {
+    TextRow row;
+    row.line = table.line();
+    const auto time = posix_nanoseconds(table.cell(0));
+    if (!time) return table.refusal(fmt::format("the time is '{:.40}'; expected POSIX nanoseconds", table.cell(0)));
+    row.time = *time;
+    const auto place = table.numbers(1, 3);
+    if (!place) return fail(place.error());
+    row.position = LocalFrame(*track.origin()).to_ecef(Position<Enu>((*place)[0], (*place)[1], (*place)[2]));
+    return track.add(row);
+}
+
+// A table whose line of names is the first that begins so.
+Result<Track> read_rows(const TrackFile& file, TextTrack& track, RowTaker take, std::string_view names_begin) {
+    TableCells table(file, names_begin.empty() ? ',' : separator_in(names_begin), "");
+    bool named = false;
+    while (table.next()) {
+        if (!named) {
+            named = lower_case(trimmed_text(table.text())).starts_with(lower_case(names_begin));
+            if (named) table.take_names();
+            continue;
+        }
+        if (const auto taken = take(track, table); !taken) return fail(taken.error());
+    }
+    return track.finish("rows with a time and a place");
+}
+
+Result<Track> read_g1000(const TrackFile& file) {
+    TextTrack track(file, "Garmin G1000");
+    return read_rows(file, track, take_g1000_row, "Lcl Date,");
+}
+
+Result<Track> read_yodel(const TrackFile& file) {
+    TextTrack track(file, "Hazer");
+    track.note("roll, pitch and yaw are not read: the rows do not say which of them are known");
+    return read_rows(file, track, take_yodel_row, "NAM,");
+}
+
+Result<Track> read_euroc(const TrackFile& file) {
+    TextTrack track(file, "EuRoC");
+    if (!file.reading.origin)
+        return track.refusal(
+            "local metres (EuRoC); expected trajectory.origin = [latitude, longitude, height], where "
+            "they begin");
+    track.note(
+        "local metres are taken as east, north, up; attitude is not read: it is that of a sensor with axes of its "
+        "own");
+    return read_rows(file, track, take_euroc_row, "#timestamp [ns],");
+}
+
+// The line with the names of unicsv's columns; empty: none of the first ones is.
+std::string_view unicsv_names(std::string_view head) {
+    TextLines lines(head);
+    while (lines.next()) {
+        const std::string_view line = lines.line();
+        if (trimmed_text(line).empty()) continue;
+        std::vector<std::string_view> cells;
+        split_cells(line, separator_in(line), cells);
+        std::size_t found = 0;
+        for (const std::string_view cell : cells)
+            for (const std::string_view name : {"latitude", "longitude", "date", "time"})
+                found += lower_case(cell) == name;
+        return found == 4 ? trimmed_text(line) : std::string_view();
+    }
+    return {};
+}
+
+Result<Track> read_unicsv(const TrackFile& file) {
+    constexpr std::size_t looked_at = 65536;
+    TextTrack track(file, "unicsv");
+    return read_rows(file, track, take_unicsv_row, unicsv_names(file.text.substr(0, looked_at)));
+}
+
+// Whether one of the first lines begins so, letters of either case.
+bool has_line(std::string_view head, std::string_view begin) {
+    TextLines lines(head);
+    while (lines.next())
+        if (lower_case(trimmed_text(lines.line()).substr(0, begin.size())) == lower_case(begin)) return true;
+    return false;
+}
+
+struct NamedDialect {
+    bool (*fits)(std::string_view head);
+    Result<Track> (*read)(const TrackFile&);
+};
+
+constexpr std::array named_dialects{
+    NamedDialect{[](std::string_view head) { return has_line(head, "# Fix,") || has_line(head, "Fix,"); },
+                 read_gnss_logger},
+    NamedDialect{[](std::string_view head) { return has_line(head, "Lcl Date,"); }, read_g1000},
+    NamedDialect{[](std::string_view head) { return has_line(head, "NAM, NUM, FIX,"); }, read_yodel},
+    NamedDialect{[](std::string_view head) { return has_line(head, "#timestamp [ns],"); }, read_euroc},
+    NamedDialect{[](std::string_view head) { return !unicsv_names(head).empty(); }, read_unicsv}};
+
+}  // namespace
+
+bool is_named_dialect(std::string_view head) {
+    return std::any_of(named_dialects.begin(), named_dialects.end(),
+                       [&](const NamedDialect& dialect) { return dialect.fits(head); });
+}
+
+Result<Track> read_named_dialect(const TrackFile& file) {
+    constexpr std::size_t looked_at = 65536;
+    for (const NamedDialect& dialect : named_dialects)
+        if (dialect.fits(file.text.substr(0, looked_at))) return dialect.read(file);
+    return TextTrack(file, "CSV").refusal("no table of a known form");
+}
+
+}  // namespace skyloop
