@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "skyloop/protocol/mavlink.hpp"
+#include "known_mavlink.hpp"
 #include "skyloop/protocol/message_listing.hpp"
 #include "skyloop/protocol/msp.hpp"
 #include "skyloop/protocol/sbf_blocks.hpp"
@@ -49,10 +49,7 @@ bool list_mavlink_as(const MavlinkFrameView& frame, DecodedMessage& message) {
 void list_mavlink(const MavlinkFrameView& frame, DecodedMessage& message) {
     message.id = fmt::format("{}", frame.message);
     const bool known =
-        list_mavlink_as<MavlinkHeartbeat>(frame, message) || list_mavlink_as<MavlinkGpsInput>(frame, message) ||
-        list_mavlink_as<MavlinkGpsRawInt>(frame, message) || list_mavlink_as<MavlinkGpsRtcmData>(frame, message) ||
-        list_mavlink_as<MavlinkCommandLong>(frame, message) || list_mavlink_as<MavlinkCommandInt>(frame, message) ||
-        list_mavlink_as<MavlinkCommandAck>(frame, message);
+        KnownMavlinkMessages::any([&]<class Message>() { return list_mavlink_as<Message>(frame, message); });
     if (!known) return keep_payload(frame.payload, message);
     const auto number = [](unsigned value) { return DecodedValue{std::uint64_t{value}}; };
     std::vector<DecodedField> fields{{"system", number(frame.source.system)},

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "known_mavlink.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -37,24 +39,12 @@ std::uint16_t crc16_x25(ByteSpan bytes, std::uint16_t crc) {
 }
 
 std::optional<std::uint8_t> mavlink_crc_extra(std::uint32_t message) {
-    switch (message) {
-        case MavlinkHeartbeat::message_id:
-            return MavlinkHeartbeat::crc_extra;
-        case MavlinkGpsRawInt::message_id:
-            return MavlinkGpsRawInt::crc_extra;
-        case MavlinkCommandInt::message_id:
-            return MavlinkCommandInt::crc_extra;
-        case MavlinkCommandLong::message_id:
-            return MavlinkCommandLong::crc_extra;
-        case MavlinkCommandAck::message_id:
-            return MavlinkCommandAck::crc_extra;
-        case MavlinkGpsInput::message_id:
-            return MavlinkGpsInput::crc_extra;
-        case MavlinkGpsRtcmData::message_id:
-            return MavlinkGpsRtcmData::crc_extra;
-        default:
-            return std::nullopt;
-    }
+    std::optional<std::uint8_t> extra;
+    KnownMavlinkMessages::any([&]<class Message>() {
+        if (Message::message_id == message) extra = Message::crc_extra;
+        return extra.has_value();
+    });
+    return extra;
 }
 
 Bytes encode_mavlink_v2(MavlinkSource source, std::uint32_t message, ByteSpan payload) {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "skyloop/protocol/mavlink.hpp"
+#include "skyloop/protocol/mavlink_vehicle.hpp"
 
 namespace {
 
@@ -29,6 +29,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check_mavlink_return<MavlinkCommandLong>(bytes);
     check_mavlink_return<MavlinkCommandInt>(bytes);
     check_mavlink_return<MavlinkCommandAck>(bytes);
+    check_mavlink_return<MavlinkSystemTime>(bytes);
+    check_mavlink_return<MavlinkAttitude>(bytes);
+    check_mavlink_return<MavlinkAttitudeQuaternion>(bytes);
+    check_mavlink_return<MavlinkLocalPositionNed>(bytes);
+    check_mavlink_return<MavlinkGlobalPositionInt>(bytes);
+    check_mavlink_return<MavlinkGpsGlobalOrigin>(bytes);
+    check_mavlink_return<MavlinkSimState>(bytes);
+    check_mavlink_return<MavlinkHilGps>(bytes);
+    check_mavlink_return<MavlinkHilStateQuaternion>(bytes);
+    check_mavlink_return<MavlinkOdometry>(bytes);
     if (const auto frame = parse_mavlink(bytes); frame && frame->payload.size() > 0xFF) std::abort();
     std::size_t found = 0;
     for (const MavlinkFrameView& frame : mavlink_frames(bytes)) {
