@@ -111,7 +111,7 @@ TEST(OtherStreams, AreOnlyLookedForWhenAskedTo) {
 // A message that is not known may be 280 bytes long; nobody waits for them.
 TEST(OtherStreams, UnknownMavlinkMessagesDoNotDelayWhatFollows) {
     StreamSplitter splitter(every_protocol);
-    Bytes stream{0xFD, 255, 0, 0, 0, 1, 1, 30, 0, 0};
+    Bytes stream{0xFD, 255, 0, 0, 0, 1, 1, 29, 0, 0};
     append(stream, encode_frame(NavEoe{1000}));
     const auto pieces = splitter.feed(stream);
     ASSERT_EQ(pieces.size(), 2u);
