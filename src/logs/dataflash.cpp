@@ -1,12 +1,9 @@
-#include <fmt/format.h>
+#include "skyloop/logs/dataflash.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 
 #include "log_parts.hpp"
-#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
 namespace {
@@ -29,20 +26,14 @@ std::string_view text_in(ByteSpan bytes, std::size_t at, std::size_t size) {
     return text.substr(0, text.find('\0'));
 }
 
-struct DataflashColumn {
-    char letter = 0;
-    std::size_t offset = 0;
-    std::optional<double> multiplier;  // by FMTU; nothing: by the letter
-};
-
-// What a type of record is called and holds.
-struct DataflashFormat {
-    std::string name;
-    std::size_t length = 0;  // with the head
-    std::vector<std::string> order;
-    std::map<std::string, DataflashColumn, std::less<>> columns;
-    std::string instance;  // the column that numbers the receiver
-};
+// IEEE 754 binary16.
+double half_number(std::uint16_t bits) {
+    const int exponent = bits >> 10 & 0x1F, fraction = bits & 0x3FF;
+    const double size = exponent == 0    ? std::ldexp(fraction, -24)
+                        : exponent == 31 ? std::nan("")
+                                         : std::ldexp(1024 + fraction, exponent - 25);
+    return (bits & 0x8000) != 0 ? -size : size;
+}
 
 double raw_value(ByteSpan record, const DataflashColumn& column) {
     const std::size_t at = column.offset;
@@ -73,6 +64,8 @@ double raw_value(ByteSpan record, const DataflashColumn& column) {
             return static_cast<double>(number_at<float>(record, at));
         case 'd':
             return number_at<double>(record, at);
+        case 'g':
+            return half_number(number_at<std::uint16_t>(record, at));
         default:
             return 0;
     }
@@ -113,70 +106,62 @@ std::optional<double> multiplier_of(char id) {
     }
 }
 
-class DataflashReader {
-public:
-    DataflashReader(ByteSpan bytes, const std::string& name, const LogReading& reading)
-        : bytes_(bytes), reading_(reading) {
-        log_.name = name;
-        log_.format = "DataFlash";
+double letter_scale(char letter) {
+    static constexpr std::string_view hundredths = "cCeE";
+    if (hundredths.find(letter) != std::string_view::npos) return 1e-2;
+    return letter == 'L' ? 1e-7 : 1;
+}
+
+}  // namespace
+
+std::optional<double> DataflashRecord::value(std::initializer_list<std::string_view> names) const {
+    for (const std::string_view name : names) {
+        const auto found = format_.columns.find(name);
+        if (found == format_.columns.end()) continue;
+        const DataflashColumn& column = found->second;
+        const double result = raw_value(bytes_, column) * column.multiplier.value_or(letter_scale(column.letter));
+        if (std::isfinite(result)) return result;
     }
-    Result<ReceiverLog> read();
+    return std::nullopt;
+}
 
-private:
-    void take_format(ByteSpan record);
-    void take_units(ByteSpan record);
-    void take(const DataflashFormat& format, ByteSpan record);
-    void take_gps(const DataflashFormat& format, ByteSpan record);
-    void take_accuracy(const DataflashFormat& format, ByteSpan record);
-    [[nodiscard]] bool asked(const DataflashFormat& format, ByteSpan record, std::string_view base) const;
-    // A column in SI units, by the first of these names that there is.
-    [[nodiscard]] static std::optional<double> value(const DataflashFormat& format, ByteSpan record,
-                                                     std::initializer_list<std::string_view> names);
-    Result<void> add_undulations();
+std::optional<double> DataflashRecord::raw(std::initializer_list<std::string_view> names) const {
+    for (const std::string_view name : names)
+        if (const auto found = format_.columns.find(name); found != format_.columns.end())
+            return raw_value(bytes_, found->second);
+    return std::nullopt;
+}
 
-    ByteSpan bytes_;
-    const LogReading& reading_;
-    ReceiverLog log_;
-    std::array<std::optional<DataflashFormat>, 256> formats_;
-    std::optional<double> undulation_;  // as the receiver last told it, m
-    std::vector<bool> on_sea_level_;    // of each epoch: its height is not yet one above the ellipsoid
-    std::size_t skipped_ = 0, cut_ = 0, undated_ = 0, gps_records_ = 0;
-};
+std::optional<double> DataflashRecord::instance() const {
+    return format_.instance.empty() ? std::nullopt : raw({format_.instance});
+}
 
-Result<ReceiverLog> DataflashReader::read() {
-    std::size_t at = 0;
-    while (at + dataflash_head <= bytes_.size()) {
-        const std::uint8_t type = bytes_[at + 2];
-        const bool head = bytes_[at] == dataflash_head_1 && bytes_[at + 1] == dataflash_head_2;
+std::optional<DataflashRecord> DataflashReader::next() {
+    while (at_ + dataflash_head <= bytes_.size()) {
+        const std::uint8_t type = bytes_[at_ + 2];
+        const bool head = bytes_[at_] == dataflash_head_1 && bytes_[at_ + 1] == dataflash_head_2;
         const std::size_t length = type == dataflash_fmt ? dataflash_fmt_length
                                    : formats_[type]      ? formats_[type]->length
                                                          : 0;
         if (!head || length == 0) {
-            ++at;
+            ++at_;
             ++skipped_;
             continue;
         }
-        if (at + length > bytes_.size()) {
-            ++cut_;
-            break;
+        if (at_ + length > bytes_.size()) {
+            cut_ = true;
+            return std::nullopt;
         }
-        const ByteSpan record = bytes_.subspan(at, length);
+        const ByteSpan record = bytes_.subspan(at_, length);
+        at_ += length;
         if (type == dataflash_fmt)
             take_format(record);
+        else if (formats_[type]->name == "FMTU")
+            take_units(record);
         else
-            take(*formats_[type], record);
-        at += length;
+            return DataflashRecord(*formats_[type], record);
     }
-    if (gps_records_ == 0)
-        return fail(ErrorCode::input,
-                    fmt::format("{}: a DataFlash log without GPS records of receiver {}; expected some", log_.name,
-                                reading_.receiver));
-    if (auto added = add_undulations(); !added) return fail(added.error());
-    log_.receiver = fmt::format("GPS records of instance {}", reading_.receiver);
-    add_note(log_, undated_, "GPS records without a week were left out");
-    add_note(log_, skipped_, "bytes that begin no record were passed over");
-    add_note(log_, cut_, "record is cut by the end of the file");
-    return finish_log(std::move(log_));
+    return std::nullopt;
 }
 
 void DataflashReader::take_format(ByteSpan record) {
@@ -216,115 +201,8 @@ void DataflashReader::take_units(ByteSpan record) {
     }
 }
 
-std::optional<double> DataflashReader::value(const DataflashFormat& format, ByteSpan record,
-                                             std::initializer_list<std::string_view> names) {
-    for (const std::string_view name : names) {
-        const auto found = format.columns.find(name);
-        if (found == format.columns.end()) continue;
-        const DataflashColumn& column = found->second;
-        // Scaled by the letter in old logs, by FMTU in new ones, never by both.
-        static constexpr std::string_view hundredths = "cCeE";
-        const double by_letter = hundredths.find(column.letter) != std::string_view::npos ? 1e-2
-                                 : column.letter == 'L'                                   ? 1e-7
-                                                                                          : 1;
-        const double result = raw_value(record, column) * column.multiplier.value_or(by_letter);
-        if (std::isfinite(result)) return result;
-    }
-    return std::nullopt;
-}
-
-// GPS and GPA of old logs, GPS2 and GPA2 (GPB) for the second receiver; an instance in new ones.
-bool DataflashReader::asked(const DataflashFormat& format, ByteSpan record, std::string_view base) const {
-    if (!format.name.starts_with(base)) return false;
-    if (!format.instance.empty() && format.name == base) {
-        const auto number = value(format, record, {format.instance});
-        return number && *number == static_cast<double>(reading_.receiver);
-    }
-    if (reading_.receiver == 0) return format.name == base;
-    return format.name == fmt::format("{}{}", base, reading_.receiver + 1);
-}
-
-void DataflashReader::take(const DataflashFormat& format, ByteSpan record) {
-    if (format.name == "FMTU") return take_units(record);
-    if (asked(format, record, "GPS")) return take_gps(format, record);
-    if (asked(format, record, "GPA")) return take_accuracy(format, record);
-}
-
-void DataflashReader::take_gps(const DataflashFormat& format, ByteSpan record) {
-    ++gps_records_;
-    // Milliseconds of the week under any multiplier are what the raw number says.
-    const auto raw = [&](std::initializer_list<std::string_view> names) -> std::optional<double> {
-        for (const std::string_view name : names)
-            if (const auto found = format.columns.find(name); found != format.columns.end())
-                return raw_value(record, found->second);
-        return std::nullopt;
-    };
-    const double week = raw({"GWk", "Week"}).value_or(0), ms = raw({"GMS", "TimeMS"}).value_or(-1);
-    if (!(week > 0 && week < 10000 && ms >= 0 && ms < 1000.0 * seconds_per_week)) {
-        ++undated_;
-        return;
-    }
-    static constexpr std::array types{FixType::none,  FixType::none,      FixType::fix_2d,   FixType::fix_3d,
-                                      FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
-    LogEpoch epoch;
-    epoch.time = to_gps_time(static_cast<std::int64_t>(week), ms / 1000);
-    const auto status = static_cast<std::size_t>(std::max(0.0, value(format, record, {"Status"}).value_or(0)));
-    epoch.type = status < types.size() ? types[status] : FixType::none;
-    epoch.satellites_used = static_cast<int>(value(format, record, {"NSats"}).value_or(0));
-    const auto latitude = value(format, record, {"Lat"}), longitude = value(format, record, {"Lng"});
-    const auto altitude = value(format, record, {"Alt"});
-    if (epoch.type != FixType::none && latitude && longitude && altitude) {
-        epoch.place = logged_place(*latitude, *longitude, *altitude);
-        const auto speed = value(format, record, {"Spd"}), course = value(format, record, {"GCrs"});
-        const auto down = value(format, record, {"VZ"});
-        if (epoch.place && speed && course && down) {
-            const double azimuth = Angle::degrees(*course).rad();
-            epoch.velocity = VelocityNed{*speed * std::cos(azimuth), *speed * std::sin(azimuth), *down};
-        }
-    }
-    if (epoch.place && undulation_) epoch.place->height.above_ellipsoid += Metres(*undulation_);
-    on_sea_level_.push_back(epoch.place && !undulation_);
-    log_.epochs.push_back(std::move(epoch));
-}
-
-// GPA follows the GPS record of its sample. Und is sea level less ellipsoid: the undulation with its sign changed.
-void DataflashReader::take_accuracy(const DataflashFormat& format, ByteSpan record) {
-    if (const auto und = value(format, record, {"Und"}); und && *und != 0 && std::abs(*und) < 200) undulation_ = -*und;
-    if (log_.epochs.empty()) return;
-    if (const auto h = value(format, record, {"HAcc"})) log_.epochs.back().horizontal_accuracy = Metres(*h);
-    if (const auto v = value(format, record, {"VAcc"})) log_.epochs.back().vertical_accuracy = Metres(*v);
-}
-
-// What came before the receiver told its undulation takes the one it told in the end, else that of the grid.
-Result<void> DataflashReader::add_undulations() {
-    std::size_t from_grid = 0;
-    for (std::size_t i = 0; i < log_.epochs.size(); ++i) {
-        auto& place = log_.epochs[i].place;
-        if (!place || !on_sea_level_[i]) continue;
-        if (undulation_) {
-            place->height.above_ellipsoid += Metres(*undulation_);
-        } else if (reading_.geoid) {
-            place->height.above_ellipsoid += reading_.geoid->undulation(place->latitude, place->longitude);
-            ++from_grid;
-        } else {
-            return fail(ErrorCode::input,
-                        fmt::format("{}: heights above sea level alone, and the geoid's grid is not there; expected "
-                                    "GPA records with Und",
-                                    log_.name));
-        }
-    }
-    add_note(log_, from_grid, "heights above sea level were taken above EGM96");
-    return {};
-}
-
-}  // namespace
-
 bool is_dataflash(ByteSpan bytes) {
     return bytes.size() >= dataflash_head && bytes[0] == dataflash_head_1 && bytes[1] == dataflash_head_2;
-}
-
-Result<ReceiverLog> read_dataflash(ByteSpan bytes, const std::string& name, const LogReading& reading) {
-    return DataflashReader(bytes, name, reading).read();
 }
 
 }  // namespace skyloop

@@ -43,11 +43,9 @@ Result<ReceiverLog> finish_log(ReceiverLog log);
 
 /// UBX and NMEA, mixed as receivers send them.
 Result<ReceiverLog> read_stream_log(ByteSpan bytes, const std::string& name, const LogReading& reading);
-/// The log of PX4. Layout: PX4 user guide, "ULog File Format".
-bool is_ulog(ByteSpan bytes);
+/// The log of PX4 (skyloop/logs/ulog.hpp).
 Result<ReceiverLog> read_ulog(ByteSpan bytes, const std::string& name, const LogReading& reading);
-/// The log of ArduPilot. Layout: ArduPilot, libraries/AP_Logger/LogStructure.h.
-bool is_dataflash(ByteSpan bytes);
+/// The log of ArduPilot (skyloop/logs/dataflash.hpp).
 Result<ReceiverLog> read_dataflash(ByteSpan bytes, const std::string& name, const LogReading& reading);
 
 }  // namespace skyloop

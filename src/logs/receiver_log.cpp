@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "log_parts.hpp"
+#include "skyloop/logs/dataflash.hpp"
+#include "skyloop/logs/ulog.hpp"
 
 namespace skyloop {
 

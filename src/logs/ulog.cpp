@@ -1,10 +1,12 @@
-#include "ulog.hpp"
+#include "skyloop/logs/ulog.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+
+#include "log_parts.hpp"
 
 namespace skyloop {
 namespace {

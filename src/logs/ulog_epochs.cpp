@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "log_parts.hpp"
+#include "skyloop/logs/ulog.hpp"
 #include "skyloop/time/utc_time.hpp"
-#include "ulog.hpp"
 
 namespace skyloop {
 namespace {

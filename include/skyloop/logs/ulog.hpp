@@ -1,13 +1,19 @@
 /// The container of PX4's logs.
+///
+/// Layout: PX4 user guide, "ULog File Format".
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "log_parts.hpp"
+#include "skyloop/base/bytes.hpp"
+#include "skyloop/base/result.hpp"
 
 namespace skyloop {
 
@@ -46,6 +52,8 @@ struct Ulog {
     std::size_t dropouts = 0, dropout_ms = 0, skipped_bytes = 0, cut_records = 0;
 };
 
+/// Whether the bytes begin as such a log does.
+bool is_ulog(ByteSpan bytes);
 /// Reads the records of some topics. Damage is passed over and counted.
 /// Fails with `input` for a file that says it holds what a reader of today does not know.
 Result<Ulog> parse_ulog(ByteSpan bytes, const std::string& name, const std::vector<std::string_view>& topics);
