@@ -1,9 +1,12 @@
 /// The path of a vehicle that somebody else flies now.
 #pragma once
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string_view>
 
 #include "skyloop/base/units.hpp"
@@ -36,11 +39,14 @@ struct LivePathCounts {
 };
 
 /// Samples of the last seconds and the way through them: between two samples a quintic curve that keeps their
-/// positions, velocities and accelerations; beyond the newest as LivePathSettings says. A sample that is far from where
-/// the path was expected is a jump, which nothing leads across; a smaller difference after a silence is taken away
-/// smoothly within 0.3 s.
+/// positions, velocities and accelerations; beyond the newest as LivePathSettings says, where a source whose samples
+/// are far apart is given one and a half of its steps. What a sample does not tell of its velocity and acceleration is
+/// estimated from the ones before it. A sample that is far from where the path was expected (FEEDS.md 3.1: more than
+/// 2 m and than half of its speed times the silence) is a jump, which nothing leads across; a smaller difference from
+/// what was shown is taken away smoothly: within 0.3 s after a silence, else within two steps.
 ///
-/// State: the samples. Not for several threads; at() may be asked in any order within the last two seconds.
+/// State: the samples of five seconds, at most 8192, and what was asked for beyond the newest. Not for several threads;
+/// at() may be asked in any order within the last two seconds, and its latest time counts as shown.
 class LivePath : public Trajectory {
 public:
     explicit LivePath(const LivePathSettings& settings);
@@ -52,11 +58,61 @@ public:
     [[nodiscard]] std::optional<GpsTime> newest() const;
     [[nodiscard]] const LivePathCounts& counts() const { return counts_; }
 
+    /// A state of motion; ECEF, m and s.
+    struct Motion {
+        Eigen::Vector3d position = Eigen::Vector3d::Zero(), velocity = position, acceleration = position;
+        std::optional<Eigen::Quaterniond> body_to_ned{};
+        Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();  ///< body axes, rad/s
+    };
+    /// How long a path goes on without samples, s.
+    struct Patience {
+        double live = 0;         ///< as if there were samples
+        double coast = 0;        ///< with what velocity and acceleration it had
+        double fade = 0;         ///< until it has come to rest
+        double fading_time = 0;  ///< in which acceleration and turn rate fall to 1/e
+    };
+
 private:
-    struct Knot;
+    // A sample, completed.
+    struct Knot {
+        GpsTime time;
+        std::optional<Nanoseconds> source_time{};
+        Motion motion{};
+        bool own_velocity = false;  // the source told it
+        bool begins = false;        // nothing leads from the knot before to this one
+    };
+    // The path went on from the sample at `knot` alone, and was asked for until `until`. From there what it then
+    // differed from the path through the samples is taken away.
+    struct Shown {
+        GpsTime knot, until;
+        Motion from{};  // at `knot`
+        Patience patience{};
+        Motion shown{};  // at `until`
+        Motion difference{};
+        Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+        double length = 0;  // s of taking away; zero: at once
+    };
+
+    [[nodiscard]] Knot completed(GpsTime time, const TruthSample& sample) const;
+    [[nodiscard]] Eigen::Vector3d estimated(const Eigen::Vector3d Motion::*member, const Knot& newest) const;
+    [[nodiscard]] bool is_jump(const Knot& knot) const;
+    [[nodiscard]] Patience patience() const;
+    [[nodiscard]] Motion through_samples(GpsTime time) const;
+    [[nodiscard]] Motion shown_at(GpsTime time) const;
+    void remember_shown(const Knot& next);
+    void measure(Shown& shown) const;
+    void learn_step(double step_s);
+    void forget();
+    void look_at_age(double age_s) const;
+
     LivePathSettings settings_;
     std::deque<Knot> knots_;
-    LivePathCounts counts_;
+    std::deque<Shown> shown_;
+    bool forgot_ = false;                                        // there were samples before the first of knots_
+    double step_s_ = 0;                                          // usual distance of samples; zero: not known yet
+    mutable std::optional<GpsTime> asked_;                       // latest since the newest sample came
+    mutable bool coast_counted_ = false, hold_counted_ = false;  // of this silence
+    mutable LivePathCounts counts_;
 };
 
 }  // namespace skyloop

@@ -17,11 +17,16 @@ enum class ClockMode {
     lock_step  ///< as follow, and the run goes on only as far as the source has said
 };
 
-/// Gives the statements of a source their times in the run. Real time: of the differences between arrival and source's
-/// time the smallest within five seconds is the way between the clocks, since delays are never negative; it is followed
-/// by at most 2 ms a second, and stepped to beyond 250 ms. A source without a clock has its arrivals, evened out.
+/// Gives the statements of a source their times in the run.
 ///
-/// State: the differences seen, and the first time of the source.
+/// Real time (FEEDS.md 3.2): delays are never negative, so the lower edge of the differences between arrival and
+/// source's time over five seconds is the way between the clocks; its slope is the source's rate. The way in use
+/// follows it by at most 2 ms a second, and steps to it beyond 250 ms. Follow and lock-step: the first statement is the
+/// start of the run, and the time since then is the source's own. A source without a clock has its arrivals, evened out
+/// by a loop that knows their usual distance.
+///
+/// Times of the source outside ±127 years are taken as none. State: the differences seen, and the first time of the
+/// source.
 class SourceClock {
 public:
     /// @param start of the run, and the steady clock at it
@@ -29,7 +34,10 @@ public:
 
     struct Stamp {
         GpsTime time;
-        bool restarted = false;  ///< the source's clock went back by more than a second: it began anew
+        /// The source's clock went back by more than a second, or (follow, lock-step) forward by more than a minute: it
+        /// began anew. In follow and lock-step the run goes on from where it was.
+        bool restarted = false;
+        bool stepped = false;  ///< the way between the clocks was not followed but set anew, beyond 250 ms
     };
     /// Statements come in the order of their arrival.
     /// @param source_time nothing: the source has no clock
@@ -38,20 +46,51 @@ public:
     [[nodiscard]] std::optional<GpsTime> run_time(Nanoseconds source_time) const;
     /// From here on the run is at `now` when the steady clock reads `steady_ns` (real time: after a pause).
     void set_run(GpsTime now, std::int64_t steady_ns);
-    /// Seconds of the source in a second of ours, over the last five; nothing before two statements with times.
+    /// Seconds of the source in a second of ours, over the last five; nothing before two statements with times that lie
+    /// a tenth of a second apart.
     [[nodiscard]] std::optional<double> rate() const;
     [[nodiscard]] ClockMode mode() const { return mode_; }
 
 private:
+    // Of all statements that came in one tenth of a second the one that was under way for the shortest time.
     struct Seen {
         std::int64_t source_ns = 0, received_ns = 0;
     };
+    // Received less source less base_ns_, ns: a line over the source's time.
+    struct Line {
+        std::int64_t at_source_ns = 0;
+        double offset_ns = 0, slope = 0;
+        [[nodiscard]] double offset(std::int64_t source_ns) const {
+            return offset_ns + slope * static_cast<double>(source_ns - at_source_ns);
+        }
+    };
+
+    Stamp stamp_arrival(std::int64_t received_ns);
+    bool restarts(std::int64_t source_ns, std::int64_t received_ns);
+    void remember(Seen seen);
+    void fit();
+    bool follow_edge(Seen seen);
+    [[nodiscard]] bool has_stepped(std::int64_t now_ns) const;
+    [[nodiscard]] double offset_of(Seen seen) const;
+    std::int64_t evened_arrival(std::int64_t received_ns);
+    void lock();
+    [[nodiscard]] GpsTime at_steady(std::int64_t steady_ns) const;
+
     ClockMode mode_;
     GpsTime start_;
     std::int64_t start_ns_;
     std::deque<Seen> window_;
-    std::optional<std::int64_t> first_source_ns_;
-    std::optional<double> offset_ns_;  // received less source, as it is used
+    std::int64_t first_received_ns_ = 0;           // of the present window's beginning, for its youth
+    std::optional<std::int64_t> first_source_ns_;  // which belongs to first_time_
+    GpsTime first_time_;                           // follow, lock-step
+    std::optional<std::int64_t> newest_source_ns_;
+    std::optional<std::int64_t> base_ns_;  // received less source, of the first; keeps doubles small
+    std::optional<Line> edge_;             // the lower one of the window
+    std::optional<Line> used_;
+    std::int64_t used_received_ns_ = 0;  // when used_ last moved
+    std::deque<std::int64_t> arrivals_;  // of statements without a time
+    std::int64_t arrival_ns_ = 0;        // of the last of them, evened out
+    double period_ns_ = 0;               // zero: not known yet
 };
 
 }  // namespace skyloop
