@@ -9,14 +9,11 @@
 #include <algorithm>
 
 #include "skyloop/base/digest.hpp"
-#include "skyloop/base/overloaded.hpp"
 #include "skyloop/base/text_file.hpp"
-#include "skyloop/emulator/lever_arm.hpp"
 #include "skyloop/emulator/load_scene.hpp"
 #include "skyloop/emulator/load_track.hpp"
 #include "skyloop/error_model/make_error_model.hpp"
 #include "skyloop/error_model/model_effects.hpp"
-#include "skyloop/trajectory/recorded_path.hpp"
 
 namespace skyloop {
 namespace {
@@ -154,39 +151,6 @@ std::string scenario_digest(const Scenario& scenario, GpsTime start, std::uint64
             if (const auto text = read_text_file(file->path)) digest = fnv1a_64(*text, digest);
     if (scene != 0) digest = fnv1a_64(fmt::format("scene {:016x}", scene), digest);
     return fmt::format("{:016x}", digest);
-}
-
-std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, GpsTime start) {
-    return std::visit(Overloaded{
-                          [](const FixedSettings& fixed) -> std::unique_ptr<Trajectory> {
-                              return std::make_unique<FixedPoint>(fixed.at);
-                          },
-                          [&](const WaypointSettings& path) -> std::unique_ptr<Trajectory> {
-                              return std::make_unique<Waypoints>(start, path.corners);
-                          },
-                          [&](const CircleSettings& circle) -> std::unique_ptr<Trajectory> {
-                              return std::make_unique<Circle>(start, circle.shape);
-                          },
-                          [&](const FileSettings& file) -> std::unique_ptr<Trajectory> {
-                              return std::make_unique<RecordedPath>(*file.track, file.gaps, first_row_at(file, start));
-                          },
-                          [](const LiveSettings& live) -> std::unique_ptr<Trajectory> {
-                              // The vehicle that every receiver has left has no source.
-                              if (!live.path) return std::make_unique<FixedPoint>(live.at.value_or(FixedSettings().at));
-                              return std::make_unique<SharedPath>(live.path);
-                          },
-                      },
-                      settings);
-}
-
-std::unique_ptr<Trajectory> make_antenna_path(const Scenario& scenario, const SimulationSetup& setup) {
-    const auto& [forward, right, down] = scenario.receivers.at(setup.receiver).antenna_offset;
-    const AntennaOffset offset{forward, right, down};
-    const TrajectorySettings& way = trajectory_of(scenario, setup.receiver);
-    auto vehicle = make_trajectory(way, setup.start);
-    if (offset == AntennaOffset{}) return vehicle;
-    const Angle heading = std::visit([](const auto& path) { return path.heading; }, way);
-    return std::make_unique<LeverArm>(std::move(vehicle), offset, heading);
 }
 
 std::unique_ptr<Geoid> find_geoid(const DataFolders& data, std::vector<std::string>& warnings) {

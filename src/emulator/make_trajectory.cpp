@@ -1,0 +1,43 @@
+#include "skyloop/base/overloaded.hpp"
+#include "skyloop/emulator/assembly.hpp"
+#include "skyloop/emulator/lever_arm.hpp"
+#include "skyloop/emulator/live_feeds.hpp"
+#include "skyloop/emulator/load_track.hpp"
+#include "skyloop/trajectory/recorded_path.hpp"
+
+namespace skyloop {
+
+std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, GpsTime start) {
+    return std::visit(Overloaded{
+                          [](const FixedSettings& fixed) -> std::unique_ptr<Trajectory> {
+                              return std::make_unique<FixedPoint>(fixed.at);
+                          },
+                          [&](const WaypointSettings& path) -> std::unique_ptr<Trajectory> {
+                              return std::make_unique<Waypoints>(start, path.corners);
+                          },
+                          [&](const CircleSettings& circle) -> std::unique_ptr<Trajectory> {
+                              return std::make_unique<Circle>(start, circle.shape);
+                          },
+                          [&](const FileSettings& file) -> std::unique_ptr<Trajectory> {
+                              return std::make_unique<RecordedPath>(*file.track, file.gaps, first_row_at(file, start));
+                          },
+                          [](const LiveSettings& live) -> std::unique_ptr<Trajectory> {
+                              // The vehicle that every receiver has left has no source.
+                              if (!live.path) return std::make_unique<FixedPoint>(live.at.value_or(FixedSettings().at));
+                              return std::make_unique<SharedPath>(live.path);
+                          },
+                      },
+                      settings);
+}
+
+std::unique_ptr<Trajectory> make_antenna_path(const Scenario& scenario, const SimulationSetup& setup) {
+    const auto& [forward, right, down] = scenario.receivers.at(setup.receiver).antenna_offset;
+    const AntennaOffset offset{forward, right, down};
+    const TrajectorySettings& way = trajectory_of(scenario, setup.receiver);
+    auto vehicle = make_trajectory(way, setup.start);
+    if (offset == AntennaOffset{}) return vehicle;
+    const Angle heading = std::visit([](const auto& path) { return path.heading; }, way);
+    return std::make_unique<LeverArm>(std::move(vehicle), offset, heading);
+}
+
+}  // namespace skyloop
