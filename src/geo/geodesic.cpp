@@ -8,9 +8,10 @@ GeodesicPoint geodesic_direct(const Geodetic& start, Angle azimuth, Metres dista
     double latitude = 0;
     double longitude = 0;
     double end_azimuth = 0;
+    double reduced_length = 0;
     GeographicLib::Geodesic::WGS84().Direct(start.latitude.deg(), start.longitude.deg(), azimuth.deg(),
-                                            distance.value(), latitude, longitude, end_azimuth);
-    return {Angle::degrees(latitude), Angle::degrees(longitude), Angle::degrees(end_azimuth)};
+                                            distance.value(), latitude, longitude, end_azimuth, reduced_length);
+    return {Angle::degrees(latitude), Angle::degrees(longitude), Angle::degrees(end_azimuth), Metres(reduced_length)};
 }
 
 GeodesicLeg geodesic_between(const Geodetic& from, const Geodetic& to) {

@@ -9,7 +9,8 @@ namespace skyloop {
 struct GeodesicPoint {
     Angle latitude;
     Angle longitude;
-    Angle azimuth;  ///< of the line, clockwise from true north
+    Angle azimuth;            ///< of the line, clockwise from true north
+    Metres reduced_length{};  ///< by how much the point moves sideways per radian that the line turns at its start
 };
 
 /// Where one arrives from `start` after `distance` in direction `azimuth` (Karney 2013, GeographicLib).

@@ -1,0 +1,45 @@
+/// Paths as they are made up, before they lie anywhere on the Earth.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace skyloop {
+
+/// A vehicle's motion in the coordinates of a GeodesicPlane: east and north of its origin along the ellipsoid, height
+/// above the ellipsoid; metres, seconds.
+struct LocalMotion {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+    Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();
+    double heading = 0;  ///< where the vehicle looks, clockwise from the plane's north, rad
+    double roll = 0;     ///< what it leans besides what its acceleration asks for (wind, waves), rad
+    double pitch = 0;    ///< the same, nose up, rad
+};
+
+/// A path as a pure function of time. Its acceleration is continuous and its velocity is the slope of its position. It
+/// begins at rest, and ends at rest if it ends.
+class LocalShape {
+public:
+    static constexpr double endless = std::numeric_limits<double>::infinity();
+    virtual ~LocalShape() = default;
+    /// @param t s since its beginning; before it the path stands at its beginning, after duration() at its end
+    [[nodiscard]] virtual LocalMotion at(double t) const = 0;
+    /// s; `endless` for a path without an end
+    [[nodiscard]] virtual double duration() const = 0;
+};
+
+/// What came of the wish for a path.
+struct PathPlan {
+    std::shared_ptr<const LocalShape> shape;
+    std::vector<std::string>
+        notes;  ///< what its user should be told: where it is slower than asked for, a sentence each
+};
+/// A sentence says why there is no such path, and what would do.
+using PathPlanResult = tl::expected<PathPlan, std::string>;
+
+}  // namespace skyloop

@@ -1,0 +1,31 @@
+/// Generated paths on the Earth.
+#pragma once
+
+#include <memory>
+
+#include "skyloop/trajectory/geodesic_plane.hpp"
+#include "skyloop/trajectory/trajectory.hpp"
+#include "skyloop/trajectory/vehicle.hpp"
+
+namespace skyloop {
+
+/// A shape that lies on the Earth, and a vehicle that follows it. Its attitude follows from the heading and from the
+/// acceleration as it is on average over half a second, and the turn rate from the attitude.
+class ShapedPath : public Trajectory {
+public:
+    /// @param start when the shape begins
+    ShapedPath(GpsTime start, const GeodesicPlane& plane, std::shared_ptr<const LocalShape> shape, VehicleKind vehicle)
+        : start_(start), plane_(plane), shape_(std::move(shape)), vehicle_(vehicle) {}
+    [[nodiscard]] TruthState at(GpsTime time) const override;
+    [[nodiscard]] const LocalShape& shape() const { return *shape_; }
+
+private:
+    [[nodiscard]] Attitude attitude(double t, const LocalMotion& now, Angle north) const;
+
+    GpsTime start_;
+    GeodesicPlane plane_;
+    std::shared_ptr<const LocalShape> shape_;
+    VehicleKind vehicle_;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,38 @@
+/// Ways through places that a vehicle can really go.
+#pragma once
+
+#include <vector>
+
+#include "skyloop/trajectory/local_shape.hpp"
+#include "skyloop/trajectory/vehicle.hpp"
+
+namespace skyloop {
+
+/// A place that a way leads to.
+struct PlannedWaypoint {
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< east, north, height; m
+    double speed = 0;                                 ///< from here to the next one, m/s
+    double hold = 0;                                  ///< stop here for so long, s
+};
+
+/// What is to be planned.
+struct WaypointWish {
+    std::vector<PlannedWaypoint> waypoints;
+    VehicleLimits vehicle;
+    double heading = 0;  ///< until it goes anywhere, rad
+};
+
+/// Rests at the first and at the last waypoint, and goes as fast as speeds and limits let between them.
+///
+/// Multirotors, rovers and pedestrians go straight in space; before a corner they leave the one leg and join the next
+/// on a curve of the fifth degree, at the speed that the lateral acceleration and the jerk allow there; they stop at a
+/// corner that is sharper than 150° or where a leg is steeper than 80°, and turn where they stand (FEEDS.md 2.2).
+///
+/// Planes, boats and cars go round corners on a clothoid, an arc and a clothoid, slower where the turn does not fit
+/// otherwise; their height changes smoothly from waypoint to waypoint, over the way on the ground, along which their
+/// speed counts. They stop where the turn begins.
+///
+/// No plan: fewer than two waypoints, a turn that fits at no speed, a leg that is too steep, a plane that is to stop.
+PathPlanResult plan_waypoints(const WaypointWish& wish);
+
+}  // namespace skyloop

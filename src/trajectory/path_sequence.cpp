@@ -1,0 +1,167 @@
+#include "skyloop/trajectory/path_sequence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "quintic_piece.hpp"
+#include "smooth_step.hpp"
+
+namespace skyloop {
+namespace {
+
+// Between two paths. Roll, pitch and heading go over smoothly.
+class BlendShape : public LocalShape {
+public:
+    BlendShape(const LocalMotion& from, const LocalMotion& to, double seconds)
+        : from_(from), to_(to), piece_(from, to, seconds) {}
+    [[nodiscard]] double duration() const override { return piece_.seconds(); }
+    [[nodiscard]] LocalMotion at(double t) const override {
+        const double inside = std::clamp(t, 0.0, duration());
+        LocalMotion m = piece_.at(inside);
+        const double part = smooth_step(inside / duration()).value;
+        m.heading = from_.heading + part * std::remainder(to_.heading - from_.heading, 2 * std::numbers::pi);
+        m.roll = from_.roll + part * (to_.roll - from_.roll);
+        m.pitch = from_.pitch + part * (to_.pitch - from_.pitch);
+        return m;
+    }
+
+private:
+    LocalMotion from_, to_;
+    QuinticPiece piece_;
+};
+
+bool keeps_limits(const QuinticPiece& piece, const SpeedLimits& limits) {
+    constexpr int samples = 64;
+    Eigen::Vector3d before = piece.at(0).acceleration;
+    for (int i = 1; i <= samples; ++i) {
+        const LocalMotion m = piece.at(piece.seconds() * i / samples);
+        const double jerk = (m.acceleration - before).norm() * samples / piece.seconds();
+        if (m.velocity.norm() > limits.speed || m.acceleration.norm() > limits.acceleration || jerk > limits.jerk)
+            return false;
+        before = m.acceleration;
+    }
+    return true;
+}
+
+// The shortest of a row of times, each a tenth longer than the one before, in which the limits are kept; 0: none.
+double blend_seconds(const LocalMotion& from, const LocalMotion& to, const SpeedLimits& limits) {
+    constexpr double shortest_s = 0.5, longest_s = 1e5, longer = 1.1, slack = 1.02;
+    // What comes faster than the limits is let go at the pace it has.
+    SpeedLimits allowed = limits;
+    allowed.speed = slack * std::max({limits.speed, from.velocity.norm(), to.velocity.norm()});
+    allowed.acceleration = slack * std::max({limits.acceleration, from.acceleration.norm(), to.acceleration.norm()});
+    for (double seconds = shortest_s; seconds < longest_s; seconds *= longer)
+        if (keeps_limits(QuinticPiece(from, to, seconds), allowed)) return seconds;
+    return 0;
+}
+
+class SequenceShape : public LocalShape {
+public:
+    void add(std::shared_ptr<const LocalShape> shape, double seconds) {
+        parts_.push_back({ends_, std::move(shape)});
+        ends_ += seconds;
+    }
+    void repeat() { repeats_ = true; }
+    [[nodiscard]] double duration() const override { return repeats_ ? endless : ends_; }
+    [[nodiscard]] LocalMotion at(double t) const override {
+        if (repeats_ && t > ends_) t = std::fmod(t, ends_);
+        t = std::clamp(t, 0.0, ends_);
+        const auto after = std::upper_bound(parts_.begin() + 1, parts_.end(), t,
+                                            [](double value, const Part& part) { return value < part.begins; });
+        const Part& part = *std::prev(after);
+        return part.shape->at(t - part.begins);
+    }
+
+private:
+    struct Part {
+        double begins;
+        std::shared_ptr<const LocalShape> shape;
+    };
+    std::vector<Part> parts_;
+    double ends_ = 0;
+    bool repeats_ = false;
+};
+
+bool alike(const LocalMotion& a, const LocalMotion& b) {
+    constexpr double near_m = 1e-6, near_rad = 1e-9;
+    return (a.position - b.position).norm() < near_m && (a.velocity - b.velocity).norm() < near_m &&
+           (a.acceleration - b.acceleration).norm() < near_m &&
+           std::abs(std::remainder(a.heading - b.heading, 2 * std::numbers::pi)) < near_rad;
+}
+
+// Where a path that is left in the middle of its motion comes to rest.
+LocalMotion rest_after(const LocalMotion& moving, const SpeedLimits& limits) {
+    LocalMotion rest = moving;
+    rest.position += moving.velocity * speed_change_time(moving.velocity.norm(), limits);
+    rest.velocity.setZero();
+    rest.acceleration.setZero();
+    return rest;
+}
+
+class SequencePlanner {
+public:
+    SequencePlanner(const std::vector<SequenceStep>& steps, const SpeedLimits& limits, bool loop)
+        : steps_(steps), limits_(limits), loop_(loop) {}
+    PathPlanResult plan();
+
+private:
+    [[nodiscard]] double seconds(std::size_t i) const {
+        return std::min(steps_[i].seconds, steps_[i].shape->duration());
+    }
+    std::string add_blend(const LocalMotion& from, const LocalMotion& to, const std::string& where);
+    std::string leave(std::size_t i);
+
+    const std::vector<SequenceStep>& steps_;
+    SpeedLimits limits_;
+    bool loop_;
+    std::shared_ptr<SequenceShape> shape_ = std::make_shared<SequenceShape>();
+    std::vector<std::string> notes_;
+};
+
+// A mistake when there is no way, else nothing.
+std::string SequencePlanner::add_blend(const LocalMotion& from, const LocalMotion& to, const std::string& where) {
+    if (alike(from, to)) return {};
+    const double seconds = blend_seconds(from, to, limits_);
+    const double way = (to.position - from.position).norm();
+    if (seconds == 0)
+        return fmt::format("{}no way of {:.0f} m keeps the limits of {:g} m/s, {:g} m/s² and {:g} m/s³", where, way,
+                           limits_.speed, limits_.acceleration, limits_.jerk);
+    shape_->add(std::make_shared<BlendShape>(from, to, seconds), seconds);
+    notes_.push_back(fmt::format("{}joined by a curve of {:.1f} s over {:.1f} m", where, seconds, way));
+    return {};
+}
+
+// From the end of step i on.
+std::string SequencePlanner::leave(std::size_t i) {
+    const LocalMotion end = steps_[i].shape->at(seconds(i));
+    const bool last = i + 1 == steps_.size();
+    if (last && !loop_)
+        return add_blend(end, rest_after(end, limits_), fmt::format("step {} is left before its end: ", i + 1));
+    const std::size_t next = last ? 0 : i + 1;
+    return add_blend(end, steps_[next].shape->at(0), fmt::format("from step {} to {}: ", i + 1, next + 1));
+}
+
+PathPlanResult SequencePlanner::plan() {
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+        const bool finite = std::isfinite(seconds(i));
+        if (!finite && (loop_ || i + 1 < steps_.size()))
+            return tl::unexpected(fmt::format("step {} has no end; expected duration_s or laps", i + 1));
+        shape_->add(steps_[i].shape, seconds(i));
+        if (!finite) break;
+        if (const std::string mistake = leave(i); !mistake.empty()) return tl::unexpected(mistake);
+    }
+    if (loop_) shape_->repeat();
+    return PathPlan{shape_, notes_};
+}
+
+}  // namespace
+
+PathPlanResult plan_sequence(const std::vector<SequenceStep>& steps, const SpeedLimits& limits, bool loop) {
+    if (steps.empty()) return tl::unexpected(std::string("has no steps; expected one or more"));
+    return SequencePlanner(steps, limits, loop).plan();
+}
+
+}  // namespace skyloop

@@ -1,0 +1,85 @@
+#include "skyloop/trajectory/vehicle_attitude.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "smooth_step.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr double standard_gravity = 9.80665;  // m/s²
+constexpr double in_radians = std::numbers::pi / 180;
+
+struct AcrossAndAlong {
+    double right = 0, up = 0;         // acceleration, m/s²
+    double ground_speed = 0, climbs;  // m/s
+};
+
+AcrossAndAlong in_axes_of_heading(const VehicleMotion& motion) {
+    const double s = std::sin(motion.heading.rad()), c = std::cos(motion.heading.rad());
+    return {motion.acceleration.x() * c - motion.acceleration.y() * s, motion.acceleration.z(),
+            std::hypot(motion.velocity.x(), motion.velocity.y()), motion.velocity.z()};
+}
+
+// The slope of the way, which standing vehicles do not have: it fades in between no speed and a walking pace.
+double slope_of(const AcrossAndAlong& m) {
+    constexpr double walking_mps = 1;
+    const double speed = std::hypot(m.ground_speed, m.climbs);
+    return smooth_step(speed / walking_mps).value * std::atan2(m.climbs, m.ground_speed);
+}
+
+Attitude banked(const AcrossAndAlong& m, const VehicleMotion& motion) {
+    constexpr double steepest = 60 * in_radians, angle_of_attack = 3 * in_radians;
+    constexpr double lifts_off_mps = 10;
+    const double bank = std::clamp(std::atan2(m.right, standard_gravity + m.up), -steepest, steepest);
+    const double attack = angle_of_attack * smooth_step(m.ground_speed / lifts_off_mps).value;
+    return Attitude::roll_pitch_yaw(Angle::radians(bank), Angle::radians(slope_of(m) + attack), motion.heading);
+}
+
+// Thrust carries the weight, accelerates and overcomes the drag; it points along the body's upward axis.
+Attitude leaning_with_thrust(const VehicleMotion& motion) {
+    constexpr double drag_per_s = 0.1;                       // ours: 6° of lean at 10 m/s, as small multirotors show
+    constexpr double least_thrust = 0.2 * standard_gravity;  // whatever it is asked for, it does not turn over
+    Eigen::Vector3d thrust =
+        motion.acceleration + drag_per_s * motion.velocity + Eigen::Vector3d(0, 0, standard_gravity);
+    thrust.z() = std::max(thrust.z(), least_thrust);
+    const Eigen::Vector3d down = Eigen::Vector3d(-thrust.y(), -thrust.x(), thrust.z()).normalized();  // in NED
+    const Eigen::Vector3d ahead(std::cos(motion.heading.rad()), std::sin(motion.heading.rad()), 0);
+    const Eigen::Vector3d right = down.cross(ahead).normalized();
+    Eigen::Matrix3d body_to_ned;
+    body_to_ned << right.cross(down), right, down;
+    return Attitude(Eigen::Quaterniond(body_to_ned));
+}
+
+Attitude leaning_outward(const AcrossAndAlong& m, const VehicleMotion& motion, double degrees_per_g) {
+    const double roll = -degrees_per_g * in_radians * m.right / standard_gravity;
+    return Attitude::roll_pitch_yaw(Angle::radians(roll), Angle::radians(slope_of(m)), motion.heading);
+}
+
+}  // namespace
+
+Attitude attitude_from_motion(VehicleKind kind, const VehicleMotion& motion) {
+    constexpr double car_lean = 4, boat_lean = 15;  // degrees per g
+    const AcrossAndAlong m = in_axes_of_heading(motion);
+    switch (kind) {
+        case VehicleKind::plane:
+            return banked(m, motion);
+        case VehicleKind::multirotor:
+            return leaning_with_thrust(motion);
+        case VehicleKind::rover:
+        case VehicleKind::car:
+            return leaning_outward(m, motion, car_lean);
+        case VehicleKind::boat:
+            return leaning_outward(m, motion, boat_lean);
+        case VehicleKind::rocket:
+            return Attitude::roll_pitch_yaw({}, Angle::degrees(90), motion.heading);
+        case VehicleKind::pedestrian:
+        case VehicleKind::balloon:
+            break;
+    }
+    return Attitude::roll_pitch_yaw({}, {}, motion.heading);
+}
+
+}  // namespace skyloop

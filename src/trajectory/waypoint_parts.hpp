@@ -1,0 +1,40 @@
+// The two ways of going through waypoints, and what they share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "skyloop/trajectory/waypoint_plan.hpp"
+
+namespace skyloop {
+
+// Notes of which there may be many: a few are told, the others counted.
+class PlanNotes {
+public:
+    void add(std::string note) {
+        if (notes_.size() < most_told) notes_.push_back(std::move(note));
+        ++count_;
+    }
+    [[nodiscard]] std::vector<std::string> take() const;
+
+private:
+    static constexpr std::size_t most_told = 3;
+    std::vector<std::string> notes_;
+    std::size_t count_ = 0;
+};
+
+// Speeds that are allowed at the ends of sections, lowered so that each can be reached from its neighbours.
+// sections: of the way between two stations; stations: one more than sections
+struct SpeedSection {
+    double length = 0;
+    SpeedLimits limits;
+};
+void make_speeds_reachable(const std::vector<SpeedSection>& sections, std::vector<double>& stations);
+
+// How far the turns at both ends of a leg may reach into it, when they would like `first` and `last`.
+double share_of_leg(double length, double wanted, double wanted_by_other);
+
+PathPlanResult plan_fly_through(const WaypointWish& wish);
+PathPlanResult plan_steered(const WaypointWish& wish);
+
+}  // namespace skyloop

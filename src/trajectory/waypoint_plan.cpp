@@ -1,0 +1,55 @@
+#include "skyloop/trajectory/waypoint_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "waypoint_parts.hpp"
+
+namespace skyloop {
+namespace {
+
+// Places that lie on one another are one, which takes the stops and the last speed of all of them.
+std::vector<PlannedWaypoint> without_repetitions(const std::vector<PlannedWaypoint>& waypoints) {
+    constexpr double apart_m = 1e-3;
+    std::vector<PlannedWaypoint> kept;
+    for (const PlannedWaypoint& waypoint : waypoints) {
+        if (kept.empty() || (waypoint.place - kept.back().place).norm() > apart_m) {
+            kept.push_back(waypoint);
+            continue;
+        }
+        kept.back().hold += waypoint.hold;
+        kept.back().speed = waypoint.speed;
+    }
+    return kept;
+}
+
+}  // namespace
+
+std::vector<std::string> PlanNotes::take() const {
+    std::vector<std::string> all = notes_;
+    if (count_ > notes_.size()) all.push_back(fmt::format("and {} more corners likewise", count_ - notes_.size()));
+    return all;
+}
+
+void make_speeds_reachable(const std::vector<SpeedSection>& sections, std::vector<double>& stations) {
+    for (std::size_t i = 0; i < sections.size(); ++i)
+        stations[i + 1] = std::min(stations[i + 1], fastest_after(stations[i], sections[i].length, sections[i].limits));
+    for (std::size_t i = sections.size(); i-- > 0;)
+        stations[i] = std::min(stations[i], fastest_after(stations[i + 1], sections[i].length, sections[i].limits));
+}
+
+double share_of_leg(double length, double wanted, double wanted_by_other) {
+    const double sum = wanted + wanted_by_other;
+    return sum <= length ? wanted : length * wanted / sum;
+}
+
+PathPlanResult plan_waypoints(const WaypointWish& wish) {
+    WaypointWish cleaned = wish;
+    cleaned.waypoints = without_repetitions(wish.waypoints);
+    if (cleaned.waypoints.size() < 2)
+        return tl::unexpected(std::string("all waypoints lie at one place; expected two that are apart"));
+    return wish.vehicle.is_steered() ? plan_steered(cleaned) : plan_fly_through(cleaned);
+}
+
+}  // namespace skyloop

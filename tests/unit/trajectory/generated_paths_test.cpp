@@ -1,0 +1,248 @@
+// Generated paths of every kind keep the laws of paths, their own formulas and their seeds.
+#include "skyloop/trajectory/generated_path.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "path_laws.hpp"
+
+namespace skyloop {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double right_angle = std::numbers::pi / 2;
+
+std::shared_ptr<const LocalShape> shape_of(const PathWish& wish, std::uint64_t seed = 1) {
+    auto plan = plan_path(wish, seed);
+    EXPECT_TRUE(plan) << plan.error();
+    return plan ? plan->shape : hover_shape({});
+}
+
+std::string refusal_of(const PathWish& wish) {
+    const auto plan = plan_path(wish, 1);
+    return plan ? "accepted" : plan.error();
+}
+
+LapWish lap_of(VehicleKind kind, double speed, unsigned laps) {
+    LapWish lap;
+    lap.vehicle = usual_limits(kind);
+    lap.vehicle.along.speed = speed;
+    lap.centre = {100, -50, 70};
+    lap.laps = laps;
+    return lap;
+}
+
+TEST(OrbitPlan, BeginsAtRestAndKeepsItsCircle) {
+    const auto endless = shape_of(OrbitWish{lap_of(VehicleKind::multirotor, 8, 0), 40, 0.5, true, 0});
+    const auto most = test::expect_path_laws(*endless, 600, 12);
+    EXPECT_NEAR(most.speed, 8, 1e-6);
+    for (double t = 0; t < 100; t += 7)
+        EXPECT_NEAR((endless->at(t).position - Eigen::Vector3d(100, -50, 70)).norm(), 40, 1e-9);
+    const auto helix = shape_of(OrbitWish{lap_of(VehicleKind::plane, 25, 6), 120, 0, false, 300});
+    test::expect_path_laws(*helix, 1e6, 12);
+    EXPECT_NEAR(helix->at(1e6).position.z(), 370, 1e-9);
+    EXPECT_LT((helix->at(1e6).position - helix->at(0).position).head<2>().norm(), 1e-6);
+}
+
+TEST(OrbitPlan, SlowsDownOrRefuses) {
+    const auto slowed = plan_orbit({lap_of(VehicleKind::car, 20, 1), 30, 0, false, 0});
+    ASSERT_TRUE(slowed);
+    EXPECT_THAT(slowed->notes.at(0), HasSubstr("goes at 8.66 m/s instead of 20"));
+    EXPECT_THAT(refusal_of(OrbitWish{lap_of(VehicleKind::car, 5, 1), 3, 0, false, 0}),
+                HasSubstr("expected at least 6"));
+    EXPECT_THAT(refusal_of(OrbitWish{lap_of(VehicleKind::plane, 20, 1), 9, 0, false, 0}),
+                HasSubstr("slowest of a plane"));
+    EXPECT_THAT(refusal_of(OrbitWish{lap_of(VehicleKind::plane, 20, 0), 90, 0, false, 50}), HasSubstr("laps"));
+}
+
+TEST(RacetrackPlan, ComesBackToItsBeginning) {
+    for (const VehicleKind kind : {VehicleKind::plane, VehicleKind::car, VehicleKind::boat, VehicleKind::multirotor}) {
+        SCOPED_TRACE(vehicle_name(kind));
+        LapWish lap = lap_of(kind, usual_limits(kind).along.speed, 3);
+        lap.heading = 0.4;
+        const auto shape = shape_of(RacetrackWish{lap, 250, 0});
+        const auto most = test::expect_path_laws(*shape, 1e6, 20);
+        EXPECT_LT((shape->at(1e6).position - shape->at(0).position).norm(), 1e-6);
+        EXPECT_LE(most.acceleration, std::hypot(lap.vehicle.lateral, lap.vehicle.along.acceleration));
+    }
+}
+
+TEST(FigureEightPlan, CrossesItsCentre) {
+    const auto shape = shape_of(FigureEightWish{lap_of(VehicleKind::multirotor, 6, 2), 50});
+    test::expect_path_laws(*shape, 1e6, 12);
+    EXPECT_LT((shape->at(0).position - Eigen::Vector3d(100, -50, 70)).norm(), 1e-9);
+    EXPECT_LT((shape->at(shape->duration() / 2).position - Eigen::Vector3d(100, -50, 70)).norm(), 1e-6);
+    const auto slow = plan_figure_eight({lap_of(VehicleKind::multirotor, 20, 2), 15});
+    ASSERT_TRUE(slow);
+    EXPECT_THAT(slow->notes.at(0), HasSubstr("goes at 4.47 m/s"));
+}
+
+TEST(LawnmowerPlan, MowsEveryLine) {
+    LawnmowerWish wish;
+    wish.vehicle = usual_limits(VehicleKind::multirotor);
+    wish.heading = right_angle;
+    const auto shape = shape_of(wish);
+    test::expect_path_laws(*shape, 1e6, 12);
+    // The first line runs east, the others lie south of it; the fifth ends in the east.
+    EXPECT_NEAR(shape->at(1e6).position.x(), 200, 1e-6);
+    EXPECT_NEAR(shape->at(1e6).position.y(), -80, 1e-6);
+    wish.vehicle = usual_limits(VehicleKind::plane);
+    EXPECT_THAT(refusal_of(wish), HasSubstr("waypoint 2, a turn of 90°"));
+}
+
+double root_mean_square_of(const LocalShape& shape, const Eigen::Vector3d& around, Eigen::Index axis) {
+    double sum = 0;
+    constexpr int samples = 20000;
+    for (int i = 0; i < samples; ++i)
+        sum += std::pow((shape.at(10 + i * 0.37).position - around)(axis), 2);
+    return std::sqrt(sum / samples);
+}
+
+TEST(HoverShape, SwaysAsMuchAsItIsTold) {
+    HoverWish wish;
+    wish.place = {3, 4, 120};
+    wish.sway = 0.4;
+    wish.wind = 8;
+    const auto shape = hover_shape(wish);
+    test::expect_path_laws(*shape, 3600, 20);
+    EXPECT_NEAR(root_mean_square_of(*shape, wish.place, 0), 0.4, 0.02);
+    EXPECT_NEAR(root_mean_square_of(*shape, wish.place, 1), 0.4, 0.02);
+    EXPECT_NEAR(root_mean_square_of(*shape, wish.place, 2), 0.2, 0.01);
+    EXPECT_LT(shape->at(100).pitch, -0.05) << "it leans into the wind from the north";
+}
+
+TEST(FloatShape, HeavesWithTheWavesAndDrifts) {
+    FloatWish wish;
+    wish.heading = right_angle;
+    wish.wave_height = 1;
+    const auto anchored = float_shape(wish);
+    test::expect_path_laws(*anchored, 3600, 5);
+    EXPECT_NEAR(root_mean_square_of(*anchored, wish.place, 2), 0.25, 0.02);
+    wish.speed = 3;
+    wish.current = 1;
+    wish.wave_height = 0.01;
+    const LocalMotion moving = float_shape(wish)->at(600);
+    EXPECT_NEAR(moving.velocity.x(), 3, 0.1);
+    EXPECT_NEAR(moving.velocity.y(), 1, 0.1) << "the current sets it north, and its heading stays";
+    EXPECT_NEAR(moving.heading, right_angle, 0.05);
+}
+
+TEST(RocketPlan, FliesItsPhases) {
+    for (const std::string_view preset : {"rocket_1km", "rocket_30km_M3"}) {
+        SCOPED_TRACE(preset);
+        RocketWish wish;
+        wish.pad = {0, 0, 100};
+        ASSERT_TRUE(choose_rocket(wish, preset));
+        const auto shape = shape_of(wish);
+        const auto most = test::expect_path_laws(*shape, 1e6, 4000);
+        double top = 0;
+        for (double t = 0; t < shape->duration(); t += 0.1)
+            top = std::max(top, shape->at(t).position.z() - 100);
+        const bool high = preset == "rocket_30km_M3";
+        EXPECT_NEAR(top, high ? 30000 : 1000, high ? 1500 : 100);
+        if (high) {
+            EXPECT_GT(most.speed, 1020) << "Mach 3 at sea level";
+        }
+        // On the main parachute at the end.
+        EXPECT_NEAR(shape->at(shape->duration() - 10).velocity.z(), -6, 0.1);
+    }
+    EXPECT_THAT(refusal_of(RocketWish{{0, 0, 0}, 0, 5, 3, 1e-4, 25, 6, 300}), HasSubstr("does not lift"));
+}
+
+TEST(BalloonPlan, RisesBurstsAndLands) {
+    BalloonWish wish;
+    wish.place = {0, 0, 200};
+    ASSERT_TRUE(choose_balloon(wish, "balloon_32km"));
+    const auto shape = shape_of(wish);
+    const auto most = test::expect_path_laws(*shape, 1e6, 80);
+    EXPECT_NEAR(most.climb, 5, 1e-3);
+    EXPECT_NEAR(shape->at(6360).position.z(), 31985, 30);
+    EXPECT_NEAR(shape->at(1e6).position.z(), 200, 1e-9);
+    // FEEDS.md 2.5: 30 km at 6 m/s takes 2161.7 s, from rest at the top.
+    wish.place.z() = 0;
+    wish.burst = 30000;
+    const auto lower = shape_of(wish);
+    EXPECT_NEAR(lower->duration() - (30000 / 5.0 + 2.5), 2161.7, 5);
+    EXPECT_THAT(refusal_of(BalloonWish{{0, 0, 3000}, 0, 5, 2000, 6, {}}), HasSubstr("bursts at 2000 m"));
+}
+
+DriveWish drive_of(std::uint64_t seed) {
+    DriveWish wish;
+    wish.vehicle = usual_limits(VehicleKind::car);
+    wish.seed = seed;
+    return wish;
+}
+
+TEST(DrivePlan, StaysInItsAreaForAnHour) {
+    const auto shape = shape_of(drive_of(1), 5);
+    test::expect_path_laws(*shape, 1e6, 15);
+    EXPECT_NEAR(shape->duration(), 3600, 1500);
+    for (double t = 0; t < shape->duration(); t += 1)
+        EXPECT_LE(shape->at(t).position.cwiseAbs().maxCoeff(), 500.001);
+    DriveWish narrow = drive_of(1);
+    narrow.area = 50;
+    EXPECT_THAT(refusal_of(narrow), HasSubstr("the area reaches 50 m"));
+    narrow.area = 1e4;
+    narrow.seconds = 1e7;
+    EXPECT_THAT(refusal_of(narrow), HasSubstr("more than 50000 crossings"));
+}
+
+TEST(GeneratedPaths, TheSameSeedIsTheSamePathAndAnotherAnother) {
+    for (const PathWish& wish : {PathWish(HoverWish{}), PathWish(FloatWish{}), PathWish(drive_of(0))}) {
+        const auto a = shape_of(wish, 11), again = shape_of(wish, 11), other = shape_of(wish, 12);
+        double apart = 0;
+        for (double t = 0; t < 1000; t += 13.7) {
+            EXPECT_EQ(a->at(t).position, again->at(t).position);
+            apart = std::max(apart, (a->at(t).position - other->at(t).position).norm());
+        }
+        EXPECT_GT(apart, 0.1);
+    }
+}
+
+GeneratedPath sequence_of(bool loop) {
+    GeneratedPath path;
+    path.vehicle = usual_limits(VehicleKind::multirotor);
+    HoverWish hover;
+    hover.place = {0, 0, 20};
+    path.steps.push_back({hover, 30});
+    path.steps.push_back({OrbitWish{lap_of(VehicleKind::multirotor, 8, 3), 40, 0.5, true, 0}, LocalShape::endless});
+    hover.place = {200, 0, 20};
+    path.steps.push_back({hover, 20});
+    path.loop = loop;
+    return path;
+}
+
+TEST(PathSequence, JoinsItsStepsWithoutAStep) {
+    const auto once = plan_generated(sequence_of(false), 3);
+    ASSERT_TRUE(once) << once.error();
+    ASSERT_EQ(once->notes.size(), 3U);
+    EXPECT_THAT(once->notes[0], HasSubstr("from step 1 to 2: joined by a curve of"));
+    EXPECT_THAT(once->notes[2], HasSubstr("step 3 is left before its end"));
+    test::expect_path_laws(*once->shape, 1e6, 15);
+    const auto round = plan_generated(sequence_of(true), 3);
+    ASSERT_TRUE(round) << round.error();
+    EXPECT_TRUE(std::isinf(round->shape->duration()));
+    test::expect_path_laws(*round->shape, 1000, 15);
+    GeneratedPath endless = sequence_of(false);
+    endless.steps[0].seconds = LocalShape::endless;
+    EXPECT_EQ(plan_generated(endless, 3).error(), "step 1 has no end; expected duration_s or laps");
+}
+
+TEST(PathSequence, ALoopGoesBackToItsBeginning) {
+    GeneratedPath path;
+    path.vehicle = usual_limits(VehicleKind::multirotor);
+    WaypointWish wish;
+    wish.vehicle = path.vehicle;
+    wish.waypoints = {{{0, 0, 0}, 5, 0}, {{100, 0, 10}, 5, 0}, {{100, 50, 10}, 5, 0}};
+    path.steps.push_back({wish, LocalShape::endless});
+    path.loop = true;
+    const auto plan = plan_generated(path, 1);
+    ASSERT_TRUE(plan) << plan.error();
+    test::expect_path_laws(*plan->shape, 500, 15);
+}
+
+}  // namespace
+}  // namespace skyloop

@@ -1,0 +1,130 @@
+// Shapes on the Earth: places are met, velocities are slopes, attitudes follow from the motion.
+#include "skyloop/trajectory/shaped_path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "skyloop/geo/local_frame.hpp"
+#include "skyloop/trajectory/closed_paths.hpp"
+#include "skyloop/trajectory/flight_profiles.hpp"
+#include "skyloop/trajectory/waypoint_plan.hpp"
+
+namespace skyloop {
+namespace {
+
+const GpsTime shaped_start = to_gps_time(2304, 100000.0);
+
+TruthState state_of(const Trajectory& path, double t) { return path.at(advanced(shaped_start, Seconds(t))); }
+
+// Velocity against differences of positions, turn rate against differences of attitudes.
+void expect_consistent_states(const Trajectory& path, double t, double tolerance = 5e-6) {
+    constexpr double step = 1e-3;
+    const TruthState before = state_of(path, t - step), now = state_of(path, t), after = state_of(path, t + step);
+    const Eigen::Vector3d slope = (after.position - before.position).vector() / (2 * step);
+    EXPECT_LT((slope - now.velocity.vector()).norm(), tolerance) << t;
+    EXPECT_LT((to_ecef(now.geodetic) - now.position).vector().norm(), 1e-6);
+    ASSERT_TRUE(now.orientation);
+    const Eigen::Quaterniond turned =
+        before.orientation->attitude.body_to_ned().conjugate() * after.orientation->attitude.body_to_ned();
+    const Eigen::AngleAxisd rotation(turned);
+    EXPECT_LT((rotation.angle() / (2 * step) * rotation.axis() - now.orientation->turn_rate).norm(), 2e-2) << t;
+}
+
+TEST(GeodesicPlane, MeetsThePlacesItIsGiven) {
+    const GeodesicPlane plane(Geodetic::degrees(47, 8, 500));
+    for (const Geodetic& place : {Geodetic::degrees(47, 8, 500), Geodetic::degrees(47.0001, 8.0001, 520),
+                                  Geodetic::degrees(50, 14, -20), Geodetic::degrees(43, 3, 11000)}) {
+        LocalMotion motion;
+        motion.position = plane.to_local(place);
+        const GeodesicPlane::Placed placed = plane.place(shaped_start, motion);
+        EXPECT_LT((placed.state.position - to_ecef(place)).vector().norm(), 1e-6);
+    }
+}
+
+TEST(GeodesicPlane, CrossesTheDateLineAndThePole) {
+    for (const auto& [a, b] : {std::pair{Geodetic::degrees(10, 179.99, 0), Geodetic::degrees(10, -179.99, 0)},
+                               std::pair{Geodetic::degrees(89.99, 0, 0), Geodetic::degrees(89.99, 180, 0)}}) {
+        const GeodesicPlane plane(a);
+        WaypointWish wish;
+        wish.vehicle = usual_limits(VehicleKind::plane);
+        wish.waypoints = {{plane.to_local(a), 20, 0}, {plane.to_local(b), 20, 0}};
+        const auto plan = plan_waypoints(wish);
+        ASSERT_TRUE(plan);
+        const ShapedPath path(shaped_start, plane, plan->shape, VehicleKind::plane);
+        const double end = plan->shape->duration();
+        EXPECT_LT((state_of(path, end).position - to_ecef(b)).vector().norm(), 1e-6);
+        for (const double part : {0.2, 0.4, 0.7})
+            expect_consistent_states(path, part * end);
+    }
+}
+
+TEST(ShapedPath, FarFromItsOriginVelocitiesAreStillSlopes) {
+    const GeodesicPlane plane(Geodetic::degrees(47, 8, 500));
+    OrbitWish wish;
+    wish.lap.vehicle = usual_limits(VehicleKind::plane);
+    wish.lap.vehicle.along.speed = 250;
+    wish.lap.centre = {300000, -200000, 11000};
+    wish.radius = 9000;
+    const auto plan = plan_orbit(wish);
+    ASSERT_TRUE(plan) << plan.error();
+    const ShapedPath path(shaped_start, plane, plan->shape, VehicleKind::plane);
+    for (double t = 200; t < 600; t += 37)
+        expect_consistent_states(path, t);
+}
+
+TEST(ShapedPath, APlaneBanksInItsTurn) {
+    const GeodesicPlane plane(Geodetic::degrees(-33, 151, 100));
+    OrbitWish wish;
+    wish.lap.vehicle = usual_limits(VehicleKind::plane);
+    wish.lap.centre.z() = 300;
+    wish.radius = 60;
+    const auto plan = plan_orbit(wish);
+    ASSERT_TRUE(plan);
+    const ShapedPath path(shaped_start, plane, plan->shape, VehicleKind::plane);
+    const TruthState state = state_of(path, 100);
+    // Coordinated: tan φ = v² / (g R); clockwise is to the right.
+    const double bank = std::atan(20.0 * 20 / (9.80665 * 60));
+    EXPECT_NEAR(state.orientation->attitude.roll().rad(), bank, 0.01);
+    EXPECT_NEAR(state.orientation->attitude.pitch().deg(), 3, 0.2);
+    const Eigen::Vector3d v = LocalFrame(state.geodetic).to_enu(state.velocity).vector();
+    EXPECT_NEAR(std::remainder(state.orientation->attitude.yaw().rad() - std::atan2(v.x(), v.y()), 6.283185307), 0,
+                1e-6);
+    // The turn about the vertical, seen from the banked body.
+    const double rate = 20.0 / 60;
+    EXPECT_NEAR(state.orientation->turn_rate.norm(), rate, 2e-3);
+    EXPECT_NEAR(state.orientation->turn_rate.z(), rate * std::cos(bank), 5e-3);
+    expect_consistent_states(path, 100);
+}
+
+TEST(ShapedPath, AMultirotorLeansIntoItsAcceleration) {
+    const GeodesicPlane plane(Geodetic::degrees(47, 8, 500));
+    WaypointWish wish;
+    wish.vehicle = usual_limits(VehicleKind::multirotor);
+    wish.waypoints = {{{0, 0, 50}, 12, 0}, {{0, 500, 50}, 12, 0}};
+    const auto plan = plan_waypoints(wish);
+    ASSERT_TRUE(plan);
+    const ShapedPath path(shaped_start, plane, plan->shape, VehicleKind::multirotor);
+    EXPECT_NEAR(state_of(path, -10).orientation->attitude.pitch().deg(), 0, 1e-9);
+    // At full acceleration of 4 m/s², and a drag of a tenth of the speed.
+    const TruthState speeding = state_of(path, 1.5);
+    const double v = speeding.velocity.vector().norm();
+    EXPECT_NEAR(speeding.orientation->attitude.pitch().rad(), -std::atan((4 + 0.1 * v) / 9.80665), 0.02);
+    for (double t = 0.05; t < plan->shape->duration(); t += 0.31)
+        expect_consistent_states(path, t);
+}
+
+TEST(ShapedPath, ARocketStandsOnItsTail) {
+    const GeodesicPlane plane(Geodetic::degrees(28, -80, 3));
+    RocketWish wish;
+    const auto plan = plan_rocket(wish);
+    ASSERT_TRUE(plan) << plan.error();
+    const ShapedPath path(shaped_start, plane, plan->shape, VehicleKind::rocket);
+    const TruthState state = state_of(path, 2);
+    const Eigen::Vector3d nose = state.orientation->attitude.body_to_ned() * Eigen::Vector3d::UnitX();
+    EXPECT_NEAR(nose.z(), -1, 1e-9);
+    expect_consistent_states(path, 2);
+}
+
+}  // namespace
+}  // namespace skyloop
