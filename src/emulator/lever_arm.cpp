@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "skyloop/geo/body_frame.hpp"
 #include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop {
@@ -35,8 +37,19 @@ double LeverArm::yaw_rate(GpsTime time) const {
     return std::abs(rate) > fastest_rad_per_s ? 0 : rate;
 }
 
+// R l from the vehicle to the antenna, and ω × l besides the vehicle's velocity (FEEDS.md 0).
+TruthState LeverArm::turned_with(TruthState state) const {
+    const Eigen::Vector3d arm(offset_.forward, offset_.right, offset_.down);
+    const Eigen::Quaterniond to_ecef = body_to_ecef(state.orientation->attitude, state.geodetic);
+    state.position = state.position + Displacement<Ecef>(to_ecef * arm);
+    state.velocity = Velocity<Ecef>(state.velocity.vector() + to_ecef * state.orientation->turn_rate.cross(arm));
+    state.geodetic = to_geodetic(state.position);
+    return state;
+}
+
 TruthState LeverArm::at(GpsTime time) const {
     TruthState state = vehicle_->at(time);
+    if (state.orientation) return turned_with(std::move(state));
     const auto moving = course(time);
     if (moving) heading_ = *moving;
     const double s = std::sin(heading_), c = std::cos(heading_);

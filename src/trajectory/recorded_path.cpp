@@ -1,108 +1,23 @@
 #include "skyloop/trajectory/recorded_path.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
+#include "skyloop/geo/body_frame.hpp"
 #include "skyloop/geo/geodetic.hpp"
+#include "skyloop/trajectory/motion_attitude.hpp"
+#include "track_knots.hpp"
 
 namespace skyloop {
 namespace {
 
-using Knot = RecordedPath::Knot;
 using Coefficients = Eigen::Matrix<double, 3, 6>;
-
-// The velocity of a parabola fitted to five neighbours (FEEDS.md 1.13.2, step 2).
-Eigen::Vector3d velocity_of_parabola(std::span<const Knot> knots, std::size_t at) {
-    const std::size_t width = std::min<std::size_t>(5, knots.size());
-    const std::size_t first = std::min(at < 2 ? 0 : at - 2, knots.size() - width);
-    if (width < 3) return (knots[1].position - knots[0].position) / (knots[1].time - knots[0].time);
-    // In units of the window's span, so that the columns are alike in size.
-    const double span = knots[first + width - 1].time - knots[first].time;
-    Eigen::MatrixXd design(static_cast<Eigen::Index>(width), 3), places(static_cast<Eigen::Index>(width), 3);
-    for (std::size_t i = 0; i < width; ++i) {
-        const double t = (knots[first + i].time - knots[at].time) / span;
-        const auto row = static_cast<Eigen::Index>(i);
-        design.row(row) << 1, t, t * t;
-        places.row(row) = (knots[first + i].position - knots[at].position).transpose();
-    }
-    const Eigen::MatrixXd fit = design.colPivHouseholderQr().solve(places);
-    return fit.row(1).transpose() / span;
-}
-
-// Of the velocities, with unequal steps; one-sided at the ends (FEEDS.md 1.13.2, step 1).
-void estimate_accelerations(std::span<Knot> knots) {
-    const auto slope = [&](std::size_t i) -> Eigen::Vector3d {
-        return (knots[i + 1].velocity - knots[i].velocity) / (knots[i + 1].time - knots[i].time);
-    };
-    const std::size_t last = knots.size() - 1;
-    knots[0].acceleration = slope(0);
-    knots[last].acceleration = slope(last - 1);
-    for (std::size_t i = 1; i < last; ++i) {
-        const double before = knots[i].time - knots[i - 1].time, after = knots[i + 1].time - knots[i].time;
-        knots[i].acceleration = (after * slope(i - 1) + before * slope(i)) / (before + after);
-    }
-}
-
-// One stretch without gaps: what the rows do not say is taken from their neighbours.
-void fill_in(std::span<Knot> knots) {
-    if (knots.size() < 2) {
-        for (Knot& knot : knots)
-            if (!knot.has_velocity) knot.velocity.setZero();
-        for (Knot& knot : knots)
-            knot.acceleration.setZero();
-        return;
-    }
-    for (std::size_t i = 0; i < knots.size(); ++i)
-        if (!knots[i].has_velocity) knots[i].velocity = velocity_of_parabola(knots, i);
-    estimate_accelerations(knots);
-}
-
-// A point of the straight line between two places, at the height between theirs: on a long way the line itself dips
-// below the ground.
-Eigen::Vector3d lifted(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double part) {
-    const double from_height = to_geodetic(Position<Ecef>(from)).height.above_ellipsoid.value();
-    const double to_height = to_geodetic(Position<Ecef>(to)).height.above_ellipsoid.value();
-    const Eigen::Vector3d chord = from + part * (to - from);
-    if ((to - from).norm() > 1e7) return chord;  // through the Earth: no path that a vehicle took
-    Geodetic place = to_geodetic(Position<Ecef>(chord));
-    place.height.above_ellipsoid = Metres(from_height + part * (to_height - from_height));
-    return to_ecef(place).vector();
-}
-
-// The knots inside a gap: from the velocity before it to a constant one, and from that to the one after it. The time of
-// each change is at most 10 s and a third of the gap.
-std::vector<Knot> bridge(const Knot& from, const Knot& to) {
-    constexpr double longest_change_s = 10, longest_chord_m = 2000;
-    const double span = to.time - from.time;
-    const double change = std::min(longest_change_s, span / 3);
-    // The ends of the changes and the velocity between them agree when the velocity changes evenly.
-    const Eigen::Vector3d way = to.position - from.position;
-    const Eigen::Vector3d mean = (way - (from.velocity + to.velocity) * (change / 2)) / (span - change);
-    const Eigen::Vector3d left = from.position + (from.velocity + mean) * (change / 2);
-    const Eigen::Vector3d right = to.position - (to.velocity + mean) * (change / 2);
-    const double chords = std::min(1e4, std::ceil(std::max(1.0, (right - left).norm() / longest_chord_m)));
-    std::vector<Knot> knots;
-    for (int i = 0; i <= static_cast<int>(chords); ++i) {
-        const double part = static_cast<double>(i) / chords;
-        Knot knot;
-        knot.time = from.time + change + part * (span - 2 * change);
-        knot.position = lifted(left, right, part);
-        knots.push_back(knot);
-    }
-    for (std::size_t i = 0; i < knots.size(); ++i) {
-        const Knot& before = knots[i == 0 ? 0 : i - 1];
-        const Knot& after = knots[std::min(i + 1, knots.size() - 1)];
-        knots[i].velocity = (after.position - before.position) / (after.time - before.time);
-        knots[i].acceleration.setZero();
-    }
-    return knots;
-}
+using Powers = Eigen::Matrix<double, 6, 1>;
 
 // Quintic Hermite in powers of u (FEEDS.md 1.13.3); p relative to the first knot.
-Coefficients quintic(const Knot& from, const Knot& to, double h) {
+Coefficients quintic(const TrackKnot& from, const TrackKnot& to, double h) {
     const Eigen::Vector3d p1 = to.position - from.position;
     const Eigen::Vector3d v0 = h * from.velocity, v1 = h * to.velocity;
     const Eigen::Vector3d a0 = h * h * from.acceleration, a1 = h * h * to.acceleration;
@@ -116,7 +31,7 @@ Coefficients quintic(const Knot& from, const Knot& to, double h) {
     return c;
 }
 
-Coefficients cubic(const Knot& from, const Knot& to, double h) {
+Coefficients cubic(const TrackKnot& from, const TrackKnot& to, double h) {
     const Eigen::Vector3d p1 = to.position - from.position;
     const Eigen::Vector3d v0 = h * from.velocity, v1 = h * to.velocity;
     Coefficients c = Coefficients::Zero();
@@ -126,99 +41,192 @@ Coefficients cubic(const Knot& from, const Knot& to, double h) {
     return c;
 }
 
+// What the coefficients are multiplied by for the value, or its first or second derivative after u.
+Powers powers_of(double u, int derivative) {
+    Powers powers = Powers::Zero();
+    double power = 1;
+    for (int i = derivative; i < 6; ++i, power *= u)
+        powers(i) = power * (derivative == 0 ? 1 : derivative == 1 ? i : i * (i - 1));
+    return powers;
+}
+
 // Whether a quintic piece accelerates far more than its ends and its way ask for (FEEDS.md 1.13.3).
-bool swings_out(const Coefficients& c, const Knot& from, const Knot& to, double h) {
+bool swings_out(const Coefficients& c, const TrackKnot& from, const TrackKnot& to, double h) {
     constexpr double least_mps2 = 0.1;  // noise of rows, not worth a step of the acceleration
     const Eigen::Vector3d needed = 2 * (to.position - from.position - h * from.velocity) / (h * h);
     const double allowed = 3 * std::max({from.acceleration.norm(), to.acceleration.norm(), needed.norm(), least_mps2});
-    for (int i = 1; i < 8; ++i) {
-        const double u = i / 8.0;
-        const Eigen::Vector3d a =
-            (2 * c.col(2) + 6 * u * c.col(3) + 12 * u * u * c.col(4) + 20 * u * u * u * c.col(5)) / (h * h);
-        if (a.norm() > allowed) return true;
-    }
+    for (int i = 1; i < 8; ++i)
+        if ((c * powers_of(i / 8.0, 2)).norm() > allowed * h * h) return true;
     return false;
 }
 
-bool contradicts(const Knot& from, const Knot& to) {
-    constexpr double least_mps = 1, part_of_speed = 0.2;
-    const Eigen::Vector3d moved = (to.position - from.position) / (to.time - from.time);
-    const Eigen::Vector3d told = (from.velocity + to.velocity) / 2;
-    return (moved - told).norm() > least_mps + part_of_speed * told.norm();
-}
-
-std::vector<Knot> knots_of(const Track& track) {
-    std::vector<Knot> knots;
-    knots.reserve(track.points.size());
-    for (const TrackRow& point : track.points) {
-        Knot knot;
-        knot.time = to_seconds(point.time - track.points.front().time).value();
-        knot.position = point.position.vector();
-        knot.has_velocity = point.velocity.has_value();
-        knot.velocity = knot.has_velocity ? point.velocity->vector() : Eigen::Vector3d::Zero();
-        knots.push_back(knot);
+// Of the rows that tell one. Rows of a stretch that follows a jump do not turn out of those before.
+std::vector<AttitudeKnot> attitudes_of(const Track& track) {
+    std::vector<AttitudeKnot> knots;
+    bool jumped = false;
+    for (const TrackRow& row : track.points) {
+        jumped |= row.jump;
+        if (!row.attitude) continue;
+        knots.push_back({to_seconds(row.time - track.points.front().time).value(),
+                         body_to_ecef(*row.attitude, to_geodetic(row.position)), jumped && !knots.empty()});
+        jumped = false;
     }
     return knots;
 }
 
 }  // namespace
 
-RecordedPath::RecordedPath(const Track& track, std::span<const TrackGap> gaps, GpsTime start) : start_(start) {
-    std::vector<Knot> knots = knots_of(track);
-    std::vector<std::size_t> ends;  // of stretches: the index after their last row
-    for (std::size_t i = 1, next = 0; i < track.points.size() && next < gaps.size(); ++i)
-        if (track.points[i].time == gaps[next].to) ends.push_back(i), ++next;
-    ends.push_back(knots.size());
-    std::size_t begin = 0;
-    for (const std::size_t end : ends) {
-        fill_in(std::span(knots).subspan(begin, end - begin));
-        begin = end;
-    }
-    pieces_.reserve(knots.size());
-    for (std::size_t i = 1, next = 0; i < knots.size(); ++i) {
-        if (i != ends[next]) {
-            if (contradicts(knots[i - 1], knots[i])) ++contradictions_;
-            add_piece(knots[i - 1], knots[i]);
-            continue;
+// Leads the pieces from knot to knot.
+struct RecordedPath::Builder {
+    RecordedPath& path;
+    const Track& track;
+    std::span<const TrackGap> gaps;
+
+    void add(const TrackKnot& from, const TrackKnot& to) {
+        const double h = to.time - from.time;
+        Piece piece{from.time, h, from.position, quintic(from, to, h)};
+        if (swings_out(piece.coefficients, from, to, h)) {
+            piece.coefficients = cubic(from, to, h);
+            ++path.report_.cubic_pieces;
         }
-        ++next;
-        Knot before = knots[i - 1];
-        for (const Knot& knot : bridge(knots[i - 1], knots[i])) {
-            add_piece(before, knot);
+        path.pieces_.push_back(piece);
+    }
+    void add_bridge(const TrackKnot& from, const TrackKnot& to) {
+        TrackKnot before = from;
+        for (const TrackKnot& knot : bridge_of_gap(from, to)) {
+            add(before, knot);
             before = knot;
         }
-        add_piece(before, knots[i]);
+        add(before, to);
+    }
+    // The path stands there until `until`.
+    void stand(const TrackKnot& at, double until) {
+        path.pieces_.push_back({at.time, until - at.time, at.position, Coefficients::Zero()});
+    }
+    void add_stretch(std::span<const TrackKnot> knots) {
+        for (std::size_t i = 1; i < knots.size(); ++i) {
+            if (contradict(knots[i - 1], knots[i])) ++path.report_.contradictions;
+            add(knots[i - 1], knots[i]);
+        }
+    }
+    // What leads from one stretch to the next.
+    void join(const TrackKnot& last, const TrackKnot& next, bool jump) {
+        if (jump)
+            stand(last, next.time);
+        else
+            add_bridge(last, next);
+    }
+    // The row after the last one of the stretch that begins with this one.
+    std::size_t end_of_stretch(std::size_t begin) {
+        std::size_t end = begin + 1;
+        for (; end < track.points.size() && !track.points[end].jump; ++end) {
+            while (!gaps.empty() && gaps.front().to < track.points[end].time)
+                gaps = gaps.subspan(1);
+            if (!gaps.empty() && gaps.front().to == track.points[end].time) break;
+        }
+        return end;
+    }
+    // When the path begins and after each jump, s.
+    std::vector<double> lead_through_rows() {
+        constexpr double instant_s = 1e-9;
+        std::vector<TrackKnot> knots = knots_of(track);
+        path.pieces_.reserve(knots.size());
+        std::vector<double> begins{0};
+        for (std::size_t begin = 0, end = 0; begin < knots.size(); begin = end) {
+            end = end_of_stretch(begin);
+            const auto stretch = std::span(knots).subspan(begin, end - begin);
+            fill_in_motion(stretch);
+            if (begin > 0) join(knots[begin - 1], knots[begin], track.points[begin].jump);
+            if (begin > 0 && track.points[begin].jump) begins.push_back(knots[begin].time);
+            add_stretch(stretch);
+        }
+        if (path.pieces_.empty() || track.points.back().jump) stand(knots.back(), knots.back().time + instant_s);
+        return begins;
+    }
+};
+
+std::string_view attitude_source_name(AttitudeSource source) {
+    return std::array<std::string_view, 3>{"not told", "of the rows",
+                                           "from the motion"}[static_cast<std::size_t>(source)];
+}
+
+RecordedPath::RecordedPath(const Track& asked, std::span<const TrackGap> gaps, GpsTime start,
+                           const CurveSettings& settings)
+    : start_(start) {
+    Track track = asked;
+    if (settings.smoothing != Smoothing::none)
+        report_.smoothing = smooth_track(track, settings.vehicle.value_or(VehicleClass::car), settings.smoothing);
+    const std::vector<double> begins = Builder{*this, track, gaps}.lead_through_rows();
+    for (const TrackRow& row : track.points) {
+        report_.rows_with_velocity += row.velocity.has_value();
+        report_.rows_with_attitude += row.attitude.has_value();
+    }
+    report_.stretches = begins.size();
+    if (report_.rows_with_attitude >= 2) {
+        attitude_ = AttitudeCurve(attitudes_of(track));
+        report_.attitude = AttitudeSource::rows;
+    } else if (settings.vehicle) {
+        stand_by_motion(begins, settings);
+        report_.attitude = AttitudeSource::motion;
     }
 }
 
-void RecordedPath::add_piece(const Knot& from, const Knot& to) {
-    const double h = to.time - from.time;
-    Piece piece{from.time, h, from.position, quintic(from, to, h)};
-    if (swings_out(piece.coefficients, from, to, h)) {
-        piece.coefficients = cubic(from, to, h);
-        ++cubic_;
+// Asks the finished curve 20 times a second, more seldom on ways that are longer than three hours.
+void RecordedPath::stand_by_motion(std::span<const double> stretch_begins, const CurveSettings& settings) {
+    constexpr double finest_step_s = 0.05, most_samples = 2e5;
+    const double whole = duration().value();
+    const double wanted_step = std::max(finest_step_s, whole / most_samples);
+    std::vector<MotionSample> samples;
+    for (std::size_t k = 0; k < stretch_begins.size(); ++k) {
+        const double begin = stretch_begins[k];
+        const double end = k + 1 < stretch_begins.size() ? stretch_begins[k + 1] : whole;
+        const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil((end - begin) / wanted_step)));
+        const double step = (end - begin) / static_cast<double>(count);
+        // The end of a stretch belongs to the next one.
+        const std::size_t last = k + 1 < stretch_begins.size() ? count - 1 : count;
+        for (std::size_t i = 0; i <= last; ++i) {
+            const double t = begin + static_cast<double>(i) * step;
+            const Place place = place_at(t);
+            const Piece& piece = *place.piece;
+            const Geodetic geodetic =
+                to_geodetic(Position<Ecef>(piece.anchor + piece.coefficients * powers_of(place.u, 0)));
+            const Eigen::Quaterniond to_ned = ned_to_ecef(geodetic).conjugate();
+            samples.push_back({t, geodetic, to_ned * (piece.coefficients * powers_of(place.u, 1) / piece.length),
+                               to_ned * (piece.coefficients * powers_of(place.u, 2) / (piece.length * piece.length)),
+                               i == 0});
+        }
     }
-    pieces_.push_back(piece);
+    attitude_ = AttitudeCurve(attitude_from_motion(samples, *settings.vehicle, settings.heading));
 }
 
-TruthState RecordedPath::at(GpsTime time) const {
-    const double t = difference(time, start_).value();
-    const bool moves = t >= 0 && t <= duration().value();
+RecordedPath::Place RecordedPath::place_at(double t) const {
     const double inside = std::clamp(t, 0.0, duration().value());
     auto piece = std::upper_bound(pieces_.begin(), pieces_.end(), inside,
                                   [](double value, const Piece& p) { return value < p.begins; });
     piece = piece == pieces_.begin() ? piece : std::prev(piece);
-    const double u = std::min(1.0, (inside - piece->begins) / piece->length);
-    Eigen::Matrix<double, 6, 1> powers, slopes;
-    for (int i = 0; i < 6; ++i) {
-        powers(i) = std::pow(u, i);
-        slopes(i) = i == 0 ? 0 : i * std::pow(u, i - 1);
-    }
+    return {&*piece, std::min(1.0, (inside - piece->begins) / piece->length), t >= 0 && t <= duration().value()};
+}
+
+Eigen::Vector3d RecordedPath::acceleration(GpsTime time) const {
+    const Place place = place_at(difference(time, start_).value());
+    if (!place.inside) return Eigen::Vector3d::Zero();
+    return place.piece->coefficients * powers_of(place.u, 2) / (place.piece->length * place.piece->length);
+}
+
+TruthState RecordedPath::at(GpsTime time) const {
+    const double t = difference(time, start_).value();
+    const Place place = place_at(t);
+    const Piece& piece = *place.piece;
     TruthState state;
     state.time = time;
-    state.position = Position<Ecef>(piece->anchor + piece->coefficients * powers);
+    state.position = Position<Ecef>(piece.anchor + piece.coefficients * powers_of(place.u, 0));
     state.geodetic = to_geodetic(state.position);
-    if (moves) state.velocity = Velocity<Ecef>(piece->coefficients * slopes / piece->length);
+    if (place.inside) state.velocity = Velocity<Ecef>(piece.coefficients * powers_of(place.u, 1) / piece.length);
+    if (attitude_.empty()) return state;
+    const BodyTurn turn = attitude_.at(std::clamp(t, 0.0, duration().value()));
+    state.orientation.emplace();
+    state.orientation->attitude = attitude_at(state.geodetic, turn.body_to_ecef);
+    if (place.inside) state.orientation->turn_rate = turn.rate;
     return state;
 }
 

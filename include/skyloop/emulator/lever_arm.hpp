@@ -15,8 +15,10 @@ struct AntennaOffset {
     bool operator==(const AntennaOffset&) const = default;
 };
 
-/// The path of an antenna on a vehicle that follows another path, upright: pitch and roll are 0. The vehicle looks
-/// where it goes; at rest it looks where it last went, and before it ever moved into a given direction.
+/// The path of an antenna on a vehicle that follows another path. Where that path tells how the vehicle stands and
+/// turns, the antenna is at R l and moves by ω × l besides (FEEDS.md 0). Else the vehicle is upright, pitch and roll
+/// are 0, and looks where it goes; at rest it looks where it last went, and before it ever moved into a given
+/// direction.
 ///
 /// State: the heading of the last instant at which it moved. Instants are to come in ascending order.
 class LeverArm : public Trajectory {
@@ -28,6 +30,7 @@ public:
 private:
     [[nodiscard]] std::optional<double> course(GpsTime time) const;
     [[nodiscard]] double yaw_rate(GpsTime time) const;
+    [[nodiscard]] TruthState turned_with(TruthState state) const;
 
     std::unique_ptr<Trajectory> vehicle_;
     AntennaOffset offset_;

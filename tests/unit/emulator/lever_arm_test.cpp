@@ -73,5 +73,43 @@ TEST(LeverArm, ACornerIsNoSwing) {
         ASSERT_LT(antenna.at(arm_start + std::chrono::milliseconds(ms)).velocity.length().value(), 15) << ms << " ms";
 }
 
+// Stands at a place and turns.
+class Spinning : public Trajectory {
+public:
+    [[nodiscard]] TruthState at(GpsTime time) const override {
+        const double t = difference(time, arm_start).value();
+        TruthState state = FixedPoint(arm_place).at(time);
+        state.orientation.emplace();
+        state.orientation->attitude =
+            Attitude::roll_pitch_yaw(Angle::degrees(10), Angle::degrees(-5), Angle::degrees(200 * t));
+        // 200 °/s about the vertical, in the body's axes.
+        state.orientation->turn_rate =
+            state.orientation->attitude.body_to_ned().conjugate() * Eigen::Vector3d(0, 0, Angle::degrees(200).rad());
+        return state;
+    }
+};
+
+TEST(LeverArm, ATurnMovesTheAntennaInAllDirections) {
+    // FEEDS.md 0: a 1 m arm at 200 °/s gives 3.5 m/s.
+    const LeverArm level(std::make_unique<Spinning>(), {1, 0, 0}, Angle());
+    EXPECT_NEAR(level.at(arm_start).velocity.length().value(), 3.49 * std::cos(Angle::degrees(5).rad()), 0.01);
+    const LeverArm antenna(std::make_unique<Spinning>(), {0.8, -0.4, -1.5}, Angle());
+    const auto step = std::chrono::microseconds(100);
+    for (int ms = 0; ms < 2000; ms += 7) {
+        const GpsTime time = arm_start + std::chrono::milliseconds(ms);
+        const TruthState state = antenna.at(time);
+        const Eigen::Vector3d passed = (antenna.at(time + step).position - antenna.at(time - step).position).vector();
+        ASSERT_LT((passed / 2e-4 - state.velocity.vector()).norm(), 5e-5) << "the derivative of the place";
+        ASSERT_NEAR((state.position - to_ecef(arm_place)).length().value(), std::sqrt(0.64 + 0.16 + 2.25), 1e-6);
+        ASSERT_TRUE(state.orientation.has_value());
+    }
+}
+
+TEST(LeverArm, ABankLowersTheRightWing) {
+    const LeverArm antenna(std::make_unique<Spinning>(), {0, 2, 0}, Angle());
+    const Eigen::Vector3d arm = arm_enu(antenna, FixedPoint(arm_place), arm_start);
+    EXPECT_NEAR(arm.z(), -2 * std::sin(Angle::degrees(10).rad()) * std::cos(Angle::degrees(5).rad()), 1e-6);
+}
+
 }  // namespace
 }  // namespace skyloop
