@@ -31,6 +31,8 @@ const ReceiverSettings& Receiver::settings() const { return core_->settings(); }
 const ReceiverCounters& Receiver::counters() const { return core_->counters(); }
 const BoardProfile& Receiver::board() const { return core_->board(); }
 const NavigationState& Receiver::state() const { return core_->state(); }
+
+std::optional<GpsTime> Receiver::report_time() const { return core_->report_time(); }
 std::string Receiver::persistent_text() const { return core_->store().persistent_text(); }
 Result<void> Receiver::restore(const std::string& text, const std::string& name) { return core_->restore(text, name); }
 

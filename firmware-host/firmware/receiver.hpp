@@ -80,6 +80,9 @@ public:
     [[nodiscard]] const BoardProfile& board() const;
     /// What it reported last, as edited.
     [[nodiscard]] const NavigationState& state() const;
+    /// When the messages of the last epoch begin to leave; nothing when none do: it starts, is mute or does not
+    /// navigate.
+    [[nodiscard]] std::optional<GpsTime> report_time() const;
     /// What outlives the process: battery-backed layer and flash.
     [[nodiscard]] std::string persistent_text() const;
     /// Takes `ReceiverOptions::stored`. Fails with `input` for a text that is none; @param name for the message

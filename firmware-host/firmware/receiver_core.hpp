@@ -41,6 +41,7 @@ public:
     [[nodiscard]] const ReceiverSettings& settings() const { return settings_; }
     [[nodiscard]] const ReceiverCounters& counters() const { return counters_; }
     [[nodiscard]] const NavigationState& state() const { return *reported_; }
+    [[nodiscard]] std::optional<GpsTime> report_time() const { return report_time_; }
 
 private:
     // What a client's message has led to, on its way out.
@@ -119,7 +120,8 @@ private:
     GpsTime deaf_until_{};        ///< the receiver boots: input is lost
     GpsTime silent_until_{};      ///< no epoch is reported
     GpsTime last_burst_{};
-    GpsTime last_answer_{};  ///< planned; later ones do not overtake it
+    std::optional<GpsTime> report_time_;  ///< of the last epoch; nothing: it is not reported
+    GpsTime last_answer_{};               ///< planned; later ones do not overtake it
     std::optional<AntennaStatus> told_antenna_;
     FirmwareFaults faults_;
     /// The speed that ForceBaud gave, and the one before.

@@ -146,6 +146,7 @@ GpsTime Receiver::Core::burst_time(GpsTime epoch) {
 
 void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     const GpsTime time = epoch.fix.time;
+    report_time_.reset();
     if (time < silent_until_) return;
     const CorrectionStatus corrections = corrections_.status(time, store_);
     settings_.corrections = corrections.state;
@@ -158,6 +159,7 @@ void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     const GpsTime burst = advanced(burst_time(time), state->report_delay);
     for (int i = 0; i < state->reports; ++i)
         outbox_.plan(burst, [this, state](GpsTime t) { send_epoch(*state, t); });
+    if (state->reports > 0 && !faults_.mute) report_time_ = burst;
 }
 
 void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {

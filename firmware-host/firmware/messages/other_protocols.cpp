@@ -8,7 +8,8 @@
 namespace skyloop::firmware {
 namespace {
 
-constexpr std::uint16_t every_ignore_flag = 0xFF;
+// GPS_INPUT_IGNORE_FLAGS of common.xml.
+constexpr std::uint16_t ignore_hdop = 2, ignore_vdop = 4, every_ignore_flag = 0xFF;
 
 void put_msp_position(const Fix& fix, MspSensorGps& to) {
     to.h_acc = field<std::uint16_t>(fix.horizontal_accuracy.value() * 100);
@@ -47,8 +48,14 @@ void put_mavlink_position(const Fix& fix, MavlinkGpsInput& to) {
     to.lat = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
     to.lon = field<std::int32_t>(fix.position.longitude.deg() * 1e7);
     to.alt = static_cast<float>(msl_height(fix));
-    if (fix.dop.hdop > 0) to.hdop = static_cast<float>(fix.dop.hdop);
-    if (fix.dop.vdop > 0) to.vdop = static_cast<float>(fix.dop.vdop);
+    if (fix.dop.hdop > 0)
+        to.hdop = static_cast<float>(fix.dop.hdop);
+    else
+        to.ignore_flags |= ignore_hdop;
+    if (fix.dop.vdop > 0)
+        to.vdop = static_cast<float>(fix.dop.vdop);
+    else
+        to.ignore_flags |= ignore_vdop;
     to.vn = static_cast<float>(fix.velocity.north);
     to.ve = static_cast<float>(fix.velocity.east);
     to.vd = static_cast<float>(fix.velocity.down);

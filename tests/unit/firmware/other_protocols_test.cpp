@@ -122,6 +122,9 @@ TEST_F(OtherProtocols, GpsInputTellsTheSolution) {
     EXPECT_EQ(none.fix_type, 1);
     EXPECT_EQ(none.time_week, 0);
     EXPECT_EQ(none.hdop, 65535);
+    NavigationState without_dop = navigating();
+    without_dop.epoch.fix.dop = {};
+    EXPECT_EQ(mavlink_gps_input(without_dop).ignore_flags, 2 | 4);
 }
 
 TEST_F(OtherProtocols, APairTellsWhereItPoints) {

@@ -129,5 +129,28 @@ TEST(Receiver, GivesTheSameBytesByTheSameTimeHoweverOftenItIsPolled) {
     }
 }
 
+// A report leaves one solution latency after its epoch, to the first byte.
+TEST(Receiver, TellsWhenTheReportOfAnEpochLeaves) {
+    BoardProfile board = sample_board(NmeaVersion::v4_10, {gps});
+    board.solution_latency = Seconds(0.07);
+    Receiver receiver(board, {1});
+    EXPECT_FALSE(receiver.report_time());
+    const Epoch epoch = epoch_at(0, 1s);
+    receiver.on_epoch(epoch);
+    ASSERT_EQ(receiver.report_time(), epoch.fix.time + 70ms);
+    EXPECT_TRUE(sent_by(receiver, epoch.fix.time + 69ms).empty());
+    EXPECT_FALSE(sent_by(receiver, epoch.fix.time + 72ms).empty());
+
+    receiver.on_epoch(epoch_at(1, 1s), [](NavigationState& state) { state.report_delay = Seconds(0.2); });
+    EXPECT_EQ(receiver.report_time(), epoch.fix.time + 1270ms);
+    receiver.on_epoch(epoch_at(2, 1s), [](NavigationState& state) { state.reports = 0; });
+    EXPECT_FALSE(receiver.report_time());
+    FirmwareFaults faults;
+    faults.mute = true;
+    receiver.set_faults(faults);
+    receiver.on_epoch(epoch_at(3, 1s));
+    EXPECT_FALSE(receiver.report_time());
+}
+
 }  // namespace
 }  // namespace skyloop::firmware
