@@ -174,7 +174,8 @@ void Emulator::run_epochs(Nanoseconds lateness) {
     for (std::size_t i = 0; i < stations.size(); ++i) {
         if (!traces_[i]) continue;
         stations[i].report(*traces_[i], lateness, !parts_.pacer->is_virtual());
-        parts_.director.show(EpochSeen{now_, i, *traces_[i], stations[i].receiver().state(), lateness});
+        const firmware::Receiver& receiver = stations[i].receiver();
+        parts_.director.show(EpochSeen{now_, i, *traces_[i], receiver.state(), lateness, receiver.report_time()});
         if (status_) status_({now_, &*traces_[i], lateness, i});
     }
 }

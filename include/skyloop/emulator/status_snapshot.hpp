@@ -10,6 +10,7 @@
 
 #include "skyloop/base/bytes.hpp"
 #include "skyloop/base/units.hpp"
+#include "skyloop/fault/epoch_views.hpp"
 #include "skyloop/flow/fix.hpp"
 #include "skyloop/geo/geodetic.hpp"
 #include "skyloop/gnss/signal.hpp"
@@ -17,20 +18,6 @@
 #include "skyloop/time/gps_time.hpp"
 
 namespace skyloop {
-
-/// One satellite above the antenna, and what the receiver makes of it.
-struct SatelliteSeen {
-    SatelliteId id;
-    Angle azimuth, elevation;
-    bool line_of_sight = true;
-    bool reflected = false;  ///< what is tracked has been reflected
-    bool blocked = false;    ///< nothing arrives
-    bool used = false;       ///< in the solution
-    bool healthy = true;     ///< by its broadcast
-    int paths = 1;           ///< rays that arrive
-    /// C/N0 of each signal that the receiver tracks; of a sensor model the first signal's alone.
-    std::vector<std::pair<Signal, DbHz>> signals;
-};
 
 /// One wire of a receiver.
 struct WireStatus {
@@ -44,11 +31,6 @@ struct WireStatus {
     std::uint64_t messages_sent = 0, messages_dropped = 0;      ///< dropped: the transmit buffer was full
     std::string belief;                                         ///< of a scripted client; empty: none
     bool trusted = false;                                       ///< … it would navigate by this receiver
-};
-
-/// East, north, up.
-struct EnuError {
-    Metres east, north, up;
 };
 
 /// One receiver at its last epoch that was looked at.

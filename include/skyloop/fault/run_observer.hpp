@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,7 @@ struct EpochSeen {
     const Trace& trace;                         ///< what was true, and what the receiver solved, faults among it
     const firmware::NavigationState& reported;  ///< what it reports of that
     Nanoseconds lateness{0};
+    std::optional<GpsTime> leaves{};  ///< when its messages begin to; nothing: the receiver says nothing of this epoch
 };
 
 /// A whole message on a wire, as the receiver heard or sent it, before the wire's own faults.
