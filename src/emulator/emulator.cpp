@@ -71,11 +71,22 @@ void Emulator::await_feeds(const std::atomic<bool>& stop) {
 }
 
 void Emulator::run_until(GpsTime end, const std::atomic<bool>& stop) {
+    advance_to(end, stop);
+    finish();
+}
+
+bool Emulator::goes_on(GpsTime end, LastInstant last) const {
+    if (now_ < end || last == LastInstant::left) return now_ < end;
+    return now_ == end && std::any_of(parts_.stations.begin(), parts_.stations.end(),
+                                      [&](const Station& s) { return s.next_epoch() <= now_; });
+}
+
+void Emulator::advance_to(GpsTime end, const std::atomic<bool>& stop, LastInstant last) {
     // What is wrong from the first instant on is so before the first byte.
     direct();
     for (Station& station : parts_.stations)
         station.follow_faults(now_);
-    while (now_ < end && !stop && !stopped()) {
+    while (goes_on(end, last) && !stop && !stopped()) {
         hear_feeds();
         if (parts_.pacer->paused()) {
             Pacer::rest();
@@ -97,9 +108,12 @@ void Emulator::run_until(GpsTime end, const std::atomic<bool>& stop) {
         now_ = next;
         direct();
         exchange_bytes();
-        if (now_ < end) run_epochs(*lateness);
+        if (now_ < end || last == LastInstant::included) run_epochs(*lateness);
         if (recording_failed()) break;
     }
+}
+
+void Emulator::finish() {
     for (Station& station : parts_.stations)
         station.finish(now_);
 }

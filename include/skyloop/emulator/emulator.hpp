@@ -45,8 +45,19 @@ public:
     void await_clients(const std::atomic<bool>& stop);
     /// Waits until each vehicle that has no place yet is told one, or until `stop` is true; time begins then.
     void await_feeds(const std::atomic<bool>& stop);
-    /// Runs to `end`, or until `stop` is true, or until a recording fails.
+    /// Runs to `end`, or until `stop` is true, or until a recording fails; advance_to() and finish().
     void run_until(GpsTime end, const std::atomic<bool>& stop);
+    /// Whether what is due at the very instant of the end of a stretch belongs to it.
+    enum class LastInstant { left, included };
+    /// Goes on to `time`, or until the run is stopped(), `stop` is true or a recording fails. Faults and commands of
+    /// the present instant come first. Stretches may be as short as one likes: together they are one run.
+    void advance_to(GpsTime time, const std::atomic<bool>& stop, LastInstant last = LastInstant::left);
+    /// Writes what is left to write. Nothing comes after it.
+    void finish();
+    /// When something happens next that the stations and the director know of: an epoch, a fault, a look at a wire.
+    [[nodiscard]] GpsTime next_event() const { return next_instant(GpsTime::max()); }
+    /// A command has ended the run.
+    [[nodiscard]] bool stopped() const { return parts_.director.stopped(); }
 
     [[nodiscard]] const std::vector<Station>& stations() const { return parts_.stations; }
     [[nodiscard]] std::vector<Station>& stations() { return parts_.stations; }
@@ -73,7 +84,7 @@ private:
     void hear_feeds();
     [[nodiscard]] bool may_go_to(GpsTime next);
     [[nodiscard]] std::uint64_t bytes_out() const;
-    [[nodiscard]] bool stopped() const { return parts_.director.stopped(); }
+    [[nodiscard]] bool goes_on(GpsTime end, LastInstant last) const;
     void run_epochs(Nanoseconds lateness);
     [[nodiscard]] bool recording_failed() const;
 
