@@ -56,6 +56,13 @@ const RayTracedScene* add_city(std::vector<std::unique_ptr<PropagationEffect>>& 
     return added;
 }
 
+// After the scenario's own walls, so that they may be made to stand where they do not.
+void add_obstacles(std::vector<std::unique_ptr<PropagationEffect>>& effects, const SimulationSetup& setup) {
+    if (setup.embedding == nullptr || !setup.embedding->obstacles) return;
+    if (auto obstacles = setup.embedding->obstacles(setup.receiver))
+        effects.insert(effects.end() - 1, std::move(obstacles));
+}
+
 // What stands around, and what its user should be told of it.
 Result<void> add_scene(const Scenario& scenario, const DataFolders& data, Assembly& assembly) {
     const Geodetic place = make_trajectory(scenario.trajectory, assembly.start)->at(assembly.start).geodetic;
@@ -105,7 +112,8 @@ std::string receiver_detail(const Station::Parts& parts) {
 }
 
 std::unique_ptr<Pacer> make_pacer(const RunMode& mode, GpsTime start, double speed, const LiveFeeds* feeds) {
-    if (feeds != nullptr && feeds->leads()) return std::make_unique<LedPacer>(start);
+    if (feeds != nullptr && feeds->leads()) return std::make_unique<SourcePacer>(start);
+    if (mode.embedding != nullptr) return std::make_unique<LedPacer>(start);
     if (mode.virtual_time) return std::make_unique<VirtualPacer>(start);
     // A run that begins now keeps the wall clock's time; what loading took is not to shift it.
     return std::make_unique<RealtimePacer>(start, start == mode.now ? mode.now_steady_ns : steady_clock_ns(), speed);
@@ -202,6 +210,7 @@ Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSet
     FixMaker fix_maker = scenario.model.sensor_model ? FixMaker(make_error_model(error_model_settings(scenario, setup)))
                                                      : FixMaker(measuring_receiver(scenario, setup));
     const RayTracedScene* city = add_city(*effects, scenario, setup);
+    add_obstacles(*effects, setup);
     return Simulation(
         {make_antenna_path(scenario, setup), setup.navigation, std::move(*effects), std::move(fix_maker), city});
 }

@@ -31,12 +31,16 @@ std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, 
 }
 
 std::unique_ptr<Trajectory> make_antenna_path(const Scenario& scenario, const SimulationSetup& setup) {
-    const auto& [forward, right, down] = scenario.receivers.at(setup.receiver).antenna_offset;
+    return make_antenna_path(scenario, setup.receiver,
+                             make_trajectory(trajectory_of(scenario, setup.receiver), setup.start));
+}
+
+std::unique_ptr<Trajectory> make_antenna_path(const Scenario& scenario, std::size_t receiver,
+                                              std::unique_ptr<Trajectory> vehicle) {
+    const auto& [forward, right, down] = scenario.receivers.at(receiver).antenna_offset;
     const AntennaOffset offset{forward, right, down};
-    const TrajectorySettings& way = trajectory_of(scenario, setup.receiver);
-    auto vehicle = make_trajectory(way, setup.start);
     if (offset == AntennaOffset{}) return vehicle;
-    const Angle heading = std::visit([](const auto& path) { return path.heading; }, way);
+    const Angle heading = std::visit([](const auto& path) { return path.heading; }, trajectory_of(scenario, receiver));
     return std::make_unique<LeverArm>(std::move(vehicle), offset, heading);
 }
 

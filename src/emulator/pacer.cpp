@@ -21,7 +21,7 @@ void Pacer::rest() {
     nanosleep(&twenty_ms, nullptr);
 }
 
-Nanoseconds LedPacer::tick(bool bytes_pending) const {
+Nanoseconds SourcePacer::tick(bool bytes_pending) const {
     return Nanoseconds(std::llround(bytes_pending ? busy_tick_ns : idle_tick_ns));
 }
 

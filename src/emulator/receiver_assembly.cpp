@@ -117,6 +117,14 @@ Result<std::unique_ptr<PowerSwitch>> power_of(const std::string& uri, const Shar
     return power;
 }
 
+Result<std::unique_ptr<Transport>> open_wire(const WireRequest& wire, const firmware::BoardProfile& board,
+                                             const RunMode& mode, std::size_t index) {
+    if (mode.embedding != nullptr && mode.embedding->open_wire)
+        if (auto led = mode.embedding->open_wire(index, wire)) return led;
+    if (const auto client = client_of_uri(wire.uri)) return open_client(*client);
+    return open_transport(wire.uri, usb_face(board, wire.port));
+}
+
 Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings) {
     const Scenario& scenario = shared.scenario;
     const ReceiverEntry& entry = scenario.receivers.at(index);
@@ -141,7 +149,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
             return fail(restored.error());
     const double rate = 1e9 / static_cast<double>(receiver.settings().navigation_period.count());
     auto simulation = make_simulation(scenario, {shared.navigation, shared.geoid, shared.start, shared.data, index,
-                                                 shared.scene, rate, shared.gas_losses});
+                                                 shared.scene, shared.mode.embedding, rate, shared.gas_losses});
     if (!simulation) return fail(simulation.error());
     Station::Parts parts{std::move(*simulation), std::move(receiver), {}, {}};
     if (entry.rate_hz) warn_of_rate(*entry.rate_hz, parts.receiver, warnings);
@@ -181,9 +189,7 @@ Result<PlannedStation> plan_station(const SharedParts& shared, std::size_t index
 
 Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::size_t index) {
     for (const WireRequest& wire : station.wires) {
-        const auto client = client_of_uri(wire.uri);
-        auto transport = client ? open_client(*client)
-                                : open_transport(wire.uri, usb_face(station.parts.receiver.board(), wire.port));
+        auto transport = open_wire(wire, station.parts.receiver.board(), shared.mode, index);
         if (!transport) return fail(of_receiver(transport.error(), shared.scenario, index));
         if (shared.mode.virtual_time) (*transport)->allow_waiting();
         const InputPace pace = shared.mode.virtual_time ? InputPace::at_once : InputPace::line;

@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "hidden_arrival.hpp"
 #include "scene_rays.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/gnss/earth_turn.hpp"
@@ -68,16 +69,6 @@ std::string closed_in_notice(const UrbanScene& scene, const Eigen::Vector3d& pla
     if (!top) return "the antenna is closed in by the scene: no signal arrives";
     return fmt::format("the antenna is inside a building of the scene, {:.1f} m below its top: no signal arrives",
                        *top - place.z());
-}
-
-void hide(Arrival& arrival) {
-    arrival.line_of_sight = false;
-    arrival.paths = 0;
-    arrival.reflections = 0;
-    arrival.excess_path = Metres(0);
-    arrival.excess_rate = MetresPerSecond(0);
-    arrival.reflection_loss = Decibels(0);
-    arrival.cn0.reset();
 }
 
 // The article's rule (MODELS.md R-21 … R-23); paths come by number of reflections, then by length.

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "skyloop/base/result.hpp"
+#include "skyloop/emulator/data_folders.hpp"
 #include "skyloop/emulator/deadline_grants.hpp"
 #include "skyloop/emulator/emulator.hpp"
 #include "skyloop/emulator/load_scene.hpp"
@@ -17,10 +19,14 @@
 
 namespace skyloop {
 
-/// Where the program's own data lies: folders that may hold boards/ and geoids/, the first that has a thing wins.
-struct DataFolders {
-    std::vector<std::filesystem::path> folders;
-    std::filesystem::path cache{};  ///< where cities are kept that take time to read; empty: nowhere
+struct WireRequest;
+
+/// What a program that has the emulator inside itself puts in the place of the outside world.
+struct Embedding {
+    /// The other end of a wire, instead of what its URI says; null for one that is to be opened as ever.
+    std::function<std::unique_ptr<Transport>(std::size_t receiver, const WireRequest&)> open_wire{};
+    /// What stands between a receiver and its satellites besides the scenario's own scene.
+    std::function<std::unique_ptr<PropagationEffect>(std::size_t receiver)> obstacles{};
 };
 
 /// Where find_board() is to look.
@@ -38,6 +44,7 @@ struct RunMode {
     std::optional<std::filesystem::path> repeat{};  ///< a recording whose clients' bytes are heard again
     CommandQueue* live_commands = nullptr;          ///< where other threads ask for something; outlives the run
     PowerWatchdog* power_watchdog = nullptr;        ///< over the actuators, by receiver; outlives the run; null: none
+    const Embedding* embedding = nullptr;  ///< of a run that a program leads; read while assembling; null: none
 };
 
 /// A run ready to go, and what its user should be told first.
@@ -78,6 +85,9 @@ std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, 
 struct SimulationSetup;
 /// The path of a receiver's antenna: that of the vehicle, or beside it when it has a lever arm.
 std::unique_ptr<Trajectory> make_antenna_path(const Scenario& scenario, const SimulationSetup& setup);
+/// The same on a vehicle that goes another way than the scenario says.
+std::unique_ptr<Trajectory> make_antenna_path(const Scenario& scenario, std::size_t receiver,
+                                              std::unique_ptr<Trajectory> vehicle);
 
 /// What the simulation of one antenna needs besides the scenario.
 struct SimulationSetup {
@@ -88,7 +98,8 @@ struct SimulationSetup {
     std::size_t receiver = 0;  ///< whose antenna: its place in the scenario's list
     /// What stands around; null: nothing, whatever the scenario says.
     std::shared_ptr<const UrbanScene> scene{};
-    double epochs_per_second = 1;  ///< of the receiver, at start
+    const Embedding* embedding = nullptr;  ///< null: none
+    double epochs_per_second = 1;          ///< of the receiver, at start
     /// Of the modern model; receivers of one run share it.
     std::shared_ptr<GasLossTable> gas_losses = std::make_shared<GasLossTable>();
 };

@@ -56,17 +56,24 @@ private:
     GpsTime start_;
 };
 
-/// Time that somebody else leads: the loop asks him before each instant, and instants pass as soon as they may. The
+/// Time that a live source leads: the loop asks it before each instant, and instants pass as soon as they may. The
 /// wires are looked at as often as in real time, in simulated time.
-class LedPacer : public Pacer {
+class SourcePacer : public Pacer {
 public:
-    explicit LedPacer(GpsTime start) : start_(start) {}
+    explicit SourcePacer(GpsTime start) : start_(start) {}
     std::optional<Nanoseconds> wait_until(GpsTime) override { return Nanoseconds(0); }
     [[nodiscard]] Nanoseconds tick(bool bytes_pending) const override;
     [[nodiscard]] std::int64_t monotonic_ns(GpsTime now) const override { return (now - start_).count(); }
 
 private:
     GpsTime start_;
+};
+
+/// Of a run that a program leads instant by instant: it cannot be paused, for time goes where the program leads it.
+class LedPacer : public VirtualPacer {
+public:
+    using VirtualPacer::VirtualPacer;
+    void pause(GpsTime) override {}
 };
 
 /// Maps simulated time to the steady clock, at a chosen rate.
