@@ -20,7 +20,7 @@ FENCES = [
     ("zlib", ("zlib.h", "zconf.h"), {"base"}),
     ("GeographicLib", ("GeographicLib/",), {"geo"}),
     ("toml++", ("toml++/", "toml.hpp"), {"scenario"}),
-    ("nlohmann/json", ("nlohmann/",), {"city", "verdict", "emulator", "analysis", "control", "scenario", "host"}),
+    ("nlohmann/json", ("nlohmann/",), {"city", "verdict", "emulator", "analysis", "api", "feed", "output", "control", "scenario", "host"}),
     ("pugixml", ("pugixml",), {"city", "tracks", "src/verdict/reports.cpp"}),
     ("libzip", ("zip.h",), {"src/tracks/kmz_track.cpp"}),
     ("libosmium", ("osmium/", "protozero/"), {"city"}),
@@ -32,13 +32,15 @@ FENCES = [
     ("libusb", ("libusb",), {"usb"}),
     ("hidapi", ("hidapi",), {"hid"}),
     ("Boost", ("boost/",), {"control"}),
+    ("the C library", ("stddef.h", "stdint.h"), {"include/skyloop.h"}),
     # What talks to the kernel is a wire, a file, a terminal or a program that is run; all else is arithmetic.
     ("the operating system",
      ("sys/", "asm/", "linux/", "net/", "netinet/", "arpa/", "fcntl.h", "unistd.h", "termios.h", "poll.h", "pty.h",
       "pthread.h", "signal.h", "netdb.h", "sched.h", "dirent.h", "csignal", "spawn.h", "dlfcn.h", "grp.h", "pwd.h"),
-     {"actuator", "base", "devices", "hid", "transport", "emulator", "host", "src/feed/mavlink_endpoint.cpp"}),
+     {"actuator", "base", "devices", "hid", "transport", "emulator", "host", "src/api/data_place.cpp",
+      "src/feed/mavlink_endpoint.cpp"}),
 ]
-PUBLIC = {"Eigen", "tl::expected"}
+PUBLIC = {"Eigen", "tl::expected", "the C library"}
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
 
@@ -75,6 +77,8 @@ def layer_of(relative):
         return parts[2]
     if parts[0] == "firmware-host" and len(parts) > 2:
         return parts[1]
+    if parts == ("include", "skyloop.h"):
+        return "api"
     return None
 
 

@@ -126,6 +126,10 @@ void Station::send_on_wire(std::size_t wire, const std::vector<firmware::Receive
 
 void Station::happen(const firmware::ReceiverEvent& event, GpsTime now) { parts_.receiver.happen(event, now); }
 
+void Station::lead_along(std::unique_ptr<Trajectory> path) {
+    parts_.simulation.replace_trajectory([&](const std::unique_ptr<Trajectory>&) { return std::move(path); });
+}
+
 void Station::move_to(const Geodetic& place, GpsTime now) {
     parts_.simulation.replace_trajectory(
         [&](std::unique_ptr<Trajectory> path) { return std::make_unique<MovedPath>(std::move(path), place, now); });

@@ -13,7 +13,7 @@ using Reflection = ToldPath::Reflection;
 
 const Angle half_turn = Angle::radians(std::numbers::pi);
 
-double amplitude_of(Decibels strength) { return std::pow(10, strength.value() / 20); }
+double told_amplitude(Decibels strength) { return std::pow(10, strength.value() / 20); }
 
 // The ray that is tracked, over the direct one without anything in its way.
 struct TrackedRay {
@@ -25,7 +25,7 @@ struct TrackedRay {
 void add_echoes(Arrival& arrival, const TrackedRay& tracked, const Reflection* begin, const Reflection* end) {
     for (const Reflection* one = begin; one != end; ++one)
         arrival.echoes.push_back({arrival.direction, one->excess - tracked.excess, MetresPerSecond(0),
-                                  amplitude_of(one->strength - tracked.strength), half_turn - tracked.lag, 1});
+                                  told_amplitude(one->strength - tracked.strength), half_turn - tracked.lag, 1});
     arrival.paths = 1 + static_cast<int>(end - begin);
 }
 

@@ -89,6 +89,8 @@ public:
     [[nodiscard]] const ActiveFaults& faults() const { return faults_; }
     /// Something happens to the receiver.
     void happen(const firmware::ReceiverEvent& event, GpsTime now);
+    /// From now on the antenna goes this way.
+    void lead_along(std::unique_ptr<Trajectory> path);
     /// Moves the vehicle: the path goes on from there.
     void move_to(const Geodetic& place, GpsTime now);
     [[nodiscard]] std::uint64_t seed() const { return parts_.seed; }

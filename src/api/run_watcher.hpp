@@ -1,0 +1,39 @@
+/// What a led run remembers of itself, for those who ask.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "skyloop/emulator/assembly.hpp"
+#include "skyloop/emulator/status_board.hpp"
+
+namespace skyloop {
+
+/// Keeps the last epoch of each receiver and what has happened to the run. Messages on the wires are not looked for.
+class RunWatcher : public RunObserver {
+public:
+    /// @param stations outlive it
+    RunWatcher(StatusSetup setup, const std::vector<Station>& stations, StatusSources sources);
+    void on_epoch(const EpochSeen& seen) override { traces_[seen.station] = seen.trace; }
+    void on_fault(const FaultSeen& seen) override;
+    void on_command(const CommandSeen& seen) override { board_.on_command(seen); }
+    void on_belief(const BeliefSeen& seen) override { board_.on_belief(seen); }
+
+    /// Of the last epoch of a receiver; nothing before the first.
+    [[nodiscard]] const std::optional<Trace>& trace(std::size_t station) const { return traces_[station]; }
+    /// recent_status_json() of now.
+    [[nodiscard]] std::string status(GpsTime now);
+    /// A fault of this name has begun or ended.
+    [[nodiscard]] bool has_seen(const std::string& fault) const { return faults_.contains(fault); }
+
+private:
+    const std::vector<Station>& stations_;
+    std::vector<std::optional<Trace>> traces_;
+    std::set<std::string> faults_;
+    std::int64_t clock_ns_ = 0;  // of the board: late enough each time for everything to be due
+    StatusBoard board_;
+};
+
+}  // namespace skyloop

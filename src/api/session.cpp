@@ -1,0 +1,174 @@
+#include "session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "truth_input.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr Nanoseconds most_behind{2'000'000'000}, most_ahead{2'000'000'000};
+constexpr Nanoseconds longest_stretch{86'400'000'000'000};
+// Far inside what 64-bit nanoseconds since 1980 can count, which ends in 2272.
+constexpr std::int64_t latest_ns = 9'150'000'000'000'000'000;
+
+// Several receivers ride on one path.
+class SharedPath : public Trajectory {
+public:
+    explicit SharedPath(std::shared_ptr<const Trajectory> path) : path_(std::move(path)) {}
+    [[nodiscard]] TruthState at(GpsTime time) const override { return path_->at(time); }
+
+private:
+    std::shared_ptr<const Trajectory> path_;
+};
+
+}  // namespace
+
+void Session::log(std::int32_t level, const std::string& sentence) const {
+    if (log_ != nullptr) log_(log_user_, level, sentence.c_str());
+}
+
+Answer<GpsTime> Session::run_time(std::int64_t sim_time_ns) const {
+    std::int64_t since_start = 0, time = 0;
+    if (__builtin_sub_overflow(sim_time_ns, start_sim_ns_, &since_start) ||
+        __builtin_add_overflow(assembly_.start.time_since_epoch().count(), since_start, &time) || time < -latest_ns ||
+        time > latest_ns)
+        return refuse(SKY_E_TIME, fmt::format("{} ns is beyond what can be counted from start_sim_ns, {} ns",
+                                              sim_time_ns, start_sim_ns_));
+    return GpsTime(Nanoseconds(time));
+}
+
+std::int64_t Session::sim_time(GpsTime time) const {
+    std::int64_t sim = 0;
+    return __builtin_add_overflow((time - assembly_.start).count(), start_sim_ns_, &sim) ? INT64_MAX : sim;
+}
+
+Answer<void> Session::check_receiver(std::uint32_t receiver) const {
+    const std::size_t count = assembly_.emulator->stations().size();
+    if (receiver < count) return {};
+    return refuse(SKY_E_ARG, fmt::format("receiver {}: the scenario has {}, counted from 0", receiver, count));
+}
+
+Answer<LedPort*> Session::port(std::uint32_t number) {
+    if (number < ports_.size()) return ports_[number].led;
+    return refuse(SKY_E_ARG, fmt::format("port {}: there are {}, counted from 0; sky_query(\"ports\") lists them",
+                                         number, ports_.size()));
+}
+
+// The receivers of a vehicle; none: there is no such vehicle.
+std::vector<std::size_t> Session::riders(std::uint32_t vehicle) const {
+    std::vector<std::size_t> receivers;
+    for (std::size_t i = 0; i < scenario_.receivers.size(); ++i)
+        if (scenario_.receivers[i].trajectory ? vehicle == i + 1 : vehicle == 0) receivers.push_back(i);
+    return receivers;
+}
+
+void Session::put_on(const std::vector<std::size_t>& receivers, const std::shared_ptr<LivePath>& path) {
+    for (const std::size_t i : receivers)
+        assembly_.emulator->stations()[i].lead_along(
+            make_antenna_path(scenario_, i, std::make_unique<SharedPath>(path)));
+}
+
+Answer<Session::Vehicle*> Session::vehicle(const sky_truth& truth, const TruthSample& first) {
+    if (const auto found = vehicles_.find(truth.vehicle); found != vehicles_.end()) return &found->second;
+    const std::vector<std::size_t> receivers = riders(truth.vehicle);
+    if (receivers.empty())
+        return refuse(SKY_E_ARG,
+                      fmt::format("vehicle {}: no receiver rides on it; expected 0, the scenario's, or n + 1 "
+                                  "of a receiver n that has a [receiver.trajectory]",
+                                  truth.vehicle));
+    LivePathSettings settings;
+    settings.before = to_geodetic(first.position);
+    Vehicle& added = vehicles_[truth.vehicle];
+    added.path = std::make_shared<LivePath>(settings);
+    put_on(receivers, added.path);
+    return &added;
+}
+
+Answer<void> Session::set_truth(const sky_truth& truth) {
+    const auto time = run_time(truth.sim_time_ns);
+    if (!time) return refuse(time.error());
+    if (*time < now() - most_behind || *time > now() + most_ahead)
+        return refuse(SKY_E_TIME, fmt::format("truth of {} ns at {} ns; expected at most 2 s before or after that",
+                                              truth.sim_time_ns, sim_time(now())));
+    const auto sample = truth_sample(truth, {assembly_.geoid.get(), local_.get()});
+    if (!sample) return refuse(sample.error());
+    const auto found = vehicle(truth, *sample);
+    if (!found) return refuse(found.error());
+    LivePath& path = *(*found)->path;
+    if (path.newest() && *time < *path.newest())
+        return refuse(SKY_E_TIME, fmt::format("truth of {} ns after that of {} ns; expected times that ascend",
+                                              truth.sim_time_ns, sim_time(*path.newest())));
+    const std::uint64_t refused = path.counts().refused;
+    path.add(*time, *sample);
+    if (path.counts().refused == refused) return {};
+    return refuse(SKY_E_RANGE,
+                  "no place or speed of a vehicle; expected another than latitude and longitude 0, less than 1 000 km "
+                  "above the ellipsoid and 12 km/s");
+}
+
+// A recording that could not be written, or a command that has ended the run.
+Answer<void> Session::failure() const {
+    for (const Station& station : assembly_.emulator->stations())
+        if (station.recorder() != nullptr && station.recorder()->failure())
+            return refuse(*station.recorder()->failure());
+    if (assembly_.emulator->stopped())
+        return refuse(SKY_E_STATE, "a command of the scenario, or of the caller, has ended the run");
+    return {};
+}
+
+Answer<void> Session::advance(std::int64_t sim_time_ns) {
+    const auto time = run_time(sim_time_ns);
+    if (!time) return refuse(time.error());
+    if (*time < now())
+        return refuse(SKY_E_TIME, fmt::format("{} ns lies before the present, {} ns", sim_time_ns, sim_time(now())));
+    if (*time - now() > longest_stretch)
+        return refuse(SKY_E_TIME,
+                      fmt::format("{} ns lies more than a day after the present, {} ns; is start_sim_ns the "
+                                  "caller's time at the start?",
+                                  sim_time_ns, sim_time(now())));
+    if (const auto going = failure(); !going) return going;
+    assembly_.emulator->advance_to(*time, never_, Emulator::LastInstant::included);
+    tell_news();
+    return failure();
+}
+
+void Session::tell_news() {
+    const auto& stations = assembly_.emulator->stations();
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+        const RayTracedScene* city = stations[i].simulation().city();
+        if (city != nullptr && city->notice() && noticed_.insert(i).second)
+            log(SKY_LOG_WARNING, stations[i].name() + ": " + *city->notice());
+    }
+    for (auto& [number, vehicle] : vehicles_) {
+        if (vehicle.path->counts().holds == vehicle.holds) continue;
+        vehicle.holds = vehicle.path->counts().holds;
+        log(SKY_LOG_WARNING, fmt::format("vehicle {} stands still at {} ns: nothing was said of it since {} ns", number,
+                                         sim_time(now()), sim_time(*vehicle.path->newest())));
+    }
+}
+
+sky_progress Session::progress() const {
+    const Emulator& emulator = *assembly_.emulator;
+    sky_progress told{};
+    told.ports = static_cast<std::uint32_t>(ports_.size());
+    GpsTime next = emulator.next_event();
+    for (const Station& station : emulator.stations()) {
+        told.epochs += station.counts().epochs;
+        if (const auto drained = station.receiver().drained_at(); drained && *drained > now())
+            next = std::min(next, *drained);
+    }
+    told.now_ns = sim_time(now());
+    told.next_event_ns = sim_time(next);
+    for (std::size_t i = 0; i < ports_.size(); ++i) {
+        const std::size_t pending = ports_[i].led->pending();
+        told.bytes_pending += pending;
+        if (pending > 0 && i < 64) told.ports_pending |= std::uint64_t{1} << i;
+    }
+    return told;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,138 @@
+// How a led run begins.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "data_place.hpp"
+#include "session.hpp"
+#include "skyloop/client/open_client.hpp"
+#include "skyloop/emulator/run_summary.hpp"
+#include "skyloop/emulator/wires.hpp"
+#include "skyloop/scenario/scenario_file.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::uint32_t known_overrides = SKY_CREATE_SEED | SKY_CREATE_ORIGIN;
+
+Answer<void> check_info(const sky_create_info& info) {
+    if (info.abi_major != SKY_ABI_MAJOR)
+        return refuse(SKY_E_UNSUPPORTED,
+                      fmt::format("abi_major is {}; this library is {}", info.abi_major, SKY_ABI_MAJOR));
+    if ((info.set & ~known_overrides) != 0)
+        return refuse(SKY_E_UNSUPPORTED, fmt::format("set is {:#x}, of which {:#x} is not known to this version",
+                                                     info.set, info.set & ~known_overrides));
+    return {};
+}
+
+Result<Scenario> scenario_of(const sky_create_info& info) {
+    if (info.scenario_text != nullptr)
+        return read_scenario(info.scenario_text, info.scenario_file != nullptr ? info.scenario_file : "scenario_text");
+    if (info.scenario_file != nullptr) return read_scenario_file(info.scenario_file);
+    return Scenario{};
+}
+
+Answer<void> apply_start(const char* start, RunSettings& run) {
+    if (start == nullptr) return {};
+    run.start_now = std::string_view(start) == "now";
+    run.start.reset();
+    if (run.start_now) return {};
+    const auto utc = parse_utc(start);
+    if (!utc) return refuse(SKY_E_PARSE, "start_utc: " + utc.error().message + ", or now");
+    run.start = to_gps_time(*utc, LeapSeconds::announced());
+    return {};
+}
+
+GpsTime wall_clock_gps() {
+    using namespace std::chrono;
+    return from_posix(duration_cast<Nanoseconds>(system_clock::now().time_since_epoch()), LeapSeconds::announced());
+}
+
+Answer<Geodetic> origin_of(const sky_create_info& info, const Geodetic& standard) {
+    if ((info.set & SKY_CREATE_ORIGIN) == 0) return standard;
+    const auto place = place_from_degrees(info.origin_lla[0], info.origin_lla[1], info.origin_lla[2]);
+    if (!place) return refuse(SKY_E_RANGE, "origin_lla: " + place.error());
+    return *place;
+}
+
+}  // namespace
+
+Answer<std::unique_ptr<Session>> Session::create(const sky_create_info& info) {
+    if (const auto checked = check_info(info); !checked) return refuse(checked.error());
+    std::unique_ptr<Session> session(new Session(info));
+    if (const auto read = session->read_scenario_of(info); !read) return refuse(read.error());
+    if (const auto ready = session->assemble_run(info); !ready) return refuse(ready.error());
+    return session;
+}
+
+Answer<void> Session::read_scenario_of(const sky_create_info& info) {
+    auto scenario = scenario_of(info);
+    if (!scenario) return refuse(scenario.error());
+    scenario_ = std::move(*scenario);
+    // Judged and ended is a run by its program; a led one by its caller.
+    if (!scenario_.expectations.empty())
+        scenario_.warnings.emplace_back("[[expect]]: a led run is not judged; skyloop simulate does that");
+    scenario_.run.duration.reset();
+    if ((info.set & SKY_CREATE_SEED) != 0) scenario_.run.seed = info.seed;
+    if (const auto applied = apply_start(info.start_utc, scenario_.run); !applied) return applied;
+    start_sim_ns_ = info.start_sim_ns;
+    return {};
+}
+
+Embedding Session::embedding() {
+    Embedding embedding;
+    embedding.open_wire = [this](std::size_t receiver, const WireRequest& wire) -> std::unique_ptr<Transport> {
+        if (client_of_uri(wire.uri)) return nullptr;  // lives in simulated time, inside the run
+        auto led = std::make_unique<LedPort>(std::string(firmware::port_names[static_cast<std::size_t>(wire.port)]));
+        ports_.push_back({receiver, wire.port, led.get()});
+        return led;
+    };
+    embedding.obstacles = [this](std::size_t receiver) {
+        return std::make_unique<ToldObstacles>(obstacles_.at(receiver));
+    };
+    return embedding;
+}
+
+Answer<void> Session::assemble_run(const sky_create_info& info) {
+    for (std::size_t i = 0; i < scenario_.receivers.size(); ++i)
+        obstacles_.push_back(std::make_shared<ToldPaths>());
+    const Embedding parts = embedding();
+    RunMode mode;
+    mode.virtual_time = true;
+    mode.now = wall_clock_gps();
+    if (info.record_dir != nullptr) mode.record = info.record_dir;
+    mode.live_commands = &commands_;
+    mode.embedding = &parts;
+    auto assembly = assemble(scenario_, library_data_folders(info.data_dir), mode);
+    if (!assembly) return refuse(assembly.error());
+    assembly_ = std::move(*assembly);
+    Emulator& emulator = *assembly_.emulator;
+    for (const Port& port : ports_)
+        port.led->tell_time(assembly_.start);
+    const auto origin = origin_of(info, emulator.first().simulation().truth_at(assembly_.start).geodetic);
+    if (!origin) return refuse(origin.error());
+    local_ = std::make_unique<LocalFrame>(*origin);
+    StatusSources sources;
+    sources.pace = [] { return PaceStatus{false, 1, true}; };
+    sources.strength = [&emulator](std::string_view fault, int occurrence, GpsTime time) {
+        return emulator.director().strength(fault, occurrence, time, emulator.stations());
+    };
+    watcher_ = std::make_unique<RunWatcher>(StatusSetup{scenario_.name, assembly_.start, std::nullopt, {}},
+                                            emulator.stations(), std::move(sources));
+    emulator.add_observer(watcher_.get());
+    for (const std::string& detail : assembly_.details)
+        log(SKY_LOG_DETAIL, detail);
+    for (const std::string& warning : assembly_.warnings)
+        log(SKY_LOG_WARNING, warning);
+    return {};
+}
+
+Session::~Session() {
+    if (!assembly_.emulator) return;
+    assembly_.emulator->finish();
+    if (Recorder* recorder = assembly_.emulator->recorder())
+        recorder->record_summary(run_summary(scenario_, assembly_, SKYLOOP_VERSION));
+}
+
+}  // namespace skyloop
