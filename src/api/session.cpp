@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "skyloop/trajectory/shared_path.hpp"
 #include "truth_input.hpp"
 
 namespace skyloop {
@@ -14,16 +15,6 @@ constexpr Nanoseconds most_behind{2'000'000'000}, most_ahead{2'000'000'000};
 constexpr Nanoseconds longest_stretch{86'400'000'000'000};
 // Far inside what 64-bit nanoseconds since 1980 can count, which ends in 2272.
 constexpr std::int64_t latest_ns = 9'150'000'000'000'000'000;
-
-// Several receivers ride on one path.
-class SharedPath : public Trajectory {
-public:
-    explicit SharedPath(std::shared_ptr<const Trajectory> path) : path_(std::move(path)) {}
-    [[nodiscard]] TruthState at(GpsTime time) const override { return path_->at(time); }
-
-private:
-    std::shared_ptr<const Trajectory> path_;
-};
 
 }  // namespace
 

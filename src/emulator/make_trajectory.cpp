@@ -1,9 +1,9 @@
 #include "skyloop/base/overloaded.hpp"
 #include "skyloop/emulator/assembly.hpp"
 #include "skyloop/emulator/lever_arm.hpp"
-#include "skyloop/emulator/live_feeds.hpp"
 #include "skyloop/emulator/load_track.hpp"
 #include "skyloop/trajectory/recorded_path.hpp"
+#include "skyloop/trajectory/shared_path.hpp"
 
 namespace skyloop {
 

@@ -20,8 +20,8 @@ std::vector<Bytes> make_protocol_messages(Personality personality, const ReportC
 MspSensorGps msp_sensor_gps(const NavigationState& state);
 /// Its values without a fix: zeros.
 MspSetRawGps msp_set_raw_gps(const NavigationState& state);
-/// Its values without a fix: fix type 1, all ignore flags, DOP 65535; times 0 while time is not known. The flag of a DOP
-/// that is not known is set with a fix, too.
+/// Its values without a fix: fix type 1, all ignore flags, DOP 65535; times 0 while time is not known. The flag of a
+/// DOP that is not known is set with a fix, too.
 MavlinkGpsInput mavlink_gps_input(const NavigationState& state);
 
 /// Their values without a fix: those that mean nothing (sbf_blocks.hpp), with error 1.

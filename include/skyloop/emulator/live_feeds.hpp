@@ -86,14 +86,4 @@ private:
     std::vector<std::string> news_;
 };
 
-/// A path that several antennas share.
-class SharedPath : public Trajectory {
-public:
-    explicit SharedPath(std::shared_ptr<const Trajectory> path) : path_(std::move(path)) {}
-    [[nodiscard]] TruthState at(GpsTime time) const override { return path_->at(time); }
-
-private:
-    std::shared_ptr<const Trajectory> path_;
-};
-
 }  // namespace skyloop
