@@ -41,7 +41,7 @@ Result<LoadedTrack> load_one(TrajectorySettings& way, const Scenario& scenario, 
     const auto text = read_text_file(file->path);
     if (!text) return fail(text.error());
     const ByteSpan bytes(reinterpret_cast<const std::uint8_t*>(text->data()), text->size());
-    auto track = read_track(bytes, file->path.string(), {geoid});
+    auto track = read_track(bytes, file->path.string(), {geoid, file->origin});
     if (!track) return fail(track.error());
     auto gaps = clean_track(*track, file->gap);
     if (!gaps) return fail(gaps.error());
@@ -49,7 +49,7 @@ Result<LoadedTrack> load_one(TrajectorySettings& way, const Scenario& scenario, 
         return fail(
             ErrorCode::usage,
             fmt::format("{}: counts from its own start, and trajectory.time = \"recorded\" asks for a GPS time; "
-                        "expected the column utc, unix_s, or gps_week and tow_s",
+                        "expected a file with dates (a table: the column utc, unix_s, or gps_week and tow_s)",
                         track->name));
     file->gaps = std::move(*gaps);
     file->track = std::make_shared<const Track>(std::move(*track));

@@ -219,10 +219,10 @@ bool NmeaEpochs::date_rows() {
     const auto dated = std::find_if(rows_.begin(), rows_.end(), [](const Row& row) { return row.date.has_value(); });
     log_.dated = dated != rows_.end();
     if (!log_.dated && !undated_) return false;
-    constexpr double half_day = 43200;
+    constexpr double day = 86400, half_day = day / 2, late = 3600;  // a sentence may come late over midnight
     const auto days_from = [&](const Row& before, const Row& row) {
         const double step = row.seconds - before.seconds;
-        return step < -half_day ? 1 : step > half_day ? -1 : 0;
+        return step < -half_day ? 1 : step > day - late ? -1 : 0;
     };
     NmeaDate date = log_.dated ? *dated->date : NmeaDate{};
     int days = 0;  // after `date`
@@ -234,8 +234,7 @@ bool NmeaEpochs::date_rows() {
         constexpr int most_days = 10000;  // more are nonsense, which finish_log() leaves out
         days = std::clamp(days, -most_days, most_days);
         const UtcTime midnight{date.year, date.month, date.day, 0, 0, 0, 0};
-        row->epoch.time =
-            advanced(to_gps_time(midnight, LeapSeconds::announced()), Seconds(row->seconds + days * 2 * half_day));
+        row->epoch.time = advanced(to_gps_time(midnight, LeapSeconds::announced()), Seconds(row->seconds + days * day));
     }
     return true;
 }

@@ -14,6 +14,7 @@ void read_file_track(TableReader& table, const std::filesystem::path& folder, Tr
     file.path = folder / path;
     file.keeps_time = table.choice("time", clocks, clocks[0]).value_or(0) == 1;
     table.quantity("gap_s", file.gap, {1e-3, 1e7});
+    file.origin = table.place("origin");
     trajectory = file;
 }
 

@@ -104,6 +104,8 @@ Result<Track> IgcReader::read() {
 }
 
 void IgcReader::take_header(std::string_view line) {
+    constexpr std::size_t code_end = 5;
+    if (line.size() < code_end) return;
     if (line.substr(2, 3) == "DTE") take_date(line);
     if (line.substr(2, 3) != "ALG") return;
     if (line.find("ELL") != std::string_view::npos) datum_ = Datum::ellipsoid;

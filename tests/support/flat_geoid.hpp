@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -14,9 +15,9 @@ namespace skyloop::test {
 /// A geoid of undulation `metres`, a multiple of 0.25 m in −100 … 100 m, by way of a small grid file.
 inline Result<Geoid> flat_geoid(double metres) {
     const auto* running = ::testing::UnitTest::GetInstance()->current_test_info();
-    const std::filesystem::path path =
-        std::filesystem::path(::testing::TempDir()) /
-        (std::string("skyloop-") + running->test_suite_name() + "-" + running->name() + ".pgm");
+    std::string name = std::string("skyloop-") + running->test_suite_name() + "-" + running->name() + ".pgm";
+    std::replace(name.begin(), name.end(), '/', '-');  // of a test with parameters
+    const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / name;
     constexpr int width = 8;
     constexpr int height = 5;
     const auto level = static_cast<unsigned>((metres + 100) / 0.25);

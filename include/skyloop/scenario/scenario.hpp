@@ -68,8 +68,9 @@ struct CircleSettings {
 struct FileSettings {
     std::filesystem::path path{};
     Angle heading{};
-    bool keeps_time = false;  ///< the rows keep their own GPS time; else the first one is the start of the run
-    Seconds gap{10};          ///< stretches without rows longer than this are told and bridged
+    bool keeps_time = false;           ///< the rows keep their own GPS time; else the first one is the start of the run
+    Seconds gap{10};                   ///< stretches without rows longer than this are told and bridged
+    std::optional<Geodetic> origin{};  ///< of local metres and of heights above the ground, where the file has such
     std::shared_ptr<const Track> track{};  ///< clean; null until it has been loaded
     std::vector<TrackGap> gaps{};
 };
