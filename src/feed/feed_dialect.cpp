@@ -1,6 +1,6 @@
 #include "skyloop/feed/feed_dialect.hpp"
 
-#include <array>
+#include "dialects.hpp"
 
 namespace skyloop {
 namespace {
@@ -11,7 +11,19 @@ struct NamedDialect {
     std::unique_ptr<FeedDialect> (*make)(const FeedContext&);
 };
 
-constexpr std::array<NamedDialect, 0> dialects{};
+constexpr NamedDialect dialects[] = {
+    {"ardupilot-json", make_ardupilot_json_dialect},
+    {"betaflight", make_betaflight_dialect},
+    {"flightgear", make_flightgear_dialect},
+    {"flightgear-generic", make_flightgear_generic_dialect},
+    {"gpsd", make_gpsd_dialect},
+    {"jsbsim", make_jsbsim_dialect},
+    {"mavlink", make_mavlink_dialect},
+    {"nmea", make_nmea_dialect},
+    {"px4", make_px4_dialect},
+    {"ubx", make_ubx_dialect},
+    {"xplane", make_xplane_dialect},
+};
 
 }  // namespace
 

@@ -13,6 +13,7 @@
 #include "skyloop/base/result.hpp"
 #include "skyloop/fault/command.hpp"
 #include "skyloop/geo/geoid.hpp"
+#include "skyloop/geo/local_map.hpp"
 #include "skyloop/trajectory/truth_sample.hpp"
 
 namespace skyloop {
@@ -37,6 +38,8 @@ struct FeedContext {
     const Geoid* geoid = nullptr;  ///< outlives the dialect; null: heights above the sea are taken as ellipsoidal
     SeaLevel sea_level = SeaLevel::geoid;
     std::optional<Geodetic> origin{};  ///< of sources that count in local metres
+    std::optional<LocalMap> map{};     ///< how their metres lie on the Earth; nothing: as the source is known to mean
+    bool smooth = false;               ///< positions of receivers (nmea, ubx, gpsd) go through a causal filter
     std::string vehicle{};             ///< that is wanted, of sources that must be asked for one; empty: any
     double rate_hz = 50;               ///< asked of sources that can be asked
 };

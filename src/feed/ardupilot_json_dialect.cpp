@@ -1,0 +1,64 @@
+// What a physics program answers ArduPilot's SITL (its libraries/SITL/examples/JSON/readme.md; FEEDS.md 3.7).
+#include <fmt/format.h>
+
+#include "dialects.hpp"
+#include "json_source.hpp"
+#include "source_pose.hpp"
+
+namespace skyloop {
+namespace {
+
+class ArdupilotJsonDialect : public FeedDialect {
+public:
+    explicit ArdupilotJsonDialect(const FeedContext& context) : context_(context) {}
+
+    FeedNews hear(ByteSpan bytes, std::int64_t received_ns) override {
+        FeedNews news;
+        for (const std::string& line : lines_.feed(bytes))
+            take(line, received_ns, news);
+        if (lines_.take_thrown_away() > 0) report_refusal(news, "a line of more than 65536 bytes");
+        return news;
+    }
+    void reconnected() override { lines_.clear(); }
+
+private:
+    void take(const std::string& line, std::int64_t received_ns, FeedNews& news) const {
+        const auto answer = nlohmann::json::parse(line, nullptr, false);
+        if (!answer.is_object()) return report_refusal(news, "an answer of the physics that is no JSON object");
+        const auto seconds = source_json_number(answer, "timestamp");
+        const auto time = seconds ? source_nanoseconds(*seconds) : std::nullopt;
+        if (!time) return report_refusal(news, "an answer of the physics without \"timestamp\", a number of seconds");
+        const auto position = source_json_triple(answer, "position");
+        if (!position)
+            return report_refusal(news, "an answer of the physics without \"position\", metres [north, east, down]");
+        LocalPose pose;
+        pose.ned = *position;
+        pose.velocity_ned = source_json_triple(answer, "velocity");
+        pose.attitude = attitude_of(answer);
+        if (const auto imu = answer.find("imu"); imu != answer.end() && imu->is_object())
+            pose.turn_rate = source_json_triple(*imu, "gyro");
+        report_sample(news, sample_of(pose, LocalMap::ardupilot_flat, context_), time, received_ns);
+    }
+
+    static std::optional<Attitude> attitude_of(const nlohmann::json& answer) {
+        if (const auto angles = source_json_triple(answer, "attitude"))
+            return attitude_of_radians(angles->x(), angles->y(), angles->z());
+        const auto q = answer.find("quaternion");
+        if (q == answer.end() || !q->is_array() || q->size() != 4) return std::nullopt;
+        for (const auto& part : *q)
+            if (!part.is_number()) return std::nullopt;
+        return attitude_of_quaternion((*q)[0].get<double>(), (*q)[1].get<double>(), (*q)[2].get<double>(),
+                                      (*q)[3].get<double>());
+    }
+
+    FeedContext context_;
+    SourceLines lines_;
+};
+
+}  // namespace
+
+std::unique_ptr<FeedDialect> make_ardupilot_json_dialect(const FeedContext& context) {
+    return std::make_unique<ArdupilotJsonDialect>(context);
+}
+
+}  // namespace skyloop

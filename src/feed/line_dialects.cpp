@@ -1,0 +1,190 @@
+// FlightGear's generic protocol as tools/examples/flightgear/skyloop.xml defines it, and JSBSim's SOCKET output: lines
+// of numbers (FEEDS.md 3.4 and 3.12).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "dialects.hpp"
+#include "source_pose.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr double generic_foot_m = 0.3048;
+
+// The numbers of a line by what they mean, whatever order they came in.
+struct LineColumn {
+    enum : std::size_t { time_s, latitude, longitude, height_ft, north_fps, east_fps, down_fps, roll, pitch, yaw };
+};
+constexpr std::size_t line_columns = 10;
+using LineNumbers = std::array<double, line_columns>;
+
+SourcePose pose_of_line(const LineNumbers& numbers, std::optional<Attitude> attitude) {
+    SourcePose pose;
+    pose.latitude_deg = numbers[LineColumn::latitude];
+    pose.longitude_deg = numbers[LineColumn::longitude];
+    pose.height_m = numbers[LineColumn::height_ft] * generic_foot_m;
+    pose.velocity_ned =
+        Eigen::Vector3d(numbers[LineColumn::north_fps], numbers[LineColumn::east_fps], numbers[LineColumn::down_fps]) *
+        generic_foot_m;
+    pose.attitude = attitude;
+    return pose;
+}
+
+// A line of a simulator whose time stands still says that it is paused.
+class PauseWatch {
+public:
+    // @return whether the line says something new
+    bool look(Nanoseconds time, FeedNews& news) {
+        const bool stands = last_ && *last_ == time;
+        if (stands != paused_ && last_) news.paused = stands;
+        paused_ = stands;
+        last_ = time;
+        return !stands;
+    }
+    void forget() { last_.reset(), paused_ = false; }
+
+private:
+    std::optional<Nanoseconds> last_;
+    bool paused_ = false;
+};
+
+// Both, but for how a line becomes numbers.
+class LineDialect : public FeedDialect {
+public:
+    explicit LineDialect(const FeedContext& context) : context_(context) {}
+
+    FeedNews hear(ByteSpan bytes, std::int64_t received_ns) override {
+        FeedNews news;
+        for (const std::string& line : lines_.feed(bytes))
+            take(line, received_ns, news);
+        if (lines_.take_thrown_away() > 0) report_refusal(news, "a line of more than 65536 bytes");
+        return news;
+    }
+    void reconnected() override {
+        lines_.clear();
+        watch_.forget();
+    }
+
+protected:
+    virtual void take(const std::string& line, std::int64_t received_ns, FeedNews& news) = 0;
+    void report(const LineNumbers& numbers, std::optional<Attitude> attitude, std::int64_t received_ns,
+                FeedNews& news) {
+        const auto time = source_nanoseconds(numbers[LineColumn::time_s]);
+        if (!time) return report_refusal(news, fmt::format("a time of {} s", numbers[LineColumn::time_s]));
+        if (watch_.look(*time, news))
+            report_sample(news, sample_of(pose_of_line(numbers, attitude), context_), time, received_ns);
+    }
+
+private:
+    FeedContext context_;
+    SourceLines lines_;
+    PauseWatch watch_;
+};
+
+class FlightgearGenericDialect : public LineDialect {
+public:
+    using LineDialect::LineDialect;
+
+private:
+    void take(const std::string& line, std::int64_t received_ns, FeedNews& news) override {
+        const auto cells = source_cells(line);
+        if (cells.size() != line_columns)
+            return report_refusal(
+                news, fmt::format("a line of {} cells; expected the {} of skyloop.xml", cells.size(), line_columns));
+        LineNumbers numbers{};
+        for (std::size_t i = 0; i < line_columns; ++i) {
+            const auto number = source_number(cells[i]);
+            if (!number) return report_refusal(news, fmt::format("cell {} of a line is no number", i + 1));
+            numbers[i] = *number;
+        }
+        report(numbers,
+               attitude_of_degrees(numbers[LineColumn::roll], numbers[LineColumn::pitch], numbers[LineColumn::yaw]),
+               received_ns, news);
+    }
+};
+
+// Of JSBSim's properties, those that are read, by LineColumn.
+constexpr std::array<std::string_view, line_columns> jsbsim_properties{
+    "simulation/sim-time-sec", "position/lat-geod-deg", "position/long-gc-deg",  "position/h-sl-ft",
+    "velocities/v-north-fps",  "velocities/v-east-fps", "velocities/v-down-fps", "attitude/phi-rad",
+    "attitude/theta-rad",      "attitude/psi-rad"};
+
+std::string_view without_blanks(std::string_view text) {
+    constexpr std::string_view blanks = " \t\"";
+    const std::size_t first = text.find_first_not_of(blanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+// The first line names the columns; of those that are there twice (Time and simulation/sim-time-sec) the last counts.
+class JsbsimDialect : public LineDialect {
+public:
+    using LineDialect::LineDialect;
+    void reconnected() override {
+        LineDialect::reconnected();
+        known_ = false;
+    }
+
+private:
+    void take(const std::string& line, std::int64_t received_ns, FeedNews& news) override {
+        auto cells = source_cells(line);
+        if (line.find("<LABELS>") != std::string::npos) return take_labels(cells, news);
+        if (!known_) return report_refusal(news, problem_);
+        LineNumbers numbers{};
+        for (std::size_t i = 0; i < line_columns; ++i) {
+            const auto number = columns_[i] < cells.size() ? source_number(cells[columns_[i]]) : std::nullopt;
+            if (!number)
+                return report_refusal(news, fmt::format("a line without a number for {}", jsbsim_properties[i]));
+            numbers[i] = *number;
+        }
+        report(numbers,
+               attitude_of_radians(numbers[LineColumn::roll], numbers[LineColumn::pitch], numbers[LineColumn::yaw]),
+               received_ns, news);
+    }
+
+    // The line begins with "<LABELS>,", which lines of numbers do not have.
+    void take_labels(std::vector<std::string_view> cells, FeedNews& news) {
+        known_ = false;
+        cells.erase(cells.begin());
+        for (std::size_t i = 0; i < line_columns; ++i) {
+            auto found =
+                std::find_if(cells.begin(), cells.end(), [&](std::string_view label) { return fits(i, label); });
+            if (found == cells.end()) {
+                problem_ =
+                    fmt::format("JSBSim's output has no column {}; expected it as a <property>", jsbsim_properties[i]);
+                if (i == LineColumn::latitude)
+                    problem_ += " (its \"Latitude (deg)\" is geocentric, up to 21 km beside)";
+                return report_refusal(news, problem_);
+            }
+            columns_[i] = static_cast<std::size_t>(found - cells.begin());
+        }
+        known_ = true;
+    }
+
+    // Labels are properties with or without a leading "/fdm/jsbsim/".
+    static bool fits(std::size_t column, std::string_view label) {
+        label = without_blanks(label);
+        if (column == LineColumn::time_s && label == "Time") return true;
+        const std::string_view wanted = jsbsim_properties[column];
+        return label == wanted || (label.size() > wanted.size() && label.ends_with(wanted) &&
+                                   label[label.size() - wanted.size() - 1] == '/');
+    }
+
+    bool known_ = false;
+    std::string problem_ = "lines of numbers before the <LABELS> that name them";
+    std::array<std::size_t, line_columns> columns_{};
+};
+
+}  // namespace
+
+std::unique_ptr<FeedDialect> make_flightgear_generic_dialect(const FeedContext& context) {
+    return std::make_unique<FlightgearGenericDialect>(context);
+}
+
+std::unique_ptr<FeedDialect> make_jsbsim_dialect(const FeedContext& context) {
+    return std::make_unique<JsbsimDialect>(context);
+}
+
+}  // namespace skyloop

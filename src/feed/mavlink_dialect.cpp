@@ -1,0 +1,195 @@
+// MAVLink as a source: an autopilot's or a simulator's own messages (FEEDS.md 3.6), and the link between PX4 and its
+// simulator (3.7).
+#include <fmt/format.h>
+
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "dialects.hpp"
+#include "mavlink_stream.hpp"
+#include "mavlink_vehicle_truth.hpp"
+#include "skyloop/feed/mavlink_component.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::uint8_t no_autopilot = 8;             // MAV_AUTOPILOT_INVALID: ground stations, gimbals
+constexpr std::uint8_t onboard_controller = 18;      // MAV_TYPE_ONBOARD_CONTROLLER
+constexpr std::uint16_t set_message_interval = 511;  // MAV_CMD_SET_MESSAGE_INTERVAL
+
+void report_broken_frames(MavlinkStream& stream, FeedNews& news) {
+    for (std::size_t left = stream.take_broken(); left > 0; --left)
+        report_refusal(news, "a MAVLink frame with a wrong checksum or unknown flags");
+}
+
+// Vehicles count from their own starts, the run has one clock for all of a source: the later ones are moved, by when
+// their first message came, onto the clock of the first. Times of 1970 are the same for all.
+class FleetClock {
+public:
+    std::optional<Nanoseconds> common(std::uint8_t system, std::optional<Nanoseconds> time, std::int64_t received_ns) {
+        constexpr std::int64_t since_1970_ns = 1'000'000'000'000'000'000;
+        if (!time || time->count() > since_1970_ns) return time;
+        if (!leader_) leader_ = system;
+        if (*leader_ == system) {
+            if (time->count() + restart_ns < lead_ns_) offsets_.clear();
+            lead_ns_ = time->count();
+            lead_received_ns_ = received_ns;
+            return time;
+        }
+        Follower& follower = offsets_[system];
+        if (!follower.known || time->count() + restart_ns < follower.last_ns)
+            follower.offset_ns = lead_ns_ + (received_ns - lead_received_ns_) - time->count();
+        follower.known = true;
+        follower.last_ns = time->count();
+        return Nanoseconds(time->count() + follower.offset_ns);
+    }
+
+private:
+    static constexpr std::int64_t restart_ns = 1'000'000'000;
+    struct Follower {
+        bool known = false;
+        std::int64_t offset_ns = 0, last_ns = 0;
+    };
+    std::optional<std::uint8_t> leader_;
+    std::int64_t lead_ns_ = 0, lead_received_ns_ = 0;
+    std::map<std::uint8_t, Follower> offsets_;
+};
+
+class MavlinkDialect : public FeedDialect {
+public:
+    explicit MavlinkDialect(const FeedContext& context) : context_(context) {}
+
+    FeedNews hear(ByteSpan bytes, std::int64_t received_ns) override {
+        FeedNews news;
+        stream_.feed(bytes, [&](const MavlinkFrameView& frame) { take(frame, received_ns, news); });
+        report_broken_frames(stream_, news);
+        return news;
+    }
+
+    std::vector<Bytes> say() override {
+        MavlinkHeartbeat alive;
+        alive.type = onboard_controller;
+        std::vector<Bytes> words{encode_mavlink(next_source(), alive)};
+        for (auto& [system, vehicle] : vehicles_)
+            ask(system, vehicle, words);
+        return words;
+    }
+
+    void reconnected() override {
+        stream_.clear();
+        for (auto& [system, vehicle] : vehicles_)
+            vehicle.asked = 0;
+    }
+
+private:
+    struct Vehicle {
+        MavlinkVehicleTruth truth;
+        std::uint8_t component = 1;
+        bool is_autopilot = false;
+        int asked = 0;
+    };
+
+    bool is_wanted(std::uint8_t system) const {
+        return system != 0 && system != mavlink_own_system &&
+               (context_.vehicle.empty() || context_.vehicle == std::to_string(system));
+    }
+
+    void take(const MavlinkFrameView& frame, std::int64_t received_ns, FeedNews& news) {
+        const std::uint8_t system = frame.source.system;
+        if (!is_wanted(system)) return;
+        Vehicle& vehicle = vehicles_.try_emplace(system, Vehicle{MavlinkVehicleTruth(context_)}).first->second;
+        if (frame.message == MavlinkHeartbeat::message_id) return meet(frame, vehicle, news);
+        auto sample = vehicle.truth.take(frame, received_ns);
+        if (!sample) return;
+        if (!*sample) return report_refusal(news, fmt::format("vehicle {}: {}", system, sample->error()));
+        (*sample)->vehicle = std::to_string(system);
+        (*sample)->source_time = clock_.common(system, (*sample)->source_time, received_ns);
+        news.samples.push_back(std::move(**sample));
+    }
+
+    void meet(const MavlinkFrameView& frame, Vehicle& vehicle, FeedNews& news) {
+        const auto alive = decode_mavlink<MavlinkHeartbeat>(frame.payload);
+        if (alive.autopilot == no_autopilot) return;
+        vehicle.truth.set_autopilot(alive.autopilot);
+        vehicle.component = frame.source.component;
+        if (std::exchange(vehicle.is_autopilot, true)) return;
+        ask(frame.source.system, vehicle, news.answers);
+    }
+
+    // The truth of a simulator three times; what every autopilot has, when there is none.
+    void ask(std::uint8_t system, Vehicle& vehicle, std::vector<Bytes>& words) {
+        constexpr int patience = 3, most = 6;
+        const MavlinkTruthKind heard = vehicle.truth.take_heard();
+        if (!vehicle.is_autopilot || heard >= MavlinkTruthKind::sim_state) return;
+        if (vehicle.asked >= most && heard != MavlinkTruthKind::none) return;
+        const double rate = context_.rate_hz;
+        words.push_back(request(system, vehicle, MavlinkHilStateQuaternion::message_id, rate));
+        words.push_back(request(system, vehicle, MavlinkSimState::message_id, rate));
+        if (vehicle.asked++ < patience) return;
+        vehicle.asked = std::min(vehicle.asked, most);
+        words.push_back(request(system, vehicle, MavlinkGpsGlobalOrigin::message_id, 1));
+        words.push_back(request(system, vehicle, MavlinkAttitudeQuaternion::message_id, rate));
+        words.push_back(request(system, vehicle, MavlinkLocalPositionNed::message_id, rate));
+        words.push_back(request(system, vehicle, MavlinkGlobalPositionInt::message_id, rate));
+    }
+
+    Bytes request(std::uint8_t system, const Vehicle& vehicle, std::uint32_t message, double rate_hz) {
+        constexpr double second_us = 1e6;
+        MavlinkCommandLong command;
+        command.command = set_message_interval;
+        command.param1 = static_cast<float>(message);
+        command.param2 = static_cast<float>(second_us / rate_hz);
+        command.target_system = system;
+        command.target_component = vehicle.component;
+        return encode_mavlink(next_source(), command);
+    }
+
+    MavlinkSource next_source() { return {mavlink_own_system, mavlink_own_component, sequence_++}; }
+
+    FeedContext context_;
+    MavlinkStream stream_;
+    FleetClock clock_;
+    std::map<std::uint8_t, Vehicle> vehicles_;  // by system: at most 254
+    std::uint8_t sequence_ = 0;
+};
+
+// Between PX4 and its simulator nobody else may speak: the simulator's HIL_STATE_QUATERNION is read, its clock is
+// PX4's.
+class Px4Dialect : public FeedDialect {
+public:
+    explicit Px4Dialect(const FeedContext& context) : truth_(context) {}
+
+    FeedNews hear(ByteSpan bytes, std::int64_t received_ns) override {
+        FeedNews news;
+        stream_.feed(bytes, [&](const MavlinkFrameView& frame) {
+            if (frame.message != MavlinkHilStateQuaternion::message_id) return;
+            if (auto sample = truth_.take(frame, received_ns)) {
+                if (*sample)
+                    news.samples.push_back(std::move(**sample));
+                else
+                    report_refusal(news, std::move(sample->error()));
+            }
+        });
+        report_broken_frames(stream_, news);
+        return news;
+    }
+    void reconnected() override { stream_.clear(); }
+
+private:
+    MavlinkVehicleTruth truth_;
+    MavlinkStream stream_;
+};
+
+}  // namespace
+
+std::unique_ptr<FeedDialect> make_mavlink_dialect(const FeedContext& context) {
+    return std::make_unique<MavlinkDialect>(context);
+}
+
+std::unique_ptr<FeedDialect> make_px4_dialect(const FeedContext& context) {
+    return std::make_unique<Px4Dialect>(context);
+}
+
+}  // namespace skyloop
