@@ -1,0 +1,97 @@
+// What a user may type after --output, and what is said of all else.
+#include "skyloop/output/output_settings.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace skyloop {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+OutputSettings settings_of(std::string_view uri) {
+    const auto parsed = parse_output_uri(uri);
+    EXPECT_TRUE(parsed) << parsed.error().message;
+    return parsed ? *parsed : OutputSettings{};
+}
+
+std::string refusal_of_output(std::string_view uri) {
+    const auto parsed = parse_output_uri(uri);
+    if (parsed) return "taken";
+    EXPECT_EQ(parsed.error().code, ErrorCode::usage);
+    return parsed.error().message;
+}
+
+TEST(OutputSettings, NameFormatWayAndTarget) {
+    const OutputSettings input = settings_of("gps-input:127.0.0.1:14550");
+    EXPECT_EQ(input.format, OutputFormat::gps_input);
+    EXPECT_EQ(input.way, OutputWay::udp);
+    EXPECT_EQ(input.address.host, "127.0.0.1");
+    EXPECT_EQ(input.address.port, 14550);
+    EXPECT_EQ(input.when, OutputMoment::report);
+    EXPECT_EQ(input.system, 1);
+    EXPECT_EQ(input.component, 220);
+    EXPECT_EQ(input.uri, "gps-input:127.0.0.1:14550");
+    EXPECT_EQ(settings_of("hil-gps:[::1]:14560").address.host, "::1");
+    EXPECT_EQ(settings_of("gps-input-tcp-to:sitl:5762").way, OutputWay::tcp_client);
+    const OutputSettings msp = settings_of("msp-tcp:5761");
+    EXPECT_EQ(msp.way, OutputWay::tcp_server);
+    EXPECT_EQ(msp.address.host, "127.0.0.1");
+    EXPECT_EQ(settings_of("msp-tcp:0.0.0.0:0").address.host, "0.0.0.0");
+    const OutputSettings lines = settings_of("json-udp:localhost:9000");
+    EXPECT_EQ(lines.format, OutputFormat::json);
+    EXPECT_EQ(lines.when, OutputMoment::epoch);
+    EXPECT_EQ(settings_of("json-file:-").path, "-");
+}
+
+TEST(OutputSettings, OptionsFollowBehindCommas) {
+    const OutputSettings all =
+        settings_of("hil-gps:h:1,receiver=rear,when=epoch,system=255,component=1,id=7,eph=dop100");
+    EXPECT_EQ(all.uri, "hil-gps:h:1");
+    EXPECT_EQ(all.receiver, "rear");
+    EXPECT_EQ(all.when, OutputMoment::epoch);
+    EXPECT_EQ(all.system, 255);
+    EXPECT_EQ(all.component, 1);
+    EXPECT_EQ(all.id, 7);
+    EXPECT_EQ(all.eph, HilGpsAccuracy::dop100);
+    // A comma may be of a file's name.
+    const OutputSettings file = settings_of("json-file:runs/a,b=c,when=report");
+    EXPECT_EQ(file.path, "runs/a,b=c");
+    EXPECT_EQ(file.when, OutputMoment::report);
+}
+
+TEST(OutputSettings, WhatIsNoOutputIsRefusedWithItsReason) {
+    EXPECT_THAT(refusal_of_output(""), HasSubstr("is no output; expected gps-input:HOST:PORT"));
+    EXPECT_THAT(refusal_of_output("gps-inptu:h:1"), HasSubstr("'gps-inptu' is no output"));
+    EXPECT_THAT(refusal_of_output("msp:h:1"), HasSubstr("'msp' is no output"));
+    EXPECT_THAT(refusal_of_output("json-tcp-from:1"), HasSubstr("'json-tcp-from' is no output"));
+    EXPECT_THAT(refusal_of_output("json"), HasSubstr("is no output"));
+    EXPECT_THAT(refusal_of_output("gps-input:14550"), HasSubstr("the host is missing"));
+    EXPECT_THAT(refusal_of_output("gps-input:h:0"), HasSubstr("port 0 cannot be sent to"));
+    EXPECT_THAT(refusal_of_output("gps-input:h:65536"), HasSubstr("a port from 0 to 65535"));
+    EXPECT_THAT(refusal_of_output("json-tcp:::1:5"), HasSubstr("the host is not understood"));
+    EXPECT_THAT(refusal_of_output("json-file:"), HasSubstr("the path is missing"));
+    EXPECT_THAT(refusal_of_output("gps-input:h:1,sytem=3"), HasSubstr("did you mean 'system'?"));
+    EXPECT_THAT(refusal_of_output("gps-input:h:1,system=0"), HasSubstr("system '0': expected a whole number from 1"));
+    EXPECT_THAT(refusal_of_output("gps-input:h:1,id=256"), HasSubstr("id '256'"));
+    EXPECT_THAT(refusal_of_output("gps-input:h:1,id=1.5"), HasSubstr("id '1.5'"));
+    EXPECT_THAT(refusal_of_output("gps-input:h:1,id="), HasSubstr("id ''"));
+    EXPECT_THAT(refusal_of_output("gps-input:h:1,later"), HasSubstr("'later': expected KEY=VALUE"));
+    EXPECT_THAT(refusal_of_output("gps-input:h:1,when=epoh"), HasSubstr("did you mean 'epoch'?"));
+    EXPECT_THAT(refusal_of_output("gps-input:h:1,receiver="), HasSubstr("receiver is empty"));
+}
+
+TEST(OutputSettings, ChooseWhomTheyTell) {
+    const std::vector<std::string> names{"front", "rear"};
+    EXPECT_THAT(*told_receivers(settings_of("msp-tcp:1"), names), ElementsAre(true, false));
+    EXPECT_THAT(*told_receivers(settings_of("json-tcp:1"), names), ElementsAre(true, true));
+    EXPECT_THAT(*told_receivers(settings_of("json-tcp:1,receiver=rear"), names), ElementsAre(false, true));
+    const auto none = told_receivers(settings_of("json-tcp:1,receiver=left"), names);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().code, ErrorCode::usage);
+    EXPECT_THAT(none.error().message, HasSubstr("'left' is no receiver of this scenario; expected one of front, rear"));
+}
+
+}  // namespace
+}  // namespace skyloop
