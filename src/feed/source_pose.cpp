@@ -54,7 +54,7 @@ SampleOr sample_of(const SourcePose& pose, const FeedContext& context) {
     const Geodetic place{latitude, longitude, {Metres(height_above_ellipsoid(pose, latitude, longitude, context))}};
     TruthSample sample;
     sample.position = to_ecef(place);
-    put_motion(sample, pose, ned_to_ecef(place));
+    put_motion(sample, pose, ned_to_ecef(place).toRotationMatrix());
     sample.attitude = pose.attitude;
     return sample;
 }
@@ -71,7 +71,7 @@ SampleOr sample_of(const LocalPose& pose, LocalMap native, const FeedContext& co
     sample.position = to_ecef(place);
     put_motion(sample, pose, to_ecef_axes);
     if (pose.attitude) {
-        const Eigen::Matrix3d to_place_axes = ned_to_ecef(place).transpose() * to_ecef_axes;
+        const Eigen::Matrix3d to_place_axes = ned_to_ecef(place).toRotationMatrix().transpose() * to_ecef_axes;
         sample.attitude = Attitude(Eigen::Quaterniond(to_place_axes) * pose.attitude->body_to_ned());
     }
     return sample;

@@ -61,18 +61,8 @@ Geodetic place_on_map(LocalMap map, const Geodetic& origin, const Eigen::Vector3
     return place;
 }
 
-Eigen::Matrix3d ned_to_ecef(const Geodetic& place) {
-    const double sin_lat = std::sin(place.latitude.rad()), cos_lat = std::cos(place.latitude.rad());
-    const double sin_lon = std::sin(place.longitude.rad()), cos_lon = std::cos(place.longitude.rad());
-    Eigen::Matrix3d turn;
-    turn << -sin_lat * cos_lon, -sin_lon, -cos_lat * cos_lon,  //
-        -sin_lat * sin_lon, cos_lon, -cos_lat * sin_lon,       //
-        cos_lat, 0, -sin_lat;
-    return turn;
-}
-
 Eigen::Matrix3d axes_on_map(LocalMap map, const Geodetic& origin, const Geodetic& place) {
-    return ned_to_ecef(map == LocalMap::tangent ? origin : place);
+    return ned_to_ecef(map == LocalMap::tangent ? origin : place).toRotationMatrix();
 }
 
 }  // namespace skyloop

@@ -16,7 +16,7 @@ namespace {
 using Rows = std::span<TrackRow>;
 
 // Position, velocity and acceleration of one axis (rows) for east, north and up (columns).
-using Motion = Eigen::Matrix3d;
+using AxisMotion = Eigen::Matrix3d;
 
 double seconds_between(const TrackRow& from, const TrackRow& to) { return to_seconds(to.time - from.time).value(); }
 
@@ -51,7 +51,7 @@ Eigen::Matrix3d process_noise(double h) {
 
 // What a filter knows: the covariance of the axes in plan, and that of the one up.
 struct Belief {
-    Motion state = Motion::Zero();
+    AxisMotion state = AxisMotion::Zero();
     std::array<Eigen::Matrix3d, 2> covariance{};
 };
 
@@ -164,7 +164,7 @@ private:
                 gain * (next.state.middleCols(first, count) - ahead.state.middleCols(first, count));
         }
     }
-    void move(TrackRow& row, const Motion& state, double* largest_shift) const {
+    void move(TrackRow& row, const AxisMotion& state, double* largest_shift) const {
         const Eigen::Vector3d shift = state.row(0) - place(row);
         if (!shift.allFinite() || !state.allFinite()) return;
         if (largest_shift) *largest_shift = std::max(*largest_shift, shift.norm());

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "skyloop/geo/body_frame.hpp"
 #include "skyloop/geo/geodetic.hpp"
 
 namespace skyloop {
@@ -26,9 +27,6 @@ std::optional<LocalMap> local_map_of_name(std::string_view name);
 /// Where a point is that a simulator says to be so far from its origin.
 /// @param ned metres north, east and down
 Geodetic place_on_map(LocalMap map, const Geodetic& origin, const Eigen::Vector3d& ned);
-
-/// The turn from north, east, down to ECEF axes at a place.
-Eigen::Matrix3d ned_to_ecef(const Geodetic& place);
 
 /// The axes, as a turn to ECEF, of vectors that a simulator gives along with a point: of the tangent plane those of its
 /// origin, of the other maps, which follow the Earth's curve, those of the place itself.

@@ -42,7 +42,7 @@ inline void expect_pose(const TruthSample& sample, const PoseTolerance& within) 
     EXPECT_NEAR(place.longitude.deg(), Pose::longitude, within.degrees);
     EXPECT_NEAR(place.height.above_ellipsoid.value(), Pose::height, within.metres);
     ASSERT_TRUE(sample.velocity);
-    const Eigen::Vector3d ned = ned_to_ecef(place).transpose() * sample.velocity->vector();
+    const Eigen::Vector3d ned = ned_to_ecef(place).conjugate() * sample.velocity->vector();
     EXPECT_NEAR(ned.x(), Pose::north, within.mps);
     EXPECT_NEAR(ned.y(), Pose::east, within.mps);
     EXPECT_NEAR(ned.z(), -Pose::up, within.mps);

@@ -85,7 +85,7 @@ TEST(FlightgearDialect, ZeroVelocitiesOfAMovingVehicleAreReplaced) {
         ASSERT_EQ(news.samples.size(), 1u);
         last = news.samples[0];
     }
-    const Eigen::Vector3d ned = ned_to_ecef(to_geodetic(last.position)).transpose() * last.velocity->vector();
+    const Eigen::Vector3d ned = ned_to_ecef(to_geodetic(last.position)).conjugate() * last.velocity->vector();
     EXPECT_NEAR(ned.x(), 10, 0.2);
     EXPECT_NEAR(ned.y(), 0, 0.2);
 }

@@ -70,8 +70,9 @@ TEST(LocalMap, MapsPartByMetresInAKilometre) {
 
 TEST(LocalMap, AxesOfTheTangentPlaneStayThoseOfItsOrigin) {
     const Geodetic place = place_on_map(LocalMap::tangent, map_origin, {0, 100000, 0});
-    EXPECT_TRUE(axes_on_map(LocalMap::tangent, map_origin, place).isApprox(ned_to_ecef(map_origin)));
-    EXPECT_TRUE(axes_on_map(LocalMap::ardupilot_flat, map_origin, place).isApprox(ned_to_ecef(place)));
+    EXPECT_TRUE(axes_on_map(LocalMap::tangent, map_origin, place).isApprox(ned_to_ecef(map_origin).toRotationMatrix()));
+    EXPECT_TRUE(
+        axes_on_map(LocalMap::ardupilot_flat, map_origin, place).isApprox(ned_to_ecef(place).toRotationMatrix()));
     const Eigen::Vector3d down = ned_to_ecef(map_origin) * Eigen::Vector3d(0, 0, 1);
     Geodetic below = map_origin;
     below.height.above_ellipsoid -= Metres(1);
