@@ -113,6 +113,8 @@ void NmeaEpochs::take_gga(const Gga& gga) {
     if (!row_ || !gga.time) return;
     row_->has_gga = true;
     take_ground(gga.position);
+    row_->epoch.motion.altitude = gga.altitude;
+    row_->epoch.motion.separation = gga.geoid_separation;
     row_->position = gga.position;
     row_->altitude = gga.altitude;
     row_->separation = gga.geoid_separation;
@@ -124,6 +126,8 @@ void NmeaEpochs::take_gns(const Gns& gns) {
     take_time(gns.time);
     if (!row_ || !gns.time || row_->has_gga) return;
     take_ground(gns.position);
+    row_->epoch.motion.altitude = gns.altitude;
+    row_->epoch.motion.separation = gns.geoid_separation;
     row_->position = gns.position;
     row_->altitude = gns.altitude;
     row_->separation = gns.geoid_separation;
@@ -218,7 +222,7 @@ void NmeaEpochs::place(Row& row) {
 bool NmeaEpochs::date_rows() {
     const auto dated = std::find_if(rows_.begin(), rows_.end(), [](const Row& row) { return row.date.has_value(); });
     log_.dated = dated != rows_.end();
-    if (!log_.dated && !undated_) return false;
+    if (!log_.dated && !for_track_) return false;
     constexpr double day = 86400, half_day = day / 2, late = 3600;  // a sentence may come late over midnight
     const auto days_from = [&](const Row& before, const Row& row) {
         const double step = row.seconds - before.seconds;
@@ -256,6 +260,7 @@ Result<ReceiverLog> NmeaEpochs::finish(const std::string& name) {
         log_.board = "nmea-generic";
     }
     add_note(log_, senseless_, "sentences with fields that make no sense were left out");
+    if (for_track_) return std::move(log_);
     add_note(log_, without_height_, "fixes without an altitude have no place");
     add_note(log_, without_separation_,
              geoid_ ? "fixes without a geoid separation took it from EGM96"

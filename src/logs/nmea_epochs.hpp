@@ -10,7 +10,7 @@ namespace skyloop {
 /// follow them. The date is that of RMC or ZDA, counted on over midnight; epochs before the first date are dated by it.
 class NmeaEpochs {
 public:
-    explicit NmeaEpochs(const LogReading& reading) : geoid_(reading.geoid), undated_(reading.undated) {}
+    explicit NmeaEpochs(const LogReading& reading) : geoid_(reading.geoid), for_track_(reading.for_track) {}
     /// A sentence whose checksum holds.
     void take(std::string_view sentence);
     /// Everything, as a log; finish_log() has not been called on it.
@@ -40,7 +40,7 @@ private:
     bool date_rows();
 
     const Geoid* geoid_;
-    bool undated_;
+    bool for_track_;
     ReceiverLog log_;
     std::optional<Row> row_;
     std::vector<Row> rows_;

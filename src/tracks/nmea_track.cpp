@@ -13,11 +13,13 @@ TextRow nmea_row(const LogEpoch& epoch) {
     const LogMotion& motion = epoch.motion;
     TextRow row;
     row.time = epoch.time.time_since_epoch();
-    if (epoch.place) {
+    if (motion.latitude && motion.longitude) {
+        row.latitude_deg = motion.latitude->deg(), row.longitude_deg = motion.longitude->deg();
+        if (motion.altitude) row.sea_level_m = motion.altitude->value();
+        if (motion.separation) row.separation_m = motion.separation->value();
+    } else {
         row.latitude_deg = epoch.place->latitude.deg(), row.longitude_deg = epoch.place->longitude.deg();
         row.ellipsoidal_m = epoch.place->height.above_ellipsoid.value();
-    } else {
-        row.latitude_deg = motion.latitude->deg(), row.longitude_deg = motion.longitude->deg();
     }
     if (motion.ground_speed) row.speed_mps = motion.ground_speed->value();
     if (motion.course) row.course_deg = motion.course->deg();
@@ -35,6 +37,13 @@ Result<void> add_nmea_epochs(TextTrack& track, const ReceiverLog& log) {
     const bool all_void = std::none_of(log.epochs.begin(), log.epochs.end(), [](const LogEpoch& epoch) {
         return nmea_has_place(epoch) && epoch.type != FixType::none;
     });
+    // Zero everywhere is what programs write that do not know it (FEEDS.md 1.5).
+    const bool separated = std::any_of(log.epochs.begin(), log.epochs.end(), [](const LogEpoch& epoch) {
+        return epoch.motion.separation && epoch.motion.separation->value() != 0;
+    });
+    const bool heights = std::any_of(log.epochs.begin(), log.epochs.end(),
+                                     [](const LogEpoch& epoch) { return epoch.motion.altitude.has_value(); });
+    if (heights && !separated) track.note("the geoid's height above the ellipsoid is not told; it is that of EGM96");
     std::size_t marked = 0;
     for (const LogEpoch& epoch : log.epochs) {
         if (!nmea_has_place(epoch)) {
@@ -46,7 +55,9 @@ Result<void> add_nmea_epochs(TextTrack& track, const ReceiverLog& log) {
             continue;
         }
         marked += epoch.type == FixType::none;
-        if (const auto added = track.add(nmea_row(epoch)); !added) return added;
+        TextRow row = nmea_row(epoch);
+        if (!separated) row.separation_m.reset();
+        if (const auto added = track.add(row); !added) return added;
     }
     if (marked > 0)
         track.note(fmt::format("all {} places are marked as without a fix; they are taken all the same", marked));
@@ -73,7 +84,7 @@ bool is_nmea_track(const TrackFile& file) {
 Result<Track> read_nmea_track(const TrackFile& file) {
     LogReading reading;
     reading.geoid = file.reading.geoid;
-    reading.undated = true;
+    reading.for_track = true;
     const auto log = read_receiver_log(file.bytes, file.name, reading);
     if (!log) return fail(log.error());
     TextTrack track(file, log->format, "epochs");

@@ -23,6 +23,8 @@ struct LoggedSatellite {
 /// What some logs tell of the motion beside, or instead of, a whole place and velocity. NMEA tells it so.
 struct LogMotion {
     std::optional<Angle> latitude{}, longitude{};  ///< whatever the type of the fix, with or without a height
+    std::optional<Metres> altitude{};              ///< above mean sea level
+    std::optional<Metres> separation{};            ///< of the geoid above the ellipsoid, as the log says
     std::optional<MetresPerSecond> ground_speed{}, climb{};
     std::optional<Angle> course{};  ///< from true north
     std::optional<Angle> heading{}, roll{}, pitch{};
@@ -61,7 +63,7 @@ struct ReceiverLog {
 struct LogReading {
     const Geoid* geoid = nullptr;  ///< for heights above sea level where the log does not tell the undulation
     std::size_t receiver = 0;      ///< of several in one log, from 0
-    bool undated = false;          ///< NMEA without a date is read too
+    bool for_track = false;  ///< the way alone is wanted: NMEA without a date is read too, and no note tells of heights
 };
 
 /// Reads a log of any of the four kinds, told by its content. Fails with `input` and one sentence that begins with the

@@ -87,6 +87,15 @@ TEST(NmeaTrack, DatesEpochsBeforeAndLongAfterADate) {
     EXPECT_EQ(utc_of(track, 5), "2024-03-07T01:00:00.000Z");
 }
 
+TEST(NmeaTrack, TakesTheGeoidWhereTheSeparationIsZeroEverywhere) {
+    const Track zero = track_of(rmc("120000.00") + gga("120000.00", "500.0,M,0.0,M"));
+    EXPECT_NEAR(height_of(zero, 0), 510, 1e-4);
+    EXPECT_THAT(zero.notes, ElementsAre(HasSubstr("it is that of EGM96")));
+    const Track mixed =
+        track_of(rmc("120000.00") + gga("120000.00", "500.0,M,0.0,M") + gga("120001.00", "500.0,M,0.5,M"));
+    EXPECT_NEAR(height_of(mixed, 0), 500, 1e-4);
+}
+
 TEST(NmeaTrack, TakesVoidPlacesOnlyWhereThereAreNoOthers) {
     const Track mixed = track_of(rmc("120000.00", "050324", ",", 'V') + rmc("120001.00"));
     EXPECT_EQ(mixed.points.size(), 1u);

@@ -1,0 +1,38 @@
+/// Any bytes as a track: a clear error, or rows that are finite and a path between them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "require.hpp"
+#include "skyloop/tracks/read_track.hpp"
+#include "skyloop/trajectory/recorded_path.hpp"
+
+namespace skyloop {
+
+inline int read_any_track(const std::uint8_t* data, std::size_t size, const std::string& name) {
+    auto track = read_track({data, size}, name, {nullptr, Geodetic::degrees(47, 8, 500)});
+    if (!track) {
+        require(track.error().message.starts_with(name));
+        require(track.error().message.find('\n') == std::string::npos);
+        return 0;
+    }
+    for (const TrackRow& row : track->points) {
+        require(row.position.vector().allFinite());
+        require(!row.velocity || row.velocity->vector().allFinite());
+        require(!row.attitude || row.attitude->body_to_ned().coeffs().allFinite());
+    }
+    for (const std::string& note : track->notes)
+        require(note.find('\n') == std::string::npos);
+    const auto gaps = clean_track(*track, Seconds(10));
+    if (!gaps) return 0;
+    const GpsTime start = to_gps_time(2304, 0.0);
+    const RecordedPath path(*track, *gaps, start);
+    for (int i = -1; i <= 21; ++i) {
+        const TruthState state = path.at(advanced(start, Seconds(path.duration().value() * i / 20)));
+        require(state.position.vector().allFinite() && state.velocity.vector().allFinite());
+    }
+    return 0;
+}
+
+}  // namespace skyloop
