@@ -20,7 +20,9 @@ struct TrackFormat {
     Result<Track> (*read)(const TrackFile&);
 };
 
-Result<Track> read_csv(const TrackFile& file) { return read_track_csv(file.text, file.name, file.reading.geoid); }
+Result<Track> read_csv(const TrackFile& file) {
+    return read_track_csv(file.text, file.name, file.reading.geoid, file.reading.origin);
+}
 
 // By the root of XML; a file in another encoding than UTF-8 shows none, and is told by its ending.
 bool is_xml_of(const TrackFile& file, std::string_view root, std::string_view ending) {

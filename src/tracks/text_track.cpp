@@ -48,6 +48,9 @@ Result<void> TextTrack::add(TextRow row) {
                !place) {
         return refusal(row.line, place.error());
     }
+    // Phones write -1 for what they do not know.
+    if (row.speed_mps && *row.speed_mps < 0) row.speed_mps.reset();
+    if (row.course_deg && *row.course_deg == -1) row.course_deg.reset();
     for (const auto& value : {row.speed_mps, row.climb_mps})
         if (value && !(std::abs(*value) <= fastest_mps))
             return refusal(row.line, fmt::format("a speed of {:g} m/s; expected at most {:g}", *value, fastest_mps));
@@ -85,14 +88,14 @@ void TextTrack::merge_parts() {
         Nanoseconds last{0};
         Part* part = nullptr;
     };
-    std::map<Nanoseconds, Kept> kept;  // by their first times
+    std::multimap<Nanoseconds, Kept> kept;  // by their first times
     constexpr std::size_t most_told = 5;
     std::size_t overlapping = 0;
     for (Part& part : parts_) {
         const auto [first, last] = std::minmax_element(
             part.rows.begin(), part.rows.end(), [](const TextRow& a, const TextRow& b) { return a.time < b.time; });
-        const auto after = kept.upper_bound(last->time);  // begins after this one ends
-        if (after == kept.begin() || std::prev(after)->second.last < first->time) {
+        const auto after = kept.lower_bound(last->time);  // begins when this one ends, or later
+        if (after == kept.begin() || std::prev(after)->second.last <= first->time) {
             kept.emplace(first->time, Kept{last->time, &part});
         } else if (++overlapping <= most_told) {
             note(fmt::format("the track '{}' of {} {} overlaps a longer one of the file in time and was left out",

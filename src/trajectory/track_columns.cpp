@@ -69,18 +69,153 @@ constexpr std::array known_columns{KnownColumn{"t_s", Q::since_start, 1},
                                    KnownColumn{"roll_rad", Q::roll, degrees_of},
                                    KnownColumn{"pitch_rad", Q::pitch, degrees_of},
                                    KnownColumn{"yaw_rad", Q::yaw, degrees_of},
-                                   KnownColumn{"fix", Q::fix, 1}};
+                                   KnownColumn{"qw", Q::qw, 1},
+                                   KnownColumn{"qx", Q::qx, 1},
+                                   KnownColumn{"qy", Q::qy, 1},
+                                   KnownColumn{"qz", Q::qz, 1},
+                                   KnownColumn{"n_m", Q::local_north, 1},
+                                   KnownColumn{"e_m", Q::local_east, 1},
+                                   KnownColumn{"u_m", Q::local_up, 1},
+                                   KnownColumn{"d_m", Q::local_down, 1},
+                                   KnownColumn{"fix", Q::fix, 1},
+                                   KnownColumn{"reset", Q::reset, 1}};
+
+// What other programs call a quantity, and what its unit measures. Of several for one quantity the earlier one counts.
+struct OtherName {
+    std::string_view name;
+    TrackQuantity quantity;
+    std::string_view measures;
+};
+constexpr std::string_view times = "time", calendars = "calendar", angles = "angle", lengths = "length",
+                           speeds = "speed";
+constexpr std::array other_names{OtherName{"datetime", Q::utc, calendars},
+                                 OtherName{"timestamp", Q::utc, calendars},
+                                 OtherName{"time", Q::utc, calendars},
+                                 OtherName{"time", Q::since_start, times},
+                                 OtherName{"elapsed_time", Q::since_start, times},
+                                 OtherName{"unix_time", Q::posix, times},
+                                 OtherName{"latitude", Q::latitude, angles},
+                                 OtherName{"lat", Q::latitude, angles},
+                                 OtherName{"longitude", Q::longitude, angles},
+                                 OtherName{"lon", Q::longitude, angles},
+                                 OtherName{"lng", Q::longitude, angles},
+                                 OtherName{"height_above_ellipsoid", Q::height, lengths},
+                                 OtherName{"ellipsoidal_height", Q::height, lengths},
+                                 OtherName{"altitude_above_sealevel", Q::altitude, lengths},
+                                 OtherName{"altitude_msl", Q::altitude, lengths},
+                                 OtherName{"altitude", Q::altitude, lengths},
+                                 OtherName{"alt", Q::altitude, lengths},
+                                 OtherName{"elevation", Q::altitude, lengths},
+                                 OtherName{"ele", Q::altitude, lengths},
+                                 OtherName{"ground_speed", Q::speed, speeds},
+                                 OtherName{"speed", Q::speed, speeds},
+                                 OtherName{"course", Q::course, angles},
+                                 OtherName{"course_over_ground", Q::course, angles},
+                                 OtherName{"climb", Q::climb, speeds},
+                                 OtherName{"vertical_speed", Q::climb, speeds},
+                                 OtherName{"roll", Q::roll, angles},
+                                 OtherName{"pitch", Q::pitch, angles},
+                                 OtherName{"yaw", Q::yaw, angles}};
+
+struct OtherUnit {
+    std::string_view name, measures;
+    double scale;
+};
+constexpr std::array other_units{OtherUnit{"s", times, 1},
+                                 OtherUnit{"sec", times, 1},
+                                 OtherUnit{"seconds", times, 1},
+                                 OtherUnit{"ms", times, 1e-3},
+                                 OtherUnit{"millisecond", times, 1e-3},
+                                 OtherUnit{"milliseconds", times, 1e-3},
+                                 OtherUnit{"us", times, 1e-6},
+                                 OtherUnit{"ns", times, 1e-9},
+                                 OtherUnit{"utc", calendars, 1},
+                                 OtherUnit{"deg", angles, 1},
+                                 OtherUnit{"degrees", angles, 1},
+                                 OtherUnit{"\xC2\xB0", angles, 1},
+                                 OtherUnit{"rad", angles, degrees_of},
+                                 OtherUnit{"e7", angles, 1e-7},
+                                 OtherUnit{"m", lengths, 1},
+                                 OtherUnit{"meters", lengths, 1},
+                                 OtherUnit{"metres", lengths, 1},
+                                 OtherUnit{"km", lengths, 1000},
+                                 OtherUnit{"cm", lengths, 1e-2},
+                                 OtherUnit{"mm", lengths, 1e-3},
+                                 OtherUnit{"ft", lengths, foot},
+                                 OtherUnit{"feet", lengths, foot},
+                                 OtherUnit{"m/s", speeds, 1},
+                                 OtherUnit{"mps", speeds, 1},
+                                 OtherUnit{"km/h", speeds, 1 / 3.6},
+                                 OtherUnit{"kmh", speeds, 1 / 3.6},
+                                 OtherUnit{"kph", speeds, 1 / 3.6},
+                                 OtherUnit{"kn", speeds, knot},
+                                 OtherUnit{"kt", speeds, knot},
+                                 OtherUnit{"knots", speeds, knot},
+                                 OtherUnit{"mph", speeds, mile_per_hour},
+                                 OtherUnit{"ft/s", speeds, foot},
+                                 OtherUnit{"fps", speeds, foot}};
+
+// "Ground Speed [km/h]" as "ground_speed" and "km/h", "alt_ft" as "alt" and "ft", "latitude" as itself in degrees.
+struct NameAndUnit {
+    std::string name, unit;
+};
+NameAndUnit name_and_unit(std::string_view text) {
+    std::string lower(text);
+    for (char& letter : lower)
+        letter = letter == ' ' || letter == '-'   ? '_'
+                 : letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a')
+                                                  : letter;
+    std::string name = lower, unit;
+    if (const std::size_t open = lower.find_first_of("(["); open != std::string::npos) {
+        const std::size_t close = std::min(lower.find_first_of(")]", open), lower.size());
+        name = lower.substr(0, open);
+        unit = lower.substr(open + 1, close - open - 1);
+    } else if (lower == "latitude" || lower == "longitude" || lower == "lat" || lower == "lon") {
+        unit = "deg";
+    } else if (const std::size_t last = lower.rfind('_'); last != std::string::npos) {
+        name = lower.substr(0, last);
+        unit = lower.substr(last + 1);
+    }
+    while (name.ends_with('_'))
+        name.pop_back();
+    return {name, unit};
+}
+
+std::size_t rank_of_other_name(std::string_view text) {
+    const std::string name = name_and_unit(text).name;
+    return static_cast<std::size_t>(std::find_if(other_names.begin(), other_names.end(),
+                                                 [&](const OtherName& other) { return other.name == name; }) -
+                                    other_names.begin());
+}
 
 }  // namespace
 
+// By a name and a unit that others use. The format's own names go before these, whatever their order.
+bool TrackColumns::take_other_name(std::string_view name, std::size_t index) {
+    const NameAndUnit parts = name_and_unit(name);
+    for (const OtherName& other : other_names) {
+        if (other.name != parts.name) continue;
+        for (const OtherUnit& unit : other_units) {
+            if (unit.name != parts.unit || unit.measures != other.measures) continue;
+            auto& column = columns_[static_cast<std::size_t>(other.quantity)];
+            if (column) return false;
+            column = TrackColumn{index, unit.scale, std::string(name)};
+            if (other.quantity == Q::altitude) understood_.push_back(std::string(name) + " is taken above sea level");
+            return true;
+        }
+    }
+    return false;
+}
+
 Result<TrackColumns> TrackColumns::of(std::span<const std::string_view> header) {
     TrackColumns columns;
+    std::vector<std::size_t> others;
     for (std::size_t i = 0; i < header.size(); ++i) {
         const std::string_view name = header[i];
         const auto* const known = std::find_if(known_columns.begin(), known_columns.end(),
                                                [&](const KnownColumn& column) { return column.name == name; });
         if (known == known_columns.end()) {
-            if (!name.empty()) columns.unused_.emplace_back(name);
+            others.push_back(i);
             continue;
         }
         auto& column = columns.columns_[static_cast<std::size_t>(known->quantity)];
@@ -89,6 +224,12 @@ Result<TrackColumns> TrackColumns::of(std::span<const std::string_view> header) 
                         fmt::format("columns {} and {} say the same; expected one of them", column->name, name));
         column = TrackColumn{i, known->scale, std::string(name)};
     }
+    // Better names for a quantity stand earlier in the table of other names.
+    std::stable_sort(others.begin(), others.end(), [&](std::size_t a, std::size_t b) {
+        return rank_of_other_name(header[a]) < rank_of_other_name(header[b]);
+    });
+    for (const std::size_t i : others)
+        if (!columns.take_other_name(header[i], i) && !header[i].empty()) columns.unused_.emplace_back(header[i]);
     if (const auto right = columns.check(); !right) return fail(right.error());
     return columns;
 }
@@ -102,12 +243,11 @@ Result<void> TrackColumns::check() const {
             "gps_week and tow_s in the first line");
     const bool cartesian = has(Q::x) && has(Q::y) && has(Q::z);
     const bool geodetic = has(Q::latitude) && has(Q::longitude);
-    if (!cartesian && !geodetic)
-        return fail(
-            ErrorCode::input,
-            "no columns say the place; expected lat_deg and lon_deg, lat_rad and lon_rad, lat_e7 and lon_e7, or "
-            "x_ecef_m, y_ecef_m and z_ecef_m in the first line");
-    if (geodetic && !cartesian && !has(Q::height) && !has(Q::altitude))
+    if (!cartesian && !geodetic && !has_local())
+        return fail(ErrorCode::input,
+                    "no columns say the place; expected lat_deg and lon_deg, lat_rad and lon_rad, lat_e7 and lon_e7, "
+                    "x_ecef_m, y_ecef_m and z_ecef_m, or n_m, e_m and d_m or u_m in the first line");
+    if (geodetic && !cartesian && !has_local() && !has(Q::height) && !has(Q::altitude))
         return fail(ErrorCode::input,
                     "no column says the height; expected h_ell_m (above the ellipsoid) or alt_msl_m (above sea level)");
     return {};

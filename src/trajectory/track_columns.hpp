@@ -35,7 +35,16 @@ enum class TrackQuantity {
     roll,
     pitch,
     yaw,  // deg
-    fix,  // below 2: no position
+    qw,
+    qx,
+    qy,
+    qz,  // of the turn from the body (forward, right, down) to north, east, down
+    local_north,
+    local_east,
+    local_up,
+    local_down,  // m from an origin
+    fix,         // below 2: no position
+    reset,       // changes where the source begins anew
     count
 };
 
@@ -57,14 +66,22 @@ public:
         return columns_[static_cast<std::size_t>(quantity)];
     }
     [[nodiscard]] bool has(TrackQuantity quantity) const { return (*this)[quantity].has_value(); }
+    /// A place in metres from an origin, east, north and up or north, east and down.
+    [[nodiscard]] bool has_local() const {
+        return has(TrackQuantity::local_north) && has(TrackQuantity::local_east) &&
+               (has(TrackQuantity::local_up) || has(TrackQuantity::local_down));
+    }
+    /// Names that were understood though they are not those of the format, and what for.
+    [[nodiscard]] const std::vector<std::string>& understood() const { return understood_; }
     /// Names that mean nothing here.
     [[nodiscard]] const std::vector<std::string>& unused() const { return unused_; }
 
 private:
     Result<void> check() const;
+    bool take_other_name(std::string_view name, std::size_t index);
 
     std::optional<TrackColumn> columns_[static_cast<std::size_t>(TrackQuantity::count)];
-    std::vector<std::string> unused_;
+    std::vector<std::string> understood_, unused_;
 };
 
 }  // namespace skyloop

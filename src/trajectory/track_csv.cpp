@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -48,7 +49,11 @@ constexpr double latest_s = 9e9;
 
 class TrackTable {
 public:
-    TrackTable(const std::string& name, const Geoid* geoid) : geoid_(geoid) { track_.name = name; }
+    TrackTable(const std::string& name, const Geoid* geoid, const std::optional<Geodetic>& origin) : geoid_(geoid) {
+        track_.name = name;
+        track_.format = "CSV";
+        if (origin) local_.emplace(*origin);
+    }
     Result<Track> read(std::string_view text);
 
 private:
@@ -60,9 +65,15 @@ private:
     Result<std::optional<Nanoseconds>> utc_time();
     Result<std::optional<Nanoseconds>> gps_time();
     Result<std::optional<Position<Ecef>>> place();
+    Result<std::optional<Position<Ecef>>> cartesian_place();
     Result<std::optional<Position<Ecef>>> geodetic_place();
+    [[nodiscard]] Result<std::optional<Position<Ecef>>> checked_place(const Position<Ecef>& point) const;
+    Result<std::optional<Position<Ecef>>> local_place();
+    Result<std::optional<Eigen::Vector3d>> three(const std::array<TrackQuantity, 3>& axes);
     Result<void> add_velocity(TrackRow& point);
     Result<void> add_attitude(TrackRow& point);
+    Result<void> add_turn(TrackRow& point);
+    Result<void> add_reset(TrackRow& point);
     void add_notes();
     [[nodiscard]] tl::unexpected<Error> refusal(const std::string& what) const {
         return fail(ErrorCode::input, fmt::format("{}:{}: {}", track_.name, line_, what));
@@ -76,6 +87,8 @@ private:
     }
 
     const Geoid* geoid_;
+    std::optional<LocalFrame> local_;
+    std::optional<double> last_reset_;
     Track track_;
     std::size_t line_ = 0, without_time_ = 0, without_place_ = 0, without_fix_ = 0, rows_ = 0;
     char separator_ = ',';
@@ -120,6 +133,8 @@ Result<void> TrackTable::take_line(std::string_view line) {
             fmt::format("{} needs the geoid, whose grid is not there; expected h_ell_m, metres above the "
                         "ellipsoid",
                         columns_[altitude]->name));
+    if (columns_.has_local() && !local_)
+        return refusal("local metres; expected trajectory.origin = [latitude, longitude, height], where they begin");
     if (!columns_.has(since_start)) track_.origin = GpsTime{};
     has_header_ = true;
     return {};
@@ -141,6 +156,7 @@ Result<void> TrackTable::take_row() {
     TrackRow point{**when, **where, {}, {}, line_};
     if (const auto added = add_velocity(point); !added) return added;
     if (const auto added = add_attitude(point); !added) return added;
+    if (const auto added = add_reset(point); !added) return added;
     track_.points.push_back(point);
     return {};
 }
@@ -203,21 +219,44 @@ Result<std::optional<Nanoseconds>> TrackTable::time() {
 }
 
 Result<std::optional<Position<Ecef>>> TrackTable::place() {
-    if (!(columns_.has(x) && columns_.has(y) && columns_.has(z))) return geodetic_place();
-    double values[3];
-    const TrackQuantity axes[] = {x, y, z};
-    for (int i = 0; i < 3; ++i) {
-        const auto value = number(axes[i]);
+    if (columns_.has(x) && columns_.has(y) && columns_.has(z)) return cartesian_place();
+    return columns_.has_local() ? local_place() : geodetic_place();
+}
+
+// Three columns of one row; nothing where one of them is empty.
+Result<std::optional<Eigen::Vector3d>> TrackTable::three(const std::array<TrackQuantity, 3>& axes) {
+    Eigen::Vector3d values;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+        const auto value = number(axes[static_cast<std::size_t>(i)]);
         if (!value) return fail(value.error());
         if (!*value) return std::nullopt;
         values[i] = **value;
     }
-    const Position<Ecef> point(values[0], values[1], values[2]);
+    return values;
+}
+
+Result<std::optional<Position<Ecef>>> TrackTable::cartesian_place() {
+    const auto values = three({x, y, z});
+    if (!values) return fail(values.error());
+    if (!*values) return std::nullopt;
+    return checked_place(Position<Ecef>(**values));
+}
+
+Result<std::optional<Position<Ecef>>> TrackTable::checked_place(const Position<Ecef>& point) const {
     const double radius = point.vector().norm();
     if (!(radius > 6.3e6 && radius < 1.7e7))
         return refusal(
             fmt::format("the place lies {:.0f} m from the Earth's centre; expected 6300000 to 17000000", radius));
     return point;
+}
+
+Result<std::optional<Position<Ecef>>> TrackTable::local_place() {
+    const bool upwards = columns_.has(local_up);
+    const auto values = three({local_east, local_north, upwards ? local_up : local_down});
+    if (!values) return fail(values.error());
+    if (!*values) return std::nullopt;
+    const Eigen::Vector3d& v = **values;
+    return checked_place(local_->to_ecef(Position<Enu>(v.x(), v.y(), upwards ? v.z() : -v.z())));
 }
 
 Result<std::optional<Position<Ecef>>> TrackTable::geodetic_place() {
@@ -269,6 +308,30 @@ Result<void> TrackTable::add_attitude(TrackRow& point) {
         if (!*value) return fail(value->error());
     if (*r && *p && *w)
         point.attitude = Attitude::roll_pitch_yaw(Angle::degrees(**r), Angle::degrees(**p), Angle::degrees(**w));
+    return columns_.has(qw) ? add_turn(point) : Result<void>();
+}
+
+// A quaternion of the turn from the body to north, east, down.
+Result<void> TrackTable::add_turn(TrackRow& point) {
+    const auto w = number(qw);
+    if (!w) return fail(w.error());
+    const auto v = three({qx, qy, qz});
+    if (!v) return fail(v.error());
+    if (!*w || !*v) return {};
+    const Eigen::Quaterniond turn(**w, (**v).x(), (**v).y(), (**v).z());
+    constexpr double largest_error = 0.05;  // of its length: more is no quaternion of a turn (FEEDS.md 3.1)
+    if (!(std::abs(turn.norm() - 1) < largest_error))
+        return refusal(fmt::format("the length of the quaternion is {:g}; expected 1", turn.norm()));
+    point.attitude = Attitude(turn);
+    return {};
+}
+
+Result<void> TrackTable::add_reset(TrackRow& point) {
+    const auto told = number(reset);
+    if (!told) return fail(told.error());
+    if (!*told) return {};
+    point.jump = last_reset_ && *last_reset_ != **told;
+    last_reset_ = *told;
     return {};
 }
 
@@ -292,14 +355,17 @@ void TrackTable::add_notes() {
             "taken from the places");
     if (any(roll, yaw) || columns_.has(pitch))
         track_.notes.push_back("attitude is read and not used: the antenna's offset follows the course, upright");
+    for (const std::string& what : columns_.understood())
+        track_.notes.push_back(what);
     if (!columns_.unused().empty())
         track_.notes.push_back(fmt::format("columns without a meaning here: {}", fmt::join(columns_.unused(), ", ")));
 }
 
 }  // namespace
 
-Result<Track> read_track_csv(std::string_view text, const std::string& name, const Geoid* geoid) {
-    return TrackTable(name, geoid).read(text);
+Result<Track> read_track_csv(std::string_view text, const std::string& name, const Geoid* geoid,
+                             const std::optional<Geodetic>& origin) {
+    return TrackTable(name, geoid, origin).read(text);
 }
 
 }  // namespace skyloop

@@ -118,6 +118,24 @@ TEST(GpxTrack, KeepsTheLongerOfTracksThatOverlap) {
                                          "time and was left out"));
 }
 
+TEST(GpxTrack, JoinsTracksThatTouchInTime) {
+    const auto at = [](int second) {
+        return point("<ele>1</ele><time>2024-03-05T12:00:0" + std::to_string(second) + "Z</time>");
+    };
+    const Track track = track_of("<gpx><trk><trkseg>" + at(1) + at(2) + "</trkseg></trk><trk><trkseg>" + at(2) + at(3) +
+                                 "</trkseg></trk><trk><trkseg>" + at(3) + "</trkseg></trk></gpx>");
+    EXPECT_EQ(track.points.size(), 5u);
+    EXPECT_TRUE(track.notes.empty());
+}
+
+TEST(GpxTrack, TakesMinusOneForAnUnknownSpeedAndCourse) {
+    const Track track =
+        track_of(gpx(point("<ele>1</ele><time>2024-03-05T12:00:00Z</time><speed>-1</speed><course>-1</course>") +
+                     point("<ele>1</ele><time>2024-03-05T12:00:01Z</time><speed>0</speed><course>20</course>")));
+    EXPECT_FALSE(track.points.at(0).velocity.has_value());
+    EXPECT_TRUE(track.points.at(1).velocity.has_value());
+}
+
 TEST(GpxTrack, FillsMissingHeightsAndLeavesOutPointsWithoutTime) {
     const Track track = track_of(
         gpx(point("<ele>100</ele><time>2024-03-05T12:00:00Z</time>") + point("<ele>7</ele>") +

@@ -63,6 +63,40 @@ TEST(TrackCsv, ReadsTheRecordingsOfThisProgram) {
     EXPECT_THAT(track.notes, testing::ElementsAre("columns without a meaning here: true_lat_deg"));
 }
 
+TEST(TrackCsv, UnderstandsTheNamesAndUnitsOfOthers) {
+    const Track track = read_rows(
+        "time(millisecond),latitude,longitude,altitude(feet),Ellipsoidal Height [ft],Speed(mph),course (deg)\n"
+        "1000,47,8,0,1000,10,90\n");
+    ASSERT_EQ(track.points.size(), 1u);
+    EXPECT_EQ(track.points[0].time, Nanoseconds(1'000'000'000));
+    EXPECT_NEAR(to_geodetic(track.points[0].position).height.above_ellipsoid.value(), 304.8, 1e-6);
+    EXPECT_THAT(track.notes, testing::Contains("altitude(feet) is taken above sea level"));
+    // Better names go before others, and the format's own before all.
+    const Track named = read_rows("t_s,time(s),lat_deg,lon_deg,alt_m,h_ell_m,flags\n1,7,47,8,1,500,3\n");
+    EXPECT_EQ(named.points.at(0).time, Nanoseconds(1'000'000'000));
+    EXPECT_THAT(named.notes, testing::Contains("columns without a meaning here: time(s), flags"));
+    EXPECT_EQ(read_rows("datetime(utc),lat,lon,h_ell_m\n2024-03-05 12:00:00,47,8,1").points.size(), 1u);
+    EXPECT_THAT(refused("time(fortnight),lat,lon,h_ell_m\n1,47,8,1"), HasSubstr("no column says the time"));
+}
+
+TEST(TrackCsv, ReadsLocalMetresQuaternionsAndResets) {
+    const std::string rows =
+        "t_s,n_m,e_m,d_m,qw,qx,qy,qz,reset\n0,100,200,-30,0.70710678,0,0,0.70710678,4\n"
+        "1,100,200,-30,1,0,0,0,4\n2,100,200,-30,1,0,0,0,5\n";
+    const Geodetic origin = Geodetic::degrees(47, 8, 500);
+    const auto track = read_track_csv(rows, "t.csv", nullptr, origin);
+    ASSERT_TRUE(track.has_value()) << track.error().message;
+    const Eigen::Vector3d enu = LocalFrame(origin).to_enu(track->points.at(0).position).vector();
+    EXPECT_LT((enu - Eigen::Vector3d(200, 100, 30)).norm(), 1e-6);
+    EXPECT_NEAR(track->points[0].attitude->yaw().deg(), 90, 1e-5);
+    EXPECT_FALSE(track->points[1].jump);
+    EXPECT_TRUE(track->points[2].jump);
+    EXPECT_THAT(refused(rows), HasSubstr("t.csv:1: local metres; expected trajectory.origin"));
+    const auto unlike = read_track_csv("t_s,n_m,e_m,u_m,qw,qx,qy,qz\n0,1,1,1,2,0,0,0\n", "t.csv", nullptr, origin);
+    ASSERT_FALSE(unlike.has_value());
+    EXPECT_THAT(unlike.error().message, HasSubstr("t.csv:2: the length of the quaternion is 2; expected 1"));
+}
+
 TEST(TrackCsv, RefusesWhatIsNoTrackInOneLine) {
     const std::string head = "t_s,lat_deg,lon_deg,h_ell_m\n";
     EXPECT_THAT(refused(""), HasSubstr("t.csv: no line with the names of the columns"));
