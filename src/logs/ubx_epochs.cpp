@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "skyloop/protocol/nmea_satellites.hpp"
+#include "skyloop/protocol/ubx_inertial.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
 #include "skyloop/protocol/ubx_satellites.hpp"
@@ -58,7 +59,8 @@ FixType ubx_fix_type(unsigned type, unsigned flags, unsigned carrier) {
 }
 
 // The week in which a date has this time of week; nothing for a date that is none.
-std::optional<std::int64_t> week_of_date(const NavPvt& pvt) {
+template <class Message>
+std::optional<std::int64_t> week_of_date(const Message& pvt) {
     constexpr unsigned date_and_time = 3;
     const UtcTime utc{pvt.year, pvt.month, pvt.day, pvt.hour, pvt.minute, pvt.second, 0};
     if ((pvt.valid & date_and_time) != date_and_time || !is_calendar_time(utc)) return std::nullopt;
@@ -66,6 +68,15 @@ std::optional<std::int64_t> week_of_date(const NavPvt& pvt) {
     const double late = split.tow_seconds() - pvt.i_tow / 1000.0;
     constexpr double half = static_cast<double>(seconds_per_week) / 2;
     return split.week + (late > half ? 1 : late < -half ? -1 : 0);
+}
+
+// Roll, pitch and heading in 1e-5 degrees; nothing for what are no such angles.
+std::optional<Attitude> ubx_attitude(const std::array<std::int32_t, 3>& angle) {
+    constexpr std::int32_t whole_turn = 36'000'000;
+    for (const std::int32_t one : angle)
+        if (one < -whole_turn || one > whole_turn) return std::nullopt;
+    const auto degrees = [](std::int32_t value) { return Angle::degrees(value * 1e-5); };
+    return Attitude::roll_pitch_yaw(degrees(angle[0]), degrees(angle[1]), degrees(angle[2]));
 }
 
 template <std::size_t N>
@@ -139,6 +150,7 @@ void UbxEpochs::take(const UbxFrameView& frame) {
         });
     if (taken) return;
     take_positions(frame);
+    take_attitudes(frame);
     take_satellites(frame);
     take_version(frame);
 }
@@ -155,6 +167,25 @@ void UbxEpochs::take_positions(const UbxFrameView& frame) {
     });
     with<NavVelned>(frame, [](const NavVelned& m, Epoch& e) {
         if (!e.velocity) e.velocity = VelocityNed{m.vel_n * 1e-2, m.vel_e * 1e-2, m.vel_d * 1e-2};
+    });
+}
+
+// NAV-PVAT tells all of an epoch; of NAV-ATT an accuracy of zero comes before the fusion has begun.
+void UbxEpochs::take_attitudes(const UbxFrameView& frame) {
+    with<NavPvat>(frame, [](const NavPvat& m, Epoch& e) {
+        constexpr unsigned whole_attitude = 0x1C;
+        e.solution = true;
+        e.of_pvt = ubx_fix_type(m.fix_type, m.flags, m.flags >> 6 & 3u);
+        if (const auto week = week_of_date(m)) e.week = week;
+        e.pvt = logged_place(m.lat * 1e-7, m.lon * 1e-7, m.height * 1e-3);
+        e.velocity = VelocityNed{m.vel_ned[0] * 1e-3, m.vel_ned[1] * 1e-3, m.vel_ned[2] * 1e-3};
+        e.used = m.num_sv;
+        e.h_acc = Metres(m.h_acc * 1e-3);
+        e.v_acc = Metres(m.v_acc * 1e-3);
+        if ((m.flags & whole_attitude) == whole_attitude) e.attitude = ubx_attitude(m.angle);
+    });
+    with<NavAtt>(frame, [](const NavAtt& m, Epoch& e) {
+        if (m.acc[0] > 0 || m.acc[2] > 0) e.attitude = ubx_attitude(m.angle);
     });
 }
 
@@ -221,7 +252,7 @@ void UbxEpochs::finish_epoch() {
                                          : epoch_->of_status.value_or(with_place ? FixType::fix_3d : FixType::none);
             if (!done.is_lost() && !done.place) ++placeless_;
             if (done.type == FixType::none || done.type == FixType::time_only) done.place.reset();
-            if (done.place) done.velocity = epoch_->velocity;
+            if (done.place) done.velocity = epoch_->velocity, done.attitude = epoch_->attitude;
             done.satellites_used = epoch_->used;
             done.horizontal_accuracy = epoch_->h_acc;
             done.vertical_accuracy = epoch_->v_acc;

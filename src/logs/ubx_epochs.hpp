@@ -22,6 +22,7 @@ private:
         std::optional<FixType> of_pvt, of_sol, of_status;
         std::optional<Geodetic> precise, pvt, llh, sol;
         std::optional<VelocityNed> velocity;
+        std::optional<Attitude> attitude;
         std::optional<int> used;
         std::optional<Metres> h_acc, v_acc;
         bool lists = false, solution = false;
@@ -30,6 +31,7 @@ private:
     template <class Message, class Taker>
     bool with(const UbxFrameView& frame, Taker&& taker);
     void take_positions(const UbxFrameView& frame);
+    void take_attitudes(const UbxFrameView& frame);
     void take_satellites(const UbxFrameView& frame);
     void take_version(const UbxFrameView& frame);
     Epoch& epoch_at(std::uint32_t itow_ms);

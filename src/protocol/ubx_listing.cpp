@@ -204,6 +204,12 @@ constexpr auto ubx_listing_table = std::to_array<UbxListing>({
            "version -reserved blocks[id flags antenna_status antenna_power post_status -reserved noise agc "
            "jamming_indicator offset_i magnitude_i offset_q magnitude_q -reserved]">,
     listed<NavAtt, "tow_s*1e-3 version -reserved roll_pitch_heading_deg*1e-5 roll_pitch_heading_acc_deg*1e-5">,
+    listed<NavPvat,
+           "tow_s*1e-3 version valid year month day hour minute second -reserved t_acc_ns nano_ns fix_type flags "
+           "flags2 satellites lon_deg*1e-7 lat_deg*1e-7 height_m*1e-3 msl_m*1e-3 h_acc_m*1e-3 v_acc_m*1e-3 "
+           "vel_ned_mps*1e-3 speed_mps*1e-3 speed_acc_mps*1e-3 roll_pitch_heading_deg*1e-5 course_deg*1e-5 "
+           "roll_pitch_heading_acc_deg*1e-2 declination_deg*1e-2 declination_acc_deg*1e-2 orientation_deg*1e-2 "
+           "major_minor_m*1e-3 -reserved">,
     listed<NavTimeqzss, "tow_s*1e-3 qzss_tow_s tow_fraction_ns week leap_seconds valid t_acc_ns">,
     listed<NavRelposned0,
            "version -reserved station tow_s*1e-3 relative_ned_m*1e-2 relative_ned_hp_m*1e-4 -reserved "

@@ -42,6 +42,10 @@ Result<Track> refuse_xml(const TrackFile& file) {
 }
 
 constexpr TrackFormat formats[] = {
+    {{".ulg", "", ""}, is_ulog_track, read_ulog_track},
+    {{".bin", "", ""}, is_dataflash_track, read_dataflash_track},
+    {{".tlog", "", ""}, is_tlog, read_tlog},
+    {{".ubx", "", ""}, is_ubx_track, read_ubx_track},
     {{".gpx"}, [](const TrackFile& file) { return is_xml_of(file, "gpx", ".gpx"); }, read_gpx},
     {{".kml"}, [](const TrackFile& file) { return is_xml_of(file, "kml", ".kml"); }, read_kml},
     {{}, is_other_xml, refuse_xml},

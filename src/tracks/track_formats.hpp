@@ -22,5 +22,13 @@ bool is_nmea_track(const TrackFile& file);
 Result<Track> read_nmea_track(const TrackFile& file);
 bool is_table_dialect(const TrackFile& file);
 Result<Track> read_table_dialect(const TrackFile& file);
+bool is_ulog_track(const TrackFile& file);
+Result<Track> read_ulog_track(const TrackFile& file);
+bool is_dataflash_track(const TrackFile& file);
+Result<Track> read_dataflash_track(const TrackFile& file);
+bool is_tlog(const TrackFile& file);
+Result<Track> read_tlog(const TrackFile& file);
+bool is_ubx_track(const TrackFile& file);
+Result<Track> read_ubx_track(const TrackFile& file);
 
 }  // namespace skyloop

@@ -49,7 +49,7 @@ private:
 };
 
 using UbxOutputTypes =
-    UbxTypes<NavPosecef, NavPosllh, NavStatus, NavDop, NavAtt, NavSol, NavPvt, NavOdo, NavVelecef, NavVelned,
+    UbxTypes<NavPosecef, NavPosllh, NavStatus, NavDop, NavAtt, NavPvat, NavSol, NavPvt, NavOdo, NavVelecef, NavVelned,
              NavHpposecef, NavHpposllh, NavTimegps, NavTimeutc, NavClock, NavTimeglo, NavTimebds, NavTimegal, NavTimels,
              NavTimeqzss, NavSvinfo, NavDgps, NavSbas, NavOrb, NavSat, NavCov, NavGeofence, NavSvin, NavRelposned0,
              NavRelposned, NavEell, NavSlas, NavSig, NavAopstatus, NavEoe, NavPl, RxmSfrbx, RxmMeasx, RxmRawx, RxmSvsi,

@@ -9,6 +9,7 @@
 #include "skyloop/base/bytes.hpp"
 #include "skyloop/base/result.hpp"
 #include "skyloop/flow/fix.hpp"
+#include "skyloop/geo/attitude.hpp"
 #include "skyloop/geo/geoid.hpp"
 
 namespace skyloop {
@@ -36,6 +37,7 @@ struct LogEpoch {
     FixType type = FixType::none;
     std::optional<Geodetic> place{};
     std::optional<VelocityNed> velocity{};
+    std::optional<Attitude> attitude{};  ///< as receivers with inertial sensors tell it
     std::optional<int> satellites_used{};
     std::optional<Metres> horizontal_accuracy{}, vertical_accuracy{};  ///< as the receiver estimates them
     bool lists_satellites = false;              ///< the log says of this epoch which satellites were tracked

@@ -29,6 +29,52 @@ struct NavAtt {
     }
 };
 
+/// NAV-PVAT: position, velocity, attitude and time of receivers with dead reckoning (F9 interface description, HPS).
+struct NavPvat {
+    static constexpr UbxMessageId message_id{0x01, 0x17};
+    std::uint32_t i_tow = 0;   ///< ms, GPS time of week of the epoch
+    std::uint8_t version = 0;  ///< 0
+    std::uint8_t valid = 0;    ///< bits: 0 date, 1 time, 2 fully resolved, 3 magnetic declination
+    std::uint16_t year = 0;    ///< UTC
+    std::uint8_t month = 0;
+    std::uint8_t day = 0;
+    std::uint8_t hour = 0;
+    std::uint8_t minute = 0;
+    std::uint8_t second = 0;
+    std::array<std::uint8_t, 3> reserved1{};
+    std::uint32_t t_acc = 0;    ///< ns
+    std::int32_t nano = 0;      ///< ns, -1e9 to 1e9
+    std::uint8_t fix_type = 0;  ///< as NavPvt::fix_type
+    std::uint8_t flags = 0;   ///< bits: 0 fix ok, 1 differential, 2-4 roll, pitch, heading valid, 6-7 carrier solution
+    std::uint8_t flags2 = 0;  ///< as NavPvt::flags2
+    std::uint8_t num_sv = 0;  ///< satellites used
+    std::int32_t lon = 0;     ///< 1e-7 deg
+    std::int32_t lat = 0;     ///< 1e-7 deg
+    std::int32_t height = 0;  ///< mm above the ellipsoid
+    std::int32_t h_msl = 0;   ///< mm above mean sea level
+    std::uint32_t h_acc = 0;  ///< mm
+    std::uint32_t v_acc = 0;  ///< mm
+    std::array<std::int32_t, 3> vel_ned{};   ///< mm/s
+    std::int32_t g_speed = 0;                ///< mm/s, horizontal
+    std::uint32_t s_acc = 0;                 ///< mm/s
+    std::array<std::int32_t, 3> angle{};     ///< 1e-5 deg of the vehicle's roll, pitch, heading
+    std::int32_t mot_heading = 0;            ///< 1e-5 deg, of the motion
+    std::array<std::uint16_t, 3> acc{};      ///< 0.01 deg
+    std::int16_t mag_dec = 0;                ///< 0.01 deg
+    std::uint16_t mag_acc = 0;               ///< 0.01 deg
+    std::uint16_t ellipse_orientation = 0;   ///< 0.01 deg
+    std::array<std::uint32_t, 2> ellipse{};  ///< mm, major and minor half axis
+    std::array<std::uint8_t, 8> reserved2{};
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.i_tow, m.version, m.valid, m.year, m.month, m.day, m.hour, m.minute, m.second, m.reserved1, m.t_acc, m.nano,
+          m.fix_type, m.flags, m.flags2, m.num_sv, m.lon, m.lat, m.height, m.h_msl, m.h_acc, m.v_acc, m.vel_ned,
+          m.g_speed, m.s_acc, m.angle, m.mot_heading, m.acc, m.mag_dec, m.mag_acc, m.ellipse_orientation, m.ellipse,
+          m.reserved2);
+    }
+};
+
 /// One sensor of ESF-STATUS.
 struct EsfStatusItem {
     std::uint8_t sens_status1 = 0;  ///< bits: 0-5 type, 6 used, 7 ready

@@ -1,0 +1,67 @@
+#include "ulog_local.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "local_maps.hpp"
+
+namespace skyloop {
+namespace {
+
+bool differs(const UlogRecord& a, const UlogRecord& b, std::string_view field) {
+    return a.value(field) != b.value(field);
+}
+
+}  // namespace
+
+std::vector<FlightRow> UlogLocalPlaces::read() {
+    for (auto bytes = stream_.records.rbegin(); bytes != stream_.records.rend(); ++bytes) {
+        const UlogRecord record(stream_.fields, *bytes);
+        if (!flag(record, "xy_valid") || !flag(record, "z_valid") || !flag(record, "xy_global") ||
+            !flag(record, "z_global"))
+            continue;
+        undo_resets(record);
+        if (const auto row = row_of(record)) {
+            rows_.push_back(*row);
+            after_ = *bytes;
+        }
+    }
+    std::reverse(rows_.begin(), rows_.end());
+    return std::move(rows_);
+}
+
+// Where the reference itself is another one, or the step is beyond any drift, the path begins anew behind.
+void UlogLocalPlaces::undo_resets(const UlogRecord& record) {
+    if (!after_) return;
+    constexpr double longest_m = 10'000;
+    const UlogRecord after(stream_.fields, *after_);
+    const auto delta = [&](std::string_view name) { return after.value(name).value_or(std::nan("")); };
+    Eigen::Vector3d change = Eigen::Vector3d::Zero();
+    if (differs(record, after, "xy_reset_counter")) change = {delta("delta_xy[0]"), delta("delta_xy[1]"), 0};
+    if (differs(record, after, "z_reset_counter")) change.z() = delta("delta_z");
+    const bool new_reference =
+        differs(record, after, "ref_lat") || differs(record, after, "ref_lon") || differs(record, after, "ref_alt");
+    if (new_reference || !(change.norm() <= longest_m)) {
+        rows_.back().jump = true;
+        moved_.setZero();
+    } else if (change.norm() > 0) {
+        moved_ += change;
+        ++resets_;
+        farthest_m_ = std::max(farthest_m_, change.norm());
+    }
+}
+
+std::optional<FlightRow> UlogLocalPlaces::row_of(const UlogRecord& record) {
+    const auto number = [&](std::string_view name) { return record.value(name).value_or(std::nan("")); };
+    const auto ns = flight_clock_ns(record.value("timestamp"));
+    const double latitude = number("ref_lat"), longitude = number("ref_lon");
+    if (!ns || (latitude == 0 && longitude == 0)) return std::nullopt;
+    const Eigen::Vector3d ned = Eigen::Vector3d(number("x"), number("y"), number("z")) + moved_;
+    const GlobalSample there = on_px4_map({*ns, latitude, longitude, number("ref_alt")}, ned);
+    auto row = flight_row(*ns, there.latitude_deg, there.longitude_deg, there.height_m);
+    if (row && flag(record, "v_xy_valid") && flag(record, "v_z_valid"))
+        row->velocity_ned = logged_velocity(record.value("vx"), record.value("vy"), record.value("vz"));
+    return row;
+}
+
+}  // namespace skyloop
