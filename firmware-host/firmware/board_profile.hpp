@@ -132,6 +132,10 @@ struct NmeaStyle {
     bool unknown_date_is_1980 = false;  ///< before the date is known RMC says 050180 and a time since power-on (MTK)
 };
 
+/// When a fix is withheld for export: height over 18 288 m (60 000 ft), speed over 515 m/s (1000 knots), limits that
+/// some makers read as one rule and others as two (FEEDS.md 2.5).
+enum class ExportLimits { off, both_exceeded, either_exceeded };
+
 /// One receiver model (boards/receivers/*.toml; every key in boards/README.md).
 struct BoardProfile {
     std::string name;
@@ -157,6 +161,7 @@ struct BoardProfile {
     double max_rate_hz = 10;
     int least_measurement_period_ms = 25;  ///< shorter ones are stored as this (CFG-RATE), or refused (VALSET)
     Angle elevation_mask = Angle::degrees(5);
+    ExportLimits export_limits = ExportLimits::off;  ///< on top of 500 m/s, beyond which no fix is told
 
     NmeaVersion nmea_version = NmeaVersion::v4_0;
     NmeaNumbering satellite_numbering = NmeaNumbering::strict;

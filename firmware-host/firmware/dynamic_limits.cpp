@@ -24,19 +24,32 @@ constexpr std::array<Limits, 10> model_limits{{{12'000, 310, 50, true},
                                                {9'000, 30, 20, true}}};
 // Of the airborne models on M8 and before.
 constexpr double old_airborne_altitude = 50'000;
-// The export limit of all receivers.
+// The export limit of all receivers: "velocity 500 m/s" of their data sheets, whose direction they leave open.
 constexpr double fastest_mps = 500;
+
+double speed_in_space(const Fix& fix) { return std::hypot(fix.speed.value(), fix.velocity.down); }
+
+double altitude_of(const Fix& fix) {
+    return above_sea_level(fix.position.height, fix.geoid_undulation).above_sea_level.value();
+}
 
 }  // namespace
 
 bool within_dynamic_model(std::uint64_t number, const Fix& fix, int generation) {
     const bool airborne = number >= 6 && number <= 8;
     const Limits limits = model_limits[number < model_limits.size() ? number : 0];
-    const double altitude = above_sea_level(fix.position.height, fix.geoid_undulation).above_sea_level.value();
+    const double altitude = altitude_of(fix);
     const double highest = airborne && generation <= 8 ? old_airborne_altitude : limits.altitude;
-    if (fix.speed.value() > fastest_mps || altitude > highest) return false;
+    if (speed_in_space(fix) > fastest_mps || altitude > highest) return false;
     if (!limits.speeds) return true;
     return fix.speed.value() <= limits.horizontal && std::abs(fix.velocity.down) <= limits.vertical;
+}
+
+bool within_export_limits(ExportLimits limits, const Fix& fix) {
+    constexpr double highest_m = 18'288, fastest_of_export_mps = 515;
+    const bool high = altitude_of(fix) > highest_m, fast = speed_in_space(fix) > fastest_of_export_mps;
+    if (limits == ExportLimits::off) return true;
+    return limits == ExportLimits::both_exceeded ? !(high && fast) : !(high || fast);
 }
 
 }  // namespace skyloop::firmware

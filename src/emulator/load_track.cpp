@@ -34,8 +34,9 @@ std::vector<std::string> track_warnings(const FileSettings& file, const Recorded
     return warnings;
 }
 
-// One path; nothing to load unless it is of a file.
+// One path; nothing to load unless it is of a file or generated.
 Result<LoadedTrack> load_one(TrajectorySettings& way, const Scenario& scenario, const Geoid* geoid, GpsTime start) {
+    if (auto* generated = std::get_if<GeneratedSettings>(&way)) return load_generated(*generated, scenario.run.seed);
     auto* file = std::get_if<FileSettings>(&way);
     if (!file) return LoadedTrack{};
     const auto text = read_text_file(file->path);

@@ -3,6 +3,7 @@
 #include "skyloop/emulator/lever_arm.hpp"
 #include "skyloop/emulator/load_track.hpp"
 #include "skyloop/trajectory/recorded_path.hpp"
+#include "skyloop/trajectory/shaped_path.hpp"
 #include "skyloop/trajectory/shared_path.hpp"
 
 namespace skyloop {
@@ -25,6 +26,12 @@ std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, 
                               // The vehicle that every receiver has left has no source.
                               if (!live.path) return std::make_unique<FixedPoint>(live.at.value_or(FixedSettings().at));
                               return std::make_unique<SharedPath>(live.path);
+                          },
+                          [&](const GeneratedSettings& generated) -> std::unique_ptr<Trajectory> {
+                              const GeneratedPath& path = generated.path;
+                              return std::make_unique<ShapedPath>(advanced(start, path.start_delay),
+                                                                  GeodesicPlane(path.origin), generated.shape,
+                                                                  path.vehicle.kind);
                           },
                       },
                       settings);

@@ -16,6 +16,7 @@ Result<firmware::BoardProfile> board_of(const ReceiverEntry& entry, const DataFo
     auto board = find_board(entry.board, board_folders(data));
     if (!board) return fail(board.error());
     if (entry.baud) board->baud = *entry.baud;
+    if (entry.export_limits) board->export_limits = *entry.export_limits;
     if (!entry.constellations.empty()) board->constellations = entry.constellations;
     if (!entry.sentences.empty()) board->sentences.clear();
     for (const firmware::NmeaSentence sentence : entry.sentences)

@@ -1,6 +1,7 @@
 #include "key_meanings.hpp"
 
 #include <algorithm>
+#include <string>
 
 namespace skyloop {
 namespace {
@@ -37,10 +38,11 @@ constexpr KeyMeaning run_meanings[] = {
     {"trajectory.waypoint", "at_level", "the corner in the coordinates of [frame], instead of `at`: x, y, z", "none"},
     {"trajectory.waypoint", "speed_mps", "from here to the next corner", "the last one given, at first 10"},
     {"trajectory.waypoint", "hold_s", "stop here before leaving"},
-    {"trajectory", "centre", "of the circle: latitude, longitude, height above the ellipsoid", "none"},
+    {"trajectory", "centre", "of the path: latitude, longitude, height above the ellipsoid", "none"},
     {"trajectory", "centre_level", "the centre in the coordinates of [frame], instead of `centre`: x, y, z", "none"},
-    {"trajectory", "radius_m", "of the circle"},
-    {"trajectory", "speed_mps", "along the circle; a negative one runs anticlockwise"},
+    {"trajectory", "radius_m", "of the circle or of the turns", "100; of a racetrack the smallest at its speed"},
+    {"trajectory", "speed_mps", "along the way; on a circle a negative one runs anticlockwise",
+     "10; of a vehicle its own; afloat 0"},
     {"trajectory", "start_azimuth_deg", "from the centre to the place at the start, clockwise from north"},
     {"trajectory", "path", "the recorded track beside the scenario's file: CSV, GPX, KML, NMEA, IGC and others",
      "none"},
@@ -95,6 +97,8 @@ constexpr KeyMeaning run_meanings[] = {
     {"receiver", "dual_frequency", "it tracks the second signal of each system too; false leaves it to the board"},
     {"receiver", "start", "what it knows at the start: everything; time, place and almanac; nothing"},
     {"receiver", "dynamic_model", "how it expects to move; a fix beyond its limits of height and speed is withheld"},
+    {"receiver", "export_limits",
+     "a fix above 18 288 m and above 515 m/s is withheld: never, beyond both, beyond one of them", "the board's"},
     {"receiver", "static_hold_mps", "slower than this, the position is held; 0: never"},
     {"receiver", "power_up", "it is switched on at the start of the run; false: it has been on for long"},
     {"receiver", "state_file", "keeps what the receiver saves for the next run", "none"},
@@ -137,7 +141,13 @@ const KeyMeaning* find_key_meaning(std::string_view table, std::string_view key)
     // A receiver's own way has the keys of the scenario's.
     if (constexpr std::string_view above = "receiver."; table.starts_with("receiver.trajectory"))
         table.remove_prefix(above.size());
-    for (const auto meanings : {run_key_meanings(), model_key_meanings(), modern_key_meanings()})
+    // So has a step of a sequence.
+    std::string of_path;
+    if (constexpr std::string_view step = "trajectory.step"; table.starts_with(step)) {
+        of_path = "trajectory" + std::string(table.substr(step.size()));
+        table = of_path;
+    }
+    for (const auto meanings : {run_key_meanings(), path_key_meanings(), model_key_meanings(), modern_key_meanings()})
         if (const KeyMeaning* found = find_in(meanings, table, key)) return found;
     return nullptr;
 }

@@ -17,6 +17,7 @@ struct KeyMeaning {
 /// Of the run, the sky, the way, the receivers and what is expected; in the order of the file.
 std::span<const KeyMeaning> run_key_meanings();
 /// Of the sensor models and the atmosphere.
+std::span<const KeyMeaning> path_key_meanings();
 std::span<const KeyMeaning> model_key_meanings();
 /// Of [model.modern].
 std::span<const KeyMeaning> modern_key_meanings();

@@ -54,24 +54,20 @@ void read_fixed(TableReader& table, PlaceReader& places, TrajectorySettings& tra
     trajectory = fixed;
 }
 
-void read_waypoints(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
-    WaypointSettings path;
-    path.heading = read_heading(table);
-    const auto read_corner = [&](TableReader& row) {
-        Waypoint corner;
-        if (!path.corners.empty()) corner.speed = path.corners.back().speed;
-        if (const auto at = places.read(row, "at")) corner.place = *at;
-        row.needs_one_of({"at", "at_level"}, "has no place; expected at = [latitude, longitude, height]");
-        row.quantity("speed_mps", corner.speed, {1e-3, 12000});
-        row.quantity("hold_s", corner.hold, {0, 1e7});
-        path.corners.push_back(corner);
-    };
+void read_waypoint_motion(TableReader& row, Waypoint& corner) {
+    row.needs_one_of({"at", "at_level"}, "has no place; expected at = [latitude, longitude, height]");
+    row.quantity("speed_mps", corner.speed, {1e-3, 12000});
+    row.quantity("hold_s", corner.hold, {0, 1e7});
+}
+
+void read_waypoint_tables(TableReader& table, const std::function<void(TableReader&)>& read_corner) {
     constexpr std::size_t fewest_corners = 2;
-    table.tables("waypoint", read_corner, fewest_corners);
-    if (path.corners.size() < fewest_corners)
-        table.mistake_here(fmt::format(
-            "kind \"waypoints\" has {} waypoints; expected two or more [[trajectory.waypoint]]", path.corners.size()));
-    trajectory = path;
+    std::size_t corners = 0;
+    const auto read_and_count = [&](TableReader& row) { ++corners, read_corner(row); };
+    table.tables("waypoint", read_and_count, fewest_corners);
+    if (corners < fewest_corners)
+        table.mistake_here(
+            fmt::format("kind \"waypoints\" has {} waypoints; expected two or more [[trajectory.waypoint]]", corners));
 }
 
 void read_circle(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {

@@ -50,6 +50,11 @@ void read_navigation_keys(TableReader& receiver, ReceiverEntry& entry) {
                                                                {"airborne-2g", DynamicModel::airborne_2g},
                                                                {"airborne-4g", DynamicModel::airborne_4g}}};
     receiver.word("dynamic_model", models, entry.dynamic_model);
+    if (receiver.has("export_limits")) {
+        firmware::ExportLimits limits = firmware::ExportLimits::off;
+        receiver.word("export_limits", export_limit_words, limits);
+        entry.export_limits = limits;
+    }
     receiver.quantity("static_hold_mps", entry.static_hold_below, {0, 100});
 }
 

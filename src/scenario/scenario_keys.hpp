@@ -21,6 +21,12 @@ void read_atmosphere_keys(TableReader& atmosphere, AtmosphereParameters& paramet
 /// Reads the list `constellations` of a scenario's [sky] or a board's [navigation].
 void read_constellation_list(TableReader& table, std::vector<Constellation>& constellations);
 
+/// Of `export_limits`, of boards and receivers.
+inline constexpr std::array<Word<firmware::ExportLimits>, 3> export_limit_words{
+    {{"off", firmware::ExportLimits::off},
+     {"and", firmware::ExportLimits::both_exceeded},
+     {"or", firmware::ExportLimits::either_exceeded}}};
+
 /// What trajectories of one file share.
 struct TrajectoryContext {
     std::optional<LevelFrame> level;  ///< of [frame]

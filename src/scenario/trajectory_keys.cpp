@@ -34,10 +34,18 @@ void read_kind(const KindReading& reading) {
     std::vector<std::string_view> names;
     for (const TrajectoryKind& kind : kinds)
         names.push_back(kind.name);
+    const std::size_t others = names.size();
+    const auto shapes = path_shape_names();
+    // Waypoints come first of the shapes, and are one of the kinds above, too.
+    names.insert(names.end(), shapes.begin() + 1, shapes.end());
+    names.emplace_back("sequence");
     const auto kind = reading.table.choice("kind", names);
     reading.table.needs_one_of({"kind"},
                                fmt::format("has no kind; expected kind = \"{}\"", fmt::join(names, "\", \"")));
-    if (kind) kinds[*kind].read(reading);
+    if (!kind) return;
+    if (*kind < others) return kinds[*kind].read(reading);
+    if (*kind + 1 == names.size()) return read_sequence(reading.table, reading.places, reading.trajectory);
+    read_generated(reading.table, reading.places, *kind - others + 1, reading.trajectory);
 }
 
 }  // namespace

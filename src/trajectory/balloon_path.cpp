@@ -122,8 +122,9 @@ PathPlanResult BalloonFlight::fly() {
     curve->add(t_ + landing_s, rest);
     const double drift = (rest.position - wish_.place).head<2>().norm();
     return PathPlan{curve,
-                    {fmt::format("balloon: bursts at {:.0f} m after {:.0f} s, lands after {:.0f} s, {:.1f} km away",
-                                 wish_.burst, burst_at_, t_ + landing_s, drift / 1000)}};
+                    {},
+                    fmt::format("balloon, bursts at {:.0f} m after {:.0f} s, lands {:.1f} km away", wish_.burst,
+                                burst_at_, drift / 1000)};
 }
 
 }  // namespace

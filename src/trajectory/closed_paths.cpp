@@ -54,7 +54,8 @@ SpeedProfile lap_profile(const LapWish& lap, double speed, double length) {
 PathPlan level_laps(const LapWish& lap, CurveSpeed speed, std::shared_ptr<const PlanarCurve> curve) {
     SpeedProfile profile = lap_profile(lap, speed.speed, curve->length());
     return {std::make_shared<SteeredShape>(std::move(curve), std::move(profile), WayHeights(lap.centre.z())),
-            std::move(speed.notes)};
+            std::move(speed.notes),
+            {}};
 }
 
 Eigen::Vector2d heading_direction(double heading) { return {std::sin(heading), std::cos(heading)}; }
@@ -88,7 +89,8 @@ PathPlanResult plan_orbit(const OrbitWish& wish) {
     WayHeights heights(lap.centre.z());
     heights.add(length, lap.centre.z() + wish.climb);
     return PathPlan{std::make_shared<SteeredShape>(curve, lap_profile(lap, speed->speed, curve->length()), heights),
-                    speed->notes};
+                    speed->notes,
+                    {}};
 }
 
 PathPlanResult plan_racetrack(const RacetrackWish& wish) {

@@ -217,7 +217,7 @@ PathPlanResult FlyThroughPlanner::plan() {
                            : fmt::format("waypoint {}: stops there", i + 1));
     }
     make_speeds_reachable(sections, speeds);
-    return PathPlan{lay_out(speeds), notes_.take()};
+    return PathPlan{lay_out(speeds), notes_.take(), {}};
 }
 
 }  // namespace

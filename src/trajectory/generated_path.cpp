@@ -24,10 +24,10 @@ PathPlanResult plan_path(const PathWish& wish, std::uint64_t seed) {
                                  [](const FigureEightWish& w) { return plan_figure_eight(w); },
                                  [](const LawnmowerWish& w) { return plan_lawnmower(w); },
                                  [&](const HoverWish& w) {
-                                     return PathPlanResult(PathPlan{hover_shape(with_seed(w, seed)), {}});
+                                     return PathPlanResult(PathPlan{hover_shape(with_seed(w, seed)), {}, {}});
                                  },
                                  [&](const FloatWish& w) {
-                                     return PathPlanResult(PathPlan{float_shape(with_seed(w, seed)), {}});
+                                     return PathPlanResult(PathPlan{float_shape(with_seed(w, seed)), {}, {}});
                                  },
                                  [&](const DriveWish& w) { return plan_drive(with_seed(w, seed)); },
                                  [](const RocketWish& w) { return plan_rocket(w); },
@@ -40,6 +40,7 @@ PathPlanResult plan_generated(const GeneratedPath& path, std::uint64_t run_seed)
     const bool single = path.steps.size() == 1;
     std::vector<SequenceStep> steps;
     std::vector<std::string> notes;
+    std::string summary;
     for (std::size_t i = 0; i < path.steps.size(); ++i) {
         // Steps of one kind are to differ: each has dice of its own.
         auto plan = plan_path(path.steps[i].wish, seed + i);
@@ -47,13 +48,16 @@ PathPlanResult plan_generated(const GeneratedPath& path, std::uint64_t run_seed)
         if (!plan) return tl::unexpected(which + plan.error());
         for (const std::string& note : plan->notes)
             notes.push_back(which + note);
+        if (!plan->summary.empty()) summary += (summary.empty() ? "" : "; ") + which + plan->summary;
         steps.push_back({std::move(plan->shape), path.steps[i].seconds});
     }
     const bool whole = single && !std::isfinite(path.steps[0].seconds);
-    if (whole && !(path.loop && std::isfinite(steps[0].shape->duration()))) return PathPlan{steps[0].shape, notes};
+    if (whole && !(path.loop && std::isfinite(steps[0].shape->duration())))
+        return PathPlan{steps[0].shape, notes, summary};
     auto joined = plan_sequence(steps, path.vehicle.along, path.loop);
     if (!joined) return joined;
     joined->notes.insert(joined->notes.begin(), notes.begin(), notes.end());
+    joined->summary = summary;
     return joined;
 }
 

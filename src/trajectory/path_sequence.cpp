@@ -154,7 +154,7 @@ PathPlanResult SequencePlanner::plan() {
         if (const std::string mistake = leave(i); !mistake.empty()) return tl::unexpected(mistake);
     }
     if (loop_) shape_->repeat();
-    return PathPlan{shape_, notes_};
+    return PathPlan{shape_, notes_, {}};
 }
 
 }  // namespace

@@ -122,9 +122,8 @@ PathPlanResult RocketFlight::fly() {
             fmt::format("a thrust of {:g} m/s² for {:g} s does not lift the rocket; expected boost_mps2 "
                         "above {:.3g}",
                         wish_.boost, wish_.burn, rocket_g));
-    return PathPlan{curve,
-                    {fmt::format("rocket: {:.0f} m above the pad, {:.0f} m/s at most, {:.0f} s", top - wish_.pad.z(),
-                                 fastest, t_ + touchdown_s)}};
+    return PathPlan{
+        curve, {}, fmt::format("rocket, {:.0f} m above its pad, {:.0f} m/s at most", top - wish_.pad.z(), fastest)};
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ Attitude ShapedPath::attitude(double t, const LocalMotion& now, Angle north) con
     motion.acceleration =
         (shape_->at(t + half_window_s).velocity - shape_->at(t - half_window_s).velocity) / (2 * half_window_s);
     motion.heading = Angle::radians(now.heading);
-    const Attitude in_plane = attitude_from_motion(vehicle_, motion);
+    const Attitude in_plane = attitude_of_vehicle(vehicle_, motion);
     const Attitude leaning = Attitude::roll_pitch_yaw(Angle::radians(now.roll), Angle::radians(now.pitch), {});
     return Attitude(Attitude::roll_pitch_yaw({}, {}, north).body_to_ned() * in_plane.body_to_ned() *
                     leaning.body_to_ned());

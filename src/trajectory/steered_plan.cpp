@@ -186,7 +186,7 @@ PathPlan SteeredPlanner::timed() {
         profile.run(sections[2 * i + 1].length, speeds[2 * i + 2], sections[2 * i + 1].limits);
         heights.add(ways_[i + 1], wish_.waypoints[i + 1].place.z());
     }
-    return {std::make_shared<SteeredShape>(curve_, std::move(profile), std::move(heights)), notes_.take()};
+    return {std::make_shared<SteeredShape>(curve_, std::move(profile), std::move(heights)), notes_.take(), {}};
 }
 
 PathPlanResult SteeredPlanner::plan() {

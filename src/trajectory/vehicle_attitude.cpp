@@ -9,7 +9,7 @@
 namespace skyloop {
 namespace {
 
-constexpr double standard_gravity = 9.80665;  // m/s²
+constexpr double weight_mps2 = 9.80665;  // m/s²
 constexpr double in_radians = std::numbers::pi / 180;
 
 struct AcrossAndAlong {
@@ -33,17 +33,16 @@ double slope_of(const AcrossAndAlong& m) {
 Attitude banked(const AcrossAndAlong& m, const VehicleMotion& motion) {
     constexpr double steepest = 60 * in_radians, angle_of_attack = 3 * in_radians;
     constexpr double lifts_off_mps = 10;
-    const double bank = std::clamp(std::atan2(m.right, standard_gravity + m.up), -steepest, steepest);
+    const double bank = std::clamp(std::atan2(m.right, weight_mps2 + m.up), -steepest, steepest);
     const double attack = angle_of_attack * smooth_step(m.ground_speed / lifts_off_mps).value;
     return Attitude::roll_pitch_yaw(Angle::radians(bank), Angle::radians(slope_of(m) + attack), motion.heading);
 }
 
 // Thrust carries the weight, accelerates and overcomes the drag; it points along the body's upward axis.
 Attitude leaning_with_thrust(const VehicleMotion& motion) {
-    constexpr double drag_per_s = 0.1;                       // ours: 6° of lean at 10 m/s, as small multirotors show
-    constexpr double least_thrust = 0.2 * standard_gravity;  // whatever it is asked for, it does not turn over
-    Eigen::Vector3d thrust =
-        motion.acceleration + drag_per_s * motion.velocity + Eigen::Vector3d(0, 0, standard_gravity);
+    constexpr double drag_per_s = 0.1;                  // ours: 6° of lean at 10 m/s, as small multirotors show
+    constexpr double least_thrust = 0.2 * weight_mps2;  // whatever it is asked for, it does not turn over
+    Eigen::Vector3d thrust = motion.acceleration + drag_per_s * motion.velocity + Eigen::Vector3d(0, 0, weight_mps2);
     thrust.z() = std::max(thrust.z(), least_thrust);
     const Eigen::Vector3d down = Eigen::Vector3d(-thrust.y(), -thrust.x(), thrust.z()).normalized();  // in NED
     const Eigen::Vector3d ahead(std::cos(motion.heading.rad()), std::sin(motion.heading.rad()), 0);
@@ -54,13 +53,13 @@ Attitude leaning_with_thrust(const VehicleMotion& motion) {
 }
 
 Attitude leaning_outward(const AcrossAndAlong& m, const VehicleMotion& motion, double degrees_per_g) {
-    const double roll = -degrees_per_g * in_radians * m.right / standard_gravity;
+    const double roll = -degrees_per_g * in_radians * m.right / weight_mps2;
     return Attitude::roll_pitch_yaw(Angle::radians(roll), Angle::radians(slope_of(m)), motion.heading);
 }
 
 }  // namespace
 
-Attitude attitude_from_motion(VehicleKind kind, const VehicleMotion& motion) {
+Attitude attitude_of_vehicle(VehicleKind kind, const VehicleMotion& motion) {
     constexpr double car_lean = 4, boat_lean = 15;  // degrees per g
     const AcrossAndAlong m = in_axes_of_heading(motion);
     switch (kind) {

@@ -25,6 +25,7 @@
 #include "skyloop/propagation/whole_path_parameters.hpp"
 #include "skyloop/scenario/modern_settings.hpp"
 #include "skyloop/scenario/scene_settings.hpp"
+#include "skyloop/trajectory/generated_path.hpp"
 #include "skyloop/trajectory/geometric_paths.hpp"
 #include "skyloop/trajectory/live_path.hpp"
 #include "skyloop/trajectory/source_clock.hpp"
@@ -92,7 +93,14 @@ struct LiveSettings {
     LostSource when_lost = LostSource::hold;
     std::shared_ptr<LivePath> path{};  ///< null until it has been opened
 };
-using TrajectorySettings = std::variant<FixedSettings, WaypointSettings, CircleSettings, FileSettings, LiveSettings>;
+/// A path that is generated. It is planned when it is read, and by load_track() with the seed of the run.
+struct GeneratedSettings {
+    GeneratedPath path{};
+    Angle heading{};
+    std::shared_ptr<const LocalShape> shape{};  ///< null until it has been planned
+};
+using TrajectorySettings =
+    std::variant<FixedSettings, WaypointSettings, CircleSettings, FileSettings, LiveSettings, GeneratedSettings>;
 
 /// How the fix is made, and the numbers of all ways.
 struct ModelSettings {
@@ -126,6 +134,7 @@ struct ReceiverEntry {
     bool dual_frequency = false;                    ///< tracks the second signal of each system too
     StartKind start = StartKind::hot;
     DynamicModel dynamic_model = DynamicModel::portable;
+    std::optional<firmware::ExportLimits> export_limits;  ///< nothing: the board's
     MetresPerSecond static_hold_below{0};
     bool power_up = false;                   ///< it is switched on at the start of the run: banner, then `start`
     std::filesystem::path state_file;        ///< keeps battery-backed memory and flash; empty: nothing does

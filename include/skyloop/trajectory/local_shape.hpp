@@ -36,8 +36,8 @@ public:
 /// What came of the wish for a path.
 struct PathPlan {
     std::shared_ptr<const LocalShape> shape;
-    std::vector<std::string>
-        notes;  ///< what its user should be told: where it is slower than asked for, a sentence each
+    std::vector<std::string> notes;  ///< what its user should be told: where it is slower than asked for
+    std::string summary{};           ///< what came out of a flight: height, speed
 };
 /// A sentence says why there is no such path, and what would do.
 using PathPlanResult = tl::expected<PathPlan, std::string>;

@@ -90,6 +90,7 @@ inline Station::Parts station_parts(const Scenario& scenario, std::size_t index,
     auto board = find_board(entry.board, board_folders(emulator_data()));
     EXPECT_TRUE(simulation && board);
     if (entry.baud) board->baud = *entry.baud;
+    if (entry.export_limits) board->export_limits = *entry.export_limits;
     ReceiverSettings settings = receiver_settings(scenario, *board, index);
     firmware::Receiver receiver(std::move(*board), {entry.rate_hz.value_or(0), std::move(settings), 1, false});
     return {std::move(*simulation), std::move(receiver), {}, {}};

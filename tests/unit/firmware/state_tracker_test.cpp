@@ -220,6 +220,24 @@ TEST(StateTracker, ExportsNothingBeyondFiveHundredMetresASecondOrTheModelsAltitu
     EXPECT_TRUE(allowed(200, 100, 1, 9));
 }
 
+TEST(StateTracker, ReadsTheLimitsOfExportAsOneRuleOrAsTwo) {
+    const auto allowed = [](ExportLimits limits, double height_m, double speed, double down) {
+        Fix fix = sample_fix("2024-03-05T12:00:00Z", 47, 8, height_m);
+        fix.geoid_undulation = Metres(0);
+        fix.speed = MetresPerSecond(speed);
+        fix.velocity.down = down;
+        return within_export_limits(limits, fix);
+    };
+    using enum ExportLimits;
+    EXPECT_TRUE(allowed(off, 30'000, 900, 0));
+    EXPECT_TRUE(allowed(both_exceeded, 30'000, 514, 0));
+    EXPECT_TRUE(allowed(both_exceeded, 18'000, 600, 0));
+    EXPECT_FALSE(allowed(both_exceeded, 18'300, 0, -516)) << "upward counts, too";
+    EXPECT_FALSE(allowed(either_exceeded, 30'000, 5, 0));
+    EXPECT_FALSE(allowed(either_exceeded, 500, 300, 450));
+    EXPECT_TRUE(allowed(either_exceeded, 18'280, 510, 0));
+}
+
 TEST(StateTracker, IsNotOkBeyondTheUsersMasks) {
     Tracked t(tracked_board());
     t.tracker().start(t.fix().time, {}, true);

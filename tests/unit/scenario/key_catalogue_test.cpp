@@ -210,7 +210,7 @@ TEST(KeyCatalogue, HoldsWhatTheReaderAsksFor) {
     EXPECT_EQ(key_of("model", "name").standard, ParameterValue(std::string("modern")));
     EXPECT_EQ(key_of("model.modern.link", "man_made_noise").standard, ParameterValue(std::string("none")));
     EXPECT_EQ(key_of("atmosphere", "tec_source").standard, ParameterValue(std::string("automatic")));
-    EXPECT_EQ(key_of("trajectory", "radius_m").kinds, std::vector<std::string>{"circle"});
+    EXPECT_EQ(key_of("trajectory", "sway_m").kinds, std::vector<std::string>{"hover"});
     EXPECT_TRUE(key_of("trajectory", "heading_deg").kinds.empty());
     EXPECT_TRUE(key_of("trajectory", "waypoint").needed);
     EXPECT_TRUE(key_of("fault", "kind").needed);
