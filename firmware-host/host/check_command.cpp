@@ -42,6 +42,8 @@ void print_plan(const Scenario& scenario, const Assembly& assembly) {
     fmt::print("end         {}\n", assembly.end ? utc_text(*assembly.end) : "when stopped");
     fmt::print("model       {}\n", model_name(scenario.model));
     if (!assembly.trajectory.empty()) fmt::print("trajectory  {}\n", assembly.trajectory);
+    for (const std::string& found : assembly.track_details)
+        fmt::print("            {}\n", found);
     if (assembly.scene.scene) fmt::print("scene       {}\n", assembly.scene.description);
     for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
         print_receiver(scenario.receivers[i], emulator.stations()[i], scenario.receivers.size() > 1);

@@ -26,6 +26,7 @@ Action add_scene_command(CLI::App& app);
 Action add_ctl_command(CLI::App& app);
 Action add_replay_command(CLI::App& app);
 Action add_power_command(CLI::App& app);
+Action add_trajectory_command(CLI::App& app);
 Action add_scenario_from_command(CLI::App& app);
 
 }  // namespace skyloop::host

@@ -20,10 +20,10 @@ namespace {
 
 using skyloop::host::Action;
 
-constexpr std::array<std::string_view, 16> commands{"run",    "simulate",      "sky",     "check",  "compare", "solve",
-                                                    "boards", "decode",        "scene",   "faults", "schema",  "ctl",
-                                                    "replay", "scenario-from", "devices", "power"};
-constexpr std::array<std::string_view, 2> later_commands{"trajectory", "campaign"};
+constexpr std::array<std::string_view, 17> commands{
+    "run",    "simulate", "sky", "check",  "compare",       "solve",   "boards", "decode",    "scene",
+    "faults", "schema",   "ctl", "replay", "scenario-from", "devices", "power",  "trajectory"};
+constexpr std::array<std::string_view, 1> later_commands{"campaign"};
 
 // CLI11 does not know which words may be meant; this says it in one line.
 int refuse_command(std::string_view word) {
@@ -44,7 +44,7 @@ int run_program(int argc, char** argv) {
         skyloop::host::add_boards_command, skyloop::host::add_decode_command,        skyloop::host::add_scene_command,
         skyloop::host::add_faults_command, skyloop::host::add_schema_command,        skyloop::host::add_ctl_command,
         skyloop::host::add_replay_command, skyloop::host::add_scenario_from_command, skyloop::host::add_devices_command,
-        skyloop::host::add_power_command};
+        skyloop::host::add_power_command,  skyloop::host::add_trajectory_command};
     std::vector<Action> actions;
     for (const auto add_command : add)
         actions.push_back(add_command(app));

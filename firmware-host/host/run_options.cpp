@@ -40,6 +40,28 @@ Result<void> apply_place(const RunOptions& options, Scenario& scenario) {
     return {};
 }
 
+// --loop, --time-scale and --skip of a recorded track.
+Result<void> apply_playback(const RunOptions& options, Scenario& scenario) {
+    const std::string_view given = options.loop         ? "--loop"
+                                   : options.time_scale ? "--time-scale"
+                                   : options.skip_s     ? "--skip"
+                                                        : "";
+    if (given.empty()) return {};
+    auto* file = std::get_if<FileSettings>(&scenario.trajectory);
+    if (!file)
+        return fail(ErrorCode::usage, fmt::format("{}: expected --trajectory TRACK, or a trajectory of kind \"file\" "
+                                                  "in the scenario",
+                                                  given));
+    if (options.loop) file->playback.end = EndOfPath::loop;
+    if (options.time_scale && !(*options.time_scale >= 1e-3 && *options.time_scale <= 1e3))
+        return fail(ErrorCode::usage, fmt::format("--time-scale {}: expected 0.001 to 1000", *options.time_scale));
+    if (options.skip_s && !(*options.skip_s >= 0 && *options.skip_s <= 1e9))
+        return fail(ErrorCode::usage, fmt::format("--skip {}: expected seconds, 0 to 1e9", *options.skip_s));
+    file->playback.time_scale = options.time_scale.value_or(file->playback.time_scale);
+    if (options.skip_s) file->playback.skip = Seconds(*options.skip_s);
+    return {};
+}
+
 Result<void> apply_time(const RunOptions& options, Scenario& scenario) {
     if (options.start == "now") {
         scenario.run.start.reset();
@@ -109,6 +131,9 @@ std::string options_text(const RunOptions& o) {
                                       {"board", o.board}})
         if (!value.empty()) text += fmt::format("\n--{} {}", name, value);
     if (o.rebase_nav) text += "\n--rebase-nav";
+    if (o.loop) text += "\n--loop";
+    if (o.time_scale) text += fmt::format("\n--time-scale {}", *o.time_scale);
+    if (o.skip_s) text += fmt::format("\n--skip {}", *o.skip_s);
     if (o.duration) text += fmt::format("\n--duration {}", *o.duration);
     if (o.rate) text += fmt::format("\n--rate {}", *o.rate);
     if (o.seed) text += fmt::format("\n--seed {}", *o.seed);
@@ -146,6 +171,9 @@ void add_run_options(CLI::App& command, RunOptions& options) {
     add_place_options(command, options);
     command.add_option("--trajectory", options.trajectory,
                        "A .toml file with a [trajectory], or a track: .csv, .gpx, …");
+    command.add_flag("--loop", options.loop, "The track begins anew at its end");
+    command.add_option("--time-scale", options.time_scale, "Seconds of the track in one second of the run");
+    command.add_option("--skip", options.skip_s, "Seconds of the track that are left out at its beginning");
     command.add_option("--duration", options.duration, "Seconds");
     command.add_option("--model", options.model, fmt::format("{}; default modern", fmt::join(model_names(), " ")));
     add_scene_option(command, options);
@@ -217,7 +245,7 @@ Result<Scenario> scenario_from(const RunOptions& options) {
     if (!options.repeat.empty())
         if (const auto repeated = repeat_run(options.repeat, scenario); !repeated) return fail(repeated.error());
     scenario.source += options_text(options);
-    for (const auto& apply : {apply_place, apply_time, apply_model, apply_receiver, apply_speed})
+    for (const auto& apply : {apply_place, apply_playback, apply_time, apply_model, apply_receiver, apply_speed})
         if (const auto applied = apply(options, scenario); !applied) return fail(applied.error());
     return scenario;
 }

@@ -19,6 +19,8 @@ struct RunOptions {
     std::string at, trajectory, start, model, board, state, scene, control, power;
     std::vector<std::string> nav, ports;
     bool rebase_nav = false;
+    bool loop = false;                         ///< the track of --trajectory or of the scenario begins anew at its end
+    std::optional<double> time_scale, skip_s;  ///< of the same
     std::optional<double> duration, rate;
     std::optional<std::uint64_t> seed;
     std::string speed;              ///< run only: a number or "max"

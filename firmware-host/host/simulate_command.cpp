@@ -4,6 +4,7 @@
 #include "data_folders.hpp"
 #include "run_session.hpp"
 #include "run_watch.hpp"
+#include "skyloop/emulator/load_track.hpp"
 
 namespace skyloop::host {
 namespace {
@@ -12,9 +13,10 @@ int simulate(const RunOptions& options) {
     const Messages messages(options.verbosity);
     const auto scenario = scenario_from(options);
     if (!scenario) return messages.error(scenario.error());
-    if (!scenario->run.duration)
-        return messages.error(
-            {ErrorCode::usage, "simulate needs an end: expected --duration SECONDS or run.duration_s in the scenario"});
+    if (!scenario->run.duration && !ends_with_its_path(*scenario))
+        return messages.error({ErrorCode::usage,
+                               "simulate needs an end: expected --duration SECONDS, run.duration_s in the scenario, or "
+                               "a trajectory with end = \"stop\""});
     catch_stop_signals();
     RunMode mode;
     mode.virtual_time = true;

@@ -100,6 +100,8 @@ std::vector<std::string> world_details(const NavigationSource& navigation, const
                     navigation.klobuchar() ? "with ionosphere coefficients" : "without ionosphere coefficients"),
         fmt::format("geoid: {}", assembly.geoid ? "EGM96, 15 minutes" : "none")};
     if (!assembly.trajectory.empty()) details.push_back("trajectory: " + assembly.trajectory);
+    for (const std::string& found : assembly.track_details)
+        details.push_back("track: " + found);
     if (assembly.scene.scene)
         details.push_back(fmt::format("scene: {}{}", assembly.scene.description,
                                       assembly.scene.from_cache ? ", from the cache" : ""));
@@ -236,11 +238,14 @@ Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const 
     assembly.warnings.insert(assembly.warnings.end(), navigation->warnings.begin(), navigation->warnings.end());
     assembly.geoid = find_geoid(data, assembly.warnings);
     assembly.start = navigation->start;
-    if (scenario.run.duration) assembly.end = advanced(assembly.start, *scenario.run.duration);
     const auto track = load_track(scenario, assembly.geoid.get(), assembly.start);
     if (!track) return fail(track.error());
+    if (track->end && (!scenario.run.duration || *track->end < advanced(assembly.start, *scenario.run.duration)))
+        scenario.run.duration = difference(*track->end, assembly.start);
+    if (scenario.run.duration) assembly.end = advanced(assembly.start, *scenario.run.duration);
     assembly.warnings.insert(assembly.warnings.end(), track->warnings.begin(), track->warnings.end());
     assembly.trajectory = track->description;
+    assembly.track_details = track->details;
     auto feeds = open_feeds(scenario, mode, assembly);
     if (!feeds) return fail(feeds.error());
     if (const auto added = add_scene(scenario, data, assembly); !added) return fail(added.error());

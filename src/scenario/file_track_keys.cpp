@@ -3,10 +3,30 @@
 #include <array>
 
 namespace skyloop {
+namespace {
+
+constexpr std::array<Word<GapPolicy>, 4> gap_words{{{"bridge", GapPolicy::bridge},
+                                                    {"hold", GapPolicy::hold},
+                                                    {"compress", GapPolicy::compress},
+                                                    {"outage", GapPolicy::outage}}};
+constexpr std::array<Word<EndOfPath>, 3> end_words{
+    {{"hold", EndOfPath::hold}, {"stop", EndOfPath::stop}, {"loop", EndOfPath::loop}}};
+constexpr std::array<Word<Smoothing>, 3> smooth_words{
+    {{"none", Smoothing::none}, {"noise", Smoothing::noise}, {"sensor", Smoothing::sensor}}};
+
+void read_vehicle_class(TableReader& table, FileSettings& file) {
+    std::array<std::string_view, vehicle_class_count> names;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        names[i] = vehicle_classes()[i].name;
+    if (const auto index = table.choice("vehicle", names)) file.vehicle = static_cast<VehicleClass>(*index);
+}
+
+}  // namespace
 
 void read_file_track(TableReader& table, const std::filesystem::path& folder, TrajectorySettings& trajectory) {
     static constexpr std::array<std::string_view, 2> clocks{"run", "recorded"};
     FileSettings file;
+    file.heading_given = table.has("heading_deg");
     file.heading = read_heading(table);
     std::string path;
     table.text("path", path);
@@ -15,6 +35,13 @@ void read_file_track(TableReader& table, const std::filesystem::path& folder, Tr
     file.keeps_time = table.choice("time", clocks, clocks[0]).value_or(0) == 1;
     table.quantity("gap_s", file.gap, {1e-3, 1e7});
     file.origin = table.place("origin");
+    table.word("gap", gap_words, file.gap_policy);
+    table.quantity("start_delay_s", file.playback.delay, {0, 1e7});
+    table.quantity("skip_s", file.playback.skip, {0, 1e9});
+    table.number("time_scale", file.playback.time_scale, {1e-3, 1e3});
+    table.word("end", end_words, file.playback.end);
+    read_vehicle_class(table, file);
+    table.word("smooth", smooth_words, file.smoothing);
     trajectory = file;
 }
 

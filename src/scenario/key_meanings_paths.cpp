@@ -8,8 +8,8 @@ constexpr KeyMeaning path_meanings[] = {
     {"trajectory", "vehicle",
      "who goes: rounds corners, speeds up, leans (docs/paths.md); waypoints without any key of a vehicle run at "
      "constant "
-     "speed from corner to corner",
-     "car for drive, else multirotor"},
+     "speed from corner to corner; on a track, how it stands where the rows tell no attitude",
+     "car for drive, none for file, else multirotor"},
     {"trajectory", "acceleration_mps2", "along the way", "the vehicle's"},
     {"trajectory", "jerk_mps3", "change of the acceleration along the way", "the vehicle's"},
     {"trajectory", "lateral_mps2", "acceleration in turns", "the vehicle's"},

@@ -13,7 +13,7 @@ void read_live(TableReader& table, PlaceReader& places, TrajectorySettings& traj
     live.heading = read_heading(table);
     table.text("source", live.source);
     table.needs_one_of({"source"}, "kind \"live\" has no source; expected source = \"udp-json:29990\" or another");
-    table.text("vehicle", live.vehicle);
+    table.text("vehicle_id", live.vehicle);
     live.at = places.read(table, "at");
     live.clock = static_cast<ClockMode>(table.choice("clock", clocks, clocks[0]).value_or(0));
     live.sea_is_ellipsoid = table.choice("sea_level", seas, seas[0]).value_or(0) == 1;

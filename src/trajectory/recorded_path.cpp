@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "hermite_piece.hpp"
 #include "skyloop/geo/body_frame.hpp"
 #include "skyloop/geo/geodetic.hpp"
 #include "skyloop/trajectory/motion_attitude.hpp"
@@ -13,50 +14,15 @@
 namespace skyloop {
 namespace {
 
-using Coefficients = Eigen::Matrix<double, 3, 6>;
-using Powers = Eigen::Matrix<double, 6, 1>;
-
-// Quintic Hermite in powers of u (FEEDS.md 1.13.3); p relative to the first knot.
-Coefficients quintic(const TrackKnot& from, const TrackKnot& to, double h) {
-    const Eigen::Vector3d p1 = to.position - from.position;
-    const Eigen::Vector3d v0 = h * from.velocity, v1 = h * to.velocity;
-    const Eigen::Vector3d a0 = h * h * from.acceleration, a1 = h * h * to.acceleration;
-    Coefficients c;
-    c.col(0).setZero();
-    c.col(1) = v0;
-    c.col(2) = a0 / 2;
-    c.col(3) = 10 * p1 - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1;
-    c.col(4) = -15 * p1 + 8 * v0 + 7 * v1 + 1.5 * a0 - a1;
-    c.col(5) = 6 * p1 - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1;
-    return c;
-}
-
-Coefficients cubic(const TrackKnot& from, const TrackKnot& to, double h) {
-    const Eigen::Vector3d p1 = to.position - from.position;
-    const Eigen::Vector3d v0 = h * from.velocity, v1 = h * to.velocity;
-    Coefficients c = Coefficients::Zero();
-    c.col(1) = v0;
-    c.col(2) = 3 * p1 - 2 * v0 - v1;
-    c.col(3) = -2 * p1 + v0 + v1;
-    return c;
-}
-
-// What the coefficients are multiplied by for the value, or its first or second derivative after u.
-Powers powers_of(double u, int derivative) {
-    Powers powers = Powers::Zero();
-    double power = 1;
-    for (int i = derivative; i < 6; ++i, power *= u)
-        powers(i) = power * (derivative == 0 ? 1 : derivative == 1 ? i : i * (i - 1));
-    return powers;
-}
-
 // Whether a quintic piece accelerates far more than its ends and its way ask for (FEEDS.md 1.13.3).
-bool swings_out(const Coefficients& c, const TrackKnot& from, const TrackKnot& to, double h) {
-    constexpr double least_mps2 = 0.1;  // noise of rows, not worth a step of the acceleration
+bool swings_out(const PieceCoefficients& c, const TrackKnot& from, const TrackKnot& to, double h) {
+    // Noise of rows is not worth a step of the acceleration: a few millimetres between them, or 1 m/s² at most.
+    constexpr double hardly_m = 0.5;
+    const double least_mps2 = std::clamp(hardly_m / (h * h), 0.1, 1.0);
     const Eigen::Vector3d needed = 2 * (to.position - from.position - h * from.velocity) / (h * h);
     const double allowed = 3 * std::max({from.acceleration.norm(), to.acceleration.norm(), needed.norm(), least_mps2});
     for (int i = 1; i < 8; ++i)
-        if ((c * powers_of(i / 8.0, 2)).norm() > allowed * h * h) return true;
+        if ((c * piece_powers(i / 8.0, 2)).norm() > allowed * h * h) return true;
     return false;
 }
 
@@ -84,9 +50,9 @@ struct RecordedPath::Builder {
 
     void add(const TrackKnot& from, const TrackKnot& to) {
         const double h = to.time - from.time;
-        Piece piece{from.time, h, from.position, quintic(from, to, h)};
+        Piece piece{from.time, h, from.position, quintic_hermite(from, to, h)};
         if (swings_out(piece.coefficients, from, to, h)) {
-            piece.coefficients = cubic(from, to, h);
+            piece.coefficients = cubic_hermite(from, to, h);
             ++path.report_.cubic_pieces;
         }
         path.pieces_.push_back(piece);
@@ -101,7 +67,7 @@ struct RecordedPath::Builder {
     }
     // The path stands there until `until`.
     void stand(const TrackKnot& at, double until) {
-        path.pieces_.push_back({at.time, until - at.time, at.position, Coefficients::Zero()});
+        path.pieces_.push_back({at.time, until - at.time, at.position, PieceCoefficients::Zero()});
     }
     void add_stretch(std::span<const TrackKnot> knots) {
         for (std::size_t i = 1; i < knots.size(); ++i) {
@@ -189,10 +155,10 @@ void RecordedPath::stand_by_motion(std::span<const double> stretch_begins, const
             const Place place = place_at(t);
             const Piece& piece = *place.piece;
             const Geodetic geodetic =
-                to_geodetic(Position<Ecef>(piece.anchor + piece.coefficients * powers_of(place.u, 0)));
+                to_geodetic(Position<Ecef>(piece.anchor + piece.coefficients * piece_powers(place.u, 0)));
             const Eigen::Quaterniond to_ned = ned_to_ecef(geodetic).conjugate();
-            samples.push_back({t, geodetic, to_ned * (piece.coefficients * powers_of(place.u, 1) / piece.length),
-                               to_ned * (piece.coefficients * powers_of(place.u, 2) / (piece.length * piece.length)),
+            samples.push_back({t, geodetic, to_ned * (piece.coefficients * piece_powers(place.u, 1) / piece.length),
+                               to_ned * (piece.coefficients * piece_powers(place.u, 2) / (piece.length * piece.length)),
                                i == 0});
         }
     }
@@ -200,17 +166,19 @@ void RecordedPath::stand_by_motion(std::span<const double> stretch_begins, const
 }
 
 RecordedPath::Place RecordedPath::place_at(double t) const {
+    constexpr double half_step_s = 5e-10;  // of the clock: a whole nanosecond may lie beyond the last row by rounding
     const double inside = std::clamp(t, 0.0, duration().value());
     auto piece = std::upper_bound(pieces_.begin(), pieces_.end(), inside,
                                   [](double value, const Piece& p) { return value < p.begins; });
     piece = piece == pieces_.begin() ? piece : std::prev(piece);
-    return {&*piece, std::min(1.0, (inside - piece->begins) / piece->length), t >= 0 && t <= duration().value()};
+    return {&*piece, std::min(1.0, (inside - piece->begins) / piece->length),
+            t >= 0 && t <= duration().value() + half_step_s};
 }
 
 Eigen::Vector3d RecordedPath::acceleration(GpsTime time) const {
     const Place place = place_at(difference(time, start_).value());
     if (!place.inside) return Eigen::Vector3d::Zero();
-    return place.piece->coefficients * powers_of(place.u, 2) / (place.piece->length * place.piece->length);
+    return place.piece->coefficients * piece_powers(place.u, 2) / (place.piece->length * place.piece->length);
 }
 
 TruthState RecordedPath::at(GpsTime time) const {
@@ -219,9 +187,9 @@ TruthState RecordedPath::at(GpsTime time) const {
     const Piece& piece = *place.piece;
     TruthState state;
     state.time = time;
-    state.position = Position<Ecef>(piece.anchor + piece.coefficients * powers_of(place.u, 0));
+    state.position = Position<Ecef>(piece.anchor + piece.coefficients * piece_powers(place.u, 0));
     state.geodetic = to_geodetic(state.position);
-    if (place.inside) state.velocity = Velocity<Ecef>(piece.coefficients * powers_of(place.u, 1) / piece.length);
+    if (place.inside) state.velocity = Velocity<Ecef>(piece.coefficients * piece_powers(place.u, 1) / piece.length);
     if (attitude_.empty()) return state;
     const BodyTurn turn = attitude_.at(std::clamp(t, 0.0, duration().value()));
     state.orientation.emplace();

@@ -53,9 +53,10 @@ struct Assembly {
     std::unique_ptr<Emulator> emulator;
     GpsTime start;
     std::optional<GpsTime> end;
-    std::string digest;      ///< scenario_digest()
-    std::string trajectory;  ///< what the recorded path is; empty: it is none
-    LoadedScene scene;       ///< what stands around; its warnings are among those below
+    std::string digest;                      ///< scenario_digest()
+    std::string trajectory;                  ///< what the recorded path is; empty: it is none
+    std::vector<std::string> track_details;  ///< what was found in its file, a line each
+    LoadedScene scene;                       ///< what stands around; its warnings are among those below
     std::vector<std::string> warnings;
     std::optional<DeadlineGrants> deadlines{};  ///< that its loop was given; nothing: it has none to keep
     std::vector<std::string> details;           ///< for those who ask: what was read, and from where

@@ -28,6 +28,7 @@
 #include "skyloop/trajectory/generated_path.hpp"
 #include "skyloop/trajectory/geometric_paths.hpp"
 #include "skyloop/trajectory/live_path.hpp"
+#include "skyloop/trajectory/playback.hpp"
 #include "skyloop/trajectory/source_clock.hpp"
 #include "skyloop/trajectory/track.hpp"
 #include "skyloop/verdict/expectation.hpp"
@@ -70,10 +71,19 @@ struct FileSettings {
     std::filesystem::path path{};
     Angle heading{};
     bool keeps_time = false;           ///< the rows keep their own GPS time; else the first one is the start of the run
-    Seconds gap{10};                   ///< stretches without rows longer than this are told and bridged
     std::optional<Geodetic> origin{};  ///< of local metres and of heights above the ground, where the file has such
+    Seconds gap{10};  ///< stretches without rows longer than this are told, and become what the policy says
+    GapPolicy gap_policy = GapPolicy::bridge;
+    Playback playback{};
+    std::optional<VehicleClass> vehicle{};  ///< stands by its motion where the rows tell no attitude
+    bool heading_given = false;             ///< else a vehicle of a class looks where it first goes
+    Smoothing smoothing = Smoothing::none;
     std::shared_ptr<const Track> track{};  ///< clean; null until it has been loaded
     std::vector<TrackGap> gaps{};
+    /// How the curve is led through the rows.
+    [[nodiscard]] CurveSettings curve() const {
+        return {vehicle, heading_given ? std::optional(heading) : std::nullopt, smoothing};
+    }
 };
 /// What becomes of a run whose source of truth is silent for long.
 enum class LostSource { hold, outage, pause, stop };

@@ -28,6 +28,9 @@ public:
     AttitudeCurve() = default;
     /// @param knots in ascending time
     explicit AttitudeCurve(std::vector<AttitudeKnot> knots);
+    /// @param rates of the knots, as BodyTurn::rate
+    AttitudeCurve(std::vector<AttitudeKnot> knots, std::vector<Eigen::Vector3d> rates)
+        : knots_(std::move(knots)), rates_(std::move(rates)) {}
     [[nodiscard]] bool empty() const { return knots_.empty(); }
     [[nodiscard]] BodyTurn at(double time) const;  ///< there is a knot or more
 

@@ -38,9 +38,22 @@ struct TrackGap {
     Nanoseconds from{0}, to{0};  ///< since Track::origin
 };
 
-/// Puts the rows in order of time (FEEDS.md 1.14): of equal times the last row counts, rows that go back in time are
-/// left out. Adds to the notes what was left out, and each stretch longer than `gap`, of which there are at most a few
-/// lines. Fails with `input` when fewer than two rows are left.
-Result<std::vector<TrackGap>> clean_track(Track& track, Seconds gap);
+/// What becomes of a gap.
+enum class GapPolicy {
+    bridge,    ///< a way is led across it
+    hold,      ///< the path stands there, and jumps to the next row when its time comes
+    compress,  ///< its time is left out
+    outage     ///< a way is led across it, and who runs the path is to lose the signals there
+};
+
+/// Puts the rows in order of time and in order at all (FEEDS.md 1.14). Left out: rows without a place, rows that go
+/// back in time by 2 s or less, single rows whose time ran ahead or that lie far from both neighbours, and of equal
+/// times all but the last row. Where three rows or more share a time at different places, the rows are spread over the
+/// step of the stamps. Times that go back further are a new beginning: where all parts have a time of their own (and an
+/// origin), they are put in its order; else each part follows the one before at once, by a jump. A path that leaps and
+/// stays there jumps. Stretches longer than `gap` become what `policy` says. All of it is told in the notes, with
+/// counts. Fails with `input` when fewer than two rows are left.
+/// @returns the gaps that are to be bridged
+Result<std::vector<TrackGap>> clean_track(Track& track, Seconds gap, GapPolicy policy = GapPolicy::bridge);
 
 }  // namespace skyloop

@@ -1,0 +1,182 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "commands.hpp"
+#include "data_folders.hpp"
+#include "messages.hpp"
+#include "run_options.hpp"
+#include "skyloop/base/spelling.hpp"
+#include "skyloop/emulator/assembly.hpp"
+#include "skyloop/emulator/load_track.hpp"
+#include "skyloop/plot/path_plot.hpp"
+#include "skyloop/scenario/scenario_file.hpp"
+#include "trajectory_listing.hpp"
+
+namespace skyloop::host {
+namespace {
+
+struct TrajectoryOptions {
+    std::string file, vehicle, format = "text";
+    std::string smooth;  // empty: as the file says
+    std::optional<double> rate_hz, duration_s, gap_s;
+    Verbosity verbosity;
+};
+
+// A path ready to be asked.
+struct OpenedPath {
+    std::unique_ptr<Trajectory> path;
+    PathSpan span;
+    TrajectoryListing listing;
+};
+
+Result<std::optional<VehicleClass>> chosen_vehicle(const std::string& name) {
+    if (name.empty()) return std::optional<VehicleClass>();
+    if (const auto vehicle = vehicle_class_named(name)) return vehicle;
+    std::vector<std::string_view> names;
+    for (const VehicleTraits& traits : vehicle_classes())
+        names.push_back(traits.name);
+    return fail(ErrorCode::usage, fmt::format("--vehicle {}: expected one of {}{}", name, fmt::join(names, " "),
+                                              did_you_mean(name, names)));
+}
+
+// A .toml file holds a trajectory, alone or in a whole scenario; any other is a track.
+Result<Scenario> scenario_of(const TrajectoryOptions& options) {
+    const std::filesystem::path file = options.file;
+    if (file.extension() == ".toml") return read_scenario_file(file);
+    Scenario scenario;
+    FileSettings track;
+    track.path = file;
+    scenario.trajectory = track;
+    return scenario;
+}
+
+// What the command line says of a track.
+Result<void> apply_track_options(const TrajectoryOptions& options, std::optional<VehicleClass> vehicle,
+                                 Scenario& scenario) {
+    auto* file = std::get_if<FileSettings>(&scenario.trajectory);
+    const std::string_view of_tracks = !options.smooth.empty() ? "--smooth" : options.gap_s ? "--gap" : "";
+    if (!file && !of_tracks.empty())
+        return fail(ErrorCode::usage,
+                    fmt::format("{} is for tracks; {} holds a path of another kind", of_tracks, options.file));
+    if (!file) return {};
+    if (vehicle) file->vehicle = vehicle;
+    if (options.gap_s) file->gap = Seconds(*options.gap_s);
+    if (options.smooth == "none") file->smoothing = Smoothing::none;
+    if (options.smooth == "noise") file->smoothing = Smoothing::noise;
+    if (options.smooth == "sensor") file->smoothing = Smoothing::sensor;
+    return {};
+}
+
+// Of the paths that end or repeat by themselves.
+std::optional<Seconds> natural_length(const TrajectorySettings& way, const Trajectory& path) {
+    if (const auto* waypoints = dynamic_cast<const Waypoints*>(&path)) return waypoints->duration();
+    if (const auto* circle = std::get_if<CircleSettings>(&way); circle && circle->shape.speed.value() != 0)
+        return Seconds(2 * std::numbers::pi * circle->shape.radius.value() / std::abs(circle->shape.speed.value()));
+    if (std::holds_alternative<FixedSettings>(way)) return Seconds(1);
+    return std::nullopt;
+}
+
+Seconds length_to_look_at(const TrajectoryOptions& options, const Scenario& scenario, const LoadedTrack& track,
+                          OpenedPath& opened) {
+    constexpr Seconds unless_told(600);
+    if (options.duration_s) return Seconds(*options.duration_s);
+    if (track.path_end) return difference(*track.path_end, opened.span.from);
+    if (const auto length = natural_length(scenario.trajectory, *opened.path)) return *length;
+    if (scenario.run.duration) return *scenario.run.duration;
+    opened.listing.notes.push_back(
+        fmt::format("the path has no end of its own: its first {:g} s, or --duration", unless_told.value()));
+    return unless_told;
+}
+
+Result<OpenedPath> open_path(const TrajectoryOptions& options) {
+    const auto vehicle = chosen_vehicle(options.vehicle);
+    if (!vehicle) return fail(vehicle.error());
+    auto scenario = scenario_of(options);
+    if (!scenario) return fail(scenario.error());
+    if (const auto applied = apply_track_options(options, *vehicle, *scenario); !applied) return fail(applied.error());
+    OpenedPath opened;
+    TrajectoryListing& listing = opened.listing;
+    listing.name = options.file;
+    listing.notes = scenario->warnings;
+    const auto geoid = find_geoid(data_folders(), listing.notes);
+    // The path alone, wherever the run would begin: a track that keeps its time begins with its first row.
+    opened.span.from = scenario->run.start.value_or(to_gps_time(2300, 0));
+    auto* file = std::get_if<FileSettings>(&scenario->trajectory);
+    if (file) file->keeps_time = false;
+    scenario->receivers.resize(1);
+    scenario->receivers[0].trajectory.reset();
+    const auto track = load_track(*scenario, geoid.get(), opened.span.from);
+    if (!track) return fail(track.error());
+    listing.kind = file ? "track" : "path of a scenario";
+    listing.description = track->description;
+    listing.details = track->details;
+    listing.notes.insert(listing.notes.end(), track->warnings.begin(), track->warnings.end());
+    opened.path = make_trajectory(scenario->trajectory, opened.span.from);
+    opened.span.length = length_to_look_at(options, *scenario, *track, opened);
+    const auto limits_of = *vehicle ? *vehicle : file ? file->vehicle : std::nullopt;
+    if (limits_of) listing.vehicle = traits_of(*limits_of).name;
+    listing.survey = survey_path(*opened.path, opened.span);
+    listing.exceeded = exceeded_limits(listing.survey, limits_of);
+    return opened;
+}
+
+Result<std::string> path_output(const TrajectoryOptions& options, const OpenedPath& opened) {
+    if (options.format == "json") return trajectory_json(opened.listing);
+    if (options.format == "text") return trajectory_text(opened.listing);
+    // A picture needs no more samples than it has pixels to show them.
+    constexpr double samples_of_picture = 3000;
+    const double rate =
+        options.format == "csv"
+            ? options.rate_hz.value_or(1)
+            : options.rate_hz.value_or(std::min(100.0, samples_of_picture / opened.span.length.value()));
+    const auto samples = sample_path(*opened.path, opened.span, Hertz(rate));
+    if (!samples) return fail(samples.error());
+    if (options.format == "csv") return path_csv(*samples);
+    return path_plot_svg(*samples, std::filesystem::path(options.file).filename().string());
+}
+
+int trajectory(const TrajectoryOptions& options) {
+    const Messages messages(options.verbosity);
+    if (options.format == "text" || options.format == "json")
+        if (options.rate_hz) return messages.error({ErrorCode::usage, "--rate is for --format csv and svg"});
+    const auto opened = open_path(options);
+    if (!opened) return messages.error(opened.error());
+    const auto text = path_output(options, *opened);
+    if (!text) return messages.error(text.error());
+    if (options.format == "csv" || options.format == "svg")
+        for (const std::string& note : opened->listing.notes)
+            messages.warning(note);
+    fmt::print("{}", *text);
+    return 0;
+}
+
+}  // namespace
+
+Action add_trajectory_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "trajectory", "Say what a track or another path asks for: extent, speeds, accelerations, limits; or draw it");
+    auto options = std::make_shared<TrajectoryOptions>();
+    command->add_option("file", options->file, "A track, or a .toml with a [trajectory], alone or in a scenario")
+        ->required();
+    command->add_option("--vehicle", options->vehicle,
+                        "Whose limits count, and how a track without attitudes stands: fixed pedestrian car rover boat "
+                        "plane multirotor");
+    command->add_option("--format", options->format, "text json csv svg; default text")
+        ->check(CLI::IsMember({"text", "json", "csv", "svg"}));
+    command->add_option("--rate", options->rate_hz, "Samples of csv and svg, Hz; default 1 in csv")
+        ->check(CLI::Range(1e-4, 1e4));
+    command->add_option("--duration", options->duration_s, "Seconds to look at; default the whole path")
+        ->check(CLI::Range(1e-3, 1e8));
+    command->add_option("--smooth", options->smooth, "none noise sensor: as trajectory.smooth of a scenario")
+        ->check(CLI::IsMember({"none", "noise", "sensor"}));
+    command->add_option("--gap", options->gap_s, "Seconds without rows that are a gap; default 10")
+        ->check(CLI::Range(1e-3, 1e7));
+    add_verbosity_options(*command, options->verbosity);
+    return [options] { return trajectory(*options); };
+}
+
+}  // namespace skyloop::host

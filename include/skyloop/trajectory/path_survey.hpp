@@ -1,0 +1,74 @@
+/// What a path asks for: how far, how high, how fast, how hard.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/trajectory/trajectory.hpp"
+#include "skyloop/trajectory/vehicle_class.hpp"
+
+namespace skyloop {
+
+/// A part of a path.
+struct PathSpan {
+    GpsTime from{};
+    Seconds length{};
+};
+
+/// The largest or smallest of something, and when it was.
+struct PathExtreme {
+    double value = 0;
+    double at_s = 0;  ///< after the beginning of the span
+};
+
+/// Heights above the ellipsoid, m; speeds against the Earth, m/s.
+struct PathSurvey {
+    double duration_s = 0;
+    Geodetic south_west, north_east;            ///< of the box around it; east of 180° the longitude goes on counting
+    double east_west_m = 0, north_south_m = 0;  ///< sides of the box, through its middle
+    double length_m = 0;                        ///< of the way, jumps not in it
+    PathExtreme lowest, highest;                ///< m
+    PathExtreme fastest, fastest_over_ground;   ///< m/s
+    PathExtreme climb, descent;                 ///< m/s, both positive
+    PathExtreme acceleration, jerk, turn_rate;  ///< m/s², m/s³, rad/s; steps of the velocity are no acceleration
+    std::size_t velocity_steps = 0, jumps = 0;  ///< where velocity or place change in no time
+    PathExtreme largest_step, largest_jump;     ///< m/s, m
+    bool has_orientation = false;               ///< the path tells how the vehicle stands
+};
+
+/// Looks at the path 100 times a second, more seldom at spans of more than three hours, and searches the steps that it
+/// finds down to a microsecond. Acceleration and jerk are differences of neighbouring velocities.
+PathSurvey survey_path(const Trajectory& path, const PathSpan& span);
+
+/// A limit that a path exceeds.
+struct ExceededLimit {
+    std::string of;    ///< "receiver", "plane"
+    std::string what;  ///< "acceleration"
+    std::string unit;
+    double limit = 0;
+    PathExtreme found;
+};
+
+/// Against what receivers keep their fix at (u-blox data sheets, "operational limits": 4 g, 50 000 m, 500 m/s; COCOM,
+/// which others follow: 18 288 m and 515 m/s) and against a class of vehicles.
+std::vector<ExceededLimit> exceeded_limits(const PathSurvey& survey, std::optional<VehicleClass> vehicle);
+
+/// The path at one instant, in words that people and plots take.
+struct PathSample {
+    double time_s = 0;  ///< after the beginning of the span
+    TruthState state;
+    Eigen::Vector3d velocity_ned = Eigen::Vector3d::Zero();      ///< m/s
+    Eigen::Vector3d acceleration_ned = Eigen::Vector3d::Zero();  ///< m/s²; the difference over a millisecond
+};
+
+/// From the beginning of the span to its end, both among them where the rate fits.
+/// Fails with `usage` for more than ten million samples.
+Result<std::vector<PathSample>> sample_path(const Trajectory& path, const PathSpan& span, Hertz rate);
+
+/// A table that read_track_csv() takes: t_s, place, velocity, acceleration, and attitude where it is told.
+std::string path_csv(const std::vector<PathSample>& samples);
+
+}  // namespace skyloop

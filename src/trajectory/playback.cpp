@@ -1,0 +1,80 @@
+#include "skyloop/trajectory/playback.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hermite_piece.hpp"
+#include "skyloop/geo/body_frame.hpp"
+
+namespace skyloop {
+
+PlayedPath::PlayedPath(std::unique_ptr<const RecordedPath> path, GpsTime start, const Playback& playback)
+    : path_(std::move(path)), start_(start), playback_(playback) {
+    if (playback_.end == EndOfPath::loop) close();
+}
+
+// Leads from the last row to the first one where they are near each other.
+void PlayedPath::close() {
+    constexpr double shortest_s = 2, near_m = 50, near_s = 5, least_mps = 1;
+    const double whole = path_->duration().value();
+    const auto at_row = [&](double s) {
+        const GpsTime time = advanced(start_, Seconds(s));
+        const TruthState state = path_->at(time);
+        return TrackKnot{s, state.position.vector(), state.velocity.vector(), path_->acceleration(time), true};
+    };
+    const TrackKnot last = at_row(whole), first = at_row(0);
+    const double way = (first.position - last.position).norm();
+    const double speed = (first.velocity.norm() + last.velocity.norm()) / 2;
+    if (way > near_m + near_s * speed) return;
+    closing_s_ = std::max(shortest_s, way / std::max(speed, least_mps));
+    anchor_ = last.position;
+    closing_ = quintic_hermite(last, first, closing_s_);
+    std::vector<AttitudeKnot> knots;
+    std::vector<Eigen::Vector3d> rates;
+    for (const auto& [time, s] : {std::pair{0.0, whole}, std::pair{closing_s_, 0.0}}) {
+        const TruthState state = path_->at(advanced(start_, Seconds(s)));
+        if (!state.orientation) return;
+        knots.push_back({time, body_to_ecef(state.orientation->attitude, state.geodetic)});
+        rates.push_back(state.orientation->turn_rate);
+    }
+    closing_attitude_ = AttitudeCurve(std::move(knots), std::move(rates));
+}
+
+GpsTime PlayedPath::run_time_of(double track_s) const {
+    return advanced(start_, playback_.delay + Seconds((track_s - playback_.skip.value()) / playback_.time_scale));
+}
+
+std::optional<Seconds> PlayedPath::period() const {
+    if (playback_.end != EndOfPath::loop) return std::nullopt;
+    return Seconds((path_->duration().value() + closing_s_) / playback_.time_scale);
+}
+
+// @param s after the last row, of the track
+TruthState PlayedPath::on_closing(double s) const {
+    const double u = std::clamp(s / closing_s_, 0.0, 1.0);
+    TruthState state;
+    state.position = Position<Ecef>(anchor_ + closing_ * piece_powers(u, 0));
+    state.velocity = Velocity<Ecef>(closing_ * piece_powers(u, 1) / closing_s_);
+    state.geodetic = to_geodetic(state.position);
+    if (closing_attitude_.empty()) return state;
+    const BodyTurn turn = closing_attitude_.at(s);
+    state.orientation = Orientation{attitude_at(state.geodetic, turn.body_to_ecef), turn.rate};
+    return state;
+}
+
+TruthState PlayedPath::at(GpsTime time) const {
+    const double whole = path_->duration().value();
+    const double waited = (difference(time, start_) - playback_.delay).value();
+    double s = playback_.skip.value() + std::max(0.0, waited) * playback_.time_scale;
+    if (playback_.end == EndOfPath::loop) s = std::fmod(s, whole + closing_s_);
+    TruthState state = s > whole && playback_.end == EndOfPath::loop
+                           ? on_closing(s - whole)
+                           : path_->at(advanced(start_, Seconds(std::min(s, whole))));
+    const double pace = waited < 0 || s > whole + closing_s_ ? 0 : playback_.time_scale;
+    state.time = time;
+    state.velocity = Velocity<Ecef>(pace * state.velocity.vector());
+    if (state.orientation) state.orientation->turn_rate *= pace;
+    return state;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,103 @@
+// What a survey finds of paths that are known by formula.
+#include "skyloop/trajectory/path_survey.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "law_track.hpp"
+#include "skyloop/trajectory/geometric_paths.hpp"
+#include "skyloop/trajectory/recorded_path.hpp"
+#include "skyloop/trajectory/track_csv.hpp"
+
+namespace skyloop {
+namespace {
+
+const Geodetic surveyed_place = Geodetic::degrees(47, 8, 500);
+
+TEST(PathSurvey, FindsTheNumbersOfACircle) {
+    const Circle circle(recorded_start, {surveyed_place, Metres(200), MetresPerSecond(20), Angle()});
+    const PathSurvey survey = survey_path(circle, {recorded_start, Seconds(20 * std::numbers::pi)});
+    EXPECT_NEAR(survey.fastest.value, 20, 5e-3);
+    EXPECT_NEAR(survey.acceleration.value, 2, 1e-3);
+    EXPECT_NEAR(survey.jerk.value, 0.2, 1e-3);
+    EXPECT_NEAR(survey.length_m, 400 * std::numbers::pi, 0.1);
+    EXPECT_NEAR(survey.east_west_m, 400, 0.2);
+    EXPECT_NEAR(survey.north_south_m, 400, 0.2);
+    EXPECT_EQ(survey.velocity_steps, 0u);
+    EXPECT_EQ(survey.jumps, 0u);
+    EXPECT_FALSE(survey.has_orientation);
+    EXPECT_TRUE(exceeded_limits(survey, std::nullopt).empty());
+}
+
+TEST(PathSurvey, TellsCornersFromAccelerations) {
+    const Waypoints corner(recorded_start, {{surveyed_place, MetresPerSecond(10), {}},
+                                            {Geodetic::degrees(47.001, 8, 500), MetresPerSecond(10), {}},
+                                            {Geodetic::degrees(47.001, 8.002, 520), {}, {}}});
+    const PathSurvey survey = survey_path(corner, {recorded_start, corner.duration()});
+    EXPECT_EQ(survey.velocity_steps, 1u);
+    EXPECT_NEAR(survey.largest_step.value, 10 * std::numbers::sqrt2, 0.2);
+    EXPECT_NEAR(survey.largest_step.at_s, 11.1, 0.1);
+    EXPECT_LT(survey.acceleration.value, 0.1);
+    EXPECT_NEAR(survey.highest.value, 520, 0.01);
+    const auto exceeded = exceeded_limits(survey, VehicleClass::car);
+    ASSERT_EQ(exceeded.size(), 1u);
+    EXPECT_EQ(exceeded[0].what, "step of the velocity");
+}
+
+TEST(PathSurvey, CountsJumpsAndWhatReceiversCannotFollow) {
+    // Up at 6 g, then elsewhere.
+    const PathLaw law = [](double t) { return Eigen::Vector3d(t < 60 ? 0 : 5e4, 0, 29.42 * t * t); };
+    Track track = track_of(law, evenly(0, 80, 0.5), true);
+    for (TrackRow& row : track.points)
+        if (row.time == std::chrono::seconds(60)) row.jump = true;
+    for (std::size_t i = 119; i <= 121; ++i)
+        track.points[i].velocity =
+            recorded_frame.to_ecef(Velocity<Enu>(0, 0, 58.84 * to_seconds(track.points[i].time).value()));
+    const auto gaps = clean_track(track, Seconds(10));
+    const RecordedPath path(track, *gaps, recorded_start);
+    const PathSurvey survey = survey_path(path, {recorded_start, path.duration()});
+    EXPECT_EQ(survey.jumps, 1u);
+    EXPECT_GT(survey.largest_jump.value, 5e4);
+    EXPECT_NEAR(survey.acceleration.value, 58.84, 0.5);
+    std::vector<std::string> whats;
+    for (const ExceededLimit& limit : exceeded_limits(survey, std::nullopt))
+        whats.push_back(limit.of + " " + limit.what);
+    EXPECT_THAT(whats, testing::ElementsAre("receiver acceleration", "receiver height", "receiver speed",
+                                            "COCOM height", "COCOM speed"));
+}
+
+TEST(PathSurvey, TheBoxCrossesTheDateLine) {
+    const Waypoints way(recorded_start, {{Geodetic::degrees(10, 179.99, 0), MetresPerSecond(100), {}},
+                                         {Geodetic::degrees(10, -179.99, 0), {}, {}}});
+    const PathSurvey survey = survey_path(way, {recorded_start, way.duration()});
+    EXPECT_NEAR(survey.south_west.longitude.deg(), 179.99, 1e-6);
+    EXPECT_NEAR(survey.north_east.longitude.deg(), 180.01, 1e-6);
+    EXPECT_NEAR(survey.east_west_m, 0.02 / 180 * std::numbers::pi * 6378137 * std::cos(10 / 57.29577951), 10);
+}
+
+TEST(PathSurvey, ItsTableIsATrackAgain) {
+    Track track = track_of(circle_of(60, 20), evenly(0, 30, 0.5), true);
+    const auto gaps = clean_track(track, Seconds(10));
+    const RecordedPath path(track, *gaps, recorded_start, {VehicleClass::plane, {}, {}});
+    const auto samples = sample_path(path, {recorded_start, path.duration()}, Hertz(10));
+    ASSERT_TRUE(samples.has_value());
+    ASSERT_EQ(samples->size(), 301u);
+    EXPECT_NEAR((*samples)[150].acceleration_ned.norm(), 400.0 / 60, 0.02);
+    auto again = read_track_csv(path_csv(*samples), "again.csv", nullptr);
+    ASSERT_TRUE(again.has_value()) << again.error().message;
+    ASSERT_EQ(again->points.size(), 301u);
+    for (std::size_t i = 0; i < 301; ++i) {
+        EXPECT_LT((again->points[i].position - (*samples)[i].state.position).length().value(), 1e-4);
+        ASSERT_TRUE(again->points[i].attitude.has_value());
+        EXPECT_LT(again->points[i].attitude->body_to_ned().angularDistance(
+                      (*samples)[i].state.orientation->attitude.body_to_ned()),
+                  1e-5);
+    }
+    EXPECT_FALSE(sample_path(path, {recorded_start, Seconds(1e7)}, Hertz(100)).has_value());
+}
+
+}  // namespace
+}  // namespace skyloop
