@@ -40,7 +40,7 @@ typedef int32_t sky_status;
 enum {
     SKY_OK = 0,
     SKY_E_ARG = -1,          ///< a null pointer, a size, a number of port or receiver that does not exist
-    SKY_E_STATE = -2,        ///< not now: the run has ended, or the port is not the caller's
+    SKY_E_STATE = -2,        ///< not now: the run has ended, too much waits, the geoid is not there
     SKY_E_NOMEM = -3,        ///< no memory
     SKY_E_IO = -4,           ///< the outside world refused: no such file, no permission
     SKY_E_PARSE = -5,        ///< a scenario or a command that is wrong
@@ -221,8 +221,8 @@ SKY_API sky_status sky_set_los(sky_emulator* emulator, uint32_t receiver, const 
                                size_t stride);
 
 /// Faults and other commands at the present instant, as JSON: {"command": "start_fault", "kind": "jamming",
-/// "jammer_to_signal_db": 40, "for_s": 20}. The commands are those of the control interface (docs/faults.md); pause,
-/// resume, step and speed are SKY_E_UNSUPPORTED, for time is the caller's.
+/// "j_to_s_db": 40, "for_s": 20}. The commands are those of the control interface (docs/faults.md); pause, resume, step
+/// and speed are SKY_E_UNSUPPORTED, for time is the caller's.
 SKY_API sky_status sky_command(sky_emulator* emulator, const char* json);
 
 /// Text about the run as JSON, ended by a zero where it fits. @param what "status", "config", "ports", "faults"

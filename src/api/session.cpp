@@ -63,20 +63,16 @@ void Session::put_on(const std::vector<std::size_t>& receivers, const std::share
             make_antenna_path(scenario_, i, std::make_unique<SharedPath>(path)));
 }
 
-Answer<Session::Vehicle*> Session::vehicle(const sky_truth& truth, const TruthSample& first) {
-    if (const auto found = vehicles_.find(truth.vehicle); found != vehicles_.end()) return &found->second;
-    const std::vector<std::size_t> receivers = riders(truth.vehicle);
-    if (receivers.empty())
+Answer<std::shared_ptr<LivePath>> Session::path_of(const sky_truth& truth, const TruthSample& first) const {
+    if (const auto found = vehicles_.find(truth.vehicle); found != vehicles_.end()) return found->second.path;
+    if (riders(truth.vehicle).empty())
         return refuse(SKY_E_ARG,
-                      fmt::format("vehicle {}: no receiver rides on it; expected 0, the scenario's, or n + 1 "
-                                  "of a receiver n that has a [receiver.trajectory]",
+                      fmt::format("vehicle {}: no receiver rides on it; expected 0, the scenario's, or n + 1 of a "
+                                  "receiver n that has a [receiver.trajectory]",
                                   truth.vehicle));
     LivePathSettings settings;
     settings.before = to_geodetic(first.position);
-    Vehicle& added = vehicles_[truth.vehicle];
-    added.path = std::make_shared<LivePath>(settings);
-    put_on(receivers, added.path);
-    return &added;
+    return std::make_shared<LivePath>(settings);
 }
 
 Answer<void> Session::set_truth(const sky_truth& truth) {
@@ -87,18 +83,19 @@ Answer<void> Session::set_truth(const sky_truth& truth) {
                                               truth.sim_time_ns, sim_time(now())));
     const auto sample = truth_sample(truth, {assembly_.geoid.get(), local_.get()});
     if (!sample) return refuse(sample.error());
-    const auto found = vehicle(truth, *sample);
-    if (!found) return refuse(found.error());
-    LivePath& path = *(*found)->path;
-    if (path.newest() && *time < *path.newest())
+    const auto path = path_of(truth, *sample);
+    if (!path) return refuse(path.error());
+    if ((*path)->newest() && *time < *(*path)->newest())
         return refuse(SKY_E_TIME, fmt::format("truth of {} ns after that of {} ns; expected times that ascend",
-                                              truth.sim_time_ns, sim_time(*path.newest())));
-    const std::uint64_t refused = path.counts().refused;
-    path.add(*time, *sample);
-    if (path.counts().refused == refused) return {};
-    return refuse(SKY_E_RANGE,
-                  "no place or speed of a vehicle; expected another than latitude and longitude 0, less than 1 000 km "
-                  "above the ellipsoid and 12 km/s");
+                                              truth.sim_time_ns, sim_time(*(*path)->newest())));
+    const std::uint64_t refused = (*path)->counts().refused;
+    (*path)->add(*time, *sample);
+    if ((*path)->counts().refused > refused)
+        return refuse(SKY_E_RANGE,
+                      "no place or speed of a vehicle; expected another than latitude and longitude 0, less than "
+                      "1 000 km above the ellipsoid and 12 km/s");
+    if (vehicles_.try_emplace(truth.vehicle, Vehicle{*path}).second) put_on(riders(truth.vehicle), *path);
+    return {};
 }
 
 // A recording that could not be written, or a command that has ended the run.

@@ -53,7 +53,7 @@ private:
     /// A vehicle that the caller has said something of.
     struct Vehicle {
         std::shared_ptr<LivePath> path;
-        std::uint64_t holds = 0;  // of its path, that have been told
+        std::uint64_t holds = 0;  ///< of its path, that have been told
     };
 
     explicit Session(const sky_create_info& info) : log_(info.log), log_user_(info.log_user) {}
@@ -66,7 +66,7 @@ private:
     Answer<GpsTime> run_time(std::int64_t sim_time_ns) const;
     [[nodiscard]] std::int64_t sim_time(GpsTime time) const;
     [[nodiscard]] std::vector<std::size_t> riders(std::uint32_t vehicle) const;
-    Answer<Vehicle*> vehicle(const sky_truth& truth, const TruthSample& first);
+    Answer<std::shared_ptr<LivePath>> path_of(const sky_truth& truth, const TruthSample& first) const;
     void put_on(const std::vector<std::size_t>& receivers, const std::shared_ptr<LivePath>& path);
     void tell_news();
     [[nodiscard]] Answer<void> failure() const;

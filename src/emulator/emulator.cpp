@@ -77,8 +77,7 @@ void Emulator::run_until(GpsTime end, const std::atomic<bool>& stop) {
 
 bool Emulator::goes_on(GpsTime end, LastInstant last) const {
     if (now_ < end || last == LastInstant::left) return now_ < end;
-    return now_ == end && std::any_of(parts_.stations.begin(), parts_.stations.end(),
-                                      [&](const Station& s) { return s.next_epoch() <= now_; });
+    return now_ == end && next_event() <= now_;
 }
 
 void Emulator::advance_to(GpsTime end, const std::atomic<bool>& stop, LastInstant last) {

@@ -99,7 +99,8 @@ std::uint16_t pixel(float height) {
 }
 
 // The errors of interpolation are those that GeographicLib's documentation gives for EGM96 on 15 minutes; the date is
-// that of the model's publication (NASA/TP-1998-206861), so that the file does not depend on the day of the build.
+// that of the model's publication (NASA/TP-1998-206861), so that the file does not depend on the day of the build. The
+// scale has no decimal point: GeographicLib reads it by the locale of the program around it, which may want a comma.
 std::string pgm_header(const Grid& grid) {
     return "P5\n"
            "# Geoid file in PGM format for the GeographicLib::Geoid class\n"
@@ -112,7 +113,7 @@ std::string pgm_header(const Grid& grid) {
            "# MaxCubicError 0.169\n"
            "# RMSCubicError 0.007\n"
            "# Offset -108\n"
-           "# Scale 0.003\n"
+           "# Scale 3e-3\n"
            "# Origin 90N 0E\n"
            "# AREA_OR_POINT Point\n"
            "# Vertical_Datum WGS84\n" +

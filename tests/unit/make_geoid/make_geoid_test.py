@@ -56,7 +56,7 @@ class MakeGeoid(unittest.TestCase):
     def test_starts_in_the_north_and_at_greenwich(self):
         comments, rows = self.made(gtx())
         self.assertIn("# Offset -108", comments)
-        self.assertIn("# Scale 0.003", comments)
+        self.assertIn("# Scale 3e-3", comments)
         self.assertIn("# Origin 90N 0E", comments)
         self.assertEqual(len(rows), 5)
         self.expect_rows(rows)
