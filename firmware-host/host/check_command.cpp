@@ -47,6 +47,8 @@ void print_plan(const Scenario& scenario, const Assembly& assembly) {
     if (assembly.scene.scene) fmt::print("scene       {}\n", assembly.scene.description);
     for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
         print_receiver(scenario.receivers[i], emulator.stations()[i], scenario.receivers.size() > 1);
+    for (const OutputSettings& output : scenario.outputs)
+        fmt::print("output      {}\n", output.uri);
     fmt::print("seed        {}\n", scenario.run.seed);
     print_timeline(scenario, assembly);
 }

@@ -68,6 +68,8 @@ int run_live(const RunOptions& options) {
             fmt::print(stderr, "{}: {}\n", session.port_name(station, i),
                        station.wires()[i].link.transport().description());
     if (!(*watch)->url().empty()) fmt::print(stderr, "control: {}\n", (*watch)->url());
+    for (std::size_t i = 0; i < (*watch)->outputs().size(); ++i)
+        fmt::print(stderr, "output {}: {}\n", i, (*watch)->outputs()[i]->description());
     if (!(*watch)->mavlink().empty()) fmt::print(stderr, "mavlink: {}\n", (*watch)->mavlink());
     session.await_feeds();
     if (options.wait_for_client) session.await_clients();

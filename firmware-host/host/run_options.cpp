@@ -103,6 +103,21 @@ Result<void> apply_receiver(const RunOptions& options, Scenario& scenario) {
     return {};
 }
 
+Result<void> apply_outputs(const RunOptions& options, Scenario& scenario) {
+    if (!options.outputs.empty()) scenario.outputs.clear();
+    for (const std::string& uri : options.outputs) {
+        auto output = parse_output_uri(uri);
+        if (!output) return fail(ErrorCode::usage, "--output: " + output.error().message);
+        scenario.outputs.push_back(std::move(*output));
+    }
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
+        names.push_back(receiver_name(scenario, i));
+    for (const OutputSettings& output : scenario.outputs)
+        if (const auto chosen = told_receivers(output, names); !chosen) return fail(chosen.error());
+    return {};
+}
+
 Result<void> apply_speed(const RunOptions& options, Scenario& scenario) {
     if (options.speed.empty()) return {};
     if (options.speed == "max") {
@@ -186,6 +201,12 @@ void add_run_options(CLI::App& command, RunOptions& options) {
                     "NAME=… is the "
                     "board's port of that name, such as uart2=pty; repeatable")
         ->allow_extra_args(false);
+    command
+        .add_option("--output", options.outputs,
+                    "What is told beside the ports: gps-input:HOST:PORT hil-gps:HOST:PORT msp-tcp:[HOST:]PORT "
+                    "msp-tcp-to:HOST:PORT json-udp:HOST:PORT json-tcp:[HOST:]PORT json-file:PATH, then ,KEY=VALUE; "
+                    "repeatable")
+        ->allow_extra_args(false);
     command.add_option("--power", options.power,
                        "What the fault power_cut switches in a live run: relay:VID:PID/N gpio:VID:PID/N hub:PORT_PATH "
                        "line:DEVICE/rts line:DEVICE/dtr command:CUT|RESTORE");
@@ -245,7 +266,8 @@ Result<Scenario> scenario_from(const RunOptions& options) {
     if (!options.repeat.empty())
         if (const auto repeated = repeat_run(options.repeat, scenario); !repeated) return fail(repeated.error());
     scenario.source += options_text(options);
-    for (const auto& apply : {apply_place, apply_playback, apply_time, apply_model, apply_receiver, apply_speed})
+    for (const auto& apply :
+         {apply_place, apply_playback, apply_time, apply_model, apply_receiver, apply_outputs, apply_speed})
         if (const auto applied = apply(options, scenario); !applied) return fail(applied.error());
     return scenario;
 }

@@ -17,7 +17,7 @@ namespace skyloop::host {
 struct RunOptions {
     std::string scenario;
     std::string at, trajectory, start, model, board, state, scene, control, power;
-    std::vector<std::string> nav, ports;
+    std::vector<std::string> nav, ports, outputs;
     bool rebase_nav = false;
     bool loop = false;                         ///< the track of --trajectory or of the scenario begins anew at its end
     std::optional<double> time_scale, skip_s;  ///< of the same

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 
@@ -62,7 +63,8 @@ void RunSession::await_clients() const {
 
 int RunSession::run(const Scenario& scenario, RunWatch& watch) {
     Emulator& emulator = *assembly_.emulator;
-    go(emulator);
+    go(emulator, watch);
+    watch.finish_outputs();
     if (Recorder* recorder = emulator.recorder())
         recorder->record_summary(run_summary(scenario, assembly_, SKYLOOP_VERSION));
     int code = watch.finish(messages_);
@@ -70,6 +72,7 @@ int RunSession::run(const Scenario& scenario, RunWatch& watch) {
         for (const std::string& news : wire_news(i))
             messages_.warning(news);
     tell_feeds();
+    code = std::max(code, tell_outputs(watch));
     for (const Station& station : emulator.stations()) {
         tell_counts(station);
         tell_power(station);
@@ -87,7 +90,27 @@ int RunSession::run(const Scenario& scenario, RunWatch& watch) {
     return code;
 }
 
-void RunSession::go(Emulator& emulator) {
+int RunSession::tell_outputs(RunWatch& watch) const {
+    int code = 0;
+    for (const std::string& news : watch.take_news())
+        messages_.warning(news);
+    for (std::size_t i = 0; i < watch.outputs().size(); ++i) {
+        const auto& [description, counts] = assembly_.outputs.at(i);
+        messages_.info(fmt::format("output {} ({}): {} messages, {} bytes, {} messages while nobody listened", i,
+                                   description, counts.sent.messages, counts.sent.bytes, counts.sent.unheard));
+        if (counts.sent.lost > 0)
+            messages_.warning(fmt::format("output {}: {} messages were lost: refused, or the other end read too slowly",
+                                          i, counts.sent.lost));
+        if (counts.left_out > 0)
+            messages_.warning(
+                fmt::format("output {}: {} epochs were left out: the way out was too slow", i, counts.left_out));
+        if (const std::string failure = watch.outputs()[i]->failure(); !failure.empty())
+            code = messages_.error({ErrorCode::outside, failure});
+    }
+    return code;
+}
+
+void RunSession::go(Emulator& emulator, RunWatch& watch) {
     constexpr std::size_t most_lines = 1000;
     JobThread writer(most_lines);
     Progress progress(!messages_.verbosity().quiet && !messages_.verbosity().json, assembly_.start, assembly_.end,
@@ -103,6 +126,8 @@ void RunSession::go(Emulator& emulator) {
         if (LiveFeeds* feeds = emulator.feeds())
             for (std::string& news : feeds->take_news())
                 tell(std::move(news));
+        for (std::string& news : watch.take_news())
+            tell(std::move(news));
         progress.show(status, emulator);
     });
     emulator.run_until(assembly_.end.value_or(GpsTime::max()), stop_asked);

@@ -32,7 +32,9 @@ public:
 
 private:
     // The loop. What it says meanwhile is written by a thread of its own.
-    void go(Emulator& emulator);
+    void go(Emulator& emulator, RunWatch& watch);
+    // Exit code: 1 where one of them could not be written.
+    int tell_outputs(RunWatch& watch) const;
     void tell_counts(const Station& station) const;
     void tell_wire(const Station& station, std::size_t wire) const;
     // What the buildings around a receiver have to say that has not been said yet.

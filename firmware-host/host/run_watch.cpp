@@ -55,6 +55,7 @@ Result<std::unique_ptr<RunWatch>> RunWatch::start(const Scenario& scenario, Asse
     watch->appoint_judge(options.live);
     if (const auto opened = watch->open_control(options, commands); !opened) return fail(opened.error());
     if (const auto opened = watch->open_mavlink(options.mavlink, commands); !opened) return fail(opened.error());
+    if (const auto opened = watch->open_outputs(options.live); !opened) return fail(opened.error());
     return watch;
 }
 
@@ -138,6 +139,36 @@ Result<void> RunWatch::open_mavlink(const std::string& address, CommandQueue& co
     if (!endpoint) return fail(endpoint.error());
     mavlink_ = std::move(*endpoint);
     return {};
+}
+
+Result<void> RunWatch::open_outputs(bool live) {
+    Emulator& emulator = *assembly_.emulator;
+    for (const OutputSettings& settings : scenario_.outputs) {
+        OutputParts parts;
+        parts.receivers = receiver_names(emulator);
+        parts.due_ns = [&emulator](GpsTime time) { return emulator.pacer().due_at(time); };
+        parts.waits_for_readers = !live;
+        auto output = RunOutput::open(settings, std::move(parts));
+        if (!output) return fail(output.error());
+        outputs_.push_back(std::move(*output));
+        emulator.add_observer(outputs_.back().get());
+    }
+    return {};
+}
+
+std::vector<std::string> RunWatch::take_news() {
+    std::vector<std::string> all;
+    for (std::size_t i = 0; i < outputs_.size(); ++i)
+        for (const std::string& news : outputs_[i]->take_news())
+            all.push_back(fmt::format("output {}: {}", i, news));
+    return all;
+}
+
+void RunWatch::finish_outputs() {
+    for (const auto& output : outputs_) {
+        output->finish();
+        assembly_.outputs.push_back({output->description(), output->counts()});
+    }
 }
 
 int RunWatch::finish(const Messages& messages) {

@@ -13,6 +13,7 @@
 #include "skyloop/emulator/command_queue.hpp"
 #include "skyloop/emulator/status_board.hpp"
 #include "skyloop/feed/mavlink_endpoint.hpp"
+#include "skyloop/output/run_output.hpp"
 #include "skyloop/verdict/judge.hpp"
 
 namespace skyloop::host {
@@ -35,6 +36,12 @@ public:
     [[nodiscard]] std::string url() const { return server_ ? server_->url() : std::string(); }
     /// Where MAVLink is spoken; empty: nowhere.
     [[nodiscard]] std::string mavlink() const { return mavlink_ ? mavlink_->description() : std::string(); }
+    /// What is told to other programs beside the wires.
+    [[nodiscard]] const std::vector<std::unique_ptr<RunOutput>>& outputs() const { return outputs_; }
+    /// What has happened to them since the last call, in sentences.
+    std::vector<std::string> take_news();
+    /// The run is over: what still waits is told, and what became of all of it is kept in the assembly.
+    void finish_outputs();
     /// The run is over: says the verdicts, and leaves verdicts.json and junit.xml in the recording.
     /// @return exit code: 3 where an expectation was not met
     int finish(const Messages& messages);
@@ -45,6 +52,7 @@ private:
     void appoint_judge(bool live);
     Result<void> open_control(const WatchOptions& options, CommandQueue& commands);
     Result<void> open_mavlink(const std::string& address, CommandQueue& commands);
+    Result<void> open_outputs(bool live);
     [[nodiscard]] std::vector<TimelineBar> planned_bars() const;
     int report(const Messages& messages, const std::vector<Verdict>& verdicts) const;
 
@@ -56,6 +64,7 @@ private:
     std::unique_ptr<StatusBoard> board_;
     std::unique_ptr<ControlServer> server_;  // before board_ is gone
     std::unique_ptr<MavlinkEndpoint> mavlink_;
+    std::vector<std::unique_ptr<RunOutput>> outputs_;
 };
 
 }  // namespace skyloop::host

@@ -11,12 +11,15 @@ namespace {
 
 int simulate(const RunOptions& options) {
     const Messages messages(options.verbosity);
-    const auto scenario = scenario_from(options);
+    auto scenario = scenario_from(options);
     if (!scenario) return messages.error(scenario.error());
     if (!scenario->run.duration && !ends_with_its_path(*scenario))
         return messages.error({ErrorCode::usage,
                                "simulate needs an end: expected --duration SECONDS, run.duration_s in the scenario, or "
                                "a trajectory with end = \"stop\""});
+    // What a scenario tells other programs belongs to a live run, as its pty does.
+    if (options.outputs.empty())
+        std::erase_if(scenario->outputs, [](const OutputSettings& output) { return output.way != OutputWay::file; });
     catch_stop_signals();
     RunMode mode;
     mode.virtual_time = true;

@@ -98,6 +98,18 @@ Json feeds_json(const LiveFeeds& feeds) {
     return all;
 }
 
+Json outputs_json(const std::vector<OutputSummary>& outputs) {
+    Json list = Json::array();
+    for (const auto& [description, counts] : outputs)
+        list.push_back({{"output", description},
+                        {"messages", counts.sent.messages},
+                        {"bytes", counts.sent.bytes},
+                        {"unheard", counts.sent.unheard},
+                        {"lost", counts.sent.lost},
+                        {"left_out", counts.left_out}});
+    return list;
+}
+
 // What one receiver counted; the first one's stands at the top of the file.
 void add_counts(Json& summary, const Station& station) {
     summary["epochs"] = station.counts().epochs;
@@ -141,6 +153,7 @@ std::string run_summary(const Scenario& scenario, const Assembly& assembly, std:
     if (assembly.scene.scene) summary["scene"] = scene_json(assembly.scene);
     add_counts(summary, emulator.first());
     if (emulator.feeds() != nullptr) summary["feeds"] = feeds_json(*emulator.feeds());
+    if (!assembly.outputs.empty()) summary["outputs"] = outputs_json(assembly.outputs);
     if (assembly.deadlines) summary["real_time"] = grants_json(*assembly.deadlines);
     summary["warnings"] = assembly.warnings;
     if (emulator.stations().size() > 1) summary["receivers"] = receivers_json(emulator);

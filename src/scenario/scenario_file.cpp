@@ -114,6 +114,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     });
     top.table("scene", [&](TableReader& t) { read_scene_keys(t, scenario.scene, folder); });
     read_receivers(top, scenario, context);
+    read_outputs(top, scenario);
     read_timeline(top, scenario);
     read_expectations(top, scenario.expectations);
     check_expectations(top, scenario);

@@ -36,6 +36,9 @@ struct TrajectoryContext {
 /// Reads every [[receiver]] of a scenario's top table.
 void read_receivers(TableReader& top, Scenario& scenario, const TrajectoryContext& context);
 
+/// Reads every [[output]] of a scenario's top table, after its receivers.
+void read_outputs(TableReader& top, Scenario& scenario);
+
 /// Reads [scene]. @param folder that paths are relative to
 void read_scene_keys(TableReader& table, SceneEntry& scene, const std::filesystem::path& folder);
 

@@ -14,6 +14,7 @@
 #include "skyloop/emulator/emulator.hpp"
 #include "skyloop/emulator/load_scene.hpp"
 #include "skyloop/geo/geoid.hpp"
+#include "skyloop/output/run_output.hpp"
 #include "skyloop/propagation/atmosphere_losses.hpp"
 #include "skyloop/scenario/scenario.hpp"
 
@@ -47,6 +48,12 @@ struct RunMode {
     const Embedding* embedding = nullptr;  ///< of a run that a program leads; read while assembling; null: none
 };
 
+/// What was told to another program beside the wires, and what became of it.
+struct OutputSummary {
+    std::string description;
+    OutputCounts counts;
+};
+
 /// A run ready to go, and what its user should be told first.
 struct Assembly {
     std::unique_ptr<Geoid> geoid;  ///< outlives the emulator, which looks up undulations in it
@@ -59,6 +66,7 @@ struct Assembly {
     LoadedScene scene;                       ///< what stands around; its warnings are among those below
     std::vector<std::string> warnings;
     std::optional<DeadlineGrants> deadlines{};  ///< that its loop was given; nothing: it has none to keep
+    std::vector<OutputSummary> outputs{};       ///< of the run, once it is over
     std::vector<std::string> details;           ///< for those who ask: what was read, and from where
 };
 

@@ -20,6 +20,7 @@
 #include "skyloop/flow/receiver_settings.hpp"
 #include "skyloop/geo/level_frame.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
+#include "skyloop/output/output_settings.hpp"
 #include "skyloop/propagation/atmosphere_parameters.hpp"
 #include "skyloop/propagation/link_budget_parameters.hpp"
 #include "skyloop/propagation/whole_path_parameters.hpp"
@@ -179,6 +180,7 @@ struct Scenario {
     std::vector<std::string>
         sensor_model_keys;  ///< keys of [atmosphere] that were given and act in sensor models alone
     std::vector<ReceiverEntry> receivers = std::vector<ReceiverEntry>(1);  ///< at least one
+    std::vector<OutputSettings> outputs;                                   ///< what is told beside the receivers' wires
     std::vector<FaultEntry> faults;
     std::vector<CommandEntry> commands;
     std::vector<Expectation> expectations;  ///< what the run is judged by

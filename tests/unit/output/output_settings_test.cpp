@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "skyloop/base/random.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -80,6 +82,25 @@ TEST(OutputSettings, WhatIsNoOutputIsRefusedWithItsReason) {
     EXPECT_THAT(refusal_of_output("gps-input:h:1,later"), HasSubstr("'later': expected KEY=VALUE"));
     EXPECT_THAT(refusal_of_output("gps-input:h:1,when=epoh"), HasSubstr("did you mean 'epoch'?"));
     EXPECT_THAT(refusal_of_output("gps-input:h:1,receiver="), HasSubstr("receiver is empty"));
+}
+
+// Cut, changed and lengthened at random: a sentence or settings, and never more.
+TEST(OutputSettings, AnyTextIsUnderstoodOrRefused) {
+    RandomStream random(3, "output uris");
+    int taken = 0, refused = 0;
+    for (int i = 0; i < 20000; ++i) {
+        std::string text = "hil-gps:[::1]:14560,receiver=rear,when=epoch,system=255,id=7,eph=dop100";
+        for (std::uint64_t changes = random.bits() % 4; changes > 0; --changes)
+            text.at(random.bits() % text.size()) = static_cast<char>(random.bits() % 256);
+        if (random.bits() % 3 == 0) text.resize(random.bits() % text.size());
+        const auto settings = parse_output_uri(text);
+        (settings ? taken : refused) += 1;
+        if (!settings) {
+            ASSERT_FALSE(settings.error().message.empty());
+        }
+    }
+    EXPECT_GT(taken, 1000);
+    EXPECT_GT(refused, 1000);
 }
 
 TEST(OutputSettings, ChooseWhomTheyTell) {

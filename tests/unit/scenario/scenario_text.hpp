@@ -168,6 +168,15 @@ antenna_offset_m = [1, 0.5, -2]
 [[receiver]]
 name = "rear"
 base = "receiver0"
+
+[[output]]
+to = "hil-gps:127.0.0.1:14560"
+receiver = "rear"
+when = "epoch"
+system = 2
+component = 3
+id = 4
+eph = "dop100"
 )toml";
 
 }  // namespace skyloop::test
