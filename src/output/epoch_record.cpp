@@ -22,6 +22,9 @@ Json rounded(double value, double parts) {
     return std::isfinite(value) ? Json(std::round(value * parts) / parts + 0.0) : Json(nullptr);
 }
 
+// Divided, unlike multiplied, gives the number whose shortest text is the one that is meant: 18.4.
+double decimal_seconds(Nanoseconds span) { return static_cast<double>(span.count()) / 1e9; }
+
 template <class T, class Make>
 Json if_known(const std::optional<T>& value, Make make) {
     return value ? Json(make(*value)) : Json(nullptr);
@@ -154,9 +157,9 @@ std::string epoch_line(const EpochRecord& record) {
               {"epoch", record.number},
               {"time_utc", utc_text(time, LeapSeconds::announced())},
               {"gps_week", stamp.week},
-              {"tow_s", static_cast<double>(stamp.tow.count()) * 1e-9},
+              {"tow_s", decimal_seconds(stamp.tow)},
               {"truth", truth_json(record.truth)},
-              {"latency_s", if_known(record.leaves, [&](GpsTime at) { return difference(at, time).value(); })},
+              {"latency_s", if_known(record.leaves, [&](GpsTime at) { return decimal_seconds(at - time); })},
               {"fix", if_known(record.report, fix_json)},
               {"error", fix_error_json(record)}};
     Json satellites = Json::array();

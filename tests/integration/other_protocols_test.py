@@ -71,12 +71,12 @@ def msp_messages(data):
     return found
 
 
-def mavlink_messages(data, extras={0: 50, 232: 151}):
+def mavlink_messages(data, extras={0: 50, 232: 151}, sender=(1, 220)):
     """Version 2 frames back to back: (sequence, message, payload)."""
     at, found = 0, []
     while at < len(data):
         start, size, incompatible, _, sequence, system, component = struct.unpack_from("<7B", data, at)
-        require(start == 0xFD and incompatible == 0 and (system, component) == (1, 220), "no MAVLink frame", at)
+        require(start == 0xFD and incompatible == 0 and (system, component) == sender, "no MAVLink frame", at)
         message = int.from_bytes(data[at + 7:at + 10], "little")
         end = at + 10 + size
         require(end + 2 <= len(data), "cut frame", at)
