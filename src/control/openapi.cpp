@@ -4,6 +4,7 @@
 #include "parameter_json.hpp"
 #include "skyloop/control/command_json.hpp"
 #include "skyloop/control/control_request.hpp"
+#include "skyloop/fault/checked_command.hpp"
 
 namespace skyloop {
 namespace {

@@ -151,14 +151,4 @@ Json schema_of(const ParameterSpec& spec) {
     return schema;
 }
 
-Error mistakes_error(const std::vector<ParameterMistake>& mistakes) {
-    Error error{ErrorCode::input, {}};
-    for (const ParameterMistake& mistake : mistakes) {
-        if (!error.message.empty()) error.message += "; ";
-        if (!mistake.name.empty()) error.message += "'" + printable(mistake.name) + "' ";
-        error.message += mistake.sentence;
-    }
-    return error;
-}
-
 }  // namespace skyloop

@@ -1,18 +1,16 @@
 /// Values and tables of parameters as JSON.
 #pragma once
 
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "json_text.hpp"
 #include "skyloop/base/result.hpp"
+#include "skyloop/fault/checked_command.hpp"
 #include "skyloop/fault/parameters.hpp"
 
 namespace skyloop {
-
-using ParameterMap = std::map<std::string, ParameterValue, std::less<>>;
 
 /// The members of the one object that `text` is. Fails with `input` for anything else, for members that stand there
 /// twice, and for values that no parameter takes.
@@ -22,8 +20,5 @@ Json to_json(const ParameterValue& value);
 Json to_json(const ParameterSpec& spec);
 /// The JSON Schema of a parameter.
 Json schema_of(const ParameterSpec& spec);
-
-/// All mistakes in one line: "'loss' is 7; expected …".
-Error mistakes_error(const std::vector<ParameterMistake>& mistakes);
 
 }  // namespace skyloop

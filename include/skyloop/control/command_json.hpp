@@ -20,9 +20,6 @@ Result<Command> command_from_json(std::string_view text, std::string_view source
 /// fault is made once to see that they agree. Without a name it is called as its kind.
 Result<Command> live_fault_from_json(std::string_view text, std::string_view source);
 
-/// The parameters that every live fault takes beside those of its kind: kind, name, for_s, ramp_in_s, ramp_out_s.
-const std::vector<ParameterSpec>& live_fault_parameters();
-
 /// {"command": …, "receiver": …, parameters…}: command_from_json() gives the same command again.
 std::string command_json(const Command& command);
 
