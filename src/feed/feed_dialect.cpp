@@ -1,6 +1,7 @@
 #include "skyloop/feed/feed_dialect.hpp"
 
 #include "dialects.hpp"
+#include "json_dialect.hpp"
 
 namespace skyloop {
 namespace {
@@ -18,6 +19,7 @@ constexpr NamedDialect dialects[] = {
     {"flightgear-generic", make_flightgear_generic_dialect},
     {"gpsd", make_gpsd_dialect},
     {"jsbsim", make_jsbsim_dialect},
+    {"json", make_json_dialect},
     {"mavlink", make_mavlink_dialect},
     {"nmea", make_nmea_dialect},
     {"px4", make_px4_dialect},

@@ -18,16 +18,24 @@
 
 namespace skyloop {
 
+/// Lock-step: the run may go on to a time of the source's clock.
+struct FeedMilestone {
+    Nanoseconds until{0};
+    std::size_t samples = 0;  ///< of FeedNews::samples so many were said before
+};
+
 /// What came of the bytes that a dialect heard.
 struct FeedNews {
-    std::vector<TruthSample> samples{};       ///< in the order in which they came
-    std::vector<Bytes> answers{};             ///< for the sender
-    std::vector<Command> commands{};          ///< that the source asks of the run, after the samples
-    std::optional<Nanoseconds> step_until{};  ///< lock-step: the run may go on to this time of the source's clock
-    std::optional<bool> paused{};             ///< the source's clock stands still, or goes on
-    bool ended = false;                       ///< the source says goodbye
-    std::size_t refused = 0;                  ///< statements that were whole and could not be used
-    std::string refusal{};                    ///< why, of the first of them, a sentence
+    std::vector<TruthSample> samples{};  ///< in the order in which they came
+    std::vector<Bytes> answers{};        ///< for the sender
+    std::vector<Command> commands{};     ///< that the source asks of the run, after the samples
+    std::vector<FeedMilestone> steps{};  ///< lock-step: how far the run may go on
+    std::optional<bool> paused{};        ///< the source's clock stands still, or goes on
+    bool ended = false;                  ///< the source says goodbye
+    std::size_t refused = 0;             ///< statements that were whole and could not be used
+    std::string refusal{};               ///< why, of the first of them, a sentence
+    std::uint64_t lost = 0;              ///< statements that the source counted and that have not come
+    std::string remark{};                ///< what the user should be told, a sentence; once per dialect
 };
 
 /// How a source's "height above the sea" is meant, which knows no geoid (FEEDS.md 1.15).
@@ -42,6 +50,7 @@ struct FeedContext {
     bool smooth = false;               ///< positions of receivers (nmea, ubx, gpsd) go through a causal filter
     std::string vehicle{};             ///< that is wanted, of sources that must be asked for one; empty: any
     double rate_hz = 50;               ///< asked of sources that can be asked
+    bool datagrams = false;            ///< what is heard at once is whole; else it is a piece of a stream
 };
 
 /// One kind of source, without a socket and without a clock: bytes in, samples and answers out.
@@ -55,6 +64,12 @@ public:
     virtual FeedNews hear(ByteSpan bytes, std::int64_t received_ns) = 0;
     /// What is to be said unasked: at first when the connection stands, then every second (subscriptions, heartbeats).
     virtual std::vector<Bytes> say() { return {}; }
+    /// Lock-step: the run has done what a FeedMilestone allowed. @param until that time @param bytes put out
+    /// meanwhile by its receivers @return answers
+    virtual std::vector<Bytes> stepped(Nanoseconds until, std::uint64_t bytes) {
+        (void)until, (void)bytes;
+        return {};
+    }
     /// The connection was lost: what was left of a message is forgotten.
     virtual void reconnected() {}
 };

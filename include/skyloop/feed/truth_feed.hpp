@@ -22,7 +22,7 @@ namespace skyloop {
 /// How a source is reached.
 enum class FeedWire { udp_listen, udp_connect, tcp_listen, tcp_connect, serial, udp_relay, tcp_relay };
 
-/// A source as users write it: "udp-json:5000", "flightgear:5503", "gpsd:localhost", …
+/// A source as users write it: "udp-json:5000", "flightgear:5503", "gpsd:localhost", … Of IPv6 "udp-json:[::1]:5000".
 struct FeedAddress {
     std::string text;     ///< as it was written
     std::string dialect;  ///< for make_dialect()
@@ -32,6 +32,7 @@ struct FeedAddress {
     std::uint32_t baud = 0;  ///< serial
     std::string to_host;     ///< relays: where the other end is
     std::uint16_t to_port = 0;
+    bool hears_target = false;  ///< relays: truth comes from the other end; else from who connects to us
 };
 
 /// Fails with `usage`: what was found and what is expected. docs/feeds.md lists all.
@@ -56,6 +57,7 @@ struct FeedCounts {
     std::uint64_t overflowed = 0;         ///< samples dropped because the loop did not take them
     std::uint64_t dropped_by_kernel = 0;  ///< SO_RXQ_OVFL
     std::uint64_t restarts = 0;           ///< of the source's clock
+    std::uint64_t lost = 0;               ///< statements that the source counted and that have not come
 };
 
 /// A source on a thread of its own: it hears, decodes and answers; the loop takes what has come without waiting.

@@ -1,0 +1,72 @@
+#include "feed_hearer.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "skyloop/base/steady_clock.hpp"
+
+namespace skyloop {
+
+FeedHearer::FeedHearer(std::string dialect, FeedContext context, FeedInbox& inbox, FeedNewsDesk& news,
+                       FeedTallies& tallies)
+    : name_(std::move(dialect)), context_(std::move(context)), inbox_(inbox), news_(news), tallies_(tallies) {}
+
+FeedDialect& FeedHearer::of(std::uint64_t speaker) {
+    auto& dialect = dialects_[speaker];
+    if (!dialect) dialect = make_dialect(name_, context_);
+    return *dialect;
+}
+
+FeedHearer::Heard FeedHearer::hear(std::uint64_t speaker, ByteSpan bytes, std::int64_t received_ns) {
+    tallies_.messages += 1;
+    tallies_.bytes += bytes.size();
+    FeedNews news = of(speaker).hear(bytes, received_ns);
+    Heard heard{std::move(news.answers), news.refused == 0};
+    keep(std::move(news), speaker, received_ns);
+    return heard;
+}
+
+void FeedHearer::keep(FeedNews news, std::uint64_t speaker, std::int64_t received_ns) {
+    tallies_.samples += news.samples.size();
+    tallies_.lost += news.lost;
+    if (!news.remark.empty()) tell(FeedNewsDesk::Kind::other, std::move(news.remark));
+    if (news.refused > 0) {
+        tallies_.refused += news.refused;
+        tell(FeedNewsDesk::Kind::refusal, "refused: " + news.refusal);
+    }
+    auto step = news.steps.begin();
+    for (std::size_t i = 0; i <= news.samples.size(); ++i) {
+        for (; step != news.steps.end() && step->samples <= i; ++step)
+            items_.emplace_back(FeedStep{step->until, received_ns, speaker});
+        if (i < news.samples.size()) items_.emplace_back(std::move(news.samples[i]));
+    }
+    for (Command& command : news.commands)
+        items_.emplace_back(std::move(command));
+    if (news.paused) items_.emplace_back(FeedPause{*news.paused});
+    if (news.ended) items_.emplace_back(FeedEnd{});
+}
+
+std::vector<Bytes> FeedHearer::say(std::uint64_t speaker) { return of(speaker).say(); }
+
+std::vector<Bytes> FeedHearer::stepped(std::uint64_t speaker, Nanoseconds until, std::uint64_t bytes) {
+    const auto found = dialects_.find(speaker);
+    return found == dialects_.end() ? std::vector<Bytes>() : found->second->stepped(until, bytes);
+}
+
+void FeedHearer::forget(std::uint64_t speaker) { dialects_.erase(speaker); }
+
+void FeedHearer::reconnected(std::uint64_t speaker) { of(speaker).reconnected(); }
+
+void FeedHearer::flush() {
+    const std::size_t dropped = inbox_.put(items_);
+    if (dropped == 0) return;
+    tallies_.overflowed += dropped;
+    tell(FeedNewsDesk::Kind::drop, fmt::format("{} samples dropped: the run does not take them as fast", dropped));
+}
+
+void FeedHearer::tell(FeedNewsDesk::Kind kind, std::string sentence) {
+    news_.tell(kind, std::move(sentence), steady_clock_ns());
+}
+
+}  // namespace skyloop

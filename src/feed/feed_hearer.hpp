@@ -1,0 +1,59 @@
+/// The ears of a feed's thread: its dialects, and what comes of what they hear.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "feed_inbox.hpp"
+#include "skyloop/feed/feed_dialect.hpp"
+
+namespace skyloop {
+
+/// FeedCounts, from two threads.
+struct FeedTallies {
+    std::atomic<std::uint64_t> messages{0}, bytes{0}, samples{0}, refused{0}, strangers{0}, overflowed{0},
+        dropped_by_kernel{0}, restarts{0}, lost{0};
+};
+
+/// Lets a dialect hear, for each speaker one where speakers have streams of their own. All but the constructor belongs
+/// to the feed's thread.
+class FeedHearer {
+public:
+    FeedHearer(std::string dialect, FeedContext context, FeedInbox& inbox, FeedNewsDesk& news, FeedTallies& tallies);
+
+    struct Heard {
+        std::vector<Bytes> answers;
+        bool understood = false;  ///< nothing was refused
+    };
+    /// @param speaker 0 for datagrams
+    Heard hear(std::uint64_t speaker, ByteSpan bytes, std::int64_t received_ns);
+    std::vector<Bytes> say(std::uint64_t speaker);
+    std::vector<Bytes> stepped(std::uint64_t speaker, Nanoseconds until, std::uint64_t bytes);
+    /// The speaker is gone.
+    void forget(std::uint64_t speaker);
+    /// The connection to it was lost, and is made again.
+    void reconnected(std::uint64_t speaker);
+    /// Hands over what has been heard since the last time.
+    void flush();
+    void tell(FeedNewsDesk::Kind kind, std::string sentence);
+    FeedTallies& tallies() { return tallies_; }
+
+private:
+    FeedDialect& of(std::uint64_t speaker);
+    void keep(FeedNews news, std::uint64_t speaker, std::int64_t received_ns);
+
+    std::string name_;
+    FeedContext context_;
+    FeedInbox& inbox_;
+    FeedNewsDesk& news_;
+    FeedTallies& tallies_;
+    std::map<std::uint64_t, std::unique_ptr<FeedDialect>> dialects_;
+    std::vector<FeedItem> items_;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,70 @@
+/// What the thread of a feed hands over to the loop.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "skyloop/fault/command.hpp"
+#include "skyloop/trajectory/truth_sample.hpp"
+
+namespace skyloop {
+
+/// Lock-step: the run may go on to `until`, of the source's clock.
+struct FeedStep {
+    Nanoseconds until{0};
+    std::int64_t received_ns = 0;
+    std::uint64_t speaker = 0;  ///< who is answered
+};
+struct FeedPause {
+    bool paused = false;
+};
+struct FeedEnd {};
+/// One thing that a source has said, in the order in which it came.
+using FeedItem = std::variant<TruthSample, Command, FeedStep, FeedPause, FeedEnd>;
+
+/// A queue that its reader never waits for. Bounded: when the reader stays away, the older half of the samples goes.
+class FeedInbox {
+public:
+    /// Takes all of `items`, which is empty then; by the feed's thread. @return samples that were dropped
+    std::size_t put(std::vector<FeedItem>& items);
+    /// Exchanges what waits with `taken`, which must be empty. False when nothing waits or the other side is at it.
+    bool try_take(std::vector<FeedItem>& taken);
+    /// Waits until something is there, at most so long.
+    bool wait(std::chrono::nanoseconds longest);
+
+    static constexpr std::size_t most_waiting = 32768;
+
+private:
+    std::mutex mutex_;
+    std::condition_variable came_;
+    std::vector<FeedItem> waiting_;
+};
+
+/// Sentences for the user. A source that misbehaves must not flood him: of each kind one in five seconds, at most 64
+/// that wait.
+class FeedNewsDesk {
+public:
+    enum class Kind { connection, refusal, drop, jump, clock, vehicle, other };
+    /// @param sentence what happened; where it had to be kept back before, their number is added
+    void tell(Kind kind, std::string sentence, std::int64_t now_ns);
+    /// Never waits: gives nothing while another thread tells.
+    std::vector<std::string> take();
+
+private:
+    struct Limit {
+        std::int64_t told_ns = 0;
+        std::uint64_t kept_back = 0;
+        bool any = false;
+    };
+    std::mutex mutex_;
+    Limit limits_[7];
+    std::vector<std::string> waiting_;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,235 @@
+#include "feed_paths.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "skyloop/base/steady_clock.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::size_t most_items_at_once = 4096;  // a flood must not hold the loop
+constexpr std::size_t most_arrival_clocks = 256, most_pending_steps = 1024;
+
+}  // namespace
+
+FeedPaths::FeedPaths(const FeedSettings& settings, FeedNewsDesk& news, FeedTallies& tallies)
+    : path_settings_(settings.path),
+      mode_(settings.clock),
+      news_(news),
+      tallies_(tallies),
+      clock_(settings.clock, GpsTime(), 0) {}
+
+std::shared_ptr<LivePath> FeedPaths::path(const std::string& vehicle) {
+    if (vehicle.empty()) {
+        if (!any_) any_ = std::make_shared<LivePath>(path_settings_);
+        return any_;
+    }
+    Vehicle& wanted = vehicles_[vehicle];
+    if (!wanted.path) wanted.path = std::make_shared<LivePath>(path_settings_);
+    return wanted.path;
+}
+
+void FeedPaths::begin(GpsTime start, std::int64_t steady_ns) {
+    clock_ = SourceClock(mode_, start, steady_ns);
+    start_ = start;
+    start_ns_ = steady_ns;
+    begun_ = fresh_ = true;
+}
+
+void FeedPaths::set_run(GpsTime now, std::int64_t steady_ns) {
+    start_ = now;
+    start_ns_ = steady_ns;
+    clock_.set_run(now, steady_ns);
+    for (auto& [vehicle, clock] : arrival_clocks_)
+        clock.set_run(now, steady_ns);
+}
+
+std::vector<Command> FeedPaths::take(FeedInbox& inbox) {
+    std::vector<Command> commands;
+    if (!begun_) return commands;
+    if (next_ >= taken_.size()) {
+        taken_.clear();
+        next_ = 0;
+        if (inbox.try_take(taken_) && std::exchange(fresh_, false) && mode_ == ClockMode::follow) keep_newest(taken_);
+    }
+    const std::size_t end = std::min(taken_.size(), next_ + most_items_at_once);
+    for (; next_ < end && !step_waits(); ++next_)
+        take_item(taken_[next_], commands);
+    look(steady_clock_ns());
+    return commands;
+}
+
+// What a source says after a step belongs after it, however early it came: else the bytes of a run would depend on the
+// network.
+bool FeedPaths::step_waits() const {
+    return mode_ == ClockMode::lock_step && !steps_.empty() && (!answered_ || steps_.front().time > *answered_);
+}
+
+// What a source said before the run began is over; a run that follows starts where it is now.
+void FeedPaths::keep_newest(std::vector<FeedItem>& items) const {
+    std::set<std::string> seen;
+    std::vector<FeedItem> kept;
+    for (auto item = items.rbegin(); item != items.rend(); ++item) {
+        const auto* sample = std::get_if<TruthSample>(&*item);
+        if (sample == nullptr || sample->received_ns >= start_ns_ || seen.insert(sample->vehicle).second)
+            kept.push_back(std::move(*item));
+    }
+    std::reverse(kept.begin(), kept.end());
+    items = std::move(kept);
+}
+
+void FeedPaths::take_item(FeedItem& item, std::vector<Command>& commands) {
+    if (auto* sample = std::get_if<TruthSample>(&item))
+        take_sample(*sample);
+    else if (auto* command = std::get_if<Command>(&item))
+        commands.push_back(std::move(*command));
+    else if (const auto* step = std::get_if<FeedStep>(&item))
+        take_step(*step);
+    else if (const auto* pause = std::get_if<FeedPause>(&item))
+        paused_ = pause->paused;
+    else
+        ended_ = true;
+}
+
+void FeedPaths::take_sample(TruthSample& sample) {
+    ended_ = false;
+    if (!first_) first_ = sample.vehicle;
+    const auto wanted = vehicles_.find(sample.vehicle);
+    const bool of_any = any_ && *first_ == sample.vehicle;
+    const SourceClock::Stamp stamped = stamp(sample);
+    note(stamped, sample.received_ns);
+    if (wanted == vehicles_.end() && !of_any) {
+        if (!std::exchange(other_told_, true))
+            news_.tell(
+                FeedNewsDesk::Kind::vehicle,
+                fmt::format("it also speaks of vehicle '{}', which nobody has asked for", sample.vehicle.substr(0, 40)),
+                sample.received_ns);
+        return;
+    }
+    if (!first_sample_) first_sample_ = stamped.time;
+    newest_sample_ = std::max(newest_sample_.value_or(stamped.time), stamped.time);
+    if (wanted != vehicles_.end()) add(wanted->second, wanted->first, stamped.time, sample);
+    if (!of_any) return;
+    // Kept beside the others under a name that no vehicle has.
+    Vehicle& vehicle = vehicles_[""];
+    vehicle.path = any_;
+    add(vehicle, sample.vehicle, stamped.time, sample);
+}
+
+void FeedPaths::add(Vehicle& vehicle, const std::string& name, GpsTime time, TruthSample& sample) {
+    const bool told = sample.jump;
+    if (vehicle.restarts != restarts_ && vehicle.path->newest()) sample.jump = true;
+    vehicle.restarts = restarts_;
+    vehicle.heard_ns = sample.received_ns;
+    if (std::exchange(vehicle.silent, false))
+        news_.tell(FeedNewsDesk::Kind::vehicle, fmt::format("vehicle '{}' is heard again", name.substr(0, 40)),
+                   sample.received_ns);
+    vehicle.path->add(time, sample);
+    sample.jump = told;
+    if (vehicle.path->counts().jumps == vehicle.jumps) return;
+    vehicle.jumps = vehicle.path->counts().jumps;
+    news_.tell(FeedNewsDesk::Kind::jump, fmt::format("vehicle '{}' has jumped", name.substr(0, 40)),
+               sample.received_ns);
+}
+
+SourceClock::Stamp FeedPaths::stamp(const TruthSample& sample) {
+    if (sample.source_time) return clock_.stamp(sample.source_time, sample.received_ns);
+    // Vehicles of one source come at their own instants, each with its own rhythm.
+    if (mode_ == ClockMode::realtime && arrival_clocks_.size() < most_arrival_clocks) {
+        const auto [own, fresh] = arrival_clocks_.try_emplace(sample.vehicle, mode_, start_, start_ns_);
+        return own->second.stamp(std::nullopt, sample.received_ns);
+    }
+    const auto own = arrival_clocks_.find(sample.vehicle);
+    return (own != arrival_clocks_.end() ? own->second : clock_).stamp(std::nullopt, sample.received_ns);
+}
+
+void FeedPaths::note(const SourceClock::Stamp& stamp, std::int64_t now_ns) {
+    if (stamp.restarted) {
+        ++restarts_;
+        tallies_.restarts += 1;
+        news_.tell(FeedNewsDesk::Kind::clock, "the source's clock began anew", now_ns);
+    } else if (stamp.stepped && mode_ == ClockMode::realtime) {
+        news_.tell(FeedNewsDesk::Kind::clock, "the source's clock stepped against the wall clock by more than 0.25 s",
+                   now_ns);
+    }
+}
+
+void FeedPaths::take_step(const FeedStep& step) {
+    if (mode_ != ClockMode::lock_step) {
+        news_.tell(FeedNewsDesk::Kind::other, "it steps, but clock is not \"lock_step\": nothing waits for its steps",
+                   step.received_ns);
+        return;
+    }
+    const SourceClock::Stamp stamped = clock_.stamp(step.until, step.received_ns);
+    note(stamped, step.received_ns);
+    if (steps_.size() >= most_pending_steps) steps_.pop_front();
+    steps_.push_back({step, stamped.time});
+    newest_step_ = std::max(newest_step_.value_or(stamped.time), stamped.time);
+}
+
+std::vector<FeedStep> FeedPaths::steps_done() {
+    const auto reached = horizon();
+    std::vector<FeedStep> done;
+    while (reached && !steps_.empty() && steps_.front().time <= *reached) {
+        done.push_back(steps_.front().step);
+        steps_.pop_front();
+    }
+    if (reached) answered_ = reached;
+    return done;
+}
+
+std::vector<FeedStep> FeedPaths::steps_done_before() {
+    std::vector<FeedStep> done;
+    while (answered_ && !steps_.empty() && steps_.front().time <= *answered_) {
+        done.push_back(steps_.front().step);
+        steps_.pop_front();
+    }
+    return done;
+}
+
+// Follow: as far as all of the vehicles are known. One that has not been heard for a second of the source's, or that
+// is not there, is not waited for.
+std::optional<GpsTime> FeedPaths::horizon() const {
+    if (mode_ == ClockMode::lock_step) return newest_step_;
+    if (!newest_sample_) return std::nullopt;
+    const GpsTime old = *newest_sample_ - std::chrono::seconds(1);
+    std::optional<GpsTime> reached;
+    for (const auto& [name, vehicle] : vehicles_) {
+        const auto newest = vehicle.path->newest();
+        if (!newest && *first_sample_ > old) return std::nullopt;
+        if (newest && *newest >= old) reached = std::min(reached.value_or(*newest), *newest);
+    }
+    return reached;
+}
+
+void FeedPaths::look(std::int64_t now_ns) {
+    constexpr std::int64_t every_ns = 1'000'000'000, silence_ns = 1'500'000'000;
+    constexpr double odd_rate = 0.02;  // FEEDS.md 3.2
+    if (now_ns < looked_ns_ + every_ns) return;
+    looked_ns_ = now_ns;
+    std::int64_t heard_ns = 0;
+    for (const auto& [name, vehicle] : vehicles_)
+        heard_ns = std::max(heard_ns, vehicle.heard_ns);
+    for (auto& [name, vehicle] : vehicles_) {
+        // The silence of all of them is the feed's.
+        if (vehicle.heard_ns == 0 || vehicle.silent || heard_ns - vehicle.heard_ns < silence_ns) continue;
+        vehicle.silent = true;
+        news_.tell(FeedNewsDesk::Kind::vehicle, fmt::format("vehicle '{}' is silent", name.substr(0, 40)), now_ns);
+    }
+    const auto rate = clock_.rate();
+    if (mode_ != ClockMode::realtime || rate_told_ || !rate || now_ns < start_ns_ + 5 * every_ns) return;
+    if (std::abs(*rate - 1) <= odd_rate || *rate <= 0) return;
+    rate_told_ = true;
+    news_.tell(
+        FeedNewsDesk::Kind::clock,
+        fmt::format("the source runs at {:.2f} of real time; expected 1; clock = \"follow\" keeps its time", *rate),
+        now_ns);
+}
+
+}  // namespace skyloop

@@ -1,0 +1,84 @@
+/// The loop's side of a feed: clocks and paths of its vehicles.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "feed_hearer.hpp"
+#include "skyloop/feed/truth_feed.hpp"
+
+namespace skyloop {
+
+/// Puts what a feed's thread has heard into paths, in its order. All of it belongs to the loop's thread.
+class FeedPaths {
+public:
+    FeedPaths(const FeedSettings& settings, FeedNewsDesk& news, FeedTallies& tallies);
+
+    std::shared_ptr<LivePath> path(const std::string& vehicle);
+    void begin(GpsTime start, std::int64_t steady_ns);
+    void set_run(GpsTime now, std::int64_t steady_ns);
+
+    /// Takes what waits, at most 4096 items. Nothing before begin().
+    std::vector<Command> take(FeedInbox& inbox);
+    [[nodiscard]] bool any_left() const { return next_ < taken_.size(); }
+    [[nodiscard]] std::optional<GpsTime> horizon() const;
+    /// Steps up to the horizon that have not been given yet.
+    std::vector<FeedStep> steps_done();
+    /// Of these, those that ask for what was done long ago.
+    std::vector<FeedStep> steps_done_before();
+
+    [[nodiscard]] bool ended() const { return ended_; }
+    [[nodiscard]] bool paused() const { return paused_; }
+    [[nodiscard]] const SourceClock& clock() const { return clock_; }
+
+private:
+    struct Vehicle {
+        std::shared_ptr<LivePath> path;
+        std::uint64_t restarts = 0;  // of the clock, that the path has been told
+        std::uint64_t jumps = 0;     // of the path, that the user has been told
+        std::int64_t heard_ns = 0;   // nothing so far: 0
+        bool silent = false;         // has been told
+    };
+    struct PendingStep {
+        FeedStep step;
+        GpsTime time;
+    };
+
+    [[nodiscard]] bool step_waits() const;
+    void keep_newest(std::vector<FeedItem>& items) const;
+    void take_item(FeedItem& item, std::vector<Command>& commands);
+    void take_sample(TruthSample& sample);
+    void take_step(const FeedStep& step);
+    SourceClock::Stamp stamp(const TruthSample& sample);
+    void note(const SourceClock::Stamp& stamp, std::int64_t now_ns);
+    void look(std::int64_t now_ns);
+    void add(Vehicle& vehicle, const std::string& name, GpsTime time, TruthSample& sample);
+
+    LivePathSettings path_settings_;
+    ClockMode mode_;
+    FeedNewsDesk& news_;
+    FeedTallies& tallies_;
+    SourceClock clock_;
+    std::map<std::string, SourceClock> arrival_clocks_;  // of vehicles whose source has no time
+    std::map<std::string, Vehicle> vehicles_;            // that somebody wants
+    std::shared_ptr<LivePath> any_;                      // of the first that is spoken of
+    std::optional<std::string> first_;
+    bool begun_ = false, fresh_ = false;
+    GpsTime start_;
+    std::int64_t start_ns_ = 0;
+    std::vector<FeedItem> taken_;
+    std::size_t next_ = 0;
+    std::uint64_t restarts_ = 0;
+    std::optional<GpsTime> first_sample_, newest_sample_, newest_step_, answered_;
+    std::deque<PendingStep> steps_;
+    bool ended_ = false, paused_ = false, other_told_ = false;
+    std::int64_t looked_ns_ = 0;
+    bool rate_told_ = false;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,187 @@
+#include "feed_socket.hpp"
+
+#include <fmt/format.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+
+#include "skyloop/base/steady_clock.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr int feed_receive_buffer = 1 << 20;  // FEEDS.md 3.1
+constexpr int feed_backlog = 8;
+
+// A system that does not know an option goes without it.
+void set_feed_option(int socket, int level, int name, int value) {
+    (void)::setsockopt(socket, level, name, &value, sizeof value);
+}
+
+tl::unexpected<Error> socket_failure(const std::string& host, std::uint16_t port, std::string_view why) {
+    return fail(ErrorCode::outside, fmt::format("{}: {}", shown_host_port(host, port), why));
+}
+
+FileDescriptor open_socket(const FeedPeer& where, int type) {
+    return FileDescriptor(::socket(where.storage.ss_family, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+}
+
+// From the wall clock, in which the kernel tells when something came, to the steady one.
+std::int64_t steady_less_wall_ns() {
+    timespec wall{};
+    clock_gettime(CLOCK_REALTIME, &wall);
+    return steady_clock_ns() - (wall.tv_sec * std::int64_t{1'000'000'000} + wall.tv_nsec);
+}
+
+}  // namespace
+
+bool FeedPeer::operator==(const FeedPeer& other) const {
+    return length == other.length && std::memcmp(&storage, &other.storage, length) == 0;
+}
+
+std::string shown_host_port(const std::string& host, std::uint16_t port) {
+    return host.find(':') == std::string::npos ? fmt::format("{}:{}", host, port) : fmt::format("[{}]:{}", host, port);
+}
+
+std::string shown_peer(const FeedPeer& peer) {
+    std::array<char, NI_MAXHOST> host{};
+    std::array<char, NI_MAXSERV> service{};
+    if (::getnameinfo(peer.get(), peer.length, host.data(), host.size(), service.data(), service.size(),
+                      NI_NUMERICHOST | NI_NUMERICSERV) != 0)
+        return "an unknown address";
+    const std::string name(host.data());
+    return (name.find(':') == std::string::npos ? name : "[" + name + "]") + ":" + service.data();
+}
+
+Result<std::vector<FeedPeer>> resolve_host(const std::string& host, std::uint16_t port, int type) {
+    addrinfo hints{};
+    hints.ai_socktype = type;
+    hints.ai_flags = AI_NUMERICSERV;
+    addrinfo* found = nullptr;
+    const int code = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found);
+    if (code != 0) return socket_failure(host, port, ::gai_strerror(code));
+    std::vector<FeedPeer> peers;
+    for (const addrinfo* each = found; each != nullptr; each = each->ai_next) {
+        FeedPeer peer;
+        peer.length = each->ai_addrlen;
+        std::memcpy(&peer.storage, each->ai_addr, each->ai_addrlen);
+        peers.push_back(peer);
+    }
+    ::freeaddrinfo(found);
+    return peers;
+}
+
+Result<FileDescriptor> listening_socket(const std::string& host, std::uint16_t port, int type) {
+    const auto where = resolve_host(host, port, type);
+    if (!where) return fail(where.error());
+    FileDescriptor socket = open_socket(where->front(), type);
+    if (!socket.open()) return socket_failure(host, port, std::strerror(errno));
+    if (type == SOCK_STREAM) set_feed_option(socket.value(), SOL_SOCKET, SO_REUSEADDR, 1);
+    if (::bind(socket.value(), where->front().get(), where->front().length) != 0 ||
+        (type == SOCK_STREAM && ::listen(socket.value(), feed_backlog) != 0))
+        return socket_failure(host, port, std::strerror(errno));
+    return socket;
+}
+
+Result<FileDescriptor> connected_datagrams(const std::string& host, std::uint16_t port) {
+    const auto where = resolve_host(host, port, SOCK_DGRAM);
+    if (!where) return fail(where.error());
+    FileDescriptor socket = open_socket(where->front(), SOCK_DGRAM);
+    if (!socket.open() || ::connect(socket.value(), where->front().get(), where->front().length) != 0)
+        return socket_failure(host, port, std::strerror(errno));
+    return socket;
+}
+
+FileDescriptor begin_connecting(const FeedPeer& to) {
+    FileDescriptor socket = open_socket(to, SOCK_STREAM);
+    if (!socket.open()) return socket;
+    if (::connect(socket.value(), to.get(), to.length) != 0 && errno != EINPROGRESS) return {};
+    return socket;
+}
+
+ConnectState finish_connecting(int socket, std::string& why) {
+    pollfd wait{socket, POLLOUT, 0};
+    if (::poll(&wait, 1, 0) <= 0 || wait.revents == 0) return ConnectState::pending;
+    int error = 0;
+    socklen_t size = sizeof error;
+    if (::getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) != 0) error = errno;
+    if (error == 0) return ConnectState::open;
+    why = std::strerror(error);
+    return ConnectState::failed;
+}
+
+void prepare_stream(int socket) {
+    constexpr int idle_s = 30, every_s = 10, tries = 3;
+    set_feed_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
+    set_feed_option(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
+    set_feed_option(socket, IPPROTO_TCP, TCP_KEEPIDLE, idle_s);
+    set_feed_option(socket, IPPROTO_TCP, TCP_KEEPINTVL, every_s);
+    set_feed_option(socket, IPPROTO_TCP, TCP_KEEPCNT, tries);
+}
+
+std::uint16_t own_port(int socket) {
+    FeedPeer own;
+    own.length = sizeof own.storage;
+    if (::getsockname(socket, reinterpret_cast<sockaddr*>(&own.storage), &own.length) != 0) return 0;
+    if (own.storage.ss_family == AF_INET) return ntohs(reinterpret_cast<const sockaddr_in&>(own.storage).sin_port);
+    if (own.storage.ss_family == AF_INET6) return ntohs(reinterpret_cast<const sockaddr_in6&>(own.storage).sin6_port);
+    return 0;
+}
+
+DatagramReader::DatagramReader(int socket)
+    : socket_(socket), bytes_(std::make_unique_for_overwrite<std::uint8_t[]>(batch * longest)) {
+    set_feed_option(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1);
+    set_feed_option(socket, SOL_SOCKET, SO_RXQ_OVFL, 1);
+    set_feed_option(socket, SOL_SOCKET, SO_RCVBUF, feed_receive_buffer);
+    set_feed_option(socket, SOL_SOCKET, SO_RCVBUFFORCE, feed_receive_buffer);  // above the limit, where allowed
+    for (std::size_t i = 0; i < batch; ++i) {
+        parts_[i] = {bytes_.get() + i * longest, longest};
+        messages_[i].msg_hdr.msg_iov = &parts_[i];
+        messages_[i].msg_hdr.msg_iovlen = 1;
+        messages_[i].msg_hdr.msg_name = &peers_[i].storage;
+        messages_[i].msg_hdr.msg_control = controls_[i].data();
+    }
+}
+
+const std::vector<FeedDatagram>& DatagramReader::take() {
+    taken_.clear();
+    for (mmsghdr& message : messages_) {
+        message.msg_hdr.msg_namelen = sizeof(sockaddr_storage);
+        message.msg_hdr.msg_controllen = control_bytes;
+    }
+    const int count = ::recvmmsg(socket_, messages_.data(), batch, MSG_DONTWAIT, nullptr);
+    const std::int64_t now_ns = steady_clock_ns(), shift_ns = count > 0 ? steady_less_wall_ns() : 0;
+    for (int i = 0; i < count; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        msghdr& header = messages_[at].msg_hdr;
+        peers_[at].length = header.msg_namelen;
+        FeedDatagram datagram{{bytes_.get() + at * longest, messages_[at].msg_len}, &peers_[at], now_ns};
+        for (cmsghdr* part = CMSG_FIRSTHDR(&header); part != nullptr; part = CMSG_NXTHDR(&header, part)) {
+            if (part->cmsg_level != SOL_SOCKET) continue;
+            if (part->cmsg_type == SCM_TIMESTAMPNS) {
+                timespec wall{};
+                std::memcpy(&wall, CMSG_DATA(part), sizeof wall);
+                // A wall clock that is set just then must not bring a time that cannot be.
+                constexpr std::int64_t oldest_ns = 10'000'000'000;
+                datagram.received_ns = std::clamp(wall.tv_sec * std::int64_t{1'000'000'000} + wall.tv_nsec + shift_ns,
+                                                  now_ns - oldest_ns, now_ns);
+            } else if (part->cmsg_type == SO_RXQ_OVFL) {
+                std::uint32_t seen = 0;
+                std::memcpy(&seen, CMSG_DATA(part), sizeof seen);
+                dropped_ += seen - dropped_seen_;
+                dropped_seen_ = seen;
+            }
+        }
+        taken_.push_back(datagram);
+    }
+    return taken_;
+}
+
+std::uint64_t DatagramReader::take_dropped() { return std::exchange(dropped_, 0); }
+
+}  // namespace skyloop
