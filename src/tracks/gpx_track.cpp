@@ -61,7 +61,7 @@ Result<Track> GpxReader::read() {
 }
 
 Result<void> GpxReader::take_track(const pugi::xml_node& track) {
-    track_.begin_part(xml_text(xml_child(track, "name")));
+    track_.begin_part(xml_content(xml_child(track, "name")));
     for (const pugi::xml_node& segment : track.children()) {
         if (xml_name(segment) != "trkseg") continue;
         segment_begins_ = true;
@@ -87,7 +87,7 @@ Result<void> GpxReader::take_point(const pugi::xml_node& point) {
 
 // False: the point has none and is left out.
 Result<bool> GpxReader::take_time(const pugi::xml_node& point, TextRow& row) {
-    const std::string text = xml_text(xml_child(point, "time"));
+    const std::string text = xml_content(xml_child(point, "time"));
     if (trimmed_text(text).empty()) return track_.leave_out("have no time", row.line), false;
     ++timed_;
     const auto time = parse_iso_time(text);
@@ -119,9 +119,9 @@ Result<void> GpxReader::take_place(const pugi::xml_node& point, TextRow& row) {
 
 // Nothing where the point has no such child, or an empty one.
 Result<std::optional<double>> GpxReader::child_number(const pugi::xml_node& point, std::string_view name) {
-    const std::string text = xml_text(xml_child(point, name));
+    const std::string text = xml_content(xml_child(point, name));
     const std::string_view plain = trimmed_text(text);
-    if (plain.empty() || lower_case(plain) == "nan") return std::nullopt;
+    if (plain.empty() || lowered_text(plain) == "nan") return std::nullopt;
     const auto number = text_number(plain);
     if (!number)
         return track_.refusal(tree_.line_of(point), fmt::format("{} is '{}'; expected metres with a decimal point",
@@ -132,7 +132,7 @@ Result<std::optional<double>> GpxReader::child_number(const pugi::xml_node& poin
 // The first element of that name below the point, at any depth: extensions differ in their wrappings.
 std::optional<double> GpxReader::number_in(const pugi::xml_node& point, std::string_view name) const {
     for (pugi::xml_node at = xml_following(point, point); at; at = xml_following(at, point))
-        if (xml_name(at) == name) return text_number(xml_text(at));
+        if (xml_name(at) == name) return text_number(xml_content(at));
     return std::nullopt;
 }
 

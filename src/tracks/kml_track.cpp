@@ -56,8 +56,8 @@ Result<void> KmlReader::take_tracks() {
         const pugi::xml_node group = at.parent();
         const bool grouped = xml_name(group) == "MultiTrack";
         const bool first = !grouped || xml_child(group, "Track") == at;
-        const bool joined = !first && trimmed_text(xml_text(xml_child(group, "interpolate"))) == "1";
-        if (first) track_.begin_part(xml_text(xml_child(grouped ? group.parent() : group, "name")));
+        const bool joined = !first && trimmed_text(xml_content(xml_child(group, "interpolate"))) == "1";
+        if (first) track_.begin_part(xml_content(xml_child(grouped ? group.parent() : group, "name")));
         if (const auto taken = take_track(at, joined); !taken) return taken;
     }
     return {};
@@ -90,7 +90,7 @@ Result<void> KmlReader::take_pair(const pugi::xml_node& when, const pugi::xml_no
     row.line = tree_.line_of(coord);
     const auto time = time_of(when, row.line);
     if (!time) return fail(time.error());
-    const auto placed = take_coordinates(xml_text(coord), " \t\r\n", row);
+    const auto placed = take_coordinates(xml_content(coord), " \t\r\n", row);
     if (!placed) return fail(placed.error());
     if (!*placed) return track_.leave_out("have no place", row.line), Result<void>();
     if (!*time) return {};
@@ -109,7 +109,7 @@ Result<void> KmlReader::take_placemarks() {
         altitudes_ = altitudes_of(point);
         const auto time = time_of(when, row.line);
         if (!time) return fail(time.error());
-        const auto placed = take_coordinates(xml_text(xml_child(point, "coordinates")), ", \t\r\n", row);
+        const auto placed = take_coordinates(xml_content(xml_child(point, "coordinates")), ", \t\r\n", row);
         if (!placed) return fail(placed.error());
         if (!*placed) track_.leave_out("have no place", row.line);
         if (!*time || !*placed) continue;
@@ -121,7 +121,7 @@ Result<void> KmlReader::take_placemarks() {
 
 // Nothing: the point has none and is left out.
 Result<std::optional<Nanoseconds>> KmlReader::time_of(const pugi::xml_node& when, std::size_t line) {
-    const std::string text = xml_text(when);
+    const std::string text = xml_content(when);
     if (trimmed_text(text).empty()) return track_.leave_out("have no time", line), std::nullopt;
     const auto time = parse_iso_time(text);
     if (!time)
@@ -163,7 +163,7 @@ Result<bool> KmlReader::take_coordinates(const std::string& text, std::string_vi
 KmlReader::Altitudes KmlReader::altitudes_of(const pugi::xml_node& holder) {
     pugi::xml_node mode = xml_child(holder, "altitudeMode");
     if (!mode) mode = xml_child(holder.parent(), "altitudeMode");
-    const std::string text = xml_text(mode);
+    const std::string text = xml_content(mode);
     const std::string_view plain = trimmed_text(text);
     if (plain == "absolute") return Altitudes::sea_level;
     return plain.starts_with("relativeTo") ? Altitudes::ground : Altitudes::none;

@@ -37,7 +37,7 @@ std::optional<zip_uint64_t> kml_entry(zip_t* archive) {
     const zip_int64_t count = zip_get_num_entries(archive, 0);
     for (zip_int64_t i = 0; i < count; ++i) {
         const char* name = zip_get_name(archive, static_cast<zip_uint64_t>(i), ZIP_FL_ENC_RAW);
-        if (name && lower_case(name).ends_with(".kml")) return static_cast<zip_uint64_t>(i);
+        if (name && lowered_text(name).ends_with(".kml")) return static_cast<zip_uint64_t>(i);
     }
     return std::nullopt;
 }
@@ -71,7 +71,7 @@ Result<Track> read_kmz(const TrackFile& file) {
     const auto text = unpacked(file, archive->get(), *index);
     if (!text) return fail(text.error());
     const char* const entry = zip_get_name(archive->get(), *index, ZIP_FL_ENC_RAW);
-    const std::string name = file.name + "/" + on_one_line(fmt::format("{:.80}", entry ? entry : ""));
+    const std::string name = file.name + "/" + one_line_of(fmt::format("{:.80}", entry ? entry : ""));
     const ByteSpan bytes(reinterpret_cast<const std::uint8_t*>(text->data()), text->size());
     auto track = read_kml({bytes, *text, name, file.reading});
     if (!track) return track;

@@ -151,7 +151,7 @@ Result<Track> read_rows(const TrackFile& file, TextTrack& track, RowTaker take, 
     bool named = false;
     while (table.next()) {
         if (!named) {
-            named = lower_case(trimmed_text(table.text())).starts_with(lower_case(names_begin));
+            named = lowered_text(trimmed_text(table.text())).starts_with(lowered_text(names_begin));
             if (named) table.take_names();
             continue;
         }
@@ -190,11 +190,11 @@ std::string_view unicsv_names(std::string_view head) {
         const std::string_view line = lines.line();
         if (trimmed_text(line).empty()) continue;
         std::vector<std::string_view> cells;
-        split_cells(line, separator_in(line), cells);
+        split_text_cells(line, separator_in(line), cells);
         std::size_t found = 0;
         for (const std::string_view cell : cells)
             for (const std::string_view name : {"latitude", "longitude", "date", "time"})
-                found += lower_case(cell) == name;
+                found += lowered_text(cell) == name;
         return found == 4 ? trimmed_text(line) : std::string_view();
     }
     return {};
@@ -210,7 +210,7 @@ Result<Track> read_unicsv(const TrackFile& file) {
 bool has_line(std::string_view head, std::string_view begin) {
     TextLines lines(head);
     while (lines.next())
-        if (lower_case(trimmed_text(lines.line()).substr(0, begin.size())) == lower_case(begin)) return true;
+        if (lowered_text(trimmed_text(lines.line()).substr(0, begin.size())) == lowered_text(begin)) return true;
     return false;
 }
 

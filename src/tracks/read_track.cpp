@@ -27,7 +27,7 @@ Result<Track> read_csv(const TrackFile& file) {
 // By the root of XML; a file in another encoding than UTF-8 shows none, and is told by its ending.
 bool is_xml_of(const TrackFile& file, std::string_view root, std::string_view ending) {
     const std::string_view name = xml_root_name(file.text);
-    return name.empty() ? lower_case(file.name).ends_with(ending) : name == root;
+    return name.empty() ? lowered_text(file.name).ends_with(ending) : name == root;
 }
 
 bool is_kmz(const TrackFile& file) { return file.text.starts_with("PK\x03\x04"); }
@@ -38,7 +38,7 @@ Result<Track> refuse_xml(const TrackFile& file) {
     return fail(ErrorCode::input,
                 fmt::format("{}: XML whose root is <{}>; expected <gpx> or <kml>, which gpsbabel makes of most others: "
                             "gpsbabel -t -i FORMAT -f FILE -o gpx,gpxver=1.0 -F track.gpx",
-                            file.name, on_one_line(std::string(xml_root_name(file.text)))));
+                            file.name, one_line_of(std::string(xml_root_name(file.text)))));
 }
 
 constexpr TrackFormat formats[] = {

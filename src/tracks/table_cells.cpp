@@ -18,7 +18,7 @@ bool TableCells::next() {
     while (lines_.next()) {
         const std::string_view plain = trimmed_text(lines_.line());
         if (plain.empty() || comments_.find(plain.front()) != std::string::npos) continue;
-        split_cells(lines_.line(), separator_, cells_);
+        split_text_cells(lines_.line(), separator_, cells_);
         return true;
     }
     return false;
@@ -27,11 +27,11 @@ bool TableCells::next() {
 void TableCells::take_names() {
     names_.clear();
     for (const std::string_view cell : cells_)
-        names_.push_back(lower_case(cell));
+        names_.push_back(lowered_text(cell));
 }
 
 std::optional<std::size_t> TableCells::column(std::string_view name) const {
-    const auto at = std::find(names_.begin(), names_.end(), lower_case(name));
+    const auto at = std::find(names_.begin(), names_.end(), lowered_text(name));
     return at == names_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(at - names_.begin()));
 }
 
@@ -41,7 +41,7 @@ std::string_view TableCells::cell(std::optional<std::size_t> column) const {
 
 Result<std::optional<double>> TableCells::number(std::optional<std::size_t> column) const {
     const std::string_view text = cell(column);
-    if (text.empty() || lower_case(text) == "nan") return std::nullopt;
+    if (text.empty() || lowered_text(text) == "nan") return std::nullopt;
     const auto value = text_number(text);
     if (value) return value;
     const std::string what = *column < names_.size() ? names_[*column] : fmt::format("cell {}", *column + 1);
@@ -61,7 +61,7 @@ Result<std::vector<double>> TableCells::numbers(std::size_t first, std::size_t c
 }
 
 tl::unexpected<Error> TableCells::refusal(const std::string& what) const {
-    return fail(ErrorCode::input, fmt::format("{}:{}: {}", name_, line(), on_one_line(what)));
+    return fail(ErrorCode::input, fmt::format("{}:{}: {}", name_, line(), one_line_of(what)));
 }
 
 std::optional<Nanoseconds> posix_since_1980(std::string_view seconds) {

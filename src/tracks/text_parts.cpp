@@ -84,14 +84,14 @@ std::string_view trimmed_text(std::string_view text) {
     return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-std::string lower_case(std::string_view text) {
+std::string lowered_text(std::string_view text) {
     std::string lower(text);
     for (char& letter : lower)
         if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
     return lower;
 }
 
-std::string on_one_line(std::string text) {
+std::string one_line_of(std::string text) {
     for (char& letter : text)
         if (static_cast<unsigned char>(letter) < 0x20) letter = ' ';
     return text;
@@ -118,7 +118,7 @@ bool TextLines::next() {
     return true;
 }
 
-void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells) {
+void split_text_cells(std::string_view line, char separator, std::vector<std::string_view>& cells) {
     cells.clear();
     const std::string_view separators = separator == ' ' ? std::string_view(" \t") : std::string_view(&separator, 1);
     if (separator == ' ') line = trimmed_text(line);

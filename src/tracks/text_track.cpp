@@ -70,11 +70,11 @@ void TextTrack::leave_out(std::string_view why, std::size_t line) {
     ++known->count;
 }
 
-void TextTrack::note(std::string text) { track_.notes.push_back(on_one_line(std::move(text))); }
+void TextTrack::note(std::string text) { track_.notes.push_back(one_line_of(std::move(text))); }
 
 tl::unexpected<Error> TextTrack::refusal(std::size_t line, const std::string& what) const {
-    return fail(ErrorCode::input, line > 0 ? fmt::format("{}:{}: {}", track_.name, line, on_one_line(what))
-                                           : fmt::format("{}: {}", track_.name, on_one_line(what)));
+    return fail(ErrorCode::input, line > 0 ? fmt::format("{}:{}: {}", track_.name, line, one_line_of(what))
+                                           : fmt::format("{}: {}", track_.name, one_line_of(what)));
 }
 
 tl::unexpected<Error> TextTrack::refusal(const std::string& what) const { return refusal(0, what); }

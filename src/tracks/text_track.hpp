@@ -33,9 +33,9 @@ struct TextRow {
 std::optional<double> text_number(std::string_view text);
 // Without blanks, tabs, line ends and quotation marks around it.
 std::string_view trimmed_text(std::string_view text);
-std::string lower_case(std::string_view text);
+std::string lowered_text(std::string_view text);
 // Line ends and other control characters as blanks: what a file holds does not break a message.
-std::string on_one_line(std::string text);
+std::string one_line_of(std::string text);
 
 // Lines of a text, one after the other, with their numbers; a byte order mark before the first is left out.
 class TextLines {
@@ -52,7 +52,7 @@ private:
 };
 
 // Cells of a line, trimmed. With a blank as separator, several blanks and tabs count as one.
-void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);
+void split_text_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);
 
 // An instant as ISO 8601 writes it: 2024-03-05T12:00:00.123456789Z, with any zone, or none.
 struct IsoTime {

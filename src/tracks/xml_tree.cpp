@@ -46,7 +46,7 @@ std::string_view xml_root_name(std::string_view text) {
 
 std::string_view xml_name(const pugi::xml_node& node) { return without_prefix(node.name()); }
 
-std::string xml_text(const pugi::xml_node& node) {
+std::string xml_content(const pugi::xml_node& node) {
     std::string text;
     for (const pugi::xml_node& part : node.children())
         if (part.type() == pugi::node_pcdata || part.type() == pugi::node_cdata) text += part.value();

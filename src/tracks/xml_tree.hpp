@@ -16,7 +16,7 @@ std::string_view xml_root_name(std::string_view text);
 // The name of an element without its prefix: writers get prefixes wrong. Empty for what is no element.
 std::string_view xml_name(const pugi::xml_node& node);
 // All text directly in an element; comments in between do not end it.
-std::string xml_text(const pugi::xml_node& node);
+std::string xml_content(const pugi::xml_node& node);
 // The first child of that name, or none.
 pugi::xml_node xml_child(const pugi::xml_node& node, std::string_view name);
 // The element that follows in the order of the file, below `root`; none after the last one. Any depth is walked
