@@ -183,6 +183,15 @@ TEST(GpxTrack, RefusesWhatIsNoTrackInOneLine) {
     EXPECT_THAT(without_geoid.error().message, HasSubstr("heights above sea level need the geoid"));
 }
 
+TEST(GpxTrack, IsReadInUtf16ByItsEnding) {
+    std::string wide = "\xFF\xFE";
+    for (const char letter : gpx(point("<ele>1</ele><time>2024-03-05T12:00:00Z</time>")))
+        wide += std::string{letter, '\0'};
+    const Track track = track_of(wide, "Walk.GPX");
+    ASSERT_EQ(track.points.size(), 1u);
+    EXPECT_EQ(track.points[0].line, 0u);  // lines are those of UTF-8 alone
+}
+
 TEST(GpxTrack, SurvivesElementsOfAnyDepth) {
     std::string deep;
     for (int i = 0; i < 200'000; ++i)
