@@ -119,6 +119,7 @@ std::optional<double> DataflashRecord::value(std::initializer_list<std::string_v
         const auto found = format_.columns.find(name);
         if (found == format_.columns.end()) continue;
         const DataflashColumn& column = found->second;
+        if (!is_inside(column)) continue;
         const double result = raw_value(bytes_, column) * column.multiplier.value_or(letter_scale(column.letter));
         if (std::isfinite(result)) return result;
     }
@@ -127,9 +128,13 @@ std::optional<double> DataflashRecord::value(std::initializer_list<std::string_v
 
 std::optional<double> DataflashRecord::raw(std::initializer_list<std::string_view> names) const {
     for (const std::string_view name : names)
-        if (const auto found = format_.columns.find(name); found != format_.columns.end())
+        if (const auto found = format_.columns.find(name); found != format_.columns.end() && is_inside(found->second))
             return raw_value(bytes_, found->second);
     return std::nullopt;
+}
+
+bool DataflashRecord::is_inside(const DataflashColumn& column) const {
+    return column.offset + dataflash_size(column.letter) <= bytes_.size();
 }
 
 std::optional<double> DataflashRecord::instance() const {

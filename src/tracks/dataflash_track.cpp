@@ -43,17 +43,24 @@ void DataflashTrack::read_records() {
                                                            "NKF1", "NKF4", "NKQ1", "NKQ"};
     DataflashReader reader(file_.bytes);
     AutopilotStarts starts;
+    std::optional<DataflashRecord> refused;
+    std::int64_t refused_ns = 0;
+    const auto take = [&](const DataflashRecord& record, std::int64_t ns, std::size_t start) {
+        if (!wanted.contains(record.name())) return;
+        if (starts_.size() <= start) starts_.resize(start + 1);
+        starts_[start].take(record, ns);
+    };
     while (const auto record = reader.next()) {
         const auto ns = dataflash_clock(*record);
         if (!ns) continue;
-        const auto start = starts.of(*ns);
-        if (!start) {
+        if (const auto start = starts.of(*ns)) {
+            if (starts.confirmed()) take(*refused, refused_ns, *start), --clockless_;
+            take(*record, *ns, *start);
+        } else {
+            refused.emplace(*record);
+            refused_ns = *ns;
             ++clockless_;
-            continue;
         }
-        if (!wanted.contains(record->name())) continue;
-        if (starts_.size() <= *start) starts_.resize(*start + 1);
-        starts_[*start].take(*record, *ns);
     }
     add_count_note(flight_.notes, reader.skipped_bytes(), "bytes that begin no record were passed over");
     add_count_note(flight_.notes, reader.is_cut() ? 1 : 0, "record is cut by the end of the file");

@@ -232,6 +232,7 @@ bool AutopilotStarts::follows(std::int64_t ns, std::int64_t last) {
 }
 
 std::optional<std::size_t> AutopilotStarts::of(std::int64_t ns) {
+    confirmed_ = false;
     if (!last_ || follows(ns, *last_)) {
         last_ = std::max(last_.value_or(0), ns);
         candidate_.reset();
@@ -245,6 +246,7 @@ std::optional<std::size_t> AutopilotStarts::of(std::int64_t ns) {
     if (ns < *last_ && ++start_ >= most_starts) --start_;
     last_ = ns;
     candidate_.reset();
+    confirmed_ = true;
     return start_;
 }
 

@@ -122,11 +122,14 @@ class AutopilotStarts {
 public:
     // The number of the start, from 0; nothing for a time that does not fit until a second one confirms it.
     std::optional<std::size_t> of(std::int64_t ns);
+    // Whether the time just given confirms the one refused last: that one now has a start, too.
+    [[nodiscard]] bool confirmed() const { return confirmed_; }
 
 private:
     static bool follows(std::int64_t ns, std::int64_t last);
     std::optional<std::int64_t> last_, candidate_;
     std::size_t start_ = 0;
+    bool confirmed_ = false;
 };
 
 // The middle one, or nothing of none.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "skyloop/protocol/mavlink_modes.hpp"
 
@@ -59,6 +60,15 @@ std::vector<FlightRow> by_autopilot_clock(const std::vector<TlogStart::Dated>& d
 }  // namespace
 
 void TlogVehicle::take(const TlogFrame& frame) {
+    const std::size_t refusals = refusals_;
+    dispatch(frame);
+    if (refusals_ > refusals)
+        refused_ = frame;
+    else if (refused_ && boots_.confirmed())
+        dispatch(*std::exchange(refused_, std::nullopt));
+}
+
+void TlogVehicle::dispatch(const TlogFrame& frame) {
     switch (frame.frame.message) {
         case MavlinkHeartbeat::message_id: {
             constexpr std::uint8_t ground_station = 6;
@@ -105,7 +115,7 @@ TlogStart* TlogVehicle::start_at(std::uint32_t boot_ms, std::int64_t stamp_us) {
 
 TlogStart* TlogVehicle::start_at(std::int64_t ns, std::int64_t stamp_us) {
     const auto start = ns <= longest_flight_clock_ns ? boots_.of(ns) : std::nullopt;
-    if (!start) return nullptr;
+    if (!start) return ++refusals_, nullptr;
     now_start_ = *start;
     now_ns_ = ns;
     TlogStart& here = latest_start();

@@ -49,6 +49,7 @@ public:
     [[nodiscard]] std::vector<FlightClock> clocks(std::string& note) const;
 
 private:
+    void dispatch(const TlogFrame& frame);
     TlogStart* start_at(std::uint32_t boot_ms, std::int64_t stamp_us);
     TlogStart* start_at(std::int64_t ns, std::int64_t stamp_us);
     TlogStart& latest_start();
@@ -66,7 +67,8 @@ private:
     std::optional<GlobalSample> origin_;
     std::optional<std::uint32_t> last_ms_;
     std::int64_t wraps_ = 0, now_ns_ = 0;
-    std::size_t now_start_ = 0, places_ = 0;
+    std::optional<TlogFrame> refused_;  // the last one whose time does not fit
+    std::size_t now_start_ = 0, places_ = 0, refusals_ = 0;
     bool is_autopilot_ = false, is_ardupilot_ = false;
 };
 

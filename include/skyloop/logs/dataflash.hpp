@@ -49,6 +49,9 @@ public:
     [[nodiscard]] std::optional<double> instance() const;
 
 private:
+    // A later FMT may have made the format another one.
+    [[nodiscard]] bool is_inside(const DataflashColumn& column) const;
+
     const DataflashFormat& format_;
     ByteSpan bytes_;
 };
