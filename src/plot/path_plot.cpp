@@ -42,7 +42,8 @@ std::vector<PathDot> path_dots(std::span<const PathSample> samples) {
     return dots;
 }
 
-Eigen::AlignedBox2d plan_box(std::span<const PathDot> dots) {
+// @param shape width for height of the picture, which it fills
+Eigen::AlignedBox2d plan_box(std::span<const PathDot> dots, double shape) {
     constexpr double least_side_m = 2, margin_part = 0.06;
     Eigen::AlignedBox2d box(Eigen::Vector2d(0, 0));
     for (const PathDot& dot : dots)
@@ -50,6 +51,10 @@ Eigen::AlignedBox2d plan_box(std::span<const PathDot> dots) {
     const double margin = std::max(least_side_m / 2, margin_part * box.sizes().maxCoeff());
     box.min().array() -= margin;
     box.max().array() += margin;
+    const double wider = std::max(0.0, shape * box.sizes().y() - box.sizes().x()) / 2;
+    const double higher = std::max(0.0, box.sizes().x() / shape - box.sizes().y()) / 2;
+    box.min() -= Eigen::Vector2d(wider, higher);
+    box.max() += Eigen::Vector2d(wider, higher);
     return box;
 }
 
@@ -173,7 +178,7 @@ void draw_plan(SvgDocument& svg, std::span<const PathDot> dots, SvgPoint corner,
     double fastest = 0;
     for (const PathDot& dot : dots)
         fastest = std::max(fastest, dot.speed);
-    const PlanView view(plan_box(dots), corner, size);
+    const PlanView view(plan_box(dots, size.x / size.y), corner, size);
     svg.begin_group("plan");
     svg.rectangle(view.corner(), view.size(), 0, {.fill = style::panel, .stroke = style::grid});
     draw_way(svg, view, dots, fastest);

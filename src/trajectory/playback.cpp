@@ -2,11 +2,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "hermite_piece.hpp"
 #include "skyloop/geo/body_frame.hpp"
 
 namespace skyloop {
+namespace {
+
+double peak_acceleration(const PieceCoefficients& piece, double h) {
+    constexpr int places = 16;
+    double peak = 0;
+    for (int i = 0; i <= places; ++i)
+        peak = std::max(peak, (piece * piece_powers(static_cast<double>(i) / places, 2)).norm() / (h * h));
+    return peak;
+}
+
+// How long the way from the end of a loop to its beginning takes: the shortest time in which it accelerates as its ends
+// do, or gently. 0: they are at one place; nothing: too far, or not ahead. s
+std::optional<double> closing_time(const TrackKnot& last, const TrackKnot& first) {
+    constexpr double near_m = 50, near_s = 5, least_mps = 1, shortest_s = 0.01, growth = 1.05;
+    constexpr double same_m = 0.5, same_mps = 1, gentle_mps2 = 2, more_than_ends = 1.3;
+    const double way = (first.position - last.position).norm();
+    const double speed = (first.velocity.norm() + last.velocity.norm()) / 2;
+    if (way < same_m && (first.velocity - last.velocity).norm() < same_mps) return 0.0;
+    if (way > near_m + near_s * speed) return std::nullopt;
+    const double allowed =
+        std::max(gentle_mps2, more_than_ends * std::max(first.acceleration.norm(), last.acceleration.norm()));
+    const double longest = std::max(near_s, 2 * way / std::max(speed, least_mps));
+    for (double h = shortest_s; h <= longest; h *= growth)
+        if (peak_acceleration(quintic_hermite(last, first, h), h) <= allowed) return h;
+    return std::nullopt;
+}
+
+}  // namespace
 
 PlayedPath::PlayedPath(std::unique_ptr<const RecordedPath> path, GpsTime start, const Playback& playback)
     : path_(std::move(path)), start_(start), playback_(playback) {
@@ -15,7 +44,6 @@ PlayedPath::PlayedPath(std::unique_ptr<const RecordedPath> path, GpsTime start, 
 
 // Leads from the last row to the first one where they are near each other.
 void PlayedPath::close() {
-    constexpr double shortest_s = 2, near_m = 50, near_s = 5, least_mps = 1;
     const double whole = path_->duration().value();
     const auto at_row = [&](double s) {
         const GpsTime time = advanced(start_, Seconds(s));
@@ -23,10 +51,10 @@ void PlayedPath::close() {
         return TrackKnot{s, state.position.vector(), state.velocity.vector(), path_->acceleration(time), true};
     };
     const TrackKnot last = at_row(whole), first = at_row(0);
-    const double way = (first.position - last.position).norm();
-    const double speed = (first.velocity.norm() + last.velocity.norm()) / 2;
-    if (way > near_m + near_s * speed) return;
-    closing_s_ = std::max(shortest_s, way / std::max(speed, least_mps));
+    const auto taken = closing_time(last, first);
+    jumps_back_ = !taken;
+    if (!taken || *taken == 0) return;
+    closing_s_ = *taken;
     anchor_ = last.position;
     closing_ = quintic_hermite(last, first, closing_s_);
     std::vector<AttitudeKnot> knots;

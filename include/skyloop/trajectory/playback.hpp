@@ -29,8 +29,9 @@ struct Playback {
 
 /// Plays a recorded path. At the time t after the start the track is at s = skip + (t − delay)·scale; its velocity and
 /// turn rate are those of the track times scale. A loop goes on at the first row, whatever was skipped; where the last
-/// row is near the first one, within 50 m and 5 s of the way at the mean of their speeds, a curve of degree five closes
-/// it, in 2 s of the track or the time that those speeds take; else the path jumps.
+/// row is near the first one, within 50 m and 5 s of the way at the mean of their speeds, and the first one lies ahead,
+/// a curve of degree five closes it, in the shortest time in which it accelerates no more than its ends, or than 2
+/// m/s²; rows within half a metre follow at once; else the path jumps.
 class PlayedPath : public Trajectory {
 public:
     /// @param path whose first row happens at `start`
@@ -46,7 +47,7 @@ public:
     /// Of one round, in the run; nothing: it does not loop.
     [[nodiscard]] std::optional<Seconds> period() const;
     /// A loop whose end is far from its beginning.
-    [[nodiscard]] bool jumps_back() const { return playback_.end == EndOfPath::loop && closing_s_ == 0; }
+    [[nodiscard]] bool jumps_back() const { return jumps_back_; }
 
 private:
     void close();
@@ -55,7 +56,8 @@ private:
     std::unique_ptr<const RecordedPath> path_;
     GpsTime start_;
     Playback playback_;
-    double closing_s_ = 0;                              // of the track; 0: nothing closes the loop
+    bool jumps_back_ = false;
+    double closing_s_ = 0;                              // of the track; 0: no curve closes the loop
     Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();  // of the closing curve, ECEF, m
     Eigen::Matrix<double, 3, 6> closing_ = Eigen::Matrix<double, 3, 6>::Zero();  // powers of u, m
     AttitudeCurve closing_attitude_;
