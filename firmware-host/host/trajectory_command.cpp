@@ -128,7 +128,7 @@ Result<std::string> path_output(const TrajectoryOptions& options, const OpenedPa
     if (options.format == "json") return trajectory_json(opened.listing);
     if (options.format == "text") return trajectory_text(opened.listing);
     // A picture needs no more samples than it has pixels to show them.
-    constexpr double samples_of_picture = 3000;
+    constexpr double samples_of_picture = 1400;
     const double rate =
         options.format == "csv"
             ? options.rate_hz.value_or(1)

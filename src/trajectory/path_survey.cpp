@@ -179,7 +179,7 @@ std::vector<ExceededLimit> exceeded_limits(const PathSurvey& survey, std::option
 Result<std::vector<PathSample>> sample_path(const Trajectory& path, const PathSpan& span, Hertz rate) {
     constexpr double most_samples = 1e7;
     constexpr Nanoseconds beside = std::chrono::microseconds(500);
-    const double count = std::floor(span.length.value() * rate.value() + 1e-9) + 1;
+    const double count = std::max(1.0, std::floor(span.length.value() * rate.value() + 1e-9) + 1);
     if (!(count <= most_samples))
         return fail(ErrorCode::usage, fmt::format("{:g} s at {:g} Hz are {:g} samples; expected ten million at most",
                                                   span.length.value(), rate.value(), count));

@@ -69,7 +69,9 @@ void PlayedPath::close() {
 }
 
 GpsTime PlayedPath::run_time_of(double track_s) const {
-    return advanced(start_, playback_.delay + Seconds((track_s - playback_.skip.value()) / playback_.time_scale));
+    constexpr double furthest_s = 5e9;  // 158 years: a time of the run remains a time
+    const double in_run = playback_.delay.value() + (track_s - playback_.skip.value()) / playback_.time_scale;
+    return advanced(start_, Seconds(std::clamp(in_run, -furthest_s, furthest_s)));
 }
 
 std::optional<Seconds> PlayedPath::period() const {

@@ -17,6 +17,9 @@ using TrackRows = std::vector<TrackRow>;
 // More than a clock is ever set back by while it counts on: the source began anew.
 constexpr Nanoseconds new_beginning = std::chrono::seconds(2);
 
+// Of a row from the origin of its times, and of a whole track: sums and differences of such times are times, too.
+constexpr Nanoseconds longest_time = std::chrono::hours(24 * 365 * 70);
+
 // What cleaning has left out or changed, and where it did so first.
 struct Touched {
     std::size_t count = 0;
@@ -45,8 +48,9 @@ Nanoseconds median_step(const TrackRows& rows) {
 void leave_out_what_is_no_number(Track& track) {
     // From below the deepest ground to far above the satellites.
     constexpr double nearest_m = 6.3e6, furthest_m = 1e8;
-    Touched no_place, no_velocity;
+    Touched no_place, no_time, no_velocity;
     std::erase_if(track.points, [&](const TrackRow& row) {
+        if (row.time < -longest_time || row.time > longest_time) return no_time.add(row), true;
         const double distance = row.position.vector().norm();
         const bool bad = !(distance >= nearest_m && distance <= furthest_m);
         if (bad) no_place.add(row);
@@ -57,6 +61,7 @@ void leave_out_what_is_no_number(Track& track) {
         no_velocity.add(row);
         row.velocity.reset();
     }
+    no_time.tell(track, "rows have a time further than 70 years from the others' and were left out");
     no_place.tell(track, "rows have no place on the Earth and were left out");
     no_velocity.tell(track, "rows have a velocity that is no number, which was left out");
 }
@@ -111,9 +116,13 @@ void join_parts(Track& track) {
     if (of_one_clock)
         track.notes.push_back(
             fmt::format("{} parts do not follow each other in time; they were put in its order", parts.size()));
-    Touched beginnings;
+    Touched beginnings, too_late;
     TrackRows rows;
     for (TrackRows& part : parts) {
+        if (!rows.empty() && rows.back().time - rows.front().time > longest_time) {
+            too_late.add(part.front());
+            continue;
+        }
         if (!rows.empty() && !of_one_clock) {
             beginnings.add(part.front());
             part.front().jump = true;
@@ -124,6 +133,7 @@ void join_parts(Track& track) {
         rows.insert(rows.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
     }
     track.points = std::move(rows);
+    too_late.tell(track, "parts of a track longer than 70 years were left out");
     beginnings.tell(track,
                     "times the time goes back by more than 2 s: a new beginning, which follows at once, by a jump");
 }

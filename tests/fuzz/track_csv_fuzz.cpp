@@ -15,13 +15,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         require(track.error().message.find('\n') == std::string::npos);
         return 0;
     }
-    const auto gaps = clean_track(*track, Seconds(10));
+    // The length of the text chooses among the ways to lead a curve.
+    const auto gaps = clean_track(*track, Seconds(10), static_cast<GapPolicy>(size % 4));
     if (!gaps) return 0;
     const GpsTime start = to_gps_time(2304, 0.0);
-    const RecordedPath path(*track, *gaps, start);
+    const RecordedPath path(
+        *track, *gaps, start,
+        {static_cast<VehicleClass>(size % vehicle_class_count), {}, static_cast<Smoothing>(size % 3)});
     for (int i = -1; i <= 21; ++i) {
         const TruthState state = path.at(advanced(start, Seconds(path.duration().value() * i / 20)));
         require(state.position.vector().allFinite() && state.velocity.vector().allFinite());
+        require(state.orientation && state.orientation->attitude.body_to_ned().coeffs().allFinite());
+        require(state.orientation->turn_rate.allFinite());
     }
     return 0;
 }

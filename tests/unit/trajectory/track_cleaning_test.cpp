@@ -116,6 +116,19 @@ TEST(TrackCleaning, NumbersThatAreNoneAreLeftOut) {
                 ElementsAre(HasSubstr("2 rows have no place on the Earth"), HasSubstr("1 rows have a velocity")));
 }
 
+TEST(TrackCleaning, TimesBeyondAnyTrackAreLeftOut) {
+    Track track = stamped({0, 1, 2, 3, 4});
+    track.points[1].time = Nanoseconds::max();
+    track.points[3].time = Nanoseconds::min();
+    ASSERT_TRUE(clean_track(track, Seconds(10)).has_value());
+    EXPECT_THAT(times_of(track), ElementsAre(0, 2, 4));
+    EXPECT_THAT(track.notes, ElementsAre(HasSubstr("2 rows have a time further than 70 years")));
+    // Forty years, again and again.
+    Track long_one = stamped({0, 1.26e9, 0, 1.26e9, 0, 1.26e9, 0, 1.26e9, 0, 1.26e9, 0, 1.26e9});
+    ASSERT_TRUE(clean_track(long_one, Seconds(1e10)).has_value());
+    EXPECT_LT(times_of(long_one).back(), 5e9);
+}
+
 TEST(TrackCleaning, EachPolicyOfGaps) {
     const std::vector<double> times{0, 1, 2, 3, 103, 104, 105};
     const auto cleaned = [&](GapPolicy policy, std::size_t gaps) {
