@@ -8,9 +8,8 @@
 
 namespace skyloop {
 
-FeedHearer::FeedHearer(std::string dialect, FeedContext context, FeedInbox& inbox, FeedNewsDesk& news,
-                       FeedTallies& tallies)
-    : name_(std::move(dialect)), context_(std::move(context)), inbox_(inbox), news_(news), tallies_(tallies) {}
+FeedHearer::FeedHearer(std::string dialect, FeedContext context, FeedDesk& desk)
+    : name_(std::move(dialect)), context_(std::move(context)), desk_(desk) {}
 
 FeedDialect& FeedHearer::of(std::uint64_t speaker) {
     auto& dialect = dialects_[speaker];
@@ -19,8 +18,8 @@ FeedDialect& FeedHearer::of(std::uint64_t speaker) {
 }
 
 FeedHearer::Heard FeedHearer::hear(std::uint64_t speaker, ByteSpan bytes, std::int64_t received_ns) {
-    tallies_.messages += 1;
-    tallies_.bytes += bytes.size();
+    desk_.tallies.messages += 1;
+    desk_.tallies.bytes += bytes.size();
     FeedNews news = of(speaker).hear(bytes, received_ns);
     Heard heard{std::move(news.answers), news.refused == 0};
     keep(std::move(news), speaker, received_ns);
@@ -28,11 +27,11 @@ FeedHearer::Heard FeedHearer::hear(std::uint64_t speaker, ByteSpan bytes, std::i
 }
 
 void FeedHearer::keep(FeedNews news, std::uint64_t speaker, std::int64_t received_ns) {
-    tallies_.samples += news.samples.size();
-    tallies_.lost += news.lost;
+    desk_.tallies.samples += news.samples.size();
+    desk_.tallies.lost += news.lost;
     if (!news.remark.empty()) tell(FeedNewsDesk::Kind::other, std::move(news.remark));
     if (news.refused > 0) {
-        tallies_.refused += news.refused;
+        desk_.tallies.refused += news.refused;
         tell(FeedNewsDesk::Kind::refusal, "refused: " + news.refusal);
     }
     auto step = news.steps.begin();
@@ -59,14 +58,14 @@ void FeedHearer::forget(std::uint64_t speaker) { dialects_.erase(speaker); }
 void FeedHearer::reconnected(std::uint64_t speaker) { of(speaker).reconnected(); }
 
 void FeedHearer::flush() {
-    const std::size_t dropped = inbox_.put(items_);
+    const std::size_t dropped = desk_.inbox.put(items_);
     if (dropped == 0) return;
-    tallies_.overflowed += dropped;
+    desk_.tallies.overflowed += dropped;
     tell(FeedNewsDesk::Kind::drop, fmt::format("{} samples dropped: the run does not take them as fast", dropped));
 }
 
 void FeedHearer::tell(FeedNewsDesk::Kind kind, std::string sentence) {
-    news_.tell(kind, std::move(sentence), steady_clock_ns());
+    desk_.news.tell(kind, std::move(sentence), steady_clock_ns());
 }
 
 }  // namespace skyloop

@@ -1,7 +1,6 @@
 /// The ears of a feed's thread: its dialects, and what comes of what they hear.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -14,17 +13,11 @@
 
 namespace skyloop {
 
-/// FeedCounts, from two threads.
-struct FeedTallies {
-    std::atomic<std::uint64_t> messages{0}, bytes{0}, samples{0}, refused{0}, strangers{0}, overflowed{0},
-        dropped_by_kernel{0}, restarts{0}, lost{0};
-};
-
 /// Lets a dialect hear, for each speaker one where speakers have streams of their own. All but the constructor belongs
 /// to the feed's thread.
 class FeedHearer {
 public:
-    FeedHearer(std::string dialect, FeedContext context, FeedInbox& inbox, FeedNewsDesk& news, FeedTallies& tallies);
+    FeedHearer(std::string dialect, FeedContext context, FeedDesk& desk);
 
     struct Heard {
         std::vector<Bytes> answers;
@@ -41,7 +34,7 @@ public:
     /// Hands over what has been heard since the last time.
     void flush();
     void tell(FeedNewsDesk::Kind kind, std::string sentence);
-    FeedTallies& tallies() { return tallies_; }
+    FeedTallies& tallies() { return desk_.tallies; }
 
 private:
     FeedDialect& of(std::uint64_t speaker);
@@ -49,9 +42,7 @@ private:
 
     std::string name_;
     FeedContext context_;
-    FeedInbox& inbox_;
-    FeedNewsDesk& news_;
-    FeedTallies& tallies_;
+    FeedDesk& desk_;
     std::map<std::uint64_t, std::unique_ptr<FeedDialect>> dialects_;
     std::vector<FeedItem> items_;
 };

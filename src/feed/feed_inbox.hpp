@@ -1,6 +1,7 @@
 /// What the thread of a feed hands over to the loop.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -65,6 +66,19 @@ private:
     std::mutex mutex_;
     Limit limits_[7];
     std::vector<std::string> waiting_;
+};
+
+/// FeedCounts, from two threads.
+struct FeedTallies {
+    std::atomic<std::uint64_t> messages{0}, bytes{0}, samples{0}, refused{0}, strangers{0}, overflowed{0},
+        dropped_by_kernel{0}, restarts{0}, lost{0};
+};
+
+/// What a feed's thread and the loop share.
+struct FeedDesk {
+    FeedInbox inbox;
+    FeedNewsDesk news;
+    FeedTallies tallies;
 };
 
 }  // namespace skyloop

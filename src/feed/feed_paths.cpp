@@ -18,12 +18,8 @@ constexpr std::size_t most_arrival_clocks = 256, most_pending_steps = 1024;
 
 }  // namespace
 
-FeedPaths::FeedPaths(const FeedSettings& settings, FeedNewsDesk& news, FeedTallies& tallies)
-    : path_settings_(settings.path),
-      mode_(settings.clock),
-      news_(news),
-      tallies_(tallies),
-      clock_(settings.clock, GpsTime(), 0) {}
+FeedPaths::FeedPaths(const FeedSettings& settings, FeedDesk& desk)
+    : path_settings_(settings.path), mode_(settings.clock), desk_(desk), clock_(settings.clock, GpsTime(), 0) {}
 
 std::shared_ptr<LivePath> FeedPaths::path(const std::string& vehicle) {
     if (vehicle.empty()) {
@@ -50,13 +46,14 @@ void FeedPaths::set_run(GpsTime now, std::int64_t steady_ns) {
         clock.set_run(now, steady_ns);
 }
 
-std::vector<Command> FeedPaths::take(FeedInbox& inbox) {
+std::vector<Command> FeedPaths::take() {
     std::vector<Command> commands;
     if (!begun_) return commands;
     if (next_ >= taken_.size()) {
         taken_.clear();
         next_ = 0;
-        if (inbox.try_take(taken_) && std::exchange(fresh_, false) && mode_ == ClockMode::follow) keep_newest(taken_);
+        if (desk_.inbox.try_take(taken_) && std::exchange(fresh_, false) && mode_ == ClockMode::follow)
+            keep_newest(taken_);
     }
     const std::size_t end = std::min(taken_.size(), next_ + most_items_at_once);
     for (; next_ < end && !step_waits(); ++next_)
@@ -106,7 +103,7 @@ void FeedPaths::take_sample(TruthSample& sample) {
     note(stamped, sample.received_ns);
     if (wanted == vehicles_.end() && !of_any) {
         if (!std::exchange(other_told_, true))
-            news_.tell(
+            desk_.news.tell(
                 FeedNewsDesk::Kind::vehicle,
                 fmt::format("it also speaks of vehicle '{}', which nobody has asked for", sample.vehicle.substr(0, 40)),
                 sample.received_ns);
@@ -128,14 +125,14 @@ void FeedPaths::add(Vehicle& vehicle, const std::string& name, GpsTime time, Tru
     vehicle.restarts = restarts_;
     vehicle.heard_ns = sample.received_ns;
     if (std::exchange(vehicle.silent, false))
-        news_.tell(FeedNewsDesk::Kind::vehicle, fmt::format("vehicle '{}' is heard again", name.substr(0, 40)),
-                   sample.received_ns);
+        desk_.news.tell(FeedNewsDesk::Kind::vehicle, fmt::format("vehicle '{}' is heard again", name.substr(0, 40)),
+                        sample.received_ns);
     vehicle.path->add(time, sample);
     sample.jump = told;
     if (vehicle.path->counts().jumps == vehicle.jumps) return;
     vehicle.jumps = vehicle.path->counts().jumps;
-    news_.tell(FeedNewsDesk::Kind::jump, fmt::format("vehicle '{}' has jumped", name.substr(0, 40)),
-               sample.received_ns);
+    desk_.news.tell(FeedNewsDesk::Kind::jump, fmt::format("vehicle '{}' has jumped", name.substr(0, 40)),
+                    sample.received_ns);
 }
 
 SourceClock::Stamp FeedPaths::stamp(const TruthSample& sample) {
@@ -152,18 +149,18 @@ SourceClock::Stamp FeedPaths::stamp(const TruthSample& sample) {
 void FeedPaths::note(const SourceClock::Stamp& stamp, std::int64_t now_ns) {
     if (stamp.restarted) {
         ++restarts_;
-        tallies_.restarts += 1;
-        news_.tell(FeedNewsDesk::Kind::clock, "the source's clock began anew", now_ns);
+        desk_.tallies.restarts += 1;
+        desk_.news.tell(FeedNewsDesk::Kind::clock, "the source's clock began anew", now_ns);
     } else if (stamp.stepped && mode_ == ClockMode::realtime) {
-        news_.tell(FeedNewsDesk::Kind::clock, "the source's clock stepped against the wall clock by more than 0.25 s",
-                   now_ns);
+        desk_.news.tell(FeedNewsDesk::Kind::clock,
+                        "the source's clock stepped against the wall clock by more than 0.25 s", now_ns);
     }
 }
 
 void FeedPaths::take_step(const FeedStep& step) {
     if (mode_ != ClockMode::lock_step) {
-        news_.tell(FeedNewsDesk::Kind::other, "it steps, but clock is not \"lock_step\": nothing waits for its steps",
-                   step.received_ns);
+        desk_.news.tell(FeedNewsDesk::Kind::other,
+                        "it steps, but clock is not \"lock_step\": nothing waits for its steps", step.received_ns);
         return;
     }
     const SourceClock::Stamp stamped = clock_.stamp(step.until, step.received_ns);
@@ -220,13 +217,13 @@ void FeedPaths::look(std::int64_t now_ns) {
         // The silence of all of them is the feed's.
         if (vehicle.heard_ns == 0 || vehicle.silent || heard_ns - vehicle.heard_ns < silence_ns) continue;
         vehicle.silent = true;
-        news_.tell(FeedNewsDesk::Kind::vehicle, fmt::format("vehicle '{}' is silent", name.substr(0, 40)), now_ns);
+        desk_.news.tell(FeedNewsDesk::Kind::vehicle, fmt::format("vehicle '{}' is silent", name.substr(0, 40)), now_ns);
     }
     const auto rate = clock_.rate();
     if (mode_ != ClockMode::realtime || rate_told_ || !rate || now_ns < start_ns_ + 5 * every_ns) return;
     if (std::abs(*rate - 1) <= odd_rate || *rate <= 0) return;
     rate_told_ = true;
-    news_.tell(
+    desk_.news.tell(
         FeedNewsDesk::Kind::clock,
         fmt::format("the source runs at {:.2f} of real time; expected 1; clock = \"follow\" keeps its time", *rate),
         now_ns);

@@ -17,14 +17,14 @@ namespace skyloop {
 /// Puts what a feed's thread has heard into paths, in its order. All of it belongs to the loop's thread.
 class FeedPaths {
 public:
-    FeedPaths(const FeedSettings& settings, FeedNewsDesk& news, FeedTallies& tallies);
+    FeedPaths(const FeedSettings& settings, FeedDesk& desk);
 
     std::shared_ptr<LivePath> path(const std::string& vehicle);
     void begin(GpsTime start, std::int64_t steady_ns);
     void set_run(GpsTime now, std::int64_t steady_ns);
 
     /// Takes what waits, at most 4096 items. Nothing before begin().
-    std::vector<Command> take(FeedInbox& inbox);
+    std::vector<Command> take();
     [[nodiscard]] bool any_left() const { return next_ < taken_.size(); }
     [[nodiscard]] std::optional<GpsTime> horizon() const;
     /// Steps up to the horizon that have not been given yet.
@@ -61,8 +61,7 @@ private:
 
     LivePathSettings path_settings_;
     ClockMode mode_;
-    FeedNewsDesk& news_;
-    FeedTallies& tallies_;
+    FeedDesk& desk_;
     SourceClock clock_;
     std::map<std::string, SourceClock> arrival_clocks_;  // of vehicles whose source has no time
     std::map<std::string, Vehicle> vehicles_;            // that somebody wants

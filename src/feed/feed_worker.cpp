@@ -20,11 +20,10 @@ FeedContext told_of_wire(FeedContext context, FeedWire wire) {
 
 }  // namespace
 
-FeedWorker::FeedWorker(FeedAddress address, FeedContext context, bool gathers, FeedInbox& inbox, FeedNewsDesk& news,
-                       FeedTallies& tallies)
+FeedWorker::FeedWorker(FeedAddress address, FeedContext context, bool gathers, FeedDesk& desk)
     : address_(std::move(address)),
       gathers_(gathers),
-      hearer_(address_.dialect, told_of_wire(std::move(context), address_.wire), inbox, news, tallies) {}
+      hearer_(address_.dialect, told_of_wire(std::move(context), address_.wire), desk) {}
 
 FeedWorker::~FeedWorker() {
     stop_ = true;

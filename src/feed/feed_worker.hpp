@@ -18,8 +18,7 @@ namespace skyloop {
 class FeedWorker {
 public:
     /// @param gathers looks are a millisecond apart: a hundred senders then cost no more than one
-    FeedWorker(FeedAddress address, FeedContext context, bool gathers, FeedInbox& inbox, FeedNewsDesk& news,
-               FeedTallies& tallies);
+    FeedWorker(FeedAddress address, FeedContext context, bool gathers, FeedDesk& desk);
     ~FeedWorker();
     FeedWorker(const FeedWorker&) = delete;
     FeedWorker& operator=(const FeedWorker&) = delete;

@@ -14,13 +14,10 @@ namespace skyloop {
 class TruthFeed::Impl {
 public:
     Impl(FeedAddress address, const FeedSettings& settings)
-        : paths_(settings, news_, tallies_),
-          worker_(std::move(address), settings.context, settings.clock == ClockMode::realtime, inbox_, news_,
-                  tallies_) {}
+        : paths_(settings, desk_),
+          worker_(std::move(address), settings.context, settings.clock == ClockMode::realtime, desk_) {}
 
-    FeedInbox inbox_;
-    FeedNewsDesk news_;
-    FeedTallies tallies_;
+    FeedDesk desk_;
     FeedPaths paths_;
     FeedWorker worker_;  // last: its thread uses the others
 };
@@ -44,14 +41,14 @@ void TruthFeed::begin(GpsTime start, std::int64_t steady_ns) { impl_->paths_.beg
 void TruthFeed::set_run(GpsTime now, std::int64_t steady_ns) { impl_->paths_.set_run(now, steady_ns); }
 
 std::vector<Command> TruthFeed::pump() {
-    std::vector<Command> commands = impl_->paths_.take(impl_->inbox_);
+    std::vector<Command> commands = impl_->paths_.take();
     for (const FeedStep& step : impl_->paths_.steps_done_before())
         impl_->worker_.post(step, 0);
     return commands;
 }
 
 bool TruthFeed::wait(std::chrono::nanoseconds longest) {
-    return impl_->paths_.any_left() || impl_->inbox_.wait(longest);
+    return impl_->paths_.any_left() || impl_->desk_.inbox.wait(longest);
 }
 
 std::optional<GpsTime> TruthFeed::horizon() const { return impl_->paths_.horizon(); }
@@ -67,7 +64,7 @@ bool TruthFeed::ended() const { return impl_->paths_.ended(); }
 bool TruthFeed::paused() const { return impl_->paths_.paused(); }
 
 FeedCounts TruthFeed::counts() const {
-    const FeedTallies& t = impl_->tallies_;
+    const FeedTallies& t = impl_->desk_.tallies;
     return {t.messages,          t.bytes,    t.samples, t.refused, t.strangers, t.overflowed,
             t.dropped_by_kernel, t.restarts, t.lost};
 }
@@ -75,7 +72,7 @@ FeedCounts TruthFeed::counts() const {
 const SourceClock& TruthFeed::clock() const { return impl_->paths_.clock(); }
 
 std::vector<std::string> TruthFeed::take_news() {
-    std::vector<std::string> news = impl_->news_.take();
+    std::vector<std::string> news = impl_->desk_.news.take();
     for (std::string& sentence : news)
         sentence = description() + ": " + sentence;
     return news;
