@@ -37,7 +37,9 @@ FENCES = [
     ("the operating system",
      ("sys/", "asm/", "linux/", "net/", "netinet/", "arpa/", "fcntl.h", "unistd.h", "termios.h", "poll.h", "pty.h",
       "pthread.h", "signal.h", "netdb.h", "sched.h", "dirent.h", "csignal", "spawn.h", "dlfcn.h", "grp.h", "pwd.h"),
-     {"actuator", "base", "devices", "hid", "transport", "emulator", "feed", "host", "src/api/data_place.cpp"}),
+     {"actuator", "base", "devices", "hid", "transport", "emulator", "host", "src/api/data_place.cpp",
+      "src/feed/mavlink_endpoint.cpp", "src/feed/feed_link.hpp", "src/feed/feed_socket.cpp", "src/feed/feed_socket.hpp",
+      "src/feed/feed_stream.cpp", "src/feed/feed_worker.cpp", "src/feed/stream_link.cpp"}),
 ]
 PUBLIC = {"Eigen", "tl::expected", "the C library"}
 

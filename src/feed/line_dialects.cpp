@@ -6,6 +6,7 @@
 #include <array>
 
 #include "dialects.hpp"
+#include "motion_filter.hpp"
 #include "source_pose.hpp"
 
 namespace skyloop {
@@ -65,22 +66,27 @@ public:
     void reconnected() override {
         lines_.clear();
         watch_.forget();
+        filter_.forget();
     }
 
 protected:
     virtual void take(const std::string& line, std::int64_t received_ns, FeedNews& news) = 0;
-    void report(const LineNumbers& numbers, std::optional<Attitude> attitude, std::int64_t received_ns,
+    // @param coarse the places have a grid of metres, the velocities are better
+    void report(const LineNumbers& numbers, std::optional<Attitude> attitude, bool coarse, std::int64_t received_ns,
                 FeedNews& news) {
         const auto time = source_nanoseconds(numbers[LineColumn::time_s]);
         if (!time) return report_refusal(news, fmt::format("a time of {} s", numbers[LineColumn::time_s]));
-        if (watch_.look(*time, news))
-            report_sample(news, sample_of(pose_of_line(numbers, attitude), context_), time, received_ns);
+        if (!watch_.look(*time, news)) return;
+        SampleOr sample = sample_of(pose_of_line(numbers, attitude), context_);
+        if (sample && coarse) filter_.smooth(*sample, time->count());
+        report_sample(news, std::move(sample), time, received_ns);
     }
 
 private:
     FeedContext context_;
     SourceLines lines_;
     PauseWatch watch_;
+    MotionFilter filter_{{0.5, 0.05}};
 };
 
 class FlightgearGenericDialect : public LineDialect {
@@ -101,7 +107,7 @@ private:
         }
         report(numbers,
                attitude_of_degrees(numbers[LineColumn::roll], numbers[LineColumn::pitch], numbers[LineColumn::yaw]),
-               received_ns, news);
+               false, received_ns, news);
     }
 };
 
@@ -141,7 +147,7 @@ private:
         }
         report(numbers,
                attitude_of_radians(numbers[LineColumn::roll], numbers[LineColumn::pitch], numbers[LineColumn::yaw]),
-               received_ns, news);
+               is_coarse(cells[columns_[LineColumn::latitude]]), received_ns, news);
     }
 
     // The line begins with "<LABELS>,", which lines of numbers do not have.
@@ -163,18 +169,31 @@ private:
         known_ = true;
     }
 
-    // Labels are properties with or without a leading "/fdm/jsbsim/".
+    // Labels are properties, with "/fdm/jsbsim/" before them or, of JSBSim 2020.3, the last part of them alone.
     static bool fits(std::size_t column, std::string_view label) {
         label = without_blanks(label);
         if (column == LineColumn::time_s && label == "Time") return true;
         const std::string_view wanted = jsbsim_properties[column];
-        return label == wanted || (label.size() > wanted.size() && label.ends_with(wanted) &&
-                                   label[label.size() - wanted.size() - 1] == '/');
+        const auto is_end_of = [](std::string_view end, std::string_view whole) {
+            return !end.empty() && whole.size() > end.size() && whole.ends_with(end) &&
+                   whole[whole.size() - end.size() - 1] == '/';
+        };
+        return label == wanted || is_end_of(wanted, label) || is_end_of(label, wanted);
+    }
+
+    // JSBSim 2020.3 writes seven digits whatever it is asked for: a grid of a metre.
+    bool is_coarse(std::string_view latitude_cell) {
+        constexpr std::size_t fine_decimals = 7;
+        const std::string_view cell = without_blanks(latitude_cell);
+        const std::size_t point = cell.find('.');
+        if (point != std::string_view::npos) decimals_ = std::max(decimals_, cell.size() - point - 1);
+        return decimals_ < fine_decimals;
     }
 
     bool known_ = false;
     std::string problem_ = "lines of numbers before the <LABELS> that name them";
     std::array<std::size_t, line_columns> columns_{};
+    std::size_t decimals_ = 0;  // the most of a latitude
 };
 
 }  // namespace

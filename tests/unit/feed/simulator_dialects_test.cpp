@@ -149,23 +149,44 @@ TEST(FlightgearGenericDialect, RefusesOtherLines) {
     EXPECT_EQ(hear_text(*dialect, generic_line(2, 91)).refused, 1u);
 }
 
-// As JSBSim 2020.3.16 writes it: labels, then blanks around the numbers.
+// As JSBSim 2020.3.16 of Debian writes them, with the last parts of the properties alone, and as newer ones do.
 const std::string jsbsim_labels =
-    "<LABELS> ,Time,/fdm/jsbsim/position/lat-geod-deg,/fdm/jsbsim/position/long-gc-deg,position/h-sl-ft,"
-    "velocities/v-north-fps,velocities/v-east-fps,velocities/v-down-fps,attitude/phi-rad,attitude/theta-rad,"
-    "attitude/psi-rad\n";
+    "<LABELS> ,Time,sim-time-sec,lat-geod-deg,long-gc-deg,h-sl-ft,v-north-fps,v-east-fps,v-down-fps,phi-rad,theta-rad,"
+    "psi-rad\n";
+const std::string whole_jsbsim_labels =
+    "<LABELS> ,Time,simulation/sim-time-sec,/fdm/jsbsim/position/lat-geod-deg,/fdm/jsbsim/position/long-gc-deg,"
+    "position/h-sl-ft,velocities/v-north-fps,velocities/v-east-fps,velocities/v-down-fps,attitude/phi-rad,"
+    "attitude/theta-rad,attitude/psi-rad\n";
 std::string jsbsim_line(double time) {
-    return fmt::format("{:.4f} ,    {:.10f},{:.10f} ,{:.7f},{:.7f},{:.7f},{:.7f},{:.9f},{:.9f},{:.9f}\n", time,
-                       Pose::latitude, Pose::longitude, Pose::height / foot, Pose::north / foot, Pose::east / foot,
-                       -Pose::up / foot, radians(Pose::roll), radians(Pose::pitch), radians(Pose::yaw));
+    return fmt::format(
+        "  {0:.4f} , {0:.4f},    {1:.10f},{2:.10f} ,{3:.7f},{4:.7f},{5:.7f},{6:.7f},{7:.9f},{8:.9f},{9:.9f}\n", time,
+        Pose::latitude, Pose::longitude, Pose::height / foot, Pose::north / foot, Pose::east / foot, -Pose::up / foot,
+        radians(Pose::roll), radians(Pose::pitch), radians(Pose::yaw));
 }
 
 TEST(JsbsimDialect, ReadsTheColumnsByTheirNames) {
+    for (const std::string& labels : {jsbsim_labels, whole_jsbsim_labels}) {
+        const FeedNews news = hear_text(*dialect_named("jsbsim"), labels + jsbsim_line(3.25));
+        ASSERT_EQ(news.samples.size(), 1u) << news.refusal;
+        expect_pose(news.samples[0], line_tolerance);
+        EXPECT_EQ(news.samples[0].source_time, Nanoseconds(3'250'000'000));
+    }
+}
+
+// Seven digits of a latitude are a grid of a metre; the velocities lead across it.
+TEST(JsbsimDialect, SevenDigitsAreSmoothed) {
     const auto dialect = dialect_named("jsbsim");
-    const FeedNews news = hear_text(*dialect, jsbsim_labels + jsbsim_line(3.25));
-    ASSERT_EQ(news.samples.size(), 1u) << news.refusal;
-    expect_pose(news.samples[0], line_tolerance);
-    EXPECT_EQ(news.samples[0].source_time, Nanoseconds(3'250'000'000));
+    hear_text(*dialect, jsbsim_labels);
+    double worst = 0;
+    for (int i = 0; i < 500; ++i) {
+        const double time = i * 0.02, latitude = Pose::latitude + time * 20 / 111183;
+        const auto news = hear_text(*dialect, fmt::format("{0:.7g},{0:.7g},{1:.7g},8.5456,1000,{2:.7g},0,0,0,0,0\n",
+                                                          time, latitude, 20 / foot));
+        if (i < 100) continue;
+        const Geodetic place = to_geodetic(news.samples.at(0).position);
+        worst = std::max(worst, std::abs(place.latitude.deg() - latitude) * 111183);
+    }
+    EXPECT_LT(worst, 0.3);
 }
 
 TEST(JsbsimDialect, RefusesGeocentricLatitudesAndNumbersWithoutNames) {
@@ -175,7 +196,7 @@ TEST(JsbsimDialect, RefusesGeocentricLatitudesAndNumbersWithoutNames) {
                 HasSubstr("geocentric"));
     EXPECT_THAT(hear_text(*dialect, jsbsim_line(1)).refusal, HasSubstr("geocentric"));
     EXPECT_EQ(hear_text(*dialect, jsbsim_labels + jsbsim_line(1)).samples.size(), 1u);
-    EXPECT_THAT(hear_text(*dialect, "1,2\n").refusal, HasSubstr("without a number for position/long-gc-deg"));
+    EXPECT_THAT(hear_text(*dialect, "1,2\n").refusal, HasSubstr("without a number for position/lat-geod-deg"));
     dialect->reconnected();
     EXPECT_EQ(hear_text(*dialect, jsbsim_line(2)).refused, 1u);
 }

@@ -9,11 +9,11 @@ import path from "node:path";
 const skipped = 77;
 const here = import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname);
 const folder = process.env.SKYLOOP_NODE_FOLDER;
-const helper = process.env.SKYLOOP_MAVLINK_PEER;
+const helper = process.env.SKYLOOP_FEED_PEER;
 const quiet = ["--no-audit", "--no-fund", "--no-package-lock", "--ignore-scripts"];
 
 function skip(why) {
-    console.log(`mavlink/peer is skipped: ${why}`);
+    console.log(`integration/mavlink_peer is skipped: ${why}`);
     process.exit(skipped);
 }
 
@@ -60,7 +60,7 @@ function frames(buffer) {
 
 const place = { lat: 473977421, lon: 85455943 };
 const velocity = { vn: 350, ve: -425, vd: -212 };
-/** What mavlink_peer.cpp writes, in node-mavlink's names; of version 1 without `extensions`. */
+/** What feed_peer.cpp writes, in node-mavlink's names; of version 1 without `extensions`. */
 const written = [
     [232, { timeUsec: 1700000000123456n, timeWeekMs: 477314000, ...place, alt: 488.25, hdop: 0.75, vdop: 1.25, vn: 3.5,
         ve: -4.25, vd: -2.125, speedAccuracy: 0.25, horizAccuracy: 1.5, vertAccuracy: 2.5, ignoreFlags: 0x88,
@@ -70,7 +70,7 @@ const written = [
     [113, { timeUsec: 1700000000123456n, ...place, alt: 488123, eph: 75, epv: 125, vel: 551, ...velocity, cog: 30950,
         fixType: 3, satellitesVisible: 17 }, { id: 1, yaw: 5313 }],
     [0, { customMode: 77, type: 18, autopilot: 8, baseMode: 81, systemStatus: 4, mavlinkVersion: 3 }, {}],
-    [76, { _param1: 115, _param2: 20000, _param3: 3, _param4: 4, _param5: 5, _param6: 6, _param7: 7, command: 511,
+    [76, { param1: 115, param2: 20000, param3: 3, param4: 4, param5: 5, param6: 6, param7: 7, command: 511,
         targetSystem: 1, targetComponent: 2, confirmation: 1 }, {}],
     [115, { timeUsec: 12345678n, attitudeQuaternion: [0.5, -0.5, 0.25, 0.75], rollspeed: 0.125, pitchspeed: -0.25,
         yawspeed: 0.5, ...place, alt: 488123, vx: 350, vy: -425, vz: -212, indAirspeed: 551, trueAirspeed: 552, xacc: 10,

@@ -1,7 +1,9 @@
-// The project's end of the test with another implementation of MAVLink.
-//   mavlink_peer write OUT    frames of ours, of both versions
-//   mavlink_peer again IN OUT the frames of IN, decoded and encoded again
-//   mavlink_peer truth IN     what the dialect reads from each frame of IN, a JSON object a line
+// The project's end of the tests with other programs' words.
+//   feed_peer write OUT       MAVLink frames of ours, of both versions
+//   feed_peer again IN OUT    the MAVLink frames of IN, decoded and encoded again
+//   feed_peer truth IN        what the dialect reads from each MAVLink frame of IN, a JSON object a line
+//   feed_peer say DIALECT OUT what a dialect says at first
+//   feed_peer hear DIALECT IN what it reads from the pieces of IN, each after its arrival (ns, 8 bytes) and size (4)
 #include <fmt/format.h>
 
 #include <fstream>
@@ -11,6 +13,7 @@
 
 #include "skyloop/feed/feed_dialect.hpp"
 #include "skyloop/geo/local_map.hpp"
+#include "skyloop/protocol/decoded_message.hpp"
 #include "skyloop/protocol/mavlink_vehicle.hpp"
 
 namespace skyloop {
@@ -130,12 +133,44 @@ void print_truth(const Bytes& bytes) {
     }
 }
 
+void write_words(const std::string& name, const char* file) {
+    Bytes words;
+    for (const Bytes& word : make_dialect(name, {})->say())
+        words.insert(words.end(), word.begin(), word.end());
+    write_file(file, words);
+}
+
+struct HeardPiece {
+    std::int64_t received_ns = 0;
+    std::uint32_t size = 0;
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.received_ns, m.size);
+    }
+};
+
+void print_heard(const std::string& name, const Bytes& bytes) {
+    constexpr std::size_t head_size = 12;
+    const auto dialect = make_dialect(name, {});
+    for (ByteSpan left(bytes); !left.empty();) {
+        const auto piece = decode_front<HeardPiece>(left);
+        if (!piece || left.size() - head_size < piece->size) throw std::runtime_error("pieces that are cut");
+        const FeedNews news = dialect->hear(left.subspan(head_size, piece->size), piece->received_ns);
+        if (news.refused > 0) fmt::print("{{\"refused\":{},\"why\":{}}}\n", news.refused, json_string(news.refusal));
+        for (const TruthSample& sample : news.samples)
+            fmt::print("{}\n", sample_line(sample));
+        left = left.subspan(head_size + piece->size);
+    }
+}
+
 void run_command(int count, char** words) {
     const std::string what = count > 1 ? words[1] : "";
     if (what == "write" && count == 3) return write_file(words[2], own_frames());
     if (what == "again" && count == 4) return write_file(words[3], frames_again(read_file(words[2])));
     if (what == "truth" && count == 3) return print_truth(read_file(words[2]));
-    throw std::runtime_error("expected write OUT, again IN OUT or truth IN");
+    if (what == "say" && count == 4) return write_words(words[2], words[3]);
+    if (what == "hear" && count == 4) return print_heard(words[2], read_file(words[3]));
+    throw std::runtime_error("expected write OUT, again IN OUT, truth IN, say DIALECT OUT or hear DIALECT IN");
 }
 
 }  // namespace
@@ -146,7 +181,7 @@ int main(int count, char** words) {
         skyloop::run_command(count, words);
         return 0;
     } catch (const std::exception& error) {
-        fmt::print(stderr, "mavlink_peer: {}\n", error.what());
+        fmt::print(stderr, "feed_peer: {}\n", error.what());
         return 1;
     }
 }
