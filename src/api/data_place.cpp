@@ -4,15 +4,16 @@
 
 #include <system_error>
 
-#include "skyloop.h"
-
 namespace skyloop {
 namespace {
+
+// Something of the library's own: a function that it shows may be taken for one of the program's.
+constexpr char inside = 0;
 
 // The data as it lies beside the library, wherever both were moved to together.
 std::filesystem::path beside_library() {
     Dl_info found{};
-    if (::dladdr(reinterpret_cast<const void*>(&sky_abi_version), &found) == 0 || found.dli_fname == nullptr) return {};
+    if (::dladdr(&inside, &found) == 0 || found.dli_fname == nullptr) return {};
     std::error_code none;
     const std::filesystem::path library = std::filesystem::canonical(found.dli_fname, none);
     if (none) return {};
