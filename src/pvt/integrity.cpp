@@ -63,7 +63,8 @@ std::optional<std::size_t> most_suspect(const SinglePoint& solution) {
 
 double upper_incomplete_gamma(double a, double x) {
     if (x <= 0) return 1;
-    const double factor = std::exp(a * std::log(x) - x - std::lgamma(a));
+    int sign = 1;  // positive for all a above 0; std::lgamma() would leave it in a variable that all threads share
+    const double factor = std::exp(a * std::log(x) - x - ::lgamma_r(a, &sign));
     return x < a + 1 ? 1 - factor * gamma_series(a, x) : factor * gamma_fraction(a, x);
 }
 
