@@ -12,8 +12,7 @@ namespace {
 // (android.location.Location).
 class GnssLoggerReader {
 public:
-    explicit GnssLoggerReader(const TrackFile& file)
-        : file_(file), track_(file, "GnssLogger", "fixes"), table_(file, ',', "") {}
+    explicit GnssLoggerReader(const TrackFile& file) : track_(file, "GnssLogger", "fixes"), table_(file, ',', "") {}
     Result<Track> read();
 
 private:
@@ -23,7 +22,6 @@ private:
     Result<void> take_fix();
     [[nodiscard]] std::optional<std::size_t> column(std::string_view meaning) const;
 
-    const TrackFile& file_;
     TextTrack track_;
     TableCells table_;
     std::vector<std::string> names_{"fix",   "provider", "latitude", "longitude", "altitude",

@@ -33,7 +33,7 @@ TextRow nmea_row(const LogEpoch& epoch) {
 bool nmea_has_place(const LogEpoch& epoch) { return epoch.place || (epoch.motion.latitude && epoch.motion.longitude); }
 
 // Converters write places with the status of no fix; receivers repeat the last place so.
-Result<void> add_nmea_epochs(TextTrack& track, const ReceiverLog& log) {
+void add_nmea_epochs(TextTrack& track, const ReceiverLog& log) {
     const bool all_void = std::none_of(log.epochs.begin(), log.epochs.end(), [](const LogEpoch& epoch) {
         return nmea_has_place(epoch) && epoch.type != FixType::none;
     });
@@ -57,11 +57,10 @@ Result<void> add_nmea_epochs(TextTrack& track, const ReceiverLog& log) {
         marked += epoch.type == FixType::none;
         TextRow row = nmea_row(epoch);
         if (!separated) row.separation_m.reset();
-        if (const auto added = track.add(row); !added) return added;
+        if (!track.add(row)) track.leave_out("say a place or a speed that cannot be", 0);
     }
     if (marked > 0)
         track.note(fmt::format("all {} places are marked as without a fix; they are taken all the same", marked));
-    return {};
 }
 
 }  // namespace
@@ -97,7 +96,7 @@ Result<Track> read_nmea_track(const TrackFile& file) {
     const bool headings = std::any_of(log->epochs.begin(), log->epochs.end(),
                                       [](const LogEpoch& epoch) { return epoch.motion.heading && !epoch.motion.roll; });
     if (headings) track.note("headings (HDT, THS) come without roll and pitch, which are taken as level");
-    if (const auto added = add_nmea_epochs(track, *log); !added) return fail(added.error());
+    add_nmea_epochs(track, *log);
     return track.finish("GGA, GNS or RMC sentences with a place");
 }
 

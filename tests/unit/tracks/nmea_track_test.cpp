@@ -106,6 +106,12 @@ TEST(NmeaTrack, TakesVoidPlacesOnlyWhereThereAreNoOthers) {
                 Contains(HasSubstr("all 1 places are marked as without a fix; they are taken all the same")));
 }
 
+TEST(NmeaTrack, LeavesOutASinglePlaceThatCannotBe) {
+    const Track track = track_of(rmc("120000.00") + gga("120000.00") + gga("120001.00", "-20000.0,M,48.0,M"));
+    EXPECT_EQ(track.points.size(), 1u);
+    EXPECT_THAT(track.notes, Contains(HasSubstr("1 of 2 epochs say a place or a speed that cannot be")));
+}
+
 TEST(NmeaTrack, RefusesALogWithoutPlaces) {
     EXPECT_THAT(refusal_of_track(nmea("GPGSA,A,1,,,,,,,,,,,,,,,")), HasSubstr("none of them with a solution"));
     EXPECT_THAT(refusal_of_track(nmea("GPRMC,120000.00,V,,,,,,,050324,,")), HasSubstr("1 of 1 epochs have no place"));
