@@ -53,6 +53,7 @@ constexpr TrackFormat formats[] = {
     {{".igc"}, is_igc, read_igc},
     {{".pos"}, is_table_dialect, read_table_dialect},
     {{".nmea", ".log"}, is_nmea_track, read_nmea_track},
+    {{"", "", ""}, is_named_flight_log, refuse_flight_log},
     {{".csv", ".txt", ""}, [](const TrackFile&) { return true; }, read_csv},
 };
 

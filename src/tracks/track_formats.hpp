@@ -30,5 +30,8 @@ bool is_tlog(const TrackFile& file);
 Result<Track> read_tlog(const TrackFile& file);
 bool is_ubx_track(const TrackFile& file);
 Result<Track> read_ubx_track(const TrackFile& file);
+// A file that no format knows by its content and whose name says that it is one of these logs.
+bool is_named_flight_log(const TrackFile& file);
+Result<Track> refuse_flight_log(const TrackFile& file);
 
 }  // namespace skyloop

@@ -37,17 +37,29 @@ struct FlightLimits {
     double place_m = 0, velocity_mps = 0, attitude_deg = 0;
 };
 
-const std::filesystem::path& flights_folder() {
-    static const std::filesystem::path folder = [] {
-        std::filesystem::path made =
-            std::filesystem::path(::testing::TempDir()) / ("skyloop-flights-" + std::to_string(std::random_device()()));
-        std::filesystem::create_directories(made);
-        const std::string command =
-            std::string("python3 ") + SKYLOOP_SOURCE_DIR + "/tests/support/flights/write_flights.py " + made.string();
+// The logs, as long as the program runs.
+class FlightsFolder {
+public:
+    FlightsFolder()
+        : path_(std::filesystem::path(::testing::TempDir()) /
+                ("skyloop-flights-" + std::to_string(std::random_device()()))) {
+        std::filesystem::create_directories(path_);
+        const std::string command = std::string("python3 -B ") + SKYLOOP_SOURCE_DIR +
+                                    "/tests/support/flights/write_flights.py " + path_.string();
         EXPECT_EQ(std::system(command.c_str()), 0) << command;
-        return made;
-    }();
-    return folder;
+    }
+    FlightsFolder(const FlightsFolder&) = delete;
+    FlightsFolder& operator=(const FlightsFolder&) = delete;
+    ~FlightsFolder() { std::filesystem::remove_all(path_); }
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+const std::filesystem::path& flights_folder() {
+    static const FlightsFolder folder;
+    return folder.path();
 }
 
 Bytes flight_bytes(const std::filesystem::path& path) {
@@ -208,6 +220,19 @@ TEST(FlightLogs, ALogWithoutAPlaceSaysWhatItHas) {
     const auto empty = read_track(ulog, "x.ulg", {});
     ASSERT_FALSE(empty.has_value());
     EXPECT_THAT(empty.error().message, HasSubstr("x.ulg: a ULog without two records of a place"));
+}
+
+TEST(FlightLogs, ANameThatTheContentDoesNotFitIsRefused) {
+    const auto refusal = [](std::string_view content, const std::string& name) {
+        const auto track = read_track(to_bytes(content), name, {});
+        return track ? std::string() : track.error().message;
+    };
+    EXPECT_EQ(refusal("SQLite format 3", "world.TLOG"),
+              "world.TLOG: begins with 53 51 4c 69 74 65 20 66; expected a MAVLink log, which begins with a time of "
+              "eight bytes and fe or fd");
+    EXPECT_EQ(refusal("", "a.ulg"), "a.ulg: is empty; expected a PX4 log, which begins with 55 4c 6f 67");
+    EXPECT_THAT(refusal("x", "a.bin"), HasSubstr("an ArduPilot log"));
+    EXPECT_THAT(refusal("x", "a.ubx"), HasSubstr("a UBX log with NAV-PVT"));
 }
 
 // What damage leaves is a track or one clear line; every place is one.
