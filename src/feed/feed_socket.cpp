@@ -15,7 +15,7 @@
 namespace skyloop {
 namespace {
 
-constexpr int feed_receive_buffer = 1 << 20;  // FEEDS.md 3.1
+constexpr int feed_receive_buffer = 4 << 20;  // FEEDS.md 3.1: at least 1 MiB; some thousand datagrams
 constexpr int feed_backlog = 8;
 
 // A system that does not know an option goes without it.

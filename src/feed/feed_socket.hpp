@@ -55,7 +55,7 @@ struct FeedDatagram {
 /// Takes datagrams in batches, with the kernel's times and its count of what it had to drop.
 class DatagramReader {
 public:
-    /// Asks for times, the count and a receive buffer of 1 MiB.
+    /// Asks for times, the count and a receive buffer of 4 MiB.
     explicit DatagramReader(int socket);
     /// At most one batch, without waiting. What is given lives until the next call.
     const std::vector<FeedDatagram>& take();

@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <random>
 #include <string>
 #include <thread>
@@ -275,6 +276,21 @@ TEST(TruthFeed, RelaysStreamsUnmodifiedUntilOneEndGoes) {
         EXPECT_EQ(got, large);
         ASSERT_TRUE(pump_until(**feed, [&] { return any->counts().samples == static_cast<unsigned>(round); }));
     }
+}
+
+TEST(TruthFeed, HearsTheExampleSender) {
+    const auto feed = open_feed("udp-json:0");
+    const auto any = feed->path("");
+    feed->begin(feed_start, steady_clock_ns());
+    const std::string command =
+        "python3 '" SKYLOOP_SOURCE_DIR "/tools/examples/json/send_truth.py' " + std::to_string(feed->port()) + " 0.5";
+    if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "python3 is absent";
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    EXPECT_TRUE(pump_until(*feed, [&] { return any->counts().samples == 25; }));
+    EXPECT_EQ(feed->counts().refused, 0u);
+    EXPECT_EQ(feed->counts().lost, 0u);
+    EXPECT_EQ(any->counts().jumps, 0u);
+    EXPECT_NEAR(any->at(*any->newest()).velocity.length().value(), 15, 0.01);
 }
 
 TEST(TruthFeed, SaysWhyItCannotOpen) {
