@@ -100,16 +100,16 @@ public:
         return news;
     }
 
-    // X-Plane 11 and 12 want the rate in letters, 9 and 10 as an integer: both until poses come, then now and then.
+    // X-Plane 11 and 12 want the rate in letters, 9 and 10 as an integer: both until poses come, then now and then. The
+    // letters last: 11 and 12 take the integer for letters too, of another rate or of none, and 9 and 10 take the
+    // letters for a rate above that of their frames.
     std::vector<Bytes> say() override {
         constexpr int renewal = 10;
         const bool renew = said_++ % renewal == 0;
         const bool heard = std::exchange(heard_, false);
         if (heard && !renew) return {};
         const auto rate = static_cast<std::int32_t>(std::clamp(std::lround(context_.rate_hz), 1L, 1000L));
-        Bytes letters = to_bytes(fmt::format("RPOS{:c}{}{:c}", '\0', rate, '\0'));
-        std::vector<Bytes> words{std::move(letters),
-                                 xplane_reference_request(rate, time_reference, "sim/time/total_running_time_sec"),
+        std::vector<Bytes> words{xplane_reference_request(rate, time_reference, "sim/time/total_running_time_sec"),
                                  xplane_reference_request(rate, paused_reference, "sim/time/paused")};
         if (!heard) {
             Bytes integer{'R', 'P', 'O', 'S', 0};
@@ -117,6 +117,7 @@ public:
                 integer.push_back(static_cast<std::uint8_t>(static_cast<std::uint32_t>(rate) >> shift & 0xFF));
             words.push_back(std::move(integer));
         }
+        words.push_back(to_bytes(fmt::format("RPOS{:c}{}{:c}", '\0', rate, '\0')));
         return words;
     }
 

@@ -3,7 +3,9 @@
 //   feed_peer again IN OUT    the MAVLink frames of IN, decoded and encoded again
 //   feed_peer truth IN        what the dialect reads from each MAVLink frame of IN, a JSON object a line
 //   feed_peer say DIALECT OUT what a dialect says at first
-//   feed_peer hear DIALECT IN what it reads from the pieces of IN, each after its arrival (ns, 8 bytes) and size (4)
+//   feed_peer hear DIALECT IN [LATITUDE LONGITUDE HEIGHT]
+//                             what it reads from the pieces of IN, each after its arrival (ns, 8 bytes) and size (4);
+//                             degrees and metres above the ellipsoid of its origin
 #include <fmt/format.h>
 
 #include <fstream>
@@ -149,9 +151,9 @@ struct HeardPiece {
     }
 };
 
-void print_heard(const std::string& name, const Bytes& bytes) {
+void print_heard(const std::string& name, const FeedContext& context, const Bytes& bytes) {
     constexpr std::size_t head_size = 12;
-    const auto dialect = make_dialect(name, {});
+    const auto dialect = make_dialect(name, context);
     for (ByteSpan left(bytes); !left.empty();) {
         const auto piece = decode_front<HeardPiece>(left);
         if (!piece || left.size() - head_size < piece->size) throw std::runtime_error("pieces that are cut");
@@ -169,7 +171,10 @@ void run_command(int count, char** words) {
     if (what == "again" && count == 4) return write_file(words[3], frames_again(read_file(words[2])));
     if (what == "truth" && count == 3) return print_truth(read_file(words[2]));
     if (what == "say" && count == 4) return write_words(words[2], words[3]);
-    if (what == "hear" && count == 4) return print_heard(words[2], read_file(words[3]));
+    FeedContext context;
+    if (what == "hear" && count == 7)
+        context.origin = Geodetic::degrees(std::stod(words[4]), std::stod(words[5]), std::stod(words[6]));
+    if (what == "hear" && (count == 4 || count == 7)) return print_heard(words[2], context, read_file(words[3]));
     throw std::runtime_error("expected write OUT, again IN OUT, truth IN, say DIALECT OUT or hear DIALECT IN");
 }
 

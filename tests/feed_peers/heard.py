@@ -13,17 +13,17 @@ class Recording:
     def __init__(self):
         self.pieces = []
 
-    def add(self, piece):
-        self.pieces.append((time.monotonic_ns(), piece))
+    def add(self, piece, received_ns=None):
+        self.pieces.append((time.monotonic_ns() if received_ns is None else received_ns, piece))
 
-    def read_by(self, dialect):
-        """The objects that feed_peer prints: samples and refusals."""
+    def read_by(self, dialect, origin=()):
+        """The objects that feed_peer prints: samples and refusals. Of local metres: latitude, longitude, height."""
         with tempfile.NamedTemporaryFile() as file:
             for received_ns, piece in self.pieces:
                 file.write(struct.pack("<qI", received_ns, len(piece)) + piece)
             file.flush()
-            done = subprocess.run([os.environ["SKYLOOP_FEED_PEER"], "hear", dialect, file.name], capture_output=True,
-                                  text=True, timeout=30)
+            done = subprocess.run([os.environ["SKYLOOP_FEED_PEER"], "hear", dialect, file.name, *map(str, origin)],
+                                  capture_output=True, text=True, timeout=30)
         assert done.returncode == 0, done.stderr
         return [json.loads(line) for line in done.stdout.splitlines()]
 

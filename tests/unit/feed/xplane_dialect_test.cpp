@@ -53,15 +53,15 @@ TEST(XplaneDialect, AsksInBothWaysUntilPosesCome) {
     const auto dialect = dialect_named("xplane", context);
     const auto words = dialect->say();
     ASSERT_EQ(words.size(), 4u);
-    EXPECT_EQ(words[0], (Bytes{'R', 'P', 'O', 'S', 0, '4', '0', 0}));
-    ASSERT_EQ(words[1].size(), 413u);
-    EXPECT_EQ(Bytes(words[1].begin(), words[1].begin() + 13), (Bytes{'R', 'R', 'E', 'F', 0, 40, 0, 0, 0, 1, 0, 0, 0}));
-    EXPECT_STREQ(reinterpret_cast<const char*>(words[1].data()) + 13, "sim/time/total_running_time_sec");
-    EXPECT_STREQ(reinterpret_cast<const char*>(words[2].data()) + 13, "sim/time/paused");
-    EXPECT_EQ(words[3], (Bytes{'R', 'P', 'O', 'S', 0, 40, 0, 0, 0}));
+    ASSERT_EQ(words[0].size(), 413u);
+    EXPECT_EQ(Bytes(words[0].begin(), words[0].begin() + 13), (Bytes{'R', 'R', 'E', 'F', 0, 40, 0, 0, 0, 1, 0, 0, 0}));
+    EXPECT_STREQ(reinterpret_cast<const char*>(words[0].data()) + 13, "sim/time/total_running_time_sec");
+    EXPECT_STREQ(reinterpret_cast<const char*>(words[1].data()) + 13, "sim/time/paused");
+    EXPECT_EQ(words[2], (Bytes{'R', 'P', 'O', 'S', 0, 40, 0, 0, 0}));
+    EXPECT_EQ(words[3], (Bytes{'R', 'P', 'O', 'S', 0, '4', '0', 0}));
     dialect->hear(rpos(), 0);
     EXPECT_TRUE(dialect->say().empty());
-    EXPECT_EQ(dialect->say().size(), 4u);  // none since
+    EXPECT_EQ(dialect->say().size(), 4u);  // no pose since
 }
 
 Bytes data_rows(double latitude) {
