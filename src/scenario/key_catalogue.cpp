@@ -86,8 +86,8 @@ const std::vector<KeyTable>& scenario_key_tables() {
             recorder.begin(given, std::nullopt);
             record_scenario(recorder);
         }
-        const std::size_t turns = recorder.turns();
-        for (std::size_t turn = 0; turn < turns; ++turn)
+        // There are more of them when a table is found that only one kind has.
+        for (std::size_t turn = 0; turn < recorder.turns(); ++turn)
             for (const bool given : {false, true}) {
                 recorder.begin(given, turn);
                 record_scenario(recorder);

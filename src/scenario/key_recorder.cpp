@@ -39,10 +39,18 @@ void KeyRecorder::begin(bool given, std::optional<std::size_t> turn) {
     turn_ = turn;
 }
 
+std::size_t KeyRecorder::turns_of_one_word(const std::string& path) const {
+    std::size_t turns = 1;
+    for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1))
+        if (const auto above = noted_.find(path.substr(0, dot)); above != noted_.end())
+            turns *= std::max<std::size_t>(1, above->second.words.size());
+    return turns;
+}
+
 std::size_t KeyRecorder::turns() const {
     std::size_t most = 1;
     for (const auto& [path, noted] : noted_)
-        most = std::max(most, noted.words.size());
+        most = std::max(most, noted.words.size() * turns_of_one_word(path));
     return most;
 }
 
@@ -56,8 +64,8 @@ void KeyRecorder::enter(const std::string& path, bool list) { of(path).table.lis
 
 std::optional<std::string> KeyRecorder::kind_of(const Noted& noted) const {
     if (noted.words.empty()) return std::string();
-    if (turn_.value_or(noted.words.size()) >= noted.words.size()) return std::nullopt;
-    return noted.words[*turn_];
+    if (!turn_) return std::nullopt;
+    return noted.words[*turn_ / turns_of_one_word(noted.table.path) % noted.words.size()];
 }
 
 void KeyRecorder::note(const std::string& path, KeyEntry entry) {
@@ -96,8 +104,8 @@ void KeyRecorder::note_not_both(const std::string& path, std::string_view key, s
 std::optional<std::size_t> KeyRecorder::kind(const std::string& path, std::span<const std::string_view> words) {
     Noted& noted = of(path);
     noted.words.assign(words.begin(), words.end());
-    if (turn_.value_or(words.size()) >= words.size()) return std::nullopt;
-    return turn_;
+    if (!turn_) return std::nullopt;
+    return *turn_ / turns_of_one_word(path) % words.size();
 }
 
 void KeyRecorder::refuse_kind(const std::string& path) {

@@ -16,7 +16,8 @@
 namespace skyloop {
 
 /// One reading shows the keys of one branch. So there are many: with every key said to be there and with none, and with
-/// each word of `kind` in turn, of all tables at once.
+/// each word of `kind` in turn, of all tables at once; a table within one that has kinds has each of its own with each
+/// of that one's.
 class KeyRecorder {
 public:
     /// @param given what has() answers
@@ -51,6 +52,8 @@ private:
         std::vector<std::string> order{};                      // of names, as a reader asks that finds all of them
     };
     Noted& of(const std::string& path);
+    // For how many turns a table keeps a word: until those above it have had all of theirs.
+    [[nodiscard]] std::size_t turns_of_one_word(const std::string& path) const;
     // The word that is read with, "" in a table without kinds; nothing: the table has kinds, and this is the turn of
     // none.
     [[nodiscard]] std::optional<std::string> kind_of(const Noted& noted) const;

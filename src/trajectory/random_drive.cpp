@@ -73,7 +73,7 @@ std::vector<PlannedWaypoint> DriveDice::roll(std::size_t most) {
 }  // namespace
 
 PathPlanResult plan_drive(const DriveWish& wish) {
-    constexpr std::size_t most_crossings = 50000;
+    constexpr std::size_t most_crossings = 20000;
     constexpr double most_blocks = 1e6;
     if (!(wish.area >= wish.block) || wish.area > most_blocks * wish.block)
         return tl::unexpected(

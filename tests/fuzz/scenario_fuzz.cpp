@@ -31,6 +31,14 @@ void check_trajectory(const TrajectorySettings& trajectory) {
             require(corner.speed > MetresPerSecond(0) && corner.hold >= Seconds(0));
         }
     }
+    if (const auto* generated = std::get_if<GeneratedSettings>(&trajectory)) {
+        check_place(generated->path.origin);
+        require(generated->shape != nullptr);
+        for (const double t : {-1.0, 0.0, 1.0, 77.7, 3600.0}) {
+            const LocalMotion motion = generated->shape->at(t);
+            require(motion.position.allFinite() && motion.velocity.allFinite() && std::isfinite(motion.heading));
+        }
+    }
 }
 
 // Each line begins with the file, a line and a column.

@@ -187,7 +187,7 @@ TEST(DrivePlan, StaysInItsAreaForAnHour) {
     EXPECT_THAT(refusal_of(narrow), HasSubstr("the area reaches 50 m"));
     narrow.area = 1e4;
     narrow.seconds = 1e7;
-    EXPECT_THAT(refusal_of(narrow), HasSubstr("more than 50000 crossings"));
+    EXPECT_THAT(refusal_of(narrow), HasSubstr("more than 20000 crossings"));
 }
 
 TEST(GeneratedPaths, TheSameSeedIsTheSamePathAndAnotherAnother) {
