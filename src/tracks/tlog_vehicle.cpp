@@ -107,7 +107,8 @@ TlogStart& TlogVehicle::latest_start() {
 // The 32 bits end after 49.7 days.
 TlogStart* TlogVehicle::start_at(std::uint32_t boot_ms, std::int64_t stamp_us) {
     constexpr std::uint32_t near_ms = 600'000;
-    if (last_ms_ && *last_ms_ > ~near_ms && boot_ms < near_ms) ++wraps_;
+    constexpr std::int64_t most_wraps = 500;  // 68 years
+    if (last_ms_ && *last_ms_ > ~near_ms && boot_ms < near_ms && wraps_ < most_wraps) ++wraps_;
     last_ms_ = boot_ms;
     constexpr std::int64_t wrap_ms = std::int64_t{1} << 32;
     return start_at((wraps_ * wrap_ms + boot_ms) * 1'000'000, stamp_us);

@@ -12,6 +12,7 @@
 
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/geo/local_frame.hpp"
+#include "skyloop/protocol/mavlink_vehicle.hpp"
 #include "skyloop/time/utc_time.hpp"
 #include "skyloop/tracks/read_track.hpp"
 #include "support/flat_geoid.hpp"
@@ -220,6 +221,25 @@ TEST(FlightLogs, ALogWithoutAPlaceSaysWhatItHas) {
     const auto empty = read_track(ulog, "x.ulg", {});
     ASSERT_FALSE(empty.has_value());
     EXPECT_THAT(empty.error().message, HasSubstr("x.ulg: a ULog without two records of a place"));
+}
+
+TEST(FlightLogs, TlogGoesOnWhereTheMillisecondsEnd) {
+    Bytes log;
+    for (std::uint32_t i = 0; i < 20; ++i) {
+        MavlinkGlobalPositionInt place;
+        place.time_boot_ms = 4'294'966'296U + i * 100;  // 1 s before 2^32
+        place.lat = 470000000, place.lon = 85000000, place.alt = 500000;
+        const Bytes stamp{0, 0x06, 0x12, 0xE9, 0x0B, 0x70, 0, static_cast<std::uint8_t>(i)};
+        const Bytes frame = encode_mavlink({}, place);
+        log.insert(log.end(), stamp.begin(), stamp.end());
+        log.insert(log.end(), frame.begin(), frame.end());
+    }
+    const auto geoid = flat_geoid(48);
+    const auto track = read_track(log, "x.tlog", {&*geoid});
+    ASSERT_TRUE(track.has_value()) << track.error().message;
+    ASSERT_EQ(track->points.size(), 20u);
+    EXPECT_EQ(jumps_of(*track), 0u);
+    EXPECT_EQ(track->points.back().time - track->points.front().time, std::chrono::milliseconds(1900));
 }
 
 TEST(FlightLogs, ANameThatTheContentDoesNotFitIsRefused) {
