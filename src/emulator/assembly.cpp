@@ -75,7 +75,8 @@ Result<void> add_scene(const Scenario& scenario, const DataFolders& data, Assemb
 }
 
 Result<std::unique_ptr<LiveFeeds>> open_feeds(Scenario& scenario, const RunMode& mode, Assembly& assembly) {
-    if (mode.only_checked) {
+    // A program that leads the run tells the truth itself.
+    if (mode.only_checked || mode.embedding != nullptr) {
         if (const auto checked = LiveFeeds::check(scenario); !checked) return fail(checked.error());
         return nullptr;
     }
