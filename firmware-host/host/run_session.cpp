@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <signal.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 
@@ -72,7 +71,7 @@ int RunSession::run(const Scenario& scenario, RunWatch& watch) {
         for (const std::string& news : wire_news(i))
             messages_.warning(news);
     tell_feeds();
-    code = std::max(code, tell_outputs(watch));
+    if (const int failed = tell_outputs(watch); failed != 0) code = failed;
     for (const Station& station : emulator.stations()) {
         tell_counts(station);
         tell_power(station);

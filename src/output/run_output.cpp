@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <set>
@@ -23,6 +24,7 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr std::size_t most_waiting = 4096, most_news = 100;
+constexpr std::chrono::microseconds longest_lock{100};
 constexpr milliseconds look_every{20}, patience_of_live{200}, patience_of_virtual{2000};
 
 Result<std::unique_ptr<MessageSink>> open_file_sink(const std::string& path) {
@@ -82,6 +84,9 @@ public:
     void finish() {
         {
             const std::scoped_lock lock(mutex_);
+            for (Waiting& one : handed_)
+                add(std::move(one));
+            handed_.clear();
             ends_ = true;
         }
         changed_.notify_one();
@@ -93,8 +98,8 @@ public:
         return {sent_, left_out_};
     }
     std::vector<std::string> take_news() {
-        const std::scoped_lock lock(mutex_);
-        return std::exchange(news_, {});
+        const std::unique_lock lock(mutex_, std::try_to_lock);
+        return lock ? std::exchange(news_, {}) : std::vector<std::string>{};
     }
     [[nodiscard]] std::string failure() const {
         const std::scoped_lock lock(mutex_);
@@ -113,18 +118,39 @@ private:
     using Queue = std::map<std::pair<GpsTime, std::uint64_t>, Waiting>;
 
     void push(Waiting waiting, GpsTime now) {
-        std::unique_lock lock(mutex_);
+        handed_.push_back(std::move(waiting));
+        std::unique_lock lock(mutex_, std::defer_lock);
+        if (!lock_for_the_loop(lock)) return;  // with the next epoch, then
         now_ = std::max(now_, now);
-        if (parts_.waits_for_readers)
-            room_.wait(lock, [this] { return queue_.size() < most_waiting || !first_is_due(); });
+        for (Waiting& one : handed_) {
+            if (parts_.waits_for_readers)
+                room_.wait(lock, [this] { return queue_.size() < most_waiting || !first_is_due(); });
+            add(std::move(one));
+        }
+        handed_.clear();
+        lock.unlock();
+        changed_.notify_one();
+    }
+
+    // With deadlines to keep, the loop does not wait for a thread of ordinary priority that the system has put aside.
+    bool lock_for_the_loop(std::unique_lock<std::mutex>& lock) const {
+        if (parts_.waits_for_readers) {
+            lock.lock();
+            return true;
+        }
+        const auto end = steady_clock::now() + longest_lock;
+        while (!lock.try_lock())
+            if (steady_clock::now() >= end) return false;
+        return true;
+    }
+
+    void add(Waiting waiting) {
         if (queue_.size() >= most_waiting) {
             queue_.erase(queue_.begin());
             ++left_out_;
         }
         const GpsTime leaves = waiting.leaves;
         queue_.emplace(std::pair(leaves, pushed_++), std::move(waiting));
-        lock.unlock();
-        changed_.notify_one();
     }
 
     [[nodiscard]] bool first_is_due() const {
@@ -146,8 +172,7 @@ private:
         }
         lock.unlock();
         sink_->finish(parts_.waits_for_readers ? patience_of_virtual : patience_of_live);
-        lock.lock();
-        publish();
+        publish(lock);
     }
 
     void tell_first(std::unique_lock<std::mutex>& lock) {
@@ -158,8 +183,7 @@ private:
         for (int i = 0; i < waiting.times; ++i)
             for (const Bytes& message : waiting.job())
                 sink_->send(message);
-        lock.lock();
-        publish();
+        publish(lock);
     }
 
     void rest(std::unique_lock<std::mutex>& lock) {
@@ -170,23 +194,31 @@ private:
         if (ends_ || first_is_due()) return;
         lock.unlock();
         sink_->look();
-        lock.lock();
-        publish();
+        publish(lock);
     }
 
-    void publish() {
-        sent_ = sink_->counts();
-        failure_ = sink_->failure();
-        for (std::string& sentence : sink_->take_news())
-            if (said_.size() < most_news && said_.insert(sentence).second) news_.push_back(std::move(sentence));
+    // Shows the others how the sink stands, and leaves the lock locked.
+    void publish(std::unique_lock<std::mutex>& lock) {
+        std::vector<std::string> news = sink_->take_news();
+        std::erase_if(news, [this](const std::string& sentence) {
+            return said_.size() >= most_news || !said_.insert(sentence).second;
+        });
+        const SinkCounts counts = sink_->counts();
+        std::string failure = sink_->failure();
+        lock.lock();
+        sent_ = counts;
+        failure_.swap(failure);
+        std::move(news.begin(), news.end(), std::back_inserter(news_));
     }
 
     const OutputSettings settings_;
     const OutputParts parts_;
     const std::vector<bool> told_;
     std::vector<std::uint64_t> numbers_;  // of the loop's thread
+    std::vector<Waiting> handed_;         // of the loop's thread: not in the queue yet
     std::unique_ptr<EpochWriter> writer_;
     std::unique_ptr<MessageSink> sink_;  // of the output's thread, once it runs
+    std::set<std::string> said_;         // of the output's thread
     const std::string description_;
 
     mutable std::mutex mutex_;
@@ -196,7 +228,6 @@ private:
     GpsTime now_{};
     SinkCounts sent_;
     std::vector<std::string> news_;
-    std::set<std::string> said_;
     std::string failure_;
     bool ends_ = false;
     std::thread thread_;  // last: it uses all of them
