@@ -26,14 +26,11 @@ public:
     [[nodiscard]] virtual Nanoseconds tick(bool bytes_pending) const = 0;
     /// True when instants pass as fast as they can be computed.
     [[nodiscard]] bool is_virtual() const { return tick(true) == Nanoseconds(0); }
-    /// The steady clock's reading at which `time` is due; nothing where time does not follow that clock.
+    /// The steady clock's reading, ns, at which `time` is due at the present speed; nothing where time does not
+    /// follow that clock.
     [[nodiscard]] virtual std::optional<std::int64_t> due_at(GpsTime) const { return std::nullopt; }
     /// Nanoseconds of a clock that never goes back, for the times of recorded bytes.
     [[nodiscard]] virtual std::int64_t monotonic_ns(GpsTime now) const = 0;
-
-    /// The steady clock's reading, ns, at which an instant is due at the present speed; nothing where time does not
-    /// wait.
-    [[nodiscard]] virtual std::optional<std::int64_t> due_at(GpsTime) const { return std::nullopt; }
 
     /// From now on so many simulated seconds pass in a second; nothing where time does not wait.
     virtual void set_speed(double, GpsTime) {}
@@ -90,7 +87,6 @@ public:
     [[nodiscard]] Nanoseconds tick(bool bytes_pending) const override;
     [[nodiscard]] std::optional<std::int64_t> due_at(GpsTime time) const override { return due_ns(time); }
     [[nodiscard]] std::int64_t monotonic_ns(GpsTime now) const override;
-    [[nodiscard]] std::optional<std::int64_t> due_at(GpsTime time) const override { return due_ns(time); }
     void set_speed(double speed, GpsTime now) override;
     void resume(GpsTime now) override;
 
