@@ -23,10 +23,9 @@ FlightReport report_of(std::string_view flight, std::string_view receiver, doubl
     bool had_fix = false;
     for (double t = step; t <= seconds; t += step) {
         run.emulator->run_until(advanced(run.start, Seconds(t)), stop);
-        const GpsTime now = run.emulator->now();
-        const TruthState truth = run.emulator->simulation().truth_at(now);
-        const double height = truth.geodetic.height.above_ellipsoid.value(), speed = truth.velocity.vector().norm();
         const firmware::NavigationState& state = run.emulator->receiver().state();
+        const TruthState truth = run.emulator->simulation().truth_at(state.epoch.fix.time);
+        const double height = truth.geodetic.height.above_ellipsoid.value(), speed = truth.velocity.vector().norm();
         // What goes on by the last velocity is no fix of its own.
         const bool fix = state.fix_ok && state.epoch.fix.type == FixType::fix_3d;
         report.highest = std::max(report.highest, height);
