@@ -20,8 +20,6 @@ public:
         double value, slope, bend;  // m, m/m, 1/m
     };
     [[nodiscard]] Height at(double way) const;
-    // The height at which it ends
-    [[nodiscard]] double end() const { return knots_.back().height; }
 
 private:
     struct Knot {
