@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
 
 #include "dialects.hpp"
 #include "json_source.hpp"
@@ -33,64 +36,88 @@ public:
     void reconnected() override {
         lines_.clear();
         watches_ = false;
-        told_.reset();
-        filter_.forget();
+        devices_.clear();
     }
 
 private:
+    struct Height {
+        double metres;
+        bool above_ellipsoid;
+    };
+    // What one of gpsd's devices has said.
+    struct Device {
+        std::optional<Nanoseconds> told;
+        std::optional<Height> height;
+        std::optional<Attitude> attitude;
+        std::int64_t attitude_at_ns = 0;
+        MotionFilter filter{receiver_noise};
+    };
+
     void take(const std::string& line, std::int64_t received_ns, FeedNews& news) {
         const auto report = nlohmann::json::parse(line, nullptr, false);
         if (!report.is_object()) return report_refusal(news, "a line of gpsd that is no JSON object");
         const std::string kind = source_json_text(report, "class");
         if (kind == "WATCH") watches_ = true;
         if (kind == "ERROR") report_refusal(news, "gpsd says: " + source_json_text(report, "message"));
-        const bool wanted = context_.vehicle.empty() || context_.vehicle == source_json_text(report, "device");
-        if (kind == "ATT" && wanted) take_attitude(report, received_ns);
-        if (kind == "TPV" && wanted) take_position(report, received_ns, news);
+        if (kind != "ATT" && kind != "TPV") return;
+        const std::string name = source_json_text(report, "device");
+        constexpr std::size_t most_devices = 64;
+        if (devices_.size() >= most_devices && !devices_.contains(name))
+            return report_refusal(news, "more than 64 devices of gpsd");
+        Device& device = devices_[name];
+        if (kind == "ATT") return take_attitude(report, device, received_ns);
+        if (SampleOr sample = take_position(report, device, received_ns); !sample) {
+            report_refusal(news, std::move(sample.error()));
+        } else if (!sample->source_time || device.told != sample->source_time) {
+            // Several reports of one epoch may come: the first that is whole counts.
+            device.told = sample->source_time;
+            sample->vehicle = name.empty() ? "0" : name;
+            news.samples.push_back(std::move(*sample));
+        }
     }
 
-    void take_attitude(const nlohmann::json& report, std::int64_t received_ns) {
+    static void take_attitude(const nlohmann::json& report, Device& device, std::int64_t received_ns) {
         const auto roll = source_json_number(report, "roll"), pitch = source_json_number(report, "pitch");
         const auto yaw = source_json_number(report, "heading");
-        attitude_.reset();
-        if (roll && pitch && yaw) attitude_ = attitude_of_degrees(*roll, *pitch, *yaw);
-        attitude_at_ns_ = received_ns;
+        device.attitude.reset();
+        if (roll && pitch && yaw) device.attitude = attitude_of_degrees(*roll, *pitch, *yaw);
+        device.attitude_at_ns = received_ns;
     }
 
-    // Several reports of one epoch may come; the first that is whole counts. Without a fix there is nothing to tell.
-    void take_position(const nlohmann::json& report, std::int64_t received_ns, FeedNews& news) {
+    SampleOr take_position(const nlohmann::json& report, Device& device, std::int64_t received_ns) const {
         constexpr double least_mode = 2;
         const double mode = source_json_number(report, "mode").value_or(0);
         const auto latitude = source_json_number(report, "lat"), longitude = source_json_number(report, "lon");
-        if (mode < least_mode || !latitude || !longitude) return report_refusal(news, "gpsd has no fix");
+        if (mode < least_mode || !latitude || !longitude) return tl::make_unexpected("gpsd has no fix");
+        take_height(report, device);
+        if (!device.height) return tl::make_unexpected("gpsd's fix has no height");
         SourcePose pose;
         pose.latitude_deg = *latitude;
         pose.longitude_deg = *longitude;
-        if (!put_height(report, pose)) return report_refusal(news, "gpsd's fix has no height");
-        const auto time = time_of(report);
-        if (time && told_ && *time == *told_) return;
-        told_ = time;
+        pose.height_m = device.height->metres;
+        pose.above_ellipsoid = device.height->above_ellipsoid;
         put_velocity(report, pose);
         constexpr std::int64_t attitude_patience = 1'000'000'000;
-        if (attitude_ && received_ns - attitude_at_ns_ <= attitude_patience) pose.attitude = attitude_;
+        if (received_ns - device.attitude_at_ns <= attitude_patience) pose.attitude = device.attitude;
         SampleOr sample = sample_of(pose, context_);
-        if (sample && !context_.vehicle.empty()) sample->vehicle = context_.vehicle;
-        if (sample && context_.smooth) filter_.smooth(*sample, time ? time->count() : received_ns);
-        report_sample(news, std::move(sample), time, received_ns);
+        if (!sample) return sample;
+        sample->source_time = time_of(report);
+        sample->received_ns = received_ns;
+        const bool again = sample->source_time && sample->source_time == device.told;
+        if (context_.smooth && !again)
+            device.filter.smooth(*sample, sample->source_time ? sample->source_time->count() : received_ns);
+        return sample;
     }
 
     // gpsd's own separation of the geoid is coarse: the height above the ellipsoid first (FEEDS.md 1.15). A fix in two
     // dimensions keeps the last height.
-    bool put_height(const nlohmann::json& report, SourcePose& pose) {
-        if (const auto ellipsoidal = source_json_number(report, "altHAE")) {
-            height_ = {*ellipsoidal, true};
-        } else if (auto sea = source_json_number(report, "altMSL"); sea || (sea = source_json_number(report, "alt"))) {
-            height_ = {*sea, false};
-        }
-        if (!height_) return false;
-        pose.height_m = height_->metres;
-        pose.above_ellipsoid = height_->above_ellipsoid;
-        return true;
+    static void take_height(const nlohmann::json& report, Device& device) {
+        if (const auto ellipsoidal = source_json_number(report, "altHAE"))
+            device.height = Height{*ellipsoidal, true};
+        else if (const auto sea = source_json_number(report, "altMSL"))
+            device.height = Height{*sea, false};
+        else if (const auto old_name = source_json_number(report, "alt"))
+            device.height = Height{*old_name, false};
     }
 
     static void put_velocity(const nlohmann::json& report, SourcePose& pose) {
@@ -114,18 +141,10 @@ private:
         return to_gps_time(*utc, LeapSeconds::announced()).time_since_epoch();
     }
 
-    struct Height {
-        double metres;
-        bool above_ellipsoid;
-    };
     FeedContext context_;
     SourceLines lines_;
     bool watches_ = false;
-    std::optional<Nanoseconds> told_;
-    std::optional<Height> height_;
-    std::optional<Attitude> attitude_;
-    std::int64_t attitude_at_ns_ = 0;
-    MotionFilter filter_{receiver_noise};
+    std::map<std::string, Device> devices_;
 };
 
 }  // namespace

@@ -91,14 +91,9 @@ private:
         int asked = 0;
     };
 
-    bool is_wanted(std::uint8_t system) const {
-        return system != 0 && system != mavlink_own_system &&
-               (context_.vehicle.empty() || context_.vehicle == std::to_string(system));
-    }
-
     void take(const MavlinkFrameView& frame, std::int64_t received_ns, FeedNews& news) {
         const std::uint8_t system = frame.source.system;
-        if (!is_wanted(system)) return;
+        if (system == 0 || system == mavlink_own_system) return;
         Vehicle& vehicle = vehicles_.try_emplace(system, Vehicle{MavlinkVehicleTruth(context_)}).first->second;
         if (frame.message == MavlinkHeartbeat::message_id) return meet(frame, vehicle, news);
         auto sample = vehicle.truth.take(frame, received_ns);

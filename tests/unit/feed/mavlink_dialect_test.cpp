@@ -241,16 +241,17 @@ TEST(MavlinkDialect, SeveralVehiclesShareOneClock) {
     EXPECT_EQ(time(2, 100, 1500), 50'500);  // begun anew
 }
 
-TEST(MavlinkDialect, OneVehicleMayBeWanted) {
-    FeedContext context;
-    context.vehicle = "2";
-    const auto dialect = dialect_named("mavlink", context);
+TEST(MavlinkDialect, TellsVehiclesApartInOneDatagram) {
+    const auto dialect = dialect_named("mavlink");
     Bytes both = global_position(1, 1);
-    const Bytes second = global_position(1, 2);
-    both.insert(both.end(), second.begin(), second.end());
+    for (const std::uint8_t system : std::array<std::uint8_t, 3>{2, 0, 245}) {  // 0 is nobody, 245 is ourselves
+        const Bytes more = global_position(1, system);
+        both.insert(both.end(), more.begin(), more.end());
+    }
     const FeedNews news = dialect->hear(both, 0);
-    ASSERT_EQ(news.samples.size(), 1u);
-    EXPECT_EQ(news.samples[0].vehicle, "2");
+    ASSERT_EQ(news.samples.size(), 2u);
+    EXPECT_EQ(news.samples[0].vehicle, "1");
+    EXPECT_EQ(news.samples[1].vehicle, "2");
 }
 
 // The messages that a COMMAND_LONG of ours asks for.

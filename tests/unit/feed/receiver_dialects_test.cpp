@@ -62,10 +62,19 @@ TEST(GpsdDialect, RefusesWhatTellsNoPlace) {
                 HasSubstr("gpsd says: bad"));
     EXPECT_THAT(hear_text(*dialect, "HTTP/1.1 400\n").refusal, HasSubstr("no JSON object"));
     EXPECT_EQ(hear_text(*dialect, "{\"class\":7}\n{}\n").refused, 0u);
-    FeedContext context;
-    context.vehicle = "/dev/ttyACM0";
-    EXPECT_TRUE(
-        hear_text(*dialect_named("gpsd", context), tpv("2026-11-20T12:34:56Z", ",\"altHAE\":1")).samples.empty());
+}
+
+TEST(GpsdDialect, DevicesAreVehicles) {
+    const auto dialect = dialect_named("gpsd");
+    const std::string time = "2026-11-20T12:34:56.000Z";
+    EXPECT_EQ(hear_text(*dialect, tpv(time, ",\"altHAE\":510")).samples.at(0).vehicle, "/dev/pts/3");
+    std::string other = tpv(time, "");
+    other.replace(other.find("/dev/pts/3"), 10, "/dev/pts/4");
+    EXPECT_THAT(hear_text(*dialect, other).refusal, HasSubstr("no height"));  // the height is the other's
+    std::string flood;
+    for (int i = 0; i < 100; ++i)
+        flood += fmt::format("{{\"class\":\"ATT\",\"device\":\"{}\"}}\n", i);
+    EXPECT_EQ(hear_text(*dialect, flood).refused, 38u);  // two of 64 are known
 }
 
 std::string sentence(const std::string& body) {
