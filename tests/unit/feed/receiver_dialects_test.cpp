@@ -24,7 +24,7 @@ std::string tpv(std::string_view time, std::string_view more, int mode = 3) {
 
 TEST(GpsdDialect, ReadsPositionsWithTheAttitudeThatCameBefore) {
     const auto dialect = dialect_named("gpsd");
-    hear_text(*dialect, "{\"class\":\"ATT\",\"roll\":20,\"pitch\":10,\"heading\":53.13}\n");
+    hear_text(*dialect, "{\"class\":\"ATT\",\"device\":\"/dev/pts/3\",\"roll\":20,\"pitch\":10,\"heading\":53.13}\n");
     const FeedNews news = hear_text(
         *dialect, tpv("2026-11-20T12:34:56.000Z",
                       ",\"altHAE\":510,\"altMSL\":463,\"geoidSep\":44,\"speed\":5,\"track\":53.130102,\"climb\":2"));
