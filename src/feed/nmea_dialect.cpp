@@ -63,6 +63,13 @@ private:
     std::int64_t days_ = 0;
 };
 
+// The heights of the epochs so far, whose change is the climb.
+struct ClimbFilter {
+    AxisFilter height{3};
+    Nanoseconds time{0};
+    bool settled = false;
+};
+
 class NmeaDialect : public FeedDialect {
 public:
     explicit NmeaDialect(const FeedContext& context) : context_(context) {}
@@ -103,11 +110,6 @@ private:
     struct Height {
         double metres;
         bool above_ellipsoid;
-    };
-    struct Climb {
-        AxisFilter height{3};
-        Nanoseconds time{0};
-        bool settled = false;
     };
 
     void take(const NmeaMessage& message, std::int64_t received_ns, FeedNews& news) {
@@ -234,7 +236,7 @@ private:
     EpochGate gate_;
     Epoch epoch_;
     std::optional<Height> height_;  // the last one: RMC has none
-    std::optional<Climb> climb_;
+    std::optional<ClimbFilter> climb_;
     MotionFilter filter_{receiver_noise};
 };
 
