@@ -89,7 +89,6 @@ void LivePath::add(GpsTime time, const TruthSample& sample) {
     knots_.push_back(knot);
     if (!shown_.empty() && shown_.back().length > 0) measure(shown_.back());
     asked_.reset();
-    coast_counted_ = hold_counted_ = false;
     forget();
 }
 
@@ -266,8 +265,9 @@ TruthState LivePath::at(GpsTime time) const {
     state.velocity = Velocity<Ecef>(motion.velocity);
     state.geodetic = to_geodetic(state.position);
     if (motion.body_to_ned) state.orientation = Orientation{Attitude(*motion.body_to_ned), motion.turn_rate};
-    if (inside > knots_.back().time) {
-        asked_ = std::max(inside, asked_.value_or(inside));
+    if (inside > knots_.back().time) asked_ = std::max(inside, asked_.value_or(inside));
+    if (!latest_ || inside >= *latest_) {
+        latest_ = inside;
         look_at_age(seconds_between(knots_.back().time, inside));
     }
     return state;
@@ -276,14 +276,12 @@ TruthState LivePath::at(GpsTime time) const {
 void LivePath::look_at_age(double age_s) const {
     constexpr double coast_steps = 2;
     const Patience now = patience();
-    if (!coast_counted_ && age_s > (step_s_ > 0 ? coast_steps * step_s_ : now.coast)) {
-        coast_counted_ = true;
-        ++counts_.coasts;
-    }
-    if (!hold_counted_ && age_s > now.fade) {
-        hold_counted_ = true;
-        ++counts_.holds;
-    }
+    const bool coasts = age_s > (step_s_ > 0 ? coast_steps * step_s_ : now.coast), holds = age_s > now.fade;
+    // Samples that come and are old end no silence.
+    if (coasts && !coasts_) ++counts_.coasts;
+    if (holds && !holds_) ++counts_.holds;
+    coasts_ = coasts;
+    holds_ = holds;
 }
 
 LiveState LivePath::state(GpsTime time) const {

@@ -108,10 +108,11 @@ private:
     LivePathSettings settings_;
     std::deque<Knot> knots_;
     std::deque<Shown> shown_;
-    bool forgot_ = false;                                        // there were samples before the first of knots_
-    double step_s_ = 0;                                          // usual distance of samples; zero: not known yet
-    mutable std::optional<GpsTime> asked_;                       // latest since the newest sample came
-    mutable bool coast_counted_ = false, hold_counted_ = false;  // of this silence
+    bool forgot_ = false;                          // there were samples before the first of knots_
+    double step_s_ = 0;                            // usual distance of samples; zero: not known yet
+    mutable std::optional<GpsTime> asked_;         // latest since the newest sample came
+    mutable std::optional<GpsTime> latest_;        // that was ever asked for
+    mutable bool coasts_ = false, holds_ = false;  // then
     mutable LivePathCounts counts_;
 };
 
