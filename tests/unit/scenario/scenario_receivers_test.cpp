@@ -109,7 +109,7 @@ TEST(ScenarioReceivers, MistakesInAnOwnTrajectoryNameItsKey) {
     EXPECT_THAT(mistakes_of("[[receiver]]\n[receiver.trajectory]\nkind = \"circle\"\ncentre = [1, 2, 3]\nradius = 5\n"),
                 HasSubstr("receiver.trajectory.radius"));
     EXPECT_THAT(mistakes_of("[[receiver]]\n[receiver.trajectory]\nkind = \"live\"\n"),
-                HasSubstr("not in this version"));
+                HasSubstr("has no source"));
     EXPECT_THAT(mistakes_of("[[receiver]]\ntrajectory = 5\n"), HasSubstr("receiver.trajectory"));
 }
 

@@ -126,6 +126,8 @@ def fly_in_steps(where, tty_fd, steps):
         mass.steer(ears)
         mass.step()
     link.sendall(b'{"type":"bye"}\n')
+    answers.close()
+    link.close()
     return path, heard, ears, mass
 
 
@@ -143,6 +145,7 @@ def fly_in_real_time(where, tty_fd, seconds):
         path.append(tuple(mass.position))
         mass.steer(ears)
         mass.step()
+    link.close()
     return path, ears, mass
 
 
