@@ -108,8 +108,7 @@ TEST(ScenarioReceivers, MistakesInAnOwnTrajectoryNameItsKey) {
                 HasSubstr("test.toml:2:1: [receiver.trajectory] kind \"fixed\" has no place"));
     EXPECT_THAT(mistakes_of("[[receiver]]\n[receiver.trajectory]\nkind = \"circle\"\ncentre = [1, 2, 3]\nradius = 5\n"),
                 HasSubstr("receiver.trajectory.radius"));
-    EXPECT_THAT(mistakes_of("[[receiver]]\n[receiver.trajectory]\nkind = \"live\"\n"),
-                HasSubstr("has no source"));
+    EXPECT_THAT(mistakes_of("[[receiver]]\n[receiver.trajectory]\nkind = \"live\"\n"), HasSubstr("has no source"));
     EXPECT_THAT(mistakes_of("[[receiver]]\ntrajectory = 5\n"), HasSubstr("receiver.trajectory"));
 }
 

@@ -21,7 +21,7 @@ const Geodetic live_origin = Geodetic::degrees(48.1, 11.5, 500);
 GpsTime live_time(double seconds) { return advanced(live_start, Seconds(seconds)); }
 
 // A circle of 60 m at 20 m/s.
-struct Circle {
+struct RoundFlight {
     double radius = 60, speed = 20;
     LocalFrame frame{live_origin};
     [[nodiscard]] TruthSample at(double t, bool with_velocity = true) const {
@@ -59,7 +59,7 @@ TEST(LivePath, StandsWhereItWasToldUntilTheFirstSample) {
 }
 
 TEST(LivePath, KeepsItsSamplesAndIsSmoothBetweenThem) {
-    const Circle circle;
+    const RoundFlight circle;
     LivePath path = live_path();
     for (int i = 0; i <= 200; ++i)
         path.add(live_time(0.05 * i), circle.at(0.05 * i));
@@ -80,7 +80,7 @@ TEST(LivePath, KeepsItsSamplesAndIsSmoothBetweenThem) {
 }
 
 TEST(LivePath, FindsVelocitiesThatTheSourceDoesNotTell) {
-    const Circle circle;
+    const RoundFlight circle;
     LivePath path = live_path();
     for (int i = 0; i <= 200; ++i)
         path.add(live_time(0.02 * i), circle.at(0.02 * i, false));
@@ -92,7 +92,7 @@ TEST(LivePath, FindsVelocitiesThatTheSourceDoesNotTell) {
 }
 
 TEST(LivePath, CoastsFadesAndHolds) {
-    const Circle circle;
+    const RoundFlight circle;
     LivePath path = live_path();
     for (int i = 0; i <= 100; ++i)
         path.add(live_time(0.02 * i), circle.at(0.02 * i));
@@ -112,7 +112,7 @@ TEST(LivePath, CoastsFadesAndHolds) {
 }
 
 TEST(LivePath, WaitsForSlowSourcesByTheirOwnStep) {
-    const Circle circle{.radius = 1000};
+    const RoundFlight circle{.radius = 1000};
     LivePath path = live_path();
     for (int i = 0; i <= 20; ++i)
         path.add(live_time(i), circle.at(i));
@@ -122,7 +122,7 @@ TEST(LivePath, WaitsForSlowSourcesByTheirOwnStep) {
 }
 
 TEST(LivePath, IsLateByItsDelay) {
-    const Circle circle;
+    const RoundFlight circle;
     LivePath path = live_path({.delay = Seconds(0.1)});
     for (int i = 0; i <= 100; ++i)
         path.add(live_time(0.05 * i), circle.at(0.05 * i));
@@ -135,7 +135,7 @@ TEST(LivePath, IsLateByItsDelay) {
 struct Smoothness {
     double most_acceleration = 0, most_mismatch_mps = 0;
 };
-Smoothness watch(LivePath& path, const Circle& circle, double from, double to, const auto& arrives) {
+Smoothness watch(LivePath& path, const RoundFlight& circle, double from, double to, const auto& arrives) {
     constexpr double look_s = 0.005, sample_s = 0.02;
     Smoothness seen;
     int next = static_cast<int>(from / sample_s);
@@ -157,7 +157,7 @@ Smoothness watch(LivePath& path, const Circle& circle, double from, double to, c
 }
 
 TEST(LivePath, HasNoStepOfVelocityWhileItsSourceIsSmooth) {
-    const Circle circle;
+    const RoundFlight circle;
     LivePath path = live_path();
     watch(path, circle, 0, 1, [](double) { return true; });
     const Smoothness live = watch(path, circle, 1, 4, [](double) { return true; });
@@ -167,7 +167,7 @@ TEST(LivePath, HasNoStepOfVelocityWhileItsSourceIsSmooth) {
 
 TEST(LivePath, HasNoStepOfVelocityThroughCoastFadeAndReturn) {
     for (const double silence : {0.1, 0.25, 0.4}) {
-        const Circle circle{.radius = 200};
+        const RoundFlight circle{.radius = 200};
         LivePath path = live_path();
         watch(path, circle, 0, 3, [](double) { return true; });
         const Smoothness seen = watch(path, circle, 3, 6, [&](double t) { return t < 3.5 || t > 3.5 + silence; });
@@ -180,7 +180,7 @@ TEST(LivePath, HasNoStepOfVelocityThroughCoastFadeAndReturn) {
 }
 
 TEST(LivePath, ComesToRestAndStartsAgainSmoothlyWhereNothingHasMoved) {
-    const Circle standing{.radius = 60, .speed = 0};
+    const RoundFlight standing{.radius = 60, .speed = 0};
     LivePath path = live_path();
     const auto arrives = [](double t) { return t < 1 || t > 4; };
     const Smoothness seen = watch(path, standing, 0, 6, arrives);
@@ -190,7 +190,7 @@ TEST(LivePath, ComesToRestAndStartsAgainSmoothlyWhereNothingHasMoved) {
 }
 
 TEST(LivePath, DoesNotLeadAcrossAJump) {
-    const Circle circle;
+    const RoundFlight circle;
     for (const bool said : {true, false}) {
         LivePath path = live_path();
         for (int i = 0; i < 50; ++i)
@@ -208,7 +208,7 @@ TEST(LivePath, DoesNotLeadAcrossAJump) {
 }
 
 TEST(LivePath, LeavesOutTheLateAndTakesTheLastOfEqualTimes) {
-    const Circle circle;
+    const RoundFlight circle;
     LivePath path = live_path();
     for (int i = 0; i < 50; ++i) {
         path.add(live_time(0.02 * i), circle.at(0.02 * i));
@@ -224,7 +224,7 @@ TEST(LivePath, LeavesOutTheLateAndTakesTheLastOfEqualTimes) {
 
 TEST(LivePath, RefusesWhatCannotBe) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
-    const TruthSample good = Circle().at(0);
+    const TruthSample good = RoundFlight().at(0);
     std::vector<TruthSample> bad(12, good);
     bad[0].position = Position<Ecef>(nan, 0, 0);
     bad[1].position = Position<Ecef>(0, infinite, 0);
