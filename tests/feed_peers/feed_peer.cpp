@@ -109,7 +109,7 @@ Bytes frames_again(const Bytes& bytes) {
 std::string sample_line(const TruthSample& sample) {
     const Geodetic place = to_geodetic(sample.position);
     const Eigen::Vector3d velocity = sample.velocity ? sample.velocity->vector() : Eigen::Vector3d::Zero();
-    const Eigen::Vector3d ned = ned_to_ecef(place).transpose() * velocity;
+    const Eigen::Vector3d ned = ned_to_ecef(place).conjugate() * velocity;
     const Attitude attitude = sample.attitude.value_or(Attitude());
     return fmt::format(
         "{{\"vehicle\":\"{}\",\"time\":{},\"place\":[{:.9f},{:.9f},{:.4f}],\"ned\":[{:.5f},{:.5f},{:.5f}],"
