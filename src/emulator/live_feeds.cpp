@@ -37,7 +37,7 @@ FeedSettings feed_settings(const LiveSettings& live, const Geoid* geoid) {
     settings.context.sea_level = live.sea_is_ellipsoid ? SeaLevel::ellipsoid : SeaLevel::geoid;
     settings.context.origin = live.origin;
     settings.context.vehicle = live.vehicle;
-    settings.context.rate_hz = live.rate_hz.value_or(settings.context.rate_hz);
+    settings.context.rate_hz = live.rate_hz;
     settings.clock = live.clock;
     settings.path.before = live.at.value_or(FixedSettings().at);
     settings.path.delay = live.delay;

@@ -18,9 +18,7 @@ void read_live(TableReader& table, PlaceReader& places, TrajectorySettings& traj
     live.clock = static_cast<ClockMode>(table.choice("clock", clocks, clocks[0]).value_or(0));
     live.sea_is_ellipsoid = table.choice("sea_level", seas, seas[0]).value_or(0) == 1;
     live.origin = places.read(table, "origin");
-    double rate = 0;
-    table.number("source_rate_hz", rate, {0.1, 1000});
-    if (table.has("source_rate_hz")) live.rate_hz = rate;
+    table.number("source_rate_hz", live.rate_hz, {0.1, 1000});
     table.quantity("delay_s", live.delay, {0, 10});
     table.quantity("lost_after_s", live.lost_after, {0.1, 1e7});
     live.when_lost = static_cast<LostSource>(table.choice("when_lost", ends, ends[0]).value_or(0));

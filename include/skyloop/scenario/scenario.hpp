@@ -98,7 +98,7 @@ struct LiveSettings {
     ClockMode clock = ClockMode::realtime;
     bool sea_is_ellipsoid = false;     ///< what the source calls height above the sea is height above the ellipsoid
     std::optional<Geodetic> origin{};  ///< of sources that count in local metres
-    std::optional<double> rate_hz{};   ///< asked of sources that can be asked
+    double rate_hz = 50;               ///< asked of sources that can be asked
     Seconds delay{0};                  ///< LivePathSettings::delay
     Seconds lost_after{5};             ///< of silence
     LostSource when_lost = LostSource::hold;

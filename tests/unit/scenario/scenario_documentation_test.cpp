@@ -93,7 +93,7 @@ bool reader_knows(std::string heading, const std::string& key) {
     const std::string value = key + " = 1979-05-27\n";
     if (heading != "[trajectory]") return reader_knows(heading + "\n" + value);
     if (key == "kind") return reader_knows("[trajectory]\n" + value);
-    for (const char* kind : {"fixed", "waypoints", "circle", "file"})
+    for (const char* kind : {"fixed", "waypoints", "circle", "file", "live"})
         if (reader_knows("[trajectory]\nkind = \"" + std::string(kind) + "\"\n" + value)) return true;
     return reader_knows("[trajectory]\nkind = \"waypoints\"\n[[trajectory.waypoint]]\n" + value);
 }
