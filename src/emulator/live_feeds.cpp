@@ -36,6 +36,8 @@ FeedSettings feed_settings(const LiveSettings& live, const Geoid* geoid) {
     settings.context.geoid = geoid;
     settings.context.sea_level = live.sea_is_ellipsoid ? SeaLevel::ellipsoid : SeaLevel::geoid;
     settings.context.origin = live.origin;
+    settings.context.map = live.local_map;
+    settings.context.smooth = live.filtered;
     settings.context.vehicle = live.vehicle;
     settings.context.rate_hz = live.rate_hz;
     settings.clock = live.clock;

@@ -53,6 +53,8 @@ constexpr KeyMeaning run_meanings[] = {
     {"trajectory", "origin",
      "of a track or source in local metres, and the ground of a track above it: latitude, longitude, height", "none"},
     {"trajectory", "origin_level", "the same in the coordinates of [frame]: x, y, z", "none"},
+    {"trajectory", "local_map", "how a source's local metres lie on the Earth: as it means them, or by another's map"},
+    {"trajectory", "filtered", "places that a receiver measured (nmea, ubx, gpsd) go through a filter"},
     {"trajectory", "source_rate_hz", "asked of sources that can be asked"},
     {"trajectory", "delay_s", "the path is this much late, so that slow sources are interpolated"},
     {"trajectory", "lost_after_s", "silence of the source after which it is lost"},

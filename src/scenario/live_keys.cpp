@@ -9,6 +9,8 @@ void read_live(TableReader& table, PlaceReader& places, TrajectorySettings& traj
     static constexpr std::array<std::string_view, 3> clocks{"realtime", "follow", "lock_step"};
     static constexpr std::array<std::string_view, 2> seas{"geoid", "ellipsoid"};
     static constexpr std::array<std::string_view, 4> ends{"hold", "outage", "pause", "stop"};
+    static constexpr std::array<std::string_view, 5> maps{"source", "tangent", "ardupilot_flat", "px4_azimuthal",
+                                                          "airsim_sphere"};
     LiveSettings live;
     live.heading = read_heading(table);
     table.text("source", live.source);
@@ -18,6 +20,9 @@ void read_live(TableReader& table, PlaceReader& places, TrajectorySettings& traj
     live.clock = static_cast<ClockMode>(table.choice("clock", clocks, clocks[0]).value_or(0));
     live.sea_is_ellipsoid = table.choice("sea_level", seas, seas[0]).value_or(0) == 1;
     live.origin = places.read(table, "origin");
+    if (const auto map = table.choice("local_map", maps, maps[0]).value_or(0); map > 0)
+        live.local_map = local_map_of_name(maps.at(map));
+    table.boolean("filtered", live.filtered);
     table.number("source_rate_hz", live.rate_hz, {0.1, 1000});
     table.quantity("delay_s", live.delay, {0, 10});
     table.quantity("lost_after_s", live.lost_after, {0.1, 1e7});

@@ -353,8 +353,6 @@ void TrackTable::add_notes() {
         track_.notes.push_back(
             "no row has a whole velocity (north, east and down or up, or speed, course and climb); velocities are "
             "taken from the places");
-    if (any(roll, yaw) || columns_.has(pitch))
-        track_.notes.push_back("attitude is read and not used: the antenna's offset follows the course, upright");
     for (const std::string& what : columns_.understood())
         track_.notes.push_back(what);
     if (!columns_.unused().empty())

@@ -19,6 +19,7 @@
 #include "skyloop/fault/timeline.hpp"
 #include "skyloop/flow/receiver_settings.hpp"
 #include "skyloop/geo/level_frame.hpp"
+#include "skyloop/geo/local_map.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
 #include "skyloop/output/output_settings.hpp"
 #include "skyloop/propagation/atmosphere_parameters.hpp"
@@ -96,11 +97,13 @@ struct LiveSettings {
     Angle heading{};
     std::optional<Geodetic> at{};  ///< where the vehicle stands until the source speaks; nothing: the run waits for it
     ClockMode clock = ClockMode::realtime;
-    bool sea_is_ellipsoid = false;     ///< what the source calls height above the sea is height above the ellipsoid
-    std::optional<Geodetic> origin{};  ///< of sources that count in local metres
-    double rate_hz = 50;               ///< asked of sources that can be asked
-    Seconds delay{0};                  ///< LivePathSettings::delay
-    Seconds lost_after{5};             ///< of silence
+    bool sea_is_ellipsoid = false;        ///< what the source calls height above the sea is height above the ellipsoid
+    std::optional<Geodetic> origin{};     ///< of sources that count in local metres
+    std::optional<LocalMap> local_map{};  ///< how such metres lie on the Earth; nothing: as the source means them
+    bool filtered = false;                ///< places that a receiver measured go through a filter
+    double rate_hz = 50;                  ///< asked of sources that can be asked
+    Seconds delay{0};                     ///< LivePathSettings::delay
+    Seconds lost_after{5};                ///< of silence
     LostSource when_lost = LostSource::hold;
     std::shared_ptr<LivePath> path{};  ///< null until it has been opened
 };
