@@ -8,6 +8,7 @@
 #include <cstring>
 #include <tuple>
 
+#include "skyloop/base/signals_held_back.hpp"
 #include "skyloop/base/steady_clock.hpp"
 
 namespace skyloop {
@@ -61,7 +62,7 @@ Result<void> FeedWorker::open() {
 
 void FeedWorker::start(const std::function<std::thread(std::function<void()>)>& thread) {
     const auto work = [this] { run(); };
-    thread_ = thread ? thread(work) : std::thread(work);
+    with_signals_held_back([&] { thread_ = thread ? thread(work) : std::thread(work); });
 }
 
 void FeedWorker::run() {
