@@ -125,7 +125,7 @@ TEST(TrackCleaning, TimesBeyondAnyTrackAreLeftOut) {
     EXPECT_THAT(track.notes, ElementsAre(HasSubstr("2 rows have a time further than 70 years")));
     // Forty years, again and again.
     Track long_one = stamped({0, 1.26e9, 0, 1.26e9, 0, 1.26e9, 0, 1.26e9, 0, 1.26e9, 0, 1.26e9});
-    ASSERT_TRUE(clean_track(long_one, Seconds(1e10)).has_value());
+    ASSERT_TRUE(clean_track(long_one, Seconds(5e9)).has_value());
     EXPECT_LT(times_of(long_one).back(), 5e9);
 }
 
