@@ -29,7 +29,7 @@ MISUSES = [
     (["scene", "demo", "--origin", "91,0"], 2, ["--origin 91,0", "latitude is 91"]),
     (["scene", "demo", "--sky-svg", "x.svg"], 2, ["--sky-svg", "--at"]),
     (["run", "--control", "nowhere"], 2, ["nowhere"]),
-    (["run", "--trajectory", "x.gpx"], 2, ["--trajectory x.gpx", ".toml"]),
+    (["run", "--trajectory", "x.gpx"], 1, ["x.gpx", "No such file"]),
     (["run", "--port", "serial:"], 2, ["serial:", "a device is missing"]),
     (["run", "--port", "pyt:x"], 2, ["did you mean 'pty'"]),
     (["run", "--port", "pty:/no/such/folder/gps0"], 1, ["/no/such/folder/gps0"]),
