@@ -140,18 +140,27 @@ void feed_to_first_byte(benchmark::State& state) {
     const int source = connected(SOCK_STREAM, port);
     Durations ours, bares;
     const Bytes block(100, 0x55);
-    const auto steps = static_cast<std::int64_t>(wire_seconds() * 20);
+    const auto epochs = static_cast<std::int64_t>(wire_seconds() * 10);
+    const auto go_to = [&](std::int64_t t_ns) {
+        const std::string lines = truth_line(0, t_ns) + fmt::format("{{\"type\":\"step\",\"t_ns\":{}}}\n", t_ns);
+        const std::int64_t sent = steady_clock_ns();
+        (void)!::send(source, lines.data(), lines.size(), MSG_NOSIGNAL);
+        return sent;
+    };
+    // The first time that the source names is the start of the run.
+    (void)go_to(0);
+    await_step(source);
     for (auto _ : state)
-        for (std::int64_t k = 0; k < steps; ++k) {
-            drain(terminal);
-            // Each epoch stands on a step of its own; the bytes of the one before have left by the next but one.
-            const std::int64_t t_ns = k * 50 * wire_ms;
-            const std::string lines = truth_line(0, t_ns) + fmt::format("{{\"type\":\"step\",\"t_ns\":{}}}\n", t_ns);
-            const std::int64_t sent = steady_clock_ns();
-            (void)!::send(source, lines.data(), lines.size(), MSG_NOSIGNAL);
-            if (k % 2 == 0 && k > 40)
+        for (std::int64_t k = 0; k < epochs; ++k) {
+            // Over the epoch, until its first bytes have crossed the wire; then until all of them have.
+            const std::int64_t epoch_ns = k * 100 * wire_ms;
+            const std::int64_t sent = go_to(epoch_ns + 2 * wire_ms);
+            if (k > 20)
                 if (const std::int64_t came = readable_at(terminal); came != 0) ours.add(came - sent);
             await_step(source);
+            (void)go_to(epoch_ns + 95 * wire_ms);
+            await_step(source);
+            drain(terminal);
             drain(bare_end);
             bare->line();
             const std::int64_t written = steady_clock_ns();
