@@ -121,8 +121,12 @@ void ComPortServer::take_sub(std::uint8_t byte) {
         sub_too_long_ = true;
 }
 
+// A client whose own request met our offer on the way says nothing more of the option (pyserial does not): its first
+// command is an agreement, too.
 void ComPortServer::finish_sub() {
-    if (!sub_too_long_ && sub_.size() > 1 && sub_[0] == com_port) carry_out(sub_[1], ByteSpan(sub_).subspan(2));
+    if (sub_too_long_ || sub_.size() < 2 || sub_[0] != com_port) return;
+    agree();
+    carry_out(sub_[1], ByteSpan(sub_).subspan(2));
 }
 
 ComPortServer::Option* ComPortServer::known(std::uint8_t option) {
@@ -142,13 +146,17 @@ void ComPortServer::negotiate(std::uint8_t verb, std::uint8_t option) {
     }
     if (option == com_port && wanted) {
         // The client speaks of the option as its own, some servers' clients of ours: either is an agreement.
-        if (!std::exchange(agreed_, true)) answer_byte(com_command::of_server + com_command::modem_state, lines_up);
+        agree();
     }
     bool& stands = about_theirs ? mine->theirs : mine->ours;
     if (stands == wanted) return;
     stands = wanted;
     const std::uint8_t yes = about_theirs ? ask_do : will, no = about_theirs ? ask_dont : wont;
     answer(Bytes{iac, wanted ? yes : no, option});
+}
+
+void ComPortServer::agree() {
+    if (!std::exchange(agreed_, true)) answer_byte(com_command::of_server + com_command::modem_state, lines_up);
 }
 
 void ComPortServer::answer(ByteSpan bytes) {

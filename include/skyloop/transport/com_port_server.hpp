@@ -54,7 +54,7 @@ public:
     [[nodiscard]] const ComPortSettings& settings() const { return settings_; }
     /// The speed of a port of which none has been set, bit/s.
     void set_own_baud(std::uint32_t baud) { own_baud_ = baud; }
-    /// True when both ends have agreed on COM-PORT-OPTION.
+    /// True when both ends have agreed on COM-PORT-OPTION, in words or by a command of the client.
     [[nodiscard]] bool agreed() const { return agreed_; }
     /// Data as it goes to the client: each 255 twice (RFC 854, IAC).
     static Bytes escaped(ByteSpan data);
@@ -68,6 +68,7 @@ private:
     void take_command(std::uint8_t byte);
     void take_sub(std::uint8_t byte);
     void negotiate(std::uint8_t verb, std::uint8_t option);
+    void agree();
     Option* known(std::uint8_t option);
     void answer(ByteSpan bytes);
     void answer_option(std::uint8_t command, ByteSpan value);

@@ -32,6 +32,8 @@ public:
 
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
     /// What the present client has made of the port.
+    /// True once the client has spoken of COM-PORT-OPTION.
+    [[nodiscard]] bool agreed() const { return port_.agreed(); }
     [[nodiscard]] const ComPortSettings& settings() const { return port_.settings(); }
 
 private:

@@ -6,9 +6,12 @@
 namespace skyloop {
 namespace {
 
+const Bytes agreement{255, 251, 44};  // IAC WILL COM-PORT-OPTION
+
 ComPortServer begun() {
     ComPortServer port("a name");
     port.begin();
+    port.receive(agreement);
     port.take_answers();
     return port;
 }
@@ -38,6 +41,19 @@ TEST(ComPortServer, OffersItsOptionsAndAnswersNoAgreement) {
     EXPECT_EQ(port.take_answers(), option_of_port(107, {0xB0})) << "the modem lines, once";
     port.receive(Bytes{255, 253, 0, 255, 251, 44});
     EXPECT_TRUE(port.take_answers().empty()) << "nothing runs in a circle";
+}
+
+// What was asked for and what was offered may cross: then the client holds the option for agreed without a word.
+TEST(ComPortServer, ACommandIsAnAgreement) {
+    ComPortServer port("a name");
+    port.begin();
+    port.take_answers();
+    Bytes both = option_of_port(107, {0xB0});
+    const Bytes answer = option_of_port(104, {2});
+    both.insert(both.end(), answer.begin(), answer.end());
+    EXPECT_EQ(answer_to(port, 4, {2}), both);
+    EXPECT_TRUE(port.agreed());
+    EXPECT_EQ(answer_to(port, 4, {2}), answer) << "the modem lines, once";
 }
 
 TEST(ComPortServer, RefusesOtherOptionsAndFollowsARefusal) {

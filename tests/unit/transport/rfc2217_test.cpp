@@ -13,6 +13,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 
 const std::string hello("\xff\xfb\0\xff\xfd\0\xff\xfb\3\xff\xfd\3\xff\xfb\x2c\xff\xfd\x2c", 18);
+const std::string modem_lines("\xff\xfa\x2c\x6b\xb0\xff\xf0", 7);
 const std::string speed_9600("\xff\xfa\x2c\1\0\0\x25\x80\xff\xf0", 10);
 
 std::unique_ptr<Rfc2217Transport> any_com_port() {
@@ -27,6 +28,12 @@ TcpPeer met_client(Rfc2217Transport& wire) {
     EXPECT_TRUE(becomes_true([&] { return wire.line().connected; }));
     wire.line();
     EXPECT_EQ(client.read(hello.size()), hello);
+    client.write("\xff\xfb\x2c");
+    EXPECT_TRUE(becomes_true([&] {
+        wire.line();
+        return wire.agreed();
+    }));
+    EXPECT_EQ(client.read(modem_lines.size()), modem_lines);
     return client;
 }
 
