@@ -62,18 +62,23 @@ void TcpTransport::drop_client() {
     client_finished_ = false;
 }
 
-// Reads what is there, since only that tells of a client that has gone; then lets the next one in, once all that the
-// earlier one wrote has been handed on: bytes of two clients never stand together.
+// Reads what is there, since only that tells of a client that has gone.
+void TcpTransport::hear_client() {
+    if (!client_.open() || client_finished_) return;
+    const StreamState state = receive_available(client_.value(), unread_);
+    client_finished_ = state == StreamState::finished;
+    if (state == StreamState::gone) drop_client();
+}
+
+// Lets the next client in, once all that the earlier one wrote has been handed on: bytes of two clients never stand
+// together. The earlier one is heard after the next one has come: who leaves and comes back at once is never turned
+// away for his own sake.
 void TcpTransport::follow_clients() {
-    if (client_.open() && !client_finished_) {
-        const StreamState state = receive_available(client_.value(), unread_);
-        client_finished_ = state == StreamState::finished;
-        if (state == StreamState::gone) drop_client();
-    }
-    const bool may_change = unread_.empty();
-    for (int i = 0; i < most_at_once; ++i) {
+    hear_client();
+    for (int i = 0; i < most_at_once && server_->any_waits(); ++i) {
+        hear_client();
         const bool taken = client_.open() && !client_finished_;
-        if (!taken && !may_change) return;
+        if (!taken && !unread_.empty()) return;
         auto next = server_->accept();
         if (!next) return;
         if (taken) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -63,6 +64,11 @@ Result<TcpListener> TcpListener::open(const TcpAddress& address, const std::stri
     }
     return fail(ErrorCode::outside,
                 fmt::format("{} {}: cannot be listened at: {}", scheme, shown_address(address), std::strerror(reason)));
+}
+
+bool TcpListener::any_waits() const {
+    pollfd look{socket_.value(), POLLIN, 0};
+    return ::poll(&look, 1, 0) > 0;
 }
 
 std::optional<AcceptedTcp> TcpListener::accept() const {

@@ -24,6 +24,8 @@ public:
     /// Fails with `outside` when the host is unknown or the system refuses; the sentence begins with `scheme`.
     static Result<TcpListener> open(const TcpAddress& address, const std::string& scheme);
 
+    /// A connection waits, or the socket has something to say of itself.
+    [[nodiscard]] bool any_waits() const;
     /// The next connection that waits; nothing when none does.
     [[nodiscard]] std::optional<AcceptedTcp> accept() const;
     /// The port is never 0.

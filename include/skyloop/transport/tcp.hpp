@@ -54,6 +54,7 @@ public:
 private:
     explicit TcpTransport(std::unique_ptr<TcpListener> server);
 
+    void hear_client();
     void follow_clients();
     void drop_client();
 

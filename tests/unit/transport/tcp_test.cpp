@@ -9,6 +9,8 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
+#include <thread>
 
 namespace skyloop {
 namespace {
@@ -138,6 +140,24 @@ TEST(TcpTransport, TurnsAwayASecondClientAndTakesTheNext) {
     wire->write(to_bytes("fresh"));
     EXPECT_EQ(third.read(5), "fresh");
     EXPECT_EQ(wire->turned_away(), 1U);
+}
+
+// The look that finds the second connection must find the first one's end, too.
+TEST(TcpTransport, WhoComesBackAtOnceIsNeverTurnedAway) {
+    const auto wire = any_port();
+    std::atomic<bool> over{false};
+    std::thread loop([&] {
+        while (!over)
+            wire->write(to_bytes("x"));
+    });
+    for (int i = 0; i < 500; ++i) {
+        TcpClient client(wire->port());
+        EXPECT_FALSE(client.read(1).empty()) << i;
+        client.reset();
+    }
+    over = true;
+    loop.join();
+    EXPECT_EQ(wire->turned_away(), 0U);
 }
 
 TEST(TcpTransport, AHalfClosedClientListensOnAndGivesWay) {
