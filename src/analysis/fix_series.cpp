@@ -8,6 +8,7 @@
 #include "nmea_log.hpp"
 #include "rtklib_solution.hpp"
 #include "satellites_table.hpp"
+#include "skyloop/base/middle.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "ubx_log.hpp"
 
@@ -24,9 +25,7 @@ std::optional<Seconds> sampling_interval(const std::vector<FixSample>& samples) 
         if (samples[i].time && samples[i - 1].time && *samples[i].time > *samples[i - 1].time)
             steps.push_back(*samples[i].time - *samples[i - 1].time);
     if (steps.empty()) return std::nullopt;
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    return to_seconds(*middle);
+    return to_seconds(middle_of(steps));
 }
 
 bool blank(std::string_view text) { return text.find_first_not_of(" \t\r\n") == std::string_view::npos; }

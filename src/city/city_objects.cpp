@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 
+#include "skyloop/base/middle.hpp"
 #include "skyloop/city/footprint.hpp"
 
 namespace skyloop {
@@ -79,9 +80,7 @@ double ground_level(const std::vector<CityObject>& objects) {
     }
     std::vector<double>& heights = feet.empty() ? all : feet;
     if (heights.empty()) return 0;
-    const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-    std::nth_element(heights.begin(), middle, heights.end());
-    return *middle;
+    return middle_of(heights);
 }
 
 /// The convex hull, anticlockwise (Andrew 1979).

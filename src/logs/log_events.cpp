@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "skyloop/base/middle.hpp"
+
 namespace skyloop {
 namespace {
 

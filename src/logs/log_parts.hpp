@@ -20,14 +20,6 @@ Number number_at(ByteSpan bytes, std::size_t at) {
     return value;
 }
 
-/// The middle one, or the upper of two; of at least one. Their order changes.
-template <class Value>
-Value middle_of(std::vector<Value>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 /// The place, or nothing for numbers that are none. Degrees; metres above the ellipsoid.
 std::optional<Geodetic> logged_place(double latitude_deg, double longitude_deg, double height_m);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "log_parts.hpp"
+#include "skyloop/base/middle.hpp"
 #include "skyloop/logs/dataflash.hpp"
 #include "skyloop/logs/ulog.hpp"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "log_parts.hpp"
+#include "skyloop/base/middle.hpp"
 #include "skyloop/logs/ulog.hpp"
 #include "skyloop/time/utc_time.hpp"
 

@@ -11,6 +11,7 @@
 
 #include "label_placement.hpp"
 #include "plot_style.hpp"
+#include "skyloop/base/middle.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
@@ -63,9 +64,7 @@ Nanoseconds longest_step(const SatelliteTrack& track) {
     for (std::size_t i = 1; i < track.points.size(); ++i)
         steps.push_back(track.points[i].time - track.points[i - 1].time);
     if (steps.empty()) return Nanoseconds(0);
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    return *middle * 3 / 2;
+    return middle_of(steps) * 3 / 2;
 }
 
 TrackPaths track_paths(const SatelliteTrack& track, const TrackScale& scale) {

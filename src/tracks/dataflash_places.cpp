@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "skyloop/base/middle.hpp"
 #include "skyloop/time/gps_time.hpp"
 
 namespace skyloop {
@@ -11,12 +12,6 @@ GlobalSample moved_place(const GlobalSample& origin, const LocalSample& local) {
     GlobalSample there = on_ardupilot_map(origin, *local.place);
     there.ns = local.ns;
     return there;
-}
-
-double middle_number(std::vector<double> numbers) {
-    const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-    std::nth_element(numbers.begin(), middle, numbers.end());
-    return *middle;
 }
 
 // The origin that brings the metres to the degrees; nothing when one in twenty places stays 0.3 m away.
@@ -32,11 +27,11 @@ std::optional<GlobalSample> fitted_origin(const std::vector<GlobalSample>& globa
         latitudes.push_back(global.latitude_deg - ned.x() / ardupilot_metres_per_degree);
         heights.push_back(global.height_m + ned.z());
     }
-    GlobalSample origin{0, middle_number(latitudes), 0, middle_number(heights)};
+    GlobalSample origin{0, middle_of(latitudes), 0, middle_of(heights)};
     for (const auto& [global, ned] : pairs)
         longitudes.push_back(global.longitude_deg -
                              ned.y() / ardupilot_metres_per_degree_east(origin.latitude_deg, ned.x()));
-    origin.longitude_deg = middle_number(longitudes);
+    origin.longitude_deg = middle_of(longitudes);
     for (const auto& [global, ned] : pairs) {
         const GlobalSample there = moved_place(origin, {global.ns, ned, {}});
         const double north = (there.latitude_deg - global.latitude_deg) * ardupilot_metres_per_degree;

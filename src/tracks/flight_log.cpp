@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "skyloop/base/middle.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/time/utc_time.hpp"
 
@@ -252,9 +253,7 @@ std::optional<std::size_t> AutopilotStarts::of(std::int64_t ns) {
 
 std::optional<std::int64_t> middle_offset(std::vector<std::int64_t>& offsets) {
     if (offsets.empty()) return std::nullopt;
-    const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
-    std::nth_element(offsets.begin(), middle, offsets.end());
-    return *middle;
+    return middle_of(offsets);
 }
 
 void add_count_note(std::vector<std::string>& notes, std::size_t count, const std::string& what) {

@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include "skyloop/base/middle.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -224,9 +226,7 @@ std::optional<double> TextTrack::speed_ratio() const {
         if (moved > moving_mps) ratios.push_back(point.velocity->length().value() / moved);
     }
     if (ratios.size() < fewest) return std::nullopt;
-    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-    std::nth_element(ratios.begin(), middle, ratios.end());
-    return *middle;
+    return middle_of(ratios);
 }
 
 void TextTrack::add_velocities() {

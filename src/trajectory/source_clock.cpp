@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <vector>
 
+#include "skyloop/base/middle.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -217,9 +219,7 @@ void SourceClock::lock() {
     for (std::size_t i = 1; i < arrivals_.size(); ++i)
         steps.push_back(arrivals_[i] - arrivals_[i - 1]);
     std::vector<std::int64_t> sorted = steps;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    auto period = static_cast<double>(*middle);
+    auto period = static_cast<double>(middle_of(sorted));
     double at_last = 0;
     for (int round = 0; round < rounds && period > 0; ++round) {
         double number = 0, n = 0, sum_x = 0, sum_y = 0, sum_xx = 0, sum_xy = 0;  // from the last one backwards

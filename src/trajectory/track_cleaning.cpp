@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "skyloop/base/middle.hpp"
 #include "skyloop/trajectory/track.hpp"
 
 namespace skyloop {
@@ -39,9 +40,7 @@ Nanoseconds median_step(const TrackRows& rows) {
     for (std::size_t i = 1; i < rows.size(); ++i)
         if (rows[i].time > rows[i - 1].time) steps.push_back(rows[i].time - rows[i - 1].time);
     if (steps.empty()) return std::chrono::seconds(1);
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    return *middle;
+    return middle_of(steps);
 }
 
 // Coordinates that are no place, and velocities that are none.

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "skyloop/base/middle.hpp"
 #include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop {
@@ -20,12 +21,7 @@ using AxisMotion = Eigen::Matrix3d;
 
 double seconds_between(const TrackRow& from, const TrackRow& to) { return to_seconds(to.time - from.time).value(); }
 
-double median_of(std::vector<double>& values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
+double median_of(std::vector<double>& values) { return values.empty() ? 0 : middle_of(values); }
 
 // The next jump after the row, or the end.
 std::size_t end_of_smooth_stretch(const std::vector<TrackRow>& rows, std::size_t begin) {
