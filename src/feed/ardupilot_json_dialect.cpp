@@ -2,27 +2,18 @@
 #include <fmt/format.h>
 
 #include "dialects.hpp"
+#include "heard_pieces.hpp"
 #include "json_source.hpp"
-#include "source_pose.hpp"
 
 namespace skyloop {
 namespace {
 
-class ArdupilotJsonDialect : public FeedDialect {
+class ArdupilotJsonDialect : public LineSource {
 public:
-    explicit ArdupilotJsonDialect(const FeedContext& context) : context_(context) {}
-
-    FeedNews hear(ByteSpan bytes, std::int64_t received_ns) override {
-        FeedNews news;
-        for (const std::string& line : lines_.feed(bytes))
-            take(line, received_ns, news);
-        if (lines_.take_thrown_away() > 0) report_refusal(news, "a line of more than 65536 bytes");
-        return news;
-    }
-    void reconnected() override { lines_.clear(); }
+    using LineSource::LineSource;
 
 private:
-    void take(const std::string& line, std::int64_t received_ns, FeedNews& news) const {
+    void take(const std::string& line, std::int64_t received_ns, FeedNews& news) override {
         const auto answer = nlohmann::json::parse(line, nullptr, false);
         if (!answer.is_object()) return report_refusal(news, "an answer of the physics that is no JSON object");
         const auto seconds = source_json_number(answer, "timestamp");
@@ -37,7 +28,7 @@ private:
         pose.attitude = attitude_of(answer);
         if (const auto imu = answer.find("imu"); imu != answer.end() && imu->is_object())
             pose.turn_rate = source_json_triple(*imu, "gyro");
-        report_sample(news, sample_of(pose, LocalMap::ardupilot_flat, context_), time, received_ns);
+        report_sample(news, sample_of(pose, LocalMap::ardupilot_flat, context()), time, received_ns);
     }
 
     static std::optional<Attitude> attitude_of(const nlohmann::json& answer) {
@@ -50,9 +41,6 @@ private:
         return attitude_of_quaternion((*q)[0].get<double>(), (*q)[1].get<double>(), (*q)[2].get<double>(),
                                       (*q)[3].get<double>());
     }
-
-    FeedContext context_;
-    SourceLines lines_;
 };
 
 }  // namespace

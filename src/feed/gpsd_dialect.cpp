@@ -7,25 +7,17 @@
 #include <utility>
 
 #include "dialects.hpp"
+#include "heard_pieces.hpp"
 #include "json_source.hpp"
 #include "motion_filter.hpp"
 #include "skyloop/time/utc_time.hpp"
-#include "source_pose.hpp"
 
 namespace skyloop {
 namespace {
 
-class GpsdDialect : public FeedDialect {
+class GpsdDialect : public LineSource {
 public:
-    explicit GpsdDialect(const FeedContext& context) : context_(context) {}
-
-    FeedNews hear(ByteSpan bytes, std::int64_t received_ns) override {
-        FeedNews news;
-        for (const std::string& line : lines_.feed(bytes))
-            take(line, received_ns, news);
-        if (lines_.take_thrown_away() > 0) report_refusal(news, "a line of more than 65536 bytes");
-        return news;
-    }
+    using LineSource::LineSource;
 
     // Until it reports.
     std::vector<Bytes> say() override {
@@ -34,7 +26,7 @@ public:
     }
 
     void reconnected() override {
-        lines_.clear();
+        LineSource::reconnected();
         watches_ = false;
         devices_.clear();
     }
@@ -53,7 +45,7 @@ private:
         MotionFilter filter{receiver_noise};
     };
 
-    void take(const std::string& line, std::int64_t received_ns, FeedNews& news) {
+    void take(const std::string& line, std::int64_t received_ns, FeedNews& news) override {
         const auto report = nlohmann::json::parse(line, nullptr, false);
         if (!report.is_object()) return report_refusal(news, "a line of gpsd that is no JSON object");
         const std::string kind = source_json_text(report, "class");
@@ -99,12 +91,12 @@ private:
         put_velocity(report, pose);
         constexpr std::int64_t attitude_patience = 1'000'000'000;
         if (received_ns - device.attitude_at_ns <= attitude_patience) pose.attitude = device.attitude;
-        SampleOr sample = sample_of(pose, context_);
+        SampleOr sample = sample_of(pose, context());
         if (!sample) return sample;
         sample->source_time = time_of(report);
         sample->received_ns = received_ns;
         const bool again = sample->source_time && sample->source_time == device.told;
-        if (context_.smooth && !again)
+        if (context().smooth && !again)
             device.filter.smooth(*sample, sample->source_time ? sample->source_time->count() : received_ns);
         return sample;
     }
@@ -141,8 +133,6 @@ private:
         return to_gps_time(*utc, LeapSeconds::announced()).time_since_epoch();
     }
 
-    FeedContext context_;
-    SourceLines lines_;
     bool watches_ = false;
     std::map<std::string, Device> devices_;
 };

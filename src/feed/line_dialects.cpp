@@ -6,8 +6,8 @@
 #include <array>
 
 #include "dialects.hpp"
+#include "heard_pieces.hpp"
 #include "motion_filter.hpp"
-#include "source_pose.hpp"
 
 namespace skyloop {
 namespace {
@@ -52,39 +52,29 @@ private:
 };
 
 // Both, but for how a line becomes numbers.
-class LineDialect : public FeedDialect {
+class LineDialect : public LineSource {
 public:
-    explicit LineDialect(const FeedContext& context) : context_(context) {}
+    using LineSource::LineSource;
 
-    FeedNews hear(ByteSpan bytes, std::int64_t received_ns) override {
-        FeedNews news;
-        for (const std::string& line : lines_.feed(bytes))
-            take(line, received_ns, news);
-        if (lines_.take_thrown_away() > 0) report_refusal(news, "a line of more than 65536 bytes");
-        return news;
-    }
     void reconnected() override {
-        lines_.clear();
+        LineSource::reconnected();
         watch_.forget();
         filter_.forget();
     }
 
 protected:
-    virtual void take(const std::string& line, std::int64_t received_ns, FeedNews& news) = 0;
     // @param coarse the places have a grid of metres, the velocities are better
     void report(const LineNumbers& numbers, std::optional<Attitude> attitude, bool coarse, std::int64_t received_ns,
                 FeedNews& news) {
         const auto time = source_nanoseconds(numbers[LineColumn::time_s]);
         if (!time) return report_refusal(news, fmt::format("a time of {} s", numbers[LineColumn::time_s]));
         if (!watch_.look(*time, news)) return;
-        SampleOr sample = sample_of(pose_of_line(numbers, attitude), context_);
+        SampleOr sample = sample_of(pose_of_line(numbers, attitude), context());
         if (sample && coarse) filter_.smooth(*sample, time->count());
         report_sample(news, std::move(sample), time, received_ns);
     }
 
 private:
-    FeedContext context_;
-    SourceLines lines_;
     PauseWatch watch_;
     MotionFilter filter_{{0.5, 0.05}};
 };

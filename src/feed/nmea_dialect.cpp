@@ -7,12 +7,11 @@
 
 #include "dialects.hpp"
 #include "epoch_gate.hpp"
+#include "heard_pieces.hpp"
 #include "motion_filter.hpp"
 #include "skyloop/base/overloaded.hpp"
 #include "skyloop/protocol/nmea_decode.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
 #include "skyloop/time/utc_time.hpp"
-#include "source_pose.hpp"
 
 namespace skyloop {
 namespace {
@@ -70,27 +69,13 @@ struct ClimbFilter {
     bool settled = false;
 };
 
-class NmeaDialect : public FeedDialect {
+class NmeaDialect : public StreamSource {
 public:
-    explicit NmeaDialect(const FeedContext& context) : context_(context) {}
-
-    FeedNews hear(ByteSpan bytes, std::int64_t received_ns) override {
-        FeedNews news;
-        for (const StreamPiece& piece : splitter_.feed(bytes)) {
-            if (piece.kind != StreamKind::nmea) continue;
-            const auto message = decode_nmea(to_string(piece.bytes));
-            // Sentences that are not read here are no fault of theirs.
-            if (message) take(*message, received_ns, news);
-        }
-        const std::uint64_t bad = splitter_.counts().bad[static_cast<std::size_t>(StreamKind::nmea)];
-        for (; bad_ < bad; ++bad_)
-            report_refusal(news, "a sentence with a wrong checksum");
-        return news;
-    }
+    explicit NmeaDialect(const FeedContext& context)
+        : StreamSource(context, StreamKind::nmea, "a sentence with a wrong checksum") {}
 
     void reconnected() override {
-        splitter_ = StreamSplitter();
-        bad_ = 0;
+        StreamSource::reconnected();
         epoch_ = {};
         gate_ = {};
         filter_.forget();
@@ -112,7 +97,10 @@ private:
         bool above_ellipsoid;
     };
 
-    void take(const NmeaMessage& message, std::int64_t received_ns, FeedNews& news) {
+    void take(ByteSpan sentence, std::int64_t received_ns, FeedNews& news) override {
+        const auto message = decode_nmea(to_string(sentence));
+        // Sentences that are not read here are no fault of theirs.
+        if (!message) return;
         std::visit(Overloaded{[&](const Rmc& m) { take_rmc(m, received_ns, news); },
                               [&](const Gga& m) { take_fix(m, m.quality > 0, NmeaKind::gga, received_ns, news); },
                               [&](const Gns& m) { take_fix(m, has_fix(m), NmeaKind::gns, received_ns, news); },
@@ -125,7 +113,7 @@ private:
                               },
                               [&](const Hdt& m) { take_heading(m.heading, received_ns, news); },
                               [&](const Ths& m) { take_heading(m.heading, received_ns, news); }, [](const auto&) {}},
-                   message);
+                   *message);
     }
 
     void take_rmc(const Rmc& rmc, std::int64_t received_ns, FeedNews& news) {
@@ -197,8 +185,8 @@ private:
         pose.above_ellipsoid = height_->above_ellipsoid;
         pose.velocity_ned = velocity(time);
         if (epoch_.heading) pose.attitude = Attitude::roll_pitch_yaw({}, {}, *epoch_.heading);
-        SampleOr sample = sample_of(pose, context_);
-        if (sample && context_.smooth) filter_.smooth(*sample, time.count());
+        SampleOr sample = sample_of(pose, context());
+        if (sample && context().smooth) filter_.smooth(*sample, time.count());
         report_sample(news, std::move(sample), time, epoch_.received_ns);
     }
 
@@ -229,9 +217,6 @@ private:
         return climb_->settled ? std::optional(climb_->height.velocity()) : std::nullopt;
     }
 
-    FeedContext context_;
-    StreamSplitter splitter_;
-    std::uint64_t bad_ = 0;
     NmeaCalendar calendar_;
     EpochGate gate_;
     Epoch epoch_;

@@ -6,12 +6,11 @@
 
 #include "dialects.hpp"
 #include "epoch_gate.hpp"
+#include "heard_pieces.hpp"
 #include "motion_filter.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
 #include "skyloop/protocol/ubx_frame.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
 #include "skyloop/time/utc_time.hpp"
-#include "source_pose.hpp"
 
 namespace skyloop {
 namespace {
@@ -23,25 +22,13 @@ struct UbxKind {
     enum : unsigned { pvt = 1, position = 2, velocity = 4, precise = 8, solution = 16 };
 };
 
-class UbxDialect : public FeedDialect {
+class UbxDialect : public StreamSource {
 public:
-    explicit UbxDialect(const FeedContext& context) : context_(context) {}
-
-    FeedNews hear(ByteSpan bytes, std::int64_t received_ns) override {
-        FeedNews news;
-        for (const StreamPiece& piece : splitter_.feed(bytes)) {
-            if (piece.kind != StreamKind::ubx) continue;
-            if (const auto frame = parse_frame(piece.bytes)) take(*frame, received_ns, news);
-        }
-        const std::uint64_t bad = splitter_.counts().bad[static_cast<std::size_t>(StreamKind::ubx)];
-        for (; bad_ < bad; ++bad_)
-            report_refusal(news, "a UBX frame with a wrong checksum");
-        return news;
-    }
+    explicit UbxDialect(const FeedContext& context)
+        : StreamSource(context, StreamKind::ubx, "a UBX frame with a wrong checksum") {}
 
     void reconnected() override {
-        splitter_ = StreamSplitter();
-        bad_ = 0;
+        StreamSource::reconnected();
         epoch_ = {};
         gate_ = {};
         filter_.forget();
@@ -58,6 +45,10 @@ private:
         std::optional<Eigen::Vector3d> velocity_ned;
         std::int64_t received_ns = 0;
     };
+
+    void take(ByteSpan message, std::int64_t received_ns, FeedNews& news) override {
+        if (const auto frame = parse_frame(message)) take(*frame, received_ns, news);
+    }
 
     void take(const UbxFrameView& frame, std::int64_t received_ns, FeedNews& news) {
         received_ns_ = received_ns;
@@ -134,14 +125,11 @@ private:
         pose.height_m = place->height_m;
         pose.above_ellipsoid = true;
         pose.velocity_ned = epoch_.velocity_ned;
-        SampleOr sample = sample_of(pose, context_);
-        if (sample && context_.smooth) filter_.smooth(*sample, time.count());
+        SampleOr sample = sample_of(pose, context());
+        if (sample && context().smooth) filter_.smooth(*sample, time.count());
         report_sample(news, std::move(sample), time, epoch_.received_ns);
     }
 
-    FeedContext context_;
-    StreamSplitter splitter_;
-    std::uint64_t bad_ = 0;
     std::int64_t received_ns_ = 0;
     EpochGate gate_;
     Epoch epoch_;

@@ -1,0 +1,69 @@
+// What dialects of lines and of receivers' streams have in common: bytes into pieces, and what is bad among them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "skyloop/feed/feed_dialect.hpp"
+#include "skyloop/protocol/stream_splitter.hpp"
+#include "source_pose.hpp"
+
+namespace skyloop {
+
+// A source that speaks in lines of text.
+class LineSource : public FeedDialect {
+public:
+    explicit LineSource(const FeedContext& context) : context_(context) {}
+
+    FeedNews hear(ByteSpan bytes, std::int64_t received_ns) override {
+        FeedNews news;
+        for (const std::string& line : lines_.feed(bytes))
+            take(line, received_ns, news);
+        if (lines_.take_thrown_away() > 0) report_refusal(news, "a line of more than 65536 bytes");
+        return news;
+    }
+    void reconnected() override { lines_.clear(); }
+
+protected:
+    virtual void take(const std::string& line, std::int64_t received_ns, FeedNews& news) = 0;
+    [[nodiscard]] const FeedContext& context() const { return context_; }
+
+private:
+    FeedContext context_;
+    SourceLines lines_;
+};
+
+// A receiver's stream, of which messages of one kind are taken.
+class StreamSource : public FeedDialect {
+public:
+    // @param bad_piece why one with a wrong checksum is refused
+    StreamSource(const FeedContext& context, StreamKind kind, const char* bad_piece)
+        : context_(context), kind_(kind), bad_piece_(bad_piece) {}
+
+    FeedNews hear(ByteSpan bytes, std::int64_t received_ns) override {
+        FeedNews news;
+        for (const StreamPiece& piece : splitter_.feed(bytes))
+            if (piece.kind == kind_) take(piece.bytes, received_ns, news);
+        const std::uint64_t bad = splitter_.counts().bad[static_cast<std::size_t>(kind_)];
+        for (; bad_ < bad; ++bad_)
+            report_refusal(news, bad_piece_);
+        return news;
+    }
+    void reconnected() override {
+        splitter_ = StreamSplitter();
+        bad_ = 0;
+    }
+
+protected:
+    virtual void take(ByteSpan message, std::int64_t received_ns, FeedNews& news) = 0;
+    [[nodiscard]] const FeedContext& context() const { return context_; }
+
+private:
+    FeedContext context_;
+    StreamKind kind_;
+    const char* bad_piece_;
+    StreamSplitter splitter_;
+    std::uint64_t bad_ = 0;
+};
+
+}  // namespace skyloop
