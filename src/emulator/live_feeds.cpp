@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "skyloop/base/steady_clock.hpp"
+#include "skyloop/fault/checked_command.hpp"
 
 namespace skyloop {
 namespace {
@@ -17,17 +18,6 @@ Command plain_command(CommandVerb verb) {
     Command command;
     command.verb = verb;
     command.source = "feed";
-    return command;
-}
-
-Command lost_signals(const std::string& name) {
-    auto values = check_parameters(find_fault_kind("outage")->parameters, {}).parameters.values();
-    values["kind"] = std::string("outage");
-    values["name"] = name;
-    values["ramp_in_s"] = 0.0;
-    values["ramp_out_s"] = 0.0;
-    Command command = plain_command(CommandVerb::start_fault);
-    command.parameters = Parameters(std::move(values));
     return command;
 }
 
@@ -164,7 +154,8 @@ std::vector<Command> LiveFeeds::pump(GpsTime now, std::optional<std::int64_t> du
 void LiveFeeds::look_for_silence(Source& source, std::vector<Command>& commands) {
     const std::int64_t now_ns = steady_clock_ns();
     const std::uint64_t messages = source.feed->counts().samples;
-    const std::string fault = fmt::format("{} lost {}", source.settings.source, source.times_lost);
+    // Each loss is a fault of its own.
+    const auto fault = [&] { return fmt::format("{} lost {}", source.settings.source, source.times_lost); };
     if (messages != source.messages) {
         source.messages = messages;
         source.heard_ns = now_ns;
@@ -174,7 +165,7 @@ void LiveFeeds::look_for_silence(Source& source, std::vector<Command>& commands)
         if (source.settings.when_lost == LostSource::pause) commands.push_back(plain_command(CommandVerb::resume));
         if (source.settings.when_lost != LostSource::outage) return;
         commands.push_back(plain_command(CommandVerb::stop_fault));
-        commands.back().parameters = Parameters({{"fault", fault}});
+        commands.back().parameters = Parameters({{"fault", fault()}});
         return;
     }
     const double silent_s = static_cast<double>(now_ns - source.heard_ns) * 1e-9;
@@ -193,7 +184,7 @@ void LiveFeeds::look_for_silence(Source& source, std::vector<Command>& commands)
             return;
         case LostSource::outage:
             return commands.push_back(
-                lost_signals(fmt::format("{} lost {}", source.settings.source, source.times_lost)));
+                checked_live_fault({{"kind", std::string("outage")}, {"name", fault()}}, "feed").value());
         case LostSource::pause:
             return commands.push_back(plain_command(CommandVerb::pause));
         case LostSource::stop:

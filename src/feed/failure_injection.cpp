@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "skyloop/fault/fault_kind.hpp"
+#include "skyloop/fault/checked_command.hpp"
 
 namespace skyloop {
 namespace {
@@ -76,17 +76,13 @@ bool FailureInjector::stop(std::size_t receiver) {
 bool FailureInjector::start(std::size_t receiver, const FailureFault& fault) {
     // Names are found again by the command that stops.
     const std::string name = fmt::format("mavlink {} {}", fault.word, started_ + 1);
-    auto values = check_parameters(find_fault_kind(fault.kind)->parameters, fault.parameters).parameters.values();
-    values["kind"] = std::string(fault.kind);
-    values["name"] = name;
-    values["ramp_in_s"] = 0.0;
-    values["ramp_out_s"] = 0.0;
-    Command command;
-    command.verb = CommandVerb::start_fault;
-    command.parameters = Parameters(std::move(values));
-    command.receiver = receivers_[receiver];
-    command.source = "mavlink";
-    if (!push_(std::move(command))) return false;
+    ParameterMap members = fault.parameters;
+    members["kind"] = std::string(fault.kind);
+    members["name"] = name;
+    auto command = checked_live_fault(std::move(members), "mavlink");
+    if (!command) return false;
+    command->receiver = receivers_[receiver];
+    if (!push_(std::move(*command))) return false;
     ++started_;
     injected_[receiver] = {fault.type, name};
     return true;
