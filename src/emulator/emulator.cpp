@@ -179,7 +179,8 @@ void Emulator::run_epochs(Nanoseconds lateness) {
         traces_[i].reset();
         if (stations[i].next_epoch() == now_) traces_[i] = stations[i].observe();
     }
-    if (parts_.feeds) parts_.feeds->note_epoch(now_);
+    const bool any = std::any_of(traces_.begin(), traces_.end(), [](const auto& trace) { return trace.has_value(); });
+    if (any && parts_.feeds) parts_.feeds->note_epoch(now_);
     for (std::size_t i = 0; i < stations.size(); ++i) {
         const auto base = stations[i].base();
         if (traces_[i] && base) stations[i].relate(*traces_[i], traces_[*base] ? &*traces_[*base] : nullptr);
