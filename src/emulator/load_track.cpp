@@ -14,10 +14,9 @@
 namespace skyloop {
 namespace {
 
-PlayedPath played_path(const FileSettings& file, GpsTime start) {
-    const GpsTime first = first_row_at(file, start);
-    return PlayedPath(std::make_unique<RecordedPath>(*file.track, file.gaps, first, file.curve()), first,
-                      file.playback);
+// In a run that begins at `start`, were nothing delayed or skipped.
+GpsTime first_row_at(const FileSettings& file, GpsTime start) {
+    return file.keeps_time && file.track->origin ? *file.track->origin + file.track->points.front().time : start;
 }
 
 // Where the path lies in the run.
@@ -192,7 +191,13 @@ Result<LoadedTrack> load_one(TrajectorySettings& way, Scenario& scenario, std::s
     auto* file = std::get_if<FileSettings>(&way);
     if (!file) return LoadedTrack{};
     if (const auto read = read_and_clean(*file, geoid); !read) return fail(read.error());
-    const PlayedPath path = played_path(*file, start);
+    const GpsTime first = first_row_at(*file, start);
+    const auto curve = std::make_shared<const RecordedPath>(*file->track, file->gaps, first, file->curve());
+    const PlayedPath path(curve, first, file->playback);
+    if (file->playback.alters())
+        file->way = std::make_shared<const PlayedPath>(path);
+    else
+        file->way = curve;
     const CurveReport& report = path.path().report();
     LoadedTrack loaded{fmt::format("{}, {} rows in {:.3f} s", file->track->name, file->track->points.size(),
                                    path.path().duration().value()),
@@ -229,15 +234,6 @@ bool stops_at_its_end(const TrajectorySettings& way) {
 }
 
 }  // namespace
-
-GpsTime first_row_at(const FileSettings& file, GpsTime start) {
-    return file.keeps_time && file.track->origin ? *file.track->origin + file.track->points.front().time : start;
-}
-
-std::unique_ptr<Trajectory> play_track(const FileSettings& file, GpsTime start) {
-    if (file.playback.alters()) return std::make_unique<PlayedPath>(played_path(file, start));
-    return std::make_unique<RecordedPath>(*file.track, file.gaps, first_row_at(file, start), file.curve());
-}
 
 bool ends_with_its_path(const Scenario& scenario) {
     return stops_at_its_end(scenario.trajectory) ||

@@ -1,38 +1,38 @@
 #include "skyloop/base/overloaded.hpp"
 #include "skyloop/emulator/assembly.hpp"
 #include "skyloop/emulator/lever_arm.hpp"
-#include "skyloop/emulator/load_track.hpp"
-#include "skyloop/trajectory/recorded_path.hpp"
 #include "skyloop/trajectory/shaped_path.hpp"
 #include "skyloop/trajectory/shared_path.hpp"
 
 namespace skyloop {
 
 std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, GpsTime start) {
-    return std::visit(
-        Overloaded{
-            [](const FixedSettings& fixed) -> std::unique_ptr<Trajectory> {
-                return std::make_unique<FixedPoint>(fixed.at);
-            },
-            [&](const WaypointSettings& path) -> std::unique_ptr<Trajectory> {
-                return std::make_unique<Waypoints>(start, path.corners);
-            },
-            [&](const CircleSettings& circle) -> std::unique_ptr<Trajectory> {
-                return std::make_unique<Circle>(start, circle.shape);
-            },
-            [&](const FileSettings& file) -> std::unique_ptr<Trajectory> { return play_track(file, start); },
-            [](const LiveSettings& live) -> std::unique_ptr<Trajectory> {
-                // The vehicle that every receiver has left has no source.
-                if (!live.path) return std::make_unique<FixedPoint>(live.at.value_or(FixedSettings().at));
-                return std::make_unique<SharedPath>(live.path);
-            },
-            [&](const GeneratedSettings& generated) -> std::unique_ptr<Trajectory> {
-                const GeneratedPath& path = generated.path;
-                return std::make_unique<ShapedPath>(advanced(start, path.start_delay), GeodesicPlane(path.origin),
-                                                    generated.shape, path.vehicle.kind);
-            },
-        },
-        settings);
+    return std::visit(Overloaded{
+                          [](const FixedSettings& fixed) -> std::unique_ptr<Trajectory> {
+                              return std::make_unique<FixedPoint>(fixed.at);
+                          },
+                          [&](const WaypointSettings& path) -> std::unique_ptr<Trajectory> {
+                              return std::make_unique<Waypoints>(start, path.corners);
+                          },
+                          [&](const CircleSettings& circle) -> std::unique_ptr<Trajectory> {
+                              return std::make_unique<Circle>(start, circle.shape);
+                          },
+                          [](const FileSettings& file) -> std::unique_ptr<Trajectory> {
+                              return std::make_unique<SharedPath>(file.way);
+                          },
+                          [](const LiveSettings& live) -> std::unique_ptr<Trajectory> {
+                              // The vehicle that every receiver has left has no source.
+                              if (!live.path) return std::make_unique<FixedPoint>(live.at.value_or(FixedSettings().at));
+                              return std::make_unique<SharedPath>(live.path);
+                          },
+                          [&](const GeneratedSettings& generated) -> std::unique_ptr<Trajectory> {
+                              const GeneratedPath& path = generated.path;
+                              return std::make_unique<ShapedPath>(advanced(start, path.start_delay),
+                                                                  GeodesicPlane(path.origin), generated.shape,
+                                                                  path.vehicle.kind);
+                          },
+                      },
+                      settings);
 }
 
 std::unique_ptr<Trajectory> make_antenna_path(const Scenario& scenario, const SimulationSetup& setup) {

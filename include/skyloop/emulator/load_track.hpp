@@ -32,13 +32,7 @@ Result<LoadedTrack> load_track(Scenario& scenario, const Geoid* geoid, GpsTime s
 /// Plans a generated path with the seed of the run, unless it has its own. Fails with `input` where there is none.
 Result<LoadedTrack> load_generated(GeneratedSettings& path, std::uint64_t run_seed);
 
-/// When the first row of a loaded track happens in a run that begins at `start`, were nothing delayed or skipped.
-GpsTime first_row_at(const FileSettings& file, GpsTime start);
-
 /// Whether a path of the scenario ends the run: end = "stop".
 bool ends_with_its_path(const Scenario& scenario);
-
-/// The way of a loaded track in a run that begins at `start`.
-std::unique_ptr<Trajectory> play_track(const FileSettings& file, GpsTime start);
 
 }  // namespace skyloop

@@ -36,7 +36,7 @@ class PlayedPath : public Trajectory {
 public:
     /// @param path whose first row happens at `start`
     /// @param start when the delay begins
-    PlayedPath(std::unique_ptr<const RecordedPath> path, GpsTime start, const Playback& playback);
+    PlayedPath(std::shared_ptr<const RecordedPath> path, GpsTime start, const Playback& playback);
     [[nodiscard]] TruthState at(GpsTime time) const override;
 
     [[nodiscard]] const RecordedPath& path() const { return *path_; }
@@ -53,7 +53,7 @@ private:
     void close();
     [[nodiscard]] TruthState on_closing(double s) const;
 
-    std::unique_ptr<const RecordedPath> path_;
+    std::shared_ptr<const RecordedPath> path_;
     GpsTime start_;
     Playback playback_;
     bool jumps_back_ = false;
