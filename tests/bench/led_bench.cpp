@@ -10,6 +10,7 @@
 #include "skyloop/emulator/assembly.hpp"
 #include "skyloop/scenario/scenario_file.hpp"
 #include "support/oracle_table.hpp"
+#include "support/truth_on_circle.hpp"
 
 namespace {
 
@@ -58,15 +59,7 @@ sky_emulator* create_led() {
 }
 
 void say_truth(sky_emulator* emulator, std::int64_t now) {
-    sky_truth truth{};
-    truth.struct_size = sizeof truth;
-    truth.fields = SKY_POS_LOCAL_NED | SKY_VEL;
-    truth.sim_time_ns = now;
-    const double turned = 0.1e-9 * static_cast<double>(now);
-    truth.pos[0] = 100 * std::cos(turned);
-    truth.pos[1] = 100 * std::sin(turned);
-    truth.vel_ned[0] = -10 * std::sin(turned);
-    truth.vel_ned[1] = 10 * std::cos(turned);
+    const sky_truth truth = test::truth_on_circle(now);
     if (sky_set_truth(emulator, &truth) != SKY_OK) std::abort();
 }
 
