@@ -47,6 +47,15 @@ if(SKYLOOP_FUZZ)
     target_compile_options(skyloop_instruments INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
+# Under the sanitizers only the folders that compute are optimised: all others read, arrange and speak, take a third less time
+# to compile as they are written, and their tests do not feel it. Fuzzers do.
+set(SKYLOOP_COMPUTING base time geo gnss flow rinex sky scene propagation measurement pvt error_model protocol)
+function(skyloop_optimise target folder)
+    if(SKYLOOP_SANITIZE AND NOT SKYLOOP_FUZZ AND NOT folder IN_LIST SKYLOOP_COMPUTING)
+        target_compile_options(${target} PRIVATE -O0)
+    endif()
+endfunction()
+
 # skyloop_test_code(TARGET [OF skyloop::NAME …]): code that tests, which nobody waits for: compiled fast rather than to be
 # fast, and alike in the presets dev and asan-ubsan, so that ccache need not do it twice. The libraries it is about come first
 # in the link: of a function in a header that both have compiled, theirs is taken, with its instruments.
@@ -72,6 +81,7 @@ function(skyloop_library name)
         set(visibility PUBLIC)
         set_target_properties(skyloop_${name} PROPERTIES UNITY_BUILD ${SKYLOOP_UNITY} UNITY_BUILD_BATCH_SIZE 0)
         target_link_libraries(skyloop_${name} PRIVATE skyloop_instruments ${arg_PACKAGES})
+        skyloop_optimise(skyloop_${name} ${name})
     else()
         add_library(skyloop_${name} INTERFACE)
         set(visibility INTERFACE)
