@@ -116,8 +116,7 @@ std::string receiver_detail(const Station::Parts& parts) {
 
 std::unique_ptr<Pacer> make_pacer(const RunMode& mode, GpsTime start, double speed, const LiveFeeds* feeds) {
     if (feeds != nullptr && feeds->leads()) return std::make_unique<SourcePacer>(start);
-    if (mode.embedding != nullptr) return std::make_unique<LedPacer>(start);
-    if (mode.virtual_time) return std::make_unique<VirtualPacer>(start);
+    if (mode.embedding != nullptr || mode.virtual_time) return std::make_unique<VirtualPacer>(start);
     // A run that begins now keeps the wall clock's time; what loading took is not to shift it.
     return std::make_unique<RealtimePacer>(start, start == mode.now ? mode.now_steady_ns : steady_clock_ns(), speed);
 }

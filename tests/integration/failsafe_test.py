@@ -62,6 +62,11 @@ class VerdictsTest(unittest.TestCase):
         failure = xml.etree.ElementTree.parse(self.out / "junit.xml").getroot().find(".//failure")
         self.assertIsNotNone(failure)
 
+    def test_a_pause_without_anybody_who_could_end_it_is_none(self):
+        done = self.simulate(SCENARIO + '[[command]]\nkind = "pause"\nat_s = 10\n[[command]]\nkind = "step"\nseconds = 1\nat_s = 12\n')
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("2 of 2 expectations met", done.stdout)
+
     def test_mistakes_are_told_by_line_and_column(self):
         cases = {
             '[[fault]]\nkind = "outtage"\n': r"quiet.toml:2:\d+: fault.kind: is 'outtage'; did you mean 'outage'",

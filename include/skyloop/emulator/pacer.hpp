@@ -45,13 +45,15 @@ private:
     bool paused_ = false;
 };
 
-/// Does not wait: a day runs in seconds, and its clock is the simulated one.
+/// Does not wait: a day runs in seconds, and its clock is the simulated one. It cannot be paused: nobody stands by who
+/// could let it go on, and where a program leads the run, time goes where the program leads it.
 class VirtualPacer : public Pacer {
 public:
     explicit VirtualPacer(GpsTime start) : start_(start) {}
     std::optional<Nanoseconds> wait_until(GpsTime) override { return Nanoseconds(0); }
     [[nodiscard]] Nanoseconds tick(bool) const override { return Nanoseconds(0); }
     [[nodiscard]] std::int64_t monotonic_ns(GpsTime now) const override { return (now - start_).count(); }
+    void pause(GpsTime) override {}
 
 private:
     GpsTime start_;
@@ -68,13 +70,6 @@ public:
 
 private:
     GpsTime start_;
-};
-
-/// Of a run that a program leads instant by instant: it cannot be paused, for time goes where the program leads it.
-class LedPacer : public VirtualPacer {
-public:
-    using VirtualPacer::VirtualPacer;
-    void pause(GpsTime) override {}
 };
 
 /// Maps simulated time to the steady clock, at a chosen rate.

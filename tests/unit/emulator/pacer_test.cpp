@@ -19,6 +19,8 @@ TEST(VirtualPacer, NeverWaitsAndCountsSimulatedTime) {
     EXPECT_TRUE(pacer.is_virtual());
     EXPECT_EQ(pacer.tick(true), 0ns);
     EXPECT_EQ(pacer.monotonic_ns(pacer_start + 1500ms), 1'500'000'000);
+    pacer.pause(pacer_start);
+    EXPECT_FALSE(pacer.paused()) << "nobody could let it go on";
 }
 
 TEST(RealtimePacer, NeverComesEarly) {
