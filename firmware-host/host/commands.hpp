@@ -21,6 +21,8 @@ Action add_boards_command(CLI::App& app);
 Action add_decode_command(CLI::App& app);
 Action add_devices_command(CLI::App& app);
 Action add_faults_command(CLI::App& app);
+/// `app` is the whole program, whose commands the pages tell of; it must outlive the action.
+Action add_help_pages_command(CLI::App& app);
 Action add_schema_command(CLI::App& app);
 Action add_scene_command(CLI::App& app);
 Action add_ctl_command(CLI::App& app);

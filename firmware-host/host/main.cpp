@@ -20,9 +20,9 @@ namespace {
 
 using skyloop::host::Action;
 
-constexpr std::array<std::string_view, 17> commands{
-    "run",    "simulate", "sky", "check",  "compare",       "solve",   "boards", "decode",    "scene",
-    "faults", "schema",   "ctl", "replay", "scenario-from", "devices", "power",  "trajectory"};
+constexpr std::array<std::string_view, 18> commands{
+    "run",    "simulate", "sky", "check",  "compare",       "solve",   "boards", "decode",     "scene",
+    "faults", "schema",   "ctl", "replay", "scenario-from", "devices", "power",  "trajectory", "help-pages"};
 constexpr std::array<std::string_view, 1> later_commands{"campaign"};
 
 // CLI11 does not know which words may be meant; this says it in one line.
@@ -39,12 +39,15 @@ int run_program(int argc, char** argv) {
     app.set_version_flag("--version", "skyloop " SKYLOOP_VERSION);
     app.require_subcommand(1);
     const std::array<Action (*)(CLI::App&), commands.size()> add{
-        skyloop::host::add_run_command,    skyloop::host::add_simulate_command,      skyloop::host::add_sky_command,
-        skyloop::host::add_check_command,  skyloop::host::add_compare_command,       skyloop::host::add_solve_command,
-        skyloop::host::add_boards_command, skyloop::host::add_decode_command,        skyloop::host::add_scene_command,
-        skyloop::host::add_faults_command, skyloop::host::add_schema_command,        skyloop::host::add_ctl_command,
-        skyloop::host::add_replay_command, skyloop::host::add_scenario_from_command, skyloop::host::add_devices_command,
-        skyloop::host::add_power_command,  skyloop::host::add_trajectory_command};
+        skyloop::host::add_run_command,        skyloop::host::add_simulate_command,
+        skyloop::host::add_sky_command,        skyloop::host::add_check_command,
+        skyloop::host::add_compare_command,    skyloop::host::add_solve_command,
+        skyloop::host::add_boards_command,     skyloop::host::add_decode_command,
+        skyloop::host::add_scene_command,      skyloop::host::add_faults_command,
+        skyloop::host::add_schema_command,     skyloop::host::add_ctl_command,
+        skyloop::host::add_replay_command,     skyloop::host::add_scenario_from_command,
+        skyloop::host::add_devices_command,    skyloop::host::add_power_command,
+        skyloop::host::add_trajectory_command, skyloop::host::add_help_pages_command};
     std::vector<Action> actions;
     for (const auto add_command : add)
         actions.push_back(add_command(app));

@@ -196,7 +196,8 @@ void add_run_options(CLI::App& command, RunOptions& options) {
     command.add_option("--rate", options.rate, "Navigation rate at start, Hz");
     command
         .add_option("--port", options.ports,
-                    "Where the bytes go: pty[:LINK] serial:DEVICE[@BAUD] tcp:[HOST:]PORT tcp-connect:HOST:PORT "
+                    "Where the bytes go: pty[:LINK] serial:DEVICE[@BAUD] usb:VID:PID[:SERIAL] hid:VID:PID[:SERIAL] "
+                    "usbip:[HOST:]PORT tcp:[HOST:]PORT tcp-connect:HOST:PORT "
                     "rfc2217:[HOST:]PORT file:PATH - client:NAME; "
                     "NAME=… is the "
                     "board's port of that name, such as uart2=pty; repeatable")
