@@ -36,7 +36,7 @@ class Installation:
     def __init__(self):
         self.folder = tempfile.TemporaryDirectory(prefix="skyloop-installed-")
         first = pathlib.Path(self.folder.name) / "first"
-        for component in ("library", "data"):
+        for component in ("library", "development", "data"):
             run("cmake", "--install", BUILD, "--prefix", first, "--component", component)
         self.prefix = pathlib.Path(self.folder.name) / "moved here"
         first.rename(self.prefix)

@@ -109,7 +109,7 @@ class Staged(unittest.TestCase):
     def test_destdir_is_only_where_it_is_put(self):
         with tempfile.TemporaryDirectory(prefix="skyloop-staged-") as folder:
             run("cmake", "--install", os.environ.get("SKYLOOP_BUILD", ROOT / "build/dev"), "--prefix", "/opt/skyloop",
-                "--component", "library", env={"DESTDIR": folder})
+                "--component", "development", env={"DESTDIR": folder})
             staged = pathlib.Path(folder) / "opt/skyloop"
             for name in ("skyloop.pc", "skyloopTargets.cmake", "skyloopConfig.cmake"):
                 found = list(staged.rglob(name))
