@@ -14,6 +14,7 @@
 #include "run_watcher.hpp"
 #include "skyloop/emulator/assembly.hpp"
 #include "skyloop/emulator/command_queue.hpp"
+#include "skyloop/emulator/run_summary.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/propagation/told_obstacles.hpp"
 #include "skyloop/trajectory/live_path.hpp"
@@ -69,6 +70,7 @@ private:
     Answer<std::shared_ptr<LivePath>> path_of(const sky_truth& truth, const TruthSample& first) const;
     void put_on(const std::vector<std::size_t>& receivers, const std::shared_ptr<LivePath>& path);
     void tell_news();
+    void summarise(SummaryOf what);
     [[nodiscard]] Answer<void> failure() const;
     [[nodiscard]] std::string config_text() const;
     [[nodiscard]] std::string ports_text() const;

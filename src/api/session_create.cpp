@@ -125,14 +125,19 @@ Answer<void> Session::assemble_run(const sky_create_info& info) {
         log(SKY_LOG_DETAIL, detail);
     for (const std::string& warning : assembly_.warnings)
         log(SKY_LOG_WARNING, warning);
+    summarise(SummaryOf::beginning);
     return {};
+}
+
+void Session::summarise(SummaryOf what) {
+    if (Recorder* recorder = assembly_.emulator->recorder())
+        recorder->record_summary(run_summary(scenario_, assembly_, SKYLOOP_VERSION, what));
 }
 
 Session::~Session() {
     if (!assembly_.emulator) return;
     assembly_.emulator->finish();
-    if (Recorder* recorder = assembly_.emulator->recorder())
-        recorder->record_summary(run_summary(scenario_, assembly_, SKYLOOP_VERSION));
+    summarise(SummaryOf::end);
 }
 
 }  // namespace skyloop

@@ -22,7 +22,7 @@ Result<Recorder> Recorder::create(const std::filesystem::path& folder, std::size
                     fmt::format("{}: cannot be made a folder: {}", folder.string(), reason.message()));
     Recorder recorder;
     recorder.folder_ = folder;
-    // Written at the end: a run that is killed must not leave the summary of the run before.
+    // Whatever becomes of this run, it must not leave the summary of the run before.
     std::filesystem::remove(folder / "run.json", reason);
     // Nor the observations of a receiver that measured, when this one does not.
     std::filesystem::remove(folder / "observations.rnx", reason);
@@ -102,14 +102,23 @@ void Recorder::PortFiles::write_heard() {
 }
 
 void Recorder::record_summary(const std::string& content) {
-    auto file = OutputFile::create(folder_ / "run.json");
-    if (file) {
-        file->write(content);
-        file->flush();
-        summary_failure_ = file->failure();
-    } else {
+    const std::filesystem::path name = folder_ / "run.json", fresh = folder_ / "run.json.new";
+    auto file = OutputFile::create(fresh);
+    if (!file) {
         summary_failure_ = file.error();
+        return;
     }
+    file->write(content);
+    file->flush();
+    summary_failure_ = file->failure();
+    std::error_code reason;
+    if (summary_failure_)
+        std::filesystem::remove(fresh, reason);
+    else
+        std::filesystem::rename(fresh, name, reason);
+    if (reason && !summary_failure_)
+        summary_failure_ =
+            Error{ErrorCode::outside, fmt::format("{}: cannot be written: {}", name.string(), reason.message())};
 }
 
 std::vector<const OutputFile*> Recorder::files() const {

@@ -135,7 +135,7 @@ Json receivers_json(const Emulator& emulator) {
 
 }  // namespace
 
-std::string run_summary(const Scenario& scenario, const Assembly& assembly, std::string_view version) {
+std::string run_summary(const Scenario& scenario, const Assembly& assembly, std::string_view version, SummaryOf what) {
     const Emulator& emulator = *assembly.emulator;
     Json summary{
         {"program", "skyloop"},
@@ -148,6 +148,7 @@ std::string run_summary(const Scenario& scenario, const Assembly& assembly, std:
         {"navigation", emulator.simulation().navigation().description()},
         {"start_utc", format_utc(to_utc(assembly.start, LeapSeconds::announced()))},
         {"start_gps_ns", assembly.start.time_since_epoch().count()},
+        {"ended", what == SummaryOf::end},
         {"simulated_s", difference(emulator.now(), assembly.start).value()},
     };
     if (assembly.scene.scene) summary["scene"] = scene_json(assembly.scene);

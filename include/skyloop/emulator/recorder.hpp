@@ -37,7 +37,7 @@ public:
     void record_output(ByteSpan bytes, const LoopTime& time, std::size_t wire = 0);
     /// Bytes that reached the receiver over a wire.
     void record_input(ByteSpan bytes, GpsTime now, std::size_t wire = 0);
-    /// Writes run.json; `content` is its text.
+    /// Writes run.json, whole or not at all; `content` is its text.
     void record_summary(const std::string& content);
     /// Hands everything to the operating system, so that a killed run keeps it.
     void flush();

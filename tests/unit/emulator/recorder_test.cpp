@@ -216,6 +216,8 @@ TEST(RunSummary, CountsWhatWasRecorded) {
     const auto summary = nlohmann::json::parse(run_summary(scenario, *assembly, "1.2.3"));
     EXPECT_EQ(summary["version"], "1.2.3");
     EXPECT_EQ(summary["seed"], 9);
+    EXPECT_EQ(summary["ended"], true);
+    EXPECT_EQ(nlohmann::json::parse(run_summary(scenario, *assembly, "1", SummaryOf::beginning))["ended"], false);
     EXPECT_EQ(summary["model"], "ideal");
     EXPECT_EQ(summary["board"], "ublox-m8");
     EXPECT_EQ(summary["start_utc"], "2024-03-05T12:00:00.000Z");
