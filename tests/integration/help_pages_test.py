@@ -83,6 +83,18 @@ class ReferencePage(unittest.TestCase):
                          "docs/commands.md is old: skyloop help-pages --format markdown > docs/commands.md")
 
 
+class Rules(unittest.TestCase):
+    def test_what_is_known_of_values_is_of_options_that_exist(self):
+        source = (ROOT / "firmware-host/host/option_table.cpp").read_text()
+        rules = re.findall(r'^        \{"([^"]+)", "([^"]*)", "', source, re.MULTILINE)
+        self.assertGreater(len(rules), 30)
+        told = {command: run_to_end(command, "--help").stdout for command in commands()}
+        for option, command in rules:
+            with self.subTest(option=option, command=command):
+                listed = re.compile(rf"^  (?:-\w,)?{re.escape(option)} ", re.MULTILINE)
+                self.assertTrue(any(listed.search(told[name]) for name in ([command] if command else told)))
+
+
 class Bash(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

@@ -73,17 +73,18 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "skyloop-doc, gpsd-clients, usbip")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA
     "${control}/program/conffiles;${control}/program/postinst;${control}/program/prerm;${control}/program/postrm")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "hardware-in-the-loop GNSS receiver emulator
-skyloop computes which satellites stand above an antenna, what atmosphere and buildings do to their signals and what a
-receiver makes of them, and speaks as that receiver, in UBX, NMEA, MSP, MAVLink or SBF, over a pseudo-terminal, a serial
-line, USB or TCP, to an autopilot or a program that cannot tell it from hardware. Faults are injected by scenario, by HTTP
-or by MAVLink.")
+skyloop computes which satellites stand above an antenna, what atmosphere and
+buildings do to their signals and what a receiver makes of them, and speaks as
+that receiver, in UBX, NMEA, MSP, MAVLink or SBF, over a pseudo-terminal, a
+serial line, USB or TCP, to an autopilot or a program that cannot tell it from
+hardware. Faults are injected by scenario, by HTTP or by MAVLink.")
 
 set(CPACK_DEBIAN_DATA_PACKAGE_NAME skyloop-data)
 set(CPACK_DEBIAN_DATA_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DATA_PACKAGE_SECTION science)
 set(CPACK_COMPONENT_DATA_DESCRIPTION "profiles, models and scenarios of the GNSS receiver emulator skyloop
-Profiles of receivers, autopilots and adapters, the geoid EGM96, the tables of NeQuick-G, and example scenarios, for the
-program and the library.")
+Profiles of receivers, autopilots and adapters, the geoid EGM96, the tables of
+NeQuick-G, and example scenarios, for the program and the library.")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libskyloop0)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
@@ -91,17 +92,20 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "skyloop-data (= ${debian_version})")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA "${control}/library/triggers")
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "GNSS receiver emulator inside other programs, shared library
-The emulator skyloop behind an interface in C, led instant by instant by a simulator, a game engine or a test.")
+The emulator skyloop behind an interface in C, led instant by instant by a
+simulator, a game engine or a test.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libskyloop-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libskyloop0 (= ${debian_version})")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "GNSS receiver emulator inside other programs, development files
-The header of the library libskyloop, and what pkg-config and CMake need to find it.")
+The header of the library libskyloop, and what pkg-config and CMake need to
+find it.")
 
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_NAME skyloop-doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)
 set(CPACK_COMPONENT_DOCUMENTATION_DESCRIPTION "documentation and examples of the GNSS receiver emulator skyloop
-Pages about scenarios, receivers, faults, trajectories, wiring and output files, and examples in C, C++ and Python.")
+Pages about scenarios, receivers, faults, trajectories, wiring and output
+files, and examples in C, C++ and Python.")
 include(CPack)
