@@ -20,7 +20,7 @@ FENCES = [
     ("zlib", ("zlib.h", "zconf.h"), {"base"}),
     ("GeographicLib", ("GeographicLib/",), {"geo"}),
     ("toml++", ("toml++/", "toml.hpp"), {"scenario"}),
-    ("nlohmann/json", ("nlohmann/",), {"city", "verdict", "emulator", "analysis", "api", "feed", "output", "control", "scenario", "host"}),
+    ("nlohmann/json", ("nlohmann/",), {"city", "verdict", "emulator", "analysis", "campaign", "api", "feed", "output", "control", "scenario", "host"}),
     ("pugixml", ("pugixml",), {"city", "tracks", "src/verdict/reports.cpp"}),
     ("libzip", ("zip.h",), {"src/tracks/kmz_track.cpp"}),
     ("libosmium", ("osmium/", "protozero/"), {"city"}),
@@ -32,12 +32,13 @@ FENCES = [
     ("libusb", ("libusb",), {"usb"}),
     ("hidapi", ("hidapi",), {"hid"}),
     ("Boost", ("boost/",), {"control"}),
+    ("SQLite", ("sqlite3",), {"src/campaign/campaign_database.cpp"}),
     ("the C library", ("stddef.h", "stdint.h"), {"include/skyloop.h"}),
     # What talks to the kernel is a wire, a file, a terminal or a program that is run; all else is arithmetic.
     ("the operating system",
      ("sys/", "asm/", "linux/", "net/", "netinet/", "arpa/", "fcntl.h", "unistd.h", "termios.h", "poll.h", "pty.h",
       "pthread.h", "signal.h", "netdb.h", "sched.h", "dirent.h", "csignal", "spawn.h", "dlfcn.h", "grp.h", "pwd.h"),
-     {"actuator", "base", "devices", "hid", "transport", "emulator", "host", "src/api/data_place.cpp",
+     {"actuator", "base", "campaign", "devices", "hid", "transport", "emulator", "host", "src/api/data_place.cpp",
       "src/feed/mavlink_endpoint.cpp", "src/feed/feed_link.hpp", "src/feed/feed_socket.cpp", "src/feed/feed_socket.hpp",
       "src/feed/feed_stream.cpp", "src/feed/feed_worker.cpp", "src/feed/stream_link.cpp"}),
 ]

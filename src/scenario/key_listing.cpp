@@ -65,6 +65,8 @@ std::string taken_by(const KeyEntry& key) {
             return with_limits(fmt::format("list of {}numbers", count_of(key)), key);
         case KeyType::whole_numbers:
             return with_limits("list of whole numbers", key);
+        case KeyType::values:
+            return "list of values of the key";
         case KeyType::place:
             return "`[latitude, longitude]` or `[latitude, longitude, height]`, ° and m";
         case KeyType::table:

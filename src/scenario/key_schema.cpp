@@ -110,6 +110,8 @@ Schema value_schema(const KeyEntry& key) {
             return groups_schema(key);
         case KeyType::whole_numbers:
             return list_schema(key, number_schema(key, "integer"));
+        case KeyType::values:
+            return list_schema(key, Schema::object());
         case KeyType::place:
             return place_schema(key);
         default:

@@ -118,6 +118,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     read_timeline(top, scenario);
     read_expectations(top, scenario.expectations);
     check_expectations(top, scenario);
+    read_campaign(top, scenario.campaign);
 }
 
 void read_constellation_list(TableReader& table, std::vector<Constellation>& constellations) {

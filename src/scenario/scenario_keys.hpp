@@ -48,6 +48,9 @@ void read_timeline(TableReader& top, Scenario& scenario);
 /// at: event_mistake() and the scenario know that when everything has been read.
 void read_expectations(TableReader& top, std::vector<Expectation>& list);
 
+/// Reads [campaign] of a scenario's top table.
+void read_campaign(TableReader& top, std::optional<CampaignSettings>& campaign);
+
 /// Reads [frame] of a file's top table.
 std::optional<LevelFrame> read_frame(TableReader& top);
 /// Reads the table `trajectory` within another; nothing when it is not there.

@@ -59,7 +59,21 @@ std::string on_one_line(std::string_view sentence) {
 }  // namespace
 
 void MistakeList::add(const toml::source_region& where, const std::string& sentence) {
-    mistakes_.push_back({where.begin.line, where.begin.column, on_one_line(sentence)});
+    const toml::source_position place = place_of(where, sentence);
+    mistakes_.push_back({place.line, place.column, on_one_line(sentence + changes_text_)});
+}
+
+void MistakeList::changed(std::string path, const toml::source_region& where, const std::string& words) {
+    changes_.emplace_back(std::move(path), where.begin);
+    changes_text_ += (changes_text_.empty() ? "; with " : ", ") + words;
+}
+
+// What was put in after parsing has no place of its own.
+toml::source_position MistakeList::place_of(const toml::source_region& where, std::string_view sentence) const {
+    if (where.begin.line > 0) return where.begin;
+    for (const auto& [path, place] : changes_)
+        if (sentence.starts_with(path)) return place;
+    return changes_.empty() ? toml::source_position{1, 1} : changes_.front().second;
 }
 
 std::string MistakeList::text() const {
@@ -348,10 +362,12 @@ void TableReader::finish() {
     }
 }
 
-Result<void> read_toml(std::string_view text, const std::string& file, const std::function<void(TableReader&)>& body) {
+Result<void> read_toml(std::string_view text, const std::string& file, const std::function<void(TableReader&)>& body,
+                       const std::function<void(toml::table&, MistakeList&)>& change) {
     try {
-        const toml::table table = toml::parse(text, file);
+        toml::table table = toml::parse(text, file);
         MistakeList mistakes(file);
+        if (change) change(table, mistakes);
         TableReader top(table, {}, mistakes);
         body(top);
         top.finish();

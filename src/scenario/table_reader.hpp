@@ -29,6 +29,9 @@ public:
     explicit MistakeList(std::string file) : file_(std::move(file)) {}
     void add(const toml::source_region& where, const std::string& sentence);
     [[nodiscard]] bool empty() const { return mistakes_.empty(); }
+    /// A part of the file has been changed since it was parsed: mistakes at `path` ("run.duration_s") are told at
+    /// `where`. @param words that end each sentence from here on
+    void changed(std::string path, const toml::source_region& where, const std::string& words);
     /// All lines, in the order of the file.
     [[nodiscard]] std::string text() const;
 
@@ -38,8 +41,11 @@ private:
         std::string sentence;
         bool operator==(const Mistake&) const = default;
     };
+    [[nodiscard]] toml::source_position place_of(const toml::source_region& where, std::string_view sentence) const;
     std::string file_;
     std::vector<Mistake> mistakes_;
+    std::vector<std::pair<std::string, toml::source_position>> changes_;
+    std::string changes_text_;
 };
 
 /// Which numbers a key takes.
@@ -143,6 +149,8 @@ public:
     /// Whatever stands there, as faults and commands take it; lists of lists of numbers become one list. Nothing, and a
     /// mistake, for a table or a list that is neither of numbers nor of texts.
     std::optional<ParameterValue> value(std::string_view key);
+    /// What stands there, for a caller that reads it itself; null: nothing. @param type for the catalogue of keys
+    const toml::node* node(std::string_view key, KeyType type);
     void mistake_here(const std::string& sentence) { mistakes_.add(table_.source(), where() + sentence); }
     void finish();
 
@@ -180,6 +188,8 @@ private:
 /// Parses TOML and reads its top table with `body`.
 /// @param file its name, for messages
 /// Fails with `input`: one line per mistake, `FILE:LINE:COLUMN: KEY: what was found; what was expected`.
-Result<void> read_toml(std::string_view text, const std::string& file, const std::function<void(TableReader&)>& body);
+/// @param change what is done to the parsed table before it is read
+Result<void> read_toml(std::string_view text, const std::string& file, const std::function<void(TableReader&)>& body,
+                       const std::function<void(toml::table&, MistakeList&)>& change = {});
 
 }  // namespace skyloop

@@ -51,4 +51,9 @@ std::optional<ParameterValue> TableReader::value(std::string_view key) {
     return std::nullopt;
 }
 
+const toml::node* TableReader::node(std::string_view key, KeyType type) {
+    if (recording()) note(key, {.type = type, .count_least = 1});
+    return find(key);
+}
+
 }  // namespace skyloop

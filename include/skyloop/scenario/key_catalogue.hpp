@@ -27,6 +27,7 @@ enum class KeyType {
     numbers,        ///< a list
     whole_numbers,  ///< a list
     number_groups,  ///< a list of numbers, or of lists of them
+    values,         ///< a list of what some other key takes
     place,          ///< [latitude, longitude] or [latitude, longitude, height]: degrees, metres above the ellipsoid
     table,
     tables  ///< a list

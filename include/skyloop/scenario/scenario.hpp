@@ -25,6 +25,7 @@
 #include "skyloop/propagation/atmosphere_parameters.hpp"
 #include "skyloop/propagation/link_budget_parameters.hpp"
 #include "skyloop/propagation/whole_path_parameters.hpp"
+#include "skyloop/scenario/campaign_settings.hpp"
 #include "skyloop/scenario/modern_settings.hpp"
 #include "skyloop/scenario/scene_settings.hpp"
 #include "skyloop/trajectory/generated_path.hpp"
@@ -187,7 +188,8 @@ struct Scenario {
     std::vector<OutputSettings> outputs;                                   ///< what is told beside the receivers' wires
     std::vector<FaultEntry> faults;
     std::vector<CommandEntry> commands;
-    std::vector<Expectation> expectations;  ///< what the run is judged by
+    std::vector<Expectation> expectations;       ///< what the run is judged by
+    std::optional<CampaignSettings> campaign{};  ///< many runs of it; one run passes over them
     std::vector<std::string> warnings;  ///< what a reader should be told, e.g. a level that is too large for a plane
 };
 

@@ -1,0 +1,42 @@
+/// A scenario with some of its keys changed, and what a scenario says apart from its campaign.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/scenario/scenario.hpp"
+
+namespace skyloop {
+
+/// A key with another value. Of a list of tables an entry is meant by its place, from 0 on, by its `name`, or by its
+/// `kind` where no other has it: "receiver.0.rate_hz", "fault.outage.for_s". Of a list of values by its place:
+/// "trajectory.at.2". A key that the file does not have is added.
+struct ScenarioChange {
+    std::string key;
+    CampaignValue value;
+};
+
+/// Reads a scenario as read_scenario() does, after the changes. A mistake in a value that was changed is told at the
+/// place of its [[campaign.parameter]], where there is one, and each mistake says the changes.
+Result<Scenario> read_changed_scenario(std::string_view text, const std::filesystem::path& file,
+                                       std::span<const ScenarioChange> changes);
+
+/// What is in a scenario, whatever its comments, order and layout.
+struct ScenarioContent {
+    std::string keys;  ///< a line a key, sorted: `run.duration_s = 60`; without [campaign] and run.seed
+    /// Files and folders that its values name, and those of [campaign]; as they are written, sorted, each once.
+    std::vector<std::string> files;
+};
+/// @param file as for read_scenario(): what it names is looked for beside it
+/// Fails with `input` when the text is no TOML.
+Result<ScenarioContent> scenario_content(std::string_view text, const std::filesystem::path& file);
+
+/// The values of a list as the command line gives it: TOML values, or words, with commas between.
+/// Fails with `usage` for an empty list or entry.
+Result<std::vector<CampaignValue>> parse_campaign_values(std::string_view text);
+
+}  // namespace skyloop

@@ -1,0 +1,75 @@
+#include "vehicle_run.hpp"
+
+#include <fmt/format.h>
+
+#include <thread>
+
+#include "skyloop/base/process.hpp"
+#include "skyloop/base/signals_held_back.hpp"
+
+namespace skyloop {
+namespace {
+
+std::string with_places_filled(std::string text, const std::vector<std::pair<std::string, std::string>>& places) {
+    for (const auto& [place, value] : places)
+        for (std::size_t at = text.find(place); at != std::string::npos; at = text.find(place, at + value.size()))
+            text.replace(at, place.size(), value);
+    return text;
+}
+
+ProcessRequest request_of(const CampaignVehicle& vehicle, const PlannedRun& run, const std::string& pty,
+                          Seconds timeout) {
+    ProcessRequest request;
+    request.command = {"/bin/sh", "-c",
+                       with_places_filled(vehicle.command, {{"{pty}", pty},
+                                                            {"{seed}", fmt::format("{}", run.seed)},
+                                                            {"{number}", fmt::format("{}", run.number)}})};
+    request.environment = {"SKYLOOP_PTY=" + pty, fmt::format("SKYLOOP_SEED={}", run.seed),
+                           fmt::format("SKYLOOP_RUN={}", run.number)};
+    request.timeout = timeout;
+    request.output_limit = 65536;
+    return request;
+}
+
+Verdict vehicle_verdict(const ProcessOutcome& outcome, Seconds timeout) {
+    Verdict verdict{"vehicle", "exit code 0", Outcome::failed, {}, {}};
+    if (outcome.timed_out) {
+        verdict.evidence = fmt::format("did not end within {:g} s", timeout.value());
+    } else if (outcome.exit_code) {
+        if (*outcome.exit_code == 0) verdict.outcome = Outcome::passed;
+        verdict.evidence = fmt::format("ended with exit code {}", *outcome.exit_code);
+    } else {
+        verdict.evidence = fmt::format("ended by signal {}", outcome.signal.value_or(0));
+    }
+    return verdict;
+}
+
+}  // namespace
+
+Result<Verdict> run_with_vehicle(Assembly& assembly, const CampaignVehicle& vehicle, const PlannedRun& run,
+                                 const std::atomic<bool>& stop) {
+    Emulator& emulator = *assembly.emulator;
+    const std::string description = emulator.wires().front().link.transport().description();
+    const std::string pty = description.substr(0, description.rfind(" ("));
+    constexpr Seconds grace{10};
+    const Seconds length = assembly.end ? difference(*assembly.end, assembly.start) : Seconds(0);
+    const Seconds timeout = vehicle.timeout > Seconds(0) ? vehicle.timeout : length + grace;
+    ProcessRequest request = request_of(vehicle, run, pty, timeout);
+    request.cancelled = &stop;
+    std::atomic<bool> over = false;
+    Result<ProcessOutcome> outcome = fail(ErrorCode::outside, "vehicle: was not started");
+    std::thread beside;
+    with_signals_held_back([&] {
+        beside = std::thread([&] {
+            outcome = run_process(request);
+            over = true;
+        });
+    });
+    emulator.run_until(assembly.end.value_or(GpsTime::max()), over);
+    beside.join();
+    if (!outcome) return fail(ErrorCode::outside, "vehicle: " + outcome.error().message);
+    if (outcome->cancelled) return fail(ErrorCode::outside, "stopped before its end");
+    return vehicle_verdict(*outcome, timeout);
+}
+
+}  // namespace skyloop

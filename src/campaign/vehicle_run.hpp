@@ -1,0 +1,20 @@
+/// A run in real time with a program that is tested.
+#pragma once
+
+#include <atomic>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/campaign/campaign_plan.hpp"
+#include "skyloop/emulator/assembly.hpp"
+#include "skyloop/verdict/verdict.hpp"
+
+namespace skyloop {
+
+/// Runs the emulator in real time and the vehicle's command beside it, with the pty's path in the environment as
+/// SKYLOOP_PTY, until the run is over or the vehicle has ended; what is left of the vehicle's time it then has without
+/// a receiver. Its exit code is the verdict: passed for 0, failed for any other, for a signal and when its time is
+/// over.
+Result<Verdict> run_with_vehicle(Assembly& assembly, const CampaignVehicle& vehicle, const PlannedRun& run,
+                                 const std::atomic<bool>& stop);
+
+}  // namespace skyloop

@@ -1,0 +1,202 @@
+#include "skyloop/scenario/scenario_changes.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <set>
+
+#include "campaign_values.hpp"
+#include "scenario_keys.hpp"
+
+namespace skyloop {
+namespace {
+
+std::vector<std::string_view> parts_of(std::string_view key) {
+    std::vector<std::string_view> parts;
+    for (;;) {
+        const std::size_t dot = key.find('.');
+        parts.push_back(key.substr(0, dot));
+        if (dot == std::string_view::npos) return parts;
+        key.remove_prefix(dot + 1);
+    }
+}
+
+// The only entry of a list of tables that has this word under `key`; nothing: none, or several.
+std::optional<std::size_t> entry_with(const toml::array& list, std::string_view key, std::string_view word) {
+    std::optional<std::size_t> found;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const toml::table* entry = list[i].as_table();
+        if (entry == nullptr || (*entry)[key].value<std::string_view>() != word) continue;
+        if (found) return std::nullopt;
+        found = i;
+    }
+    return found;
+}
+
+std::optional<std::size_t> place_in_list(const toml::array& list, std::string_view part) {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
+    if (error == std::errc() && end == part.data() + part.size())
+        return index < list.size() ? std::optional(index) : std::nullopt;
+    if (const auto named = entry_with(list, "name", part)) return named;
+    return entry_with(list, "kind", part);
+}
+
+// The value below `parent` that a part of a key means; a table that is not there is made. Null: there is none.
+toml::node* step_down(toml::node& parent, std::string_view part) {
+    if (toml::table* table = parent.as_table()) {
+        if (!table->contains(part)) table->insert(part, toml::table{});
+        return table->get(part);
+    }
+    toml::array* list = parent.as_array();
+    const auto index = list != nullptr ? place_in_list(*list, part) : std::nullopt;
+    return index ? list->get(*index) : nullptr;
+}
+
+bool put(toml::node& parent, std::string_view part, const toml::node& value) {
+    if (toml::table* table = parent.as_table())
+        return value.visit([&](const auto& concrete) { return table->insert_or_assign(part, concrete), true; });
+    toml::array* list = parent.as_array();
+    const auto index = list != nullptr ? place_in_list(*list, part) : std::nullopt;
+    if (!index) return false;
+    const auto at = static_cast<std::ptrdiff_t>(*index);
+    value.visit([&](const auto& concrete) { list->insert(list->cbegin() + at, concrete); });
+    list->erase(list->cbegin() + at + 1);
+    return true;
+}
+
+bool apply_change(toml::table& table, const ScenarioChange& change) {
+    const std::vector<std::string_view> parts = parts_of(change.key);
+    toml::node* parent = &table;
+    for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
+        if (parts[i].empty()) return false;
+        parent = step_down(*parent, parts[i]);
+        if (parent == nullptr) return false;
+    }
+    if (parts.back().empty()) return false;
+    bool done = false;
+    with_toml_value(change.value, [&](const toml::node& value) { done = put(*parent, parts.back(), value); });
+    return done;
+}
+
+// As the reader names the key in its mistakes: without what tells the entries of lists apart.
+std::string path_in_mistakes(const toml::table& table, std::string_view key) {
+    std::string path;
+    const toml::node* node = &table;
+    for (const std::string_view part : parts_of(key)) {
+        const toml::array* list = node != nullptr ? node->as_array() : nullptr;
+        if (list != nullptr) {
+            const auto index = place_in_list(*list, part);
+            node = index ? list->get(*index) : nullptr;
+            continue;
+        }
+        path += (path.empty() ? "" : ".") + std::string(part);
+        const toml::table* inner = node != nullptr ? node->as_table() : nullptr;
+        node = inner != nullptr ? inner->get(part) : nullptr;
+    }
+    return path;
+}
+
+// Where the file says that the key changes; its top where it does not.
+toml::source_region place_of_parameter(const toml::table& table, std::string_view key) {
+    const toml::array* parameters = table["campaign"]["parameter"].as_array();
+    for (std::size_t i = 0; parameters != nullptr && i < parameters->size(); ++i) {
+        const toml::table* entry = (*parameters)[i].as_table();
+        const toml::node* name = entry != nullptr ? entry->get("key") : nullptr;
+        if (name != nullptr && name->value<std::string_view>() == key) return name->source();
+    }
+    toml::source_region top;
+    top.begin = {1, 1};
+    return top;
+}
+
+void apply_changes(toml::table& table, MistakeList& mistakes, std::span<const ScenarioChange> changes) {
+    for (const ScenarioChange& change : changes)
+        mistakes.changed(path_in_mistakes(table, change.key), place_of_parameter(table, change.key),
+                         fmt::format("{} = {}", change.key, change.value.toml));
+    for (const ScenarioChange& change : changes)
+        if (!apply_change(table, change))
+            mistakes.add(place_of_parameter(table, change.key),
+                         fmt::format("'{}' leads to no key; expected tables, and of a list an entry's place from 0 on, "
+                                     "or its name or kind",
+                                     change.key));
+}
+
+// Everything in a table as lines, and what may name a file.
+class ContentWalk {
+public:
+    explicit ContentWalk(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    void table(const toml::table& table, const std::string& path) {
+        for (const auto& [key, node] : table) {
+            const std::string below = path.empty() ? std::string(key.str()) : fmt::format("{}.{}", path, key.str());
+            if (below == "campaign") collect_only_ = true;
+            value(node, below);
+            if (below == "campaign") collect_only_ = false;
+        }
+    }
+    ScenarioContent content() && {
+        content_.files.assign(files_.begin(), files_.end());
+        return std::move(content_);
+    }
+
+private:
+    void value(const toml::node& node, const std::string& path) {
+        if (const toml::table* inner = node.as_table()) return table(*inner, path);
+        if (const toml::array* list = node.as_array()) {
+            for (std::size_t i = 0; i < list->size(); ++i)
+                value((*list)[i], fmt::format("{}.{}", path, i));
+            return line(path, fmt::format("{} entries", list->size()));
+        }
+        if (const auto* text = node.as_string()) file(text->get(), path);
+        if (const auto text = toml_text(node)) line(path, *text);
+    }
+    void line(const std::string& path, const std::string& text) {
+        if (!collect_only_ && path != "run.seed") content_.keys += fmt::format("{} = {}\n", path, text);
+    }
+    void file(const std::string& name, const std::string& path) {
+        constexpr std::size_t longest = 4096;  // PATH_MAX
+        if (name.empty() || name.size() >= longest || name.find('\0') != std::string::npos) return;
+        std::error_code none;
+        const auto status = std::filesystem::status(folder_ / name, none);
+        // Of folders only those of cities hold what a run reads.
+        const bool city = path.starts_with("scene.") && std::filesystem::is_directory(status);
+        if (std::filesystem::is_regular_file(status) || city) files_.insert(name);
+    }
+
+    std::filesystem::path folder_;
+    ScenarioContent content_;
+    std::set<std::string> files_;
+    bool collect_only_ = false;
+};
+
+}  // namespace
+
+Result<Scenario> read_changed_scenario(std::string_view text, const std::filesystem::path& file,
+                                       std::span<const ScenarioChange> changes) {
+    Scenario scenario;
+    scenario.name = file.string();
+    scenario.source = text;
+    for (const ScenarioChange& change : changes)
+        scenario.source += fmt::format("\n{} = {}", change.key, change.value.toml);
+    const auto read = read_toml(
+        text, file.string(), [&](TableReader& top) { read_top_keys(top, scenario, file.parent_path()); },
+        [&](toml::table& table, MistakeList& mistakes) { apply_changes(table, mistakes, changes); });
+    if (!read) return fail(read.error());
+    return scenario;
+}
+
+Result<ScenarioContent> scenario_content(std::string_view text, const std::filesystem::path& file) {
+    ContentWalk walk(file.parent_path());
+    const auto read = read_toml(
+        text, file.string(),
+        [](TableReader& top) {
+            for (const std::string& key : top.keys())
+                top.has_been_read(key);
+        },
+        [&walk](toml::table& table, MistakeList&) { walk.table(table, {}); });
+    if (!read) return fail(read.error());
+    return std::move(walk).content();
+}
+
+}  // namespace skyloop

@@ -1,0 +1,164 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scenario_text.hpp"
+#include "skyloop/scenario/scenario_changes.hpp"
+#include "skyloop/scenario/scenario_file.hpp"
+
+namespace skyloop {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+std::string campaign_mistake(const std::string& text) {
+    const auto scenario = read_scenario("[campaign]\n" + text, "c.toml");
+    return scenario ? "none" : scenario.error().message;
+}
+std::string parameter_mistake(const std::string& text) {
+    return campaign_mistake("design = \"random\"\nsamples = 2\n[[campaign.parameter]]\nkey = \"run.speed\"\n" + text);
+}
+
+TEST(ScenarioCampaign, ReadsEveryKey) {
+    const auto scenario = read_scenario(R"(
+[campaign]
+name = "night"
+seeds = 20
+first_seed = 5
+design = "latin_hypercube"
+samples = 30
+design_seed = 9
+metrics = ["fix_share"]
+[[campaign.parameter]]
+key = "run.speed"
+log_uniform = [0.1, 10]
+[[campaign.parameter]]
+key = "model.name"
+values = ["ideal", "modern"]
+[campaign.vehicle]
+command = "true {pty}"
+timeout_s = 3
+)",
+                                        "c.toml");
+    ASSERT_TRUE(scenario) << scenario.error().message;
+    const CampaignSettings& campaign = scenario->campaign.value();
+    EXPECT_EQ(campaign.seed_count, 20U);
+    EXPECT_EQ(campaign.first_seed, 5U);
+    EXPECT_EQ(campaign.samples, 30U);
+    EXPECT_EQ(std::get<LogUniformSpread>(campaign.parameters.at(0).spread).most, 10);
+    EXPECT_EQ(std::get<0>(campaign.parameters.at(1).spread).at(1).shown, "modern");
+    EXPECT_EQ(campaign.vehicle.value().timeout, Seconds(3));
+    EXPECT_FALSE(read_scenario("", "c.toml")->campaign);
+}
+
+TEST(ScenarioCampaign, SaysWhereAMistakeIs) {
+    EXPECT_THAT(campaign_mistake("seeds = 0\n"), StartsWith("c.toml:2:9: campaign.seeds: is 0; expected"));
+    EXPECT_THAT(campaign_mistake("seeds = 2000000\n"), HasSubstr("expected a whole number from 1 to 1000000"));
+    EXPECT_THAT(campaign_mistake("seed = 2\n"), HasSubstr("did you mean 'seeds'"));
+    EXPECT_THAT(campaign_mistake("seed_list = [1, 1]\n"), HasSubstr("holds 1 twice"));
+    EXPECT_THAT(campaign_mistake("seeds = 2\nseed_list = [1]\n"), HasSubstr("expected one of them"));
+    EXPECT_THAT(campaign_mistake("samples = 3\n"), HasSubstr("is of designs that draw"));
+    EXPECT_THAT(campaign_mistake("design = \"random\"\n"), HasSubstr("expected samples = their number"));
+    EXPECT_THAT(campaign_mistake("[[campaign.parameter]]\nkey = \"run.speed\"\nuniform = [1, 2]\n"),
+                HasSubstr("'run.speed' has no end of values"));
+    EXPECT_THAT(campaign_mistake("[campaign.vehicle]\ntimeout_s = 3\n"), HasSubstr("names no command"));
+}
+
+TEST(ScenarioCampaign, SaysWhatIsWrongWithAParameter) {
+    EXPECT_EQ(parameter_mistake("uniform = [1, 2]\n"), "none");
+    EXPECT_THAT(parameter_mistake(""), HasSubstr("says nothing of its values"));
+    EXPECT_THAT(parameter_mistake("values = []\n"), HasSubstr("expected at least one"));
+    EXPECT_THAT(parameter_mistake("values = [1, 1]\n"), HasSubstr("holds 1 twice"));
+    EXPECT_THAT(parameter_mistake("values = [{a = 1}]\n"), HasSubstr("holds a table"));
+    EXPECT_THAT(parameter_mistake("values = [1]\nuniform = [1, 2]\n"), HasSubstr("stands beside values"));
+    EXPECT_THAT(parameter_mistake("uniform = [2, 1]\n"), HasSubstr("expected the least and the greatest"));
+    EXPECT_THAT(parameter_mistake("uniform = [nan, 1]\n"), HasSubstr("holds nan"));
+    EXPECT_THAT(parameter_mistake("uniform = [-1.7e308, 1.7e308]\n"), HasSubstr("the least and the greatest"));
+    EXPECT_THAT(parameter_mistake("log_uniform = [0, 1]\n"), HasSubstr("expected ends above 0"));
+    EXPECT_THAT(parameter_mistake("normal = [0, 0]\n"), HasSubstr("expected one above 0"));
+    EXPECT_THAT(parameter_mistake("whole = [0, 1.5]\n"), HasSubstr("expected whole ones"));
+    EXPECT_THAT(parameter_mistake("whole = [0, 1]\n[[campaign.parameter]]\nkey = \"run.speed\"\nvalues = [1]\n"),
+                HasSubstr("is that of another parameter too"));
+    EXPECT_THAT(campaign_mistake("[[campaign.parameter]]\nkey = \"run.seed\"\nvalues = [1]\n"),
+                HasSubstr("expected the seeds in"));
+    EXPECT_THAT(campaign_mistake("[[campaign.parameter]]\nkey = \"campaign.seeds\"\nvalues = [1]\n"),
+                HasSubstr("outside of [campaign]"));
+}
+
+constexpr const char* base_text = R"(
+[run]
+duration_s = 10 # a comment
+[trajectory]
+kind = "fixed"
+at = [50, 10, 5]
+[[fault]]
+name = "first"
+kind = "outage"
+at_s = 1
+for_s = 2
+[[fault]]
+kind = "receiver_silent"
+at_s = 5
+for_s = 2
+[campaign]
+seeds = 4
+[[campaign.parameter]]
+key = "fault.first.for_s"
+values = [1]
+)";
+
+Result<Scenario> changed(const std::string& key, const std::string& value) {
+    const auto values = parse_campaign_values(value);
+    const std::vector<ScenarioChange> changes{{key, values->at(0)}};
+    return read_changed_scenario(base_text, "c.toml", changes);
+}
+std::string change_mistake(const std::string& key, const std::string& value) {
+    const auto scenario = changed(key, value);
+    return scenario ? "none" : scenario.error().message;
+}
+
+TEST(ScenarioChanges, ReachEveryKindOfPlace) {
+    EXPECT_EQ(changed("run.duration_s", "30")->run.duration, Seconds(30));
+    EXPECT_EQ(changed("run.speed", "2.5")->run.speed, 2.5);
+    EXPECT_EQ(changed("sky.elevation_mask_deg", "15")->sky.elevation_mask->deg(), 15);
+    EXPECT_EQ(std::get<FixedSettings>(changed("trajectory.at.2", "77.5")->trajectory).at.height.above_ellipsoid,
+              Metres(77.5));
+    EXPECT_EQ(changed("model.name", "ideal")->model.sensor_model, ErrorModelKind::ideal);
+    const auto end_of = [](const Scenario& scenario, std::size_t i) { return scenario.faults.at(i).when.length; };
+    const auto base = read_scenario(base_text, "c.toml").value();
+    for (const auto& [key, place] :
+         {std::pair{"fault.first.for_s", 0}, {"fault.0.for_s", 0}, {"fault.receiver_silent.for_s", 1}}) {
+        const auto scenario = changed(key, "7");
+        ASSERT_TRUE(scenario) << key << scenario.error().message;
+        EXPECT_NE(end_of(*scenario, static_cast<std::size_t>(place)), end_of(base, static_cast<std::size_t>(place)));
+        EXPECT_EQ(end_of(*scenario, static_cast<std::size_t>(1 - place)),
+                  end_of(base, static_cast<std::size_t>(1 - place)));
+    }
+}
+
+TEST(ScenarioChanges, AWrongValueIsToldWhereTheFileChangesIt) {
+    EXPECT_THAT(change_mistake("fault.first.for_s", "-4"), StartsWith("c.toml:19:7: fault.for_s: "));
+    EXPECT_THAT(change_mistake("fault.first.for_s", "-4"), HasSubstr("; with fault.first.for_s = -4"));
+    EXPECT_THAT(change_mistake("run.duration_s", "x"), StartsWith("c.toml:1:1: run.duration_s: is a text"));
+    EXPECT_THAT(change_mistake("run.duratoin_s", "1"), HasSubstr("did you mean 'duration_s'"));
+    EXPECT_THAT(change_mistake("fault.7.for_s", "1"), HasSubstr("leads to no key"));
+    EXPECT_THAT(change_mistake("fault.none.for_s", "1"), HasSubstr("leads to no key"));
+    EXPECT_THAT(change_mistake("run.duration_s.x", "1"), HasSubstr("leads to no key"));
+    EXPECT_THAT(change_mistake("run.", "1"), HasSubstr("leads to no key"));
+    EXPECT_THAT(change_mistake("..", "1"), HasSubstr("leads to no key"));
+    EXPECT_THAT(change_mistake("run", "1"), HasSubstr("is a whole number; expected a table"));
+}
+
+TEST(ScenarioContent, IsTheSameWhateverTheLayout) {
+    const auto keys = [](const std::string& text) { return scenario_content(text, "c.toml").value().keys; };
+    EXPECT_EQ(keys("[run]\nspeed=1.50\nduration_s = 7 # long\n"), keys("run = {duration_s=7, speed=1.5}"));
+    EXPECT_EQ(keys("[run]\nseed = 3\n[campaign]\nseeds = 3\n"), keys("[run]\n"));
+    EXPECT_NE(keys("[run]\nduration_s = 7\n"), keys("[run]\nduration_s = 7.0\n"));
+    EXPECT_NE(keys("a = [\"x\", \"y\"]"), keys("a = [\"x\"]"));
+    EXPECT_THAT(keys("a = \"x\\nb = 1\""), Not(HasSubstr("\nb = 1")));
+    EXPECT_THAT(scenario_content("a = ", "c.toml").error().message, StartsWith("c.toml:1:"));
+}
+
+}  // namespace
+}  // namespace skyloop
