@@ -20,17 +20,14 @@ namespace {
 
 using skyloop::host::Action;
 
-constexpr std::array<std::string_view, 18> commands{
+constexpr std::array<std::string_view, 19> commands{
     "run",    "simulate", "sky", "check",  "compare",       "solve",   "boards", "decode",     "scene",
-    "faults", "schema",   "ctl", "replay", "scenario-from", "devices", "power",  "trajectory", "help-pages"};
-constexpr std::array<std::string_view, 1> later_commands{"campaign"};
+    "faults", "schema",   "ctl", "replay", "scenario-from", "devices", "power",  "trajectory", "campaign", "help-pages"};
 
 // CLI11 does not know which words may be meant; this says it in one line.
 int refuse_command(std::string_view word) {
-    const bool later = std::find(later_commands.begin(), later_commands.end(), word) != later_commands.end();
-    fmt::print(stderr, "skyloop: {} '{}'; expected one of {}{}\n",
-               later ? "this version does not have the command" : "unknown command", word, fmt::join(commands, " "),
-               later ? std::string() : skyloop::did_you_mean(word, commands));
+    fmt::print(stderr, "skyloop: unknown command '{}'; expected one of {}{}\n", word, fmt::join(commands, " "),
+               skyloop::did_you_mean(word, commands));
     return 2;
 }
 
@@ -47,7 +44,8 @@ int run_program(int argc, char** argv) {
         skyloop::host::add_schema_command,     skyloop::host::add_ctl_command,
         skyloop::host::add_replay_command,     skyloop::host::add_scenario_from_command,
         skyloop::host::add_devices_command,    skyloop::host::add_power_command,
-        skyloop::host::add_trajectory_command, skyloop::host::add_help_pages_command};
+        skyloop::host::add_trajectory_command, skyloop::host::add_campaign_command,
+        skyloop::host::add_help_pages_command};
     std::vector<Action> actions;
     for (const auto add_command : add)
         actions.push_back(add_command(app));

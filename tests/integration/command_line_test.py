@@ -12,7 +12,7 @@ from session import SHARED, SKYLOOP, Emulator, open_folder, skyloop
 MISUSES = [
     (["fly"], 2, ["fly", "expected one of"]),
     (["siumlate"], 2, ["did you mean 'simulate'"]),
-    (["campaign"], 2, ["does not have the command 'campaign'"]),
+    (["campaign"], 2, ["expected skyloop campaign SCENARIO --out DIR"]),
     (["decode", "/no/such/file.log"], 1, ["/no/such/file.log"]),
     (["decode", "/"], 1, ["/"]),
     (["decode", "/dev/null", "--format", "xml"], 2, ["--format", "json"]),

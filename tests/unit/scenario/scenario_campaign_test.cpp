@@ -55,7 +55,7 @@ timeout_s = 3
 TEST(ScenarioCampaign, SaysWhereAMistakeIs) {
     EXPECT_THAT(campaign_mistake("seeds = 0\n"), StartsWith("c.toml:2:9: campaign.seeds: is 0; expected"));
     EXPECT_THAT(campaign_mistake("seeds = 2000000\n"), HasSubstr("expected a whole number from 1 to 1000000"));
-    EXPECT_THAT(campaign_mistake("seed = 2\n"), HasSubstr("did you mean 'seeds'"));
+    EXPECT_THAT(campaign_mistake("sample = 2\n"), HasSubstr("did you mean 'samples'"));
     EXPECT_THAT(campaign_mistake("seed_list = [1, 1]\n"), HasSubstr("holds 1 twice"));
     EXPECT_THAT(campaign_mistake("seeds = 2\nseed_list = [1]\n"), HasSubstr("expected one of them"));
     EXPECT_THAT(campaign_mistake("samples = 3\n"), HasSubstr("is of designs that draw"));
@@ -121,7 +121,7 @@ std::string change_mistake(const std::string& key, const std::string& value) {
 TEST(ScenarioChanges, ReachEveryKindOfPlace) {
     EXPECT_EQ(changed("run.duration_s", "30")->run.duration, Seconds(30));
     EXPECT_EQ(changed("run.speed", "2.5")->run.speed, 2.5);
-    EXPECT_EQ(changed("sky.elevation_mask_deg", "15")->sky.elevation_mask->deg(), 15);
+    EXPECT_NEAR(changed("sky.elevation_mask_deg", "15")->sky.elevation_mask->deg(), 15, 1e-9);
     EXPECT_EQ(std::get<FixedSettings>(changed("trajectory.at.2", "77.5")->trajectory).at.height.above_ellipsoid,
               Metres(77.5));
     EXPECT_EQ(changed("model.name", "ideal")->model.sensor_model, ErrorModelKind::ideal);

@@ -1,0 +1,31 @@
+/// Options of skyloop campaign.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "messages.hpp"
+#include "skyloop/campaign/campaign_folder.hpp"
+
+namespace skyloop::host {
+
+/// What was typed.
+struct CampaignOptions {
+    std::string scenario, out, shard = "0/1", key;
+    std::optional<std::string> seeds;
+    std::vector<std::string> vary;
+    std::optional<std::uint64_t> number, jobs;
+    Verbosity verbosity;
+};
+
+CampaignRequest campaign_request(const CampaignOptions& options);
+
+/// Runs what is missing. Exit code: 0, 1 where runs have no result, 3 where one failed, 75 when it was stopped.
+int run_campaign(const CampaignOptions& options);
+/// Merges what is there and says what it is. Exit code as of run_campaign().
+int tell_gathered(const Messages& messages, const std::filesystem::path& folder);
+
+}  // namespace skyloop::host

@@ -1,0 +1,57 @@
+/// What a campaign is, opened from its scenario; and as its folder keeps it, so that gathering needs the folder alone.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/campaign/campaign_plan.hpp"
+#include "skyloop/campaign/campaign_run.hpp"
+#include "skyloop/emulator/data_folders.hpp"
+
+namespace skyloop {
+
+/// What is asked for.
+struct CampaignRequest {
+    std::filesystem::path scenario;
+    std::optional<std::string> seeds{};  ///< apply_seeds()
+    std::vector<std::string> vary{};     ///< apply_vary()
+    std::string version;                 ///< of the program
+    DataFolders data{};
+};
+
+/// A campaign ready to be run.
+struct OpenedCampaign {
+    CampaignRunSetup setup;  ///< of each of its runs
+    CampaignPlan plan;
+    std::string name;
+    std::vector<std::string> options{};  ///< of the command line, that replaying a run takes too: "--seeds 5-7"
+    std::string version;
+};
+
+/// Reads the scenario and everything that its run reads, without changes. A file without [campaign] is a campaign of
+/// one run. Fails as reading a scenario does.
+Result<OpenedCampaign> open_campaign(const CampaignRequest& request);
+
+/// Reads the scenario with the values of each run in the part that is `wanted`, and reads all that the first of them
+/// would read. Fails with the first mistake; nothing has been run then.
+Result<void> check_runs(const OpenedCampaign& campaign, const std::vector<std::uint64_t>& wanted);
+
+/// What campaign.json holds.
+struct KeptCampaign {
+    std::string name, version, scenario, base;
+    std::vector<std::string> options{};
+    ResultColumns columns{};
+    std::vector<PlannedRun> runs{};  ///< by number; of their values what people read
+};
+/// Writes DIR/campaign.json, under another name first. Nothing is written where it is the same already.
+Result<void> keep_campaign(const std::filesystem::path& folder, const OpenedCampaign& campaign);
+/// Fails with `outside` where there is none, with `input` where it is not understood.
+Result<KeptCampaign> kept_campaign(const std::filesystem::path& folder);
+/// The same from its text. @param name of the file, for messages
+Result<KeptCampaign> parse_kept_campaign(std::string_view text, const std::string& name);
+
+}  // namespace skyloop

@@ -1,0 +1,113 @@
+#include "skyloop/campaign/campaign_folder.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "skyloop/base/text_file.hpp"
+#include "skyloop/emulator/output_file.hpp"
+
+namespace skyloop {
+namespace {
+
+using PlanJson = nlohmann::ordered_json;
+
+constexpr std::string_view plan_name = "campaign.json";
+
+// A line a run: a plan of a million can be looked at.
+std::string runs_text(const CampaignPlan& plan) {
+    std::string text = "[";
+    for (std::uint64_t i = 0; i < plan.size(); ++i) {
+        const PlannedRun run = plan.run(i);
+        PlanJson values = PlanJson::array();
+        for (const CampaignValue& value : run.values)
+            values.push_back(value.shown);
+        const PlanJson row = PlanJson::array({run.number, run.key, run.seed, values});
+        text += fmt::format("{}\n  {}", i > 0 ? "," : "", row.dump(-1, ' ', false, PlanJson::error_handler_t::replace));
+    }
+    return text + "\n]";
+}
+
+std::string plan_text(const OpenedCampaign& campaign) {
+    const ResultColumns& columns = campaign.setup.columns;
+    const std::vector<std::pair<std::string_view, PlanJson>> entries{{"form", 1},
+                                                                     {"name", campaign.name},
+                                                                     {"program_version", campaign.version},
+                                                                     {"scenario", campaign.setup.file.string()},
+                                                                     {"scenario_digest", campaign.plan.base()},
+                                                                     {"options", campaign.options},
+                                                                     {"parameters", columns.parameters},
+                                                                     {"metrics", columns.metrics},
+                                                                     {"verdicts", columns.verdicts},
+                                                                     {"planned", campaign.plan.size()}};
+    std::string text = "{\n";
+    for (const auto& [name, value] : entries)
+        text += fmt::format(" \"{}\": {},\n", name, value.dump(-1, ' ', false, PlanJson::error_handler_t::replace));
+    return text + " \"runs\": " + runs_text(campaign.plan) + "\n}\n";
+}
+
+// Throws where the file is none of ours; the caller says so.
+KeptCampaign campaign_from(const nlohmann::json& plan) {
+    KeptCampaign kept;
+    if (plan.at("form").get<int>() != 1) throw std::runtime_error("is of another form; expected form 1");
+    plan.at("name").get_to(kept.name);
+    plan.at("program_version").get_to(kept.version);
+    plan.at("scenario").get_to(kept.scenario);
+    plan.at("scenario_digest").get_to(kept.base);
+    plan.at("options").get_to(kept.options);
+    plan.at("parameters").get_to(kept.columns.parameters);
+    plan.at("metrics").get_to(kept.columns.metrics);
+    plan.at("verdicts").get_to(kept.columns.verdicts);
+    for (const auto& row : plan.at("runs")) {
+        PlannedRun run;
+        row.at(0).get_to(run.number);
+        row.at(1).get_to(run.key);
+        row.at(2).get_to(run.seed);
+        for (const auto& value : row.at(3))
+            run.values.push_back({{}, value.get<std::string>()});
+        if (run.number != kept.runs.size() || run.values.size() != kept.columns.parameters.size())
+            throw std::runtime_error("has its runs in disorder");
+        kept.runs.push_back(std::move(run));
+    }
+    if (plan.at("planned").get<std::size_t>() != kept.runs.size()) throw std::runtime_error("has lost runs");
+    return kept;
+}
+
+}  // namespace
+
+Result<void> keep_campaign(const std::filesystem::path& folder, const OpenedCampaign& campaign) {
+    const std::filesystem::path path = folder / plan_name;
+    const std::string text = plan_text(campaign);
+    if (const auto before = read_text_file(path); before && *before == text) return {};
+    std::error_code none;
+    std::filesystem::create_directories(folder, none);
+    // Parts on several machines may write it at once; each has a name of its own until it is whole.
+    const std::filesystem::path whole = folder / fmt::format(".{}.{}", plan_name, ::getpid());
+    auto file = OutputFile::create(whole);
+    if (!file) return fail(file.error());
+    file->write(text);
+    file->flush();
+    if (file->failure()) return fail(*file->failure());
+    std::filesystem::rename(whole, path, none);
+    if (none) return fail(ErrorCode::outside, fmt::format("{}: cannot be written: {}", path.string(), none.message()));
+    return {};
+}
+
+Result<KeptCampaign> parse_kept_campaign(std::string_view text, const std::string& name) {
+    try {
+        return campaign_from(nlohmann::json::parse(text));
+    } catch (const std::exception& mistake) {
+        return fail(ErrorCode::input, fmt::format("{}: {}; expected the plan that skyloop campaign --out has written",
+                                                  name, std::string_view(mistake.what()).substr(0, 200)));
+    }
+}
+
+Result<KeptCampaign> kept_campaign(const std::filesystem::path& folder) {
+    const std::filesystem::path path = folder / plan_name;
+    const auto text = read_text_file(path, std::size_t{1} << 30);
+    if (!text) return fail(text.error());
+    return parse_kept_campaign(*text, path.string());
+}
+
+}  // namespace skyloop
