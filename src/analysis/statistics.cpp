@@ -38,14 +38,6 @@ void transform(Spectrum& a) {
     }
 }
 
-// Linear between order statistics, as spreadsheets and numpy do.
-double quantile(const std::vector<double>& sorted, double fraction) {
-    const double place = fraction * static_cast<double>(sorted.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, sorted.size() - 1);
-    return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
 Geodetic mean_position(const FixSeries& series) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     std::size_t count = 0;
@@ -63,6 +55,13 @@ bool every_fix_has_truth(const FixSeries& series) {
 }
 
 }  // namespace
+
+double sorted_quantile(std::span<const double> sorted, double share) {
+    const double place = share * static_cast<double>(sorted.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const std::size_t above = std::min(below + 1, sorted.size() - 1);
+    return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
 
 std::optional<SampleStatistics> sample_statistics(std::span<const double> values) {
     if (values.empty()) return std::nullopt;
@@ -82,8 +81,8 @@ std::optional<SampleStatistics> sample_statistics(std::span<const double> values
     std::sort(sorted.begin(), sorted.end());
     s.min = sorted.front();
     s.max = sorted.back();
-    s.median = quantile(sorted, 0.50);
-    s.p95 = quantile(sorted, 0.95);
+    s.median = sorted_quantile(sorted, 0.50);
+    s.p95 = sorted_quantile(sorted, 0.95);
     return s;
 }
 

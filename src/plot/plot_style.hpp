@@ -18,6 +18,7 @@ inline constexpr std::string_view grid = "#cbd3dd";
 inline constexpr std::string_view faint_grid = "#e3e8ef";
 inline constexpr std::string_view paper = "#ffffff";
 inline constexpr std::string_view panel = "#f6f8fb";
+inline constexpr std::string_view series = "#1f5fbf";
 inline constexpr std::string_view accent = "#b4540a";
 inline constexpr std::string_view unhealthy = "#8b95a1";
 inline constexpr std::string_view foliage = "#a9cf9d";

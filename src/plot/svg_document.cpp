@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
+
+#include "skyloop/base/utf8.hpp"
 
 namespace skyloop {
 namespace {
@@ -19,24 +21,6 @@ std::string style_attributes(const SvgStyle& style) {
     if (!style.dash.empty()) text += fmt::format(" stroke-dasharray=\"{}\"", svg_escape(style.dash));
     if (style.opacity < 1) text += fmt::format(" opacity=\"{}\"", svg_number(style.opacity));
     return text;
-}
-
-// The length in bytes of the UTF-8 character at the start of `text`, 0 when it is none (RFC 3629, section 4).
-std::size_t utf8_length(std::string_view text) {
-    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
-    const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0u) == 0x80u; };
-    const unsigned first = byte(0);
-    if (first < 0x80) return 1;
-    if (first >= 0xC2 && first <= 0xDF) return follows(1) ? 2 : 0;
-    if (first >= 0xE0 && first <= 0xEF) {
-        const bool overlong_or_surrogate = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xED && byte(1) >= 0xA0);
-        return follows(1) && follows(2) && !overlong_or_surrogate ? 3 : 0;
-    }
-    if (first >= 0xF0 && first <= 0xF4) {
-        const bool out_of_range = (first == 0xF0 && byte(1) < 0x90) || (first == 0xF4 && byte(1) >= 0x90);
-        return follows(1) && follows(2) && follows(3) && !out_of_range ? 4 : 0;
-    }
-    return 0;
 }
 
 std::string point_text(SvgPoint p) { return svg_number(p.x) + " " + svg_number(p.y); }
@@ -97,7 +81,7 @@ SvgDocument::SvgDocument(double width, double height, std::string_view title) {
     const std::string w = svg_number(width);
     const std::string h = svg_number(height);
     body_ = fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" "
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" "
         "height=\"{1}\" viewBox=\"0 0 {0} {1}\" role=\"img\" font-family=\"{2}\">\n<title>{3}</title>\n",
         w, h, font_family, svg_escape(title));
 }
@@ -163,7 +147,9 @@ void SvgDocument::text(const SvgText& text) {
     body_ += ">" + svg_escape(text.text) + "</text>\n";
 }
 
-std::string SvgDocument::str() const {
+std::string SvgDocument::str() const { return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + element(); }
+
+std::string SvgDocument::element() const {
     std::string document = body_;
     for (int i = 0; i < open_groups_; ++i)
         document += "</g>\n";

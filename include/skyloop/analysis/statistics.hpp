@@ -27,6 +27,10 @@ struct SampleStatistics {
 /// Statistics of `values`; nothing for an empty series.
 std::optional<SampleStatistics> sample_statistics(std::span<const double> values);
 
+/// The quantile of `share` (0 … 1) of ascending values, linear between order statistics, as spreadsheets and numpy do.
+/// Asks for at least one value.
+double sorted_quantile(std::span<const double> sorted, double share);
+
 /// What errors are measured from.
 enum class ReferenceKind {
     truth,        ///< the true position of each sample, from the file itself

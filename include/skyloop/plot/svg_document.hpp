@@ -66,6 +66,8 @@ public:
 
     /// The whole document; open groups are closed.
     [[nodiscard]] std::string str() const;
+    /// The picture alone, without the declaration of XML, to stand inside a page.
+    [[nodiscard]] std::string element() const;
 
 private:
     std::string body_;
