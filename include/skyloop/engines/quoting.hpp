@@ -1,0 +1,31 @@
+/// Texts that reach another language whole: a shell, a batch script's options, YAML.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace skyloop {
+
+/// One word of a POSIX shell (IEEE Std 1003.1, Shell Command Language, 2.2.2): as it is where nothing in it means
+/// anything to a shell, else between single quotes.
+std::string shell_quoted(std::string_view word);
+
+/// A command of words that a shell reads back as they were.
+std::string shell_quoted(const std::vector<std::string>& words);
+
+/// One word after `#SBATCH`: between double quotes, with `\` before what ends them (sbatch(1) of Slurm 22.05 reads
+/// quotes and backslashes there as a shell does, and nothing else).
+std::string sbatch_quoted(std::string_view word);
+
+/// A path inside a file name pattern of Slurm, where `%` begins a replacement (sbatch(1), "filename pattern").
+std::string sbatch_pattern(std::string_view path);
+
+/// A scalar of YAML between double quotes (YAML 1.2, 7.3.1), whatever it may look like bare.
+std::string yaml_quoted(std::string_view text);
+
+/// A text that Kubernetes leaves as it is in a container's command, where `$(NAME)` would be replaced (Container v1
+/// core, `args`: `$$` stands for `$`).
+std::string kubernetes_literal(std::string_view text);
+
+}  // namespace skyloop
