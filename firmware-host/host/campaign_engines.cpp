@@ -1,0 +1,184 @@
+#include "campaign_engines.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include "run_session.hpp"
+#include "skyloop/base/text_file.hpp"
+#include "skyloop/engines/engine_files.hpp"
+#include "skyloop/engines/kubernetes_manifest.hpp"
+#include "skyloop/engines/parallel_scripts.hpp"
+#include "skyloop/engines/quoting.hpp"
+#include "skyloop/engines/slurm_job.hpp"
+#include "skyloop/engines/slurm_scripts.hpp"
+
+namespace skyloop::host {
+namespace {
+
+Result<std::filesystem::path> whole_path(const std::filesystem::path& path) {
+    std::error_code reason;
+    const auto whole = std::filesystem::absolute(path, reason);
+    if (reason) return fail(ErrorCode::outside, fmt::format("{}: {}", path.string(), reason.message()));
+    return whole.lexically_normal();
+}
+
+// The program that runs now: where a cluster's nodes share the file systems, it is there under the same path.
+Result<std::filesystem::path> this_program() {
+    std::error_code reason;
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", reason);
+    if (reason) return fail(ErrorCode::outside, fmt::format("/proc/self/exe: {}", reason.message()));
+    return program;
+}
+
+Result<EngineTask> task_of(const EngineOptions& options, const EngineCampaign& campaign) {
+    const auto program = this_program();
+    if (!program) return fail(program.error());
+    const auto scenario = whole_path(campaign.scenario), out = whole_path(campaign.out);
+    if (!scenario) return fail(scenario.error());
+    if (!out) return fail(out.error());
+    const std::size_t shards = options.shards > 0 ? options.shards : default_shards(campaign.runs);
+    return EngineTask{campaign.name, *program, *scenario, *out, campaign.options, shards};
+}
+
+int follow_until_end(const EngineTask& task, const EngineCampaign& campaign, const Messages& messages) {
+    const auto job = submitted_slurm(task);
+    if (!job)
+        return messages.error(
+            {ErrorCode::usage, fmt::format("--follow: {} has no jobs; expected some that --submit left there",
+                                           slurm_folder(task).string())});
+    FollowOptions follow;
+    follow.runs = campaign.runs;
+    follow.between_looks = Seconds(1);
+    follow.stopped = stop_was_asked;
+    follow.say = [&](const std::string& line) { messages.info(line); };
+    catch_stop_signals();
+    const auto code = follow_slurm(task, *job, follow);
+    return code ? *code : messages.error(code.error());
+}
+
+int to_slurm(const EngineTask& task, const EngineOptions& options, const EngineCampaign& campaign,
+             const Messages& messages) {
+    SlurmSettings settings;
+    settings.partition = options.partition;
+    settings.time_limit = options.time_limit;
+    settings.options = options.sbatch_options;
+    settings.processors = campaign.jobs;
+    // Scripts of jobs that are in the queue stay as they are.
+    if (options.submit || !options.follow) {
+        const auto scripts = slurm_scripts(task, settings);
+        if (!scripts) return messages.error(scripts.error());
+        if (const auto written = write_slurm_files(task, *scripts); !written) return messages.error(written.error());
+        const std::string script = shell_quoted((slurm_folder(task) / "campaign.sbatch").string());
+        if (!options.submit) {
+            messages.info(fmt::format("{} shards; submit them with --submit, or by sbatch {}", task.shards, script));
+            return 0;
+        }
+        const auto job = submit_slurm(task);
+        if (!job) return messages.error(job.error());
+        messages.info(
+            fmt::format("{} shards are job {}, their gathering is job {}", task.shards, job->shards, job->gather));
+    }
+    return options.follow ? follow_until_end(task, campaign, messages) : 0;
+}
+
+int to_kubernetes(const EngineTask& task, const EngineOptions& options, const Messages& messages) {
+    if (options.submit || options.follow)
+        return messages.error({ErrorCode::usage,
+                               "--engine kubernetes writes manifests; expected no --submit or --follow, but "
+                               "kubectl apply afterwards"});
+    KubernetesSettings settings;
+    settings.image = options.image;
+    settings.claim = options.claim;
+    settings.name_space = options.name_space;
+    settings.memory = options.memory;
+    settings.parallelism = options.parallelism;
+    settings.mount = options.mount.empty() ? task.out.parent_path() : options.mount;
+    const auto manifests = kubernetes_manifests(task, settings);
+    if (!manifests) return messages.error(manifests.error());
+    const auto folder = task.out / "kubernetes";
+    if (auto done = write_engine_file(folder / "campaign.yaml", manifests->shards); !done)
+        return messages.error(done.error());
+    if (auto done = write_engine_file(folder / "gather.yaml", manifests->gather); !done)
+        return messages.error(done.error());
+    messages.info(
+        fmt::format("{} shards; kubectl apply -f {}", task.shards, shell_quoted((folder / "campaign.yaml").string())));
+    return 0;
+}
+
+// Becomes the script, so that signals are the script's and its children's alone.
+int become_script(const std::filesystem::path& script, const Messages& messages) {
+    std::string shell = "sh", file = script.string();
+    const std::array<char*, 3> words{shell.data(), file.data(), nullptr};
+    ::execvp(shell.c_str(), words.data());
+    return messages.error({ErrorCode::outside, fmt::format("sh: {}", std::strerror(errno))});
+}
+
+int to_parallel(const EngineTask& task, const EngineOptions& options, const Messages& messages) {
+    if (options.follow)
+        return messages.error(
+            {ErrorCode::usage, "--follow: GNU parallel is followed while it runs; expected --submit alone"});
+    ParallelSettings settings;
+    settings.hosts = ":\n";
+    if (!options.hosts.empty()) {
+        auto hosts = read_text_file(options.hosts);
+        if (!hosts) return messages.error(hosts.error());
+        settings.hosts = std::move(*hosts);
+    }
+    auto text = read_text_file(task.scenario);
+    if (!text) return messages.error(text.error());
+    settings.scenario_text = std::move(*text);
+    const auto scripts = parallel_scripts(task, settings);
+    if (!scripts) return messages.error(scripts.error());
+    if (const auto written = write_parallel_files(task, *scripts); !written) return messages.error(written.error());
+    const auto script = parallel_folder(task) / "campaign.sh";
+    if (options.submit) return become_script(script, messages);
+    messages.info(
+        fmt::format("{} shards; run them with --submit, or by sh {}", task.shards, shell_quoted(script.string())));
+    return 0;
+}
+
+}  // namespace
+
+void add_engine_options(CLI::App& command, EngineOptions& options) {
+    command
+        .add_option("--engine", options.engine,
+                    "Hand the shards to slurm, kubernetes or parallel instead of running here")
+        ->check(CLI::IsMember({"slurm", "kubernetes", "parallel"}));
+    command.add_option("--shards", options.shards,
+                       "How many parts an engine gets (default: ten runs each, at most 1000)");
+    command.add_flag("--submit", options.submit, "Also call the engine, not only write its files");
+    command.add_flag("--dry-run", options.dry_run, "Only write the engine's files, as without --submit")
+        ->excludes("--submit");
+    command.add_flag("--follow", options.follow,
+                     "slurm: stay until all is gathered; alone: of what was submitted before");
+    command.add_option("--partition", options.partition, "slurm: the partition");
+    command.add_option("--time", options.time_limit, "slurm: time limit of a shard, as sbatch takes it");
+    command
+        .add_option("--sbatch-option", options.sbatch_options,
+                    "slurm: another option of sbatch, =--account=lab; repeatable")
+        ->allow_extra_args(false);
+    command.add_option("--hosts", options.hosts,
+                       "parallel: a file with a host a line, [JOBS/]HOST (default: here alone)");
+    command.add_option("--image", options.image, "kubernetes: a container image with skyloop");
+    command.add_option("--claim", options.claim, "kubernetes: the volume claim with the scenario and the results");
+    command.add_option("--mount", options.mount,
+                       "kubernetes: where the claim is mounted, there and here (default: above --out)");
+    command.add_option("--namespace", options.name_space, "kubernetes: the namespace");
+    command.add_option("--memory", options.memory, "kubernetes: memory of a container")->capture_default_str();
+    command.add_option("--parallelism", options.parallelism, "kubernetes: containers at a time")->capture_default_str();
+}
+
+int hand_to_engine(const EngineOptions& options, const EngineCampaign& campaign, const Messages& messages) {
+    const auto task = task_of(options, campaign);
+    if (!task) return messages.error(task.error());
+    if (options.engine == "slurm") return to_slurm(*task, options, campaign, messages);
+    if (options.engine == "kubernetes") return to_kubernetes(*task, options, messages);
+    return to_parallel(*task, options, messages);
+}
+
+}  // namespace skyloop::host
