@@ -1,0 +1,64 @@
+"""A campaign of short runs, and what it left: the same wherever it was run."""
+import csv
+import os
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SKYLOOP = os.environ.get("SKYLOOP", str(ROOT / "build/dev/bin/skyloop"))
+SKIPPED = 77
+
+SCENARIO = """\
+[run]
+duration_s = 20
+start = "2024-06-01T12:00:00Z"
+
+[trajectory]
+at = [48.1, 11.6, 520.0]
+"""
+
+
+def skip(reason):
+    """Ends the whole test program as skipped."""
+    print(f"skipped: {reason}")
+    sys.exit(SKIPPED)
+
+
+def command(scenario, out, runs, *options):
+    return [SKYLOOP, "campaign", str(scenario), "--out", str(out), "--seeds", f"1..{runs}", *map(str, options)]
+
+
+def run(scenario, out, runs, *options, environment=None, timeout=600):
+    """A campaign to its end; gives the finished process."""
+    return subprocess.run(command(scenario, out, runs, *options), capture_output=True, text=True, timeout=timeout,
+                          env=environment, stdin=subprocess.DEVNULL, check=False)
+
+
+def result_files(out):
+    return [path for path in pathlib.Path(out, "shards").glob("*-of-*.csv") if not path.name.endswith(".log.csv")]
+
+
+def results(out):
+    """All rows of all shards, as they are: {key: [row…]}."""
+    rows = {}
+    for path in result_files(out):
+        with open(path, newline="", encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                rows.setdefault(row["key"], []).append(row)
+    return rows
+
+
+def count_results(out):
+    """How many there are now, while others write."""
+    return sum(max(0, path.read_bytes().count(b"\n") - 1) for path in result_files(out))
+
+
+def expect_same(case, one, other, runs):
+    """Every run's result exactly once in both, and the same, to the byte of the database."""
+    ours, theirs = results(one), results(other)
+    case.assertEqual(len(ours), runs)
+    case.assertEqual({key: len(rows) for key, rows in ours.items() if len(rows) != 1}, {})
+    case.assertEqual(ours, theirs)
+    case.assertEqual((pathlib.Path(one) / "campaign.sqlite").read_bytes(),
+                     (pathlib.Path(other) / "campaign.sqlite").read_bytes())
