@@ -165,7 +165,7 @@ std::string shards_manifest(const EngineTask& task, const KubernetesSettings& se
     std::string text = fmt::format(R"(# The shards of a campaign, one in each index of the job.
 #   kubectl apply -f {}
 )",
-                                   (task.out / "kubernetes" / "campaign.yaml").string());
+                                   shell_quoted((task.out / "kubernetes" / "campaign.yaml").string()));
     text += head("skyloop-" + plain_name(task.name), settings);
     text += fmt::format(R"(  completionMode: Indexed
   completions: {}
@@ -199,7 +199,7 @@ std::string gather_manifest(const EngineTask& task, const KubernetesSettings& se
     std::string text = fmt::format(
         "# Merges the results of job {}, once that is complete:\n"
         "#   kubectl wait --for=condition=complete --timeout=24h job/{}\n#   kubectl apply -f {}\n",
-        name, name, (task.out / "kubernetes" / "gather.yaml").string());
+        name, name, shell_quoted((task.out / "kubernetes" / "gather.yaml").string()));
     text += head(name + "-gather", settings) + fmt::format("  backoffLimit: {}\n", settings.retries);
     return text + pod(settings, script_for({}), command);
 }

@@ -26,7 +26,7 @@ def skip(reason):
 
 
 def command(scenario, out, runs, *options):
-    return [SKYLOOP, "campaign", str(scenario), "--out", str(out), "--seeds", f"1..{runs}", *map(str, options)]
+    return [SKYLOOP, "campaign", str(scenario), "--out", str(out), "--seeds", str(runs), *map(str, options)]
 
 
 def run(scenario, out, runs, *options, environment=None, timeout=600):
