@@ -1,11 +1,11 @@
 // check_job.mjs FOLDER: holds a Job, given as JSON on the standard input, against the types that Kubernetes publishes; FOLDER has
 // kubernetes-models installed. Prints what is wrong, a line each, and ends with 1.
 import { readFileSync } from "node:fs";
-import { createRequire } from "node:module";
 import path from "node:path";
+import { pathToFileURL } from "node:url";
 
-const folder = path.resolve(process.argv[2]);
-const { Job } = createRequire(path.join(folder, "package.json"))("kubernetes-models/batch/v1");
+const types = path.resolve(process.argv[2], "node_modules/kubernetes-models");
+const { Job } = await import(pathToFileURL(path.join(types, "batch/v1/index.mjs")));
 const job = JSON.parse(readFileSync(0, "utf8"));
 const wrong = [];
 
@@ -17,7 +17,7 @@ try {
 
 // The schema lets fields pass that it does not know, as Kubernetes would drop them: their names are looked up in the types.
 function expectFields(object, type) {
-    const text = readFileSync(path.join(folder, "node_modules/kubernetes-models", `${type}.d.ts`), "utf8")
+    const text = readFileSync(path.join(types, `${type}.d.ts`), "utf8")
         .replace(/\/\*[^]*?\*\//g, "");  // comments speak of all kinds of things
     for (const field of Object.keys(object))
         if (!new RegExp(`^\\s*"?${field}"?\\??:`, "m").test(text)) wrong.push(`${type} has no field ${field}`);

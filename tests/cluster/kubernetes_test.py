@@ -123,7 +123,7 @@ class Manifests(unittest.TestCase):
         # And would say so if not.
         for spoil, told in ((lambda job: job["spec"].update(completion=3), "JobSpec has no field completion"),
                             (lambda job: job["spec"].update(completions="x"), "must be integer"),
-                            (lambda job: job["spec"]["template"]["spec"]["containers"][0].pop("name"), "'name'")):
+                            (lambda job: job["spec"]["template"]["spec"]["containers"][0].pop("name"), "required property name")):
             job = copy.deepcopy(self.shards)
             spoil(job)
             self.assertIn(told, self.complaints(folder, job))
@@ -142,10 +142,12 @@ class Manifests(unittest.TestCase):
                 self.skipTest(f"npm cannot install kubernetes-models: {done.stderr.splitlines()[-1:]}")
         return folder
 
-    @staticmethod
-    def complaints(folder, job):
-        return subprocess.run(["node", HERE / "check_job.mjs", folder], input=json.dumps(job), capture_output=True, text=True,
-                              timeout=60, check=False).stdout
+    def complaints(self, folder, job):
+        done = subprocess.run(["node", HERE / "check_job.mjs", folder], input=json.dumps(job), capture_output=True, text=True,
+                              timeout=60, check=False)
+        self.assertEqual(done.stderr, "")
+        self.assertEqual(done.returncode, 1 if done.stdout else 0)
+        return done.stdout
 
 
 if __name__ == "__main__":
