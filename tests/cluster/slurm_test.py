@@ -16,6 +16,7 @@ import campaign_rig
 import slurm_cluster
 
 RUNS = int(os.environ.get("SKYLOOP_CLUSTER_RUNS", "200"))
+LONG = 200  # runs that last some seconds
 
 
 class Said:
@@ -121,7 +122,31 @@ class SlurmCampaign(unittest.TestCase):
             self.assertEqual(log.count(", start "), 1, log)
 
     def test_a_shard_whose_time_is_over_goes_on_in_another_job(self):
-        pass
+        out = self.root / "in two goes"
+        with self.cluster() as cluster:
+            submitted = campaign_rig.run(self.scenario, out, LONG, "--engine", "slurm", "--shards", 2, "--submit",
+                                         environment=cluster.environment)
+            self.assertEqual(submitted.returncode, 0, submitted.stderr)
+            cluster.wait_for(lambda: campaign_rig.count_results(out) > 2, "results")
+            # Twice the same campaign at the same time is refused.
+            twice = campaign_rig.run(self.scenario, out, LONG, "--engine", "slurm", "--shards", 2, "--submit",
+                                     environment=cluster.environment)
+            self.assertEqual(twice.returncode, 1, twice.stderr)
+            self.assertIn("still in the queue", twice.stderr)
+            # What Slurm says to a batch script whose time is nearly over.
+            job = (out / "slurm/jobs").read_text().split()[0]
+            subprocess.run(["scancel", "--batch", "--signal=USR1", f"{job}_0", f"{job}_1"], env=cluster.environment, check=True)
+            self.assertLess(campaign_rig.count_results(out), LONG, "it ended before it could be asked to")
+            followed = campaign_rig.run(self.scenario, out, LONG, "--engine", "slurm", "--shards", 2, "--follow",
+                                        environment=cluster.environment)
+            self.assertEqual(followed.returncode, 0, followed.stderr + cluster.logs())
+        found = campaign_rig.results(out)
+        self.assertEqual((len(found), {len(rows) for rows in found.values()}), (LONG, {1}))
+        for shard in (0, 1):
+            log = (out / f"slurm/log/{shard}.txt").read_text()
+            self.assertIn("ended with code 75: back into the queue", log)
+            self.assertIn(", start 2", log)
+        self.assertTrue((out / "campaign.sqlite").exists())
 
 
 if __name__ == "__main__":
