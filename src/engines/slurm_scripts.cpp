@@ -72,12 +72,13 @@ results="$shards_folder/$name-of-$shards.csv"
 size_of_results() { stat --format=%s -- "$results" 2>/dev/null || echo 0; }
 before=$(size_of_results)
 
-# The time is nearly over: the shard ends the run it is at, keeps all results, and goes on in another job.
+# The time is nearly over: the shard ends the run it is at, keeps all results, and goes on in another job. srun does not
+# pass SIGTERM on, but gives its step up.
 step=
 late=
 end_early() {
     late=yes
-    [ -z "$step" ] || kill -TERM "$step" 2>/dev/null
+    [ -z "$step" ] || scancel --signal=TERM "$SLURM_JOB_ID"
 }
 trap end_early USR1
 
@@ -85,7 +86,7 @@ printf 'shard %s/%s on %s, start %s\n' "$name" "$shards" "${SLURMD_NODENAME:-?}"
 srun --ntasks=1 --cpus-per-task="${SLURM_CPUS_PER_TASK:-1}" -- \
     "${shard_command[@]}" --jobs "${SLURM_CPUS_PER_TASK:-1}" --shard "$name/$shards" &
 step=$!
-[ -z "$late" ] || kill -TERM "$step"
+[ -z "$late" ] || end_early
 # A signal ends a wait before the step has ended; then there is still somebody to wait for.
 while :; do
     wait "$step"

@@ -35,8 +35,8 @@ def run(scenario, out, runs, *options, environment=None, timeout=600):
                           env=environment, stdin=subprocess.DEVNULL, check=False)
 
 
-def result_files(out):
-    return [path for path in pathlib.Path(out, "shards").glob("*-of-*.csv") if not path.name.endswith(".log.csv")]
+def result_files(out, shard="*"):
+    return [path for path in pathlib.Path(out, "shards").glob(f"{shard}-of-*.csv") if not path.name.endswith(".log.csv")]
 
 
 def results(out):
@@ -49,9 +49,9 @@ def results(out):
     return rows
 
 
-def count_results(out):
-    """How many there are now, while others write."""
-    return sum(max(0, path.read_bytes().count(b"\n") - 1) for path in result_files(out))
+def count_results(out, shard="*"):
+    """How many there are now, while others write; of one shard or of all."""
+    return sum(max(0, path.read_bytes().count(b"\n") - 1) for path in result_files(out, shard))
 
 
 def expect_same(case, one, other, runs):

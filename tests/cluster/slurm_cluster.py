@@ -188,5 +188,5 @@ class Cluster:
         """The last lines of everybody, for a failure's report."""
         texts = []
         for path in sorted([*self.folder.glob("*.log"), *self.folder.glob("*.out")]):
-            texts.append(f"== {path.name}\n" + "\n".join(path.read_text(errors="replace").splitlines()[-15:]))
+            texts.append(f"== {path.name}\n" + "\n".join(path.read_text(errors="replace").splitlines()[-6:]))
         return "\n".join(texts)

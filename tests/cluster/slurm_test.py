@@ -127,7 +127,7 @@ class SlurmCampaign(unittest.TestCase):
             submitted = campaign_rig.run(self.scenario, out, LONG, "--engine", "slurm", "--shards", 2, "--submit",
                                          environment=cluster.environment)
             self.assertEqual(submitted.returncode, 0, submitted.stderr)
-            cluster.wait_for(lambda: campaign_rig.count_results(out) > 2, "results")
+            cluster.wait_for(lambda: all(campaign_rig.count_results(out, shard) > 2 for shard in (0, 1)), "results")
             # Twice the same campaign at the same time is refused.
             twice = campaign_rig.run(self.scenario, out, LONG, "--engine", "slurm", "--shards", 2, "--submit",
                                      environment=cluster.environment)
