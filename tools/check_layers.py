@@ -33,6 +33,7 @@ FENCES = [
     ("libusb", ("libusb",), {"usb"}),
     ("hidapi", ("hidapi",), {"hid"}),
     ("Boost", ("boost/",), {"control", "src/campaign_report/intervals.cpp", "src/campaign_report/rank_tests.cpp"}),
+    ("OpenSSL", ("openssl/",), {"src/campaign/sha256.cpp"}),
     ("SQLite", ("sqlite3",), {"src/campaign/campaign_database.cpp", "campaign_report"}),
     ("the C library", ("stddef.h", "stdint.h"), {"include/skyloop.h"}),
     # What talks to the kernel is a wire, a file, a terminal or a program that is run; all else is arithmetic.

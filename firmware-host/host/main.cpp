@@ -20,9 +20,10 @@ namespace {
 
 using skyloop::host::Action;
 
-constexpr std::array<std::string_view, 19> commands{
-    "run",    "simulate", "sky", "check",  "compare",       "solve",   "boards", "decode",     "scene",
-    "faults", "schema",   "ctl", "replay", "scenario-from", "devices", "power",  "trajectory", "campaign", "help-pages"};
+constexpr std::array<std::string_view, 19> commands{"run",    "simulate",   "sky",      "check",         "compare",
+                                                    "solve",  "boards",     "decode",   "scene",         "faults",
+                                                    "schema", "ctl",        "replay",   "scenario-from", "devices",
+                                                    "power",  "trajectory", "campaign", "help-pages"};
 
 // CLI11 does not know which words may be meant; this says it in one line.
 int refuse_command(std::string_view word) {

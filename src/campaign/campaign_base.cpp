@@ -7,8 +7,8 @@
 #include <cstring>
 #include <memory>
 
-#include "skyloop/base/sha256.hpp"
 #include "skyloop/campaign/campaign_plan.hpp"
+#include "skyloop/campaign/sha256.hpp"
 
 namespace skyloop {
 namespace {

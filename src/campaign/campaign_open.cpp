@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "skyloop/base/sha256.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/campaign/campaign_folder.hpp"
+#include "skyloop/campaign/sha256.hpp"
 #include "skyloop/scenario/scenario_file.hpp"
 
 namespace skyloop {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <set>
 
-#include "skyloop/base/sha256.hpp"
 #include "skyloop/campaign/campaign_design.hpp"
+#include "skyloop/campaign/sha256.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/base/sha256.hpp"
+#include "skyloop/campaign/sha256.hpp"
 
 #include <gtest/gtest.h>
 
