@@ -104,6 +104,7 @@ class PageRun:
             else:
                 shutil.copy(ROOT / path, self.folder / name)
         for name in block.all("file"):
+            (self.folder / name).parent.mkdir(exist_ok=True)
             (self.folder / name).write_text(self.here(block.text), encoding="utf-8")
         for command in block.all("before"):
             self.shell(block, command)
