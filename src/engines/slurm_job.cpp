@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <chrono>
 #include <string_view>
 #include <thread>
@@ -19,10 +20,16 @@ using FollowClock = std::chrono::steady_clock;  // a queue lives by the host's t
 
 constexpr int exit_bad_campaign = 2, exit_interrupted = 75;
 
-std::string one_line(std::string text) {
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    while (!text.empty() && text.back() == ' ')
+// Without the end of the last line.
+std::string without_end(std::string text) {
+    while (!text.empty() && text.back() == '\n')
         text.pop_back();
+    return text;
+}
+
+std::string one_line(std::string text) {
+    text = without_end(std::move(text));
+    std::replace(text.begin(), text.end(), '\n', ' ');
     return text;
 }
 
@@ -110,7 +117,9 @@ std::filesystem::path exit_file(const EngineTask& task, std::size_t shard) {
 class Follower {
 public:
     Follower(const EngineTask& task, SlurmJob job, const FollowOptions& options)
-        : task_(task), job_(std::move(job)), options_(options), results_(task.out) {}
+        : task_(task), job_(std::move(job)), options_(options), results_(task.out) {
+        task_.shards = job_.count;
+    }
     Result<int> follow();
 
 private:
@@ -125,7 +134,7 @@ private:
     std::optional<int> verdict_on(const Outcome& outcome, std::size_t submission) const;
     int gathered() const;
 
-    const EngineTask& task_;
+    EngineTask task_;
     SlurmJob job_;
     const FollowOptions& options_;
     ResultCounter results_;
@@ -219,7 +228,7 @@ std::optional<int> Follower::verdict_on(const Outcome& outcome, std::size_t subm
 
 int Follower::gathered() const {
     const auto log = slurm_folder(task_) / "log" / "gather.txt";
-    if (const auto text = read_text_file(log); text && !text->empty()) options_.say(one_line(*text));
+    if (const auto text = read_text_file(log); text && !text->empty()) options_.say(without_end(*text));
     const auto code = number_in(slurm_folder(task_) / "exit" / "gather");
     if (!code) options_.say(fmt::format("all shards are done, but their gathering did not end; see {}", log.string()));
     return code.value_or(1);
@@ -276,8 +285,9 @@ Result<SlurmJob> submit_slurm(const EngineTask& task, const std::vector<std::siz
     if (!shards) return fail(shards.error());
     // Whatever became of the shards: what is missing is counted by the gathering.
     const auto gather = submit({"--dependency=afterany:" + *shards}, slurm_folder(task) / "gather.sbatch");
-    const SlurmJob job{*shards, gather ? *gather : std::string()};
-    const auto kept = write_engine_file(slurm_folder(task) / "jobs", fmt::format("{} {}\n", job.shards, job.gather));
+    const SlurmJob job{*shards, gather ? *gather : std::string(), task.shards};
+    const auto kept =
+        write_engine_file(slurm_folder(task) / "jobs", fmt::format("{} {} {}\n", job.shards, task.shards, job.gather));
     if (!gather) return fail(gather.error());
     if (!kept) return fail(kept.error());
     return job;
@@ -285,9 +295,13 @@ Result<SlurmJob> submit_slurm(const EngineTask& task, const std::vector<std::siz
 
 std::optional<SlurmJob> submitted_slurm(const EngineTask& task) {
     const std::string line = first_line_of(slurm_folder(task) / "jobs");
-    const std::size_t space = line.find(' ');
-    SlurmJob job{line.substr(0, space), space == std::string::npos ? std::string() : line.substr(space + 1)};
-    if (!is_number(job.shards) || !(job.gather.empty() || is_number(job.gather))) return std::nullopt;
+    const std::size_t first = line.find(' '), second = line.find(' ', first == std::string::npos ? first : first + 1);
+    if (second == std::string::npos) return std::nullopt;
+    SlurmJob job{line.substr(0, first), line.substr(second + 1), 0};
+    const char* const end = line.data() + second;
+    const auto [rest, error] = std::from_chars(line.data() + first + 1, end, job.count);
+    const bool counted = error == std::errc() && rest == end && job.count >= 1 && job.count <= max_shards;
+    if (!counted || !is_number(job.shards) || !(job.gather.empty() || is_number(job.gather))) return std::nullopt;
     return job;
 }
 

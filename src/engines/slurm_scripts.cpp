@@ -140,7 +140,10 @@ std::string gather_script(const EngineTask& task, const SlurmSettings& settings)
     script += "mkdir -p -- \"$exits\" || exit 1\n" + std::string(leave_code);
     script += "rm -f -- \"$exits/$name\"\n";
     return script +
-           fmt::format("{}\ncode=$?\nleave_code \"$code\"\nexit \"$code\"\n", shell_quoted(gather_command(task)));
+           fmt::format(
+               "{}\ncode=$?\nleave_code \"$code\"\n# A failed verdict is a result.\n[ \"$code\" -ne 3 ] || code=0\n"
+               "exit \"$code\"\n",
+               shell_quoted(gather_command(task)));
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace skyloop {
 struct SlurmJob {
     std::string shards;  ///< of the array
     std::string gather;
+    std::size_t count = 1;  ///< of shards in the campaign, those included that this array does not have
 };
 
 /// How jobs are followed.
@@ -41,8 +42,9 @@ Result<SlurmJob> submit_slurm(const EngineTask& task, const std::vector<std::siz
 /// The jobs that were submitted last; nothing when none were.
 std::optional<SlurmJob> submitted_slurm(const EngineTask& task);
 
-/// Follows the jobs until the results are gathered, and submits shards again that a machine lost. Asks squeue alone, so
-/// it works where no accounting is kept. Leaving it changes nothing: the jobs go on.
+/// Follows the jobs, cut into as many shards as they were, until the results are gathered, and submits shards again
+/// that a machine lost. Asks squeue alone, so it works where no accounting is kept. Leaving it changes nothing: the
+/// jobs go on.
 /// @return exit code: that of `campaign gather`; 2 when a shard said that the campaign cannot be; 75 when it was
 /// stopped or
 ///         tasks were cancelled; 1 when shards were lost too often

@@ -161,6 +161,33 @@ TEST_F(SlurmEngine, LeavingItLeavesTheJobs) {
     EXPECT_EQ(job->gather, "102");
 }
 
+TEST_F(SlurmEngine, WhatWasSubmittedIsReadBackWholeOrNotAtAll) {
+    for (const char* line : {"", "101", "101 4", "101 0 102", "101 x 102", "101 4 x", "x 4 102", "101 4 102 103",
+                             "101  102", "101 99999999999999999999 102"}) {
+        write(task.out / "slurm/jobs", line);
+        EXPECT_FALSE(submitted_slurm(task)) << line;
+    }
+    write(task.out / "slurm/jobs", "101 40 102\n");
+    const auto job = submitted_slurm(task);
+    ASSERT_TRUE(job);
+    EXPECT_EQ(job->count, 40u);
+    write(task.out / "slurm/jobs", "101 40 \n");  // its gathering was refused
+    ASSERT_TRUE(submitted_slurm(task));
+    EXPECT_EQ(submitted_slurm(task)->gather, "");
+}
+
+TEST_F(SlurmEngine, FollowedLaterItIsCutAsItWas) {
+    make_files();
+    write(root / "lost.3", "");
+    ASSERT_TRUE(submit_slurm(task));
+    task.shards = 2;  // what a later call would have chosen
+    const auto code = follow_slurm(task, *submitted_slurm(task), follow);
+    ASSERT_TRUE(code);
+    EXPECT_EQ(*code, 0);
+    EXPECT_THAT(calls(), HasSubstr("--array=3 "));
+    EXPECT_EQ(text_of(task.out / "shards/3-of-4.csv"), "key,number\nrun,3\n");
+}
+
 TEST_F(SlurmEngine, ARefusalOfSbatchIsTold) {
     write(root / "refuses", "");
     EXPECT_THAT(follow_to_end(),
