@@ -21,7 +21,7 @@ FENCES = [
     ("GeographicLib", ("GeographicLib/",), {"geo"}),
     ("toml++", ("toml++/", "toml.hpp"), {"scenario"}),
     ("nlohmann/json", ("nlohmann/",), {"city", "verdict", "emulator", "analysis", "campaign", "campaign_report", "api", "feed", "output",
-                                       "control", "scenario", "host"}),
+                                       "control", "scenario", "tracks", "host"}),
     ("pugixml", ("pugixml",), {"city", "tracks", "src/verdict/reports.cpp"}),
     ("libzip", ("zip.h",), {"src/tracks/kmz_track.cpp"}),
     ("libosmium", ("osmium/", "protozero/"), {"city"}),

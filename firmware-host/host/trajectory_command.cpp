@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <span>
 
 #include "commands.hpp"
 #include "data_folders.hpp"
@@ -22,7 +24,8 @@ namespace {
 struct TrajectoryOptions {
     std::string file, vehicle, format = "text";
     std::string smooth;  // empty: as the file says
-    std::optional<double> rate_hz, duration_s, gap_s;
+    std::optional<double> rate_hz, duration_s, gap_s, speed_mps;
+    std::vector<double> origin;  // latitude, longitude, height; or empty
     Verbosity verbosity;
 };
 
@@ -35,10 +38,10 @@ struct OpenedPath {
 
 Result<std::optional<VehicleClass>> chosen_vehicle(const std::string& name) {
     if (name.empty()) return std::optional<VehicleClass>();
-    if (const auto vehicle = vehicle_class_named(name)) return vehicle;
     std::vector<std::string_view> names;
-    for (const VehicleTraits& traits : vehicle_classes())
+    for (const VehicleTraits& traits : std::span(vehicle_classes()).first(track_vehicle_count))
         names.push_back(traits.name);
+    if (std::find(names.begin(), names.end(), name) != names.end()) return vehicle_class_named(name);
     return fail(ErrorCode::usage, fmt::format("--vehicle {}: expected one of {}{}", name, fmt::join(names, " "),
                                               did_you_mean(name, names)));
 }
@@ -58,13 +61,23 @@ Result<Scenario> scenario_of(const TrajectoryOptions& options) {
 Result<void> apply_track_options(const TrajectoryOptions& options, std::optional<VehicleClass> vehicle,
                                  Scenario& scenario) {
     auto* file = std::get_if<FileSettings>(&scenario.trajectory);
-    const std::string_view of_tracks = !options.smooth.empty() ? "--smooth" : options.gap_s ? "--gap" : "";
+    const std::string_view of_tracks = !options.smooth.empty()   ? "--smooth"
+                                       : options.gap_s           ? "--gap"
+                                       : options.speed_mps       ? "--speed"
+                                       : !options.origin.empty() ? "--origin"
+                                                                 : "";
     if (!file && !of_tracks.empty())
         return fail(ErrorCode::usage,
                     fmt::format("{} is for tracks; {} holds a path of another kind", of_tracks, options.file));
     if (!file) return {};
     if (vehicle) file->vehicle = vehicle;
     if (options.gap_s) file->gap = Seconds(*options.gap_s);
+    if (options.speed_mps) file->route_speed = MetresPerSecond(*options.speed_mps);
+    if (!options.origin.empty()) {
+        const auto place = place_from_degrees(options.origin[0], options.origin[1], options.origin[2]);
+        if (!place) return fail(ErrorCode::usage, "--origin: " + place.error());
+        file->origin = *place;
+    }
     if (options.smooth == "none") file->smoothing = Smoothing::none;
     if (options.smooth == "noise") file->smoothing = Smoothing::noise;
     if (options.smooth == "sensor") file->smoothing = Smoothing::sensor;
@@ -111,13 +124,14 @@ Result<OpenedPath> open_path(const TrajectoryOptions& options) {
     scenario->receivers[0].trajectory.reset();
     const auto track = load_track(*scenario, geoid.get(), opened.span.from);
     if (!track) return fail(track.error());
-    listing.kind = file ? "track" : "path of a scenario";
+    listing.kind = !file ? "path of a scenario" : file->route ? "route" : "track";
     listing.description = track->description;
     listing.details = track->details;
     listing.notes.insert(listing.notes.end(), track->warnings.begin(), track->warnings.end());
     opened.path = make_trajectory(scenario->trajectory, opened.span.from);
     opened.span.length = length_to_look_at(options, *scenario, *track, opened);
-    const auto limits_of = *vehicle ? *vehicle : file ? file->vehicle : std::nullopt;
+    auto limits_of = *vehicle ? *vehicle : file ? file->vehicle : std::nullopt;
+    if (file && file->route) limits_of = file->route->vehicle;
     if (limits_of) listing.vehicle = traits_of(*limits_of).name;
     listing.survey = survey_path(*opened.path, opened.span);
     listing.exceeded = exceeded_limits(listing.survey, limits_of);
@@ -175,6 +189,11 @@ Action add_trajectory_command(CLI::App& app) {
         ->check(CLI::IsMember({"none", "noise", "sensor"}));
     command->add_option("--gap", options->gap_s, "Seconds without rows that are a gap; default 10")
         ->check(CLI::Range(1e-3, 1e7));
+    command->add_option("--speed", options->speed_mps, "m/s of a file without times; default its own or the vehicle's")
+        ->check(CLI::Range(1e-2, 12000.0));
+    command->add_option("--origin", options->origin, "LATITUDE,LONGITUDE,HEIGHT of local metres: degrees, m")
+        ->delimiter(',')
+        ->expected(3);
     add_verbosity_options(*command, options->verbosity);
     return [options] { return trajectory(*options); };
 }

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <span>
+#include <utility>
 
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/time/utc_time.hpp"
 #include "skyloop/tracks/read_track.hpp"
 #include "skyloop/trajectory/recorded_path.hpp"
+#include "skyloop/trajectory/route.hpp"
 
 namespace skyloop {
 namespace {
@@ -17,6 +20,12 @@ namespace {
 // In a run that begins at `start`, were nothing delayed or skipped.
 GpsTime first_row_at(const FileSettings& file, GpsTime start) {
     return file.keeps_time && file.track->origin ? *file.track->origin + file.track->points.front().time : start;
+}
+
+std::shared_ptr<const FilePath> path_of_file(const FileSettings& file, GpsTime start) {
+    const GpsTime first = first_row_at(file, start);
+    if (file.route) return std::make_shared<const RoutePath>(*file.route, first);
+    return std::make_shared<const RecordedPath>(*file.track, file.gaps, first, file.curve());
 }
 
 // Where the path lies in the run.
@@ -108,9 +117,18 @@ std::vector<std::string> track_details(const FileSettings& file, const CurveRepo
     return details;
 }
 
-// What its time and its playback ask for together.
-Result<void> check_playback(const FileSettings& file, const Track& track) {
+// What its time and its playback ask for together. @param length of the track or the route, s
+Result<void> check_playback(const FileSettings& file, const Track& track, double length) {
     const Playback& playback = file.playback;
+    if (!std::isfinite(length) && playback.end != EndOfPath::hold)
+        return fail(ErrorCode::usage,
+                    fmt::format("{}: one place alone, where the vehicle stands for ever; expected end = "
+                                "\"hold\", and duration_s in [run]",
+                                track.name));
+    if (file.keeps_time && track.route)
+        return fail(ErrorCode::usage, fmt::format("{}: {}, and trajectory.time = \"recorded\" asks for times; expected "
+                                                  "time = \"run\"",
+                                                  track.name, track.route->why));
     if (file.keeps_time && !track.origin)
         return fail(
             ErrorCode::usage,
@@ -122,7 +140,6 @@ Result<void> check_playback(const FileSettings& file, const Track& track) {
                     fmt::format("{}: trajectory.time = \"recorded\" keeps the times of the rows; expected no "
                                 "start_delay_s, skip_s or time_scale beside it",
                                 track.name));
-    const double length = to_seconds(track.points.back().time - track.points.front().time).value();
     if (playback.skip.value() >= length)
         return fail(ErrorCode::usage, fmt::format("{}: skip_s is {:g} s, and the track lasts {:g} s", track.name,
                                                   playback.skip.value(), length));
@@ -176,12 +193,47 @@ Result<void> read_and_clean(FileSettings& file, const Geoid* geoid) {
     const ByteSpan bytes(reinterpret_cast<const std::uint8_t*>(text->data()), text->size());
     auto track = read_track(bytes, file.path.string(), {geoid, file.origin});
     if (!track) return fail(track.error());
-    auto gaps = clean_track(*track, file.gap, file.gap_policy);
-    if (!gaps) return fail(gaps.error());
-    if (const auto fits = check_playback(file, *track); !fits) return fail(fits.error());
-    file.gaps = std::move(*gaps);
+    file.route.reset();
+    file.gaps.clear();
+    if (track->route) {
+        auto route = fly_route(*track, file.route_settings());
+        if (!route) return fail(route.error());
+        file.route = std::make_shared<const FlownRoute>(std::move(*route));
+    } else {
+        auto gaps = clean_track(*track, file.gap, file.gap_policy);
+        if (!gaps) return fail(gaps.error());
+        file.gaps = std::move(*gaps);
+    }
+    const double length = file.route ? file.route->shape->duration()
+                                     : to_seconds(track->points.back().time - track->points.front().time).value();
+    if (const auto fits = check_playback(file, *track, length); !fits) return fits;
     file.track = std::make_shared<const Track>(std::move(*track));
     return {};
+}
+
+// What there is to say of places without times.
+LoadedTrack told_route(const FileSettings& file) {
+    const FlownRoute& route = *file.route;
+    const double seconds = route.shape->duration();
+    const std::string& name = file.track->name;
+    LoadedTrack loaded;
+    loaded.description = std::isfinite(seconds)
+                             ? fmt::format("{}, a route of {} points in {:.3f} s", name, route.places, seconds)
+                             : fmt::format("{}, one place", name);
+    for (const auto* notes : {&file.track->notes, &route.notes})
+        for (const std::string& note : *notes)
+            loaded.warnings.push_back(fmt::format("{}: {}", name, note));
+    loaded.details.push_back(fmt::format("format: {}", file.track->format));
+    if (std::isfinite(seconds))
+        loaded.details.push_back(fmt::format("route: {} of {} points are flown to, as a {}", route.waypoints.size(),
+                                             route.places, traits_of(route.vehicle).name));
+    return loaded;
+}
+
+LoadedTrack told_track(const FileSettings& file, const RecordedPath& path) {
+    return {
+        fmt::format("{}, {} rows in {:.3f} s", file.track->name, file.track->points.size(), path.duration().value()),
+        track_warnings(file, path.report()), track_details(file, path.report())};
 }
 
 // One path; nothing to load unless it is of a file. @param receivers that ride on it
@@ -191,17 +243,15 @@ Result<LoadedTrack> load_one(TrajectorySettings& way, Scenario& scenario, std::s
     auto* file = std::get_if<FileSettings>(&way);
     if (!file) return LoadedTrack{};
     if (const auto read = read_and_clean(*file, geoid); !read) return fail(read.error());
-    const GpsTime first = first_row_at(*file, start);
-    const auto curve = std::make_shared<const RecordedPath>(*file->track, file->gaps, first, file->curve());
-    const PlayedPath path(curve, first, file->playback);
+    const std::shared_ptr<const FilePath> whole = path_of_file(*file, start);
+    const auto* recorded = dynamic_cast<const RecordedPath*>(whole.get());
+    LoadedTrack loaded = recorded ? told_track(*file, *recorded) : told_route(*file);
+    const PlayedPath path(whole, first_row_at(*file, start), file->playback);
     if (file->playback.alters())
         file->way = std::make_shared<const PlayedPath>(path);
     else
-        file->way = curve;
-    const CurveReport& report = path.path().report();
-    LoadedTrack loaded{fmt::format("{}, {} rows in {:.3f} s", file->track->name, file->track->points.size(),
-                                   path.path().duration().value()),
-                       track_warnings(*file, report), track_details(*file, report)};
+        file->way = whole;
+    if (!std::isfinite(path.path().duration().value())) return loaded;
     for (std::string& warning : time_warnings(*file, path, scenario, start))
         loaded.warnings.push_back(std::move(warning));
     if (file->gap_policy == GapPolicy::outage)

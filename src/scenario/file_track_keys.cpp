@@ -15,7 +15,7 @@ constexpr std::array<Word<Smoothing>, 3> smooth_words{
     {{"none", Smoothing::none}, {"noise", Smoothing::noise}, {"sensor", Smoothing::sensor}}};
 
 void read_vehicle_class(TableReader& table, FileSettings& file) {
-    std::array<std::string_view, vehicle_class_count> names;
+    std::array<std::string_view, track_vehicle_count> names;
     for (std::size_t i = 0; i < names.size(); ++i)
         names[i] = vehicle_classes()[i].name;
     if (const auto index = table.choice("vehicle", names)) file.vehicle = static_cast<VehicleClass>(*index);
@@ -42,6 +42,10 @@ void read_file_track(TableReader& table, const std::filesystem::path& folder, Tr
     table.word("end", end_words, file.playback.end);
     read_vehicle_class(table, file);
     table.word("smooth", smooth_words, file.smoothing);
+    MetresPerSecond speed(12);
+    table.quantity("speed_mps", speed, {1e-2, 12000});
+    if (table.has("speed_mps")) file.route_speed = speed;
+    table.quantity("route_tolerance_m", file.route_tolerance, {0, 1e5});
     trajectory = file;
 }
 

@@ -10,6 +10,9 @@ constexpr KeyMeaning path_meanings[] = {
      "constant "
      "speed from corner to corner; on a track, how it stands where the rows tell no attitude",
      "car for drive, none for file, else multirotor"},
+    {"trajectory", "route_tolerance_m",
+     "of a file without times: places this near to the way between the others are left out, and the others passed as "
+     "near"},
     {"trajectory", "acceleration_mps2", "along the way", "the vehicle's"},
     {"trajectory", "jerk_mps3", "change of the acceleration along the way", "the vehicle's"},
     {"trajectory", "lateral_mps2", "acceleration in turns", "the vehicle's"},

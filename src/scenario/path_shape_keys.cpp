@@ -107,7 +107,7 @@ WishFound read_hover(const ShapeReading& r) {
 
 WishFound read_float(const ShapeReading& r) {
     FloatWish wish;
-    r.vehicle = usual_limits(VehicleKind::boat);
+    r.vehicle = usual_limits(VehicleClass::boat);
     const auto place = read_needed_place(r, "at");
     wish.heading = r.heading.rad();
     r.table.number("speed_mps", wish.speed, {0, 100});
@@ -123,7 +123,7 @@ WishFound read_float(const ShapeReading& r) {
 
 WishFound read_drive(const ShapeReading& r) {
     DriveWish wish;
-    r.vehicle = usual_limits(VehicleKind::car);
+    r.vehicle = usual_limits(VehicleClass::car);
     const auto centre = read_needed_place(r, "centre");
     read_speed_and_vehicle(r.table, r.vehicle);
     wish.vehicle = r.vehicle;
@@ -140,7 +140,7 @@ WishFound read_drive(const ShapeReading& r) {
 WishFound read_rocket(const ShapeReading& r) {
     static constexpr std::array<std::string_view, 2> presets{"rocket_1km", "rocket_30km_M3"};
     RocketWish wish;
-    r.vehicle = usual_limits(VehicleKind::rocket);
+    r.vehicle = usual_limits(VehicleClass::rocket);
     const auto pad = read_needed_place(r, "at");
     wish.heading = r.heading.rad();
     if (const auto preset = r.table.choice("preset", presets)) choose_rocket(wish, presets[*preset]);
@@ -171,7 +171,7 @@ void read_winds(TableReader& table, std::vector<WindLayer>& winds) {
 WishFound read_balloon(const ShapeReading& r) {
     static constexpr std::array<std::string_view, 1> presets{"balloon_32km"};
     BalloonWish wish;
-    r.vehicle = usual_limits(VehicleKind::balloon);
+    r.vehicle = usual_limits(VehicleClass::balloon);
     const auto place = read_needed_place(r, "at");
     wish.heading = r.heading.rad();
     if (const auto preset = r.table.choice("preset", presets)) choose_balloon(wish, presets[*preset]);

@@ -1,4 +1,6 @@
 // What a vehicle is and can do.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -31,8 +33,9 @@ void read_turn_keys(TableReader& table, VehicleLimits& vehicle) {
 }  // namespace
 
 void read_vehicle_keys(TableReader& table, VehicleLimits& vehicle) {
-    if (const auto kind = table.choice("vehicle", steered_vehicle_names()))
-        vehicle = usual_limits(static_cast<VehicleKind>(*kind));
+    std::array<std::string_view, driven_vehicles.size()> names;
+    std::transform(driven_vehicles.begin(), driven_vehicles.end(), names.begin(), vehicle_name);
+    if (const auto kind = table.choice("vehicle", names)) vehicle = usual_limits(driven_vehicles.at(*kind));
     read_if_there(table, "acceleration_mps2", vehicle.along.acceleration, {1e-3, 500});
     read_if_there(table, "jerk_mps3", vehicle.along.jerk, {1e-3, 1e4});
     read_turn_keys(table, vehicle);

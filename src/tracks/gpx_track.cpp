@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -19,7 +20,9 @@ public:
 private:
     Result<void> take_track(const pugi::xml_node& track);
     Result<void> take_point(const pugi::xml_node& point);
-    Result<bool> take_time(const pugi::xml_node& point, TextRow& row);
+    Result<void> take_places_of_routes();
+    Result<void> take_places(const pugi::xml_node& holder, std::string_view name);
+    Result<void> take_time(std::string_view text, TextRow& row);
     Result<void> take_place(const pugi::xml_node& point, TextRow& row);
     void take_motion(const pugi::xml_node& point, TextRow& row);
     [[nodiscard]] std::optional<double> number_in(const pugi::xml_node& point, std::string_view name) const;
@@ -30,7 +33,7 @@ private:
     XmlTree tree_;
     TextTrack track_;
     bool segment_begins_ = false;
-    std::size_t timed_ = 0, without_zone_ = 0, route_points_ = 0, waypoints_ = 0, senseless_motion_ = 0;
+    std::size_t without_zone_ = 0, route_points_ = 0, waypoints_ = 0, senseless_motion_ = 0;
 };
 
 Result<Track> GpxReader::read() {
@@ -46,18 +49,49 @@ Result<Track> GpxReader::read() {
         if (name != "trk") continue;
         if (const auto taken = take_track(part); !taken) return fail(taken.error());
     }
-    if (track_.rows() == 0)
-        return track_.refusal(
-            fmt::format("{} route points and {} waypoints, and no track; expected <trk> with a <time> "
-                        "in each point: routes have no times (fly them as [[trajectory.waypoint]])",
-                        route_points_, waypoints_));
-    if (timed_ == 0)
-        return track_.refusal(
-            fmt::format("{} track points and no time in them; expected a <time> in each <trkpt>: "
-                        "a way without times needs a speed (fly it as [[trajectory.waypoint]])",
-                        track_.rows()));
+    if (track_.rows() == 0) {
+        if (const auto taken = take_places_of_routes(); !taken) return fail(taken.error());
+    } else if (route_points_ + waypoints_ > 0) {
+        track_.note(fmt::format("its routes, of {} points, and its {} waypoints are not part of the path",
+                                route_points_, waypoints_));
+    }
     add_notes();
-    return track_.finish("<trkpt> with lat, lon and a <time> from 1980-01-06 to 2199");
+    return track_.finish("<trkpt>, <rtept> or <wpt> with lat and lon");
+}
+
+// Of several routes the one with most points; without any, the waypoints as they stand.
+Result<void> GpxReader::take_places_of_routes() {
+    const pugi::xml_node root = tree_.root();
+    if (route_points_ == 0) {
+        track_.note(fmt::format("its {} waypoints are taken as a route, in the order of the file", waypoints_));
+        return take_places(root, "wpt");
+    }
+    pugi::xml_node longest;
+    std::size_t most = 0, routes = 0;
+    for (const pugi::xml_node& part : root.children()) {
+        if (xml_name(part) != "rte") continue;
+        ++routes;
+        const auto points = static_cast<std::size_t>(
+            std::count_if(part.begin(), part.end(), [](const pugi::xml_node& p) { return xml_name(p) == "rtept"; }));
+        if (points > most) most = points, longest = part;
+    }
+    if (routes > 1)
+        track_.note(fmt::format("of its {} routes the one with most points is taken, '{}'", routes,
+                                xml_content(xml_child(longest, "name")).substr(0, 60)));
+    if (waypoints_ > 0) track_.note(fmt::format("its {} waypoints are not part of the path", waypoints_));
+    return take_places(longest, "rtept");
+}
+
+// Times of theirs are those at which they were stored.
+Result<void> GpxReader::take_places(const pugi::xml_node& holder, std::string_view name) {
+    for (const pugi::xml_node& point : holder.children()) {
+        if (xml_name(point) != name) continue;
+        TextRow row;
+        row.line = tree_.line_of(point);
+        if (const auto placed = take_place(point, row); !placed) return placed;
+        if (const auto added = track_.add_untimed(row, "have no time"); !added) return added;
+    }
+    return {};
 }
 
 Result<void> GpxReader::take_track(const pugi::xml_node& track) {
@@ -76,28 +110,29 @@ Result<void> GpxReader::take_track(const pugi::xml_node& track) {
 Result<void> GpxReader::take_point(const pugi::xml_node& point) {
     TextRow row;
     row.line = tree_.line_of(point);
-    const auto timed = take_time(point, row);
-    if (!timed) return fail(timed.error());
+    const std::string time = xml_content(xml_child(point, "time"));
+    const std::string_view plain = trimmed_text(time);
+    if (!plain.empty())
+        if (const auto timed = take_time(plain, row); !timed) return timed;
     if (const auto placed = take_place(point, row); !placed) return placed;
-    if (!*timed) return {};
+    if (plain.empty()) return track_.add_untimed(row, "have no time");
+    if (!row.timed) return track_.add_untimed(row, "have a time before 1980-01-06 or after 2199", plain);
     take_motion(point, row);
     row.jump = std::exchange(segment_begins_, false);
     return track_.add(row);
 }
 
-// False: the point has none and is left out.
-Result<bool> GpxReader::take_time(const pugi::xml_node& point, TextRow& row) {
-    const std::string text = xml_content(xml_child(point, "time"));
-    if (trimmed_text(text).empty()) return track_.leave_out("have no time", row.line), false;
-    ++timed_;
+// Times out of range are none.
+Result<void> GpxReader::take_time(std::string_view text, TextRow& row) {
     const auto time = parse_iso_time(text);
     if (!time)
-        return track_.refusal(row.line, fmt::format("the time is '{}'; expected one as 2024-03-05T12:00:00.25Z",
-                                                    trimmed_text(text).substr(0, 40)));
-    if (!time->in_range) return track_.leave_out("have a time before 1980-01-06 or after 2199", row.line), false;
+        return track_.refusal(
+            row.line, fmt::format("the time is '{}'; expected one as 2024-03-05T12:00:00.25Z", text.substr(0, 40)));
+    row.timed = time->in_range;
+    if (!time->in_range) return {};
     if (!time->zoned) ++without_zone_;
     row.time = time->time.time_since_epoch();
-    return true;
+    return {};
 }
 
 Result<void> GpxReader::take_place(const pugi::xml_node& point, TextRow& row) {
@@ -154,8 +189,6 @@ void GpxReader::take_motion(const pugi::xml_node& point, TextRow& row) {
 void GpxReader::add_notes() {
     if (without_zone_ > 0) track_.note(fmt::format("{} times say no zone and are taken as UTC", without_zone_));
     if (senseless_motion_ > 0) track_.note(fmt::format("{} speeds beyond 12000 m/s are not used", senseless_motion_));
-    if (route_points_ > 0)
-        track_.note(fmt::format("its routes, of {} points, have no times and are not part of the path", route_points_));
 }
 
 }  // namespace

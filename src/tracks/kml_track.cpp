@@ -26,6 +26,8 @@ private:
     Result<void> take_track(const pugi::xml_node& track, bool joined);
     Result<void> take_pair(const pugi::xml_node& when, const pugi::xml_node& coord, TextRow& row);
     Result<void> take_placemarks();
+    Result<void> take_line();
+    Result<void> take_points();
     Result<std::optional<Nanoseconds>> time_of(const pugi::xml_node& when, std::size_t line);
     Result<bool> take_coordinates(const std::string& text, std::string_view separators, TextRow& row);
     Altitudes altitudes_of(const pugi::xml_node& holder);
@@ -46,6 +48,10 @@ Result<Track> KmlReader::read() {
     if (const auto taken = take_tracks(); !taken) return fail(taken.error());
     if (track_.rows() == 0)
         if (const auto taken = take_placemarks(); !taken) return fail(taken.error());
+    if (track_.rows() == 0)
+        if (const auto taken = take_line(); !taken) return fail(taken.error());
+    if (track_.rows() == 0)
+        if (const auto taken = take_points(); !taken) return fail(taken.error());
     return track_.rows() == 0 ? refused() : finish();
 }
 
@@ -119,6 +125,53 @@ Result<void> KmlReader::take_placemarks() {
     return {};
 }
 
+// The places of the longest LineString are a route: it has no times.
+Result<void> KmlReader::take_line() {
+    const pugi::xml_node root = tree_.root();
+    pugi::xml_node longest;
+    std::size_t lines = 0, most = 0;
+    for (pugi::xml_node at = root; at; at = xml_following(at, root)) {
+        if (xml_name(at) != "LineString") continue;
+        ++lines;
+        const std::size_t size = xml_content(xml_child(at, "coordinates")).size();
+        if (size > most) most = size, longest = at;
+    }
+    if (most == 0) return {};
+    if (lines > 1) track_.note(fmt::format("of its {} LineStrings the longest is taken", lines));
+    altitudes_ = altitudes_of(longest);
+    const std::string text = xml_content(xml_child(longest, "coordinates"));
+    constexpr std::string_view blanks = " \t\r\n";
+    const std::size_t line = tree_.line_of(longest);
+    for (std::size_t at = text.find_first_not_of(blanks); at != std::string::npos;) {
+        const std::size_t end = std::min(text.find_first_of(blanks, at), text.size());
+        TextRow row;
+        row.line = line;
+        const auto placed = take_coordinates(text.substr(at, end - at), ",", row);
+        if (!placed) return fail(placed.error());
+        if (*placed)
+            if (const auto added = track_.add_untimed(row, "have no time"); !added) return added;
+        at = text.find_first_not_of(blanks, end);
+    }
+    return {};
+}
+
+// Placemarks without times, in the order of the file.
+Result<void> KmlReader::take_points() {
+    const pugi::xml_node root = tree_.root();
+    for (pugi::xml_node at = root; at; at = xml_following(at, root)) {
+        if (xml_name(at) != "Point") continue;
+        TextRow row;
+        row.line = tree_.line_of(at);
+        altitudes_ = altitudes_of(at);
+        const auto placed = take_coordinates(xml_content(xml_child(at, "coordinates")), ", \t\r\n", row);
+        if (!placed) return fail(placed.error());
+        if (!*placed) continue;
+        if (const auto added = track_.add_untimed(row, "have no time"); !added) return added;
+    }
+    if (track_.rows() > 0) track_.note("its points are taken as a route, in the order of the file");
+    return {};
+}
+
 // Nothing: the point has none and is left out.
 Result<std::optional<Nanoseconds>> KmlReader::time_of(const pugi::xml_node& when, std::size_t line) {
     const std::string text = xml_content(when);
@@ -171,21 +224,11 @@ KmlReader::Altitudes KmlReader::altitudes_of(const pugi::xml_node& holder) {
 
 Result<Track> KmlReader::refused() {
     const pugi::xml_node root = tree_.root();
-    std::size_t lines = 0, placemarks = 0;
-    for (pugi::xml_node at = root; at; at = xml_following(at, root)) {
-        lines += xml_name(at) == "LineString";
+    std::size_t placemarks = 0;
+    for (pugi::xml_node at = root; at; at = xml_following(at, root))
         placemarks += xml_name(at) == "Placemark";
-    }
-    if (lines > 0)
-        return track_.refusal(
-            fmt::format("{} LineString, which have no times; expected a gx:Track, or a TimeStamp in "
-                        "each placemark: a way without times needs a speed (fly it as "
-                        "[[trajectory.waypoint]])",
-                        lines));
     return track_.refusal(
-        fmt::format("{} placemarks and no track; expected a gx:Track, or a TimeStamp and a Point in "
-                    "each placemark",
-                    placemarks));
+        fmt::format("{} placemarks and no place in them; expected a gx:Track, a LineString or Points", placemarks));
 }
 
 Result<Track> KmlReader::finish() {

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "skyloop/trajectory/track_csv.hpp"
 #include "text_track.hpp"
@@ -46,6 +48,8 @@ constexpr TrackFormat formats[] = {
     {{".bin", "", ""}, is_dataflash_track, read_dataflash_track},
     {{".tlog", "", ""}, is_tlog, read_tlog},
     {{".ubx", "", ""}, is_ubx_track, read_ubx_track},
+    {{".plan"}, is_qgc_plan, read_qgc_plan},
+    {{".waypoints"}, is_wpl, read_wpl},
     {{".gpx"}, [](const TrackFile& file) { return is_xml_of(file, "gpx", ".gpx"); }, read_gpx},
     {{".kml"}, [](const TrackFile& file) { return is_xml_of(file, "kml", ".kml"); }, read_kml},
     {{}, is_other_xml, refuse_xml},
@@ -61,9 +65,11 @@ constexpr TrackFormat formats[] = {
 
 Result<Track> read_track(ByteSpan bytes, const std::string& name, const TrackReading& reading) {
     const TrackFile file{bytes, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name, reading};
-    for (const TrackFormat& format : formats)
-        if (format.fits(file)) return format.read(file);
-    return read_csv(file);
+    const auto format = std::find_if(std::begin(formats), std::end(formats),
+                                     [&](const TrackFormat& candidate) { return candidate.fits(file); });
+    Result<Track> track = format == std::end(formats) ? read_csv(file) : format->read(file);
+    if (track) find_useless_times(*track);
+    return track;
 }
 
 std::vector<std::string_view> track_endings() {

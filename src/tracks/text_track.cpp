@@ -35,7 +35,8 @@ void TextTrack::begin_part(std::string_view name) {
     parts_.push_back({std::string(name.substr(0, 60)), {}});
 }
 
-Result<void> TextTrack::add(TextRow row) {
+// Makes one thing of places on the Earth, and of what stands for nothing. Fails where a number cannot be.
+Result<void> TextTrack::check(TextRow& row) const {
     if (row.position) {
         const double radius = row.position->vector().norm();
         if (!(radius > 6.3e6 && radius < 1.7e7))  // below any ground, beyond what a path is for
@@ -59,10 +60,60 @@ Result<void> TextTrack::add(TextRow row) {
     if (row.separation_m && !(std::abs(*row.separation_m) <= 200))
         return refusal(row.line, fmt::format("the geoid lies {:g} m above the ellipsoid; expected -200 to 200",
                                              *row.separation_m));
+    return {};
+}
+
+Result<void> TextTrack::add(TextRow row) {
+    if (auto checked = check(row); !checked) return checked;
     if (parts_.empty()) begin_part("");
     parts_.back().rows.push_back(row);
     ++taken_;
     return {};
+}
+
+Result<void> TextTrack::add_untimed(TextRow row, std::string_view why, std::string_view time) {
+    if (auto checked = check(row); !checked) return checked;
+    if (parts_.empty()) begin_part("");
+    row.timed = false;
+    parts_.back().rows.push_back(row);
+    untimed_.push_back({std::string(why), row.line});
+    if (!time.empty()) ++unusable_times_[std::string(time.substr(0, 64))];
+    return {};
+}
+
+// Whether the rows without times make a route of the whole, or are left out of it.
+void TextTrack::settle_untimed() {
+    constexpr std::size_t fewest_timed = 2, hardly_any = 10;  // one in so many
+    if (untimed_.empty()) return;
+    if (taken_ < fewest_timed || taken_ * hardly_any < taken_ + untimed_.size()) return make_route();
+    for (Part& part : parts_)
+        std::erase_if(part.rows, [](const TextRow& row) { return !row.timed; });
+    for (const Untimed& row : std::exchange(untimed_, {}))
+        leave_out(row.why, row.line);
+}
+
+std::string TextTrack::why_no_times() const {
+    const std::size_t whole = rows();
+    std::size_t most = 0;
+    for (const auto& [text, count] : unusable_times_)
+        most = std::max(most, count);
+    if (most > 1 && whole - most < std::max<std::size_t>(whole / 10, 1) + 1)
+        return fmt::format("{} of {} times are equal: the file's times are not used", most, whole);
+    if (most > 0) return fmt::format("{} of {} {} {}", untimed_.size(), whole, rows_called_, untimed_.back().why);
+    return taken_ > 0 ? fmt::format("only {} of {} {} have a time", taken_, whole, rows_called_) : "no times in it";
+}
+
+void TextTrack::make_route() {
+    track_.route.emplace();
+    track_.route->why = why_no_times();
+    for (const Part& part : parts_)
+        rows_.insert(rows_.end(), part.rows.begin(), part.rows.end());
+    for (TextRow& row : rows_)
+        row.time = {}, row.jump = false;
+    parts_.clear();
+    taken_ += untimed_.size();
+    untimed_.clear();
+    absolute_ = false;
 }
 
 void TextTrack::leave_out(std::string_view why, std::size_t line) {
@@ -158,6 +209,11 @@ Result<void> TextTrack::resolve_heights() {
     return {};
 }
 
+// What rows are counted by: their time, or in a route their number.
+double TextTrack::along(std::size_t i) const {
+    return track_.route ? static_cast<double>(i) : text_seconds(rows_[i].time - rows_.front().time);
+}
+
 // Rows without a height take theirs from the rows before and after, by time.
 void TextTrack::fill_heights() {
     std::vector<std::size_t> known;
@@ -172,11 +228,12 @@ void TextTrack::fill_heights() {
             ++after;
             continue;
         }
-        const TextRow& a = rows_[after == known.begin() ? *after : *(after - 1)];
-        const TextRow& b = rows_[after == known.end() ? *(after - 1) : *after];
-        const double whole = text_seconds(b.time - a.time), part = text_seconds(rows_[i].time - a.time);
+        const std::size_t a = after == known.begin() ? *after : *(after - 1);
+        const std::size_t b = after == known.end() ? *(after - 1) : *after;
+        const double whole = along(b) - along(a), part = along(i) - along(a);
         const double share = whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0;
-        rows_[i].ellipsoidal_m = *a.ellipsoidal_m + share * (*b.ellipsoidal_m - *a.ellipsoidal_m);
+        const double from = *rows_[a].ellipsoidal_m, to = *rows_[b].ellipsoidal_m;
+        rows_[i].ellipsoidal_m = from + share * (to - from);
     }
 }
 
@@ -270,7 +327,8 @@ std::string TextTrack::told_left_out(const LeftOut& out) const {
 }
 
 Result<Track> TextTrack::finish(std::string_view expected) {
-    merge_parts();
+    settle_untimed();
+    if (!track_.route) merge_parts();
     drop_zero_places();
     std::vector<std::string> told;
     for (const LeftOut& out : left_out_)
@@ -283,8 +341,10 @@ Result<Track> TextTrack::finish(std::string_view expected) {
     if (const auto resolved = resolve_heights(); !resolved) return fail(resolved.error());
     fill_heights();
     place_rows();
-    add_velocities();
-    tell_velocities();
+    if (!track_.route) {
+        add_velocities();
+        tell_velocities();
+    }
     if (absolute_) track_.origin = GpsTime{};
     return std::move(track_);
 }

@@ -1,6 +1,8 @@
 // Rows as files of text tell them, and how a track is made of them.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +19,7 @@ struct TextRow {
     Nanoseconds time{0};  // since 1980-01-06 (GPS time), or since the file's own start
     std::size_t line = 0;
     bool jump = false;  // the source says that it begins anew here
+    bool timed = true;
     double latitude_deg = 0, longitude_deg = 0;
     std::optional<double> ellipsoidal_m;     // height above the ellipsoid
     std::optional<double> sea_level_m;       // height above mean sea level
@@ -82,13 +85,17 @@ public:
     void begin_part(std::string_view name);
     // Fails where latitude, longitude, height or speed cannot be.
     Result<void> add(TextRow row);
+    // A row whose time is missing or cannot be. Where hardly any row has one, the rows are a route in the order of the
+    // file; else it is left out. @param why as of leave_out()
+    // @param time as it stands in the file, empty where there is none
+    Result<void> add_untimed(TextRow row, std::string_view why, std::string_view time = {});
     // A row that is not taken. @param why continues "3 of 10 rows …": "have no time"
     void leave_out(std::string_view why, std::size_t line);
     void note(std::string text);
     // The times of the rows count from the file's own start.
     void count_from_start() { absolute_ = false; }
     [[nodiscard]] const std::optional<Geodetic>& origin() const { return file_.reading.origin; }
-    [[nodiscard]] std::size_t rows() const { return taken_ + left_out_count_; }
+    [[nodiscard]] std::size_t rows() const { return taken_ + untimed_.size() + left_out_count_; }
     [[nodiscard]] std::size_t taken() const { return taken_; }
     [[nodiscard]] tl::unexpected<Error> refusal(std::size_t line, const std::string& what) const;
     [[nodiscard]] tl::unexpected<Error> refusal(const std::string& what) const;
@@ -104,6 +111,15 @@ private:
         std::string why;
         std::size_t count = 0, first_line = 0;
     };
+    struct Untimed {
+        std::string why;
+        std::size_t line = 0;
+    };
+    [[nodiscard]] Result<void> check(TextRow& row) const;
+    void settle_untimed();
+    void make_route();
+    [[nodiscard]] std::string why_no_times() const;
+    [[nodiscard]] double along(std::size_t i) const;
     void merge_parts();
     void drop_zero_places();
     Result<void> resolve_heights();
@@ -122,6 +138,8 @@ private:
     std::vector<Part> parts_;
     std::vector<TextRow> rows_;
     std::vector<LeftOut> left_out_;
+    std::vector<Untimed> untimed_;
+    std::map<std::string, std::size_t, std::less<>> unusable_times_;  // as they stand, and how often
     std::size_t taken_ = 0, left_out_count_ = 0;
 };
 

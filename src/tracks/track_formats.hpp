@@ -16,6 +16,10 @@ struct TrackFile {
 Result<Track> read_gpx(const TrackFile& file);
 Result<Track> read_kml(const TrackFile& file);
 Result<Track> read_kmz(const TrackFile& file);
+bool is_qgc_plan(const TrackFile& file);
+Result<Track> read_qgc_plan(const TrackFile& file);
+bool is_wpl(const TrackFile& file);
+Result<Track> read_wpl(const TrackFile& file);
 bool is_igc(const TrackFile& file);
 Result<Track> read_igc(const TrackFile& file);
 bool is_nmea_track(const TrackFile& file);

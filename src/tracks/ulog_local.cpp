@@ -17,11 +17,10 @@ bool differs(const UlogRecord& a, const UlogRecord& b, std::string_view field) {
 std::vector<FlightRow> UlogLocalPlaces::read() {
     for (auto bytes = stream_.records.rbegin(); bytes != stream_.records.rend(); ++bytes) {
         const UlogRecord record(stream_.fields, *bytes);
-        if (!flag(record, "xy_valid") || !flag(record, "z_valid") || !flag(record, "xy_global") ||
-            !flag(record, "z_global"))
-            continue;
+        if (!origin_ && !is_trusted(record)) continue;
         undo_resets(record);
         if (const auto row = row_of(record)) {
+            untrusted_ += !flag(record, "xy_valid") || !flag(record, "z_valid");
             rows_.push_back(*row);
             after_ = *bytes;
         }
@@ -54,11 +53,14 @@ void UlogLocalPlaces::undo_resets(const UlogRecord& record) {
 std::optional<FlightRow> UlogLocalPlaces::row_of(const UlogRecord& record) {
     const auto number = [&](std::string_view name) { return record.value(name).value_or(std::nan("")); };
     const auto ns = flight_clock_ns(record.value("timestamp"));
-    const double latitude = number("ref_lat"), longitude = number("ref_lon");
-    if (!ns || (latitude == 0 && longitude == 0)) return std::nullopt;
+    const double latitude = origin_ ? origin_->latitude.deg() : number("ref_lat");
+    const double longitude = origin_ ? origin_->longitude.deg() : number("ref_lon");
+    const double height = origin_ ? origin_->height.above_ellipsoid.value() : number("ref_alt");
+    if (!ns || (!origin_ && latitude == 0 && longitude == 0)) return std::nullopt;
     const Eigen::Vector3d ned = Eigen::Vector3d(number("x"), number("y"), number("z")) + moved_;
-    const GlobalSample there = on_px4_map({*ns, latitude, longitude, number("ref_alt")}, ned);
+    const GlobalSample there = on_px4_map({*ns, latitude, longitude, height}, ned);
     auto row = flight_row(*ns, there.latitude_deg, there.longitude_deg, there.height_m);
+    if (row && origin_) row->above_sea = false;
     if (row && flag(record, "v_xy_valid") && flag(record, "v_z_valid"))
         row->velocity_ned = logged_velocity(record.value("vx"), record.value("vy"), record.value("vz"));
     return row;

@@ -27,6 +27,8 @@ public:
 private:
     [[nodiscard]] const UlogStream* stream(std::string_view topic) const;
     void offer_local(std::string_view topic, bool is_truth);
+    void offer_from_origin();
+    [[nodiscard]] tl::unexpected<Error> no_place() const;
     void offer_global(std::string_view topic, std::string_view velocities);
     void offer_receivers();
     void offer_receiver(const UlogStream& stream);
@@ -68,6 +70,37 @@ void UlogTrack::offer_local(std::string_view topic, bool is_truth) {
             fmt::format("{} resets of {} by up to {:.2f} m are taken for errors of the filter: what "
                         "came before was moved",
                         places.resets(), topic, places.farthest_reset_m()));
+}
+
+// Without any place on the Earth: metres from an origin that the user tells.
+void UlogTrack::offer_from_origin() {
+    constexpr std::string_view topic = "vehicle_local_position";
+    const UlogStream* source = stream(topic);
+    if (!source || !file_.reading.origin) return;
+    UlogLocalPlaces places(*source, *file_.reading.origin);
+    auto rows = places.read();
+    flight_.notes.push_back(fmt::format("no place on the Earth in it: {} is laid out from the origin", topic));
+    if (places.untrusted() > 0)
+        flight_.notes.push_back(
+            fmt::format("{} of {} records of {} say that they are not valid; they are taken as they "
+                        "stand",
+                        places.untrusted(), rows.size(), topic));
+    offer(std::string(topic), std::move(rows));
+}
+
+tl::unexpected<Error> UlogTrack::no_place() const {
+    constexpr std::string_view topic = "vehicle_local_position";
+    const UlogStream* local = stream(topic);
+    if (local && local->records.size() > 1)
+        return fail(ErrorCode::input,
+                    fmt::format("{}: a ULog without a place on the Earth ({}); expected trajectory.origin = [latitude, "
+                                "longitude, height] (--origin), from where its {} are counted",
+                                file_.name, records_there(), topic));
+    return fail(ErrorCode::input,
+                fmt::format("{}: a ULog without two records of a place on the Earth ({}); expected a valid "
+                            "vehicle_local_position, vehicle_global_position or fixes of vehicle_gps_position or "
+                            "sensor_gps",
+                            file_.name, records_there()));
 }
 
 VectorSeries UlogTrack::velocities_of(std::string_view topic) const {
@@ -234,13 +267,9 @@ Result<Track> UlogTrack::read() {
     offer_local("vehicle_local_position", false);
     offer_global("vehicle_global_position", "vehicle_local_position");
     offer_receivers();
+    if (offers_.empty()) offer_from_origin();
     const auto chosen = chosen_offer(offers_);
-    if (!chosen)
-        return fail(ErrorCode::input,
-                    fmt::format("{}: a ULog without two records of a place on the Earth ({}); expected a valid "
-                                "vehicle_local_position, vehicle_global_position or fixes of vehicle_gps_position or "
-                                "sensor_gps",
-                                file_.name, records_there()));
+    if (!chosen) return no_place();
     flight_.name = file_.name;
     flight_.places = std::move(offers_[*chosen]);
     flight_.format = "ULog, " + flight_.places.name;

@@ -134,7 +134,9 @@ void FlyThroughPlanner::measure_corners() {
         // Peaks of the acceleration, 1.5 v² sin(θ/2) / d, and of the jerk, 3 v³ sin(θ/2) / d² (FEEDS.md 2.2).
         const double gentle = std::max(1.5 * speed * speed * corner.half_sine / v.lateral,
                                        std::sqrt(3 * speed * speed * speed * corner.half_sine / v.along.jerk));
-        corner.wanted_cut = std::min(v.corner, std::max(gentle, shortest));
+        // Half way round the curve it is 3/8 d sin(θ/2) from the waypoint.
+        const double near = wish_.waypoints[i].near * 8 / 3 / std::max(corner.half_sine, 1e-9);
+        corner.wanted_cut = std::min({v.corner, near, std::max(gentle, shortest)});
     }
 }
 

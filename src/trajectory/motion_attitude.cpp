@@ -5,13 +5,13 @@
 #include <numbers>
 
 #include "skyloop/geo/body_frame.hpp"
+#include "skyloop/trajectory/vehicle_attitude.hpp"
 
 namespace skyloop {
 namespace {
 
 using Samples = std::span<const MotionSample>;
 
-constexpr double standard_gravity = 9.80665;  // m/s²
 constexpr double half_turn = std::numbers::pi;
 
 // Roll, pitch, yaw in rad; the yaw counts on beyond half turns.
@@ -51,61 +51,22 @@ private:
     std::optional<double> yaw_;
 };
 
-// Across the course, to the right, m/s²; nothing to tell below the gate.
-double acceleration_to_the_right(const MotionSample& sample, double gate) {
-    const double speed = speed_over_ground(sample);
-    if (speed < gate || speed == 0) return 0;
-    const auto& v = sample.velocity;
-    return (sample.acceleration.y() * v.x() - sample.acceleration.x() * v.y()) / speed;
-}
-
-double climb_angle(const MotionSample& sample, double gate) {
-    const double speed = speed_over_ground(sample);
-    return speed < gate || speed == 0 ? 0 : std::atan2(-sample.velocity.z(), speed);
-}
-
-EulerAngles plane_angles(const MotionSample& sample, double yaw, double gate) {
-    constexpr double full_attack_mps = 15, attack_deg = 3;
-    const double part = std::min(1.0, speed_over_ground(sample) / full_attack_mps);
-    const double attack = Angle::degrees(attack_deg).rad() * part * part;
-    const double lift = std::max(0.1 * standard_gravity, standard_gravity - sample.acceleration.z());
-    return {std::atan(acceleration_to_the_right(sample, gate) / lift), climb_angle(sample, gate) + attack, yaw};
-}
-
-// The thrust is opposed to gravity, drag and what accelerates.
-EulerAngles multirotor_angles(const MotionSample& sample, double yaw) {
-    constexpr double drag_per_s = 0.2;
-    const Eigen::Vector3d thrust = sample.acceleration + drag_per_s * sample.velocity;
-    // At least a part of its weight, so that a fall does not turn it over.
-    const double down = std::max(0.3 * standard_gravity, standard_gravity - thrust.z());
-    const double ahead = thrust.x() * std::cos(yaw) + thrust.y() * std::sin(yaw);
-    const double right = thrust.y() * std::cos(yaw) - thrust.x() * std::sin(yaw);
-    return {std::atan2(right, std::hypot(ahead, down)), std::atan2(-ahead, down), yaw};
-}
-
+// As a vehicle with this motion stands. Below the gate of its class the motion tells nothing; a multirotor's thrust
+// carries it at any speed.
 EulerAngles angles_of(const MotionSample& sample, double yaw, VehicleClass vehicle) {
-    // Degrees of lean for each g across.
-    constexpr double car_lean_deg = 4, boat_heel_deg = 10, steepest_road_deg = 20;
-    const double gate = traits_of(vehicle).course_gate.value();
-    const auto lean = [&](double degrees) {
-        return -Angle::degrees(degrees).rad() * acceleration_to_the_right(sample, gate) / standard_gravity;
-    };
-    const double steepest = Angle::degrees(steepest_road_deg).rad();
-    switch (vehicle) {
-        case VehicleClass::plane:
-            return plane_angles(sample, yaw, gate);
-        case VehicleClass::multirotor:
-            return multirotor_angles(sample, yaw);
-        case VehicleClass::car:
-        case VehicleClass::rover:
-            return {lean(car_lean_deg), std::clamp(climb_angle(sample, gate), -steepest, steepest), yaw};
-        case VehicleClass::boat:
-            return {lean(boat_heel_deg), 0, yaw};
-        case VehicleClass::fixed:
-        case VehicleClass::pedestrian:
-            break;
+    constexpr double steepest_road_deg = 20;
+    const bool hovers = vehicle == VehicleClass::multirotor;
+    VehicleMotion motion;
+    motion.heading = Angle::radians(yaw);
+    if (hovers || speed_over_ground(sample) >= traits_of(vehicle).course_gate.value()) {
+        motion.velocity = {sample.velocity.y(), sample.velocity.x(), -sample.velocity.z()};
+        motion.acceleration = {sample.acceleration.y(), sample.acceleration.x(), -sample.acceleration.z()};
     }
-    return {0, 0, yaw};
+    const Attitude stands = attitude_of_vehicle(vehicle, motion);
+    const double steepest = Angle::degrees(steepest_road_deg).rad();
+    const bool on_ground = vehicle == VehicleClass::car || vehicle == VehicleClass::rover;
+    const double pitch = stands.pitch().rad(), turned = std::remainder(stands.yaw().rad() - yaw, 2 * half_turn);
+    return {stands.roll().rad(), on_ground ? std::clamp(pitch, -steepest, steepest) : pitch, yaw + turned};
 }
 
 // First order, forwards and then backwards, which takes the lag out again.

@@ -37,7 +37,7 @@ std::optional<double> closing_time(const TrackKnot& last, const TrackKnot& first
 
 }  // namespace
 
-PlayedPath::PlayedPath(std::shared_ptr<const RecordedPath> path, GpsTime start, const Playback& playback)
+PlayedPath::PlayedPath(std::shared_ptr<const FilePath> path, GpsTime start, const Playback& playback)
     : path_(std::move(path)), start_(start), playback_(playback) {
     if (playback_.end == EndOfPath::loop) close();
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -15,7 +16,8 @@ namespace skyloop {
 namespace {
 
 constexpr double radian_degrees = 180 / std::numbers::pi;
-constexpr double no_turn = 1e-9;  // rad
+constexpr double no_turn = 1e-9;     // rad
+constexpr double shortest_m = 1e-3;  // of a leg
 
 struct SteeredLeg {
     double length, heading;
@@ -38,9 +40,16 @@ public:
 private:
     using Mistake = std::optional<std::string>;
     Mistake measure_legs();
-    Mistake measure_corners();
+    void wish_for_turns();
+    Mistake fit_corners();
     Mistake fit_corner(std::size_t i);
+    [[nodiscard]] double free_at(std::size_t i) const;
+    void leave_out_same_ground();
+    Mistake pass_by();
+    [[nodiscard]] std::vector<std::size_t> turns_that_do_not_fit() const;
     void lay_out();
+    void level_climbs();
+    [[nodiscard]] double highest_rise(double length) const;
     Mistake limit_climbs();
     [[nodiscard]] PathPlan timed();
     [[nodiscard]] std::size_t last() const { return wish_.waypoints.size() - 1; }
@@ -49,7 +58,7 @@ private:
         return std::max(0.0, legs_[i].length - corners_[i].reach - corners_[i + 1].reach);
     }
 
-    const WaypointWish& wish_;
+    WaypointWish wish_;
     std::vector<SteeredLeg> legs_;
     std::vector<SteeredCorner> corners_;
     std::shared_ptr<ClothoidCurve> curve_;
@@ -58,7 +67,7 @@ private:
 };
 
 SteeredPlanner::Mistake SteeredPlanner::measure_legs() {
-    constexpr double shortest_m = 1e-3;
+    legs_.clear();
     for (std::size_t i = 0; i < last(); ++i) {
         const PlannedWaypoint& waypoint = wish_.waypoints[i];
         const Eigen::Vector3d way = wish_.waypoints[i + 1].place - waypoint.place;
@@ -79,8 +88,8 @@ SteeredPlanner::Mistake SteeredPlanner::measure_legs() {
     return std::nullopt;
 }
 
-SteeredPlanner::Mistake SteeredPlanner::measure_corners() {
-    corners_.resize(wish_.waypoints.size());
+void SteeredPlanner::wish_for_turns() {
+    corners_.assign(wish_.waypoints.size(), {});
     for (std::size_t i = 1; i < last(); ++i) {
         SteeredCorner& corner = corners_[i];
         corner.angle = std::remainder(legs_[i].heading - legs_[i - 1].heading, 2 * std::numbers::pi);
@@ -89,17 +98,81 @@ SteeredPlanner::Mistake SteeredPlanner::measure_corners() {
         corner.wanted =
             std::min(wish_.vehicle.corner, tangent_length(turn_at_speed(wish_.vehicle, corner.angle, corner.speed)));
     }
+}
+
+SteeredPlanner::Mistake SteeredPlanner::fit_corners() {
     for (std::size_t i = 1; i < last(); ++i)
         if (std::abs(corners_[i].angle) >= no_turn)
             if (auto mistake = fit_corner(i)) return mistake;
     return std::nullopt;
 }
 
+double SteeredPlanner::free_at(std::size_t i) const {
+    const double wanted = corners_[i].wanted;
+    return std::min({wish_.vehicle.corner, share_of_leg(legs_[i - 1].length, wanted, corners_[i - 1].wanted),
+                     share_of_leg(legs_[i].length, wanted, corners_[i + 1].wanted)});
+}
+
+// Places above one another are one, at the height of the last.
+void SteeredPlanner::leave_out_same_ground() {
+    std::vector<PlannedWaypoint> kept;
+    for (const PlannedWaypoint& waypoint : wish_.waypoints) {
+        const bool same = !kept.empty() && (waypoint.place - kept.back().place).head<2>().norm() < shortest_m;
+        if (!same) kept.push_back(waypoint);
+        kept.back().place.z() = waypoint.place.z();
+        kept.back().speed = waypoint.speed;
+        if (same) kept.back().hold += waypoint.hold;
+    }
+    wish_.waypoints = std::move(kept);
+}
+
+// Of neighbours only the first: without it the turn at the next one is another.
+std::vector<std::size_t> SteeredPlanner::turns_that_do_not_fit() const {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 1; i < last(); ++i) {
+        const SteeredCorner& corner = corners_[i];
+        if (std::abs(corner.angle) < no_turn || (!found.empty() && found.back() + 1 == i)) continue;
+        const double slowest = std::min(slowest_turn(wish_.vehicle), corner.speed);
+        if (tangent_length(turn_at_speed(wish_.vehicle, corner.angle, slowest)) > free_at(i)) found.push_back(i);
+    }
+    return found;
+}
+
+// Leaves out places until every turn fits.
+SteeredPlanner::Mistake SteeredPlanner::pass_by() {
+    std::size_t passed = 0;
+    double farthest = 0;
+    leave_out_same_ground();
+    while (wish_.waypoints.size() > 2) {
+        if (auto mistake = measure_legs()) return mistake;
+        wish_for_turns();
+        const std::vector<std::size_t> unfit = turns_that_do_not_fit();
+        if (unfit.empty()) break;
+        passed += unfit.size();
+        std::vector<PlannedWaypoint> kept;
+        auto next = unfit.begin();
+        for (std::size_t i = 0; i < wish_.waypoints.size(); ++i) {
+            if (next == unfit.end() || *next != i) {
+                kept.push_back(wish_.waypoints[i]);
+                continue;
+            }
+            ++next;
+            farthest = std::max(farthest, distance_from_leg(wish_.waypoints[i].place, wish_.waypoints[i - 1].place,
+                                                            wish_.waypoints[i + 1].place));
+        }
+        wish_.waypoints = std::move(kept);
+        leave_out_same_ground();
+    }
+    if (wish_.waypoints.size() < 2) return "all places lie above one another; expected two that are apart";
+    if (passed > 0)
+        notes_.add(fmt::format("{} places are passed by, at {:.1f} m or more at the farthest: a {} cannot turn there",
+                               passed, farthest, vehicle_name(wish_.vehicle.kind)));
+    return std::nullopt;
+}
+
 SteeredPlanner::Mistake SteeredPlanner::fit_corner(std::size_t i) {
     SteeredCorner& corner = corners_[i];
-    const double free =
-        std::min({wish_.vehicle.corner, share_of_leg(legs_[i - 1].length, corner.wanted, corners_[i - 1].wanted),
-                  share_of_leg(legs_[i].length, corner.wanted, corners_[i + 1].wanted)});
+    const double free = free_at(i);
     const double asked = corner.speed;
     const auto speed = fastest_turn(wish_.vehicle, corner.angle, asked, free);
     if (!speed) {
@@ -133,6 +206,48 @@ void SteeredPlanner::lay_out() {
         if (corners_[i + 1].reach > 0) add_turn(*curve_, corners_[i + 1].turn);
         ways_.push_back((before + curve_->length()) / 2);
     }
+}
+
+// On a leg of that length; a little less than limit_climbs() refuses.
+double SteeredPlanner::highest_rise(double length) const {
+    constexpr double margin = 0.99;
+    const VehicleLimits& v = wish_.vehicle;
+    double slope = std::tan(v.steepest), bend = std::numeric_limits<double>::infinity();
+    if (v.slowest > 0) {
+        slope = std::min(slope, std::min(v.climb, v.sink) / v.slowest);
+        bend = v.along.acceleration / (sharpest_of_smooth_step * v.slowest * v.slowest);
+    }
+    return margin * std::min(slope * length / steepest_of_smooth_step, bend * length * length);
+}
+
+// Heights half way between the highest and the lowest that the vehicle can fly and that touch those asked for.
+void SteeredPlanner::level_climbs() {
+    const std::size_t count = wish_.waypoints.size();
+    std::vector<double> rises, above, below;
+    for (std::size_t i = 0; i + 1 < count; ++i)
+        rises.push_back(highest_rise(ways_[i + 1] - ways_[i]));
+    for (const PlannedWaypoint& waypoint : wish_.waypoints)
+        above.push_back(waypoint.place.z());
+    below = above;
+    const auto reach = [&](std::size_t from, std::size_t to, double rise) {
+        above[to] = std::max(above[to], above[from] - rise);
+        below[to] = std::min(below[to], below[from] + rise);
+    };
+    for (std::size_t i = 0; i + 1 < count; ++i)
+        reach(i, i + 1, rises[i]);
+    for (std::size_t i = count - 1; i > 0; --i)
+        reach(i, i - 1, rises[i - 1]);
+    constexpr double told_m = 0.05;
+    double most = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        double& height = wish_.waypoints[i].place.z();
+        const double level = (above[i] + below[i]) / 2;
+        most = std::max(most, std::abs(level - height));
+        height = level;
+    }
+    if (most > told_m)
+        notes_.add(fmt::format("heights are changed by up to {:.1f} m: a {} goes no steeper", most,
+                               vehicle_name(wish_.vehicle.kind)));
 }
 
 // A height that changes over a way by a smooth step is 1.875 times as steep in its middle as on average.
@@ -190,9 +305,13 @@ PathPlan SteeredPlanner::timed() {
 }
 
 PathPlanResult SteeredPlanner::plan() {
+    if (wish_.passes_by)
+        if (auto mistake = pass_by()) return tl::unexpected(*mistake);
     if (auto mistake = measure_legs()) return tl::unexpected(*mistake);
-    if (auto mistake = measure_corners()) return tl::unexpected(*mistake);
+    wish_for_turns();
+    if (auto mistake = fit_corners()) return tl::unexpected(*mistake);
     lay_out();
+    if (wish_.passes_by) level_climbs();
     if (auto mistake = limit_climbs()) return tl::unexpected(*mistake);
     return timed();
 }

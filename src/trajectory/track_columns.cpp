@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <numbers>
 
 namespace skyloop {
@@ -234,16 +235,31 @@ Result<TrackColumns> TrackColumns::of(std::span<const std::string_view> header) 
     return columns;
 }
 
+namespace {
+
+// A name whose unit is not known: its table is no route.
+bool looks_like_a_time(std::string_view name) {
+    std::string lower(name);
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    constexpr std::array<std::string_view, 4> words{"time", "date", "utc", "epoch"};
+    return std::any_of(words.begin(), words.end(),
+                       [&](std::string_view word) { return lower.find(word) != std::string::npos; });
+}
+
+}  // namespace
+
 Result<void> TrackColumns::check() const {
-    const bool gps = has(Q::gps_week) && has(Q::tow);
-    if (!has(Q::since_start) && !has(Q::posix) && !has(Q::utc) && !gps)
+    const bool cartesian = has(Q::x) && has(Q::y) && has(Q::z);
+    const bool geodetic = has(Q::latitude) && has(Q::longitude);
+    const bool places = cartesian || geodetic || has_local();
+    const bool names_time = std::any_of(unused_.begin(), unused_.end(), looks_like_a_time);
+    if (!has_time() && (!places || names_time))
         return fail(
             ErrorCode::input,
             "no column says the time; expected t_s, t_ms, t_us, t_ns, unix_s, unix_ms, unix_us, unix_ns, utc, or "
             "gps_week and tow_s in the first line");
-    const bool cartesian = has(Q::x) && has(Q::y) && has(Q::z);
-    const bool geodetic = has(Q::latitude) && has(Q::longitude);
-    if (!cartesian && !geodetic && !has_local())
+    if (!places)
         return fail(ErrorCode::input,
                     "no columns say the place; expected lat_deg and lon_deg, lat_rad and lon_rad, lat_e7 and lon_e7, "
                     "x_ecef_m, y_ecef_m and z_ecef_m, or n_m, e_m and d_m or u_m in the first line");

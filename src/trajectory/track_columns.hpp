@@ -59,13 +59,18 @@ struct TrackColumn {
 class TrackColumns {
 public:
     /// @param header names, as they stand
-    /// Fails with `input`, without the name of the file, when a time or a place is missing.
+    /// Fails with `input`, without the name of the file, when a place is missing.
     static Result<TrackColumns> of(std::span<const std::string_view> header);
 
     [[nodiscard]] const std::optional<TrackColumn>& operator[](TrackQuantity quantity) const {
         return columns_[static_cast<std::size_t>(quantity)];
     }
     [[nodiscard]] bool has(TrackQuantity quantity) const { return (*this)[quantity].has_value(); }
+    /// Without one the rows are a route.
+    [[nodiscard]] bool has_time() const {
+        return has(TrackQuantity::since_start) || has(TrackQuantity::posix) || has(TrackQuantity::utc) ||
+               (has(TrackQuantity::gps_week) && has(TrackQuantity::tow));
+    }
     /// A place in metres from an origin, east, north and up or north, east and down.
     [[nodiscard]] bool has_local() const {
         return has(TrackQuantity::local_north) && has(TrackQuantity::local_east) &&

@@ -135,7 +135,10 @@ Result<void> TrackTable::take_line(std::string_view line) {
                         columns_[altitude]->name));
     if (columns_.has_local() && !local_)
         return refusal("local metres; expected trajectory.origin = [latitude, longitude, height], where they begin");
-    if (!columns_.has(since_start)) track_.origin = GpsTime{};
+    if (!columns_.has_time())
+        track_.route = RouteOrder{"no column says the time (t_s, unix_s, utc, …)"};
+    else if (!columns_.has(since_start))
+        track_.origin = GpsTime{};
     has_header_ = true;
     return {};
 }
@@ -210,6 +213,7 @@ Result<std::optional<Nanoseconds>> TrackTable::gps_time() {
 }
 
 Result<std::optional<Nanoseconds>> TrackTable::time() {
+    if (!columns_.has_time()) return Nanoseconds(0);
     if (columns_.has(since_start)) return counted_time(since_start);
     if (columns_.has(gps_week) && columns_.has(tow)) return gps_time();
     if (columns_.has(utc)) return utc_time();

@@ -13,21 +13,24 @@ constexpr double weight_mps2 = 9.80665;  // m/s²
 constexpr double in_radians = std::numbers::pi / 180;
 
 struct AcrossAndAlong {
-    double right = 0, up = 0;         // acceleration, m/s²
-    double ground_speed = 0, climbs;  // m/s
+    double right = 0, up = 0;             // acceleration, m/s²
+    double ground_speed = 0, climbs = 0;  // m/s
+    bool backwards = false;
 };
 
 AcrossAndAlong in_axes_of_heading(const VehicleMotion& motion) {
     const double s = std::sin(motion.heading.rad()), c = std::cos(motion.heading.rad());
     return {motion.acceleration.x() * c - motion.acceleration.y() * s, motion.acceleration.z(),
-            std::hypot(motion.velocity.x(), motion.velocity.y()), motion.velocity.z()};
+            std::hypot(motion.velocity.x(), motion.velocity.y()), motion.velocity.z(),
+            motion.velocity.x() * s + motion.velocity.y() * c < 0};
 }
 
 // The slope of the way, which standing vehicles do not have: it fades in between no speed and a walking pace.
 double slope_of(const AcrossAndAlong& m) {
     constexpr double walking_mps = 1;
     const double speed = std::hypot(m.ground_speed, m.climbs);
-    return smooth_step(speed / walking_mps).value * std::atan2(m.climbs, m.ground_speed);
+    const double slope = smooth_step(speed / walking_mps).value * std::atan2(m.climbs, m.ground_speed);
+    return m.backwards ? -slope : slope;
 }
 
 Attitude banked(const AcrossAndAlong& m, const VehicleMotion& motion) {
@@ -52,30 +55,31 @@ Attitude leaning_with_thrust(const VehicleMotion& motion) {
     return Attitude(Eigen::Quaterniond(body_to_ned));
 }
 
-Attitude leaning_outward(const AcrossAndAlong& m, const VehicleMotion& motion, double degrees_per_g) {
+Attitude leaning_outward(const AcrossAndAlong& m, const VehicleMotion& motion, double degrees_per_g, double pitch) {
     const double roll = -degrees_per_g * in_radians * m.right / weight_mps2;
-    return Attitude::roll_pitch_yaw(Angle::radians(roll), Angle::radians(slope_of(m)), motion.heading);
+    return Attitude::roll_pitch_yaw(Angle::radians(roll), Angle::radians(pitch), motion.heading);
 }
 
 }  // namespace
 
-Attitude attitude_of_vehicle(VehicleKind kind, const VehicleMotion& motion) {
+Attitude attitude_of_vehicle(VehicleClass kind, const VehicleMotion& motion) {
     constexpr double car_lean = 4, boat_lean = 15;  // degrees per g
     const AcrossAndAlong m = in_axes_of_heading(motion);
     switch (kind) {
-        case VehicleKind::plane:
+        case VehicleClass::plane:
             return banked(m, motion);
-        case VehicleKind::multirotor:
+        case VehicleClass::multirotor:
             return leaning_with_thrust(motion);
-        case VehicleKind::rover:
-        case VehicleKind::car:
-            return leaning_outward(m, motion, car_lean);
-        case VehicleKind::boat:
-            return leaning_outward(m, motion, boat_lean);
-        case VehicleKind::rocket:
+        case VehicleClass::rover:
+        case VehicleClass::car:
+            return leaning_outward(m, motion, car_lean, slope_of(m));
+        case VehicleClass::boat:
+            return leaning_outward(m, motion, boat_lean, 0);  // it pitches with the waves, not with its heave
+        case VehicleClass::rocket:
             return Attitude::roll_pitch_yaw({}, Angle::degrees(90), motion.heading);
-        case VehicleKind::pedestrian:
-        case VehicleKind::balloon:
+        case VehicleClass::fixed:
+        case VehicleClass::pedestrian:
+        case VehicleClass::balloon:
             break;
     }
     return Attitude::roll_pitch_yaw({}, {}, motion.heading);

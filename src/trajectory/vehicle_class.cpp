@@ -16,6 +16,8 @@ const std::array<VehicleTraits, vehicle_class_count>& vehicle_classes() {
         {"boat", 0.7, Speed(30), Speed(2), 0.6 * g, Speed(0.5), deg(45), deg(30)},
         {"plane", 5, Speed(320), Speed(60), 4 * g, Speed(3), deg(90), deg(60)},
         {"multirotor", 10, Speed(50), Speed(20), 3 * g, Speed(3), deg(90), deg(60)},
+        {"balloon", 1, Speed(100), Speed(100), 3 * g, Speed(3), deg(90), deg(0)},
+        {"rocket", 100, Speed(3000), Speed(3000), 20 * g, Speed(3), deg(90), deg(90)},
     }};
     return classes;
 }

@@ -34,6 +34,9 @@ void make_speeds_reachable(const std::vector<SpeedSection>& sections, std::vecto
 // How far the turns at both ends of a leg may reach into it, when they would like `first` and `last`.
 double share_of_leg(double length, double wanted, double wanted_by_other);
 
+// Of a place from the straight way between two others, m.
+double distance_from_leg(const Eigen::Vector3d& place, const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
 PathPlanResult plan_fly_through(const WaypointWish& wish);
 PathPlanResult plan_steered(const WaypointWish& wish);
 

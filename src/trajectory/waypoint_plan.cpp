@@ -44,6 +44,13 @@ double share_of_leg(double length, double wanted, double wanted_by_other) {
     return sum <= length ? wanted : length * wanted / sum;
 }
 
+double distance_from_leg(const Eigen::Vector3d& place, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    const Eigen::Vector3d leg = to - from;
+    const double square = leg.squaredNorm();
+    const double along = square > 0 ? std::clamp((place - from).dot(leg) / square, 0.0, 1.0) : 0;
+    return (place - from - along * leg).norm();
+}
+
 PathPlanResult plan_waypoints(const WaypointWish& wish) {
     WaypointWish cleaned = wish;
     cleaned.waypoints = without_repetitions(wish.waypoints);

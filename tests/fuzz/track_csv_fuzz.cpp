@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const GpsTime start = to_gps_time(2304, 0.0);
     const RecordedPath path(
         *track, *gaps, start,
-        {static_cast<VehicleClass>(size % vehicle_class_count), {}, static_cast<Smoothing>(size % 3)});
+        {static_cast<VehicleClass>(size % track_vehicle_count), {}, static_cast<Smoothing>(size % 3)});
     for (int i = -1; i <= 21; ++i) {
         const TruthState state = path.at(advanced(start, Seconds(path.duration().value() * i / 20)));
         require(state.position.vector().allFinite() && state.velocity.vector().allFinite());

@@ -1,14 +1,32 @@
 /// Any bytes as a track: a clear error, or rows that are finite and a path between them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
 #include "require.hpp"
 #include "skyloop/tracks/read_track.hpp"
 #include "skyloop/trajectory/recorded_path.hpp"
+#include "skyloop/trajectory/route.hpp"
 
 namespace skyloop {
+
+/// Places without times: a way, or one clear line.
+inline int fly_any_route(const Track& track, std::size_t size) {
+    const auto route = fly_route(track, {static_cast<VehicleClass>(size % track_vehicle_count), {}, 2, 0});
+    if (!route) {
+        require(route.error().message.find('\n') == std::string::npos);
+        return 0;
+    }
+    const RoutePath path(*route, to_gps_time(2304, 0.0));
+    for (int i = -1; i <= 21; ++i) {
+        const double seconds = std::min(path.duration().value(), 1e6) * i / 20;
+        const TruthState state = path.at(advanced(to_gps_time(2304, 0.0), Seconds(seconds)));
+        require(state.position.vector().allFinite() && state.velocity.vector().allFinite());
+    }
+    return 0;
+}
 
 inline int read_any_track(const std::uint8_t* data, std::size_t size, const std::string& name) {
     auto track = read_track({data, size}, name, {nullptr, Geodetic::degrees(47, 8, 500)});
@@ -24,6 +42,7 @@ inline int read_any_track(const std::uint8_t* data, std::size_t size, const std:
     }
     for (const std::string& note : track->notes)
         require(note.find('\n') == std::string::npos);
+    if (track->route) return fly_any_route(*track, size);
     const auto gaps = clean_track(*track, Seconds(10));
     if (!gaps) return 0;
     const GpsTime start = to_gps_time(2304, 0.0);

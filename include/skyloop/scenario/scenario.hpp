@@ -32,6 +32,8 @@
 #include "skyloop/trajectory/geometric_paths.hpp"
 #include "skyloop/trajectory/live_path.hpp"
 #include "skyloop/trajectory/playback.hpp"
+#include "skyloop/trajectory/recorded_path.hpp"
+#include "skyloop/trajectory/route.hpp"
 #include "skyloop/trajectory/source_clock.hpp"
 #include "skyloop/trajectory/track.hpp"
 #include "skyloop/verdict/expectation.hpp"
@@ -81,12 +83,20 @@ struct FileSettings {
     std::optional<VehicleClass> vehicle{};  ///< stands by its motion where the rows tell no attitude
     bool heading_given = false;             ///< else a vehicle of a class looks where it first goes
     Smoothing smoothing = Smoothing::none;
-    std::shared_ptr<const Track> track{};  ///< clean; null until it has been loaded
+    std::optional<MetresPerSecond> route_speed{};  ///< of places without times; nothing: the file's or the vehicle's
+    Metres route_tolerance{2};                     ///< RouteSettings::tolerance
+    std::shared_ptr<const Track> track{};          ///< clean; null until it has been loaded
     std::vector<TrackGap> gaps{};
+    std::shared_ptr<const FlownRoute> route{};  ///< of a track without times; null for others
     std::shared_ptr<const Trajectory> way{};  ///< as the run plays it, for all who ride on it; null until then
     /// How the curve is led through the rows.
     [[nodiscard]] CurveSettings curve() const {
         return {vehicle, heading_given ? std::optional(heading) : std::nullopt, smoothing};
+    }
+    /// How places without times are flown.
+    [[nodiscard]] RouteSettings route_settings() const {
+        return {vehicle, route_speed ? std::optional(route_speed->value()) : std::nullopt, route_tolerance.value(),
+                heading.rad()};
     }
 };
 /// What becomes of a run whose source of truth is silent for long.

@@ -21,6 +21,7 @@ struct TrackReading {
 };
 
 /// Reads a track; its format is told by its content, and by the ending of its name where the content says nothing.
+/// Places without times, and with times that cannot be used, are a route: Track::route.
 /// Fails with `input` and one line that begins with the name: what was found and what was expected.
 Result<Track> read_track(ByteSpan bytes, const std::string& name, const TrackReading& reading);
 

@@ -21,10 +21,10 @@ struct MotionSample {
     bool jump = false;                                       ///< no way leads from the sample before to this one
 };
 
-/// The attitude by class (FEEDS.md 1.13.4). Yaw by the course, held where the vehicle is slower than its class's gate;
-/// a car, rover or boat that sets off backwards keeps its yaw (reverse gear). A plane pitches by its climb and 3° of
-/// angle of attack and banks as coordinated turns ask for; a multirotor tilts with its thrust; cars lean out of turns,
-/// boats heel out of them. All angles pass a low-pass of 0.4 s without lag, and are within the limits of the class.
+/// The attitude by class, of attitude_of_vehicle(). Yaw by the course, held where the vehicle is slower than its
+/// class's gate; a car, rover or boat that sets off backwards keeps its yaw (reverse gear). What goes on the ground
+/// pitches by 20° at most. All angles pass a low-pass of 0.4 s without lag, and are within the limits of the
+/// class.
 /// @param samples in ascending time, evenly spaced between jumps
 /// @param heading until it first moves; nothing: where it first goes
 std::vector<AttitudeKnot> attitude_from_motion(std::span<const MotionSample> samples, VehicleClass vehicle,

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "skyloop/base/result.hpp"
-#include "skyloop/trajectory/recorded_path.hpp"
+#include "skyloop/trajectory/attitude_curve.hpp"
+#include "skyloop/trajectory/trajectory.hpp"
 
 namespace skyloop {
 
@@ -36,10 +37,10 @@ class PlayedPath : public Trajectory {
 public:
     /// @param path whose first row happens at `start`
     /// @param start when the delay begins
-    PlayedPath(std::shared_ptr<const RecordedPath> path, GpsTime start, const Playback& playback);
+    PlayedPath(std::shared_ptr<const FilePath> path, GpsTime start, const Playback& playback);
     [[nodiscard]] TruthState at(GpsTime time) const override;
 
-    [[nodiscard]] const RecordedPath& path() const { return *path_; }
+    [[nodiscard]] const FilePath& path() const { return *path_; }
     /// When the last row is reached for the first time.
     [[nodiscard]] GpsTime first_end() const { return run_time_of(path_->duration().value()); }
     /// When the path is first at a time of the track, s; before the start for what is skipped.
@@ -53,7 +54,7 @@ private:
     void close();
     [[nodiscard]] TruthState on_closing(double s) const;
 
-    std::shared_ptr<const RecordedPath> path_;
+    std::shared_ptr<const FilePath> path_;
     GpsTime start_;
     Playback playback_;
     bool jumps_back_ = false;

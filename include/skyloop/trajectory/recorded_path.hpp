@@ -48,7 +48,7 @@ struct CurveReport {
 ///
 /// Attitudes of the rows are led through by an AttitudeCurve when there are two or more; otherwise they follow from the
 /// motion of a vehicle class that was named. at() is pure and takes logarithmic time.
-class RecordedPath : public Trajectory {
+class RecordedPath : public FilePath {
 public:
     /// @param track after clean_track(): two rows or more, ascending
     /// @param gaps what clean_track() gave
@@ -57,9 +57,9 @@ public:
     /// Before the first row it stands there, after the last one it stands there.
     [[nodiscard]] TruthState at(GpsTime time) const override;
     /// From the first row to the last.
-    [[nodiscard]] Seconds duration() const { return Seconds(pieces_.back().begins + pieces_.back().length); }
+    [[nodiscard]] Seconds duration() const override { return Seconds(pieces_.back().begins + pieces_.back().length); }
     /// ECEF, m/s²: the derivative of at()'s velocity; 0 before and after.
-    [[nodiscard]] Eigen::Vector3d acceleration(GpsTime time) const;
+    [[nodiscard]] Eigen::Vector3d acceleration(GpsTime time) const override;
     [[nodiscard]] const CurveReport& report() const { return report_; }
     /// Pieces whose acceleration steps.
     [[nodiscard]] std::size_t cubic_pieces() const { return report_.cubic_pieces; }

@@ -14,7 +14,7 @@ namespace skyloop {
 class ShapedPath : public Trajectory {
 public:
     /// @param start when the shape begins
-    ShapedPath(GpsTime start, const GeodesicPlane& plane, std::shared_ptr<const LocalShape> shape, VehicleKind vehicle)
+    ShapedPath(GpsTime start, const GeodesicPlane& plane, std::shared_ptr<const LocalShape> shape, VehicleClass vehicle)
         : start_(start), plane_(plane), shape_(std::move(shape)), vehicle_(vehicle) {}
     [[nodiscard]] TruthState at(GpsTime time) const override;
     [[nodiscard]] const LocalShape& shape() const { return *shape_; }
@@ -25,7 +25,7 @@ private:
     GpsTime start_;
     GeodesicPlane plane_;
     std::shared_ptr<const LocalShape> shape_;
-    VehicleKind vehicle_;
+    VehicleClass vehicle_;
 };
 
 }  // namespace skyloop

@@ -11,6 +11,7 @@
 #include "skyloop/geo/attitude.hpp"
 #include "skyloop/geo/frames.hpp"
 #include "skyloop/time/gps_time.hpp"
+#include "skyloop/trajectory/vehicle_class.hpp"
 
 namespace skyloop {
 
@@ -24,6 +25,22 @@ struct TrackRow {
     bool jump = false;     ///< the source says that it begins anew here: no way leads from the row before to this one
 };
 
+/// What a plan asks for at one of its places.
+struct RouteStop {
+    std::optional<double> speed{};  ///< from here on, m/s; nothing: as before
+    double hold = 0;                ///< stands here for so long, s; with a radius what cannot stand circles for it
+    double turns = 0;               ///< circles round the place before it goes on
+    double radius = 0;              ///< of these, m; negative: anticlockwise; 0: it does not circle
+};
+
+/// How places without times are flown: one after the other, with the limits of a vehicle.
+struct RouteOrder {
+    std::string why;                        ///< there are no times: "no times in it"
+    std::vector<RouteStop> stops{};         ///< of a plan, whose places are all meant: as many as rows; else none
+    std::optional<VehicleClass> vehicle{};  ///< that the file names
+    std::optional<double> speed{};          ///< that the file names, m/s
+};
+
 /// A recorded path as it was read.
 struct Track {
     std::string name;               ///< of the file, for messages
@@ -31,7 +48,13 @@ struct Track {
     std::optional<GpsTime> origin;  ///< GPS time of TrackRow::time 0; nothing: the file counts from its own start
     std::vector<TrackRow> points;
     std::vector<std::string> notes;  ///< what its user should be told, a sentence each, without the name of the file
+    /// The rows are places in their order, and their times mean nothing; see fly_route(). Nothing: a track with times.
+    std::optional<RouteOrder> route{};
 };
+
+/// Makes a route of a track whose times cannot be used: of a single row, of rows that all share one time, and of rows
+/// more than nine tenths of which share one time at different places. It is told.
+void find_useless_times(Track& track);
 
 /// A stretch without rows, longer than what is told.
 struct TrackGap {

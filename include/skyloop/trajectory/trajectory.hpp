@@ -14,4 +14,13 @@ public:
     [[nodiscard]] virtual TruthState at(GpsTime time) const = 0;
 };
 
+/// A path of a file, which can be played faster, from its middle or again and again: PlayedPath.
+class FilePath : public Trajectory {
+public:
+    /// From its beginning to its end; infinite where it stands for ever.
+    [[nodiscard]] virtual Seconds duration() const = 0;
+    /// ECEF, m/s²: the derivative of at()'s velocity.
+    [[nodiscard]] virtual Eigen::Vector3d acceleration(GpsTime time) const = 0;
+};
+
 }  // namespace skyloop

@@ -1,20 +1,17 @@
 /// What moves along a path, and what it can do.
 #pragma once
 
-#include <optional>
-#include <span>
+#include <array>
 #include <string_view>
 
 #include "skyloop/trajectory/speed_profile.hpp"
+#include "skyloop/trajectory/vehicle_class.hpp"
 
 namespace skyloop {
 
-/// Classes of vehicles, by how they turn and stand (FEEDS.md 1.13.4).
-enum class VehicleKind { multirotor, plane, rover, boat, car, pedestrian, balloon, rocket };
-
 /// What a vehicle can do.
 struct VehicleLimits {
-    VehicleKind kind = VehicleKind::multirotor;
+    VehicleClass kind = VehicleClass::multirotor;
     SpeedLimits along{12, 4, 8};  ///< along its way
     double lateral = 4;           ///< acceleration in turns, m/s²
     double turn_ramp = 0;         ///< time until a turn has its full acceleration (roll in, rudder, steering), s
@@ -26,15 +23,16 @@ struct VehicleLimits {
 
     /// Round a corner on wheels, keel or wings; else it turns where it stands.
     [[nodiscard]] bool is_steered() const {
-        return kind == VehicleKind::plane || kind == VehicleKind::boat || kind == VehicleKind::car;
+        return kind == VehicleClass::plane || kind == VehicleClass::boat || kind == VehicleClass::car;
     }
 };
 
 /// The defaults: speed, acceleration and jerk of FEEDS.md 2.1, the others ours, typical of small vehicles.
-VehicleLimits usual_limits(VehicleKind kind);
+VehicleLimits usual_limits(VehicleClass kind);
 /// "multirotor"
-std::string_view vehicle_name(VehicleKind kind);
-/// The kinds that waypoints can be driven by, in the order of the enumeration.
-std::span<const std::string_view> steered_vehicle_names();
+inline std::string_view vehicle_name(VehicleClass kind) { return traits_of(kind).name; }
+/// The classes that waypoints can be driven by.
+inline constexpr std::array driven_vehicles{VehicleClass::multirotor, VehicleClass::plane, VehicleClass::rover,
+                                            VehicleClass::boat,       VehicleClass::car,   VehicleClass::pedestrian};
 
 }  // namespace skyloop

@@ -17,6 +17,6 @@ struct VehicleMotion {
 
 /// Bank in turns, pitch with the way, by the class of the vehicle (FEEDS.md 1.13.4): a plane's turn is coordinated, a
 /// multirotor leans with its thrust, cars and boats lean outward, a rocket stands on its tail.
-Attitude attitude_of_vehicle(VehicleKind kind, const VehicleMotion& motion);
+Attitude attitude_of_vehicle(VehicleClass kind, const VehicleMotion& motion);
 
 }  // namespace skyloop

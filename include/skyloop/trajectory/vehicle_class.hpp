@@ -10,7 +10,8 @@
 
 namespace skyloop {
 
-enum class VehicleClass : std::uint8_t { fixed, pedestrian, car, rover, boat, plane, multirotor };
+/// Balloons and rockets have paths of their own; no track is told to be theirs.
+enum class VehicleClass : std::uint8_t { fixed, pedestrian, car, rover, boat, plane, multirotor, balloon, rocket };
 
 /// What is known of a class. Limits are those of common vehicles, beyond which a path is told to be odd; none of them
 /// bends a recorded path.
@@ -23,7 +24,9 @@ struct VehicleTraits {
     Angle turn_rate_limit{}, bank_limit{};  ///< the first in one second
 };
 
-inline constexpr std::size_t vehicle_class_count = 7;
+inline constexpr std::size_t vehicle_class_count = 9;
+/// Of these the first, those that a track or a route may be of.
+inline constexpr std::size_t track_vehicle_count = 7;
 
 /// In the order of VehicleClass.
 const std::array<VehicleTraits, vehicle_class_count>& vehicle_classes();

@@ -1,6 +1,7 @@
 /// Ways through places that a vehicle can really go.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "skyloop/trajectory/local_shape.hpp"
@@ -13,6 +14,8 @@ struct PlannedWaypoint {
     Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< east, north, height; m
     double speed = 0;                                 ///< from here to the next one, m/s
     double hold = 0;                                  ///< stop here for so long, s
+    /// How far off what goes straight in space may pass, m; the vehicle's own corner may ask for less.
+    double near = std::numeric_limits<double>::infinity();
 };
 
 /// What is to be planned.
@@ -20,6 +23,9 @@ struct WaypointWish {
     std::vector<PlannedWaypoint> waypoints;
     VehicleLimits vehicle;
     double heading = 0;  ///< until it goes anywhere, rad
+    /// Planes, boats and cars pass by places whose turn fits at no speed, and change height no steeper than they can.
+    /// Both is told. For places that nobody chose for this vehicle.
+    bool passes_by = false;
 };
 
 /// Rests at the first and at the last waypoint, and goes as fast as speeds and limits let between them.

@@ -43,7 +43,7 @@ TEST(ScenarioPaths, WaypointsWithAVehicleAreDriven) {
     const GeneratedSettings path = generated_of(waypoints_with("vehicle = \"multirotor\"\nlateral_mps2 = 2\n"));
     ASSERT_TRUE(path.shape);
     EXPECT_EQ(path.path.vehicle.lateral, 2);
-    EXPECT_EQ(path.path.vehicle.along.jerk, usual_limits(VehicleKind::multirotor).along.jerk);
+    EXPECT_EQ(path.path.vehicle.along.jerk, usual_limits(VehicleClass::multirotor).along.jerk);
     const auto& wish = std::get<WaypointWish>(path.path.steps.at(0).wish);
     EXPECT_EQ(wish.waypoints.at(0).speed, 12);
     EXPECT_EQ(wish.waypoints.at(1).hold, 4);
@@ -77,8 +77,8 @@ TEST(ScenarioPaths, EveryKindReadsItsKeys) {
             .lines,
         3U);
     EXPECT_EQ(generated_of(kind("hover", "at = [47, 8, 500]\nseed = 9")).path.seed, 9U);
-    EXPECT_EQ(generated_of(kind("float", "at = [47, 8, 0]\nwave_height_m = 2")).path.vehicle.kind, VehicleKind::boat);
-    EXPECT_EQ(generated_of(kind("drive", "centre = [47, 8, 0]\narea_m = 300")).path.vehicle.kind, VehicleKind::car);
+    EXPECT_EQ(generated_of(kind("float", "at = [47, 8, 0]\nwave_height_m = 2")).path.vehicle.kind, VehicleClass::boat);
+    EXPECT_EQ(generated_of(kind("drive", "centre = [47, 8, 0]\narea_m = 300")).path.vehicle.kind, VehicleClass::car);
     const RocketWish rocket = std::get<RocketWish>(
         generated_of(kind("rocket", "at = [28, -80, 3]\npreset = \"rocket_1km\"\nburn_s = 3")).path.steps.at(0).wish);
     EXPECT_EQ(rocket.boost, 70);

@@ -87,10 +87,24 @@ TEST(KmlTrack, TellsWhatAltitudesMean) {
     EXPECT_THAT(angles.notes, ElementsAre(HasSubstr("gx:angles are not read")));
 }
 
-TEST(KmlTrack, RefusesWhatHasNoTimes) {
-    EXPECT_THAT(refusal_of_track(kml("<LineString><coordinates>8,47 8,48</coordinates></LineString>")),
-                HasSubstr("1 LineString, which have no times; expected a gx:Track"));
-    EXPECT_THAT(refusal_of_track(kml("")), HasSubstr("1 placemarks and no track"));
+TEST(KmlTrack, PlacesWithoutTimesAreARoute) {
+    const Track line =
+        track_of(kml("<LineString><coordinates>1,1</coordinates></LineString><LineString>" + std::string(absolute) +
+                     "<coordinates>\n+8.1,47,5\n<!-- -->8.2,48,6</coordinates></LineString>"));
+    ASSERT_EQ(line.points.size(), 2u);
+    EXPECT_NEAR(place_of(line, 1).longitude.deg(), 8.2, 1e-9);
+    EXPECT_NEAR(height_of(line, 1), 16, 1e-4);
+    EXPECT_EQ(line.route->why, "no times in it");
+    EXPECT_THAT(line.notes, ElementsAre("of its 2 LineStrings the longest is taken"));
+    const Track points = track_of(kml("<Point><coordinates>8,47</coordinates></Point>"));
+    EXPECT_EQ(points.points.size(), 1u);
+    EXPECT_THAT(points.notes, testing::Contains("its points are taken as a route, in the order of the file"));
+    EXPECT_THAT(refusal_of_track(kml("<LineString><coordinates>8,47 8</coordinates></LineString>")),
+                HasSubstr("the place is '8'; expected longitude and latitude"));
+}
+
+TEST(KmlTrack, RefusesWhatHasNoPlaces) {
+    EXPECT_THAT(refusal_of_track(kml("")), HasSubstr("1 placemarks and no place in them"));
     EXPECT_THAT(refusal_of_track(kml("<gx:Track>\n" + two_whens + "<gx:coord>8 47 1</gx:coord></gx:Track>")),
                 HasSubstr("t.txt:1: a gx:Track with 2 <when> and 1 <gx:coord>"));
     EXPECT_THAT(refusal_of_track(kml("<gx:Track><when>2024</when><gx:coord>8 47 1</gx:coord></gx:Track>")),

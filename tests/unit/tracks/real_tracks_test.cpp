@@ -2,6 +2,7 @@
 // that Python's csv and xml.etree, and gpsbabel 1.8, find in them.
 #include <gmock/gmock.h>
 
+#include "flown_route.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "support/oracle_table.hpp"
 #include "track_reading.hpp"
@@ -120,38 +121,91 @@ INSTANTIATE_TEST_SUITE_P(
                   {"2005-09-26T02:56:32.000Z", 39 + 26.5007 / 60, -(119 + 46.1986 / 60), {}, 1366.7 - 22.0},
                   true}));
 
-struct RefusedTrack {
+// Files without times that can be used: flown as routes.
+struct RealRoute {
     std::string file, why;
+    std::size_t places = 0;
+    RealRow first, last;  // without times
 };
 
-void PrintTo(const RefusedTrack& track, std::ostream* out) { *out << track.file; }
+void PrintTo(const RealRoute& route, std::ostream* out) { *out << route.file; }
 
-class RealTracksWithoutTimes : public testing::TestWithParam<RefusedTrack> {};
-
-TEST_P(RealTracksWithoutTimes, AreRefusedInOneLine) {
-    SKYLOOP_REQUIRE_SHARED(path, "tracks/" + GetParam().file);
-    const auto text = read_text_file(path);
-    ASSERT_TRUE(text.has_value());
-    EXPECT_THAT(test::refusal_of_track(*text, GetParam().file), HasSubstr(GetParam().why));
+void expect_place(const Track& track, std::size_t row, const RealRow& expected) {
+    const Geodetic place = test::place_of(track, row);
+    EXPECT_NEAR(place.latitude.deg(), expected.latitude_deg, 6e-8);
+    EXPECT_NEAR(place.longitude.deg(), expected.longitude_deg, 6e-8);
+    const double geoid = expected.sea_level_m ? 10 : 0;  // of track_of()
+    EXPECT_NEAR(place.height.above_ellipsoid.value(),
+                expected.sea_level_m.value_or(0) + expected.ellipsoidal_m.value_or(0) + geoid, 1e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, RealTracksWithoutTimes,
-                         testing::Values(RefusedTrack{"Mojstrovka.gpx",
-                                                      "184 of 184 track points have a time before 1980-01-06"},
-                                         RefusedTrack{"unicode.gpx", "0 route points and 6 waypoints, and no track"},
-                                         RefusedTrack{"skydrop.kml", "1 LineString, which have no times"}));
+class RealRoutes : public testing::TestWithParam<RealRoute> {};
 
-// One point is a track to its reader, and too short for a path.
-TEST(RealTracks, OfOnePointAreRefusedByTheCleaning) {
-    SKYLOOP_REQUIRE_SHARED(path, "tracks/gpx1.0_with_all_fields.gpx");
+TEST_P(RealRoutes, LoadAndAreFlown) {
+    const RealRoute& expected = GetParam();
+    SKYLOOP_REQUIRE_SHARED(path, "tracks/" + expected.file);
     const auto text = read_text_file(path);
     ASSERT_TRUE(text.has_value());
-    Track track = test::track_of(*text, "all.gpx");
-    EXPECT_EQ(track.points.size(), 1u);
-    EXPECT_NEAR(test::height_of(track, 0), 11.1 + 13, 1e-3);
-    const auto cleaned = clean_track(track, Seconds(10));
-    ASSERT_FALSE(cleaned.has_value());
-    EXPECT_THAT(cleaned.error().message, HasSubstr("all.gpx: 1 rows with a time and a place of their own"));
+    const Track track = test::track_of(*text, expected.file);
+    ASSERT_EQ(track.points.size(), expected.places);
+    expect_place(track, 0, expected.first);
+    expect_place(track, track.points.size() - 1, expected.last);
+    ASSERT_TRUE(track.route.has_value());
+    EXPECT_EQ(track.route->why, expected.why);
+    for (const VehicleClass vehicle : driven_vehicles) {
+        SCOPED_TRACE(traits_of(vehicle).name);
+        test::expect_flown_route(track, {vehicle, {}, 2, 0});
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, RealRoutes,
+                         testing::Values(RealRoute{"Mojstrovka.gpx",
+                                                   "183 of 184 times are equal: the file's times are not used",
+                                                   184,
+                                                   {"", 46.434981, 13.748273, 1614.678},
+                                                   {"", 46.435231, 13.748253, 1643.51208}},
+                                         RealRoute{"unicode.gpx",
+                                                   "no times in it",
+                                                   6,
+                                                   {"", 45.757933259, 14.294899916, -0.114380},
+                                                   {"", 45.765583254, 14.361333288, -0.114380}},
+                                         RealRoute{"skydrop.kml",
+                                                   "no times in it",
+                                                   1329,
+                                                   {"", 48.2662716, 8.5155383, 768},
+                                                   {"", 48.2666850, 8.5141550, 753}},
+                                         RealRoute{"gpx1.0_with_all_fields.gpx",
+                                                   "one place alone",
+                                                   1,
+                                                   {"", 10.1, -20.2, {}, 11.1 + 13},
+                                                   {"", 10.1, -20.2, {}, 11.1 + 13}}));
+
+// A log on a table, whose autopilot knows its height alone: 678 records, x and y 0, z at first 0.098385 m.
+TEST(RealTracks, LocalPositionsAreLaidOutFromAnOrigin) {
+    SKYLOOP_REQUIRE_SHARED(path, "tracks/sample.ulg");
+    const auto text = read_text_file(path);
+    ASSERT_TRUE(text.has_value());
+    EXPECT_THAT(test::refusal_of_track(*text, "sample.ulg"), HasSubstr("expected trajectory.origin = [latitude"));
+    Track track = test::track_of(*text, "sample.ulg", Geodetic::degrees(47, 8, 500));
+    ASSERT_EQ(track.points.size(), 678u);
+    EXPECT_FALSE(track.route.has_value());
+    EXPECT_NEAR(test::place_of(track, 0).latitude.deg(), 47, 1e-9);
+    EXPECT_NEAR(test::height_of(track, 0), 500 - 0.098385, 1e-5);
+    EXPECT_THAT(track.notes,
+                testing::Contains(HasSubstr("678 of 678 records of vehicle_local_position say that they are "
+                                            "not valid")));
+    ASSERT_TRUE(clean_track(track, Seconds(10)).has_value());
+    EXPECT_EQ(track.points.size(), 678u);
+}
+
+// Counted by pyulog and pymavlink's own readers, as flight_logs_test.cpp has them.
+TEST(RealTracks, LogsOfAutopilotsLoad) {
+    for (const auto& [file, rows] : {std::pair{"sample_log_small.ulg", 32u}, std::pair{"test.BIN", 24u}}) {
+        SKYLOOP_REQUIRE_SHARED(path, std::string("tracks/") + file);
+        const auto text = read_text_file(path);
+        ASSERT_TRUE(text.has_value());
+        EXPECT_EQ(test::track_of(*text, file).points.size(), rows);
+    }
 }
 
 }  // namespace

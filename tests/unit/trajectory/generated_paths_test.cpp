@@ -26,7 +26,7 @@ std::string refusal_of(const PathWish& wish) {
     return plan ? "accepted" : plan.error();
 }
 
-LapWish lap_of(VehicleKind kind, double speed, unsigned laps) {
+LapWish lap_of(VehicleClass kind, double speed, unsigned laps) {
     LapWish lap;
     lap.vehicle = usual_limits(kind);
     lap.vehicle.along.speed = speed;
@@ -36,30 +36,31 @@ LapWish lap_of(VehicleKind kind, double speed, unsigned laps) {
 }
 
 TEST(OrbitPlan, BeginsAtRestAndKeepsItsCircle) {
-    const auto endless = shape_of(OrbitWish{lap_of(VehicleKind::multirotor, 8, 0), 40, 0.5, true, 0});
+    const auto endless = shape_of(OrbitWish{lap_of(VehicleClass::multirotor, 8, 0), 40, 0.5, true, 0});
     const auto most = test::expect_path_laws(*endless, 600, 12);
     EXPECT_NEAR(most.speed, 8, 1e-6);
     for (double t = 0; t < 100; t += 7)
         EXPECT_NEAR((endless->at(t).position - Eigen::Vector3d(100, -50, 70)).norm(), 40, 1e-9);
-    const auto helix = shape_of(OrbitWish{lap_of(VehicleKind::plane, 25, 6), 120, 0, false, 300});
+    const auto helix = shape_of(OrbitWish{lap_of(VehicleClass::plane, 25, 6), 120, 0, false, 300});
     test::expect_path_laws(*helix, 1e6, 12);
     EXPECT_NEAR(helix->at(1e6).position.z(), 370, 1e-9);
     EXPECT_LT((helix->at(1e6).position - helix->at(0).position).head<2>().norm(), 1e-6);
 }
 
 TEST(OrbitPlan, SlowsDownOrRefuses) {
-    const auto slowed = plan_orbit({lap_of(VehicleKind::car, 20, 1), 30, 0, false, 0});
+    const auto slowed = plan_orbit({lap_of(VehicleClass::car, 20, 1), 30, 0, false, 0});
     ASSERT_TRUE(slowed);
     EXPECT_THAT(slowed->notes.at(0), HasSubstr("goes at 8.66 m/s instead of 20"));
-    EXPECT_THAT(refusal_of(OrbitWish{lap_of(VehicleKind::car, 5, 1), 3, 0, false, 0}),
+    EXPECT_THAT(refusal_of(OrbitWish{lap_of(VehicleClass::car, 5, 1), 3, 0, false, 0}),
                 HasSubstr("expected at least 6"));
-    EXPECT_THAT(refusal_of(OrbitWish{lap_of(VehicleKind::plane, 20, 1), 9, 0, false, 0}),
+    EXPECT_THAT(refusal_of(OrbitWish{lap_of(VehicleClass::plane, 20, 1), 9, 0, false, 0}),
                 HasSubstr("slowest of a plane"));
-    EXPECT_THAT(refusal_of(OrbitWish{lap_of(VehicleKind::plane, 20, 0), 90, 0, false, 50}), HasSubstr("laps"));
+    EXPECT_THAT(refusal_of(OrbitWish{lap_of(VehicleClass::plane, 20, 0), 90, 0, false, 50}), HasSubstr("laps"));
 }
 
 TEST(RacetrackPlan, ComesBackToItsBeginning) {
-    for (const VehicleKind kind : {VehicleKind::plane, VehicleKind::car, VehicleKind::boat, VehicleKind::multirotor}) {
+    for (const VehicleClass kind :
+         {VehicleClass::plane, VehicleClass::car, VehicleClass::boat, VehicleClass::multirotor}) {
         SCOPED_TRACE(vehicle_name(kind));
         LapWish lap = lap_of(kind, usual_limits(kind).along.speed, 3);
         lap.heading = 0.4;
@@ -71,25 +72,25 @@ TEST(RacetrackPlan, ComesBackToItsBeginning) {
 }
 
 TEST(FigureEightPlan, CrossesItsCentre) {
-    const auto shape = shape_of(FigureEightWish{lap_of(VehicleKind::multirotor, 6, 2), 50});
+    const auto shape = shape_of(FigureEightWish{lap_of(VehicleClass::multirotor, 6, 2), 50});
     test::expect_path_laws(*shape, 1e6, 12);
     EXPECT_LT((shape->at(0).position - Eigen::Vector3d(100, -50, 70)).norm(), 1e-9);
     EXPECT_LT((shape->at(shape->duration() / 2).position - Eigen::Vector3d(100, -50, 70)).norm(), 1e-6);
-    const auto slow = plan_figure_eight({lap_of(VehicleKind::multirotor, 20, 2), 15});
+    const auto slow = plan_figure_eight({lap_of(VehicleClass::multirotor, 20, 2), 15});
     ASSERT_TRUE(slow);
     EXPECT_THAT(slow->notes.at(0), HasSubstr("goes at 4.47 m/s"));
 }
 
 TEST(LawnmowerPlan, MowsEveryLine) {
     LawnmowerWish wish;
-    wish.vehicle = usual_limits(VehicleKind::multirotor);
+    wish.vehicle = usual_limits(VehicleClass::multirotor);
     wish.heading = right_angle;
     const auto shape = shape_of(wish);
     test::expect_path_laws(*shape, 1e6, 12);
     // The first line runs east, the others lie south of it; the fifth ends in the east.
     EXPECT_NEAR(shape->at(1e6).position.x(), 200, 1e-6);
     EXPECT_NEAR(shape->at(1e6).position.y(), -80, 1e-6);
-    wish.vehicle = usual_limits(VehicleKind::plane);
+    wish.vehicle = usual_limits(VehicleClass::plane);
     EXPECT_THAT(refusal_of(wish), HasSubstr("waypoint 2, a turn of 90°"));
 }
 
@@ -171,7 +172,7 @@ TEST(BalloonPlan, RisesBurstsAndLands) {
 
 DriveWish drive_of(std::uint64_t seed) {
     DriveWish wish;
-    wish.vehicle = usual_limits(VehicleKind::car);
+    wish.vehicle = usual_limits(VehicleClass::car);
     wish.seed = seed;
     return wish;
 }
@@ -204,11 +205,11 @@ TEST(GeneratedPaths, TheSameSeedIsTheSamePathAndAnotherAnother) {
 
 GeneratedPath sequence_of(bool loop) {
     GeneratedPath path;
-    path.vehicle = usual_limits(VehicleKind::multirotor);
+    path.vehicle = usual_limits(VehicleClass::multirotor);
     HoverWish hover;
     hover.place = {0, 0, 20};
     path.steps.push_back({hover, 30});
-    path.steps.push_back({OrbitWish{lap_of(VehicleKind::multirotor, 8, 3), 40, 0.5, true, 0}, LocalShape::endless});
+    path.steps.push_back({OrbitWish{lap_of(VehicleClass::multirotor, 8, 3), 40, 0.5, true, 0}, LocalShape::endless});
     hover.place = {200, 0, 20};
     path.steps.push_back({hover, 20});
     path.loop = loop;
@@ -233,7 +234,7 @@ TEST(PathSequence, JoinsItsStepsWithoutAStep) {
 
 TEST(PathSequence, ALoopGoesBackToItsBeginning) {
     GeneratedPath path;
-    path.vehicle = usual_limits(VehicleKind::multirotor);
+    path.vehicle = usual_limits(VehicleClass::multirotor);
     WaypointWish wish;
     wish.vehicle = path.vehicle;
     wish.waypoints = {{{0, 0, 0}, 5, 0}, {{100, 0, 10}, 5, 0}, {{100, 50, 10}, 5, 0}};

@@ -86,8 +86,8 @@ TEST(PathAttitude, AMultirotorLeansIntoItsAcceleration) {
     Track track = track_of(law, evenly(0, 20, 0.1), true);
     const RecordedPath path = standing_path(track, standing_as(VehicleClass::multirotor, Angle::degrees(0)));
     EXPECT_NEAR(attitude_on(path, 2).pitch().deg(), 0, 0.1) << "hovers";
-    EXPECT_NEAR(attitude_on(path, 7).pitch().deg(), -std::atan((3 + 0.2 * 6) / 9.80665) / degree, 0.5);
-    EXPECT_NEAR(attitude_on(path, 15).pitch().deg(), -std::atan(0.2 * 12 / 9.80665) / degree, 0.3) << "drag alone";
+    EXPECT_NEAR(attitude_on(path, 7).pitch().deg(), -std::atan((3 + 0.1 * 6) / 9.80665) / degree, 0.5);
+    EXPECT_NEAR(attitude_on(path, 15).pitch().deg(), -std::atan(0.1 * 12 / 9.80665) / degree, 0.3) << "drag alone";
     EXPECT_NEAR(attitude_on(path, 15).roll().deg(), 0, 0.1);
 }
 
@@ -119,7 +119,7 @@ TEST(PathAttitude, UntilItMovesItLooksWhereItIsTold) {
 
 TEST(PathAttitude, ABoatHeelsOutOfTheTurnAndACarLeans) {
     for (const auto& [vehicle, degrees_per_g] :
-         {std::pair{VehicleClass::boat, 10.0}, std::pair{VehicleClass::car, 4.0}}) {
+         {std::pair{VehicleClass::boat, 15.0}, std::pair{VehicleClass::car, 4.0}}) {
         Track track = track_of(circle_of(50, 10, 0), evenly(0, 60, 0.5), true);
         const RecordedPath path = standing_path(track, standing_as(vehicle));
         EXPECT_NEAR(attitude_on(path, 30).roll().deg(), -degrees_per_g * 2 / 9.80665, 0.1) << "2 m/s² to the right";

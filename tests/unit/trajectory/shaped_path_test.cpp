@@ -47,11 +47,11 @@ TEST(GeodesicPlane, CrossesTheDateLineAndThePole) {
                                std::pair{Geodetic::degrees(89.99, 0, 0), Geodetic::degrees(89.99, 180, 0)}}) {
         const GeodesicPlane plane(a);
         WaypointWish wish;
-        wish.vehicle = usual_limits(VehicleKind::plane);
+        wish.vehicle = usual_limits(VehicleClass::plane);
         wish.waypoints = {{plane.to_local(a), 20, 0}, {plane.to_local(b), 20, 0}};
         const auto plan = plan_waypoints(wish);
         ASSERT_TRUE(plan);
-        const ShapedPath path(shaped_start, plane, plan->shape, VehicleKind::plane);
+        const ShapedPath path(shaped_start, plane, plan->shape, VehicleClass::plane);
         const double end = plan->shape->duration();
         EXPECT_LT((state_of(path, end).position - to_ecef(b)).vector().norm(), 1e-6);
         for (const double part : {0.2, 0.4, 0.7})
@@ -62,13 +62,13 @@ TEST(GeodesicPlane, CrossesTheDateLineAndThePole) {
 TEST(ShapedPath, FarFromItsOriginVelocitiesAreStillSlopes) {
     const GeodesicPlane plane(Geodetic::degrees(47, 8, 500));
     OrbitWish wish;
-    wish.lap.vehicle = usual_limits(VehicleKind::plane);
+    wish.lap.vehicle = usual_limits(VehicleClass::plane);
     wish.lap.vehicle.along.speed = 250;
     wish.lap.centre = {300000, -200000, 11000};
     wish.radius = 9000;
     const auto plan = plan_orbit(wish);
     ASSERT_TRUE(plan) << plan.error();
-    const ShapedPath path(shaped_start, plane, plan->shape, VehicleKind::plane);
+    const ShapedPath path(shaped_start, plane, plan->shape, VehicleClass::plane);
     for (double t = 200; t < 600; t += 37)
         expect_consistent_states(path, t);
 }
@@ -76,12 +76,12 @@ TEST(ShapedPath, FarFromItsOriginVelocitiesAreStillSlopes) {
 TEST(ShapedPath, APlaneBanksInItsTurn) {
     const GeodesicPlane plane(Geodetic::degrees(-33, 151, 100));
     OrbitWish wish;
-    wish.lap.vehicle = usual_limits(VehicleKind::plane);
+    wish.lap.vehicle = usual_limits(VehicleClass::plane);
     wish.lap.centre.z() = 300;
     wish.radius = 60;
     const auto plan = plan_orbit(wish);
     ASSERT_TRUE(plan);
-    const ShapedPath path(shaped_start, plane, plan->shape, VehicleKind::plane);
+    const ShapedPath path(shaped_start, plane, plan->shape, VehicleClass::plane);
     const TruthState state = state_of(path, 100);
     // Coordinated: tan φ = v² / (g R); clockwise is to the right.
     const double bank = std::atan(20.0 * 20 / (9.80665 * 60));
@@ -100,11 +100,11 @@ TEST(ShapedPath, APlaneBanksInItsTurn) {
 TEST(ShapedPath, AMultirotorLeansIntoItsAcceleration) {
     const GeodesicPlane plane(Geodetic::degrees(47, 8, 500));
     WaypointWish wish;
-    wish.vehicle = usual_limits(VehicleKind::multirotor);
+    wish.vehicle = usual_limits(VehicleClass::multirotor);
     wish.waypoints = {{{0, 0, 50}, 12, 0}, {{0, 500, 50}, 12, 0}};
     const auto plan = plan_waypoints(wish);
     ASSERT_TRUE(plan);
-    const ShapedPath path(shaped_start, plane, plan->shape, VehicleKind::multirotor);
+    const ShapedPath path(shaped_start, plane, plan->shape, VehicleClass::multirotor);
     EXPECT_NEAR(state_of(path, -10).orientation->attitude.pitch().deg(), 0, 1e-9);
     // At full acceleration of 4 m/s², and a drag of a tenth of the speed.
     const TruthState speeding = state_of(path, 1.5);
@@ -119,7 +119,7 @@ TEST(ShapedPath, ARocketStandsOnItsTail) {
     RocketWish wish;
     const auto plan = plan_rocket(wish);
     ASSERT_TRUE(plan) << plan.error();
-    const ShapedPath path(shaped_start, plane, plan->shape, VehicleKind::rocket);
+    const ShapedPath path(shaped_start, plane, plan->shape, VehicleClass::rocket);
     const TruthState state = state_of(path, 2);
     const Eigen::Vector3d nose = state.orientation->attitude.body_to_ned() * Eigen::Vector3d::UnitX();
     EXPECT_NEAR(nose.z(), -1, 1e-9);

@@ -171,7 +171,7 @@ TEST(TrackCleaning, AnythingBecomesAPathThatCanBeAsked) {
         for (std::size_t i = 1; i < track.points.size(); ++i)
             ASSERT_GT(track.points[i].time, track.points[i - 1].time);
         const CurveSettings settings{
-            static_cast<VehicleClass>(below(vehicle_class_count)), {}, static_cast<Smoothing>(below(3))};
+            static_cast<VehicleClass>(below(track_vehicle_count)), {}, static_cast<Smoothing>(below(3))};
         const RecordedPath path(track, *gaps, recorded_start, settings);
         for (int k = 0; k < 200; ++k) {
             const double t = path.duration().value() * (k - 5) / 190;

@@ -97,6 +97,13 @@ TEST(TrackCsv, ReadsLocalMetresQuaternionsAndResets) {
     EXPECT_THAT(unlike.error().message, HasSubstr("t.csv:2: the length of the quaternion is 2; expected 1"));
 }
 
+TEST(TrackCsv, ATableWithoutTimesIsARoute) {
+    const Track track = read_rows("lat_deg,lon_deg,h_ell_m\n47,8,1\n47.1,8,2\n");
+    ASSERT_TRUE(track.route.has_value());
+    EXPECT_EQ(track.points.size(), 2u);
+    EXPECT_THAT(track.route->why, HasSubstr("no column says the time"));
+}
+
 TEST(TrackCsv, RefusesWhatIsNoTrackInOneLine) {
     const std::string head = "t_s,lat_deg,lon_deg,h_ell_m\n";
     EXPECT_THAT(refused(""), HasSubstr("t.csv: no line with the names of the columns"));

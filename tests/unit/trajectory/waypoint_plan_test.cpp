@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-WaypointWish wish_of(VehicleKind kind, const std::vector<Eigen::Vector3d>& places) {
+WaypointWish wish_of(VehicleClass kind, const std::vector<Eigen::Vector3d>& places) {
     WaypointWish wish;
     wish.vehicle = usual_limits(kind);
     for (const Eigen::Vector3d& place : places)
@@ -42,11 +42,11 @@ const std::vector<Eigen::Vector3d> big_square{{0, 0, 50},   {0, 400, 60},   {400
                                               {400, 0, 50}, {700, 150, 50}, {1100, 160, 58}};
 
 TEST(WaypointPlan, EveryVehicleKeepsItsLimits) {
-    for (const VehicleKind kind : {VehicleKind::multirotor, VehicleKind::plane, VehicleKind::rover, VehicleKind::boat,
-                                   VehicleKind::car, VehicleKind::pedestrian}) {
+    for (const VehicleClass kind : {VehicleClass::multirotor, VehicleClass::plane, VehicleClass::rover,
+                                    VehicleClass::boat, VehicleClass::car, VehicleClass::pedestrian}) {
         SCOPED_TRACE(vehicle_name(kind));
         WaypointWish wish = wish_of(kind, big_square);
-        if (kind == VehicleKind::boat)
+        if (kind == VehicleClass::boat)
             for (PlannedWaypoint& waypoint : wish.waypoints)
                 waypoint.place.z() = 0;
         const VehicleLimits& v = wish.vehicle;
@@ -65,14 +65,14 @@ TEST(WaypointPlan, EveryVehicleKeepsItsLimits) {
 }
 
 TEST(WaypointPlan, AMultirotorCutsCornersAndAPedestrianHardly) {
-    EXPECT_LT(passes_at(*planned(wish_of(VehicleKind::pedestrian, big_square)).shape, big_square[1]), 0.5);
-    const double cut = passes_at(*planned(wish_of(VehicleKind::multirotor, big_square)).shape, big_square[1]);
+    EXPECT_LT(passes_at(*planned(wish_of(VehicleClass::pedestrian, big_square)).shape, big_square[1]), 0.5);
+    const double cut = passes_at(*planned(wish_of(VehicleClass::multirotor, big_square)).shape, big_square[1]);
     EXPECT_LT(cut, 5);
     EXPECT_GT(cut, 0.5);
 }
 
 TEST(WaypointPlan, HoldsWhereItIsTold) {
-    for (const VehicleKind kind : {VehicleKind::multirotor, VehicleKind::car}) {
+    for (const VehicleClass kind : {VehicleClass::multirotor, VehicleClass::car}) {
         WaypointWish wish = wish_of(kind, big_square);
         wish.waypoints[2].hold = 30;
         const PathPlan plan = planned(wish);
@@ -86,7 +86,7 @@ TEST(WaypointPlan, HoldsWhereItIsTold) {
 
 TEST(WaypointPlan, AMultirotorRisesTurnsAndComesBack) {
     const PathPlan plan =
-        planned(wish_of(VehicleKind::multirotor, {{0, 0, 0}, {0, 0, 30}, {100, 0, 30}, {0, 0.5, 30}, {0, 0.5, 0}}));
+        planned(wish_of(VehicleClass::multirotor, {{0, 0, 0}, {0, 0, 30}, {100, 0, 30}, {0, 0.5, 30}, {0, 0.5, 0}}));
     const auto most = test::expect_path_laws(*plan.shape, 1e6, 12);
     EXPECT_LE(most.climb, 5.0001);
     EXPECT_LE(most.sink, 3.0001);
@@ -94,7 +94,7 @@ TEST(WaypointPlan, AMultirotorRisesTurnsAndComesBack) {
 }
 
 TEST(WaypointPlan, SlowsDownForATurnThatDoesNotFitAndTellsIt) {
-    WaypointWish wish = wish_of(VehicleKind::car, {{0, 0, 0}, {0, 100, 0}, {16, 100, 0}, {16, 0, 0}});
+    WaypointWish wish = wish_of(VehicleClass::car, {{0, 0, 0}, {0, 100, 0}, {16, 100, 0}, {16, 0, 0}});
     const PathPlan plan = planned(wish);
     ASSERT_EQ(plan.notes.size(), 2U);
     EXPECT_THAT(plan.notes[0], HasSubstr("waypoint 2, a turn of 90°: slowed to"));
@@ -102,18 +102,18 @@ TEST(WaypointPlan, SlowsDownForATurnThatDoesNotFitAndTellsIt) {
 }
 
 TEST(WaypointPlan, SaysWhatDoesNotFit) {
-    EXPECT_THAT(refused(wish_of(VehicleKind::plane, {{0, 0, 50}, {0, 100, 50}, {30, 100, 50}, {30, 0, 50}})),
+    EXPECT_THAT(refused(wish_of(VehicleClass::plane, {{0, 0, 50}, {0, 100, 50}, {30, 100, 50}, {30, 0, 50}})),
                 HasSubstr("waypoint 2, a turn of 90°: a plane's turn there has a radius of"));
-    EXPECT_THAT(refused(wish_of(VehicleKind::car, {{0, 0, 0}, {0, 100, 0}, {0, 0, 0}})),
+    EXPECT_THAT(refused(wish_of(VehicleClass::car, {{0, 0, 0}, {0, 100, 0}, {0, 0, 0}})),
                 HasSubstr("waypoint 2, a turn of 180°"));
-    EXPECT_THAT(refused(wish_of(VehicleKind::car, {{0, 0, 0}, {0, 0, 100}})), HasSubstr("straight up or down"));
-    EXPECT_THAT(refused(wish_of(VehicleKind::plane, {{0, 0, 0}, {0, 300, 300}})), HasSubstr("up to 61.9° steep"));
-    EXPECT_THAT(refused(wish_of(VehicleKind::car, {{5, 5, 5}, {5, 5, 5}})),
+    EXPECT_THAT(refused(wish_of(VehicleClass::car, {{0, 0, 0}, {0, 0, 100}})), HasSubstr("straight up or down"));
+    EXPECT_THAT(refused(wish_of(VehicleClass::plane, {{0, 0, 0}, {0, 300, 300}})), HasSubstr("up to 61.9° steep"));
+    EXPECT_THAT(refused(wish_of(VehicleClass::car, {{5, 5, 5}, {5, 5, 5}})),
                 HasSubstr("all waypoints lie at one place"));
-    WaypointWish held = wish_of(VehicleKind::plane, big_square);
+    WaypointWish held = wish_of(VehicleClass::plane, big_square);
     held.waypoints[1].hold = 3;
     EXPECT_THAT(refused(held), HasSubstr("a plane cannot stop on its way"));
-    WaypointWish slow = wish_of(VehicleKind::plane, big_square);
+    WaypointWish slow = wish_of(VehicleClass::plane, big_square);
     slow.waypoints[1].speed = 3;
     EXPECT_THAT(refused(slow), HasSubstr("the speed is 3 m/s; expected at least 12"));
 }
@@ -124,13 +124,13 @@ TEST(WaypointPlan, TakesRandomPlaces) {
     std::uniform_real_distribution<double> place(-300, 300), height(0, 40), hold(-20, 20);
     int accepted = 0;
     for (int round = 0; round < 60; ++round) {
-        const auto kind = static_cast<VehicleKind>(round % 6);
+        const auto kind = driven_vehicles.at(static_cast<std::size_t>(round % 6));
         std::vector<Eigen::Vector3d> places;
         for (int i = 0; i < 6; ++i)
-            places.emplace_back(place(engine), place(engine), kind == VehicleKind::boat ? 0 : height(engine));
+            places.emplace_back(place(engine), place(engine), kind == VehicleClass::boat ? 0 : height(engine));
         WaypointWish wish = wish_of(kind, places);
         for (PlannedWaypoint& waypoint : wish.waypoints)
-            if (kind != VehicleKind::plane) waypoint.hold = std::max(0.0, hold(engine));
+            if (kind != VehicleClass::plane) waypoint.hold = std::max(0.0, hold(engine));
         const auto plan = plan_waypoints(wish);
         if (!plan) continue;
         ++accepted;
