@@ -108,15 +108,50 @@ class Tracks(unittest.TestCase):
         self.assertEqual(len(heights), len(self.FORMATS))
         self.assertTrue(all(math.isclose(h, heights[0], abs_tol=0.01) for h in heights), heights)
 
-    def test_a_track_without_times_is_refused_in_one_line(self):
+    def test_a_track_without_times_keeps_none(self):
         with open_folder() as folder:
             scenario = self.scenario(folder, "walk.gpx")
             track = pathlib.Path(folder, "walk.gpx")
             track.write_text('<gpx><trk><trkseg><trkpt lat="1" lon="2"/></trkseg></trk></gpx>', encoding="ascii")
             done = skyloop("check", scenario, check=False)
             self.assertEqual(done.returncode, 2)
-            self.assertIn("walk.gpx: 1 track points and no time in them", done.stderr)
+            self.assertIn('walk.gpx: no times in it, and trajectory.time = "recorded" asks for times', done.stderr)
             self.assertEqual(len(done.stderr.splitlines()), 1)
+
+    def fly(self, name, content, keys=""):
+        """The fixes of a run along a file without times, and what is said of it."""
+        with open_folder() as folder:
+            pathlib.Path(folder, name).write_text(content, encoding="ascii")
+            scenario = pathlib.Path(folder, "scenario.toml")
+            scenario.write_text('[run]\nstart = 2024-03-05T12:00:00Z\nduration_s = 40\n[model]\nname = "ideal"\n'
+                                f'[trajectory]\nkind = "file"\npath = "{name}"\n{keys}\n', encoding="utf-8")
+            done = skyloop("simulate", scenario, "--out", pathlib.Path(folder, "out"))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            with open(pathlib.Path(folder, "out", "fixes.csv"), encoding="ascii") as file:
+                return list(csv.DictReader(file)), done.stdout + done.stderr
+
+    def test_a_route_is_flown_at_its_speed(self):
+        places = "".join(f"{LATITUDE + i * 1e-5:.7f},{LONGITUDE},{HEIGHT_M}\n" for i in range(20))
+        rows, said = self.fly("way.csv", "lat_deg,lon_deg,h_ell_m\n" + places, 'vehicle = "rover"\nspeed_mps = 0.5\n')
+        self.assertIn("flown as a route of 20 points at 0.5 m/s, as a rover", said)
+        metres = (float(rows[30]["true_lat_deg"]) - float(rows[10]["true_lat_deg"])) * 111_180
+        self.assertAlmostEqual(metres, 20 * 0.5, delta=0.05)
+
+    def test_plans_are_flown(self):
+        item = '{{"type": "SimpleItem", "command": {}, "frame": 3, "params": [0, 0, 0, null, {}, {}, {}]}}'
+        items = ",".join((item.format(22, LATITUDE, LONGITUDE, 20), item.format(16, LATITUDE + 1e-3, LONGITUDE, 20)))
+        plan = ('{"fileType": "Plan", "mission": {"vehicleType": 2, "hoverSpeed": 4, "cruiseSpeed": 15, '
+                f'"plannedHomePosition": [{LATITUDE}, {LONGITUDE}, 0], "items": [{items}]}}}}')
+        mission = (f"QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t{LATITUDE}\t{LONGITUDE}\t0\t1\n"
+                   f"1\t0\t3\t22\t0\t0\t0\t0\t0\t0\t20\t1\n"
+                   f"2\t0\t3\t16\t0\t0\t0\t0\t{LATITUDE + 1e-3}\t{LONGITUDE}\t20\t1\n")
+        for name, content, keys in (("a.plan", plan, ""), ("a.waypoints", mission, "speed_mps = 4")):
+            with self.subTest(name=name):
+                rows, said = self.fly(name, content, keys)
+                self.assertIn("at 4 m/s, as a multirotor", said)
+                heights = [float(row["true_height_m"]) for row in rows]
+                self.assertAlmostEqual(max(heights) - heights[0], 20, delta=0.01)
+                self.assertGreater(float(rows[-1]["true_lat_deg"]), LATITUDE + 5e-4)
 
 
 if __name__ == "__main__":

@@ -121,7 +121,7 @@ TEST(KmzTrack, IsUnpacked) {
     EXPECT_EQ(track.points.size(), 2u);
     EXPECT_EQ(track.format, "KMZ");
     EXPECT_THAT(refusal_of_track(test::stored_zip("a\nb.kml", kml("")), "t.kmz"),
-                HasSubstr("t.kmz/a b.kml: 1 placemarks and no track"));
+                HasSubstr("t.kmz/a b.kml: 1 placemarks and no place in them"));
 }
 
 TEST(KmzTrack, RefusesArchivesWithoutKmlAndBrokenOnes) {

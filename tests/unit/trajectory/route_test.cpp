@@ -84,8 +84,8 @@ TEST(Route, ManyNoisyPlacesAreFlownWithinTheLimits) {
         EXPECT_LT(taken.count(), 20) << "on a loaded machine, without optimisation";
         RecordProperty(std::string(traits_of(vehicle).name), std::to_string(taken.count()));
         const VehicleLimits limits = usual_limits(vehicle);
-        const double turn_jerk = limits.turn_ramp > 0 ? 1.7 * limits.lateral / limits.turn_ramp : 0;
-        const auto most = test::expect_path_laws(*route->shape, 1e6, std::max(limits.along.jerk * 3, turn_jerk * 2));
+        constexpr double no_step = 40;  // m/s³
+        const auto most = test::expect_path_laws(*route->shape, 1e6, no_step);
         EXPECT_LE(most.speed, limits.along.speed * 1.07);
         EXPECT_LE(most.acceleration, std::hypot(limits.lateral, limits.along.acceleration) * 1.05);
         EXPECT_LE(most.climb, limits.climb * 1.01);
@@ -104,7 +104,8 @@ TEST(Route, TellsHowItIsFlown) {
     const RoutePath path(*route, to_gps_time(2300, 0));
     EXPECT_GT(path.duration().value(), 100);
     EXPECT_LT((path.at(to_gps_time(2300, 0)).position - track.points[0].position).length().value(), 1e-6);
-    EXPECT_NEAR(path.at(advanced(to_gps_time(2300, 0), Seconds(20))).velocity.length().value(), 3, 1e-6);
+    EXPECT_NEAR(path.at(advanced(to_gps_time(2300, 0), Seconds(20))).velocity.length().value(), 3, 1e-3)
+        << "at a height of 500 m over the ellipsoid";
 }
 
 TEST(Route, OnePlaceIsStoodAt) {
