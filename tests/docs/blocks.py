@@ -12,8 +12,8 @@ LOOKED_AT = {"toml", "python", "json", "xml", "yaml", "c", "cmake"}
 # `before: COMMAND` (what a reader has done already); `stays` (it runs on while the rest of the page is
 # read; `stays: beside` together with what runs already); `numbers vary` (the output has the same words, not the same
 # numbers); `refused` (a scenario that `skyloop check` has to refuse); `context: CODE` (declarations around a piece of C).
-MARKS = {"not run": True, "file": True, "given": True, "needs": True, "before": True, "stays": None, "numbers vary": False, "refused": False,
-         "context": True}
+MARKS = {"not run": True, "file": True, "given": True, "needs": True, "before": True, "stays": None,
+         "numbers vary": False, "refused": False, "context": True}
 
 
 class PageError(Exception):

@@ -1,4 +1,5 @@
-"""Links of the pages lead somewhere: files exist, headings too, and the index of docs names every page."""
+"""Links of the pages lead somewhere: files exist, headings too, the index of docs names every page, and the faults that
+tutorials name are there."""
 import re
 import unittest
 from pathlib import Path
@@ -40,15 +41,43 @@ def dead_links(path, text):
     return dead
 
 
+def fault_cells(text):
+    """Cells of the columns headed `fault` of a page's tables."""
+    cells, column = [], None
+    for line in text.splitlines():
+        row = [cell.strip() for cell in line.strip("|").split("|")] if line.startswith("|") else []
+        if not row:
+            column = None
+        elif column is None:
+            column = row.index("fault") if "fault" in row else -1
+        elif column >= 0:
+            cells.append(row[column])
+    return cells
+
+
+class Faults(unittest.TestCase):
+    def test_cells(self):
+        self.assertEqual(fault_cells("| a | fault |\n|---|---|\n| `x` | `y` |\n\n| a |\n| `z` |\n"), ["---", "`y`"])
+
+    def test_faults_that_tutorials_name_exist(self):
+        known = set(re.findall(r"^### (\w+)|^\| `(\w+)` \|", (ROOT / "docs/faults.md").read_text(encoding="utf-8"), re.MULTILINE))
+        known = {name for pair in known for name in pair if name}
+        named = {name for page in (ROOT / "docs/tutorials").glob("*.md")
+                 for cell in fault_cells(page.read_text(encoding="utf-8")) for name in re.findall(r"`(\w+)", cell)}
+        self.assertGreater(len(named), 10)
+        self.assertEqual(sorted(named - known), [])
+
+
 class Links(unittest.TestCase):
     def test_dead_ones_are_found(self):
-        text = "# A `b` (c)\n[x](#a-b-c) [y](#a-b) [z](nothing.md) [w](https://host/x)\n```\n[q](gone.md)\n```\n"
-        self.assertEqual(dead_links(ROOT / "docs/none.md", text.replace("(#a-b-c)", "(../README.md)").replace("(#a-b)", "(../README.md#a-b)")),
+        text = "[x](../README.md) [y](../README.md#a-b) [z](nothing.md) [w](https://host/x)\n```\n[q](gone.md)\n```\n"
+        self.assertEqual(dead_links(ROOT / "docs/none.md", text),
                          ["../README.md#a-b: no such heading", "nothing.md: no such file"])
         self.assertEqual(anchors("# A `b` (c)\n## A b c\n```\n# no\n```\n"), {"a-b-c", "a-b-c-1"})
 
     def test_links_lead_somewhere(self):
-        dead = [f"{page.relative_to(ROOT)}: {link}" for page in pages() for link in dead_links(page, page.read_text(encoding="utf-8"))]
+        dead = [f"{page.relative_to(ROOT)}: {link}" for page in pages()
+                for link in dead_links(page, page.read_text(encoding="utf-8"))]
         self.assertGreater(len(pages()), 25)
         self.assertEqual(dead, [])
 
