@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -156,8 +157,17 @@ private:
             progress.clear();
             messages_.warning(fmt::format("run {} (seed {}, key {}) {}: {}", run.number, run.seed, run.key,
                                           result->status, first_failed(*result, columns)));
+            tell_replay(run.number);
         }
         return JobFate::done;
+    }
+    // Once: how any of them is seen again.
+    void tell_replay(std::uint64_t number) {
+        if (replay_told_) return;
+        replay_told_ = true;
+        messages_.info(fmt::format("to see it: skyloop campaign replay {} {}{}--number {} --out FOLDER",
+                                   options_.scenario, fmt::join(campaign_.options, " "),
+                                   campaign_.options.empty() ? "" : " ", number));
     }
     // A run that was lost is no result, and tried once more.
     Result<JobFate> take_loss(const PlannedRun& run, const JobOutcome& outcome, const Error& why, TableFile& log) {
@@ -176,6 +186,7 @@ private:
     const OpenedCampaign& campaign_;
     std::vector<std::uint64_t> missing_;
     std::uint64_t there_ = 0, given_up_ = 0;
+    bool replay_told_ = false;
     std::atomic<bool> stop_ = false;
 };
 
@@ -218,6 +229,8 @@ int run_campaign(const CampaignOptions& options) {
     catch_stop_signals();
     const auto campaign = open_campaign(campaign_request(options));
     if (!campaign) return messages.error(campaign.error());
+    for (const std::string& warning : campaign->warnings)
+        messages.warning(warning);
     CampaignLeader leader(messages, options, *campaign);
     const int code = leader.run(*shard);
     // A part leaves gathering to whoever has all of them.

@@ -38,13 +38,16 @@ Result<Scenario> base_scenario(const CampaignRequest& request, const std::string
     return campaign_scenario(*scenario);
 }
 
-Result<std::string> digest_of_base(const CampaignRequest& request, const std::string& text, const Scenario& scenario) {
+Result<std::string> digest_of_base(const CampaignRequest& request, const std::string& text, const Scenario& scenario,
+                                   std::vector<std::string>& warnings) {
     auto content = scenario_content(text, request.scenario);
     if (!content) return fail(content.error());
     const auto assembly = checked_assembly(scenario, request.data);
     if (!assembly) return fail(assembly.error());
     CampaignBase base{request.version, std::move(*content), request.scenario.parent_path(), {}};
+    warnings = assembly->warnings;
     add_boards(scenario, request.data, base);
+    base.more["geoid"] = assembly->geoid ? "EGM96" : "none";
     if (assembly->scene.digest != 0) base.more["scene"] = fmt::format("{:016x}", assembly->scene.digest);
     return campaign_base_digest(base, *scenario.campaign);
 }
@@ -66,7 +69,8 @@ Result<OpenedCampaign> open_campaign(const CampaignRequest& request) {
     CampaignSettings settings;
     const auto scenario = base_scenario(request, *text, settings);
     if (!scenario) return fail(scenario.error());
-    const auto digest = digest_of_base(request, *text, *scenario);
+    std::vector<std::string> warnings;
+    const auto digest = digest_of_base(request, *text, *scenario, warnings);
     if (!digest) return fail(digest.error());
     auto plan = CampaignPlan::make(settings, *digest);
     if (!plan) return fail(plan.error().code, fmt::format("{}: {}", request.scenario.string(), plan.error().message));
@@ -76,7 +80,8 @@ Result<OpenedCampaign> open_campaign(const CampaignRequest& request) {
                           std::move(*plan),
                           settings.name.empty() ? request.scenario.stem().string() : settings.name,
                           options_of(request),
-                          request.version};
+                          request.version,
+                          std::move(warnings)};
 }
 
 Result<void> check_runs(const OpenedCampaign& campaign, const std::vector<std::uint64_t>& wanted) {

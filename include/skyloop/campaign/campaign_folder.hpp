@@ -30,6 +30,7 @@ struct OpenedCampaign {
     std::string name;
     std::vector<std::string> options{};  ///< of the command line, that replaying a run takes too: "--seeds 5-7"
     std::string version;
+    std::vector<std::string> warnings{};  ///< of its run without changes, for people
 };
 
 /// Reads the scenario and everything that its run reads, without changes. A file without [campaign] is a campaign of

@@ -1,0 +1,254 @@
+"""skyloop campaign: exactly one result a run, whatever is killed, and the same database from any way of running it."""
+import csv
+import hashlib
+import os
+import pathlib
+import random
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+
+from session import SKYLOOP, open_folder, skyloop
+
+SCENARIO = """
+[run]
+start = 2024-03-05T12:00:00Z
+duration_s = {duration}
+[model]
+name = "baseline"
+[[fault]]
+name = "gap"
+kind = "outage"
+at_s = 10
+for_s = 5
+[[expect]]
+name = "back soon"
+what = "fix within 3 s of the end of gap"
+[[expect]]
+name = "never lost"
+what = "fix at 22 s"
+[campaign]
+seeds = 50
+[[campaign.parameter]]
+key = "fault.gap.for_s"
+values = [1, 14]
+[[campaign.parameter]]
+key = "sky.elevation_mask_deg"
+values = [5, 30]
+"""
+RUNS = 200
+
+
+def write_scenario(folder, name="campaign.toml", duration=30):
+    path = folder / name
+    path.write_text(SCENARIO.format(duration=duration))
+    return path
+
+
+def campaign(*arguments, expected=(0,)):
+    done = subprocess.run([SKYLOOP, "campaign", *map(str, arguments)], capture_output=True, text=True, timeout=150)
+    assert done.returncode in expected, f"campaign {arguments} ended {done.returncode}: {done.stderr}"
+    return done
+
+
+def digest(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def keys_in(out):
+    """Of all whole rows."""
+    keys = []
+    for path in sorted((out / "shards").glob("*-of-*.csv")):
+        if not path.name.endswith(".log.csv"):
+            whole = path.read_text().rpartition("\n")[0].splitlines()
+            keys += [row[0] for row in csv.reader(whole[1:])]
+    return keys
+
+
+def children_of(process):
+    found = []
+    for status in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = status.read_text().rpartition(")")[2].split()
+        except OSError:
+            continue
+        if int(fields[1]) == process:
+            found.append(int(status.parent.name))
+    return found
+
+
+def test_plan(folder):
+    rows = list(csv.DictReader(campaign("plan", write_scenario(folder)).stdout.splitlines()))
+    assert len(rows) == RUNS and len({row["key"] for row in rows}) == RUNS
+    assert [row["number"] for row in rows] == [str(i) for i in range(RUNS)]
+    assert [row["seed"] for row in rows[:50]] == [str(i + 1) for i in range(50)]
+
+
+def test_same_bytes(folder):
+    scenario = write_scenario(folder)
+    campaign(scenario, "--out", folder / "undisturbed", "--jobs", 1, "--quiet", expected=(3,))
+    campaign(scenario, "--out", folder / "two", "--jobs", 2, "--quiet", expected=(3,))
+    assert len(keys_in(folder / "undisturbed")) == RUNS
+    assert digest(folder / "undisturbed/campaign.sqlite") == digest(folder / "two/campaign.sqlite")
+    # What is there is not run again.
+    before = (folder / "two/shards/0-of-1.log.csv").read_bytes()
+    campaign(scenario, "--out", folder / "two", "--quiet", expected=(3,))
+    assert (folder / "two/shards/0-of-1.log.csv").read_bytes() == before
+
+
+def test_database(folder):
+    """The figures are those of the runs, and the verdicts those of the expectations."""
+    with sqlite3.connect(folder / "undisturbed/campaign.sqlite") as database:
+        assert database.execute("select count(*) from run").fetchone() == (RUNS,)
+        assert dict(database.execute("select name, value from meta"))["planned"] == str(RUNS)
+        by_length = dict(database.execute(
+            "select value, avg(passed) from verdict join parameter using (key) where verdict.name = 'never lost' "
+            "and parameter.name = 'fault.gap.for_s' group by value"))
+        assert by_length == {"1": 1.0, "14": 0.0}, by_length
+        shares = dict(database.execute(
+            "select p.value, max(m.value) from metric m join parameter p using (key) where m.name = 'fix_share' "
+            "and p.name = 'fault.gap.for_s' group by p.value"))
+        assert abs(shares["14"] - 16 / 30) < 0.05 and abs(shares["1"] - 29 / 30) < 0.05, shares
+
+
+def test_replay(folder):
+    """A run done again by itself has the figures that the campaign kept."""
+    scenario = write_scenario(folder)
+    campaign("replay", scenario, "--number", 60, "--out", folder / "again", "--quiet", expected=(0, 3))
+    with open(folder / "again/fixes.csv", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    errors = sorted((float(r["east_error_m"]) ** 2 + float(r["north_error_m"]) ** 2) ** 0.5
+                    for r in rows if r["fix_type"] != "none")
+    with sqlite3.connect(folder / "undisturbed/campaign.sqlite") as database:
+        kept = dict(database.execute("select name, value from metric join run using (key) where number = 60"))
+    assert kept["epochs"] == len(rows)
+    assert abs(kept["fix_share"] - len(errors) / len(rows)) < 1e-6
+    assert abs(kept["horizontal_error_max_m"] - errors[-1]) < 1e-3
+
+
+def test_shards(folder):
+    """Three parts, one of them missing; then five: the same database."""
+    scenario = write_scenario(folder)
+    for part in ("0/3", "2/3"):
+        campaign(scenario, "--out", folder / "parts", "--shard", part, "--quiet", expected=(3,))
+    said = campaign("gather", folder / "parts", expected=(1,)).stdout
+    assert "missing      67: runs 1 4 7" in said, said
+    for part in range(5):
+        campaign(scenario, "--out", folder / "parts", "--shard", f"{part}/5", "--quiet", expected=(0, 3))
+    assert "missing      0" in campaign("gather", folder / "parts", expected=(3,)).stdout
+    assert len(keys_in(folder / "parts")) == RUNS, "each run once"
+    assert digest(folder / "parts/campaign.sqlite") == digest(folder / "undisturbed/campaign.sqlite")
+
+
+def start(scenario, out):
+    return subprocess.Popen([SKYLOOP, "campaign", scenario, "--out", out, "--jobs", "2", "--quiet"],
+                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def test_kills(folder):
+    """Workers and their leader die at random instants."""
+    scenario = write_scenario(folder)
+    out = folder / "killed"
+    chance = random.Random(5)
+    kills = {"worker": 0, "leader": 0}
+    for attempt in range(60):
+        leader = start(scenario, out)
+        try:
+            if attempt < 40:
+                time.sleep(chance.uniform(0.03, 0.25))
+                workers = children_of(leader.pid)
+                if attempt % 2 == 0 and workers and leader.poll() is None:
+                    os.kill(chance.choice(workers), signal.SIGKILL)
+                    kills["worker"] += 1
+                    time.sleep(chance.uniform(0, 0.2))
+                if leader.poll() is None:
+                    leader.kill()
+                    kills["leader"] += 1
+                    leader.wait(timeout=20)
+                    # Workers live no longer than their leader.
+                    end = time.monotonic() + 5
+                    while any(pathlib.Path(f"/proc/{worker}").exists() for worker in workers):
+                        assert time.monotonic() < end, "a worker outlives its leader"
+                        time.sleep(0.01)
+                    continue
+            if leader.wait(timeout=150) in (0, 3):
+                break
+        finally:
+            if leader.poll() is None:
+                leader.kill()
+                leader.wait(timeout=20)
+    print(f"kills: {kills}")
+    assert kills["leader"] > 3
+    keys = keys_in(out)
+    assert len(keys) == RUNS and len(set(keys)) == RUNS, "each run exactly once"
+    campaign("gather", out, expected=(3,))
+    assert digest(out / "campaign.sqlite") == digest(folder / "undisturbed/campaign.sqlite")
+
+
+def test_stop(folder):
+    """SIGTERM: exit 75, and the same command goes on."""
+    scenario = write_scenario(folder, "long.toml", duration=20000)
+    out = folder / "stopped"
+    leader = start(scenario, out)
+    time.sleep(1.5)
+    assert leader.poll() is None
+    leader.send_signal(signal.SIGTERM)
+    assert leader.wait(timeout=20) == 75
+
+
+def test_mistakes(folder):
+    scenario = write_scenario(folder)
+    out = folder / "none"
+    for options, words in [
+            (["--vary", "run.duratoin_s=1"], "did you mean 'duration_s'"),
+            (["--vary", "fault.gap.for_s=1,-1"], "fault.for_s: is -1"),
+            (["--seeds", "x"], "--seeds x: expected"),
+            (["--shard", "3/3"], "--shard 3/3: expected I/N"),
+            (["--vary", "trajectory.kind=file"], "trajectory"),
+    ]:
+        said = campaign(scenario, "--out", out, *options, expected=(2,)).stderr
+        assert words in said, (options, said)
+        assert not out.exists(), "nothing was begun"
+    now = folder / "now.toml"
+    now.write_text("[run]\nduration_s = 3\n")
+    assert "begin now" in campaign(now, "--out", out, expected=(2,)).stderr
+    assert "No such file" in campaign(folder / "absent.toml", "--out", out, expected=(1,)).stderr
+    other = campaign(scenario, "--out", folder / "undisturbed", "--vary", "run.speed=1", expected=(2,)).stderr
+    assert "other columns" in other, other
+
+
+def test_vehicle(folder):
+    """A program with a pty of its own, in real time: its exit code is a verdict."""
+    path = folder / "vehicle.toml"
+    path.write_text("""
+[run]
+start = 2024-03-05T12:00:00Z
+duration_s = 20
+[model]
+name = "ideal"
+[campaign]
+seeds = 2
+[campaign.vehicle]
+command = 'timeout 10 head -c 200 "$SKYLOOP_PTY" | grep -q GGA && test {pty} = "$SKYLOOP_PTY" && exit $(({seed} - 1))'
+""")
+    began = time.monotonic()
+    said = campaign(path, "--out", folder / "vehicle", "--jobs", 2, expected=(3,)).stdout
+    assert time.monotonic() - began < 15, "a run ends with its vehicle"
+    assert "1 passed, 1 failed" in said and "not met      1 of 2 runs: vehicle" in said, said
+
+
+def main():
+    with open_folder() as name:
+        folder = pathlib.Path(name)
+        for test in (test_plan, test_same_bytes, test_database, test_replay, test_shards, test_kills, test_stop,
+                     test_mistakes, test_vehicle):
+            began = time.monotonic()
+            test(folder)
+            print(f"{test.__name__}: {time.monotonic() - began:.1f} s")
+    skyloop("--version")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
