@@ -66,7 +66,7 @@ def clean_root(target):
 
 class Lintian(unittest.TestCase):
     def test_has_nothing_to_say(self):
-        done = run("lintian", "--allow-root", "--fail-on", "error,warning", "--show-overrides", *PACKAGES.values(), check=False)
+        done = run("lintian", "--allow-root", "--fail-on", "error,warning", *PACKAGES.values(), check=False)
         told = [line for line in done.stdout.splitlines() if line[:2] in ("E:", "W:")]
         self.assertEqual((told, done.returncode), ([], 0), done.stderr)
 
