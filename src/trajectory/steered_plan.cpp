@@ -165,8 +165,9 @@ SteeredPlanner::Mistake SteeredPlanner::pass_by() {
     }
     if (wish_.waypoints.size() < 2) return "all places lie above one another; expected two that are apart";
     if (passed > 0)
-        notes_.add(fmt::format("{} places are passed by, at {:.1f} m or more at the farthest: a {} cannot turn there",
-                               passed, farthest, vehicle_name(wish_.vehicle.kind)));
+        notes_.add(fmt::format(
+            "{} places are passed by, up to {:.1f} m from the way between those beside them: a {} cannot turn there",
+            passed, farthest, vehicle_name(wish_.vehicle.kind)));
     return std::nullopt;
 }
 
