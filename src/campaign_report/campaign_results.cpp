@@ -35,12 +35,12 @@ public:
         std::string wrong;
     };
 
-    // Columns 0 and 1 of the row: key and name.
-    [[nodiscard]] Place of(const SqliteRow& row) {
+    // Columns 0 and 1 of the row: key and name, or another text, which may be empty.
+    [[nodiscard]] Place of(const SqliteRow& row, bool named = true) {
         const auto key = row.text(0);
         const auto name = row.text(1);
         if (!key || key->empty()) return {0, {}, not_found("key", "a text")};
-        if (!name || name->empty()) return {0, {}, not_found("name", "a text")};
+        if (!name || (named && name->empty())) return {0, {}, not_found("the second column", "a text")};
         // Rows of a run stand together: most need no look at the index.
         if (*key != last_key_) {
             const auto found = index_.find(std::string(*key));
@@ -58,28 +58,25 @@ private:
     std::size_t last_run_ = 0;
 };
 
-// Columns by name, made when a name is first met.
+// Columns by name, made when a name is first met, and kept in that order.
 template <class Column>
 class NamedColumns {
 public:
     template <class Make>
     Column* find_or_make(std::string_view name, Make&& make) {
-        auto found = columns_.find(name);
-        if (found == columns_.end()) {
+        auto found = places_.find(name);
+        if (found == places_.end()) {
             if (columns_.size() == most_report_names) return nullptr;
-            found = columns_.emplace(name, make(std::string(name))).first;
+            found = places_.emplace(name, columns_.size()).first;
+            columns_.push_back(make(std::string(name)));
         }
-        return &found->second;
+        return &columns_[found->second];
     }
-    [[nodiscard]] std::vector<Column> in_order() {
-        std::vector<Column> list;
-        for (auto& [name, column] : columns_)
-            list.push_back(std::move(column));
-        return list;
-    }
+    [[nodiscard]] std::vector<Column>& columns() { return columns_; }
 
 private:
-    std::map<std::string, Column, std::less<>> columns_;
+    std::map<std::string, std::size_t, std::less<>> places_;
+    std::vector<Column> columns_;
 };
 
 std::string too_many(std::string_view what) {
@@ -108,12 +105,13 @@ std::optional<Error> read_meta(const SqliteReader& reader, CampaignResults& resu
             results.planned = planned;
             return {};
         }
-        const std::array<std::pair<std::string_view, std::string*>, 5> texts{
+        const std::array<std::pair<std::string_view, std::string*>, 6> texts{
             {{"name", &results.name},
              {"program_version", &results.program_version},
              {"scenario", &results.scenario},
              {"scenario_digest", &results.scenario_digest},
-             {"campaign_file", &results.campaign_file}}};
+             {"campaign_file", &results.campaign_file},
+             {"options", &results.options}}};
         for (const auto& [known, place] : texts)
             if (*name == known) {
                 const auto text = row.text(1);
@@ -140,8 +138,9 @@ std::optional<Error> read_runs(const SqliteReader& reader, CampaignResults& resu
                                shown_text(status.value_or("not a text"), 40));
         if (!keys.emplace(*key, *number).second)
             return fmt::format("key '{}' stands there twice", shown_text(*key, 80));
-        results.runs.push_back(
-            {std::string(*key), *number, *seed, static_cast<RunStatus>(word - status_words.begin())});
+        // The seed's 64 bits have no sign; SQLite's integers have.
+        results.runs.push_back({std::string(*key), *number, static_cast<std::uint64_t>(*seed),
+                                static_cast<RunStatus>(word - status_words.begin()), ""});
         return {};
     });
 }
@@ -161,7 +160,7 @@ std::optional<Error> read_parameters(const SqliteReader& reader, CampaignResults
         column->values[place.run] = std::string(*value);
         return {};
     });
-    results.parameters = columns.in_order();
+    results.parameters = std::move(columns.columns());
     return wrong;
 }
 
@@ -187,7 +186,7 @@ std::optional<Error> read_metrics(const SqliteReader& reader, CampaignResults& r
         if (value) column->metric.values[place.run] = *value;
         return {};
     });
-    for (Column& column : columns.in_order())
+    for (Column& column : columns.columns())
         results.metrics.push_back(std::move(column.metric));
     return wrong;
 }
@@ -198,7 +197,7 @@ std::optional<Error> read_verdicts(const SqliteReader& reader, CampaignResults& 
         const RowPlaces::Place place = places.of(row);
         if (!place.wrong.empty()) return place.wrong;
         const auto passed = row.integer(2);
-        if (!passed || (*passed != 0 && *passed != 1)) return not_found("passed", "0 or 1");
+        if (!row.is_null(2) && (!passed || (*passed != 0 && *passed != 1))) return not_found("passed", "0, 1 or null");
         const auto detail = row.text(3);
         if (!detail && !row.is_null(3)) return not_found("detail", "a text");
         auto* column = columns.find_or_make(place.name, [&](std::string name) {
@@ -207,12 +206,25 @@ std::optional<Error> read_verdicts(const SqliteReader& reader, CampaignResults& 
         });
         if (!column) return too_many("verdicts");
         if (column->passed[place.run]) return twice(place, results);
-        column->passed[place.run] = *passed == 1;
+        if (passed) column->passed[place.run] = *passed == 1;
         column->details[place.run] = detail.value_or("");
         return {};
     });
-    results.verdicts = columns.in_order();
+    results.verdicts = std::move(columns.columns());
     return wrong;
+}
+
+// Older databases have no such table.
+std::optional<Error> read_errors(const SqliteReader& reader, CampaignResults& results, RowPlaces& places) {
+    const auto there = reader.has_table("error");
+    if (!there) return there.error();
+    if (!*there) return std::nullopt;
+    return reader.each_row("error", "key, message", "", [&](const SqliteRow& row) -> std::string {
+        const RowPlaces::Place place = places.of(row, false);
+        if (!place.wrong.empty()) return place.wrong;
+        results.runs[place.run].error = place.name;
+        return {};
+    });
 }
 
 }  // namespace
@@ -233,6 +245,7 @@ Result<CampaignResults> read_campaign_results(const std::filesystem::path& datab
     if (auto error = read_parameters(*reader, results, places)) return fail(*error);
     if (auto error = read_metrics(*reader, results, places)) return fail(*error);
     if (auto error = read_verdicts(*reader, results, places)) return fail(*error);
+    if (auto error = read_errors(*reader, results, places)) return fail(*error);
     return results;
 }
 

@@ -70,6 +70,7 @@ std::string what_was_run(const CampaignResults& results, const CampaignSummary& 
     std::string text = "<div class=\"scroll\"><table class=\"facts\">\n";
     text += fact("scenario", results.scenario);
     text += fact("digest of the scenario", results.scenario_digest);
+    text += fact("options", results.options);
     text += fact("plan", results.campaign_file);
     text += fact("program", results.program_version.empty() ? "" : "skyloop " + results.program_version);
     text += fact("seeds", seeds_of(results));

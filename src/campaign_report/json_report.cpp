@@ -114,6 +114,7 @@ Json metric_json(const CampaignResults& results, const MetricSummary& metric) {
 
 Json failed_run_json(const CampaignResults& results, std::size_t run) {
     Json json = run_json(results, run);
+    if (!results.runs[run].error.empty()) json["error"] = results.runs[run].error;
     json["failed_verdicts"] = Json::array();
     for (const ReportedVerdict& verdict : results.verdicts)
         if (verdict.passed[run] == false)
@@ -128,6 +129,7 @@ std::string campaign_report_json(const CampaignResults& results, const CampaignS
     json["campaign"] = {{"name", results.name},
                         {"scenario", results.scenario},
                         {"scenario_digest", results.scenario_digest},
+                        {"options", results.options},
                         {"campaign_file", results.campaign_file},
                         {"program_version", results.program_version}};
     json["runs"] = {{"planned", json_or_null(results.planned)},

@@ -65,6 +65,20 @@ std::string percent_figure_text(double share, int decimals) {
     return fmt::format("{:.{}f}", 100 * share, decimals);
 }
 
+// The options that the campaign was planned with, each quoted; they make part of what a run's number means.
+std::string option_words(const std::string& options) {
+    std::string words, word;
+    for (const char c : options + " ") {
+        if (c != ' ') {
+            word += c;
+            continue;
+        }
+        if (!word.empty()) words += " " + shell_word(word);
+        word.clear();
+    }
+    return words;
+}
+
 }  // namespace
 
 MetricWords metric_words(std::string_view name) {
@@ -96,11 +110,13 @@ std::string verdict_name(const CampaignResults& results, const VerdictSummary& v
 
 std::optional<std::string> replay_command(const CampaignResults& results, const ReportedRun& run) {
     constexpr std::size_t longest_path = 4096;
-    if (results.scenario.empty() || shown_text(results.scenario, longest_path) != results.scenario) return std::nullopt;
+    for (const std::string& text : {results.scenario, results.options})
+        if (shown_text(text, longest_path) != text) return std::nullopt;
+    if (results.scenario.empty()) return std::nullopt;
     // A name that begins with a dash would be read as an option.
     const std::string scenario = (results.scenario[0] == '-' ? "./" : "") + results.scenario;
-    return fmt::format("skyloop campaign replay {} --number {} --out run-{}", shell_word(scenario), run.number,
-                       run.number);
+    return fmt::format("skyloop campaign replay {}{} --number {} --out run-{}", shell_word(scenario),
+                       option_words(results.options), run.number, run.number);
 }
 
 std::string figure_text(double value) {

@@ -28,7 +28,8 @@ std::string effect_row(const std::string& name, const std::vector<Effect>& effec
 
 // The verdicts that a run failed, with what they said.
 std::string failures_of(const CampaignResults& results, std::size_t run) {
-    if (results.runs[run].status == RunStatus::error) return "came to no end";
+    if (results.runs[run].status == RunStatus::error)
+        return results.runs[run].error.empty() ? "came to no end" : "error: " + results.runs[run].error;
     std::string text;
     for (const ReportedVerdict& verdict : results.verdicts)
         if (verdict.passed[run] == false) {

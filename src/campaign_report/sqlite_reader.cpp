@@ -64,24 +64,26 @@ Result<SqliteReader::Statement> SqliteReader::prepare(const std::string& query, 
     return Statement(statement);
 }
 
-// A view or a virtual table of that name could run for ever.
-std::optional<Error> SqliteReader::check_table(std::string_view table) const {
+// A view or a virtual table of that name does not count: it could run for ever.
+Result<bool> SqliteReader::has_table(std::string_view table) const {
     const auto statement =
         prepare(fmt::format("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = '{}' AND rootpage > 0", table),
                 "the list of tables");
-    if (!statement) return statement.error();
+    if (!statement) return fail(statement.error());
     const int step = sqlite3_step(statement->get());
-    if (step == SQLITE_ROW) return std::nullopt;
-    if (step != SQLITE_DONE) return error("the list of tables");
-    return Error{ErrorCode::input,
-                 fmt::format("{}: has no table '{}'; expected meta, run, parameter, metric and verdict, as 'skyloop "
-                             "campaign gather' writes them",
-                             path_, table)};
+    if (step != SQLITE_ROW && step != SQLITE_DONE) return fail(error("the list of tables"));
+    return step == SQLITE_ROW;
 }
 
 std::optional<Error> SqliteReader::each_row(std::string_view table, std::string_view columns, std::string_view order,
                                             const std::function<std::string(const SqliteRow&)>& take) const {
-    if (auto missing = check_table(table)) return missing;
+    const auto there = has_table(table);
+    if (!there) return there.error();
+    if (!*there)
+        return Error{ErrorCode::input,
+                     fmt::format("{}: has no table '{}'; expected meta, run, parameter, metric and verdict, as "
+                                 "'skyloop campaign gather' writes them",
+                                 path_, table)};
     const std::string what = fmt::format("table '{}'", table);
     std::string query = fmt::format("SELECT {} FROM {}", columns, table);
     if (!order.empty()) query += fmt::format(" ORDER BY {}", order);

@@ -34,6 +34,8 @@ class SqliteReader {
 public:
     static Result<SqliteReader> open(const std::filesystem::path& path);
 
+    [[nodiscard]] Result<bool> has_table(std::string_view table) const;
+
     /// Gives every row of a table to `take`, which returns what is wrong with it, "" when nothing is.
     /// @param columns their names, comma-separated
     /// @param order what follows ORDER BY, "" for the order of the table
@@ -49,7 +51,6 @@ private:
     using Statement = std::unique_ptr<sqlite3_stmt, Closer>;
 
     [[nodiscard]] Result<Statement> prepare(const std::string& query, std::string_view what) const;
-    [[nodiscard]] std::optional<Error> check_table(std::string_view table) const;
     [[nodiscard]] Error error(std::string_view what) const;
 
     std::string path_;

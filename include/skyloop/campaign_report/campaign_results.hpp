@@ -20,8 +20,9 @@ std::string_view run_status_word(RunStatus status);
 struct ReportedRun {
     std::string key;
     std::int64_t number = 0;  ///< in the plan
-    std::int64_t seed = 0;    ///< as the database has it
+    std::uint64_t seed = 0;
     RunStatus status = RunStatus::passed;
+    std::string error;  ///< why it came to no end, where that is told
 };
 
 /// A parameter that the campaign varied; one entry for each run.
@@ -39,13 +40,14 @@ struct ReportedMetric {
 /// A check that runs passed or failed; one entry for each run.
 struct ReportedVerdict {
     std::string name;
-    std::vector<std::optional<bool>> passed;
-    std::vector<std::string> details;  ///< one for each run, "" where there is none
+    std::vector<std::optional<bool>> passed;  ///< nothing: it was not run
+    std::vector<std::string> details;         ///< one for each run, "" where there is none
 };
 
-/// Everything, runs in the order of their numbers, the rest in the order of the names.
+/// Everything, runs in the order of their numbers, the rest in the order in which the database first names them.
 struct CampaignResults {
     std::string name, program_version, scenario, scenario_digest, campaign_file;
+    std::string options;                   ///< of the command line that the campaign was made with, blanks between
     std::optional<std::uint64_t> planned;  ///< nothing when the database does not tell
     std::vector<ReportedRun> runs;
     std::vector<ReportedParameter> parameters;
@@ -56,9 +58,9 @@ struct CampaignResults {
 /// More names of parameters, metrics or verdicts than this are refused: no page shows them.
 inline constexpr std::size_t most_report_names = 500;
 
-/// Reads the database that `skyloop campaign gather` writes (tables meta, run, parameter, metric, verdict), without
-/// changing it. Fails with `outside` when it cannot be opened, with `input` when it is no such database: each message
-/// names the file, the table and the row.
+/// Reads the database that `skyloop campaign gather` writes (tables meta, run, parameter, metric and verdict, and error
+/// where it is there), without changing it. Fails with `outside` when it cannot be opened, with `input` when it is no
+/// such database: each message names the file, the table and the row.
 Result<CampaignResults> read_campaign_results(const std::filesystem::path& database);
 
 }  // namespace skyloop
