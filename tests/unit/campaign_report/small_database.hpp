@@ -34,7 +34,8 @@ public:
         sqlite3* database = nullptr;
         sqlite3_open(path().c_str(), &database);
         char* wrong = nullptr;
-        sqlite3_exec(database, statements.c_str(), nullptr, nullptr, &wrong);
+        // One transaction: a disk is not waited for at each statement.
+        sqlite3_exec(database, ("BEGIN;" + statements + "COMMIT;").c_str(), nullptr, nullptr, &wrong);
         EXPECT_EQ(wrong, nullptr) << wrong;
         sqlite3_free(wrong);
         sqlite3_close(database);
