@@ -6,8 +6,10 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <numeric>
 #include <system_error>
 
+#include "campaign_options.hpp"
 #include "run_session.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/engines/engine_files.hpp"
@@ -35,24 +37,32 @@ Result<std::filesystem::path> this_program() {
     return program;
 }
 
-Result<EngineTask> task_of(const EngineOptions& options, const EngineCampaign& campaign) {
-    const auto program = this_program();
-    if (!program) return fail(program.error());
-    const auto scenario = whole_path(campaign.scenario), out = whole_path(campaign.out);
-    if (!scenario) return fail(scenario.error());
-    if (!out) return fail(out.error());
-    const std::size_t shards = options.shards > 0 ? options.shards : default_shards(campaign.runs);
-    return EngineTask{campaign.name, *program, *scenario, *out, campaign.options, shards};
+std::vector<std::string> options_of_shards(const CampaignOptions& options) {
+    std::vector<std::string> words;
+    if (options.seeds) words.insert(words.end(), {"--seeds", *options.seeds});
+    for (const std::string& vary : options.vary)
+        words.insert(words.end(), {"--vary", vary});
+    return words;
 }
 
-int follow_until_end(const EngineTask& task, const EngineCampaign& campaign, const Messages& messages) {
+Result<EngineTask> task_of(const CampaignOptions& options, const OpenedCampaign& campaign) {
+    const auto program = this_program();
+    if (!program) return fail(program.error());
+    const auto scenario = whole_path(options.scenario), out = whole_path(options.out);
+    if (!scenario) return fail(scenario.error());
+    if (!out) return fail(out.error());
+    const std::size_t shards = options.engine.shards > 0 ? options.engine.shards : default_shards(campaign.plan.size());
+    return EngineTask{campaign.name, *program, *scenario, *out, options_of_shards(options), shards};
+}
+
+int follow_until_end(const EngineTask& task, std::size_t runs, const Messages& messages) {
     const auto job = submitted_slurm(task);
     if (!job)
         return messages.error(
             {ErrorCode::usage, fmt::format("--follow: {} has no jobs; expected some that --submit left there",
                                            slurm_folder(task).string())});
     FollowOptions follow;
-    follow.runs = campaign.runs;
+    follow.runs = runs;
     follow.between_looks = Seconds(1);
     follow.stopped = stop_was_asked;
     follow.say = [&](const std::string& line) { messages.info(line); };
@@ -61,13 +71,13 @@ int follow_until_end(const EngineTask& task, const EngineCampaign& campaign, con
     return code ? *code : messages.error(code.error());
 }
 
-int to_slurm(const EngineTask& task, const EngineOptions& options, const EngineCampaign& campaign,
-             const Messages& messages) {
+int to_slurm(const EngineTask& task, const CampaignOptions& asked, std::size_t runs, const Messages& messages) {
+    const EngineOptions& options = asked.engine;
     SlurmSettings settings;
     settings.partition = options.partition;
     settings.time_limit = options.time_limit;
     settings.options = options.sbatch_options;
-    settings.processors = campaign.jobs;
+    settings.processors = asked.jobs.value_or(1);
     // Scripts of jobs that are in the queue stay as they are.
     if (options.submit || !options.follow) {
         const auto scripts = slurm_scripts(task, settings);
@@ -83,7 +93,7 @@ int to_slurm(const EngineTask& task, const EngineOptions& options, const EngineC
         messages.info(
             fmt::format("{} shards are job {}, their gathering is job {}", task.shards, job->shards, job->gather));
     }
-    return options.follow ? follow_until_end(task, campaign, messages) : 0;
+    return options.follow ? follow_until_end(task, runs, messages) : 0;
 }
 
 int to_kubernetes(const EngineTask& task, const EngineOptions& options, const Messages& messages) {
@@ -145,40 +155,52 @@ int to_parallel(const EngineTask& task, const EngineOptions& options, const Mess
 }  // namespace
 
 void add_engine_options(CLI::App& command, EngineOptions& options) {
-    command
-        .add_option("--engine", options.engine,
-                    "Hand the shards to slurm, kubernetes or parallel instead of running here")
-        ->check(CLI::IsMember({"slurm", "kubernetes", "parallel"}));
-    command.add_option("--shards", options.shards,
-                       "How many parts an engine gets (default: ten runs each, at most 1000)");
-    command.add_flag("--submit", options.submit, "Also call the engine, not only write its files");
+    CLI::Option* engine = command
+                              .add_option("--engine", options.name,
+                                          "Hand the shards to slurm, kubernetes or parallel instead of running here")
+                              ->check(CLI::IsMember({"slurm", "kubernetes", "parallel"}));
+    const auto add = [&](const char* name, auto& value, const char* meaning) {
+        return command.add_option(name, value, meaning)->needs(engine);
+    };
+    add("--shards", options.shards, "How many parts an engine gets (default: ten runs each, at most 1000)")
+        ->check(CLI::Range(std::size_t{1}, max_shards));
+    CLI::Option* submit =
+        command.add_flag("--submit", options.submit, "Also call the engine, not only write its files");
     command.add_flag("--dry-run", options.dry_run, "Only write the engine's files, as without --submit")
-        ->excludes("--submit");
+        ->needs(engine)
+        ->excludes(submit);
     command.add_flag("--follow", options.follow,
                      "slurm: stay until all is gathered; alone: of what was submitted before");
-    command.add_option("--partition", options.partition, "slurm: the partition");
-    command.add_option("--time", options.time_limit, "slurm: time limit of a shard, as sbatch takes it");
-    command
-        .add_option("--sbatch-option", options.sbatch_options,
-                    "slurm: another option of sbatch, =--account=lab; repeatable")
+    for (const char* flag : {"--submit", "--follow"})
+        command.get_option(flag)->needs(engine);
+    add("--partition", options.partition, "slurm: the partition");
+    add("--time", options.time_limit, "slurm: time limit of a shard, as sbatch takes it");
+    add("--sbatch-option", options.sbatch_options, "slurm: another option of sbatch, =--account=lab; repeatable")
         ->allow_extra_args(false);
-    command.add_option("--hosts", options.hosts,
-                       "parallel: a file with a host a line, [JOBS/]HOST (default: here alone)");
-    command.add_option("--image", options.image, "kubernetes: a container image with skyloop");
-    command.add_option("--claim", options.claim, "kubernetes: the volume claim with the scenario and the results");
-    command.add_option("--mount", options.mount,
-                       "kubernetes: where the claim is mounted, there and here (default: above --out)");
-    command.add_option("--namespace", options.name_space, "kubernetes: the namespace");
-    command.add_option("--memory", options.memory, "kubernetes: memory of a container")->capture_default_str();
-    command.add_option("--parallelism", options.parallelism, "kubernetes: containers at a time")->capture_default_str();
+    add("--hosts", options.hosts, "parallel: a file with a host a line, [JOBS/]HOST (default: here alone)");
+    add("--image", options.image, "kubernetes: a container image with skyloop");
+    add("--claim", options.claim, "kubernetes: the volume claim with the scenario and the results");
+    add("--mount", options.mount, "kubernetes: where the claim is mounted, there and here (default: above --out)");
+    add("--namespace", options.name_space, "kubernetes: the namespace");
+    add("--memory", options.memory, "kubernetes: memory of a container")->capture_default_str();
+    add("--parallelism", options.parallelism, "kubernetes: containers at a time")->capture_default_str();
 }
 
-int hand_to_engine(const EngineOptions& options, const EngineCampaign& campaign, const Messages& messages) {
+int hand_over(const CampaignOptions& options, const OpenedCampaign& campaign, const Messages& messages) {
     const auto task = task_of(options, campaign);
     if (!task) return messages.error(task.error());
-    if (options.engine == "slurm") return to_slurm(*task, options, campaign, messages);
-    if (options.engine == "kubernetes") return to_kubernetes(*task, options, messages);
-    return to_parallel(*task, options, messages);
+    // Mistakes are told here rather than by each shard, and all shards find the campaign's file as they would write it.
+    if (!options.engine.follow || options.engine.submit) {
+        std::vector<std::uint64_t> all(campaign.plan.size());
+        std::iota(all.begin(), all.end(), std::uint64_t{0});
+        if (const auto checked = check_runs(campaign, all); !checked) return messages.error(checked.error());
+        OpenedCampaign whole = campaign;
+        whole.setup.file = task->scenario;
+        if (const auto kept = keep_campaign(task->out, whole); !kept) return messages.error(kept.error());
+    }
+    if (options.engine.name == "slurm") return to_slurm(*task, options, campaign.plan.size(), messages);
+    if (options.engine.name == "kubernetes") return to_kubernetes(*task, options.engine, messages);
+    return to_parallel(*task, options.engine, messages);
 }
 
 }  // namespace skyloop::host

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "campaign_engines.hpp"
 #include "messages.hpp"
 #include "skyloop/campaign/campaign_folder.hpp"
 
@@ -18,6 +19,9 @@ struct CampaignOptions {
     std::optional<std::string> seeds;
     std::vector<std::string> vary;
     std::optional<std::uint64_t> number, jobs;
+    std::string html;        ///< of the report
+    std::size_t worst = 10;  ///< runs that each metric of the report names
+    EngineOptions engine;
     Verbosity verbosity;
 };
 
@@ -25,6 +29,8 @@ CampaignRequest campaign_request(const CampaignOptions& options);
 
 /// Runs what is missing. Exit code: 0, 1 where runs have no result, 3 where one failed, 75 when it was stopped.
 int run_campaign(const CampaignOptions& options);
+/// Has an engine run what run_campaign() would. Exit code as far as it is known here.
+int hand_over(const CampaignOptions& options, const OpenedCampaign& campaign, const Messages& messages);
 /// Merges what is there and says what it is. Exit code as of run_campaign().
 int tell_gathered(const Messages& messages, const std::filesystem::path& folder);
 

@@ -231,6 +231,7 @@ int run_campaign(const CampaignOptions& options) {
     if (!campaign) return messages.error(campaign.error());
     for (const std::string& warning : campaign->warnings)
         messages.warning(warning);
+    if (!options.engine.name.empty()) return hand_over(options, *campaign, messages);
     CampaignLeader leader(messages, options, *campaign);
     const int code = leader.run(*shard);
     // A part leaves gathering to whoever has all of them.

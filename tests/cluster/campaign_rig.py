@@ -9,13 +9,17 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SKYLOOP = os.environ.get("SKYLOOP", str(ROOT / "build/dev/bin/skyloop"))
 SKIPPED = 77
 
+# A run takes some hundredths of a second, so that a part has some when it is stopped.
 SCENARIO = """\
 [run]
-duration_s = 20
-start = "2024-06-01T12:00:00Z"
+start = 2024-06-01T12:00:00Z
+duration_s = 120
 
 [trajectory]
+kind = "fixed"
 at = [48.1, 11.6, 520.0]
+
+[campaign]
 """
 
 

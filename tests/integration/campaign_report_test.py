@@ -14,8 +14,8 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 
 import campaign_database
+from session import SKYLOOP
 
-WRITER = os.environ["CAMPAIGN_REPORT_PAGE"]
 SVG = "{http://www.w3.org/2000/svg}"
 VOID = {"meta", "br", "img", "input", "link", "hr"}
 
@@ -46,7 +46,7 @@ class Page(html.parser.HTMLParser):
 
 
 def write_report(folder, *options):
-    done = subprocess.run([WRITER, str(folder), *options], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([SKYLOOP, "campaign", "report", str(folder), *options], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -162,7 +162,7 @@ class CampaignReport(unittest.TestCase):
             other = pathlib.Path(folder)
             (other / "campaign.sqlite").write_bytes((self.place / "campaign.sqlite").read_bytes())
             environment = dict(os.environ, LC_ALL="de_DE.UTF-8", TZ="Asia/Tokyo")
-            subprocess.run([WRITER, folder], check=True, stdout=subprocess.DEVNULL, env=environment, timeout=60)
+            subprocess.run([SKYLOOP, "campaign", "report", folder], check=True, stdout=subprocess.DEVNULL, env=environment, timeout=60)
             self.assertEqual((other / "report.html").read_text(), self.html)
             self.assertEqual((other / "report.json").read_bytes(), (self.place / "report.json").read_bytes())
 

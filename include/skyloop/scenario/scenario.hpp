@@ -88,7 +88,7 @@ struct FileSettings {
     std::shared_ptr<const Track> track{};          ///< clean; null until it has been loaded
     std::vector<TrackGap> gaps{};
     std::shared_ptr<const FlownRoute> route{};  ///< of a track without times; null for others
-    std::shared_ptr<const Trajectory> way{};  ///< as the run plays it, for all who ride on it; null until then
+    std::shared_ptr<const Trajectory> way{};    ///< as the run plays it, for all who ride on it; null until then
     /// How the curve is led through the rows.
     [[nodiscard]] CurveSettings curve() const {
         return {vehicle, heading_given ? std::optional(heading) : std::nullopt, smoothing};
