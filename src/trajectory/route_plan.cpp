@@ -12,6 +12,7 @@ namespace skyloop {
 namespace {
 
 constexpr double whole_turn = 2 * std::numbers::pi;
+constexpr std::size_t most_corners = 100'000;  // of a plan with circles
 
 class StandingShape : public LocalShape {
 public:
@@ -49,6 +50,7 @@ private:
     double speed_ = 0;
     std::vector<Eigen::Vector3d> places_;
     std::size_t not_held_ = 0;
+    bool too_long_ = false;
 };
 
 tl::unexpected<Error> RoutePlanner::refusal(const std::string& what, std::size_t line) const {
@@ -119,6 +121,8 @@ void RoutePlanner::add_circles(const RouteStop& stop, const Eigen::Vector3d& cen
         if (back.norm() > to_corner) bearing += sign * std::acos(to_corner / back.norm());
     }
     const auto corners = static_cast<std::size_t>(std::ceil(corners_of_turn * turns));
+    too_long_ = too_long_ || route_.waypoints.size() + corners > most_corners;
+    if (too_long_) return;
     for (std::size_t i = 0; i <= corners; ++i) {
         const double at = bearing + sign * whole_turn * static_cast<double>(i) / corners_of_turn;
         const Eigen::Vector3d corner(std::sin(at), std::cos(at), 0);
@@ -162,6 +166,9 @@ Result<FlownRoute> RoutePlanner::plan() {
     route_.notes.push_back(fmt::format("{}: flown as {} of {} points at {:.4g} m/s, as a {}", track_.route->why, what,
                                        places_.size(), speed_, vehicle_name(limits_.kind)));
     track_.route->stops.empty() ? keep_what_matters() : follow_plan();
+    if (too_long_)
+        return refusal(fmt::format("a plan with circles of more than {} corners, 16 to a turn; expected fewer turns",
+                                   most_corners));
     WaypointWish wish{route_.waypoints, limits_, settings_.heading, true};
     auto plan = plan_waypoints(wish);
     if (!plan) return refusal(plan.error());

@@ -165,6 +165,11 @@ TEST(Route, PlansCircleAndStop) {
     }
     EXPECT_GT(nearest, 97);
     EXPECT_LT(farthest, 103);
+    track.points.resize(20, track.points[1]);
+    track.route->stops.assign(20, {{}, 0, 1000, 100});
+    const auto dizzy = fly_route(track, {});
+    ASSERT_FALSE(dizzy.has_value());
+    EXPECT_THAT(dizzy.error().message, HasSubstr("circles of more than 100000 corners"));
 }
 
 }  // namespace
