@@ -154,7 +154,8 @@ std::string commands_markdown(std::span<const CommandRow> commands) {
     for (const CommandRow& command : commands) {
         if (command.hidden) continue;
         page += fmt::format("\n## skyloop {}\n\n{}.\n\n", command.name, command.meaning);
-        if (!command.usage.empty()) page += fmt::format("```\n{}\n```\n\n", command.usage);
+        if (!command.usage.empty())
+            page += fmt::format("<!-- not run: a summary -->\n```text\n{}\n```\n\n", command.usage);
         std::string rows;
         for (const bool positional : {true, false})
             for (const OptionRow& option : command.options)
