@@ -11,7 +11,6 @@
 #include "run_session.hpp"
 #include "run_watch.hpp"
 #include "skyloop/campaign/campaign_worker.hpp"
-#include "skyloop/campaign_report/campaign_report.hpp"
 
 namespace skyloop::host {
 namespace {
@@ -100,15 +99,6 @@ void add_plan_options(CLI::App& command, CampaignOptions& options) {
     add_verbosity_options(command, options.verbosity);
 }
 
-int write_report_of(const CampaignOptions& options) {
-    const Messages messages(options.verbosity);
-    const auto written = write_campaign_report(options.out, {options.html, options.worst});
-    if (!written) return messages.error(written.error());
-    fmt::print("{}", written->text);
-    messages.info(fmt::format("{} and {} are written", written->html.string(), written->json.string()));
-    return 0;
-}
-
 using SharedCampaignOptions = std::shared_ptr<CampaignOptions>;
 
 // Those that need the plan alone.
@@ -122,15 +112,6 @@ void add_plan_commands(CLI::App& command, const SharedCampaignOptions& options) 
     replay->add_option("--key", options->key, "Of the run, instead of its number");
     replay->add_option("--out", options->out, "Folder for the recording")->required();
     add_plan_options(*replay, *options);
-}
-
-void add_report_command(CLI::App& command, const SharedCampaignOptions& options) {
-    CLI::App* report = command.add_subcommand(
-        "report", "Write what came of a gathered campaign: rates, distributions, worst runs, as a page and as JSON");
-    report->add_option("folder", options->out, "The campaign's folder")->required();
-    report->add_option("--out", options->html, "The page; default: report.html in the folder");
-    report->add_option("--worst", options->worst, "Runs that each metric names")->capture_default_str();
-    add_verbosity_options(*report, options->verbosity);
 }
 
 }  // namespace
@@ -148,13 +129,13 @@ Action add_campaign_command(CLI::App& app) {
     add_plan_commands(*command, options);
     CLI::App* gather = command->add_subcommand("gather", "Merge the parts' results into DIR/campaign.sqlite");
     gather->add_option("folder", options->out, "The campaign's folder")->required();
-    add_report_command(*command, options);
+    add_campaign_report_command(*command, *options);
     command->add_subcommand("worker", "")->group("");
     return [command, options] {
         if (command->got_subcommand("plan")) return print_plan_of(*options);
         if (command->got_subcommand("replay")) return replay_run(*options);
         if (command->got_subcommand("gather")) return tell_gathered(Messages(options->verbosity), options->out);
-        if (command->got_subcommand("report")) return write_report_of(*options);
+        if (command->got_subcommand("report")) return report_campaign(*options);
         if (command->got_subcommand("worker")) return serve_as_worker();
         return run_campaign(*options);
     };

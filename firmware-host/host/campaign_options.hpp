@@ -19,9 +19,9 @@ struct CampaignOptions {
     std::optional<std::string> seeds;
     std::vector<std::string> vary;
     std::optional<std::uint64_t> number, jobs;
-    std::string html;        ///< of the report
-    std::size_t worst = 10;  ///< runs that each metric of the report names
     EngineOptions engine;
+    std::string page;        // of the report; empty: in the campaign's folder
+    std::size_t worst = 10;  // runs that the report names for each metric
     Verbosity verbosity;
 };
 
@@ -33,5 +33,10 @@ int run_campaign(const CampaignOptions& options);
 int hand_over(const CampaignOptions& options, const OpenedCampaign& campaign, const Messages& messages);
 /// Merges what is there and says what it is. Exit code as of run_campaign().
 int tell_gathered(const Messages& messages, const std::filesystem::path& folder);
+
+/// Adds skyloop campaign report.
+void add_campaign_report_command(CLI::App& campaign, CampaignOptions& options);
+/// Writes the page and the numbers, and says the main ones.
+int report_campaign(const CampaignOptions& options);
 
 }  // namespace skyloop::host

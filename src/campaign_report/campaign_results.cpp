@@ -24,7 +24,7 @@ std::string not_found(std::string_view column, std::string_view expected) {
 // Which run a row belongs to, and which column of the results its name is.
 class RowPlaces {
 public:
-    explicit RowPlaces(const std::vector<ReportedRun>& runs) {
+    explicit RowPlaces(const std::vector<GatheredRun>& runs) {
         for (std::size_t i = 0; i < runs.size(); ++i)
             index_.emplace(runs[i].key, i);
     }

@@ -15,7 +15,7 @@ namespace {
 constexpr double strong_effect = 0.6;
 constexpr double clear_effect = 0.3;
 
-bool came_to_an_end(const ReportedRun& run) { return run.status != RunStatus::error; }
+bool came_to_an_end(const GatheredRun& run) { return run.status != RunStatus::error; }
 
 bool usable(double value) { return std::abs(value) <= largest_reported_number; }
 

@@ -62,7 +62,7 @@ std::string seeds_of(const CampaignResults& results) {
     if (results.runs.empty()) return {};
     auto [least, most] =
         std::minmax_element(results.runs.begin(), results.runs.end(),
-                            [](const ReportedRun& a, const ReportedRun& b) { return a.seed < b.seed; });
+                            [](const GatheredRun& a, const GatheredRun& b) { return a.seed < b.seed; });
     return least->seed == most->seed ? fmt::format("{}", least->seed) : fmt::format("{} … {}", least->seed, most->seed);
 }
 

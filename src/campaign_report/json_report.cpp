@@ -48,7 +48,7 @@ Json effects_json(const CampaignResults& results, const std::vector<Effect>& eff
 }
 
 Json run_json(const CampaignResults& results, std::size_t index) {
-    const ReportedRun& run = results.runs[index];
+    const GatheredRun& run = results.runs[index];
     Json json{{"number", run.number}, {"seed", run.seed}, {"key", run.key}, {"status", run_status_word(run.status)}};
     Json parameters = Json::object();
     for (const ReportedParameter& parameter : results.parameters)

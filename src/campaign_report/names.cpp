@@ -65,17 +65,26 @@ std::string percent_figure_text(double share, int decimals) {
     return fmt::format("{:.{}f}", 100 * share, decimals);
 }
 
-// The options that the campaign was planned with, each quoted; they make part of what a run's number means.
+// The options that the campaign was planned with, each word quoted; they make part of what a run's number means. A
+// value goes on to the next option: it may have blanks of its own.
 std::string option_words(const std::string& options) {
-    std::string words, word;
-    for (const char c : options + " ") {
-        if (c != ' ') {
-            word += c;
-            continue;
+    std::string words, value;
+    const auto end_value = [&] {
+        if (!value.empty()) words += " " + shell_word(value);
+        value.clear();
+    };
+    for (std::size_t at = 0; at < options.size();) {
+        const std::size_t end = std::min(options.find(' ', at), options.size());
+        const std::string word = options.substr(at, end - at);
+        if (word.starts_with("--")) {
+            end_value();
+            words += " " + shell_word(word);
+        } else {
+            value += (value.empty() ? "" : " ") + word;
         }
-        if (!word.empty()) words += " " + shell_word(word);
-        word.clear();
+        at = end + 1;
     }
+    end_value();
     return words;
 }
 
@@ -108,7 +117,7 @@ std::string verdict_name(const CampaignResults& results, const VerdictSummary& v
                            : std::string("all checks of a run");
 }
 
-std::optional<std::string> replay_command(const CampaignResults& results, const ReportedRun& run) {
+std::optional<std::string> replay_command(const CampaignResults& results, const GatheredRun& run) {
     constexpr std::size_t longest_path = 4096;
     for (const std::string& text : {results.scenario, results.options})
         if (shown_text(text, longest_path) != text) return std::nullopt;

@@ -26,7 +26,7 @@ WorstEnd worst_end_of(std::string_view name, bool has_negative);
 std::string verdict_name(const CampaignResults& results, const VerdictSummary& verdict);
 
 /// The command that runs one run again, quoted for a shell; nothing where a quoted name would break the line.
-std::optional<std::string> replay_command(const CampaignResults& results, const ReportedRun& run);
+std::optional<std::string> replay_command(const CampaignResults& results, const GatheredRun& run);
 
 /// A number with four significant digits.
 std::string figure_text(double value);

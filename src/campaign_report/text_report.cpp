@@ -90,7 +90,7 @@ std::string failed_lines(const CampaignResults& results, const CampaignSummary& 
     std::string text;
     const std::size_t shown = std::min<std::size_t>(summary.failed_runs.size(), 5);
     for (std::size_t i = 0; i < shown; ++i) {
-        const ReportedRun& run = results.runs[summary.failed_runs[i]];
+        const GatheredRun& run = results.runs[summary.failed_runs[i]];
         text += fmt::format("  run {} (seed {}): {}\n", run.number, run.seed,
                             replay_command(results, run).value_or(std::string(run_status_word(run.status))));
     }

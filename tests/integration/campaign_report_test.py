@@ -14,7 +14,7 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 
 import campaign_database
-from session import SKYLOOP
+from session import SKYLOOP, skyloop
 
 SVG = "{http://www.w3.org/2000/svg}"
 VOID = {"meta", "br", "img", "input", "link", "hr"}
@@ -46,9 +46,7 @@ class Page(html.parser.HTMLParser):
 
 
 def write_report(folder, *options):
-    done = subprocess.run([SKYLOOP, "campaign", "report", str(folder), *options], capture_output=True, text=True, timeout=60)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+    return skyloop("campaign", "report", folder, *options).stdout
 
 
 def percentile(values, share):
@@ -165,6 +163,23 @@ class CampaignReport(unittest.TestCase):
             subprocess.run([SKYLOOP, "campaign", "report", folder], check=True, stdout=subprocess.DEVNULL, env=environment, timeout=60)
             self.assertEqual((other / "report.html").read_text(), self.html)
             self.assertEqual((other / "report.json").read_bytes(), (self.place / "report.json").read_bytes())
+
+    def test_options_of_the_command(self):
+        with tempfile.TemporaryDirectory(prefix="skyloop-report-") as folder:
+            page = pathlib.Path(folder) / "page.html"
+            write_report(self.place, "--out", page, "--worst", "3")
+            self.assertEqual(len(json.loads(page.with_suffix(".json").read_text())["metrics"][0]["worst"]), 3)
+            self.assertTrue(page.read_text().startswith("<!DOCTYPE html>"))
+            for wrong, code, words in ((["--worst", "-1"], 2, "--worst"), (["--out", "page.json"], 2, "does not end in .json")):
+                done = skyloop("campaign", "report", self.place, *wrong, check=False)
+                self.assertEqual(done.returncode, code, done.stderr)
+                self.assertIn(words, done.stderr)
+            done = skyloop("campaign", "report", folder, check=False)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("no such file; 'skyloop campaign gather' makes it", done.stderr)
+            (pathlib.Path(folder) / "campaign.sqlite").write_text("no database at all")
+            done = skyloop("campaign", "report", folder, check=False)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1))
 
     def test_ten_thousand_runs_stay_a_page(self):
         with tempfile.TemporaryDirectory(prefix="skyloop-report-") as folder:

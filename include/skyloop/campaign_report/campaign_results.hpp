@@ -17,7 +17,7 @@ namespace skyloop {
 enum class RunStatus { passed, failed, error };
 std::string_view run_status_word(RunStatus status);
 
-struct ReportedRun {
+struct GatheredRun {
     std::string key;
     std::int64_t number = 0;  ///< in the plan
     std::uint64_t seed = 0;
@@ -49,7 +49,7 @@ struct CampaignResults {
     std::string name, program_version, scenario, scenario_digest, campaign_file;
     std::string options;                   ///< of the command line that the campaign was made with, blanks between
     std::optional<std::uint64_t> planned;  ///< nothing when the database does not tell
-    std::vector<ReportedRun> runs;
+    std::vector<GatheredRun> runs;
     std::vector<ReportedParameter> parameters;
     std::vector<ReportedMetric> metrics;
     std::vector<ReportedVerdict> verdicts;

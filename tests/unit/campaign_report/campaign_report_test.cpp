@@ -62,6 +62,13 @@ TEST(CampaignReport, TellsWhatCameOut) {
     EXPECT_THAT(report.text, HasSubstr("campaign three: 3 of 4 runs done, 2 passed, 1 failed, 0 errors"));
 }
 
+TEST(CampaignReport, ReplaysWithTheOptionsOfThePlan) {
+    const Written report = written_with(std::string(test::three_runs) +
+                                        "INSERT INTO meta VALUES ('options', '--seeds 5-20 --vary model.name=a b,c');");
+    EXPECT_EQ(nlohmann::json::parse(report.json)["failed_runs"][0]["replay"],
+              "skyloop campaign replay 'a b.toml' --seeds 5-20 --vary 'model.name=a b,c' --number 2 --out run-2");
+}
+
 TEST(CampaignReport, NamesAsManyWorstRunsAsAreWanted) {
     EXPECT_EQ(nlohmann::json::parse(written_with(test::three_runs, 2).json)["metrics"][0]["worst"].size(), 2u);
     EXPECT_EQ(nlohmann::json::parse(written_with(test::three_runs, 0).json)["metrics"][0]["worst"].size(), 0u);

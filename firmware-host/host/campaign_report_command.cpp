@@ -1,0 +1,27 @@
+#include <fmt/format.h>
+
+#include "campaign_options.hpp"
+#include "run_options.hpp"
+#include "skyloop/campaign_report/campaign_report.hpp"
+
+namespace skyloop::host {
+
+void add_campaign_report_command(CLI::App& campaign, CampaignOptions& options) {
+    CLI::App* report =
+        campaign.add_subcommand("report", "Tell what came of a gathered campaign: a page, JSON and text");
+    report->add_option("folder", options.out, "The campaign's folder")->required();
+    report->add_option("--out", options.page, "The page; default: report.html in that folder");
+    report->add_option("--worst", options.worst, "Runs that each metric names")->check(CLI::Range(0, 10000));
+    add_verbosity_options(*report, options.verbosity);
+}
+
+int report_campaign(const CampaignOptions& options) {
+    const Messages messages(options.verbosity);
+    const auto written = write_campaign_report(options.out, {options.page, options.worst});
+    if (!written) return messages.error(written.error());
+    fmt::print("{}", written->text);
+    messages.info(fmt::format("page: {}; numbers: {}", written->html.string(), written->json.string()));
+    return 0;
+}
+
+}  // namespace skyloop::host
