@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -47,7 +48,8 @@ int spawn_worker(pid_t& process, const std::vector<std::string>& command, int in
 
 Result<WorkerProcess> WorkerProcess::start(const std::vector<std::string>& command) {
     std::array<int, 2> in{-1, -1}, out{-1, -1};
-    if (::pipe2(in.data(), O_CLOEXEC) != 0 || ::pipe2(out.data(), O_CLOEXEC) != 0) {
+    // To a socket one may write without SIGPIPE when nobody listens any more.
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, in.data()) != 0 || ::pipe2(out.data(), O_CLOEXEC) != 0) {
         const int why = errno;
         for (const int end : {in[0], in[1]})
             if (end >= 0) ::close(end);
@@ -92,7 +94,7 @@ bool WorkerProcess::tell(std::string_view line) const {
     std::string text(line);
     text += '\n';
     for (std::string_view rest = text; !rest.empty();) {
-        const ssize_t count = ::write(to_, rest.data(), rest.size());
+        const ssize_t count = ::send(to_, rest.data(), rest.size(), MSG_NOSIGNAL);
         if (count < 0 && errno == EINTR) continue;
         if (count <= 0) return false;
         rest.remove_prefix(static_cast<std::size_t>(count));

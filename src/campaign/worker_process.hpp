@@ -14,8 +14,8 @@
 
 namespace skyloop {
 
-/// A program with a pipe to its standard input and one from its standard output, in a process group of its own, so that
-/// a terminal's Ctrl-C reaches whoever leads it alone. State: the process.
+/// A program with a socket at its standard input and a pipe from its standard output, in a process group of its own, so
+/// that a terminal's Ctrl-C reaches whoever leads it alone. State: the process.
 class WorkerProcess {
 public:
     static Result<WorkerProcess> start(const std::vector<std::string>& command);

@@ -98,7 +98,8 @@ TEST(RunResultTable, RowsComeBackAsTheyWere) {
     EXPECT_EQ(parse_result_header(header).value(), example_columns);
     RunResult lines = example_result(0);
     lines.verdicts[0].detail = "two\nlines";
-    EXPECT_EQ(std::count(result_row(lines).begin(), result_row(lines).end(), '\n'), 1);
+    const std::string row = result_row(lines);
+    EXPECT_EQ(std::count(row.begin(), row.end(), '\n'), 1);
 }
 
 TEST(RunResultTable, MutationsAreReadOrRefused) {
