@@ -1,6 +1,7 @@
 #include "campaign_engines.hpp"
 
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <array>
@@ -124,6 +125,7 @@ int to_kubernetes(const EngineTask& task, const EngineOptions& options, const Me
 int become_script(const std::filesystem::path& script, const Messages& messages) {
     std::string shell = "sh", file = script.string();
     const std::array<char*, 3> words{shell.data(), file.data(), nullptr};
+    ::signal(SIGPIPE, SIG_DFL);  // what is ignored here would be ignored there
     ::execvp(shell.c_str(), words.data());
     return messages.error({ErrorCode::outside, fmt::format("sh: {}", std::strerror(errno))});
 }
