@@ -193,7 +193,7 @@ class CommandLineTest(unittest.TestCase):
             self.assertTrue(summary.exists())
             with Emulator("--record", folder, "--port", f"pty:{folder}/gps0") as emulator:
                 emulator.stop(signal.SIGKILL)
-            self.assertFalse(summary.exists())
+            self.assertFalse(json.loads(summary.read_text())["ended"], "a summary of an end that never came")
 
     def test_a_rate_that_no_receiver_can_do_is_told(self):
         self.assertIn("it runs at 0.01526 Hz", skyloop("check", "--rate", 0.01).stderr)
