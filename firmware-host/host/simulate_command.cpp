@@ -5,6 +5,7 @@
 #include "run_session.hpp"
 #include "run_watch.hpp"
 #include "skyloop/emulator/load_track.hpp"
+#include "skyloop/emulator/wires.hpp"
 
 namespace skyloop::host {
 namespace {
@@ -26,9 +27,11 @@ int simulate(const RunOptions& options) {
     mode.now = wall_clock();
     mode.now_steady_ns = steady_clock_ns();
     mode.record = options.record;
-    // A scenario's pty belongs to a live run; only wires asked for here are opened.
-    mode.open_ports = !options.ports.empty();
-    mode.first_ports_only = true;
+    // A scenario's pty belongs to a live run. Its scripted clients live in simulated time, and wires asked for here are
+    // opened.
+    mode.first_ports_only = !options.ports.empty();
+    mode.open_ports = mode.first_ports_only || has_scripted_client(*scenario);
+    if (mode.open_ports && !mode.first_ports_only) keep_scripted_clients(*scenario);
     if (!options.repeat.empty()) mode.repeat = options.repeat;
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());

@@ -8,20 +8,12 @@
 #include "skyloop/base/spelling.hpp"
 #include "skyloop/campaign/run_metrics.hpp"
 #include "skyloop/emulator/load_track.hpp"
+#include "skyloop/emulator/wires.hpp"
 #include "skyloop/verdict/judge.hpp"
 #include "vehicle_run.hpp"
 
 namespace skyloop {
 namespace {
-
-bool is_client(const std::string& port) { return port.find("client:") != std::string::npos; }
-
-// A receiver without a wire would get a pty; what nobody hears goes nowhere.
-void leave_clients(ReceiverEntry& receiver) {
-    std::erase_if(receiver.ports, [](const std::string& port) { return !is_client(port); });
-    if (receiver.ports.empty()) receiver.ports = {"file:/dev/null"};
-    receiver.power.clear();
-}
 
 bool starts_now(const Scenario& scenario) {
     if (scenario.run.start) return false;
@@ -104,8 +96,9 @@ Result<Scenario> campaign_scenario(const Scenario& asked) {
                                                       "share; expected no state file",
                                                       scenario.name, receiver_name(scenario, i),
                                                       scenario.receivers[i].state_file.string()));
-        leave_clients(scenario.receivers[i]);
+        scenario.receivers[i].power.clear();
     }
+    keep_scripted_clients(scenario);
     if (vehicle) scenario.receivers.front().ports = {"pty"};
     if (vehicle && scenario.run.speed != 1)
         return fail(ErrorCode::usage, fmt::format("{}: run.speed is {}; a vehicle lives in real time, expected 1",

@@ -22,6 +22,20 @@ std::vector<std::string_view> names_of(const std::vector<PortId>& ports) {
     return names;
 }
 
+// Where the name of the port ends; npos: there is none. A path may hold "=" too: it stands behind the colon of its
+// scheme.
+std::size_t end_of_name(std::string_view text) {
+    const std::size_t equals = text.find('=');
+    return equals != std::string_view::npos && text.substr(0, equals).find(':') == std::string_view::npos
+               ? equals
+               : std::string_view::npos;
+}
+
+bool leads_to_client(const std::string& wire) {
+    const std::size_t name = end_of_name(wire);
+    return client_of_uri(name == std::string_view::npos ? wire : wire.substr(name + 1)).has_value();
+}
+
 }  // namespace
 
 firmware::PortId default_port(const BoardProfile& board) {
@@ -36,9 +50,8 @@ UsbFace usb_face(const BoardProfile& board, PortId port) {
 }
 
 Result<WireRequest> parse_wire(std::string_view text, const BoardProfile& board) {
-    // A path may hold "=" too: it stands behind the colon of its scheme.
-    const std::size_t equals = text.find('=');
-    const bool named = equals != std::string_view::npos && text.substr(0, equals).find(':') == std::string_view::npos;
+    const std::size_t equals = end_of_name(text);
+    const bool named = equals != std::string_view::npos;
     WireRequest wire{default_port(board), std::string(named ? text.substr(equals + 1) : text)};
     if (named) {
         const std::string_view name = text.substr(0, equals);
@@ -69,6 +82,19 @@ Result<std::vector<WireRequest>> wires_of(const ReceiverEntry& entry, const Boar
         wires.push_back(std::move(*wire));
     }
     return wires;
+}
+
+bool has_scripted_client(const Scenario& scenario) {
+    return std::any_of(scenario.receivers.begin(), scenario.receivers.end(), [](const ReceiverEntry& receiver) {
+        return std::any_of(receiver.ports.begin(), receiver.ports.end(), leads_to_client);
+    });
+}
+
+void keep_scripted_clients(Scenario& scenario) {
+    for (ReceiverEntry& receiver : scenario.receivers) {
+        std::erase_if(receiver.ports, [](const std::string& port) { return !leads_to_client(port); });
+        if (receiver.ports.empty()) receiver.ports = {"file:/dev/null"};
+    }
 }
 
 }  // namespace skyloop

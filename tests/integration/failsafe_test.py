@@ -67,6 +67,13 @@ class VerdictsTest(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertIn("2 of 2 expectations met", done.stdout)
 
+    def test_a_client_that_the_scenario_plugs_in_is_there(self):
+        port = '[[receiver]]\nboard = "ublox-m8"\nport = ["{}", "uart2=pty:/no/such/folder/gps0"]\n'
+        done = self.simulate(SCENARIO + port.format("client:careful-ubx") + '[[expect]]\nwhat = "client trusts at 59 s"\n')
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("3 of 3 expectations met", done.stdout)
+        self.assertGreater((self.out / "port0.in").stat().st_size, 0)
+
     def test_mistakes_are_told_by_line_and_column(self):
         cases = {
             '[[fault]]\nkind = "outtage"\n': r"quiet.toml:2:\d+: fault.kind: is 'outtage'; did you mean 'outage'",

@@ -32,4 +32,11 @@ Result<WireRequest> parse_wire(std::string_view text, const firmware::BoardProfi
 /// The wires of one receiver, as they were asked for; opens none. Without any in the scenario it is one pty.
 Result<std::vector<WireRequest>> wires_of(const ReceiverEntry& entry, const firmware::BoardProfile& board);
 
+/// Whether a wire leads to a client that lives in simulated time: "client:NAME".
+bool has_scripted_client(const Scenario& scenario);
+
+/// Takes all wires from the receivers but those to scripted clients; a receiver that is left without one writes to
+/// nowhere, where it would get a pty.
+void keep_scripted_clients(Scenario& scenario);
+
 }  // namespace skyloop
