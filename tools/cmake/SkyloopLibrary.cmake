@@ -47,10 +47,10 @@ if(SKYLOOP_FUZZ)
     target_compile_options(skyloop_instruments INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# Under the sanitizers only the folders that compute are optimised: all others read, arrange and speak, take a third less time
-# to compile as they are written, and their tests do not feel it; but for those of feed, which must keep pace with a sender.
-# Fuzzers do.
-set(SKYLOOP_COMPUTING base time geo gnss flow rinex sky scene propagation measurement pvt error_model protocol feed)
+# Under the sanitizers only the folders that compute, and those that run whole simulations in tests, are optimised: all others
+# read, arrange and speak, take a third less time to compile as they are written, and their tests do not feel it. Fuzzers do.
+set(SKYLOOP_COMPUTING base time geo gnss flow rinex sky scene propagation measurement pvt error_model protocol firmware fault feed
+    emulator)
 function(skyloop_optimise target folder)
     if(SKYLOOP_SANITIZE AND NOT SKYLOOP_FUZZ AND NOT folder IN_LIST SKYLOOP_COMPUTING)
         target_compile_options(${target} PRIVATE -O0)
