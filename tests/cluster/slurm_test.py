@@ -144,7 +144,8 @@ class SlurmCampaign(unittest.TestCase):
         self.assertEqual((len(found), {len(rows) for rows in found.values()}), (LONG, {1}))
         for shard in (0, 1):
             log = (out / f"slurm/log/{shard}.txt").read_text()
-            self.assertIn("ended with code 75: back into the queue", log)
+            # The shard's last line may get lost in the end of its job; srun's is of the step, which ended before.
+            self.assertRegex(log, "ended with code 75: back into the queue|Exited with exit code 75")
             self.assertIn(", start 2", log)
         self.assertTrue((out / "campaign.sqlite").exists())
 
