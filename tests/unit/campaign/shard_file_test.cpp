@@ -11,32 +11,14 @@
 
 #include "skyloop/campaign/campaign_database.hpp"
 #include "skyloop/campaign/campaign_folder.hpp"
+#include "unit/transport/temporary_folder.hpp"
 
 namespace skyloop {
 namespace {
 
+using test::TemporaryFolder;
 using testing::AllOf;
 using testing::HasSubstr;
-
-// Gone with the test.
-class TemporaryFolder {
-public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "skyloop-campaign-XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
-        path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code none;
-        std::filesystem::remove_all(path_, none);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
 
 const ResultColumns example_columns{{"run.speed"}, {"fix_share", "horizontal_error_p95_m"}, {"a fix", "no, never"}};
 

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <string>
 
+#include "unit/transport/temporary_folder.hpp"
+
 namespace skyloop::test {
 
 inline constexpr const char* campaign_schema =
@@ -29,8 +31,6 @@ inline constexpr const char* three_runs =
 class SmallDatabase {
 public:
     explicit SmallDatabase(const std::string& statements) {
-        std::string name = (std::filesystem::temp_directory_path() / "skyloop-report-XXXXXX").string();
-        folder_ = mkdtemp(name.data());
         sqlite3* database = nullptr;
         sqlite3_open(path().c_str(), &database);
         char* wrong = nullptr;
@@ -40,15 +40,14 @@ public:
         sqlite3_free(wrong);
         sqlite3_close(database);
     }
-    ~SmallDatabase() { std::filesystem::remove_all(folder_); }
     SmallDatabase(const SmallDatabase&) = delete;
     SmallDatabase& operator=(const SmallDatabase&) = delete;
 
-    [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+    [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
     [[nodiscard]] std::filesystem::path path() const { return folder_ / "campaign.sqlite"; }
 
 private:
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
 };
 
 inline std::string bytes_of(const std::filesystem::path& path) {
