@@ -1,12 +1,11 @@
 #include "skyloop/campaign/campaign_folder.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
+#include "skyloop/base/replace_file.hpp"
 #include "skyloop/base/text_file.hpp"
-#include "skyloop/emulator/output_file.hpp"
 
 namespace skyloop {
 namespace {
@@ -82,16 +81,8 @@ Result<void> keep_campaign(const std::filesystem::path& folder, const OpenedCamp
     if (const auto before = read_text_file(path); before && *before == text) return {};
     std::error_code none;
     std::filesystem::create_directories(folder, none);
-    // Parts on several machines may write it at once; each has a name of its own until it is whole.
-    const std::filesystem::path whole = folder / fmt::format(".{}.{}", plan_name, ::getpid());
-    auto file = OutputFile::create(whole);
-    if (!file) return fail(file.error());
-    file->write(text);
-    file->flush();
-    if (file->failure()) return fail(*file->failure());
-    std::filesystem::rename(whole, path, none);
-    if (none) return fail(ErrorCode::outside, fmt::format("{}: cannot be written: {}", path.string(), none.message()));
-    return {};
+    // Parts on several machines may write it at once.
+    return replace_file(path, text);
 }
 
 Result<KeptCampaign> parse_kept_campaign(std::string_view text, const std::string& name) {

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "skyloop/base/digest.hpp"
+#include "skyloop/base/replace_file.hpp"
 
 namespace skyloop {
 namespace {
@@ -68,18 +69,11 @@ std::optional<CityFile> load_cached(const fs::path& path, std::uint64_t key) {
     return decode_city(bytes, key);
 }
 
-// In one step: another run sees the old file or the new one. Whether it can be done at all does not matter.
+// Whether it can be done at all does not matter.
 void keep_cached(const fs::path& path, const std::string& bytes) {
     std::error_code refused;
     fs::create_directories(path.parent_path(), refused);
-    // Two runs that keep the same city at once write different files.
-    const auto instant = std::chrono::system_clock::now().time_since_epoch().count();
-    const fs::path fresh = fmt::format("{}.{:x}.new", path.string(), instant);
-    std::ofstream stream(fresh, std::ios::binary);
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    stream.close();
-    if (stream) fs::rename(fresh, path, refused);
-    if (!stream || refused) fs::remove(fresh, refused);
+    static_cast<void>(replace_file(path, bytes));
 }
 
 double steady_seconds() {

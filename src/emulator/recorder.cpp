@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "rinex_recording.hpp"
+#include "skyloop/base/replace_file.hpp"
 #include "trace_rows.hpp"
 
 namespace skyloop {
@@ -102,23 +103,8 @@ void Recorder::PortFiles::write_heard() {
 }
 
 void Recorder::record_summary(const std::string& content) {
-    const std::filesystem::path name = folder_ / "run.json", fresh = folder_ / "run.json.new";
-    auto file = OutputFile::create(fresh);
-    if (!file) {
-        summary_failure_ = file.error();
-        return;
-    }
-    file->write(content);
-    file->flush();
-    summary_failure_ = file->failure();
-    std::error_code reason;
-    if (summary_failure_)
-        std::filesystem::remove(fresh, reason);
-    else
-        std::filesystem::rename(fresh, name, reason);
-    if (reason && !summary_failure_)
-        summary_failure_ =
-            Error{ErrorCode::outside, fmt::format("{}: cannot be written: {}", name.string(), reason.message())};
+    const auto replaced = replace_file(folder_ / "run.json", content);
+    summary_failure_ = replaced ? std::nullopt : std::optional(replaced.error());
 }
 
 std::vector<const OutputFile*> Recorder::files() const {

@@ -1,12 +1,9 @@
 #include "skyloop/emulator/state_file.hpp"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <system_error>
 
+#include "skyloop/base/replace_file.hpp"
 #include "skyloop/base/text_file.hpp"
-#include "skyloop/emulator/output_file.hpp"
 
 namespace skyloop {
 namespace {
@@ -31,27 +28,12 @@ bool StateFile::due(GpsTime now) const { return !looked_ || now - *looked_ >= pa
 void StateFile::keep(const std::string& text, GpsTime now) {
     looked_ = now;
     if (text.empty() || text == text_) return;
-    if (const auto replaced = replace(text); !replaced) {
+    if (const auto replaced = replace_file(path_, text); !replaced) {
         failure_ = replaced.error();
         return;
     }
     failure_.reset();
     text_ = text;
-}
-
-Result<void> StateFile::replace(const std::string& text) const {
-    const std::filesystem::path fresh = fmt::format("{}.{}.new", path_.string(), ::getpid());
-    auto file = OutputFile::create(fresh);
-    if (!file) return fail(file.error());
-    file->write(text);
-    file->flush();
-    if (file->failure()) return fail(*file->failure());
-    std::error_code reason;
-    std::filesystem::rename(fresh, path_, reason);
-    if (!reason) return {};
-    std::error_code ignored;
-    std::filesystem::remove(fresh, ignored);
-    return fail(ErrorCode::outside, fmt::format("{}: cannot be replaced: {}", path_.string(), reason.message()));
 }
 
 }  // namespace skyloop

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <system_error>
 
+#include "skyloop/base/replace_file.hpp"
+
 namespace skyloop {
 
 Result<void> write_engine_file(const std::filesystem::path& path, const std::string& text) {
@@ -16,16 +18,7 @@ Result<void> write_engine_file(const std::filesystem::path& path, const std::str
     if (reason)
         return fail(ErrorCode::outside,
                     fmt::format("{}: cannot be made: {}", path.parent_path().string(), reason.message()));
-    std::filesystem::path fresh = path;
-    fresh += ".new";
-    std::ofstream file(fresh, std::ios::binary | std::ios::trunc);
-    file << text;
-    file.close();
-    if (!file) return fail(ErrorCode::outside, fmt::format("{}: cannot be written", fresh.string()));
-    std::filesystem::rename(fresh, path, reason);
-    if (reason)
-        return fail(ErrorCode::outside, fmt::format("{}: cannot be written: {}", path.string(), reason.message()));
-    return {};
+    return replace_file(path, text);
 }
 
 std::optional<int> number_in(const std::filesystem::path& file) {

@@ -31,7 +31,6 @@ public:
 
 private:
     explicit StateFile(std::filesystem::path path) : path_(std::move(path)) {}
-    [[nodiscard]] Result<void> replace(const std::string& text) const;
 
     std::filesystem::path path_;
     std::string text_;

@@ -12,8 +12,7 @@
 
 namespace skyloop {
 
-/// Writes a file under another name and renames it, with its folders where they are missing: whoever reads meets the
-/// old file or the new one, whole. The error has the code `outside`.
+/// replace_file(), with the folders of the file where they are missing. The error has the code `outside`.
 Result<void> write_engine_file(const std::filesystem::path& path, const std::string& text);
 
 /// The number in a small file, such as an exit code; nothing where there is none, or something else.

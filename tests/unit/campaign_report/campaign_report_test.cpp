@@ -153,6 +153,8 @@ TEST(CampaignReport, RefusesAPageThatIsItsOwnNumbersAndAFolderThatIsNotThere) {
     ASSERT_TRUE(elsewhere);
     EXPECT_EQ(elsewhere->json, database.folder() / "b.json");
     EXPECT_FALSE(std::filesystem::exists(database.folder() / "b.html.part"));
+    for (const auto& entry : std::filesystem::directory_iterator(database.folder()))
+        EXPECT_NE(entry.path().extension(), ".new") << "nothing is left beside it";
 }
 
 }  // namespace

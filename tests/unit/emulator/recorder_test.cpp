@@ -199,7 +199,7 @@ TEST(Recorder, ReplacesAFormerRunAndTellsFailures) {
     std::filesystem::remove_all(folder / "run");
     recorder->record_summary("{}\n");
     ASSERT_TRUE(recorder->failure());
-    EXPECT_THAT(recorder->failure()->message, HasSubstr("run.json.new: cannot be written"));
+    EXPECT_THAT(recorder->failure()->message, HasSubstr("run.json: cannot be written"));
 }
 
 TEST(RunSummary, CountsWhatWasRecorded) {

@@ -1,0 +1,16 @@
+/// Writing small files whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "skyloop/base/result.hpp"
+
+namespace skyloop {
+
+/// Puts `content` into a file in one step: whoever reads meets the old file or the whole new one, also where several
+/// write it at once or the program is killed. Fails with `outside`; then the old file stands as it was, and nothing is
+/// left beside it.
+Result<void> replace_file(const std::filesystem::path& path, std::string_view content);
+
+}  // namespace skyloop
