@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "shown_text.hpp"
+#include "skyloop/base/shell_word.hpp"
 
 namespace skyloop {
 namespace {
@@ -39,20 +40,6 @@ bool has_word_of(std::string_view name, const std::array<std::string_view, n>& w
     return std::any_of(words.begin(), words.end(), [&](std::string_view word) { return has_word(name, word); });
 }
 
-bool is_plain(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view("_-./+:=@%,").find(c) != std::string_view::npos;
-}
-
-// As POSIX shells read it: single quotes keep all but themselves.
-std::string shell_word(const std::string& text) {
-    if (!text.empty() && std::all_of(text.begin(), text.end(), is_plain)) return text;
-    std::string quoted = "'";
-    for (const char c : text)
-        quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
-}
-
 // Close to none or all one decimal says too little.
 bool two_decimals(double share) { return (share > 0 && share < 0.01) || (share > 0.99 && share < 1); }
 
@@ -70,7 +57,7 @@ std::string percent_figure_text(double share, int decimals) {
 std::string option_words(const std::string& options) {
     std::string words, value;
     const auto end_value = [&] {
-        if (!value.empty()) words += " " + shell_word(value);
+        if (!value.empty()) words += " " + shell_quoted(value);
         value.clear();
     };
     for (std::size_t at = 0; at < options.size();) {
@@ -78,7 +65,7 @@ std::string option_words(const std::string& options) {
         const std::string word = options.substr(at, end - at);
         if (word.starts_with("--")) {
             end_value();
-            words += " " + shell_word(word);
+            words += " " + shell_quoted(word);
         } else {
             value += (value.empty() ? "" : " ") + word;
         }
@@ -124,7 +111,7 @@ std::optional<std::string> replay_command(const CampaignResults& results, const 
     if (results.scenario.empty()) return std::nullopt;
     // A name that begins with a dash would be read as an option.
     const std::string scenario = (results.scenario[0] == '-' ? "./" : "") + results.scenario;
-    return fmt::format("skyloop campaign replay {}{} --number {} --out run-{}", shell_word(scenario),
+    return fmt::format("skyloop campaign replay {}{} --number {} --out run-{}", shell_quoted(scenario),
                        option_words(results.options), run.number, run.number);
 }
 

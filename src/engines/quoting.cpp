@@ -5,8 +5,6 @@
 namespace skyloop {
 namespace {
 
-constexpr std::string_view plain_in_shell = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:,+@%=";
-
 std::string with_backslashes(std::string_view text, std::string_view before) {
     std::string out;
     for (const char c : text) {
@@ -17,18 +15,6 @@ std::string with_backslashes(std::string_view text, std::string_view before) {
 }
 
 }  // namespace
-
-std::string shell_quoted(std::string_view word) {
-    if (!word.empty() && word.find_first_not_of(plain_in_shell) == std::string_view::npos) return std::string(word);
-    std::string out = "'";
-    for (const char c : word) {
-        if (c == '\'')
-            out += "'\\''";
-        else
-            out += c;
-    }
-    return out + "'";
-}
 
 std::string shell_quoted(const std::vector<std::string>& words) {
     std::string out;

@@ -5,11 +5,9 @@
 #include <string_view>
 #include <vector>
 
-namespace skyloop {
+#include "skyloop/base/shell_word.hpp"
 
-/// One word of a POSIX shell (IEEE Std 1003.1, Shell Command Language, 2.2.2): as it is where nothing in it means
-/// anything to a shell, else between single quotes.
-std::string shell_quoted(std::string_view word);
+namespace skyloop {
 
 /// A command of words that a shell reads back as they were.
 std::string shell_quoted(const std::vector<std::string>& words);
