@@ -92,7 +92,7 @@ void NmeaEpochs::take_time(const std::optional<NmeaTime>& time) {
     // 1 ms: sentences of one epoch may show different numbers of digits.
     if (row_ && std::abs(row_->seconds - seconds) < 1e-3) return;
     finish_row();
-    row_.emplace();
+    row_ = Row{};
     row_->seconds = seconds;
 }
 

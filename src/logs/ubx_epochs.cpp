@@ -111,7 +111,7 @@ bool UbxEpochs::with(const UbxFrameView& frame, Taker&& taker) {
 UbxEpochs::Epoch& UbxEpochs::epoch_at(std::uint32_t itow_ms) {
     if (!epoch_ || epoch_->itow_ms != itow_ms) {
         finish_epoch();
-        epoch_.emplace();
+        epoch_ = Epoch{};
         epoch_->itow_ms = itow_ms;
     }
     return *epoch_;

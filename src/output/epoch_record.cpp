@@ -138,7 +138,8 @@ EpochRecord record_epoch(const EpochSeen& seen, std::string receiver, std::uint6
         return record;
     }
     const firmware::NavigationState& state = seen.reported;
-    EpochRecord::Report& report = record.report.emplace();
+    record.report = EpochRecord::Report{};
+    EpochRecord::Report& report = *record.report;
     report.fix = state.epoch.fix;
     report.satellites_used = report.fix.satellites_used();
     report.fix.satellites.clear();
