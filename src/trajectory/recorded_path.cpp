@@ -69,6 +69,11 @@ struct RecordedPath::Builder {
     void stand(const TrackKnot& at, double until) {
         path.pieces_.push_back({at.time, until - at.time, at.position, PieceCoefficients::Zero()});
     }
+    // After months a nanosecond is less than a step of these numbers.
+    void stand_for_an_instant(const TrackKnot& at) {
+        constexpr double instant_s = 1e-9;
+        stand(at, std::max(at.time + instant_s, std::nextafter(at.time, HUGE_VAL)));
+    }
     void add_stretch(std::span<const TrackKnot> knots) {
         for (std::size_t i = 1; i < knots.size(); ++i) {
             if (contradict(knots[i - 1], knots[i])) ++path.report_.contradictions;
@@ -94,7 +99,6 @@ struct RecordedPath::Builder {
     }
     // When the path begins and after each jump, s.
     std::vector<double> lead_through_rows() {
-        constexpr double instant_s = 1e-9;
         std::vector<TrackKnot> knots = knots_of(track);
         path.pieces_.reserve(knots.size());
         std::vector<double> begins{0};
@@ -106,7 +110,7 @@ struct RecordedPath::Builder {
             if (begin > 0 && track.points[begin].jump) begins.push_back(knots[begin].time);
             add_stretch(stretch);
         }
-        if (path.pieces_.empty() || track.points.back().jump) stand(knots.back(), knots.back().time + instant_s);
+        if (path.pieces_.empty() || track.points.back().jump) stand_for_an_instant(knots.back());
         return begins;
     }
 };

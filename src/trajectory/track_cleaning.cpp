@@ -191,11 +191,13 @@ void spread_coarse_stamps(Track& track) {
 }
 
 void leave_out_repeated(Track& track) {
+    // What a path of 140 years, counted in doubles of seconds, can still tell apart.
+    constexpr Nanoseconds nearest = std::chrono::microseconds(1);
     Touched repeated;
     TrackRows kept;
     kept.reserve(track.points.size());
     for (TrackRow& row : track.points) {
-        if (kept.empty() || row.time > kept.back().time) {
+        if (kept.empty() || row.time - kept.back().time >= nearest) {
             kept.push_back(std::move(row));
         } else {
             repeated.add(row);

@@ -116,6 +116,26 @@ TEST(RecordedPath, CrossesGapsWithoutAJump) {
     }
 }
 
+// After five months a nanosecond is less than half a step of seconds counted in doubles.
+TEST(RecordedPath, IsFiniteAfterMonths) {
+    constexpr double long_s = 14e6;
+    Track track = track_of(circle_of(60, 20), {0, 1, long_s, long_s + 1, long_s + 2}, false);
+    track.points.back().jump = true;
+    const RecordedPath path = path_of(track);
+    for (const double t : {0.0, long_s / 2, long_s + 1.5, long_s + 2, long_s + 3}) {
+        EXPECT_TRUE(local(path, t).allFinite()) << t;
+        EXPECT_TRUE(velocity_at(path, t).allFinite()) << t;
+    }
+    EXPECT_NEAR((local(path, long_s + 2) - circle_of(60, 20)(long_s + 2)).norm(), 0, 1e-3);
+}
+
+TEST(CleanTrack, TakesRowsWithinAMicrosecondForRepeated) {
+    Track track = track_of(circle_of(60, 20), {0, 1, 1 + 4e-7, 2, 2 + 2e-6}, false);
+    ASSERT_TRUE(clean_track(track, Seconds(10)));
+    EXPECT_EQ(track.points.size(), 4u);
+    EXPECT_THAT(track.notes, testing::Contains(testing::HasSubstr("1 rows repeat the time")));
+}
+
 TEST(CleanTrack, TellsWhatItLeavesOut) {
     Track track = track_of(circle_of(60, 20), {0, 1, 1, 2, 1.5, 3}, false);
     for (std::size_t i = 0; i < track.points.size(); ++i)
