@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "passed_places.hpp"
 #include "smooth_step.hpp"
 #include "steered_shape.hpp"
 #include "turn_speed.hpp"
@@ -16,8 +17,6 @@ namespace skyloop {
 namespace {
 
 constexpr double radian_degrees = 180 / std::numbers::pi;
-constexpr double no_turn = 1e-9;     // rad
-constexpr double shortest_m = 1e-3;  // of a leg
 
 struct SteeredLeg {
     double length, heading;
@@ -44,9 +43,7 @@ private:
     Mistake fit_corners();
     Mistake fit_corner(std::size_t i);
     [[nodiscard]] double free_at(std::size_t i) const;
-    void leave_out_same_ground();
     Mistake pass_by();
-    [[nodiscard]] std::vector<std::size_t> turns_that_do_not_fit() const;
     void lay_out();
     void level_climbs();
     [[nodiscard]] double highest_rise(double length) const;
@@ -72,7 +69,7 @@ SteeredPlanner::Mistake SteeredPlanner::measure_legs() {
         const PlannedWaypoint& waypoint = wish_.waypoints[i];
         const Eigen::Vector3d way = wish_.waypoints[i + 1].place - waypoint.place;
         const double length = way.head<2>().norm();
-        if (length < shortest_m)
+        if (length < shortest_leg_m)
             return fmt::format(
                 "from waypoint {} to {} it goes straight up or down, which a {} cannot; expected places "
                 "that are apart on the ground",
@@ -94,9 +91,7 @@ void SteeredPlanner::wish_for_turns() {
         SteeredCorner& corner = corners_[i];
         corner.angle = std::remainder(legs_[i].heading - legs_[i - 1].heading, 2 * std::numbers::pi);
         corner.speed = std::min(legs_[i - 1].speed, legs_[i].speed);
-        if (std::abs(corner.angle) < no_turn) continue;
-        corner.wanted =
-            std::min(wish_.vehicle.corner, tangent_length(turn_at_speed(wish_.vehicle, corner.angle, corner.speed)));
+        corner.wanted = wanted_by_turn(wish_.vehicle, corner.angle, corner.speed);
     }
 }
 
@@ -113,61 +108,16 @@ double SteeredPlanner::free_at(std::size_t i) const {
                      share_of_leg(legs_[i].length, wanted, corners_[i + 1].wanted)});
 }
 
-// Places above one another are one, at the height of the last.
-void SteeredPlanner::leave_out_same_ground() {
-    std::vector<PlannedWaypoint> kept;
-    for (const PlannedWaypoint& waypoint : wish_.waypoints) {
-        const bool same = !kept.empty() && (waypoint.place - kept.back().place).head<2>().norm() < shortest_m;
-        if (!same) kept.push_back(waypoint);
-        kept.back().place.z() = waypoint.place.z();
-        kept.back().speed = waypoint.speed;
-        if (same) kept.back().hold += waypoint.hold;
-    }
-    wish_.waypoints = std::move(kept);
-}
-
-// Of neighbours only the first: without it the turn at the next one is another.
-std::vector<std::size_t> SteeredPlanner::turns_that_do_not_fit() const {
-    std::vector<std::size_t> found;
-    for (std::size_t i = 1; i < last(); ++i) {
-        const SteeredCorner& corner = corners_[i];
-        if (std::abs(corner.angle) < no_turn || (!found.empty() && found.back() + 1 == i)) continue;
-        const double slowest = std::min(slowest_turn(wish_.vehicle), corner.speed);
-        if (tangent_length(turn_at_speed(wish_.vehicle, corner.angle, slowest)) > free_at(i)) found.push_back(i);
-    }
-    return found;
-}
-
 // Leaves out places until every turn fits.
 SteeredPlanner::Mistake SteeredPlanner::pass_by() {
-    std::size_t passed = 0;
-    double farthest = 0;
-    leave_out_same_ground();
-    while (wish_.waypoints.size() > 2) {
-        if (auto mistake = measure_legs()) return mistake;
-        wish_for_turns();
-        const std::vector<std::size_t> unfit = turns_that_do_not_fit();
-        if (unfit.empty()) break;
-        passed += unfit.size();
-        std::vector<PlannedWaypoint> kept;
-        auto next = unfit.begin();
-        for (std::size_t i = 0; i < wish_.waypoints.size(); ++i) {
-            if (next == unfit.end() || *next != i) {
-                kept.push_back(wish_.waypoints[i]);
-                continue;
-            }
-            ++next;
-            farthest = std::max(farthest, distance_from_leg(wish_.waypoints[i].place, wish_.waypoints[i - 1].place,
-                                                            wish_.waypoints[i + 1].place));
-        }
-        wish_.waypoints = std::move(kept);
-        leave_out_same_ground();
-    }
+    leave_out_same_ground(wish_.waypoints);
+    if (auto mistake = measure_legs()) return mistake;
+    const PassedPlaces passed = pass_by_tight_turns(wish_.waypoints, wish_.vehicle);
     if (wish_.waypoints.size() < 2) return "all places lie above one another; expected two that are apart";
-    if (passed > 0)
+    if (passed.count > 0)
         notes_.add(fmt::format(
             "{} places are passed by, up to {:.1f} m from the way between those beside them: a {} cannot turn there",
-            passed, farthest, vehicle_name(wish_.vehicle.kind)));
+            passed.count, passed.farthest, vehicle_name(wish_.vehicle.kind)));
     return std::nullopt;
 }
 

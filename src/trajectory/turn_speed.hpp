@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "skyloop/trajectory/planar_curve.hpp"
@@ -17,6 +18,14 @@ inline TurnShape turn_at_speed(const VehicleLimits& vehicle, double angle, doubl
     turn.radius = std::max({speed * speed / vehicle.lateral, vehicle.radius, 1e-3});
     turn.ramp = std::max(speed * vehicle.turn_ramp, least_ramp * turn.radius);
     return turn;
+}
+
+inline constexpr double no_turn = 1e-9;  // rad
+
+// How far before its corner a turn would like to begin, m.
+inline double wanted_by_turn(const VehicleLimits& vehicle, double angle, double speed) {
+    if (std::abs(angle) < no_turn) return 0;
+    return std::min(vehicle.corner, tangent_length(turn_at_speed(vehicle, angle, speed)));
 }
 
 inline double slowest_turn(const VehicleLimits& vehicle) { return std::max(vehicle.slowest, 0.1); }

@@ -31,6 +31,8 @@ struct SpeedSection {
 };
 void make_speeds_reachable(const std::vector<SpeedSection>& sections, std::vector<double>& stations);
 
+inline constexpr double shortest_leg_m = 1e-3;
+
 // How far the turns at both ends of a leg may reach into it, when they would like `first` and `last`.
 double share_of_leg(double length, double wanted, double wanted_by_other);
 
