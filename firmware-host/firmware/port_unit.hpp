@@ -1,8 +1,10 @@
 /// One port of a receiver with everything that belongs to it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "firmware/board_profile.hpp"
@@ -21,6 +23,16 @@ inline StreamSplitter command_splitter() {
     return StreamSplitter(protocols);
 }
 
+/// The periodic messages that the configuration lets out of a port.
+struct ConfiguredMessages {
+    struct Message {
+        UbxMessageId id;
+        std::uint64_t every = 1;  ///< epochs
+    };
+    std::vector<Message> messages;
+    std::optional<std::uint64_t> revision;  ///< of the configuration that was read; nothing: none yet
+};
+
 /// Both directions of one port, and what is counted of them.
 struct PortUnit {
     PortUnit(PortId port, std::uint32_t baud, std::uint32_t buffer_bytes) : id(port), transmit(baud, buffer_bytes) {
@@ -32,6 +44,7 @@ struct PortUnit {
     PortStatus status;
     GpsTime last_input{};
     std::uint32_t configured_baud = 0;  ///< to which it has been told to go
+    ConfiguredMessages configured;
 };
 
 /// The one of that name, or null.

@@ -87,7 +87,9 @@ private:
     void send(PortId port, const std::vector<Bytes>& messages, GpsTime now);
     void send_text(int level, const std::string& text, GpsTime now);
     void send_epoch(const NavigationState& state, GpsTime now);
-    [[nodiscard]] std::vector<Bytes> due_messages(PortId port, const NavigationState& state, EpochMessages& made) const;
+    void read_configured_messages(PortUnit& unit) const;
+    [[nodiscard]] std::vector<Bytes> due_messages(PortUnit& unit, const NavigationState& state,
+                                                  EpochMessages& made) const;
     [[nodiscard]] bool lets_out(PortId port, UbxMessageId message) const;
     [[nodiscard]] GpsTime burst_time(GpsTime epoch);
     void tell_antenna_status(const NavigationState& state, GpsTime now);

@@ -166,7 +166,7 @@ void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {
     look_at_ports();
     EpochMessages made(context(PortId::uart1, state));
     for (PortUnit& unit : units_) {
-        const std::vector<Bytes> messages = due_messages(unit.id, state, made);
+        const std::vector<Bytes> messages = due_messages(unit, state, made);
         if (unit.id == PortId::uart1)
             send(unit.id, make_protocol_messages(board_.personality, context(unit.id, state)), now);
         const std::uint64_t dropped = counters_.messages_dropped;
@@ -178,13 +178,24 @@ void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {
     tell_antenna_status(state, now);
 }
 
-std::vector<Bytes> Receiver::Core::due_messages(PortId port, const NavigationState& state, EpochMessages& made) const {
-    std::vector<Bytes> due;
+// A receiver has hundreds of messages and sends a few: the others are not looked up again each epoch.
+void Receiver::Core::read_configured_messages(PortUnit& unit) const {
+    if (unit.configured.revision == store_.revision()) return;
+    unit.configured = {{}, store_.revision()};
     for (const UbxMessageId message : board_.messages) {
-        const int rate = store_.rate(message, port);
-        const bool wanted = rate > 0 && !faults_.withheld.contains(message);
-        if (!wanted || state.epoch_index % static_cast<std::uint64_t>(rate) != 0 || !lets_out(port, message)) continue;
-        const std::vector<Bytes>& messages = made.of(message, port);
+        const int rate = store_.rate(message, unit.id);
+        if (rate > 0 && lets_out(unit.id, message))
+            unit.configured.messages.push_back({message, static_cast<std::uint64_t>(rate)});
+    }
+}
+
+std::vector<Bytes> Receiver::Core::due_messages(PortUnit& unit, const NavigationState& state,
+                                                EpochMessages& made) const {
+    read_configured_messages(unit);
+    std::vector<Bytes> due;
+    for (const auto& [message, every] : unit.configured.messages) {
+        if (faults_.withheld.contains(message) || state.epoch_index % every != 0) continue;
+        const std::vector<Bytes>& messages = made.of(message, unit.id);
         due.insert(due.end(), messages.begin(), messages.end());
     }
     return due;
