@@ -1,9 +1,13 @@
 #include "trace_rows.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <string_view>
 
+#include "skyloop/base/fixed_text.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/gnss/constants.hpp"
 #include "skyloop/time/utc_time.hpp"
@@ -13,15 +17,53 @@ namespace {
 
 std::string utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced())); }
 
-void append_solution(fmt::memory_buffer& row, const Trace& trace) {
+// Fields of a file of comma-separated values, some of which have a row for each satellite and epoch of a run.
+class CsvRows {
+public:
+    CsvRows& text(std::string_view field) {
+        text_.append(field);
+        text_.push_back(',');
+        return *this;
+    }
+    CsvRows& number(double value, int decimals) {
+        append_fixed(text_, value, decimals);
+        text_.push_back(',');
+        return *this;
+    }
+    CsvRows& number(const std::optional<double>& value, int decimals) {
+        return value ? number(*value, decimals) : nothing();
+    }
+    CsvRows& whole(std::uint64_t value) {
+        fmt::format_to(std::back_inserter(text_), FMT_COMPILE("{},"), value);
+        return *this;
+    }
+    CsvRows& nothing(std::size_t fields = 1) {
+        text_.append(fields, ',');
+        return *this;
+    }
+    void end_row() { text_.back() = '\n'; }
+    [[nodiscard]] std::string take() { return std::move(text_); }
+
+private:
+    std::string text_;
+};
+
+void append_solution(CsvRows& row, const Trace& trace) {
     const Fix& fix = trace.epoch.fix;
-    const auto out = std::back_inserter(row);
     const Eigen::Vector3d error = LocalFrame(trace.truth.geodetic).to_enu(to_ecef(fix.position)).vector();
-    fmt::format_to(out, "{:.9f},{:.9f},{:.4f},{:.4f},{:.4f},{:.4f},", fix.position.latitude.deg(),
-                   fix.position.longitude.deg(), fix.position.height.above_ellipsoid.value(), error.x(), error.y(),
-                   error.z());
-    fmt::format_to(out, "{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},", fix.velocity.north, fix.velocity.east, fix.velocity.down,
-                   fix.speed.value(), fix.course.deg());
+    row.number(fix.position.latitude.deg(), 9).number(fix.position.longitude.deg(), 9);
+    row.number(fix.position.height.above_ellipsoid.value(), 4);
+    row.number(error.x(), 4).number(error.y(), 4).number(error.z(), 4);
+    row.number(fix.velocity.north, 4).number(fix.velocity.east, 4).number(fix.velocity.down, 4);
+    row.number(fix.speed.value(), 4).number(fix.course.deg(), 4);
+}
+
+void append_quality(CsvRows& row, const Fix& fix) {
+    for (const double dilution : {fix.dop.gdop, fix.dop.pdop, fix.dop.hdop, fix.dop.vdop, fix.dop.tdop})
+        row.number(dilution, 3);
+    row.number(fix.horizontal_accuracy.value(), 3).number(fix.vertical_accuracy.value(), 3);
+    row.number(fix.speed_accuracy.value(), 3).number(fix.time_accuracy.value(), 3);
+    row.number(fix.clock_bias.value(), 4);
 }
 
 // The first of `items`, which ascend by satellite, that is of `id`.
@@ -45,27 +87,26 @@ std::optional<double> ideal_pseudorange(const SatelliteInView& sky, const Arriva
            arrival.excess_path.value();
 }
 
-void append_arrival(fmt::memory_buffer& rows, const SatelliteInView& sky, const Arrival& arrival) {
-    const auto out = std::back_inserter(rows);
-    fmt::format_to(out, "{:.4f},{:.4f},{:.4f},{},{},{:.4f},{:.4f},{:.4f},{:.5f},{:.5f},{:.5f},", sky.azimuth.deg(),
-                   sky.elevation.deg(), sky.range.value(), arrival.line_of_sight ? 1 : 0, arrival.paths,
-                   arrival.excess_path.value(), arrival.iono_delay.value(), arrival.tropo_delay.value(),
-                   arrival.gas_loss.value(), arrival.cloud_loss.value(), arrival.rain_loss.value());
-    if (arrival.cn0) fmt::format_to(out, "{:.2f}", arrival.cn0->value());
-    rows.push_back(',');
+void append_arrival(CsvRows& rows, const SatelliteInView& sky, const Arrival& arrival) {
+    rows.number(sky.azimuth.deg(), 4).number(sky.elevation.deg(), 4).number(sky.range.value(), 4);
+    rows.text(arrival.line_of_sight ? "1" : "0").whole(static_cast<std::uint64_t>(arrival.paths));
+    rows.number(arrival.excess_path.value(), 4).number(arrival.iono_delay.value(), 4);
+    rows.number(arrival.tropo_delay.value(), 4).number(arrival.gas_loss.value(), 5);
+    rows.number(arrival.cloud_loss.value(), 5).number(arrival.rain_loss.value(), 5);
+    arrival.cn0 ? rows.number(arrival.cn0->value(), 2) : rows.nothing();
 }
 
-void append_errors(fmt::memory_buffer& rows, const Arrival& arrival, const SignalTerms* terms) {
-    const auto out = std::back_inserter(rows);
-    fmt::format_to(out, "{:.4f},", arrival.signal_in_space_error.value());
-    if (terms)
-        fmt::format_to(out, "{:.4f},{:.4f},{:.5f},{:.4f},", terms->multipath.value(), terms->code_noise.value(),
-                       terms->phase_noise.value(), terms->doppler_noise.value());
-    else
-        fmt::format_to(out, ",,,,");
-    fmt::format_to(out, "{:.3f},{:.3f},{:.3f},{:.3f},{:.4f},{:.4f},", arrival.foliage_loss.value(),
-                   arrival.antenna_gain.value(), arrival.power_offset.value(), arrival.interference_loss.value(),
-                   arrival.amplitude_scintillation, arrival.phase_scintillation.rad());
+void append_errors(CsvRows& rows, const Arrival& arrival, const SignalTerms* terms) {
+    rows.number(arrival.signal_in_space_error.value(), 4);
+    if (terms) {
+        rows.number(terms->multipath.value(), 4).number(terms->code_noise.value(), 4);
+        rows.number(terms->phase_noise.value(), 5).number(terms->doppler_noise.value(), 4);
+    } else {
+        rows.nothing(4);
+    }
+    rows.number(arrival.foliage_loss.value(), 3).number(arrival.antenna_gain.value(), 3);
+    rows.number(arrival.power_offset.value(), 3).number(arrival.interference_loss.value(), 3);
+    rows.number(arrival.amplitude_scintillation, 4).number(arrival.phase_scintillation.rad(), 4);
 }
 
 }  // namespace
@@ -74,45 +115,35 @@ std::string fix_row(const Trace& trace) {
     const Fix& fix = trace.epoch.fix;
     const Geodetic& truth = trace.truth.geodetic;
     const WeekAndTow gps = week_and_tow(trace.truth.time);
-    fmt::memory_buffer row;
-    const auto out = std::back_inserter(row);
-    fmt::format_to(out, "{},{},{:.3f},{:.9f},{:.9f},{:.4f},", utc_text(trace.truth.time), gps.week, gps.tow_seconds(),
-                   truth.latitude.deg(), truth.longitude.deg(), truth.height.above_ellipsoid.value());
-    if (fix.has_position())
-        append_solution(row, trace);
-    else
-        fmt::format_to(out, ",,,,,,,,,,,");
-    fmt::format_to(out, "{},{},{},", fix_type_name(fix.type), fix.satellites_used(), trace.sky.satellites.size());
-    if (fix.has_position())
-        fmt::format_to(out, "{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.4f},", fix.dop.gdop,
-                       fix.dop.pdop, fix.dop.hdop, fix.dop.vdop, fix.dop.tdop, fix.horizontal_accuracy.value(),
-                       fix.vertical_accuracy.value(), fix.speed_accuracy.value(), fix.time_accuracy.value(),
-                       fix.clock_bias.value());
-    else
-        fmt::format_to(out, ",,,,,,,,,,");
-    fmt::format_to(out, "{:.4f}\n", trace.measurement.clock_bias.value());
-    return fmt::to_string(row);
+    CsvRows row;
+    row.text(utc_text(trace.truth.time)).whole(static_cast<std::uint64_t>(gps.week)).number(gps.tow_seconds(), 3);
+    row.number(truth.latitude.deg(), 9).number(truth.longitude.deg(), 9);
+    row.number(truth.height.above_ellipsoid.value(), 4);
+    fix.has_position() ? append_solution(row, trace) : void(row.nothing(11));
+    row.text(fix_type_name(fix.type)).whole(static_cast<std::uint64_t>(fix.satellites_used()));
+    row.whole(trace.sky.satellites.size());
+    fix.has_position() ? append_quality(row, fix) : void(row.nothing(10));
+    row.number(trace.measurement.clock_bias.value(), 4).end_row();
+    return row.take();
 }
 
 std::string satellite_rows(const Trace& trace) {
     const std::string time = utc_text(trace.truth.time);
     const bool measured = !trace.epoch.observations.signals.empty();
-    fmt::memory_buffer rows;
+    CsvRows rows;
     for (std::size_t i = 0; i < trace.sky.satellites.size(); ++i) {
         const SatelliteInView& sky = trace.sky.satellites[i];
         const Arrival& arrival = trace.arrivals.satellites[i];
         const SatelliteStatus* status = find_satellite(trace.epoch.fix.satellites, sky.id, &SatelliteStatus::id);
-        const auto out = std::back_inserter(rows);
-        fmt::format_to(out, "{},{},", time, to_string(sky.id));
+        rows.text(time).text(to_string(sky.id));
         append_arrival(rows, sky, arrival);
-        const auto pseudorange = measured ? measured_pseudorange(trace, sky.id) : ideal_pseudorange(sky, arrival);
-        if (pseudorange) fmt::format_to(out, "{:.4f}", *pseudorange);
-        fmt::format_to(out, ",{},", status && status->used ? 1 : 0);
+        rows.number(measured ? measured_pseudorange(trace, sky.id) : ideal_pseudorange(sky, arrival), 4);
+        rows.text(status && status->used ? "1" : "0");
         append_errors(rows, arrival, find_satellite(trace.measurement.signals, sky.id, &SignalTerms::satellite));
-        if (status && status->residual) fmt::format_to(out, "{:.4f}", status->residual->value());
-        rows.push_back('\n');
+        status && status->residual ? rows.number(status->residual->value(), 4) : rows.nothing();
+        rows.end_row();
     }
-    return fmt::to_string(rows);
+    return rows.take();
 }
 
 }  // namespace skyloop

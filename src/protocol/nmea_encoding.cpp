@@ -1,5 +1,6 @@
 #include "nmea_encoding.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,8 +29,9 @@ void add_coordinate(Sentence& sentence, double degrees, int degree_digits, std::
 std::int64_t power_of_ten(int decimals) { return powers_of_ten[static_cast<std::size_t>(std::clamp(decimals, 0, 9))]; }
 
 std::string time_text(const NmeaTime& time, int decimals) {
-    std::string text = fmt::format("{:02}{:02}{:02}", time.hour, time.minute, time.second);
-    if (decimals > 0) text += fmt::format(".{:09}", time.nanosecond).substr(0, static_cast<std::size_t>(decimals) + 1);
+    std::string text = fmt::format(FMT_COMPILE("{:02}{:02}{:02}"), time.hour, time.minute, time.second);
+    if (decimals > 0)
+        text += fmt::format(FMT_COMPILE(".{:09}"), time.nanosecond).substr(0, static_cast<std::size_t>(decimals) + 1);
     return text;
 }
 

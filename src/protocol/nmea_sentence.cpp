@@ -1,9 +1,12 @@
 #include "skyloop/protocol/nmea_sentence.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "skyloop/base/fixed_text.hpp"
 
 namespace skyloop {
 namespace {
@@ -39,7 +42,8 @@ std::uint8_t nmea_checksum(std::string_view body) {
 
 std::string fixed_decimals(double value, int decimals) {
     if (!std::isfinite(value)) return {};
-    std::string text = fmt::format("{:.{}f}", value, decimals);
+    std::string text;
+    append_fixed(text, value, decimals);
     if (text.front() == '-' && text.find_first_of("123456789") == std::string::npos) text.erase(0, 1);
     return text;
 }
@@ -57,7 +61,7 @@ Sentence& Sentence::empty(int count) {
     return *this;
 }
 
-std::string Sentence::finish() const { return fmt::format("${}*{:02X}\r\n", body_, nmea_checksum(body_)); }
+std::string Sentence::finish() const { return fmt::format(FMT_COMPILE("${}*{:02X}\r\n"), body_, nmea_checksum(body_)); }
 
 std::string_view SentenceView::talker() const { return address.substr(0, address.starts_with('P') ? 1 : 2); }
 

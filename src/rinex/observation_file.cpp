@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "header_text.hpp"
+#include "skyloop/base/fixed_text.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
@@ -19,9 +20,11 @@ constexpr std::size_t observation_width = 16;  // F14.3 and the two digits
 
 // F14.3, blank where the number does not fit; zero without a sign.
 std::string three_decimals(double value) {
-    const std::string text = fmt::format("{:14.3f}", value);
-    if (text.size() != 14 || !std::isfinite(value)) return std::string(14, ' ');
-    return text == "        -0.000" ? "         0.000" : text;
+    std::string text;
+    append_fixed(text, value, 3);
+    if (text.size() > 14 || !std::isfinite(value)) return std::string(14, ' ');
+    if (text == "-0.000") text.erase(0, 1);
+    return text.insert(0, 14 - text.size(), ' ');
 }
 
 // C/N0 in steps of 6 dB (RINEX 3.04, table 9).
