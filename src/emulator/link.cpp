@@ -3,18 +3,19 @@
 #include <algorithm>
 #include <utility>
 
+#include "skyloop/base/line_format.hpp"
+
 namespace skyloop {
 namespace {
 
 constexpr std::uint32_t any_baud = 9600;    // of a garbler that is never used
 constexpr std::size_t driver_bytes = 4096;  // of input, as a terminal's driver holds (N_TTY_BUF_SIZE of Linux)
 constexpr std::int64_t second_in_ns = 1'000'000'000;
-constexpr std::int64_t bits_of_byte = 10;            // start, eight data, stop
 constexpr std::int64_t usb_bits_per_s = 12'000'000;  // full speed (USB 2.0, section 4.2.1)
 
 // Rounded up: at the end of it the stop bit has come whole.
 Nanoseconds byte_time(PortSpeed speed) {
-    const std::int64_t bits = speed ? bits_of_byte : 8;
+    const std::int64_t bits = speed ? SerialFormat{}.bits_per_byte() : 8;
     const std::int64_t rate = speed ? std::max<std::int64_t>(*speed, 1) : usb_bits_per_s;
     return Nanoseconds((bits * second_in_ns + rate - 1) / rate);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "recorded_numbers.hpp"
+#include "skyloop/base/line_format.hpp"
 #include "skyloop/base/text_file.hpp"
 
 namespace skyloop {
@@ -81,14 +82,14 @@ Result<std::vector<RecordedPort>> read_recorded_output(const std::filesystem::pa
 }
 
 RecordedPort paced_output(Bytes bytes, std::uint32_t baud) {
-    constexpr std::size_t bits_of_byte = 10;  // start, eight data, stop
-    const std::size_t a_millisecond = std::max<std::size_t>(baud / (bits_of_byte * 1000), 1);
+    constexpr std::size_t bits = SerialFormat{}.bits_per_byte();
+    const std::size_t a_millisecond = std::max<std::size_t>(baud / (bits * 1000), 1);
     RecordedPort port;
     port.bytes = std::move(bytes);
     for (std::size_t at = 0; at < port.bytes.size(); at += a_millisecond) {
         const std::size_t length = std::min(a_millisecond, port.bytes.size() - at);
         // Below 2^63 for all that memory can hold: 2^30 bytes at 1 bit/s are 10^19 ns, so in floating point.
-        const double seconds = static_cast<double>((at + length) * bits_of_byte) / static_cast<double>(baud);
+        const double seconds = static_cast<double>((at + length) * bits) / static_cast<double>(baud);
         port.writes.push_back({Nanoseconds(std::llround(seconds * 1e9)), at, length});
     }
     return port;

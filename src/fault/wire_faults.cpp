@@ -7,11 +7,10 @@
 
 #include "catalogue_parts.hpp"
 #include "firmware/start_kind.hpp"
+#include "skyloop/base/line_format.hpp"
 
 namespace skyloop {
 namespace {
-
-constexpr double wire_bits_of_byte = 10;  // 8N1: start, eight data, stop
 
 using MakeWireFault = std::function<Result<Fault>(const Parameters&, const FaultContext&)>;
 // Worsens one direction by a strength from 0 to 1.
@@ -85,7 +84,7 @@ Result<Fault> make_saturation(const Parameters& parameters, const FaultContext&)
     const auto bytes_per_s = parameters.optional_number("bytes_per_s"), baud = parameters.optional_number("baud");
     if (bytes_per_s && baud)
         return fail(ErrorCode::usage, "saturated_uart: bytes_per_s and baud are given; expected one of them");
-    const double rate = bytes_per_s.value_or(baud.value_or(9600) / wire_bits_of_byte);
+    const double rate = bytes_per_s.value_or(baud.value_or(9600) / SerialFormat{}.bits_per_byte());
     return worsened(parameters, [rate](WireDirection& direction, const FaultMoment& moment) {
         const double limit = rate / moment.strength;
         direction.bytes_per_s = std::min(direction.bytes_per_s.value_or(limit), limit);
