@@ -58,11 +58,18 @@ def count_results(out, shard="*"):
     return sum(max(0, path.read_bytes().count(b"\n") - 1) for path in result_files(out, shard))
 
 
+def report(out):
+    """The page and the numbers of a campaign's report."""
+    subprocess.run([SKYLOOP, "campaign", "report", str(out)], check=True, capture_output=True, timeout=120)
+    return [pathlib.Path(out, name).read_bytes() for name in ("report.html", "report.json")]
+
+
 def expect_same(case, one, other, runs):
-    """Every run's result exactly once in both, and the same, to the byte of the database."""
+    """Every run's result exactly once in both, and the same, to the bytes of the database and of the report."""
     ours, theirs = results(one), results(other)
     case.assertEqual(len(ours), runs)
     case.assertEqual({key: len(rows) for key, rows in ours.items() if len(rows) != 1}, {})
     case.assertEqual(ours, theirs)
     case.assertEqual((pathlib.Path(one) / "campaign.sqlite").read_bytes(),
                      (pathlib.Path(other) / "campaign.sqlite").read_bytes())
+    case.assertEqual(report(one), report(other))
