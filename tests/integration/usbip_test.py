@@ -266,8 +266,9 @@ class UsbipTest(unittest.TestCase):
         self.assertEqual([later - earlier for earlier, later in zip(times, times[1:])], [1.0] * (len(times) - 1), "no gap")
 
     def test_an_hour_of_simulated_data(self):
+        # 45 kB/s: a host that does not come to its turn for a third of a second, beside compilers, loses none of them.
         with open_folder() as folder:
-            with self.emulator("--record", folder, "--duration", 3600, "--speed", 240, "--wait-for-client") as emulator:
+            with self.emulator("--record", folder, "--duration", 3600, "--speed", 80, "--wait-for-client") as emulator:
                 with Host(emulator.tty) as host:
                     host.enumerate()
                     host.open()
