@@ -147,8 +147,8 @@ void FlyThroughPlanner::share_legs() {
         FlownCorner& corner = corners_[i];
         if (corner.speed == 0 || corner.half_sine < no_corner) continue;
         // A fifth of each leg stays straight, so that there is room to gather speed.
-        corner.cut = std::min(share_of_leg(0.8 * legs_[i - 1].length, corner.wanted_cut, corners_[i - 1].wanted_cut),
-                              share_of_leg(0.8 * legs_[i].length, corner.wanted_cut, corners_[i + 1].wanted_cut));
+        corner.cut = room_for_turn(corner.wanted_cut, {0.8 * legs_[i - 1].length, corners_[i - 1].wanted_cut},
+                                   {0.8 * legs_[i].length, corners_[i + 1].wanted_cut});
         const double d = corner.cut, s = corner.half_sine;
         corner.speed =
             std::min({corner.speed, std::sqrt(v.lateral * d / (1.5 * s)), std::cbrt(v.along.jerk * d * d / (3 * s))});

@@ -87,8 +87,8 @@ bool TightTurns::fits(std::size_t i) const {
     const Place& place = places_[i];
     if (std::abs(place.angle) < no_turn) return true;
     const Place &before = places_[place.before], &after = places_[place.after];
-    const double free = std::min({vehicle_.corner, share_of_leg(before.length, place.wanted, before.wanted),
-                                  share_of_leg(place.length, place.wanted, after.wanted)});
+    const double room = room_for_turn(place.wanted, {before.length, before.wanted}, {place.length, after.wanted});
+    const double free = std::min(vehicle_.corner, room);
     const double slowest = std::min(slowest_turn(vehicle_), place.speed);
     return tangent_length(turn_at_speed(vehicle_, place.angle, slowest)) <= free;
 }

@@ -103,9 +103,9 @@ SteeredPlanner::Mistake SteeredPlanner::fit_corners() {
 }
 
 double SteeredPlanner::free_at(std::size_t i) const {
-    const double wanted = corners_[i].wanted;
-    return std::min({wish_.vehicle.corner, share_of_leg(legs_[i - 1].length, wanted, corners_[i - 1].wanted),
-                     share_of_leg(legs_[i].length, wanted, corners_[i + 1].wanted)});
+    return std::min(wish_.vehicle.corner,
+                    room_for_turn(corners_[i].wanted, {legs_[i - 1].length, corners_[i - 1].wanted},
+                                  {legs_[i].length, corners_[i + 1].wanted}));
 }
 
 // Leaves out places until every turn fits.

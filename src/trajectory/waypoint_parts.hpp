@@ -33,8 +33,13 @@ void make_speeds_reachable(const std::vector<SpeedSection>& sections, std::vecto
 
 inline constexpr double shortest_leg_m = 1e-3;
 
-// How far the turns at both ends of a leg may reach into it, when they would like `first` and `last`.
-double share_of_leg(double length, double wanted, double wanted_by_other);
+// A leg as the turn at one of its ends finds it, m.
+struct LegOfTurn {
+    double length, wanted_by_other;  // by the turn at its other end
+};
+// How far a turn that would like `wanted` of both its legs may reach into them, m: where the turns at both ends of a
+// leg would like more than there is, each has its part.
+double room_for_turn(double wanted, const LegOfTurn& before, const LegOfTurn& after);
 
 // Of a place from the straight way between two others, m.
 double distance_from_leg(const Eigen::Vector3d& place, const Eigen::Vector3d& from, const Eigen::Vector3d& to);

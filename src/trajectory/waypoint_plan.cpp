@@ -39,9 +39,12 @@ void make_speeds_reachable(const std::vector<SpeedSection>& sections, std::vecto
         stations[i] = std::min(stations[i], fastest_after(stations[i + 1], sections[i].length, sections[i].limits));
 }
 
-double share_of_leg(double length, double wanted, double wanted_by_other) {
-    const double sum = wanted + wanted_by_other;
-    return sum <= length ? wanted : length * wanted / sum;
+double room_for_turn(double wanted, const LegOfTurn& before, const LegOfTurn& after) {
+    const auto share_of = [&](const LegOfTurn& leg) {
+        const double sum = wanted + leg.wanted_by_other;
+        return sum <= leg.length ? wanted : leg.length * wanted / sum;
+    };
+    return std::min(share_of(before), share_of(after));
 }
 
 double distance_from_leg(const Eigen::Vector3d& place, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
