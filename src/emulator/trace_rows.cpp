@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <concepts>
 #include <optional>
 #include <string_view>
 
@@ -33,7 +34,7 @@ public:
     CsvRows& number(const std::optional<double>& value, int decimals) {
         return value ? number(*value, decimals) : nothing();
     }
-    CsvRows& whole(std::uint64_t value) {
+    CsvRows& whole(std::integral auto value) {
         fmt::format_to(std::back_inserter(text_), FMT_COMPILE("{},"), value);
         return *this;
     }
@@ -89,7 +90,7 @@ std::optional<double> ideal_pseudorange(const SatelliteInView& sky, const Arriva
 
 void append_arrival(CsvRows& rows, const SatelliteInView& sky, const Arrival& arrival) {
     rows.number(sky.azimuth.deg(), 4).number(sky.elevation.deg(), 4).number(sky.range.value(), 4);
-    rows.text(arrival.line_of_sight ? "1" : "0").whole(static_cast<std::uint64_t>(arrival.paths));
+    rows.text(arrival.line_of_sight ? "1" : "0").whole(arrival.paths);
     rows.number(arrival.excess_path.value(), 4).number(arrival.iono_delay.value(), 4);
     rows.number(arrival.tropo_delay.value(), 4).number(arrival.gas_loss.value(), 5);
     rows.number(arrival.cloud_loss.value(), 5).number(arrival.rain_loss.value(), 5);
@@ -116,11 +117,11 @@ std::string fix_row(const Trace& trace) {
     const Geodetic& truth = trace.truth.geodetic;
     const WeekAndTow gps = week_and_tow(trace.truth.time);
     CsvRows row;
-    row.text(utc_text(trace.truth.time)).whole(static_cast<std::uint64_t>(gps.week)).number(gps.tow_seconds(), 3);
+    row.text(utc_text(trace.truth.time)).whole(gps.week).number(gps.tow_seconds(), 3);
     row.number(truth.latitude.deg(), 9).number(truth.longitude.deg(), 9);
     row.number(truth.height.above_ellipsoid.value(), 4);
     fix.has_position() ? append_solution(row, trace) : void(row.nothing(11));
-    row.text(fix_type_name(fix.type)).whole(static_cast<std::uint64_t>(fix.satellites_used()));
+    row.text(fix_type_name(fix.type)).whole(fix.satellites_used());
     row.whole(trace.sky.satellites.size());
     fix.has_position() ? append_quality(row, fix) : void(row.nothing(10));
     row.number(trace.measurement.clock_bias.value(), 4).end_row();
