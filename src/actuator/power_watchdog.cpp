@@ -42,6 +42,9 @@ void leave_the_program(int socket) {
     const int nowhere = ::open("/dev/null", O_RDWR);
     ::dup2(nowhere, STDIN_FILENO);
     ::dup2(nowhere, STDOUT_FILENO);
+    // Not left to close_range(2), which a library that follows close(2) does not see: umockdev would go on to take the
+    // next file of this number for it, and close another one with it.
+    if (nowhere > STDERR_FILENO) ::close(nowhere);
     constexpr int kept = 3;
     ::dup2(socket, kept);
     ::close_range(kept + 1, ~0U, 0);
