@@ -21,9 +21,9 @@ def skip(reason):
     sys.exit(SKIPPED)
 
 
-def skyloop(*arguments, check=True):
+def skyloop(*arguments, check=True, patience=120):
     """Runs the program to its end; gives the finished process with its text."""
-    done = subprocess.run([SKYLOOP, *map(str, arguments)], capture_output=True, text=True, timeout=120)
+    done = subprocess.run([SKYLOOP, *map(str, arguments)], capture_output=True, text=True, timeout=patience)
     if check and done.returncode != 0:
         raise AssertionError(f"skyloop {' '.join(map(str, arguments))} ended {done.returncode}: {done.stderr}")
     return done
@@ -52,9 +52,10 @@ class Emulator:
                 self.process.kill()
                 self.process.wait(timeout=20)
 
-    def port(self, number):
-        """The path, or the address, of a port."""
-        return self.said(rf"^port {number}(?: \(\w+\))?: (\S+) \([a-z0-9-]+\)\n", patience=60)
+    def port(self, number, receiver=""):
+        """The path, or the address, of a port; of several receivers that of the first, or of the named one."""
+        owner = f"{re.escape(receiver)}: " if receiver else r"(?:\S+: )?"
+        return self.said(rf"^{owner}port {number}(?: \(\w+\))?: (\S+) \([a-z0-9-]+\)\n", patience=60)
 
     def said(self, pattern, patience=20):
         """Waits until stderr holds the pattern; gives its first group."""

@@ -1,0 +1,53 @@
+"""What a process holds, looked at again and again, and whether that grows."""
+import dataclasses
+import os
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "integration"))
+from session import SKYLOOP, open_folder, skyloop  # noqa: E402,F401  (for those who import us)
+
+FEWEST = 9  # looks that tell anything of growth
+SLACK_KB = 2048
+
+
+@dataclasses.dataclass
+class Growth:
+    """Looks at a process until it has ended; the first third of them is its start."""
+    pid: int
+    resident_kb: list = dataclasses.field(default_factory=list)
+    descriptors: list = dataclasses.field(default_factory=list)
+
+    def look(self):
+        """Notes what it holds now; nothing of one that has just ended."""
+        try:
+            pages = int(pathlib.Path(f"/proc/{self.pid}/statm").read_text(encoding="ascii").split()[1])
+            descriptors = len(os.listdir(f"/proc/{self.pid}/fd"))
+        except (FileNotFoundError, ProcessLookupError):
+            return
+        if pages == 0:  # ended, and not waited for
+            return
+        self.resident_kb.append(pages * os.sysconf("SC_PAGE_SIZE") // 1024)
+        self.descriptors.append(descriptors)
+
+    def thirds(self, looks):
+        """The most of the middle third, and of the last one."""
+        third = len(looks) // 3
+        return max(looks[third:2 * third]), max(looks[2 * third:])
+
+    def fault(self):
+        """What has grown, in words; nothing if all is flat, or if there were too few looks to tell."""
+        if len(self.resident_kb) < FEWEST:
+            return ""
+        before, after = self.thirds(self.resident_kb)
+        if after > before + SLACK_KB + before // 50:
+            return f"resident memory grew from {before} to {after} kB"
+        before, after = self.thirds(self.descriptors)
+        return f"open files grew from {before} to {after}" if after > before else ""
+
+    def __str__(self):
+        if len(self.resident_kb) < FEWEST:
+            return f"{len(self.resident_kb)} looks"
+        memory, files = self.thirds(self.resident_kb), self.thirds(self.descriptors)
+        return (f"{memory[0]} kB and {files[0]} files in the middle third, {memory[1]} kB and {files[1]} in the last "
+                f"({len(self.resident_kb)} looks)")
