@@ -125,6 +125,10 @@ Action add_campaign_command(CLI::App& app) {
     command->add_option("--shard", options->shard, "I/N: only this part of the runs, I from 0 to N - 1");
     add_engine_options(*command, options->engine);
     command->add_option("--jobs", options->jobs, "Runs at a time; default: one a core")->check(CLI::Range(1, 1024));
+    command
+        ->add_option("--run-limit", options->run_limit_s,
+                     "Seconds that a run may take; then it is ended, tried once more, and left without a result")
+        ->check(CLI::Range(0.1, 1e9));
     add_plan_options(*command, *options);
     add_plan_commands(*command, options);
     CLI::App* gather = command->add_subcommand("gather", "Merge the parts' results into DIR/campaign.sqlite");

@@ -43,6 +43,7 @@ std::vector<std::string> options_of_shards(const CampaignOptions& options) {
     if (options.seeds) words.insert(words.end(), {"--seeds", *options.seeds});
     for (const std::string& vary : options.vary)
         words.insert(words.end(), {"--vary", vary});
+    if (options.run_limit_s) words.insert(words.end(), {"--run-limit", fmt::format("{}", *options.run_limit_s)});
     return words;
 }
 

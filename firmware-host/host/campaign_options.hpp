@@ -19,6 +19,7 @@ struct CampaignOptions {
     std::optional<std::string> seeds;
     std::vector<std::string> vary;
     std::optional<std::uint64_t> number, jobs;
+    std::optional<double> run_limit_s;
     EngineOptions engine;
     std::string page;        // of the report; empty: in the campaign's folder
     std::size_t worst = 10;  // runs that the report names for each metric

@@ -113,6 +113,7 @@ private:
         work.command = {"/proc/self/exe", "campaign", "worker"};
         work.greeting = worker_greeting(campaign_.setup);
         work.processes = options_.jobs.value_or(std::max(1U, std::thread::hardware_concurrency()));
+        work.job_limit = std::chrono::duration<double>(options_.run_limit_s.value_or(0));
         work.jobs = missing_;
         work.ask = [this](std::uint64_t number) {
             const PlannedRun run = campaign_.plan.run(number);

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <deque>
 #include <map>
+#include <utility>
 
 #include "worker_process.hpp"
 
@@ -17,7 +18,8 @@ namespace {
 using PoolClock = std::chrono::steady_clock;
 
 constexpr int pool_look_ms = 100;
-constexpr int most_deaths = 5;  // of workers in a row, without an answer between
+constexpr std::chrono::seconds patience{2};  // with a worker that is asked to end
+constexpr int most_deaths = 5;               // of workers in a row, without an answer between
 
 // Who does what.
 class Pool {
@@ -41,11 +43,11 @@ public:
     void end() {
         for (const WorkerProcess& worker : workers_)
             worker.ask_to_end();
-        const auto patience = PoolClock::now() + std::chrono::seconds(2);
+        const auto last = PoolClock::now() + patience;
         const auto all_ended = [this] {
             return std::all_of(workers_.begin(), workers_.end(), [](WorkerProcess& w) { return w.has_ended(); });
         };
-        while (!all_ended() && PoolClock::now() < patience)
+        while (!all_ended() && PoolClock::now() < last)
             ::usleep(10'000);
         workers_.clear();
     }
@@ -83,13 +85,22 @@ private:
             if (waiting_.empty()) return false;
             if (lives) give(worker);
         }
-        if (lives) return true;
-        const std::string death = worker.finish();
-        if (++deaths_ >= most_deaths + static_cast<int>(work_.processes))
+        if (lives && !kill_when_overdue(worker)) return true;
+        const std::string end = worker.finish();
+        const std::string death =
+            worker.overdue ? fmt::format("it took more than {:g} s", work_.job_limit.count()) : end;
+        if (!worker.overdue && ++deaths_ >= most_deaths + static_cast<int>(work_.processes))
             return fail(ErrorCode::outside, fmt::format("workers end without an answer, the last by {}", death));
         if (!worker.job) return false;
         if (const auto said = tell_outcome(worker, {}, death); !said) return fail(said.error());
         return false;
+    }
+    // @return whether it has had the time to end by itself, too
+    bool kill_when_overdue(WorkerProcess& worker) const {
+        const auto worked = PoolClock::now() - worker.since;
+        if (!worker.job || work_.job_limit.count() <= 0 || worked < work_.job_limit) return false;
+        if (!std::exchange(worker.overdue, true)) worker.ask_to_end();
+        return worked >= work_.job_limit + patience;
     }
     Result<void> tell_outcome(WorkerProcess& worker, std::string answer, const std::string& death) {
         if (!worker.job) return fail(ErrorCode::outside, "a worker answered what it was not asked");

@@ -77,6 +77,7 @@ WorkerProcess& WorkerProcess::operator=(WorkerProcess&& other) noexcept {
     std::swap(heard_, other.heard_);
     std::swap(job, other.job);
     std::swap(since, other.since);
+    std::swap(overdue, other.overdue);
     std::swap(status_, other.status_);
     return *this;
 }

@@ -39,6 +39,7 @@ public:
 
     std::optional<std::uint64_t> job{};  ///< that it is at
     std::chrono::steady_clock::time_point since{};
+    bool overdue = false;  ///< it was asked to end, having been at it for too long
 
 private:
     WorkerProcess() = default;

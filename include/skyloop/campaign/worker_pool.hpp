@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -19,6 +20,7 @@ struct PoolWork {
                                        ///< each with a line
     std::string greeting;              ///< the first line that each is told; not answered
     std::size_t processes = 1;
+    std::chrono::duration<double> job_limit{0};       ///< of each, by the host's clock; 0: none
     std::vector<std::uint64_t> jobs{};                ///< in their order
     std::function<std::string(std::uint64_t)> ask{};  ///< the line of a job, without its end
 };
@@ -28,7 +30,7 @@ struct JobOutcome {
     std::uint64_t job = 0;
     int attempt = 1;
     std::string answer;  ///< the worker's line; empty: the worker ended before
-    std::string death;   ///< how it ended: "signal 9", "exit code 1"
+    std::string death;   ///< how it ended: "signal 9", "exit code 1", "it took more than 60 s"
     double seconds = 0;  ///< by the host's clock
 };
 
@@ -36,6 +38,7 @@ struct JobOutcome {
 enum class JobFate { done, again, given_up };
 
 /// Runs all jobs. `told` is called for each outcome, by the calling thread; `again` puts the job behind the others.
+/// A worker that is at a job for longer than its limit is asked to end, and killed when it does not within two seconds.
 /// `rest` is called some times a second. Ends when all are done or given up, or when `stop` is true: workers are then
 /// asked to end (SIGTERM), and killed when they do not within two seconds. Fails with `outside` when no worker lives
 /// long enough to answer, or as `told` does; no worker is left then.

@@ -77,6 +77,32 @@ TEST(WorkerPool, WorkersThatNeverAnswerEndIt) {
                 HasSubstr("/no/such/program"));
 }
 
+TEST(WorkerPool, AJobThatTakesTooLongCostsOneAttempt) {
+    // Job 1 ends when it is asked to, job 2 does not.
+    PoolWork work = shell_work(
+        "read greeting; while read line; do case $line in *1) sleep 15 & wait;; *2) trap '' TERM; sleep 15;; esac; "
+        "echo $line; done",
+        4);
+    work.job_limit = std::chrono::seconds(1);
+    std::map<std::uint64_t, JobOutcome> outcomes;
+    const std::atomic<bool> go_on = false;
+    const auto done = run_jobs(
+        work,
+        [&](const JobOutcome& outcome) -> Result<JobFate> {
+            outcomes[outcome.job] = outcome;
+            return !outcome.answer.empty() ? JobFate::done : outcome.attempt < 2 ? JobFate::again : JobFate::given_up;
+        },
+        [] {}, go_on);
+    ASSERT_TRUE(done) << done.error().message;
+    for (const std::uint64_t job : {1U, 2U}) {
+        EXPECT_EQ(outcomes[job].attempt, 2) << job;
+        EXPECT_EQ(outcomes[job].death, "it took more than 1 s") << job;
+        EXPECT_LT(outcomes[job].seconds, 14) << job;
+    }
+    for (const std::uint64_t job : {0U, 3U})
+        EXPECT_FALSE(outcomes[job].answer.empty()) << job;
+}
+
 TEST(WorkerPool, StopsWorkersThatAreBusy) {
     std::atomic<bool> stop = false;
     const auto done = run_jobs(
