@@ -8,7 +8,6 @@
 #include <chrono>
 #include <deque>
 #include <map>
-#include <utility>
 
 #include "worker_process.hpp"
 
@@ -79,28 +78,33 @@ private:
     // @return whether the worker goes on
     Result<bool> hear(WorkerProcess& worker) {
         const bool lives = worker.listen();
+        if (worker.overdue) return end_overdue(worker, lives);
         while (auto line = worker.take_line()) {
             deaths_ = 0;
             if (const auto said = tell_outcome(worker, std::move(*line), {}); !said) return fail(said.error());
             if (waiting_.empty()) return false;
             if (lives) give(worker);
         }
-        if (lives && !kill_when_overdue(worker)) return true;
-        const std::string end = worker.finish();
-        const std::string death =
-            worker.overdue ? fmt::format("it took more than {:g} s", work_.job_limit.count()) : end;
-        if (!worker.overdue && ++deaths_ >= most_deaths + static_cast<int>(work_.processes))
+        if (lives) {
+            worker.overdue = worker.job && work_.job_limit.count() > 0 && worked(worker) > work_.job_limit;
+            if (worker.overdue) worker.ask_to_end();
+            return true;
+        }
+        const std::string death = worker.finish();
+        if (++deaths_ >= most_deaths + static_cast<int>(work_.processes))
             return fail(ErrorCode::outside, fmt::format("workers end without an answer, the last by {}", death));
         if (!worker.job) return false;
         if (const auto said = tell_outcome(worker, {}, death); !said) return fail(said.error());
         return false;
     }
-    // @return whether it has had the time to end by itself, too
-    bool kill_when_overdue(WorkerProcess& worker) const {
-        const auto worked = PoolClock::now() - worker.since;
-        if (!worker.job || work_.job_limit.count() <= 0 || worked < work_.job_limit) return false;
-        if (!std::exchange(worker.overdue, true)) worker.ask_to_end();
-        return worked >= work_.job_limit + patience;
+    static std::chrono::duration<double> worked(const WorkerProcess& worker) { return PoolClock::now() - worker.since; }
+    // What it answers to being asked to end is no result. @return whether it is waited for
+    Result<bool> end_overdue(WorkerProcess& worker, bool lives) {
+        if (lives && !worker.take_line() && worked(worker) < work_.job_limit + patience) return true;
+        worker.finish();
+        const auto said = tell_outcome(worker, {}, fmt::format("it took more than {:g} s", work_.job_limit.count()));
+        if (!said) return fail(said.error());
+        return false;
     }
     Result<void> tell_outcome(WorkerProcess& worker, std::string answer, const std::string& death) {
         if (!worker.job) return fail(ErrorCode::outside, "a worker answered what it was not asked");
