@@ -177,6 +177,24 @@ TEST(SinglePoint, MasksLowAndUnhealthySatellites) {
     EXPECT_NEAR(point->ranges[3].residual.value(), 1000, 1e-3);
 }
 
+TEST(SinglePoint, HasNoSolutionWhereTheMaskLeavesTooFew) {
+    const auto sky = synthetic_sky(sample_time, {Constellation::gps});
+    const TrueReceiver receiver = receiver_at(Geodetic::degrees(46, 30, 80), sample_time);
+    auto equations = equations_of(sky, measure(sky, receiver));
+    const auto point = solve_single_point(equations, {.time = sample_time});
+    ASSERT_TRUE(point);
+    // Three that are high and one that is low find each other, and the mask then takes the low one away.
+    std::vector<RangeEquation> high, low;
+    for (std::size_t i = 0; i < equations.size(); ++i)
+        (point->ranges[i].direction.elevation >= Angle::degrees(25) ? high : low).push_back(equations[i]);
+    ASSERT_GE(high.size(), 3U);
+    ASSERT_GE(low.size(), 1U);
+    high.resize(3);
+    high.push_back(low.front());
+    EXPECT_TRUE(solve_single_point(high, {.time = sample_time}));
+    EXPECT_FALSE(solve_single_point(high, {.time = sample_time, .elevation_mask = Angle::degrees(25)}));
+}
+
 TEST(SinglePoint, TakesOffWhatTheSameFormulasPutOn) {
     auto sky = synthetic_sky(sample_time, test::four_systems);
     sky.air.gps = default_klobuchar_coefficients();
