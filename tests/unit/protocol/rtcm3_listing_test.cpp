@@ -1,0 +1,128 @@
+// Fields of RTCM 3 messages as `decode` lists them, against bits laid out as RTCM 10403.3 has them.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include "skyloop/base/bit_field.hpp"
+#include "skyloop/protocol/message_listing.hpp"
+
+namespace skyloop {
+namespace {
+
+class Rtcm3Writer {
+public:
+    explicit Rtcm3Writer(unsigned number) { bits(number, 12); }
+    Rtcm3Writer& bits(std::uint64_t value, int width) { return writer_.put(value, width), *this; }
+    Rtcm3Writer& whole(std::int64_t value, int width) { return writer_.put_signed(value, width), *this; }
+    Rtcm3Writer& text(std::string_view characters) {
+        bits(characters.size(), 8);
+        for (const char c : characters)
+            bits(static_cast<unsigned char>(c), 8);
+        return *this;
+    }
+    [[nodiscard]] Bytes bytes() const { return writer_.bytes(); }
+
+private:
+    BitWriter writer_;
+};
+
+std::string shown(const DecodedValue& value) {
+    if (const auto* number = std::get_if<std::uint64_t>(&value.content)) return fmt::format("{}", *number);
+    if (const auto* scaled = std::get_if<double>(&value.content)) return fmt::format("{:.4f}", *scaled);
+    if (const auto* text = std::get_if<std::string>(&value.content)) return *text;
+    if (const auto* list = std::get_if<std::vector<DecodedValue>>(&value.content)) {
+        std::vector<std::string> parts;
+        for (const DecodedValue& part : *list)
+            parts.push_back(shown(part));
+        return fmt::format("[{}]", fmt::join(parts, " "));
+    }
+    return "?";
+}
+
+// "NUMBER NAME: FIELD=VALUE …", or its payload's size where it is not listed.
+std::string listed(const Bytes& payload) {
+    DecodedMessage message;
+    list_rtcm3(payload, message);
+    std::string line = fmt::format("{} {}:", message.id, message.name);
+    for (const DecodedField& field : message.fields)
+        line += fmt::format(" {}={}", field.name, shown(field.value));
+    return message.fields.empty() ? line + fmt::format(" {} bytes", message.payload.size()) : line;
+}
+
+// Messages 1005 and 1006: DF025 to DF027 with the bits between them, DF028.
+Bytes station(unsigned number) {
+    Rtcm3Writer writer(number);
+    writer.bits(7, 12).bits(14, 6).bits(0b1111, 4).whole(-12345678901, 38).bits(0b11, 2).whole(2, 38);
+    writer.bits(0b11, 2).whole(45678901234, 38);
+    if (number == 1006) writer.bits(15000, 16);
+    return writer.bytes();
+}
+
+TEST(Rtcm3Listing, StationsHaveAPlaceAndAHeight) {
+    EXPECT_EQ(listed(station(1005)),
+              "1005 station position: station=7 itrf_year=14 ecef_x_m=-1234567.8901 ecef_y_m=0.0002 "
+              "ecef_z_m=4567890.1234");
+    EXPECT_EQ(listed(station(1006)),
+              "1006 station position and antenna height: station=7 itrf_year=14 ecef_x_m=-1234567.8901 "
+              "ecef_y_m=0.0002 ecef_z_m=4567890.1234 antenna_height_m=1.5000");
+}
+
+TEST(Rtcm3Listing, AntennasAndReceiversAreNamedAsFarAsTheMessageDoes) {
+    const auto antenna = [](unsigned number) {
+        Rtcm3Writer writer(number);
+        writer.bits(7, 12).text("ADVNULLANTENNA").bits(3, 8);
+        return writer;
+    };
+    EXPECT_EQ(listed(antenna(1007).bytes()), "1007 antenna: station=7 antenna=ADVNULLANTENNA antenna_setup=3");
+    EXPECT_EQ(listed(antenna(1008).text("A1").bytes()),
+              "1008 antenna: station=7 antenna=ADVNULLANTENNA antenna_setup=3 antenna_serial=A1");
+    EXPECT_EQ(listed(antenna(1033).text("A1").text("SKY").text("1.0").text("").bytes()),
+              "1033 receiver and antenna: station=7 antenna=ADVNULLANTENNA antenna_setup=3 antenna_serial=A1 "
+              "receiver=SKY firmware=1.0 receiver_serial=");
+}
+
+TEST(Rtcm3Listing, ObservablesAreDatedAsTheirSystemCounts) {
+    const auto head = [](unsigned number, int width) {
+        return Rtcm3Writer(number).bits(7, 12).bits(86399123, width).bits(1, 1).bits(9, 5).bytes();
+    };
+    for (const unsigned gps : {1002U, 1004U})
+        EXPECT_NE(listed(head(gps, 30)).find("station=7 tow_s=86399.1230 more_follow=1 satellites=9"),
+                  std::string::npos);
+    for (const unsigned glonass : {1010U, 1012U})
+        EXPECT_NE(listed(head(glonass, 27)).find("station=7 time_of_day_s=86399.1230 more_follow=1 satellites=9"),
+                  std::string::npos);
+}
+
+TEST(Rtcm3Listing, MsmTellTheirSatellitesAndSignals) {
+    const auto tail = [](Rtcm3Writer& writer) {
+        writer.bits(0, 1).bits(5, 3).bits(0, 7).bits(1, 2).bits(2, 2).bits(1, 1).bits(4, 3);
+        return writer.bits(0x8000000000000001, 64).bits(0x40000000, 32).bytes();
+    };
+    const std::string rest =
+        " more_follow=0 issue=5 clock_steering=1 external_clock=2 smoothing=1 smoothing_interval=4 "
+        "satellites=[1 64] signals=[2]";
+    Rtcm3Writer gps(1077), glonass(1084);
+    gps.bits(7, 12).bits(345600500, 30);
+    glonass.bits(7, 12).bits(4, 3).bits(3600000, 27);
+    EXPECT_EQ(listed(tail(gps)), "1077 GPS MSM7: station=7 tow_s=345600.5000" + rest);
+    EXPECT_EQ(listed(tail(glonass)), "1084 GLONASS MSM4: station=7 day_of_week=4 time_of_day_s=3600.0000" + rest);
+    EXPECT_EQ(listed(Rtcm3Writer(1078).bits(0, 400).bytes()), "1078 : 52 bytes") << "there is no MSM8";
+}
+
+TEST(Rtcm3Listing, SatellitesOfEphemeridesHaveTheWidthOfTheirSystem) {
+    EXPECT_EQ(listed(Rtcm3Writer(1019).bits(31, 6).bytes()), "1019 GPS ephemeris: satellite=31");
+    EXPECT_EQ(listed(Rtcm3Writer(1044).bits(9, 4).bytes()), "1044 QZSS ephemeris: satellite=9");
+    EXPECT_EQ(listed(Rtcm3Writer(1043).bits(9, 4).bytes()), "1043 : 2 bytes");
+}
+
+TEST(Rtcm3Listing, CutMessagesKeepTheirBytes) {
+    const Bytes whole = station(1006);
+    for (std::size_t size = 0; size < whole.size(); ++size)
+        EXPECT_NE(listed({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)})
+                      .find(fmt::format(" {} bytes", size)),
+                  std::string::npos)
+            << size;
+}
+
+}  // namespace
+}  // namespace skyloop
