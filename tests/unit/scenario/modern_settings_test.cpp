@@ -57,6 +57,31 @@ TEST(EffectiveSettings, TheReceiverCorrectsForWhatThereIs) {
     EXPECT_EQ(effective(no_plasma).navigation.corrections.troposphere, TroposphereCorrection::niell);
 }
 
+TEST(EffectiveSettings, CorrectionsFromOutsideTakeWhatBothEndsSee) {
+    const auto with = [](DifferentialKind kind) {
+        ModernSettings settings;
+        settings.navigation.differential.kind = kind;
+        return effective(settings);
+    };
+    struct Left {
+        DifferentialKind kind;
+        double of_orbits, of_air, of_own;
+    };
+    for (const Left& left :
+         {Left{DifferentialKind::none, 1, 1, 1}, Left{DifferentialKind::sbas, 0.1, 1, 1},
+          Left{DifferentialKind::rtk_float, 0, 0, 0.15}, Left{DifferentialKind::rtk_fixed, 0, 0, 0.008}}) {
+        const ModernSettings acting = with(left.kind);
+        EXPECT_EQ(acting.propagation.signal_in_space.factor(), left.of_orbits);
+        EXPECT_EQ(acting.propagation.ionosphere.factor(), left.of_orbits);
+        EXPECT_EQ(acting.propagation.troposphere.factor(), left.of_air);
+        EXPECT_EQ(acting.propagation.troposphere_residual.factor(), left.of_air);
+        EXPECT_EQ(acting.measurement.multipath.factor(), left.of_own);
+        EXPECT_EQ(acting.measurement.code_noise.factor(), left.of_own);
+        EXPECT_EQ(acting.measurement.doppler_noise.factor(), left.of_own);
+        EXPECT_EQ(acting.measurement.phase_noise.factor(), 1);
+    }
+}
+
 TEST(EffectiveSettings, WhatIsNamedGoesBeforeIt) {
     ModernSettings settings;
     settings.errors = false;

@@ -1,4 +1,5 @@
 // [[fault]] and [[command]].
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -75,6 +76,8 @@ TEST(ScenarioTimeline, MistakesAreToldWhereTheyStand) {
                 HasSubstr("test.toml:3:20: fault.azimuth_from_deg: is 400; expected a number from -360 to 360"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nsignals = [\"L1\", 7]\n"),
                 HasSubstr("fault.signals: is a list"));
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"jamming\"\njammer_at = [47, 8, [\"high\"]]\neirp_dbw = 3\n"),
+                HasSubstr("test.toml:3:13: fault.jammer_at: is a list; expected"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nname = \"a\"\n[[command]]\nkind = \"note\"\nname = \"a\"\n"),
                 HasSubstr("test.toml:6:8: command.name: is that of another entry"));
     EXPECT_THAT(
@@ -91,6 +94,21 @@ TEST(ScenarioTimeline, MistakesAreToldWhereTheyStand) {
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"saturated_uart\"\nbytes_per_s = 10\nbaud = 9600\n"),
                 HasSubstr("test.toml:1:1: [fault]"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"refuses_keys\"\nkeys = \"CFG-RATE-MESA\"\n"), HasSubstr("CFG-RATE-MEAS"));
+}
+
+TEST(ScenarioTimeline, CommandsFindTheFaultsThatTheyName) {
+    const auto commanded = [](std::string_view command) {
+        return mistakes_of(fmt::format("[[fault]]\nkind = \"jamming\"\nj_to_s_db = 30\n[[command]]\n{}", command));
+    };
+    for (const std::string_view verb : {"start_fault", "stop_fault"}) {
+        EXPECT_EQ(commanded(fmt::format("kind = \"{}\"\nfault = \"jamming\"\n", verb)), "accepted");
+        EXPECT_THAT(
+            commanded(fmt::format("kind = \"{}\"\nfault = \"jaming\"\n", verb)),
+            HasSubstr("test.toml:6:9: command.fault: is 'jaming'; no fault of this scenario has this name; did you "
+                      "mean 'jamming'?"));
+    }
+    EXPECT_EQ(commanded("kind = \"stop_fault\"\n"), "accepted") << "it stops all";
+    EXPECT_EQ(commanded("kind = \"note\"\ntext = \"jaming\"\n"), "accepted");
 }
 
 }  // namespace
