@@ -46,10 +46,17 @@ std::string plan_text(const OpenedCampaign& campaign) {
     return text + " \"runs\": " + runs_text(campaign.plan) + "\n}\n";
 }
 
+// Throws for what is no whole number from 0 on: a large one with a fraction has no integer that it could become.
+std::uint64_t whole_number(const nlohmann::json& value) {
+    if (!value.is_number_unsigned())
+        throw std::runtime_error(fmt::format("has {}; expected a whole number", value.dump().substr(0, 40)));
+    return value.get<std::uint64_t>();
+}
+
 // Throws where the file is none of ours; the caller says so.
 KeptCampaign campaign_from(const nlohmann::json& plan) {
     KeptCampaign kept;
-    if (plan.at("form").get<int>() != 1) throw std::runtime_error("is of another form; expected form 1");
+    if (whole_number(plan.at("form")) != 1) throw std::runtime_error("is of another form; expected form 1");
     plan.at("name").get_to(kept.name);
     plan.at("program_version").get_to(kept.version);
     plan.at("scenario").get_to(kept.scenario);
@@ -60,16 +67,16 @@ KeptCampaign campaign_from(const nlohmann::json& plan) {
     plan.at("verdicts").get_to(kept.columns.verdicts);
     for (const auto& row : plan.at("runs")) {
         PlannedRun run;
-        row.at(0).get_to(run.number);
+        run.number = whole_number(row.at(0));
         row.at(1).get_to(run.key);
-        row.at(2).get_to(run.seed);
+        run.seed = whole_number(row.at(2));
         for (const auto& value : row.at(3))
             run.values.push_back({{}, value.get<std::string>()});
         if (run.number != kept.runs.size() || run.values.size() != kept.columns.parameters.size())
             throw std::runtime_error("has its runs in disorder");
         kept.runs.push_back(std::move(run));
     }
-    if (plan.at("planned").get<std::size_t>() != kept.runs.size()) throw std::runtime_error("has lost runs");
+    if (whole_number(plan.at("planned")) != kept.runs.size()) throw std::runtime_error("has lost runs");
     return kept;
 }
 

@@ -73,9 +73,9 @@ void DataflashEpochs::take_gps(const DataflashRecord& record) {
                                       FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
     LogEpoch epoch;
     epoch.time = to_gps_time(static_cast<std::int64_t>(week), ms / 1000);
-    const auto status = static_cast<std::size_t>(std::max(0.0, record.value({"Status"}).value_or(0)));
+    const auto status = static_cast<std::size_t>(logged_number(record.value({"Status"})));
     epoch.type = status < types.size() ? types[status] : FixType::none;
-    epoch.satellites_used = static_cast<int>(record.value({"NSats"}).value_or(0));
+    epoch.satellites_used = logged_number(record.value({"NSats"}));
     const auto latitude = record.value({"Lat"}), longitude = record.value({"Lng"});
     const auto altitude = record.value({"Alt"});
     if (epoch.type != FixType::none && latitude && longitude && altitude) {

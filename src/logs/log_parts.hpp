@@ -23,6 +23,9 @@ Number number_at(ByteSpan bytes, std::size_t at) {
 /// The place, or nothing for numbers that are none. Degrees; metres above the ellipsoid.
 std::optional<Geodetic> logged_place(double latitude_deg, double longitude_deg, double height_m);
 
+/// A count or a code: 0 for what is none, as a log may declare any field to be a float.
+int logged_number(std::optional<double> value);
+
 /// Keeps the strongest signal of each satellite.
 void add_satellite(std::vector<LoggedSatellite>& satellites, const LoggedSatellite& satellite);
 

@@ -11,6 +11,11 @@
 
 namespace skyloop {
 
+int logged_number(std::optional<double> value) {
+    constexpr double most = 65535;
+    return value && *value >= 0 && *value <= most ? static_cast<int>(*value) : 0;
+}
+
 std::optional<Geodetic> logged_place(double latitude_deg, double longitude_deg, double height_m) {
     // 0, 0 is where receivers put what they do not know.
     if (latitude_deg == 0 && longitude_deg == 0) return std::nullopt;

@@ -12,8 +12,8 @@ namespace skyloop {
 namespace {
 
 // PX4-Autopilot, msg/SensorGps.msg: fix_type.
-FixType ulog_fix_type(double type) {
-    switch (static_cast<int>(type)) {
+FixType ulog_fix_type(int type) {
+    switch (type) {
         case 2:
             return FixType::fix_2d;
         case 3:
@@ -59,7 +59,8 @@ std::optional<double> UlogEpochs::boot_offset_us() const {
     for (const ByteSpan bytes : stream_.records) {
         const UlogRecord record(stream_.fields, bytes);
         const double utc = record.value({"time_utc_usec", "time_gps_usec"}).value_or(0);
-        if (ulog_time(utc)) offsets.push_back(utc - record.value("timestamp").value_or(0));
+        const double boot = record.value("timestamp").value_or(0);
+        if (ulog_time(utc) && std::isfinite(boot)) offsets.push_back(utc - boot);
     }
     if (offsets.empty()) return std::nullopt;
     return middle_of(offsets);
@@ -86,8 +87,8 @@ void UlogEpochs::place(const UlogRecord& record, LogEpoch& epoch) {
 
 LogEpoch UlogEpochs::epoch_of(const UlogRecord& record) {
     LogEpoch epoch;
-    epoch.type = ulog_fix_type(record.value("fix_type").value_or(0));
-    epoch.satellites_used = static_cast<int>(record.value("satellites_used").value_or(0));
+    epoch.type = ulog_fix_type(logged_number(record.value("fix_type")));
+    epoch.satellites_used = logged_number(record.value("satellites_used"));
     const auto accuracy = [&](std::string_view name) -> std::optional<Metres> {
         const auto value = record.value(name);
         return value && std::isfinite(*value) ? std::optional(Metres(*value)) : std::nullopt;

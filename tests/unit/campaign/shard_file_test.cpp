@@ -209,6 +209,21 @@ TEST(CampaignDatabase, CountsWhatThePlanDoesNotHave) {
     EXPECT_TRUE(counts->missing.empty());
 }
 
+TEST(CampaignFolder, APlanCountsInWholeNumbers) {
+    const std::string plan = R"({"form":1,"name":"n","program_version":"1","scenario":"s","scenario_digest":"d",)"
+                             R"("options":[],"parameters":["a"],"metrics":[],"verdicts":[],"planned":1,)"
+                             R"("runs":[[0,"k",7,["x"]]]})";
+    ASSERT_TRUE(parse_kept_campaign(plan, "p"));
+    for (const std::string wrong : {"1e99", "-1", "0.5", "true", "\"1\""})
+        for (const std::string_view right : {"\"form\":1", "\"planned\":1", "[[0", "\"k\",7"}) {
+            std::string text = plan;
+            text.replace(text.find(right) + right.size() - 1, 1, wrong);
+            const auto kept = parse_kept_campaign(text, "p");
+            ASSERT_FALSE(kept) << text;
+            EXPECT_THAT(kept.error().message, HasSubstr("expected a whole number")) << text;
+        }
+}
+
 TEST(CampaignFolder, ADamagedPlanIsRefused) {
     const TemporaryFolder folder;
     EXPECT_THAT(gather_campaign(folder.path()).error().message, HasSubstr("campaign.json"));

@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <limits>
 
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
@@ -229,6 +230,26 @@ TEST(Ulog, PassesOverDamageAndRefusesTheUnknown) {
     }
 }
 
+TEST(Ulog, CountsThatAreNoneAreNought) {
+    for (const float value : {1e30F, -7.0F, std::numeric_limits<float>::quiet_NaN()}) {
+        ByteWriter log = ulog_head();
+        ulog_message(log, 'F',
+                     to_bytes("sensor_gps:float timestamp;uint64_t time_utc_usec;float fix_type;float "
+                              "satellites_used;"));
+        ulog_message(log, 'A', ByteWriter().put(std::uint8_t{0}).put(std::uint16_t{5}).text("sensor_gps").bytes);
+        for (unsigned i = 0; i < 3; ++i) {
+            ByteWriter record;
+            record.put(std::uint16_t{5}).put(value).put(std::uint64_t{1'709'640'000'000'000} + i * 200'000u);
+            record.put(value).put(value);
+            ulog_message(log, 'D', record.bytes);
+        }
+        const ReceiverLog read = read_whole(log.bytes);
+        ASSERT_EQ(read.epochs.size(), 3U);
+        EXPECT_EQ(read.epochs[0].type, FixType::none);
+        EXPECT_EQ(*read.epochs[0].satellites_used, 0);
+    }
+}
+
 // The length of a record follows from its letters.
 void dataflash_format(ByteWriter& log, std::uint8_t type, std::string_view name, std::string_view letters,
                       std::string_view columns) {
@@ -275,6 +296,22 @@ TEST(Dataflash, ReadsTheAskedReceiver) {
     EXPECT_NEAR(log.epochs[0].velocity->east, 10, 1e-6);
     EXPECT_NEAR(log.epochs[0].horizontal_accuracy->value(), 1.5, 1e-9);
     EXPECT_EQ(read_whole(dataflash_log(true).bytes, 1).epochs.at(2).type, FixType::fix_3d);
+}
+
+TEST(Dataflash, CountsThatAreNoneAreNought) {
+    for (const float value : {1e30F, -7.0F, std::numeric_limits<float>::quiet_NaN()}) {
+        ByteWriter log;
+        dataflash_format(log, 130, "GPS", "QBIHff", "TimeUS,I,GMS,GWk,Status,NSats");
+        for (std::uint32_t i = 0; i < 3; ++i) {
+            log.put(std::uint8_t{0xA3}).put(std::uint8_t{0x95}).put(std::uint8_t{130}).put(std::uint64_t{i});
+            log.put(std::uint8_t{0}).put(std::uint32_t{216'018'000 + i * 200}).put(std::uint16_t{2304});
+            log.put(value).put(value);
+        }
+        const ReceiverLog read = read_whole(log.bytes);
+        ASSERT_EQ(read.epochs.size(), 3U);
+        EXPECT_EQ(read.epochs[0].type, FixType::none);
+        EXPECT_EQ(*read.epochs[0].satellites_used, 0);
+    }
 }
 
 TEST(Dataflash, RefusesWhatItCannotPlace) {
