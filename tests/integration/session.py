@@ -29,6 +29,17 @@ def skyloop(*arguments, check=True, patience=120):
     return done
 
 
+def held_by(pid):
+    """Resident kB and open descriptors of a process; nothing of one that has ended."""
+    try:
+        pages = int(pathlib.Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1])
+        descriptors = len(os.listdir(f"/proc/{pid}/fd"))
+    except (FileNotFoundError, ProcessLookupError):
+        return None
+    # A process that nobody has waited for has no memory left.
+    return (pages * os.sysconf("SC_PAGE_SIZE") // 1024, descriptors) if pages > 0 else None
+
+
 def open_folder():
     """A temporary folder that other users may enter: gpsd gives up root before it opens the tty."""
     folder = tempfile.TemporaryDirectory(prefix="skyloop-test-")

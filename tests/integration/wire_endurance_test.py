@@ -8,7 +8,7 @@ import struct
 import time
 import unittest
 
-from session import Emulator, open_folder
+from session import Emulator, held_by, open_folder
 
 PULLS = 1000
 RATE_HZ = 10
@@ -44,13 +44,11 @@ def pull_tcp(address):
 
 def used(pid):
     """Resident kB and open descriptors of a process whose last client has gone: the fewest of a second."""
-    status = pathlib.Path(f"/proc/{pid}/status").read_text(encoding="ascii")
-    resident = next(line.split()[1] for line in status.splitlines() if line.startswith("VmRSS"))
-    descriptors = []
+    resident, fewest = held_by(pid)
     for _ in range(20):
-        descriptors.append(len(os.listdir(f"/proc/{pid}/fd")))
         time.sleep(0.05)
-    return int(resident), min(descriptors)
+        fewest = min(fewest, held_by(pid)[1])
+    return resident, fewest
 
 
 class WireEnduranceTest(unittest.TestCase):

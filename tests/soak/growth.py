@@ -1,11 +1,10 @@
 """What a process holds, looked at again and again, and whether that grows."""
 import dataclasses
-import os
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "integration"))
-from session import SKYLOOP, open_folder, skyloop  # noqa: E402,F401  (for those who import us)
+from session import SKYLOOP, held_by, open_folder, skyloop  # noqa: E402,F401  (for those who import us)
 
 FEWEST = 9  # looks that tell anything of growth
 SLACK_KB = 2048
@@ -20,15 +19,11 @@ class Growth:
 
     def look(self):
         """Notes what it holds now; nothing of one that has just ended."""
-        try:
-            pages = int(pathlib.Path(f"/proc/{self.pid}/statm").read_text(encoding="ascii").split()[1])
-            descriptors = len(os.listdir(f"/proc/{self.pid}/fd"))
-        except (FileNotFoundError, ProcessLookupError):
+        held = held_by(self.pid)
+        if held is None:
             return
-        if pages == 0:  # ended, and not waited for
-            return
-        self.resident_kb.append(pages * os.sysconf("SC_PAGE_SIZE") // 1024)
-        self.descriptors.append(descriptors)
+        self.resident_kb.append(held[0])
+        self.descriptors.append(held[1])
 
     def thirds(self, looks):
         """The most of the middle third, and of the last one."""
