@@ -35,6 +35,10 @@ std::string nearest_word(std::string_view word, std::span<const std::string_view
         // A word that is the start of a known one, or the other way round, is a likely slip of memory.
         const bool prefix = std::min(word.size(), candidate.size()) >= 3 &&
                             (candidate.starts_with(word) || word.starts_with(candidate));
+        // Each letter too many is an edit of its own: most candidates need no table.
+        const std::size_t difference =
+            std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size());
+        if (!prefix && difference >= best_distance) continue;
         const std::size_t distance = prefix ? 1 : edit_distance(word, candidate);
         if (distance < best_distance) {
             best = candidate;
