@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "skyloop/client/ubx_solution.hpp"
 #include "skyloop/protocol/ubx_hardware.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
 #include "skyloop/protocol/ubx_security.hpp"
@@ -64,7 +63,7 @@ void CarefulUbxClient::watch() {
 
 void CarefulUbxClient::watch_messages() {
     if (now() - solution_at_ > longest_without_solution) {
-        configure("NAV-PVT has stopped");
+        configure("solutions have stopped");
         return;
     }
     if (now() - configured_at_ < between_configurations) return;
@@ -96,7 +95,11 @@ void CarefulUbxClient::hear_frame(UbxMessageId id, ByteSpan payload) {
     if (dialogue_) dialogue_->hear(id, payload);
     if (id.message_class == NavPvt::message_id.message_class) heard_at_[id] = now();
     if (id == NavTimegps::message_id) hear_time(payload);
-    if (id == NavPvt::message_id) hear_solution(payload);
+    if (id == NavPvt::message_id) {
+        if (const auto pvt = decode_payload<NavPvt>(payload)) hear_solution(*pvt);
+    } else if (const auto whole = parts_.hear(id, payload); whole && !heard_at_.contains(NavPvt::message_id)) {
+        hear_solution(*whole);
+    }
     if (id == NavStatus::message_id) hear_status(payload);
     if (id == UbxMessageId{0x0A, 0x09} && payload.size() > mon_hw_jamming_byte)
         hear_warning((payload[mon_hw_jamming_byte] >> 2 & 3u) == jamming_critical, "interference (MON-HW)");
@@ -131,16 +134,14 @@ void CarefulUbxClient::hear_time(ByteSpan payload) {
         gps_time_ = GpsTimeHeard{time->i_tow, time->week * 604800.0 + time->i_tow * 1e-3};
 }
 
-void CarefulUbxClient::hear_solution(ByteSpan payload) {
-    const auto pvt = decode_payload<NavPvt>(payload);
-    if (!pvt) return;
+void CarefulUbxClient::hear_solution(const NavPvt& pvt) {
     solution_at_ = now();
     if (dialogue_) return;
-    HeardSolution solution = heard_solution(*pvt);
+    HeardSolution solution = heard_solution(pvt);
     solution.heard = now();
     // NAV-TIMEGPS may come before or after NAV-PVT: the last one is carried on by the time of week that has passed.
     if (gps_time_) {
-        const double passed = wrapped_difference(pvt->i_tow * 1e-3, gps_time_->i_tow * 1e-3, 604800);
+        const double passed = wrapped_difference(pvt.i_tow * 1e-3, gps_time_->i_tow * 1e-3, 604800);
         solution.gps_s = gps_time_->seconds + passed;
     }
     judge(solution);

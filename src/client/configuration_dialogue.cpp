@@ -50,17 +50,20 @@ void ConfigurationDialogue::finish_step(bool change_speed) {
     attempts_ = 0;
 }
 
+void ConfigurationDialogue::take_refusal() {
+    const DialogueStep step = std::move(steps_[current_]);
+    mute_ = false;
+    ++refused_;
+    if (step.needed)
+        failure_ = fmt::format("the receiver refuses message {:02X}-{:02X}", step.id.message_class, step.id.id);
+    ++current_;
+    attempts_ = 0;
+    steps_.insert(steps_.begin() + static_cast<std::ptrdiff_t>(current_), step.otherwise.begin(), step.otherwise.end());
+}
+
 void ConfigurationDialogue::hear_acknowledgement(bool accepted) {
+    if (!accepted) return take_refusal();
     const DialogueStep& step = steps_[current_];
-    if (!accepted) {
-        mute_ = false;
-        ++refused_;
-        if (step.needed)
-            failure_ = fmt::format("the receiver refuses message {:02X}-{:02X}", step.id.message_class, step.id.id);
-        ++current_;
-        attempts_ = 0;
-        return;
-    }
     has_acknowledgement_ = true;
     if (!step.answer || has_answer_) finish_step(true);
 }

@@ -1,6 +1,8 @@
 #include "skyloop/client/ubx_solution.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
 
 #include "skyloop/protocol/ubx_cfg.hpp"
 #include "skyloop/protocol/ubx_hardware.hpp"
@@ -57,14 +59,30 @@ DialogueStep rate_read_back() {
     return step;
 }
 
-DialogueStep solution_read_back() {
-    DialogueStep step = poll(CfgMsg::message_id, {NavPvt::message_id.message_class, NavPvt::message_id.id});
-    step.accept = [](ByteSpan payload) {
+DialogueStep message_read_back(UbxMessageId id) {
+    DialogueStep step = poll(CfgMsg::message_id, {id.message_class, id.id});
+    step.accept = [id](ByteSpan payload) {
         const auto message = decode_payload<CfgMsg>(payload);
-        return message && UbxMessageId{message->message_class, message->id} == NavPvt::message_id &&
-               message->rates[uart1] == 1;
+        return message && UbxMessageId{message->message_class, message->id} == id && message->rates[uart1] == 1;
     };
     return step;
+}
+
+DialogueStep solution_on() {
+    DialogueStep old = message_on(NavSol::message_id, 1);
+    old.needed = true;
+    DialogueStep step = message_on(NavPvt::message_id, 1);
+    step.otherwise = {old, message_on(NavPosllh::message_id, 1), message_on(NavVelned::message_id, 1),
+                      message_on(NavTimeutc::message_id, 1), message_read_back(NavSol::message_id)};
+    return step;
+}
+
+// As near as the type comes.
+template <class Number>
+Number millimetres(Number centimetres) {
+    const auto whole = std::int64_t{10} * centimetres;
+    return static_cast<Number>(
+        std::clamp<std::int64_t>(whole, std::numeric_limits<Number>::min(), std::numeric_limits<Number>::max()));
 }
 
 std::optional<double> utc_seconds(const NavPvt& pvt) {
@@ -97,6 +115,72 @@ HeardSolution heard_solution(const NavPvt& pvt) {
     return s;
 }
 
+NavPvt& SolutionParts::of_epoch(std::uint32_t i_tow) {
+    if (heard_.empty() || whole_.i_tow != i_tow) {
+        whole_ = {};
+        heard_.clear();
+    }
+    whole_.i_tow = i_tow;
+    return whole_;
+}
+
+void SolutionParts::add(const NavPosllh& position) {
+    NavPvt& whole = of_epoch(position.i_tow);
+    whole.lon = position.lon;
+    whole.lat = position.lat;
+    whole.height = position.height;
+    whole.h_msl = position.h_msl;
+    whole.h_acc = position.h_acc;
+    whole.v_acc = position.v_acc;
+}
+
+void SolutionParts::add(const NavSol& solution) {
+    NavPvt& whole = of_epoch(solution.i_tow);
+    whole.fix_type = solution.gps_fix;
+    whole.flags = solution.flags & 1;
+    whole.num_sv = solution.num_sv;
+    whole.p_dop = solution.p_dop;
+}
+
+void SolutionParts::add(const NavVelned& velocity) {
+    NavPvt& whole = of_epoch(velocity.i_tow);
+    whole.vel_n = millimetres(velocity.vel_n);
+    whole.vel_e = millimetres(velocity.vel_e);
+    whole.vel_d = millimetres(velocity.vel_d);
+    whole.s_acc = millimetres(velocity.s_acc);
+}
+
+void SolutionParts::add(const NavTimeutc& time) {
+    NavPvt& whole = of_epoch(time.i_tow);
+    whole.year = time.year;
+    whole.month = time.month;
+    whole.day = time.day;
+    whole.hour = time.hour;
+    whole.minute = time.minute;
+    whole.second = time.second;
+    whole.nano = time.nano;
+    whole.valid = (time.valid & resolved) == resolved ? resolved : 0;
+}
+
+template <class Message>
+bool SolutionParts::take(UbxMessageId id, ByteSpan payload) {
+    if (id != Message::message_id) return false;
+    const auto message = decode_payload<Message>(payload);
+    if (message) add(*message);
+    return message.has_value();
+}
+
+std::optional<NavPvt> SolutionParts::hear(UbxMessageId id, ByteSpan payload) {
+    if (!take<NavPosllh>(id, payload) && !take<NavSol>(id, payload) && !take<NavVelned>(id, payload) &&
+        !take<NavTimeutc>(id, payload))
+        return std::nullopt;
+    heard_.insert(id);
+    constexpr std::size_t parts = 4;
+    if (heard_.size() < parts) return std::nullopt;
+    heard_.clear();
+    return whole_;
+}
+
 std::vector<DialogueStep> ubx_configuration() {
     DialogueStep version = poll(MonVer::message_id);
     version.acknowledged = false;
@@ -107,20 +191,18 @@ std::vector<DialogueStep> ubx_configuration() {
         nav5.fix_mode = fix_3d_only;
         return nav5;
     }());
-    DialogueStep solution = message_on(NavPvt::message_id, 1);
-    solution.needed = true;
     return {version,
             port_setting(),
             setting(CfgRate{ubx_client_period_ms, 1, 1}),
             model,
-            solution,
+            solution_on(),
             message_on(NavStatus::message_id, 1),
             message_on(NavTimegps::message_id, 1),
             message_on({0x0A, 0x09}, 5),  // MON-HW, of M8
             message_on(MonRf::message_id, 5),
             message_on(SecSig2::message_id, 5),
             rate_read_back(),
-            solution_read_back()};
+            message_read_back(NavPvt::message_id)};
 }
 
 }  // namespace skyloop

@@ -7,11 +7,12 @@
 
 #include "skyloop/client/careful_client.hpp"
 #include "skyloop/client/configuration_dialogue.hpp"
+#include "skyloop/client/ubx_solution.hpp"
 
 namespace skyloop {
 
 /// Finds the speed, asks who the receiver is and goes on without an answer, configures it step by step, reads settings
-/// back, and does all of it again when messages stop or sentences come that it had switched off. Every NAV-PVT goes
+/// back, and does all of it again when messages stop or sentences come that it had switched off. Every solution goes
 /// through HealthChecks, and what the receiver says of interference and spoofing counts as well.
 class CarefulUbxClient : public CarefulClient {
 public:
@@ -27,7 +28,7 @@ protected:
 private:
     void configure(const char* reason);
     void hear_frame(UbxMessageId id, ByteSpan payload);
-    void hear_solution(ByteSpan payload);
+    void hear_solution(const NavPvt& pvt);
     void hear_time(ByteSpan payload);
     void hear_status(ByteSpan payload);
     void hear_warning(bool critical, const char* what);
@@ -44,6 +45,7 @@ private:
         std::uint32_t i_tow = 0;
         double seconds = 0;
     };
+    SolutionParts parts_;                   // of a receiver without NAV-PVT
     std::optional<GpsTimeHeard> gps_time_;  // of the last NAV-TIMEGPS
 };
 

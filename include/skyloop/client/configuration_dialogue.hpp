@@ -20,6 +20,7 @@ struct DialogueStep {
     std::function<bool(ByteSpan)> accept{};     ///< whether its payload is what was wanted; none: any is
     bool acknowledged = true;                   ///< ACK-ACK or ACK-NAK comes, after an answer too
     bool needed = false;                        ///< a refusal ends the dialogue
+    std::vector<DialogueStep> otherwise{};      ///< what comes next where it is refused
     std::optional<std::uint32_t> next_speed{};  ///< bit/s of the line once it is done; the client goes along
 };
 
@@ -51,6 +52,7 @@ public:
 private:
     void finish_step(bool change_speed);
     void give_up_step();
+    void take_refusal();
     void hear_acknowledgement(bool accepted);
 
     std::vector<DialogueStep> steps_;

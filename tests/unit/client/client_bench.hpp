@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -116,6 +117,8 @@ public:
     explicit BenchReceiver(ClientBench& bench) : bench_(bench) {}
 
     std::uint32_t speed = 9600;
+    bool has_pvt = true;                    // without: a receiver before protocol version 14
+    std::set<UbxMessageId> old_messages{};  // that it was told to send
     bool answers_version = true, acknowledges = true, sends = true, mute = false;
     std::uint8_t solution_rate = 0;
     std::uint16_t period_ms = 1000;
@@ -141,7 +144,30 @@ private:
         if (!sends || solution_rate == 0) return;
         NavPvt pvt = BenchSolution(bench_.now).pvt;
         if (edit) edit(pvt);
-        speak(encode_frame(pvt));
+        if (has_pvt)
+            speak(encode_frame(pvt));
+        else
+            speak_in_parts(pvt);
+    }
+    void speak_in_parts(const NavPvt& pvt) {
+        if (old_messages.contains(NavPosllh::message_id))
+            speak(encode_frame(NavPosllh{pvt.i_tow, pvt.lon, pvt.lat, pvt.height, pvt.h_msl, pvt.h_acc, pvt.v_acc}));
+        NavSol solution;
+        solution.i_tow = pvt.i_tow;
+        solution.gps_fix = pvt.fix_type;
+        solution.flags = pvt.flags;
+        solution.num_sv = pvt.num_sv;
+        speak(encode_frame(solution));
+        NavVelned velocity;
+        velocity.i_tow = pvt.i_tow;
+        velocity.vel_n = pvt.vel_n / 10;
+        velocity.vel_e = pvt.vel_e / 10;
+        velocity.vel_d = pvt.vel_d / 10;
+        velocity.s_acc = pvt.s_acc / 10;
+        if (old_messages.contains(NavVelned::message_id)) speak(encode_frame(velocity));
+        if (old_messages.contains(NavTimeutc::message_id))
+            speak(encode_frame(NavTimeutc{pvt.i_tow, 50, pvt.nano, pvt.year, pvt.month, pvt.day, pvt.hour, pvt.minute,
+                                          pvt.second, pvt.valid}));
     }
     void answer() {
         std::vector<StreamPiece> heard = std::exchange(bench_.heard, {});
@@ -155,6 +181,9 @@ private:
             return;
         }
         ++settings;
+        if (!has_pvt && frame.id == CfgMsg::message_id && frame.payload[0] == NavPvt::message_id.message_class &&
+            frame.payload[1] == NavPvt::message_id.id)
+            return speak(encode_frame(AckNak{frame.id.message_class, frame.id.id}));
         if (acknowledges) speak(encode_frame(AckAck{frame.id.message_class, frame.id.id}));
         if (frame.id == CfgPrt::message_id) speed = decode_payload<CfgPrt>(frame.payload)->ports.at(0).baud_rate;
         if (frame.id == CfgRate::message_id) rate(frame);
@@ -169,9 +198,11 @@ private:
     void message(const UbxFrameView& frame) {
         if (frame.payload.size() == 2) {
             speak(encode_frame(CfgMsg{frame.payload[0], frame.payload[1], {0, solution_rate, 0, 0, 0, 0}}));
-        } else if (frame.payload[0] == 0x01 && frame.payload[1] == 0x07) {
-            solution_rate = frame.payload[2];
+            return;
         }
+        const UbxMessageId id{frame.payload[0], frame.payload[1]};
+        if (!has_pvt) old_messages.insert(id);
+        if (id == (has_pvt ? NavPvt::message_id : NavSol::message_id)) solution_rate = frame.payload[2];
     }
 
     ClientBench& bench_;

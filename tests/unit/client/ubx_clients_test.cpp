@@ -1,4 +1,5 @@
 #include "client_bench.hpp"
+#include "skyloop/client/ubx_solution.hpp"
 
 namespace skyloop::test {
 namespace {
@@ -207,6 +208,96 @@ TEST(CarefulUbxConfiguration, HuntsTheSpeed) {
     receiver.speed = 57600;
     receiver.run(seconds(20));
     EXPECT_TRUE(bench.trusts()) << bench.reason();
+}
+
+/// Of a receiver that refuses NAV-PVT, after 15 s.
+class CarefulUbxOfOldReceivers : public ::testing::Test {
+protected:
+    CarefulUbxOfOldReceivers() {
+        receiver.has_pvt = false;
+        receiver.run(seconds(15));
+    }
+    ClientBench bench{"careful-ubx"};
+    BenchReceiver receiver{bench};
+};
+
+TEST_F(CarefulUbxOfOldReceivers, TakesTheMessagesBeforeNavPvtAndTrustsThem) {
+    EXPECT_TRUE(bench.trusts()) << bench.reason();
+    for (const UbxMessageId id :
+         {NavPosllh::message_id, NavSol::message_id, NavVelned::message_id, NavTimeutc::message_id})
+        EXPECT_TRUE(receiver.old_messages.contains(id));
+    const int settings = receiver.settings;
+    receiver.run(seconds(60));
+    EXPECT_TRUE(bench.trusts()) << bench.reason();
+    EXPECT_EQ(receiver.settings, settings) << "it configures again what it has configured";
+}
+
+TEST_F(CarefulUbxOfOldReceivers, SeesInEachMessageWhatIsWrong) {
+    struct Wrong {
+        std::function<void(NavPvt&)> edit;
+        const char* reason;
+    };
+    const Wrong wrongs[] = {
+        {[](NavPvt& p) { p.flags = 0; }, "no fix"},                                          // NAV-SOL
+        {[](NavPvt& p) { p.num_sv = 5; }, "5 satellites"},                                   // NAV-SOL
+        {[](NavPvt& p) { p.h_acc = 5100; }, "horizontal accuracy 5.1 m"},                    // NAV-POSLLH
+        {[](NavPvt& p) { p.height += 12'000; }, "heights moved"},                            // NAV-POSLLH
+        {[](NavPvt& p) { p.s_acc = 1100; }, "speed accuracy 1.1 m/s"},                       // NAV-VELNED
+        {[](NavPvt& p) { p.vel_e = std::numeric_limits<int>::min(); }, "velocity changed"},  // NAV-VELNED
+        {[](NavPvt& p) { p.year = 2006; }, "date before"},                                   // NAV-TIMEUTC
+    };
+    for (const Wrong& wrong : wrongs) {
+        const std::size_t before = bench.beliefs.size();
+        receiver.edit = wrong.edit;
+        receiver.run(seconds(1));
+        ASSERT_GT(bench.beliefs.size(), before) << wrong.reason;
+        EXPECT_NE(bench.beliefs.at(before).reason.find(wrong.reason), std::string::npos)
+            << bench.beliefs.at(before).reason;
+        receiver.edit = nullptr;
+        receiver.run(seconds(25));
+        EXPECT_TRUE(bench.trusts()) << bench.reason();
+    }
+}
+
+TEST_F(CarefulUbxOfOldReceivers, ConfiguresAgainWhenOneOfThemStops) {
+    receiver.settings = 0;
+    receiver.old_messages.erase(NavVelned::message_id);
+    receiver.run(seconds(30));
+    EXPECT_GT(receiver.settings, 5);
+    EXPECT_TRUE(receiver.old_messages.contains(NavVelned::message_id));
+    EXPECT_TRUE(bench.trusts()) << bench.reason();
+}
+
+TEST(SolutionOfParts, NeedsAllFourOfOneEpochInAnyOrder) {
+    SolutionParts parts;
+    NavVelned extreme;
+    extreme.i_tow = 200;
+    extreme.vel_n = std::numeric_limits<std::int32_t>::max();
+    extreme.vel_d = -12;
+    extreme.s_acc = std::numeric_limits<std::uint32_t>::max();
+    const auto hear = [&](const auto& message) {
+        const Bytes frame = encode_frame(message);
+        return parts.hear(parse_frame(frame)->id, parse_frame(frame)->payload);
+    };
+    EXPECT_FALSE(hear(NavTimeutc{.i_tow = 100}));
+    EXPECT_FALSE(hear(extreme));  // another epoch: the time before does not count
+    EXPECT_FALSE(hear(NavSol{.i_tow = 200, .gps_fix = 3, .flags = 0xDD, .num_sv = 9}));
+    EXPECT_FALSE(hear(NavPosllh{.i_tow = 200, .lon = -5}));
+    EXPECT_FALSE(hear(NavPosllh{.i_tow = 200, .lon = -6})) << "three kinds are not four";
+    EXPECT_FALSE(hear(NavPvt{}));
+    EXPECT_FALSE(parts.hear(NavTimeutc::message_id, {})) << "too short";
+    const auto whole = hear(NavTimeutc{.i_tow = 200, .year = 2026, .valid = 0xF3});
+    ASSERT_TRUE(whole);
+    EXPECT_EQ(whole->lon, -6);
+    EXPECT_EQ(whole->fix_type, 3);
+    EXPECT_EQ(whole->flags, 1);
+    EXPECT_EQ(whole->num_sv, 9);
+    EXPECT_EQ(whole->year, 2026);
+    EXPECT_EQ(whole->valid, 0) << "UTC is not known yet";
+    EXPECT_EQ(whole->vel_n, std::numeric_limits<std::int32_t>::max());
+    EXPECT_EQ(whole->vel_d, -120);
+    EXPECT_EQ(whole->s_acc, std::numeric_limits<std::uint32_t>::max());
+    EXPECT_FALSE(hear(NavTimeutc{.i_tow = 200})) << "once";
 }
 
 TEST(NaiveUbx, WaitsForTheVersionForEver) {
