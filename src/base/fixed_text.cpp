@@ -10,20 +10,44 @@ namespace {
 
 constexpr std::array<double, 10> powers_of_ten{1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
 
-void append_digits(std::string& text, std::uint64_t number, int decimals) {
-    std::array<char, 24> digits;
-    char* first = digits.data() + digits.size();
-    const auto put = [&] {
+constexpr auto digit_pairs = [] {
+    std::array<char, 200> pairs{};
+    for (std::size_t i = 0; i < 100; ++i) {
+        pairs[2 * i] = static_cast<char>('0' + i / 10);
+        pairs[2 * i + 1] = static_cast<char>('0' + i % 10);
+    }
+    return pairs;
+}();
+
+// Writes digits from the last to the first, two at a time: a division takes longer than all the rest.
+struct DigitWriter {
+    char* first;
+    std::uint64_t number;
+
+    void put() {
         *--first = static_cast<char>('0' + number % 10);
         number /= 10;
-    };
-    for (int i = 0; i < decimals; ++i)
-        put();
-    if (decimals > 0) *--first = '.';
-    do
-        put();
-    while (number > 0);
-    text.append(first, digits.data() + digits.size());
+    }
+    void put_pair() {
+        const char* pair = &digit_pairs[2 * (number % 100)];
+        number /= 100;
+        *--first = pair[1];
+        *--first = pair[0];
+    }
+};
+
+void append_digits(std::string& text, std::uint64_t number, int decimals) {
+    std::array<char, 24> digits;
+    char* const end = digits.data() + digits.size();
+    DigitWriter writer{end, number};
+    for (int i = 1; i < decimals; i += 2)
+        writer.put_pair();
+    if (decimals % 2 == 1) writer.put();
+    if (decimals > 0) *--writer.first = '.';
+    while (writer.number >= 10)
+        writer.put_pair();
+    if (writer.number > 0 || writer.first == end || *writer.first == '.') writer.put();
+    text.append(writer.first, end);
 }
 
 }  // namespace
@@ -43,6 +67,16 @@ void append_fixed(std::string& text, double value, int decimals) {
     const auto end =
         std::to_chars(longest.data(), longest.data() + longest.size(), value, std::chars_format::fixed, decimals);
     text.append(longest.data(), end.ptr);
+}
+
+void append_padded(std::string& text, int value, int characters) {
+    std::array<char, 12> digits;
+    const char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    const char* first = digits.data();
+    if (value < 0) text.push_back(*first++);
+    const std::ptrdiff_t missing = characters - (end - digits.data());
+    if (missing > 0) text.append(static_cast<std::size_t>(missing), '0');
+    text.append(first, end);
 }
 
 }  // namespace skyloop

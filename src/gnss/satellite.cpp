@@ -1,8 +1,8 @@
 #include "skyloop/gnss/satellite.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include "skyloop/base/fixed_text.hpp"
 
 namespace skyloop {
 namespace {
@@ -38,7 +38,9 @@ std::optional<Constellation> constellation_from_name(std::string_view name) {
 }
 
 std::string to_string(SatelliteId satellite) {
-    return fmt::format("{}{:02}", rinex_letter(satellite.constellation), satellite.number);
+    std::string text(1, rinex_letter(satellite.constellation));
+    append_padded(text, satellite.number, 2);
+    return text;
 }
 
 std::optional<SatelliteId> parse_satellite(std::string_view text) {

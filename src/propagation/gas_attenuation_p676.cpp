@@ -23,24 +23,26 @@ struct P676Air {
 };
 
 double oxygen_refractivity(const P676Air& air, double f) {
+    const double cube = std::pow(air.theta, 3), usual_power = std::pow(air.theta, 0.8);
     double sum = 0;
     for (const OxygenLine& line : oxygen_lines_p676) {
-        const double strength = line.a1 * 1e-7 * air.p * std::pow(air.theta, 3) * std::exp(line.a2 * (1 - air.theta));
-        const double pressure_width =
-            line.a3 * 1e-4 * (air.p * std::pow(air.theta, 0.8 - line.a4) + 1.1 * air.e * air.theta);
+        const double strength = line.a1 * 1e-7 * air.p * cube * std::exp(line.a2 * (1 - air.theta));
+        const double power = line.a4 == 0 ? usual_power : std::pow(air.theta, 0.8 - line.a4);
+        const double pressure_width = line.a3 * 1e-4 * (air.p * power + 1.1 * air.e * air.theta);
         const double width = std::sqrt(pressure_width * pressure_width + 2.25e-6);  // Zeeman splitting
-        const double interference = (line.a5 + line.a6 * air.theta) * 1e-4 * (air.p + air.e) * std::pow(air.theta, 0.8);
+        const double interference = (line.a5 + line.a6 * air.theta) * 1e-4 * (air.p + air.e) * usual_power;
         sum += strength * line_shape(f, line.f0, width, interference);
     }
     return sum;
 }
 
 double vapour_refractivity(const P676Air& air, double f) {
+    const double strength_power = std::pow(air.theta, 3.5), logarithm = std::log(air.theta);
     double sum = 0;
     for (const VapourLine& line : vapour_lines_p676) {
-        const double strength = line.b1 * 1e-1 * air.e * std::pow(air.theta, 3.5) * std::exp(line.b2 * (1 - air.theta));
+        const double strength = line.b1 * 1e-1 * air.e * strength_power * std::exp(line.b2 * (1 - air.theta));
         const double pressure_width =
-            line.b3 * 1e-4 * (air.p * std::pow(air.theta, line.b4) + line.b5 * air.e * std::pow(air.theta, line.b6));
+            line.b3 * 1e-4 * (air.p * std::exp(line.b4 * logarithm) + line.b5 * air.e * std::exp(line.b6 * logarithm));
         const double doppler = 2.1316e-12 * line.f0 * line.f0 / air.theta;
         const double width = 0.535 * pressure_width + std::sqrt(0.217 * pressure_width * pressure_width + doppler);
         sum += strength * line_shape(f, line.f0, width, 0);

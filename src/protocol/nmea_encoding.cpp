@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "skyloop/base/fixed_text.hpp"
+
 namespace skyloop::nmea_encoding {
 namespace {
 
@@ -19,8 +21,10 @@ void add_coordinate(Sentence& sentence, double degrees, int degree_digits, std::
     const std::int64_t scale = power_of_ten(decimals);
     const std::int64_t units = std::llround(std::abs(degrees) * 60.0 * static_cast<double>(scale));
     const std::int64_t minutes = units % (60 * scale);
-    std::string text = fmt::format("{:0{}}{:02}", units / (60 * scale), degree_digits, minutes / scale);
-    if (decimals > 0) text += fmt::format(".{:0{}}", minutes % scale, decimals);
+    std::string text;
+    append_padded(text, static_cast<int>(units / (60 * scale)), degree_digits);
+    append_padded(text, static_cast<int>(minutes / scale), 2);
+    if (decimals > 0) append_padded(text += '.', static_cast<int>(minutes % scale), decimals);
     sentence.text(text).letter(degrees < 0 && units != 0 ? hemispheres[1] : hemispheres[0]);
 }
 

@@ -54,7 +54,11 @@ Sentence& Sentence::text(std::string_view field) {
     return *this;
 }
 
-Sentence& Sentence::number(int value, int digits) { return text(fmt::format("{:0{}}", value, digits)); }
+Sentence& Sentence::number(int value, int digits) {
+    body_ += ',';
+    append_padded(body_, value, digits);
+    return *this;
+}
 
 Sentence& Sentence::empty(int count) {
     body_.append(static_cast<std::size_t>(count), ',');

@@ -35,43 +35,40 @@ Seconds time_until_rise(Angle rough_elevation) {
     return Seconds(60 * std::max(0.0, -rough_elevation.deg() - margin_deg));
 }
 
-SignalPath signal_path(const Ephemeris& ephemeris, const TruthState& truth) {
+EcefMotion motion_of(const SatelliteState& state) { return {state.position, state.velocity}; }
+
+// From the satellite's state the usual travel time ago.
+SignalPath signal_path(const Ephemeris& ephemeris, const SatelliteState& usually, const TruthState& truth) {
     SignalPath path;
     path.travel_time = usual_travel_time;
-    // Each pass shrinks the error by v/c, 1e-5: from 0.1 s of travel time four passes reach the last bit.
+    path.transmitter = usually;
+    // By Newton's method: two steps reach the last bit, for the speed of a satellite changes by 1e-9 of that of light
+    // in a second.
     for (int pass = 0; pass < 5; ++pass) {
-        path.transmitter = satellite_state(ephemeris, truth.time, -path.travel_time);
+        if (pass > 0) path.transmitter = satellite_state(ephemeris, truth.time, -path.travel_time);
         path.seen_at = in_reception_frame(path.transmitter.position, path.travel_time);
         path.range = (path.seen_at - truth.position).length();
         const Seconds travel_time(path.range.value() / speed_of_light);
-        const bool settled = std::abs((travel_time - path.travel_time).value()) < 1e-15;
-        path.travel_time = travel_time;
-        if (settled) break;
+        const Seconds error = travel_time - path.travel_time;
+        if (std::abs(error.value()) < 1e-15) {
+            path.travel_time = travel_time;
+            break;
+        }
+        const MetresPerSecond slope = light_time_slope(motion_of(path.transmitter), truth.position, path.travel_time);
+        path.travel_time += error / (1 - slope.value() / speed_of_light);
     }
     return path;
 }
 
-// What a look without light time tells: half of the satellites stand far below the horizon, and in a tenth of a second
-// a satellite moves by less than a kilometre.
-Angle rough_elevation(const Ephemeris& orbit, const TruthState& truth, const LocalFrame& local) {
-    return local.look_angles(satellite_state(orbit, truth.time, -usual_travel_time).position).elevation;
-}
-
-std::optional<SatelliteInView> in_view(const Ephemeris& record, const Ephemeris& orbit, const TruthState& truth,
-                                       const LocalFrame& local) {
-    const SignalPath path = signal_path(orbit, truth);
-    // The usual convention, and that of the reference scenes: directions leave out the Earth's rotation during the
-    // light time. It would turn them by less than 0.0004°.
-    const LookAngles look = local.look_angles(path.transmitter.position);
-    if (!(look.elevation.rad() >= 0)) return std::nullopt;
-
+SatelliteInView in_view(const Ephemeris& record, const SignalPath& path, const LookAngles& look,
+                        const TruthState& truth) {
     SatelliteInView seen;
     seen.id = satellite_of(record);
     seen.azimuth = look.azimuth;
     seen.elevation = look.elevation;
     seen.range = path.range;
-    seen.range_rate = light_time_range_rate({path.transmitter.position, path.transmitter.velocity},
-                                            {truth.position, truth.velocity}, path.travel_time);
+    seen.range_rate =
+        light_time_range_rate(motion_of(path.transmitter), {truth.position, truth.velocity}, path.travel_time);
     seen.travel_time = path.travel_time;
     seen.position_at_transmission = path.transmitter.position;
     seen.velocity_at_transmission = path.transmitter.velocity;
@@ -111,13 +108,19 @@ SkyView SkyObserver::observe(const TruthState& truth, const NavigationSource& so
         if (!record) continue;
         const auto* glonass = std::get_if<GlonassEphemeris>(&*record);
         const Ephemeris orbit = glonass ? Ephemeris(carried_.at(*glonass, truth.time)) : *record;
-        const Angle rough = rough_elevation(orbit, truth, local);
+        // A look without light time tells most: half of the satellites stand far below the horizon, and in a tenth of a
+        // second a satellite moves by less than a kilometre.
+        const SatelliteState usually = satellite_state(orbit, truth.time, -usual_travel_time);
+        const Angle rough = local.look_angles(usually.position).elevation;
         if (rough.deg() < sure_to_be_down_deg) {
             satellite.look_again = advanced(truth.time, time_until_rise(rough));
             continue;
         }
-        if (const std::optional<SatelliteInView> seen = in_view(*record, orbit, truth, local))
-            sky.satellites.push_back(*seen);
+        const SignalPath path = signal_path(orbit, usually, truth);
+        // The usual convention, and that of the reference scenes: directions leave out the Earth's rotation during the
+        // light time. It would turn them by less than 0.0004°.
+        const LookAngles look = local.look_angles(path.transmitter.position);
+        if (look.elevation.rad() >= 0) sky.satellites.push_back(in_view(*record, path, look, truth));
     }
     return sky;
 }

@@ -1,4 +1,4 @@
-/// Numbers as text with a fixed number of decimals, for files with millions of them.
+/// Numbers as text with a fixed number of decimals or digits, for files and sentences with millions of them.
 #pragma once
 
 #include <string>
@@ -9,5 +9,8 @@ namespace skyloop {
 /// it; "nan" and "inf" for what is no number. Takes a quarter of fmt's time.
 /// @param decimals 0 to 9
 void append_fixed(std::string& text, double value, int decimals);
+
+/// Appends `value` with zeros before it up to so many characters, its sign among them, as fmt's "{:0{}}" does.
+void append_padded(std::string& text, int value, int characters);
 
 }  // namespace skyloop

@@ -1,5 +1,6 @@
 #include "skyloop/base/fixed_text.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -50,6 +51,16 @@ TEST(FixedText, IsWhatPrintfWrites) {
                 EXPECT_EQ(fixed(signed_value, decimals), by_printf(signed_value, decimals)) << value;
     EXPECT_EQ(fixed(std::numeric_limits<double>::infinity(), 3), "inf");
     EXPECT_EQ(fixed(std::nan(""), 3), "nan");
+}
+
+TEST(FixedText, PadsWholeNumbersAsFmtDoes) {
+    for (const int value :
+         {0, 7, 10, 99, 100, 12345, -1, -42, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()})
+        for (int characters = 0; characters <= 12; ++characters) {
+            std::string text = "<";
+            append_padded(text, value, characters);
+            EXPECT_EQ(text, fmt::format("<{:0{}d}", value, characters));
+        }
 }
 
 // Numbers of all sizes, ties that a double holds, and their neighbours.
