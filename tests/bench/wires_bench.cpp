@@ -16,6 +16,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <set>
 #include <thread>
 
 #include "real_time.hpp"
@@ -73,17 +74,47 @@ struct BareLoop {
     }
 };
 
+// An epoch's bytes at the speed of the line, a block each millisecond, by nobody but the kernel: what gaps a reader
+// sees on this machine in any case.
+struct BarePacer {
+    std::unique_ptr<PtyTransport> wire = PtyTransport::open().value();
+
+    void run(const Clockwork& clock, unsigned baud) {
+        (void)raise_thread_priority();
+        constexpr std::size_t epoch_bytes = 400;
+        const Bytes block(baud / 10'000, 0x55);
+        for (std::int64_t epoch = clock.base; !clock.over; epoch += clock.period)
+            for (std::size_t i = 0; i * block.size() < epoch_bytes && !clock.over; ++i) {
+                const std::int64_t due = epoch + static_cast<std::int64_t>(i) * wire_ms;
+                const timespec deadline{due / wire_second, due % wire_second};
+                clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr);
+                wire->line();
+                wire->write(block);
+            }
+    }
+};
+
+// Epochs in which bytes of one stream stopped coming for too long for a client that takes silence for an epoch's end.
+struct GapCount {
+    std::uint64_t epochs = 0, with_gap = 0;
+    [[nodiscard]] double share() const {
+        return static_cast<double>(with_gap) / static_cast<double>(std::max<std::uint64_t>(epochs, 1));
+    }
+};
+
 // All clients in one thread: when their bytes came.
 class Readers {
 public:
-    Readers(const Emulator& emulator, const std::string& bare, unsigned baud) {
+    Readers(const Emulator& emulator, const BarePacer& pacer, const BareLoop& bare, unsigned baud) {
         for (const Station& station : emulator.stations()) {
             const std::string description = station.wires().front().link.transport().description();
             open(description.substr(0, description.find(' ')));
             const Bytes commands = configuration(baud);
             if (::write(ends_.back().fd, commands.data(), commands.size()) < 0) ends_.back().events = 0;
         }
-        open(bare);
+        pacer_ = ends_.size();
+        open(pacer.wire->terminal());
+        open(bare.wire->terminal());
         last_.resize(ends_.size(), 0);
     }
     ~Readers() {
@@ -106,7 +137,8 @@ public:
 
     Durations first_byte, bare_read, gaps;
     std::map<std::int64_t, std::int64_t> first_of_epoch;  // of the first port: ns since the epoch
-    std::uint64_t bytes = 0, epochs = 0, epochs_with_gap = 0;
+    std::uint64_t bytes = 0;
+    GapCount ours, paced;
 
 private:
     void open(const std::string& path) {
@@ -117,23 +149,25 @@ private:
         const ssize_t count = ::read(ends_[index].fd, piece.data(), piece.size());
         if (count <= 0 || !clock.settled(now)) return;
         if (index + 1 == ends_.size()) return bare_read.add(now - bare.written_at);
-        bytes += static_cast<std::uint64_t>(count);
+        const bool is_ours = index < pacer_;
+        if (is_ours) bytes += static_cast<std::uint64_t>(count);
         const std::int64_t last = std::exchange(last_[index], now);
         if (last == 0 || clock.epoch(last) != clock.epoch(now)) {
-            first_byte.add(clock.since_epoch(now));
+            if (is_ours) first_byte.add(clock.since_epoch(now));
             if (index == 0) first_of_epoch[clock.epoch(now)] = clock.since_epoch(now);
-            ++epochs;
+            ++(is_ours ? ours : paced).epochs;
             gap_seen_.erase(index);
             return;
         }
-        gaps.add(now - last);
+        if (is_ours) gaps.add(now - last);
         constexpr std::int64_t longest_gap = 5 * wire_ms;
-        if (now - last > longest_gap && gap_seen_.emplace(index, true).second) ++epochs_with_gap;
+        if (now - last > longest_gap && gap_seen_.insert(index).second) ++(is_ours ? ours : paced).with_gap;
     }
 
     std::vector<pollfd> ends_;
     std::vector<std::int64_t> last_;  // byte of each
-    std::map<std::size_t, bool> gap_seen_;
+    std::size_t pacer_ = 0;
+    std::set<std::size_t> gap_seen_;
 };
 
 Scenario fleet_scenario(const Fleet& fleet, const std::filesystem::path& folder) {
@@ -173,7 +207,8 @@ void receivers_on_time(benchmark::State& state, const Fleet& fleet) {
     const Assembly assembly = assemble_fleet(fleet_scenario(fleet, folder), clock);
     Emulator& emulator = *assembly.emulator;
     BareLoop bare;
-    Readers readers(emulator, bare.wire->terminal(), fleet.baud);
+    BarePacer pacer;
+    Readers readers(emulator, pacer, bare, fleet.baud);
     Durations lateness, from_truth;
     std::map<std::int64_t, std::int64_t> late;  // of each epoch
     emulator.on_status([&](const Status& status) {
@@ -184,7 +219,8 @@ void receivers_on_time(benchmark::State& state, const Fleet& fleet) {
     });
     double cpu = 0;
     for (auto _ : state) {
-        std::thread reader([&] { readers.run(clock, bare); }), sleeper([&] { bare.run(clock); });
+        std::thread reader([&] { readers.run(clock, bare); }), sleeper([&] { bare.run(clock); }),
+            paced([&] { pacer.run(clock, fleet.baud); });
         std::thread([&] {
             state.counters["real_time_priority"] = prepare_for_deadlines().priority == ThreadPriority::realtime;
             const double before = cpu_of_thread();
@@ -193,6 +229,7 @@ void receivers_on_time(benchmark::State& state, const Fleet& fleet) {
         }).join();
         clock.over = true;
         sleeper.join();
+        paced.join();
         reader.join();
     }
     std::filesystem::remove_all(folder);
@@ -202,12 +239,12 @@ void receivers_on_time(benchmark::State& state, const Fleet& fleet) {
     tell(state, "first_byte", readers.first_byte, readers.bare_read);
     tell(state, "truth_to_byte", from_truth, readers.bare_read);
     state.counters["core_share"] = cpu / wire_seconds();
-    state.counters["epochs_with_gap_over_5ms"] =
-        static_cast<double>(readers.epochs_with_gap) / static_cast<double>(std::max<std::uint64_t>(readers.epochs, 1));
+    state.counters["epochs_with_gap_over_5ms"] = readers.ours.share();
+    state.counters["epochs_with_gap_over_5ms_bare"] = readers.paced.share();
     state.counters["longest_gap_us"] = readers.gaps.at(1);
-    state.counters["epochs_heard"] = static_cast<double>(readers.epochs);
+    state.counters["epochs_heard"] = static_cast<double>(readers.ours.epochs);
     state.counters["bytes_per_epoch"] =
-        static_cast<double>(readers.bytes) / static_cast<double>(std::max<std::uint64_t>(readers.epochs, 1));
+        static_cast<double>(readers.bytes) / static_cast<double>(std::max<std::uint64_t>(readers.ours.epochs, 1));
     state.counters["samples"] = static_cast<double>(lateness.count());
 }
 BENCHMARK_CAPTURE(receivers_on_time, m9_64_ptys_10_hz, Fleet{64, "ublox-m9", 10, 115200})
