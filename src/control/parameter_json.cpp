@@ -11,8 +11,8 @@
 namespace skyloop {
 namespace {
 
-constexpr std::array<std::string_view, 7> parameter_type_names{"number", "flag",  "word",   "words",
-                                                               "text",   "texts", "numbers"};
+constexpr std::array<std::string_view, 8> parameter_type_names{"number", "whole_number", "flag",  "word",
+                                                               "words",  "text",         "texts", "numbers"};
 
 // What a member's name or a text may hold; a fault's name is a row of a table and a line of a log.
 constexpr std::size_t longest_json_text = 1000, longest_json_list = 10000;
@@ -127,8 +127,9 @@ Json schema_of(const ParameterSpec& spec) {
     Json item;
     switch (spec.type) {
         case ParameterType::number:
+        case ParameterType::whole_number:
         case ParameterType::numbers:
-            item["type"] = "number";
+            item["type"] = spec.type == ParameterType::whole_number ? "integer" : "number";
             if (spec.least > -std::numeric_limits<double>::max()) item["minimum"] = spec.least;
             if (spec.most < std::numeric_limits<double>::max()) item["maximum"] = spec.most;
             break;

@@ -105,8 +105,9 @@ void Emulator::advance_to(GpsTime end, const std::atomic<bool>& stop, LastInstan
         if (stop) break;
         if (!lateness) continue;
         now_ = next;
+        carry_out();
         direct();
-        exchange_bytes();
+        take_in();
         if (now_ < end || last == LastInstant::included) run_epochs(*lateness);
         if (recording_failed()) break;
     }
@@ -160,13 +161,20 @@ bool Emulator::recording_failed() const {
                        [](const Station& s) { return s.recorder() && s.recorder()->failure(); });
 }
 
-void Emulator::exchange_bytes() {
+void Emulator::carry_out() {
     const LoopTime time{now_, parts_.pacer->monotonic_ns(now_)};
     const bool heard = parts_.director.wants_messages();
     for (std::size_t i = 0; i < parts_.stations.size(); ++i) {
-        Station& station = parts_.stations[i];
         dialogues_[i].listen(heard);
-        station.exchange(time, &dialogues_[i]);
+        parts_.stations[i].carry_out(time, &dialogues_[i]);
+    }
+}
+
+void Emulator::take_in() {
+    const LoopTime time{now_, parts_.pacer->monotonic_ns(now_)};
+    for (std::size_t i = 0; i < parts_.stations.size(); ++i) {
+        Station& station = parts_.stations[i];
+        station.take_in(time, &dialogues_[i]);
         // As fast as the machine can, the end of the run is soon enough.
         if (!parts_.pacer->is_virtual()) station.keep_state(now_);
     }

@@ -32,18 +32,25 @@ bool Station::busy() const {
                        [](const Wire& w) { return w.link.connected() || w.link.input_pending(); });
 }
 
-// Bytes that have crossed a wire by now did so under what was wrong with it before.
-void Station::exchange(const LoopTime& time, Dialogue* dialogue) {
-    for (std::size_t i = 0; i < parts_.wires.size(); ++i)
-        hear(i, time.now, dialogue);
-    hear_again(time.now, dialogue);
+void Station::carry_out(const LoopTime& time, Dialogue* dialogue) {
+    for (Wire& wire : parts_.wires)
+        wire.link.look(time.now);
     speak(time, dialogue);
+}
+
+// Bytes that have crossed a wire by now did so under what was wrong with it before.
+void Station::take_in(const LoopTime& time, Dialogue* dialogue) {
+    bool heard = hear_again(time.now, dialogue);
+    for (std::size_t i = 0; i < parts_.wires.size(); ++i)
+        heard = hear(i, time.now, dialogue) || heard;
+    if (heard) speak(time, dialogue);
     follow_faults(time.now);
     follow_settings(time.now);
 }
 
 // Byte by byte, as it was heard: one may change the speed, and with it what the next means.
-void Station::hear_again(GpsTime now, Dialogue* dialogue) {
+bool Station::hear_again(GpsTime now, Dialogue* dialogue) {
+    const std::size_t before = heard_again_;
     for (; heard_again_ < parts_.repeated.size() && parts_.repeated[heard_again_].at <= now; ++heard_again_) {
         const HeardBytes& heard = parts_.repeated[heard_again_];
         if (dialogue != nullptr) dialogue->client_said(heard.wire, heard.bytes, now);
@@ -52,6 +59,7 @@ void Station::hear_again(GpsTime now, Dialogue* dialogue) {
         if (parts_.recorder && heard.wire < faulty_wires_.size())
             parts_.recorder->record_input(heard.bytes, now, heard.wire);
     }
+    return heard_again_ > before;
 }
 
 // What has ended is taken back at the first look after it.
@@ -69,11 +77,11 @@ void Station::follow_faults(GpsTime now) {
     if (parts_.power) parts_.power->want(conditions.power_cut ? PowerState::cut : PowerState::on);
 }
 
-void Station::hear(std::size_t wire, GpsTime now, Dialogue* dialogue) {
+bool Station::hear(std::size_t wire, GpsTime now, Dialogue* dialogue) {
     const PortId port = parts_.wires[wire].port;
     Link& link = parts_.wires[wire].link;
     FaultyWire& faulty = faulty_wires_[wire];
-    link.look(now);
+    bool any = false;
     const auto line_speed = [&] {
         const PortSpeed own = speed(port);
         return own && faulty.line_baud() ? faulty.line_baud() : own;
@@ -81,6 +89,7 @@ void Station::hear(std::size_t wire, GpsTime now, Dialogue* dialogue) {
     const auto take = [&](Bytes bytes) {
         const Bytes heard = faulty.to_receiver(std::move(bytes), now);
         if (heard.empty()) return;
+        any = true;
         if (dialogue != nullptr) dialogue->client_said(wire, heard, now);
         parts_.receiver.input(port, heard, now);
         if (parts_.recorder) parts_.recorder->record_input(heard, now, wire);
@@ -88,8 +97,9 @@ void Station::hear(std::size_t wire, GpsTime now, Dialogue* dialogue) {
     while (auto heard = link.receive(line_speed(), now))
         if (!heard->empty()) take(std::move(*heard));
     if (faulty.input_pending()) take({});
-    if (dialogue == nullptr) return;
+    if (dialogue == nullptr) return any;
     if (const auto belief = link.transport().new_belief()) dialogue->client_believes(wire, *belief, now);
+    return any;
 }
 
 PortId Station::port_of(std::size_t wire) const {

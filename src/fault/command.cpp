@@ -12,7 +12,7 @@ std::vector<ParameterSpec> vehicle_parameters() {
     ParameterSpec armed = flag_parameter("armed", false, "motors may turn");
     armed.standard.reset();
     return {text_parameter("mode", "", "name of its mode: \"AUTO\""),
-            number_parameter("custom_mode", std::nullopt, 0, 4294967295.0, "its number in HEARTBEAT"), armed};
+            whole_number_parameter("custom_mode", std::nullopt, 0, 4294967295.0, "its number in HEARTBEAT"), armed};
 }
 
 std::vector<CommandKind> run_commands() {
@@ -50,7 +50,7 @@ std::vector<CommandKind> receiver_commands() {
         {Verb::set_baud,
          "set_baud",
          "The receiver's first UART has another speed from now on.",
-         {needed_number("baud", 300, 12e6, "bit/s")}}};
+         {needed_whole_number("baud", 300, 12e6, "bit/s")}}};
 }
 
 std::vector<CommandKind> pace_commands() {

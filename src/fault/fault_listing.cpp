@@ -30,6 +30,8 @@ std::string type_text(const ParameterSpec& spec) {
     switch (spec.type) {
         case ParameterType::number:
             return "number" + limits_text(spec);
+        case ParameterType::whole_number:
+            return "whole number" + limits_text(spec);
         case ParameterType::flag:
             return "true or false";
         case ParameterType::word:

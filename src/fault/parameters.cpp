@@ -45,7 +45,9 @@ bool chosen(const ParameterSpec& spec, const std::string& word) {
 
 Accepted accept_number(const ParameterSpec& spec, const ParameterValue& value) {
     const auto* number = std::get_if<double>(&value);
-    if (number == nullptr || !within(spec, *number)) return refused(spec, value, "a number" + range_text(spec));
+    const bool whole = spec.type == ParameterType::whole_number;
+    const bool right = number != nullptr && within(spec, *number) && (!whole || *number == std::floor(*number));
+    if (!right) return refused(spec, value, (whole ? "a whole number" : "a number") + range_text(spec));
     return *number;
 }
 
@@ -111,9 +113,22 @@ ParameterSpec number_parameter(std::string name, std::optional<double> standard,
     return spec;
 }
 
+ParameterSpec whole_number_parameter(std::string name, std::optional<double> standard, double least, double most,
+                                     std::string meaning) {
+    ParameterSpec spec = number_parameter(std::move(name), standard, least, most, std::move(meaning));
+    spec.type = ParameterType::whole_number;
+    return spec;
+}
+
 ParameterSpec needed_number(std::string name, double least, double most, std::string meaning) {
     ParameterSpec spec = number_parameter(std::move(name), std::nullopt, least, most, std::move(meaning));
     spec.needed = true;
+    return spec;
+}
+
+ParameterSpec needed_whole_number(std::string name, double least, double most, std::string meaning) {
+    ParameterSpec spec = needed_number(std::move(name), least, most, std::move(meaning));
+    spec.type = ParameterType::whole_number;
     return spec;
 }
 
@@ -205,6 +220,7 @@ std::optional<Geodetic> Parameters::place(std::string_view name, Metres height) 
 tl::expected<ParameterValue, ParameterMistake> accept(const ParameterSpec& spec, const ParameterValue& value) {
     switch (spec.type) {
         case ParameterType::number:
+        case ParameterType::whole_number:
             return accept_number(spec, value);
         case ParameterType::flag:
             if (!std::holds_alternative<bool>(value)) return refused(spec, value, "true or false");

@@ -107,11 +107,8 @@ Result<Fault> make_slow_cold_start(const Parameters& parameters, const FaultCont
 }
 
 Result<Fault> make_changed_baud(const Parameters& parameters, const FaultContext&) {
-    const double baud = parameters.number("baud");
-    if (baud != std::floor(baud))
-        return fail(ErrorCode::usage, "baud is no whole number; expected a speed in bit/s such as 9600");
     Fault fault;
-    fault.at_start.emplace_back(firmware::ForceBaud{static_cast<std::uint32_t>(baud)});
+    fault.at_start.emplace_back(firmware::ForceBaud{static_cast<std::uint32_t>(parameters.number("baud"))});
     fault.at_end.emplace_back(firmware::ForceBaud{0});
     return fault;
 }
@@ -243,7 +240,7 @@ std::vector<FaultKind> restart_kinds() {
              receiver,
              "The speed of the first UART is another one; at the end it is back, unless the client has set one since.",
              "Settings that another client has stored, and drivers that trust what they set once (INAV #3908).",
-             {number_parameter("baud", 9600, 300, 12e6, "speed, bit/s")},
+             {whole_number_parameter("baud", 9600, 300, 12e6, "speed, bit/s")},
              make_changed_baud}};
 }
 

@@ -148,10 +148,7 @@ void add_unseen_satellites(std::vector<SatelliteStatus>& satellites, int count) 
 }
 
 Result<Fault> make_satellites_misreported(const Parameters& parameters, const FaultContext&) {
-    const double wanted = parameters.number("count");
-    if (wanted != std::floor(wanted))
-        return fail(ErrorCode::usage, fmt::format("count is {}; expected a whole number", wanted));
-    const int count = static_cast<int>(wanted);
+    const int count = static_cast<int>(parameters.number("count"));
     return fault_of_report([count](NavigationState& state, const FaultMoment&) {
         std::vector<SatelliteStatus>& satellites = state.epoch.fix.satellites;
         int used = state.epoch.fix.satellites_used();
@@ -250,7 +247,7 @@ std::vector<FaultKind> claim_kinds() {
          solution,
          "The number of satellites in use is told wrong.",
          "Counts of signals instead of satellites, or of what is in view.",
-         {number_parameter("count", 0, 0, 40, "how many are told")},
+         {whole_number_parameter("count", 0, 0, 40, "how many are told")},
          make_satellites_misreported}};
 }
 

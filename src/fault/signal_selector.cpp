@@ -103,9 +103,9 @@ Result<SignalSelector> read_selector(const Parameters& parameters) {
 }
 
 std::vector<ParameterSpec> chosen_satellite_parameters() {
-    return {
-        texts_parameter("satellites", "satellites that are hit, as G07; none given: the highest ones at the start"),
-        number_parameter("satellite_count", std::nullopt, 1, 200, "how many of the highest ones; 1 when not given")};
+    return {texts_parameter("satellites", "satellites that are hit, as G07; none given: the highest ones at the start"),
+            whole_number_parameter("satellite_count", std::nullopt, 1, 200,
+                                   "how many of the highest ones; 1 when not given")};
 }
 
 Result<ChosenSatellites> ChosenSatellites::read(const Parameters& parameters) {
@@ -114,8 +114,6 @@ Result<ChosenSatellites> ChosenSatellites::read(const Parameters& parameters) {
     const auto count = parameters.optional_number("satellite_count");
     if (count && !named->empty())
         return fail(ErrorCode::usage, "both satellites and satellite_count are given; expected one of them");
-    if (count && *count != std::floor(*count))
-        return fail(ErrorCode::usage, fmt::format("satellite_count is {:g}; expected a whole number", *count));
     ChosenSatellites chosen;
     chosen.chosen_ = !named->empty();
     chosen.satellites_ = std::move(*named);

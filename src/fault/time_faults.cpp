@@ -24,18 +24,10 @@ void shift_time(NavigationState& state, Nanoseconds by) {
     measured = std::max(GpsTime{}, measured + by);
 }
 
-// A whole number, or what is wrong.
-Result<int> whole(const Parameters& parameters, std::string_view name) {
-    const double value = parameters.number(name);
-    if (value == std::floor(value)) return static_cast<int>(value);
-    return fail(ErrorCode::usage, fmt::format("{} is {}; expected a whole number", name, value));
-}
-
 Result<Fault> make_leap_second_wrong(const Parameters& parameters, const FaultContext&) {
-    const auto error = whole(parameters, "error_s");
-    if (!error) return fail(error.error());
+    const auto error = static_cast<int>(parameters.number("error_s"));
     const bool declared_valid = parameters.flag("declared_valid");
-    return fault_of_report([error = *error, declared_valid](NavigationState& state, const FaultMoment&) {
+    return fault_of_report([error, declared_valid](NavigationState& state, const FaultMoment&) {
         state.epoch.fix.leap_seconds += error;
         state.time.leap_seconds = declared_valid;
     });
@@ -64,9 +56,8 @@ Result<Fault> make_leap_second_event(const Parameters& parameters, const FaultCo
 }
 
 Result<Fault> make_week_rollover(const Parameters& parameters, const FaultContext&) {
-    const auto rollovers = whole(parameters, "rollovers");
-    if (!rollovers) return fail(rollovers.error());
-    return fault_of_report([back = *rollovers * weeks_of_rollover](NavigationState& state, const FaultMoment&) {
+    const auto rollovers = static_cast<std::int64_t>(parameters.number("rollovers"));
+    return fault_of_report([back = rollovers * weeks_of_rollover](NavigationState& state, const FaultMoment&) {
         shift_time(state, -std::chrono::seconds(back * seconds_per_week));
     });
 }
@@ -127,7 +118,7 @@ std::vector<FaultKind> calendar_kinds() {
              solution,
              "The receiver believes a wrong number of leap seconds, and its UTC is off by as much.",
              "A cold start: firmware counts by the number of its making until the satellites have told theirs.",
-             {number_parameter("error_s", -2, -30, 30, "too many leap seconds, s, whole"),
+             {whole_number_parameter("error_s", -2, -30, 30, "too many leap seconds, s"),
               flag_parameter("declared_valid", false, "it says that the number was decoded")},
              make_leap_second_wrong},
             {"leap_second_event",
@@ -140,7 +131,7 @@ std::vector<FaultKind> calendar_kinds() {
              solution,
              "Dates lie 1024 weeks back; the time of week is right.",
              "The ten bits of the week number: firmware resolves them about the date of its making.",
-             {number_parameter("rollovers", 1, 1, 2, "times 1024 weeks, whole")},
+             {whole_number_parameter("rollovers", 1, 1, 2, "times 1024 weeks")},
              make_week_rollover},
             {"week_order",
              solution,

@@ -33,7 +33,7 @@ std::vector<ParameterSpec> beginning_keys() {
         text_parameter("after", "", "the name of an entry from whose beginning its times count"),
         text_parameter("after_end_of", "", "the name of a fault from whose end its times count"),
         number_parameter("every_s", std::nullopt, 1e-3, longest_s, "it begins again after this"),
-        number_parameter("times", std::nullopt, 1, most_occurrences, "how often in all; else without end"),
+        whole_number_parameter("times", std::nullopt, 1, most_occurrences, "how often in all; else without end"),
         number_parameter("when_above_m", std::nullopt, -1e4, 1e8,
                          "it begins when the antenna is higher than this above the ellipsoid"),
         number_parameter("when_below_m", std::nullopt, -1e4, 1e8, "… lower than this"),
@@ -42,8 +42,8 @@ std::vector<ParameterSpec> beginning_keys() {
         number_parameter("when_fix_for_s", std::nullopt, 0, longest_s, "… when there has been a fix for so long"),
         text_parameter("when_client_sends", "", "… when the client sends this message: \"CFG-VALSET\""),
         text_parameter("when_mavlink_mode", "", "… when the vehicle's mode is this, by its name: \"AUTO\", \"RTL\""),
-        number_parameter("when_custom_mode", std::nullopt, 0, largest_custom_mode,
-                         "… when it is this, by the number custom_mode of HEARTBEAT"),
+        whole_number_parameter("when_custom_mode", std::nullopt, 0, largest_custom_mode,
+                               "… when it is this, by the number custom_mode of HEARTBEAT"),
         armed_parameter(),
         flag_parameter("again", false, "it begins each time that its condition comes true, not the first time alone"),
     };
@@ -105,11 +105,8 @@ void read_vehicle_conditions(const Parameters& keys, Trigger& when, std::vector<
                          "when_custom_mode{}",
                          when.vehicle_mode,
                          did_you_mean(when.vehicle_mode, std::vector<std::string_view>(known.begin(), known.end())))});
-    if (const auto number = keys.optional_number("when_custom_mode")) {
-        if (*number != std::floor(*number))
-            mistakes.push_back({"when_custom_mode", fmt::format("is {:g}; expected a whole number", *number)});
+    if (const auto number = keys.optional_number("when_custom_mode"))
         when.custom_mode = static_cast<std::uint32_t>(*number);
-    }
     if (keys.has("when_armed")) when.armed = keys.flag("when_armed");
 }
 

@@ -48,7 +48,7 @@ MakeWireFault raise_probability(double WireDirection::*which) {
 
 Result<Fault> make_garbage(const Parameters& parameters, const FaultContext&) {
     const double rate = parameters.number("bursts_per_s");
-    const int bytes = static_cast<int>(std::lround(parameters.number("burst_bytes")));
+    const int bytes = static_cast<int>(parameters.number("burst_bytes"));
     return worsened(parameters, [rate, bytes](WireDirection& direction, const FaultMoment& moment) {
         direction.garbage_per_s += rate * moment.strength;
         direction.garbage_bytes = std::max(direction.garbage_bytes, bytes);
@@ -121,8 +121,8 @@ Result<Fault> make_power_cut(const Parameters& parameters, const FaultContext&) 
 
 Result<Fault> make_speed_mismatch(const Parameters& parameters, const FaultContext&) {
     Fault fault;
-    fault.wire = [baud = static_cast<std::uint32_t>(std::lround(parameters.number("baud")))](
-                     WireConditions& wire, const FaultMoment& moment) {
+    fault.wire = [baud = static_cast<std::uint32_t>(parameters.number("baud"))](WireConditions& wire,
+                                                                                const FaultMoment& moment) {
         if (moment.strength > 0) wire.receiver_baud = baud;
     };
     return fault;
@@ -171,7 +171,7 @@ void add_damaged_messages(std::vector<FaultKind>& kinds) {
         "inserted_garbage", "Bursts of random bytes stand between messages.",
         "A floating or noisy line makes start bits of its own; so does a second sender on it.",
         {number_parameter("bursts_per_s", 1, 0, 1000, "how often, on average"),
-         number_parameter("burst_bytes", 16, 1, 4096, "length of each burst, bytes"), wire_direction_parameter()},
+         whole_number_parameter("burst_bytes", 16, 1, 4096, "length of each burst, bytes"), wire_direction_parameter()},
         make_garbage));
 }
 
@@ -235,10 +235,11 @@ void add_broken_wires(std::vector<FaultKind>& kinds) {
                   {word_parameter("start", "cold", {"hot", "warm", "cold"},
                                   "how it starts afterwards: cold without a backup battery")},
                   make_power_cut));
-    kinds.push_back(wire_kind(
-        "speed_mismatch", "The receiver's line runs at another speed than the one it was set to.",
-        "A receiver that restarted unnoticed speaks at its default speed while its client does not.",
-        {number_parameter("baud", 9600, 300, 4e6, "at which the receiver's line runs, bit/s")}, make_speed_mismatch));
+    kinds.push_back(
+        wire_kind("speed_mismatch", "The receiver's line runs at another speed than the one it was set to.",
+                  "A receiver that restarted unnoticed speaks at its default speed while its client does not.",
+                  {whole_number_parameter("baud", 9600, 300, 4e6, "at which the receiver's line runs, bit/s")},
+                  make_speed_mismatch));
     kinds.push_back(
         wire_kind("one_direction_dead", "One end hears nothing of the other, which still hears it.",
                   "A bad crimp, a pin never wired or a level shifter of the wrong voltage cuts one lead.",

@@ -8,6 +8,8 @@ KeyType key_type_of(const ParameterSpec& spec) {
     switch (spec.type) {
         case ParameterType::number:
             return KeyType::number;
+        case ParameterType::whole_number:
+            return KeyType::whole_number;
         case ParameterType::flag:
             return KeyType::flag;
         case ParameterType::word:

@@ -1,11 +1,11 @@
 // Any bytes, cuts, times and conditions: nothing crashes, every byte is accounted for, what waits is bounded, cuts and
 // looks change nothing, and a wire that is sound again carries what it is given and nothing else.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 
+#include "fuzz_input.hpp"
 #include "require.hpp"
 #include "skyloop/fault/wire_damage.hpp"
 
@@ -15,35 +15,6 @@ using namespace skyloop;
 
 // Besides its capacity: an unfinished message of each stage, and a late one that is doubled.
 constexpr std::size_t most_waiting = WireDamage::capacity + 64 * 1024;
-
-class FuzzInput {
-public:
-    explicit FuzzInput(ByteSpan bytes) : bytes_(bytes) {}
-    [[nodiscard]] bool empty() const { return bytes_.empty(); }
-    std::uint8_t byte() {
-        if (bytes_.empty()) return 0;
-        const std::uint8_t first = bytes_[0];
-        bytes_ = bytes_.subspan(1);
-        return first;
-    }
-    ByteSpan part(std::size_t size) {
-        const ByteSpan head = bytes_.first(std::min(size, bytes_.size()));
-        bytes_ = bytes_.subspan(head.size());
-        return head;
-    }
-    // Often a sensible number up to `most`, at times any pattern of bits.
-    double number(double most) {
-        const std::uint8_t first = byte();
-        if (first < 0xF0) return most * first / 0xEF;
-        std::uint64_t bits = 0;
-        for (int i = 0; i < 8; ++i)
-            bits = bits << 8 | byte();
-        return std::bit_cast<double>(bits);
-    }
-
-private:
-    ByteSpan bytes_;
-};
 
 // Only what the mask names, so that short inputs reach each kind of damage alone.
 WireDirection read_direction(FuzzInput& input) {

@@ -80,7 +80,8 @@ private:
     [[nodiscard]] GpsTime next_instant(GpsTime end) const;
     [[nodiscard]] Nanoseconds look_every() const;
     [[nodiscard]] bool all_connected();
-    void exchange_bytes();
+    void carry_out();
+    void take_in();
     void direct();
     void hear_feeds();
     [[nodiscard]] bool may_go_to(GpsTime next);

@@ -62,9 +62,14 @@ public:
 
     /// The receiver starts; before anything else.
     void start(GpsTime now);
-    /// Carries bytes between receiver and wires, and follows what the client has configured by them.
-    /// @param dialogue is shown the messages of both; null: nobody wants them
-    void exchange(const LoopTime& time, Dialogue* dialogue = nullptr);
+    /// Takes from the wires what clients have written, and carries to them all that has left the receiver by now: to be
+    /// called before anything happens to it, so that it never matters when it was looked at last.
+    /// @param dialogue is shown the messages of the receiver; null: nobody wants them
+    void carry_out(const LoopTime& time, Dialogue* dialogue = nullptr);
+    /// Lets the receiver hear what its clients have written, carries out what that brings about at once, and follows
+    /// faults and what a client has configured.
+    /// @param dialogue is shown the messages of both
+    void take_in(const LoopTime& time, Dialogue* dialogue = nullptr);
     /// What is true, measured and solved at the epoch that is due.
     Trace observe();
     /// Adds the vector from the base antenna, and the type of fix that it makes.
@@ -82,7 +87,7 @@ public:
     /// When a fault or a held byte wants to be looked at next.
     /// @param now of the last look
     [[nodiscard]] std::optional<GpsTime> next_change(GpsTime now) const;
-    /// Lets what is wrong now act on receiver and wires; exchange() does so, too.
+    /// Lets what is wrong now act on receiver and wires; take_in() does so, too.
     void follow_faults(GpsTime now);
     /// Faults of this receiver.
     [[nodiscard]] ActiveFaults& faults() { return faults_; }
@@ -117,8 +122,8 @@ public:
 
 private:
     [[nodiscard]] std::set<firmware::PortId> wired_ports() const;
-    void hear(std::size_t wire, GpsTime now, Dialogue* dialogue);
-    void hear_again(GpsTime now, Dialogue* dialogue);
+    bool hear(std::size_t wire, GpsTime now, Dialogue* dialogue);
+    bool hear_again(GpsTime now, Dialogue* dialogue);
     void speak(const LoopTime& time, Dialogue* dialogue);
     void send_on_wire(std::size_t wire, const std::vector<firmware::Receiver::Sent>& pieces, bool at_rest);
     [[nodiscard]] firmware::PortId port_of(std::size_t wire) const;

@@ -20,6 +20,7 @@ using ParameterValue = std::variant<double, bool, std::string, std::vector<doubl
 /// What kind of value a parameter takes.
 enum class ParameterType {
     number,
+    whole_number,
     flag,   ///< true or false
     word,   ///< one of a few
     words,  ///< a list of some of a few; a single one may stand alone
@@ -43,7 +44,10 @@ struct ParameterSpec {
 /// Tables of parameters are written with these. A number without `standard` is absent unless given.
 ParameterSpec number_parameter(std::string name, std::optional<double> standard, double least, double most,
                                std::string meaning);
+ParameterSpec whole_number_parameter(std::string name, std::optional<double> standard, double least, double most,
+                                     std::string meaning);
 ParameterSpec needed_number(std::string name, double least, double most, std::string meaning);
+ParameterSpec needed_whole_number(std::string name, double least, double most, std::string meaning);
 ParameterSpec flag_parameter(std::string name, bool standard, std::string meaning);
 ParameterSpec word_parameter(std::string name, std::string standard, std::vector<std::string> choices,
                              std::string meaning);

@@ -103,9 +103,10 @@ function numbersField(spec, id) {
 }
 
 const makers = {
-    number: numberField, flag: flagField, word: wordField, words: wordsField, text: textField, texts: textsField,
+    number: numberField, whole_number: numberField, flag: flagField, word: wordField, words: wordsField, text: textField, texts: textsField,
     numbers: numbersField,
 };
+const isNumber = (spec) => spec.type === "number" || spec.type === "whole_number";
 
 function rowOf(spec, index) {
     const id = `parameter-${index}-${spec.name}`;
@@ -113,7 +114,7 @@ function rowOf(spec, index) {
     field.element.setAttribute("aria-describedby", `${id}-note`);
     const { label, unit } = labelOf(spec.name);
     const note = make("small", { id: `${id}-note` },
-        [spec.meaning, spec.type === "number" ? range(spec) : ""].filter(Boolean).join("; "));
+        [spec.meaning, isNumber(spec) ? range(spec) : ""].filter(Boolean).join("; "));
     const mistake = make("small", { class: "mistake", role: "alert" });
     const element = make("div", { class: `field field-${spec.type}` }, make("label", { for: id }, label),
         make("span", { class: "input" }, field.element, unit ? make("span", { class: "unit" }, unit) : null), note, mistake);

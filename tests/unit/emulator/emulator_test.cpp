@@ -201,7 +201,8 @@ std::string sent_after(const Scenario& scenario, const Trace& trace) {
     Station station(std::move(parts));
     station.start(now);
     station.report(trace, 0ns, false);
-    station.exchange({now + 10s, 0});
+    station.carry_out({now + 10s, 0});
+    station.take_in({now + 10s, 0});
     return to_string(ByteSpan(wire->written()));
 }
 

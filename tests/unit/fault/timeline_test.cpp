@@ -276,9 +276,26 @@ TEST(TimelineKeys, AskForTheVehicle) {
     const auto mode = reading_of({{"when_mavlink_mode", std::string("LOITRE")}}).mistakes;
     ASSERT_THAT(mode, SizeIs(1));
     EXPECT_THAT(mode[0].sentence, HasSubstr("did you mean 'LOITER'"));
-    const auto number = reading_of({{"when_custom_mode", 1.5}}).mistakes;
-    ASSERT_THAT(number, SizeIs(1));
-    EXPECT_THAT(number[0].sentence, HasSubstr("expected a whole number"));
+}
+
+TEST(Parameters, AreWholeWhereHalvesMeanNothing) {
+    for (const char* name : {"when_custom_mode", "times"}) {
+        const auto mistakes = check_parameters(timeline_keys(), {{name, 1.5}}).mistakes;
+        ASSERT_THAT(mistakes, SizeIs(1)) << name;
+        EXPECT_EQ(mistakes[0].name, name);
+        EXPECT_THAT(mistakes[0].sentence, HasSubstr("is 1.5; expected a whole number"));
+    }
+    const std::pair<const char*, const char*> parameters[] = {
+        {"changed_baud", "baud"},       {"leap_second_wrong", "error_s"}, {"satellites_misreported", "count"},
+        {"week_rollover", "rollovers"}, {"speed_mismatch", "baud"},       {"inserted_garbage", "burst_bytes"}};
+    for (const auto& [kind, name] : parameters) {
+        const std::vector<ParameterSpec>& specs = find_fault_kind(kind)->parameters;
+        EXPECT_THAT(check_parameters(specs, {{name, 1.5}}).mistakes, SizeIs(1)) << kind;
+        EXPECT_THAT(check_parameters(specs, {{name, 9600.0}}).mistakes.size() +
+                        check_parameters(specs, {{name, 1.0}}).mistakes.size(),
+                    testing::Le(1U))
+            << kind;
+    }
 }
 
 TEST(TimelineKeys, EntriesThatDoNotFitTogetherAreTold) {
