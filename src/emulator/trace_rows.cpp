@@ -67,16 +67,28 @@ void append_quality(CsvRows& row, const Fix& fix) {
     row.number(fix.clock_bias.value(), 4);
 }
 
-// The first of `items`, which ascend by satellite, that is of `id`.
+// The first of `items`, which ascend by satellite, that is not before `id`.
 template <class Item>
-const Item* find_satellite(const std::vector<Item>& items, SatelliteId id, SatelliteId Item::*member) {
-    const auto found = std::lower_bound(items.begin(), items.end(), id,
-                                        [&](const Item& item, SatelliteId wanted) { return item.*member < wanted; });
-    return found != items.end() && (*found).*member == id ? &*found : nullptr;
+auto first_of(const std::vector<Item>& items, SatelliteId id, SatelliteId Item::*member) {
+    return std::lower_bound(items.begin(), items.end(), id,
+                            [&](const Item& item, SatelliteId wanted) { return item.*member < wanted; });
+}
+
+const SatelliteStatus* find_status(const std::vector<SatelliteStatus>& all, SatelliteId id) {
+    const auto found = first_of(all, id, &SatelliteStatus::id);
+    return found != all.end() && found->id == id ? &*found : nullptr;
+}
+
+// Of the satellite's first signal, which the columns beside speak of: BeiDou's is not the first of the list.
+template <class Item>
+const Item* find_first_signal(const std::vector<Item>& items, SatelliteId id) {
+    for (auto item = first_of(items, id, &Item::satellite); item != items.end() && item->satellite == id; ++item)
+        if (item->signal == first_signal(id.constellation)) return &*item;
+    return nullptr;
 }
 
 std::optional<double> measured_pseudorange(const Trace& trace, SatelliteId id) {
-    const Observation* o = find_satellite(trace.epoch.observations.signals, id, &Observation::satellite);
+    const Observation* o = find_first_signal(trace.epoch.observations.signals, id);
     if (!o || !o->pseudorange) return std::nullopt;
     return o->pseudorange->value();
 }
@@ -135,12 +147,12 @@ std::string satellite_rows(const Trace& trace) {
     for (std::size_t i = 0; i < trace.sky.satellites.size(); ++i) {
         const SatelliteInView& sky = trace.sky.satellites[i];
         const Arrival& arrival = trace.arrivals.satellites[i];
-        const SatelliteStatus* status = find_satellite(trace.epoch.fix.satellites, sky.id, &SatelliteStatus::id);
+        const SatelliteStatus* status = find_status(trace.epoch.fix.satellites, sky.id);
         rows.text(time).text(to_string(sky.id));
         append_arrival(rows, sky, arrival);
         rows.number(measured ? measured_pseudorange(trace, sky.id) : ideal_pseudorange(sky, arrival), 4);
         rows.text(status && status->used ? "1" : "0");
-        append_errors(rows, arrival, find_satellite(trace.measurement.signals, sky.id, &SignalTerms::satellite));
+        append_errors(rows, arrival, find_first_signal(trace.measurement.signals, sky.id));
         status && status->residual ? rows.number(status->residual->value(), 4) : rows.nothing();
         rows.end_row();
     }

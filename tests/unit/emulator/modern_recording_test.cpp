@@ -247,6 +247,26 @@ TEST_F(ModernRecording, EveryTermStandsInItsColumn) {
     EXPECT_GT(untracked, 50U) << "Galileo and BeiDou stand in the sky all the same";
 }
 
+// B2I stands before B1I among the measurements.
+TEST_F(ModernRecording, RowsSpeakOfTheFirstSignalOfTwo) {
+    const auto traces = run(text(receiver_of_four, 5));
+    const auto rows = rows_of(recorded("satellites.csv"));
+    std::size_t at = 0, told = 0;
+    for (const Trace& trace : traces)
+        for (const SatelliteInView& sky : trace.sky.satellites) {
+            const Row& row = rows.at(at++);
+            for (const Observation& o : trace.epoch.observations.signals)
+                if (o.satellite == sky.id && o.signal == first_signal(sky.id.constellation) && o.pseudorange) {
+                    expect_cell(row, "pseudorange_m", o.pseudorange->value(), 6e-5);
+                    told += sky.id.constellation == Constellation::beidou ? 1 : 0;
+                }
+            for (const SignalTerms& terms : trace.measurement.signals)
+                if (terms.satellite == sky.id && terms.signal == first_signal(sky.id.constellation))
+                    expect_cell(row, "code_noise_m", terms.code_noise.value(), 6e-5);
+        }
+    EXPECT_GT(told, 10U);
+}
+
 TEST_F(ModernRecording, FixesTellTheClockAsSolvedAndAsItWas) {
     const auto traces = run(text(receiver_of_four));
     const auto rows = rows_of(recorded("fixes.csv"));

@@ -187,7 +187,7 @@ TEST(IonosphereTruth, WithoutBroadcastTheParametersServe) {
     const auto& first = sky.satellites.front();
     EXPECT_EQ(test::after(klobuchar, sky, truth).satellites[0].iono_delay,
               klobuchar_delay(defaults.klobuchar, truth.geodetic, direction_to(first), truth.time).slant);
-    EXPECT_NEAR(ntcm_g_ionisation(defaults.ionisation), 144, 15);
+    EXPECT_NEAR(ntcm_g_ionisation(defaults.ionisation), 72, 8);
     EXPECT_GT(test::after(ntcm, sky, truth).satellites[0].iono_delay.value(), 2);
 }
 
