@@ -27,8 +27,9 @@ Result<void> add_file_content(Sha256& digest, const std::filesystem::path& file)
     return fail(ErrorCode::outside, fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
 }
 
-// Of a folder: all files in it, by name.
-Result<std::string> digest_of(const std::filesystem::path& path) {
+}  // namespace
+
+Result<std::string> content_digest(const std::filesystem::path& path) {
     Sha256 digest;
     std::error_code none;
     if (!std::filesystem::is_directory(path, none)) {
@@ -48,13 +49,11 @@ Result<std::string> digest_of(const std::filesystem::path& path) {
     return digest.hex();
 }
 
-}  // namespace
-
 Result<std::string> campaign_base_digest(const CampaignBase& base, const CampaignSettings& campaign) {
     Sha256 digest;
     digest.add(fmt::format("skyloop campaign, form 1\nversion {}\n{}", base.version, base.content.keys));
     for (const std::string& name : base.content.files) {
-        const auto content = digest_of(base.folder / name);
+        const auto content = content_digest(base.folder / name);
         if (!content) return fail(content.error());
         digest.add(fmt::format("file {} {}\n", name, *content));
     }

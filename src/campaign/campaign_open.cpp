@@ -8,14 +8,49 @@
 namespace skyloop {
 namespace {
 
-// Those that the program finds by name; the path of one stands in the scenario.
+// As find_board() finds it: a path from where the program runs, or a name. Nothing: there is none.
+std::optional<std::string> board_digest(const std::string& board, const DataFolders& data) {
+    std::vector<std::filesystem::path> places;
+    if (board.ends_with(".toml"))
+        places.emplace_back(board);
+    else
+        for (const auto& folder : board_folders(data))
+            places.push_back(folder / "receivers" / (board + ".toml"));
+    for (const auto& place : places)
+        if (const auto text = read_text_file(place)) return sha256_hex(*text);
+    return std::nullopt;
+}
+
 void add_boards(const Scenario& scenario, const DataFolders& data, CampaignBase& base) {
     for (const ReceiverEntry& receiver : scenario.receivers)
-        for (const auto& folder : board_folders(data))
-            if (const auto text = read_text_file(folder / "receivers" / (receiver.board + ".toml"))) {
-                base.more["board " + receiver.board] = sha256_hex(*text);
-                break;
-            }
+        if (const auto digest = board_digest(receiver.board, data)) base.more["board " + receiver.board] = *digest;
+}
+
+// A line for each file and board that a value of a parameter names.
+Result<std::string> content_of_value(const CampaignRequest& request, const ScenarioChange& change) {
+    std::string content;
+    for (const std::string& name : files_of_change(change, request.scenario)) {
+        const auto digest = content_digest(request.scenario.parent_path() / name);
+        if (!digest) return fail(digest.error());
+        content += fmt::format("file {} {}\n", name, *digest);
+    }
+    if (change.key.ends_with(".board"))
+        if (const auto digest = board_digest(change.value.shown, request.data))
+            content += fmt::format("board {} {}\n", change.value.shown, *digest);
+    return content;
+}
+
+Result<ValueContents> contents_of_values(const CampaignRequest& request, const CampaignSettings& settings) {
+    ValueContents contents;
+    for (const CampaignParameter& parameter : settings.parameters) {
+        const auto* values = std::get_if<std::vector<CampaignValue>>(&parameter.spread);
+        for (std::size_t i = 0; values != nullptr && i < values->size(); ++i) {
+            const auto content = content_of_value(request, {parameter.key, (*values)[i]});
+            if (!content) return fail(content.error());
+            if (!content->empty()) contents[fmt::format("{} = {}", parameter.key, (*values)[i].toml)] = *content;
+        }
+    }
+    return contents;
 }
 
 // Everything is read, nothing is run.
@@ -72,7 +107,9 @@ Result<OpenedCampaign> open_campaign(const CampaignRequest& request) {
     std::vector<std::string> warnings;
     const auto digest = digest_of_base(request, *text, *scenario, warnings);
     if (!digest) return fail(digest.error());
-    auto plan = CampaignPlan::make(settings, *digest);
+    auto contents = contents_of_values(request, settings);
+    if (!contents) return fail(contents.error());
+    auto plan = CampaignPlan::make(settings, *digest, std::move(*contents));
     if (!plan) return fail(plan.error().code, fmt::format("{}: {}", request.scenario.string(), plan.error().message));
     const auto columns = result_columns(*scenario, plan->parameters());
     if (!columns) return fail(columns.error());

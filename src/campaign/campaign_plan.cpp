@@ -111,10 +111,11 @@ Result<void> apply_vary(std::string_view text, CampaignSettings& campaign) {
     return {};
 }
 
-Result<CampaignPlan> CampaignPlan::make(const CampaignSettings& campaign, std::string base) {
+Result<CampaignPlan> CampaignPlan::make(const CampaignSettings& campaign, std::string base, ValueContents contents) {
     CampaignPlan plan;
     plan.campaign_ = campaign;
     plan.base_ = std::move(base);
+    plan.contents_ = std::move(contents);
     const bool draws = campaign.design != CampaignDesign::grid;
     if (draws) {
         plan.points_ = campaign.samples;
@@ -161,8 +162,11 @@ std::vector<CampaignValue> CampaignPlan::values_of(std::uint64_t point) const {
 PlannedRun CampaignPlan::run(std::uint64_t number) const {
     PlannedRun run{number, {}, seed_of(number), values_of(number / seeds_a_point_)};
     std::vector<std::string> lines;
-    for (std::size_t i = 0; i < run.values.size(); ++i)
-        lines.push_back(fmt::format("{} = {}\n", campaign_.parameters[i].key, run.values[i].toml));
+    for (std::size_t i = 0; i < run.values.size(); ++i) {
+        const std::string line = fmt::format("{} = {}", campaign_.parameters[i].key, run.values[i].toml);
+        const auto content = contents_.find(line);
+        lines.push_back(content == contents_.end() ? line + "\n" : fmt::format("{}\n{}", line, content->second));
+    }
     std::sort(lines.begin(), lines.end());  // whatever order the campaign names them in
     Sha256 digest;
     digest.add(fmt::format("skyloop campaign run, form 1\n{}\n", base_));

@@ -130,10 +130,15 @@ public:
     void table(const toml::table& table, const std::string& path) {
         for (const auto& [key, node] : table) {
             const std::string below = path.empty() ? std::string(key.str()) : fmt::format("{}.{}", path, key.str());
+            if (below == "campaign.parameter") continue;  // files of values are of the runs that have them
             if (below == "campaign") collect_only_ = true;
             value(node, below);
             if (below == "campaign") collect_only_ = false;
         }
+    }
+    void changed(const ScenarioChange& change) {
+        collect_only_ = true;
+        with_toml_value(change.value, [&](const toml::node& node) { value(node, change.key); });
     }
     ScenarioContent content() && {
         content_.files.assign(files_.begin(), files_.end());
@@ -197,6 +202,12 @@ Result<ScenarioContent> scenario_content(std::string_view text, const std::files
         [&walk](toml::table& table, MistakeList&) { walk.table(table, {}); });
     if (!read) return fail(read.error());
     return std::move(walk).content();
+}
+
+std::vector<std::string> files_of_change(const ScenarioChange& change, const std::filesystem::path& file) {
+    ContentWalk walk(file.parent_path());
+    walk.changed(change);
+    return std::move(walk).content().files;
 }
 
 }  // namespace skyloop

@@ -37,14 +37,18 @@ Result<void> apply_seeds(std::string_view text, CampaignSettings& campaign);
 /// Gives a parameter other values, or adds it: "KEY=a,b,c". Fails with `usage`.
 Result<void> apply_vary(std::string_view text, CampaignSettings& campaign);
 
+/// What values of parameters name beside themselves: of "KEY = VALUE" the digests of its files and its board.
+using ValueContents = std::map<std::string, std::string>;
+
 /// All runs of a campaign. Every set of parameters, in the order of the design, is run with every seed: the seed
 /// changes fastest, of a grid the first parameter slowest. Without seeds a design that draws gives its n-th sample the
 /// n-th.
 class CampaignPlan {
 public:
     /// @param base campaign_base_digest()
+    /// @param contents are in the keys of the runs that have these values
     /// Fails with `usage` for more than most_campaign_runs.
-    static Result<CampaignPlan> make(const CampaignSettings& campaign, std::string base);
+    static Result<CampaignPlan> make(const CampaignSettings& campaign, std::string base, ValueContents contents = {});
 
     [[nodiscard]] std::uint64_t size() const { return points_ * seeds_a_point_; }
     /// @param number below size()
@@ -63,10 +67,14 @@ private:
 
     CampaignSettings campaign_;
     std::string base_;
+    ValueContents contents_{};
     std::uint64_t points_ = 1, seeds_a_point_ = 1;
     bool seed_a_sample_ = false;                  // each sample has its own
     std::vector<std::vector<double>> samples_{};  // a list a parameter, of designs that draw
 };
+
+/// SHA-256 of a file's content; of a folder, of all files in it, by name. Fails with `outside` when one cannot be read.
+Result<std::string> content_digest(const std::filesystem::path& path);
 
 /// What all runs of a campaign have in common, as 64 hexadecimal digits of SHA-256: the program's version, what the
 /// scenario says apart from [campaign] and its seed, the content of the files that it names, the digests in `more`

@@ -28,12 +28,15 @@ Result<Scenario> read_changed_scenario(std::string_view text, const std::filesys
 /// What is in a scenario, whatever its comments, order and layout.
 struct ScenarioContent {
     std::string keys;  ///< a line a key, sorted: `run.duration_s = 60`; without [campaign] and run.seed
-    /// Files and folders that its values name, and those of [campaign]; as they are written, sorted, each once.
+    /// Files and folders that its values name, and those of [campaign] apart from the values of its parameters; as they
+    /// are written, sorted, each once.
     std::vector<std::string> files;
 };
 /// @param file as for read_scenario(): what it names is looked for beside it
 /// Fails with `input` when the text is no TOML.
 Result<ScenarioContent> scenario_content(std::string_view text, const std::filesystem::path& file);
+/// The files and folders that a change names, as those of a scenario.
+std::vector<std::string> files_of_change(const ScenarioChange& change, const std::filesystem::path& file);
 
 /// The values of a list as the command line gives it: TOML values, or words, with commas between.
 /// Fails with `usage` for an empty list or entry.

@@ -1,0 +1,105 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "skyloop/campaign/campaign_folder.hpp"
+#include "unit/transport/temporary_folder.hpp"
+
+namespace skyloop {
+namespace {
+
+using testing::HasSubstr;
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path) << text;
+}
+
+constexpr const char* short_run = R"(
+[run]
+start = 2024-03-05T12:00:00Z
+duration_s = 5
+[model]
+name = "ideal"
+)";
+
+std::string track_from(int latitude) {
+    return "time_s,lat_deg,lon_deg,height_m\n0," + std::to_string(latitude) + ",8,400\n9," + std::to_string(latitude) +
+           ".001,8,400\n";
+}
+
+// A folder with a scenario, two tracks beside it and a board of its own.
+class CampaignOpen : public testing::Test {
+protected:
+    CampaignOpen() {
+        write_scenario("");
+        write_text(folder_ / "a.csv", track_from(47));
+        write_text(folder_ / "b.csv", track_from(48));
+        const auto boards = std::filesystem::path(SKYLOOP_SOURCE_DIR) / "boards" / "receivers";
+        std::filesystem::create_directories(board().parent_path());
+        std::filesystem::copy_file(boards / "ublox-m8.toml", board());
+    }
+    [[nodiscard]] std::filesystem::path board() const { return folder_ / "data/boards/receivers/mine.toml"; }
+    void write_scenario(const std::string& more) const { write_text(folder_ / "c.toml", short_run + more); }
+    [[nodiscard]] Result<OpenedCampaign> open(const std::vector<std::string>& vary) const {
+        return open_campaign({folder_ / "c.toml", std::nullopt, vary, "1",
+                              DataFolders{{folder_ / "data", std::filesystem::path(SKYLOOP_SOURCE_DIR)}}});
+    }
+    [[nodiscard]] std::vector<std::string> keys(const std::vector<std::string>& vary) const {
+        const auto campaign = open(vary);
+        if (!campaign) throw std::runtime_error(campaign.error().message);
+        std::vector<std::string> keys;
+        for (std::uint64_t i = 0; i < campaign->plan.size(); ++i)
+            keys.push_back(campaign->plan.run(i).key);
+        return keys;
+    }
+
+    test::TemporaryFolder folder_;
+};
+
+TEST_F(CampaignOpen, TheContentOfAFileThatAValueNamesIsInTheKeysOfItsRuns) {
+    const std::vector<std::string> vary{"trajectory.kind=file", "trajectory.path=a.csv,b.csv"};
+    const auto before = keys(vary);
+    EXPECT_EQ(keys(vary), before);
+    write_text(folder_ / "b.csv", track_from(50));
+    const auto after = keys(vary);
+    EXPECT_EQ(after.at(0), before.at(0));
+    EXPECT_NE(after.at(1), before.at(1));
+}
+
+TEST_F(CampaignOpen, SoItIsOfAListAndOfTheScenariosOwnParameters) {
+    const std::string list = "[[campaign.parameter]]\nkey = \"trajectory.kind\"\nvalues = [\"file\"]\n";
+    write_scenario(list + "[[campaign.parameter]]\nkey = \"trajectory.path\"\nvalues = [\"b.csv\"]\n");
+    const auto before = keys({});
+    write_scenario(list + "[[campaign.parameter]]\nkey = \"trajectory.path\"\nvalues = [\"b.csv\", \"a.csv\"]\n");
+    EXPECT_EQ(keys({}).at(0), before.at(0)) << "another value leaves the keys of what is there alone";
+    write_text(folder_ / "b.csv", track_from(50));
+    EXPECT_NE(keys({}).at(0), before.at(0));
+    const auto listed = keys({"x.y=[\"b.csv\"]"});
+    write_text(folder_ / "b.csv", track_from(51));
+    EXPECT_NE(keys({"x.y=[\"b.csv\"]"}), listed);
+}
+
+TEST_F(CampaignOpen, TheContentOfABoardThatAValueNamesIsInTheKeysOfItsRuns) {
+    write_scenario("[[receiver]]\n");
+    const std::vector<std::string> by_name{"receiver.0.board=ublox-m8,mine"};
+    const std::vector<std::string> by_path{"receiver.0.board=" + board().string()};
+    const auto before = keys(by_name), path_before = keys(by_path);
+    std::ofstream(board(), std::ios::app) << "# another\n";
+    const auto after = keys(by_name);
+    EXPECT_EQ(after.at(0), before.at(0));
+    EXPECT_NE(after.at(1), before.at(1));
+    EXPECT_NE(keys(by_path), path_before);
+}
+
+TEST_F(CampaignOpen, TheContentOfABoardThatTheScenarioNamesByItsPathIsInTheKeys) {
+    const auto here = std::filesystem::current_path();
+    write_scenario("[[receiver]]\nboard = \"" + board().lexically_relative(here).string() + "\"\n");
+    const auto before = keys({});
+    std::ofstream(board(), std::ios::app) << "# another\n";
+    EXPECT_NE(keys({}), before);
+}
+
+}  // namespace
+}  // namespace skyloop
