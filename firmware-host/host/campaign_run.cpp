@@ -80,6 +80,8 @@ public:
         : messages_(messages), options_(options), campaign_(campaign) {}
 
     int run(const Shard& shard) {
+        // First of all: what is there may be of another campaign.
+        if (const auto ours = check_folder(options_.out, campaign_); !ours) return messages_.error(ours.error());
         if (const auto wanted = find_missing(shard); !wanted) return messages_.error(wanted.error());
         if (const auto checked = check_runs(campaign_, missing_); !checked) return messages_.error(checked.error());
         if (const auto kept = keep_campaign(options_.out, campaign_); !kept) return messages_.error(kept.error());

@@ -1,6 +1,7 @@
 #include "skyloop/campaign/campaign_folder.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
@@ -13,6 +14,7 @@ namespace {
 using PlanJson = nlohmann::ordered_json;
 
 constexpr std::string_view plan_name = "campaign.json";
+constexpr std::size_t largest_plan = std::size_t{1} << 30;
 
 // A line a run: a plan of a million can be looked at.
 std::string runs_text(const CampaignPlan& plan) {
@@ -80,12 +82,59 @@ KeptCampaign campaign_from(const nlohmann::json& plan) {
     return kept;
 }
 
+// What the plan that is there has columns for; of its runs, which may be a million, nothing is kept.
+Result<ResultColumns> columns_of_plan(std::string_view text, const std::string& name) {
+    try {
+        const auto plan = nlohmann::json::parse(
+            text, [](int depth, nlohmann::json::parse_event_t event, const nlohmann::json& parsed) {
+                return depth != 1 || event != nlohmann::json::parse_event_t::key || parsed != "runs";
+            });
+        ResultColumns columns;
+        plan.at("parameters").get_to(columns.parameters);
+        plan.at("metrics").get_to(columns.metrics);
+        plan.at("verdicts").get_to(columns.verdicts);
+        return columns;
+    } catch (const std::exception& mistake) {
+        return fail(ErrorCode::input,
+                    fmt::format("{}: {}; expected the plan that skyloop campaign --out has written, or a folder "
+                                "without one",
+                                name, std::string_view(mistake.what()).substr(0, 200)));
+    }
+}
+
+std::string difference_of(const ResultColumns& there, const ResultColumns& asked) {
+    using Names = std::vector<std::string> ResultColumns::*;
+    for (const auto& [what, names] : {std::pair<std::string_view, Names>{"parameters", &ResultColumns::parameters},
+                                      {"metrics", &ResultColumns::metrics},
+                                      {"expectations", &ResultColumns::verdicts}})
+        if (there.*names != asked.*names)
+            return fmt::format("{} [{}], this one [{}]", what, fmt::join(there.*names, ", "),
+                               fmt::join(asked.*names, ", "));
+    return {};
+}
+
 }  // namespace
+
+Result<void> check_folder(const std::filesystem::path& folder, const OpenedCampaign& campaign) {
+    const std::filesystem::path path = folder / plan_name;
+    std::error_code none;
+    if (!std::filesystem::exists(path, none)) return {};
+    const auto text = read_text_file(path, largest_plan);
+    if (!text) return fail(text.error());
+    const auto there = columns_of_plan(*text, path.string());
+    if (!there) return fail(there.error());
+    const std::string difference = difference_of(*there, campaign.setup.columns);
+    if (difference.empty()) return {};
+    return fail(ErrorCode::input, fmt::format("{}: is that of a campaign with other columns: it has the {}; expected a "
+                                              "folder of its own, or the same parameters, metrics and expectations",
+                                              path.string(), difference));
+}
 
 Result<void> keep_campaign(const std::filesystem::path& folder, const OpenedCampaign& campaign) {
     const std::filesystem::path path = folder / plan_name;
     const std::string text = plan_text(campaign);
-    if (const auto before = read_text_file(path); before && *before == text) return {};
+    if (const auto before = read_text_file(path, largest_plan); before && *before == text) return {};
+    if (const auto checked = check_folder(folder, campaign); !checked) return fail(checked.error());
     std::error_code none;
     std::filesystem::create_directories(folder, none);
     // Parts on several machines may write it at once.
@@ -103,7 +152,7 @@ Result<KeptCampaign> parse_kept_campaign(std::string_view text, const std::strin
 
 Result<KeptCampaign> kept_campaign(const std::filesystem::path& folder) {
     const std::filesystem::path path = folder / plan_name;
-    const auto text = read_text_file(path, std::size_t{1} << 30);
+    const auto text = read_text_file(path, largest_plan);
     if (!text) return fail(text.error());
     return parse_kept_campaign(*text, path.string());
 }

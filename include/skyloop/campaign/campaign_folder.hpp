@@ -48,7 +48,11 @@ struct KeptCampaign {
     ResultColumns columns{};
     std::vector<PlannedRun> runs{};  ///< by number; of their values what people read
 };
-/// Writes DIR/campaign.json, under another name first. Nothing is written where it is the same already.
+/// Whether a folder may keep this campaign. Fails with `input` where the campaign.json that is there is that of another
+/// one, with other parameters, metrics or expectations, or none of ours.
+Result<void> check_folder(const std::filesystem::path& folder, const OpenedCampaign& campaign);
+/// Writes DIR/campaign.json, under another name first. Nothing is written where it is the same already, or where
+/// check_folder() fails.
 Result<void> keep_campaign(const std::filesystem::path& folder, const OpenedCampaign& campaign);
 /// Fails with `outside` where there is none, with `input` where it is not understood.
 Result<KeptCampaign> kept_campaign(const std::filesystem::path& folder);

@@ -101,5 +101,27 @@ TEST_F(CampaignOpen, TheContentOfABoardThatTheScenarioNamesByItsPathIsInTheKeys)
     EXPECT_NE(keys({}), before);
 }
 
+TEST_F(CampaignOpen, AFolderIsNotTakenFromAnotherCampaign) {
+    const auto out = folder_ / "out";
+    ASSERT_TRUE(keep_campaign(out, open({"trajectory.path=a.csv,b.csv"}).value()));
+    const auto before = kept_campaign(out).value();
+    for (const std::vector<std::string>& other : {std::vector<std::string>{}, {"run.speed=1,2"}}) {
+        const auto kept = keep_campaign(out, open(other).value());
+        ASSERT_FALSE(kept);
+        EXPECT_EQ(kept.error().code, ErrorCode::input);
+        EXPECT_THAT(kept.error().message, HasSubstr("campaign.json: is that of a campaign with other columns: it has "
+                                                    "the parameters [trajectory.path], this one ["));
+        EXPECT_EQ(kept_campaign(out)->runs, before.runs);
+    }
+    write_scenario("[[expect]]\nname = \"seen\"\nwhat = \"fix at 3 s\"\n");
+    EXPECT_THAT(keep_campaign(out, open({"trajectory.path=a.csv"}).value()).error().message,
+                HasSubstr("expectations [], this one [seen]"));
+    write_scenario("");
+    EXPECT_TRUE(keep_campaign(out, open({"trajectory.path=a.csv"}).value())) << "other values are the same campaign";
+    EXPECT_EQ(kept_campaign(out)->runs.size(), 1U);
+    write_text(out / "campaign.json", "mine");
+    EXPECT_THAT(keep_campaign(out, open({}).value()).error().message, HasSubstr("or a folder without one"));
+}
+
 }  // namespace
 }  // namespace skyloop
