@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "campaign_check.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/campaign/campaign_folder.hpp"
 #include "skyloop/campaign/sha256.hpp"
@@ -53,14 +54,6 @@ Result<ValueContents> contents_of_values(const CampaignRequest& request, const C
     return contents;
 }
 
-// Everything is read, nothing is run.
-Result<Assembly> checked_assembly(const Scenario& scenario, const DataFolders& data) {
-    RunMode mode = campaign_mode(scenario);
-    mode.open_ports = false;
-    mode.only_checked = true;
-    return assemble(scenario, data, mode);
-}
-
 Result<Scenario> base_scenario(const CampaignRequest& request, const std::string& text, CampaignSettings& settings) {
     auto scenario = read_scenario(text, request.scenario);
     if (!scenario) return fail(scenario.error());
@@ -104,6 +97,9 @@ Result<OpenedCampaign> open_campaign(const CampaignRequest& request) {
     CampaignSettings settings;
     const auto scenario = base_scenario(request, *text, settings);
     if (!scenario) return fail(scenario.error());
+    const std::vector<std::string> options = options_of(request);
+    if (const auto once = check_parameter_keys({*text, request.scenario, options}, settings); !once)
+        return fail(once.error());
     std::vector<std::string> warnings;
     const auto digest = digest_of_base(request, *text, *scenario, warnings);
     if (!digest) return fail(digest.error());
@@ -116,27 +112,9 @@ Result<OpenedCampaign> open_campaign(const CampaignRequest& request) {
     return OpenedCampaign{{*text, request.scenario, request.data, *columns},
                           std::move(*plan),
                           settings.name.empty() ? request.scenario.stem().string() : settings.name,
-                          options_of(request),
+                          options,
                           request.version,
                           std::move(warnings)};
-}
-
-Result<void> check_runs(const OpenedCampaign& campaign, const std::vector<std::uint64_t>& wanted) {
-    const std::uint64_t seeds = campaign.plan.size() / campaign.plan.points();
-    std::optional<std::uint64_t> checked;
-    for (const std::uint64_t number : wanted) {
-        if (checked && *checked / seeds == number / seeds) continue;
-        const PlannedRun run = campaign.plan.run(number);
-        const auto asked =
-            read_changed_scenario(campaign.setup.text, campaign.setup.file, campaign.plan.changes_of(run));
-        if (!asked) return fail(asked.error());
-        const auto scenario = campaign_scenario(*asked);
-        if (!scenario) return fail(scenario.error());
-        if (!checked)
-            if (const auto read = checked_assembly(*scenario, campaign.setup.data); !read) return fail(read.error());
-        checked = number;
-    }
-    return {};
 }
 
 }  // namespace skyloop

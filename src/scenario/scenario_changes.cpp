@@ -79,8 +79,8 @@ bool apply_change(toml::table& table, const ScenarioChange& change) {
     return done;
 }
 
-// As the reader names the key in its mistakes: without what tells the entries of lists apart.
-std::string path_in_mistakes(const toml::table& table, std::string_view key) {
+// @param with_places of the entries of lists; else, as the reader names the key in its mistakes, without
+std::string path_of_change(const toml::table& table, std::string_view key, bool with_places) {
     std::string path;
     const toml::node* node = &table;
     for (const std::string_view part : parts_of(key)) {
@@ -88,6 +88,7 @@ std::string path_in_mistakes(const toml::table& table, std::string_view key) {
         if (list != nullptr) {
             const auto index = place_in_list(*list, part);
             node = index ? list->get(*index) : nullptr;
+            if (with_places) path += index ? fmt::format(".{}", *index) : fmt::format(".{}", part);
             continue;
         }
         path += (path.empty() ? "" : ".") + std::string(part);
@@ -112,7 +113,7 @@ toml::source_region place_of_parameter(const toml::table& table, std::string_vie
 
 void apply_changes(toml::table& table, MistakeList& mistakes, std::span<const ScenarioChange> changes) {
     for (const ScenarioChange& change : changes)
-        mistakes.changed(path_in_mistakes(table, change.key), place_of_parameter(table, change.key),
+        mistakes.changed(path_of_change(table, change.key, false), place_of_parameter(table, change.key),
                          fmt::format("{} = {}", change.key, change.value.toml));
     for (const ScenarioChange& change : changes)
         if (!apply_change(table, change))
@@ -202,6 +203,23 @@ Result<ScenarioContent> scenario_content(std::string_view text, const std::files
         [&walk](toml::table& table, MistakeList&) { walk.table(table, {}); });
     if (!read) return fail(read.error());
     return std::move(walk).content();
+}
+
+std::string place_of_key(std::string_view text, std::string_view key) {
+    try {
+        return path_of_change(toml::parse(text), key, true);
+    } catch (const toml::parse_error&) {
+        return std::string(key);
+    }
+}
+
+std::string place_of_parameter(std::string_view text, const std::filesystem::path& file, std::string_view key) {
+    try {
+        const toml::source_position place = place_of_parameter(toml::parse(text), key).begin;
+        return fmt::format("{}:{}:{}", file.string(), place.line, place.column);
+    } catch (const toml::parse_error&) {
+        return file.string();
+    }
 }
 
 std::vector<std::string> files_of_change(const ScenarioChange& change, const std::filesystem::path& file) {

@@ -37,8 +37,9 @@ struct OpenedCampaign {
 /// one run. Fails as reading a scenario does.
 Result<OpenedCampaign> open_campaign(const CampaignRequest& request);
 
-/// Reads the scenario with the values of each run in the part that is `wanted`, and reads all that the first of them
-/// would read. Fails with the first mistake; nothing has been run then.
+/// Reads the scenario with the values of each run in the part that is `wanted`, and reads all that runs would read
+/// which have between them each of a parameter's first 200 listed values, and the ends of what was drawn of a range.
+/// Fails with the first mistake, naming the parameter's line or option; nothing has been run then.
 Result<void> check_runs(const OpenedCampaign& campaign, const std::vector<std::uint64_t>& wanted);
 
 /// What campaign.json holds.

@@ -55,6 +55,7 @@ public:
     [[nodiscard]] PlannedRun run(std::uint64_t number) const;
     /// Keys of the parameters.
     [[nodiscard]] std::vector<std::string> parameters() const;
+    [[nodiscard]] const std::vector<CampaignParameter>& varied() const { return campaign_.parameters; }
     /// Number of sets of parameters: run number n is of the set n / (size() / points()).
     [[nodiscard]] std::uint64_t points() const { return points_; }
     [[nodiscard]] const std::string& base() const { return base_; }

@@ -38,6 +38,13 @@ Result<ScenarioContent> scenario_content(std::string_view text, const std::files
 /// The files and folders that a change names, as those of a scenario.
 std::vector<std::string> files_of_change(const ScenarioChange& change, const std::filesystem::path& file);
 
+/// The key that another name of it means in a scenario: with the places of lists, "fault.0.for_s".
+/// @param text a scenario's, which has been read
+std::string place_of_key(std::string_view text, std::string_view key);
+/// Where a scenario says that a campaign varies a key: FILE:LINE:COLUMN; its top where it does not.
+/// @param text a scenario's, which has been read
+std::string place_of_parameter(std::string_view text, const std::filesystem::path& file, std::string_view key);
+
 /// The values of a list as the command line gives it: TOML values, or words, with commas between.
 /// Fails with `usage` for an empty list or entry.
 Result<std::vector<CampaignValue>> parse_campaign_values(std::string_view text);

@@ -123,5 +123,45 @@ TEST_F(CampaignOpen, AFolderIsNotTakenFromAnotherCampaign) {
     EXPECT_THAT(keep_campaign(out, open({}).value()).error().message, HasSubstr("or a folder without one"));
 }
 
+std::string check_mistake(const Result<OpenedCampaign>& campaign) {
+    if (!campaign) return campaign.error().message;
+    std::vector<std::uint64_t> all;
+    for (std::uint64_t i = 0; i < campaign->plan.size(); ++i)
+        all.push_back(i);
+    const auto checked = check_runs(*campaign, all);
+    if (checked) return "none";
+    EXPECT_NE(checked.error().code, ErrorCode::outside);
+    return checked.error().message;
+}
+
+TEST_F(CampaignOpen, EachListedValueIsTriedBeforeAnythingIsRun) {
+    write_scenario(
+        "[[receiver]]\n[campaign]\nseeds = 2\n[[campaign.parameter]]\nkey = \"run.speed\"\nvalues = [1, 2]\n"
+        "[[campaign.parameter]]\nkey = \"receiver.0.board\"\nvalues = [\"ublox-m8\", \"nope\"]\n");
+    EXPECT_THAT(check_mistake(open({})), testing::MatchesRegex(".*/c.toml:14:7: board 'nope' is not known.*; with "
+                                                               "receiver.0.board = \"nope\""));
+    EXPECT_EQ(check_mistake(open({"receiver.0.board=ublox-m8,mine"})), "none");
+    EXPECT_THAT(check_mistake(open({"receiver.0.board=mine,nope"})),
+                testing::StartsWith("--vary receiver.0.board: board 'nope'"));
+    EXPECT_THAT(check_mistake(open({"receiver.0.board=mine", "sky.rebase_navigation=false,true"})),
+                testing::MatchesRegex("--vary sky.rebase_navigation: .*; with sky.rebase_navigation = true"));
+}
+
+TEST_F(CampaignOpen, TwoNamesOfOneKeyAreRefused) {
+    const std::string faults =
+        "[[fault]]\nname = \"gap\"\nkind = \"outage\"\nat_s = 1\nfor_s = 1\n[campaign]\n"
+        "[[campaign.parameter]]\nkey = \"fault.gap.for_s\"\nvalues = [2]\n";
+    write_scenario(faults);
+    for (const std::string other : {"fault.0.for_s", "fault.outage.for_s", "fault.0"})
+        EXPECT_THAT(check_mistake(open({other + "=3"})),
+                    HasSubstr("--vary " + other + ": campaign parameter '" + other +
+                              "' sets what 'fault.gap.for_s' "
+                              "sets, too"));
+    write_scenario(faults + "[[campaign.parameter]]\nkey = \"fault.0.for_s\"\nvalues = [3]\n");
+    EXPECT_THAT(check_mistake(open({})), HasSubstr("c.toml:17:7: campaign parameter 'fault.0.for_s' sets what"));
+    write_scenario(faults);
+    EXPECT_EQ(check_mistake(open({"fault.0.at_s=2", "fault.gap.for_s=1,2"})), "none");
+}
+
 }  // namespace
 }  // namespace skyloop
