@@ -153,14 +153,21 @@ std::uint8_t tracking_channel(SatelliteId id, const Fix& fix) {
                                          : field<std::uint8_t>(static_cast<double>(found - fix.satellites.begin()));
 }
 
+// Pilots carry no data: I/NAV comes by E1-B and E5b-I, where what is measured is called E1-C and E5b-Q.
+std::uint8_t data_signal_id(const Subframe& subframe, const ReportContext& context) {
+    constexpr std::uint8_t e1_b = 1, e5b_i = 5;
+    if (subframe.satellite.constellation == Constellation::galileo)
+        return subframe.signal == Signal::e5b ? e5b_i : e1_b;
+    return signal_id(subframe.satellite, subframe.signal, takes_b1c(context.config));
+}
+
 std::vector<Bytes> received_subframes(const ReportContext& context) {
     std::vector<Bytes> frames;
     for (const Subframe& subframe : context.state.epoch.subframes) {
         RxmSfrbx m;
         m.gnss_id = gnss_id(subframe.satellite.constellation);
         m.sv_id = sv_id(subframe.satellite);
-        if (context.board.identity.generation > 8)
-            m.sig_id = signal_id(subframe.satellite, subframe.signal, takes_b1c(context.config));
+        if (context.board.identity.generation > 8) m.sig_id = data_signal_id(subframe, context);
         if (subframe.satellite.constellation == Constellation::glonass)
             m.freq_id = field<std::uint8_t>(subframe.frequency_channel + 7);
         m.chn = tracking_channel(subframe.satellite, context.state.epoch.fix);

@@ -144,6 +144,18 @@ TEST(RxmSfrbxMessage, HasOneFrameForEachSubframe) {
     EXPECT_EQ(glonass->freq_id, 5);
 }
 
+TEST(RxmSfrbxMessage, NamesTheSignalThatCarriesTheData) {
+    UbxReport f9(9);
+    f9.state.epoch.subframes = {{{Constellation::galileo, 3}, Signal::l1, {}, 0, {1, 2, 3, 4, 5, 6, 7, 8}},
+                                {{Constellation::galileo, 3}, Signal::e5b, {}, 0, {1, 2, 3, 4, 5, 6, 7, 8}},
+                                {{Constellation::gps, 2}, Signal::l1, {}, 0, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}},
+                                {{Constellation::beidou, 20}, Signal::b1i, {}, 0, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}}};
+    std::vector<int> signals;
+    for (const Bytes& frame : f9.frames(RxmSfrbx::message_id))
+        signals.push_back(decode_payload<RxmSfrbx>(parse_frame(frame)->payload)->sig_id);
+    EXPECT_EQ(signals, (std::vector<int>{1, 5, 0, 0})) << "E1-B, E5b-I, L1 C/A and B1I D1: no pilots";
+}
+
 TEST(RxmSvsiMessage, TellsWhatIsKnown) {
     UbxReport m8(8);
     m8.state.epoch.fix.satellites[1].has_ephemeris = false;
