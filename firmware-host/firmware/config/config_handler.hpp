@@ -49,6 +49,8 @@ private:
     /// Does now what a message asks for, or adds it to a transaction.
     ConfigOutcome take(std::uint8_t transaction, Change change);
     ConfigOutcome apply(const Change& change);
+    /// False, and nothing is forgotten, when what is left could not stand together at the next start.
+    bool erase(const Change& change);
     /// The items that a wildcard means, or the one of this id; nothing when there is none.
     [[nodiscard]] std::vector<std::uint32_t> expanded(std::uint32_t key) const;
     [[nodiscard]] bool is_settable(std::uint32_t key, std::uint64_t value) const;
@@ -77,8 +79,8 @@ private:
 /// The factory configuration of a board: every item that it has.
 ConfigValues factory_config(const BoardProfile& board);
 
-/// Whether values may stand together in RAM: each in its range, at least one system enabled, a signal plan that the
-/// board can track (RECEIVER.md 4.4).
+/// Whether values may stand together in RAM: each in its range, at least one major system enabled, a signal plan that
+/// the board can track (RECEIVER.md 4.4).
 bool is_consistent(const BoardProfile& board, const ConfigValues& ram);
 /// Whether one value is in the range of its item: enumerations, logicals, the board's speeds and rates.
 bool is_in_range(const BoardProfile& board, std::uint32_t key, std::uint64_t value);

@@ -115,11 +115,16 @@ void ConfigStore::clear(ConfigLayers layers) {
     if (layers & in_flash) flash_.clear();
 }
 
-void ConfigStore::reload() {
-    ConfigValues fresh = factory_;
+ConfigValues ConfigStore::values_at_start() const {
+    ConfigValues values = factory_;
     for (const ConfigValues* layer : {&flash_, &battery_})
         for (const auto& [key, value] : *layer)
-            fresh[key] = value;
+            values[key] = value;
+    return values;
+}
+
+void ConfigStore::reload() {
+    ConfigValues fresh = values_at_start();
     if (fresh != ram_) ++revision_;
     ram_ = std::move(fresh);
 }

@@ -55,7 +55,9 @@ public:
     void erase(ConfigLayers layers, std::uint32_t key);
     /// Forgets a whole layer; RAM never forgets.
     void clear(ConfigLayers layers);
-    /// RAM becomes factory, overlaid with flash, then with the battery-backed layer: what a start does.
+    /// Factory, overlaid with flash, then with the battery-backed layer.
+    [[nodiscard]] ConfigValues values_at_start() const;
+    /// RAM becomes what it is at a start.
     void reload();
     /// Grows with every change of RAM.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }

@@ -228,20 +228,19 @@ bool is_on(const ConfigValues& values, std::uint32_t key) {
     return found != values.end() && found->second != 0;
 }
 
+// QZSS, SBAS and NavIC give no position by themselves: a major system is needed, as CFG-GNSS needs one.
 bool is_signal_plan(const BoardProfile& board, const ConfigValues& values) {
-    int systems = 0, major = 0;
+    int major = 0;
     for (const SystemKeys& system : system_keys_of_signals) {
-        if (!is_on(values, system.enable)) continue;
+        if (!system.is_major || !is_on(values, system.enable)) continue;
         const auto on = [&values](std::uint32_t key) { return key != 0 && is_on(values, key); };
         // A system without a signal is not tracked. It is taken: clients change B1I for B1C key by key.
-        if (std::none_of(system.first.begin(), system.first.end(), on)) continue;
-        if (system.constellation != Constellation::sbas) ++systems;
-        if (system.is_major) ++major;
+        if (std::any_of(system.first.begin(), system.first.end(), on)) ++major;
     }
     const auto is_whole = [&values](const std::set<std::uint32_t>& conflict) {
         return std::all_of(conflict.begin(), conflict.end(), [&](std::uint32_t key) { return is_on(values, key); });
     };
-    return systems > 0 && major <= board.most_systems &&
+    return major > 0 && major <= board.most_systems &&
            std::none_of(board.signal_conflicts.begin(), board.signal_conflicts.end(), is_whole);
 }
 

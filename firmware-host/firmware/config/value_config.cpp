@@ -131,15 +131,22 @@ ConfigOutcome ValueConfig::take(std::uint8_t transaction, Change change) {
     return cancel(), apply(whole);
 }
 
+// Values that are gone may leave the next start without a system as well as values that are set.
+bool ValueConfig::erase(const Change& change) {
+    ConfigStore after = store_;
+    for (const auto& [key, value] : change.items)
+        after.erase(change.layers, key);
+    if (!is_consistent(board_, after.values_at_start()) && is_consistent(board_, store_.values_at_start()))
+        return false;
+    store_ = std::move(after);
+    return true;
+}
+
 ConfigOutcome ValueConfig::apply(const Change& change) {
     if (is_locked(change.items)) return refused();
     ConfigOutcome outcome = verdict(Verdict::acknowledge);
     if ((change.layers & in_flash) && !change.items.empty()) outcome.work += board_.timing.flash_write;
-    if (change.deleting) {
-        for (const auto& [key, value] : change.items)
-            store_.erase(change.layers, key);
-        return outcome;
-    }
+    if (change.deleting) return erase(change) ? outcome : refused();
     ConfigValues ram = store_.values(ConfigLayer::ram);
     for (const auto& [key, value] : change.items)
         ram[key] = value;

@@ -160,6 +160,19 @@ TEST(Valset, KeepsRamConsistent) {
     EXPECT_EQ(c.set(1, {{key::ant_power_down, 1}, {key::ant_voltage_control, 1}}), Verdict::acknowledge);
 }
 
+TEST(Valset, RefusesToLeaveNoMajorSystemWhateverElseStaysOn) {
+    constexpr std::uint32_t qzss_item = 0x10310024, sbas_item = 0x10310020, gps_l1_item = 0x10310001;
+    const KeyValues no_major{{gps_item, 0}, {galileo_item, 0}, {beidou_item, 0}, {glonass_item, 0}};
+    Configured c;
+    EXPECT_EQ(c.set(1, {{qzss_item, 1}, {sbas_item, 1}}), Verdict::acknowledge);
+    EXPECT_EQ(c.set(1, no_major), Verdict::refuse) << "neither QZSS nor SBAS gives a position";
+    EXPECT_EQ(c.set(1, {{gps_l1_item, 0}, {galileo_item, 0}}), Verdict::refuse) << "GPS without a signal";
+    EXPECT_EQ(c.set(1, {{gps_item, 0}}, 1, 1), Verdict::acknowledge);
+    EXPECT_EQ(c.set(1, {{galileo_item, 0}}, 1, 3), Verdict::refuse);
+    EXPECT_EQ(c.store.value(gps_item), 1U);
+    EXPECT_EQ(c.set(1, {{gps_item, 0}, {galileo_item, 0}, {beidou_item, 1}}), Verdict::acknowledge);
+}
+
 TEST(Valset, TakesTimeForFlashAndForNewSignals) {
     Configured c;
     c.board.timing.flash_write = Seconds(0.2);
@@ -340,6 +353,16 @@ TEST(Valdel, IsAllOrNothingAndKnowsWildcards) {
     EXPECT_EQ(c.store.values(ConfigLayer::flash).size(), 1U);
     EXPECT_EQ(c.erase(4, {0x0FFF0000}), Verdict::acknowledge);
     EXPECT_TRUE(c.store.values(ConfigLayer::flash).empty());
+}
+
+TEST(Valdel, RefusesToLeaveTheNextStartWithoutAMajorSystem) {
+    Configured c;
+    EXPECT_EQ(c.set(2, {{glonass_item, 1}, {0x10310018, 1}, {gps_item, 0}, {galileo_item, 0}}), Verdict::acknowledge);
+    EXPECT_EQ(c.erase(2, {glonass_item}), Verdict::refuse);
+    EXPECT_EQ(c.erase(2, {period_item}, 1, 1), Verdict::acknowledge);
+    EXPECT_EQ(c.erase(2, {glonass_item}, 1, 3), Verdict::refuse);
+    EXPECT_EQ(c.store.values(ConfigLayer::battery).size(), 4U);
+    EXPECT_EQ(c.erase(2, {glonass_item, gps_item}), Verdict::acknowledge);
 }
 
 TEST(Valdel, HasTransactionsToo) {
