@@ -28,6 +28,11 @@ double horizontal_distance(const Geodetic& a, const Geodetic& b) {
     return std::hypot(to.vector().x(), to.vector().y());
 }
 
+// A u-blox receiver counts while CFG-ODO has its odometer on, from the factory it is off; others have no such switch.
+bool odometer_is_on(const BoardProfile& board, const ConfigStore& config) {
+    return board.personality != Personality::ublox || config.flag(key::odo_use_odo);
+}
+
 bool is_tracking(const Fix& fix) {
     return std::any_of(fix.satellites.begin(), fix.satellites.end(), [](const auto& s) { return s.cn0.has_value(); });
 }
@@ -102,7 +107,7 @@ const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStor
     }
     learn_time(config);
     freeze_course();
-    count_distance(before);
+    if (odometer_is_on(board_, config)) count_distance(before);
     monitor(config);
     if (fix.has_position()) last_fix_ = fix;
     return state_;

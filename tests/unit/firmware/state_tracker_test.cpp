@@ -299,6 +299,24 @@ TEST(StateTracker, CountsTheDistance) {
     EXPECT_NEAR(t.tracker().state().odometer_total_m, 125, 1e-9);
 }
 
+TEST(StateTracker, CountsTheDistanceOfAUbloxWhileItsOdometerIsOn) {
+    BoardProfile board = tracked_board();
+    board.personality = Personality::ublox;
+    Tracked t(board);
+    t.fix().speed_accuracy = MetresPerSecond(0.05);
+    t.tracker().start(t.fix().time, {}, true);
+    EXPECT_EQ(t.steps(11).odometer_m, 0) << "off from the factory";
+    t.store().set(in_ram, key::odo_use_odo, 1);
+    const NavigationState& counted = t.steps(40);
+    EXPECT_NEAR(counted.odometer_m, 500, 1e-9);
+    EXPECT_NEAR(counted.odometer_deviation_m, 2, 1e-9);
+    t.store().set(in_ram, key::odo_use_odo, 0);
+    EXPECT_NEAR(t.steps(10).odometer_m, 500, 1e-9) << "what was counted stays";
+    EXPECT_NEAR(t.tracker().state().odometer_total_m, 500, 1e-9);
+    t.tracker().reset_odometer();
+    EXPECT_EQ(t.tracker().state().odometer_m, 0);
+}
+
 TEST(StateTracker, TellsJammingOnlyWhenTheMonitorIsOn) {
     Tracked t(tracked_board());
     t.tracker().start(t.fix().time, {}, true);
