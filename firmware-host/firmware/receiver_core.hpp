@@ -64,6 +64,7 @@ private:
     [[nodiscard]] ConfigOutcome configured(const UbxFrameView& frame, PortId from);
     void command(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
     void assist(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
+    void save_on_shutdown(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
     void reset_odometer();
 
     // Faults.

@@ -6,6 +6,7 @@
 #include "firmware/receiver_core.hpp"
 #include "skyloop/base/units.hpp"
 #include "skyloop/protocol/ubx_cfg.hpp"
+#include "skyloop/protocol/ubx_cfg_hardware.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
 
 namespace skyloop::firmware {
@@ -152,7 +153,9 @@ void Receiver::Core::command(PortUnit& unit, const UbxFrameView& frame, GpsTime 
         return reply(unit, {{}, verdict_frame(Verdict::refuse, frame.id), Seconds(0), frame.id}, now);
     const bool known = board_.polled.contains(frame.id) ||
                        std::find(board_.messages.begin(), board_.messages.end(), frame.id) != board_.messages.end();
-    if (!known || frame.payload.size() > 1) return;
+    if (!known) return;
+    if (frame.id == UpdSos::message_id) return save_on_shutdown(unit, frame, now);
+    if (frame.payload.size() > 1) return;
     std::vector<Bytes> answers = answers_of(frame.id, unit.id);
     if (answers.empty()) return;
     reply(unit, {std::move(answers), std::nullopt, Seconds(0), frame.id}, now);
@@ -167,6 +170,23 @@ void Receiver::Core::assist(PortUnit& unit, const UbxFrameView& frame, GpsTime n
     Bytes payload{accepted, 0, 0, frame.id.id, 0, 0, 0, 0};
     std::copy_n(frame.payload.begin(), std::min<std::size_t>(4, frame.payload.size()), payload.begin() + 4);
     reply(unit, {{encode_frame(mga_ack, payload)}, std::nullopt, Seconds(0), frame.id}, now);
+}
+
+// UPD-SOS: there is no backup, and none is made; to clear it is easily done.
+void Receiver::Core::save_on_shutdown(PortUnit& unit, const UbxFrameView& frame, GpsTime now) {
+    constexpr std::uint8_t create = 0, clear = 1, created = 2, restored = 3, no = 0, no_backup = 3;
+    const auto told = [](std::uint8_t subject, std::uint8_t response) {
+        return encode_frame(UpdSosStatus{.cmd = subject, .reserved0 = {}, .response = response, .reserved1 = {}});
+    };
+    Reply answer{{}, std::nullopt, Seconds(0), frame.id};
+    const auto asked = decode_payload<UpdSos>(frame.payload);
+    if (frame.payload.empty())
+        answer.answers.push_back(told(restored, no_backup));
+    else if (asked && asked->cmd == create)
+        answer.answers.push_back(told(created, no));
+    else
+        answer.verdict = verdict_frame(asked && asked->cmd == clear ? Verdict::acknowledge : Verdict::refuse, frame.id);
+    reply(unit, std::move(answer), now);
 }
 
 void Receiver::Core::dispatch_sentence(PortUnit& unit, ByteSpan line, GpsTime now) {

@@ -7,6 +7,7 @@
 #include "skyloop/protocol/nmea_sentence.hpp"
 #include "skyloop/protocol/stream_splitter.hpp"
 #include "skyloop/protocol/ubx_cfg.hpp"
+#include "skyloop/protocol/ubx_cfg_hardware.hpp"
 #include "skyloop/protocol/ubx_cfg_values.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
@@ -26,6 +27,8 @@ CfgValset valset(std::vector<ConfigPair> pairs, std::uint8_t layers = 1) {
     message.pairs = std::move(pairs);
     return message;
 }
+
+Bytes payload_of(const UbxFrameView& frame) { return {frame.payload.begin(), frame.payload.end()}; }
 
 // A receiver that has been on for long, its client on one port, and the time.
 class Bench {
@@ -120,6 +123,28 @@ TEST(ReceiverCommands, SaysNothingToWhatItDoesNotKnowOutsideOfConfiguration) {
     EXPECT_TRUE(bench.sent().empty());
     bench.write(encode_frame({0x06, 0x77}, {})).wait(500ms);
     EXPECT_EQ(bench.frames(nak_id).size(), 1U);
+}
+
+TEST(ReceiverCommands, TellsThatThereIsNoBackup) {
+    constexpr UbxMessageId sos = UpdSosStatus::message_id;
+    BoardProfile board = sample_ublox();
+    board.polled.insert(sos);
+    Bench bench(board);
+    bench.wait(100ms).write(encode_frame(sos, {})).wait(200ms);
+    ASSERT_EQ(bench.frames(sos).size(), 1U);
+    EXPECT_EQ(payload_of(bench.frames(sos)[0]), (Bytes{3, 0, 0, 0, 3, 0, 0, 0})) << "restored: no backup";
+    bench.forget();
+    bench.send(UpdSos{.cmd = 0, .reserved0 = {}}).wait(200ms);
+    ASSERT_EQ(bench.frames(sos).size(), 1U);
+    EXPECT_EQ(payload_of(bench.frames(sos)[0]), (Bytes{2, 0, 0, 0, 0, 0, 0, 0})) << "created: no";
+    bench.send(UpdSos{.cmd = 1, .reserved0 = {}}).wait(200ms);
+    ASSERT_EQ(bench.frames(ack_id).size(), 1U);
+    EXPECT_EQ(payload_of(bench.frames(ack_id)[0]), (Bytes{0x09, 0x14}));
+    bench.send(UpdSos{.cmd = 7, .reserved0 = {}}).write(encode_frame(sos, Bytes(5))).wait(200ms);
+    EXPECT_EQ(bench.frames(nak_id).size(), 2U);
+    Bench without;
+    without.wait(100ms).write(encode_frame(sos, {})).wait(200ms);
+    EXPECT_TRUE(without.sent().empty());
 }
 
 TEST(ReceiverCommands, AcknowledgesWithinFiftyMillisecondsUnloaded) {
