@@ -113,6 +113,7 @@ ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board
     ReceiverSettings settings = base;
     settings.navigation_period = navigation_period_of(store, board);
     if (signals_changed(store) || base.signals.empty()) settings.signals = enabled_signals(store);
+    if (board.personality == Personality::ublox) settings.sbas_scan_mask = store.value(key::sbas_scan_mask);
     if (is_changed(store, key::navspg_min_elev))
         settings.elevation_mask = Angle::degrees(static_cast<double>(store.signed_value(key::navspg_min_elev)));
     settings.minimum_cn0 = DbHz(static_cast<double>(store.value(key::navspg_min_cno)));

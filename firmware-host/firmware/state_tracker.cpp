@@ -33,6 +33,10 @@ bool odometer_is_on(const BoardProfile& board, const ConfigStore& config) {
     return board.personality != Personality::ublox || config.flag(key::odo_use_odo);
 }
 
+std::uint64_t sbas_mask(const BoardProfile& board, const ConfigStore& config) {
+    return board.personality == Personality::ublox ? config.value(key::sbas_scan_mask) : 0;
+}
+
 bool is_tracking(const Fix& fix) {
     return std::any_of(fix.satellites.begin(), fix.satellites.end(), [](const auto& s) { return s.cn0.has_value(); });
 }
@@ -92,6 +96,9 @@ const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStor
     Fix& fix = state_.epoch.fix;
     constexpr double long_ago_s = 3600;
     state_.since_start = started_ ? difference(fix.time, *started_) : Seconds(long_ago_s);
+    std::erase_if(fix.satellites, [mask = sbas_mask(board_, config)](const SatelliteStatus& s) {
+        return !in_sbas_scan_mask(s.id, mask);
+    });
     measured_ |= !epoch.observations.signals.empty();
     if (is_tracking(fix) && !first_tracking_) first_tracking_ = fix.time;
 

@@ -109,7 +109,7 @@ private:
     void track(const Arrival& arrival, const ChannelEpoch& epoch, const ReceiverSettings& settings) {
         bool leads = true, leader_locked = false;
         for (const SignalArrival& signal : arrival.signals) {
-            if (!settings.tracks(arrival.id.constellation, signal.signal) || !signal.arrives) continue;
+            if (!settings.tracks(arrival.id, signal.signal) || !signal.arrives) continue;
             SignalChannel& channel = channel_of(arrival.id, signal.signal);
             channel.track({arrival, signal, leads || leader_locked, !leads}, epoch);
             if (leads) leader_locked = channel.locked();

@@ -61,7 +61,7 @@ inline constexpr std::uint32_t navspg_fixmode = 0x20110011, navspg_dynmodel = 0x
 inline constexpr std::uint32_t navhpg_dgnssmode = 0x20140011;
 inline constexpr std::uint32_t rate_meas = 0x30210001, rate_nav = 0x30210002, rate_timeref = 0x20210003;
 inline constexpr std::uint32_t mot_speed_threshold = 0x20250038, mot_distance_threshold = 0x3025003B;
-inline constexpr std::uint32_t odo_use_odo = 0x10220001;
+inline constexpr std::uint32_t odo_use_odo = 0x10220001, sbas_scan_mask = 0x50360006;
 inline constexpr std::uint32_t itfm_enable = 0x1041000D;
 inline constexpr std::uint32_t uart1_baudrate = 0x40520001, uart2_baudrate = 0x40530001;
 inline constexpr std::uint32_t nmea_protver = 0x20930001, nmea_maxsvs = 0x20930002, nmea_compat = 0x10930003,

@@ -1,9 +1,11 @@
 /// What the device under test has configured.
 #pragma once
 
+#include <cstdint>
 #include <set>
 
 #include "skyloop/base/units.hpp"
+#include "skyloop/gnss/satellite.hpp"
 #include "skyloop/gnss/signal.hpp"
 #include "skyloop/time/gps_time.hpp"
 
@@ -26,6 +28,15 @@ struct SystemSignal {
     auto operator<=>(const SystemSignal&) const = default;
 };
 
+/// Whether a receiver looks for a satellite; of other systems than SBAS always.
+/// @param mask bit i stands for PRN 120 + i (u-blox: CFG-SBAS-PRNSCANMASK); 0: all
+constexpr bool in_sbas_scan_mask(SatelliteId satellite, std::uint64_t mask) {
+    constexpr int first = 20, bits = 64;  // S20 is PRN 120
+    if (satellite.constellation != Constellation::sbas || mask == 0) return true;
+    const int bit = satellite.number - first;
+    return bit >= 0 && bit < bits && (mask >> bit & 1) != 0;
+}
+
 /// How far a receiver has come with the corrections of a base station.
 enum class CorrectionState { none, differential, rtk_float, rtk_fixed };
 
@@ -33,6 +44,7 @@ enum class CorrectionState { none, differential, rtk_float, rtk_fixed };
 struct ReceiverSettings {
     Nanoseconds navigation_period{1'000'000'000};
     std::set<SystemSignal> signals{};  ///< that are tracked; empty: the first signal of every system
+    std::uint64_t sbas_scan_mask = 0;  ///< of in_sbas_scan_mask()
     Angle elevation_mask = Angle::degrees(5);
     DbHz minimum_cn0{6};  ///< of a satellite that is used
     DynamicModel dynamic_model = DynamicModel::portable;
@@ -45,6 +57,9 @@ struct ReceiverSettings {
 
     [[nodiscard]] bool tracks(Constellation constellation, Signal signal) const {
         return signals.empty() ? signal == first_signal(constellation) : signals.contains({constellation, signal});
+    }
+    [[nodiscard]] bool tracks(SatelliteId satellite, Signal signal) const {
+        return tracks(satellite.constellation, signal) && in_sbas_scan_mask(satellite, sbas_scan_mask);
     }
 };
 

@@ -183,6 +183,16 @@ TEST(ReceiverCommands, ConfiguresMeasurementAndSolution) {
     EXPECT_EQ(settings.restarts, 1) << "other signals: tracking begins anew";
 }
 
+TEST(ReceiverCommands, LooksForTheSbasSatellitesOfTheScanMaskAlone) {
+    Bench bench;
+    const ReceiverSettings& settings = bench.receiver().settings();
+    EXPECT_EQ(settings.sbas_scan_mask, 0x72B88U);
+    bench.wait(300ms).send(valset({{key::sbas_scan_mask, 0x8}, {0x10310020, 1}, {0x10310005, 1}})).wait(300ms);
+    EXPECT_TRUE(settings.tracks({sbas, 23}, Signal::l1));
+    EXPECT_FALSE(settings.tracks({sbas, 24}, Signal::l1));
+    EXPECT_TRUE(settings.tracks({gps, 24}, Signal::l1));
+}
+
 TEST(ReceiverCommands, SkipsMeasurementsWhenAskedForMoreThanItCanDo) {
     BoardProfile board = sample_ublox();
     board.max_rate_hz = 10;

@@ -317,6 +317,24 @@ TEST(StateTracker, CountsTheDistanceOfAUbloxWhileItsOdometerIsOn) {
     EXPECT_EQ(t.tracker().state().odometer_m, 0);
 }
 
+TEST(StateTracker, ListsTheSbasSatellitesOfItsScanMaskAlone) {
+    const auto listed = [](std::uint64_t mask) {
+        BoardProfile board = tracked_board();
+        board.personality = Personality::ublox;
+        Tracked t(board);
+        add_satellites(t.fix(), sbas, 20, 5);
+        t.tracker().start(t.fix().time, {}, true);
+        t.store().set(in_ram, key::sbas_scan_mask, mask);
+        std::vector<int> prns;
+        for (const SatelliteStatus& s : t.step().epoch.fix.satellites)
+            if (s.id.constellation == sbas) prns.push_back(s.id.number + 100);
+        return prns;
+    };
+    EXPECT_THAT(listed(0x8), testing::ElementsAre(123));
+    EXPECT_THAT(listed(0x11), testing::ElementsAre(120, 124));
+    EXPECT_EQ(listed(0).size(), 5U) << "no mask: all";
+}
+
 TEST(StateTracker, TellsJammingOnlyWhenTheMonitorIsOn) {
     Tracked t(tracked_board());
     t.tracker().start(t.fix().time, {}, true);

@@ -58,6 +58,18 @@ TEST(MeasurementEngine, WithoutErrorsThePseudorangeIsExact) {
     }
 }
 
+TEST(MeasurementEngine, LooksForTheSbasSatellitesOfTheScanMask) {
+    constexpr SatelliteId s20{Constellation::sbas, 20}, s23{Constellation::sbas, 23};
+    MeasuredRun run(without_errors());
+    run.settings.sbas_scan_mask = 0x8;  // PRN 123
+    const Measurement masked = run.epochs(plain_arrivals({g07, s20, s23}), 30);
+    EXPECT_TRUE(observation_of(masked, g07, Signal::l1));
+    EXPECT_TRUE(observation_of(masked, s23, Signal::l1));
+    EXPECT_FALSE(observation_of(masked, s20, Signal::l1));
+    run.settings.sbas_scan_mask = 0;
+    EXPECT_TRUE(observation_of(run.epochs(plain_arrivals({g07, s20, s23}), 30), s20, Signal::l1)) << "no mask: all";
+}
+
 TEST(MeasurementEngine, ReceiveTimeIsTheTrueInstantWithoutAClockError) {
     MeasuredRun run(without_errors());
     const GpsTime now = run.next_time();
