@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "firmware/config/config_keys.hpp"
+#include "firmware/fixed_place.hpp"
 #include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop::firmware {
@@ -117,6 +118,7 @@ const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStor
     if (odometer_is_on(board_, config)) count_distance(before);
     monitor(config);
     if (fix.has_position()) last_fix_ = fix;
+    stand_still(config);
     return state_;
 }
 
@@ -234,6 +236,22 @@ void StateTracker::hold(const ConfigStore& config) {
     fix.velocity = {};
     fix.speed = MetresPerSecond(0);
     state_.position_held = true;
+}
+
+// A base that was told where it stands solves for the time alone (RECEIVER.md 4.12). What was solved goes on beneath,
+// for the epochs after it moves again.
+void StateTracker::stand_still(const ConfigStore& config) {
+    const auto place = fixed_place(config);
+    if (!place) return;
+    Fix& fix = state_.epoch.fix;
+    const bool solved = fix.has_position() && fix.type != FixType::dead_reckoning;
+    fix.type = solved ? FixType::time_only : FixType::none;
+    state_.fix_ok = state_.fix_ok && solved;
+    state_.ever_had_fix = state_.position_known = true;
+    fix.position = to_geodetic(place->position);
+    fix.horizontal_accuracy = fix.vertical_accuracy = place->accuracy;
+    fix.velocity = {};
+    fix.speed = MetresPerSecond(0);
 }
 
 void StateTracker::freeze_course() {

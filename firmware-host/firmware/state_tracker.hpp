@@ -20,7 +20,7 @@ struct Forgotten {
 };
 
 /// Validity of time and date, time to first fix, coasting, limits of the dynamic models and of export, static hold,
-/// course freezing, monitors and odometer: RECEIVER.md 4.8 to 4.11.
+/// course freezing, monitors, odometer and the fixed place of a base: RECEIVER.md 4.8 to 4.12.
 ///
 /// State: what was reported before, and since when what is so. Times of update() never go back but with a restart.
 class StateTracker {
@@ -41,6 +41,7 @@ private:
     void coast(const Fix& before);
     void hold(const ConfigStore& config);
     void apply_corrections(const CorrectionStatus& corrections);
+    void stand_still(const ConfigStore& config);
     void freeze_course();
     void count_distance(const Fix& before);
     void monitor(const ConfigStore& config);

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "firmware/fixed_place.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/navigation_parts.hpp"
 #include "skyloop/geo/local_frame.hpp"
@@ -124,12 +125,18 @@ NavPosllh navigation_posllh(const ReportContext& context) {
             place.v_acc};
 }
 
+// A base that solves for the time alone knows its place all the same.
+bool place_is_valid(const ReportContext& context) {
+    const Fix& fix = context.state.epoch.fix;
+    return fix.has_position() || (fix.type == FixType::time_only && fixed_place(context.config));
+}
+
 NavHpposllh navigation_hpposllh(const ReportContext& context) {
     const NavigationState& state = context.state;
     const Fix& fix = state.epoch.fix;
     NavHpposllh m;
     m.i_tow = epoch_time(reported_time(context).time).i_tow;
-    m.flags = fix.has_position() ? 0 : 1;
+    m.flags = place_is_valid(context) ? 0 : 1;
     m.h_msl = unknown_h_msl;
     m.h_acc = m.v_acc = unknown_accuracy;
     if (!state.ever_had_fix) return m;

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "firmware/config/config_keys.hpp"
+#include "firmware/fixed_place.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
-#include "skyloop/geo/geodetic.hpp"
 #include "skyloop/gnss/constants.hpp"
 #include "skyloop/protocol/rtcm3.hpp"
 #include "skyloop/protocol/rtcm3_msm.hpp"
@@ -18,10 +18,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint32_t rtcm_station_out = 0x30090001;  // CFG-RTCM-DF003_OUT
-constexpr std::uint32_t tmode_mode = 0x20030001, tmode_position_type = 0x20030002;
-constexpr std::uint32_t tmode_ecef = 0x40030003, tmode_ecef_hp = 0x20030006, tmode_geodetic = 0x40030009,
-                        tmode_geodetic_hp = 0x2003000C;
-constexpr std::uint64_t tmode_fixed = 2;
 
 // The messages of observations by their ids in class F5, which are what their numbers have beyond 1000.
 struct MsmOutput {
@@ -118,30 +114,15 @@ Bytes observations_message(const MsmOutput& output, const ReportContext& context
     return encode(message);
 }
 
-// A whole number and what is beyond it in hundredths.
-double split_item(const ConfigStore& config, std::uint32_t whole, std::uint32_t beyond) {
-    return static_cast<double>(config.signed_value(whole)) + static_cast<double>(config.signed_value(beyond)) * 1e-2;
-}
-
 // Only a receiver that has been told where it stands says so (CFG-TMODE).
 std::vector<Bytes> station_message(const ReportContext& context) {
-    const ConfigStore& config = context.config;
-    if (!config.has(tmode_mode) || config.value(tmode_mode) != tmode_fixed) return {};
-    std::array<double, 3> cm_or_1e7{};
-    const bool geodetic = config.flag(tmode_position_type);
-    for (std::uint32_t i = 0; i < 3; ++i)
-        cm_or_1e7[i] = geodetic ? split_item(config, tmode_geodetic + i, tmode_geodetic_hp + i)
-                                : split_item(config, tmode_ecef + i, tmode_ecef_hp + i);
+    const auto place = fixed_place(context.config);
+    if (!place) return {};
     Rtcm3Station station;
     station.station = rtcm_station_of(context);
+    const auto metres = place->position.vector();
     for (std::size_t i = 0; i < 3; ++i)
-        station.position[i] = std::llround(cm_or_1e7[i] * 100);
-    if (geodetic) {
-        const Geodetic place = Geodetic::degrees(cm_or_1e7[0] * 1e-7, cm_or_1e7[1] * 1e-7, cm_or_1e7[2] * 1e-2);
-        const auto metres = to_ecef(place).vector();
-        for (std::size_t i = 0; i < 3; ++i)
-            station.position[i] = std::llround(metres[static_cast<Eigen::Index>(i)] * 1e4);
-    }
+        station.position[i] = std::llround(metres[static_cast<Eigen::Index>(i)] * 1e4);
     return {encode(station)};
 }
 

@@ -170,5 +170,19 @@ TEST(LegacyTmode3, KeepsBothKindsOfPosition) {
     EXPECT_EQ(f9p.poll(cfg(0x71)), lla);
 }
 
+TEST(LegacyTmode3, RefusesPlacesThatAreNotOnTheEarth) {
+    LegacyBench f9(legacy_f9p());
+    // Fixed, geodetic; latitude and longitude in 1e-7 degrees.
+    const auto place = [&](const char* latitude, const char* longitude) {
+        return f9.set(cfg(0x71), hex("00 00 0201 " + std::string(latitude) + longitude + "00000000 000000 00 10270000" +
+                                     "00000000 00000000 0000000000000000"));
+    };
+    EXPECT_EQ(place("00CA9A3B", "00000000"), Verdict::refuse) << "100 degrees north";
+    EXPECT_EQ(place("00000000", "01D2496B"), Verdict::refuse) << "beyond 180 degrees east";
+    EXPECT_EQ(f9.store.value(key::tmode_mode), 0U);
+    EXPECT_EQ(place("00E9A435", "00D2496B"), Verdict::acknowledge) << "the pole";
+    EXPECT_EQ(f9.valset("09 00 03 40 00CA9A3B"), Verdict::refuse);
+}
+
 }  // namespace
 }  // namespace skyloop::firmware

@@ -317,6 +317,51 @@ TEST(StateTracker, CountsTheDistanceOfAUbloxWhileItsOdometerIsOn) {
     EXPECT_EQ(t.tracker().state().odometer_m, 0);
 }
 
+// 47.1° N, 8.2° E, 512.34 m, within 2 m.
+void stand_at_a_fixed_place(ConfigStore& store) {
+    for (const auto& [item, value] :
+         std::initializer_list<std::pair<std::uint32_t, std::uint64_t>>{{key::tmode_mode, 2},
+                                                                        {0x20030002, 1},
+                                                                        {0x40030009, 471000000},
+                                                                        {0x4003000A, 82000000},
+                                                                        {0x4003000B, 51234},
+                                                                        {0x4003000F, 20000}})
+        store.set(in_ram, item, value);
+}
+
+TEST(StateTracker, StandsWhereABaseWasToldThatItDoes) {
+    Tracked t(tracked_board());
+    t.tracker().start(t.fix().time, {}, true);
+    stand_at_a_fixed_place(t.store());
+    const NavigationState& state = t.steps(3);
+    const Fix& fix = state.epoch.fix;
+    EXPECT_EQ(fix.type, FixType::time_only);
+    EXPECT_TRUE(state.fix_ok);
+    EXPECT_EQ(fix.satellites_used(), 12);
+    EXPECT_NEAR(fix.position.latitude.deg(), 47.1, 1e-9);
+    EXPECT_NEAR(fix.position.longitude.deg(), 8.2, 1e-9);
+    EXPECT_NEAR(fix.position.height.above_ellipsoid.value(), 512.34, 1e-6);
+    EXPECT_NEAR(fix.horizontal_accuracy.value(), 2, 1e-9);
+    EXPECT_NEAR(fix.vertical_accuracy.value(), 2, 1e-9);
+    EXPECT_EQ(fix.velocity.north, 0);
+    EXPECT_EQ(fix.speed.value(), 0);
+    t.store().set(in_ram, key::tmode_mode, 0);
+    EXPECT_EQ(t.step().epoch.fix.type, FixType::fix_3d);
+    EXPECT_NEAR(t.tracker().state().epoch.fix.position.latitude.deg(), 47, 1e-9);
+}
+
+TEST(StateTracker, KeepsItsFixedPlaceWithoutASolution) {
+    Tracked t(tracked_board());
+    t.tracker().start(t.fix().time, {}, true);
+    stand_at_a_fixed_place(t.store());
+    t.steps(3);
+    t.fix().type = FixType::none;
+    const NavigationState& state = t.step();
+    EXPECT_EQ(state.epoch.fix.type, FixType::none);
+    EXPECT_FALSE(state.fix_ok);
+    EXPECT_NEAR(state.epoch.fix.position.latitude.deg(), 47.1, 1e-9);
+}
+
 TEST(StateTracker, ListsTheSbasSatellitesOfItsScanMaskAlone) {
     const auto listed = [](std::uint64_t mask) {
         BoardProfile board = tracked_board();

@@ -1,0 +1,40 @@
+#include "firmware/fixed_place.hpp"
+
+#include <array>
+
+#include "firmware/config/config_keys.hpp"
+#include "firmware/config/legacy_keys.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+constexpr std::uint64_t fixed_mode = 2;
+
+// Three items in cm or 1e-7°, each with a hundredth part beyond it in an item of its own.
+std::array<double, 3> coordinates(const ConfigStore& config, std::uint32_t first, std::uint32_t first_beyond) {
+    std::array<double, 3> values{};
+    for (std::uint32_t i = 0; i < 3; ++i)
+        values[i] = static_cast<double>(config.signed_value(first + i)) +
+                    static_cast<double>(config.signed_value(first_beyond + i)) * 1e-2;
+    return values;
+}
+
+Position<Ecef> configured_position(const ConfigStore& config) {
+    if (config.flag(legacy_key::tmode_pos_type)) {
+        const auto [latitude, longitude, height] =
+            coordinates(config, legacy_key::tmode_geodetic, legacy_key::tmode_geodetic_hp);
+        return to_ecef(Geodetic::degrees(latitude * 1e-7, longitude * 1e-7, height * 1e-2));
+    }
+    const auto [x, y, z] = coordinates(config, legacy_key::tmode_ecef, legacy_key::tmode_ecef_hp);
+    return Position<Ecef>(x * 1e-2, y * 1e-2, z * 1e-2);
+}
+
+}  // namespace
+
+std::optional<FixedPlace> fixed_place(const ConfigStore& config) {
+    if (config.value(key::tmode_mode) != fixed_mode) return std::nullopt;
+    const double tenths_of_mm = static_cast<double>(config.value(legacy_key::tmode_fixed_pos_acc));
+    return FixedPlace{configured_position(config), Metres(tenths_of_mm * 1e-4)};
+}
+
+}  // namespace skyloop::firmware
