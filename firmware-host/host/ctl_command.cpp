@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -42,7 +43,8 @@ constexpr std::string_view ctl_usage =
 std::optional<double> ctl_number(std::string_view text) {
     double value = 0;
     const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool whole = !text.empty() && read.ec == std::errc() && read.ptr == text.data() + text.size();
+    const bool whole =
+        !text.empty() && read.ec == std::errc() && read.ptr == text.data() + text.size() && std::isfinite(value);
     return whole ? std::optional(value) : std::nullopt;
 }
 

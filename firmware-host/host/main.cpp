@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "number_options.hpp"
 #include "skyloop/base/spelling.hpp"
 
 namespace {
@@ -50,6 +51,7 @@ int run_program(int argc, char** argv) {
     std::vector<Action> actions;
     for (const auto add_command : add)
         actions.push_back(add_command(app));
+    skyloop::host::check_numbers(app);
 
     if (argc < 2) {
         fmt::print("{}", app.help());

@@ -91,15 +91,6 @@ std::vector<std::string> set_of(const std::string& type) {
     return words;
 }
 
-// And a range as "FLOAT:FLOAT in [0 - 90]".
-std::string range_of(const std::string& type) {
-    const std::size_t open = type.find(" in ["), close = type.rfind(']');
-    if (open == std::string::npos || close == std::string::npos) return {};
-    std::string range = type.substr(open + 5, close - open - 5);
-    if (const std::size_t dash = range.find(" - "); dash != std::string::npos) range.replace(dash, 3, " to ");
-    return range;
-}
-
 bool is_scheme_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; }
 
 // A help text that lists URIs has words such as "tcp:[HOST:]PORT" and "pty[:LINK]". The latter stands without more,
@@ -137,7 +128,7 @@ void add_value(const CLI::Option& option, std::string_view declared, std::string
     const std::string type = option.get_type_name();
     row.value = placeholder(type);
     row.kind = ValueKind::text;
-    row.range = range_of(type);
+    row.range = declared_range(type);
     row.words = schemes_in(row.meaning);
     if (!row.words.empty()) {
         row.kind = ValueKind::uri;
@@ -174,6 +165,15 @@ OptionRow option_row(const CLI::Option& option, std::string_view command) {
 const std::vector<ValueRule>& value_rules() {
     static const std::vector<ValueRule> rules = make_value_rules();
     return rules;
+}
+
+// CLI11 shows a range as "FLOAT:FLOAT in [0 - 90]".
+std::string declared_range(const std::string& type) {
+    const std::size_t open = type.find(" in ["), close = type.rfind(']');
+    if (open == std::string::npos || close == std::string::npos) return {};
+    std::string range = type.substr(open + 5, close - open - 5);
+    if (const std::size_t dash = range.find(" - "); dash != std::string::npos) range.replace(dash, 3, " to ");
+    return range;
 }
 
 std::vector<CommandRow> option_table(const CLI::App& program) {

@@ -43,6 +43,9 @@ struct CommandRow {
     std::vector<OptionRow> options{};
 };
 
+/// "0 to 90" of an option whose type CLI11 tells as "FLOAT:FLOAT in [0 - 90]"; empty where it tells no range.
+std::string declared_range(const std::string& type);
+
 /// All commands of `program` in the order of its help, hidden ones too.
 std::vector<CommandRow> option_table(const CLI::App& program);
 

@@ -50,6 +50,29 @@ MISUSES = [
     (["sky", "--format", "png"], 2, ["--format", "svg"]),
     (["boards", "nothing"], 2, ["nothing"]),
     (["compare", "/no/a.csv", "/no/b.csv"], 1, ["/no/a.csv"]),
+    (["run", "--seed", "-1"], 2, ["--seed: '-1'; expected a whole number from 0 to 18446744073709551615"]),
+    (["run", "--seed", "0x10"], 2, ["--seed: '0x10'; expected a whole number"]),
+    (["run", "--seed", "18446744073709551616"], 2, ["--seed: '18446744073709551616'; expected a whole number"]),
+    (["run", "--seed", ""], 2, ["--seed: ''; expected a whole number"]),
+    (["run", "--seed="], 2, ["--seed"]),
+    (["run", "--seed", " 1"], 2, ["--seed: ' 1'; expected a whole number"]),
+    (["run", "--seed", "1.5"], 2, ["--seed: '1.5'; expected a whole number"]),
+    (["run", "--rate", ""], 2, ["--rate: ''; expected a number"]),
+    (["run", "--rate", "0x10"], 2, ["--rate: '0x10'; expected a number"]),
+    (["run", "--time-scale", "inf"], 2, ["--time-scale: 'inf'; expected a number"]),
+    (["sky", "--mask", "nan"], 2, ["--mask: 'nan'; expected a number from 0 to 90"]),
+    (["sky", "--grid-size", "-4"], 2, ["--grid-size: '-4'; expected a whole number from 1 to 1000"]),
+    (["sky", "--threads", "0"], 2, ["--threads: '0'; expected a whole number from 1 to 256"]),
+    (["compare", "a", "b", "--window", "-4"], 2, ["--window: '-4'; expected a whole number from 0 to"]),
+    (["compare", "a", "b", "--skip-a", "0x10"], 2, ["--skip-a: '0x10'; expected a whole number"]),
+    (["compare", "a", "b", "--every-b", "0"], 2, ["--every-b: '0'; expected a whole number from 1 to 1000000"]),
+    (["campaign", "x.toml", "--run-limit", "nan"], 2, ["--run-limit: 'nan'; expected a number from 0.1 to 1e+09"]),
+    (["campaign", "x.toml", "--jobs", "-1"], 2, ["--jobs: '-1'; expected a whole number from 1 to 1024"]),
+    (["campaign", "replay", "x.toml", "--number", "-1"], 2, ["--number: '-1'; expected a whole number from 0 to"]),
+    (["campaign", "report", "x", "--worst", "-1"], 2, ["--worst: '-1'; expected a whole number from 0 to 10000"]),
+    (["replay", "/dev/null", "--baud", "-1"], 2, ["--baud: '-1'; expected a whole number from 110 to"]),
+    (["trajectory", "x.csv", "--origin", "46,nan,3"], 2, ["--origin: 'nan'; expected a number"]),
+    (["ctl", "1", "step", "nan"], 2, ["step: 'nan' is no number"]),
 ]
 
 SCENARIO_MISTAKES = [
@@ -82,6 +105,10 @@ class CommandLineTest(unittest.TestCase):
         for arguments, code, words in MISUSES:
             with self.subTest(" ".join(arguments)):
                 self.assert_refused(arguments, code, words)
+
+    def test_leading_zeros_are_decimal(self):
+        for text, seed in (("010", 10), ("08", 8), ("18446744073709551615", 2**64 - 1)):
+            self.assertIn(f"seed        {seed}\n", skyloop("check", "--seed", text).stdout)
 
     def test_scenario_mistakes_name_line_and_key(self):
         with open_folder() as folder:

@@ -1,0 +1,77 @@
+#include "number_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "option_table.hpp"
+
+namespace skyloop::host {
+namespace {
+
+struct WholeRange {
+    std::uint64_t least = 0, most = 0;
+};
+
+template <class Number>
+bool reads_as(std::string_view text, Number& value) {
+    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && rest == text.data() + text.size();
+}
+
+// `declared` is "1 to 1024"; empty where the option says nothing.
+WholeRange whole_range(const std::string& declared, bool with_sign) {
+    WholeRange range{0, with_sign ? static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())
+                                  : std::numeric_limits<std::uint64_t>::max()};
+    const std::size_t middle = declared.find(" to ");
+    if (middle == std::string::npos) return range;
+    reads_as(std::string_view(declared).substr(0, middle), range.least);
+    reads_as(std::string_view(declared).substr(middle + 4), range.most);
+    return range;
+}
+
+// CLI11 reads as strtoull does: -1 is the largest number, 010 is eight and what is too large the largest again.
+CLI::Validator whole_number(WholeRange range) {
+    const auto read = [range](std::string& text) {
+        std::uint64_t value = 0;
+        if (!reads_as(text, value) || value < range.least || value > range.most)
+            return fmt::format("'{}'; expected a whole number from {} to {}", text, range.least, range.most);
+        text = fmt::format("{}", value);
+        return std::string();
+    };
+    return {read, "", "whole_number"};
+}
+
+// No comparison with a range refuses nan.
+CLI::Validator finite_number(const std::string& declared) {
+    const auto read = [declared](const std::string& text) {
+        double value = 0;
+        if (reads_as(text, value) && std::isfinite(value)) return std::string();
+        return fmt::format("'{}'; expected a number{}", text, declared.empty() ? "" : " from " + declared);
+    };
+    return {read, "", "finite_number"};
+}
+
+}  // namespace
+
+void check_numbers(CLI::App& program) {
+    for (CLI::Option* option : program.get_options()) {
+        const std::string type = option->get_type_name();
+        const std::string declared = declared_range(type);
+        // Before the option's own range, which reads the text as CLI11 does.
+        if (type.starts_with("UINT") || type.starts_with("INT"))
+            option->transform(whole_number(whole_range(declared, type.starts_with("INT"))));
+        else if (type.starts_with("FLOAT"))
+            option->transform(finite_number(declared));
+    }
+    for (CLI::App* command : program.get_subcommands(nullptr))
+        check_numbers(*command);
+}
+
+}  // namespace skyloop::host
