@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -54,6 +55,14 @@ constexpr std::array<std::array<int, 2>, 18> leap_days{{
     {2017, 1},
 }};
 
+bool ends_in_leap_second(Days day) {
+    const std::chrono::year_month_day next(day + std::chrono::days(1));
+    if (next.day() != std::chrono::day(1)) return false;
+    const std::array<int, 2> month{static_cast<int>(next.year()),
+                                   static_cast<int>(static_cast<unsigned>(next.month()))};
+    return std::find(leap_days.begin(), leap_days.end(), month) != leap_days.end();
+}
+
 std::vector<LeapSeconds::Step> announced_steps() {
     std::vector<LeapSeconds::Step> steps;
     int offset = 0;
@@ -99,9 +108,7 @@ bool is_calendar_time(const UtcTime& utc) {
     const std::chrono::year_month_day date =
         std::chrono::year(utc.year) / static_cast<int>(utc.month) / static_cast<int>(utc.day);
     if (!date.ok() || Days(date) < gps_epoch || utc.year >= 2200) return false;
-    // A leap second can only be the last second of a month (ITU-R TF.460-6).
-    if (utc.second == 60)
-        return utc.hour == 23 && utc.minute == 59 && date == date.year() / date.month() / std::chrono::last;
+    if (utc.second == 60) return utc.hour == 23 && utc.minute == 59 && ends_in_leap_second(date);
     return utc.hour < 24 && utc.minute < 60 && utc.second < 60;
 }
 

@@ -36,6 +36,7 @@ MISUSES = [
     (["run", "--board", "ublox-m88"], 2, ["ublox-m88", "did you mean"]),
     (["run", "--nav", "/no/such/file.21n"], 1, ["/no/such/file.21n"]),
     (["run", "--start", "yesterday"], 2, ["--start", "yesterday"]),
+    (["run", "--start", "2017-06-30T23:59:60Z"], 2, ["--start: '2017-06-30T23:59:60Z' is not a UTC time"]),
     (["run", "--start", "2024-02-30T00:00:00Z"], 2, ["2024-02-30"]),
     (["run", "--duration", "-1"], 2, ["--duration -1"]),
     (["run", "--duration", "nan"], 2, ["--duration"]),

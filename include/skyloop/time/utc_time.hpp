@@ -69,8 +69,8 @@ double day_of_year(const UtcTime& utc);
 /// Modified Julian date of the day, without fraction.
 std::int64_t modified_julian_day(const UtcTime& utc);
 
-/// Whether a calendar has this day and a clock this time, from 1980-01-06 to 2199; a second of 60 is taken at 23:59 on
-/// the last day of a month only.
+/// Whether a calendar has this day and a clock this time, from 1980-01-06 to 2199; a second of 60 is taken
+/// where a leap second was announced only (LeapSeconds::announced).
 bool is_calendar_time(const UtcTime& utc);
 /// Reads ISO 8601 in UTC from 1980-01-06 to 2199: 2024-03-05T12:00:00Z, with a fraction of up to nine digits; `T` may
 /// be a space and `Z` be left out. Fails with `usage`, and a sentence that quotes the text, for anything else and for
