@@ -22,11 +22,16 @@ std::size_t Port::departed(const Message& message, GpsTime now) const {
     return static_cast<std::size_t>(since.count() * baud_ / nanoseconds_per_byte_at_1_baud);
 }
 
-bool Port::queue(ByteSpan message, GpsTime ready) {
+// The line never rests while a message waits for room. That the room will be there in time can thus be told at once:
+// as much will have left as the line carries until then.
+bool Port::queue(ByteSpan message, GpsTime ready, Nanoseconds patience) {
     std::size_t waiting = 0;
     for (const Message& m : messages_)
         waiting += m.bytes.size() - departed(m, ready);
-    if (message.empty() || waiting + message.size() > buffer_bytes_) return message.empty();
+    const Nanoseconds wait = std::clamp(patience, Nanoseconds(0), longest_wait);
+    const auto carried = static_cast<std::size_t>(wait.count() * baud_ / nanoseconds_per_byte_at_1_baud);
+    const bool fits = message.size() <= buffer_bytes_ && waiting + message.size() <= buffer_bytes_ + carried;
+    if (message.empty() || !fits) return message.empty();
     const GpsTime start = std::max(ready, line_free_);
     messages_.push_back({{message.begin(), message.end()}, ready, start, 0});
     line_free_ = start + line_time(message.size());

@@ -13,12 +13,15 @@ namespace skyloop::firmware {
 /// The transmit side of one serial port, 8N1: each byte occupies the line for ten bits.
 class Port {
 public:
+    static constexpr Nanoseconds longest_wait{10'000'000'000};
+
     Port(std::uint32_t baud, std::uint32_t buffer_bytes) : baud_(baud), buffer_bytes_(buffer_bytes) {}
 
     /// Queues one whole message whose first byte may leave at `ready`; false, and nothing queued, when it does not fit
     /// beside the bytes that have not left by then. Messages never interleave and leave in the order in which they were
     /// queued. Which byte leaves when depends on `ready` and the speed alone, not on when take() is called.
-    bool queue(ByteSpan message, GpsTime ready);
+    /// @param patience for which the message may wait until there is room for it, at most longest_wait
+    bool queue(ByteSpan message, GpsTime ready, Nanoseconds patience = Nanoseconds(0));
     /// The bytes whose stop bit has left by `now`. `now` never goes back, and is not later than the next `ready`.
     Bytes take(GpsTime now);
     /// The speed of all bytes that have not left by `now`. @param now between two bytes: see between_bytes()
@@ -31,7 +34,7 @@ public:
     [[nodiscard]] std::optional<GpsTime> drained_at() const;
     [[nodiscard]] std::uint32_t baud() const { return baud_; }
     [[nodiscard]] std::uint32_t buffer_bytes() const { return static_cast<std::uint32_t>(buffer_bytes_); }
-    /// Bytes queued and not yet taken.
+    /// Bytes queued and not yet taken, those among them that wait for room in the buffer.
     [[nodiscard]] std::size_t pending() const { return pending_; }
 
 private:

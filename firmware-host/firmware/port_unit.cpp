@@ -28,30 +28,32 @@ std::uint32_t configured_baud(const ConfigStore& store, PortId port) {
 
 void Outbox::plan(GpsTime at, Action action) { plans_.emplace(at, std::move(action)); }
 
-std::size_t Outbox::queue(PortId port, const std::vector<Bytes>& messages, GpsTime now) {
+std::size_t buffered_bytes(const Port& port) { return std::min<std::size_t>(port.pending(), port.buffer_bytes()); }
+
+std::size_t Outbox::queue(PortId port, const std::vector<Bytes>& messages, GpsTime now, Nanoseconds patience) {
     PortUnit* unit = find_unit(units_, port);
     if (unit == nullptr) return 0;
     std::size_t queued = 0;
     for (const Bytes& message : messages) {
-        if (!unit->transmit.queue(message, now)) {
-            unit->status.transmit_full = true;
+        if (!unit->transmit.queue(message, now, patience)) {
+            unit->status.transmit_full = unit->overflow_untold = true;
             ++unit->status.messages_dropped;
             continue;
         }
         ++queued;
         ++unit->status.messages_out;
-        const auto usage = static_cast<int>(100 * unit->transmit.pending() / unit->transmit.buffer_bytes());
-        unit->status.usage_percent = std::min(usage, 100);
+        unit->status.usage_percent =
+            static_cast<int>(100 * buffered_bytes(unit->transmit) / unit->transmit.buffer_bytes());
         unit->status.peak_usage_percent = std::max(unit->status.peak_usage_percent, unit->status.usage_percent);
     }
-    unit->status.pending = unit->transmit.pending();
+    unit->status.pending = buffered_bytes(unit->transmit);
     return queued;
 }
 
 void Outbox::collect(GpsTime now, std::vector<Receiver::Sent>& sent) {
     for (PortUnit& unit : units_) {
         Bytes bytes = unit.transmit.take(now);
-        unit.status.pending = unit.transmit.pending();
+        unit.status.pending = buffered_bytes(unit.transmit);
         if (bytes.empty()) continue;
         unit.status.bytes_out += bytes.size();
         const auto same = std::find_if(sent.rbegin(), sent.rend(), [&](const auto& s) { return s.port == unit.id; });

@@ -45,7 +45,11 @@ struct PortUnit {
     GpsTime last_input{};
     std::uint32_t configured_baud = 0;  ///< to which it has been told to go
     ConfiguredMessages configured;
+    bool overflow_untold = false;  ///< messages were lost, and no text has said so
 };
+
+/// Bytes in a port's transmit buffer: what waits for room there is not in it.
+std::size_t buffered_bytes(const Port& port);
 
 /// The one of that name, or null.
 /// @param units a vector of PortUnit, constant or not
@@ -70,8 +74,8 @@ public:
 
     /// Something that happens at `at`, or now when that has passed; at the same instant in the order of planning.
     void plan(GpsTime at, Action action);
-    /// Queues whole messages on a port. @return how many found room
-    std::size_t queue(PortId port, const std::vector<Bytes>& messages, GpsTime now);
+    /// Queues whole messages on a port. @param patience of Port::queue() @return how many found room
+    std::size_t queue(PortId port, const std::vector<Bytes>& messages, GpsTime now, Nanoseconds patience);
     /// Does what is planned until `now`, and gives what has left.
     std::vector<Receiver::Sent> run(GpsTime now);
     [[nodiscard]] std::optional<GpsTime> drained_at() const;

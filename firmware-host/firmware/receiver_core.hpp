@@ -93,6 +93,7 @@ private:
                                                   EpochMessages& made) const;
     [[nodiscard]] bool lets_out(PortId port, UbxMessageId message) const;
     [[nodiscard]] GpsTime burst_time(GpsTime epoch);
+    void tell_overflow(PortUnit& unit, GpsTime now);
     void tell_antenna_status(const NavigationState& state, GpsTime now);
 
     // Settings and restarts.

@@ -40,7 +40,7 @@ std::string_view antenna_text(AntennaStatus status) {
 void Receiver::Core::look_at_ports() {
     statuses_.clear();
     for (PortUnit& unit : units_) {
-        unit.status.pending = unit.transmit.pending();
+        unit.status.pending = buffered_bytes(unit.transmit);
         statuses_.push_back(unit.status);
     }
 }
@@ -117,9 +117,11 @@ void Receiver::Core::change_speed(PortId port, GpsTime at) {
     unit.splitter = command_splitter();
 }
 
+// Messages are made one after the other: one that finds the buffer full waits for its turn, but not until those of the
+// next epoch come.
 void Receiver::Core::send(PortId port, const std::vector<Bytes>& messages, GpsTime now) {
     if (faults_.mute) return;
-    const std::size_t queued = outbox_.queue(port, messages, now);
+    const std::size_t queued = outbox_.queue(port, messages, now, settings_.navigation_period);
     counters_.messages_sent += queued;
     counters_.messages_dropped += messages.size() - queued;
 }
@@ -167,15 +169,21 @@ void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {
     EpochMessages made(context(PortId::uart1, state));
     for (PortUnit& unit : units_) {
         const std::vector<Bytes> messages = due_messages(unit, state, made);
+        unit.status.transmit_full = false;
+        tell_overflow(unit, now);
         if (unit.id == PortId::uart1)
             send(unit.id, make_protocol_messages(board_.personality, context(unit.id, state)), now);
-        const std::uint64_t dropped = counters_.messages_dropped;
         send(unit.id, messages, now);
-        if (counters_.messages_dropped > dropped && board_.quirks.overflow_notice)
-            send(unit.id, make_text_message(level_error, "txbuf alloc", context(unit.id, state)), now);
-        unit.status.transmit_full = false;
     }
     tell_antenna_status(state, now);
+}
+
+// Before the next epoch's messages, which fill the line again.
+void Receiver::Core::tell_overflow(PortUnit& unit, GpsTime now) {
+    if (!unit.overflow_untold) return;
+    unit.overflow_untold = false;
+    if (board_.quirks.overflow_notice)
+        send(unit.id, make_text_message(level_error, "txbuf alloc", context(unit.id, *reported_)), now);
 }
 
 // A receiver has hundreds of messages and sends a few: the others are not looked up again each epoch.

@@ -5,10 +5,12 @@
 
 #include <atomic>
 #include <chrono>
+#include <map>
 
 #include "progress.hpp"
 #include "run_watch.hpp"
 #include "skyloop/emulator/run_summary.hpp"
+#include "skyloop/emulator/wires.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::host {
@@ -214,18 +216,32 @@ void RunSession::tell_wire(const Station& station, std::size_t wire) const {
         messages_.warning(fmt::format("{}: {}", name, notice));
 }
 
+void RunSession::tell_overload(const Station& station) const {
+    std::map<firmware::PortId, std::string> names;
+    for (std::size_t i = 0; i < station.wires().size(); ++i)
+        names.emplace(station.wires()[i].port, port_name(station, i));
+    if (names.empty()) {
+        const firmware::PortId port = default_port(station.receiver().board());
+        names.emplace(port, fmt::format("{}port {}", prefix(station), firmware::port_names[std::size_t(port)]));
+    }
+    for (const auto& [port, name] : names) {
+        const std::uint64_t dropped = station.receiver().port_status(port).messages_dropped;
+        const PortSpeed speed = station.speed(port);
+        const std::string line = speed ? fmt::format("{} baud", *speed) : "the line";
+        if (dropped > 0)
+            messages_.warning(fmt::format(
+                "{}: {} messages did not fit the receiver's transmit buffer: {} is too slow for this output", name,
+                dropped, line));
+    }
+}
+
 void RunSession::tell_counts(const Station& station) const {
     const RunCounts& counts = station.counts();
     messages_.info(fmt::format("{}{} epochs, {} with a fix, {} messages", prefix(station), counts.epochs,
                                counts.epochs_with_fix, station.messages_sent()));
     for (std::size_t i = 0; i < station.wires().size(); ++i)
         tell_wire(station, i);
-    if (const std::uint64_t dropped = station.messages_dropped(); dropped > 0) {
-        const PortSpeed speed = station.speed(firmware::PortId::uart1);
-        messages_.warning(
-            fmt::format("{}{} messages did not fit the receiver's transmit buffer: {} baud is too slow for this output",
-                        prefix(station), dropped, speed.value_or(0)));
-    }
+    tell_overload(station);
     if (counts.lateness.largest() > Nanoseconds(0))
         messages_.info(fmt::format("{}epochs came {:.3f} ms late on average, {:.3f} ms at worst", prefix(station),
                                    counts.lateness.mean_ms(),

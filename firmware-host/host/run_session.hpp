@@ -36,6 +36,7 @@ private:
     // Exit code: 1 where one of them could not be written.
     int tell_outputs(RunWatch& watch) const;
     void tell_counts(const Station& station) const;
+    void tell_overload(const Station& station) const;
     void tell_wire(const Station& station, std::size_t wire) const;
     // What the buildings around a receiver have to say that has not been said yet.
     std::optional<std::string> new_notice(std::size_t station);

@@ -53,6 +53,24 @@ TEST(Port, DropsWholeMessagesThatDoNotFit) {
     EXPECT_FALSE(port.queue(Bytes(6), port_start + 100s));
 }
 
+TEST(Port, LetsAMessageWaitForRoomInTheBuffer) {
+    Port port(10, 5);  // a byte a second
+    ASSERT_TRUE(port.queue(to_bytes("abcd"), port_start));
+    EXPECT_FALSE(port.queue(to_bytes("efg"), port_start, 1999ms));
+    EXPECT_TRUE(port.queue(to_bytes("efg"), port_start, 2s));
+    // One that is shorter still fits.
+    EXPECT_FALSE(port.queue(to_bytes("h"), port_start, 2s));
+    EXPECT_TRUE(port.queue(to_bytes("h"), port_start, 3s));
+    EXPECT_EQ(port.drained_at(), port_start + 8s);
+    EXPECT_EQ(to_string(port.take(port_start + 8s)), "abcdefgh");
+    // What is longer than the buffer never fits; nobody waits for hours.
+    EXPECT_FALSE(port.queue(Bytes(6), port_start + 8s, 3h));
+    EXPECT_TRUE(port.queue(Bytes(5), port_start + 8s));
+    EXPECT_TRUE(port.queue(Bytes(5), port_start + 8s, 3h));
+    EXPECT_TRUE(port.queue(Bytes(5), port_start + 8s, 3h));
+    EXPECT_FALSE(port.queue(Bytes(1), port_start + 8s, 3h));
+}
+
 // The same messages, polled at other instants: the same bytes by the same time.
 TEST(Port, DoesNotDependOnWhenItIsPolled) {
     RandomStream random(5, "port");

@@ -1,0 +1,121 @@
+// Epochs larger than the transmit buffer: on a fast line nothing is lost, and a slow one says so (RECEIVER.md 4.7).
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "firmware/receiver.hpp"
+#include "sample_epochs.hpp"
+#include "skyloop/protocol/nmea_sentence.hpp"
+#include "skyloop/protocol/stream_splitter.hpp"
+#include "skyloop/protocol/ubx_ports.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+using enum Constellation;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+// A u-blox whose epoch of NMEA, some 900 bytes, is larger than its buffer.
+BoardProfile small_buffer(std::uint32_t baud) {
+    BoardProfile board = sample_ublox();
+    board.transmit_buffer_bytes = 400;
+    board.baud = baud;
+    board.sentences = sample_board(NmeaVersion::v4_10, {}).sentences;
+    board.messages = {{0x01, 0x07}};
+    for (const int id : {4, 5, 0, 2, 3, 1, 7, 8})  // RMC VTG GGA GSA GSV GLL GST ZDA
+        board.messages.push_back({0xF0, static_cast<std::uint8_t>(id)});
+    board.polled = {{0x0A, 0x04}, {0x0A, 0x08}};
+    board.quirks.overflow_notice = true;
+    return board;
+}
+
+// Runs epochs of a second each; what has left by one port, to its end.
+class Overflow {
+public:
+    Overflow(BoardProfile board, PortId port) : receiver_(std::move(board), {1}), port_(port) {
+        fix_ = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500);
+        add_satellites(fix_, gps, 1, 20);
+        receiver_.start(fix_.time);
+    }
+    Overflow& epoch() {
+        fix_.time += 1s;
+        receiver_.on_epoch({fix_});
+        look(fix_.time + 999ms);
+        return *this;
+    }
+    // The answer to MON-TXBUF, asked in the middle of an epoch's second.
+    MonTxbuf buffers() {
+        fix_.time += 1s;
+        receiver_.on_epoch({fix_});
+        look(fix_.time + 500ms);
+        receiver_.input(port_, encode_frame(MonTxbuf::message_id, {}), fix_.time + 500ms);
+        look(fix_.time + 999ms);
+        look(receiver_.drained_at().value_or(fix_.time + 999ms));
+        MonTxbuf answer;
+        for (const StreamPiece& piece : splitter_.feed(bytes_))
+            if (const auto frame = parse_frame(piece.bytes); frame && frame->id == MonTxbuf::message_id)
+                answer = *decode_payload<MonTxbuf>(frame->payload);
+        return answer;
+    }
+    [[nodiscard]] std::string text() const { return to_string(bytes_); }
+    [[nodiscard]] std::uint64_t dropped() const { return receiver_.port_status(port_).messages_dropped; }
+
+private:
+    void look(GpsTime now) {
+        for (const Receiver::Sent& sent : receiver_.output(now))
+            if (sent.port == port_) bytes_.insert(bytes_.end(), sent.bytes.begin(), sent.bytes.end());
+    }
+    Receiver receiver_;
+    PortId port_;
+    Fix fix_;
+    Bytes bytes_;
+    StreamSplitter splitter_;
+};
+
+TEST(ReceiverOverflow, LosesNothingOfALargeEpochOnAFastLine) {
+    for (const PortId port : {PortId::uart1, PortId::usb, PortId::i2c}) {
+        Overflow fast(small_buffer(921600), port);
+        for (int i = 0; i < 3; ++i)
+            fast.epoch();
+        EXPECT_EQ(fast.dropped(), 0U);
+        EXPECT_THAT(fast.text(), HasSubstr("$GNZDA,120003.00"));
+        EXPECT_THAT(fast.text(), Not(HasSubstr("txbuf alloc")));
+        EXPECT_EQ(fast.buffers().errors, 0);
+    }
+}
+
+// Order stays: RMC leads each epoch, and what did not fit is missing at its end.
+TEST(ReceiverOverflow, IsToldByMonTxbufAndInATextOncePerEpoch) {
+    Overflow slow(small_buffer(4800), PortId::uart1);
+    constexpr int epochs = 6;
+    int overflows = 0;
+    for (int i = 0; i < epochs; ++i) {
+        const std::uint64_t before = slow.dropped();
+        slow.epoch();
+        overflows += slow.dropped() > before ? 1 : 0;
+    }
+    EXPECT_GE(overflows, epochs - 1);  // the first finds the buffer empty
+    EXPECT_EQ(slow.buffers().errors, 0x80 | 1 << 1);
+    const std::string text = slow.text();
+    const auto count = [&](const std::string& sentence) {
+        int found = 0;
+        for (auto at = text.find(sentence); at != std::string::npos; at = text.find(sentence, at + 1))
+            ++found;
+        return found;
+    };
+    EXPECT_EQ(count("$GNRMC,"), epochs + 1);
+    EXPECT_LT(count("$GNZDA,"), epochs);
+    EXPECT_EQ(count("$GNTXT,01,01,00,txbuf alloc*61\r\n"), overflows);
+}
+
+TEST(ReceiverOverflow, EndsWithItsCause) {
+    BoardProfile board = small_buffer(4800);
+    board.sentences.resize(2);
+    Overflow small(board, PortId::uart1);
+    EXPECT_EQ(small.epoch().epoch().buffers().errors, 0);
+}
+
+}  // namespace
+}  // namespace skyloop::firmware
