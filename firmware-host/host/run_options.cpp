@@ -6,7 +6,9 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <system_error>
 
 #include "skyloop/base/spelling.hpp"
 #include "skyloop/base/text_file.hpp"
@@ -135,6 +137,17 @@ Result<void> apply_speed(const RunOptions& options, Scenario& scenario) {
     return {};
 }
 
+// Each run empties the files of its recording as it begins.
+Result<void> check_repeat(const RunOptions& options) {
+    if (options.repeat.empty() || options.record.empty()) return {};
+    std::error_code absent;
+    if (!std::filesystem::equivalent(options.repeat, options.record, absent)) return {};
+    return fail(
+        ErrorCode::usage,
+        fmt::format("--repeat {}: the run would write its own recording over that; expected another folder than {}",
+                    options.repeat, options.record));
+}
+
 // The options that decide what a run computes, one a line.
 std::string options_text(const RunOptions& o) {
     std::string text;
@@ -254,6 +267,7 @@ std::optional<std::string> vehicle_warning(const Scenario& scenario) {
 }
 
 Result<Scenario> scenario_from(const RunOptions& options) {
+    if (const auto kept = check_repeat(options); !kept) return fail(kept.error());
     Scenario scenario;
     if (!options.scenario.empty()) {
         auto read = read_scenario_file(options.scenario);

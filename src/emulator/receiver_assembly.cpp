@@ -194,6 +194,8 @@ Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::si
         if (!transport) return fail(of_receiver(transport.error(), shared.scenario, index));
         if (shared.mode.virtual_time) (*transport)->allow_waiting();
         const InputPace pace = shared.mode.virtual_time ? InputPace::at_once : InputPace::line;
+        // The recording stands for a scripted client, which still says what it believes.
+        if (shared.mode.repeat && client_of_uri(wire.uri)) station.parts.mute_wires.insert(station.parts.wires.size());
         station.parts.wires.push_back(
             {wire.port, Link(std::move(*transport), port_speed(station.parts.receiver, wire.port), pace)});
     }

@@ -88,7 +88,7 @@ bool Station::hear(std::size_t wire, GpsTime now, Dialogue* dialogue) {
     };
     const auto take = [&](Bytes bytes) {
         const Bytes heard = faulty.to_receiver(std::move(bytes), now);
-        if (heard.empty()) return;
+        if (heard.empty() || parts_.mute_wires.contains(wire)) return;
         any = true;
         if (dialogue != nullptr) dialogue->client_said(wire, heard, now);
         parts_.receiver.input(port, heard, now);

@@ -161,6 +161,30 @@ class LiveTest(unittest.TestCase):
             self.assertEqual((again / name).read_bytes(), (first / name).read_bytes(), name)
         self.assertIn(b"\xb5\x62\x0a\x04", (again / "port0.out").read_bytes())
 
+    def test_a_scripted_client_is_heard_once_in_a_repeat(self):
+        first, again = self.path / "first", self.path / "again"
+        self.scenario.write_text(self.scenario.read_text() + '[[receiver]]\nport = "client:careful-ubx"\n')
+        arguments = ["simulate", self.scenario, "--duration", 12]
+        skyloop(*arguments, "--out", first)
+        skyloop(*arguments, "--repeat", first, "--out", again)
+        skyloop(*arguments, "--repeat", first, "--out", self.path / "third", "--port", "client:careful-ubx")
+        self.assertGreater((first / "port0.in").stat().st_size, 100)
+        for folder in (again, self.path / "third"):
+            for name in ("port0.out", "port0.in", "port0.in_times", "fixes.csv"):
+                self.assertEqual((folder / name).read_bytes(), (first / name).read_bytes(), name)
+
+    def test_a_repeat_does_not_write_over_what_it_repeats(self):
+        first, link = self.path / "first", self.path / "link"
+        skyloop("simulate", self.scenario, "--duration", 3, "--out", first)
+        link.symlink_to(first)
+        kept = (first / "port0.out").read_bytes()
+        for command, option in (("simulate", "--out"), ("run", "--record")):
+            for folder in (first, link, self.path / "first" / ".." / "first"):
+                done = skyloop(command, self.scenario, "--duration", 1, "--repeat", first, option, folder)
+                self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+                self.assertIn("--repeat", done.stderr)
+        self.assertEqual((first / "port0.out").read_bytes(), kept)
+
 
 if __name__ == "__main__":
     unittest.main()

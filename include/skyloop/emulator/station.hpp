@@ -56,6 +56,7 @@ public:
         std::optional<MovingBase> moving_base{};
         std::uint64_t seed = 1;                ///< of its own random numbers
         std::vector<HeardBytes> repeated{};    ///< input of an earlier run, to be heard again
+        std::set<std::size_t> mute_wires{};    ///< whose clients listen only: what they write is in `repeated`
         std::unique_ptr<PowerSwitch> power{};  ///< of a real device, switched by power_cut; null: none
     };
     explicit Station(Parts parts);
