@@ -24,6 +24,25 @@ std::vector<std::string> shown_commands(std::span<const CommandRow> commands) {
     return names;
 }
 
+// Each command with its sub-commands behind it.
+std::vector<CommandRow> with_subcommands(std::span<const CommandRow> commands) {
+    std::vector<CommandRow> all;
+    for (const CommandRow& command : commands) {
+        all.push_back(command);
+        all.insert(all.end(), command.subcommands.begin(), command.subcommands.end());
+    }
+    return all;
+}
+
+// Patterns of a shell's case, such as 'campaign plan' | 'campaign replay'; empty: no command has any.
+std::string subcommand_patterns(std::span<const CommandRow> commands) {
+    std::vector<std::string> names;
+    for (const CommandRow& command : commands)
+        for (const CommandRow& below : command.subcommands)
+            names.push_back(single_quoted(below.name));
+    return fmt::format("{}", fmt::join(names, " | "));
+}
+
 std::string_view bash_kind(ValueKind kind) {
     switch (kind) {
         case ValueKind::none:
@@ -55,7 +74,7 @@ std::string bash_options(std::span<const CommandRow> commands) {
             all.insert(all.end(), option.names.begin(), option.names.end());
             if (option.kind != ValueKind::none) valued.insert(valued.end(), option.names.begin(), option.names.end());
         }
-        branches += fmt::format("        {}) options={} valued={} ;;\n", command.name,
+        branches += fmt::format("        {}) options={} valued={} ;;\n", single_quoted(command.name),
                                 single_quoted(fmt::format("{}", fmt::join(all, " "))),
                                 single_quoted(fmt::format(" {} ", fmt::join(valued, " "))));
     }
@@ -135,7 +154,7 @@ constexpr std::string_view bash_middle = R"(
 # The line is read anew: bash has cut its words at ':' and '='.
 _skyloop()
 {
-    local line=${COMP_LINE:0:COMP_POINT} command='' options='' valued='' head='' cur prev i position=1
+    local line=${COMP_LINE:0:COMP_POINT} command='' options='' valued='' head='' cur prev i position=1 first=2
     local -a words
     read -ra words <<<"$line"
     [[ $line == *[[:space:]] ]] && words+=('')
@@ -144,7 +163,7 @@ _skyloop()
         COMPREPLY=()
 )";
 
-constexpr std::string_view bash_tail = R"(    for ((i = 2; i < ${#words[@]} - 1; i++)); do
+constexpr std::string_view bash_tail = R"(    for ((i = first; i < ${#words[@]} - 1; i++)); do
         if [[ $valued == *" ${words[i]} "* ]]; then
             ((i++))
         elif [[ ${words[i]} != -* ]]; then
@@ -154,7 +173,7 @@ constexpr std::string_view bash_tail = R"(    for ((i = 2; i < ${#words[@]} - 1;
     prev=${words[-2]}
     if [[ $cur == --*=* ]]; then
         prev=${cur%%=*} head=${cur%%=*}= cur=${cur#*=}
-    elif ((${#words[@]} == 3)) || [[ $valued != *" $prev "* ]]; then
+    elif ((${#words[@]} == first + 1)) || [[ $valued != *" $prev "* ]]; then
         if [[ $cur == -* ]]; then
             _skyloop_reply words "$options" '' "$cur"
             return
@@ -267,12 +286,19 @@ _skyloop() {
 
 std::string bash_completion(std::span<const CommandRow> commands) {
     std::string script(bash_head);
-    script += "_skyloop_value()\n{\n    kind=text known=''\n    case $1 in\n" + bash_values(commands) + "    esac\n}\n";
+    const std::vector<CommandRow> all = with_subcommands(commands);
+    script += "_skyloop_value()\n{\n    kind=text known=''\n    case $1 in\n" + bash_values(all) + "    esac\n}\n";
     script += bash_middle;
     script += fmt::format("        _skyloop_reply words '{} --help --version' '' \"$cur\"\n        return\n    fi\n",
                           fmt::join(shown_commands(commands), " "));
-    script +=
-        "    command=${words[1]}\n    local kind known\n    case $command in\n" + bash_options(commands) + "    esac\n";
+    script += "    command=${words[1]}\n    local kind known\n";
+    if (const std::string below = subcommand_patterns(commands); !below.empty())
+        script += fmt::format(
+            "    if ((${{#words[@]}} > 3)); then\n        case \"$command ${{words[2]}}\" in\n            {}) "
+            "command+=\" "
+            "${{words[2]}}\" first=3 ;;\n        esac\n    fi\n",
+            below);
+    script += "    case $command in\n" + bash_options(all) + "    esac\n";
     return script + std::string(bash_tail);
 }
 
@@ -283,10 +309,18 @@ std::string zsh_completion(std::span<const CommandRow> commands) {
             script += "                " +
                       single_quoted(zsh_escaped(command.name) + ":" + zsh_escaped(command.meaning)) + "\n";
     script +=
-        "            )\n            _describe command commands && ret=0 ;;\n        arguments)\n            case "
-        "$words[1] in\n";
-    for (const CommandRow& command : commands)
-        script += fmt::format("            {}) _arguments -C -s{} && ret=0 ;;\n", command.name, zsh_specs(command));
+        "            )\n            _describe command commands && ret=0 ;;\n        arguments)\n            local "
+        "called=$words[1]\n";
+    if (const std::string below = subcommand_patterns(commands); !below.empty())
+        script += fmt::format(
+            "            if (( CURRENT > 2 )); then\n                case \"$words[1] $words[2]\" in\n                 "
+            "   {}) "
+            "called+=\" $words[2]\"; shift words; (( CURRENT-- )) ;;\n                esac\n            fi\n",
+            below);
+    script += "            case $called in\n";
+    for (const CommandRow& command : with_subcommands(commands))
+        script += fmt::format("            {}) _arguments -C -s{} && ret=0 ;;\n", single_quoted(command.name),
+                              zsh_specs(command));
     return script + "            esac ;;\n    esac\n    return ret\n}\n\n_skyloop \"$@\"\n";
 }
 

@@ -122,7 +122,28 @@ std::string markdown_row(const OptionRow& option) {
     return fmt::format("| `{}` | {} |\n", cell(names), cell(sentence(option)));
 }
 
+std::string subcommands(const CommandRow& command) {
+    std::string text;
+    for (const CommandRow& row : command.subcommands)
+        text += ".SS " + synopsis(row) + roff_line(row.meaning + ".") + entries(row, true) + entries(row, false);
+    return text.empty() ? text : ".SH COMMANDS\n" + text;
+}
+
 bool is_help(const OptionRow& option) { return !option.positional() && option.names.front() == "--help"; }
+
+std::string markdown_section(const CommandRow& command) {
+    std::string section = fmt::format("\n## skyloop {}\n\n{}.\n\n", command.name, command.meaning);
+    if (!command.usage.empty())
+        section += fmt::format("<!-- not run: a summary -->\n```text\n{}\n```\n\n", command.usage);
+    std::string rows;
+    for (const bool positional : {true, false})
+        for (const OptionRow& option : command.options)
+            if (option.positional() == positional && !is_help(option)) rows += markdown_row(option);
+    section += rows.empty() ? "No options.\n" : "| option | meaning |\n|---|---|\n" + rows;
+    for (const CommandRow& row : command.subcommands)
+        section += markdown_section(row);
+    return section;
+}
 
 }  // namespace
 
@@ -137,7 +158,7 @@ std::string manual_page(const CommandRow& command, std::string_view version) {
     page += ".SH SYNOPSIS\n" + synopsis(command);
     if (!command.usage.empty()) page += ".SH USAGE\n.nf\n" + roff_lines(command.usage) + ".fi\n";
     if (const std::string words = entries(command, true); !words.empty()) page += ".SH ARGUMENTS\n" + words;
-    page += ".SH OPTIONS\n" + entries(command, false);
+    page += ".SH OPTIONS\n" + entries(command, false) + subcommands(command);
     page +=
         ".SH EXIT STATUS\n0 success; 1 the outside world refused; 2 a misuse or a bad file; 3 something that a "
         "scenario\nexpects "
@@ -151,17 +172,8 @@ std::string commands_markdown(std::span<const CommandRow> commands) {
         "# Every command and option\n\nWritten by `skyloop help-pages --format markdown`, from what the commands "
         "declare. "
         "`--help` stands with each, and what options do together in the manual page `skyloop(1)`.\n";
-    for (const CommandRow& command : commands) {
-        if (command.hidden) continue;
-        page += fmt::format("\n## skyloop {}\n\n{}.\n\n", command.name, command.meaning);
-        if (!command.usage.empty())
-            page += fmt::format("<!-- not run: a summary -->\n```text\n{}\n```\n\n", command.usage);
-        std::string rows;
-        for (const bool positional : {true, false})
-            for (const OptionRow& option : command.options)
-                if (option.positional() == positional && !is_help(option)) rows += markdown_row(option);
-        page += rows.empty() ? "No options.\n" : "| option | meaning |\n|---|---|\n" + rows;
-    }
+    for (const CommandRow& command : commands)
+        if (!command.hidden) page += markdown_section(command);
     return page;
 }
 

@@ -22,7 +22,7 @@ std::vector<std::string> vehicle_words() {
     return names;
 }
 
-std::vector<ValueRule> make_value_rules() {
+std::vector<ValueRule> option_rules() {
     using enum ValueKind;
     return {
         {"--at", "", "LAT,LON[,HEIGHT]", text},
@@ -35,6 +35,7 @@ std::vector<ValueRule> make_value_rules() {
         {"--nav", "", "FILE", file},
         {"--origin", "", "LAT,LON[,HEIGHT]", text},
         {"--out", "", "DIR", folder},
+        {"--out", "campaign report", "FILE", file},
         {"--out", "solve", "FILE", file},
         {"--record", "", "DIR", folder},
         {"--reference", "", "LAT,LON,HEIGHT|own-mean", text, {"own-mean"}},
@@ -50,6 +51,12 @@ std::vector<ValueRule> make_value_rules() {
         {"--token", "", "TEXT", text},
         {"--trajectory", "", "FILE", file},
         {"--vehicle", "", "CLASS", words, vehicle_words()},
+    };
+}
+
+std::vector<ValueRule> word_rules() {
+    using enum ValueKind;
+    return {
         {"A", "compare", "A", file},
         {"B", "compare", "B", file},
         {"FILE", "decode", "FILE", file},
@@ -59,6 +66,8 @@ std::vector<ValueRule> make_value_rules() {
         {"OBSERVATIONS", "solve", "OBSERVATIONS", file},
         {"RECORDING", "replay", "RECORDING", file},
         {"file", "trajectory", "FILE", file},
+        {"folder", "campaign gather", "DIR", folder},
+        {"folder", "campaign report", "DIR", folder},
         {"log", "scenario-from", "LOG", file},
         {"scenario", "", "SCENARIO", file},
         {"uri", "power", "URI", uri},
@@ -160,10 +169,33 @@ OptionRow option_row(const CLI::Option& option, std::string_view command) {
     return row;
 }
 
+CommandRow command_row(const CLI::App& command, const std::string& before) {
+    CommandRow row;
+    row.name = before + command.get_name();
+    row.meaning = command.get_description();
+    row.usage = command.get_footer();
+    row.hidden = command.get_group().empty();
+    for (const CLI::Option* option : command.get_options())
+        row.options.push_back(option_row(*option, row.name));
+    for (const CLI::App* below : command.get_subcommands(nullptr))
+        if (!below->get_group().empty()) row.subcommands.push_back(command_row(*below, row.name + " "));
+    const auto first = std::find_if(row.options.begin(), row.options.end(),
+                                    [](const OptionRow& option) { return option.positional(); });
+    // A sub-command stands where the command's first word could.
+    for (const CLI::App* below : command.get_subcommands(nullptr))
+        if (!below->get_group().empty() && first != row.options.end()) first->words.push_back(below->get_name());
+    return row;
+}
+
 }  // namespace
 
 const std::vector<ValueRule>& value_rules() {
-    static const std::vector<ValueRule> rules = make_value_rules();
+    static const std::vector<ValueRule> rules = [] {
+        std::vector<ValueRule> all = option_rules();
+        for (ValueRule& rule : word_rules())
+            all.push_back(std::move(rule));
+        return all;
+    }();
     return rules;
 }
 
@@ -178,16 +210,8 @@ std::string declared_range(const std::string& type) {
 
 std::vector<CommandRow> option_table(const CLI::App& program) {
     std::vector<CommandRow> table;
-    for (const CLI::App* command : program.get_subcommands(nullptr)) {
-        CommandRow row;
-        row.name = command->get_name();
-        row.meaning = command->get_description();
-        row.usage = command->get_footer();
-        row.hidden = command->get_group().empty();
-        for (const CLI::Option* option : command->get_options())
-            row.options.push_back(option_row(*option, row.name));
-        table.push_back(std::move(row));
-    }
+    for (const CLI::App* command : program.get_subcommands(nullptr))
+        table.push_back(command_row(*command, ""));
     return table;
 }
 

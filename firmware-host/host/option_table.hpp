@@ -36,11 +36,12 @@ struct OptionRow {
 
 /// One command.
 struct CommandRow {
-    std::string name{};
+    std::string name{};  ///< of a sub-command with that of its command: "campaign plan"
     std::string meaning{};
     std::string usage{};  ///< more than options say; lines as they stand
     bool hidden = false;  ///< not in `skyloop --help`
     std::vector<OptionRow> options{};
+    std::vector<CommandRow> subcommands{};  ///< without hidden ones
 };
 
 /// "0 to 90" of an option whose type CLI11 tells as "FLOAT:FLOAT in [0 - 90]"; empty where it tells no range.

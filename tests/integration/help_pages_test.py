@@ -23,7 +23,16 @@ def commands():
 
 def options(command):
     """The options that `skyloop COMMAND --help` lists."""
-    return set(re.findall(r"^  (?:-\w,)?(--[a-z0-9-]+)", run_to_end(command, "--help").stdout, re.MULTILINE))
+    return set(re.findall(r"^  (?:-\w,)?(--[a-z0-9-]+)", run_to_end(*command.split(), "--help").stdout, re.MULTILINE))
+
+
+def subcommands():
+    """What stands behind a command, such as `campaign plan`, as `skyloop COMMAND --help` lists it."""
+    found = []
+    for command in commands():
+        behind = run_to_end(command, "--help").stdout.split("Subcommands:")[1:]
+        found += [f"{command} {name}" for name in re.findall(r"^  ([a-z-]+) ", "".join(behind), re.MULTILINE)]
+    return found
 
 
 def need(program):
@@ -47,6 +56,15 @@ class ManualPages(unittest.TestCase):
                 for option in options(command):
                     self.assertIn(f"\\fB{option}\\fR", page)
         self.assertEqual({path.stem.removeprefix("skyloop-") for path in self.man.iterdir()}, set(commands()) | HIDDEN)
+
+    def test_a_page_lists_its_subcommands_with_all_their_options(self):
+        self.assertEqual(set(subcommands()), {f"campaign {name}" for name in ("plan", "replay", "gather", "report")})
+        for name in subcommands():
+            page = (self.man / f"skyloop-{name.split()[0]}.1").read_text().replace("\\-", "-")
+            section = page.split(f".SS \\fBskyloop {name}\\fR")[1].split(".SS")[0]
+            for option in options(name):
+                with self.subTest(name, option=option):
+                    self.assertIn(f"\\fB{option}\\fR", section)
 
     def test_groff_has_nothing_to_say(self):
         need("groff")
@@ -82,13 +100,20 @@ class ReferencePage(unittest.TestCase):
         self.assertEqual(run_to_end("help-pages").stdout, (ROOT / "docs/commands.md").read_text(),
                          "docs/commands.md is old: skyloop help-pages --format markdown > docs/commands.md")
 
+    def test_has_the_subcommands(self):
+        page = run_to_end("help-pages").stdout
+        for name in subcommands():
+            section = page.split(f"## skyloop {name}\n")[1].split("\n## ")[0]
+            for option in options(name) - {"--help"}:
+                self.assertIn(f"`{option}", section, name)
+
 
 class Rules(unittest.TestCase):
     def test_what_is_known_of_values_is_of_options_that_exist(self):
         source = (ROOT / "firmware-host/host/option_table.cpp").read_text()
         rules = re.findall(r'^        \{"([^"]+)", "([^"]*)", "', source, re.MULTILINE)
         self.assertGreater(len(rules), 30)
-        told = {command: run_to_end(command, "--help").stdout for command in commands()}
+        told = {command: run_to_end(*command.split(), "--help").stdout for command in commands() + subcommands()}
         for option, command in rules:
             with self.subTest(option=option, command=command):
                 listed = re.compile(rf"^  (?:-\w,)?{re.escape(option)} ", re.MULTILINE)
@@ -130,7 +155,7 @@ class Bash(unittest.TestCase):
         self.assertEqual(set(self.complete("skyloop ")), set(commands()) | {"--help", "--version"})
 
     def test_options_of_each_command(self):
-        for command in commands():
+        for command in commands() + subcommands():
             with self.subTest(command):
                 self.assertEqual(set(self.complete(f"skyloop {command} --")), options(command))
 
@@ -152,6 +177,13 @@ class Bash(unittest.TestCase):
         self.assertEqual(self.complete("skyloop simulate --out s"), ["sub"])
         self.assertEqual(self.complete("skyloop run --scene de"), ["demo"])
         self.assertEqual(self.complete("skyloop run --at fl"), [])
+
+    def test_subcommands(self):
+        self.assertEqual(self.complete("skyloop campaign re"), ["replay", "report"])
+        self.assertEqual(self.complete("skyloop campaign plan fl"), ["flight.toml"])
+        self.assertEqual(self.complete("skyloop campaign report s"), ["sub"])
+        self.assertEqual(self.complete("skyloop campaign report sub --out fl"), ["flight.toml"])
+        self.assertEqual(self.complete("skyloop campaign replay flight.toml --nu"), ["--number"])
 
     def test_ports(self):
         self.assertEqual(self.complete("skyloop run --port se"), ["serial:"])
@@ -227,6 +259,12 @@ class Zsh(unittest.TestCase):
         self.becomes("skyloop run --rebas", "skyloop run --rebase-nav\n")
         self.becomes("skyloop schema --format mark", "skyloop schema --format markdown\n")
         self.becomes("skyloop run --model whole", "skyloop run --model whole-path\n")
+
+    def test_subcommands(self):
+        self.becomes("skyloop campaign gath", "skyloop campaign gather\n")
+        self.becomes("skyloop campaign replay flight.toml --numb", "skyloop campaign replay flight.toml --number\n")
+        self.becomes("skyloop campaign plan fli", "skyloop campaign plan flight.toml\n")
+        self.becomes("skyloop campaign report --wor", "skyloop campaign report --worst\n")
 
     def test_boards_faults_files_and_ports(self):
         self.becomes("skyloop run --board ublox-f", "skyloop run --board ublox-f9p\n")
