@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "commands.hpp"
+#include "data_folders.hpp"
 #include "run_session.hpp"
 #include "sky_parts.hpp"
 #include "skyloop/analysis/sky_listing.hpp"
@@ -12,6 +13,7 @@
 #include "skyloop/plot/scene_plot.hpp"
 #include "skyloop/plot/sky_plot.hpp"
 #include "skyloop/plot/track_plot.hpp"
+#include "skyloop/scenario/board_file.hpp"
 #include "skyloop/sky/satellite_tracks.hpp"
 #include "skyloop/time/utc_time.hpp"
 
@@ -104,10 +106,22 @@ std::optional<std::string> sky_misuse(const SkyOptions& options, const Scenario&
     return std::nullopt;
 }
 
+// That of a scenario says what is used. Without one a receiver that tracks everything shows the whole sky.
+Result<ReceiverSettings> looking_receiver(const SkyOptions& options, const Scenario& scenario) {
+    ReceiverSettings everything;
+    everything.elevation_mask = scenario.sky.elevation_mask.value_or(everything.elevation_mask);
+    if (options.run.scenario.empty()) return everything;
+    const auto board = find_board(scenario.receivers.front().board, board_folders(data_folders()));
+    if (!board) return fail(board.error());
+    ReceiverSettings settings = receiver_settings(scenario, *board);
+    settings.start = StartKind::hot;  // one instant has no time to acquire
+    return settings;
+}
+
 int print_sky(const SkyOptions& options, const Scenario& scenario, World& world, const Messages& messages) {
-    // A receiver that tracks everything shows the whole sky.
-    ReceiverSettings receiver;
-    receiver.elevation_mask = scenario.sky.elevation_mask.value_or(receiver.elevation_mask);
+    const auto asked = looking_receiver(options, scenario);
+    if (!asked) return messages.error(asked.error());
+    const ReceiverSettings& receiver = *asked;
     const Trace trace = world.simulation.run(world.start, receiver);
     std::optional<CityPlace> city;
     if (world.scene) city = city_place(options, world, trace);
@@ -178,7 +192,9 @@ Action add_sky_command(CLI::App& app) {
     add_scene_option(*command, options->run);
     command->add_option("--format", options->format, "text, json, csv or svg")
         ->check(CLI::IsMember({"text", "json", "csv", "svg"}));
-    command->add_option("--mask", options->mask_deg, "Elevation mask, degrees")->check(CLI::Range(0.0, 90.0));
+    command
+        ->add_option("--mask", options->mask_deg, "Elevation mask, degrees; default the scenario's, its board's or 5")
+        ->check(CLI::Range(0.0, 90.0));
     command->add_option("--tracks", options->tracks_h, "ECEF tracks of all satellites over so many hours (csv or svg)")
         ->check(CLI::Range(0.01, 24.0 * 14));
     command

@@ -6,7 +6,7 @@ import pathlib
 import unittest
 import xml.etree.ElementTree as xml
 
-from session import open_folder, skyloop
+from session import SHARED, open_folder, skyloop
 
 PLACE = ["--at", "46.4775,30.7326", "--start", "2026-01-01T00:00:00Z", "--scene", "demo"]
 GRID = ["--grid", "30.7318,46.4770,30.7334,46.4780", "--scene", "demo", "--start", "2026-01-01T00:00:00Z"]
@@ -92,6 +92,36 @@ class Maps(unittest.TestCase):
             self.assertIn(done.returncode, (1, 2), arguments)
             self.assertIn(word, done.stderr)
             self.assertEqual(done.stdout, "")
+
+
+class TheReceiverOfAScenario(unittest.TestCase):
+    """What `sky` says is used is what its receiver uses."""
+
+    RECEIVERS = {'board = "ublox-f9p"': None, 'constellations = ["gps"]\nstart = "cold"': {"G"}}
+
+    def test_says_what_is_used(self):
+        navigation = SHARED / "nav/BRDC00IGS_R_20240010000_01D_MN.rnx.gz"
+        if not navigation.exists():
+            self.skipTest(f"shared data absent: {navigation}")
+        with open_folder() as folder:
+            for receiver, systems in self.RECEIVERS.items():
+                path = pathlib.Path(folder, "s.toml")
+                path.write_text(f'[run]\nstart = 2024-01-01T12:00:00Z\n[sky]\nnavigation = "{navigation}"\n'
+                                f'[[receiver]]\n{receiver}\n', encoding="utf-8")
+                satellites = json.loads(skyloop("sky", path, "--format", "json").stdout)["satellites"]
+                used = {s["satellite"] for s in satellites if s["used"]}
+                self.assertLess(len(used), len(satellites))
+                if systems:
+                    self.assertEqual({satellite[0] for satellite in used}, systems)
+                    continue
+                # The mask of the board: ublox-f9p, 10 degrees.
+                self.assertTrue(all(s["elevation_deg"] >= 10 for s in satellites if s["used"]))
+                skyloop("simulate", path, "--duration", 1, "--out", folder)
+                with open(pathlib.Path(folder, "satellites.csv"), encoding="ascii") as table:
+                    simulated = {row["satellite"] for row in csv.DictReader(table) if row["used"] == "1"}
+                self.assertEqual(used, simulated)
+                lower = json.loads(skyloop("sky", path, "--mask", 5, "--format", "json").stdout)["satellites"]
+                self.assertGreater(sum(s["used"] for s in lower), len(used))
 
 
 class Runs(unittest.TestCase):
