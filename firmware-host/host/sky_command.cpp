@@ -101,6 +101,8 @@ int print_tracks(const SkyOptions& options, const World& world) {
 std::optional<std::string> sky_misuse(const SkyOptions& options, const Scenario& scenario) {
     if (options.tracks_h > 0 && options.format == "json") return "--tracks comes as --format csv or svg";
     if (options.tracks_h > 0 && !options.grid.empty()) return "--tracks and --grid show different things; expected one";
+    if (options.step > 0 && options.tracks_h == 0 && options.grid.empty())
+        return "--step is that of --tracks or --grid; expected one of them";
     if (options.view == "plan" && !scenario.scene.given()) return "--view plan shows buildings: expected --scene FILE";
     if (options.view == "plan" && options.format != "svg") return "--view plan comes as --format svg";
     return std::nullopt;
@@ -163,7 +165,7 @@ void add_city_options(CLI::App& command, SkyOptions& options) {
 }
 
 void add_grid_options(CLI::App& command, SkyOptions& options) {
-    command.add_option(
+    CLI::Option* grid = command.add_option(
         "--grid", options.grid,
         "Map over an area (csv or svg): WEST,SOUTH,EAST,NORTH in degrees; cells by --step or --grid-size");
     command.add_option("--grid-size", options.grid_size, "Cells along the longer side of the map, default 50")
@@ -179,6 +181,9 @@ void add_grid_options(CLI::App& command, SkyOptions& options) {
             CLI::IsMember(std::vector<std::string>(coverage_quantity_names.begin(), coverage_quantity_names.end())));
     command.add_option("--threads", options.threads, "That make the map, default all cores; the bytes are the same")
         ->check(CLI::Range(1, 256));
+    for (const char* of_maps :
+         {"--grid-size", "--duration", "--interval", "--height", "--direct-only", "--show", "--threads"})
+        command.get_option(of_maps)->needs(grid);
 }
 
 }  // namespace

@@ -12,10 +12,12 @@
 #include "messages.hpp"
 #include "run_options.hpp"
 #include "skyloop/base/spelling.hpp"
+#include "skyloop/base/text_file.hpp"
 #include "skyloop/emulator/assembly.hpp"
 #include "skyloop/emulator/load_track.hpp"
 #include "skyloop/plot/path_plot.hpp"
 #include "skyloop/scenario/scenario_file.hpp"
+#include "skyloop/tracks/read_track.hpp"
 #include "trajectory_listing.hpp"
 
 namespace skyloop::host {
@@ -105,6 +107,35 @@ Seconds length_to_look_at(const TrajectoryOptions& options, const Scenario& scen
     return unless_told;
 }
 
+bool same_places(const Track& a, const Track& b) {
+    return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
+                      [](const TrackRow& x, const TrackRow& y) { return x.position.vector() == y.position.vector(); });
+}
+
+// Which files have local metres is known to their readers alone: without the origin these say something else, or
+// nothing.
+bool origin_matters(const FileSettings& file, const Geoid* geoid) {
+    const auto text = read_text_file(file.path);
+    if (!text) return true;
+    const ByteSpan bytes(reinterpret_cast<const std::uint8_t*>(text->data()), text->size());
+    const auto with = read_track(bytes, file.path.string(), {geoid, file.origin});
+    const auto without = read_track(bytes, file.path.string(), {geoid, std::nullopt});
+    return !with || !without || !same_places(*with, *without);
+}
+
+// Of what the command line says of a loaded track, what nothing came of.
+Result<void> check_track_options(const TrajectoryOptions& options, const FileSettings& file, const Geoid* geoid) {
+    if (options.speed_mps && !file.route)
+        return fail(
+            ErrorCode::usage,
+            fmt::format("--speed: {} has times, which say how fast it goes; expected a file without", options.file));
+    if (!options.origin.empty() && !origin_matters(file, geoid))
+        return fail(ErrorCode::usage,
+                    fmt::format("--origin: {} says itself where its places lie; expected a file of local metres",
+                                options.file));
+    return {};
+}
+
 Result<OpenedPath> open_path(const TrajectoryOptions& options) {
     const auto vehicle = chosen_vehicle(options.vehicle);
     if (!vehicle) return fail(vehicle.error());
@@ -124,6 +155,8 @@ Result<OpenedPath> open_path(const TrajectoryOptions& options) {
     scenario->receivers[0].trajectory.reset();
     const auto track = load_track(*scenario, geoid.get(), opened.span.from);
     if (!track) return fail(track.error());
+    if (file)
+        if (const auto fits = check_track_options(options, *file, geoid.get()); !fits) return fail(fits.error());
     listing.kind = !file ? "path of a scenario" : file->route ? "route" : "track";
     listing.description = track->description;
     listing.details = track->details;

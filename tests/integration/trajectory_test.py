@@ -88,6 +88,16 @@ class TrajectoryTest(unittest.TestCase):
         self.assertEqual([(limit["of"], limit["what"]) for limit in exceeded], [("pedestrian", "speed")])
         self.refused("trajectory", self.track, "--vehicle", "plan", says="did you mean")
 
+    def test_options_of_which_nothing_comes_are_refused(self):
+        self.refused("trajectory", self.track, "--speed", "10", says="--speed: ")
+        self.refused("trajectory", self.track, "--origin", "46,30,5", says="--origin: ")
+        route = self.folder / "route.csv"
+        route.write_text("".join(",".join(line.split(",")[1:]) + "\n" for line in track_text(20).splitlines()))
+        self.assertAlmostEqual(self.listing(route, "--speed", "5")["speed_over_ground_mps"]["value"], 5, delta=0.5)
+        local = self.folder / "local.csv"
+        local.write_text("".join(f"{t}.0 {t} 0 0 0 0 0 1\n" for t in range(20)))
+        self.assertEqual(self.listing(local, "--origin", "46,30,5")["duration_s"], 19)
+
     def test_csv_is_a_track_again(self):
         text = skyloop("trajectory", self.track, "--format", "csv", "--rate", "4", "--vehicle", "plane").stdout
         rows = table(text)
