@@ -51,6 +51,13 @@ std::optional<double> state_vector_delay(const GlonassEphemeris& record, Signal 
     return std::nullopt;
 }
 
+// B2I is BeiDou-2's alone. BeiDou-3, the numbers from 19 on, sends B2b on that carrier, another signal.
+bool sends_signal(SatelliteId satellite, Signal signal) {
+    constexpr int first_of_beidou_3 = 19;
+    return satellite.constellation != Constellation::beidou || signal != Signal::e5b ||
+           satellite.number < first_of_beidou_3;
+}
+
 }  // namespace
 
 Signal first_signal(Constellation constellation) {
@@ -148,9 +155,11 @@ TransmittedSignals transmitted_signals(const Ephemeris& record) {
     const auto* glonass = std::get_if<GlonassEphemeris>(&record);
     const int channel = glonass ? glonass->frequency_channel : 0;
     TransmittedSignals signals;
-    for (const Signal signal : emulated_signals(satellite_of(record).constellation))
-        signals.push_back(
-            {signal, carrier_frequency(signal, channel), group_delay(record, signal).value_or(Seconds(0))});
+    const SatelliteId satellite = satellite_of(record);
+    for (const Signal signal : emulated_signals(satellite.constellation))
+        if (sends_signal(satellite, signal))
+            signals.push_back(
+                {signal, carrier_frequency(signal, channel), group_delay(record, signal).value_or(Seconds(0))});
     return signals;
 }
 

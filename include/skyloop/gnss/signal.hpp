@@ -47,7 +47,8 @@ struct TransmittedSignal {
 };
 using TransmittedSignals = InplaceVector<TransmittedSignal, most_signals>;
 
-/// The emulated signals of the satellite of a record. @param record tells the GLONASS channel and the group delays
+/// The emulated signals of the satellite of a record; no B2I of BeiDou-3. @param record tells the GLONASS channel and
+/// the group delays
 TransmittedSignals transmitted_signals(const Ephemeris& record);
 
 /// What a user of one signal subtracts from the broadcast clock, s, or nothing where the record does not tell.

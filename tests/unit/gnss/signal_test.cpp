@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 namespace skyloop::test {
 namespace {
@@ -86,6 +87,23 @@ TEST(Signal, TellsHealthByTheSignalThatCarriesTheMessage) {
     EXPECT_FALSE(is_beidou_geo({Constellation::beidou, 6}));
     EXPECT_TRUE(is_beidou_geo({Constellation::beidou, 59}));
     EXPECT_FALSE(is_beidou_geo({Constellation::gps, 5}));
+}
+
+TEST(Signal, B2iComesFromBeidou2Alone) {
+    const auto sent = [](int number) {
+        KeplerEphemeris record = delayed(Constellation::beidou, NavigationMessage::d1);
+        record.satellite.number = number;
+        std::vector<Signal> signals;
+        for (const TransmittedSignal& s : transmitted_signals(record))
+            signals.push_back(s.signal);
+        return signals;
+    };
+    EXPECT_EQ(sent(16), (std::vector{Signal::b1i, Signal::e5b, Signal::b3i}));
+    EXPECT_EQ(sent(19), (std::vector{Signal::b1i, Signal::b3i}));
+    EXPECT_EQ(sent(46), (std::vector{Signal::b1i, Signal::b3i}));
+    KeplerEphemeris galileo = delayed(Constellation::galileo, NavigationMessage::inav);
+    galileo.satellite.number = 24;
+    EXPECT_EQ(transmitted_signals(galileo).size(), 3U);
 }
 
 }  // namespace
