@@ -101,7 +101,7 @@ Result<void> apply_vary(std::string_view text, CampaignSettings& campaign) {
     if (!values) return fail(values.error().code, fmt::format("--vary {}: {}", key, values.error().message));
     std::set<std::string> seen;
     for (const CampaignValue& value : *values)
-        if (!seen.insert(value.toml).second)
+        if (!seen.insert(sense_of(value)).second)
             return fail(ErrorCode::usage,
                         fmt::format("--vary {}: {} is there twice; expected it once", key, value.toml));
     auto at = std::find_if(campaign.parameters.begin(), campaign.parameters.end(),

@@ -38,7 +38,7 @@ void read_value_list(TableReader& table, CampaignSpread& spread) {
     for (const toml::node& item : *list) {
         auto value = campaign_value(item);
         if (!value) return table.mistake("values", "holds a table; expected numbers, texts, flags, dates or lists");
-        if (!seen.insert(value->toml).second)
+        if (!seen.insert(sense_of(*value)).second)
             return table.mistake("values", fmt::format("holds {} twice; expected it once", value->toml));
         values.push_back(std::move(*value));
     }
@@ -115,6 +115,8 @@ void read_vehicle(TableReader& table, CampaignSettings& campaign) {
     CampaignVehicle vehicle;
     table.needs_one_of({"command"}, "names no command; expected command = \"./sitl {pty}\"");
     table.text("command", vehicle.command);
+    if (table.has("command") && vehicle.command.find_first_not_of(" \t\r\n") == std::string::npos && !table.recording())
+        table.mistake("command", "is empty; expected a program, such as \"./sitl {pty}\"");
     if (table.has("timeout_s")) {
         vehicle.timeout = Seconds(1);
         table.quantity("timeout_s", vehicle.timeout, {0.1, longest_vehicle_s});

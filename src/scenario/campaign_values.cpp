@@ -71,6 +71,25 @@ std::optional<std::vector<CampaignValue>> as_array(std::string_view text) {
 
 }  // namespace
 
+std::string sense_of(const CampaignValue& value) {
+    std::string sense;
+    const std::function<void(const toml::node&)> add = [&](const toml::node& node) {
+        const auto* number = node.as_floating_point();
+        if (const toml::array* list = node.as_array()) {
+            sense += "[";
+            for (const toml::node& item : *list)
+                add(item);
+            sense += "],";
+        } else if (number != nullptr && number->get() == std::floor(number->get()) && std::abs(number->get()) < 1e15) {
+            sense += fmt::format("{},", static_cast<std::int64_t>(number->get()));
+        } else {
+            sense += toml_text(node).value_or("") + ",";
+        }
+    };
+    with_toml_value(value, add);
+    return sense;
+}
+
 std::optional<std::string> toml_text(const toml::node& node) {
     if (const auto* text = node.as_string()) return quoted_text(text->get());
     if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());

@@ -22,6 +22,8 @@ struct CampaignValue {
 };
 CampaignValue campaign_value(double number);
 CampaignValue campaign_value(std::int64_t number);
+/// The same for values that are one to a scenario: 2 and 2.0.
+std::string sense_of(const CampaignValue& value);
 
 struct UniformSpread {
     double least = 0, most = 1;

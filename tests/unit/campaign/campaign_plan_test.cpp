@@ -132,7 +132,8 @@ TEST(CampaignPlan, VaryOfTheCommandLine) {
     EXPECT_EQ(values("x=[1,2],[3,4]"), "x [1, 2] [3, 4]");
     EXPECT_EQ(values("x=true"), "x true");
     EXPECT_EQ(values("x=a\"b"), "x \"a\\\"b\"");
-    for (const char* bad : {"", "x", "=1", "x=", "x=1,,2", "x=1,1", "run.seed=1", "campaign.seeds=3", "x={a=1}"})
+    for (const char* bad : {"", "x", "=1", "x=", "x=1,,2", "x=1,1", "x=2,2.0", "x=[0.0],[-0.0]", "run.seed=1",
+                            "campaign.seeds=3", "x={a=1}"})
         EXPECT_THAT(values(bad), testing::AnyOf(HasSubstr("expected"), HasSubstr("x \"{a=1}\""))) << bad;
 }
 

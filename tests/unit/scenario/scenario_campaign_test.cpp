@@ -63,6 +63,8 @@ TEST(ScenarioCampaign, SaysWhereAMistakeIs) {
     EXPECT_THAT(campaign_mistake("[[campaign.parameter]]\nkey = \"run.speed\"\nuniform = [1, 2]\n"),
                 HasSubstr("'run.speed' has no end of values"));
     EXPECT_THAT(campaign_mistake("[campaign.vehicle]\ntimeout_s = 3\n"), HasSubstr("names no command"));
+    EXPECT_THAT(campaign_mistake("[campaign.vehicle]\ncommand = ' '\n"), HasSubstr("command: is empty"));
+    EXPECT_THAT(campaign_mistake("[campaign.vehicle]\ncommand = []\n"), HasSubstr("command: is a list"));
 }
 
 TEST(ScenarioCampaign, SaysWhatIsWrongWithAParameter) {
@@ -70,6 +72,9 @@ TEST(ScenarioCampaign, SaysWhatIsWrongWithAParameter) {
     EXPECT_THAT(parameter_mistake(""), HasSubstr("says nothing of its values"));
     EXPECT_THAT(parameter_mistake("values = []\n"), HasSubstr("expected at least one"));
     EXPECT_THAT(parameter_mistake("values = [1, 1]\n"), HasSubstr("holds 1 twice"));
+    EXPECT_THAT(parameter_mistake("values = [2, 2.0]\n"), HasSubstr("holds 2.0 twice"));
+    EXPECT_THAT(parameter_mistake("values = [[1, 2], [1.0, 2]]\n"), HasSubstr("holds [1.0, 2] twice"));
+    EXPECT_EQ(parameter_mistake("values = [2, 2.5, \"2\", [2], [[2]], true]\n"), "none");
     EXPECT_THAT(parameter_mistake("values = [{a = 1}]\n"), HasSubstr("holds a table"));
     EXPECT_THAT(parameter_mistake("values = [1]\nuniform = [1, 2]\n"), HasSubstr("stands beside values"));
     EXPECT_THAT(parameter_mistake("uniform = [2, 1]\n"), HasSubstr("expected the least and the greatest"));
