@@ -61,7 +61,8 @@ struct NavigationState {
     CorrectionStatus corrections;
     MonitorStatus monitors;
     std::optional<Seconds> time_to_first_fix;
-    Seconds since_start{0};
+    Seconds since_start{0};       ///< since navigation has
+    Seconds since_boot{0};        ///< since the receiver has
     bool position_held = false;   ///< by static hold
     std::optional<Angle> course;  ///< frozen at low speed; nothing before the first
     bool course_is_frozen = false;

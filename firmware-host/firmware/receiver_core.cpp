@@ -58,6 +58,7 @@ Receiver::Core::Core(BoardProfile board, const ReceiverOptions& options)
 }
 
 void Receiver::Core::start(GpsTime now) {
+    if (options_.power_up) tracker_.boot(now);
     tracker_.start(now, Forgotten::of(options_.settings.start),
                    !options_.power_up && options_.settings.start == StartKind::hot);
     report(tracker_.state());
@@ -147,6 +148,7 @@ void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now, bool banner
     told_antenna_.reset();
     const GpsTime awake = advanced(now, board_.timing.boot);
     deaf_until_ = awake;
+    tracker_.boot(now);
     restart_navigation(forgotten, now, board_.timing.boot + board_.timing.first_epoch);
     if (banner) outbox_.plan(awake, [this](GpsTime t) { send_banner(t); });
 }

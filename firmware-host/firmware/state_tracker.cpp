@@ -95,8 +95,10 @@ const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStor
     if (state_.epoch.fix.time != GpsTime{}) ++state_.epoch_index;
     state_.epoch = epoch;
     Fix& fix = state_.epoch.fix;
-    constexpr double long_ago_s = 3600;
-    state_.since_start = started_ ? difference(fix.time, *started_) : Seconds(long_ago_s);
+    constexpr auto long_ago = std::chrono::hours(1);
+    if (!booted_) booted_ = fix.time - long_ago;
+    state_.since_boot = difference(fix.time, *booted_);
+    state_.since_start = started_ ? difference(fix.time, *started_) : state_.since_boot;
     std::erase_if(fix.satellites, [mask = sbas_mask(board_, config)](const SatelliteStatus& s) {
         return !in_sbas_scan_mask(s.id, mask);
     });

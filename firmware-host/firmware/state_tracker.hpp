@@ -29,6 +29,8 @@ public:
 
     /// The receiver starts, with what it has not forgotten. @param running it has been on for long, and knows all
     void start(GpsTime now, const Forgotten& forgotten, bool running = false);
+    /// The whole receiver starts, navigation with it: to be followed by start().
+    void boot(GpsTime now) { booted_ = now; }
     /// The next epoch, in the receiver's own words. @param corrections of CorrectionInput at that instant
     const NavigationState& update(const Epoch& epoch, const ConfigStore& config, const CorrectionStatus& corrections);
     [[nodiscard]] const NavigationState& state() const { return state_; }
@@ -49,6 +51,7 @@ private:
     const BoardProfile& board_;
     NavigationState state_;
     std::optional<GpsTime> started_;  ///< nothing: long ago
+    std::optional<GpsTime> booted_;   ///< nothing: long ago, and there was no epoch yet
     StartKind start_kind_ = StartKind::hot;
     bool measured_ = false;                  ///< the model acquires satellites itself
     std::optional<GpsTime> first_tracking_;  ///< since the start

@@ -67,7 +67,7 @@ MonSys system_load(const ReportContext& context) {
         m.io_usage = std::max(m.io_usage, field<std::uint8_t>(port.usage_percent));
         m.io_usage_max = std::max(m.io_usage_max, field<std::uint8_t>(port.peak_usage_percent));
     }
-    m.run_time = field<std::uint32_t>(std::floor(context.state.since_start.value()));
+    m.run_time = field<std::uint32_t>(std::floor(context.state.since_boot.value()));
     m.temp_value = 28;
     return m;
 }

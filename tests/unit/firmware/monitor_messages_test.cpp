@@ -117,7 +117,7 @@ TEST(MonPortMessages, CountBytesAndMessages) {
 
 TEST(MonSystemMessages, AreThere) {
     UbxReport f9(9);
-    EXPECT_EQ(f9.report<MonSys>().run_time, 123u);
+    EXPECT_EQ(f9.report<MonSys>().run_time, 456u);
     EXPECT_LT(f9.report<MonSys>().cpu_load, 30);
     EXPECT_EQ(f9.report<MonPatch>().n_entries, 0);
     EXPECT_EQ(f9.report<MonRxr>().flags, 1);

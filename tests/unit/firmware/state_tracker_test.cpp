@@ -76,8 +76,22 @@ TEST(StateTracker, KnowsEverythingWhenItHasBeenOnForLong) {
     EXPECT_TRUE(state.fix_ok);
     EXPECT_EQ(state.epoch.fix.type, FixType::fix_3d);
     EXPECT_EQ(state.epoch_index, 0U);
-    EXPECT_GE(state.since_start.value(), 3600);
+    EXPECT_EQ(state.since_start.value(), 3600);
     EXPECT_EQ(t.step().epoch_index, 1U);
+    EXPECT_EQ(t.steps(9).since_start.value(), 3610);
+    EXPECT_EQ(state.since_boot.value(), 3610);
+}
+
+TEST(StateTracker, CountsFromTheStartOfNavigationAndFromThatOfTheReceiver) {
+    Tracked t(tracked_board());
+    t.tracker().start(t.fix().time, {}, true);
+    t.steps(5);
+    t.tracker().start(t.fix().time, {});
+    EXPECT_EQ(t.steps(2).since_start.value(), 2);
+    EXPECT_EQ(t.tracker().state().since_boot.value(), 3606);
+    t.tracker().boot(t.fix().time);
+    t.tracker().start(t.fix().time, {});
+    EXPECT_EQ(t.steps(3).since_boot.value(), 3);
 }
 
 TEST(StateTracker, ShowsSatellitesOneByOneBeforeTheFirstFixOfAColdStart) {

@@ -32,6 +32,7 @@ struct UbxReport {
         state.time = {true, true, true, true, true, Seconds(25e-9)};
         state.course = Angle::degrees(53.13);
         state.since_start = Seconds(123.456);
+        state.since_boot = Seconds(456.789);
         state.time_to_first_fix = Seconds(26.5);
         state.monitors = {1, 14, 4200, 69, AntennaStatus::ok, 1, SpoofingIndication::none};
     }
