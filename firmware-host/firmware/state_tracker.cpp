@@ -5,6 +5,7 @@
 
 #include "firmware/config/config_keys.hpp"
 #include "firmware/fixed_place.hpp"
+#include "firmware/config/signal_keys.hpp"
 #include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop::firmware {
@@ -40,6 +41,17 @@ std::uint64_t sbas_mask(const BoardProfile& board, const ConfigStore& config) {
 
 bool is_tracking(const Fix& fix) {
     return std::any_of(fix.satellites.begin(), fix.satellites.end(), [](const auto& s) { return s.cn0.has_value(); });
+}
+
+// A receiver looks for no satellite of a system that it does not have, or that is off.
+void leave_out_other_systems(Fix& fix, const ConfigStore& config) {
+    const auto is_off = [&](const SatelliteStatus& s) {
+        const auto system =
+            std::find_if(system_keys_of_signals.begin(), system_keys_of_signals.end(),
+                         [&](const SystemKeys& keys) { return keys.constellation == s.id.constellation; });
+        return system == system_keys_of_signals.end() || !config.flag(system->enable);
+    };
+    std::erase_if(fix.satellites, is_off);
 }
 
 }  // namespace
@@ -95,6 +107,7 @@ const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStor
     if (state_.epoch.fix.time != GpsTime{}) ++state_.epoch_index;
     state_.epoch = epoch;
     Fix& fix = state_.epoch.fix;
+    leave_out_other_systems(fix, config);
     constexpr auto long_ago = std::chrono::hours(1);
     if (!booted_) booted_ = fix.time - long_ago;
     state_.since_boot = difference(fix.time, *booted_);

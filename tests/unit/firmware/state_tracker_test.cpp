@@ -82,6 +82,18 @@ TEST(StateTracker, KnowsEverythingWhenItHasBeenOnForLong) {
     EXPECT_EQ(state.since_boot.value(), 3610);
 }
 
+TEST(StateTracker, LeavesOutSatellitesOfSystemsThatAreOff) {
+    Tracked t(tracked_board());
+    add_satellites(t.fix(), beidou, 19, 4);
+    add_satellites(t.fix(), navic, 1, 4);
+    EXPECT_EQ(t.step().epoch.fix.satellites.size(), 16U);
+    t.store().set(in_ram, 0x10310021, 0);
+    for (const SatelliteStatus& s : t.step().epoch.fix.satellites)
+        EXPECT_EQ(s.id.constellation, gps);
+    t.store().set(in_ram, 0x10310022, 1);
+    EXPECT_EQ(t.step().epoch.fix.satellites.size(), 12U);
+}
+
 TEST(StateTracker, CountsFromTheStartOfNavigationAndFromThatOfTheReceiver) {
     Tracked t(tracked_board());
     t.tracker().start(t.fix().time, {}, true);
