@@ -45,7 +45,8 @@ struct PortUnit {
     GpsTime last_input{};
     std::uint32_t configured_baud = 0;  ///< to which it has been told to go
     ConfiguredMessages configured;
-    bool overflow_untold = false;  ///< messages were lost, and no text has said so
+    std::optional<std::int64_t> told_pulse{};  ///< of the last TIM-TP
+    bool overflow_untold = false;              ///< messages were lost, and no text has said so
 };
 
 /// Bytes in a port's transmit buffer: what waits for room there is not in it.

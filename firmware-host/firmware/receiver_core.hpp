@@ -89,6 +89,8 @@ private:
     void send_text(int level, const std::string& text, GpsTime now);
     void send_epoch(const NavigationState& state, GpsTime now);
     void read_configured_messages(PortUnit& unit) const;
+    [[nodiscard]] bool is_due(PortUnit& unit, UbxMessageId message, std::uint64_t every,
+                              const NavigationState& state) const;
     [[nodiscard]] std::vector<Bytes> due_messages(PortUnit& unit, const NavigationState& state,
                                                   EpochMessages& made) const;
     [[nodiscard]] bool lets_out(PortId port, UbxMessageId message) const;

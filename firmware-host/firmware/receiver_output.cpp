@@ -1,11 +1,13 @@
 // What leaves the receiver and when (RECEIVER.md 4.2, 4.5 to 4.7).
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/other_protocols.hpp"
 #include "firmware/receiver_core.hpp"
+#include "skyloop/protocol/ubx_time.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -197,12 +199,20 @@ void Receiver::Core::read_configured_messages(PortUnit& unit) const {
     }
 }
 
+// What belongs to a time pulse counts pulses, whatever the navigation rate; the rest counts epochs.
+bool Receiver::Core::is_due(PortUnit& unit, UbxMessageId message, std::uint64_t every,
+                            const NavigationState& state) const {
+    if (message != TimTp::message_id) return state.epoch_index % every == 0;
+    const std::int64_t pulse = pulses_until_epoch(context(unit.id, state)) / static_cast<std::int64_t>(every);
+    return std::exchange(unit.told_pulse, pulse) != pulse;
+}
+
 std::vector<Bytes> Receiver::Core::due_messages(PortUnit& unit, const NavigationState& state,
                                                 EpochMessages& made) const {
     read_configured_messages(unit);
     std::vector<Bytes> due;
     for (const auto& [message, every] : unit.configured.messages) {
-        if (faults_.withheld.contains(message) || state.epoch_index % every != 0) continue;
+        if (faults_.withheld.contains(message) || !is_due(unit, message, every, state)) continue;
         const std::vector<Bytes>& messages = made.of(message, unit.id);
         due.insert(due.end(), messages.begin(), messages.end());
     }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "firmware/messages/field_values.hpp"
+#include "firmware/messages/make_message.hpp"
 #include "firmware/messages/navigation_parts.hpp"
 #include "skyloop/gnss/constants.hpp"
 #include "skyloop/protocol/ubx_time.hpp"
@@ -180,17 +181,28 @@ NavClock receiver_clock(const ReportContext& context) {
     return m;
 }
 
-// The pulse after the epoch. Flags: 0 UTC base, 1 UTC available, 2-3 RAIM active, 4 quantisation unknown.
-TimTp next_pulse(const ReportContext& context) {
-    const NavigationState& state = context.state;
+// Pulses lie on a grid of UTC or GPS time. The receiver's own clock is a bit before or after the epoch that it means.
+struct PulseGrid {
+    GpsTime epoch;
+    Nanoseconds offset{0}, period{0};
+};
+
+PulseGrid pulse_grid(const ReportContext& context) {
     const ReportedTime reported = reported_time(context);
-    const bool utc = context.config.value(tp_time_grid) == 0;
     const std::uint64_t period_us = std::max<std::uint64_t>(
         1, context.config.has(tp_period_lock) ? context.config.value(tp_period_lock) : std::uint64_t{1'000'000});
     const std::chrono::microseconds period(static_cast<std::int64_t>(period_us));
-    const Nanoseconds offset = utc ? std::chrono::seconds(reported.leap_seconds) : Nanoseconds(0);
-    const GpsTime grid = reported.time - offset;
-    const GpsTime pulse = grid + period - (grid.time_since_epoch() % period + period) % period;
+    const bool utc = context.config.value(tp_time_grid) == 0;
+    return {std::chrono::round<std::chrono::milliseconds>(reported.time),
+            utc ? std::chrono::seconds(reported.leap_seconds) : Nanoseconds(0), period};
+}
+
+// The pulse after the epoch. Flags: 0 UTC base, 1 UTC available, 2-3 RAIM active, 4 quantisation unknown.
+TimTp next_pulse(const ReportContext& context) {
+    const NavigationState& state = context.state;
+    const bool utc = context.config.value(tp_time_grid) == 0;
+    const PulseGrid grid = pulse_grid(context);
+    const GpsTime pulse(pulses_until_epoch(context) * grid.period + grid.period);
     const WeekAndTow value = week_and_tow(pulse);
     const Nanoseconds sub_ms = value.tow % 1ms;
     TimTp m;
@@ -207,6 +219,12 @@ TimTp next_pulse(const ReportContext& context) {
 }
 
 }  // namespace
+
+std::int64_t pulses_until_epoch(const ReportContext& context) {
+    const PulseGrid grid = pulse_grid(context);
+    const Nanoseconds since = (grid.epoch - grid.offset).time_since_epoch();
+    return since / grid.period - (since % grid.period < Nanoseconds(0) ? 1 : 0);
+}
 
 std::vector<Bytes> make_time_message(UbxMessageId message, const ReportContext& context) {
     if (message == TimTp::message_id) return ubx_frames_of(next_pulse(context));

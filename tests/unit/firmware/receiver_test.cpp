@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/config/config_keys.hpp"
 #include "sample_epochs.hpp"
 #include "skyloop/base/random.hpp"
 #include "skyloop/protocol/nmea_sentence.hpp"
@@ -127,6 +128,25 @@ TEST(Receiver, GivesTheSameBytesByTheSameTimeHoweverOftenItIsPolled) {
         EXPECT_EQ(often.counters().messages_dropped, seldom.counters().messages_dropped);
         EXPECT_EQ(often.counters().messages_dropped > 0, baud < 115200U);
     }
+}
+
+TEST(Receiver, SendsTimTpOncePerPulse) {
+    constexpr UbxMessageId tim_tp{0x0D, 0x01};
+    BoardProfile board = sample_ublox();
+    board.messages = {tim_tp};
+    const auto sent = [&](double rate, std::uint64_t every, std::uint32_t period_us) {
+        board.config = {{find_output_message("TIM-TP")->i2c_key + 1, every}, {0x40050003, period_us}};
+        Receiver receiver(board, {rate});
+        const auto period = receiver.settings().navigation_period;
+        for (int i = 0; i < 40; ++i)
+            receiver.on_epoch(epoch_at(i, period));
+        return sent_by(receiver, epoch_at(40, period).fix.time).size() / 24;
+    };
+    EXPECT_EQ(sent(10, 1, 1'000'000), 4U);
+    EXPECT_EQ(sent(10, 2, 1'000'000), 2U);
+    EXPECT_EQ(sent(10, 1, 500'000), 8U);
+    EXPECT_EQ(sent(1, 1, 1'000'000), 40U);
+    EXPECT_EQ(sent(1, 1, 100'000), 40U);
 }
 
 // A report leaves one solution latency after its epoch, to the first byte.

@@ -154,6 +154,9 @@ TEST(TimTpMessage, NamesTheNextPulse) {
     EXPECT_EQ(tp.flags, 0x0B);
     EXPECT_EQ(tp.ref_info, 0x0F);
     EXPECT_LE(std::abs(tp.q_err), 15000);
+    // The clock of the receiver is a bit behind at the pulse of 12:49:24: the next is that of :25.
+    m8.state.epoch.fix.time += 478'999'900ns;
+    EXPECT_EQ(m8.report<TimTp>().tow_ms, 218965000u);
     m8.lose_fix();
     EXPECT_EQ(m8.report<TimTp>().flags, 0x13);
     EXPECT_EQ(m8.report<TimTp>().q_err, 0);
