@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "firmware/config/config_keys.hpp"
-#include "firmware/fixed_place.hpp"
 #include "firmware/config/signal_keys.hpp"
+#include "firmware/fixed_place.hpp"
 #include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop::firmware {
@@ -43,15 +43,17 @@ bool is_tracking(const Fix& fix) {
     return std::any_of(fix.satellites.begin(), fix.satellites.end(), [](const auto& s) { return s.cn0.has_value(); });
 }
 
-// A receiver looks for no satellite of a system that it does not have, or that is off.
-void leave_out_other_systems(Fix& fix, const ConfigStore& config) {
-    const auto is_off = [&](const SatelliteStatus& s) {
+// A receiver looks for no satellite of a system that it does not have, or that is off, and for no SBAS satellite
+// outside of its scan mask.
+void leave_out_others(Fix& fix, const BoardProfile& board, const ConfigStore& config) {
+    const std::uint64_t mask = sbas_mask(board, config);
+    const auto is_other = [&](const SatelliteStatus& s) {
         const auto system =
             std::find_if(system_keys_of_signals.begin(), system_keys_of_signals.end(),
                          [&](const SystemKeys& keys) { return keys.constellation == s.id.constellation; });
-        return system == system_keys_of_signals.end() || !config.flag(system->enable);
+        return system == system_keys_of_signals.end() || !config.flag(system->enable) || !in_sbas_scan_mask(s.id, mask);
     };
-    std::erase_if(fix.satellites, is_off);
+    std::erase_if(fix.satellites, is_other);
 }
 
 }  // namespace
@@ -107,14 +109,11 @@ const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStor
     if (state_.epoch.fix.time != GpsTime{}) ++state_.epoch_index;
     state_.epoch = epoch;
     Fix& fix = state_.epoch.fix;
-    leave_out_other_systems(fix, config);
+    leave_out_others(fix, board_, config);
     constexpr auto long_ago = std::chrono::hours(1);
     if (!booted_) booted_ = fix.time - long_ago;
     state_.since_boot = difference(fix.time, *booted_);
     state_.since_start = started_ ? difference(fix.time, *started_) : state_.since_boot;
-    std::erase_if(fix.satellites, [mask = sbas_mask(board_, config)](const SatelliteStatus& s) {
-        return !in_sbas_scan_mask(s.id, mask);
-    });
     measured_ |= !epoch.observations.signals.empty();
     if (is_tracking(fix) && !first_tracking_) first_tracking_ = fix.time;
 

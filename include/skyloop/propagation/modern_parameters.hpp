@@ -48,9 +48,10 @@ struct IonosphereParameters {
     KlobucharCoefficients klobuchar{{0.1118e-7, -0.7451e-8, -0.5961e-7, 0.1192e-6},
                                     {0.1167e6, -0.2294e6, -0.1311e6, 0.1049e7}};
     /// Where the navigation data has none: that of a day like the one of the Klobuchar coefficients above, for the two
-    /// stand for one Sun. Half of the middle set of the benchmark of the Galileo ionosphere document, Azpar 72: the mean
-    /// of the vertical delays of NTCM-G is then 3.1 m at L1, that of Klobuchar's model 2.6 m, and they differ by 1.2 m
-    /// rms (60° S to 60° N, all hours of a day in March). The whole of it, a medium Sun, has 5.9 m and differs by 4.2 m.
+    /// stand for one Sun. Half of the middle set of the benchmark of the Galileo ionosphere document, Azpar 72: the
+    /// mean of the vertical delays of NTCM-G is then 3.1 m at L1, that of Klobuchar's model 2.6 m, and they differ
+    /// by 1.2 m rms (60° S to 60° N, all hours of a day in March). The whole of it, a medium Sun, has 5.9 m and differs
+    /// by 4.2 m.
     EffectiveIonisation ionisation{60.565, 0.1756, 0.006732};
     Tecu constant_content{20};  ///< vertical
     /// The stochastic residual. Automatic: unless the receiver corrects with another model than the true one, which
