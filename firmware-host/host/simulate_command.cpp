@@ -1,14 +1,48 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <system_error>
+
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "run_session.hpp"
 #include "run_watch.hpp"
+#include "skyloop/client/open_client.hpp"
 #include "skyloop/emulator/load_track.hpp"
 #include "skyloop/emulator/wires.hpp"
 
 namespace skyloop::host {
 namespace {
+
+// The recording of a live run has the files of all wires, that of simulate those of scripted clients alone.
+bool has_all_wires(const std::filesystem::path& recording, const Scenario& scenario) {
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i) {
+        const std::size_t wires = scenario.receivers[i].ports.size();
+        const auto folder = i == 0 ? recording : recording / fmt::format("receiver{}", i);
+        std::error_code absent;
+        if (wires > 0 && !std::filesystem::exists(folder / fmt::format("port{}.in", wires - 1), absent)) return false;
+    }
+    return true;
+}
+
+// The wires keep their numbers, which are those of the recording's files.
+void lead_others_nowhere(Scenario& scenario) {
+    for (ReceiverEntry& receiver : scenario.receivers) {
+        for (std::string& port : receiver.ports) {
+            const std::size_t equals = port.find('=');
+            const std::size_t uri = equals != std::string::npos && equals < port.find(':') ? equals + 1 : 0;
+            if (!client_of_uri(port.substr(uri))) port = port.substr(0, uri) + "file:/dev/null";
+        }
+        if (receiver.ports.empty()) receiver.ports = {"file:/dev/null"};
+    }
+}
+
+void plug_in_clients_alone(const RunOptions& options, Scenario& scenario) {
+    if (!options.repeat.empty() && has_all_wires(options.repeat, scenario))
+        lead_others_nowhere(scenario);
+    else
+        keep_scripted_clients(scenario);
+}
 
 int simulate(const RunOptions& options) {
     const Messages messages(options.verbosity);
@@ -31,7 +65,7 @@ int simulate(const RunOptions& options) {
     // opened.
     mode.first_ports_only = !options.ports.empty();
     mode.open_ports = mode.first_ports_only || has_scripted_client(*scenario);
-    if (mode.open_ports && !mode.first_ports_only) keep_scripted_clients(*scenario);
+    if (mode.open_ports && !mode.first_ports_only) plug_in_clients_alone(options, *scenario);
     if (!options.repeat.empty()) mode.repeat = options.repeat;
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());

@@ -173,6 +173,15 @@ class LiveTest(unittest.TestCase):
             for name in ("port0.out", "port0.in", "port0.in_times", "fixes.csv"):
                 self.assertEqual((folder / name).read_bytes(), (first / name).read_bytes(), name)
 
+    def test_a_live_run_with_a_scripted_client_is_repeated(self):
+        first, again = self.path / "first", self.path / "again"
+        self.scenario.write_text(self.scenario.read_text() + '[[receiver]]\nport = ["uart1=pty", "client:careful-ubx"]\n')
+        skyloop("run", self.scenario, "--duration", 12, "--speed", "max", "--record", first)
+        skyloop("simulate", self.scenario, "--duration", 12, "--repeat", first, "--out", again)
+        self.assertGreater((first / "port1.in").stat().st_size, 100)
+        for name in ("port0.out", "port1.out", "port1.in", "port1.in_times", "fixes.csv"):
+            self.assertEqual((again / name).read_bytes(), (first / name).read_bytes(), name)
+
     def test_a_repeat_does_not_write_over_what_it_repeats(self):
         first, link = self.path / "first", self.path / "link"
         skyloop("simulate", self.scenario, "--duration", 3, "--out", first)
