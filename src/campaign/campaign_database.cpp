@@ -140,7 +140,7 @@ Result<FoundResults> find_results(const std::filesystem::path& folder, const Kep
 
 void put_meta(Database& database, const KeptCampaign& kept) {
     database.begin("INSERT INTO meta VALUES(?, ?)");
-    const std::vector<std::pair<std::string_view, std::string>> rows{
+    std::vector<std::pair<std::string_view, std::string>> rows{
         {"name", kept.name},
         {"program_version", kept.version},
         {"scenario", kept.scenario},
@@ -148,6 +148,7 @@ void put_meta(Database& database, const KeptCampaign& kept) {
         {"planned", fmt::format("{}", kept.runs.size())},
         {"campaign_file", "campaign.json"},
         {"options", fmt::format("{}", fmt::join(kept.options, " "))}};
+    if (!kept.vehicle.empty()) rows.emplace_back("vehicle", kept.vehicle);
     for (const auto& [name, value] : rows)
         database.put(name).put(std::string_view(value)).add_row();
 }
@@ -222,6 +223,16 @@ void count_results(const FoundResults& found, GatheredCounts& counts) {
     });
 }
 
+Result<void> write_database(const std::filesystem::path& path, const KeptCampaign& kept, const FoundResults& found) {
+    const auto database = Database::create(path);
+    if (!database) return fail(database.error());
+    put_meta(**database, kept);
+    put_runs(**database, found);
+    put_values(**database, found);
+    put_verdicts(**database, found);
+    return (*database)->finish();
+}
+
 }  // namespace
 
 Result<GatheredCounts> gather_campaign(const std::filesystem::path& folder) {
@@ -233,17 +244,11 @@ Result<GatheredCounts> gather_campaign(const std::filesystem::path& folder) {
     if (!found) return fail(found.error());
     count_results(*found, counts);
     const std::filesystem::path whole = folder / fmt::format(".campaign.sqlite.{}", ::getpid());
-    {
-        const auto database = Database::create(whole);
-        if (!database) return fail(database.error());
-        put_meta(**database, *kept);
-        put_runs(**database, *found);
-        put_values(**database, *found);
-        put_verdicts(**database, *found);
-        if (const auto finished = (*database)->finish(); !finished) return fail(finished.error());
-    }
-    std::error_code none;
-    std::filesystem::rename(whole, folder / "campaign.sqlite", none);
+    const auto written = write_database(whole, *kept, *found);
+    std::error_code none, ignored;
+    if (written) std::filesystem::rename(whole, folder / "campaign.sqlite", none);
+    if (!written || none) std::filesystem::remove(whole, ignored);
+    if (!written) return fail(written.error());
     if (none)
         return fail(ErrorCode::outside,
                     fmt::format("{}: cannot be written: {}", (folder / "campaign.sqlite").string(), none.message()));

@@ -38,6 +38,7 @@ std::string plan_text(const OpenedCampaign& campaign) {
                                                                      {"scenario", campaign.setup.file.string()},
                                                                      {"scenario_digest", campaign.plan.base()},
                                                                      {"options", campaign.options},
+                                                                     {"vehicle", campaign.vehicle},
                                                                      {"parameters", columns.parameters},
                                                                      {"metrics", columns.metrics},
                                                                      {"verdicts", columns.verdicts},
@@ -64,6 +65,7 @@ KeptCampaign campaign_from(const nlohmann::json& plan) {
     plan.at("scenario").get_to(kept.scenario);
     plan.at("scenario_digest").get_to(kept.base);
     plan.at("options").get_to(kept.options);
+    if (plan.contains("vehicle")) plan.at("vehicle").get_to(kept.vehicle);
     plan.at("parameters").get_to(kept.columns.parameters);
     plan.at("metrics").get_to(kept.columns.metrics);
     plan.at("verdicts").get_to(kept.columns.verdicts);

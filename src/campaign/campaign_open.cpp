@@ -114,7 +114,8 @@ Result<OpenedCampaign> open_campaign(const CampaignRequest& request) {
                           settings.name.empty() ? request.scenario.stem().string() : settings.name,
                           options,
                           request.version,
-                          std::move(warnings)};
+                          std::move(warnings),
+                          settings.vehicle ? settings.vehicle->command : std::string()};
 }
 
 }  // namespace skyloop

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "skyloop/base/process.hpp"
@@ -27,9 +28,26 @@ ProcessRequest request_of(const CampaignVehicle& vehicle, const PlannedRun& run,
     request.environment = {"SKYLOOP_PTY=" + pty, fmt::format("SKYLOOP_SEED={}", run.seed),
                            fmt::format("SKYLOOP_RUN={}", run.number)};
     request.timeout = timeout;
-    request.output_limit = 65536;
+    request.output_limit = std::size_t{1} << 20;  // the last line of its errors is told
     return request;
 }
+
+// What the program said last; nothing where not all of it was kept.
+std::string last_words(const ProcessOutcome& outcome) {
+    constexpr std::size_t longest = 200;
+    if (outcome.output_cut) return {};
+    const std::string_view errors = outcome.errors;
+    const std::size_t end = errors.find_last_not_of(" \t\r\n");
+    if (end == std::string_view::npos) return {};
+    const std::size_t before = errors.find_last_of("\r\n", end);
+    const std::size_t begin = before == std::string_view::npos ? 0 : before + 1;
+    std::string line(errors.substr(begin, std::min(end + 1 - begin, longest)));
+    for (char& c : line)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    return line;
+}
+
+}  // namespace
 
 Verdict vehicle_verdict(const ProcessOutcome& outcome, Seconds timeout) {
     Verdict verdict{"vehicle", "exit code 0", Outcome::failed, {}, {}};
@@ -41,10 +59,10 @@ Verdict vehicle_verdict(const ProcessOutcome& outcome, Seconds timeout) {
     } else {
         verdict.evidence = fmt::format("ended by signal {}", outcome.signal.value_or(0));
     }
+    const std::string words = verdict.outcome == Outcome::passed ? std::string() : last_words(outcome);
+    if (!words.empty()) verdict.evidence += ": " + words;
     return verdict;
 }
-
-}  // namespace
 
 Result<Verdict> run_with_vehicle(Assembly& assembly, const CampaignVehicle& vehicle, const PlannedRun& run,
                                  const std::atomic<bool>& stop) {

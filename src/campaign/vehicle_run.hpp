@@ -3,6 +3,7 @@
 
 #include <atomic>
 
+#include "skyloop/base/process.hpp"
 #include "skyloop/base/result.hpp"
 #include "skyloop/campaign/campaign_plan.hpp"
 #include "skyloop/emulator/assembly.hpp"
@@ -16,5 +17,8 @@ namespace skyloop {
 /// over.
 Result<Verdict> run_with_vehicle(Assembly& assembly, const CampaignVehicle& vehicle, const PlannedRun& run,
                                  const std::atomic<bool>& stop);
+
+/// What becomes of a vehicle's verdict: of one that failed, with the last line that it wrote to its standard error.
+Verdict vehicle_verdict(const ProcessOutcome& outcome, Seconds timeout);
 
 }  // namespace skyloop

@@ -105,13 +105,14 @@ std::optional<Error> read_meta(const SqliteReader& reader, CampaignResults& resu
             results.planned = planned;
             return {};
         }
-        const std::array<std::pair<std::string_view, std::string*>, 6> texts{
+        const std::array<std::pair<std::string_view, std::string*>, 7> texts{
             {{"name", &results.name},
              {"program_version", &results.program_version},
              {"scenario", &results.scenario},
              {"scenario_digest", &results.scenario_digest},
              {"campaign_file", &results.campaign_file},
-             {"options", &results.options}}};
+             {"options", &results.options},
+             {"vehicle", &results.vehicle}}};
         for (const auto& [known, place] : texts)
             if (*name == known) {
                 const auto text = row.text(1);

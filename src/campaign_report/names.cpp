@@ -108,7 +108,8 @@ std::optional<std::string> replay_command(const CampaignResults& results, const 
     constexpr std::size_t longest_path = 4096;
     for (const std::string& text : {results.scenario, results.options})
         if (shown_text(text, longest_path) != text) return std::nullopt;
-    if (results.scenario.empty()) return std::nullopt;
+    // Of a vehicle's run there is no replay: it was in real time.
+    if (results.scenario.empty() || !results.vehicle.empty()) return std::nullopt;
     // A name that begins with a dash would be read as an option.
     const std::string scenario = (results.scenario[0] == '-' ? "./" : "") + results.scenario;
     return fmt::format("skyloop campaign replay {}{} --number {} --out run-{}", shell_quoted(scenario),

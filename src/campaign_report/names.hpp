@@ -25,7 +25,8 @@ WorstEnd worst_end_of(std::string_view name, bool has_negative);
 
 std::string verdict_name(const CampaignResults& results, const VerdictSummary& verdict);
 
-/// The command that runs one run again, quoted for a shell; nothing where a quoted name would break the line.
+/// The command that runs one run again, quoted for a shell; nothing for a run with a vehicle, and where a
+/// quoted name would break the line.
 std::optional<std::string> replay_command(const CampaignResults& results, const GatheredRun& run);
 
 /// A number with four significant digits.

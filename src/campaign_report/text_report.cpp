@@ -110,7 +110,10 @@ std::string campaign_report_text(const CampaignResults& results, const CampaignS
     if (!summary.metrics.empty()) text += "metrics (95 % interval of p95):\n" + metric_lines(results, summary);
     if (const std::string effects = effect_lines(results, summary); !effects.empty())
         text += "what moves them:\n" + effects;
-    if (!summary.failed_runs.empty()) text += "failed runs, and how to replay them:\n" + failed_lines(results, summary);
+    if (!summary.failed_runs.empty())
+        text += (results.vehicle.empty() ? "failed runs, and how to replay them:\n"
+                                         : "failed runs (with a vehicle; not replayed):\n") +
+                failed_lines(results, summary);
     return text;
 }
 

@@ -31,6 +31,7 @@ struct OpenedCampaign {
     std::vector<std::string> options{};  ///< of the command line, that replaying a run takes too: "--seeds 5-7"
     std::string version;
     std::vector<std::string> warnings{};  ///< of its run without changes, for people
+    std::string vehicle{};                ///< command of its vehicle; empty: it has none
 };
 
 /// Reads the scenario and everything that its run reads, without changes. A file without [campaign] is a campaign of
@@ -46,6 +47,7 @@ Result<void> check_runs(const OpenedCampaign& campaign, const std::vector<std::u
 struct KeptCampaign {
     std::string name, version, scenario, base;
     std::vector<std::string> options{};
+    std::string vehicle{};  ///< OpenedCampaign::vehicle
     ResultColumns columns{};
     std::vector<PlannedRun> runs{};  ///< by number; of their values what people read
 };

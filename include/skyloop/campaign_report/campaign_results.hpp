@@ -48,6 +48,7 @@ struct ReportedVerdict {
 struct CampaignResults {
     std::string name, program_version, scenario, scenario_digest, campaign_file;
     std::string options;                   ///< of the command line that the campaign was made with, blanks between
+    std::string vehicle;                   ///< command of the program that was tested; empty: there was none
     std::optional<std::uint64_t> planned;  ///< nothing when the database does not tell
     std::vector<GatheredRun> runs;
     std::vector<ReportedParameter> parameters;

@@ -199,6 +199,18 @@ TEST(CampaignDatabase, TwoResultsOfARunThatDifferAreAMistake) {
                 AllOf(HasSubstr("0-of-1.csv:3"), HasSubstr("0-of-2.csv:2"), HasSubstr("that differ")));
 }
 
+TEST(CampaignDatabase, NothingIsLeftOfOneThatCannotBePut) {
+    const TemporaryFolder folder;
+    write_plan(folder.path(), 2);
+    add_results(folder.path(), {0, 1}, 2);
+    std::filesystem::create_directories(folder / "campaign.sqlite/inside");
+    EXPECT_THAT(gather_campaign(folder.path()).error().message, HasSubstr("campaign.sqlite: cannot be written"));
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+        names.insert(entry.path().filename().string());
+    EXPECT_EQ(names, (std::set<std::string>{"campaign.json", "campaign.sqlite", "shards"}));
+}
+
 TEST(CampaignDatabase, CountsWhatThePlanDoesNotHave) {
     const TemporaryFolder folder;
     write_plan(folder.path(), 2);

@@ -69,6 +69,14 @@ TEST(CampaignReport, ReplaysWithTheOptionsOfThePlan) {
               "skyloop campaign replay 'a b.toml' --seeds 5-20 --vary 'model.name=a b,c' --number 2 --out run-2");
 }
 
+TEST(CampaignReport, RunsWithAVehicleAreNotReplayed) {
+    const Written report =
+        written_with(std::string(test::three_runs) + "INSERT INTO meta VALUES ('vehicle', './sitl {pty}');");
+    EXPECT_TRUE(nlohmann::json::parse(report.json)["failed_runs"][0]["replay"].is_null());
+    EXPECT_THAT(report.text, HasSubstr("failed runs (with a vehicle; not replayed):\n  run 2 (seed 12): failed"));
+    EXPECT_EQ(report.html.find("skyloop campaign replay"), std::string::npos);
+}
+
 TEST(CampaignReport, NamesAsManyWorstRunsAsAreWanted) {
     EXPECT_EQ(nlohmann::json::parse(written_with(test::three_runs, 2).json)["metrics"][0]["worst"].size(), 2u);
     EXPECT_EQ(nlohmann::json::parse(written_with(test::three_runs, 0).json)["metrics"][0]["worst"].size(), 0u);
