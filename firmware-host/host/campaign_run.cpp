@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -10,6 +9,7 @@
 #include "campaign_options.hpp"
 #include "data_folders.hpp"
 #include "run_session.hpp"
+#include "skyloop/base/shell_word.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/campaign/campaign_database.hpp"
 #include "skyloop/campaign/campaign_worker.hpp"
@@ -168,9 +168,16 @@ private:
     void tell_replay(std::uint64_t number) {
         if (replay_told_) return;
         replay_told_ = true;
-        messages_.info(fmt::format("to see it: skyloop campaign replay {} {}{}--number {} --out FOLDER",
-                                   options_.scenario, fmt::join(campaign_.options, " "),
-                                   campaign_.options.empty() ? "" : " ", number));
+        if (!campaign_.vehicle.empty())
+            return messages_.info(
+                "runs with a vehicle are not replayed; the same campaign in another --out does them anew");
+        std::string words;
+        for (const std::string& option : campaign_.options)
+            words += " " + shell_quoted(option);
+        // A name that begins with a dash would be read as an option.
+        const std::string scenario = (options_.scenario.starts_with('-') ? "./" : "") + options_.scenario;
+        messages_.info(fmt::format("to see it: skyloop campaign replay {}{} --number {} --out FOLDER",
+                                   shell_quoted(scenario), words, number));
     }
     // A run that was lost is no result, and tried once more.
     Result<JobFate> take_loss(const PlannedRun& run, const JobOutcome& outcome, const Error& why, TableFile& log) {
