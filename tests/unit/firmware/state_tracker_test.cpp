@@ -392,6 +392,7 @@ TEST(StateTracker, ListsTheSbasSatellitesOfItsScanMaskAlone) {
     const auto listed = [](std::uint64_t mask) {
         BoardProfile board = tracked_board();
         board.personality = Personality::ublox;
+        board.constellations.push_back(sbas);
         Tracked t(board);
         add_satellites(t.fix(), sbas, 20, 5);
         t.tracker().start(t.fix().time, {}, true);
