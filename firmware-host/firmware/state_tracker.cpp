@@ -46,14 +46,11 @@ bool is_tracking(const Fix& fix) {
 // A receiver looks for no satellite of a system that it does not have, or that is off, and for no SBAS satellite
 // outside of its scan mask.
 void leave_out_others(Fix& fix, const BoardProfile& board, const ConfigStore& config) {
-    const std::uint64_t mask = sbas_mask(board, config);
-    const auto is_other = [&](const SatelliteStatus& s) {
-        const auto system =
-            std::find_if(system_keys_of_signals.begin(), system_keys_of_signals.end(),
-                         [&](const SystemKeys& keys) { return keys.constellation == s.id.constellation; });
-        return system == system_keys_of_signals.end() || !config.flag(system->enable) || !in_sbas_scan_mask(s.id, mask);
-    };
-    std::erase_if(fix.satellites, is_other);
+    const std::vector<Constellation> systems = enabled_systems(config);
+    std::erase_if(fix.satellites, [&, mask = sbas_mask(board, config)](const SatelliteStatus& s) {
+        return std::find(systems.begin(), systems.end(), s.id.constellation) == systems.end() ||
+               !in_sbas_scan_mask(s.id, mask);
+    });
 }
 
 }  // namespace

@@ -174,10 +174,8 @@ private:
         std::string words;
         for (const std::string& option : campaign_.options)
             words += " " + shell_quoted(option);
-        // A name that begins with a dash would be read as an option.
-        const std::string scenario = (options_.scenario.starts_with('-') ? "./" : "") + options_.scenario;
         messages_.info(fmt::format("to see it: skyloop campaign replay {}{} --number {} --out FOLDER",
-                                   shell_quoted(scenario), words, number));
+                                   shell_quoted_path(options_.scenario), words, number));
     }
     // A run that was lost is no result, and tried once more.
     Result<JobFate> take_loss(const PlannedRun& run, const JobOutcome& outcome, const Error& why, TableFile& log) {

@@ -295,8 +295,7 @@ std::string bash_completion(std::span<const CommandRow> commands) {
     if (const std::string below = subcommand_patterns(commands); !below.empty())
         script += fmt::format(
             "    if ((${{#words[@]}} > 3)); then\n        case \"$command ${{words[2]}}\" in\n            {}) "
-            "command+=\" "
-            "${{words[2]}}\" first=3 ;;\n        esac\n    fi\n",
+            "command+=\" ${{words[2]}}\" first=3 ;;\n        esac\n    fi\n",
             below);
     script += "    case $command in\n" + bash_options(all) + "    esac\n";
     return script + std::string(bash_tail);
@@ -313,9 +312,9 @@ std::string zsh_completion(std::span<const CommandRow> commands) {
         "called=$words[1]\n";
     if (const std::string below = subcommand_patterns(commands); !below.empty())
         script += fmt::format(
-            "            if (( CURRENT > 2 )); then\n                case \"$words[1] $words[2]\" in\n                 "
-            "   {}) "
-            "called+=\" $words[2]\"; shift words; (( CURRENT-- )) ;;\n                esac\n            fi\n",
+            "            if (( CURRENT > 2 )); then\n                case \"$words[1] $words[2]\" in\n"
+            "                    {}) called+=\" $words[2]\"; shift words; (( CURRENT-- )) ;;\n                esac\n   "
+            "         fi\n",
             below);
     script += "            case $called in\n";
     for (const CommandRow& command : with_subcommands(commands))

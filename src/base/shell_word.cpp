@@ -15,4 +15,8 @@ std::string shell_quoted(std::string_view word) {
     return out + "'";
 }
 
+std::string shell_quoted_path(std::string_view path) {
+    return shell_quoted((path.starts_with('-') ? "./" : "") + std::string(path));
+}
+
 }  // namespace skyloop

@@ -110,9 +110,7 @@ std::optional<std::string> replay_command(const CampaignResults& results, const 
         if (shown_text(text, longest_path) != text) return std::nullopt;
     // Of a vehicle's run there is no replay: it was in real time.
     if (results.scenario.empty() || !results.vehicle.empty()) return std::nullopt;
-    // A name that begins with a dash would be read as an option.
-    const std::string scenario = (results.scenario[0] == '-' ? "./" : "") + results.scenario;
-    return fmt::format("skyloop campaign replay {}{} --number {} --out run-{}", shell_quoted(scenario),
+    return fmt::format("skyloop campaign replay {}{} --number {} --out run-{}", shell_quoted_path(results.scenario),
                        option_words(results.options), run.number, run.number);
 }
 

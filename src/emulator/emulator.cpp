@@ -105,9 +105,10 @@ void Emulator::advance_to(GpsTime end, const std::atomic<bool>& stop, LastInstan
         if (stop) break;
         if (!lateness) continue;
         now_ = next;
-        carry_out();
+        const LoopTime time{now_, parts_.pacer->monotonic_ns(now_)};
+        carry_out(time);
         direct();
-        take_in();
+        take_in(time);
         if (now_ < end || last == LastInstant::included) run_epochs(*lateness);
         if (recording_failed()) break;
     }
@@ -161,8 +162,7 @@ bool Emulator::recording_failed() const {
                        [](const Station& s) { return s.recorder() && s.recorder()->failure(); });
 }
 
-void Emulator::carry_out() {
-    const LoopTime time{now_, parts_.pacer->monotonic_ns(now_)};
+void Emulator::carry_out(const LoopTime& time) {
     const bool heard = parts_.director.wants_messages();
     for (std::size_t i = 0; i < parts_.stations.size(); ++i) {
         dialogues_[i].listen(heard);
@@ -170,8 +170,7 @@ void Emulator::carry_out() {
     }
 }
 
-void Emulator::take_in() {
-    const LoopTime time{now_, parts_.pacer->monotonic_ns(now_)};
+void Emulator::take_in(const LoopTime& time) {
     for (std::size_t i = 0; i < parts_.stations.size(); ++i) {
         Station& station = parts_.stations[i];
         station.take_in(time, &dialogues_[i]);

@@ -150,13 +150,13 @@ struct AllowedRange {
 
 // Enumerations of the F9 interface description HPG 1.32, section 6.9; those of M8 lie within (RECEIVER.md 3.3, 3.5.1).
 constexpr AllowedRange allowed_ranges[] = {
-    {key::tmode_mode, 0, 2},                      // disabled, survey-in, fixed
-    {0x20030002, 0, 1},                           // CFG-TMODE-POS_TYPE: ECEF, LLH
-    {0x40030009, -900'000'000, 900'000'000},      // CFG-TMODE-LAT, 1e-7°
-    {0x4003000A, -1'800'000'000, 1'800'000'000},  // CFG-TMODE-LON
-    {0x2005000C, 0, 5},                           // CFG-TP-TIMEGRID_TP1: UTC and five systems
-    {0x2005000C, 15, 15},                         // local
-    {0x20050017, 0, 5},                           // CFG-TP-TIMEGRID_TP2
+    {key::tmode_mode, 0, 2},                                          // disabled, survey-in, fixed
+    {legacy_key::tmode_pos_type, 0, 1},                               // CFG-TMODE-POS_TYPE: ECEF, LLH
+    {legacy_key::tmode_geodetic, -900'000'000, 900'000'000},          // CFG-TMODE-LAT, 1e-7°
+    {legacy_key::tmode_geodetic + 1, -1'800'000'000, 1'800'000'000},  // CFG-TMODE-LON
+    {0x2005000C, 0, 5},                                               // CFG-TP-TIMEGRID_TP1: UTC and five systems
+    {0x2005000C, 15, 15},                                             // local
+    {0x20050017, 0, 5},                                               // CFG-TP-TIMEGRID_TP2
     {0x20050017, 15, 15},
     {0x20050023, 0, 1},               // CFG-TP-PULSE_DEF: period, frequency
     {0x20050030, 0, 1},               // CFG-TP-PULSE_LENGTH_DEF: ratio, length

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
+#include "firmware/config/config_store.hpp"
 #include "skyloop/gnss/satellite.hpp"
 
 namespace skyloop::firmware {
@@ -29,5 +31,8 @@ inline constexpr std::array<SystemKeys, 7> system_keys_of_signals{{
     {Constellation::glonass, 0x10310025, {0x10310018, 0}, 0x1031001A, true},
     {Constellation::navic, 0x10310026, {0x1031001D, 0}, 0, false},
 }};
+
+/// Systems that are switched on (CFG-SIGNAL-…_ENA).
+std::vector<Constellation> enabled_systems(const ConfigStore& config);
 
 }  // namespace skyloop::firmware

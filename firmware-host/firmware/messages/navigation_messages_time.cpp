@@ -185,6 +185,13 @@ NavClock receiver_clock(const ReportContext& context) {
 struct PulseGrid {
     GpsTime epoch;
     Nanoseconds offset{0}, period{0};
+    bool utc = false;
+
+    // From the origin of the grid until the epoch.
+    [[nodiscard]] std::int64_t pulses() const {
+        const Nanoseconds since = (epoch - offset).time_since_epoch();
+        return since / period - (since % period < Nanoseconds(0) ? 1 : 0);
+    }
 };
 
 PulseGrid pulse_grid(const ReportContext& context) {
@@ -194,15 +201,14 @@ PulseGrid pulse_grid(const ReportContext& context) {
     const std::chrono::microseconds period(static_cast<std::int64_t>(period_us));
     const bool utc = context.config.value(tp_time_grid) == 0;
     return {std::chrono::round<std::chrono::milliseconds>(reported.time),
-            utc ? std::chrono::seconds(reported.leap_seconds) : Nanoseconds(0), period};
+            utc ? std::chrono::seconds(reported.leap_seconds) : Nanoseconds(0), period, utc};
 }
 
 // The pulse after the epoch. Flags: 0 UTC base, 1 UTC available, 2-3 RAIM active, 4 quantisation unknown.
 TimTp next_pulse(const ReportContext& context) {
     const NavigationState& state = context.state;
-    const bool utc = context.config.value(tp_time_grid) == 0;
     const PulseGrid grid = pulse_grid(context);
-    const GpsTime pulse(pulses_until_epoch(context) * grid.period + grid.period);
+    const GpsTime pulse((grid.pulses() + 1) * grid.period);
     const WeekAndTow value = week_and_tow(pulse);
     const Nanoseconds sub_ms = value.tow % 1ms;
     TimTp m;
@@ -210,21 +216,17 @@ TimTp next_pulse(const ReportContext& context) {
     m.tow_sub_ms = field<std::uint32_t>(static_cast<double>(sub_ms.count()) * 1e-6 * 4294967296.0);
     m.week = field<std::uint16_t>(static_cast<double>(value.week));
     const bool known = state.epoch.fix.type != FixType::none;
-    m.flags = static_cast<std::uint8_t>((utc ? 1 : 0) | (state.time.leap_seconds ? 2 : 0) | (known ? 8 : 0x10));
+    m.flags = static_cast<std::uint8_t>((grid.utc ? 1 : 0) | (state.time.leap_seconds ? 2 : 0) | (known ? 8 : 0x10));
     if (known)
         m.q_err = field<std::int32_t>(
             std::remainder(state.epoch.fix.clock_bias.value() / speed_of_light * 1e9, pulse_step_ns) * 1e3);
-    m.ref_info = utc ? 0x0F : 0;
+    m.ref_info = grid.utc ? 0x0F : 0;
     return m;
 }
 
 }  // namespace
 
-std::int64_t pulses_until_epoch(const ReportContext& context) {
-    const PulseGrid grid = pulse_grid(context);
-    const Nanoseconds since = (grid.epoch - grid.offset).time_since_epoch();
-    return since / grid.period - (since % grid.period < Nanoseconds(0) ? 1 : 0);
-}
+std::int64_t pulses_until_epoch(const ReportContext& context) { return pulse_grid(context).pulses(); }
 
 std::vector<Bytes> make_time_message(UbxMessageId message, const ReportContext& context) {
     if (message == TimTp::message_id) return ubx_frames_of(next_pulse(context));

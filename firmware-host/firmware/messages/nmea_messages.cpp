@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/config/signal_keys.hpp"
 #include "firmware/error_ellipse.hpp"
 #include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"

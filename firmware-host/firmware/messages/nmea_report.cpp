@@ -169,13 +169,6 @@ void add_position_and_motion(NmeaReport& r) {
 
 }  // namespace
 
-std::vector<Constellation> enabled_systems(const ConfigStore& config) {
-    std::vector<Constellation> systems;
-    for (const SystemKeys& system : system_keys_of_signals)
-        if (config.flag(system.enable)) systems.push_back(system.constellation);
-    return systems;
-}
-
 std::string nmea_talker(const BoardProfile& board, const ConfigStore& config) {
     constexpr std::array<std::string_view, 8> configured{"", "GP", "GL", "GN", "GA", "GB", "", "GQ"};
     const std::uint64_t number = config.value(key::nmea_main_talker);

@@ -58,8 +58,6 @@ std::vector<Bytes> make_nmea_message(UbxMessageId message, const NmeaReport& rep
 NmeaFormat nmea_format(const BoardProfile& board, const ConfigStore& config);
 /// The talker of all sentences but GSV: configured, the board's, or by the enabled systems (RECEIVER.md 5.2).
 std::string nmea_talker(const BoardProfile& board, const ConfigStore& config);
-/// Systems that are switched on (CFG-SIGNAL-…_ENA).
-std::vector<Constellation> enabled_systems(const ConfigStore& config);
 /// UTC of the epoch as sentences write it, rounded once (RECEIVER.md 4.9).
 UtcTime reported_utc(const ReportContext& context);
 

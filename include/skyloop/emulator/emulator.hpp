@@ -80,8 +80,8 @@ private:
     [[nodiscard]] GpsTime next_instant(GpsTime end) const;
     [[nodiscard]] Nanoseconds look_every() const;
     [[nodiscard]] bool all_connected();
-    void carry_out();
-    void take_in();
+    void carry_out(const LoopTime& time);
+    void take_in(const LoopTime& time);
     void direct();
     void hear_feeds();
     [[nodiscard]] bool may_go_to(GpsTime next);
