@@ -1,5 +1,6 @@
 #include "skyloop/gnss/thin_shell.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,10 +15,19 @@ double obliquity(double sine_at_shell) { return 1 / std::sqrt(1 - sine_at_shell 
 
 }  // namespace
 
+Angle pierce_angle(const ThinShell& shell, Angle elevation, Metres antenna_height) {
+    const double sine_at_shell = shell_ratio(shell, antenna_height) * std::cos(elevation.rad());
+    return Angle::radians(std::numbers::pi / 2 - elevation.rad() - std::asin(std::min(sine_at_shell, 1.0)));
+}
+
+double gradient_arm(Angle elevation, Metres antenna_height) {
+    constexpr Angle full_size = Angle::degrees(9);
+    return pierce_angle(ThinShell(), elevation, antenna_height).rad() / full_size.rad();
+}
+
 PiercePoint pierce_point(const ThinShell& shell, const Geodetic& place, const SkyDirection& direction) {
-    const double e = direction.elevation.rad(), azimuth = direction.azimuth.rad();
-    const double psi =
-        std::numbers::pi / 2 - e - std::asin(shell_ratio(shell, place.height.above_ellipsoid) * std::cos(e));
+    const double azimuth = direction.azimuth.rad();
+    const double psi = pierce_angle(shell, direction.elevation, place.height.above_ellipsoid).rad();
     const double sin_latitude = std::sin(place.latitude.rad()), cos_latitude = std::cos(place.latitude.rad());
     const double north = std::sin(psi) * std::cos(azimuth);
     const double sine = sin_latitude * std::cos(psi) + cos_latitude * north;

@@ -3,25 +3,15 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "skyloop/gnss/thin_shell.hpp"
 #include "skyloop/propagation/free_space.hpp"
 
 namespace skyloop {
 namespace {
 
 constexpr Nanoseconds ionosphere_spacing = std::chrono::seconds(60);
-constexpr double gradient_angle = 0.05;  // rad, at which the gradients have their full size
-
-// Angle at the centre of the Earth between the antenna and the pierce point.
-double pierce_angle(Angle elevation, Metres antenna_height) {
-    const ThinShell shell;
-    const double ratio = (shell.earth_radius + antenna_height).value() / (shell.earth_radius + shell.height).value();
-    const double e = elevation.rad();
-    return std::numbers::pi / 2 - e - std::asin(std::min(ratio * std::cos(e), 1.0));
-}
-
 }  // namespace
 
 IonosphereResidual::IonosphereResidual(const IonosphereParameters& parameters, const ErrorTerm& term,
@@ -39,7 +29,7 @@ double IonosphereResidual::share(SatelliteId satellite, const SkyDirection& dire
         return KnottedProcess({1, parameters_.single_time}, ionosphere_spacing,
                               term_.stream(seed_, "ionosphere_residual." + to_string(id)));
     });
-    const double away = pierce_angle(direction.elevation, antenna.height.above_ellipsoid) / gradient_angle;
+    const double away = gradient_arm(direction.elevation, antenna.height.above_ellipsoid);
     const double slope =
         north_.at(time) * std::cos(direction.azimuth.rad()) + east_.at(time) * std::sin(direction.azimuth.rad());
     return parameters_.common * vertical_.at(time) + parameters_.gradient * away * slope +

@@ -9,6 +9,7 @@
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/gnss/constants.hpp"
 #include "skyloop/pvt/code_smoother.hpp"
+#include "skyloop/pvt/expected_error.hpp"
 #include "skyloop/pvt/integrity.hpp"
 #include "skyloop/pvt/position_filter.hpp"
 #include "skyloop/pvt/received_records.hpp"
@@ -268,10 +269,10 @@ void NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& fix
     // Residuals that noise does not explain make the formal covariance a lie.
     if (!epoch.consistent && point.redundancy > 0)
         scale *= std::sqrt(std::max(1.0, point.statistic / point.redundancy));
-    fix.time_accuracy = Metres(scale * std::sqrt(point.clock_variance));
+    const ExpectedError expected = expected_error(point, parameters_.accuracy);
+    fix.time_accuracy = Metres(scale * std::sqrt(expected.clock));
     if (epoch.time_only) return;
-    const LocalFrame frame(fix.position);
-    const Eigen::Matrix3d q = in_enu(frame, point.covariance);
+    const Eigen::Matrix3d q = in_enu(LocalFrame(fix.position), expected.position);
     const DifferentialParameters& d = parameters_.differential;
     const DifferentialKind kind = differential_kind();
     if (kind == DifferentialKind::sbas) scale *= d.sbas_scale;

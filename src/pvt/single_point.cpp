@@ -47,6 +47,7 @@ struct RangeWork {
     double weight = 0;    // 1/m²; 0: not used
     std::size_t clock = 0;
     SkyDirection direction;
+    Metres ionosphere, troposphere;  // taken off
 };
 
 // The satellites of one clock.
@@ -237,12 +238,12 @@ void Adjustment::correct(bool mask) {
         RangeWork& w = work_[i];
         const LookAngles look = frame.look_angles(Position<Ecef>(w.satellite));
         w.direction = {look.azimuth, look.elevation};
-        double delay = 0;
         if (site) {
-            delay = site->troposphere(look.elevation).value();
+            w.troposphere = site->troposphere(look.elevation);
             if (e.carrier > Hertz(0))
-                delay += site->ionosphere(e.satellite.constellation, w.direction, e.carrier).value();
+                w.ionosphere = site->ionosphere(e.satellite.constellation, w.direction, e.carrier);
         }
+        const double delay = (w.troposphere + w.ionosphere).value();
         // The signal left later than the delayed pseudorange says.
         w.transmission = e.transmitter.position.vector() + delay / speed_of_light * e.transmitter.velocity.vector();
         w.observed =
@@ -305,10 +306,15 @@ void Adjustment::tell_ranges(const ClockMeans& clocks, SinglePoint& solution) co
         r.satellite_velocity = Velocity<Ecef>(turned_by(velocity.vector(), w.travel_s));
         r.used = w.weight > 0 && solution.clocks[w.clock].has_value();
         if (solution.clocks[w.clock]) r.residual = Metres(w.misfit - c.misfit);
+        r.ionosphere = w.ionosphere;
+        r.troposphere = w.troposphere;
         if (r.used) {
             const Vector3d row = -w.line - c.row;
             r.variance = 1 / w.weight;
+            r.position_gain = w.weight * (solution.covariance * row);
             r.cofactor = row.dot(solution.covariance * row) + 1 / c.weight;
+            r.clock_gain = -clocks[solution.reference].row.dot(r.position_gain);
+            if (w.clock == solution.reference) r.clock_gain += w.weight / c.weight;
             solution.statistic += w.weight * r.residual.value() * r.residual.value();
             ++solution.used;
         }

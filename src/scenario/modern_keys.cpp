@@ -105,6 +105,9 @@ void read_solution(TableReader& table, ModernSettings& settings) {
     table.integer("most_exclusions", p.integrity.most_exclusions, {0, 20});
     table.number("position_accuracy_scale", p.accuracy.position_scale, {0, 100});
     table.number("velocity_accuracy_scale", p.accuracy.velocity_scale, {0, 100});
+    table.number("accuracy_ionosphere_share", p.accuracy.ionosphere_share, {0, 10});
+    table.number("accuracy_ionosphere_tilt", p.accuracy.ionosphere_tilt, {0, 10});
+    table.number("accuracy_troposphere_share", p.accuracy.troposphere_share, {0, 10});
     table.quantity("ephemeris_collection_s", p.ephemeris_collection, {0, 1e5});
     static constexpr std::array<Word<DifferentialKind>, 4> kinds{{{"none", DifferentialKind::none},
                                                                   {"sbas", DifferentialKind::sbas},

@@ -19,8 +19,16 @@ struct PiercePoint {
     Angle longitude;  ///< −180 … 180°
 };
 
-/// The pierce point of the ray from `place`, at its height over a sphere: ψ = π/2 − e − asin((R + h) cos e/(R + H))
-/// with H the height of the shell (MODELS.md 7.2, where h is 0).
+/// ψ, the angle at the centre of the Earth from an antenna at a height h over a sphere to where its ray pierces the
+/// shell at H: π/2 − e − asin((R + h) cos e/(R + H)) (MODELS.md 7.2, where h is 0).
+Angle pierce_angle(const ThinShell& shell, Angle elevation, Metres antenna_height = Metres(0));
+
+/// ψ in units of 9°, at which gradients of the ionosphere have their full size: the 0.05 of MODELS.md 7.2 are
+/// Klobuchar's semicircles. As radians they made a day three times as steep as the real one of
+/// tools/scenarios/arequipa.toml.
+double gradient_arm(Angle elevation, Metres antenna_height = Metres(0));
+
+/// The pierce point of the ray from `place`, at its height over a sphere.
 PiercePoint pierce_point(const ThinShell& shell, const Geodetic& place, const SkyDirection& direction);
 
 /// Slant over vertical content of a single layer, 1/√(1 − ((R + h) cos e/(R + H))²), seen from a height h.

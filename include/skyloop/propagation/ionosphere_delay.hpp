@@ -12,8 +12,9 @@
 
 namespace skyloop {
 
-/// What departs from a model of the ionosphere, as a share of its delay: s_v x_v + s_g ψ/0.05 (x_n cos A + x_e sin A) +
-/// s_i x_i, with ψ the angle at the centre of the Earth to the pierce point (MODELS.md 7.2). Smooth processes.
+/// What departs from a model of the ionosphere, as a share of its delay: s_v x_v + s_g ψ/9° (x_n cos A + x_e sin A) +
+/// s_i x_i, with ψ the angle at the centre of the Earth to the pierce point (MODELS.md 7.2, whose 0.05 are
+/// semicircles). Smooth processes.
 ///
 /// State: the common processes and one for each satellite that has been in view.
 class IonosphereResidual {

@@ -58,7 +58,7 @@ struct IonosphereParameters {
     /// leaves a residual by itself.
     Choice residual = Choice::automatic;
     double common = 0.28;    ///< 1 σ, of the delay
-    double gradient = 0.14;  ///< 1 σ north and east, of the delay, where the pierce point lies 0.05 rad away
+    double gradient = 0.14;  ///< 1 σ north and east, of the delay, where the pierce point lies 9° away
     Seconds common_time{7200};
     double single = 0.05;  ///< 1 σ of each satellite by itself, of the delay
     Seconds single_time{1800};

@@ -60,10 +60,13 @@ struct IntegrityParameters {
     int most_exclusions = 3;
 };
 
-/// Reported accuracies: the formal covariance times these.
+/// Reported accuracies: what noise by the weights and wrong corrections do to the solution, times the scales.
 struct AccuracyParameters {
     double position_scale = 1;
     double velocity_scale = 1;
+    double ionosphere_share = 0.25;   ///< σ of what the correction of the ionosphere is off by, of it, for all alike
+    double ionosphere_tilt = 0.1;     ///< the same towards north and towards east, for a pierce point 9° away
+    double troposphere_share = 0.02;  ///< σ of what the correction of the troposphere is off by, of it, for all alike
 };
 
 /// Corrections from outside that the receiver uses, in the order of CorrectionState. Here they are a regime of the

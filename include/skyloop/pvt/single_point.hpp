@@ -41,10 +41,14 @@ struct SinglePointSetup {
 /// What became of one pseudorange.
 struct RangeOutcome {
     SkyDirection direction;
-    Metres residual;                    ///< corrected pseudorange − computed one; without a clock to compare with, 0
-    double variance = 0;                ///< m², as weighted
-    double cofactor = 0;                ///< m², variance of the residual's estimate
-    Eigen::Vector3d line;               ///< unit vector receiver to satellite, ECEF of reception
+    Metres residual;                 ///< corrected pseudorange − computed one; without a clock to compare with, 0
+    double variance = 0;             ///< m², as weighted
+    double cofactor = 0;             ///< m², variance of the residual's estimate
+    Metres ionosphere, troposphere;  ///< that were taken off
+    Eigen::Vector3d line;            ///< unit vector receiver to satellite, ECEF of reception
+    /// What one metre more of this pseudorange does to the position, ECEF, and to the reference clock; 0 if not used.
+    Eigen::Vector3d position_gain = Eigen::Vector3d::Zero();
+    double clock_gain = 0;
     Position<Ecef> satellite;           ///< at transmission, in the ECEF frame of reception
     Velocity<Ecef> satellite_velocity;  ///< the same
     bool used = false;

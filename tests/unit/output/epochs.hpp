@@ -37,7 +37,7 @@ struct SampleEpoch {
         fix.satellites = {{view.id, view.azimuth, view.elevation, DbHz(44.5), true}};
         state.course = Angle::degrees(4.76);
         state.fix_ok = true;
-        state.time = {true, true, true, true, true, Seconds(1e-8)};
+        state.time = {true, true, true, true, Seconds(1e-8)};
         leaves = advanced(fix.time, Seconds(0.05));
     }
     [[nodiscard]] EpochSeen seen(std::size_t station = 0) const {

@@ -247,8 +247,8 @@ TEST(IonosphereResidual, TiltsTowardsTheHorizon) {
             ++count;
         }
     }
-    // 30° up the pierce point is 0.104 rad away.
-    EXPECT_NEAR(std::sqrt(square / count), std::hypot(0.14 * 0.104 / 0.05, 0.05 / std::sqrt(2)), 0.04);
+    // 30° up the pierce point is 5.96° away.
+    EXPECT_NEAR(std::sqrt(square / count), std::hypot(0.14 * 5.96 / 9, 0.05 / std::sqrt(2)), 0.015);
 }
 
 TEST(IonosphereResidual, DoesNotDependOnWhoElseIsThere) {

@@ -221,6 +221,9 @@ TEST(ModernKeys, OfTheSolution) {
         {"solution", "most_exclusions", "7", SKYLOOP_PLAIN(navigation.integrity.most_exclusions), 7},
         {"solution", "position_accuracy_scale", "7.5", SKYLOOP_PLAIN(navigation.accuracy.position_scale), 7.5},
         {"solution", "velocity_accuracy_scale", "6.5", SKYLOOP_PLAIN(navigation.accuracy.velocity_scale), 6.5},
+        {"solution", "accuracy_ionosphere_share", "0.5", SKYLOOP_PLAIN(navigation.accuracy.ionosphere_share), 0.5},
+        {"solution", "accuracy_ionosphere_tilt", "0.25", SKYLOOP_PLAIN(navigation.accuracy.ionosphere_tilt), 0.25},
+        {"solution", "accuracy_troposphere_share", "1.5", SKYLOOP_PLAIN(navigation.accuracy.troposphere_share), 1.5},
         {"solution", "ephemeris_collection_s", "18.5", SKYLOOP_FIELD(navigation.ephemeris_collection), 18.5},
     });
 }

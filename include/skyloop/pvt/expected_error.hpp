@@ -1,0 +1,23 @@
+/// What a receiver expects its solution to be wrong by.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "skyloop/pvt/navigation_parameters.hpp"
+#include "skyloop/pvt/single_point.hpp"
+
+namespace skyloop {
+
+/// Variances of a solution.
+struct ExpectedError {
+    Eigen::Matrix3d position = Eigen::Matrix3d::Zero();  ///< ECEF, m²
+    double clock = 0;                                    ///< of the reference clock, m²
+};
+
+/// The formal covariance, which is that of noise by the weights and independent between satellites, and beside it that
+/// of errors which the satellites share: corrections of the ionosphere that are too small everywhere, or on one side of
+/// the sky, and too dry a troposphere (MODELS.md 7.2, 7.3 for their kinds). Shared errors do not average out however
+/// many satellites there are.
+ExpectedError expected_error(const SinglePoint& solution, const AccuracyParameters& parameters);
+
+}  // namespace skyloop

@@ -1,0 +1,126 @@
+#include "skyloop/pvt/expected_error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "synthetic_sky.hpp"
+
+namespace skyloop {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// One epoch of a perfect receiver, solved with corrections that its ranges never needed.
+class CorrectedEpoch {
+public:
+    CorrectedEpoch() : sky_(test::synthetic_sky(test::sample_time, test::four_systems)) {
+        const Geodetic place = Geodetic::degrees(48, 11, 500);
+        const Observations observations = test::measure(sky_, test::receiver_at(place, test::sample_time));
+        BroadcastTransmitters transmitters(sky_);
+        for (const Observation& o : observations.signals) {
+            const auto t = transmitters.at(o.satellite, o.signal, observations.receive_time, *o.pseudorange);
+            if (t) equations.push_back({o.satellite, *t, *o.pseudorange, o.carrier, Metres(0.5), false});
+        }
+        setup_.time = test::sample_time;
+        setup_.start = to_ecef(place);
+        setup_.elevation_mask = Angle::degrees(10);
+        setup_.corrections = &corrections_;
+    }
+    [[nodiscard]] SinglePoint solved() const { return solve_single_point(equations, setup_).value(); }
+    [[nodiscard]] SinglePoint timed() const { return solve_clocks(equations, setup_).value(); }
+    void leave_uncorrected() { setup_.corrections = nullptr; }
+
+    std::vector<RangeEquation> equations;
+
+private:
+    test::SyntheticSky sky_;
+    RangeCorrections corrections_{{.default_ionosphere = true}, {}};
+    SinglePointSetup setup_;
+};
+
+constexpr AccuracyParameters nothing_shared{.ionosphere_share = 0, .ionosphere_tilt = 0, .troposphere_share = 0};
+
+AccuracyParameters sharing(double AccuracyParameters::*which, double share) {
+    AccuracyParameters parameters = nothing_shared;
+    parameters.*which = share;
+    return parameters;
+}
+
+Vector3d moved(const SinglePoint& from, const SinglePoint& to) { return to.position.vector() - from.position.vector(); }
+
+TEST(ExpectedError, GainsAreWhatALongerPseudorangeDoes) {
+    const CorrectedEpoch epoch;
+    const SinglePoint before = epoch.solved();
+    ASSERT_GT(before.used, 15);
+    for (std::size_t i = 0; i < epoch.equations.size(); ++i) {
+        CorrectedEpoch longer;
+        longer.equations[i].pseudorange += Metres(1);
+        const SinglePoint after = longer.solved();
+        EXPECT_LT((moved(before, after) - before.ranges[i].position_gain).norm(), 2e-3) << i;
+        EXPECT_NEAR((after.clock() - before.clock()).value(), before.ranges[i].clock_gain, 2e-3) << i;
+    }
+}
+
+TEST(ExpectedError, HoldsWhatAWrongIonosphereDoesToPositionAndClock) {
+    const SinglePoint before = CorrectedEpoch().solved();
+    CorrectedEpoch thicker;
+    double most = 0;
+    for (std::size_t i = 0; i < thicker.equations.size(); ++i) {
+        thicker.equations[i].pseudorange += 0.25 * before.ranges[i].ionosphere;
+        most = std::max(most, before.ranges[i].ionosphere.value());
+    }
+    EXPECT_GT(most, 2) << "there is one to be wrong about";
+    const SinglePoint after = thicker.solved();
+    const ExpectedError expected = expected_error(before, sharing(&AccuracyParameters::ionosphere_share, 0.25));
+    const Vector3d d = moved(before, after);
+    EXPECT_GT(d.norm(), 0.3);
+    const Matrix3d shared = expected.position - before.covariance;
+    EXPECT_LT((shared - d * d.transpose()).norm(), 0.02 * d.squaredNorm());
+    EXPECT_NEAR(std::sqrt(expected.clock - before.clock_variance), std::abs((after.clock() - before.clock()).value()),
+                0.01);
+}
+
+TEST(ExpectedError, ATiltMovesThePositionSideways) {
+    const SinglePoint before = CorrectedEpoch().solved();
+    const ExpectedError expected = expected_error(before, sharing(&AccuracyParameters::ionosphere_tilt, 0.1));
+    const LocalFrame frame(to_geodetic(before.position));
+    const auto along = [&](const Matrix3d& q, const Displacement<Enu>& axis) {
+        const Vector3d u = frame.to_ecef(axis).vector();
+        return u.dot(q * u);
+    };
+    const Matrix3d tilt = expected.position - before.covariance;
+    EXPECT_GT(along(tilt, {1, 0, 0}), 0.01);
+    EXPECT_GT(along(tilt, {0, 1, 0}), 0.01);
+    EXPECT_LT(along(tilt, {0, 0, 1}), along(tilt, {1, 0, 0}) + along(tilt, {0, 1, 0}));
+}
+
+TEST(ExpectedError, ATroposphereIsMostlyAHeight) {
+    const SinglePoint before = CorrectedEpoch().solved();
+    const ExpectedError expected = expected_error(before, sharing(&AccuracyParameters::troposphere_share, 0.02));
+    const Matrix3d shared = expected.position - before.covariance;
+    const Vector3d up = LocalFrame(to_geodetic(before.position)).to_ecef(Displacement<Enu>(0, 0, 1)).vector();
+    EXPECT_GT(up.dot(shared * up), 0.9 * shared.trace());
+    EXPECT_GT(shared.trace(), 0.05 * 0.05);
+}
+
+TEST(ExpectedError, WithoutCorrectionsNoneIsWrong) {
+    CorrectedEpoch epoch;
+    epoch.leave_uncorrected();
+    const SinglePoint point = epoch.solved();
+    const ExpectedError expected = expected_error(point, AccuracyParameters());
+    EXPECT_EQ(expected.position, point.covariance);
+    EXPECT_EQ(expected.clock, point.clock_variance);
+}
+
+TEST(ExpectedError, OfTimeAloneIsInTheClock) {
+    const SinglePoint point = CorrectedEpoch().timed();
+    const ExpectedError expected = expected_error(point, AccuracyParameters());
+    EXPECT_EQ(expected.position, Matrix3d::Zero());
+    EXPECT_GT(std::sqrt(expected.clock), 0.5);
+    EXPECT_GT(expected.clock, 2 * point.clock_variance);
+}
+
+}  // namespace
+}  // namespace skyloop
