@@ -21,18 +21,25 @@ bool is_observation(int number) {
 // What is taken and changes nothing here: antenna and receiver descriptions, GLONASS biases, u-blox's own.
 bool is_description(int number) { return number == 1007 || number == 1033 || number == 1230 || number == 4072; }
 
-// RXM-RTCM version 2 (RECEIVER.md 3.2).
-Bytes rtcm_answer(const Rtcm3Message& message, bool used) {
+// Flags of RXM-RTCM version 2: bit 0, bits 1 and 2 (RECEIVER.md 3.2).
+enum RtcmUse : std::uint8_t { crc_failed = 1, not_used = 1 << 1, used = 2 << 1 };
+
+Bytes rtcm_answer(const Rtcm3Message& message, RtcmUse flags) {
     const auto subtype = static_cast<std::uint16_t>(message.subtype);
     const auto station = static_cast<std::uint16_t>(message.station.value_or(0));
     const auto number = static_cast<std::uint16_t>(message.number);
     constexpr std::uint8_t version = 2;
     const auto low = [](std::uint16_t v) { return static_cast<std::uint8_t>(v & 0xFF); };
     const auto high = [](std::uint16_t v) { return static_cast<std::uint8_t>(v >> 8); };
-    const auto flags = static_cast<std::uint8_t>((used ? 2 : 1) << 1);
     const Bytes payload{version,      flags,         low(subtype), high(subtype),
                         low(station), high(station), low(number),  high(number)};
     return encode_frame(rxm_rtcm, payload);
+}
+
+Position<Ecef> place_of(const Rtcm3Station& station) {
+    constexpr double metres = 1e-4;
+    const auto at = [&](std::size_t axis) { return metres * static_cast<double>(station.position[axis]); };
+    return {at(0), at(1), at(2)};
 }
 
 }  // namespace
@@ -56,16 +63,18 @@ void CorrectionInput::take_observations(GpsTime now) {
 
 Bytes CorrectionInput::take(ByteSpan frame, GpsTime now) {
     const auto message = parse_rtcm3(frame);
-    if (!message) return rtcm_answer({}, false);
-    const bool position = decode_station(*message).has_value();
+    if (!message) return rtcm_answer({}, not_used);
+    const auto position = decode_station(*message);
     const bool observations = is_observation(message->number);
-    if (!position && !observations) return rtcm_answer(*message, is_description(message->number));
-    if (!message->station || !follow(*message->station, now)) return rtcm_answer(*message, false);
-    if (position) station_->position = now;
+    if (!position && !observations) return rtcm_answer(*message, is_description(message->number) ? used : not_used);
+    if (!message->station || !follow(*message->station, now)) return rtcm_answer(*message, not_used);
+    if (position) station_->position = place_of(*position);
     if (observations) take_observations(now);
     if (station_->position && station_->observations && !station_->complete_since) station_->complete_since = now;
-    return rtcm_answer(*message, true);
+    return rtcm_answer(*message, used);
 }
+
+Bytes CorrectionInput::answer_to_damaged() { return rtcm_answer({}, crc_failed); }
 
 CorrectionStatus CorrectionInput::status(GpsTime now, const CorrectionLimits& limits) const {
     CorrectionStatus status;
@@ -74,6 +83,7 @@ CorrectionStatus CorrectionInput::status(GpsTime now, const CorrectionLimits& li
     const Seconds age = std::max(difference(now, *s.observations), Seconds(0));
     status.age = age;
     status.station = s.id;
+    status.base = s.position;
     if (!s.complete_since || now < *s.complete_since || age > limits.timeout) return status;
 
     status.state = CorrectionState::differential;

@@ -7,6 +7,7 @@
 #include "firmware/config/config_store.hpp"
 #include "firmware/navigation_state.hpp"
 #include "skyloop/base/bytes.hpp"
+#include "skyloop/geo/frames.hpp"
 #include "skyloop/time/gps_time.hpp"
 
 namespace skyloop::firmware {
@@ -38,6 +39,8 @@ public:
     /// One frame whose CRC held. Gives the RXM-RTCM frame that answers it: used are observations and positions of the
     /// station that is followed, GLONASS biases and descriptions.
     Bytes take(ByteSpan frame, GpsTime now);
+    /// The RXM-RTCM frame that answers a frame whose CRC did not hold: what it was is not known.
+    [[nodiscard]] static Bytes answer_to_damaged();
     /// What a solution at `now` can be.
     [[nodiscard]] CorrectionStatus status(GpsTime now, const CorrectionLimits& limits) const;
     [[nodiscard]] CorrectionStatus status(GpsTime now, const ConfigStore& store) const {
@@ -48,7 +51,8 @@ public:
 private:
     struct Station {
         int id = 0;
-        std::optional<GpsTime> observations, position, complete_since;
+        std::optional<GpsTime> observations, complete_since;
+        std::optional<Position<Ecef>> position;
         std::optional<GpsTime> resumed;  // after a silence in which fixed ambiguities were lost
     };
     bool follow(int station, GpsTime now);

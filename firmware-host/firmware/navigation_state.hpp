@@ -12,24 +12,25 @@
 #include "skyloop/base/units.hpp"
 #include "skyloop/flow/epoch.hpp"
 #include "skyloop/flow/receiver_settings.hpp"
+#include "skyloop/geo/frames.hpp"
 
 namespace skyloop::firmware {
 
 /// What the receiver knows of the time.
 struct TimeKnowledge {
-    bool time = false;  ///< the time of day
-    bool date = false;
+    bool time = false;          ///< the time of day, and of the week
+    bool date = false;          ///< and with it the week
     bool leap_seconds = false;  ///< decoded, not the firmware's own number: fully resolved
     bool confirmed = false;     ///< by several systems (NAV-PVT flags2)
-    bool week_and_tow = false;  ///< GPS time (NAV-TIMEGPS)
     Seconds accuracy{0};        ///< 1 σ; meaningless without `time`
 };
 
 /// What came in by RTCM.
 struct CorrectionStatus {
     CorrectionState state = CorrectionState::none;
-    std::optional<Seconds> age;  ///< of the last observations; nothing before the first
-    std::optional<int> station;  ///< DF003
+    std::optional<Seconds> age;          ///< of the last observations; nothing before the first
+    std::optional<int> station;          ///< DF003
+    std::optional<Position<Ecef>> base;  ///< where that station says it stands
 };
 
 /// The receiver's monitors as it reports them.

@@ -26,8 +26,13 @@ std::size_t Port::departed(const Message& message, GpsTime now) const {
 // as much will have left as the line carries until then.
 bool Port::queue(ByteSpan message, GpsTime ready, Nanoseconds patience) {
     std::size_t waiting = 0;
-    for (const Message& m : messages_)
-        waiting += m.bytes.size() - departed(m, ready);
+    // The last first: what went before one that has begun has left.
+    for (auto m = messages_.rbegin(); m != messages_.rend(); ++m) {
+        waiting += m->bytes.size();
+        if (m->start > ready) continue;
+        waiting -= departed(*m, ready);
+        break;
+    }
     const Nanoseconds wait = std::clamp(patience, Nanoseconds(0), longest_wait);
     const auto carried = static_cast<std::size_t>(wait.count() * baud_ / nanoseconds_per_byte_at_1_baud);
     const bool fits = message.size() <= buffer_bytes_ && waiting + message.size() <= buffer_bytes_ + carried;

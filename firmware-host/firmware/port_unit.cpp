@@ -30,11 +30,11 @@ void Outbox::plan(GpsTime at, Action action) { plans_.emplace(at, std::move(acti
 
 std::size_t buffered_bytes(const Port& port) { return std::min<std::size_t>(port.pending(), port.buffer_bytes()); }
 
-std::size_t Outbox::queue(PortId port, const std::vector<Bytes>& messages, GpsTime now, Nanoseconds patience) {
+std::size_t Outbox::queue(PortId port, std::span<const ByteSpan> messages, GpsTime now, Nanoseconds patience) {
     PortUnit* unit = find_unit(units_, port);
     if (unit == nullptr) return 0;
     std::size_t queued = 0;
-    for (const Bytes& message : messages) {
+    for (const ByteSpan message : messages) {
         if (!unit->transmit.queue(message, now, patience)) {
             unit->status.transmit_full = unit->overflow_untold = true;
             ++unit->status.messages_dropped;

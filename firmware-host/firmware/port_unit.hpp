@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "firmware/board_profile.hpp"
@@ -76,7 +77,7 @@ public:
     /// Something that happens at `at`, or now when that has passed; at the same instant in the order of planning.
     void plan(GpsTime at, Action action);
     /// Queues whole messages on a port. @param patience of Port::queue() @return how many found room
-    std::size_t queue(PortId port, const std::vector<Bytes>& messages, GpsTime now, Nanoseconds patience);
+    std::size_t queue(PortId port, std::span<const ByteSpan> messages, GpsTime now, Nanoseconds patience);
     /// Does what is planned until `now`, and gives what has left.
     std::vector<Receiver::Sent> run(GpsTime now);
     [[nodiscard]] std::optional<GpsTime> drained_at() const;

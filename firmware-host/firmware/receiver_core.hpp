@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -58,7 +59,7 @@ private:
     void dispatch(PortUnit& unit, const StreamPiece& piece, GpsTime now);
     void dispatch_ubx(PortUnit& unit, ByteSpan frame, GpsTime now);
     void dispatch_sentence(PortUnit& unit, ByteSpan line, GpsTime now);
-    void dispatch_corrections(ByteSpan frame, GpsTime now);
+    void answer_corrections(const Bytes& answer, GpsTime now);
     [[nodiscard]] bool accepts(const PortUnit& unit, StreamKind kind) const;
     void configure(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
     [[nodiscard]] ConfigOutcome configured(const UbxFrameView& frame, PortId from);
@@ -85,14 +86,15 @@ private:
     [[nodiscard]] bool configured_speeds_hold() const;
     void plan_speed_changes(GpsTime at);
     void change_speed(PortId port, GpsTime at);
+    void send(PortId port, std::span<const ByteSpan> messages, GpsTime now);
     void send(PortId port, const std::vector<Bytes>& messages, GpsTime now);
     void send_text(int level, const std::string& text, GpsTime now);
     void send_epoch(const NavigationState& state, GpsTime now);
     void read_configured_messages(PortUnit& unit) const;
     [[nodiscard]] bool is_due(PortUnit& unit, UbxMessageId message, std::uint64_t every,
                               const NavigationState& state) const;
-    [[nodiscard]] std::vector<Bytes> due_messages(PortUnit& unit, const NavigationState& state,
-                                                  EpochMessages& made) const;
+    [[nodiscard]] std::vector<ByteSpan> due_messages(PortUnit& unit, const NavigationState& state,
+                                                     EpochMessages& made) const;
     [[nodiscard]] bool lets_out(PortId port, UbxMessageId message) const;
     [[nodiscard]] GpsTime burst_time(GpsTime epoch);
     void tell_overflow(PortUnit& unit, GpsTime now);

@@ -61,7 +61,13 @@ void Receiver::Core::input(PortId port, ByteSpan bytes, GpsTime now) {
     unit->status.bytes_in += bytes.size();
     give_up_unfinished(*unit, now);
     unit->last_input = now;
-    work_off(*unit, unit->splitter.feed(bytes), now);
+    const auto damaged = [&] { return unit->splitter.counts().bad[static_cast<std::size_t>(StreamKind::rtcm3)]; };
+    std::uint64_t told = damaged();
+    const std::vector<StreamPiece> pieces = unit->splitter.feed(bytes);
+    for (; told < damaged(); ++told)
+        if (board_.personality == Personality::ublox && accepts(*unit, StreamKind::rtcm3))
+            answer_corrections(CorrectionInput::answer_to_damaged(), now);
+    work_off(*unit, pieces, now);
 }
 
 void Receiver::Core::give_up_unfinished(PortUnit& unit, GpsTime now) {
@@ -102,7 +108,7 @@ void Receiver::Core::dispatch(PortUnit& unit, const StreamPiece& piece, GpsTime 
     if (piece.kind == StreamKind::nmea) return dispatch_sentence(unit, piece.bytes, now);
     if (board_.personality != Personality::ublox) return;
     if (piece.kind == StreamKind::ubx) return dispatch_ubx(unit, piece.bytes, now);
-    dispatch_corrections(piece.bytes, now);
+    answer_corrections(corrections_.take(piece.bytes, now), now);
 }
 
 void Receiver::Core::dispatch_ubx(PortUnit& unit, ByteSpan bytes, GpsTime now) {
@@ -205,9 +211,8 @@ void Receiver::Core::dispatch_sentence(PortUnit& unit, ByteSpan line, GpsTime no
     if (outcome.restart) reboot(Forgotten::of(*outcome.restart), now);
 }
 
-void Receiver::Core::dispatch_corrections(ByteSpan frame, GpsTime now) {
+void Receiver::Core::answer_corrections(const Bytes& answer, GpsTime now) {
     constexpr UbxMessageId rxm_rtcm{0x02, 0x32};
-    const Bytes answer = corrections_.take(frame, now);
     const GpsTime at = answer_time(now, Seconds(0));
     for (const PortId port : board_.ports)
         if (store_.rate(rxm_rtcm, port) > 0 && lets_out(port, rxm_rtcm) && !faults_.withheld.contains(rxm_rtcm))

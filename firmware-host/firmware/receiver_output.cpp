@@ -121,11 +121,15 @@ void Receiver::Core::change_speed(PortId port, GpsTime at) {
 
 // Messages are made one after the other: one that finds the buffer full waits for its turn, but not until those of the
 // next epoch come.
-void Receiver::Core::send(PortId port, const std::vector<Bytes>& messages, GpsTime now) {
+void Receiver::Core::send(PortId port, std::span<const ByteSpan> messages, GpsTime now) {
     if (faults_.mute) return;
     const std::size_t queued = outbox_.queue(port, messages, now, settings_.navigation_period);
     counters_.messages_sent += queued;
     counters_.messages_dropped += messages.size() - queued;
+}
+
+void Receiver::Core::send(PortId port, const std::vector<Bytes>& messages, GpsTime now) {
+    send(port, std::vector<ByteSpan>(messages.begin(), messages.end()), now);
 }
 
 void Receiver::Core::send_text(int level, const std::string& text, GpsTime now) {
@@ -170,7 +174,7 @@ void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {
     look_at_ports();
     EpochMessages made(context(PortId::uart1, state));
     for (PortUnit& unit : units_) {
-        const std::vector<Bytes> messages = due_messages(unit, state, made);
+        const std::vector<ByteSpan> messages = due_messages(unit, state, made);
         unit.status.transmit_full = false;
         tell_overflow(unit, now);
         if (unit.id == PortId::uart1)
@@ -207,10 +211,11 @@ bool Receiver::Core::is_due(PortUnit& unit, UbxMessageId message, std::uint64_t 
     return std::exchange(unit.told_pulse, pulse) != pulse;
 }
 
-std::vector<Bytes> Receiver::Core::due_messages(PortUnit& unit, const NavigationState& state,
-                                                EpochMessages& made) const {
+// They are those of `made`.
+std::vector<ByteSpan> Receiver::Core::due_messages(PortUnit& unit, const NavigationState& state,
+                                                   EpochMessages& made) const {
     read_configured_messages(unit);
-    std::vector<Bytes> due;
+    std::vector<ByteSpan> due;
     for (const auto& [message, every] : unit.configured.messages) {
         if (faults_.withheld.contains(message) || !is_due(unit, message, every, state)) continue;
         const std::vector<Bytes>& messages = made.of(message, unit.id);

@@ -86,7 +86,7 @@ void StateTracker::start(GpsTime now, const Forgotten& forgotten, bool running) 
     }
     started_ = running ? std::nullopt : std::optional(now);
     start_kind_ = forgotten.kind();
-    state_.time.time = state_.time.date = state_.time.week_and_tow = running || start_kind_ != StartKind::cold;
+    state_.time.time = state_.time.date = running || start_kind_ != StartKind::cold;
     state_.time.leap_seconds = running || (start_kind_ != StartKind::cold && !forgotten.utc);
     state_.time.confirmed = running;
     // A clock that ran on a crystal alone since the last fix.

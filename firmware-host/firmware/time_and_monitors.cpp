@@ -58,7 +58,6 @@ void StateTracker::learn_time(const ConfigStore&) {
     const bool solved = last_good_ == fix.time;
     const double tracking = since(first_tracking_);
     time.time = time.time || tracking >= time_after_s || solved;
-    time.week_and_tow = time.week_and_tow || time.time;
     time.date = time.date || tracking >= date_after_s || solved;
     if (!time.leap_seconds && first_tracking_)
         time.leap_seconds = (tracks(fix, Constellation::gps) && gps_utc_page_ended(*first_tracking_, fix.time)) ||

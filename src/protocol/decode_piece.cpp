@@ -74,7 +74,8 @@ void list_sbf(const SbfBlockView& block, DecodedMessage& message) {
     const bool known = list_sbf_as<SbfPvtGeodetic>(block, message) || list_sbf_as<SbfPosCovGeodetic>(block, message) ||
                        list_sbf_as<SbfVelCovGeodetic>(block, message) || list_sbf_as<SbfDop>(block, message) ||
                        list_sbf_as<SbfAttEuler>(block, message) || list_sbf_as<SbfChannelStatus>(block, message) ||
-                       list_sbf_as<SbfReceiverStatus>(block, message);
+                       list_sbf_as<SbfReceiverStatus>(block, message) || list_sbf_as<SbfEndOfPvt>(block, message) ||
+                       list_sbf_as<SbfAuxAntPositions>(block, message);
     if (!known) keep_payload(block.body, message);
 }
 

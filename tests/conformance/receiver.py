@@ -28,6 +28,11 @@ class Board:
         return self.protocol > (23, 1)
 
     @property
+    def has_flash(self):
+        """M10 is the bare chip, with its firmware in ROM."""
+        return self.generation != 10
+
+    @property
     def is_f9p(self):
         return self.name == "ublox-f9p"
 

@@ -85,15 +85,23 @@ class UbloxCfg(Client):
     def store(self):
         """What is set in a layer is read from that layer alone."""
         key = 0x20110021
-        self.step("CFG-VALSET to BBR and flash; RAM stays")
-        self.set(ubx.valset([(key, 4)], ubx.BBR | ubx.FLASH), "CFG-VALSET", WAIT)
-        for layer, value in ((ubx.READ_BBR, 4), (ubx.READ_FLASH, 4), (ubx.READ_RAM, 0), (ubx.READ_DEFAULT, 0)):
+        kept = [(ubx.BBR, ubx.READ_BBR), (ubx.FLASH, ubx.READ_FLASH)]
+        if not self.board.has_flash:
+            self.step("CFG-VALSET to a flash that is not there")
+            self.send(ubx.valset([(key, 4)], ubx.BBR | ubx.FLASH))
+            answer = self.wait_ack("CFG-VALSET", WAIT)
+            self.check(answer is False, "ACK-NAK", "ACK-ACK" if answer else None)
+            kept.pop()
+        layers = sum(bit for bit, _ in kept)
+        self.step("CFG-VALSET to the layers that are kept; RAM stays")
+        self.set(ubx.valset([(key, 4)], layers), "CFG-VALSET", WAIT)
+        for layer, value in [(layer, 4) for _, layer in kept] + [(ubx.READ_RAM, 0), (ubx.READ_DEFAULT, 0)]:
             answer = self.poll(ubx.valget([key], layer), "CFG-VALGET", WAIT)
             self.check(ubx.valget_pairs(answer.payload) == [(key, value)], f"{value} in layer {layer}",
                        ubx.valget_pairs(answer.payload))
-        self.step("CFG-VALDEL from both; then neither has it")
-        self.set(ubx.valdel([key], ubx.BBR | ubx.FLASH), "CFG-VALDEL", WAIT)
-        for layer in (ubx.READ_BBR, ubx.READ_FLASH):
+        self.step("CFG-VALDEL from them; then none has it")
+        self.set(ubx.valdel([key], layers), "CFG-VALDEL", WAIT)
+        for _, layer in kept:
             self.send(ubx.valget([key], layer))
             answer = self.wait_ack("CFG-VALGET", WAIT)
             self.check(answer is False, f"ACK-NAK: layer {layer} has no such key", "ACK-ACK" if answer else None)

@@ -50,12 +50,17 @@ class Ubxtool(unittest.TestCase):
 
     def test_each_layer(self):
         """4 to flash, 3 to BBR, 2 to RAM: each layer has its own, the default stays; deleted, only RAM has one."""
-        for layer, value in ((4, 4), (2, 3), (1, 2)):
+        flash = [(4, 2, 4)] if self.board.has_flash else []  # as a mask, as a number, its value
+        layers = flash + [(2, 1, 3), (1, 0, 2)]
+        for layer, _, value in layers:
             text = self.ubxtool("-z", f"{ENABLED},{value},{layer}")
             self.assertIn("UBX-ACK-ACK", text, f"layer {layer}")
-        for layer, value in ((2, 4), (1, 3), (0, 2), (7, 0)):
+        for layer, value in [(number, value) for _, number, value in layers] + [(7, 0)]:
             text = self.ubxtool("-g", f"{ENABLED},{layer}")
             self.assertEqual(self.values(text), [value], f"layer {layer}: {text}")
+        if not flash:  # ubxtool deletes from battery and flash at once
+            self.assertIn("UBX-ACK-NAK", self.ubxtool("-x", ENABLED))
+            return
         self.assertIn("UBX-ACK-ACK", self.ubxtool("-x", ENABLED))
         for layer in (1, 2):
             text = self.ubxtool("-g", f"{ENABLED},{layer}")

@@ -29,7 +29,7 @@ GpsInput = namedtuple("GpsInput", "time tow lat lon alt hdop vdop north east dow
                       "fix_type satellites yaw")
 Pvt = namedtuple("Pvt", "tow week mode error lat lon height undulation north east up course bias drift time_system datum "
                  "satellites wa_corr reference age signals alert bases ppp latency h_acc v_acc misc")
-SBF_ORDER = [4007, 5906, 5908, 4001, 5938, 4013, 4014]
+SBF_ORDER = [4007, 5906, 5908, 4001, 5938, 5942, 5921, 4013, 4014]
 
 
 def crc_bits(data, polynomial, width, start=0):

@@ -49,7 +49,9 @@ private:
     /// Does now what a message asks for, or adds it to a transaction.
     ConfigOutcome take(std::uint8_t transaction, Change change);
     ConfigOutcome apply(const Change& change);
-    /// False, and nothing is forgotten, when what is left could not stand together at the next start.
+    /// Whether what is kept could not stand together at the next start, and does now.
+    [[nodiscard]] bool spoils_start(const ConfigStore& after) const;
+    /// False, and nothing is forgotten, when that would spoil the next start.
     bool erase(const Change& change);
     /// The items that a wildcard means, or the one of this id; nothing when there is none.
     [[nodiscard]] std::vector<std::uint32_t> expanded(std::uint32_t key) const;

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "firmware/config/config_handler.hpp"
+#include "firmware/config/legacy_support.hpp"
 #include "firmware/config/signal_keys.hpp"
 #include "skyloop/protocol/ubx_cfg_values.hpp"
 
@@ -51,6 +52,12 @@ std::optional<ConfigOutcome> answer_without_support(const BoardProfile& board) {
     return verdict(Verdict::silence);
 }
 
+// None without a place to keep values in.
+bool are_layers_of(const BoardProfile& board, ConfigLayers layers, ConfigLayers known) {
+    if (!has_flash(board)) known &= static_cast<ConfigLayers>(~in_flash);
+    return layers != 0 && (layers & ~known) == 0;
+}
+
 bool is_known_form(std::uint8_t version, std::uint8_t transaction) {
     return version == 0 || (version == 1 && transaction <= apply_transaction);
 }
@@ -86,8 +93,8 @@ ConfigOutcome ValueConfig::valset(ByteSpan payload) {
     if (const auto answer = answer_without_support(board_)) return *answer;
     const auto message = decode_payload<CfgValset>(payload);
     constexpr ConfigLayers known_layers = in_ram | in_battery | in_flash;
-    const bool good = message && is_known_form(message->version, message->transaction) && message->layers != 0 &&
-                      (message->layers & ~known_layers) == 0;
+    const bool good = message && is_known_form(message->version, message->transaction) &&
+                      are_layers_of(board_, message->layers, known_layers);
     if (!good) return cancel(), refused();
     Change change{.layers = message->layers, .deleting = false, .items = {}};
     for (const ConfigPair& pair : message->pairs) {
@@ -101,8 +108,8 @@ ConfigOutcome ValueConfig::valdel(ByteSpan payload) {
     if (const auto answer = answer_without_support(board_)) return *answer;
     const auto message = decode_payload<CfgValdel>(payload);
     constexpr ConfigLayers known_layers = in_battery | in_flash;
-    const bool good = message && is_known_form(message->version, message->transaction) && message->layers != 0 &&
-                      (message->layers & ~known_layers) == 0;
+    const bool good = message && is_known_form(message->version, message->transaction) &&
+                      are_layers_of(board_, message->layers, known_layers);
     if (!good) return cancel(), refused();
     Change change{.layers = message->layers, .deleting = true, .items = {}};
     for (const std::uint32_t key : message->keys) {
@@ -131,13 +138,16 @@ ConfigOutcome ValueConfig::take(std::uint8_t transaction, Change change) {
     return cancel(), apply(whole);
 }
 
-// Values that are gone may leave the next start without a system as well as values that are set.
+// A change of the kept layers alone shows at the next start, which must have a system as well.
+bool ValueConfig::spoils_start(const ConfigStore& after) const {
+    return !is_consistent(board_, after.values_at_start()) && is_consistent(board_, store_.values_at_start());
+}
+
 bool ValueConfig::erase(const Change& change) {
     ConfigStore after = store_;
     for (const auto& [key, value] : change.items)
         after.erase(change.layers, key);
-    if (!is_consistent(board_, after.values_at_start()) && is_consistent(board_, store_.values_at_start()))
-        return false;
+    if (spoils_start(after)) return false;
     store_ = std::move(after);
     return true;
 }
@@ -151,6 +161,12 @@ ConfigOutcome ValueConfig::apply(const Change& change) {
     for (const auto& [key, value] : change.items)
         ram[key] = value;
     if ((change.layers & in_ram) && !is_consistent(board_, ram)) return refused();
+    if (change.layers & (in_battery | in_flash)) {
+        ConfigStore after = store_;
+        for (const auto& [key, value] : change.items)
+            after.set(change.layers, key, value);
+        if (spoils_start(after)) return refused();
+    }
     for (const auto& [key, value] : change.items) {
         const std::uint64_t before = store_.value(key);
         store_.set(change.layers, key, value);

@@ -226,7 +226,7 @@ NavVelned navigation_velned(const ReportContext& context) {
 
 // The upper half of the byte is 0xD on captured M8 (RECEIVER.md 3.1).
 std::uint8_t solution_flags(const NavigationState& state) {
-    const int known = state.time.week_and_tow ? 0x0C : 0;
+    const int known = (state.time.date ? 4 : 0) | (state.time.time ? 8 : 0);
     return static_cast<std::uint8_t>((state.fix_ok ? 1 : 0) | (is_differential(state.epoch.fix) ? 2 : 0) | known);
 }
 

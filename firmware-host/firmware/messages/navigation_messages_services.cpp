@@ -8,6 +8,7 @@
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/navigation_parts.hpp"
+#include "skyloop/geo/local_frame.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
 #include "skyloop/protocol/ubx_relative.hpp"
 #include "skyloop/protocol/ubx_services.hpp"
@@ -83,36 +84,61 @@ NavOdo odometer(const ReportContext& context) {
     return m;
 }
 
+// From a base to this antenna, and how: 0 by code, 1 with floating ambiguities, 2 with fixed ones.
+struct Baseline {
+    RelativePosition vector;
+    std::uint32_t carrier = 0;
+};
+
+// The vector of a pair of receivers, or that from the station of the corrections, where it has said where it stands.
+std::optional<Baseline> baseline_of(const NavigationState& state) {
+    if (const auto& pair = state.epoch.relative) return Baseline{*pair, pair->fixed ? 2u : 1u};
+    const Fix& fix = state.epoch.fix;
+    const CorrectionStatus& corrections = state.corrections;
+    if (corrections.state == CorrectionState::none || !corrections.base || !fix.has_position()) return std::nullopt;
+    const LocalFrame base(to_geodetic(*corrections.base));
+    const Eigen::Vector3d to_rover = base.to_enu(to_ecef(fix.position)).vector();
+    Baseline baseline;
+    baseline.carrier = fix.type == FixType::rtk_fixed ? 2 : fix.type == FixType::rtk_float ? 1 : 0;
+    baseline.vector = {.north_m = to_rover.y(),
+                       .east_m = to_rover.x(),
+                       .down_m = -to_rover.z(),
+                       .deviation = fix.horizontal_accuracy / std::numbers::sqrt2,
+                       .base_moves = false,
+                       .fixed = baseline.carrier == 2,
+                       .base_station = corrections.station.value_or(0)};
+    return baseline;
+}
+
 // Bits: 0 fix ok, 1 differential, 2 vector valid, 3-4 carrier solution, 5 moving base.
-std::uint32_t relative_flags(const ReportContext& context) {
-    const NavigationState& state = context.state;
-    const auto& relative = state.epoch.relative;
+std::uint32_t relative_flags(const NavigationState& state, const std::optional<Baseline>& baseline) {
     std::uint32_t flags = state.fix_ok ? 1u : 0u;
-    if (!relative) return flags;
+    if (!baseline) return flags;
     flags |= is_differential(state.epoch.fix) ? 2u : 0u;
-    flags |= 4u | (relative->fixed ? 2u : 1u) << 3 | (relative->base_moves ? 0x20u : 0u);
+    flags |= 4u | baseline->carrier << 3 | (baseline->vector.base_moves ? 0x20u : 0u);
     return flags;
 }
 
-NavRelposned0 relative_position_m8(const ReportContext& context) {
+NavRelposned0 relative_position_m8(const ReportContext& context, const std::optional<Baseline>& baseline) {
     NavRelposned0 m;
     m.i_tow = service_tow(context);
-    m.flags = relative_flags(context);
-    const auto& relative = context.state.epoch.relative;
-    if (!relative) return m;
-    m.ref_station_id = field<std::uint16_t>(relative->base_station);
-    const double parts[] = {relative->north_m, relative->east_m, relative->down_m};
+    m.flags = relative_flags(context.state, baseline);
+    if (!baseline) return m;
+    const RelativePosition& relative = baseline->vector;
+    m.ref_station_id = field<std::uint16_t>(relative.base_station);
+    const double parts[] = {relative.north_m, relative.east_m, relative.down_m};
     for (std::size_t i = 0; i < 3; ++i) {
         const SplitValue value = split_value(parts[i] * 1e4, 100);
         m.rel_pos[i] = value.whole;
         m.rel_pos_hp[i] = value.rest;
     }
-    m.acc.fill(field<std::uint32_t>(relative->deviation.value() * 1e4));
+    m.acc.fill(field<std::uint32_t>(relative.deviation.value() * 1e4));
     return m;
 }
 
 NavRelposned relative_position(const ReportContext& context) {
-    const NavRelposned0 parts = relative_position_m8(context);
+    const std::optional<Baseline> baseline = baseline_of(context.state);
+    const NavRelposned0 parts = relative_position_m8(context, baseline);
     NavRelposned m;
     m.ref_station_id = parts.ref_station_id;
     m.i_tow = parts.i_tow;
@@ -120,8 +146,8 @@ NavRelposned relative_position(const ReportContext& context) {
     m.rel_pos_hp = parts.rel_pos_hp;
     m.acc = parts.acc;
     m.flags = parts.flags;
-    const auto& relative = context.state.epoch.relative;
-    if (!relative) return m;
+    if (!baseline) return m;
+    const RelativePosition* relative = &baseline->vector;
     const double length = std::hypot(relative->north_m, relative->east_m, relative->down_m);
     const SplitValue split = split_value(length * 1e4, 100);
     m.rel_pos_length = split.whole;
@@ -250,8 +276,9 @@ std::vector<Bytes> make_service_message(UbxMessageId message, const ReportContex
         case NavEoe::message_id.id:
             return ubx_frames_of(NavEoe{service_tow(context)});
         case NavRelposned::message_id.id:
-            return context.board.identity.generation <= 8 ? ubx_frames_of(relative_position_m8(context))
-                                                          : ubx_frames_of(relative_position(context));
+            return context.board.identity.generation <= 8
+                       ? ubx_frames_of(relative_position_m8(context, baseline_of(context.state)))
+                       : ubx_frames_of(relative_position(context));
         case NavSvin::message_id.id:
             return ubx_frames_of(survey(context));
         case NavDgps::message_id.id:

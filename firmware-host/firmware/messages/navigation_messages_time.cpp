@@ -22,8 +22,8 @@ constexpr double clock_step_ns = 1e6;
 
 // Time of week, week and leap seconds.
 std::uint8_t gnss_time_valid(const NavigationState& state) {
-    const int known = state.time.week_and_tow ? 3 : 0;
-    return static_cast<std::uint8_t>(known | (state.time.leap_seconds ? 4 : 0));
+    const TimeKnowledge& known = state.time;
+    return static_cast<std::uint8_t>((known.time ? 1 : 0) | (known.date ? 2 : 0) | (known.leap_seconds ? 4 : 0));
 }
 
 // Whole seconds of a time of week, and the rest: −5e8 … 5e8 ns.
@@ -44,7 +44,7 @@ NavTimegps time_gps(const ReportContext& context) {
     const EpochTime now = epoch_time(reported.time);
     const NavigationState& state = context.state;
     NavTimegps m{now.i_tow, now.f_tow, 0, 0, gnss_time_valid(state), time_accuracy_ns(state)};
-    m.week = state.time.week_and_tow ? field<std::int16_t>(reported_week(context.state, now.week)) : std::int16_t{0};
+    m.week = state.time.date ? field<std::int16_t>(reported_week(context.state, now.week)) : std::int16_t{0};
     m.leap_s = field<std::int8_t>(state.epoch.fix.leap_seconds);
     return m;
 }
@@ -63,7 +63,7 @@ NavTimeutc time_utc(const ReportContext& context) {
     m.hour = static_cast<std::uint8_t>(now.utc.hour);
     m.minute = static_cast<std::uint8_t>(now.utc.minute);
     m.second = static_cast<std::uint8_t>(now.utc.second);
-    m.valid = static_cast<std::uint8_t>((time.week_and_tow ? 3 : 0) | (time.leap_seconds ? 4 : 0) |
+    m.valid = static_cast<std::uint8_t>((time.time ? 1 : 0) | (time.date ? 2 : 0) | (time.leap_seconds ? 4 : 0) |
                                         utc_standard(context) << 4);
     return m;
 }

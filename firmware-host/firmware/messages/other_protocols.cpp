@@ -81,11 +81,9 @@ MspSensorGps msp_sensor_gps(const NavigationState& state) {
     MspSensorGps message;
     message.fix_type = autopilot_fix_type(state);
     message.satellites = reported_satellites(fix);
-    if (state.time.week_and_tow) {
-        const WeekAndTow stamp = gps_stamp(state);
-        message.gps_week = field<std::uint16_t>(static_cast<double>(stamp.week));
-        message.ms_tow = whole_milliseconds(stamp);
-    }
+    const WeekAndTow stamp = gps_stamp(state);
+    if (state.time.date) message.gps_week = field<std::uint16_t>(static_cast<double>(stamp.week));
+    if (state.time.time) message.ms_tow = whole_milliseconds(stamp);
     if (state.time.time && state.time.date) put_msp_clock(state, message);
     if (!has_solution(state)) return message;
     put_msp_position(fix, message);
@@ -113,11 +111,9 @@ MavlinkGpsInput mavlink_gps_input(const NavigationState& state) {
     MavlinkGpsInput message;
     message.fix_type = autopilot_fix_type(state);
     message.satellites_visible = reported_satellites(fix);
-    if (state.time.week_and_tow) {
-        const WeekAndTow stamp = gps_stamp(state);
-        message.time_week = field<std::uint16_t>(static_cast<double>(stamp.week));
-        message.time_week_ms = whole_milliseconds(stamp);
-    }
+    const WeekAndTow stamp = gps_stamp(state);
+    if (state.time.date) message.time_week = field<std::uint16_t>(static_cast<double>(stamp.week));
+    if (state.time.time) message.time_week_ms = whole_milliseconds(stamp);
     if (state.time.time && state.time.date) message.time_usec = posix_microseconds(fix);
     message.ignore_flags = every_ignore_flag;
     if (!has_solution(state)) return message;
@@ -145,6 +141,8 @@ std::vector<Bytes> make_protocol_messages(Personality personality, const ReportC
                     encode_sbf(sbf_velocity_covariance(state)),
                     encode_sbf(sbf_dop(state)),
                     encode_sbf(sbf_attitude(state)),
+                    encode_sbf(sbf_other_antenna(state)),
+                    encode_sbf(sbf_end_of_pvt(state)),
                     encode_sbf(sbf_channel_status(state)),
                     encode_sbf(sbf_receiver_status(state))};
         default:

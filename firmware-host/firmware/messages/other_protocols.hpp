@@ -30,6 +30,9 @@ SbfPosCovGeodetic sbf_position_covariance(const NavigationState& state);
 SbfVelCovGeodetic sbf_velocity_covariance(const NavigationState& state);
 SbfDop sbf_dop(const NavigationState& state);
 SbfAttEuler sbf_attitude(const NavigationState& state);
+/// The vector of a pair of receivers, as if the other antenna were the main one; none without a pair.
+SbfAuxAntPositions sbf_other_antenna(const NavigationState& state);
+SbfEndOfPvt sbf_end_of_pvt(const NavigationState& state);
 SbfChannelStatus sbf_channel_status(const NavigationState& state);
 SbfReceiverStatus sbf_receiver_status(const NavigationState& state);
 

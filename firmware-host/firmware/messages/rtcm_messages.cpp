@@ -131,7 +131,7 @@ std::vector<Bytes> station_message(const ReportContext& context) {
 std::vector<Bytes> make_rtcm_message(UbxMessageId message, const ReportContext& context) {
     constexpr std::uint8_t id_1005 = 0x05, id_1230 = 0xE6;
     if (message.id == id_1005) return station_message(context);
-    if (!context.state.time.week_and_tow || context.state.epoch.observations.signals.empty()) return {};
+    if (!context.state.time.time || context.state.epoch.observations.signals.empty()) return {};
     if (message.id == id_1230) {
         // As a ZED-F9P sends it: the observations are aligned, and no bias is told.
         Rtcm3GlonassBiases biases;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "firmware/error_ellipse.hpp"
+#include "firmware/messages/field_values.hpp"
 #include "firmware/messages/other_protocols.hpp"
 #include "firmware/messages/reported_fix.hpp"
 #include "skyloop/gnss/constants.hpp"
@@ -14,9 +15,11 @@ constexpr std::uint32_t antenna_active = 1u << 1, week_set = 1u << 4, tow_set = 
 constexpr std::uint32_t antenna_error = 1u << 5;
 
 SbfTime sbf_time(const NavigationState& state) {
-    if (!state.time.week_and_tow) return {};
     const WeekAndTow stamp = gps_stamp(state);
-    return {whole_milliseconds(stamp), field<std::uint16_t>(static_cast<double>(stamp.week))};
+    SbfTime time;
+    if (state.time.time) time.tow = whole_milliseconds(stamp);
+    if (state.time.date) time.wnc = field<std::uint16_t>(static_cast<double>(stamp.week));
+    return time;
 }
 
 // PVT mode, bits 0-3 and 7 (PolaRx5TR reference guide, PVTGeodetic).
@@ -95,6 +98,15 @@ std::vector<SatelliteStatus> sbf_used(const Fix& fix) {
 }
 
 float sbf_square(double value) { return static_cast<float>(value * value); }
+
+// Of GLONASS, channel + 8, by what was measured of the satellite; of other systems, and where nothing was, 0.
+std::uint8_t sbf_frequency_number(SatelliteId satellite, const Observations& observations) {
+    if (satellite.constellation != Constellation::glonass) return 0;
+    for (const Observation& o : observations.signals)
+        if (o.satellite == satellite)
+            return static_cast<std::uint8_t>(frequency_id(o.satellite, o.signal, o.carrier) + 1);
+    return 0;
+}
 
 SbfChannel sbf_channel(const SatelliteStatus& satellite, std::uint8_t svid) {
     const int shift = sbf_status_shift(satellite.id.constellation);
@@ -189,6 +201,23 @@ SbfAttEuler sbf_attitude(const NavigationState& state) {
     return block;
 }
 
+SbfAuxAntPositions sbf_other_antenna(const NavigationState& state) {
+    SbfAuxAntPositions block;
+    block.time = sbf_time(state);
+    if (!pair_attitude(state)) return block;
+    const RelativePosition& relative = *state.epoch.relative;
+    SbfAuxAntenna antenna;
+    antenna.num_sv = reported_satellites(state.epoch.fix);
+    antenna.ambiguity_type = relative.fixed ? 0 : 1;
+    antenna.delta_east = relative.east_m;
+    antenna.delta_north = relative.north_m;
+    antenna.delta_up = -relative.down_m;
+    block.antennas.push_back(antenna);
+    return block;
+}
+
+SbfEndOfPvt sbf_end_of_pvt(const NavigationState& state) { return {sbf_time(state)}; }
+
 SbfChannelStatus sbf_channel_status(const NavigationState& state) {
     SbfChannelStatus block;
     block.time = sbf_time(state);
@@ -196,6 +225,7 @@ SbfChannelStatus sbf_channel_status(const NavigationState& state) {
         const auto svid = sbf_svid(satellite.id);
         if (!satellite.cn0 || !svid || block.channels.size() == most_items) continue;
         block.channels.push_back(sbf_channel(satellite, *svid));
+        block.channels.back().freq_nr = sbf_frequency_number(satellite.id, state.epoch.observations);
         block.channels.back().rx_channel = static_cast<std::uint8_t>(block.channels.size());
     }
     return block;
@@ -205,8 +235,8 @@ SbfReceiverStatus sbf_receiver_status(const NavigationState& state) {
     SbfReceiverStatus block;
     block.time = sbf_time(state);
     block.up_time = field<std::uint32_t>(std::floor(state.since_start.value()));
-    block.rx_state = (state.monitors.antenna_power == 1 ? antenna_active : 0) |
-                     (state.time.week_and_tow ? week_set | tow_set : 0) | (has_solution(state) ? fine_time : 0);
+    block.rx_state = (state.monitors.antenna_power == 1 ? antenna_active : 0) | (state.time.date ? week_set : 0) |
+                     (state.time.time ? tow_set : 0) | (has_solution(state) ? fine_time : 0);
     block.rx_error = state.monitors.antenna == AntennaStatus::short_circuit ? antenna_error : 0;
     return block;
 }

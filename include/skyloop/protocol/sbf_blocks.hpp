@@ -273,6 +273,59 @@ struct SbfReceiverStatus {
     }
 };
 
+/// The vector from the main antenna to another one.
+struct SbfAuxAntenna {
+    std::uint8_t num_sv = 255;
+    std::uint8_t error = 0;           ///< 0 none
+    std::uint8_t ambiguity_type = 0;  ///< 0 fixed, 1 floating
+    std::uint8_t antenna = 1;
+    double delta_east = sbf_nothing, delta_north = sbf_nothing, delta_up = sbf_nothing;  ///< m
+    double vel_east = sbf_nothing, vel_north = sbf_nothing, vel_up = sbf_nothing;        ///< m/s
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.num_sv, m.error, m.ambiguity_type, m.antenna, m.delta_east, m.delta_north, m.delta_up, m.vel_east,
+          m.vel_north, m.vel_up);
+    }
+};
+
+/// AuxAntPositions: where the other antennas of an attitude are. Blocks of longer parts are not read.
+struct SbfAuxAntPositions {
+    static constexpr std::uint16_t block_number = 5942;
+    static constexpr std::uint8_t block_revision = 0;
+    static constexpr std::string_view message_name = "AuxAntPositions";
+    static constexpr std::string_view field_names =
+        "tow_s*1e-3!4294967295 week!65535 -antenna_bytes antennas[num_sv!255 error ambiguity_type antenna "
+        "delta_east_m!-2e10 delta_north_m!-2e10 delta_up_m!-2e10 vel_east_mps!-2e10 vel_north_mps!-2e10 "
+        "vel_up_mps!-2e10]";
+    static constexpr std::uint8_t antenna_bytes = 52;
+    SbfTime time;
+    std::uint8_t sb_length = antenna_bytes;
+    std::vector<SbfAuxAntenna> antennas;
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.time);
+        v.count(m.antennas);
+        v(m.sb_length);
+        v.items(m.antennas);
+    }
+};
+
+/// EndOfPVT: nothing more of an epoch's PVT blocks follows (PolaRx5TR reference guide, section 4.2).
+struct SbfEndOfPvt {
+    static constexpr std::uint16_t block_number = 5921;
+    static constexpr std::uint8_t block_revision = 0;
+    static constexpr std::string_view message_name = "EndOfPVT";
+    static constexpr std::string_view field_names = "tow_s*1e-3!4294967295 week!65535";
+    SbfTime time;
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.time);
+    }
+};
+
 /// The whole block of a message.
 template <class Message>
 Bytes encode_sbf(const Message& message) {

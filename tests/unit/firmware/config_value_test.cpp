@@ -149,13 +149,27 @@ TEST(Valset, CutsLogicalsToTheirBit) {
               Verdict::refuse);  // 2 is off: no system is left
 }
 
+// ArduPilot keeps settings of an M10 in RAM and battery alone for that reason.
+TEST(Valset, HasNoFlashWithFirmwareInRom) {
+    BoardProfile board = whole_board();
+    board.identity.generation = 10;
+    board.identity.software = "ROM SPG 5.10";
+    Configured c(board);
+    for (std::uint8_t layers = 4; layers < 8; ++layers)
+        EXPECT_EQ(c.set(layers, {{period_item, 200}}), Verdict::refuse) << int{layers};
+    EXPECT_EQ(c.erase(4, {period_item}), Verdict::refuse);
+    EXPECT_EQ(c.get(2, {period_item}), std::nullopt);
+    EXPECT_EQ(c.set(3, {{period_item, 200}}), Verdict::acknowledge);
+}
+
 TEST(Valset, KeepsRamConsistent) {
     Configured c;
     const KeyValues nothing{{0x1031001F, 0}, {0x10310021, 0}};
     EXPECT_EQ(c.set(1, nothing), Verdict::refuse);
     EXPECT_EQ(c.set(3, nothing), Verdict::refuse);
     EXPECT_TRUE(c.store.values(ConfigLayer::battery).empty());
-    EXPECT_EQ(c.set(2, nothing), Verdict::acknowledge);  // what is only saved is judged at the next start
+    EXPECT_EQ(c.set(2, nothing), Verdict::refuse) << "the next start would have no system";
+    EXPECT_EQ(c.set(4, nothing), Verdict::refuse);
     EXPECT_EQ(c.set(1, {{key::ant_power_down, 1}}), Verdict::refuse);
     EXPECT_EQ(c.set(1, {{key::ant_power_down, 1}, {key::ant_voltage_control, 1}}), Verdict::acknowledge);
 }

@@ -48,6 +48,10 @@ TEST(CorrectionInput, AnswersEveryMessage) {
     EXPECT_EQ(input.take(encode_rtcm3({}), power_on), encode_frame({0x02, 0x32}, Bytes{2, 2, 0, 0, 0, 0, 0, 0}));
 }
 
+TEST(CorrectionInput, TellsOfADamagedFrame) {
+    EXPECT_EQ(CorrectionInput::answer_to_damaged(), encode_frame({0x02, 0x32}, Bytes{2, 1, 0, 0, 0, 0, 0, 0}));
+}
+
 TEST(CorrectionInput, NeedsObservationsAndPositionOfOneStation) {
     CorrectionInput input(rtk_ability());
     EXPECT_EQ(state_at(input, 0), CorrectionState::none);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "skyloop/geo/local_frame.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
 #include "skyloop/protocol/ubx_relative.hpp"
 #include "skyloop/protocol/ubx_services.hpp"
@@ -119,7 +120,7 @@ TEST(NavPvtMessage, TellsTheStepsOfTimeApart) {
     EXPECT_EQ(m9.report<NavPvt>().flags2, 0x2A);
     m9.state.time.date = false;
     EXPECT_EQ(m9.report<NavPvt>().valid, 0xF2);
-    m9.state.time = {true, true, true, true, true, Seconds(1)};
+    m9.state.time = {true, true, true, true, Seconds(1)};
     EXPECT_EQ(m9.report<NavPvt>().t_acc, 1000000000u);
     m9.config.set(in_ram, key::navspg_utcstandard, 6);
     EXPECT_EQ(m9.report<NavPvt>().valid, 0x67);
@@ -137,7 +138,7 @@ TEST(NavPvtMessage, NamesTheStandardOfTheOnlySystem) {
 
 TEST(NavPvtMessage, TellsFloatFromFixed) {
     UbxReport f9(9);
-    f9.state.corrections = {CorrectionState::differential, Seconds(1.5), 12};
+    f9.state.corrections = {CorrectionState::differential, Seconds(1.5), 12, {}};
     f9.state.epoch.fix.type = FixType::dgnss;
     EXPECT_EQ(f9.report<NavPvt>().flags, 0x03);
     EXPECT_EQ(f9.report<NavPvt>().flags3, 2 << 1);
@@ -354,6 +355,30 @@ TEST(NavRelposnedMessage, GivesTheVectorOfAMovingBase) {
     EXPECT_EQ(f9.report<NavRelposned>().flags, 0x0Fu);
 }
 
+TEST(NavRelposnedMessage, GivesTheVectorFromTheStationOfTheCorrections) {
+    UbxReport f9(9);
+    Fix& fix = f9.state.epoch.fix;
+    const Displacement<Enu> to_base(-30, 40, 2);
+    const Position<Ecef> base = to_ecef(fix.position) + LocalFrame(fix.position).to_ecef(to_base);
+    f9.state.corrections = {CorrectionState::rtk_fixed, Seconds(1), 12, base};
+    fix.type = FixType::rtk_fixed;
+    fix.horizontal_accuracy = Metres(0.014);
+    const auto m = f9.report<NavRelposned>();
+    EXPECT_EQ(m.flags, 0x17u);
+    EXPECT_EQ(m.ref_station_id, 12);
+    EXPECT_NEAR(m.rel_pos[0], -4000, 1);  // cm, by the base's own north
+    EXPECT_NEAR(m.rel_pos[1], 3000, 1);
+    EXPECT_NEAR(m.rel_pos[2], 200, 1);
+    EXPECT_NEAR(m.rel_pos_length, 5004, 1);
+    EXPECT_EQ(m.acc[0], 99u);  // 0.1 mm
+    fix.type = FixType::rtk_float;
+    EXPECT_EQ(f9.report<NavRelposned>().flags, 0x0Fu);
+    fix.type = FixType::dgnss;
+    EXPECT_EQ(f9.report<NavRelposned>().flags, 0x07u);
+    f9.state.corrections.base.reset();
+    EXPECT_EQ(f9.report<NavRelposned>().flags, 0x01u) << "observations alone tell no place";
+}
+
 TEST(NavSvinMessage, RunsUntilTheTimeOnlySolution) {
     UbxReport f9(9);
     EXPECT_EQ(f9.report<NavSvin>().active, 0);
@@ -369,7 +394,7 @@ TEST(NavDgpsMessage, ListsTheCorrectedSatellites) {
     UbxReport m8(8);
     EXPECT_EQ(m8.report<NavDgps>().age, 999999);
     EXPECT_TRUE(m8.report<NavDgps>().satellites.empty());
-    m8.state.corrections = {CorrectionState::differential, Seconds(2.5), 5};
+    m8.state.corrections = {CorrectionState::differential, Seconds(2.5), 5, {}};
     EXPECT_EQ(m8.report<NavDgps>().age, 2500);
     EXPECT_EQ(m8.report<NavDgps>().base_id, 5);
     EXPECT_EQ(m8.report<NavDgps>().satellites.size(), 9u);

@@ -268,7 +268,7 @@ TEST(NmeaCorrections, AreToldWithAgeAndStation) {
     SampleReceiver receiver = four_systems();
     receiver.state.epoch.fix.type = FixType::rtk_fixed;
     EXPECT_THAT(receiver.line(gga_id), HasSubstr(",M,,0000*"));
-    receiver.state.corrections = {CorrectionState::rtk_fixed, Seconds(0.04), 41};
+    receiver.state.corrections = {CorrectionState::rtk_fixed, Seconds(0.04), 41, {}};
     EXPECT_THAT(receiver.line(gga_id), HasSubstr(",M,0.0,0041*"));
     EXPECT_THAT(receiver.line(gns_id), HasSubstr(",RRRN,11,1.10,478.6,21.4,0.0,0041,V*"));
     receiver.state.epoch.fix.type = FixType::fix_3d;
@@ -339,7 +339,7 @@ TEST(NmeaPubx, HasAFormWithoutPosition) {
     EXPECT_THAT(receiver.line(0, pubx_class), HasSubstr(",TT,"));
     receiver.set(sample_fix("2024-03-05T12:00:00Z", 47, 8, 500));
     receiver.state.epoch.fix.type = FixType::rtk_fixed;
-    receiver.state.corrections = {CorrectionState::rtk_fixed, Seconds(1.4), 1};
+    receiver.state.corrections = {CorrectionState::rtk_fixed, Seconds(1.4), 1, {}};
     EXPECT_THAT(receiver.line(0, pubx_class), HasSubstr(",D3,3.3,5.0,45.000,77.78,0.000,1,1.10,"));
 }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "sample_epochs.hpp"
+#include "skyloop/gnss/signal.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -17,7 +18,7 @@ NavigationState navigating() {
     state.epoch.fix.velocity = {-1.5, 2.25, 0.5};
     state.epoch.fix.speed_accuracy = MetresPerSecond(0.4);
     state.fix_ok = true;
-    state.time = {true, true, true, true, true, Seconds(1e-8)};
+    state.time = {true, true, true, true, Seconds(1e-8)};
     state.course = Angle::degrees(77.77);
     state.epoch_index = 130;
     state.since_start = Seconds(33.9);
@@ -74,6 +75,19 @@ TEST_F(OtherProtocols, MspWithoutAFixHasNoPosition) {
     const MspSetRawGps raw = msp_set_raw_gps(without_fix());
     EXPECT_EQ(raw.fix, 0);
     EXPECT_EQ(raw.latitude, 0);
+}
+
+TEST_F(OtherProtocols, AnUnknownWeekLeavesTheTimeOfWeek) {
+    NavigationState state = navigating();
+    const std::uint32_t tow = msp_sensor_gps(state).ms_tow;
+    state.time.date = false;
+    EXPECT_EQ(msp_sensor_gps(state).gps_week, 0xFFFF);
+    EXPECT_EQ(msp_sensor_gps(state).ms_tow, tow);
+    EXPECT_EQ(mavlink_gps_input(state).time_week, 0);
+    EXPECT_EQ(mavlink_gps_input(state).time_week_ms, tow);
+    EXPECT_EQ(sbf_receiver_status(state).time.wnc, 0xFFFF);
+    EXPECT_EQ(sbf_receiver_status(state).time.tow, tow);
+    EXPECT_EQ(sbf_receiver_status(state).rx_state & 0x30, 0x20U);
 }
 
 TEST_F(OtherProtocols, AFixBeyondTheUsersLimitsIsNone) {
@@ -136,12 +150,20 @@ TEST_F(OtherProtocols, APairTellsWhereItPoints) {
     EXPECT_FLOAT_EQ(attitude.heading, 0);
     EXPECT_FLOAT_EQ(attitude.pitch, 45);
     EXPECT_EQ(attitude.mode, 2);
+    const SbfAuxAntPositions antennas = sbf_other_antenna(state);
+    ASSERT_EQ(antennas.antennas.size(), 1u);
+    EXPECT_EQ(antennas.antennas[0].error, 0);
+    EXPECT_EQ(antennas.antennas[0].ambiguity_type, 0);
+    EXPECT_DOUBLE_EQ(antennas.antennas[0].delta_north, 1);
+    EXPECT_DOUBLE_EQ(antennas.antennas[0].delta_east, 0);
+    EXPECT_DOUBLE_EQ(antennas.antennas[0].delta_up, 1);
     state.epoch.relative->north_m = 0;
     state.epoch.relative->east_m = -1;
     EXPECT_EQ(msp_sensor_gps(state).true_yaw, 27000);
     state.epoch.relative->base_moves = false;
     EXPECT_EQ(msp_sensor_gps(state).true_yaw, 0xFFFF);
     EXPECT_EQ(sbf_attitude(state).error, 1);
+    EXPECT_TRUE(sbf_other_antenna(state).antennas.empty());
 }
 
 TEST_F(OtherProtocols, MavlinkCountsItsFramesWithoutAGap) {
@@ -209,6 +231,15 @@ TEST_F(OtherProtocols, CovariancesAddUpToTheAccuracies) {
 }
 
 TEST_F(OtherProtocols, ChannelsAreTheTrackedSatellites) {
+    NavigationState state = navigating();
+    const SatelliteId glonass{Constellation::glonass, 7};
+    state.epoch.fix.satellites.push_back({glonass, Angle::degrees(10), Angle::degrees(20), DbHz(40), true});
+    state.epoch.observations.signals.emplace_back();
+    state.epoch.observations.signals.back().satellite = glonass;
+    state.epoch.observations.signals.back().signal = Signal::g1;
+    state.epoch.observations.signals.back().carrier = carrier_frequency(Signal::g1, -4);
+    EXPECT_EQ(sbf_channel_status(state).channels.back().freq_nr, 4);
+    EXPECT_EQ(sbf_channel_status(state).channels.front().freq_nr, 0);
     const SbfChannelStatus m = sbf_channel_status(navigating());
     ASSERT_EQ(m.channels.size(), 9u);
     EXPECT_EQ(m.channels[0].svid, 1);
@@ -227,7 +258,7 @@ TEST_F(OtherProtocols, EveryPersonalityHasItsMessages) {
     std::vector<int> numbers;
     for (const Bytes& block : sbf)
         numbers.push_back(parse_sbf(block)->number);
-    EXPECT_EQ(numbers, (std::vector<int>{4007, 5906, 5908, 4001, 5938, 4013, 4014}));
+    EXPECT_EQ(numbers, (std::vector<int>{4007, 5906, 5908, 4001, 5938, 5942, 5921, 4013, 4014}));
     EXPECT_EQ(parse_msp(messages(Personality::msp, state).at(0))->function, 0x1F03);
     EXPECT_EQ(parse_msp(messages(Personality::msp_v1, state).at(0))->function, 201);
     EXPECT_EQ(parse_mavlink(messages(Personality::mavlink, state).at(1))->message, 232u);

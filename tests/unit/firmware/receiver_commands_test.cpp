@@ -5,6 +5,7 @@
 #include "firmware/receiver.hpp"
 #include "sample_epochs.hpp"
 #include "skyloop/protocol/nmea_sentence.hpp"
+#include "skyloop/protocol/rtcm3.hpp"
 #include "skyloop/protocol/stream_splitter.hpp"
 #include "skyloop/protocol/ubx_cfg.hpp"
 #include "skyloop/protocol/ubx_cfg_hardware.hpp"
@@ -347,6 +348,29 @@ TEST(ReceiverCommands, RemembersOverTheEndOfTheProcess) {
     next.wait(3500ms);
     EXPECT_EQ(next.frames(nav_pvt_id).size(), 3U);
     EXPECT_FALSE(next.receiver().restore("nonsense", "state"));
+}
+
+TEST(ReceiverCommands, TellsOfACorrectionThatArrivesDamaged) {
+    constexpr UbxMessageId rxm_rtcm{0x02, 0x32};
+    constexpr std::uint32_t rxm_rtcm_on_uart1 = 0x20910269, rtcm3_into_uart1 = 0x10730004;
+    BoardProfile board = sample_ublox();
+    board.messages.push_back(rxm_rtcm);
+    Bench bench(board);
+    bench.send(valset({{rxm_rtcm_on_uart1, 1}, {rtcm3_into_uart1, 1}})).wait(1s).forget();
+    Bytes frame = encode_rtcm3(Bytes{0x43, 0x50, 0x07, 0x01, 0x02, 0x03});
+    frame[5] ^= 0x10;
+    bench.write(frame).wait(100ms);
+    ASSERT_EQ(bench.frames(rxm_rtcm).size(), 1u);
+    EXPECT_EQ(bench.frames(rxm_rtcm)[0].payload[1], 1) << "crcFailed";
+    frame[5] ^= 0x10;
+    bench.write(frame).wait(100ms);
+    ASSERT_EQ(bench.frames(rxm_rtcm).size(), 2u);
+    EXPECT_EQ(bench.frames(rxm_rtcm)[1].payload[1] & 1, 0);
+    bench.forget();
+    bench.send(valset({{rtcm3_into_uart1, 0}})).wait(1s);
+    frame[5] ^= 0x10;
+    bench.write(frame).wait(100ms);
+    EXPECT_TRUE(bench.frames(rxm_rtcm).empty()) << "a port that takes no RTCM looks for none";
 }
 
 TEST(ReceiverCommands, TellsWhenTheAntennaChanges) {

@@ -82,6 +82,13 @@ TEST(NavTimegpsMessage, GoesFromThreeToSeven) {
     EXPECT_EQ(m9.report<NavTimegps>().t_acc, 25u);
     m9.state.time.leap_seconds = false;
     EXPECT_EQ(m9.report<NavTimegps>().valid, 3);
+    m9.state.time.date = false;
+    EXPECT_EQ(m9.report<NavTimegps>().valid, 1) << "before the week is known";
+    EXPECT_EQ(m9.report<NavTimegps>().week, 0);
+    EXPECT_EQ(m9.report<NavTimegal>().valid, 1);
+    EXPECT_EQ(m9.report<NavTimebds>().valid, 1);
+    EXPECT_EQ(m9.report<NavTimeutc>().valid & 3, 1);
+    EXPECT_EQ(m9.report<NavStatus>().flags & 0x0C, 8);
     m9.start_cold(5);
     EXPECT_EQ(m9.report<NavTimegps>().valid, 0);
     EXPECT_EQ(m9.report<NavTimegps>().week, 0);

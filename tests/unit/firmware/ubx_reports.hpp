@@ -29,7 +29,7 @@ struct UbxReport {
         add_satellites(fix, Constellation::gps, 1, 8);
         add_satellites(fix, Constellation::galileo, 1, 4);
         state.fix_ok = state.ever_had_fix = state.position_known = true;
-        state.time = {true, true, true, true, true, Seconds(25e-9)};
+        state.time = {true, true, true, true, Seconds(25e-9)};
         state.course = Angle::degrees(53.13);
         state.since_start = Seconds(123.456);
         state.since_boot = Seconds(456.789);

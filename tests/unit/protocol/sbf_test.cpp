@@ -21,6 +21,10 @@ TEST(Sbf, BlocksHaveTheLengthsOfTheReferenceGuide) {
     EXPECT_EQ(encode_sbf(SbfVelCovGeodetic{}).size(), 56u);
     EXPECT_EQ(encode_sbf(SbfDop{}).size(), 32u);
     EXPECT_EQ(encode_sbf(SbfAttEuler{}).size(), 44u);
+    EXPECT_EQ(encode_sbf(SbfEndOfPvt{}).size(), 16u);  // filled up to a multiple of four
+    SbfAuxAntPositions antennas;
+    antennas.antennas.resize(2);
+    EXPECT_EQ(encode_sbf(antennas).size(), 8u + 8 + 2 * 52);
     SbfChannelStatus channels;
     channels.channels.resize(3);
     EXPECT_EQ(encode_sbf(channels).size(), 8u + 12 + 3 * 20);
