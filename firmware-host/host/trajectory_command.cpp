@@ -91,6 +91,9 @@ std::optional<Seconds> natural_length(const TrajectorySettings& way, const Traje
     if (const auto* waypoints = dynamic_cast<const Waypoints*>(&path)) return waypoints->duration();
     if (const auto* circle = std::get_if<CircleSettings>(&way); circle && circle->shape.speed.value() != 0)
         return Seconds(2 * std::numbers::pi * circle->shape.radius.value() / std::abs(circle->shape.speed.value()));
+    if (const auto* generated = std::get_if<GeneratedSettings>(&way);
+        generated && std::isfinite(generated->shape->duration()))
+        return generated->path.start_delay + Seconds(generated->shape->duration());
     if (std::holds_alternative<FixedSettings>(way)) return Seconds(1);
     return std::nullopt;
 }

@@ -60,6 +60,12 @@ struct LiveFeeds::Source {
     bool lost = false;
     int times_lost = 0;
     SampleAge age;
+
+    // Everybody who has no place without it has one.
+    [[nodiscard]] bool is_known() const {
+        return !waited_for ||
+               std::all_of(paths.begin(), paths.end(), [](const auto& path) { return path->newest().has_value(); });
+    }
 };
 
 void SampleAge::add(Nanoseconds age) {
@@ -105,6 +111,8 @@ Result<std::unique_ptr<LiveFeeds>> LiveFeeds::open(Scenario& scenario, const Geo
     const std::vector<LiveSettings*> wanted = live_settings(scenario);
     if (wanted.empty()) return nullptr;
     std::unique_ptr<LiveFeeds> feeds(new LiveFeeds);
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
+        feeds->receivers_.push_back(receiver_name(scenario, i));
     for (LiveSettings* live : wanted) {
         const auto source = feeds->source_of(*live, geoid);
         if (!source) return fail(source.error());
@@ -142,7 +150,12 @@ std::vector<Command> LiveFeeds::pump(GpsTime now, std::optional<std::int64_t> du
     for (const auto& source : sources_) {
         if (due_ns) source->feed->set_run(now, *due_ns);
         for (Command& command : source->feed->pump())
-            commands.push_back(std::move(command));
+            if (const auto mistake = receiver_mistake(command, receivers_))
+                news_.push_back(fmt::format("{}: {} is not done: {}", source->feed->description(),
+                                            command_name(command.verb), *mistake));
+            else
+                commands.push_back(std::move(command));
+        if (source->settings.clock == ClockMode::lock_step && !source->is_known()) source->feed->skip_steps();
         look_for_silence(*source, commands);
         for (std::string& news : source->feed->take_news())
             news_.push_back(std::move(news));
@@ -206,10 +219,7 @@ void LiveFeeds::rest(std::uint64_t bytes_out) {
 }
 
 bool LiveFeeds::all_heard() const {
-    return std::all_of(sources_.begin(), sources_.end(), [](const auto& source) {
-        return !source->waited_for || std::all_of(source->paths.begin(), source->paths.end(),
-                                                  [](const auto& path) { return path->newest().has_value(); });
-    });
+    return std::all_of(sources_.begin(), sources_.end(), [](const auto& source) { return source->is_known(); });
 }
 
 std::string LiveFeeds::waits_for() const {

@@ -8,8 +8,6 @@
 #include <set>
 #include <utility>
 
-#include "skyloop/base/steady_clock.hpp"
-
 namespace skyloop {
 namespace {
 
@@ -42,11 +40,11 @@ void FeedPaths::set_run(GpsTime now, std::int64_t steady_ns) {
     start_ = now;
     start_ns_ = steady_ns;
     clock_.set_run(now, steady_ns);
-    for (auto& [vehicle, clock] : arrival_clocks_)
-        clock.set_run(now, steady_ns);
+    for (auto& [vehicle, untimed] : untimed_)
+        untimed.clock.set_run(now, steady_ns);
 }
 
-std::vector<Command> FeedPaths::take() {
+std::vector<Command> FeedPaths::take(std::int64_t now_ns) {
     std::vector<Command> commands;
     if (!begun_) return commands;
     if (next_ >= taken_.size()) {
@@ -58,7 +56,7 @@ std::vector<Command> FeedPaths::take() {
     const std::size_t end = std::min(taken_.size(), next_ + most_items_at_once);
     for (; next_ < end && !step_waits(); ++next_)
         take_item(taken_[next_], commands);
-    look(steady_clock_ns());
+    look(now_ns);
     return commands;
 }
 
@@ -136,14 +134,20 @@ void FeedPaths::add(Vehicle& vehicle, const std::string& name, GpsTime time, Tru
 }
 
 SourceClock::Stamp FeedPaths::stamp(const TruthSample& sample) {
-    if (sample.source_time) return clock_.stamp(sample.source_time, sample.received_ns);
-    // Vehicles of one source come at their own instants, each with its own rhythm.
-    if (mode_ == ClockMode::realtime && arrival_clocks_.size() < most_arrival_clocks) {
-        const auto [own, fresh] = arrival_clocks_.try_emplace(sample.vehicle, mode_, start_, start_ns_);
-        return own->second.stamp(std::nullopt, sample.received_ns);
+    if (sample.source_time) {
+        if (!first_timed_ns_) first_timed_ns_ = sample.received_ns;
+        return clock_.stamp(sample.source_time, sample.received_ns);
     }
-    const auto own = arrival_clocks_.find(sample.vehicle);
-    return (own != arrival_clocks_.end() ? own->second : clock_).stamp(std::nullopt, sample.received_ns);
+    // Vehicles of one source come at their own instants, each with its own rhythm.
+    auto own = untimed_.find(sample.vehicle);
+    if (own == untimed_.end() && untimed_.size() < most_arrival_clocks)
+        own = untimed_.try_emplace(sample.vehicle, Untimed{SourceClock(mode_, start_, start_ns_), {}}).first;
+    if (own == untimed_.end()) return clock_.stamp(std::nullopt, sample.received_ns);
+    const auto step = own->second.last ? own_step(*own->second.last, sample) : std::nullopt;
+    own->second.last = sample;
+    if (mode_ != ClockMode::realtime)  // one time for all; between two vehicles there is no step
+        return clock_.stamp(std::nullopt, sample.received_ns, untimed_.size() == 1 ? step : std::nullopt);
+    return own->second.clock.stamp(std::nullopt, sample.received_ns, step);
 }
 
 void FeedPaths::note(const SourceClock::Stamp& stamp, std::int64_t now_ns) {
@@ -190,6 +194,20 @@ std::vector<FeedStep> FeedPaths::steps_done_before() {
     return done;
 }
 
+// What has been said until now is over; the next statement is the start.
+std::vector<FeedStep> FeedPaths::skip_steps() {
+    std::vector<FeedStep> skipped;
+    if (steps_.empty()) return skipped;
+    for (const PendingStep& pending : steps_)
+        skipped.push_back(pending.step);
+    steps_.clear();
+    clock_ = SourceClock(mode_, start_, start_ns_);
+    ++restarts_;
+    newest_step_.reset();
+    answered_.reset();
+    return skipped;
+}
+
 // Follow: as far as all of the vehicles are known. One that has not been heard for a second of the source's, or that
 // is not there, is not waited for.
 std::optional<GpsTime> FeedPaths::horizon() const {
@@ -207,7 +225,6 @@ std::optional<GpsTime> FeedPaths::horizon() const {
 
 void FeedPaths::look(std::int64_t now_ns) {
     constexpr std::int64_t every_ns = 1'000'000'000, silence_ns = 1'500'000'000;
-    constexpr double odd_rate = 0.02;  // FEEDS.md 3.2
     if (now_ns < looked_ns_ + every_ns) return;
     looked_ns_ = now_ns;
     std::int64_t heard_ns = 0;
@@ -219,9 +236,19 @@ void FeedPaths::look(std::int64_t now_ns) {
         vehicle.silent = true;
         desk_.news.tell(FeedNewsDesk::Kind::vehicle, fmt::format("vehicle '{}' is silent", name.substr(0, 40)), now_ns);
     }
+    look_at_rate(now_ns);
+}
+
+// Once it is known over five seconds, and three looks agree: after a pause or a step it is known over less.
+void FeedPaths::look_at_rate(std::int64_t now_ns) {
+    constexpr std::int64_t watched_ns = 5'000'000'000;
+    constexpr double odd_rate = 0.02;  // FEEDS.md 3.2
+    constexpr int enough = 3;
+    if (mode_ != ClockMode::realtime || rate_told_ || !first_timed_ns_ || now_ns < *first_timed_ns_ + watched_ns)
+        return;
     const auto rate = clock_.rate();
-    if (mode_ != ClockMode::realtime || rate_told_ || !rate || now_ns < start_ns_ + 5 * every_ns) return;
-    if (std::abs(*rate - 1) <= odd_rate || *rate <= 0) return;
+    odd_looks_ = rate && *rate > 0 && std::abs(*rate - 1) > odd_rate ? odd_looks_ + 1 : 0;
+    if (odd_looks_ < enough) return;
     rate_told_ = true;
     desk_.news.tell(
         FeedNewsDesk::Kind::clock,

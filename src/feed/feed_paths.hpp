@@ -23,14 +23,16 @@ public:
     void begin(GpsTime start, std::int64_t steady_ns);
     void set_run(GpsTime now, std::int64_t steady_ns);
 
-    /// Takes what waits, at most 4096 items. Nothing before begin().
-    std::vector<Command> take();
+    /// Takes what waits, at most 4096 items. Nothing before begin(). @param now_ns the steady clock
+    std::vector<Command> take(std::int64_t now_ns);
     [[nodiscard]] bool any_left() const { return next_ < taken_.size(); }
     [[nodiscard]] std::optional<GpsTime> horizon() const;
     /// Steps up to the horizon that have not been given yet.
     std::vector<FeedStep> steps_done();
     /// Of these, those that ask for what was done long ago.
     std::vector<FeedStep> steps_done_before();
+    /// Steps that wait while the run cannot begin.
+    std::vector<FeedStep> skip_steps();
 
     [[nodiscard]] bool ended() const { return ended_; }
     [[nodiscard]] bool paused() const { return paused_; }
@@ -43,6 +45,10 @@ private:
         std::uint64_t jumps = 0;     // of the path, that the user has been told
         std::int64_t heard_ns = 0;   // nothing so far: 0
         bool silent = false;         // has been told
+    };
+    struct Untimed {
+        SourceClock clock;
+        std::optional<TruthSample> last;
     };
     struct PendingStep {
         FeedStep step;
@@ -57,15 +63,16 @@ private:
     SourceClock::Stamp stamp(const TruthSample& sample);
     void note(const SourceClock::Stamp& stamp, std::int64_t now_ns);
     void look(std::int64_t now_ns);
+    void look_at_rate(std::int64_t now_ns);
     void add(Vehicle& vehicle, const std::string& name, GpsTime time, TruthSample& sample);
 
     LivePathSettings path_settings_;
     ClockMode mode_;
     FeedDesk& desk_;
     SourceClock clock_;
-    std::map<std::string, SourceClock> arrival_clocks_;  // of vehicles whose source has no time
-    std::map<std::string, Vehicle> vehicles_;            // that somebody wants
-    std::shared_ptr<LivePath> any_;                      // of the first that is spoken of
+    std::map<std::string, Untimed> untimed_;   // vehicles that speak without a time
+    std::map<std::string, Vehicle> vehicles_;  // that somebody wants
+    std::shared_ptr<LivePath> any_;            // of the first that is spoken of
     std::optional<std::string> first_;
     bool begun_ = false, fresh_ = false;
     GpsTime start_;
@@ -77,6 +84,8 @@ private:
     std::deque<PendingStep> steps_;
     bool ended_ = false, paused_ = false, other_told_ = false;
     std::int64_t looked_ns_ = 0;
+    std::optional<std::int64_t> first_timed_ns_;  // when the first sample with a time came
+    int odd_looks_ = 0;                           // one after the other that saw a rate that is not 1
     bool rate_told_ = false;
 };
 

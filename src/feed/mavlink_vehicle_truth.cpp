@@ -75,23 +75,24 @@ std::optional<SampleOr> MavlinkVehicleTruth::take(const MavlinkFrameView& frame,
         }
         case MavlinkSimState::message_id:
             if (!counts(Kind::sim_state, received_ns)) return std::nullopt;
-            return add(Kind::sim_state, of_sim_state(decode_mavlink<MavlinkSimState>(frame.payload)), std::nullopt,
-                       received_ns);
+            return take_sim_state(frame, received_ns);
         case MavlinkOdometry::message_id: {
             if (!counts(Kind::odometry, received_ns)) return std::nullopt;
             const auto message = decode_mavlink<MavlinkOdometry>(frame.payload);
             return add(Kind::odometry, of_odometry(message), time_of_microseconds(message.time_usec), received_ns);
         }
         case MavlinkLocalPositionNed::message_id: {
+            const auto message = decode_mavlink<MavlinkLocalPositionNed>(frame.payload);
+            boot_.heard(time_of_boot(message.time_boot_ms), received_ns);
             // Without an origin it tells no place; GLOBAL_POSITION_INT may.
             if (!counts(Kind::local_position, received_ns) || !context_.origin) return std::nullopt;
-            const auto message = decode_mavlink<MavlinkLocalPositionNed>(frame.payload);
             return add(Kind::local_position, of_local(message, received_ns), time_of_boot(message.time_boot_ms),
                        received_ns);
         }
         case MavlinkGlobalPositionInt::message_id: {
-            if (!counts(Kind::global_position, received_ns)) return std::nullopt;
             const auto message = decode_mavlink<MavlinkGlobalPositionInt>(frame.payload);
+            boot_.heard(time_of_boot(message.time_boot_ms), received_ns);
+            if (!counts(Kind::global_position, received_ns)) return std::nullopt;
             return add(Kind::global_position, of_global(message, received_ns), time_of_boot(message.time_boot_ms),
                        received_ns);
         }
@@ -101,13 +102,25 @@ std::optional<SampleOr> MavlinkVehicleTruth::take(const MavlinkFrameView& frame,
     }
 }
 
+// It has no time of its own. Its arrivals, evened out, are laid on the clock of the vehicle's other messages.
+std::optional<SampleOr> MavlinkVehicleTruth::take_sim_state(const MavlinkFrameView& frame, std::int64_t received_ns) {
+    SampleOr sample = of_sim_state(decode_mavlink<MavlinkSimState>(frame.payload));
+    if (!sample) return sample;
+    const auto step = sim_state_ ? own_step(*sim_state_, *sample) : std::nullopt;
+    sim_state_ = *sample;
+    const auto time = boot_.at(sim_rhythm_.evened(received_ns, step));
+    return add(MavlinkTruthKind::sim_state, std::move(sample), time, received_ns);
+}
+
 void MavlinkVehicleTruth::take_supplement(const MavlinkFrameView& frame, std::int64_t received_ns) {
     if (frame.message == MavlinkAttitude::message_id) {
         const auto m = decode_mavlink<MavlinkAttitude>(frame.payload);
+        boot_.heard(time_of_boot(m.time_boot_ms), received_ns);
         take_attitude(attitude_of_radians(m.roll, m.pitch, m.yaw), {m.rollspeed, m.pitchspeed, m.yawspeed},
                       received_ns);
     } else if (frame.message == MavlinkAttitudeQuaternion::message_id) {
         const auto m = decode_mavlink<MavlinkAttitudeQuaternion>(frame.payload);
+        boot_.heard(time_of_boot(m.time_boot_ms), received_ns);
         take_attitude(attitude_of_floats(m.q), {m.rollspeed, m.pitchspeed, m.yawspeed}, received_ns);
     } else if (frame.message == MavlinkGpsGlobalOrigin::message_id) {
         take_origin(decode_mavlink<MavlinkGpsGlobalOrigin>(frame.payload));

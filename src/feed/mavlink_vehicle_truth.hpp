@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "boot_clock.hpp"
 #include "skyloop/protocol/mavlink_vehicle.hpp"
+#include "skyloop/trajectory/arrival_rhythm.hpp"
 #include "source_pose.hpp"
 
 namespace skyloop {
@@ -13,7 +15,8 @@ namespace skyloop {
 enum class MavlinkTruthKind { none, global_position, local_position, odometry, sim_state, hil_state };
 
 // One vehicle. Of the kinds of messages that it sends the best one counts; a worse one again when that has been silent
-// for two seconds. Attitudes of messages of their own are added to the next place within half a second.
+// for two seconds. Attitudes of messages of their own are added to the next place within half a second. SIM_STATE,
+// which has no time, is laid on the clock of those that have one.
 class MavlinkVehicleTruth {
 public:
     explicit MavlinkVehicleTruth(const FeedContext& context) : context_(context) {}
@@ -28,6 +31,7 @@ public:
 private:
     bool counts(MavlinkTruthKind kind, std::int64_t received_ns) const;
     SampleOr add(MavlinkTruthKind kind, SampleOr sample, std::optional<Nanoseconds> time, std::int64_t received_ns);
+    std::optional<SampleOr> take_sim_state(const MavlinkFrameView& frame, std::int64_t received_ns);
     SampleOr of_hil_state(const MavlinkHilStateQuaternion& message) const;
     SampleOr of_sim_state(const MavlinkSimState& message) const;
     SampleOr of_global(const MavlinkGlobalPositionInt& message, std::int64_t received_ns) const;
@@ -48,6 +52,9 @@ private:
     std::optional<Eigen::Vector3d> turn_rate_;
     std::int64_t attitude_at_ns_ = 0;
     std::optional<std::uint8_t> reset_counter_;
+    BootClock boot_;
+    ArrivalRhythm sim_rhythm_;
+    std::optional<TruthSample> sim_state_;  // the last one
 };
 
 }  // namespace skyloop

@@ -41,7 +41,7 @@ void TruthFeed::begin(GpsTime start, std::int64_t steady_ns) { impl_->paths_.beg
 void TruthFeed::set_run(GpsTime now, std::int64_t steady_ns) { impl_->paths_.set_run(now, steady_ns); }
 
 std::vector<Command> TruthFeed::pump() {
-    std::vector<Command> commands = impl_->paths_.take();
+    std::vector<Command> commands = impl_->paths_.take(steady_clock_ns());
     for (const FeedStep& step : impl_->paths_.steps_done_before())
         impl_->worker_.post(step, 0);
     return commands;
@@ -57,6 +57,11 @@ void TruthFeed::stepped(std::uint64_t bytes) {
     std::vector<FeedStep> steps = impl_->paths_.steps_done();
     for (std::size_t i = 0; i < steps.size(); ++i)
         impl_->worker_.post(steps[i], i + 1 == steps.size() ? bytes : 0);
+}
+
+void TruthFeed::skip_steps() {
+    for (const FeedStep& step : impl_->paths_.skip_steps())
+        impl_->worker_.post(step, 0);
 }
 
 bool TruthFeed::ended() const { return impl_->paths_.ended(); }

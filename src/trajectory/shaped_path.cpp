@@ -1,15 +1,39 @@
 #include "skyloop/trajectory/shaped_path.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "skyloop/trajectory/vehicle_attitude.hpp"
+#include "smooth_step.hpp"
 
 namespace skyloop {
+namespace {
 
+constexpr double half_window_s = 0.25;
+
+}  // namespace
+
+// A vehicle begins and ends at rest, and leans neither before nor after: there the window looks at what it has behind
+// it, and at what it has before it.
+double ShapedPath::middle_of_window(double t) const {
+    constexpr double longest_s = 1;
+    const double whole = shape_->duration();
+    const double over = std::min(longest_s, whole / 2);
+    if (!(over > 0)) return t;
+    const double begun = smooth_step(t / over).value;
+    const double ends = std::isfinite(whole) ? smooth_step((whole - t) / over).value : 1;
+    return t - half_window_s * (1 - begun) + half_window_s * (1 - ends);
+}
+
+// The mean over two windows, one after the other: the second difference of the places. One window would leave the
+// turn rate with corners, since accelerations go up and down in straight lines (FEEDS.md 1.13.4: 0.3 to 0.5 s).
 Attitude ShapedPath::attitude(double t, const LocalMotion& now, Angle north) const {
-    constexpr double half_window_s = 0.25;  // FEEDS.md 1.13.4: smoothed over 0.3 to 0.5 s
+    const double middle = middle_of_window(t);
     VehicleMotion motion;
     motion.velocity = now.velocity;
-    motion.acceleration =
-        (shape_->at(t + half_window_s).velocity - shape_->at(t - half_window_s).velocity) / (2 * half_window_s);
+    motion.acceleration = (shape_->at(middle + half_window_s).position - 2 * shape_->at(middle).position +
+                           shape_->at(middle - half_window_s).position) /
+                          (half_window_s * half_window_s);
     motion.heading = Angle::radians(now.heading);
     const Attitude in_plane = attitude_of_vehicle(vehicle_, motion);
     const Attitude leaning = Attitude::roll_pitch_yaw(Angle::radians(now.roll), Angle::radians(now.pitch), {});

@@ -5,8 +5,6 @@
 #include <cstdlib>
 #include <vector>
 
-#include "skyloop/base/middle.hpp"
-
 namespace skyloop {
 namespace {
 
@@ -21,9 +19,6 @@ constexpr std::int64_t farthest_source_ns = 1'000'000'000 * clock_second_ns;
 constexpr std::int64_t restart_back_ns = clock_second_ns, restart_forward_ns = 60 * clock_second_ns;
 constexpr double clock_slew = 0.002, clock_step_ns = 250e6;  // FEEDS.md 3.2
 constexpr double least_slope = -0.5, most_slope = 1.0;       // of offsets, for rates of 2 to 0.5
-constexpr double arrival_gain = 0.05;                        // FEEDS.md 3.2
-constexpr std::size_t least_arrivals = 16, most_arrivals = 33;
-constexpr double relock_periods = 10;  // FEEDS.md 3.2 has 3, which a fifth of loss makes it do each second or two
 
 struct HullPoint {
     double x = 0, y = 0;
@@ -62,19 +57,31 @@ GpsTime SourceClock::at_steady(std::int64_t steady_ns) const {
     return start_ + Nanoseconds(std::clamp(steady_ns - start_ns_, -farthest_ns, farthest_ns));
 }
 
-SourceClock::Stamp SourceClock::stamp(std::optional<Nanoseconds> source_time, std::int64_t received_ns) {
+SourceClock::Stamp SourceClock::stamp(std::optional<Nanoseconds> source_time, std::int64_t received_ns,
+                                      std::optional<Nanoseconds> own_step) {
     if (!source_time || source_time->count() > longest_source_ns || source_time->count() < -longest_source_ns)
-        return stamp_arrival(received_ns);
+        return stamp_arrival(received_ns, own_step);
     const std::int64_t source_ns = source_time->count();
     Stamp stamp;
     stamp.restarted = restarts(source_ns, received_ns);
-    if (!first_source_ns_) first_source_ns_ = source_ns;
+    if (!first_source_ns_) begin_source(source_ns, received_ns);
     if (!base_ns_) base_ns_ = received_ns - source_ns;
-    newest_source_ns_ = std::max(source_ns, newest_source_ns_.value_or(source_ns));
+    if (!newest_source_ns_ || source_ns > *newest_source_ns_) {
+        newest_source_ns_ = source_ns;
+        newest_received_ns_ = received_ns;
+    }
     remember({source_ns, received_ns});
     stamp.stepped = follow_edge({source_ns, received_ns}) && !stamp.restarted;
     stamp.time = *run_time(Nanoseconds(source_ns));
     return stamp;
+}
+
+// The first time that it tells goes on where arrivals have brought the run.
+void SourceClock::begin_source(std::int64_t source_ns, std::int64_t received_ns) {
+    first_source_ns_ = source_ns;
+    if (!first_arrival_ns_) return;
+    const std::int64_t since = std::clamp<std::int64_t>(received_ns - *first_arrival_ns_, 0, farthest_source_ns);
+    first_time_ = std::max(untimed_.value_or(first_time_), first_time_ + Nanoseconds(since));
 }
 
 bool SourceClock::restarts(std::int64_t source_ns, std::int64_t received_ns) {
@@ -182,58 +189,24 @@ bool SourceClock::follow_edge(Seen seen) {
     return step;
 }
 
-SourceClock::Stamp SourceClock::stamp_arrival(std::int64_t received_ns) {
+// Follow and lock-step: the first statement is the start. Where a source mixes both, one without a time stands as far
+// behind the newest that had one as it came later, at the source's own rate.
+SourceClock::Stamp SourceClock::stamp_arrival(std::int64_t received_ns, std::optional<Nanoseconds> own_step) {
     Stamp stamp;
-    if (mode_ != ClockMode::realtime && newest_source_ns_)  // a source that mixes both
-        stamp.time = *run_time(Nanoseconds(*newest_source_ns_));
-    else
-        stamp.time = at_steady(evened_arrival(received_ns));
+    if (mode_ == ClockMode::realtime) {
+        stamp.time = at_steady(rhythm_.evened(received_ns, own_step));
+    } else if (newest_source_ns_) {
+        constexpr double longest_ns = 1e15, most_rate = 100;
+        const double since = std::clamp(static_cast<double>(received_ns - newest_received_ns_), 0.0, longest_ns);
+        const double rate_now = std::clamp(rate().value_or(1), 0.0, most_rate);
+        stamp.time = *run_time(Nanoseconds(*newest_source_ns_ + std::llround(since * rate_now)));
+    } else {
+        const std::int64_t evened_ns = rhythm_.evened(received_ns, own_step);
+        if (!first_arrival_ns_) first_arrival_ns_ = evened_ns;
+        untimed_ = std::max(untimed_.value_or(first_time_), first_time_ + Nanoseconds(evened_ns - *first_arrival_ns_));
+        stamp.time = *untimed_;
+    }
     return stamp;
-}
-
-// A loop of second order, critically damped (FEEDS.md 3.2). Statements that were lost leave whole periods.
-std::int64_t SourceClock::evened_arrival(std::int64_t received_ns) {
-    const auto since = static_cast<double>(received_ns - arrival_ns_);
-    const bool locked = period_ns_ > 0 && std::abs(since) <= relock_periods * period_ns_;
-    if (locked) {
-        const double periods = std::max(1.0, std::round(since / period_ns_));
-        const double residual = since - periods * period_ns_;
-        arrival_ns_ += std::llround(periods * period_ns_ + arrival_gain * residual);
-        period_ns_ += arrival_gain * arrival_gain / 4 * residual / periods;
-        return arrival_ns_;
-    }
-    if (period_ns_ > 0) arrivals_.clear();
-    period_ns_ = 0;
-    arrival_ns_ = received_ns;
-    arrivals_.push_back(received_ns);
-    if (arrivals_.size() > most_arrivals) arrivals_.pop_front();
-    if (arrivals_.size() >= least_arrivals) lock();
-    return arrival_ns_;
-}
-
-// The straight line through the arrivals over their numbers. How many were lost between two is told by the period, at
-// first the middle one of their distances, then that of the line.
-void SourceClock::lock() {
-    constexpr int rounds = 3;
-    std::vector<std::int64_t> steps;
-    for (std::size_t i = 1; i < arrivals_.size(); ++i)
-        steps.push_back(arrivals_[i] - arrivals_[i - 1]);
-    std::vector<std::int64_t> sorted = steps;
-    auto period = static_cast<double>(middle_of(sorted));
-    double at_last = 0;
-    for (int round = 0; round < rounds && period > 0; ++round) {
-        double number = 0, n = 0, sum_x = 0, sum_y = 0, sum_xx = 0, sum_xy = 0;  // from the last one backwards
-        for (std::size_t i = arrivals_.size(); i-- > 0;) {
-            const auto y = static_cast<double>(arrivals_[i] - arrivals_.back());
-            n += 1, sum_x += number, sum_y += y, sum_xx += number * number, sum_xy += number * y;
-            if (i > 0) number -= std::max(1.0, std::round(static_cast<double>(steps[i - 1]) / period));
-        }
-        period = (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x);
-        at_last = (sum_y - period * sum_x) / n;
-    }
-    if (!(period > 0)) return;
-    period_ns_ = period;
-    arrival_ns_ = arrivals_.back() + std::llround(at_last);
 }
 
 std::optional<GpsTime> SourceClock::run_time(Nanoseconds source_time) const {

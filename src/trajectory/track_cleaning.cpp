@@ -96,14 +96,20 @@ PartSpan span_of(const TrackRows& part) {
     return {first->time, last->time};
 }
 
-// Whether the parts fill times of their own, in whatever order; then they are put in order.
+// Whether the parts fill times of their own, in whatever order; then they are put in order. A part that began by a jump
+// was no piece of the one before: wherever it stands now, no way leads from one to the next.
 bool put_in_order(std::vector<TrackRows>& parts) {
     std::vector<TrackRows> sorted = parts;
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const TrackRows& a, const TrackRows& b) { return span_of(a).from < span_of(b).from; });
     for (std::size_t i = 1; i < sorted.size(); ++i)
         if (span_of(sorted[i]).from <= span_of(sorted[i - 1]).to) return false;
+    const bool apart =
+        std::any_of(parts.begin() + 1, parts.end(), [](const TrackRows& part) { return part.front().jump; });
     parts = std::move(sorted);
+    for (TrackRows& part : parts)
+        if (apart) part.front().jump = true;
+    parts.front().front().jump = false;
     return true;
 }
 

@@ -10,39 +10,14 @@
 
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/time/utc_time.hpp"
+#include "track_cells.hpp"
 #include "track_columns.hpp"
 
 namespace skyloop {
 namespace {
 
-using Cells = std::vector<std::string_view>;
+using Cells = TrackCells;
 using enum TrackQuantity;
-
-std::string_view trimmed_cell(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t\r\"");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
-// With a blank as separator, several blanks count as one.
-void split_row(std::string_view line, char separator, Cells& cells) {
-    cells.clear();
-    if (separator == ' ') line = trimmed_cell(line);
-    for (;;) {
-        const std::size_t end = line.find(separator);
-        cells.push_back(trimmed_cell(line.substr(0, end)));
-        if (end == std::string_view::npos) return;
-        line.remove_prefix(end + 1);
-        while (separator == ' ' && line.starts_with(' '))
-            line.remove_prefix(1);
-    }
-}
-
-char separator_of(std::string_view header) {
-    for (const char candidate : {',', ';', '\t'})
-        if (header.find(candidate) != std::string_view::npos) return candidate;
-    return ' ';
-}
 
 // Whole seconds beyond which a time is none: the year 2261, the end of GpsTime, less a margin.
 constexpr double latest_s = 9e9;
@@ -74,6 +49,7 @@ private:
     Result<void> add_attitude(TrackRow& point);
     Result<void> add_turn(TrackRow& point);
     Result<void> add_reset(TrackRow& point);
+    void add_climbs();
     void add_notes();
     [[nodiscard]] tl::unexpected<Error> refusal(const std::string& what) const {
         return fail(ErrorCode::input, fmt::format("{}:{}: {}", track_.name, line_, what));
@@ -94,6 +70,7 @@ private:
     char separator_ = ',';
     bool has_header_ = false;
     TrackColumns columns_;
+    std::vector<std::size_t> level_;  // rows of track_ whose velocity has no climb yet
     Cells cells_;
 };
 
@@ -110,6 +87,7 @@ Result<Track> TrackTable::read(std::string_view text) {
                     fmt::format("{}: no line with the names of the columns; expected one such as t_s,lat_deg,lon_deg,"
                                 "h_ell_m and rows of numbers",
                                 track_.name));
+    add_climbs();
     add_notes();
     return std::move(track_);
 }
@@ -117,14 +95,14 @@ Result<Track> TrackTable::read(std::string_view text) {
 Result<void> TrackTable::take_line(std::string_view line) {
     constexpr std::size_t longest = 65536;
     if (line.size() > longest) return refusal(fmt::format("a line of {} characters; expected a table", line.size()));
-    const std::string_view plain = trimmed_cell(line);
+    const std::string_view plain = trimmed_track_cell(line);
     if (plain.empty() || plain.front() == '#' || plain.front() == '%') return {};
     if (has_header_) {
-        split_row(line, separator_, cells_);
+        split_track_cells(line, separator_, cells_);
         return take_row();
     }
-    separator_ = separator_of(plain);
-    split_row(line, separator_, cells_);
+    separator_ = track_separator(plain);
+    split_track_cells(line, separator_, cells_);
     auto columns = TrackColumns::of(cells_);
     if (!columns) return refusal(columns.error().message);
     columns_ = std::move(*columns);
@@ -296,14 +274,28 @@ Result<void> TrackTable::add_velocity(TrackRow& point) {
     const LocalFrame frame(to_geodetic(point.position));
     const double rises = there[2] ? -values[2] : there[3] ? values[3] : values[6];
     const bool vertical = there[2] || there[3] || there[6];
-    if (there[0] && there[1] && vertical) {
+    const bool told = columns_.has(down) || columns_.has(up) || columns_.has(climb);
+    if (told && !vertical) return {};
+    if (there[0] && there[1]) {
         point.velocity = frame.to_ecef(Velocity<Enu>(values[1], values[0], rises));
-    } else if (there[4] && there[5] && vertical) {
+        if (!vertical) level_.push_back(track_.points.size());
+    } else if (there[4] && there[5]) {
         const double azimuth = Angle::degrees(values[5]).rad();
         point.velocity =
             frame.to_ecef(Velocity<Enu>(values[4] * std::sin(azimuth), values[4] * std::cos(azimuth), rises));
+        if (!vertical) level_.push_back(track_.points.size());
     }
     return {};
+}
+
+// Their climb is the slope of the heights.
+void TrackTable::add_climbs() {
+    for (const std::size_t row : level_) {
+        TrackRow& point = track_.points[row];
+        const LocalFrame frame(to_geodetic(point.position));
+        const Eigen::Vector3d level = frame.to_enu(*point.velocity).vector();
+        point.velocity = frame.to_ecef(Velocity<Enu>(level.x(), level.y(), climb_by_heights(track_.points, row)));
+    }
 }
 
 Result<void> TrackTable::add_attitude(TrackRow& point) {
@@ -355,7 +347,7 @@ void TrackTable::add_notes() {
     const auto any = [&](TrackQuantity a, TrackQuantity b) { return columns_.has(a) || columns_.has(b); };
     if (with_velocity == 0 && (any(north, east) || any(speed, course)))
         track_.notes.push_back(
-            "no row has a whole velocity (north, east and down or up, or speed, course and climb); velocities are "
+            "no row has a whole velocity (north and east, or speed and course); velocities are "
             "taken from the places");
     for (const std::string& what : columns_.understood())
         track_.notes.push_back(what);

@@ -1,7 +1,9 @@
 """Every example of a generated path runs, is finite and moves without a knock; `--svg FILE` draws their plan views."""
 import csv
+import json
 import math
 import pathlib
+import re
 import sys
 import unittest
 
@@ -40,6 +42,17 @@ class PathsTest(unittest.TestCase):
     def test_check_tells_the_path(self):
         done = skyloop("check", ROOT / "tools/scenarios/paths/sequence.toml")
         self.assertIn("joined by a curve of", done.stdout + done.stderr)
+
+    def test_all_of_it_is_looked_at(self):
+        for example in EXAMPLES:
+            with self.subTest(example.name):
+                listing = json.loads(skyloop("trajectory", example, "--format", "json").stdout)
+                told = re.search(r", ([0-9.]+) s$", listing["description"])
+                if told:
+                    delay = re.search(r"^start_delay_s = ([0-9.]+)", example.read_text(encoding="utf-8"), re.M)
+                    whole = float(told.group(1)) + (float(delay.group(1)) if delay else 0)
+                    self.assertAlmostEqual(listing["duration_s"], whole, delta=0.06)
+                    self.assertNotIn("no end of its own", str(listing))
 
     def test_another_seed_is_another_drive(self):
         example = ROOT / "tools/scenarios/paths/drive.toml"

@@ -4,10 +4,11 @@ import io
 import json
 import math
 import pathlib
+import re
 import unittest
 import xml.etree.ElementTree
 
-from session import open_folder
+from session import ROOT, open_folder
 from session import skyloop as run_to_end
 
 LATITUDE, LONGITUDE, HEIGHT = 47.0, 8.0, 500.0
@@ -132,6 +133,15 @@ class TrajectoryTest(unittest.TestCase):
         found = self.listing(file, "--vehicle", "car")
         self.assertEqual(found["velocity_steps"]["count"], 1, "a corner")
         self.assertAlmostEqual(found["velocity_steps"]["largest_mps"]["value"], 10 * math.sqrt(2), delta=0.1)
+
+    def test_pages_of_live_sources_name_keys_that_there_are(self):
+        keys = set(re.findall(r"^\| `([a-z_]+)` \|", (ROOT / "docs/scenario_keys.md").read_text(encoding="utf-8"), re.M))
+        for page in ("docs/feeds.md", "docs/feed_sources.md"):
+            text = (ROOT / page).read_text(encoding="utf-8")
+            named = re.findall(r"`([a-z_]+) = |scenario's `([a-z_]+)`", text)
+            self.assertTrue(named)
+            for words in named:
+                self.assertIn("".join(words), keys, page)
 
     def test_bad_files(self):
         for name, content in (("empty.csv", b""), ("noise.csv", bytes(range(256)) * 40),

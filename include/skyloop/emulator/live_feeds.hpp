@@ -80,6 +80,7 @@ private:
     void look_for_silence(Source& source, std::vector<Command>& commands);
 
     std::vector<std::unique_ptr<Source>> sources_;
+    std::vector<std::string> receivers_;  // whom a source may ask something of
     TruthFeed* leader_ = nullptr;
     std::optional<GpsTime> answered_;
     std::uint64_t bytes_told_ = 0;

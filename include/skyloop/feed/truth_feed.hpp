@@ -85,6 +85,9 @@ public:
     [[nodiscard]] std::optional<GpsTime> horizon() const;
     /// lock_step: the run has done all up to the horizon; answers the source. @param bytes that the run has put out
     void stepped(std::uint64_t bytes);
+    /// lock_step, while the run waits for a vehicle's first place: steps so far are answered, there was nothing to do
+    /// for them, and the next statement is the start of the run.
+    void skip_steps();
     /// The source has said that it is over.
     [[nodiscard]] bool ended() const;
     /// True between FeedNews::paused = true and false.

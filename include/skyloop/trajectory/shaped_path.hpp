@@ -10,7 +10,8 @@
 namespace skyloop {
 
 /// A shape that lies on the Earth, and a vehicle that follows it. Its attitude follows from the heading and from the
-/// acceleration as it is on average over half a second, and the turn rate from the attitude.
+/// acceleration as it is on average over half a second, without a corner in its turn rate and at rest where the path
+/// begins and ends; the turn rate follows from the attitude.
 class ShapedPath : public Trajectory {
 public:
     /// @param start when the shape begins
@@ -20,6 +21,7 @@ public:
     [[nodiscard]] const LocalShape& shape() const { return *shape_; }
 
 private:
+    [[nodiscard]] double middle_of_window(double t) const;
     [[nodiscard]] Attitude attitude(double t, const LocalMotion& now, Angle north) const;
 
     GpsTime start_;

@@ -7,6 +7,7 @@
 
 #include "skyloop/base/units.hpp"
 #include "skyloop/time/gps_time.hpp"
+#include "skyloop/trajectory/arrival_rhythm.hpp"
 
 namespace skyloop {
 
@@ -23,7 +24,7 @@ enum class ClockMode {
 /// source's time over five seconds is the way between the clocks; its slope is the source's rate. The way in use
 /// follows it by at most 2 ms a second, and steps to it beyond 250 ms. Follow and lock-step: the first statement is the
 /// start of the run, and the time since then is the source's own. A source without a clock has its arrivals, evened out
-/// by a loop that knows their usual distance.
+/// by their rhythm.
 ///
 /// Times of the source outside ±127 years are taken as none. State: the differences seen, and the first time of the
 /// source.
@@ -41,7 +42,9 @@ public:
     };
     /// Statements come in the order of their arrival.
     /// @param source_time nothing: the source has no clock
-    Stamp stamp(std::optional<Nanoseconds> source_time, std::int64_t received_ns);
+    /// @param own_step of a source without: since its statement before, as it tells itself
+    Stamp stamp(std::optional<Nanoseconds> source_time, std::int64_t received_ns,
+                std::optional<Nanoseconds> own_step = std::nullopt);
     /// When a time of the source is in the run; nothing before the first statement that had one.
     [[nodiscard]] std::optional<GpsTime> run_time(Nanoseconds source_time) const;
     /// From here on the run is at `now` when the steady clock reads `steady_ns` (real time: after a pause).
@@ -65,15 +68,14 @@ private:
         }
     };
 
-    Stamp stamp_arrival(std::int64_t received_ns);
+    Stamp stamp_arrival(std::int64_t received_ns, std::optional<Nanoseconds> own_step);
+    void begin_source(std::int64_t source_ns, std::int64_t received_ns);
     bool restarts(std::int64_t source_ns, std::int64_t received_ns);
     void remember(Seen seen);
     void fit();
     bool follow_edge(Seen seen);
     [[nodiscard]] bool has_stepped(std::int64_t now_ns) const;
     [[nodiscard]] double offset_of(Seen seen) const;
-    std::int64_t evened_arrival(std::int64_t received_ns);
-    void lock();
     [[nodiscard]] GpsTime at_steady(std::int64_t steady_ns) const;
 
     ClockMode mode_;
@@ -87,10 +89,12 @@ private:
     std::optional<std::int64_t> base_ns_;  // received less source, of the first; keeps doubles small
     std::optional<Line> edge_;             // the lower one of the window
     std::optional<Line> used_;
-    std::int64_t used_received_ns_ = 0;  // when used_ last moved
-    std::deque<std::int64_t> arrivals_;  // of statements without a time
-    std::int64_t arrival_ns_ = 0;        // of the last of them, evened out
-    double period_ns_ = 0;               // zero: not known yet
+    std::int64_t used_received_ns_ = 0;    // when used_ last moved
+    std::int64_t newest_received_ns_ = 0;  // when newest_source_ns_ came
+    // Of statements without a time; the others of follow and lock-step, before the first with a time.
+    ArrivalRhythm rhythm_;
+    std::optional<std::int64_t> first_arrival_ns_;
+    std::optional<GpsTime> untimed_;  // the newest
 };
 
 }  // namespace skyloop

@@ -108,6 +108,29 @@ TEST(MavlinkDialect, ReadsSimStateInDegreesAndInArdupilotsUnit) {
     EXPECT_FALSE(read(sim_state(Pose::latitude, Pose::longitude, false)).source_time);
 }
 
+// SITL: SIM_STATE 50 times a second, GLOBAL_POSITION_INT four times, at a speed that need not be ours.
+TEST(MavlinkDialect, LaysSimStateOnTheClockOfTheVehiclesOtherMessages) {
+    constexpr std::int64_t ms = 1'000'000;
+    for (const std::int64_t speedup : {1, 5}) {
+        const auto dialect = dialect_named("mavlink");
+        EXPECT_TRUE(dialect->hear(global_position(60'000), 0).samples.at(0).source_time);
+        std::int64_t before_ns = 0;
+        for (std::int64_t at_ms = 20; at_ms < 10'000; at_ms += 20) {
+            const std::int64_t boot_ms = 60'000 + at_ms * speedup;
+            if (at_ms % 260 == 0) dialect->hear(global_position(static_cast<std::uint32_t>(boot_ms)), at_ms * ms);
+            const auto samples = dialect->hear(sim_state(Pose::latitude, Pose::longitude, true), at_ms * ms).samples;
+            ASSERT_EQ(samples.size(), 1u);
+            ASSERT_TRUE(samples[0].source_time);
+            const std::int64_t time_ns = samples[0].source_time->count();
+            if (at_ms > 1000) {
+                EXPECT_LE(std::abs(time_ns - boot_ms * ms), 2 * ms * speedup) << at_ms;
+                EXPECT_LE(std::abs(time_ns - before_ns - 20 * ms * speedup), ms * speedup) << at_ms;
+            }
+            before_ns = time_ns;
+        }
+    }
+}
+
 TEST(MavlinkDialect, AddsAttitudesToGlobalPositions) {
     for (const Bytes& attitude : {attitude_quaternion(), attitude_angles()}) {
         const auto dialect = dialect_named("mavlink");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/trajectory/closed_paths.hpp"
@@ -112,6 +113,43 @@ TEST(ShapedPath, AMultirotorLeansIntoItsAcceleration) {
     EXPECT_NEAR(speeding.orientation->attitude.pitch().rad(), -std::atan((4 + 0.1 * v) / 9.80665), 0.02);
     for (double t = 0.05; t < plan->shape->duration(); t += 0.31)
         expect_consistent_states(path, t);
+}
+
+// What an antenna on an arm feels: it stands at the beginning and at the end, and its acceleration has no steps.
+TEST(ShapedPath, NothingKnocksAnAntennaOnAnArm) {
+    const GeodesicPlane plane(Geodetic::degrees(47, 8, 500));
+    FigureEightWish eight;
+    eight.lap.vehicle = usual_limits(VehicleClass::multirotor);
+    eight.lap.centre.z() = 50;
+    eight.lap.laps = 1;
+    eight.half_length = 40;
+    WaypointWish way;
+    way.vehicle = eight.lap.vehicle;
+    way.waypoints = {{{0, 0, 50}, 12, 0}, {{60, 80, 55}, 12, 0}};
+    for (const auto& plan : {plan_figure_eight(eight), plan_waypoints(way)}) {
+        ASSERT_TRUE(plan) << plan.error();
+        const double end = plan->shape->duration();
+        const ShapedPath path(shaped_start, plane, plan->shape, VehicleClass::multirotor);
+        const Eigen::Vector3d arm(2, 1, -0.5);
+        const auto speed_of_arm = [&](double t) -> Eigen::Vector3d {
+            const Orientation turned = *state_of(path, t).orientation;
+            return turned.attitude.body_to_ned() * turned.turn_rate.cross(arm);
+        };
+        for (const double t : {-1.0, -0.1, 0.0, end, end + 0.1, end + 1}) {
+            EXPECT_LT(speed_of_arm(t).norm(), 2e-3) << t;
+            EXPECT_NEAR(state_of(path, t).orientation->attitude.pitch().deg(), 0, 0.01) << t;
+        }
+        constexpr double step_s = 0.005, hardest_mps2 = 25, largest_change_mps2 = 1;
+        std::optional<Eigen::Vector3d> before;
+        for (double t = -1; t < std::min(end + 1, 40.0); t += step_s) {
+            const Eigen::Vector3d acceleration = (speed_of_arm(t + step_s / 2) - speed_of_arm(t - step_s / 2)) / step_s;
+            EXPECT_LT(acceleration.norm(), hardest_mps2) << t;
+            if (before) {
+                EXPECT_LT((acceleration - *before).norm(), largest_change_mps2) << t;
+            }
+            before = acceleration;
+        }
+    }
 }
 
 TEST(ShapedPath, ARocketStandsOnItsTail) {

@@ -59,6 +59,23 @@ TEST(SourceClock, GoesOnFromWhereItWasWhenTheSourceBeginsAnew) {
     EXPECT_FALSE(clock.stamp(999s + 100ms, clock_start_ns + 5).restarted) << "overtaken";
 }
 
+TEST(SourceClock, FollowStartsWithAStatementThatHasNoTimeAndGoesOnFromIt) {
+    SourceClock clock = clock_of(ClockMode::follow);
+    EXPECT_EQ(clock.stamp(std::nullopt, clock_start_ns + 900 * ms).time, clock_start) << "not when the run was begun";
+    EXPECT_EQ(clock.stamp(7s, clock_start_ns + 920 * ms).time, clock_start + 20ms);
+    EXPECT_EQ(clock.stamp(7s + 30ms, clock_start_ns + 950 * ms).time, clock_start + 50ms);
+}
+
+TEST(SourceClock, FollowGoesOnWhereOnlyStatementsWithoutATimeAreLeft) {
+    SourceClock clock = clock_of(ClockMode::follow);
+    for (int i = 0; i <= 100; ++i)
+        clock.stamp(7s + i * 20ms, clock_start_ns + i * 20 * ms);
+    for (int i = 1; i <= 500; ++i)
+        EXPECT_NEAR(
+            static_cast<double>(since_start_ns(clock.stamp(std::nullopt, clock_start_ns + (2000 + i * 20) * ms).time)),
+            (2000.0 + i * 20) * ms, 0.2 * ms * i);
+}
+
 TEST(SourceClock, LooksThroughTheScatterOfDelays) {
     std::mt19937 random(8);
     std::exponential_distribution<double> delay(1 / 8.0);

@@ -75,6 +75,16 @@ TEST(TrackCleaning, PartsOfOneClockArePutInOrder) {
     EXPECT_THAT(track.notes, ElementsAre(HasSubstr("2 parts do not follow each other in time")));
 }
 
+// Segments of a GPX file, the newest first.
+TEST(TrackCleaning, PartsThatBeginByAJumpDoSoInWhateverOrderTheyAreStored) {
+    Track track = stamped({20, 21, 22, 10, 11, 12, 0, 1, 2});
+    track.origin = GpsTime{};
+    track.points[3].jump = track.points[6].jump = true;
+    ASSERT_TRUE(clean_track(track, Seconds(60), GapPolicy::bridge));
+    EXPECT_THAT(times_of(track), ElementsAre(0, 1, 2, 10, 11, 12, 20, 21, 22));
+    EXPECT_THAT(jumps_of(track), ElementsAre(3, 6));
+}
+
 TEST(TrackCleaning, ASingleStampAheadIsLeftOut) {
     Track track = stamped({0, 1, 2, 900, 4, 5});
     ASSERT_TRUE(clean_track(track, Seconds(10)).has_value());

@@ -54,6 +54,36 @@ TEST(TrackCsv, ReadsPlacesAndVelocities) {
     EXPECT_THAT(track.notes, testing::ElementsAre("1 of 2 rows have no place and were left out"));
 }
 
+TEST(TrackCsv, WithoutAClimbItIsTheSlopeOfTheHeights) {
+    for (const std::string columns : {"speed_mps,course_deg", "vn_mps,ve_mps"}) {
+        const std::string told = columns == "speed_mps,course_deg" ? "5,90" : "0,5";
+        std::string text = "t_s,lat_deg,lon_deg,h_ell_m," + columns + "\n";
+        for (int i = 0; i < 4; ++i)
+            text += std::to_string(0.5 * i) + ",47,8," + std::to_string(500 + i) + "," + told + "\n";
+        const Track track = read_rows(text);
+        ASSERT_EQ(track.points.size(), 4u);
+        for (const TrackRow& row : track.points) {
+            ASSERT_TRUE(row.velocity) << columns;
+            const Eigen::Vector3d v = LocalFrame(to_geodetic(row.position)).to_enu(*row.velocity).vector();
+            EXPECT_LT((v - Eigen::Vector3d(5, 0, 2)).norm(), 1e-6) << columns;
+        }
+    }
+    const Track track = read_rows(
+        "t_s,lat_deg,lon_deg,h_ell_m,speed_mps,course_deg,climb_mps\n0,47,8,500,5,90,\n"
+        "1,47,8,501,5,90,1\n");
+    EXPECT_FALSE(track.points[0].velocity) << "a climb that a row leaves out is its neighbours' to tell";
+    EXPECT_TRUE(track.points[1].velocity);
+}
+
+TEST(TrackCsv, SeparatorsBetweenQuotesSeparateNothing) {
+    const Track track = read_rows(
+        "comment,t_s,\"lat_deg\",lon_deg,h_ell_m\n\"a, b\",0.0,47,8,500\n"
+        "\"say \"\"a, b\"\"\",1,47,8,500\n5\" pipe,2,47,8,500\n");
+    ASSERT_EQ(track.points.size(), 3u);
+    EXPECT_EQ(track.points[1].time, std::chrono::seconds(1));
+    EXPECT_EQ(track.points[2].time, std::chrono::seconds(2));
+}
+
 TEST(TrackCsv, ReadsTheRecordingsOfThisProgram) {
     const Track track = read_rows(
         "time_utc,gps_week,tow_s,true_lat_deg,lat_deg,lon_deg,height_m,vel_north_mps,vel_east_mps,vel_down_mps\n"

@@ -1,0 +1,70 @@
+#include "track_cells.hpp"
+
+#include "skyloop/geo/geodetic.hpp"
+
+namespace skyloop {
+namespace {
+
+// Of a cell that begins a line.
+std::size_t end_of_cell(std::string_view line, char separator) {
+    bool quoted = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (line[i] == '"') quoted = !quoted;
+        if (line[i] == separator && !quoted) return i;
+    }
+    // A quote without its other half is a letter.
+    return quoted ? line.find(separator) : std::string_view::npos;
+}
+
+}  // namespace
+
+std::string_view trimmed_track_cell(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(" \t\r\"");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
+}
+
+char track_separator(std::string_view header) {
+    for (const char candidate : {',', ';', '\t'})
+        if (header.find(candidate) != std::string_view::npos) return candidate;
+    return ' ';
+}
+
+void split_track_cells(std::string_view line, char separator, TrackCells& cells) {
+    cells.clear();
+    if (separator == ' ')
+        while (line.starts_with(' ') || line.starts_with('\t'))
+            line.remove_prefix(1);
+    if (separator == ' ')
+        while (line.ends_with(' ') || line.ends_with('\t') || line.ends_with('\r'))
+            line.remove_suffix(1);
+    for (;;) {
+        const std::size_t end = end_of_cell(line, separator);
+        cells.push_back(trimmed_track_cell(line.substr(0, end)));
+        if (end == std::string_view::npos) return;
+        line.remove_prefix(end + 1);
+        while (separator == ' ' && line.starts_with(' '))
+            line.remove_prefix(1);
+    }
+}
+
+double climb_by_heights(const std::vector<TrackRow>& rows, std::size_t row) {
+    constexpr Nanoseconds near_rows = std::chrono::seconds(30);
+    const auto seconds = [&](std::size_t a, std::size_t b) { return to_seconds(rows[b].time - rows[a].time).value(); };
+    const auto is_near = [&](std::size_t a, std::size_t b) {
+        const Nanoseconds span = rows[b].time - rows[a].time;
+        return !rows[b].jump && span.count() > 0 && span <= near_rows;
+    };
+    const auto slope = [&](std::size_t a, std::size_t b) {
+        const auto height = [&](std::size_t i) { return to_geodetic(rows[i].position).height.above_ellipsoid.value(); };
+        return (height(b) - height(a)) / seconds(a, b);
+    };
+    const bool before = row > 0 && is_near(row - 1, row), after = row + 1 < rows.size() && is_near(row, row + 1);
+    if (before && after) {
+        const double h1 = seconds(row - 1, row), h2 = seconds(row, row + 1);
+        return (h2 * slope(row - 1, row) + h1 * slope(row, row + 1)) / (h1 + h2);
+    }
+    return before ? slope(row - 1, row) : after ? slope(row, row + 1) : 0;
+}
+
+}  // namespace skyloop

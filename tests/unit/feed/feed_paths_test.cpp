@@ -1,0 +1,163 @@
+#include "../../../src/feed/feed_paths.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "skyloop/geo/local_frame.hpp"
+
+namespace skyloop {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+
+const GpsTime paths_start = GpsTime() + std::chrono::hours(24 * 365 * 46);
+constexpr std::int64_t paths_start_ns = 80'000'000'000'000, one_ms = 1'000'000;
+
+// On a circle, as a vehicle that tells its velocity.
+TruthSample told_at(double t, double speed_mps = 12) {
+    static const LocalFrame frame(Geodetic::degrees(47, 8, 600));
+    constexpr double radius_m = 80;
+    const double angle = speed_mps / radius_m * t;
+    TruthSample sample;
+    sample.position = frame.to_ecef(Position<Enu>(radius_m * std::sin(angle), radius_m * std::cos(angle), 0));
+    sample.velocity = frame.to_ecef(Velocity<Enu>(speed_mps * std::cos(angle), -speed_mps * std::sin(angle), 0));
+    return sample;
+}
+
+struct PathsUnderTest {
+    explicit PathsUnderTest(ClockMode mode) : paths(settings_of(mode), desk) {
+        path = paths.path("");
+        paths.begin(paths_start, paths_start_ns);
+    }
+    static FeedSettings settings_of(ClockMode mode) {
+        FeedSettings settings;
+        settings.clock = mode;
+        settings.path.before = Geodetic::degrees(1, 2, 3);
+        return settings;
+    }
+    void say(FeedItem item) {
+        std::vector<FeedItem> items{std::move(item)};
+        desk.inbox.put(items);
+    }
+    void take(std::int64_t now_ns) { paths.take(now_ns); }
+    std::vector<std::string> news() { return desk.news.take(); }
+
+    FeedDesk desk;
+    FeedPaths paths;
+    std::shared_ptr<LivePath> path;
+};
+
+TEST(FeedPaths, TellsOnceThatASourceDoesNotKeepRealTime) {
+    for (const double rate : {0.9, 0.95, 1.0, 1.1}) {
+        std::mt19937 random(31);
+        std::uniform_real_distribution<double> delay_ms(0, 5);
+        PathsUnderTest feed(ClockMode::realtime);
+        int told = 0;
+        for (int i = 0; i < 20 * 50; ++i) {
+            TruthSample sample = told_at(0.02 * i);
+            sample.source_time = 100s + i * 20ms;
+            sample.received_ns = paths_start_ns + std::llround((20 * i / rate + delay_ms(random)) * one_ms);
+            const std::int64_t now_ns = sample.received_ns;
+            feed.say(std::move(sample));
+            feed.paths.set_run(paths_start + Nanoseconds(now_ns - paths_start_ns), now_ns);  // as the loop does
+            feed.take(now_ns);
+            for (const std::string& sentence : feed.news())
+                if (sentence.find("of real time; expected 1") != std::string::npos) {
+                    ++told;
+                    EXPECT_LT(now_ns, paths_start_ns + 11'000 * one_ms) << rate;
+                    EXPECT_THAT(sentence, HasSubstr(std::to_string(rate).substr(0, 3))) << rate;
+                }
+        }
+        EXPECT_EQ(told, rate == 1 ? 0 : 1) << rate;
+    }
+}
+
+// The largest error of the path's velocity against the source's own, m/s: asked a little late, so that the samples on
+// both sides are there, from `from_s` on.
+double velocity_error_mps(double scatter_ms, double lost, double from_s, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> delay_ms(0, scatter_ms), lot(0, 1);
+    PathsUnderTest feed(ClockMode::realtime);
+    double worst = 0;
+    for (int i = 0; i < 8 * 50; ++i) {
+        const double late_ms = delay_ms(random);
+        const std::int64_t now_ns = paths_start_ns + std::llround((20 * i + late_ms) * one_ms);
+        if (i < 1 || lot(random) >= lost) {
+            TruthSample sample = told_at(0.02 * i);
+            sample.received_ns = now_ns;
+            feed.say(std::move(sample));
+        }
+        feed.take(now_ns);
+        for (double t = 0.02 * i - 0.2; t < 0.02 * i - 0.18; t += 0.005) {
+            if (t < from_s) continue;
+            const Eigen::Vector3d velocity = feed.path->at(advanced(paths_start, Seconds(t))).velocity.vector();
+            worst = std::max(worst, (velocity - told_at(t).velocity->vector()).norm());
+        }
+    }
+    EXPECT_EQ(feed.path->counts().jumps, 0u);
+    EXPECT_EQ(feed.path->counts().late, 0u);
+    return worst;
+}
+
+TEST(FeedPaths, ArrivalsThatScatterDoNotShakeAVehicleWhoseSourceHasNoTime) {
+    for (const double scatter_ms : {5.0, 10.0, 15.0})
+        for (unsigned seed = 1; seed <= 6; ++seed) {
+            EXPECT_LT(velocity_error_mps(scatter_ms, 0, 1.5, seed), 1) << scatter_ms << " " << seed;
+            EXPECT_LT(velocity_error_mps(scatter_ms, 0, 0.1, seed), 6) << scatter_ms << " " << seed;
+        }
+}
+
+TEST(FeedPaths, NeitherDoLossesAmongThem) {
+    for (const double lost : {0.02, 0.2})
+        for (unsigned seed = 1; seed <= 6; ++seed)
+            EXPECT_LT(velocity_error_mps(15, lost, 1.5, seed), 1) << lost << " " << seed;
+}
+
+TEST(FeedPaths, FollowStartsWithTheFirstStatementThoughItsTimeComesLater) {
+    PathsUnderTest feed(ClockMode::follow);
+    // X-Plane's first pose comes before the first answer with the time, a second after the run was begun.
+    for (int i = 0; i < 10; ++i) {
+        TruthSample sample = told_at(0.02 * i);
+        if (i > 0) sample.source_time = 40s + i * 20ms;
+        sample.received_ns = paths_start_ns + (1000 + 20 * i) * one_ms;
+        feed.say(std::move(sample));
+        feed.take(paths_start_ns + (1000 + 20 * i) * one_ms);
+        ASSERT_TRUE(feed.paths.horizon());
+        EXPECT_EQ(*feed.paths.horizon(), paths_start + i * 20ms);
+    }
+    EXPECT_EQ(feed.path->counts().late + feed.path->counts().jumps, 0u);
+    EXPECT_LT((feed.path->at(paths_start).position - told_at(0).position).length().value(), 0.01);
+}
+
+TEST(FeedPaths, StepsBeforeTheFirstPlaceAreAnsweredAndTheRunStartsAfterThem) {
+    PathsUnderTest feed(ClockMode::lock_step);
+    for (const auto until : {5000ms, 5100ms}) {
+        feed.say(FeedStep{until, paths_start_ns, 3});
+        feed.take(paths_start_ns);
+        EXPECT_FALSE(feed.path->newest());
+        const auto skipped = feed.paths.skip_steps();
+        ASSERT_EQ(skipped.size(), 1u);
+        EXPECT_EQ(skipped[0].until, until);
+        EXPECT_EQ(skipped[0].speaker, 3u);
+    }
+    TruthSample sample = told_at(0);
+    sample.source_time = 5100ms;
+    feed.say(std::move(sample));
+    feed.take(paths_start_ns);
+    EXPECT_EQ(feed.path->newest(), paths_start);
+    EXPECT_EQ(feed.path->counts().jumps, 0u);
+    EXPECT_FALSE(feed.paths.horizon());
+    feed.say(FeedStep{5200ms, paths_start_ns, 3});
+    feed.take(paths_start_ns);
+    EXPECT_EQ(feed.paths.horizon(), paths_start + 100ms);
+    EXPECT_EQ(feed.paths.steps_done().size(), 1u);
+}
+
+}  // namespace
+}  // namespace skyloop
