@@ -107,9 +107,25 @@ Result<ControlRequest> number_post(const char* command, const char* key, const s
     return ctl_post("/api/commands", {{"command", command}, {key, *number}});
 }
 
-Result<ControlRequest> unknown_ctl_command(const std::string& word) {
-    std::vector<std::string_view> names{"status", "watch", "faults", "commands", "fault", "stop",
-                                        "move",   "end",   "pause",  "resume",   "step",  "speed"};
+// What stands behind the commands that are ctl's own.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> ctl_shapes{{{"status", ""},
+                                                                                   {"watch", ""},
+                                                                                   {"faults", ""},
+                                                                                   {"commands", ""},
+                                                                                   {"fault", " KIND [KEY=VALUE…]"},
+                                                                                   {"stop", " NAME"},
+                                                                                   {"move", " LAT,LON[,HEIGHT]"},
+                                                                                   {"end", ""}}};
+
+// The command is known, and has other words behind it than it takes; or it is not.
+Result<ControlRequest> misused_ctl_command(const std::string& word, std::size_t behind) {
+    std::vector<std::string_view> names{"pause", "resume", "step", "speed"};
+    for (const auto& [name, shape] : ctl_shapes) {
+        names.push_back(name);
+        if (name == word)
+            return fail(ErrorCode::usage, fmt::format("ctl: '{}' has {} word{} behind it; expected: {}{}", word, behind,
+                                                      behind == 1 ? "" : "s", name, shape));
+    }
     for (const CommandKind& kind : command_kinds())
         names.push_back(kind.name);
     return fail(ErrorCode::usage,
@@ -137,7 +153,7 @@ Result<ControlRequest> ctl_request(std::span<const std::string> words) {
     if (word == "move" && wants(1, 1))
         return ctl_post("/api/commands", {{"command", "move_to"}, {"at", ctl_value(rest[0])}});
     if (word != "stop" && find_command_kind(word) != nullptr) return command_post({{"command", word}}, rest);
-    return unknown_ctl_command(word);
+    return misused_ctl_command(word, rest.size());
 }
 
 std::string number_text(const CtlJson& json, std::string_view format) {

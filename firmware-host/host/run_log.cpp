@@ -82,6 +82,7 @@ void RunLog::on_command(const CommandSeen& seen) {
     line["event"] = "command";
     line["name"] = seen.name;
     line["source"] = seen.command.source;
+    if (!seen.ignored.empty()) line["ignored"] = seen.ignored;
     line["request"] = Json::parse(command_json(seen.command));
     write_line(file_, line);
 }

@@ -123,7 +123,8 @@ Result<void> RunWatch::open_control(const WatchOptions& options, CommandQueue& c
     emulator.add_observer(board_.get());
     emulator.on_rest([this](GpsTime now) { board_->look(now); });
     const std::string scene = assembly_.scene.scene ? scene_json(*assembly_.scene.scene) : std::string();
-    auto server = ControlServer::start(*where, {commands, *board_, scene, SKYLOOP_VERSION});
+    auto server = ControlServer::start(
+        *where, {commands, *board_, scene, SKYLOOP_VERSION, receiver_names(emulator), !scenario_.model.sensor_model});
     if (!server) return fail(server.error());
     server_ = std::move(*server);
     return {};
@@ -190,7 +191,7 @@ int RunWatch::report(const Messages& messages, const std::vector<Verdict>& verdi
     const Recorder* recorder = emulator.stations().front().recorder();
     if (recorder != nullptr) run.evidence = {"fixes.csv", "port0.out", "port0.in", "commands.jsonl"};
     fmt::print("{}", verdict_text(verdicts, run));
-    int code = all_met(verdicts) ? 0 : expectations_not_met;
+    int code = is_success(verdicts) ? 0 : expectations_not_met;
     if (recorder == nullptr) return code;
     for (const auto& [name, text] :
          {std::pair{"verdicts.json", verdict_json(verdicts, run)}, {"junit.xml", junit_xml(verdicts, run)}})

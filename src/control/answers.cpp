@@ -8,6 +8,8 @@
 #include "skyloop/control/command_json.hpp"
 #include "skyloop/control/control_request.hpp"
 #include "skyloop/control/status_json.hpp"
+#include "skyloop/fault/checked_command.hpp"
+#include "skyloop/fault/fault_kind.hpp"
 
 namespace skyloop {
 namespace {
@@ -52,8 +54,31 @@ std::optional<ControlResponse> page_answer(std::string_view path) {
     return std::nullopt;
 }
 
+// One that a client has just begun may not be in a snapshot yet.
+bool has_fault(const ControlSources& sources, const std::string& name) {
+    if (sources.started != nullptr && sources.started->contains(name)) return true;
+    if (!sources.snapshot) return false;
+    const auto& bars = sources.snapshot->timeline;
+    return std::any_of(bars.begin(), bars.end(),
+                       [&](const TimelineBar& bar) { return !bar.command && bar.name == name; });
+}
+
+// What nobody of this run would carry out.
+std::optional<std::string> target_mistake(const Command& command, const ControlSources& sources) {
+    const FaultKind* kind = find_fault_kind(command.parameters.text("kind"));
+    if (kind != nullptr && kind->measuring_receivers_only && !sources.measuring)
+        return fmt::format("'kind' is '{}', which spoils measurements; this run's model makes none", kind->name);
+    const bool of_fault = command.verb == CommandVerb::start_fault || command.verb == CommandVerb::stop_fault;
+    const std::string fault = of_fault ? command.parameters.text("fault") : std::string();
+    if (!fault.empty() && sources.snapshot && !has_fault(sources, fault))
+        return fmt::format("'fault' is '{}'; expected the name of a fault; GET /api/timeline lists them",
+                           fault.substr(0, 60));
+    return sources.receivers != nullptr ? receiver_mistake(command, *sources.receivers) : std::nullopt;
+}
+
 ControlResponse queued(const Result<Command>& command, const ControlSources& sources) {
     if (!command) return error_response(422, command.error().message);
+    if (const auto mistake = target_mistake(*command, sources)) return error_response(422, *mistake);
     const std::string told = command_json(*command);
     if (sources.push && sources.push(*command)) return json_response("{\"accepted\":" + told + "}", 202);
     ControlResponse response = error_response(429, "too many commands wait already; expected fewer a second");
@@ -79,15 +104,6 @@ std::optional<std::string> percent_decoded(std::string_view text) {
         i += 2;
     }
     return decoded;
-}
-
-// One that a client has just begun may not be in a snapshot yet.
-bool has_fault(const ControlSources& sources, const std::string& name) {
-    if (sources.started != nullptr && sources.started->contains(name)) return true;
-    if (!sources.snapshot) return false;
-    const auto& bars = sources.snapshot->timeline;
-    return std::any_of(bars.begin(), bars.end(),
-                       [&](const TimelineBar& bar) { return !bar.command && bar.name == name; });
 }
 
 ControlResponse stop_fault(const ControlRequest& request, const ControlSources& sources) {

@@ -66,6 +66,8 @@ ControlSources ServerCore::sources(bool with_status) {
     ControlSources sources;
     sources.snapshot = parts.board.latest();
     sources.push = [this](Command command) { return push(std::move(command)); };
+    sources.receivers = &parts.receivers;
+    sources.measuring = parts.measuring;
     sources.started = &started;
     sources.scene = &parts.scene;
     sources.version = parts.version;

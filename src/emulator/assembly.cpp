@@ -14,6 +14,7 @@
 #include "skyloop/emulator/load_track.hpp"
 #include "skyloop/error_model/make_error_model.hpp"
 #include "skyloop/error_model/model_effects.hpp"
+#include "skyloop/scenario/timeline_check.hpp"
 
 namespace skyloop {
 namespace {
@@ -143,6 +144,14 @@ Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& 
     return stations;
 }
 
+Result<void> judge_timeline(const Scenario& scenario, Assembly& assembly) {
+    if (const auto checked = check_timeline(scenario, assembly.start); !checked) return fail(checked.error());
+    if (!assembly.end) return {};
+    for (std::string& warning : timeline_warnings(scenario, assembly.start, *assembly.end))
+        assembly.warnings.push_back(std::move(warning));
+    return {};
+}
+
 }  // namespace
 
 std::string scenario_digest(const Scenario& scenario, GpsTime start, std::uint64_t scene) {
@@ -244,6 +253,7 @@ Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const 
         scenario.run.duration = difference(*track->end, assembly.start);
     if (scenario.run.duration) assembly.end = advanced(assembly.start, *scenario.run.duration);
     assembly.warnings.insert(assembly.warnings.end(), track->warnings.begin(), track->warnings.end());
+    if (const auto checked = judge_timeline(scenario, assembly); !checked) return fail(checked.error());
     assembly.trajectory = track->description;
     assembly.track_details = track->details;
     auto feeds = open_feeds(scenario, mode, assembly);

@@ -116,7 +116,8 @@ void Director::begin_fault(const TimelineEvent& event, Station& station) {
 }
 
 void Director::carry_out(const Command& command, std::string_view name, const Scene& scene) {
-    const CommandSeen seen{scene.now, name, command};
+    const std::string ignored = ignored_because(command);
+    const CommandSeen seen{scene.now, name, command, ignored};
     for (RunObserver* observer : observers_)
         observer->on_command(seen);
     switch (command.verb) {
@@ -131,7 +132,7 @@ void Director::carry_out(const Command& command, std::string_view name, const Sc
         case CommandVerb::note:
             return;
         case CommandVerb::vehicle_state:
-            return timeline_.tell(vehicle_state_of(command.parameters));
+            return timeline_.tell(vehicle_state_of(command.parameters, timeline_.vehicle()));
         case CommandVerb::stop:
             stopped_ = true;
             return;
@@ -149,6 +150,16 @@ void Director::carry_out(const Command& command, std::string_view name, const Sc
                 if (command.receiver.empty() || command.receiver == station.name())
                     station.happen(receiver_event(command), scene.now);
     }
+}
+
+// A fault that is under way does not begin a second time.
+std::string Director::ignored_because(const Command& command) const {
+    if (command.verb != CommandVerb::start_fault || command.parameters.has("kind")) return {};
+    const std::string name = command.parameters.text("fault");
+    const auto& entries = timeline_.entries();
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        if (!acts_[i].command && entries[i].name == name && timeline_.is_under_way(i)) return name + " is under way";
+    return {};
 }
 
 firmware::ReceiverEvent Director::receiver_event(const Command& command) {

@@ -39,6 +39,7 @@ std::vector<firmware::Receiver::Sent> FaultyWire::to_client(std::vector<firmware
     if (!sent.empty()) last_baud_ = sent.back().baud;
     const auto port = sent.empty() ? firmware::PortId::uart1 : sent.front().port;
     if (conditions_.line_break) {
+        (void)to_client_.take(now);  // it would want to be looked at for ever
         if (!std::exchange(break_begins_, false)) return {};
         return {{port, last_baud_, Bytes{0}}};
     }

@@ -41,21 +41,26 @@ void Station::carry_out(const LoopTime& time, Dialogue* dialogue) {
 // Bytes that have crossed a wire by now did so under what was wrong with it before.
 void Station::take_in(const LoopTime& time, Dialogue* dialogue) {
     bool heard = hear_again(time.now, dialogue);
-    for (std::size_t i = 0; i < parts_.wires.size(); ++i)
+    for (std::size_t i = 0; i < faulty_wires_.size(); ++i)
         heard = hear(i, time.now, dialogue) || heard;
     if (heard) speak(time, dialogue);
     follow_faults(time.now);
     follow_settings(time.now);
 }
 
-// Byte by byte, as it was heard: one may change the speed, and with it what the next means.
+// Byte by byte: one may change the speed, and with it what the next means. A recording does not tell which bytes came
+// together, so that they must not be taken together the first time either.
+void Station::input(PortId port, ByteSpan bytes, GpsTime now) {
+    for (const std::uint8_t byte : bytes)
+        parts_.receiver.input(port, ByteSpan(&byte, 1), now);
+}
+
 bool Station::hear_again(GpsTime now, Dialogue* dialogue) {
     const std::size_t before = heard_again_;
     for (; heard_again_ < parts_.repeated.size() && parts_.repeated[heard_again_].at <= now; ++heard_again_) {
         const HeardBytes& heard = parts_.repeated[heard_again_];
         if (dialogue != nullptr) dialogue->client_said(heard.wire, heard.bytes, now);
-        for (const std::uint8_t byte : heard.bytes)
-            parts_.receiver.input(heard.port, ByteSpan(&byte, 1), now);
+        input(heard.port, heard.bytes, now);
         if (parts_.recorder && heard.wire < faulty_wires_.size())
             parts_.recorder->record_input(heard.bytes, now, heard.wire);
     }
@@ -69,7 +74,8 @@ void Station::follow_faults(GpsTime now) {
     if (faults_.empty() && !faults_act_) return;
     faults_act_ = !faults_.empty();
     parts_.receiver.set_faults(faults_.firmware(now));
-    const WireConditions conditions = faults_.wire(now);
+    WireConditions conditions = faults_.wire(now);
+    if (!parts_.repeated.empty()) conditions.to_receiver.garbage_per_s = 0;  // it was heard, and is heard again
     for (FaultyWire& wire : faulty_wires_)
         wire.set(conditions, now);
     for (Wire& wire : parts_.wires)
@@ -77,29 +83,35 @@ void Station::follow_faults(GpsTime now) {
     if (parts_.power) parts_.power->want(conditions.power_cut ? PowerState::cut : PowerState::on);
 }
 
+// An end without a wire hears what its bare contacts pick up.
 bool Station::hear(std::size_t wire, GpsTime now, Dialogue* dialogue) {
-    const PortId port = parts_.wires[wire].port;
-    Link& link = parts_.wires[wire].link;
     FaultyWire& faulty = faulty_wires_[wire];
     bool any = false;
-    const auto line_speed = [&] {
-        const PortSpeed own = speed(port);
-        return own && faulty.line_baud() ? faulty.line_baud() : own;
-    };
     const auto take = [&](Bytes bytes) {
-        const Bytes heard = faulty.to_receiver(std::move(bytes), now);
-        if (heard.empty() || parts_.mute_wires.contains(wire)) return;
-        any = true;
-        if (dialogue != nullptr) dialogue->client_said(wire, heard, now);
-        parts_.receiver.input(port, heard, now);
-        if (parts_.recorder) parts_.recorder->record_input(heard, now, wire);
+        any = hand_over(wire, faulty.to_receiver(std::move(bytes), now), now, dialogue) || any;
     };
-    while (auto heard = link.receive(line_speed(), now))
-        if (!heard->empty()) take(std::move(*heard));
-    if (faulty.input_pending()) take({});
-    if (dialogue == nullptr) return any;
-    if (const auto belief = link.transport().new_belief()) dialogue->client_believes(wire, *belief, now);
+    if (wire < parts_.wires.size()) {
+        auto& [port, link] = parts_.wires[wire];
+        const auto line_speed = [&, port = port] {
+            const PortSpeed own = speed(port);
+            return own && faulty.line_baud() ? faulty.line_baud() : own;
+        };
+        while (auto heard = link.receive(line_speed(), now))
+            if (!heard->empty()) take(std::move(*heard));
+    }
+    take({});  // what was held, and garbage, come without a client's doing
+    if (dialogue == nullptr || wire >= parts_.wires.size()) return any;
+    if (const auto belief = parts_.wires[wire].link.transport().new_belief())
+        dialogue->client_believes(wire, *belief, now);
     return any;
+}
+
+bool Station::hand_over(std::size_t wire, const Bytes& heard, GpsTime now, Dialogue* dialogue) {
+    if (heard.empty() || parts_.mute_wires.contains(wire)) return false;
+    if (dialogue != nullptr) dialogue->client_said(wire, heard, now);
+    input(port_of(wire), heard, now);
+    if (parts_.recorder) parts_.recorder->record_input(heard, now, wire);
+    return true;
 }
 
 PortId Station::port_of(std::size_t wire) const {

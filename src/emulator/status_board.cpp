@@ -165,6 +165,7 @@ void StatusBoard::on_fault(const FaultSeen& seen) {
 void StatusBoard::on_command(const CommandSeen& seen) {
     std::string text(seen.name);
     if (!seen.command.source.empty()) text += " by " + seen.command.source;
+    if (!seen.ignored.empty()) text += fmt::format(", ignored: {}", seen.ignored);
     add_event(seen.now, "command", std::move(text));
 }
 

@@ -1,7 +1,9 @@
 #include "skyloop/fault/checked_command.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "skyloop/base/spelling.hpp"
@@ -106,6 +108,13 @@ Result<Command> checked_command(ParameterMap members, std::string_view source) {
     command.parameters = std::move(checked.parameters);
     if (const auto mistake = place_mistake(command)) return fail(ErrorCode::input, "'at': " + *mistake);
     return command;
+}
+
+std::optional<std::string> receiver_mistake(const Command& command, std::span<const std::string> receivers) {
+    if (command.receiver.empty() || std::find(receivers.begin(), receivers.end(), command.receiver) != receivers.end())
+        return std::nullopt;
+    return fmt::format("'receiver' is '{}'; expected {}{}, or none for all of them", shown_name(command.receiver),
+                       receivers.size() == 1 ? "" : "one of ", fmt::join(receivers, ", "));
 }
 
 Error mistakes_error(const std::vector<ParameterMistake>& mistakes) {

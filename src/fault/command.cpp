@@ -1,40 +1,45 @@
 #include "skyloop/fault/command.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "skyloop/geo/geodetic.hpp"
 
 namespace skyloop {
 namespace {
 
-// What is not given is not known.
+// What is not given stays as it was told before.
 std::vector<ParameterSpec> vehicle_parameters() {
+    ParameterSpec mode = text_parameter("mode", "", "name of its mode: \"AUTO\"");
+    mode.standard.reset();
     ParameterSpec armed = flag_parameter("armed", false, "motors may turn");
     armed.standard.reset();
-    return {text_parameter("mode", "", "name of its mode: \"AUTO\""),
-            whole_number_parameter("custom_mode", std::nullopt, 0, 4294967295.0, "its number in HEARTBEAT"), armed};
+    return {mode, whole_number_parameter("custom_mode", std::nullopt, 0, 4294967295.0, "its number in HEARTBEAT"),
+            armed};
 }
 
 std::vector<CommandKind> run_commands() {
     using Verb = CommandVerb;
-    return {
-        {Verb::start_fault,
-         "start_fault",
-         "Begins a fault of the scenario now, by its name.",
-         {text_parameter("fault", "", "name of a fault of the scenario"),
-          number_parameter("for_s", std::nullopt, 0, 1e9, "how long; else as the scenario says")}},
-        {Verb::stop_fault,
-         "stop_fault",
-         "Ends a fault now; its ramp out still runs.",
-         {text_parameter("fault", "", "name of a fault; empty: all")}},
-        {Verb::move_to,
-         "move_to",
-         "The vehicle is moved: its path goes on from there.",
-         {place_parameter("at", true, "[latitude, longitude] or [latitude, longitude, height]")}},
-        {Verb::vehicle_state, "vehicle_state",
-         "What the vehicle's autopilot tells of itself, for triggers: of --mavlink, or by hand.", vehicle_parameters()},
-        {Verb::note, "note", "A text for the record.", {text_parameter("text", "", "what is to be written down")}},
-        {Verb::stop, "stop", "The run ends.", {}}};
+    return {{Verb::start_fault,
+             "start_fault",
+             "Begins a fault of the scenario now, by its name.",
+             {text_parameter("fault", "", "name of a fault of the scenario"),
+              number_parameter("for_s", std::nullopt, 0, 1e9, "how long; else as the scenario says")}},
+            {Verb::stop_fault,
+             "stop_fault",
+             "Ends a fault now; its ramp out still runs.",
+             {text_parameter("fault", "", "name of a fault; empty: all")}},
+            {Verb::move_to,
+             "move_to",
+             "The vehicle is moved: its path goes on from there.",
+             {place_parameter("at", true, "[latitude, longitude] or [latitude, longitude, height]")}},
+            {Verb::vehicle_state, "vehicle_state",
+             "What the vehicle's autopilot tells of itself, for triggers: of --mavlink, or by hand. What is not given "
+             "stays "
+             "as it was.",
+             vehicle_parameters()},
+            {Verb::note, "note", "A text for the record.", {text_parameter("text", "", "what is to be written down")}},
+            {Verb::stop, "stop", "The run ends.", {}}};
 }
 
 std::vector<CommandKind> receiver_commands() {
@@ -100,9 +105,9 @@ std::string_view command_name(CommandVerb verb) {
     return "";
 }
 
-VehicleState vehicle_state_of(const Parameters& parameters) {
-    VehicleState vehicle;
-    vehicle.mode = parameters.text("mode");
+VehicleState vehicle_state_of(const Parameters& parameters, VehicleState before) {
+    VehicleState vehicle = std::move(before);
+    if (parameters.has("mode")) vehicle.mode = parameters.text("mode");
     if (const auto number = parameters.optional_number("custom_mode"))
         vehicle.custom_mode = static_cast<std::uint32_t>(*number);
     if (parameters.has("armed")) vehicle.armed = parameters.flag("armed");

@@ -259,6 +259,7 @@ void MessageDamage::advance(GpsTime now, std::vector<TimedBytes>& out) {
 
 std::optional<GpsTime> MessageDamage::next_at() const {
     std::optional<GpsTime> next = patience_ends();
+    if (const auto garbage = garbage_at()) next = std::min(next.value_or(GpsTime::max()), *garbage);
     if (!late_.empty()) next = std::min(next.value_or(GpsTime::max()), late_since_ + longest_lateness);
     return next;
 }

@@ -44,7 +44,7 @@ public:
     void put(ByteSpan bytes, GpsTime now, std::vector<TimedBytes>& out);
     /// What happens by `now` without new bytes.
     void advance(GpsTime now, std::vector<TimedBytes>& out);
-    /// When something comes out at the latest that is held now.
+    /// When something comes out at the latest that is held now, or garbage of its own.
     [[nodiscard]] std::optional<GpsTime> next_at() const;
     [[nodiscard]] std::size_t waiting() const { return undecided_ + late_.size(); }
     /// Throws away what is held, as lost.

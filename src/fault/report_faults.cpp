@@ -132,18 +132,29 @@ Result<Fault> make_heading_flipped(const Parameters&, const FaultContext&) {
     });
 }
 
-// Satellites that nobody sees are GPS ones whose numbers are free.
+// Satellites that nobody sees have numbers that are free, first of the systems that the receiver tracks: sentences
+// count no others.
 void add_unseen_satellites(std::vector<SatelliteStatus>& satellites, int count) {
-    constexpr int gps_numbers = 32;
-    for (int number = 1; number <= gps_numbers && count > 0; ++number) {
-        const SatelliteId id{Constellation::gps, number};
-        if (std::any_of(satellites.begin(), satellites.end(), [&](const auto& s) { return s.id == id; })) continue;
-        SatelliteStatus made_up;
-        made_up.id = id;
-        made_up.used = true;
-        satellites.push_back(made_up);
-        --count;
-    }
+    struct System {
+        Constellation constellation;
+        int numbers;
+    };
+    using enum Constellation;
+    std::vector<System> systems{{gps, 32}, {glonass, 24}, {galileo, 36}, {beidou, 63}};
+    std::stable_partition(systems.begin(), systems.end(), [&](const System& system) {
+        return std::any_of(satellites.begin(), satellites.end(),
+                           [&](const auto& s) { return s.id.constellation == system.constellation; });
+    });
+    for (const auto& [constellation, numbers] : systems)
+        for (int number = 1; number <= numbers && count > 0; ++number) {
+            const SatelliteId id{constellation, number};
+            if (std::any_of(satellites.begin(), satellites.end(), [&](const auto& s) { return s.id == id; })) continue;
+            SatelliteStatus made_up;
+            made_up.id = id;
+            made_up.used = true;
+            satellites.push_back(made_up);
+            --count;
+        }
     std::sort(satellites.begin(), satellites.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
 }
 
@@ -159,6 +170,9 @@ Result<Fault> make_satellites_misreported(const Parameters& parameters, const Fa
             if (!std::exchange(s.used, true)) ++used;
         }
         if (used < count) add_unseen_satellites(satellites, count - used);
+        // GGA and GNS may count those that the solution left out too, which it knows by their residuals.
+        for (SatelliteStatus& s : satellites)
+            if (!s.used) s.residual.reset();
     });
 }
 

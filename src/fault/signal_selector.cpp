@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "skyloop/fault/known_names.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -26,6 +28,8 @@ Result<std::vector<SatelliteId>> read_satellites(const Parameters& parameters) {
         if (!satellite)
             return fail(ErrorCode::usage,
                         fmt::format("satellites has '{}'; expected a system's letter and two digits, as G07", text));
+        if (const auto mistake = satellite_mistake(*satellite))
+            return fail(ErrorCode::usage, "satellites: " + *mistake);
         satellites.push_back(*satellite);
     }
     return satellites;

@@ -108,7 +108,7 @@ Result<Fault> make_time_drift(const Parameters& parameters, const FaultContext&)
 Result<Fault> make_date_unknown(const Parameters& parameters, const FaultContext&) {
     return fault_of_report([time_too = parameters.flag("time_too")](NavigationState& state, const FaultMoment&) {
         state.time.date = state.time.leap_seconds = state.time.confirmed = false;
-        if (time_too) state.time.time = state.time.week_and_tow = false;
+        if (time_too) state.time.time = false;
     });
 }
 
@@ -163,9 +163,9 @@ std::vector<FaultKind> clock_kinds() {
              make_time_drift},
             {"date_unknown",
              solution,
-             "The date is told to be unknown while there is a fix.",
+             "Date and week are told to be unknown while there is a fix.",
              "A receiver that has a fix before it has heard the week, as after a hot start without its clock.",
-             {flag_parameter("time_too", false, "the time of day is unknown as well")},
+             {flag_parameter("time_too", false, "the time of day and of the week is unknown as well")},
              make_date_unknown}};
 }
 

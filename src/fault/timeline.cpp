@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "skyloop/base/random.hpp"
+#include "skyloop/fault/known_names.hpp"
 #include "skyloop/protocol/mavlink_modes.hpp"
 
 namespace skyloop {
@@ -59,15 +60,19 @@ void Timeline::plan_from(std::size_t index, GpsTime origin) {
     if (entry.at_time) return plan(index, *entry.at_time);
     Seconds offset = entry.at.value_or(Seconds(0));
     if (entry.between)
-        offset = Seconds(drawn(seed_, stream_name(entry, "begin", states_[index].begun + 1), *entry.between));
+        offset = Seconds(drawn(seed_, stream_name(entry, "begin", states_[index].drawn + 1), *entry.between));
     plan(index, advanced(origin, offset));
 }
 
-void Timeline::plan(std::size_t index, GpsTime begin) {
+// Which occurrence it is, is known when it begins: others may come in between.
+void Timeline::plan(std::size_t index, GpsTime begin, bool by_hand, std::optional<Seconds> length) {
     TimelineEvent event;
     event.entry = index;
-    event.occurrence = ++states_[index].begun;
+    event.occurrence = 0;
     event.time = begin;
+    event.by_hand = by_hand;
+    event.length = length;
+    if (!by_hand) ++states_[index].drawn;
     insert(event);
 }
 
@@ -113,8 +118,9 @@ void Timeline::follow(const TimelineEvent& event) {
 std::vector<TimelineEvent> Timeline::advance(GpsTime now) {
     std::vector<TimelineEvent> due;
     while (!planned_.empty() && planned_.front().event.time <= now) {
-        const TimelineEvent event = planned_.front().event;
+        TimelineEvent event = planned_.front().event;
         planned_.erase(planned_.begin());
+        if (event.begins) event.occurrence = ++states_[event.entry].begun;
         due.push_back(event);
         follow(event);
     }
@@ -134,19 +140,13 @@ std::size_t Timeline::add(TimelineEntry entry) {
 }
 
 bool Timeline::begin(std::size_t index, GpsTime now, std::optional<Seconds> length) {
-    if (!states_[index].under_way.empty()) return false;
-    TimelineEvent event;
-    event.entry = index;
-    event.occurrence = ++states_[index].begun;
-    event.time = now;
-    event.by_hand = true;
-    event.length = length;
-    insert(event);
+    if (is_under_way(index)) return false;
+    plan(index, now, true, length);
     return true;
 }
 
 bool Timeline::end(std::size_t index, GpsTime now) {
-    if (states_[index].under_way.empty()) return false;
+    if (!is_under_way(index)) return false;
     std::erase_if(planned_, [&](const Planned& planned) {
         return planned.event.entry == index && !planned.event.begins &&
                states_[index].under_way.contains(planned.event.occurrence);
@@ -198,7 +198,7 @@ void Timeline::look(GpsTime now, const TriggerView& view) {
 void Timeline::hear(GpsTime now, std::string_view client_message) {
     for (std::size_t i = 0; i < entries_.size(); ++i) {
         const auto& trigger = entries_[i].when;
-        if (trigger && !trigger->client_sends.empty() && trigger->client_sends == client_message &&
+        if (trigger && !trigger->client_sends.empty() && is_message_named(client_message, trigger->client_sends) &&
             holds(*trigger, now))
             act(i, now);
     }

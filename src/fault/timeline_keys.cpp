@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "skyloop/base/spelling.hpp"
+#include "skyloop/fault/known_names.hpp"
 #include "skyloop/protocol/mavlink_modes.hpp"
 #include "skyloop/time/utc_time.hpp"
 
@@ -40,7 +41,8 @@ std::vector<ParameterSpec> beginning_keys() {
         number_parameter("when_faster_mps", std::nullopt, 0, 1e5, "… faster than this over the ground"),
         polygon_parameter("when_inside", "… inside this polygon, [[latitude, longitude], …]"),
         number_parameter("when_fix_for_s", std::nullopt, 0, longest_s, "… when there has been a fix for so long"),
-        text_parameter("when_client_sends", "", "… when the client sends this message: \"CFG-VALSET\""),
+        text_parameter("when_client_sends", "",
+                       "… when the client sends this message: \"CFG-VALSET\", \"CFG-*\" or \"anything\""),
         text_parameter("when_mavlink_mode", "", "… when the vehicle's mode is this, by its name: \"AUTO\", \"RTL\""),
         whole_number_parameter("when_custom_mode", std::nullopt, 0, largest_custom_mode,
                                "… when it is this, by the number custom_mode of HEARTBEAT"),
@@ -118,6 +120,8 @@ std::optional<Trigger> trigger(const Parameters& keys, std::vector<ParameterMist
     when.inside = polygon(keys, mistakes);
     when.fix_for = quantity<Seconds>(keys, "when_fix_for_s");
     when.client_sends = keys.text("when_client_sends");
+    if (const auto mistake = message_name_mistake(when.client_sends); mistake && !when.client_sends.empty())
+        mistakes.push_back({"when_client_sends", *mistake});
     read_vehicle_conditions(keys, when, mistakes);
     const bool any = when.height_above || when.height_below || when.speed_above || !when.inside.empty() ||
                      when.fix_for || !when.client_sends.empty() || when.needs_vehicle();

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "scenario_keys.hpp"
+#include "skyloop/fault/known_names.hpp"
 #include "skyloop/verdict/expectation_sentence.hpp"
 
 namespace skyloop {
@@ -45,16 +46,24 @@ void read_probe(TableReader& table, Expectation& expectation) {
         table.mistake("receiver", "is of a sentence (what); a command asks whom it likes");
 }
 
+// A message or a satellite that there cannot be.
+std::optional<std::string> impossible_subject(const SubjectClause& subject) {
+    if (subject.satellite) return satellite_mistake(*subject.satellite);
+    return subject.message.empty() ? std::nullopt : message_name_mistake(subject.message);
+}
+
 void read_sentence(TableReader& table, Expectation& expectation) {
     table.needs_one_of({"what", "command"}, "says nothing; expected what = \"…\" or command = …");
     if (!table.has("what") && !table.recording()) return;
     expectation.what = "fix";  // stays where the value is no text, which has been told
     table.text("what", expectation.what);
     auto sentence = parse_expectation(expectation.what);
-    if (sentence)
+    if (sentence) {
+        if (const auto mistake = impossible_subject(sentence->subject)) table.mistake("what", *mistake);
         expectation.sentence = std::move(*sentence);
-    else
+    } else {
         table.mistake("what", fmt::format("at character {}: {}", sentence.error().column, sentence.error().sentence));
+    }
     for (const std::string_view key : probe_keys) {
         table.note_not_both("what", key);
         if (!table.has(key)) continue;

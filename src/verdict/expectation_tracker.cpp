@@ -184,10 +184,26 @@ void ExpectationTracker::judge(GpsTime now, bool value) {
     if (!stretch_ || stretch_->instant) return;
     looked_at_ = true;
     const bool right = value != sentence_.time.never;
-    if (once() && right) return come_true(now);
-    if (once() || right) return;
+    if (right) return once() ? come_true(now) : remember();
+    if (once()) return;
     fail(now, fmt::format("{} {}{}", sentence_.time.never ? "was true" : "did not hold", moment(now, *stretch_),
                           last_seen()));
+}
+
+// Of what holds all along, what is seen while it has to hold is the evidence, not what comes after.
+void ExpectationTracker::remember() {
+    if (strict_silence() && !sentence_.time.never) {
+        right_word_ = "nothing sent";  // the last message was before
+        return;
+    }
+    if (!last_number_) {
+        right_word_ = last_word_;
+        return;
+    }
+    if (!right_numbers_) right_numbers_ = {*last_number_, *last_number_};
+    auto& [least, greatest] = *right_numbers_;
+    least = std::min(least, *last_number_);
+    greatest = std::max(greatest, *last_number_);
 }
 
 void ExpectationTracker::come_true(GpsTime now) {
@@ -212,6 +228,7 @@ void ExpectationTracker::close(GpsTime now) {
         if (once() && right) return come_true(end);
         if (!once() && !right) return fail(end, "did not hold " + moment(end, stretch) + last_seen());
         // A subject that is sampled and has come true before the stretch is a fulfilment; nothing else reaches here.
+        if (!once()) remember();
     }
     if (once()) return fail(end, fmt::format("did not come true by {}{}", moment(end, stretch), last_seen()));
     came_true_at_ = end;
@@ -278,7 +295,8 @@ Finding ExpectationTracker::summary() const {
     const bool never = sentence_.time.never;
     if (is_message(sentence_.subject.subject) && never) return {Outcome::passed, "no such message then", came_true_at_};
     const std::string times = stretches_ > 1 ? fmt::format(" in {} stretches of time", stretches_) : "";
-    return {Outcome::passed, fmt::format("{}{}{}", never ? "was not true" : "held", times, last_seen()), came_true_at_};
+    return {Outcome::passed, fmt::format("{}{}{}", never ? "was not true" : "held", times, seen_all_along()),
+            came_true_at_};
 }
 
 std::string ExpectationTracker::event_never_came() const {
@@ -298,6 +316,20 @@ std::string ExpectationTracker::moment(GpsTime now, const Stretch& stretch) cons
 std::string ExpectationTracker::last_seen() const {
     if (last_number_) return fmt::format(" (seen: {:.2f}{})", *last_number_, unit_of(sentence_.subject.subject));
     if (!last_word_.empty()) return fmt::format(" (seen: {})", last_word_);
+    return is_of_epochs(sentence_.subject.subject) ? "" : " (seen: nothing)";
+}
+
+std::string ExpectationTracker::seen_all_along() const {
+    const std::string_view unit = unit_of(sentence_.subject.subject);
+    std::string seen;
+    if (right_numbers_) {
+        const auto [least, greatest] = *right_numbers_;
+        const std::string low = fmt::format("{:.2f}", least), high = fmt::format("{:.2f}", greatest);
+        seen = low == high ? low : low + " to " + high;
+        seen += unit;
+    }
+    if (!right_word_.empty()) seen += (seen.empty() ? "" : ", ") + right_word_;
+    if (!seen.empty()) return fmt::format(" (seen: {})", seen);
     return is_of_epochs(sentence_.subject.subject) ? "" : " (seen: nothing)";
 }
 

@@ -1,6 +1,7 @@
 /// Follows one sentence at one receiver.
 #pragma once
 
+#include <array>
 #include <deque>
 #include <optional>
 #include <string>
@@ -70,6 +71,7 @@ private:
     void turn(GpsTime now);
     void close(GpsTime now);
     void judge(GpsTime now, bool value);
+    void remember();
     void come_true(GpsTime now);
     void fail(GpsTime now, std::string evidence);
     void happen(GpsTime now, bool begins);
@@ -78,6 +80,7 @@ private:
     [[nodiscard]] std::string event_never_came() const;
     [[nodiscard]] std::string moment(GpsTime now, const Stretch& stretch) const;
     [[nodiscard]] std::string last_seen() const;
+    [[nodiscard]] std::string seen_all_along() const;
 
     ExpectedSentence sentence_;
     GpsTime start_;
@@ -93,6 +96,9 @@ private:
     std::optional<GpsTime> came_true_at_;
     std::optional<double> last_number_;
     std::string last_word_;
+    // What was right within the stretches: the evidence of those that had to hold.
+    std::optional<std::array<double, 2>> right_numbers_;  // the least and the greatest
+    std::string right_word_;                              // the last one
     std::optional<Finding> finding_;
 };
 

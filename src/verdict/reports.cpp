@@ -121,6 +121,8 @@ std::string verdict_text(std::span<const Verdict> verdicts, const ReportedRun& r
     for (const Outcome outcome : {Outcome::failed, Outcome::undecided, Outcome::not_run})
         if (const std::size_t count = count_of(verdicts, outcome); count > 0)
             text += fmt::format(", {} {}", count, outcome_name(outcome));
+    if (!verdicts.empty() && count_of(verdicts, Outcome::not_run) == verdicts.size())
+        text += ": nothing was judged, so the run is no success";
     return text + "\n";
 }
 
@@ -128,9 +130,13 @@ std::string verdict_json(std::span<const Verdict> verdicts, const ReportedRun& r
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const Verdict& verdict : verdicts)
         list.push_back(verdict_object(verdict));
-    const nlohmann::ordered_json report{{"scenario", run.scenario},         {"seed", run.seed},
-                                        {"start_utc", utc_text(run.start)}, {"length_s", run.length.value()},
-                                        {"met", all_met(verdicts)},         {"evidence", run.evidence},
+    const std::optional<bool> met = all_met(verdicts);
+    const nlohmann::ordered_json report{{"scenario", run.scenario},
+                                        {"seed", run.seed},
+                                        {"start_utc", utc_text(run.start)},
+                                        {"length_s", run.length.value()},
+                                        {"met", met ? nlohmann::ordered_json(*met) : nlohmann::ordered_json()},
+                                        {"evidence", run.evidence},
                                         {"verdicts", std::move(list)}};
     return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }

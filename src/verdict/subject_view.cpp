@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sentence_words.hpp"
+#include "skyloop/fault/known_names.hpp"
 #include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop {
@@ -97,14 +97,6 @@ Reading read_quantity(const SubjectClause& subject, const EpochSeen& seen) {
     return {compared(*number, subject), number};
 }
 
-// PREFIX* stands for all that begin with the prefix.
-bool has_name(std::string_view name, const std::string& wanted) {
-    const std::string small = small_letters(name), pattern = small_letters(wanted);
-    if (pattern == "anything") return true;
-    if (pattern.ends_with('*')) return small.starts_with(std::string_view(pattern).substr(0, pattern.size() - 1));
-    return small == pattern;
-}
-
 // A UBX frame is its payload and eight bytes. A poll has no payload, or names no more than what it asks for.
 bool is_poll(std::string_view name, std::size_t payload) {
     if (payload == 0 || name == "CFG-VALGET") return true;
@@ -162,9 +154,9 @@ bool speaks_of(const SubjectClause& subject, const MessageSeen& seen) {
     if (seen.kind == StreamKind::noise) return false;
     switch (subject.subject) {
         case ExpectedSubject::client_sends:
-            return seen.from_client && has_name(seen.name, subject.message);
+            return seen.from_client && is_message_named(seen.name, subject.message);
         case ExpectedSubject::receiver_sends:
-            return !seen.from_client && has_name(seen.name, subject.message);
+            return !seen.from_client && is_message_named(seen.name, subject.message);
         case ExpectedSubject::client_reconfigures:
             return seen.from_client && is_reconfiguration(seen);
         case ExpectedSubject::client_silent:

@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import socket
 import unittest
 import xml.etree.ElementTree
 
@@ -87,6 +88,14 @@ class VerdictsTest(unittest.TestCase):
             '[[command]]\nkind = "start_fault"\nfault = "x"\n': r"command.fault: is 'x'; no fault of this scenario",
             '[[expect]]\nwhat = "fixx"\n': r"quiet.toml:2:\d+: expect.what: at character 1: 'fixx'",
             '[[expect]]\nwhat = "fix after outtage"\n': r"outtage",
+            '[[expect]]\nwhat = "C/N0 of G99 below 30 dBHz"\n': r"quiet.toml:2:\d+: expect.what: 'G99' is no satellite; expected G01 to G63",
+            '[[expect]]\nwhat = "client sends MON-VRE"\n': r"expect.what: 'MON-VRE' is no message; did you mean 'MON-VER'",
+            '[[fault]]\nkind = "outage"\nsatellites = ["G99"]\n': r"satellites: 'G99' is no satellite; expected G01 to G63 of GPS",
+            '[[fault]]\nkind = "outage"\nwhen_client_sends = "NONSENSE"\n': r"quiet.toml:3:\d+: fault.when_client_sends: 'NONSENSE' is no message",
+            '[run]\nstart = 2024-03-05T12:00:00Z\n[[fault]]\nkind = "outage"\nat_utc = 2024-03-05T11:00:00Z\n':
+                r"'outage': at_utc is 2024-03-05T11:00:00.000Z, before the start of the run; expected 2024-03-05T12:00:00.000Z",
+            '[model]\nname = "baseline"\n[[fault]]\nkind = "cycle_slips"\n':
+                r"'cycle_slips': kind = \"cycle_slips\" spoils measurements, and model.name = \"baseline\" makes none",
         }
         for text, expected in cases.items():
             with self.subTest(text):
@@ -94,6 +103,47 @@ class VerdictsTest(unittest.TestCase):
                 done = skyloop("check", self.scenario)
                 self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
                 self.assertRegex(done.stderr, expected)
+
+    def test_what_comes_after_the_end_is_warned_of(self):
+        text = SCENARIO + '[[fault]]\nkind = "outage"\nname = "late"\nat_s = 90\n'
+        warning = "[[fault]] 'late' will not begin: it is due 90 s after the start of the run, which ends after 60 s"
+        done = self.simulate(text)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn(warning, done.stderr)
+        self.assertIn(warning, skyloop("check", self.scenario).stderr)
+
+    def test_a_run_that_judged_nothing_is_no_success(self):
+        done = self.simulate('[run]\nstart = 2024-03-05T12:00:00Z\nduration_s = 5\n[model]\nname = "ideal"\n'
+                             '[[expect]]\ncommand = ["false"]\n')
+        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+        self.assertIn("1 not run: nothing was judged, so the run is no success", done.stdout)
+        self.assertIsNone(json.loads((self.out / "verdicts.json").read_text())["met"])
+        suite = xml.etree.ElementTree.parse(self.out / "junit.xml").getroot()
+        self.assertEqual((suite.get("tests"), suite.get("skipped")), ("1", "1"))
+
+    def test_what_was_not_run_is_not_met_beside_what_passed(self):
+        done = self.simulate(SCENARIO + '[[expect]]\ncommand = ["false"]\n')
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("2 of 3 expectations met", done.stdout)
+        self.assertIsNone(json.loads((self.out / "verdicts.json").read_text())["met"])
+
+    def test_occurrences_are_counted_as_they_begin(self):
+        done = self.simulate(SCENARIO + '[[command]]\nkind = "start_fault"\nfault = "quiet"\nfor_s = 1\nat_s = 8\n'
+                             '[[command]]\nkind = "start_fault"\nfault = "quiet"\nat_s = 22\n'
+                             '[[expect]]\nwhat = "receiver silent throughout quiet#2"\n')
+        self.assertEqual(done.returncode, 3, "quiet#1 lasts a second alone: " + done.stdout + done.stderr)
+        events = [json.loads(line) for line in (self.out / "commands.jsonl").read_text().splitlines()]
+        self.assertEqual([(e["occurrence"], e["time_s"]) for e in events if e["event"] == "fault_begins"],
+                         [(1, 8.0), (2, 20.0)])
+        self.assertEqual([e.get("ignored") for e in events if e["event"] == "command"], [None, "quiet is under way"])
+
+    def test_what_a_command_does_not_tell_of_the_vehicle_stays(self):
+        done = self.simulate('[run]\nstart = 2024-03-05T12:00:00Z\nduration_s = 20\n[model]\nname = "ideal"\n'
+                             '[[command]]\nkind = "vehicle_state"\nmode = "AUTO"\nat_s = 5\n'
+                             '[[command]]\nkind = "vehicle_state"\narmed = true\nat_s = 8\n'
+                             '[[fault]]\nkind = "receiver_silent"\nwhen_mavlink_mode = "AUTO"\nwhen_armed = true\n'
+                             '[[expect]]\nwhat = "receiver silent within 5 s of receiver_silent"\n')
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def test_check_prints_the_timeline(self):
         self.scenario.write_text(SCENARIO)
@@ -136,6 +186,45 @@ class LiveTest(unittest.TestCase):
         done = skyloop("ctl", port, *arguments)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
+
+    def test_commands_for_nobody_are_refused(self):
+        with Emulator(str(self.scenario), "--port", "pty", "--control", "0", "--duration", "20") as emulator:
+            port = emulator.said(r"^control: http://127\.0\.0\.1:(\d+)/")
+            for words in (("fault", "outage", "receiver=nosuch"), ("restart", "receiver=nosuch"),
+                          ("fault", "position_step", "north_m=5", "receiver=a,b")):
+                with self.subTest(words):
+                    done = skyloop("ctl", port, *words)
+                    self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+                    self.assertIn("expected receiver0, or none for all of them", done.stderr)
+            self.assertNotIn("fault outage", self.ctl(port, "status"))
+            self.ctl(port, "fault", "outage", "receiver=receiver0")
+
+    def test_what_a_live_source_asks_of_nobody_is_told(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        self.scenario.write_text('[run]\nstart = 2024-03-05T12:00:00Z\n[model]\nname = "baseline"\n[trajectory]\n'
+                                 f'kind = "live"\nsource = "udp-json:{port}"\nat = [47, 8, 500]\n')
+        with Emulator(str(self.scenario), "--port", "pty", "--record", str(self.path / "out"),
+                      "--duration", "20") as emulator:
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as source:
+                for receiver in ("nosuch", "receiver0"):
+                    event = {"type": "event", "name": "outage", "args": {"receiver": receiver}}
+                    source.sendto(json.dumps(event).encode(), ("127.0.0.1", port))
+            emulator.said(r"(start_fault is not done: 'receiver' is 'nosuch'; expected receiver0)")
+            emulator.stop()
+        events = [json.loads(line) for line in (self.path / "out/commands.jsonl").read_text().splitlines()]
+        self.assertEqual([e["name"] for e in events if e["event"] == "fault_begins"], ["outage"])
+
+    def test_ctl_tells_what_it_expects_behind_a_word(self):
+        for words, expected in {("stop",): "'stop' has 0 words behind it; expected: stop NAME",
+                                ("status", "extra"): "'status' has 1 word behind it; expected: status",
+                                ("watch", "a"): "'watch' has 1 word behind it; expected: watch",
+                                ("stopp",): "unknown command 'stopp'; did you mean 'stop'"}.items():
+            with self.subTest(words):
+                done = skyloop("ctl", "1", *words)
+                self.assertEqual(done.returncode, 2)
+                self.assertIn(expected, done.stderr)
 
     def test_a_live_run_is_steered_and_repeated_byte_by_byte(self):
         first = self.path / "first"

@@ -48,8 +48,10 @@ struct AccessRules {
 
 /// What requests are answered with.
 struct ControlSources {
-    std::shared_ptr<const StatusSnapshot> snapshot{};  ///< null: the run has not begun
-    std::function<bool(Command)> push{};               ///< false: too many wait; empty: nothing is taken
+    std::shared_ptr<const StatusSnapshot> snapshot{};     ///< null: the run has not begun
+    std::function<bool(Command)> push{};                  ///< false: too many wait; empty: nothing is taken
+    const std::vector<std::string>* receivers = nullptr;  ///< names of those that a command may be for; null: any
+    bool measuring = true;  ///< the receivers measure, so that faults of measurements have something to spoil
     /// Names of faults that clients have begun; null: none.
     const std::set<std::string, std::less<>>* started = nullptr;
     const std::string* status = nullptr;  ///< recent_status_json() where it has been made; else null

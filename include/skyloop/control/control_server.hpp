@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "skyloop/base/result.hpp"
 #include "skyloop/emulator/command_queue.hpp"
@@ -26,8 +27,10 @@ Result<ControlOptions> parse_control_address(std::string_view text);
 struct ControlParts {
     CommandQueue& commands;
     const StatusBoard& board;
-    std::string scene{};    ///< scene_json(); empty: there is none
-    std::string version{};  ///< of the program
+    std::string scene{};                   ///< scene_json(); empty: there is none
+    std::string version{};                 ///< of the program
+    std::vector<std::string> receivers{};  ///< names of those that a command may be for
+    bool measuring = true;                 ///< they measure; not with a sensor model
 };
 
 /// A server on a thread of its own, which never makes the loop wait. At most 16 clients at once; a request has at most

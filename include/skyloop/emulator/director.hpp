@@ -72,6 +72,7 @@ private:
     void follow(const TimelineEvent& event, const Scene& scene);
     void begin_fault(const TimelineEvent& event, Station& station);
     void carry_out(const Command& command, std::string_view name, const Scene& scene);
+    [[nodiscard]] std::string ignored_because(const Command& command) const;
     static firmware::ReceiverEvent receiver_event(const Command& command);
     void start_or_stop(const Command& command, const Scene& scene);
     void begin_new_fault(const Command& command, const Scene& scene);

@@ -30,16 +30,17 @@ public:
     Bytes to_receiver(Bytes bytes, GpsTime now);
     /// The speed of the line, where it is not the receiver's.
     [[nodiscard]] std::optional<std::uint32_t> line_baud() const { return conditions_.receiver_baud; }
-    /// When held bytes come out next.
+    /// When held bytes or garbage come out next. Both ways are to be looked at then: time stands still until they are.
     /// @param now of the last look
     [[nodiscard]] std::optional<GpsTime> next_at(GpsTime now) const;
-    /// Bytes on their way to the receiver.
-    [[nodiscard]] bool input_pending() const { return to_receiver_.waiting() > 0; }
+
+    /// Something is wrong with the way to the client, or was and bytes are still held: it is looked at every
+    /// millisecond.
+    [[nodiscard]] bool damages_output() const;
 
 private:
     WireConditions conditions_;
     WireDamage to_client_, to_receiver_;
-    [[nodiscard]] bool damages_output() const;
 
     Bytes entering_;               // towards the client at the next whole millisecond
     std::uint32_t last_baud_ = 0;  // of the bytes that are held

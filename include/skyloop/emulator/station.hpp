@@ -124,6 +124,8 @@ public:
 private:
     [[nodiscard]] std::set<firmware::PortId> wired_ports() const;
     bool hear(std::size_t wire, GpsTime now, Dialogue* dialogue);
+    bool hand_over(std::size_t wire, const Bytes& heard, GpsTime now, Dialogue* dialogue);
+    void input(firmware::PortId port, ByteSpan bytes, GpsTime now);
     bool hear_again(GpsTime now, Dialogue* dialogue);
     void speak(const LoopTime& time, Dialogue* dialogue);
     void send_on_wire(std::size_t wire, const std::vector<firmware::Receiver::Sent>& pieces, bool at_rest);

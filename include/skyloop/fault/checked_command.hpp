@@ -2,6 +2,8 @@
 #pragma once
 
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +28,10 @@ Result<Command> checked_live_fault(ParameterMap members, std::string_view source
 
 /// The parameters that every live fault takes beside those of its kind: kind, name, for_s, ramp_in_s, ramp_out_s.
 const std::vector<ParameterSpec>& live_fault_parameters();
+
+/// What is wrong with the receiver that a command is for, or nothing: only the run knows who there is.
+/// @param receivers names of those of the run
+std::optional<std::string> receiver_mistake(const Command& command, std::span<const std::string> receivers);
 
 /// All mistakes in one line: "'loss' is 7; expected …".
 Error mistakes_error(const std::vector<ParameterMistake>& mistakes);

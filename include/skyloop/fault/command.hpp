@@ -51,8 +51,8 @@ const std::vector<CommandKind>& command_kinds();
 const CommandKind* find_command_kind(std::string_view name);
 /// "move_to"
 std::string_view command_name(CommandVerb verb);
-/// The state that a command vehicle_state tells.
-VehicleState vehicle_state_of(const Parameters& parameters);
+/// The state that a command vehicle_state tells. @param before it; what the command does not name stays
+VehicleState vehicle_state_of(const Parameters& parameters, VehicleState before = {});
 /// The command that tells a state. @param source of it
 Command vehicle_state_command(const VehicleState& vehicle, std::string_view source);
 /// What is wrong with the place, `at`, to which a command moves the vehicle; nothing of others.

@@ -48,6 +48,7 @@ struct CommandSeen {
     GpsTime now;
     std::string_view name;  ///< of the entry; of a live one its verb
     const Command& command;
+    std::string_view ignored{};  ///< why nothing comes of it: "outage is under way"; empty: it is done
 };
 
 /// What a scripted client makes of what it hears, when that changes.

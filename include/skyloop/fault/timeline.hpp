@@ -23,7 +23,7 @@ struct Trigger {
     std::optional<MetresPerSecond> speed_above;        ///< over the ground
     std::vector<std::array<double, 2>> inside{};  ///< a polygon of latitudes and longitudes, degrees; empty: anywhere
     std::optional<Seconds> fix_for{};             ///< so long without a gap
-    std::string client_sends{};                   ///< "CFG-VALSET", "PUBX,41": name of a client's message; empty: none
+    std::string client_sends{};                   ///< a client's message by is_message_named(); empty: none
     std::string vehicle_mode{};                   ///< "AUTO": by is_mavlink_mode(); empty: any
     std::optional<std::uint32_t> custom_mode{};   ///< the vehicle's mode as HEARTBEAT's number
     std::optional<bool> armed{};                  ///< the vehicle is armed, or is not
@@ -69,7 +69,7 @@ struct TriggerView {
 /// One begins, one ends.
 struct TimelineEvent {
     std::size_t entry = 0;
-    int occurrence = 1;
+    int occurrence = 1;  ///< counted as they begin, those asked for by hand among them
     bool begins = true;
     GpsTime time{};
     bool by_hand = false;             ///< asked for while the run went on
@@ -78,7 +78,8 @@ struct TimelineEvent {
 
 /// Resolves entries to events.
 ///
-/// Times are drawn from streams of their own, named by entry and occurrence, so that they do not depend on each other.
+/// Times are drawn from streams of their own, named by entry and number, so that they do not depend on each other: a
+/// beginning's by how many were planned before it, a length by the occurrence.
 /// State: what is under way and what is to come.
 class Timeline {
 public:
@@ -93,6 +94,8 @@ public:
     void hear(GpsTime now, std::string_view client_message);
     /// The vehicle's state from now on; triggers see it at the next look().
     void tell(VehicleState vehicle) { vehicle_ = std::move(vehicle); }
+    /// As it was told last.
+    [[nodiscard]] const VehicleState& vehicle() const { return vehicle_; }
     /// The next instant at which something is known to happen.
     [[nodiscard]] std::optional<GpsTime> next_event() const;
     /// Adds an entry that begins by begin() alone. @return its place
@@ -101,6 +104,7 @@ public:
     bool begin(std::size_t entry, GpsTime now, std::optional<Seconds> length = std::nullopt);
     /// Ends an entry now, as if its time were over; false when it is not under way.
     bool end(std::size_t entry, GpsTime now);
+    [[nodiscard]] bool is_under_way(std::size_t entry) const { return !states_[entry].under_way.empty(); }
     [[nodiscard]] const std::vector<TimelineEntry>& entries() const { return entries_; }
 
 private:
@@ -109,13 +113,14 @@ private:
         bool operator<(const Planned& other) const;
     };
     struct EntryState {
-        int begun = 0;  // occurrences, planned ones among them
+        int drawn = 0;  // beginnings that were planned, by which their times are drawn
+        int begun = 0;  // occurrences that have begun, whoever asked for them
         std::set<int> under_way{};
         bool triggered = false;  // its trigger has acted
         bool held = false;       // … held at the last look
     };
     void plan_from(std::size_t entry, GpsTime origin);
-    void plan(std::size_t entry, GpsTime begin);
+    void plan(std::size_t entry, GpsTime begin, bool by_hand = false, std::optional<Seconds> length = std::nullopt);
     void plan_end(const TimelineEvent& begin);
     void insert(const TimelineEvent& event);
     void follow(const TimelineEvent& event);

@@ -62,8 +62,8 @@ public:
     void put(ByteSpan bytes, GpsTime now);
     /// What comes out by `now`.
     Bytes take(GpsTime now);
-    /// When the next byte comes out that is held back now; nothing: none is, or nobody knows. Garbage to come is not
-    /// held back: it appears when one looks.
+    /// When the next byte comes out that is held back now, or garbage; nothing: neither is to come, or nobody knows. It
+    /// stays at the past until it is taken.
     [[nodiscard]] std::optional<GpsTime> next_at() const;
     /// Bytes that are held back, and those that are ready and not yet taken.
     [[nodiscard]] std::size_t waiting() const;

@@ -22,8 +22,9 @@ struct ReportedRun {
 /// A line per verdict and one that counts them: `FAILED  client reconfigures …: client sent nothing (at 12.000 s)`.
 std::string verdict_text(std::span<const Verdict> verdicts, const ReportedRun& run);
 
-/// A JSON object: scenario, seed, start_utc, length_s, met, evidence, verdicts (name, expected, outcome, evidence,
-/// run_time_s; decided_at_utc and decided_at_gps_ns where it was decided before the end).
+/// A JSON object: scenario, seed, start_utc, length_s, met (true, false, or null: all_met() says nothing), evidence,
+/// verdicts (name, expected, outcome, evidence, run_time_s; decided_at_utc and decided_at_gps_ns where it was decided
+/// before the end).
 std::string verdict_json(std::span<const Verdict> verdicts, const ReportedRun& run);
 
 /// A JUnit document (the form that Jenkins, GitLab and GitHub actions read): one suite, a case per verdict. `failed` is

@@ -31,7 +31,11 @@ struct Verdict {
     Seconds run_time{0};                ///< of `decided_at`, or of the end, since the start of the run
 };
 
-/// Whether the run may be called a success: nothing failed, nothing is undecided.
-bool all_met(std::span<const Verdict> verdicts);
+/// Whether the run did all that was expected: not where something failed or is undecided; nothing where the rest
+/// passed, but something was not run.
+std::optional<bool> all_met(std::span<const Verdict> verdicts);
+/// Whether the run may be called a success: nothing failed, nothing is undecided, and where something was expected at
+/// least one passed. A run that judged nothing has shown nothing.
+bool is_success(std::span<const Verdict> verdicts);
 
 }  // namespace skyloop

@@ -18,7 +18,8 @@ using testing::HasSubstr;
 struct Desk {
     AccessRules rules{"", "127.0.0.1", true};
     std::vector<Command> pushed{};
-    bool full = false;
+    bool full = false, measuring = true;
+    std::vector<std::string> receivers{"front", "rear"};
 
     ControlResponse ask(const ControlRequest& request) {
         ControlSources sources;
@@ -27,6 +28,8 @@ struct Desk {
             if (!full) pushed.push_back(std::move(command));
             return !full;
         };
+        sources.receivers = &receivers;
+        sources.measuring = measuring;
         sources.version = "1.2.3";
         return answer(request, rules, sources);
     }
@@ -71,6 +74,33 @@ TEST(ControlRequest, QueuesCommands) {
     EXPECT_EQ(desk.pushed.size(), 1U);
     desk.full = true;
     EXPECT_EQ(desk.post("/api/commands", R"({"command":"resume"})").status, 429);
+}
+
+TEST(ControlRequest, RefusesCommandsForNobody) {
+    Desk desk;
+    EXPECT_EQ(desk.post("/api/faults", R"({"kind":"outage","receiver":"front"})").status, 202);
+    EXPECT_EQ(desk.post("/api/commands", R"({"command":"start_fault","fault":"wet plug"})").status, 202);
+    EXPECT_EQ(desk.pushed.size(), 2U);
+    const ControlResponse fault = desk.post("/api/faults", R"({"kind":"outage","receiver":"frnt"})");
+    EXPECT_EQ(fault.status, 422);
+    EXPECT_EQ(error_of(fault), "'receiver' is 'frnt'; expected one of front, rear, or none for all of them");
+    const ControlResponse several = desk.post("/api/commands", R"({"command":"restart","receiver":"front,rear"})");
+    EXPECT_EQ(several.status, 422);
+    EXPECT_THAT(error_of(several), HasSubstr("'receiver' is 'front,rear'"));
+    const ControlResponse unknown = desk.post("/api/commands", R"({"command":"start_fault","fault":"dry plug"})");
+    EXPECT_EQ(unknown.status, 422);
+    EXPECT_THAT(error_of(unknown), HasSubstr("'fault' is 'dry plug'"));
+    EXPECT_EQ(desk.pushed.size(), 2U);
+}
+
+TEST(ControlRequest, RefusesFaultsOfMeasurementsWhereNoneAreMade) {
+    Desk desk;
+    EXPECT_EQ(desk.post("/api/faults", R"({"kind":"cycle_slips"})").status, 202);
+    desk.measuring = false;
+    const ControlResponse slips = desk.post("/api/faults", R"({"kind":"cycle_slips"})");
+    EXPECT_EQ(slips.status, 422);
+    EXPECT_THAT(error_of(slips), HasSubstr("'kind' is 'cycle_slips', which spoils measurements"));
+    EXPECT_EQ(desk.post("/api/faults", R"({"kind":"outage"})").status, 202);
 }
 
 TEST(ControlRequest, StopsAFaultByItsNameInThePath) {

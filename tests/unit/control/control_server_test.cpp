@@ -35,7 +35,7 @@ struct ServerRig {
     ControlOptions options;
 
     explicit ServerRig(ControlOptions wanted = {}) : options(std::move(wanted)) {
-        auto started = ControlServer::start(options, {commands, board, "{\"roofs\":[]}", "1.2.3"});
+        auto started = ControlServer::start(options, {commands, board, "{\"roofs\":[]}", "1.2.3", {"front"}});
         EXPECT_TRUE(started) << started.error().message;
         if (!started) return;
         server = std::move(*started);
@@ -130,11 +130,11 @@ TEST(ControlServer, AnswersAndQueues) {
 TEST(ControlServer, FailsWhereItCannotListen) {
     const ServerRig rig;
     CommandQueue commands;
-    const auto second = ControlServer::start(rig.options, {commands, rig.board, {}, {}});
+    const auto second = ControlServer::start(rig.options, {commands, rig.board, {}, {}, {}});
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, ErrorCode::outside);
     EXPECT_THAT(second.error().message, HasSubstr("cannot listen at 127.0.0.1:"));
-    const auto token = ControlServer::start({"127.0.0.1", 0, "two words"}, {commands, rig.board, {}, {}});
+    const auto token = ControlServer::start({"127.0.0.1", 0, "two words"}, {commands, rig.board, {}, {}, {}});
     ASSERT_FALSE(token);
     EXPECT_EQ(token.error().code, ErrorCode::usage);
 }

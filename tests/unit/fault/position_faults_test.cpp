@@ -238,6 +238,28 @@ TEST(PositionFaults, MisreportsTheNumberOfSatellites) {
     }
 }
 
+TEST(PositionFaults, MisreportsTheSameNumberWhereConsideredSatellitesAreCounted) {
+    ReceiverBench bench;
+    for (SatelliteStatus& s : bench.fix().satellites)
+        if (s.cn0) s.residual = Metres(0.3);
+    CfgValset consider;
+    consider.layers = 1;
+    consider.pairs = {{firmware::find_config_key("CFG-NMEA-CONSIDER")->id, 1}};
+    bench.send(consider);
+    const NavPvt before = bench.next();
+    bench.begin("satellites_misreported", {{"count", 5.0}});
+    EXPECT_EQ(bench.next().num_sv, 5);
+    EXPECT_EQ(bench.sentence("GGA")[7], "05") << "as many as NAV-PVT says";
+    expect_no_residue(bench, before);
+}
+
+TEST(PositionFaults, MisreportsMoreSatellitesThanOneSystemHas) {
+    ReceiverBench bench;
+    std::erase_if(bench.fix().satellites, [](const auto& s) { return s.id.constellation != Constellation::gps; });
+    bench.begin("satellites_misreported", {{"count", 40.0}});
+    EXPECT_EQ(bench.next().num_sv, 40);
+}
+
 TEST(PositionFaults, DropsEpochs) {
     ReceiverBench bench;
     const NavPvt before = bench.next();

@@ -148,11 +148,13 @@ TEST(TimeFaults, DoesNotKnowTheDate) {
     const NavPvt undated = bench.next();
     EXPECT_EQ(undated.valid & 1, 0);
     EXPECT_EQ(undated.valid & 2, 2);
+    EXPECT_EQ(bench.last<NavTimegps>().valid & 3, 1) << "the time of week is known, the week is not";
     EXPECT_EQ(bench.sentence("RMC")[9], "");
     EXPECT_NE(bench.sentence("RMC")[1], "");
     expect_true_time(bench);
     bench.begin("date_unknown", {{"time_too", true}});
     EXPECT_EQ(bench.next().valid & 3, 0);
+    EXPECT_EQ(bench.last<NavTimegps>().valid & 3, 0);
     EXPECT_EQ(bench.sentence("RMC")[1], "");
     expect_true_time(bench);
 }

@@ -5,8 +5,10 @@
 
 #include <set>
 
+#include "skyloop/fault/checked_command.hpp"
 #include "skyloop/fault/command.hpp"
 #include "skyloop/fault/fault_kind.hpp"
+#include "skyloop/fault/known_names.hpp"
 #include "skyloop/fault/timeline_keys.hpp"
 
 namespace skyloop::test {
@@ -164,6 +166,12 @@ TEST(Timeline, HearsTheClient) {
     EXPECT_FALSE(timeline.next_event());
     timeline.hear(after(2.5), "CFG-VALSET");
     EXPECT_THAT(happenings(timeline, 100)[0], (Happening{"triggered", 2.5, true}));
+    for (const char* name : {"cfg-valset", "CFG-*", "anything"}) {
+        message.client_sends = name;
+        Timeline other({triggered(message)}, begin_of_run, 1);
+        other.hear(after(2.5), "CFG-VALSET");
+        EXPECT_TRUE(other.next_event()) << name;
+    }
 }
 
 // Looks once a second from 1 s on, each time with the next state of the vehicle.
@@ -198,6 +206,53 @@ TEST(Timeline, FollowsTheVehiclesMode) {
     EXPECT_TRUE(begins_with(both, {{"AUTO", 3, false}, {"AUTO", 3, true}}));
 }
 
+TEST(Timeline, KeepsOfTheVehicleWhatACommandDoesNotName) {
+    const auto told = [](const ParameterMap& members, const VehicleState& before) {
+        ParameterMap all = members;
+        all["command"] = std::string("vehicle_state");
+        const auto command = checked_command(std::move(all), "test");
+        EXPECT_TRUE(command);
+        return command ? vehicle_state_of(command->parameters, before) : VehicleState{};
+    };
+    const VehicleState automatic = told({{"mode", std::string("AUTO")}}, {});
+    EXPECT_EQ(automatic, (VehicleState{"AUTO", std::nullopt, std::nullopt}));
+    const VehicleState armed = told({{"armed", true}}, automatic);
+    EXPECT_EQ(armed, (VehicleState{"AUTO", std::nullopt, true}));
+    EXPECT_EQ(told({{"custom_mode", 3.0}}, armed), (VehicleState{"AUTO", 3, true}));
+    const Command unnamed = vehicle_state_command({"", 77, false}, "mavlink");
+    EXPECT_EQ(vehicle_state_of(unnamed.parameters, armed), (VehicleState{"", 77, false})) << "a mode without a name";
+}
+
+TEST(Timeline, CountsOccurrencesAsTheyBegin) {
+    TimelineEntry often = entry("often", 20, 2);
+    often.every = Seconds(10);
+    often.times = 4;
+    Timeline timeline({often}, begin_of_run, 1);
+    std::vector<std::pair<double, int>> begun;
+    const auto advance_to = [&](double second) {
+        for (const TimelineEvent& event : timeline.advance(after(second)))
+            if (event.begins) begun.emplace_back(difference(event.time, begin_of_run).value(), event.occurrence);
+    };
+    EXPECT_TRUE(timeline.begin(0, after(8)));
+    advance_to(25);
+    EXPECT_TRUE(timeline.begin(0, after(26)));
+    advance_to(100);
+    EXPECT_THAT(begun, ElementsAre(std::pair(8.0, 1), std::pair(20.0, 2), std::pair(26.0, 3), std::pair(30.0, 4)));
+}
+
+TEST(Timeline, DrawsTheSameTimesWhateverIsBegunByHand) {
+    TimelineEntry random = entry("random", 0, 1);
+    random.at.reset();
+    random.between = {10, 20};
+    random.after = "first";
+    TimelineEntry first = entry("first", 5, 1);
+    Timeline alone({first, random}, begin_of_run, 1), steered({first, random}, begin_of_run, 1);
+    EXPECT_TRUE(steered.begin(1, after(1)));
+    const auto expected = happenings(alone, 100), seen = happenings(steered, 100);
+    ASSERT_THAT(seen, SizeIs(expected.size() + 2));
+    EXPECT_EQ(seen.back().at, expected.back().at);
+}
+
 TEST(Timeline, IsLedByHand) {
     TimelineEntry made = entry("by hand", 0, 100);
     made.by_hand = true;
@@ -226,6 +281,17 @@ TEST(TimelineKeys, AreRead) {
     EXPECT_EQ(reading.entry.length, Seconds(7));
     EXPECT_EQ(reading.entry.ramp_in, Seconds(2));
     EXPECT_EQ(reading.entry.every, Seconds(60));
+}
+
+TEST(TimelineKeys, MessagesAreThoseThatThereAre) {
+    for (const char* name :
+         {"MON-VER", "mon-ver", "CFG-*", "anything", "GGA", "PUBX,41", "PMTK314", "UBX-0A-04", "RTCM-1005", "GPRT"})
+        EXPECT_FALSE(message_name_mistake(name)) << name;
+    for (const char* name : {"NONSENSE", "MON-VRE", "CGF-*", "UBX-0A", "PUBX-41", "", "two words"})
+        EXPECT_TRUE(message_name_mistake(name)) << name;
+    EXPECT_THAT(message_name_mistake("mon-vre").value_or(""),
+                HasSubstr("'mon-vre' is no message; did you mean 'MON-VER'?; expected a name like"));
+    EXPECT_THAT(read_timeline_entry(keys({{"when_client_sends", std::string("NONSENSE")}})).mistakes, SizeIs(1));
 }
 
 TEST(TimelineKeys, ContradictionsAreTold) {

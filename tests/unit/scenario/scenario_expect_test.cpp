@@ -84,6 +84,10 @@ TEST(ScenarioExpect, MistakesAreToldWithTheirPlace) {
     EXPECT_THAT(mistakes_of("[[expect]]\ncommand = \"x\"\nreceiver = \"a\""),
                 HasSubstr("expect.receiver: is of a sentence"));
     EXPECT_THAT(mistakes_of("[[expect]]\nwhat = \"fix\"\nwat = 1"), HasSubstr("unknown key; did you mean 'what'?"));
+    EXPECT_THAT(mistakes_of("[[expect]]\nwhat = \"C/N0 of G99 below 30 dBHz\""),
+                HasSubstr("test.toml:2:8: expect.what: 'G99' is no satellite; expected G01 to G63 of GPS"));
+    EXPECT_THAT(mistakes_of("[[expect]]\nwhat = \"receiver sends NAV-PTV every 1 s always\""),
+                HasSubstr("expect.what: 'NAV-PTV' is no message; did you mean 'NAV-PVT'"));
     EXPECT_THAT(mistakes_of("expect = 3"), HasSubstr("a list of tables, each headed [[expect]]"));
 }
 

@@ -5,6 +5,8 @@
 
 #include "scenario_text.hpp"
 #include "skyloop/scenario/scenario_file.hpp"
+#include "skyloop/scenario/timeline_check.hpp"
+#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::test {
 namespace {
@@ -94,6 +96,67 @@ TEST(ScenarioTimeline, MistakesAreToldWhereTheyStand) {
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"saturated_uart\"\nbytes_per_s = 10\nbaud = 9600\n"),
                 HasSubstr("test.toml:1:1: [fault]"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"refuses_keys\"\nkeys = \"CFG-RATE-MESA\"\n"), HasSubstr("CFG-RATE-MEAS"));
+}
+
+TEST(ScenarioTimeline, SatellitesAndMessagesThatThereCannotBeAreRefused) {
+    const auto mistakes = [](std::string_view text) {
+        const auto scenario = read_scenario(text, "test.toml");
+        return scenario ? std::string() : scenario.error().message;
+    };
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nsatellites = [\"G07\", \"G99\"]\n"),
+                HasSubstr("satellites: 'G99' is no satellite; expected G01 to G63 of GPS"));
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nsatellites = [\"S19\"]\n"), HasSubstr("S20 to S58 of SBAS"));
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nsatellites = [\"R24\", \"E36\", \"C63\"]\n"), IsEmpty());
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nwhen_client_sends = \"NONSENSE\"\n"),
+                HasSubstr("test.toml:3:21: fault.when_client_sends: 'NONSENSE' is no message; expected a name like"));
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nwhen_client_sends = \"mon-ver\"\n"), IsEmpty());
+}
+
+std::string refusal_of(std::string_view text, GpsTime start) {
+    const auto checked = check_timeline(scenario_of(text), start);
+    return checked ? std::string() : checked.error().message;
+}
+
+TEST(ScenarioTimeline, WhatNeverHappensInThisRunIsRefused) {
+    const GpsTime start = to_gps_time(*parse_utc("2024-03-05T12:00:00Z"), LeapSeconds::announced());
+    const std::string slips = "[[fault]]\nkind = \"cycle_slips\"\n[model]\nname = ";
+    EXPECT_THAT(refusal_of(slips + "\"baseline\"\n", start),
+                HasSubstr("[[fault]] 'cycle_slips': kind = \"cycle_slips\" spoils measurements, and model.name = "
+                          "\"baseline\" makes none; expected model.name = \"modern\""));
+    EXPECT_THAT(refusal_of(slips + "\"modern\"\n", start), IsEmpty());
+    const std::string note = "[[command]]\nkind = \"note\"\nat_utc = ";
+    EXPECT_THAT(
+        refusal_of(note + "2024-03-05T11:00:00Z\n", start),
+        HasSubstr("[[command]] 'note': at_utc is 2024-03-05T11:00:00.000Z, before the start of the run; expected "
+                  "2024-03-05T12:00:00.000Z or later"));
+    EXPECT_THAT(refusal_of(note + "2024-03-05T12:00:00Z\n", start), IsEmpty());
+}
+
+TEST(ScenarioTimeline, WhatIsDueAfterTheEndIsWarnedOf) {
+    const GpsTime start = to_gps_time(*parse_utc("2024-03-05T12:00:00Z"), LeapSeconds::announced());
+    const Scenario scenario = scenario_of(R"toml(
+[[fault]]
+kind = "outage"
+at_s = 60
+[[fault]]
+kind = "outage"
+name = "late"
+at_s = 61
+[[fault]]
+kind = "freeze"
+after = "late"
+[[fault]]
+kind = "stall"
+when_fix_for_s = 100
+[[command]]
+kind = "note"
+between_s = [70, 80]
+)toml");
+    const std::vector<std::string> warnings = timeline_warnings(scenario, start, advanced(start, Seconds(60)));
+    ASSERT_THAT(warnings, SizeIs(2));
+    EXPECT_EQ(warnings[0],
+              "[[fault]] 'late' will not begin: it is due 61 s after the start of the run, which ends after 60 s");
+    EXPECT_THAT(warnings[1], HasSubstr("[[command]] 'note' will not begin"));
 }
 
 TEST(ScenarioTimeline, CommandsFindTheFaultsThatTheyName) {

@@ -436,5 +436,55 @@ TEST(JudgeSoFar, OfSeveralReceiversTheWorstSpeaks) {
     EXPECT_THAT(run.so_far().evidence, testing::StartsWith("rear: "));
 }
 
+TEST(JudgeEvidence, OfAStretchIsWhatWasSeenInIt) {
+    SeenFix small, large, largest;
+    small.east_error_m = 2;
+    large.east_error_m = 95;
+    largest.east_error_m = 104.5;
+    const Verdict error = SeenRun("horizontal error above 90 m throughout jump")
+                              .epoch(1, small)
+                              .begins(2, "jump")
+                              .epoch(2.1, large)
+                              .epoch(3, largest)
+                              .epoch(4, large)
+                              .ends(4.5, "jump")
+                              .epochs(5, 9, small)
+                              .end(10);
+    EXPECT_EQ(error.outcome, passed);
+    EXPECT_THAT(error.evidence, HasSubstr("held (seen: 95.00 to 104.50 m)"));
+    const Verdict lost = SeenRun("no fix throughout stale")
+                             .begins(2, "stale")
+                             .epochs(2, 4, no_fix)
+                             .ends(4.5, "stale")
+                             .epochs(5, 9)
+                             .end(10);
+    EXPECT_EQ(lost.outcome, passed);
+    EXPECT_THAT(lost.evidence, HasSubstr("held (seen: no fix)"));
+    const Verdict avoided =
+        SeenRun("horizontal error above 90 m never from 2 s to 4 s").epochs(1, 4, small).epochs(5, 9, large).end(10);
+    EXPECT_EQ(avoided.outcome, passed);
+    EXPECT_THAT(avoided.evidence, HasSubstr("was not true (seen: 2.00 m)"));
+}
+
+TEST(JudgeEvidence, OfAnInstantIsWhatWasSeenThen) {
+    SeenFix then, later;
+    then.east_error_m = 3;
+    later.east_error_m = 70;
+    const Verdict verdict = SeenRun("horizontal error below 5 m at 3 s").epochs(1, 3, then).epochs(4, 9, later).end(10);
+    EXPECT_EQ(verdict.outcome, passed);
+    EXPECT_THAT(verdict.evidence, HasSubstr("held (seen: 3.00 m)"));
+}
+
+TEST(JudgeEvidence, OfSilenceIsThatNothingCame) {
+    const Verdict verdict = SeenRun("receiver silent throughout cut")
+                                .receiver(1, "NAV-PVT")
+                                .begins(2, "cut")
+                                .ends(8, "cut")
+                                .receiver(9, "NAV-PVT")
+                                .end(10);
+    EXPECT_EQ(verdict.outcome, passed);
+    EXPECT_THAT(verdict.evidence, HasSubstr("held (seen: nothing sent)"));
+}
+
 }  // namespace
 }  // namespace skyloop

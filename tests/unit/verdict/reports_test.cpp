@@ -23,12 +23,31 @@ std::vector<Verdict> one_of_each() {
             {"probe", "command 'true' exits 0", Outcome::not_run, "needs the clock", std::nullopt, Seconds(60.5)}};
 }
 
-TEST(Verdicts, OnlyFailedAndUndecidedOnesSpoilARun) {
+TEST(Verdicts, SayThatAllIsMetWhereAllWasJudged) {
     const std::vector<Verdict> all = one_of_each();
-    EXPECT_TRUE(all_met({}));
-    EXPECT_TRUE(all_met(std::vector{all[0], all[3]}));
-    EXPECT_FALSE(all_met(std::vector{all[0], all[1]}));
-    EXPECT_FALSE(all_met(std::vector{all[2]}));
+    EXPECT_EQ(all_met({}), true);
+    EXPECT_EQ(all_met(std::vector{all[0]}), true);
+    EXPECT_EQ(all_met(std::vector{all[0], all[1]}), false);
+    EXPECT_EQ(all_met(std::vector{all[2], all[3]}), false);
+    EXPECT_EQ(all_met(std::vector{all[0], all[3]}), std::nullopt);
+    EXPECT_EQ(all_met(std::vector{all[3]}), std::nullopt);
+}
+
+TEST(Verdicts, MakeASuccessWhereSomethingPassedAndNothingDidNot) {
+    const std::vector<Verdict> all = one_of_each();
+    EXPECT_TRUE(is_success({}));
+    EXPECT_TRUE(is_success(std::vector{all[0], all[3]}));
+    EXPECT_FALSE(is_success(std::vector{all[0], all[1]}));
+    EXPECT_FALSE(is_success(std::vector{all[0], all[2]}));
+    EXPECT_FALSE(is_success(std::vector{all[3]})) << "nothing was judged";
+}
+
+TEST(Verdicts, OfProbesAloneThatWereNotRunAreToldPlainly) {
+    const std::vector<Verdict> probe{one_of_each()[3]};
+    EXPECT_THAT(verdict_text(probe, run), HasSubstr("0 of 1 expectations met in tunnel.toml (seed 42, 60.500 s), "
+                                                    "1 not run: nothing was judged, so the run is no success\n"));
+    EXPECT_TRUE(nlohmann::json::parse(verdict_json(probe, run))["met"].is_null());
+    EXPECT_THAT(junit_xml(probe, run), HasSubstr("tests=\"1\" failures=\"0\" errors=\"0\" skipped=\"1\""));
 }
 
 TEST(VerdictText, HasALineForEachAndOneForAll) {

@@ -1,0 +1,19 @@
+/// What of a scenario's timeline can never happen, once start, end and model of the run are known.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/scenario/scenario.hpp"
+
+namespace skyloop {
+
+/// Refuses with `input` what cannot happen: faults of measurements under a sensor model, which measures nothing; times
+/// before the start of the run.
+Result<void> check_timeline(const Scenario& scenario, GpsTime start);
+
+/// Entries whose time is behind the end of the run.
+std::vector<std::string> timeline_warnings(const Scenario& scenario, GpsTime start, GpsTime end);
+
+}  // namespace skyloop

@@ -1,0 +1,65 @@
+#include "skyloop/scenario/timeline_check.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "skyloop/fault/fault_kind.hpp"
+#include "skyloop/time/utc_time.hpp"
+
+namespace skyloop {
+namespace {
+
+std::string check_utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced())); }
+
+template <class Entry>
+std::optional<std::string> early_time(std::string_view table, const std::vector<Entry>& entries, GpsTime start) {
+    for (const Entry& entry : entries)
+        if (entry.when.at_time && *entry.when.at_time < start)
+            return fmt::format("[[{}]] '{}': at_utc is {}, before the start of the run; expected {} or later", table,
+                               entry.when.name, check_utc_text(*entry.when.at_time), check_utc_text(start));
+    return std::nullopt;
+}
+
+// When it begins for the first time, where that depends on nothing else.
+std::optional<GpsTime> first_beginning(const TimelineEntry& entry, GpsTime start, std::uint64_t seed) {
+    if (!entry.after.empty()) return std::nullopt;
+    return Timeline({entry}, start, seed).next_event();
+}
+
+template <class Entry>
+void warn_of_late(std::string_view table, const std::vector<Entry>& entries, const Scenario& scenario,
+                  std::array<GpsTime, 2> run, std::vector<std::string>& warnings) {
+    for (const Entry& entry : entries)
+        if (const auto begins = first_beginning(entry.when, run[0], scenario.run.seed); begins && *begins > run[1])
+            warnings.push_back(fmt::format(
+                "[[{}]] '{}' will not begin: it is due {:g} s after the start of the run, "
+                "which ends after {:g} s",
+                table, entry.when.name, difference(*begins, run[0]).value(), difference(run[1], run[0]).value()));
+}
+
+}  // namespace
+
+Result<void> check_timeline(const Scenario& scenario, GpsTime start) {
+    for (const FaultEntry& fault : scenario.faults) {
+        const FaultKind* kind = find_fault_kind(fault.kind);
+        if (kind != nullptr && kind->measuring_receivers_only && scenario.model.sensor_model)
+            return fail(ErrorCode::input,
+                        fmt::format("{}: [[fault]] '{}': kind = \"{}\" spoils measurements, and model.name = \"{}\" "
+                                    "makes none; expected model.name = \"modern\"",
+                                    scenario.name, fault.when.name, fault.kind, model_name(scenario.model)));
+    }
+    auto early = early_time("fault", scenario.faults, start);
+    if (!early) early = early_time("command", scenario.commands, start);
+    if (early) return fail(ErrorCode::input, fmt::format("{}: {}", scenario.name, *early));
+    return {};
+}
+
+std::vector<std::string> timeline_warnings(const Scenario& scenario, GpsTime start, GpsTime end) {
+    std::vector<std::string> warnings;
+    warn_of_late("fault", scenario.faults, scenario, {start, end}, warnings);
+    warn_of_late("command", scenario.commands, scenario, {start, end}, warnings);
+    return warnings;
+}
+
+}  // namespace skyloop
