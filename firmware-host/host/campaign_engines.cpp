@@ -161,7 +161,8 @@ void add_engine_options(CLI::App& command, EngineOptions& options) {
     CLI::Option* engine = command
                               .add_option("--engine", options.name,
                                           "Hand the shards to slurm, kubernetes or parallel instead of running here")
-                              ->check(CLI::IsMember({"slurm", "kubernetes", "parallel"}));
+                              ->check(CLI::IsMember({"slurm", "kubernetes", "parallel"}))
+                              ->excludes("--shard");
     const auto add = [&](const char* name, auto& value, const char* meaning) {
         return command.add_option(name, value, meaning)->needs(engine);
     };
@@ -176,20 +177,36 @@ void add_engine_options(CLI::App& command, EngineOptions& options) {
                      "slurm: stay until all is gathered; alone: of what was submitted before");
     for (const char* flag : {"--submit", "--follow"})
         command.get_option(flag)->needs(engine);
-    add("--partition", options.partition, "slurm: the partition");
-    add("--time", options.time_limit, "slurm: time limit of a shard, as sbatch takes it");
-    add("--sbatch-option", options.sbatch_options, "slurm: another option of sbatch, =--account=lab; repeatable")
+    // Of one engine, which is told first; --engine was read before them, for it was added before.
+    const auto add_for = [&](std::string_view one, const char* name, auto& value, std::string_view meaning) {
+        CLI::Option* option = add(name, value, fmt::format("{}: {}", one, meaning).c_str());
+        return option->check([&options, one](const std::string&) {
+            return options.name == one
+                       ? std::string()
+                       : fmt::format("an option of --engine {}; this is --engine {}", one, options.name);
+        });
+    };
+    add_for("slurm", "--partition", options.partition, "the partition");
+    add_for("slurm", "--time", options.time_limit, "time limit of a shard, as sbatch takes it");
+    add_for("slurm", "--sbatch-option", options.sbatch_options, "another option of sbatch, =--account=lab; repeatable")
         ->allow_extra_args(false);
-    add("--hosts", options.hosts, "parallel: a file with a host a line, [JOBS/]HOST (default: here alone)");
-    add("--image", options.image, "kubernetes: a container image with skyloop");
-    add("--claim", options.claim, "kubernetes: the volume claim with the scenario and the results");
-    add("--mount", options.mount, "kubernetes: where the claim is mounted, there and here (default: above --out)");
-    add("--namespace", options.name_space, "kubernetes: the namespace");
-    add("--memory", options.memory, "kubernetes: memory of a container")->capture_default_str();
-    add("--parallelism", options.parallelism, "kubernetes: containers at a time")->capture_default_str();
+    add_for("parallel", "--hosts", options.hosts, "a file with a host a line, [JOBS/]HOST (default: here alone)");
+    add_for("kubernetes", "--image", options.image, "a container image with skyloop");
+    add_for("kubernetes", "--claim", options.claim, "the volume claim with the scenario and the results");
+    add_for("kubernetes", "--mount", options.mount,
+            "where the claim is mounted, there and here (default: above --out)");
+    add_for("kubernetes", "--namespace", options.name_space, "the namespace");
+    add_for("kubernetes", "--memory", options.memory, "memory of a container")->capture_default_str();
+    add_for("kubernetes", "--parallelism", options.parallelism, "containers at a time")->capture_default_str();
 }
 
 int hand_over(const CampaignOptions& options, const OpenedCampaign& campaign, const Messages& messages) {
+    const bool kubernetes = options.engine.name == "kubernetes";
+    if (options.jobs && options.engine.name != "slurm")
+        return messages.error({ErrorCode::usage, fmt::format("--jobs: with --engine {} a shard does one run at a time; "
+                                                             "expected {} instead",
+                                                             options.engine.name,
+                                                             kubernetes ? "--parallelism" : "JOBS/HOST in --hosts")});
     const auto task = task_of(options, campaign);
     if (!task) return messages.error(task.error());
     // Mistakes are told here rather than by each shard, and all shards find the campaign's file as they would write it.
@@ -202,7 +219,7 @@ int hand_over(const CampaignOptions& options, const OpenedCampaign& campaign, co
         if (const auto kept = keep_campaign(task->out, whole); !kept) return messages.error(kept.error());
     }
     if (options.engine.name == "slurm") return to_slurm(*task, options, campaign.plan.size(), messages);
-    if (options.engine.name == "kubernetes") return to_kubernetes(*task, options.engine, messages);
+    if (kubernetes) return to_kubernetes(*task, options.engine, messages);
     return to_parallel(*task, options.engine, messages);
 }
 

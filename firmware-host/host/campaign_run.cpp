@@ -171,11 +171,9 @@ private:
         if (!campaign_.vehicle.empty())
             return messages_.info(
                 "runs with a vehicle are not replayed; the same campaign in another --out does them anew");
-        std::string words;
-        for (const std::string& option : campaign_.options)
-            words += " " + shell_quoted(option);
-        messages_.info(fmt::format("to see it: skyloop campaign replay {}{} --number {} --out FOLDER",
-                                   shell_quoted_path(options_.scenario), words, number));
+        messages_.info(fmt::format("to see it: skyloop campaign replay {}{}{} --number {} --out FOLDER",
+                                   shell_quoted_path(options_.scenario), campaign_.options.empty() ? "" : " ",
+                                   shell_quoted(campaign_.options), number));
     }
     // A run that was lost is no result, and tried once more.
     Result<JobFate> take_loss(const PlannedRun& run, const JobOutcome& outcome, const Error& why, TableFile& log) {

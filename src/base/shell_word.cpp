@@ -19,4 +19,11 @@ std::string shell_quoted_path(std::string_view path) {
     return shell_quoted((path.starts_with('-') ? "./" : "") + std::string(path));
 }
 
+std::string shell_quoted(const std::vector<std::string>& words) {
+    std::string out;
+    for (const std::string& word : words)
+        out += (out.empty() ? "" : " ") + shell_quoted(word);
+    return out;
+}
+
 }  // namespace skyloop

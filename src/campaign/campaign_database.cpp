@@ -1,11 +1,11 @@
 #include "skyloop/campaign/campaign_database.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <sqlite3.h>
 #include <unistd.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <unordered_map>
 
@@ -140,14 +140,13 @@ Result<FoundResults> find_results(const std::filesystem::path& folder, const Kep
 
 void put_meta(Database& database, const KeptCampaign& kept) {
     database.begin("INSERT INTO meta VALUES(?, ?)");
-    std::vector<std::pair<std::string_view, std::string>> rows{
-        {"name", kept.name},
-        {"program_version", kept.version},
-        {"scenario", kept.scenario},
-        {"scenario_digest", kept.base},
-        {"planned", fmt::format("{}", kept.runs.size())},
-        {"campaign_file", "campaign.json"},
-        {"options", fmt::format("{}", fmt::join(kept.options, " "))}};
+    std::vector<std::pair<std::string_view, std::string>> rows{{"name", kept.name},
+                                                               {"program_version", kept.version},
+                                                               {"scenario", kept.scenario},
+                                                               {"scenario_digest", kept.base},
+                                                               {"planned", fmt::format("{}", kept.runs.size())},
+                                                               {"campaign_file", "campaign.json"},
+                                                               {"options", nlohmann::json(kept.options).dump()}};
     if (!kept.vehicle.empty()) rows.emplace_back("vehicle", kept.vehicle);
     for (const auto& [name, value] : rows)
         database.put(name).put(std::string_view(value)).add_row();

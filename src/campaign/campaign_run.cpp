@@ -67,7 +67,7 @@ void take_verdicts(RunResult& result, const std::vector<Verdict>& verdicts) {
     }
     for (std::size_t i = 0; i < verdicts.size(); ++i)
         result.verdicts[i] = {std::string(outcome_name(verdicts[i].outcome)), verdicts[i].evidence};
-    result.status = all_met(verdicts) ? "passed" : "failed";
+    result.status = is_success(verdicts) ? "passed" : "failed";
 }
 
 std::vector<std::string> names_of_receivers(const Emulator& emulator) {

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <unordered_map>
 
 #include "shown_text.hpp"
@@ -87,6 +88,14 @@ std::string twice(const RowPlaces::Place& place, const CampaignResults& results)
     return fmt::format("'{}' of run {} stands there twice", shown_text(place.name, 80), results.runs[place.run].number);
 }
 
+// A JSON list of texts.
+std::optional<std::vector<std::string>> words_of(std::string_view text) {
+    const auto json = nlohmann::json::parse(text, nullptr, false);
+    if (!json.is_array()) return std::nullopt;
+    if (!std::all_of(json.begin(), json.end(), [](const auto& word) { return word.is_string(); })) return std::nullopt;
+    return json.get<std::vector<std::string>>();
+}
+
 std::optional<Error> read_meta(const SqliteReader& reader, CampaignResults& results) {
     return reader.each_row("meta", "name, value", "", [&](const SqliteRow& row) -> std::string {
         const auto name = row.text(0);
@@ -105,13 +114,19 @@ std::optional<Error> read_meta(const SqliteReader& reader, CampaignResults& resu
             results.planned = planned;
             return {};
         }
-        const std::array<std::pair<std::string_view, std::string*>, 7> texts{
+        if (*name == "options") {
+            const auto text = row.text(1);
+            auto words = text ? words_of(*text) : std::nullopt;
+            if (!words) return not_found("options", "a JSON list of texts");
+            results.options = std::move(*words);
+            return {};
+        }
+        const std::array<std::pair<std::string_view, std::string*>, 6> texts{
             {{"name", &results.name},
              {"program_version", &results.program_version},
              {"scenario", &results.scenario},
              {"scenario_digest", &results.scenario_digest},
              {"campaign_file", &results.campaign_file},
-             {"options", &results.options},
              {"vehicle", &results.vehicle}}};
         for (const auto& [known, place] : texts)
             if (*name == known) {

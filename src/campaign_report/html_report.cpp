@@ -5,6 +5,7 @@
 #include "names.hpp"
 #include "page_parts.hpp"
 #include "shown_text.hpp"
+#include "skyloop/base/shell_word.hpp"
 #include "skyloop/campaign_report/campaign_report.hpp"
 #include "skyloop/plot/svg_document.hpp"
 
@@ -70,7 +71,7 @@ std::string what_was_run(const CampaignResults& results, const CampaignSummary& 
     std::string text = "<div class=\"scroll\"><table class=\"facts\">\n";
     text += fact("scenario", results.scenario);
     text += fact("digest of the scenario", results.scenario_digest);
-    text += fact("options", results.options);
+    text += fact("options", shell_quoted(results.options));
     text += fact("plan", results.campaign_file);
     text += fact("program", results.program_version.empty() ? "" : "skyloop " + results.program_version);
     text += fact("seeds", seeds_of(results));

@@ -52,29 +52,6 @@ std::string percent_figure_text(double share, int decimals) {
     return fmt::format("{:.{}f}", 100 * share, decimals);
 }
 
-// The options that the campaign was planned with, each word quoted; they make part of what a run's number means. A
-// value goes on to the next option: it may have blanks of its own.
-std::string option_words(const std::string& options) {
-    std::string words, value;
-    const auto end_value = [&] {
-        if (!value.empty()) words += " " + shell_quoted(value);
-        value.clear();
-    };
-    for (std::size_t at = 0; at < options.size();) {
-        const std::size_t end = std::min(options.find(' ', at), options.size());
-        const std::string word = options.substr(at, end - at);
-        if (word.starts_with("--")) {
-            end_value();
-            words += " " + shell_quoted(word);
-        } else {
-            value += (value.empty() ? "" : " ") + word;
-        }
-        at = end + 1;
-    }
-    end_value();
-    return words;
-}
-
 }  // namespace
 
 MetricWords metric_words(std::string_view name) {
@@ -106,12 +83,13 @@ std::string verdict_name(const CampaignResults& results, const VerdictSummary& v
 
 std::optional<std::string> replay_command(const CampaignResults& results, const GatheredRun& run) {
     constexpr std::size_t longest_path = 4096;
-    for (const std::string& text : {results.scenario, results.options})
+    const std::string options = shell_quoted(results.options);
+    for (const std::string& text : {results.scenario, options})
         if (shown_text(text, longest_path) != text) return std::nullopt;
     // Of a vehicle's run there is no replay: it was in real time.
     if (results.scenario.empty() || !results.vehicle.empty()) return std::nullopt;
-    return fmt::format("skyloop campaign replay {}{} --number {} --out run-{}", shell_quoted_path(results.scenario),
-                       option_words(results.options), run.number, run.number);
+    return fmt::format("skyloop campaign replay {}{}{} --number {} --out run-{}", shell_quoted_path(results.scenario),
+                       options.empty() ? "" : " ", options, run.number, run.number);
 }
 
 std::string figure_text(double value) {

@@ -16,13 +16,6 @@ std::string with_backslashes(std::string_view text, std::string_view before) {
 
 }  // namespace
 
-std::string shell_quoted(const std::vector<std::string>& words) {
-    std::string out;
-    for (const std::string& word : words)
-        out += (out.empty() ? "" : " ") + shell_quoted(word);
-    return out;
-}
-
 std::string sbatch_quoted(std::string_view word) { return '"' + with_backslashes(word, "\"\\") + '"'; }
 
 std::string sbatch_pattern(std::string_view path) {

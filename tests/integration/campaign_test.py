@@ -216,6 +216,10 @@ def test_mistakes(folder):
             (["--seeds", "x"], "--seeds x: expected"),
             (["--shard", "3/3"], "--shard 3/3: expected I/N"),
             (["--vary", "trajectory.kind=file"], "trajectory"),
+            (["--engine", "slurm", "--shard", "0/3"], "--shard excludes --engine"),
+            (["--engine", "slurm", "--image", "x"], "--image: an option of --engine kubernetes; this is --engine slurm"),
+            (["--engine", "kubernetes", "--jobs", 4], "a shard does one run at a time; expected --parallelism"),
+            (["--partition", "x", "--engine", "parallel"], "--partition: an option of --engine slurm; this is"),
     ]:
         said = campaign(scenario, "--out", out, *options, expected=(2,)).stderr
         assert words in said, (options, said)

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace skyloop {
 
@@ -11,5 +12,7 @@ namespace skyloop {
 std::string shell_quoted(std::string_view word);
 /// The same of a file's name, which a program does not take for an option where it begins with a dash.
 std::string shell_quoted_path(std::string_view path);
+/// A command of words that a shell reads back as they were.
+std::string shell_quoted(const std::vector<std::string>& words);
 
 }  // namespace skyloop

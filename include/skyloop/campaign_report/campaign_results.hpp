@@ -47,7 +47,7 @@ struct ReportedVerdict {
 /// Everything, runs in the order of their numbers, the rest in the order in which the database first names them.
 struct CampaignResults {
     std::string name, program_version, scenario, scenario_digest, campaign_file;
-    std::string options;                   ///< of the command line that the campaign was made with, blanks between
+    std::vector<std::string> options;      ///< words of the command line that the campaign was made with
     std::string vehicle;                   ///< command of the program that was tested; empty: there was none
     std::optional<std::uint64_t> planned;  ///< nothing when the database does not tell
     std::vector<GatheredRun> runs;

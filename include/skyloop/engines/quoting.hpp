@@ -9,9 +9,6 @@
 
 namespace skyloop {
 
-/// A command of words that a shell reads back as they were.
-std::string shell_quoted(const std::vector<std::string>& words);
-
 /// One word after `#SBATCH`: between double quotes, with `\` before what ends them (sbatch(1) of Slurm 22.05 reads
 /// quotes and backslashes there as a shell does, and nothing else).
 std::string sbatch_quoted(std::string_view word);

@@ -64,9 +64,10 @@ TEST(CampaignReport, TellsWhatCameOut) {
 
 TEST(CampaignReport, ReplaysWithTheOptionsOfThePlan) {
     const Written report = written_with(std::string(test::three_runs) +
-                                        "INSERT INTO meta VALUES ('options', '--seeds 5-20 --vary model.name=a b,c');");
+                                        R"(INSERT INTO meta VALUES ('options', '["--seeds","5-20","--vary",)"
+                                        R"("model.name=a b,c --d"]');)");
     EXPECT_EQ(nlohmann::json::parse(report.json)["failed_runs"][0]["replay"],
-              "skyloop campaign replay 'a b.toml' --seeds 5-20 --vary 'model.name=a b,c' --number 2 --out run-2");
+              "skyloop campaign replay 'a b.toml' --seeds 5-20 --vary 'model.name=a b,c --d' --number 2 --out run-2");
 }
 
 TEST(CampaignReport, RunsWithAVehicleAreNotReplayed) {
@@ -86,9 +87,10 @@ TEST(CampaignReport, NamesAsManyWorstRunsAsAreWanted) {
 // Everything that the database can say, said in the language of pages and of terminals.
 TEST(CampaignReport, LetsNoTextOfTheDatabaseBecomeMarkup) {
     const std::string evil = "<script>alert(1)</script>\"''>&amp;<img src=x onerror=1>\x1b]0;x\x07\xff";
+    const std::string hostile_word = R"(["<script>alert(1)</script>\"''\u001b]0;x\u0007"])";
     std::string statements = "INSERT INTO meta VALUES ('name', '" + evil + "'), ('scenario', '" + evil +
                              "'), ('scenario_digest', '" + evil + "'), ('program_version', '" + evil +
-                             "'), ('campaign_file', '" + evil + "'), ('options', '" + evil + "');";
+                             "'), ('campaign_file', '" + evil + "'), ('options', '" + hostile_word + "');";
     for (int i = 0; i < 30; ++i) {
         const std::string key = "'" + evil + std::to_string(i) + "', ";
         const std::string number = std::to_string(i);
