@@ -21,7 +21,7 @@ struct BusyReceiver {
         fix.position = Geodetic::degrees(47.1, 8.7, 512);
         fix.dop = {2.41, 2.02, 1.1, 1.69, 1.31, 0.66, 0.88};
         state.fix_ok = state.ever_had_fix = state.position_known = true;
-        state.time = {true, true, true, true, true, Seconds(25e-9)};
+        state.time = {true, true, true, true, Seconds(25e-9)};
         for (int i = 0; i < count; ++i) {
             const SatelliteId id{i % 2 == 0 ? Constellation::gps : Constellation::galileo, 1 + i / 2};
             fix.satellites.push_back({id, Angle::degrees(9.0 * i), Angle::degrees(10 + i), DbHz(41), true});

@@ -192,7 +192,7 @@ void nmea_sentences(benchmark::State& state) {
     firmware::NavigationState one;
     one.epoch = simulation->run(bench_start, {}).epoch;
     one.fix_ok = one.ever_had_fix = one.position_known = true;
-    one.time = {true, true, true, true, true, Seconds(25e-9)};
+    one.time = {true, true, true, true, Seconds(25e-9)};
     firmware::BoardProfile board;
     board.constellations = {gps};
     const firmware::ConfigStore config(firmware::factory_config(board));

@@ -4,11 +4,11 @@ import os
 import pathlib
 import re
 import shutil
-import subprocess
 import tempfile
 import unittest
 
-from packages import BUILD, NAMES, ROOT, made_packages, need, run, skip, version
+import clean_debian
+from packages import NAMES, ROOT, made_packages, need, run, skip, version
 
 need("debootstrap", "lintian", "unshare", "chroot")
 PACKAGES = made_packages()
@@ -17,8 +17,6 @@ if os.geteuid() != 0:
 
 # What apt and dpkg keep about themselves, and what changes whenever any package comes or goes.
 VOLATILE = re.compile(r"^(dev|proc|sys|run|tmp|packages|var/(cache|log|tmp)|var/lib/(apt|dpkg)|etc/ld\.so\.cache)(/|$)")
-MOUNTS = ('mount -t proc proc "$0/proc"; mount -t tmpfs tmpfs "$0/dev/shm"; mount -t devpts -o newinstance,ptmxmode=0666,mode=0620,gid=5 '
-          'devpts "$0/dev/pts"; rm -f "$0/dev/ptmx"; ln -s pts/ptmx "$0/dev/ptmx"; exec chroot "$0" "$@"')
 RUN = r"""
 cd /tmp
 skyloop run --duration 5 --wait-for-client --at 46.4775,30.7326,77 --port pty:/tmp/gps0 2>/tmp/said &
@@ -27,41 +25,6 @@ stty -F /tmp/gps0 raw -echo
 timeout 30 cat /tmp/gps0 >/tmp/heard 2>/dev/null &
 wait %1
 """
-
-
-def mirror():
-    """The mirror that this machine's own apt uses for Debian 12; none: debootstrap's."""
-    told = run("apt-get", "indextargets", "--format", "$(RELEASE) $(COMPONENT) $(SITE)", "Created-By: Packages", check=False).stdout
-    return [line.split()[2] for line in told.splitlines() if line.startswith("bookworm main ")][:1]
-
-
-def clean_root(target):
-    """A minimal Debian 12; kept as an archive in the build's folder."""
-    kept = BUILD / "test-artifacts/bookworm-minbase.tar"
-    if not kept.exists():
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        done = run("debootstrap", "--variant=minbase", "bookworm", target, *mirror(), check=False, timeout=900)
-        if done.returncode != 0:
-            if re.search(r"Failed getting release file|Couldn't (retrieve|download)|Couldn't resolve|unreachable", done.stdout + done.stderr):
-                skip("no mirror of Debian can be reached")
-            raise AssertionError(done.stdout[-3000:] + done.stderr[-3000:])
-        run("tar", "--numeric-owner", "--exclude=./dev/*", "--exclude=./var/cache/apt/archives/*.deb", "-C", target, "-cf",
-            f"{kept}.part", ".")
-        os.rename(f"{kept}.part", kept)
-    else:
-        run("tar", "--numeric-owner", "-C", target, "-xpf", kept)
-    for name in ("shm", "pts"):
-        (target / "dev" / name).mkdir(exist_ok=True)
-    for name, minor in (("null", 3), ("zero", 5), ("urandom", 9)):
-        if not (target / "dev" / name).exists():
-            os.mknod(target / "dev" / name, 0o020666, os.makedev(1, minor))
-        os.chmod(target / "dev" / name, 0o666)
-    (target / "etc/apt/sources.list").unlink(missing_ok=True)
-    for part in ("sources.list", "sources.list.d", "apt.conf", "apt.conf.d", "preferences", "preferences.d", "trusted.gpg.d", "keyrings"):
-        if pathlib.Path("/etc/apt", part).exists():
-            run("cp", "-a", f"/etc/apt/{part}", target / "etc/apt/")
-    for name in ("resolv.conf", "hosts"):
-        shutil.copy(pathlib.Path("/etc", name).resolve(), target / "etc" / name)
 
 
 class Lintian(unittest.TestCase):
@@ -77,22 +40,14 @@ class CleanDebian(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="skyloop-debian-", dir="/var/tmp")
         cls.addClassCleanup(folder.cleanup)
         cls.root = pathlib.Path(folder.name) / "root"
-        cls.root.mkdir()
-        clean_root(cls.root)
+        clean_debian.make(cls.root)
         cls.inside("apt-get", "update", "-q")
         cls.inside("useradd", "--create-home", "--groups", "dialout", "tester")
         cls.before = cls.listing()
-        (cls.root / "packages").mkdir()
-        for path in PACKAGES.values():
-            shutil.copy(path, cls.root / "packages")
 
     @classmethod
     def inside(cls, *words, check=True):
-        """Runs a command in the clean Debian; its mounts are gone with it."""
-        environment = {key: value for key, value in os.environ.items() if key.endswith("_proxy")}
-        environment.update(PATH="/usr/sbin:/usr/bin:/sbin:/bin", LC_ALL="C.UTF-8", DEBIAN_FRONTEND="noninteractive", HOME="/root")
-        return run("unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-e", "-c", MOUNTS, cls.root, *words, check=check,
-                   env=environment, timeout=900)
+        return clean_debian.inside(cls.root, *words, check=check)
 
     @classmethod
     def listing(cls):
@@ -145,7 +100,7 @@ class CleanDebian(unittest.TestCase):
         self.assertIn("7 epochs, fix 3", done.stderr)
 
     def test_installed_run_and_purged(self):
-        self.inside("sh", "-c", "apt-get install -q -y --no-install-recommends /packages/*.deb")
+        clean_debian.add_packages(self.root, PACKAGES.values())
         self.check_installation()
         self.check_run()
         self.check_library()
