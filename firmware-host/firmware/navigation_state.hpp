@@ -1,6 +1,7 @@
 /// Everything from which messages are made.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -33,12 +34,20 @@ struct CorrectionStatus {
     std::optional<Position<Ecef>> base;  ///< where that station says it stands
 };
 
-/// The receiver's monitors as it reports them.
-struct MonitorStatus {
+/// What a receiver's monitor tells of one of its bands.
+struct BandMonitor {
     int jamming_state = 0;      ///< 0 unknown or off, 1 ok, 2 warning, 3 critical
     int jamming_indicator = 0;  ///< 0 … 255
     int agc = 0;                ///< 0 … 8191
     int noise_per_ms = 0;
+};
+
+/// The receiver's monitors as it reports them.
+struct MonitorStatus {
+    BandMonitor upper;  ///< the band of L1
+    BandMonitor lower;  ///< that of L2 and L5; of a board with one band as it begins
+    /// That of the band where it is worse.
+    [[nodiscard]] int jamming_state() const { return std::max(upper.jamming_state, lower.jamming_state); }
     AntennaStatus antenna = AntennaStatus::unknown;
     int antenna_power = 2;  ///< 0 off, 1 on, 2 unknown
     SpoofingIndication spoofing = SpoofingIndication::unknown;

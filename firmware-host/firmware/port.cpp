@@ -96,4 +96,9 @@ std::optional<GpsTime> Port::drained_at() const {
     return line_free_;
 }
 
+std::optional<GpsTime> Port::message_ends_at() const {
+    if (messages_.empty()) return std::nullopt;
+    return messages_.front().start + line_time(messages_.front().bytes.size());
+}
+
 }  // namespace skyloop::firmware

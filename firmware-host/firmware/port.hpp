@@ -32,6 +32,8 @@ public:
     void clear();
     /// When the last queued byte will have left, or nothing.
     [[nodiscard]] std::optional<GpsTime> drained_at() const;
+    /// When the first message that is queued will have left, or nothing.
+    [[nodiscard]] std::optional<GpsTime> message_ends_at() const;
     [[nodiscard]] std::uint32_t baud() const { return baud_; }
     [[nodiscard]] std::uint32_t buffer_bytes() const { return static_cast<std::uint32_t>(buffer_bytes_); }
     /// Bytes queued and not yet taken, those among them that wait for room in the buffer.

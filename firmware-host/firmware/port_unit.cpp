@@ -89,6 +89,13 @@ std::optional<GpsTime> Outbox::drained_at() const {
     return last;
 }
 
+std::optional<GpsTime> Outbox::next_at(PortId port) const {
+    const PortUnit* unit = find_unit(units_, port);
+    std::optional<GpsTime> next = unit == nullptr ? std::nullopt : unit->transmit.message_ends_at();
+    if (!plans_.empty() && (!next || plans_.begin()->first < *next)) next = plans_.begin()->first;
+    return next;
+}
+
 void Outbox::clear() {
     plans_.clear();
     for (PortUnit& unit : units_)

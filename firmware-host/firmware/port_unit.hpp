@@ -81,6 +81,8 @@ public:
     /// Does what is planned until `now`, and gives what has left.
     std::vector<Receiver::Sent> run(GpsTime now);
     [[nodiscard]] std::optional<GpsTime> drained_at() const;
+    /// When the port's next message will have left, or a plan is due that may come before it.
+    [[nodiscard]] std::optional<GpsTime> next_at(PortId port) const;
     /// Forgets plans and queues, as when the power goes.
     void clear();
 

@@ -17,6 +17,7 @@ void Receiver::set_faults(const FirmwareFaults& faults) { core_->set_faults(faul
 void Receiver::happen(const ReceiverEvent& event, GpsTime now) { core_->happen(event, now); }
 std::vector<Receiver::Sent> Receiver::output(GpsTime now) { return core_->output(now); }
 std::optional<GpsTime> Receiver::drained_at() const { return core_->outbox().drained_at(); }
+std::optional<GpsTime> Receiver::next_output(PortId port) const { return core_->outbox().next_at(port); }
 
 bool Receiver::has(PortId port) const { return core_->unit(port) != nullptr; }
 std::uint32_t Receiver::baud(PortId port) const {
@@ -34,6 +35,9 @@ const NavigationState& Receiver::state() const { return core_->state(); }
 
 std::optional<GpsTime> Receiver::report_time() const { return core_->report_time(); }
 std::string Receiver::persistent_text() const { return core_->store().persistent_text(); }
+Result<void> Receiver::configure(const std::map<std::uint32_t, std::uint64_t>& items) {
+    return core_->configure(items);
+}
 Result<void> Receiver::restore(const std::string& text, const std::string& name) { return core_->restore(text, name); }
 
 }  // namespace skyloop::firmware

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -69,6 +70,10 @@ public:
     /// When the last queued byte will have left, or nothing when nothing is queued or planned.
     [[nodiscard]] std::optional<GpsTime> drained_at() const;
 
+    /// When the next message will have left the port, or something is due that may come before it; nothing when nothing
+    /// is queued or planned.
+    [[nodiscard]] std::optional<GpsTime> next_output(PortId port) const;
+
     /// Whether the board has the port.
     [[nodiscard]] bool has(PortId port) const;
     /// A port's speed, bit/s; of USB, I2C and SPI that of their bus. 0 for a port that the board does not have.
@@ -85,6 +90,10 @@ public:
     [[nodiscard]] std::optional<GpsTime> report_time() const;
     /// What outlives the process: battery-backed layer and flash.
     [[nodiscard]] std::string persistent_text() const;
+    /// Its user has set these items, by id and raw as on the wire, and saved them: in flash, or where the board has
+    /// none in battery-backed memory. To be called before start(). Fails with `usage` for an item that the receiver
+    /// does not have, a value that it would refuse, and values that it would refuse together.
+    Result<void> configure(const std::map<std::uint32_t, std::uint64_t>& items);
     /// Takes `ReceiverOptions::stored`. Fails with `input` for a text that is none; @param name for the message
     Result<void> restore(const std::string& text, const std::string& name);
 

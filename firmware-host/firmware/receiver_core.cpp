@@ -1,5 +1,7 @@
 #include "firmware/receiver_core.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace skyloop::firmware {
@@ -69,14 +71,38 @@ void Receiver::Core::start(GpsTime now) {
     outbox_.plan(awake, [this](GpsTime t) { send_banner(t); });
 }
 
+Result<void> Receiver::Core::configure(const std::map<std::uint32_t, std::uint64_t>& items) {
+    const bool was_consistent = is_consistent(board_, store_.values_at_start());
+    for (const auto& [id, value] : items) {
+        const ConfigKey* item = find_config_key(id);
+        const std::string name = item == nullptr ? fmt::format("item 0x{:08x}", id) : std::string(item->name);
+        if (!store_.has(id)) return fail(ErrorCode::usage, fmt::format("{} has no {}", board_.name, name));
+        if (!is_in_range(board_, id, value))
+            return fail(ErrorCode::usage,
+                        fmt::format("{} is {}, which {} itself would refuse", name, value, board_.name));
+        store_.set(has_flash(board_) ? in_flash : in_battery, id, value);
+    }
+    if (was_consistent && !is_consistent(board_, store_.values_at_start()))
+        return fail(ErrorCode::usage, "these items do not go together: " + board_.name +
+                                          " would refuse them, as no system that gives a position, too many, or "
+                                          "signals that exclude each other");
+    begin_as_stored();
+    return {};
+}
+
 Result<void> Receiver::Core::restore(const std::string& text, const std::string& name) {
     if (auto restored = store_.restore(text, name); !restored) return restored;
+    begin_as_stored();
+    return {};
+}
+
+void Receiver::Core::begin_as_stored() {
+    store_.reload();
     for (PortUnit& unit : units_) {
         unit.configured_baud = line_baud(store_, unit.id);
         unit.transmit = Port(unit.configured_baud, board_.transmit_buffer_bytes);
     }
     adopt_settings();
-    return {};
 }
 
 void Receiver::Core::adopt_settings() {

@@ -34,6 +34,7 @@ public:
     void happen(const ReceiverEvent& event, GpsTime now);
     std::vector<Sent> output(GpsTime now);
     [[nodiscard]] const PortUnit* unit(PortId port) const { return find_unit(units_, port); }
+    Result<void> configure(const std::map<std::uint32_t, std::uint64_t>& items);
     Result<void> restore(const std::string& text, const std::string& name);
 
     [[nodiscard]] const Outbox& outbox() const { return outbox_; }
@@ -101,6 +102,7 @@ private:
     void tell_antenna_status(const NavigationState& state, GpsTime now);
 
     // Settings and restarts.
+    void begin_as_stored();
     void adopt_settings();
     void apply_changes(GpsTime now);
     void reset(std::uint16_t nav_bbr_mask, std::uint8_t mode, GpsTime now);

@@ -47,6 +47,7 @@ private:
     void freeze_course();
     void count_distance(const Fix& before);
     void monitor(const ConfigStore& config);
+    [[nodiscard]] BandMonitor monitor_band(Decibels interference, bool watched) const;
 
     const BoardProfile& board_;
     NavigationState state_;

@@ -72,20 +72,25 @@ void StateTracker::learn_time(const ConfigStore&) {
     }
 }
 
-void StateTracker::monitor(const ConfigStore& config) {
-    MonitorStatus& m = state_.monitors;
-    const FrontEnd& front = state_.epoch.front_end;
-    const double rise = std::max(0.0, front.interference.value());
-    const bool watched =
-        config.has(key::itfm_enable) ? config.flag(key::itfm_enable) : board_.quirks.default_interference_monitor;
+BandMonitor StateTracker::monitor_band(Decibels interference, bool watched) const {
+    BandMonitor m;
+    const double rise = std::max(0.0, interference.value());
     m.jamming_indicator = static_cast<int>(std::lround(std::min(255.0, quiet_indicator + indicator_per_db * rise)));
     m.agc = static_cast<int>(std::lround(std::clamp(quiet_gain - gain_per_db * rise, 0.0, 8191.0)));
     m.noise_per_ms = static_cast<int>(std::lround(std::min(65535.0, quiet_noise * std::pow(10.0, rise / 20))));
-    m.jamming_state = 0;
-    if (watched) {
-        m.jamming_state = rise < interference_ok_db ? 1 : 2;
-        if (rise >= interference_warning_db && !state_.epoch.fix.has_position()) m.jamming_state = 3;
-    }
+    if (!watched) return m;
+    m.jamming_state = rise < interference_ok_db ? 1 : 2;
+    if (rise >= interference_warning_db && !state_.epoch.fix.has_position()) m.jamming_state = 3;
+    return m;
+}
+
+void StateTracker::monitor(const ConfigStore& config) {
+    MonitorStatus& m = state_.monitors;
+    const FrontEnd& front = state_.epoch.front_end;
+    const bool watched =
+        config.has(key::itfm_enable) ? config.flag(key::itfm_enable) : board_.quirks.default_interference_monitor;
+    m.upper = monitor_band(front.interference, watched);
+    if (board_.dual_frequency) m.lower = monitor_band(front.lower_interference, watched);
     m.spoofing = front.spoofing;
 
     const bool voltage =

@@ -145,6 +145,9 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     warn_of_missing_usb(*wires, *board, warnings);
     warn_of_untracked(scenario, *board, options.settings, warnings);
     firmware::Receiver receiver(std::move(*board), std::move(options));
+    if (entry.rate_hz) warn_of_rate(*entry.rate_hz, receiver, warnings);
+    if (const auto configured = receiver.configure(entry.config); !configured)
+        return fail(configured.error().code, "receiver.config: " + configured.error().message);
     if (state && !state->text().empty())
         if (auto restored = receiver.restore(state->text(), state->path().string()); !restored)
             return fail(restored.error());
@@ -153,7 +156,6 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
                                                  shared.scene, shared.mode.embedding, rate, shared.gas_losses});
     if (!simulation) return fail(simulation.error());
     Station::Parts parts{std::move(*simulation), std::move(receiver), {}, {}};
-    if (entry.rate_hz) warn_of_rate(*entry.rate_hz, parts.receiver, warnings);
     parts.name = receiver_name(scenario, index);
     parts.seed = receiver_seed(scenario.run.seed, index);
     parts.state = std::move(state);

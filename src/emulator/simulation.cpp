@@ -27,12 +27,13 @@ void withhold(Fix& fix) {
     fix = std::move(nothing);
 }
 
-// A jammer raises the noise floor for all signals alike, however strong they are; of what it takes from codes of
-// different rates the largest is told.
+// The interference of the link budget raises the noise floor for all signals alike, however strong they are; of what it
+// takes from codes of different rates the largest is told. Faults tell their own, by band.
 FrontEnd front_end(const Arrivals& arrivals) {
     FrontEnd seen;
     for (const Arrival& arrival : arrivals.satellites)
         if (arrival.cn0) seen.interference = std::max(seen.interference, arrival.interference_loss);
+    seen.lower_interference = seen.interference;
     return seen;
 }
 
@@ -50,6 +51,7 @@ Trace Simulation::run(GpsTime time, const ReceiverSettings& settings, ActiveFaul
     trace.arrivals.antenna_speed = trace.truth.velocity.length();
     for (const auto& effect : parts_.effects)
         effect->apply(trace.arrivals, trace.sky, trace.truth);
+    const FrontEnd front = front_end(trace.arrivals);
     if (faults != nullptr) faults->edit_arrivals(trace);
     if (auto* receiver = std::get_if<MeasuringReceiver>(&parts_.fix_maker))
         make_fix(*receiver, trace, settings, faults);
@@ -58,7 +60,7 @@ Trace Simulation::run(GpsTime time, const ReceiverSettings& settings, ActiveFaul
     if (measures() && settings.subframes)
         trace.epoch.subframes = subframes_.receive(trace.epoch.observations, *parts_.navigation, time);
     if (!settings.navigating) withhold(trace.epoch.fix);
-    trace.epoch.front_end = front_end(trace.arrivals);
+    trace.epoch.front_end = front;
     if (faults != nullptr) faults->edit_epoch(trace);
     return trace;
 }

@@ -166,6 +166,13 @@ std::optional<GpsTime> Station::next_change(GpsTime now) const {
     return next;
 }
 
+std::optional<GpsTime> Station::next_output() const {
+    std::optional<GpsTime> next;
+    for (std::size_t i = 0; i < faulty_wires_.size(); ++i)
+        if (const auto at = parts_.receiver.next_output(port_of(i)); at && (!next || *at < *next)) next = at;
+    return next;
+}
+
 // What measurement and solution respect is handed to them with each epoch; the loop itself respects the period.
 void Station::follow_settings(GpsTime now) { grid_.follow(now, parts_.receiver.settings().navigation_period); }
 

@@ -57,9 +57,10 @@ void StatusBoard::take_epoch(const EpochSeen& seen, ReceiverStatus& status) cons
     status.satellites_used = fix.satellites_used();
     status.error.reset();
     if (fix.has_position()) status.error = enu_error(seen.trace.truth, fix);
-    status.jamming_state = seen.reported.monitors.jamming_state;
+    status.jamming_state = seen.reported.monitors.jamming_state();
     status.spoofing = static_cast<int>(seen.reported.monitors.spoofing);
-    status.interference = seen.trace.epoch.front_end.interference;
+    status.interference =
+        std::max(seen.trace.epoch.front_end.interference, seen.trace.epoch.front_end.lower_interference);
     status.lateness = seen.lateness;
     status.satellites = satellites_seen(seen);
 }

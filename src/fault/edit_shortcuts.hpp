@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "skyloop/fault/fault_kind.hpp"
-#include "skyloop/geo/local_frame.hpp"
+#include "skyloop/geo/geodesic.hpp"
 
 namespace skyloop {
 
@@ -29,9 +29,14 @@ inline Fault fault_of_firmware(Edit<firmware::FirmwareFaults> edit) {
     return fault;
 }
 
-/// A place that lies off another one, east, north and up by metres.
+/// A place that lies off another one: metres at its height, which set out east and north and follow the ellipsoid, and
+/// metres up. A tangent plane would be 8 m above the ground after 10 km.
 inline Geodetic displaced(const Geodetic& from, double east_m, double north_m, double up_m) {
-    return to_geodetic(LocalFrame(from).to_ecef(Position<Enu>{east_m, north_m, up_m}));
+    const Metres height = from.height.above_ellipsoid;
+    const double wider = 1 + height.value() / curvature_radii(from.latitude).prime_vertical;
+    const GeodesicPoint to =
+        geodesic_direct(from, Angle::radians(std::atan2(east_m, north_m)), Metres(std::hypot(east_m, north_m) / wider));
+    return {to.latitude, to.longitude, {height + Metres(up_m)}};
 }
 
 /// A velocity over ground with what follows from it: speed, and the course of a vehicle that moves.

@@ -66,9 +66,14 @@ Decibels jammer_loss(const Jammer& jammer, Hertz carrier, const FaultMoment& mom
     return Decibels((clear - cn0_under_interference(clear, ratio, {rejection_quality(jammer.kind)})).value());
 }
 
-// @return the largest rise of the noise floor
-Decibels jam(Arrivals& arrivals, const Jammer& jammer, const FaultMoment& moment) {
-    Decibels most(0);
+// The largest rise of the noise floor, in the band of L1 and in that of L2 and L5.
+struct NoiseRise {
+    Decibels upper, lower;
+};
+
+NoiseRise jam(Arrivals& arrivals, const Jammer& jammer, const FaultMoment& moment) {
+    constexpr Hertz between_bands(1.4e9);
+    NoiseRise most;
     for (Arrival& arrival : arrivals.satellites) {
         if (!jammer.selector.takes(arrival)) continue;
         const Decibels before = arrival.interference_loss;
@@ -76,9 +81,12 @@ Decibels jam(Arrivals& arrivals, const Jammer& jammer, const FaultMoment& moment
             if (!jammer.selector.takes(signal.signal)) return Decibels(0);
             const Hertz carrier = signal.carrier.value() > 0 ? signal.carrier : Hertz(carrier_frequency_l1);
             const Decibels loss = jammer_loss(jammer, carrier, moment, before);
-            most = std::max(most, before + loss);
+            Decibels& band = carrier < between_bands ? most.lower : most.upper;
+            band = std::max(band, before + loss);
             return loss;
         });
+        // Sensor models know one signal, which stands for all.
+        if (arrival.signals.empty() && jammer.selector.takes(Signal::l2)) most.lower = most.upper;
     }
     return most;
 }
@@ -126,15 +134,16 @@ Result<Fault> make_jamming(const Parameters& parameters, const FaultContext&) {
     if (const auto error = read_source(parameters, jammer)) return fail(*error);
     if (const auto error = read_times(parameters, jammer)) return fail(*error);
     Fault fault;
-    const auto rise = std::make_shared<Decibels>(0);
+    const auto rise = std::make_shared<NoiseRise>();
     fault.arrivals = [jammer, rise](Arrivals& arrivals, const FaultMoment& moment) {
-        *rise = Decibels(0);
+        *rise = {};
         if (jammer.place && moment.truth == nullptr) return;
         if (pulse_is_on(jammer, moment.since_start)) *rise = jam(arrivals, jammer, moment);
     };
-    // What the arrivals tell is the loss of each satellite's first signal; the monitor sees all bands.
     fault.epoch = [rise](Epoch& epoch, const FaultMoment&) {
-        epoch.front_end.interference = std::max(epoch.front_end.interference, *rise);
+        FrontEnd& front = epoch.front_end;
+        front.interference = std::max(front.interference, rise->upper);
+        front.lower_interference = std::max(front.lower_interference, rise->lower);
     };
     return fault;
 }

@@ -11,7 +11,7 @@
 namespace skyloop {
 namespace {
 
-// Farther is no error of a solution, and a tangent plane no longer a map.
+// Farther is no error of a solution.
 constexpr double farthest_m = 1e6;
 constexpr double fastest_error_mps = 1e4;
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <optional>
 #include <string_view>
 
@@ -115,6 +116,14 @@ Result<Fault> make_rtk_transition(const Parameters& parameters, const FaultConte
         fix.position = displaced(fix.position, east * s, north * s, up * s);
         fix.horizontal_accuracy = Metres(accuracy);
         fix.vertical_accuracy = Metres(1.5 * accuracy);
+        std::optional<RelativePosition>& pair = state.epoch.relative;
+        if (type != FixType::rtk_fixed && type != FixType::rtk_float) pair.reset();
+        if (!pair) return;
+        pair->fixed = type == FixType::rtk_fixed;
+        pair->north_m += north * s;
+        pair->east_m += east * s;
+        pair->down_m -= up * s;
+        pair->deviation = std::max(pair->deviation, Metres(accuracy / std::numbers::sqrt2));
     });
 }
 

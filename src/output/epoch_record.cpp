@@ -145,7 +145,7 @@ EpochRecord record_epoch(const EpochSeen& seen, std::string receiver, std::uint6
     report.fix.satellites.clear();
     report.fix_ok = state.fix_ok;
     report.course = state.course;
-    report.jamming_state = state.monitors.jamming_state;
+    report.jamming_state = state.monitors.jamming_state();
     report.spoofing = static_cast<int>(state.monitors.spoofing);
     return record;
 }

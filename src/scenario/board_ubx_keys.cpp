@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <bit>
 
 #include "board_keys.hpp"
+#include "config_items.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/message_names.hpp"
 #include "skyloop/base/spelling.hpp"
@@ -13,7 +13,6 @@ namespace {
 
 using firmware::BoardProfile;
 using firmware::ConfigKey;
-using firmware::ConfigType;
 using firmware::LegacyAnswer;
 
 constexpr std::array<Word<LegacyAnswer>, 4> legacy_answer_words{{{"apply", LegacyAnswer::apply},
@@ -68,13 +67,6 @@ void read_gnss_blocks(TableReader& ubx, BoardProfile& board) {
     }
 }
 
-std::vector<std::string_view> config_names() {
-    std::vector<std::string_view> names;
-    for (const ConfigKey& key : firmware::config_keys())
-        names.push_back(key.name);
-    return names;
-}
-
 // Whether a pattern, in which `*` stands for any text, covers the whole name.
 bool matches(std::string_view pattern, std::string_view name) {
     while (!pattern.empty() && pattern.front() != '*') {
@@ -105,34 +97,8 @@ void read_absent_keys(TableReader& config, BoardProfile& board) {
         }
         if (!found)
             config.mistake("absent", fmt::format("holds '{}', which no configuration item is called{}", pattern,
-                                                 did_you_mean(pattern, config_names())));
+                                                 did_you_mean(pattern, config_item_names())));
     }
-}
-
-// The least and the most that the bytes of an item hold, as far as TOML can write them.
-NumberRange range_of(const ConfigKey& key) {
-    using enum ConfigType;
-    const double most = static_cast<double>(firmware::cut_to_size(key.id, ~std::uint64_t{0} >> 1));
-    const bool is_signed = key.type == i1 || key.type == i2 || key.type == i4 || key.type == i8;
-    if (!is_signed) return {0, most};
-    const double half = (most + 1) / 2;
-    return {-half, half - 1};
-}
-
-std::uint64_t read_value(TableReader& config, const ConfigKey& key) {
-    if (key.type == ConfigType::r8) {
-        double number = 0;
-        config.number(key.name, number);
-        return std::bit_cast<std::uint64_t>(number);
-    }
-    if (key.type == ConfigType::l && config.is_boolean(key.name)) {
-        bool flag = false;
-        config.boolean(key.name, flag);
-        return flag;
-    }
-    std::int64_t number = 0;
-    config.integer(key.name, number, range_of(key));
-    return firmware::cut_to_size(key.id, static_cast<std::uint64_t>(number));
 }
 
 }  // namespace
@@ -155,18 +121,12 @@ void read_board_ubx(TableReader& ubx, BoardProfile& board) {
 
 void read_board_config(TableReader& config, BoardProfile& board) {
     read_absent_keys(config, board);
-    for (const std::string& name : config.keys()) {
-        const ConfigKey* key = firmware::find_config_key(name);
-        if (key == nullptr && name != "absent") {
-            config.mistake(name, fmt::format("is no configuration item{}", did_you_mean(name, config_names())));
-            config.has_been_read(name);
-        }
-        if (key == nullptr) continue;
-        const std::uint64_t value = read_value(config, *key);
-        if (board.absent_keys.contains(key->id))
+    for (const auto& [id, value] : read_config_items(config, "absent")) {
+        const std::string_view name = firmware::find_config_key(id)->name;
+        if (board.absent_keys.contains(id))
             config.mistake(name, "is set, and is among the items that the board does not have");
-        else if (firmware::is_in_range(board, key->id, value))
-            board.config[key->id] = value;
+        else if (firmware::is_in_range(board, id, value))
+            board.config[id] = value;
         else
             config.mistake(name, fmt::format("is {}, which the receiver itself would refuse", value));
     }
@@ -184,7 +144,7 @@ void read_signal_conflicts(TableReader& navigation, BoardProfile& board) {
             if (key == nullptr || !name.starts_with("CFG-SIGNAL-"))
                 return navigation.mistake("signal_conflicts",
                                           fmt::format("holds '{}', which no item of CFG-SIGNAL is called{}", name,
-                                                      did_you_mean(name, config_names())));
+                                                      did_you_mean(name, config_item_names())));
             conflict.insert(key->id);
         }
         board.signal_conflicts.push_back(std::move(conflict));

@@ -69,6 +69,8 @@ std::string taken_by(const KeyEntry& key) {
             return "list of values of the key";
         case KeyType::place:
             return "`[latitude, longitude]` or `[latitude, longitude, height]`, ° and m";
+        case KeyType::named_values:
+            return "table of names and values";
         case KeyType::table:
             return "table";
         case KeyType::tables:

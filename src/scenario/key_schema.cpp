@@ -114,6 +114,8 @@ Schema value_schema(const KeyEntry& key) {
             return list_schema(key, Schema::object());
         case KeyType::place:
             return place_schema(key);
+        case KeyType::named_values:
+            return {{"type", "object"}, {"additionalProperties", {{"type", {"number", "boolean"}}}}};
         default:
             return Schema::object();
     }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "config_items.hpp"
 #include "scenario_keys.hpp"
 
 namespace skyloop {
@@ -36,6 +37,7 @@ void read_output_keys(TableReader& receiver, ReceiverEntry& entry) {
 }
 
 void read_navigation_keys(TableReader& receiver, ReceiverEntry& entry) {
+    receiver.named_values("config", [&](TableReader& config) { entry.config = read_config_items(config); });
     read_constellation_list(receiver, entry.constellations);
     receiver.boolean("dual_frequency", entry.dual_frequency);
     static constexpr std::array<Word<StartKind>, 3> starts{

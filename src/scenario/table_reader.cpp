@@ -323,6 +323,11 @@ void TableReader::table(std::string_view key, const std::function<void(TableRead
     reader.finish();
 }
 
+void TableReader::named_values(std::string_view key, const std::function<void(TableReader&)>& body) {
+    if (recording()) return note(key, {.type = KeyType::named_values});
+    table(key, body);
+}
+
 void TableReader::tables(std::string_view key, const std::function<void(TableReader&)>& body, std::size_t fewest) {
     if (recording())
         return record_inner(key, {.type = KeyType::tables, .count_least = fewest, .needed = fewest > 0}, body);

@@ -123,6 +123,8 @@ public:
 
     /// Reads a sub-table with `body` and finishes it.
     void table(std::string_view key, const std::function<void(TableReader&)>& body);
+    /// The same of a sub-table whose keys are names that the catalogue of keys does not list.
+    void named_values(std::string_view key, const std::function<void(TableReader&)>& body);
     /// Reads each table of a list with `body` and finishes it.
     /// @param fewest that the caller takes, for the catalogue of keys alone
     void tables(std::string_view key, const std::function<void(TableReader&)>& body, std::size_t fewest = 0);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "expectation_tracker.hpp"
 #include "probe_run.hpp"
@@ -29,6 +30,9 @@ public:
     GpsTime pass(GpsTime now);
     template <class Look>
     void at_station(std::size_t station, const Look& look);
+    // Whether nothing has been told of this epoch, nor of those before it for so long that nobody takes the last one
+    // for the present.
+    bool is_silent(const EpochSeen& seen);
     [[nodiscard]] bool hears() const { return hears_; }
     void happen(const FaultSeen& seen);
     std::vector<Verdict> finish(GpsTime now);
@@ -46,6 +50,7 @@ private:
     JudgedRun run_;
     GpsTime now_;
     std::vector<Case> cases_;
+    std::map<std::size_t, GpsTime> told_at_;  // by station, the last epoch of which the receiver told
     bool has_probes_ = false, hears_ = false;
 };
 
@@ -68,6 +73,13 @@ GpsTime Judge::State::pass(GpsTime now) {
             follower.tracker.advance(now_);
     if (has_probes_ && run_.live) start_probes(now_);
     return now_;
+}
+
+bool Judge::State::is_silent(const EpochSeen& seen) {
+    constexpr Seconds stale{2};
+    GpsTime& told_at = told_at_.try_emplace(seen.station, run_.start).first->second;
+    if (seen.leaves) told_at = now_;
+    return difference(now_, told_at) >= stale;
 }
 
 template <class Look>
@@ -181,8 +193,12 @@ Judge::~Judge() = default;
 
 void Judge::on_epoch(const EpochSeen& seen) {
     const GpsTime now = state_->pass(seen.now);
+    const bool silent = state_->is_silent(seen);
+    if (!seen.leaves && !silent) return;
     state_->at_station(seen.station, [&](ExpectationTracker& tracker) {
-        if (is_of_epochs(tracker.subject().subject)) tracker.look(now, read_epoch(tracker.subject(), seen));
+        const SubjectClause& subject = tracker.subject();
+        if (is_of_epochs(subject.subject))
+            tracker.look(now, silent ? read_silence(subject) : read_epoch(subject, seen));
     });
 }
 

@@ -128,7 +128,7 @@ Reading read_epoch(const SubjectClause& subject, const EpochSeen& seen) {
         case ExpectedSubject::fix_type:
             return {is_of_type(subject, reported), std::nullopt, fix_word(reported)};
         case ExpectedSubject::jamming_flagged: {
-            const bool flagged = reported.monitors.jamming_state >= 2;  // 2 warning, 3 critical
+            const bool flagged = reported.monitors.jamming_state() >= 2;  // 2 warning, 3 critical
             return {flagged, std::nullopt, flagged ? "flagged" : "not flagged"};
         }
         case ExpectedSubject::spoofing_flagged: {
@@ -138,6 +138,10 @@ Reading read_epoch(const SubjectClause& subject, const EpochSeen& seen) {
         default:
             return read_quantity(subject, seen);
     }
+}
+
+Reading read_silence(const SubjectClause& subject) {
+    return {subject.subject == ExpectedSubject::no_fix, std::nullopt, "nothing is reported"};
 }
 
 bool is_reconfiguration(const MessageSeen& seen) {

@@ -27,6 +27,8 @@ bool is_silence(ExpectedSubject subject);
 
 /// The subject at an epoch; it must be one of epochs.
 Reading read_epoch(const SubjectClause& subject, const EpochSeen& seen);
+/// The subject while the receiver tells nothing of its epochs.
+Reading read_silence(const SubjectClause& subject);
 /// Whether a message is one that the subject speaks of. Noise is no message.
 bool speaks_of(const SubjectClause& subject, const MessageSeen& seen);
 /// Whether a client's message changes the receiver's settings: UBX-CFG but for polls and CFG-VALGET, PUBX,40 and

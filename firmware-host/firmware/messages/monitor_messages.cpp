@@ -88,7 +88,7 @@ bool jamming_detection(const ReportContext& context) {
 std::vector<Bytes> signal_security(const ReportContext& context) {
     const MonitorStatus& monitors = context.state.monitors;
     const int spoofing = static_cast<int>(monitors.spoofing);
-    const int jam_flags = (jamming_detection(context) ? 1 : 0) | std::clamp(monitors.jamming_state, 0, 3) << 1;
+    const int jam_flags = (jamming_detection(context) ? 1 : 0) | std::clamp(monitors.jamming_state(), 0, 3) << 1;
     if (!context.board.identity.hardware.starts_with(x20_hardware)) {
         SecSig1 m;
         m.jam_flags = static_cast<std::uint8_t>(jam_flags);
@@ -97,10 +97,14 @@ std::vector<Bytes> signal_security(const ReportContext& context) {
     }
     // Its jamming states end at 2. L1, L2 and the lower end of L5, as captured, kHz.
     SecSig2 m;
-    const int jamming = std::clamp(monitors.jamming_state, 0, jamming_warning);
+    const int jamming = std::clamp(monitors.jamming_state(), 0, jamming_warning);
     m.sig_sec_flags = static_cast<std::uint8_t>((jam_flags & 1) | jamming << 1 | 8 | spoofing << 4);
     m.centre_frequencies = {1575420, 1227600, 1207140};
-    if (jamming == jamming_warning) m.centre_frequencies[0] |= 1u << 24;
+    constexpr std::uint32_t jammed = 1u << 24;
+    if (monitors.upper.jamming_state >= jamming_warning) m.centre_frequencies[0] |= jammed;
+    if (monitors.lower.jamming_state >= jamming_warning)
+        for (std::size_t i = 1; i < m.centre_frequencies.size(); ++i)
+            m.centre_frequencies[i] |= jammed;
     return ubx_frames_of(m);
 }
 
@@ -109,7 +113,7 @@ SecSiglog security_log(const ReportContext& context) {
     constexpr std::uint8_t simulated_signal = 0, jamming = 4, triggered = 2;
     const MonitorStatus& monitors = context.state.monitors;
     SecSiglog m;
-    if (monitors.jamming_state >= jamming_warning) m.events.push_back({0, jamming, triggered, {}});
+    if (monitors.jamming_state() >= jamming_warning) m.events.push_back({0, jamming, triggered, {}});
     if (monitors.spoofing == SpoofingIndication::indicated || monitors.spoofing == SpoofingIndication::several)
         m.events.push_back({0, simulated_signal, triggered, {}});
     return m;

@@ -20,8 +20,8 @@ constexpr std::size_t pin_count = 17;
 constexpr std::int8_t offset_i = 15, offset_q = 11;
 constexpr std::uint8_t magnitude_i = 149, magnitude_q = 146;
 
-int shown_jamming_state(const MonitorStatus& monitors) {
-    return monitors.jamming_hidden ? 0 : std::clamp(monitors.jamming_state, 0, 3);
+int shown_jamming_state(const MonitorStatus& monitors, const BandMonitor& band) {
+    return monitors.jamming_hidden ? 0 : std::clamp(band.jamming_state, 0, 3);
 }
 
 template <class Message>
@@ -31,14 +31,14 @@ Message hardware(const MonitorStatus& monitors) {
     m.pin_bank = pins_bank;
     m.pin_dir = pins_output;
     m.pin_val = pins_value;
-    m.noise_per_ms = field<std::uint16_t>(monitors.noise_per_ms);
-    m.agc_cnt = std::min<std::uint16_t>(8191, field<std::uint16_t>(monitors.agc));
+    m.noise_per_ms = field<std::uint16_t>(monitors.upper.noise_per_ms);
+    m.agc_cnt = std::min<std::uint16_t>(8191, field<std::uint16_t>(monitors.upper.agc));
     m.a_status = static_cast<std::uint8_t>(monitors.antenna);
     m.a_power = field<std::uint8_t>(monitors.antenna_power);
-    m.flags = static_cast<std::uint8_t>(1 | shown_jamming_state(monitors) << 2);
+    m.flags = static_cast<std::uint8_t>(1 | shown_jamming_state(monitors, monitors.upper) << 2);
     m.used_mask = pins_used;
     std::copy_n(virtual_pins.begin(), m.vp.size(), m.vp.begin());
-    m.jam_ind = field<std::uint8_t>(monitors.jamming_indicator);
+    m.jam_ind = field<std::uint8_t>(monitors.upper.jamming_indicator);
     m.pull_h = pins_pull_high;
     return m;
 }
@@ -83,23 +83,28 @@ MonHw3 pins(const ReportContext& context) {
     return m;
 }
 
-std::size_t front_end_count(const ReportContext& context) {
-    return context.board.dual_frequency || is_high_precision(context.board) ? 2 : 1;
+// Of each front end, in the order of their blocks.
+std::vector<BandMonitor> bands_of(const ReportContext& context) {
+    const MonitorStatus& monitors = context.state.monitors;
+    if (!context.board.dual_frequency) return {monitors.upper};
+    return {monitors.upper, monitors.lower};
 }
 
-// All front ends hear through one antenna: they report the same.
+// All front ends hear through one antenna: of that they report the same.
 MonRf radio(const ReportContext& context) {
     const MonitorStatus& monitors = context.state.monitors;
     MonRf m;
-    for (std::size_t block = 0; block < front_end_count(context); ++block) {
+    const std::vector<BandMonitor> bands = bands_of(context);
+    for (std::size_t block = 0; block < bands.size(); ++block) {
+        const BandMonitor& band = bands[block];
         MonRfItem item;
         item.block_id = static_cast<std::uint8_t>(block);
-        item.flags = static_cast<std::uint8_t>(shown_jamming_state(monitors));
+        item.flags = static_cast<std::uint8_t>(shown_jamming_state(monitors, band));
         item.ant_status = static_cast<std::uint8_t>(monitors.antenna);
         item.ant_power = field<std::uint8_t>(monitors.antenna_power);
-        item.noise_per_ms = field<std::uint16_t>(monitors.noise_per_ms);
-        item.agc_cnt = std::min<std::uint16_t>(8191, field<std::uint16_t>(monitors.agc));
-        item.jam_ind = field<std::uint8_t>(monitors.jamming_indicator);
+        item.noise_per_ms = field<std::uint16_t>(band.noise_per_ms);
+        item.agc_cnt = std::min<std::uint16_t>(8191, field<std::uint16_t>(band.agc));
+        item.jam_ind = field<std::uint8_t>(band.jamming_indicator);
         item.ofs_i = offset_i;
         item.mag_i = magnitude_i;
         item.ofs_q = offset_q;
@@ -110,18 +115,18 @@ MonRf radio(const ReportContext& context) {
 }
 
 // The passband of the front end, and a peak of what the jamming indicator says at the carrier.
-MonSpanItem spectrum(double centre_hz, const MonitorStatus& monitors) {
+MonSpanItem spectrum(double centre_hz, const BandMonitor& monitor) {
     constexpr double step_hz = 500e3, floor_quarter_db = 27, passband_quarter_db = 80, passband_hz = 20e6,
                      jam_quarter_db = 0.4, jam_hz = 1e6;
     MonSpanItem item;
     item.span = 128'000'000;
     item.res = 500'000;
     item.center = field<std::uint32_t>(centre_hz);
-    item.pga = field<std::uint8_t>(38.0 * monitors.agc / 8191.0 + 19.0);
+    item.pga = field<std::uint8_t>(38.0 * monitor.agc / 8191.0 + 19.0);
     for (std::size_t i = 0; i < item.spectrum.size(); ++i) {
         const double offset_hz = (static_cast<double>(i) - 127.5) * step_hz;
         const double filter = passband_quarter_db / (1 + std::pow(offset_hz / passband_hz, 4));
-        const double peak = jam_quarter_db * monitors.jamming_indicator / (1 + std::pow(offset_hz / jam_hz, 2));
+        const double peak = jam_quarter_db * monitor.jamming_indicator / (1 + std::pow(offset_hz / jam_hz, 2));
         item.spectrum[i] = field<std::uint8_t>(floor_quarter_db + filter + peak);
     }
     return item;
@@ -130,8 +135,9 @@ MonSpanItem spectrum(double centre_hz, const MonitorStatus& monitors) {
 MonSpan spectra(const ReportContext& context) {
     constexpr double centres_hz[] = {1575420000, 1227600000};
     MonSpan m;
-    for (std::size_t block = 0; block < front_end_count(context); ++block)
-        m.blocks.push_back(spectrum(centres_hz[block], context.state.monitors));
+    const std::vector<BandMonitor> bands = bands_of(context);
+    for (std::size_t block = 0; block < bands.size(); ++block)
+        m.blocks.push_back(spectrum(centres_hz[block], bands[block]));
     return m;
 }
 

@@ -88,6 +88,8 @@ public:
     /// When a fault or a held byte wants to be looked at next.
     /// @param now of the last look
     [[nodiscard]] std::optional<GpsTime> next_change(GpsTime now) const;
+    /// When the next message will have left by a wire, or is made.
+    [[nodiscard]] std::optional<GpsTime> next_output() const;
     /// Lets what is wrong now act on receiver and wires; take_in() does so, too.
     void follow_faults(GpsTime now);
     /// Faults of this receiver.

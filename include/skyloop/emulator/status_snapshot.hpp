@@ -47,7 +47,7 @@ struct ReceiverStatus {
     int satellites_used = 0;
     int jamming_state = 0;  ///< 0 unknown, 1 ok, 2 warning, 3 critical
     int spoofing = 0;       ///< as NAV-STATUS spoofDetState
-    Decibels interference;  ///< rise of the noise floor
+    Decibels interference;  ///< rise of the noise floor, in the band where it is larger
     Nanoseconds lateness{0};
     std::vector<SatelliteSeen> satellites;
     std::vector<WireStatus> wires;

@@ -13,7 +13,8 @@ enum class SpoofingIndication { unknown = 0, none = 1, indicated = 2, several = 
 
 /// What the front end sees at one epoch.
 struct FrontEnd {
-    Decibels interference;  ///< rise of the noise floor by interference
+    Decibels interference;        ///< rise of the noise floor by interference, in the band of L1
+    Decibels lower_interference;  ///< the same in that of L2 and L5
     AntennaStatus antenna = AntennaStatus::ok;
     SpoofingIndication spoofing = SpoofingIndication::none;
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -162,8 +163,9 @@ struct ReceiverEntry {
     DynamicModel dynamic_model = DynamicModel::portable;
     std::optional<firmware::ExportLimits> export_limits;  ///< nothing: the board's
     MetresPerSecond static_hold_below{0};
-    bool power_up = false;                   ///< it is switched on at the start of the run: banner, then `start`
-    std::filesystem::path state_file;        ///< keeps battery-backed memory and flash; empty: nothing does
+    bool power_up = false;  ///< it is switched on at the start of the run: banner, then `start`
+    std::map<std::uint32_t, std::uint64_t> config{};  ///< raw values by the ids of items that its user has saved in it
+    std::filesystem::path state_file;                 ///< keeps battery-backed memory and flash; empty: nothing does
     std::array<double, 3> antenna_offset{};  ///< forward, right, down from the point that follows the trajectory, m
     std::optional<TrajectorySettings> trajectory{};  ///< of the vehicle it rides on; nothing: the scenario's
     std::optional<std::size_t> base;  ///< the receiver, by its place in the list, that carries the base antenna

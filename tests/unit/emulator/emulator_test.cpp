@@ -159,6 +159,31 @@ TEST(Emulator, TheRecordingHoldsTheBytesOfTheWire) {
     EXPECT_EQ(offset, bytes.size());
 }
 
+TEST(Emulator, KnowsInVirtualTimeWhenEachMessageLeft) {
+    const TemporaryFolder folder;
+    auto recorder = Recorder::create(folder / "run");
+    MemoryRun run = memory_run(emulator_scenario(at_noon("")), {Nanoseconds(0), std::move(*recorder), {true, {}}});
+    run.emulator->run_until(run.start + 3s, never_stop);
+    const std::string bytes = content_of(folder / "run/port0.out");
+    constexpr double byte_ns = 1e10 / 9600;
+    std::int64_t before = 0;
+    std::size_t messages = 0;
+    for (const std::string& line : lines_of(content_of(folder / "run/port0.times"))) {
+        std::int64_t monotonic = 0, gps = 0;
+        std::size_t at = 0, count = 0;
+        std::istringstream(line) >> monotonic >> gps >> at >> count;
+        EXPECT_EQ(bytes.substr(at, 1), "$");
+        EXPECT_EQ(bytes.find('\n', at), at + count - 1) << "a sentence by itself";
+        if (messages > 0 && gps - before < 200'000'000) {
+            EXPECT_NEAR(static_cast<double>(gps - before), byte_ns * static_cast<double>(count), 2)
+                << "as long as the line takes for it";
+        }
+        before = gps;
+        ++messages;
+    }
+    EXPECT_GT(messages, 12U);
+}
+
 // fixes.csv and satellites.csv of a minute.
 std::pair<std::string, std::string> recorded_minute(const std::string& text) {
     const TemporaryFolder folder;

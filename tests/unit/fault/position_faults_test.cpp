@@ -47,6 +47,19 @@ TEST(PositionFaults, StepsByItsVectorTimesItsStrength) {
     expect_no_residue(bench, before);
 }
 
+TEST(PositionFaults, ALongStepFollowsTheGround) {
+    ReceiverBench bench;
+    const NavPvt before = bench.next();
+    bench.begin("position_step", {{"east_m", 6000.0}, {"north_m", 8000.0}});
+    const NavPvt away = bench.next();
+    EXPECT_NEAR(away.height, before.height, 1) << "mm; the tangent plane is 7.8 m above the ground there";
+    const auto error = ReceiverBench::error(away).vector();
+    EXPECT_NEAR(error.x(), 6000, 8);
+    EXPECT_NEAR(error.y(), 8000, 8);
+    EXPECT_NEAR(error.z(), -10e3 * 10e3 / 2 / 6.38e6, 0.1);
+    expect_no_residue(bench, before);
+}
+
 TEST(PositionFaults, RampsUpToItsLimit) {
     ReceiverBench bench;
     const NavPvt before = bench.next();
@@ -207,6 +220,28 @@ TEST(PositionFaults, FallsFromFixedToFloatWithAStep) {
     EXPECT_EQ(floating.height - before.height, 1000);
     EXPECT_EQ(bench.sentence("GGA")[6], "5");
     expect_no_residue(bench, before);
+}
+
+TEST(PositionFaults, TheVectorBetweenTheAntennasFallsWithTheFix) {
+    ReceiverBench bench;
+    bench.fix().type = FixType::rtk_fixed;
+    bench.relative() = RelativePosition{0, 1, 0, Metres(0.01), true, true, 5};
+    bench.wait(1);
+    EXPECT_EQ(bench.last<NavRelposned>().flags >> 3 & 3U, 2U);
+    bench.begin("rtk_transition", {{"east_m", 0.5}, {"north_m", 0.0}, {"up_m", 0.0}, {"accuracy_m", 0.6}});
+    bench.wait(1);
+    const auto floating = bench.last<NavRelposned>();
+    EXPECT_EQ(floating.flags >> 3 & 3U, 1U);
+    EXPECT_EQ(floating.rel_pos[1], 150) << "cm";
+    EXPECT_NEAR(floating.acc[1], 0.6e4 / std::sqrt(2.0), 1);
+    EXPECT_EQ(floating.flags & 0x100U, 0U) << "no heading without whole ambiguities";
+    bench.end();
+    bench.begin("rtk_transition", {{"to", std::string("dgnss")}});
+    bench.wait(1);
+    EXPECT_EQ(bench.last<NavRelposned>().flags & 4U, 0U);
+    bench.end();
+    bench.wait(1);
+    EXPECT_EQ(bench.last<NavRelposned>().flags >> 3 & 3U, 2U);
 }
 
 TEST(PositionFaults, LosesAndFlipsTheHeading) {

@@ -47,7 +47,7 @@ TEST(MonHwMessage, HasThreeForms) {
 
 TEST(MonHwMessage, ReportsTheMonitors) {
     UbxReport m8(8);
-    m8.state.monitors = {2, 300, 9000, 100000, AntennaStatus::short_circuit, 0, SpoofingIndication::none};
+    m8.state.monitors = {{2, 300, 9000, 100000}, {}, AntennaStatus::short_circuit, 0, SpoofingIndication::none};
     const auto m = m8.report<MonHw>();
     EXPECT_EQ(m.a_status, 3);
     EXPECT_EQ(m.a_power, 0);
@@ -68,12 +68,26 @@ TEST(MonRfMessage, HasABlockForEachFrontEnd) {
     EXPECT_EQ(m.blocks[0].noise_per_ms, 69);
 }
 
+TEST(MonRfMessage, TellsEachBandByItself) {
+    UbxReport report = high_precision();
+    report.state.monitors.lower = {2, 120, 2700, 300};
+    const auto m = report.report<MonRf>();
+    EXPECT_EQ(m.blocks[0].flags, 1);
+    EXPECT_EQ(m.blocks[0].jam_ind, 14);
+    EXPECT_EQ(m.blocks[1].flags, 2);
+    EXPECT_EQ(m.blocks[1].jam_ind, 120);
+    EXPECT_EQ(m.blocks[1].agc_cnt, 2700);
+    EXPECT_EQ(m.blocks[1].noise_per_ms, 300);
+    EXPECT_EQ(report.report<MonSpan>().blocks[0].pga, high_precision().report<MonSpan>().blocks[0].pga);
+    EXPECT_LT(report.report<MonSpan>().blocks[1].pga, report.report<MonSpan>().blocks[0].pga);
+}
+
 TEST(MonHardwareMessages, AreThere) {
     EXPECT_EQ(UbxReport(9).report<MonHw3>().pins.size(), 17u);
     EXPECT_STREQ(UbxReport(9).report<MonHw3>().hw_version.data(), "00190000");
     EXPECT_EQ(UbxReport(8).report<MonHw2>().cfg_source, 114);
     UbxReport quiet(9), jammed(9);
-    jammed.state.monitors.jamming_indicator = 200;
+    jammed.state.monitors.upper.jamming_indicator = 200;
     const auto calm = quiet.report<MonSpan>(), loud = jammed.report<MonSpan>();
     EXPECT_GT(loud.blocks[0].spectrum[127], calm.blocks[0].spectrum[127] + 20);
     EXPECT_EQ(loud.blocks[0].spectrum[0], calm.blocks[0].spectrum[0]);
@@ -134,7 +148,7 @@ TEST(SecUniqidMessage, HasTwoVersions) {
 TEST(SecSigMessage, TellsJammingAndSpoofing) {
     UbxReport m10(10);
     m10.config.set(in_ram, key::itfm_enable, 1);
-    m10.state.monitors.jamming_state = 2;
+    m10.state.monitors.upper.jamming_state = 2;
     m10.state.monitors.spoofing = SpoofingIndication::indicated;
     EXPECT_EQ(m10.report<SecSig1>().jam_flags, 0x05);
     EXPECT_EQ(m10.report<SecSig1>().spf_flags, 0x05);
@@ -142,7 +156,7 @@ TEST(SecSigMessage, TellsJammingAndSpoofing) {
     m10.board.identity.hardware = "000B0000";
     EXPECT_EQ(m10.report<SecSig2>().sig_sec_flags, 0x2D);
     EXPECT_EQ(m10.report<SecSig2>().centre_frequencies[0], 1575420u | 1u << 24);
-    m10.state.monitors = {1, 14, 4200, 69, AntennaStatus::ok, 1, SpoofingIndication::none};
+    m10.state.monitors = {{1, 14, 4200, 69}, {}, AntennaStatus::ok, 1, SpoofingIndication::none};
     EXPECT_TRUE(m10.report<SecSiglog>().events.empty());
 }
 

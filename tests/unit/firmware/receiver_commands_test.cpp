@@ -350,6 +350,35 @@ TEST(ReceiverCommands, RemembersOverTheEndOfTheProcess) {
     EXPECT_FALSE(next.receiver().restore("nonsense", "state"));
 }
 
+TEST(ReceiverCommands, BeginsAsItsUserHasSavedIt) {
+    constexpr std::uint32_t pvt_on_uart1 = 0x20910007, baud = 0x40520001, period = 0x30210001;
+    Bench bench;
+    ASSERT_TRUE(bench.receiver().configure({{pvt_on_uart1, 1}, {baud, 57600}, {period, 500}}));
+    EXPECT_EQ(bench.receiver().baud(PortId::uart1), 57600U);
+    EXPECT_EQ(bench.receiver().settings().navigation_period, 500ms);
+    bench.wait(3200ms);
+    EXPECT_GE(bench.frames(nav_pvt_id).size(), 3U);
+    bench.forget();
+    bench.send(CfgRst{0xFFFF, 0, 0}).wait(3s);
+    EXPECT_EQ(bench.receiver().baud(PortId::uart1), 57600U) << "no reset takes it away";
+
+    const auto refused = [](const std::map<std::uint32_t, std::uint64_t>& items) {
+        BoardProfile board = sample_ublox();
+        board.absent_keys = {0x20030001};
+        Bench other(std::move(board));
+        const auto result = other.receiver().configure(items);
+        return result ? std::string("taken") : result.error().message;
+    };
+    EXPECT_EQ(refused({{0x20920001, 7}}), "taken") << "an item of any group";
+    EXPECT_THAT(refused({{0x20110021, 77}}), HasSubstr("CFG-NAVSPG-DYNMODEL is 77"));
+    EXPECT_THAT(refused({{0x20030001, 1}}), HasSubstr("has no CFG-TMODE-MODE"));
+    EXPECT_THAT(refused({{0x20FF0001, 1}}), HasSubstr("has no item 0x20ff0001"));
+    std::map<std::uint32_t, std::uint64_t> none;
+    for (const std::uint32_t system : {0x1031001FU, 0x10310021U, 0x10310022U, 0x10310025U})
+        none[system] = 0;
+    EXPECT_THAT(refused(none), HasSubstr("do not go together")) << "no system is left";
+}
+
 TEST(ReceiverCommands, TellsOfACorrectionThatArrivesDamaged) {
     constexpr UbxMessageId rxm_rtcm{0x02, 0x32};
     constexpr std::uint32_t rxm_rtcm_on_uart1 = 0x20910269, rtcm3_into_uart1 = 0x10730004;

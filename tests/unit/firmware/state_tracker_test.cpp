@@ -410,18 +410,33 @@ TEST(StateTracker, ListsTheSbasSatellitesOfItsScanMaskAlone) {
 TEST(StateTracker, TellsJammingOnlyWhenTheMonitorIsOn) {
     Tracked t(tracked_board());
     t.tracker().start(t.fix().time, {}, true);
-    const MonitorStatus quiet = t.step().monitors;
+    const BandMonitor quiet = t.step().monitors.upper;
     EXPECT_EQ(quiet.jamming_state, 0);
     t.store().set(in_ram, key::itfm_enable, 1);
-    EXPECT_EQ(t.step().monitors.jamming_state, 1);
+    EXPECT_EQ(t.step().monitors.jamming_state(), 1);
     t.front_end().interference = Decibels(12);
-    const MonitorStatus jammed = t.step().monitors;
+    const BandMonitor jammed = t.step().monitors.upper;
     EXPECT_EQ(jammed.jamming_state, 2);
     EXPECT_GT(jammed.jamming_indicator, quiet.jamming_indicator + 50);
     EXPECT_LT(jammed.agc, quiet.agc);
     EXPECT_GT(jammed.noise_per_ms, quiet.noise_per_ms);
     t.fix().type = FixType::none;
-    EXPECT_EQ(t.step().monitors.jamming_state, 3);
+    EXPECT_EQ(t.step().monitors.jamming_state(), 3);
+}
+
+TEST(StateTracker, TellsWhichBandIsJammedWhereItHasTwo) {
+    for (const bool dual : {false, true}) {
+        BoardProfile board = tracked_board();
+        board.dual_frequency = dual;
+        Tracked t(board);
+        t.tracker().start(t.fix().time, {}, true);
+        t.store().set(in_ram, key::itfm_enable, 1);
+        t.front_end().lower_interference = Decibels(20);
+        const MonitorStatus m = t.step().monitors;
+        EXPECT_EQ(m.upper.jamming_state, 1);
+        EXPECT_EQ(m.lower.jamming_state, dual ? 2 : 0);
+        EXPECT_EQ(m.jamming_state(), dual ? 2 : 1);
+    }
 }
 
 TEST(StateTracker, WatchesTheAntennaOnlyWithVoltageControl) {

@@ -34,7 +34,7 @@ struct UbxReport {
         state.since_start = Seconds(123.456);
         state.since_boot = Seconds(456.789);
         state.time_to_first_fix = Seconds(26.5);
-        state.monitors = {1, 14, 4200, 69, AntennaStatus::ok, 1, SpoofingIndication::none};
+        state.monitors = {{1, 14, 4200, 69}, {}, AntennaStatus::ok, 1, SpoofingIndication::none};
     }
 
     static BoardProfile board_of(int generation) {

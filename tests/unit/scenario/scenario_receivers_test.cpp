@@ -38,6 +38,25 @@ TEST(ScenarioReceivers, PowerAndMemory) {
     EXPECT_EQ(r.start, StartKind::cold);
 }
 
+TEST(ScenarioReceivers, ItemsOfTheConfigurationByTheirNames) {
+    const ReceiverEntry r = scenario_of(
+                                "[[receiver]]\n[receiver.config]\n\"CFG-RATE-MEAS\" = 100\n"
+                                "\"CFG-ITFM-ENABLE\" = true\nCFG-NAVSPG-INFIL_MINELEV = -5\n")
+                                .receivers[0];
+    EXPECT_THAT(r.config,
+                testing::UnorderedElementsAre(testing::Pair(0x30210001U, 100U), testing::Pair(0x1041000DU, 1U),
+                                              testing::Pair(0x201100A4U, 0xFBU)));
+    EXPECT_TRUE(scenario_of("[[receiver]]").receivers[0].config.empty());
+    EXPECT_THAT(mistakes_of("[[receiver]]\n[receiver.config]\n\"CFG-RATE-MES\" = 100\n"),
+                HasSubstr("test.toml:3:18: receiver.config.CFG-RATE-MES: is no configuration item; did you mean "
+                          "'CFG-RATE-MEAS'?"));
+    EXPECT_THAT(mistakes_of("[[receiver]]\n[receiver.config]\n\"CFG-RATE-MEAS\" = 70000\n"),
+                HasSubstr("CFG-RATE-MEAS: is 70000; expected a whole number from 0 to 65535"));
+    EXPECT_THAT(mistakes_of("[[receiver]]\n[receiver.config]\n\"CFG-RATE-MEAS\" = \"fast\"\n"),
+                HasSubstr("CFG-RATE-MEAS: is a text; expected"));
+    EXPECT_THAT(mistakes_of("[[receiver]]\nconfig = 3\n"), HasSubstr("config"));
+}
+
 TEST(ScenarioReceivers, ABaseIsNamedOrCounted) {
     const std::string named =
         "[[receiver]]\nbase = \"rear\"\n[[receiver]]\nname = \"rear\"\n[[receiver]]\nbase = \"receiver0\"";

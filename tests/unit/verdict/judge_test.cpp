@@ -41,6 +41,22 @@ TEST(JudgeSubjects, FixesAreWhatIsReported) {
     EXPECT_EQ(after_one_epoch("dead reckoning", {FixType::dead_reckoning}), passed);
 }
 
+TEST(JudgeSubjects, AnEpochThatIsNotToldIsNoneAfterTwoSeconds) {
+    SeenFix untold;
+    untold.told = false;
+    EXPECT_EQ(SeenRun("fix always").epochs(0, 5).epoch(6, untold).epochs(7, 10).end(10).outcome, passed)
+        << "one is missing, and the one before still counts";
+    const Verdict lost = SeenRun("fix always").epochs(0, 5).epochs(6, 7, untold).epochs(8, 10).end(10);
+    EXPECT_EQ(lost.outcome, failed);
+    EXPECT_EQ(lost.run_time.value(), 7);
+    EXPECT_THAT(lost.evidence, HasSubstr("nothing is reported"));
+    EXPECT_EQ(
+        SeenRun("no fix within 2 s of outage").epochs(0, 5).begins(5.5, "outage").epochs(6, 9, untold).end(10).outcome,
+        passed);
+    EXPECT_EQ(SeenRun("horizontal error below 5 m always").epochs(0, 5).epochs(6, 9, untold).end(10).outcome, failed);
+    EXPECT_EQ(SeenRun("spoofing flagged within 5 s of run").epochs(0, 5, untold).end(6).outcome, failed);
+}
+
 TEST(JudgeSubjects, NumbersAreComparedInTheirUnits) {
     SeenFix fix;
     fix.east_error_m = 7;

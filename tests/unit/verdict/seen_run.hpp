@@ -36,6 +36,7 @@ struct SeenFix {
     int jamming = 1;
     SpoofingIndication spoofing = SpoofingIndication::none;
     bool valid = true;
+    bool told = true;  ///< its messages leave
 };
 
 /// Tells a judge of one sentence what happens; times are seconds of the run.
@@ -51,7 +52,7 @@ public:
         trace.truth.position = to_ecef(trace.truth.geodetic);
         firmware::NavigationState state;
         state.fix_ok = fix.valid;
-        state.monitors.jamming_state = fix.jamming;
+        state.monitors.upper.jamming_state = fix.jamming;
         state.monitors.spoofing = fix.spoofing;
         Fix& reported = state.epoch.fix;
         reported.type = fix.type;
@@ -65,7 +66,8 @@ public:
             status.used = true;
             reported.satellites.push_back(status);
         }
-        judge_.on_epoch({at_second(second), station, trace, state, Nanoseconds{0}});
+        const auto leaves = fix.told ? std::optional(at_second(second + 0.05)) : std::nullopt;
+        judge_.on_epoch({at_second(second), station, trace, state, Nanoseconds{0}, leaves});
         return *this;
     }
     /// An epoch a second, from `first` to `last`.
