@@ -11,6 +11,8 @@
 namespace skyloop {
 namespace {
 
+// No estimator tells more, nor a sentence with two digits, however strong a scenario makes its satellites.
+constexpr double most_cn0 = 99;
 constexpr Nanoseconds ripple_spacing = std::chrono::seconds(5);
 constexpr double geosynchronous_radius = 42164e3;
 
@@ -132,7 +134,8 @@ void ModernLinkBudget::set_cn0(Arrival& arrival, const TruthState& truth) const 
     // At the antenna's port, and with the implementation loss as if it were part of the signal.
     const double signal = isotropic_power(arrival, truth).value() + arrival.antenna_gain.value() +
                           arrival.power_offset.value() - losses.value();
-    const DbHz clear(signal - link_.implementation_loss.value() - noise(first_carrier(arrival)).value());
+    const double density = noise(first_carrier(arrival)).value();
+    const DbHz clear(std::min(signal - link_.implementation_loss.value() - density, most_cn0));
     arrival.cn0 = clear;
     if (!link_.jammer_to_signal || interference_factor_ == 0) return;
     // The jammer is as strong as it is; a weaker satellite suffers more.

@@ -111,6 +111,14 @@ TEST(ModernLinkBudget, AJammerHurtsTheWeakMore) {
     EXPECT_NEAR(strong - weak, cn0_curve(80) - cn0_curve(10), 0.05);
 }
 
+TEST(ModernLinkBudget, NoSatelliteIsStrongerThanAnEstimatorTells) {
+    ModernPropagationParameters parameters = even_powers();
+    parameters.link.implementation_loss = Decibels(-200);
+    EXPECT_EQ(link_cn0(parameters, 40), 99);
+    parameters.link.jammer_to_signal = Decibels(30);
+    EXPECT_LT(link_cn0(parameters, 40), 99) << "and a jammer still weakens it";
+}
+
 TEST(ModernLinkBudget, CountsNoiseAndFilm) {
     ModernPropagationParameters parameters = even_powers();
     const double clear = link_cn0(parameters, 40);
