@@ -91,8 +91,8 @@ public:
     /// What outlives the process: battery-backed layer and flash.
     [[nodiscard]] std::string persistent_text() const;
     /// Its user has set these items, by id and raw as on the wire, and saved them: in flash, or where the board has
-    /// none in battery-backed memory. To be called before start(). Fails with `usage` for an item that the receiver
-    /// does not have, a value that it would refuse, and values that it would refuse together.
+    /// none in battery-backed memory. To be called before start(). Fails with `usage` for a board of another maker, an
+    /// item that the receiver does not have, a value that it would refuse, and values that it would refuse together.
     Result<void> configure(const std::map<std::uint32_t, std::uint64_t>& items);
     /// Takes `ReceiverOptions::stored`. Fails with `input` for a text that is none; @param name for the message
     Result<void> restore(const std::string& text, const std::string& name);

@@ -72,6 +72,8 @@ void Receiver::Core::start(GpsTime now) {
 }
 
 Result<void> Receiver::Core::configure(const std::map<std::uint32_t, std::uint64_t>& items) {
+    if (!items.empty() && board_.personality != Personality::ublox)
+        return fail(ErrorCode::usage, board_.name + " is no u-blox receiver and has no configuration items");
     const bool was_consistent = is_consistent(board_, store_.values_at_start());
     for (const auto& [id, value] : items) {
         const ConfigKey* item = find_config_key(id);

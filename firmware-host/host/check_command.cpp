@@ -15,7 +15,7 @@ std::string utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds:
 void print_receiver(const ReceiverEntry& entry, const Station& station, bool of_several) {
     const firmware::Receiver& receiver = station.receiver();
     fmt::print("receiver    {}{} at {} baud, {:g} Hz\n", of_several ? station.name() + ": " : "", receiver.board().name,
-               receiver.board().baud, 1e9 / static_cast<double>(receiver.settings().navigation_period.count()));
+               first_baud(receiver), 1e9 / static_cast<double>(receiver.settings().navigation_period.count()));
     for (const std::string& port : entry.ports)
         fmt::print("port        {}\n", port);
     if (!entry.power.empty()) fmt::print("power       {}\n", entry.power);

@@ -112,7 +112,8 @@ std::vector<std::string> world_details(const NavigationSource& navigation, const
 
 std::string receiver_detail(const Station::Parts& parts) {
     const firmware::BoardProfile& board = parts.receiver.board();
-    return fmt::format("receiver: {}, {} baud, {} sentences", board.name, board.baud, board.sentences.size());
+    return fmt::format("receiver: {}, {} baud, {} sentences", board.name, first_baud(parts.receiver),
+                       board.sentences.size());
 }
 
 std::unique_ptr<Pacer> make_pacer(const RunMode& mode, GpsTime start, double speed, const LiveFeeds* feeds) {

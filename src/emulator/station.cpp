@@ -16,6 +16,10 @@ PortSpeed speed_of(PortId port, std::uint32_t baud) { return firmware::is_uart(p
 
 PortSpeed port_speed(const firmware::Receiver& receiver, PortId port) { return speed_of(port, receiver.baud(port)); }
 
+std::uint32_t first_baud(const firmware::Receiver& receiver) {
+    return port_speed(receiver, default_port(receiver.board())).value_or(receiver.board().baud);
+}
+
 Station::Station(Parts parts) : parts_(std::move(parts)) {
     for (std::size_t i = 0; i < std::max<std::size_t>(parts_.wires.size(), 1); ++i)
         faulty_wires_.emplace_back(parts_.seed, i);

@@ -40,6 +40,24 @@ void SignalProcesses::advance(const NoiseSteps& steps, bool scintillates) {
     if (scintillates) scintillation.advance(steps.scintillation);
 }
 
+AmplitudeFading::AmplitudeFading(const MeasurementParameters& parameters, std::uint64_t seed, SatelliteId satellite,
+                                 Signal signal)
+    : in_phase_(parameters.code_noise.stream(seed, signal_stream_name("fading.in_phase", satellite, signal))),
+      quadrature_(parameters.code_noise.stream(seed, signal_stream_name("fading.quadrature", satellite, signal))) {}
+
+Decibels AmplitudeFading::at(double s4, GpsTime now, const MeasurementParameters& parameters) {
+    if (!(s4 > 0)) return Decibels(0);
+    constexpr double deepest = 1e-4;  // 40 dB, where nothing is tracked any more
+    if (moved_ && *moved_ < now) {
+        const GaussMarkovStep step = gauss_markov_step({1, parameters.scintillation_time}, difference(now, *moved_));
+        in_phase_.advance(step);
+        quadrature_.advance(step);
+    }
+    moved_ = now;
+    return Decibels(10 *
+                    std::log10(std::max(deepest, scintillating_power(s4, in_phase_.value(), quadrature_.value()))));
+}
+
 SignalScintillation scintillation_at(const SignalScintillation& first, double frequency_ratio) {
     if (frequency_ratio == 1) return first;
     return {first.amplitude * frequency_ratio * std::sqrt(frequency_ratio), first.phase * frequency_ratio};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "skyloop/base/gauss_markov.hpp"
 #include "skyloop/base/random.hpp"
@@ -9,6 +10,7 @@
 #include "skyloop/gnss/satellite.hpp"
 #include "skyloop/gnss/signal.hpp"
 #include "skyloop/measurement/measurement_parameters.hpp"
+#include "skyloop/time/gps_time.hpp"
 
 namespace skyloop {
 
@@ -40,6 +42,20 @@ struct SignalProcesses {
     void advance(const NoiseSteps& steps, bool scintillates);
 
     UnitProcess code, phase, frequency, multipath, scintillation;
+};
+
+/// How the power of a signal comes and goes while the ionosphere scintillates.
+///
+/// State: the scattered part of the signal, which rests while nothing scintillates.
+class AmplitudeFading {
+public:
+    AmplitudeFading(const MeasurementParameters& parameters, std::uint64_t seed, SatelliteId satellite, Signal signal);
+    /// @param s4 of this signal @return its power over the mean. Times never go back
+    Decibels at(double s4, GpsTime now, const MeasurementParameters& parameters);
+
+private:
+    UnitProcess in_phase_, quadrature_;
+    std::optional<GpsTime> moved_;
 };
 
 /// What scintillation makes of one signal.

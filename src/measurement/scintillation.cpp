@@ -1,5 +1,6 @@
 #include "skyloop/measurement/scintillation.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -20,6 +21,15 @@ FadedSignal faded(CarrierToNoise cn0, double s4) {
 }  // namespace
 
 double nakagami_m(double s4) { return 1 / (s4 * s4); }
+
+double scintillating_power(double s4, double in_phase, double quadrature) {
+    if (!(s4 > 0)) return 1;
+    const double m = nakagami_m(std::min(s4, 1.0)), root = std::sqrt(m * m - m);
+    const double k = root / (m - root);
+    const double steady = std::sqrt(k / (k + 1)), scattered = std::sqrt(1 / (2 * (k + 1)));
+    const double along = steady + scattered * in_phase, across = scattered * quadrature;
+    return along * along + across * across;
+}
 
 double scintillating_code_jitter_chips(const CodeLoop& loop, CarrierToNoise cn0, double s4) {
     const FadedSignal signal = faded(cn0, s4);

@@ -54,7 +54,8 @@ SignalChannel::SignalChannel(const MeasurementParameters& parameters, std::uint6
       lock_(traits_.pilot, RandomStream(seed, signal_stream_name("acquisition", satellite, signal))),
       count_(RandomStream(seed, signal_stream_name("ambiguity", satellite, signal)),
              parameters.cycle_slips.stream(seed, signal_stream_name("cycle_slips", satellite, signal))),
-      processes_(parameters, seed, satellite, signal) {
+      processes_(parameters, seed, satellite, signal),
+      fading_(parameters, seed, satellite, signal) {
     terms_.satellite = satellite;
     terms_.signal = signal;
 }
@@ -74,16 +75,19 @@ void SignalChannel::hear_echoes(const ChannelInput& input, const ChannelEpoch& e
 void SignalChannel::track(const ChannelInput& input, const ChannelEpoch& epoch) {
     visited_ = epoch.now;
     hear_echoes(input, epoch);
-    const std::optional<DbHz> cn0 = arriving_cn0(input, echoes_.strength);
     const SignalScintillation scintillation = scintillation_at(
         {input.arrival.amplitude_scintillation, input.arrival.phase_scintillation}, first_to_own_frequency(input));
+    faded_ = fading_.at(scintillation.amplitude, epoch.now, epoch.parameters);
+    const std::optional<DbHz> cn0 = arriving_cn0(input, echoes_.strength + faded_);
     const bool had_phase = lock_.phase_locked();
     lock_.advance(epoch.parameters.acquisition,
                   {cn0, input.aided ? StartKind::hot : epoch.knowledge, input.searchable,
                    scintillation.amplitude < strongest_scintillation},
                   epoch.now);
     if (!lock_.code_locked()) return;
-    deviations_ = loop_deviations(epoch.parameters, code_loop_, traits_.jitter_ratio, *cn0, scintillation);
+    // The formulas for a signal that fades want its mean.
+    deviations_ =
+        loop_deviations(epoch.parameters, code_loop_, traits_.jitter_ratio, *cn0 - DbHz(faded_.value()), scintillation);
     draw_errors(input, epoch);
     follow_cycles(input, epoch, had_phase);
 }
@@ -198,7 +202,7 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     result.satellite = satellite_;
     result.signal = signal_;
     result.carrier = input.signal.carrier;
-    result.cn0 = reported_cn0(*arriving_cn0(input, echoes_.strength), parameters.cn0_resolution);
+    result.cn0 = reported_cn0(*arriving_cn0(input, echoes_.strength + faded_), parameters.cn0_resolution);
     result.pseudorange = Metres(path + speed_of_light * input.signal.group_delay.value() + iono +
                                 terms_.multipath.value() + terms_.code_noise.value());
     result.pseudorange_deviation = Metres(root_of_squares(deviations_.code.value(), floor));

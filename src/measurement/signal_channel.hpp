@@ -72,6 +72,7 @@ private:
     SignalLock lock_;
     CycleCount count_;
     SignalProcesses processes_;
+    AmplitudeFading fading_;
 
     std::optional<GpsTime> visited_;
     GpsTime processed_;  // until when the processes have run
@@ -82,6 +83,7 @@ private:
     bool ever_counted_ = false;
     bool half_cycle_resolved_ = false;
     bool slipped_ = false;
+    Decibels faded_;              // by scintillation, at this epoch
     CorrelatorMultipath echoes_;  // of this epoch, where a scene tells them
     // Of the epoch before: which ray was tracked, what its path had in excess of the geometric one, and how far its
     // carrier was off.

@@ -127,7 +127,7 @@ constexpr KeyMeaning run_meanings[] = {
     {"receiver", "constellations", "systems that it tracks from the factory on", "the board's"},
     {"receiver", "dual_frequency", "it tracks the second signal of each system too; false leaves it to the board"},
     {"receiver", "config",
-     "items that its user has saved in it, by the names of docs/receiver.md, such as `\"CFG-RATE-MEAS\" = 100`"},
+     "configuration items that its user has saved in it, by their names, such as `CFG-RATE-MEAS = 100`"},
     {"receiver", "start", "what it knows at the start: everything; time, place and almanac; nothing"},
     {"receiver", "dynamic_model", "how it expects to move; a fix beyond its limits of height and speed is withheld"},
     {"receiver", "export_limits",

@@ -19,7 +19,7 @@ constexpr KeyMeaning modern_meanings[] = {
     {"model.modern.terms", "foliage", "loss in trees"},
     {"model.modern.terms", "antenna", "gain of the receiving antenna less the film on it"},
     {"model.modern.terms", "satellite_power", "spread between satellites, and its ripple"},
-    {"model.modern.terms", "scintillation", "restless ionosphere: noise of the loops, loss of lock"},
+    {"model.modern.terms", "scintillation", "restless ionosphere: fading, noise of the loops, loss of lock"},
     {"model.modern.terms", "interference", "what a jammer takes from C/N0"},
     {"model.modern.terms", "code_noise", "of the code loop"},
     {"model.modern.terms", "phase_noise", "of the phase loop"},

@@ -27,6 +27,10 @@ namespace skyloop {
 /// The line speed of a receiver's port, bit/s; nothing for a port that has none.
 PortSpeed port_speed(const firmware::Receiver& receiver, firmware::PortId port);
 
+/// The speed of the port that a wire is plugged into unless it names one, bit/s; of a board without UARTs the one that
+/// its profile names.
+std::uint32_t first_baud(const firmware::Receiver& receiver);
+
 /// A wire and the port that it is plugged into.
 struct Wire {
     firmware::PortId port = firmware::PortId::uart1;

@@ -369,6 +369,11 @@ TEST(ReceiverCommands, BeginsAsItsUserHasSavedIt) {
         const auto result = other.receiver().configure(items);
         return result ? std::string("taken") : result.error().message;
     };
+    BoardProfile board = sample_ublox();
+    board.personality = Personality::mute;
+    Bench mute(std::move(board));
+    EXPECT_TRUE(mute.receiver().configure({}));
+    EXPECT_FALSE(mute.receiver().configure({{period, 500}})) << "no u-blox receiver";
     EXPECT_EQ(refused({{0x20920001, 7}}), "taken") << "an item of any group";
     EXPECT_THAT(refused({{0x20110021, 77}}), HasSubstr("CFG-NAVSPG-DYNMODEL is 77"));
     EXPECT_THAT(refused({{0x20030001, 1}}), HasSubstr("has no CFG-TMODE-MODE"));

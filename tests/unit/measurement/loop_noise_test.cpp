@@ -164,19 +164,44 @@ TEST(LoopNoise, TheReceiverKnowsItsLoops) {
 
 TEST(LoopNoise, ScintillationMultipliesTheJitter) {
     const MeasurementParameters parameters = plain_parameters();
-    Arrivals arrivals = plain_arrivals({g07}, 38);
+    constexpr double strong = 65;  // it is held through the deepest fade
+    Arrivals arrivals = plain_arrivals({g07}, strong);
     arrivals.satellites[0].amplitude_scintillation = 0.65;
     arrivals.satellites[0].phase_scintillation = Angle::radians(0.15);
     MeasuredRun run(parameters);
     const ErrorSeries errors = errors_of(run, arrivals, 40000);
     const CodeLoop& loop = parameters.code_loop;
     const double growth =
-        scintillating_code_jitter_chips(loop, DbHz(38), 0.65) / scintillating_code_jitter_chips(loop, DbHz(38), 0);
+        scintillating_code_jitter_chips(loop, DbHz(strong), 0.65) / scintillating_code_jitter_chips(loop, DbHz(strong), 0);
     EXPECT_GT(growth, 1.2);
-    EXPECT_NEAR(errors.code.deviation() / (growth * code_jitter(loop, DbHz(38)).value()), 1, 0.02);
-    const double thermal = scintillating_phase_jitter(parameters.phase_loop, DbHz(38), 0.65).rad();
+    EXPECT_NEAR(errors.code.deviation() / (growth * code_jitter(loop, DbHz(strong)).value()), 1, 0.02);
+    const double thermal = scintillating_phase_jitter(parameters.phase_loop, DbHz(strong), 0.65).rad();
     EXPECT_NEAR(errors.phase.deviation() / l1_metres(Angle::radians(std::hypot(thermal, 0.15))), 1, 0.02);
     EXPECT_GT(errors.phase.correlation(1), 0.1) << "scintillation lasts longer than the loop's noise";
+}
+
+TEST(LoopNoise, ScintillationFadesWhatIsReported) {
+    MeasurementParameters parameters = plain_parameters();
+    parameters.cn0_resolution = Decibels(0);
+    Arrivals arrivals = plain_arrivals({g07}, 45);
+    MeasuredRun run(parameters);
+    EXPECT_EQ(run.epoch(arrivals).observations.signals[0].cn0.value(), 45);
+    arrivals.satellites[0].amplitude_scintillation = 0.5;
+    double sum = 0, squares = 0, deepest = 0;
+    constexpr int epochs = 20000;
+    for (int i = 0; i < epochs; ++i) {
+        const Measurement measured = run.epoch(arrivals);
+        ASSERT_EQ(measured.observations.signals.size(), 1U) << "strong enough to be held through every fade";
+        const double power = std::pow(10, (measured.observations.signals[0].cn0.value() - 45) / 10);
+        sum += power;
+        squares += power * power;
+        deepest = std::min(deepest, 10 * std::log10(power));
+    }
+    EXPECT_NEAR(sum / epochs, 1, 0.03);
+    EXPECT_NEAR(std::sqrt(squares / epochs - std::pow(sum / epochs, 2)), 0.5, 0.03);
+    EXPECT_LT(deepest, -10);
+    arrivals.satellites[0].amplitude_scintillation = 0;
+    EXPECT_EQ(run.epoch(arrivals).observations.signals[0].cn0.value(), 45);
 }
 
 TEST(LoopNoise, AnInterruptedSignalKeepsItsDistribution) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "skyloop/base/random.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {
@@ -25,6 +28,26 @@ TEST(Scintillation, EveryOracleRow) {
         EXPECT_NEAR(scintillating_phase_jitter(carrier, cn0, s4).deg() / row.number("sigma_pll_deg_Bn10x"), 1,
                     tolerance);
     }
+}
+
+TEST(Scintillation, PowerHasTheMomentsThatAreAskedFor) {
+    RandomStream random(7, "scintillating power");
+    for (const double s4 : {0.1, 0.4, 0.7, 1.0}) {
+        constexpr int draws = 200'000;
+        double sum = 0, squares = 0;
+        for (int i = 0; i < draws; ++i) {
+            const double in_phase = random.normal(), quadrature = random.normal();
+            const double power = scintillating_power(s4, in_phase, quadrature);
+            ASSERT_GE(power, 0);
+            sum += power;
+            squares += power * power;
+        }
+        const double mean = sum / draws;
+        EXPECT_NEAR(mean, 1, 0.01) << s4;
+        EXPECT_NEAR(std::sqrt(squares / draws / (mean * mean) - 1), s4, 0.01);
+    }
+    EXPECT_EQ(scintillating_power(0, 3, 3), 1);
+    EXPECT_EQ(scintillating_power(2, 1, 1), scintillating_power(1, 1, 1));
 }
 
 TEST(Scintillation, OfNothingIsThermalNoise) {
