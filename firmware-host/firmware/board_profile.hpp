@@ -159,6 +159,8 @@ struct BoardProfile {
     std::vector<std::set<std::uint32_t>> signal_conflicts;
     double default_rate_hz = 1;
     double max_rate_hz = 10;
+    double all_satellites_rate_hz = 0;  ///< beyond which it solves with `fast_satellites` of them; 0: with all at any
+    int fast_satellites = 16;
     int least_measurement_period_ms = 25;  ///< shorter ones are stored as this (CFG-RATE), or refused (VALSET)
     Angle elevation_mask = Angle::degrees(5);
     ExportLimits export_limits = ExportLimits::off;  ///< on top of 500 m/s, beyond which no fix is told

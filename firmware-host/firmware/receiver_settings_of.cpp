@@ -112,6 +112,9 @@ std::uint64_t measurement_period_of(const BoardProfile& board, double rate_hz) {
 ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board, const ReceiverSettings& base) {
     ReceiverSettings settings = base;
     settings.navigation_period = navigation_period_of(store, board);
+    const double rate = 1e9 / static_cast<double>(settings.navigation_period.count());
+    const bool is_fast = board.all_satellites_rate_hz > 0 && rate > board.all_satellites_rate_hz;
+    settings.most_satellites = is_fast ? static_cast<std::size_t>(board.fast_satellites) : 0;
     if (signals_changed(store) || base.signals.empty()) settings.signals = enabled_signals(store);
     if (board.personality == Personality::ublox) settings.sbas_scan_mask = store.value(key::sbas_scan_mask);
     if (is_changed(store, key::navspg_min_elev))

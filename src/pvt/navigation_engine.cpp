@@ -6,6 +6,8 @@
 
 #include "differential.hpp"
 #include "local_motion.hpp"
+#include "range_equation.hpp"
+#include "satellite_choice.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/gnss/constants.hpp"
 #include "skyloop/pvt/code_smoother.hpp"
@@ -59,7 +61,6 @@ private:
     [[nodiscard]] GpsTime presumed_time(const Observations& observations) const;
     EpochSolution solve_epoch(const Observations& observations, const ReceiverSettings& settings);
     void add_equations(const Observations& observations, const ReceiverSettings& settings, EpochSolution& epoch);
-    std::optional<RangeEquation> equation(const Observation& first, const Observation* second, GpsTime receive_time);
     void solve_position(const ReceiverSettings& settings, EpochSolution& epoch);
     static void solve_doppler(EpochSolution& epoch);
     [[nodiscard]] bool plausible(const FilteredPosition& filtered, const ReceiverSettings& settings) const;
@@ -117,31 +118,6 @@ GpsTime NavigationEngine::State::presumed_time(const Observations& observations)
     return whole_millisecond(advanced(observations.receive_time, Seconds(-bias_m / speed_of_light)));
 }
 
-std::optional<RangeEquation> NavigationEngine::State::equation(const Observation& first, const Observation* second,
-                                                               GpsTime receive_time) {
-    std::optional<Transmitter> t1 = transmitters().at(first.satellite, first.signal, receive_time, *first.pseudorange);
-    if (!t1) return std::nullopt;
-    t1->healthy = t1->healthy && !first.called_unhealthy;
-    RangeEquation e{first.satellite, *t1, *first.pseudorange, first.carrier, first.pseudorange_deviation, false};
-    if (second == nullptr) return e;
-    const auto t2 = transmitters().at(second->satellite, second->signal, receive_time, *second->pseudorange);
-    if (!t2) return e;
-    const double ratio = first.carrier.value() / second->carrier.value();
-    const double b = -1 / (ratio * ratio - 1);
-    const double a = 1 - b;
-    const double c = speed_of_light;
-    e.pseudorange = a * *first.pseudorange + b * *second->pseudorange;
-    const Seconds clock = a * t1->clock_bias + b * t2->clock_bias;
-    // The first signal left later than its pseudorange says, by the delay that the combination takes out.
-    const Seconds delay((*first.pseudorange - e.pseudorange).value() / c + (t1->clock_bias - clock).value());
-    e.transmitter = moved(*t1, delay);
-    e.transmitter.clock_bias = clock;
-    e.carrier = Hertz(0);
-    e.deviation =
-        Metres(std::hypot(a * first.pseudorange_deviation.value(), b * second->pseudorange_deviation.value()));
-    return e;
-}
-
 void NavigationEngine::State::add_equations(const Observations& observations, const ReceiverSettings& settings,
                                             EpochSolution& epoch) {
     const std::vector<Observation>& all = observations.signals;
@@ -165,7 +141,7 @@ void NavigationEngine::State::add_equations(const Observations& observations, co
         if (!parameters_.corrections.ionosphere_free || corrected_ != CorrectionState::none ||
             (second != nullptr && second->carrier == first->carrier))
             second = nullptr;
-        const auto made = equation(*first, second, observations.receive_time);
+        const auto made = range_equation(transmitters(), *first, second, observations.receive_time);
         if (!made) continue;
         epoch.equations.push_back(*made);
         epoch.primaries.push_back(first);
@@ -350,6 +326,7 @@ void NavigationEngine::State::begin_regime(CorrectionState state) {
 Observations NavigationEngine::State::prepared(const Observations& observations, const ReceiverSettings& settings) {
     Observations result = observations;
     if (parameters_.filter.code_smoothing > Seconds(0)) smoother_.smooth(result);
+    if (settings.most_satellites > 0) keep_strongest(result, settings);
     begin_regime(correct(result, settings.corrections));
     return result;
 }
@@ -361,8 +338,8 @@ DifferentialKind NavigationEngine::State::differential_kind() const {
 
 Fix NavigationEngine::State::solve(const Observations& observations, const ReceiverSettings& settings) {
     begin(settings, observations.receive_time);
-    const bool changed =
-        parameters_.filter.code_smoothing > Seconds(0) || settings.corrections != CorrectionState::none;
+    const bool changed = parameters_.filter.code_smoothing > Seconds(0) || settings.most_satellites > 0 ||
+                         settings.corrections != CorrectionState::none;
     const Observations own = changed ? prepared(observations, settings) : Observations();
     if (!changed) begin_regime(CorrectionState::none);
     const EpochSolution epoch = solve_epoch(changed ? own : observations, settings);

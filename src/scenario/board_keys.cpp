@@ -139,6 +139,8 @@ void read_board_navigation(TableReader& navigation, BoardProfile& board) {
     // A board slower than the usual rate starts at its own maximum.
     board.default_rate_hz = std::min(board.default_rate_hz, board.max_rate_hz);
     navigation.number("default_rate_hz", board.default_rate_hz, {0.1, board.max_rate_hz});
+    navigation.number("all_satellites_rate_hz", board.all_satellites_rate_hz, {0, 100});
+    navigation.integer("fast_satellites", board.fast_satellites, {4, 64});
     navigation.integer("least_measurement_period_ms", board.least_measurement_period_ms, {1, 65535});
     double mask = board.elevation_mask.deg();
     navigation.number("elevation_mask_deg", mask, {0, 90});

@@ -1,6 +1,7 @@
 /// What the device under test has configured.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <set>
 
@@ -45,6 +46,7 @@ struct ReceiverSettings {
     Nanoseconds navigation_period{1'000'000'000};
     std::set<SystemSignal> signals{};  ///< that are tracked; empty: the first signal of every system
     std::uint64_t sbas_scan_mask = 0;  ///< of in_sbas_scan_mask()
+    std::size_t most_satellites = 0;   ///< that a solution takes, the strongest; 0: all
     Angle elevation_mask = Angle::degrees(5);
     DbHz minimum_cn0{6};  ///< of a satellite that is used
     DynamicModel dynamic_model = DynamicModel::portable;

@@ -49,6 +49,13 @@ TEST(Receiver, RoundsThePeriodToMillisecondsWithinTheBoardsRate) {
     EXPECT_EQ(period(1e-9), 65535ms);
 }
 
+TEST(Receiver, SolvesWithFewerSatellitesAboveARate) {
+    BoardProfile board = sample_board(NmeaVersion::v4_0, {gps});
+    board.all_satellites_rate_hz = 5;
+    EXPECT_EQ(Receiver(board, {5}).settings().most_satellites, 0U);
+    EXPECT_EQ(Receiver(board, {10}).settings().most_satellites, 16U);
+}
+
 TEST(Receiver, BeginsOneLatencyAfterTheEpoch) {
     BoardProfile board = sample_board(NmeaVersion::v4_0, {gps});
     board.solution_latency = Seconds(0.07);

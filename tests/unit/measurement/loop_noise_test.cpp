@@ -171,8 +171,8 @@ TEST(LoopNoise, ScintillationMultipliesTheJitter) {
     MeasuredRun run(parameters);
     const ErrorSeries errors = errors_of(run, arrivals, 40000);
     const CodeLoop& loop = parameters.code_loop;
-    const double growth =
-        scintillating_code_jitter_chips(loop, DbHz(strong), 0.65) / scintillating_code_jitter_chips(loop, DbHz(strong), 0);
+    const double growth = scintillating_code_jitter_chips(loop, DbHz(strong), 0.65) /
+                          scintillating_code_jitter_chips(loop, DbHz(strong), 0);
     EXPECT_GT(growth, 1.2);
     EXPECT_NEAR(errors.code.deviation() / (growth * code_jitter(loop, DbHz(strong)).value()), 1, 0.02);
     const double thermal = scintillating_phase_jitter(parameters.phase_loop, DbHz(strong), 0.65).rad();

@@ -104,6 +104,35 @@ TEST(NavigationEngine, TakesTheIonosphereOutWithTwoCarriers) {
     EXPECT_GT(error_of(single.solve(observations, settings), receiver), 0.5);
 }
 
+TEST(NavigationEngine, TakesTheStrongestWhereItHasNoTimeForAll) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    const TrueReceiver receiver = receiver_at(antenna, sample_time);
+    Observations observations = measure(sky, receiver);
+    ASSERT_GT(observations.signals.size(), 12U);
+    int step = 0;
+    for (Observation& o : observations.signals)
+        o.cn0 = DbHz(35 + (7 * step++) % 13);
+    ReceiverSettings settings;
+    settings.most_satellites = 9;
+    NavigationEngine engine(plain(FilterKind::none), {&sky});
+    const Fix fix = engine.solve(observations, settings);
+    EXPECT_LT(error_of(fix, receiver), 1e-5);
+    EXPECT_EQ(fix.satellites_used(), 9);
+    DbHz weakest_used(99), strongest_unused(0);
+    for (const SatelliteStatus& s : fix.satellites) {
+        if (!s.cn0) continue;
+        if (s.used)
+            weakest_used = std::min(weakest_used, *s.cn0);
+        else
+            strongest_unused = std::max(strongest_unused, *s.cn0);
+    }
+    EXPECT_GT(strongest_unused, DbHz(0)) << "the others stay tracked";
+    EXPECT_GE(weakest_used, strongest_unused);
+    settings.most_satellites = 0;
+    EXPECT_EQ(static_cast<std::size_t>(engine.solve(observations, settings).satellites_used()),
+              observations.signals.size());
+}
+
 TEST(NavigationEngine, ReportsSatellitesUsedAndUnusedAscending) {
     SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
     const TrueReceiver receiver = receiver_at(antenna, sample_time);

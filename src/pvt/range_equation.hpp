@@ -1,0 +1,20 @@
+/// What a receiver makes of the ranges of one satellite.
+#pragma once
+
+#include <optional>
+
+#include "skyloop/flow/observations.hpp"
+#include "skyloop/pvt/single_point.hpp"
+#include "skyloop/pvt/transmitter.hpp"
+
+namespace skyloop {
+
+/// The equation of a pseudorange, or of the combination of two that the ionosphere does not touch: of frequencies f₁
+/// and f₂, (f₁² P₁ − f₂² P₂)/(f₁² − f₂²) (IS-GPS-200, 20.3.3.3.3.3 without its group delays, which the transmitters
+/// know).
+/// @param first with a pseudorange @param second of another carrier, with a pseudorange, or null
+/// @return nothing where no orbit is known
+std::optional<RangeEquation> range_equation(TransmitterSource& transmitters, const Observation& first,
+                                            const Observation* second, GpsTime receive_time);
+
+}  // namespace skyloop
