@@ -154,7 +154,7 @@ std::string satellite_rows(const Trace& trace) {
         rows.text(status && status->used ? "1" : "0");
         append_errors(rows, arrival, find_first_signal(trace.measurement.signals, sky.id));
         status && status->residual ? rows.number(status->residual->value(), 4) : rows.nothing();
-        rows.end_row();
+        rows.number(arrival.false_range.value(), 4).end_row();
     }
     return rows.take();
 }

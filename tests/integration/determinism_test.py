@@ -15,7 +15,8 @@ COLUMNS = {
     "satellites.csv": "time_utc,satellite,azimuth_deg,elevation_deg,range_m,line_of_sight,paths,excess_path_m,iono_delay_m,"
                       "tropo_delay_m,gas_loss_db,cloud_loss_db,rain_loss_db,cn0_dbhz,pseudorange_m,used,orbit_clock_error_m,"
                       "multipath_m,code_noise_m,phase_noise_m,doppler_noise_hz,foliage_loss_db,antenna_gain_dbic,"
-                      "power_offset_db,interference_loss_db,amplitude_scintillation,phase_scintillation_rad,residual_m",
+                      "power_offset_db,interference_loss_db,amplitude_scintillation,phase_scintillation_rad,residual_m,"
+                      "false_range_m",
 }
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 READERS = ("number|boolean|text|texts|text_or_texts|integer|numbers|whole_numbers|place|utc|choice|choices|word|quantity|"
-           "table|tables")
+           "table|tables|named_values")
 COMMENT = re.compile(r"//[^\n]*")
 CODE_SPAN = re.compile(r"`([^`]*)`")
 NAME = re.compile(r"[A-Za-z0-9_]+(?:-[A-Za-z0-9_]+)*")

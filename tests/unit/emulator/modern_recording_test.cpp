@@ -196,6 +196,7 @@ void expect_arrival(const Row& row, const Arrival& arrival) {
     expect_cell(row, "interference_loss_db", arrival.interference_loss.value(), 6e-4);
     expect_cell(row, "amplitude_scintillation", arrival.amplitude_scintillation, 6e-5);
     expect_cell(row, "phase_scintillation_rad", arrival.phase_scintillation.rad(), 6e-5);
+    expect_cell(row, "false_range_m", arrival.false_range.value(), 6e-5);
 }
 
 constexpr const char* rough_world = R"toml(
