@@ -214,9 +214,8 @@ FaultKind scintillation() {
     FaultKind kind;
     kind.name = "scintillation";
     kind.effect =
-        "Amplitude and phase of the selected signals flicker: C/N0 fades, ranges get noisy, cycles slip, and from S4 "
-        "of "
-        "0.71 on phases are lost.";
+        "Amplitude and phase of the selected signals flicker: C/N0 fades, ranges get noisy, cycles slip, and from "
+        "S4 of 0.71 on phases are lost.";
     kind.cause = "Bubbles in the equatorial ionosphere after sunset, aurora.";
     kind.parameters =
         joined({number_parameter("s4", 0.6, 0, 1, "amplitude index at the first carrier"),
