@@ -133,6 +133,7 @@ Action add_campaign_command(CLI::App& app) {
     add_plan_commands(*command, options);
     CLI::App* gather = command->add_subcommand("gather", "Merge the parts' results into DIR/campaign.sqlite");
     gather->add_option("folder", options->out, "The campaign's folder")->required();
+    add_verbosity_options(*gather, options->verbosity);
     add_campaign_report_command(*command, *options);
     command->add_subcommand("worker", "")->group("");
     return [command, options] {

@@ -211,9 +211,15 @@ int hand_over(const CampaignOptions& options, const OpenedCampaign& campaign, co
     if (!task) return messages.error(task.error());
     // Mistakes are told here rather than by each shard, and all shards find the campaign's file as they would write it.
     if (!options.engine.follow || options.engine.submit) {
+        if (options.engine.name == "slurm")
+            if (const auto over = check_slurm_queue(*task); !over) return messages.error(over.error());
         std::vector<std::uint64_t> all(campaign.plan.size());
         std::iota(all.begin(), all.end(), std::uint64_t{0});
-        if (const auto checked = check_runs(campaign, all); !checked) return messages.error(checked.error());
+        const auto warnings = check_runs(campaign, all, stop_was_asked);
+        if (!warnings) return messages.error(warnings.error());
+        if (stop_was_asked()) return told_stopped(messages);
+        for (const std::string& warning : *warnings)
+            messages.warning(warning);
         OpenedCampaign whole = campaign;
         whole.setup.file = task->scenario;
         if (const auto kept = keep_campaign(task->out, whole); !kept) return messages.error(kept.error());

@@ -32,6 +32,8 @@ CampaignRequest campaign_request(const CampaignOptions& options);
 int run_campaign(const CampaignOptions& options);
 /// Has an engine run what run_campaign() would. Exit code as far as it is known here.
 int hand_over(const CampaignOptions& options, const OpenedCampaign& campaign, const Messages& messages);
+/// Says that signals have stopped it. @return 75
+int told_stopped(const Messages& messages);
 /// Merges what is there and says what it is. Exit code as of run_campaign().
 int tell_gathered(const Messages& messages, const std::filesystem::path& folder);
 

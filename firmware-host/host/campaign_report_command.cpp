@@ -19,6 +19,11 @@ int report_campaign(const CampaignOptions& options) {
     const Messages messages(options.verbosity);
     const auto written = write_campaign_report(options.out, {options.page, options.worst});
     if (!written) return messages.error(written.error());
+    if (written->outdated)
+        messages.warning(
+            fmt::format("{}: results have come since they were gathered; skyloop campaign gather takes "
+                        "them in",
+                        options.out));
     fmt::print("{}", written->text);
     messages.info(fmt::format("page: {}; numbers: {}", written->html.string(), written->json.string()));
     return 0;

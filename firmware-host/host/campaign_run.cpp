@@ -3,7 +3,7 @@
 
 #include <chrono>
 #include <cstdio>
-#include <set>
+#include <map>
 #include <thread>
 
 #include "campaign_options.hpp"
@@ -20,7 +20,6 @@
 namespace skyloop::host {
 namespace {
 
-constexpr int stopped_code = 75;  // EX_TEMPFAIL of sysexits.h: do it again, and it goes on
 constexpr int failed_runs_code = 3;
 constexpr int most_attempts = 2;
 constexpr std::string_view log_header = "time_utc,host,key,number,attempt,outcome,wall_s,detail\n";
@@ -38,6 +37,9 @@ std::string first_failed(const RunResult& result, const ResultColumns& columns) 
     for (std::size_t i = 0; i < result.verdicts.size(); ++i)
         if (result.verdicts[i].outcome == "failed" || result.verdicts[i].outcome == "undecided")
             return fmt::format("{}: {}", columns.verdicts[i], result.verdicts[i].detail);
+    for (std::size_t i = 0; i < result.verdicts.size(); ++i)
+        if (result.verdicts[i].outcome == "not run")
+            return fmt::format("nothing was judged; {}: {}", columns.verdicts[i], result.verdicts[i].detail);
     return {};
 }
 
@@ -83,7 +85,11 @@ public:
         // First of all: what is there may be of another campaign.
         if (const auto ours = check_folder(options_.out, campaign_); !ours) return messages_.error(ours.error());
         if (const auto wanted = find_missing(shard); !wanted) return messages_.error(wanted.error());
-        if (const auto checked = check_runs(campaign_, missing_); !checked) return messages_.error(checked.error());
+        const auto warnings = check_runs(campaign_, missing_, stop_was_asked);
+        if (!warnings) return messages_.error(warnings.error());
+        if (stop_was_asked()) return told_stopped(messages_);
+        for (const std::string& warning : *warnings)
+            messages_.warning(warning);
         if (const auto kept = keep_campaign(options_.out, campaign_); !kept) return messages_.error(kept.error());
         auto results = TableFile::open(shard_results(options_.out, shard), result_header(campaign_.setup.columns));
         if (!results) return messages_.error(results.error());
@@ -93,21 +99,20 @@ public:
                                    there_, missing_.size()));
         return lead(*results, *log);
     }
-    [[nodiscard]] bool stopped() const { return stop_; }
 
 private:
     Result<void> find_missing(const Shard& shard) {
-        std::set<std::string, std::less<>> keys;
+        std::map<std::string, bool, std::less<>> passed;
         const auto read = for_each_result(options_.out, [&](const StoredResult& stored) -> Result<void> {
-            keys.insert(stored.result.key);
+            passed[stored.result.key] = stored.result.status == "passed";
             return {};
         });
         if (!read) return fail(read.error());
         for (std::uint64_t number = shard.index; number < campaign_.plan.size(); number += shard.count)
-            if (keys.contains(campaign_.plan.run(number).key))
-                ++there_;
-            else
+            if (const auto found = passed.find(campaign_.plan.run(number).key); found == passed.end())
                 missing_.push_back(number);
+            else if (++there_; !found->second)
+                ++failed_before_;
         return {};
     }
     [[nodiscard]] PoolWork work() const {
@@ -135,15 +140,12 @@ private:
             stop_);
         progress.clear();
         if (!done) return messages_.error(done.error());
-        if (stop_) {
-            messages_.warning("stopped; the same command goes on where it ended");
-            return stopped_code;
-        }
+        if (stop_) return told_stopped(messages_);
         if (given_up_ > 0)
             return messages_.error(
                 {ErrorCode::outside,
                  fmt::format("{} runs have no result; the same command tries them again", given_up_)});
-        return progress.failed() > 0 ? failed_runs_code : 0;
+        return failed_before_ + progress.failed() > 0 ? failed_runs_code : 0;
     }
     Result<JobFate> take(const JobOutcome& outcome, TableFile& results, TableFile& log, CampaignProgress& progress) {
         const PlannedRun run = campaign_.plan.run(outcome.job);
@@ -191,7 +193,7 @@ private:
     const CampaignOptions& options_;
     const OpenedCampaign& campaign_;
     std::vector<std::uint64_t> missing_;
-    std::uint64_t there_ = 0, given_up_ = 0;
+    std::uint64_t there_ = 0, failed_before_ = 0, given_up_ = 0;
     bool replay_told_ = false;
     std::atomic<bool> stop_ = false;
 };
@@ -205,6 +207,12 @@ void print_missing(const std::vector<std::uint64_t>& missing) {
 }
 
 }  // namespace
+
+int told_stopped(const Messages& messages) {
+    constexpr int stopped_code = 75;  // EX_TEMPFAIL of sysexits.h: do it again, and it goes on
+    messages.warning("stopped; the same command goes on where it ended");
+    return stopped_code;
+}
 
 CampaignRequest campaign_request(const CampaignOptions& options) {
     return {options.scenario, options.seeds, options.vary, SKYLOOP_VERSION, data_folders()};

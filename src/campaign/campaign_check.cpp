@@ -67,14 +67,34 @@ public:
         const auto scenario = campaign_scenario(*asked);
         if (!scenario) return fail(blamed(scenario.error(), run));
         if (!assembled) return {};
-        if (const auto read = checked_assembly(*scenario, campaign_.setup.data); !read)
-            return fail(blamed(read.error(), run));
+        const auto read = checked_assembly(*scenario, campaign_.setup.data);
+        if (!read) return fail(blamed(read.error(), run));
+        for (const std::string& warning : read->warnings)
+            warn(warning, run);
         for (std::size_t i = 0; i < run.values.size(); ++i)
             good_.insert({i, run.values[i].toml});
         return {};
     }
 
+    [[nodiscard]] std::vector<std::string> warnings() const {
+        std::vector<std::string> told = warnings_;
+        if (untold_ > 0) told.push_back(fmt::format("{} more warnings of other values", untold_));
+        return told;
+    }
+
 private:
+    static constexpr std::size_t most_warnings = 10;
+
+    void warn(const std::string& warning, const PlannedRun& run) {
+        const std::vector<std::string>& own = campaign_.warnings;
+        if (std::find(own.begin(), own.end(), warning) != own.end() || !warned_.insert(warning).second) return;
+        if (warnings_.size() == most_warnings) return void(++untold_);
+        std::string words;
+        for (std::size_t i = 0; i < run.values.size(); ++i)
+            words +=
+                fmt::format("{}{} = {}", i == 0 ? "; with " : ", ", campaign_.plan.varied()[i].key, run.values[i].toml);
+        warnings_.push_back(warning + words);
+    }
     // Values that another run has been assembled with are good.
     [[nodiscard]] Error blamed(Error error, const PlannedRun& run) const {
         std::string first, words;
@@ -95,6 +115,9 @@ private:
 
     const OpenedCampaign& campaign_;
     std::set<std::pair<std::size_t, std::string>> good_;
+    std::set<std::string> warned_;
+    std::vector<std::string> warnings_;
+    std::size_t untold_ = 0;
 };
 
 bool meets(const std::string& place, const std::string& other) {
@@ -132,18 +155,20 @@ Result<void> check_parameter_keys(const CampaignSource& source, const CampaignSe
     return {};
 }
 
-Result<void> check_runs(const OpenedCampaign& campaign, const std::vector<std::uint64_t>& wanted) {
+Result<std::vector<std::string>> check_runs(const OpenedCampaign& campaign, const std::vector<std::uint64_t>& wanted,
+                                            const std::function<bool()>& stopped) {
     const std::uint64_t seeds = campaign.plan.size() / campaign.plan.points();
     const RunsToAssemble assembled(campaign.plan, wanted);
     ValueCheck values(campaign);
     std::optional<std::uint64_t> checked;
     for (const std::uint64_t number : wanted) {
+        if (stopped()) break;
         if (checked && *checked / seeds == number / seeds && !assembled.has(number)) continue;
         if (const auto good = values.check(campaign.plan.run(number), assembled.has(number)); !good)
             return fail(good.error());
         checked = number;
     }
-    return {};
+    return values.warnings();
 }
 
 }  // namespace skyloop

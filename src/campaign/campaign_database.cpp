@@ -45,7 +45,9 @@ public:
         std::error_code none;
         std::filesystem::remove(path, none);
         std::unique_ptr<Database> database(new Database(path));
-        const bool opened = sqlite3_open(path.c_str(), &database->handle_) == SQLITE_OK;
+        // A relative name may begin with "file:", which SQLite takes for an address.
+        const std::filesystem::path whole = std::filesystem::absolute(path, none);
+        const bool opened = sqlite3_open(whole.c_str(), &database->handle_) == SQLITE_OK;
         if (!opened || !database->execute(database_schema)) return database->failure();
         return database;
     }
@@ -125,7 +127,9 @@ Result<FoundResults> find_results(const std::filesystem::path& folder, const Kep
         auto& slot = found.by_number[number->second];
         if (!slot) {
             slot = FoundResult{stored.result, found.columns.size() - 1, place};
-        } else if (stored.columns == found.columns[slot->columns] && same_result(slot->result, stored.result)) {
+        } else if (!kept.vehicle.empty() ||
+                   (stored.columns == found.columns[slot->columns] && same_result(slot->result, stored.result))) {
+            // What a vehicle does depends on the machine, so that two of its results differ: the first one counts.
             ++counts.duplicates;
         } else {
             return fail(ErrorCode::input, fmt::format("{} and {}: two results of the run {} that differ; expected the "

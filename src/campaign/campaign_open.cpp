@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <set>
+
 #include "campaign_check.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/campaign/campaign_folder.hpp"
@@ -60,8 +62,14 @@ Result<Scenario> base_scenario(const CampaignRequest& request, const std::string
     settings = scenario->campaign.value_or(CampaignSettings{});
     if (request.seeds)
         if (const auto applied = apply_seeds(*request.seeds, settings); !applied) return fail(applied.error());
-    for (const std::string& vary : request.vary)
+    std::set<std::string> varied;
+    for (const std::string& vary : request.vary) {
         if (const auto applied = apply_vary(vary, settings); !applied) return fail(applied.error());
+        const std::string key = vary.substr(0, vary.find('='));
+        if (!varied.insert(key).second)
+            return fail(ErrorCode::usage,
+                        fmt::format("--vary {}: is given twice; expected it once, with all values", key));
+    }
     scenario->campaign = settings;
     return campaign_scenario(*scenario);
 }

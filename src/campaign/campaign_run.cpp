@@ -20,16 +20,21 @@ bool starts_now(const Scenario& scenario) {
     return scenario.run.start_now || scenario.sky.rebase_navigation || scenario.sky.navigation.empty();
 }
 
+// As it stands at the head of a column: on one line, and unlike those before it.
+void add_title(std::vector<std::string>& titles, std::string first) {
+    std::replace_if(
+        first.begin(), first.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    std::string title = first;
+    for (int n = 2; std::find(titles.begin(), titles.end(), title) != titles.end(); ++n)
+        title = fmt::format("{} ({})", first, n);
+    titles.push_back(std::move(title));
+}
+
 std::vector<std::string> unique_titles(const Scenario& scenario) {
     std::vector<std::string> titles;
-    for (const Expectation& expectation : scenario.expectations) {
-        const std::string first = expectation.title();
-        std::string title = first;
-        for (int n = 2; std::find(titles.begin(), titles.end(), title) != titles.end(); ++n)
-            title = fmt::format("{} ({})", first, n);
-        titles.push_back(std::move(title));
-    }
-    if (scenario.campaign && scenario.campaign->vehicle) titles.emplace_back("vehicle");
+    for (const Expectation& expectation : scenario.expectations)
+        add_title(titles, expectation.title());
+    if (scenario.campaign && scenario.campaign->vehicle) add_title(titles, "vehicle");
     return titles;
 }
 
@@ -63,6 +68,7 @@ void take_verdicts(RunResult& result, const std::vector<Verdict>& verdicts) {
     if (verdicts.size() != result.verdicts.size()) {
         result.error = fmt::format("the run has {} verdicts; expected {}, as the scenario without changes",
                                    verdicts.size(), result.verdicts.size());
+        std::fill(result.metrics.begin(), result.metrics.end(), std::nullopt);
         return;
     }
     for (std::size_t i = 0; i < verdicts.size(); ++i)

@@ -18,7 +18,7 @@ using PoolClock = std::chrono::steady_clock;
 
 constexpr int pool_look_ms = 100;
 constexpr std::chrono::seconds patience{2};  // with a worker that is asked to end
-constexpr int most_deaths = 5;               // of workers in a row, without an answer between
+constexpr int most_deaths = 100;             // of workers that were all of them, before any answered
 
 // Who does what.
 class Pool {
@@ -80,7 +80,7 @@ private:
         const bool lives = worker.listen();
         if (worker.overdue) return end_overdue(worker, lives);
         while (auto line = worker.take_line()) {
-            deaths_ = 0;
+            answered_ = true;
             if (const auto said = tell_outcome(worker, std::move(*line), {}); !said) return fail(said.error());
             if (waiting_.empty()) return false;
             if (lives) give(worker);
@@ -91,7 +91,9 @@ private:
             return true;
         }
         const std::string death = worker.finish();
-        if (++deaths_ >= most_deaths + static_cast<int>(work_.processes))
+        // A run that kills its worker is tried twice, whatever the others do; where none ever answers, it is the
+        // worker.
+        if (!answered_ && ++deaths_ >= most_deaths)
             return fail(ErrorCode::outside, fmt::format("workers end without an answer, the last by {}", death));
         if (!worker.job) return false;
         if (const auto said = tell_outcome(worker, {}, death); !said) return fail(said.error());
@@ -125,6 +127,7 @@ private:
     std::deque<std::uint64_t> waiting_;
     std::map<std::uint64_t, int> attempts_;
     std::vector<WorkerProcess> workers_;
+    bool answered_ = false;
     int deaths_ = 0;
 };
 

@@ -126,11 +126,12 @@ MetricSummary metric_summary(const CampaignResults& results, std::size_t index,
     summary.metric = index;
     Outcomes outcomes;
     for (std::size_t run = 0; run < results.runs.size(); ++run) {
+        if (!came_to_an_end(results.runs[run])) continue;
         const double value = metric.values[run];
         if (usable(value)) {
             outcomes.runs.push_back(run);
             outcomes.values.push_back(value);
-        } else if (came_to_an_end(results.runs[run])) {
+        } else {
             std::isnan(value) ? ++summary.without : ++summary.infinite;
             summary.valueless.push_back(run);
         }

@@ -1,9 +1,44 @@
 #include <fmt/format.h>
 
+#include <system_error>
+
 #include "skyloop/base/replace_file.hpp"
 #include "skyloop/campaign_report/campaign_report.hpp"
 
 namespace skyloop {
+namespace {
+
+// What the campaign itself goes on with.
+bool is_kept_by_campaign(const std::filesystem::path& file, const std::filesystem::path& folder) {
+    std::error_code none;
+    const auto inside = std::filesystem::weakly_canonical(file, none)
+                            .lexically_relative(std::filesystem::weakly_canonical(folder, none));
+    return inside == "campaign.json" || inside == "campaign.sqlite" || (!inside.empty() && *inside.begin() == "shards");
+}
+
+Result<void> check_targets(const std::filesystem::path& folder, const WrittenCampaignReport& report) {
+    if (report.json == report.html)
+        return fail(
+            ErrorCode::usage,
+            fmt::format("{}: a page does not end in .json; expected a name such as report.html", report.html.string()));
+    for (const std::filesystem::path* file : {&report.html, &report.json})
+        if (is_kept_by_campaign(*file, folder))
+            return fail(ErrorCode::usage, fmt::format("--out {}: {} is the campaign's own; expected a name such as "
+                                                      "report.html",
+                                                      report.html.string(), file->string()));
+    return {};
+}
+
+// Whether a part has added to its results since they were gathered.
+bool is_outdated(const std::filesystem::path& database, const std::filesystem::path& shards) {
+    std::error_code none;
+    const auto gathered = std::filesystem::last_write_time(database, none);
+    for (const auto& part : std::filesystem::directory_iterator(shards, none))
+        if (part.last_write_time(none) > gathered) return true;
+    return false;
+}
+
+}  // namespace
 
 Result<WrittenCampaignReport> write_campaign_report(const std::filesystem::path& folder,
                                                     const CampaignReportOptions& options) {
@@ -11,10 +46,8 @@ Result<WrittenCampaignReport> write_campaign_report(const std::filesystem::path&
     written.html = options.html.empty() ? folder / "report.html" : options.html;
     written.json = written.html;
     written.json.replace_extension(".json");
-    if (written.json == written.html)
-        return fail(ErrorCode::usage,
-                    fmt::format("{}: a page does not end in .json; expected a name such as report.html",
-                                written.html.string()));
+    if (const auto targets = check_targets(folder, written); !targets) return fail(targets.error());
+    written.outdated = is_outdated(folder / "campaign.sqlite", folder / "shards");
     const auto results = read_campaign_results(folder / "campaign.sqlite");
     if (!results) return fail(results.error());
     const CampaignSummary summary = summarise(*results, options.worst);

@@ -29,6 +29,16 @@ bool is_bare(std::string_view text) {
     return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c > 0x20 && c < 0x7f; });
 }
 
+// A number and what it counts (Kubernetes API, resource quantities); a sign and an exponent are left out.
+bool is_quantity(std::string_view text) {
+    static constexpr std::string_view units[] = {"", "k", "M", "G", "T", "P", "E", "Ki", "Mi", "Gi", "Ti", "Pi", "Ei"};
+    const std::size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());
+    const std::string_view number = text.substr(0, digits);
+    const bool is_number = !number.empty() && number.front() != '.' && number.back() != '.' &&
+                           std::count(number.begin(), number.end(), '.') <= 1;
+    return is_number && std::find(std::begin(units), std::end(units), text.substr(digits)) != std::end(units);
+}
+
 bool lies_in(const std::filesystem::path& file, const std::filesystem::path& folder) {
     const auto inside = file.lexically_normal().lexically_relative(folder.lexically_normal());
     return !inside.empty() && *inside.begin() != "..";
@@ -63,7 +73,7 @@ Result<void> check_names(const KubernetesSettings& settings) {
         return fail(ErrorCode::usage,
                     fmt::format("--namespace '{}': expected small letters, digits and hyphens, at most {}",
                                 settings.name_space, longest_label));
-    if (!is_bare(settings.memory))
+    if (!is_quantity(settings.memory))
         return fail(ErrorCode::usage,
                     fmt::format("--memory '{}': expected a quantity, such as 512Mi", settings.memory));
     if (settings.parallelism < 1) return fail(ErrorCode::usage, "--parallelism: 0; expected at least 1");
@@ -73,6 +83,8 @@ Result<void> check_names(const KubernetesSettings& settings) {
 Result<void> check_places(const EngineTask& task, const KubernetesSettings& settings) {
     if (!settings.mount.is_absolute())
         return fail(ErrorCode::usage, fmt::format("--mount '{}': expected an absolute path", settings.mount.string()));
+    if (!settings.mount.has_relative_path())
+        return fail(ErrorCode::usage, "--mount '/': the claim would hide all of the image; expected a folder");
     for (const auto& [what, path] : {std::pair("scenario", &task.scenario), std::pair("--out", &task.out)})
         if (!lies_in(*path, settings.mount))
             return fail(ErrorCode::usage,

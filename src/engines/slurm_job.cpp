@@ -265,16 +265,19 @@ Result<void> write_slurm_files(const EngineTask& task, const SlurmScripts& scrip
     return write_engine_file(folder / "gather.sbatch", scripts.gather);
 }
 
-Result<SlurmJob> submit_slurm(const EngineTask& task, const std::vector<std::size_t>& only) {
-    if (const auto last = submitted_slurm(task)) {
-        const auto queue = look_at_queue(*last);
-        if (!queue) return fail(queue.error());
-        if (!queue->over())
-            return fail(
-                ErrorCode::outside,
+Result<void> check_slurm_queue(const EngineTask& task) {
+    const auto last = submitted_slurm(task);
+    if (!last) return {};
+    const auto queue = look_at_queue(*last);
+    if (!queue) return fail(queue.error());
+    if (queue->over()) return {};
+    return fail(ErrorCode::outside,
                 fmt::format("{}: job {} of this campaign is still in the queue; follow it (--follow), or scancel {} {}",
                             task.out.string(), last->shards, last->shards, last->gather));
-    }
+}
+
+Result<SlurmJob> submit_slurm(const EngineTask& task, const std::vector<std::size_t>& only) {
+    if (const auto over = check_slurm_queue(task); !over) return fail(over.error());
     std::error_code ignored;
     std::filesystem::remove(slurm_folder(task) / "exit" / "gather", ignored);
     for (std::size_t i = 0; i < (only.empty() ? task.shards : only.size()); ++i)

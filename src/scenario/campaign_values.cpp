@@ -118,17 +118,47 @@ void with_toml_value(const CampaignValue& value, const std::function<void(const 
     use(*table.get("v"));
 }
 
+namespace {
+
+// Of the first value: the comma behind it, or npos. Where it begins with a quote or a bracket, those within do not
+// count.
+std::size_t end_of_value(std::string_view text) {
+    char quote = 0;
+    int brackets = 0;
+    const bool is_toml = !text.empty() && std::string_view("\"'[").find(text.front()) != std::string_view::npos;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c == ',' && quote == 0 && brackets == 0) return i;
+        if (!is_toml) continue;
+        if (quote != 0) {
+            if (c == '\\' && quote == '"') ++i;
+            if (c == quote) quote = 0;
+        } else if (c == '"' || c == '\'') {
+            quote = c;
+        } else {
+            brackets += c == '[' ? 1 : c == ']' ? -1 : 0;
+        }
+    }
+    return std::string_view::npos;
+}
+
+}  // namespace
+
 Result<std::vector<CampaignValue>> parse_campaign_values(std::string_view text) {
     if (auto values = as_array(text); values && !values->empty()) return std::move(*values);
     std::vector<CampaignValue> values;
     for (std::string_view rest = text;;) {
-        const std::size_t comma = rest.find(',');
+        const std::size_t comma = end_of_value(rest);
         const std::string word(rest.substr(0, comma));
         if (word.empty())
             return fail(ErrorCode::usage, fmt::format("'{}' has an empty value; expected values with commas between, "
                                                       "such as 1.5,2 or town,street",
                                                       text));
         auto one = as_array(word);
+        const bool is_toml = std::string_view("\"'[").find(word.front()) != std::string_view::npos;
+        if (is_toml && (!one || one->size() != 1))
+            return fail(ErrorCode::usage,
+                        fmt::format("'{}' is no value; expected its quotes and brackets closed", word));
         if (!one || one->size() != 1) one = as_array(quoted_text(word));
         if (!one || one->size() != 1) return fail(ErrorCode::usage, "a value is no text in UTF-8");
         values.push_back(std::move(one->front()));

@@ -133,6 +133,7 @@ def test_shards(folder):
     scenario = write_scenario(folder)
     for part in ("0/3", "2/3"):
         campaign(scenario, "--out", folder / "parts", "--shard", part, "--quiet", expected=(3,))
+    campaign(scenario, "--out", folder / "parts", "--shard", "0/3", "--quiet", expected=(3,))  # nothing is left to do
     said = campaign("gather", folder / "parts", expected=(1,)).stdout
     assert "missing      67: runs 1 4 7" in said, said
     for part in range(5):
@@ -214,6 +215,7 @@ def test_mistakes(folder):
             (["--vary", "run.duratoin_s=1"], "did you mean 'duration_s'"),
             (["--vary", "fault.gap.for_s=1,-1"], "fault.for_s: is -1"),
             (["--seeds", "x"], "--seeds x: expected"),
+            (["--vary", "run.speed=1", "--vary", "run.speed=2"], "--vary run.speed: is given twice"),
             (["--shard", "3/3"], "--shard 3/3: expected I/N"),
             (["--vary", "trajectory.kind=file"], "trajectory"),
             (["--engine", "slurm", "--shard", "0/3"], "--shard excludes --engine"),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,7 +42,10 @@ Result<OpenedCampaign> open_campaign(const CampaignRequest& request);
 /// Reads the scenario with the values of each run in the part that is `wanted`, and reads all that runs would read
 /// which have between them each of a parameter's first 200 listed values, and the ends of what was drawn of a range.
 /// Fails with the first mistake, naming the parameter's line or option; nothing has been run then.
-Result<void> check_runs(const OpenedCampaign& campaign, const std::vector<std::uint64_t>& wanted);
+/// @param stopped ends it early when it says so
+/// @return what people should be told of values, beside the warnings of the campaign itself, each once
+Result<std::vector<std::string>> check_runs(const OpenedCampaign& campaign, const std::vector<std::uint64_t>& wanted,
+                                            const std::function<bool()>& stopped);
 
 /// What campaign.json holds.
 struct KeptCampaign {

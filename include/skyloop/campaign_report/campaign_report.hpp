@@ -20,11 +20,13 @@ struct WrittenCampaignReport {
     std::filesystem::path html;
     std::filesystem::path json;  ///< beside the page, with the ending .json
     std::string text;            ///< the same in words, for standard output
+    bool outdated = false;       ///< results have come since they were gathered
 };
 
 /// Reads `folder`/campaign.sqlite and writes the page and the numbers, each under another name first. The same database
-/// gives the same bytes. Fails as read_campaign_results() does, with `usage` when the page's own name ends in .json,
-/// and with `outside` when a file cannot be written.
+/// gives the same bytes. Fails as read_campaign_results() does, with `usage` when the page's own name ends in .json
+/// or one of the two would take the place of what the campaign goes on with, and with `outside` when a file cannot be
+/// written.
 Result<WrittenCampaignReport> write_campaign_report(const std::filesystem::path& folder,
                                                     const CampaignReportOptions& options);
 

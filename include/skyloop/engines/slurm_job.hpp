@@ -34,6 +34,10 @@ struct FollowOptions {
 /// Writes OUT/slurm/campaign.sbatch and gather.sbatch.
 Result<void> write_slurm_files(const EngineTask& task, const SlurmScripts& scripts);
 
+/// Fails with `outside` where jobs of this campaign are still in the queue: they read its file and scripts. A folder
+/// without jobs asks no Slurm.
+Result<void> check_slurm_queue(const EngineTask& task);
+
 /// Calls sbatch for the shards, all of them when `only` is empty, and for the gathering after them; leaves the numbers
 /// in OUT/slurm/jobs. Fails with `outside` where sbatch refuses, or where jobs of this campaign are still in the queue,
 /// since two would do the same runs.

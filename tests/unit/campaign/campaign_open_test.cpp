@@ -128,10 +128,44 @@ std::string check_mistake(const Result<OpenedCampaign>& campaign) {
     std::vector<std::uint64_t> all;
     for (std::uint64_t i = 0; i < campaign->plan.size(); ++i)
         all.push_back(i);
-    const auto checked = check_runs(*campaign, all);
-    if (checked) return "none";
+    const auto checked = check_runs(*campaign, all, [] { return false; });
+    if (checked) return checked->empty() ? "none" : checked->front();
     EXPECT_NE(checked.error().code, ErrorCode::outside);
     return checked.error().message;
+}
+
+TEST_F(CampaignOpen, WarnsOfValuesThatAreListed) {
+    write_scenario(
+        "[[fault]]\nname = \"gap\"\nkind = \"outage\"\nat_s = 3\nfor_s = 1\n"
+        "[campaign]\nseeds = 3\n");
+    EXPECT_EQ(check_mistake(open({"fault.gap.at_s=2,4"})), "none");
+    EXPECT_THAT(check_mistake(open({"fault.gap.at_s=4,30"})),
+                testing::AllOf(HasSubstr("'gap' will not begin"), testing::EndsWith("; with fault.gap.at_s = 30")));
+}
+
+TEST_F(CampaignOpen, StopsWhileItChecks) {
+    write_scenario("[campaign]\nseeds = 3\n");
+    const auto campaign = open({"run.duration_s=1,2,3"});
+    int looks = 0;
+    EXPECT_TRUE(check_runs(*campaign, {0, 1, 2, 3, 4, 5, 6, 7, 8}, [&] { return ++looks == 2; }));
+    EXPECT_EQ(looks, 2);
+}
+
+TEST_F(CampaignOpen, AKeyIsVariedOnce) {
+    write_scenario("[campaign]\nseeds = 3\n");
+    const auto twice = open({"run.speed=1,2", "run.speed=3"});
+    ASSERT_FALSE(twice);
+    EXPECT_THAT(twice.error().message, HasSubstr("--vary run.speed: is given twice"));
+}
+
+TEST_F(CampaignOpen, NoTwoColumnsHaveOneTitle) {
+    write_scenario(
+        "[[expect]]\nname = \"vehicle\"\nwhat = \"fix at 3 s\"\n[[expect]]\n"
+        "name = \"a\\nb\"\nwhat = \"fix at 4 s\"\n[[expect]]\nname = \"a b\"\nwhat = \"fix at 5 s\"\n"
+        "[campaign]\nseeds = 1\n[campaign.vehicle]\ncommand = \"true\"\n");
+    const auto campaign = open({});
+    ASSERT_TRUE(campaign) << campaign.error().message;
+    EXPECT_THAT(campaign->setup.columns.verdicts, testing::ElementsAre("vehicle", "a b", "a b (2)", "vehicle (2)"));
 }
 
 TEST_F(CampaignOpen, EachListedValueIsTriedBeforeAnythingIsRun) {

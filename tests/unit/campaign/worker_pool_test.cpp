@@ -61,6 +61,24 @@ TEST(WorkerPool, ADeathCostsOneAttempt) {
     EXPECT_GT(lost, 3);
 }
 
+TEST(WorkerPool, RunsThatKillTheirWorkersDoNotHoldUpTheOthers) {
+    // The first twenty in a row, on two workers.
+    const std::string script =
+        "read greeting; while read word number; do test $number -lt 20 && kill -9 $$; echo $number; done";
+    int given_up = 0, answered = 0;
+    const std::atomic<bool> go_on = false;
+    const auto done = run_jobs(
+        shell_work(script, 26),
+        [&](const JobOutcome& outcome) -> Result<JobFate> {
+            if (!outcome.answer.empty()) return ++answered, JobFate::done;
+            return outcome.attempt < 2 ? JobFate::again : (++given_up, JobFate::given_up);
+        },
+        [] {}, go_on);
+    ASSERT_TRUE(done) << done.error().message;
+    EXPECT_EQ(answered, 6);
+    EXPECT_EQ(given_up, 20);
+}
+
 TEST(WorkerPool, WorkersThatNeverAnswerEndIt) {
     const std::atomic<bool> go_on = false;
     const auto again = [](const JobOutcome&) -> Result<JobFate> { return JobFate::again; };

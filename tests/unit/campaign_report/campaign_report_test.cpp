@@ -151,6 +151,26 @@ TEST(CampaignReport, TakesNumbersOfAllSizes) {
     EXPECT_THAT(report.html, Not(::testing::ContainsRegex("[>\" ]-?(nan|inf)[<\" ,]")));
 }
 
+TEST(CampaignReport, TakesNothingOfTheCampaignsPlace) {
+    const SmallDatabase database(std::string(test::campaign_schema) + test::three_runs);
+    const auto folder = database.folder();
+    std::filesystem::create_directories(folder / "shards");
+    for (const char* page : {"campaign.html", "campaign.sqlite", "shards/0-of-1.csv", "./shards/../campaign.x"}) {
+        const auto refused = write_campaign_report(folder, {folder / page, 1});
+        ASSERT_FALSE(refused) << page;
+        EXPECT_EQ(refused.error().code, ErrorCode::usage);
+        EXPECT_THAT(refused.error().message, HasSubstr("the campaign's own"));
+    }
+    const auto taken = write_campaign_report(folder, {folder / "campaign-report.html", 1});
+    ASSERT_TRUE(taken);
+    EXPECT_FALSE(taken->outdated);
+    std::ofstream(folder / "shards/0-of-2.csv") << "new\n";
+    std::filesystem::last_write_time(
+        folder / "shards/0-of-2.csv",
+        std::filesystem::last_write_time(folder / "campaign.sqlite") + std::chrono::seconds(1));
+    EXPECT_TRUE(write_campaign_report(folder, {{}, 1})->outdated);
+}
+
 TEST(CampaignReport, RefusesAPageThatIsItsOwnNumbersAndAFolderThatIsNotThere) {
     const SmallDatabase database(std::string(test::campaign_schema) + test::three_runs);
     EXPECT_EQ(write_campaign_report(database.folder(), {database.folder() / "a.json", 1}).error().code,

@@ -63,9 +63,18 @@ TEST_F(KubernetesEngine, NamesThatKubernetesDoesNotTakeAreRefused) {
     settings.name_space = "lab.one";
     EXPECT_THAT(refusal(), HasSubstr("--namespace"));
     settings.name_space.clear();
-    settings.memory = "";
-    EXPECT_THAT(refusal(), HasSubstr("--memory"));
-    settings.memory = "1Gi";
+    for (const char* memory : {"", "512MB", "Gi", "1.5.2Gi", ".5Gi", "1 Gi", "1gi"}) {
+        settings.memory = memory;
+        EXPECT_THAT(refusal(), HasSubstr("--memory")) << memory;
+    }
+    for (const char* memory : {"1Gi", "1.5G", "200000000", "512Mi"}) {
+        settings.memory = memory;
+        EXPECT_EQ(refusal(), "") << memory;
+    }
+    const auto mount = settings.mount;
+    settings.mount = "/";
+    EXPECT_THAT(refusal(), HasSubstr("--mount '/'"));
+    settings.mount = mount;
     settings.parallelism = 0;
     EXPECT_THAT(refusal(), HasSubstr("--parallelism"));
 }

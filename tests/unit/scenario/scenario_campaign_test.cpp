@@ -123,6 +123,27 @@ std::string change_mistake(const std::string& key, const std::string& value) {
     return scenario ? "none" : scenario.error().message;
 }
 
+std::vector<std::string> parsed(const std::string& text) {
+    const auto values = parse_campaign_values(text);
+    if (!values) return {values.error().message};
+    std::vector<std::string> shown;
+    for (const CampaignValue& value : *values)
+        shown.push_back(value.shown);
+    return shown;
+}
+
+TEST(CampaignValues, CommasWithinQuotesAndBracketsPartNothing) {
+    using testing::ElementsAre;
+    EXPECT_THAT(parsed(R"(take off,"climb, then turn")"), ElementsAre("take off", "climb, then turn"));
+    EXPECT_THAT(parsed(R"("a \" b, c",'d, e',f)"), ElementsAre("a \" b, c", "d, e", "f"));
+    EXPECT_THAT(parsed("[1, 2],x"), ElementsAre("[1, 2]", "x"));
+    EXPECT_THAT(parsed("[[1, 2], [3, 4]],[]"), testing::SizeIs(2));
+    EXPECT_THAT(parsed("1.5,2"), ElementsAre("1.5", "2"));
+    EXPECT_THAT(parsed("don't,do"), ElementsAre("don't", "do"));
+    for (const char* open : {"x,\"open", "x,[1,2", "'open,x", "x,\"a\"b"})
+        EXPECT_THAT(parsed(open).front(), HasSubstr("expected its quotes and brackets closed")) << open;
+}
+
 TEST(ScenarioChanges, ReachEveryKindOfPlace) {
     EXPECT_EQ(changed("run.duration_s", "30")->run.duration, Seconds(30));
     EXPECT_EQ(changed("run.speed", "2.5")->run.speed, 2.5);
