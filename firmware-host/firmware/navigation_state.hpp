@@ -78,6 +78,8 @@ struct NavigationState {
     bool course_is_frozen = false;
     double odometer_m = 0, odometer_total_m = 0, odometer_deviation_m = 0;
     std::uint64_t epoch_index = 0;  ///< since the last start
+    Seconds survey_time{0};         ///< since a survey-in began
+    std::uint64_t surveyed = 0;     ///< epochs with a position since then
     std::optional<LeapEvent> leap_event{};
     bool old_position_shown = false;  ///< sentences show it without a valid fix too, whatever is configured
     int week_offset = 0;              ///< on week numbers alone: dates and times of week stay

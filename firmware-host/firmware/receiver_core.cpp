@@ -128,7 +128,6 @@ void Receiver::Core::apply_changes(GpsTime now) {
 void Receiver::Core::restart_navigation(const Forgotten& forgotten, GpsTime now, Seconds silence) {
     settings_.start = forgotten.kind();
     ++settings_.restarts;
-    settings_.navigating = true;
     corrections_.reset();
     tracker_.start(now, forgotten);
     report(tracker_.state());
@@ -148,11 +147,13 @@ void Receiver::Core::reset(std::uint16_t nav_bbr_mask, std::uint8_t mode, GpsTim
         case reset_software:
             return reboot(forgotten, now);
         case reset_navigation:
+            settings_.navigating = true;
             return restart_navigation(forgotten, now, board_.timing.signal_restart);
         case stop_navigation:
             settings_.navigating = false;
             return send_text(notice, "Stopping GNSS", now);
         case start_navigation:
+            settings_.navigating = true;
             send_text(notice, "Starting GNSS", now);
             return restart_navigation({}, now, Seconds(0));
         default:
@@ -165,6 +166,7 @@ void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now, bool banner
     outbox_.clear();
     store_.reload();
     adopt_settings();
+    settings_.navigating = true;
     for (PortUnit& unit : units_) {
         const PortId id = unit.id;
         unit = PortUnit(id, line_baud(store_, id), board_.transmit_buffer_bytes);

@@ -122,6 +122,7 @@ void Receiver::Core::dispatch_ubx(PortUnit& unit, ByteSpan bytes, GpsTime now) {
 
 void Receiver::Core::configure(PortUnit& unit, const UbxFrameView& frame, GpsTime now) {
     if (frame.id == cfg_rst) {
+        values_.cancel();
         const auto rst = decode_payload<CfgRst>(frame.payload);
         if (!rst) return reply(unit, {{}, verdict_frame(Verdict::refuse, frame.id), Seconds(0), frame.id}, now);
         return reset(rst->nav_bbr_mask, rst->reset_mode, now);
@@ -207,8 +208,17 @@ void Receiver::Core::dispatch_sentence(PortUnit& unit, ByteSpan line, GpsTime no
     for (const UbxMessageId message : outcome.polled)
         for (Bytes& answer : make_message(message, context(unit.id)))
             outcome.answers.push_back(std::move(answer));
+    const bool answered = !outcome.answers.empty() && !stays_silent_to(id);
     reply(unit, {std::move(outcome.answers), std::nullopt, Seconds(0), id}, now);
-    if (outcome.restart) reboot(Forgotten::of(*outcome.restart), now);
+    if (!outcome.restart) return;
+    const Forgotten forgotten = Forgotten::of(*outcome.restart);
+    if (!answered) return reboot(forgotten, now);
+    // What acknowledges a restart leaves before it.
+    const PortId port = unit.id;
+    outbox_.plan(last_answer_, [this, port, forgotten](GpsTime t) {
+        const GpsTime told = find_unit(units_, port)->transmit.drained_at().value_or(t);
+        outbox_.plan(told, [this, forgotten](GpsTime then) { reboot(forgotten, then); });
+    });
 }
 
 void Receiver::Core::answer_corrections(const Bytes& answer, GpsTime now) {

@@ -115,6 +115,10 @@ ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board
     const double rate = 1e9 / static_cast<double>(settings.navigation_period.count());
     const bool is_fast = board.all_satellites_rate_hz > 0 && rate > board.all_satellites_rate_hz;
     settings.most_satellites = is_fast ? static_cast<std::size_t>(board.fast_satellites) : 0;
+    if (is_changed(store, key::navspg_max_svs)) {
+        const auto most = static_cast<std::size_t>(std::max<std::uint64_t>(1, store.value(key::navspg_max_svs)));
+        settings.most_satellites = is_fast ? std::min(settings.most_satellites, most) : most;
+    }
     if (signals_changed(store) || base.signals.empty()) settings.signals = enabled_signals(store);
     if (board.personality == Personality::ublox) settings.sbas_scan_mask = store.value(key::sbas_scan_mask);
     if (is_changed(store, key::navspg_min_elev))
@@ -125,6 +129,7 @@ ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board
     if (is_changed(store, key::mot_speed_threshold))
         settings.static_hold_below =
             MetresPerSecond(static_cast<double>(store.value(key::mot_speed_threshold)) / 100.0);
+    settings.course_held_below = board.course_min_speed;
     settings.subframes = false;
     for (const PortId port : board.ports)
         settings.subframes |= store.rate({0x02, 0x13}, port) > 0;

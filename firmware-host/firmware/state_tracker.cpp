@@ -86,13 +86,14 @@ void StateTracker::start(GpsTime now, const Forgotten& forgotten, bool running) 
     }
     started_ = running ? std::nullopt : std::optional(now);
     start_kind_ = forgotten.kind();
-    state_.time.time = state_.time.date = running || start_kind_ != StartKind::cold;
-    state_.time.leap_seconds = running || (start_kind_ != StartKind::cold && !forgotten.utc);
+    state_.time.time = state_.time.date = running || !forgotten.rtc;
+    state_.time.leap_seconds = running || (!forgotten.rtc && !forgotten.utc);
     state_.time.confirmed = running;
     // A clock that ran on a crystal alone since the last fix.
     state_.time.accuracy = Seconds(running ? 20e-9 : 1.0);
     first_tracking_.reset();
     first_fix_.reset();
+    survey_began_.reset();
     last_good_.reset();
     held_.reset();
     epochs_beyond_limits_ = 0;
@@ -115,6 +116,7 @@ const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStor
     if (is_tracking(fix) && !first_tracking_) first_tracking_ = fix.time;
 
     acquire();
+    keep_level(config);
     keep_within_limits(config);
     apply_corrections(corrections);
     coast(before);
@@ -129,6 +131,7 @@ const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStor
     if (odometer_is_on(board_, config)) count_distance(before);
     monitor(config);
     if (fix.has_position()) last_fix_ = fix;
+    survey(config);
     stand_still(config);
     return state_;
 }
@@ -158,6 +161,19 @@ void StateTracker::acquire() {
         found.push_back(s);
     }
     fix.satellites = std::move(found);
+}
+
+// With CFG-NAVSPG-FIXMODE 1 the height is one that the user tells, above sea level (RECEIVER.md 3.3, fixedAlt).
+void StateTracker::keep_level(const ConfigStore& config) {
+    constexpr std::uint64_t only_2d = 1;
+    Fix& fix = state_.epoch.fix;
+    if (!fix.has_position() || fix.type == FixType::dead_reckoning || config.value(key::navspg_fixmode) != only_2d)
+        return;
+    fix.type = FixType::fix_2d;
+    const Metres told(static_cast<double>(config.signed_value(key::navspg_constr_alt)) / 100);
+    fix.position.height.above_ellipsoid = told + fix.geoid_undulation;
+    fix.vertical_accuracy = Metres(std::sqrt(static_cast<double>(config.value(key::navspg_constr_altvar)) * 1e-4));
+    fix.velocity.down = 0;
 }
 
 void StateTracker::keep_within_limits(const ConfigStore& config) {
@@ -247,6 +263,19 @@ void StateTracker::hold(const ConfigStore& config) {
     fix.velocity = {};
     fix.speed = MetresPerSecond(0);
     state_.position_held = true;
+}
+
+// With CFG-TMODE-MODE 1 (RECEIVER.md 4.12).
+void StateTracker::survey(const ConfigStore& config) {
+    const Fix& fix = state_.epoch.fix;
+    if (config.value(key::tmode_mode) != 1) {
+        survey_began_.reset();
+        state_.surveyed = 0;
+        return;
+    }
+    if (!survey_began_) survey_began_ = fix.time;
+    state_.survey_time = difference(fix.time, *survey_began_);
+    if (fix.has_position()) ++state_.surveyed;
 }
 
 // A base that was told where it stands solves for the time alone (RECEIVER.md 4.12). What was solved goes on beneath,

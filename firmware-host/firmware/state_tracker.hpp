@@ -38,11 +38,13 @@ public:
 
 private:
     void learn_time(const ConfigStore& config);
+    void keep_level(const ConfigStore& config);
     void keep_within_limits(const ConfigStore& config);
     void acquire();
     void coast(const Fix& before);
     void hold(const ConfigStore& config);
     void apply_corrections(const CorrectionStatus& corrections);
+    void survey(const ConfigStore& config);
     void stand_still(const ConfigStore& config);
     void freeze_course();
     void count_distance(const Fix& before);
@@ -57,6 +59,7 @@ private:
     bool measured_ = false;                  ///< the model acquires satellites itself
     std::optional<GpsTime> first_tracking_;  ///< since the start
     std::optional<GpsTime> first_fix_;
+    std::optional<GpsTime> survey_began_;
     std::optional<GpsTime> last_good_;  ///< epoch of the last solution that was not coasted
     Fix last_fix_;
     std::optional<Fix> held_;  ///< the fix of static hold

@@ -95,7 +95,7 @@ void StateTracker::monitor(const ConfigStore& config) {
 
     const bool voltage =
         config.has(key::ant_voltage_control) ? config.flag(key::ant_voltage_control) : board_.quirks.voltage_control;
-    if (!voltage && !board_.quirks.voltage_control) {
+    if (!voltage) {
         m.antenna = AntennaStatus::unknown;
         m.antenna_power = 2;
         return;

@@ -7,7 +7,7 @@ namespace skyloop {
 namespace {
 
 constexpr double quiet_phase = 0.2;            // rad
-constexpr double span_of_starts = 1 << 20;     // cycles, to either side
+constexpr double span_of_starts = 100;         // cycles, to either side: near the range, as u-blox starts its count
 constexpr double share_of_single_slips = 0.8;  // the others are double
 
 }  // namespace

@@ -65,9 +65,9 @@ private:
     static void solve_doppler(EpochSolution& epoch);
     [[nodiscard]] bool plausible(const FilteredPosition& filtered, const ReceiverSettings& settings) const;
     void fill_solved(const EpochSolution& epoch, const ReceiverSettings& settings, Fix& fix);
-    void fill_motion(const FilteredPosition& filtered, Fix& fix);
+    void fill_motion(const FilteredPosition& filtered, const ReceiverSettings& settings, Fix& fix);
     void fill_accuracy(const EpochSolution& epoch, Fix& fix) const;
-    void fill_coasting(Fix& fix);
+    void fill_coasting(const ReceiverSettings& settings, Fix& fix);
     void begin_regime(CorrectionState state);
     Observations prepared(const Observations& observations, const ReceiverSettings& settings);
     [[nodiscard]] DifferentialKind differential_kind() const;
@@ -228,14 +228,15 @@ bool NavigationEngine::State::plausible(const FilteredPosition& filtered, const 
            std::abs(v.z()) <= limits.vertical_speed.value();
 }
 
-void NavigationEngine::State::fill_motion(const FilteredPosition& filtered, Fix& fix) {
+void NavigationEngine::State::fill_motion(const FilteredPosition& filtered, const ReceiverSettings& settings,
+                                          Fix& fix) {
     fix.position = to_geodetic(filtered.position);
     if (knowledge_.geoid)
         fix.geoid_undulation = knowledge_.geoid->undulation(fix.position.latitude, fix.position.longitude);
     const Eigen::Vector3d v = LocalFrame(fix.position).to_enu(filtered.velocity).vector();
     fix.velocity = {v.y(), v.x(), -v.z()};
     fix.speed = MetresPerSecond(std::hypot(v.x(), v.y()));
-    if (fix.speed >= parameters_.filter.course_held_below) course_ = course_of(fix.velocity);
+    if (fix.speed >= settings.course_held_below) course_ = course_of(fix.velocity);
     fix.course = course_;
 }
 
@@ -289,14 +290,14 @@ void NavigationEngine::State::fill_solved(const EpochSolution& epoch, const Rece
         filter_.reset();
         return;
     }
-    fill_motion(filtered, fix);
+    fill_motion(filtered, settings, fix);
     static constexpr std::array differential{FixType::fix_3d, FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
     fix.type = point.height_held ? FixType::fix_2d : differential[static_cast<std::size_t>(differential_kind())];
     fill_accuracy(epoch, fix);
     if (!point.height_held) height_ = to_geodetic(point.position).height;
 }
 
-void NavigationEngine::State::fill_coasting(Fix& fix) {
+void NavigationEngine::State::fill_coasting(const ReceiverSettings& settings, Fix& fix) {
     if (parameters_.filter.kind == FilterKind::none || !last_.has_position()) return;
     const std::optional<FilteredPosition> carried = filter_.coast(time_);
     if (!carried) return;
@@ -307,7 +308,7 @@ void NavigationEngine::State::fill_coasting(Fix& fix) {
     coasting.leap_seconds = fix.leap_seconds;
     coasting.satellites = none;
     coasting.type = FixType::dead_reckoning;
-    fill_motion(*carried, coasting);
+    fill_motion(*carried, settings, coasting);
     const double t = carried->coasted.value();
     const double left = last_.speed_accuracy.value() * t + coasting_acceleration * t * t / 2;
     coasting.horizontal_accuracy = Metres(std::hypot(last_.horizontal_accuracy.value(), left));
@@ -353,7 +354,7 @@ Fix NavigationEngine::State::solve(const Observations& observations, const Recei
         clock_drift_ = fix.clock_drift;
         if (!epoch.time_only) position_ = epoch.point->position;
     } else {
-        fill_coasting(fix);
+        fill_coasting(settings, fix);
     }
     // What is carried on is carried on from the last solution.
     if (epoch.point || fix.type == FixType::none) last_ = fix;

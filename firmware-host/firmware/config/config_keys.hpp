@@ -57,7 +57,8 @@ inline constexpr std::uint32_t navspg_fixmode = 0x20110011, navspg_dynmodel = 0x
                                navspg_min_svs = 0x201100A1, navspg_max_svs = 0x201100A2, navspg_min_cno = 0x201100A3,
                                navspg_min_elev = 0x201100A4, navspg_pdop = 0x301100B1, navspg_tdop = 0x301100B2,
                                navspg_pacc = 0x301100B3, navspg_tacc = 0x301100B4, navspg_dgnss_timeout = 0x201100C4,
-                               navspg_ackaiding = 0x10110025;
+                               navspg_ackaiding = 0x10110025, navspg_constr_alt = 0x401100C1,
+                               navspg_constr_altvar = 0x401100C2;
 inline constexpr std::uint32_t navhpg_dgnssmode = 0x20140011;
 inline constexpr std::uint32_t rate_meas = 0x30210001, rate_nav = 0x30210002, rate_timeref = 0x20210003;
 inline constexpr std::uint32_t mot_speed_threshold = 0x20250038, mot_distance_threshold = 0x3025003B;

@@ -65,6 +65,8 @@ CfgGnssItem describe_system(const LegacyContext& context, const GnssBlock& block
         if (context.store.flag(key)) item.flags |= 1u << bit;
     };
     replace(0, system->enabled);
+    // Of a system that is off, captured receivers show the signals that it would have.
+    if (context.store.has(system->enabled) && !context.store.flag(system->enabled)) return item;
     for (const BitKey& signal : system->signals)
         replace(signal_shift + signal.bit, signal.key);
     return item;

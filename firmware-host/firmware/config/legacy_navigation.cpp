@@ -14,8 +14,8 @@ CfgNav5 describe_nav5(const LegacyContext& context) {
     message.mask = 0xFFFF;
     message.dyn_model = in_force<std::uint8_t>(context, key::navspg_dynmodel);
     message.fix_mode = in_force<std::uint8_t>(context, key::navspg_fixmode);
-    message.fixed_alt = in_force<std::int32_t>(context, legacy_key::constr_alt);
-    message.fixed_alt_var = in_force<std::uint32_t>(context, legacy_key::constr_altvar);
+    message.fixed_alt = in_force<std::int32_t>(context, key::navspg_constr_alt);
+    message.fixed_alt_var = in_force<std::uint32_t>(context, key::navspg_constr_altvar);
     message.min_elev = in_force<std::int8_t>(context, key::navspg_min_elev);
     message.dr_limit = in_force<std::uint8_t>(context, legacy_key::dr_limit);
     message.p_dop = in_force<std::uint16_t>(context, key::navspg_pdop);
@@ -38,8 +38,8 @@ void put_nav5(LegacyChanges& changes, const CfgNav5& message) {
     if (masked(1)) changes.put(key::navspg_min_elev, message.min_elev);
     if (masked(2)) {
         changes.put(key::navspg_fixmode, message.fix_mode);
-        changes.put(legacy_key::constr_alt, message.fixed_alt);
-        changes.put(legacy_key::constr_altvar, message.fixed_alt_var);
+        changes.put(key::navspg_constr_alt, message.fixed_alt);
+        changes.put(key::navspg_constr_altvar, message.fixed_alt_var);
     }
     if (masked(3)) changes.put(legacy_key::dr_limit, message.dr_limit);
     if (masked(4)) {

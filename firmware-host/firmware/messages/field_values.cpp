@@ -67,6 +67,11 @@ EpochTime epoch_time(GpsTime time) {
             static_cast<std::int32_t>((time - rounded).count())};
 }
 
+bool has_dops(const Fix& fix) {
+    if (fix.type != FixType::dead_reckoning) return fix.has_position();
+    return std::any_of(fix.satellites.begin(), fix.satellites.end(), [](const SatelliteStatus& s) { return s.used; });
+}
+
 ReportedTime reported_time(const ReportContext& context) {
     const NavigationState& state = context.state;
     if (state.time.time) return {state.epoch.fix.time, state.epoch.fix.leap_seconds, state.leap_event};

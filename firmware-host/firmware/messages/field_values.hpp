@@ -47,6 +47,8 @@ struct EpochTime {
     std::int32_t f_tow = 0;   ///< ns, −500 000 … 500 000
 };
 EpochTime epoch_time(GpsTime time);
+/// Whether satellites stand behind the position, so that it has DOPs: dead reckoning goes on without.
+bool has_dops(const Fix& fix);
 /// A week number as the receiver counts it.
 inline double reported_week(const NavigationState& state, std::int64_t week) {
     return static_cast<double>(week + state.week_offset);

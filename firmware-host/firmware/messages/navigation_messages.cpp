@@ -105,7 +105,7 @@ NavPvt navigation_pvt(const ReportContext& context) {
     pvt.h_acc = place.h_acc;
     pvt.v_acc = place.v_acc;
     put_motion(state, pvt);
-    pvt.p_dop = dop_field(fix.dop.pdop, fix.has_position());
+    pvt.p_dop = dop_field(fix.dop.pdop, has_dops(fix));
     const bool invalid = !state.ever_had_fix && context.board.identity.generation >= 9;
     pvt.flags3 = static_cast<std::uint16_t>((invalid ? 1 : 0) | correction_age_code(state.corrections.age) << 1);
     if (context.board.identity.generation <= newest_without_vehicle) return pvt;
@@ -196,7 +196,7 @@ NavHpposecef navigation_hpposecef(const ReportContext& context) {
         m.ecef[i] = value.whole;
         m.ecef_hp[i] = value.rest;
     }
-    m.flags = context.state.epoch.fix.has_position() ? 0 : 1;
+    m.flags = place_is_valid(context) ? 0 : 1;
     m.p_acc = place_accuracy(context.state, 1e4);
     return m;
 }
@@ -243,7 +243,7 @@ NavSol navigation_sol(const ReportContext& context) {
     m.p_acc = place_accuracy(state, 1e2);
     m.ecef_v = centimetres(earth_fixed_velocity(state));
     m.s_acc = speed_accuracy_cm(state);
-    m.p_dop = dop_field(state.epoch.fix.dop.pdop, state.epoch.fix.has_position());
+    m.p_dop = dop_field(state.epoch.fix.dop.pdop, has_dops(state.epoch.fix));
     m.num_sv = used_satellites(state.epoch.fix);
     m.reserved2 = sol_reserved;
     return m;
@@ -267,7 +267,7 @@ NavStatus navigation_status(const ReportContext& context) {
 
 NavDop navigation_dop(const ReportContext& context) {
     const Fix& fix = context.state.epoch.fix;
-    const bool place = fix.has_position(), time = place || fix.type == FixType::time_only;
+    const bool place = has_dops(fix), time = place || fix.type == FixType::time_only;
     return {epoch_time(reported_time(context).time).i_tow,
             dop_field(fix.dop.gdop, time),
             dop_field(fix.dop.pdop, place),

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "firmware/error_ellipse.hpp"
+#include "firmware/fixed_place.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/navigation_parts.hpp"
@@ -45,6 +46,12 @@ NavCov solution_covariance(const ReportContext& context) {
     m.pos_cov_valid = m.vel_cov_valid = 1;
     m.pos_cov = covariance(unknown_m * unknown_m, unknown_m * unknown_m, 0, unknown_m * unknown_m);
     m.vel_cov = covariance(unknown_mps * unknown_mps, unknown_mps * unknown_mps, 0, unknown_mps * unknown_mps);
+    if (fix.type == FixType::time_only && fixed_place(context.config)) {
+        const double level = std::pow(fix.horizontal_accuracy.value(), 2) / 2;
+        m.pos_cov = covariance(level, level, 0, std::pow(fix.vertical_accuracy.value(), 2));
+        m.vel_cov = {};
+        return m;
+    }
     const std::optional<ErrorEllipse> ellipse = error_ellipse(fix, solved_satellites(fix));
     if (!fix.has_position() || !ellipse) return m;
     const double north = ellipse->north.value(), east = ellipse->east.value(), up = fix.vertical_accuracy.value();
@@ -170,7 +177,7 @@ NavSvin survey(const ReportContext& context) {
     if (context.config.value(key::tmode_mode) != 1) return m;
     m.valid = state.epoch.fix.type == FixType::time_only ? 1 : 0;
     m.active = m.valid == 0 ? 1 : 0;
-    m.dur = field<std::uint32_t>(std::floor(state.since_start.value()));
+    m.dur = field<std::uint32_t>(std::floor(state.survey_time.value()));
     m.mean_acc = unknown_accuracy;
     if (!state.ever_had_fix) return m;
     const Fix& fix = state.epoch.fix;
@@ -181,7 +188,7 @@ NavSvin survey(const ReportContext& context) {
         m.mean_hp[i] = value.rest;
     }
     m.mean_acc = field<std::uint32_t>(std::hypot(fix.horizontal_accuracy.value(), fix.vertical_accuracy.value()) * 1e4);
-    m.obs = field<std::uint32_t>(static_cast<double>(state.epoch_index));
+    m.obs = field<std::uint32_t>(static_cast<double>(state.surveyed));
     return m;
 }
 

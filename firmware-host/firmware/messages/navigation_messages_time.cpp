@@ -150,12 +150,12 @@ void put_announced_leap_event(GpsTime now, NavTimels& m) {
 }
 
 NavTimels time_leap_seconds(const ReportContext& context) {
-    constexpr std::uint8_t from_firmware_configuration = 7, from_gps = 2;
+    constexpr std::uint8_t from_firmware = 0, from_gps = 2;
     const ReportedTime reported = reported_time(context);
     NavTimels m;
     m.i_tow = epoch_time(reported.time).i_tow;
     m.curr_ls = field<std::int8_t>(context.state.epoch.fix.leap_seconds);
-    m.src_of_curr_ls = from_firmware_configuration;
+    m.src_of_curr_ls = from_firmware;
     if (!context.state.time.leap_seconds) return m;
     m.src_of_curr_ls = m.src_of_ls_change = from_gps;
     m.valid = 3;

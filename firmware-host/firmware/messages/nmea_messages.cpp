@@ -4,6 +4,7 @@
 #include "firmware/config/signal_keys.hpp"
 #include "firmware/error_ellipse.hpp"
 #include "firmware/message_class.hpp"
+#include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/nmea_report.hpp"
 
@@ -34,7 +35,7 @@ Gga gga(const NmeaReport& r) {
     m.position = r.position;
     m.quality = r.quality;
     m.satellites_used = std::min(r.satellites_counted, r.context.board.max_listed_satellites);
-    m.hdop = r.solved ? r.fix().dop.hdop : unknown_dop;
+    m.hdop = has_dops(r.fix()) ? r.fix().dop.hdop : unknown_dop;
     add_height_and_corrections(m, r);
     return m;
 }
@@ -63,7 +64,7 @@ Gns gns(const NmeaReport& r) {
     m.position = r.position;
     m.modes = modes_of_systems(r);
     m.satellites_used = r.satellites_counted;
-    m.hdop = r.solved ? r.fix().dop.hdop : unknown_dop;
+    m.hdop = has_dops(r.fix()) ? r.fix().dop.hdop : unknown_dop;
     add_height_and_corrections(m, r);
     return m;
 }

@@ -206,9 +206,8 @@ NmeaFormat nmea_format(const BoardProfile& board, const ConfigStore& config) {
 }
 
 UtcTime reported_utc(const ReportContext& context) {
-    const Fix& fix = context.state.epoch.fix;
-    return rounded_utc(fix.time, context.board.time_decimals,
-                       counted_leap_seconds({fix.time, fix.leap_seconds, context.state.leap_event}));
+    const ReportedTime now = reported_time(context);
+    return rounded_utc(now.time, context.board.time_decimals, counted_leap_seconds(now));
 }
 
 NmeaReport nmea_report(const ReportContext& context) {

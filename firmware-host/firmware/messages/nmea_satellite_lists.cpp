@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "firmware/messages/field_values.hpp"
 #include "firmware/messages/nmea_report.hpp"
 
 namespace skyloop::firmware {
@@ -150,9 +151,10 @@ std::vector<Gsa> gsa_messages(const NmeaReport& r) {
         !r.context.config.has(key::navspg_fixmode) || r.context.config.value(key::navspg_fixmode) == automatic;
     m.fix_mode = r.fix_mode;
     const Dop& dop = r.fix().dop;
-    m.pdop = r.solved ? dop.pdop : no_dop_in_list;
-    m.hdop = r.solved ? dop.hdop : no_dop_in_list;
-    m.vdop = r.solved ? dop.vdop : no_dop_in_list;
+    const bool known = has_dops(r.fix());
+    m.pdop = known ? dop.pdop : no_dop_in_list;
+    m.hdop = known ? dop.hdop : no_dop_in_list;
+    m.vdop = known ? dop.vdop : no_dop_in_list;
     std::vector<Gsa> out;
     for (const NmeaGroup& group : r.groups) {
         m.satellites.clear();

@@ -156,6 +156,7 @@ NavSbas augmentation(const ReportContext& context) {
     for (const SatelliteStatus& s : satellites)
         if (s.id.constellation == Constellation::sbas && s.cn0 && (source == nullptr || *s.cn0 > *source->cn0))
             source = &s;
+    m.sys = -1;  // unknown
     if (source == nullptr) return m;
     m.geo = sv_id(source->id);
     m.mode = 1;

@@ -51,10 +51,11 @@ struct ReceiverSettings {
     DbHz minimum_cn0{6};  ///< of a satellite that is used
     DynamicModel dynamic_model = DynamicModel::portable;
     MetresPerSecond static_hold_below{0};  ///< 0: never held
-    StartKind start = StartKind::hot;      ///< what the receiver knew at its last start
-    int restarts = 0;                      ///< counts up with each restart; the receiver forgets what `start` says
-    bool navigating = true;                ///< false: stopped by its user, it tracks nothing
-    bool subframes = false;                ///< received subframes are wanted
+    MetresPerSecond course_held_below{0.3};
+    StartKind start = StartKind::hot;  ///< what the receiver knew at its last start
+    int restarts = 0;                  ///< counts up with each restart; the receiver forgets what `start` says
+    bool navigating = true;            ///< false: stopped by its user, it tracks nothing
+    bool subframes = false;            ///< received subframes are wanted
     CorrectionState corrections = CorrectionState::none;  ///< of those that a client hands in
 
     [[nodiscard]] bool tracks(Constellation constellation, Signal signal) const {

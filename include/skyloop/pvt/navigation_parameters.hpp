@@ -50,7 +50,6 @@ struct FilterParameters {
     Seconds code_smoothing{0};      ///< of the code by the carrier (Hatch), before the solution; 0: none
     Seconds coasting{2};            ///< how long a lost fix is carried on, as dead reckoning
     Metres static_hold_radius{10};  ///< out of which a held position is let go
-    MetresPerSecond course_held_below{0.3};
 };
 
 /// Who is believed.

@@ -379,12 +379,39 @@ TEST(NavRelposnedMessage, GivesTheVectorFromTheStationOfTheCorrections) {
     EXPECT_EQ(f9.report<NavRelposned>().flags, 0x01u) << "observations alone tell no place";
 }
 
+TEST(NavDopMessage, IsUnknownWhileItGoesOnWithoutSatellites) {
+    UbxReport m8(8);
+    EXPECT_LT(m8.report<NavDop>().p_dop, 9999);
+    m8.state.epoch.fix.type = FixType::dead_reckoning;
+    for (SatelliteStatus& s : m8.state.epoch.fix.satellites)
+        s.used = false;
+    EXPECT_EQ(m8.report<NavDop>().p_dop, 9999);
+    EXPECT_EQ(m8.report<NavPvt>().p_dop, 9999);
+    EXPECT_EQ(m8.report<NavSol>().p_dop, 9999);
+}
+
+TEST(NavHpposecefMessage, IsValidOfAFixedBase) {
+    UbxReport f9(9);
+    f9.state.epoch.fix.type = FixType::time_only;
+    EXPECT_EQ(f9.report<NavHpposecef>().flags, 1);
+    f9.config.set(in_ram, key::tmode_mode, 2);
+    f9.state.epoch.fix.horizontal_accuracy = f9.state.epoch.fix.vertical_accuracy = Metres(0.01);
+    EXPECT_EQ(f9.report<NavHpposecef>().flags, 0);
+    const auto covariance = f9.report<NavCov>();
+    EXPECT_NEAR(covariance.pos_cov[0] + covariance.pos_cov[3], 1e-4, 1e-9);
+    EXPECT_NEAR(covariance.pos_cov[5], 1e-4, 1e-9);
+    EXPECT_EQ(covariance.vel_cov[0], 0);
+}
+
 TEST(NavSvinMessage, RunsUntilTheTimeOnlySolution) {
     UbxReport f9(9);
     EXPECT_EQ(f9.report<NavSvin>().active, 0);
     f9.config.set(in_ram, key::tmode_mode, 1);
+    f9.state.survey_time = Seconds(9.9);
+    f9.state.surveyed = 8;
     EXPECT_EQ(f9.report<NavSvin>().active, 1);
-    EXPECT_EQ(f9.report<NavSvin>().dur, 123u);
+    EXPECT_EQ(f9.report<NavSvin>().dur, 9u);
+    EXPECT_EQ(f9.report<NavSvin>().obs, 8u);
     f9.state.epoch.fix.type = FixType::time_only;
     EXPECT_EQ(f9.report<NavSvin>().valid, 1);
     EXPECT_EQ(f9.report<NavSvin>().active, 0);

@@ -109,12 +109,13 @@ TEST(NmeaFilters, LetInvalidValuesThrough) {
     SampleReceiver receiver = without_fix(NmeaVersion::v4_0, {gps, glonass});
     receiver.config.set(in_ram, key::nmea_out_invtime, 1);
     receiver.config.set(in_ram, key::nmea_out_invdate, 1);
-    EXPECT_THAT(receiver.line(rmc_id), StartsWith("$GNRMC,145622.00,V,,,,,,,280623,"));
+    // What the receiver counts from, in NAV-PVT as well: the week of CFG-NAVSPG-WKNROLLOVER.
+    EXPECT_THAT(receiver.line(rmc_id), StartsWith("$GNRMC,000000.00,V,,,,,,,020820,"));
     receiver.config.set(in_ram, key::nmea_out_invfix, 1);
-    EXPECT_THAT(receiver.line(rmc_id), StartsWith("$GNRMC,145622.00,V,,,,,,,"));  // none was ever known
+    EXPECT_THAT(receiver.line(rmc_id), StartsWith("$GNRMC,000000.00,V,,,,,,,"));  // none was ever known
     receiver.state.position_known = true;
     receiver.state.epoch.fix.position = Geodetic::degrees(47, 8, 500);
-    EXPECT_THAT(receiver.line(rmc_id), StartsWith("$GNRMC,145622.00,V,4700.00000,N,00800.00000,E,"));
+    EXPECT_THAT(receiver.line(rmc_id), StartsWith("$GNRMC,000000.00,V,4700.00000,N,00800.00000,E,"));
 }
 
 TEST(NmeaFilters, KeepPositionsBeyondTheLimitsToThemselves) {

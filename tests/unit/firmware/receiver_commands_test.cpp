@@ -284,6 +284,55 @@ TEST(ReceiverCommands, BeginsAnewAfterAHardwareResetAtTheStoredSpeedWithItsBanne
     EXPECT_EQ(bench.receiver().settings().restarts, 1);
 }
 
+TEST(ReceiverCommands, AResetCancelsATransaction) {
+    constexpr std::uint32_t period = 0x30210001;
+    Bench bench;
+    CfgValset begin = valset({{period, 500}}), apply = valset({});
+    begin.version = apply.version = 1;
+    begin.transaction = 1;
+    apply.transaction = 3;
+    bench.wait(300ms).send(begin).wait(200ms).send(CfgRst{0, 9, 0}).wait(1500ms).send(apply).wait(200ms);
+    EXPECT_EQ(bench.frames(nak_id).size(), 1U);
+    EXPECT_EQ(bench.receiver().settings().navigation_period, 1s);
+}
+
+TEST(ReceiverCommands, StaysStoppedUntilItIsStarted) {
+    constexpr std::uint32_t pvt_on_uart1 = 0x20910007, galileo = 0x10310021;
+    Bench bench;
+    bench.wait(300ms).send(valset({{pvt_on_uart1, 1}})).wait(2s).send(CfgRst{0, 8, 0}).wait(1s);
+    bench.forget();
+    bench.send(valset({{galileo, 0}})).wait(3s);
+    EXPECT_EQ(bench.frames(ack_id).size(), 1U);
+    EXPECT_TRUE(bench.frames(nav_pvt_id).empty()) << "other signals start nothing";
+    bench.send(CfgRst{0, 9, 0}).wait(3s);
+    EXPECT_FALSE(bench.frames(nav_pvt_id).empty());
+}
+
+TEST(ReceiverCommands, ForgetsThePlaceWithoutTheTime) {
+    Bench bench;
+    bench.wait(2s).send(CfgRst{0x0010, 2, 0}).wait(100ms);
+    EXPECT_EQ(bench.receiver().settings().start, StartKind::cold);
+    EXPECT_TRUE(bench.receiver().state().time.date);
+    EXPECT_TRUE(bench.receiver().state().time.leap_seconds);
+    bench.send(CfgRst{0x0100, 2, 0}).wait(100ms);
+    EXPECT_FALSE(bench.receiver().state().time.date) << "bit 8 is the clock";
+}
+
+TEST(ReceiverCommands, AcknowledgesARestartBeforeIt) {
+    BoardProfile board = sample_ublox();
+    board.personality = Personality::airoha;
+    for (const int number : {4, 5, 6, 7}) {
+        Bench bench(board);
+        bench.wait(300ms).write(to_bytes(number == 4   ? "$PAIR004*3E\r\n"
+                                         : number == 5 ? "$PAIR005*3F\r\n"
+                                         : number == 6 ? "$PAIR006*3C\r\n"
+                                                       : "$PAIR007*3D\r\n"));
+        bench.wait(400ms);
+        EXPECT_THAT(bench.text(), HasSubstr("$PAIR001,00" + std::to_string(number) + ",0*")) << number;
+        EXPECT_EQ(bench.receiver().settings().restarts, 1);
+    }
+}
+
 TEST(ReceiverCommands, KeepsWhatIsInFlashOverAReset) {
     Bench bench;
     bench.wait(300ms).send(valset({{0x20910007, 1}}, 5)).wait(500ms);

@@ -424,6 +424,33 @@ TEST(StateTracker, TellsJammingOnlyWhenTheMonitorIsOn) {
     EXPECT_EQ(t.step().monitors.jamming_state(), 3);
 }
 
+TEST(StateTracker, KeepsTheLevelThatIsToldInTwoDimensions) {
+    Tracked t(tracked_board());
+    t.tracker().start(t.fix().time, {}, true);
+    t.fix().geoid_undulation = Metres(48);
+    t.store().set(in_ram, key::navspg_fixmode, 1);
+    t.store().set(in_ram, key::navspg_constr_alt, 12345);
+    const Fix& fix = t.step().epoch.fix;
+    EXPECT_EQ(fix.type, FixType::fix_2d);
+    EXPECT_NEAR(fix.position.height.above_ellipsoid.value(), 123.45 + 48, 1e-9);
+    EXPECT_EQ(fix.velocity.down, 0);
+    EXPECT_NEAR(fix.vertical_accuracy.value(), 1, 1e-9);
+    t.store().set(in_ram, key::navspg_fixmode, 3);
+    EXPECT_EQ(t.step().epoch.fix.type, FixType::fix_3d);
+}
+
+TEST(StateTracker, CountsASurveyFromItsBegin) {
+    Tracked t(tracked_board());
+    t.tracker().start(t.fix().time, {}, true);
+    (void)t.step();
+    t.store().set(in_ram, key::tmode_mode, 1);
+    (void)t.step();
+    (void)t.step();
+    const NavigationState& state = t.step();
+    EXPECT_NEAR(state.survey_time.value(), 2, 1e-9);
+    EXPECT_EQ(state.surveyed, 3U);
+}
+
 TEST(StateTracker, TellsWhichBandIsJammedWhereItHasTwo) {
     for (const bool dual : {false, true}) {
         BoardProfile board = tracked_board();

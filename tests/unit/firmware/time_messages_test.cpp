@@ -126,7 +126,7 @@ TEST(NavTimelsMessage, TellsWhereTheNumberIsFrom) {
     EXPECT_LT(m9.report<NavTimels>().time_to_ls_event, 0);
     EXPECT_EQ(m9.report<NavTimels>().valid, 3);
     m9.state.time.leap_seconds = false;
-    EXPECT_EQ(m9.report<NavTimels>().src_of_curr_ls, 7);
+    EXPECT_EQ(m9.report<NavTimels>().src_of_curr_ls, 0) << "that of the firmware";
     EXPECT_EQ(m9.report<NavTimels>().valid, 0);
 }
 
