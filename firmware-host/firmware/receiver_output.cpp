@@ -207,7 +207,9 @@ void Receiver::Core::read_configured_messages(PortUnit& unit) const {
 bool Receiver::Core::is_due(PortUnit& unit, UbxMessageId message, std::uint64_t every,
                             const NavigationState& state) const {
     if (message != TimTp::message_id) return state.epoch_index % every == 0;
-    const std::int64_t pulse = pulses_until_epoch(context(unit.id, state)) / static_cast<std::int64_t>(every);
+    const auto pulses = pulses_until_epoch(context(unit.id, state));
+    if (!pulses) return false;
+    const std::int64_t pulse = *pulses / static_cast<std::int64_t>(every);
     return std::exchange(unit.told_pulse, pulse) != pulse;
 }
 

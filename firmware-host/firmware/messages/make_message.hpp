@@ -32,8 +32,8 @@ private:
 /// Of the classes NAV and TIM.
 std::vector<Bytes> make_navigation_message(UbxMessageId message, const ReportContext& context);
 /// How many time pulses there have been by the epoch, counted from the origin of their grid: TIM-TP comes once for
-/// each.
-std::int64_t pulses_until_epoch(const ReportContext& context);
+/// each. Nothing: CFG-TP makes none.
+std::optional<std::int64_t> pulses_until_epoch(const ReportContext& context);
 /// NAV-SAT, NAV-SVINFO, NAV-SIG, NAV-ORB, NAV-SBAS.
 std::vector<Bytes> make_satellite_message(UbxMessageId message, const ReportContext& context);
 /// Of the class RXM.

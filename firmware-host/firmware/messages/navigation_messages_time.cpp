@@ -13,8 +13,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// CFG-TP: period of the locked pulse, µs, and the time that it is aligned to, 0 UTC (RECEIVER.md 3.5.1).
-constexpr std::uint32_t tp_period_lock = 0x40050003, tp_time_grid = 0x2005000C;
+// CFG-TP: periods of the pulse, µs, and frequencies, Hz, before it is locked and after; which of them counts; whether
+// there is one; the time that it is aligned to (RECEIVER.md 3.5.1).
+constexpr std::uint32_t tp_period = 0x40050002, tp_period_lock = 0x40050003, tp_frequency = 0x40050024,
+                        tp_frequency_lock = 0x40050025, tp_pulse_def = 0x20050023, tp_enabled = 0x10050007,
+                        tp_use_locked = 0x10050009, tp_time_grid = 0x2005000C;
 // Step of the oscillator by which a pulse can be moved: RECEIVER.md 4.9 has errors of ±15 ns.
 constexpr double pulse_step_ns = 30;
 // The clock is set by whole milliseconds (NAV-CLOCK clkB).
@@ -185,7 +188,7 @@ NavClock receiver_clock(const ReportContext& context) {
 struct PulseGrid {
     GpsTime epoch;
     Nanoseconds offset{0}, period{0};
-    bool utc = false;
+    std::uint64_t base = 0;  ///< 0 UTC, 1 GPS, 2 GLONASS, 3 BeiDou, 4 Galileo
 
     // From the origin of the grid until the epoch.
     [[nodiscard]] std::int64_t pulses() const {
@@ -194,20 +197,42 @@ struct PulseGrid {
     }
 };
 
-PulseGrid pulse_grid(const ReportContext& context) {
+std::uint64_t item_or(const ConfigStore& config, std::uint32_t item, std::uint64_t standard) {
+    return config.has(item) ? config.value(item) : standard;
+}
+
+// Zero: there are no pulses.
+Nanoseconds pulse_period(const ReportContext& context) {
+    const ConfigStore& config = context.config;
+    if (item_or(config, tp_enabled, 1) == 0) return {};
+    const bool locked = item_or(config, tp_use_locked, 1) != 0 && context.state.epoch.fix.type != FixType::none;
+    if (item_or(config, tp_pulse_def, 0) == 0)
+        return std::chrono::microseconds(item_or(config, locked ? tp_period_lock : tp_period, 1'000'000));
+    const std::uint64_t hertz = item_or(config, locked ? tp_frequency_lock : tp_frequency, 1);
+    return Nanoseconds(hertz == 0 ? 0 : std::llround(1e9 / static_cast<double>(hertz)));
+}
+
+// Nothing: there are no pulses.
+std::optional<PulseGrid> pulse_grid(const ReportContext& context) {
+    constexpr std::uint64_t utc = 0, glonass = 2;
     const ReportedTime reported = reported_time(context);
-    const std::uint64_t period_us = std::max<std::uint64_t>(
-        1, context.config.has(tp_period_lock) ? context.config.value(tp_period_lock) : std::uint64_t{1'000'000});
-    const std::chrono::microseconds period(static_cast<std::int64_t>(period_us));
-    const bool utc = context.config.value(tp_time_grid) == 0;
-    return {std::chrono::round<std::chrono::milliseconds>(reported.time),
-            utc ? std::chrono::seconds(reported.leap_seconds) : Nanoseconds(0), period, utc};
+    const Nanoseconds period = pulse_period(context);
+    if (period <= Nanoseconds(0)) return std::nullopt;
+    const std::uint64_t base = context.config.value(tp_time_grid);
+    // GLONASS counts UTC, by hours ahead.
+    const bool leaps = base == utc || base == glonass;
+    return PulseGrid{std::chrono::round<std::chrono::milliseconds>(reported.time),
+                     leaps ? std::chrono::seconds(reported.leap_seconds) : Nanoseconds(0), period, base};
+}
+
+// timeRefGnss: 0 GPS, 1 GLONASS, 2 BeiDou, 3 Galileo; captured receivers say 15 of UTC.
+std::uint8_t reference_of(std::uint64_t base) {
+    return base >= 1 && base <= 4 ? static_cast<std::uint8_t>(base - 1) : std::uint8_t{0x0F};
 }
 
 // The pulse after the epoch. Flags: 0 UTC base, 1 UTC available, 2-3 RAIM active, 4 quantisation unknown.
-TimTp next_pulse(const ReportContext& context) {
+TimTp next_pulse(const ReportContext& context, const PulseGrid& grid) {
     const NavigationState& state = context.state;
-    const PulseGrid grid = pulse_grid(context);
     const GpsTime pulse((grid.pulses() + 1) * grid.period);
     const WeekAndTow value = week_and_tow(pulse);
     const Nanoseconds sub_ms = value.tow % 1ms;
@@ -216,20 +241,27 @@ TimTp next_pulse(const ReportContext& context) {
     m.tow_sub_ms = field<std::uint32_t>(static_cast<double>(sub_ms.count()) * 1e-6 * 4294967296.0);
     m.week = field<std::uint16_t>(static_cast<double>(value.week));
     const bool known = state.epoch.fix.type != FixType::none;
-    m.flags = static_cast<std::uint8_t>((grid.utc ? 1 : 0) | (state.time.leap_seconds ? 2 : 0) | (known ? 8 : 0x10));
+    m.flags =
+        static_cast<std::uint8_t>((grid.base == 0 ? 1 : 0) | (state.time.leap_seconds ? 2 : 0) | (known ? 8 : 0x10));
     if (known)
         m.q_err = field<std::int32_t>(
             std::remainder(state.epoch.fix.clock_bias.value() / speed_of_light * 1e9, pulse_step_ns) * 1e3);
-    m.ref_info = grid.utc ? 0x0F : 0;
+    m.ref_info = reference_of(grid.base);
     return m;
 }
 
 }  // namespace
 
-std::int64_t pulses_until_epoch(const ReportContext& context) { return pulse_grid(context).pulses(); }
+std::optional<std::int64_t> pulses_until_epoch(const ReportContext& context) {
+    const auto grid = pulse_grid(context);
+    return grid ? std::optional(grid->pulses()) : std::nullopt;
+}
 
 std::vector<Bytes> make_time_message(UbxMessageId message, const ReportContext& context) {
-    if (message == TimTp::message_id) return ubx_frames_of(next_pulse(context));
+    if (message == TimTp::message_id) {
+        const auto grid = pulse_grid(context);
+        return grid ? ubx_frames_of(next_pulse(context, *grid)) : std::vector<Bytes>();
+    }
     if (message.message_class != NavClock::message_id.message_class) return {};
     switch (message.id) {
         case NavTimegps::message_id.id:

@@ -169,5 +169,32 @@ TEST(TimTpMessage, NamesTheNextPulse) {
     EXPECT_EQ(m8.report<TimTp>().q_err, 0);
 }
 
+TEST(TimTpMessage, FollowsThePulseThatIsConfigured) {
+    constexpr std::uint32_t period = 0x40050002, period_lock = 0x40050003, frequency_lock = 0x40050025,
+                            pulse_def = 0x20050023, enabled = 0x10050007, use_locked = 0x10050009, grid = 0x2005000C;
+    UbxReport m8(8);
+    m8.config.set(in_ram, pulse_def, 1);
+    m8.config.set(in_ram, frequency_lock, 5);
+    const std::uint32_t first = m8.report<TimTp>().tow_ms;
+    m8.state.epoch.fix.time += 200ms;
+    EXPECT_EQ(m8.report<TimTp>().tow_ms, first + 200) << "five a second";
+    m8.config.set(in_ram, frequency_lock, 0);
+    EXPECT_TRUE(m8.frames(TimTp::message_id).empty());
+    m8.config.set(in_ram, pulse_def, 0);
+    m8.config.set(in_ram, period_lock, 4'000'000);
+    EXPECT_EQ(m8.report<TimTp>().tow_ms % 4000, 0U);
+    m8.config.set(in_ram, use_locked, 0);
+    m8.config.set(in_ram, period, 500'000);
+    EXPECT_EQ(m8.report<TimTp>().tow_ms % 500, 0U);
+    const std::pair<std::uint64_t, int> references[] = {{0, 0x0F}, {1, 0}, {2, 1}, {3, 2}, {4, 3}};
+    for (const auto& [base, reference] : references) {
+        m8.config.set(in_ram, grid, base);
+        EXPECT_EQ(m8.report<TimTp>().ref_info, reference) << base;
+        EXPECT_EQ(m8.report<TimTp>().flags & 1, base == 0 ? 1 : 0);
+    }
+    m8.config.set(in_ram, enabled, 0);
+    EXPECT_TRUE(m8.frames(TimTp::message_id).empty());
+}
+
 }  // namespace
 }  // namespace skyloop::firmware

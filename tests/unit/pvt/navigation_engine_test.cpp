@@ -104,6 +104,18 @@ TEST(NavigationEngine, TakesTheIonosphereOutWithTwoCarriers) {
     EXPECT_GT(error_of(single.solve(observations, settings), receiver), 0.5);
 }
 
+TEST(NavigationEngine, HoldsTheCourseBelowTheReceiversOwnSpeed) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    TrueReceiver receiver = receiver_at(antenna, sample_time);
+    receiver.velocity = LocalFrame(antenna).to_ecef(Velocity<Enu>(0.2, 0, 0)).vector();
+    for (const auto& [threshold, course] : {std::pair{0.3, 0.0}, {0.1, 90.0}}) {
+        NavigationEngine engine(plain(FilterKind::none), {&sky});
+        ReceiverSettings settings;
+        settings.course_held_below = MetresPerSecond(threshold);
+        EXPECT_NEAR(engine.solve(measure(sky, receiver), settings).course.deg(), course, 0.1) << threshold;
+    }
+}
+
 TEST(NavigationEngine, TakesTheStrongestWhereItHasNoTimeForAll) {
     const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
     const TrueReceiver receiver = receiver_at(antenna, sample_time);
