@@ -124,11 +124,14 @@ struct NmeaStyle {
     bool course_always = false;     ///< the course is printed even at rest and frozen
     bool satellites_padded = true;  ///< numSV of GGA and GNS in two digits: "07", not "7"
     int dop_decimals = 2;
-    std::string station_field;          ///< of GGA without corrections: empty, or "0000"
-    std::string beidou_talker = "GB";   ///< or "BD"
-    std::string qzss_talker = "GQ";     ///< or "QZ"; of versions in which QZSS has its own
-    bool gst_ellipse = true;            ///< GST tells the axes of the error ellipse (F9P: not)
-    bool gst_padded = false;            ///< its fields look like "004.0", the last like "00014" (MTK)
+    std::string station_field;         ///< of GGA without corrections: empty, or "0000"
+    std::string beidou_talker = "GB";  ///< or "BD"
+    std::string qzss_talker = "GQ";    ///< or "QZ"; of versions in which QZSS has its own
+    bool gst_ellipse = true;           ///< GST tells the axes of the error ellipse (F9P: not)
+    bool gst_padded = false;           ///< its fields look like "004.0", the last like "00014" (MTK)
+    /// Without a fix DOPs are empty, units of heights stay, speed and course are 0.00 (MTK; u-blox: 99.99, and
+    /// nothing).
+    bool zeros_without_fix = false;
     bool unknown_date_is_1980 = false;  ///< before the date is known RMC says 050180 and a time since power-on (MTK)
 };
 

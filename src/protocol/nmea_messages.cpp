@@ -46,6 +46,8 @@ std::string gga_text(const Gga& m, const NmeaFormat& format, int coordinate_deci
     for (const auto& height : {m.altitude, m.geoid_separation}) {
         if (height && std::isfinite(height->value()))
             s.decimal(height->value(), format.altitude_decimals).letter('M');
+        else if (format.units_always)
+            s.empty().letter('M');
         else
             s.empty(2);
     }

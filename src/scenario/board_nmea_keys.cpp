@@ -37,6 +37,7 @@ void read_board_style(TableReader& nmea, firmware::NmeaStyle& style) {
     nmea.integer("dop_decimals", style.dop_decimals, {0, 3});
     nmea.boolean("gst_ellipse", style.gst_ellipse);
     nmea.boolean("gst_padded", style.gst_padded);
+    nmea.boolean("zeros_without_fix", style.zeros_without_fix);
     nmea.boolean("unknown_date_is_1980", style.unknown_date_is_1980);
     read_one_of(nmea, "station_field", station_fields, style.station_field);
     read_one_of(nmea, "beidou_talker", beidou_talkers, style.beidou_talker);

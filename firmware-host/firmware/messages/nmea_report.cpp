@@ -156,7 +156,12 @@ void add_position_and_motion(NmeaReport& r) {
     const auto& [board, config, state, ports, port] = r.context;
     const bool any = (config.flag(key::nmea_out_invfix) || state.old_position_shown) && state.position_known;
     const bool beyond_limits = r.solved && config.flag(key::nmea_out_mskfix);
-    if (!r.valid && !any && !beyond_limits) return;
+    if (!r.valid && !any && !beyond_limits) {
+        if (!board.style.zeros_without_fix) return;
+        r.speed = MetresPerSecond(0);
+        r.course = Angle();
+        return;
+    }
     const Fix& fix = r.fix();
     r.position = NmeaPosition{fix.position.latitude, fix.position.longitude};
     r.speed = fix.speed;
@@ -195,6 +200,7 @@ NmeaFormat nmea_format(const BoardProfile& board, const ConfigStore& config) {
                       .course_decimals = board.style.course_decimals,
                       .dop_decimals = board.style.dop_decimals,
                       .satellites_padded = board.style.satellites_padded,
+                      .units_always = board.style.zeros_without_fix,
                       .deviations_padded = board.style.gst_padded,
                       .no_station = board.style.station_field};
     if (config.flag(key::nmea_compat)) format.time_decimals = compatible_time_decimals;

@@ -151,10 +151,13 @@ std::vector<Gsa> gsa_messages(const NmeaReport& r) {
         !r.context.config.has(key::navspg_fixmode) || r.context.config.value(key::navspg_fixmode) == automatic;
     m.fix_mode = r.fix_mode;
     const Dop& dop = r.fix().dop;
-    const bool known = has_dops(r.fix());
-    m.pdop = known ? dop.pdop : no_dop_in_list;
-    m.hdop = known ? dop.hdop : no_dop_in_list;
-    m.vdop = known ? dop.vdop : no_dop_in_list;
+    if (has_dops(r.fix())) {
+        m.pdop = dop.pdop;
+        m.hdop = dop.hdop;
+        m.vdop = dop.vdop;
+    } else if (!r.context.board.style.zeros_without_fix) {
+        m.pdop = m.hdop = m.vdop = no_dop_in_list;
+    }
     std::vector<Gsa> out;
     for (const NmeaGroup& group : r.groups) {
         m.satellites.clear();

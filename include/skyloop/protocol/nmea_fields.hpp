@@ -24,6 +24,7 @@ struct NmeaFormat {
     int course_decimals = 2;         ///< of RMC and VTG
     int dop_decimals = 2;            ///< of GGA, GNS and GSA
     bool satellites_padded = true;   ///< numSV of GGA and GNS has two digits: "07", not "7"
+    bool units_always = false;       ///< GGA has the units of heights that it does not tell
     bool deviations_padded = false;  ///< GST in the manner of MediaTek: "004.0", the last field "00014"
     std::string_view no_station{};   ///< the last field of GGA without a correction station: empty, or "0000"
 };

@@ -105,6 +105,23 @@ TEST(NmeaWithoutAFix, TellsTimeAndDateAsSoonAsItKnowsThem) {
     EXPECT_THAT(receiver.line(gbs_id), StartsWith("$GNGBS,145622.00,,,,,,,*"));
 }
 
+TEST(NmeaStyles, MediaTekLeavesZerosWithoutAFix) {
+    BoardProfile board = sample_board(NmeaVersion::v2_3, {gps});
+    board.style.zeros_without_fix = board.style.unknown_date_is_1980 = true;
+    board.style.satellites_padded = false;
+    board.style.speed_decimals = 2;
+    board.time_decimals = 3;
+    SampleReceiver receiver(board);
+    Fix fix = sample_fix("2023-06-28T14:56:22Z", 0, 0, 0);
+    fix.type = FixType::none;
+    receiver.set(fix);
+    // As captures of the MT3339's family have it, but for the time.
+    EXPECT_THAT(receiver.line(gga_id), StartsWith("$GPGGA,235946.000,,,,,0,0,,,M,,M,,*"));
+    EXPECT_THAT(receiver.line(rmc_id), StartsWith("$GPRMC,235946.000,V,,,,,0.00,0.00,050180,,,N*"));
+    EXPECT_EQ(receiver.line(gsa_id), "$GPGSA,A,1,,,,,,,,,,,,,,,*1E\r\n");
+    EXPECT_THAT(receiver.line(vtg_id), StartsWith("$GPVTG,0.00,T,,M,0.00,N,0.00,K,N*"));
+}
+
 TEST(NmeaFilters, LetInvalidValuesThrough) {
     SampleReceiver receiver = without_fix(NmeaVersion::v4_0, {gps, glonass});
     receiver.config.set(in_ram, key::nmea_out_invtime, 1);
