@@ -49,7 +49,7 @@ Result<ReceiverLog> DataflashEpochs::read(ByteSpan bytes) {
     add_note(log_, undated_, "GPS records without a week were left out");
     add_note(log_, reader.skipped_bytes(), "bytes that begin no record were passed over");
     add_note(log_, reader.is_cut() ? 1 : 0, "record is cut by the end of the file");
-    return finish_log(std::move(log_));
+    return finish_log(std::move(log_), reading_);
 }
 
 // GPS and GPA of old logs, GPS2 and GPA2 (GPB) for the second receiver; an instance in new ones.

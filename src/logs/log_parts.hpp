@@ -32,9 +32,14 @@ void add_satellite(std::vector<LoggedSatellite>& satellites, const LoggedSatelli
 /// "3 epochs … ", when there are any.
 void add_note(ReceiverLog& log, std::size_t count, const std::string& what);
 
-/// Puts epochs in order: those more than a week from the middle one have a wrong clock, those that repeat a time or go
-/// back are left out. Fails when none is left.
-Result<ReceiverLog> finish_log(ReceiverLog log);
+/// Epochs ascending in time, each time once. Left out: a single epoch whose time ran ahead, those that repeat a time or
+/// go back, and those without a place that do not fit between their neighbours with one, which they never outdate.
+/// Recordings of one file that have times of their own are put in the order of time. It is told.
+void put_epochs_in_order(ReceiverLog& log);
+
+/// Leaves out epochs more than a week from the middle one, whose clock is wrong, and puts the others in order, unless a
+/// track is wanted, whose rows are cleaned as those of every track. Fails when none is left.
+Result<ReceiverLog> finish_log(ReceiverLog log, const LogReading& reading);
 
 /// UBX and NMEA, mixed as receivers send them.
 Result<ReceiverLog> read_stream_log(ByteSpan bytes, const std::string& name, const LogReading& reading);

@@ -10,6 +10,19 @@
 #include "skyloop/logs/ulog.hpp"
 
 namespace skyloop {
+namespace {
+
+// By the clock of epochs with a fix, where there are any: that of a receiver without one may be anything.
+GpsTime middle_time(const std::vector<LogEpoch>& epochs) {
+    std::vector<GpsTime> times, of_fixes;
+    for (const LogEpoch& epoch : epochs) {
+        times.push_back(epoch.time);
+        if (!epoch.is_lost()) of_fixes.push_back(epoch.time);
+    }
+    return middle_of(of_fixes.empty() ? times : of_fixes);
+}
+
+}  // namespace
 
 int logged_number(std::optional<double> value) {
     constexpr double most = 65535;
@@ -37,27 +50,15 @@ void add_note(ReceiverLog& log, std::size_t count, const std::string& what) {
     if (count > 0) log.notes.push_back(fmt::format("{} {}", count, what));
 }
 
-Result<ReceiverLog> finish_log(ReceiverLog log) {
+Result<ReceiverLog> finish_log(ReceiverLog log, const LogReading& reading) {
     constexpr auto longest = std::chrono::hours(7 * 24);
     std::vector<LogEpoch>& epochs = log.epochs;
     if (!epochs.empty()) {
-        std::vector<GpsTime> times;
-        for (const LogEpoch& epoch : epochs)
-            times.push_back(epoch.time);
-        const GpsTime middle = middle_of(times);
+        const GpsTime middle = middle_time(epochs);
         const auto astray = [&](const LogEpoch& e) { return std::chrono::abs(e.time - middle) > longest; };
         add_note(log, std::erase_if(epochs, astray), "epochs more than a week from the middle one were left out");
     }
-    std::size_t repeated = 0;
-    std::vector<LogEpoch> kept;
-    for (LogEpoch& epoch : epochs) {
-        if (!kept.empty() && epoch.time <= kept.back().time)
-            ++repeated;
-        else
-            kept.push_back(std::move(epoch));
-    }
-    epochs = std::move(kept);
-    add_note(log, repeated, "epochs that repeat a time or go back were left out");
+    if (!reading.for_track) put_epochs_in_order(log);
     if (epochs.empty())
         return fail(ErrorCode::input,
                     fmt::format("{}: no epoch of a receiver with a date and time ({}); expected NAV-PVT, NAV-SOL or "

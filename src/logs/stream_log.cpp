@@ -44,7 +44,7 @@ Result<ReceiverLog> read_stream_log(ByteSpan bytes, const std::string& name, con
     const std::uint64_t bad =
         counts.bad[static_cast<std::size_t>(StreamKind::ubx)] + counts.bad[static_cast<std::size_t>(StreamKind::nmea)];
     add_note(*log, bad, "messages or sentences with a wrong checksum were left out");
-    return finish_log(std::move(*log));
+    return finish_log(std::move(*log), reading);
 }
 
 }  // namespace skyloop

@@ -157,7 +157,7 @@ Result<ReceiverLog> read_ulog(ByteSpan bytes, const std::string& name, const Log
     add_note(log, parsed->dropouts, fmt::format("dropouts of the logger, {} ms together", parsed->dropout_ms));
     add_note(log, parsed->cut_records, "records that are cut or of a wrong length were left out");
     add_note(log, parsed->skipped_bytes, "bytes of damage were passed over");
-    return finish_log(std::move(log));
+    return finish_log(std::move(log), reading);
 }
 
 }  // namespace skyloop

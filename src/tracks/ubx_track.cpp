@@ -30,7 +30,7 @@ bool is_ubx_track(const TrackFile& file) {
 }
 
 Result<Track> read_ubx_track(const TrackFile& file) {
-    auto log = read_receiver_log(file.bytes, file.name, {file.reading.geoid, 0});
+    auto log = read_receiver_log(file.bytes, file.name, {file.reading.geoid, 0, true});
     if (!log) return fail(log.error());
     Track track;
     track.name = file.name;

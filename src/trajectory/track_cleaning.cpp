@@ -65,6 +65,12 @@ void leave_out_what_is_no_number(Track& track) {
     no_velocity.tell(track, "rows have a velocity that is no number, which was left out");
 }
 
+// Whether the first row alone stands before a part that goes on earlier and does not say that it begins anew.
+bool first_ran_ahead(const std::vector<TrackRows>& parts) {
+    constexpr std::size_t fewest_behind = 3;
+    return parts.size() > 1 && parts[0].size() == 1 && parts[1].size() >= fewest_behind && !parts[1].front().jump;
+}
+
 // Where the source began anew: the first rows of parts whose times go back by more than two seconds. A single stamp
 // that ran ahead is left out.
 std::vector<TrackRows> parts_of(Track& track) {
@@ -81,6 +87,10 @@ std::vector<TrackRows> parts_of(Track& track) {
         } else {
             parts.push_back({std::move(row)});
         }
+    }
+    if (first_ran_ahead(parts)) {
+        ahead.add(parts.front().front());
+        parts.erase(parts.begin());
     }
     ahead.tell(track, "rows have a time that ran ahead and were left out");
     return parts;

@@ -50,7 +50,7 @@ struct LogEpoch {
     }
 };
 
-/// A log as it was read. Epochs are ascending in time, each time once.
+/// A log as it was read. Epochs are ascending in time, each time once, but as they stand in the file for a track.
 struct ReceiverLog {
     std::string name;      ///< of the file
     std::string format;    ///< "UBX", "NMEA", "ULog" or "DataFlash"
@@ -65,7 +65,9 @@ struct ReceiverLog {
 struct LogReading {
     const Geoid* geoid = nullptr;  ///< for heights above sea level where the log does not tell the undulation
     std::size_t receiver = 0;      ///< of several in one log, from 0
-    bool for_track = false;  ///< the way alone is wanted: NMEA without a date is read too, and no note tells of heights
+    /// The way alone is wanted: NMEA without a date is read too, no note tells of heights, and UBX and NMEA epochs are
+    /// not put in order, which clean_track() does.
+    bool for_track = false;
 };
 
 /// Reads a log of any of the four kinds, told by its content. Fails with `input` and one sentence that begins with the

@@ -157,6 +157,58 @@ TEST(NmeaLog, DatesEpochsOverMidnight) {
     EXPECT_THAT(refusal_of(to_bytes(sentence_of("GNGGA,000001.00,,,,,0,00,99.9,,M,,M,,"))), HasSubstr("no date"));
 }
 
+// An epoch of 5 March 2024 with a fix, so many seconds after noon; its place tells which one it is.
+std::string epoch_after_noon(int second, int number) {
+    char body[200], date[80];
+    const int of_day = 43200 + second;
+    const int clock = of_day / 3600 * 10000 + of_day / 60 % 60 * 100 + of_day % 60;
+    std::snprintf(body, sizeof body, "GPGGA,%06d.00,47%02d.0000,N,00800.0000,E,1,08,1.0,500.0,M,47.0,M,,", clock,
+                  number);
+    std::snprintf(date, sizeof date, "GPRMC,%06d.00,A,4700.0,N,00800.0,E,0,0,050324,,,A", clock);
+    return sentence_of(date) + sentence_of(body);
+}
+
+TEST(NmeaLog, OneTimeThatRanAheadCostsItsEpochAlone) {
+    for (const int wrong : {0, 10, 19}) {
+        std::string text;
+        for (int i = 0; i < 20; ++i)
+            text += epoch_after_noon(i == wrong ? 7200 : i, i);
+        const ReceiverLog log = read_whole(to_bytes(text));
+        ASSERT_EQ(log.epochs.size(), wrong == 19 ? 20u : 19u) << wrong;  // the last one may be right
+        EXPECT_EQ(log.epochs.front().time, log_noon + std::chrono::seconds(wrong == 0 ? 1 : 0));
+        if (wrong < 19) {
+            EXPECT_THAT(log.notes, testing::ElementsAre(HasSubstr("1 epochs have a time that ran ahead")));
+        }
+    }
+}
+
+TEST(NmeaLog, EpochsWithoutAFixNeverOutdateThoseWithOne) {
+    std::string text;
+    for (int i = 0; i < 3; ++i)
+        text += sentence_of("GPRMC,20000" + std::to_string(i) + ".00,V,4700.0,N,00800.0,E,0,0,050324,,,N");
+    for (int i = 0; i < 5; ++i)
+        text += epoch_after_noon(i, i);
+    text += sentence_of("GPRMC,120005.00,V,,,,,,,050324,,,N") + epoch_after_noon(6, 6);
+    const ReceiverLog log = read_whole(to_bytes(text));
+    ASSERT_EQ(log.epochs.size(), 7u);
+    EXPECT_EQ(log.epochs.front().time, log_noon);
+    EXPECT_TRUE(log.epochs[5].is_lost());
+    EXPECT_EQ(log.epochs[5].time, log_noon + std::chrono::seconds(5));
+}
+
+TEST(NmeaLog, PutsRecordingsOfOneFileInTheirOrder) {
+    std::string text;
+    for (int i = 0; i < 10; ++i)
+        text += epoch_after_noon(3600 + i, i);
+    for (int i = 0; i < 5; ++i)
+        text += epoch_after_noon(i, 20 + i);
+    const ReceiverLog log = read_whole(to_bytes(text));
+    ASSERT_EQ(log.epochs.size(), 15u);
+    EXPECT_EQ(log.epochs.front().time, log_noon);
+    EXPECT_EQ(log.epochs.back().time, log_noon + std::chrono::seconds(3609));
+    EXPECT_THAT(log.notes, testing::ElementsAre(HasSubstr("2 recordings do not follow each other in time")));
+}
+
 ByteWriter& ulog_message(ByteWriter& log, char type, const Bytes& payload) {
     log.put(static_cast<std::uint16_t>(payload.size())).put(type);
     append(log.bytes, payload);

@@ -106,6 +106,22 @@ TEST(NmeaTrack, TakesVoidPlacesOnlyWhereThereAreNoOthers) {
                 Contains(HasSubstr("all 1 places are marked as without a fix; they are taken all the same")));
 }
 
+TEST(NmeaTrack, LeavesTheOrderOfTimeToTheCleaningOfTracks) {
+    std::string ahead = rmc("120000.00") + rmc("140000.00"), boots;
+    for (int i = 1; i < 9; ++i) {
+        ahead += rmc(fmt::format("12000{}.00", i));
+        boots += rmc(fmt::format("20000{}.00", i), "050324", ",", 'V');
+    }
+    Track track = track_of(ahead);
+    EXPECT_EQ(track.points.size(), 10u);
+    ASSERT_TRUE(clean_track(track, Seconds(10)).has_value());
+    EXPECT_EQ(track.points.size(), 9u);
+    EXPECT_THAT(track.notes, Contains(HasSubstr("1 rows have a time that ran ahead")));
+    const Track later = track_of(boots + ahead);
+    EXPECT_EQ(later.points.size(), 10u);
+    EXPECT_EQ(utc_of(later, 0), "2024-03-05T12:00:00.000Z");
+}
+
 TEST(NmeaTrack, LeavesOutASinglePlaceThatCannotBe) {
     const Track track = track_of(rmc("120000.00") + gga("120000.00") + gga("120001.00", "-20000.0,M,48.0,M"));
     EXPECT_EQ(track.points.size(), 1u);

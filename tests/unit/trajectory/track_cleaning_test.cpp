@@ -75,6 +75,14 @@ TEST(TrackCleaning, PartsOfOneClockArePutInOrder) {
     EXPECT_THAT(track.notes, ElementsAre(HasSubstr("2 parts do not follow each other in time")));
 }
 
+TEST(TrackCleaning, AFirstTimeThatRanAheadIsLeftOut) {
+    Track track = stamped({100, 5, 6, 7, 8});
+    track.origin = recorded_start;
+    ASSERT_TRUE(clean_track(track, Seconds(1000)).has_value());
+    EXPECT_THAT(times_of(track), ElementsAre(5, 6, 7, 8));
+    EXPECT_THAT(track.notes, ElementsAre(HasSubstr("1 rows have a time that ran ahead")));
+}
+
 // Segments of a GPX file, the newest first.
 TEST(TrackCleaning, PartsThatBeginByAJumpDoSoInWhateverOrderTheyAreStored) {
     Track track = stamped({20, 21, 22, 10, 11, 12, 0, 1, 2});
