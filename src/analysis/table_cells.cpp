@@ -2,6 +2,8 @@
 
 #include <charconv>
 
+#include "skyloop/base/cell_end.hpp"
+
 namespace skyloop {
 
 std::string_view without_blanks(std::string_view text) {
@@ -13,7 +15,7 @@ std::string_view without_blanks(std::string_view text) {
 std::vector<std::string_view> split_cells(std::string_view line, char separator) {
     std::vector<std::string_view> cells;
     for (;;) {
-        const std::size_t end = line.find(separator);
+        const std::size_t end = end_of_cell(line, {&separator, 1});
         cells.push_back(without_blanks(line.substr(0, end)));
         if (end == std::string_view::npos) return cells;
         line.remove_prefix(end + 1);

@@ -10,7 +10,8 @@ namespace skyloop {
 /// `text` without blanks, line ends and quotation marks around it.
 std::string_view without_blanks(std::string_view text);
 
-/// The cells of a line, each without blanks around it. With a space as `separator` several count as one.
+/// The cells of a line, each without blanks around it. A separator between double quotes separates nothing. With a
+/// space as `separator` several count as one.
 std::vector<std::string_view> split_cells(std::string_view line, char separator);
 
 /// The number that a cell is, or nothing.

@@ -48,6 +48,7 @@ bool named_place(TextTrack& track, NamedRow& columns, std::array<std::string_vie
 // Garmin G1000 (the file's own lines of units): local time and its offset from UTC; AltGPS, feet above WGS 84; ground
 // track and heading from magnetic north, MagVar their variation, east positive; vertical speed in feet a minute.
 Result<void> take_g1000_row(TextTrack& track, const TableCells& table) {
+    if (auto fits = table.check_width(); !fits) return fits;
     NamedRow columns(table);
     TextRow row;
     row.line = table.line();
@@ -79,6 +80,7 @@ Result<void> take_g1000_row(TextTrack& track, const TableCells& table) {
 // The table of Hazer's gpstool (com-diag-hazer, yodel): TIM, POSIX seconds of the fix; MSL and GEO, metres above sea
 // level and above the ellipsoid; SOG in knots, COG from true north.
 Result<void> take_yodel_row(TextTrack& track, const TableCells& table) {
+    if (auto fits = table.check_width(); !fits) return fits;
     NamedRow columns(table);
     TextRow row;
     row.line = table.line();
@@ -99,6 +101,7 @@ Result<void> take_yodel_row(TextTrack& track, const TableCells& table) {
 
 // gpsbabel's unicsv: date and time in UTC in two columns, metres above sea level, m/s.
 Result<void> take_unicsv_row(TextTrack& track, const TableCells& table) {
+    if (auto fits = table.check_width(); !fits) return fits;
     NamedRow columns(table);
     TextRow row;
     row.line = table.line();

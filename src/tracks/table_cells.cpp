@@ -30,6 +30,17 @@ void TableCells::take_names() {
         names_.push_back(lowered_text(cell));
 }
 
+Result<void> TableCells::check_width() const {
+    std::size_t count = cells_.size();
+    while (count > names_.size() && cells_[count - 1].empty())
+        --count;
+    if (count <= names_.size()) return {};
+    return refusal(
+        fmt::format("{} cells under {} names; expected one for each: numbers with a decimal point, texts "
+                    "that hold the separator in quotes",
+                    count, names_.size()));
+}
+
 std::optional<std::size_t> TableCells::column(std::string_view name) const {
     const auto at = std::find(names_.begin(), names_.end(), lowered_text(name));
     return at == names_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(at - names_.begin()));

@@ -25,6 +25,8 @@ public:
     [[nodiscard]] std::size_t line() const { return lines_.number(); }
     // Takes the present line as the names of the columns.
     void take_names();
+    // Fails where the row has more cells than there are names: a decimal comma made two of one.
+    [[nodiscard]] Result<void> check_width() const;
     // Of the column with this name, letters of either case; nothing: there is none.
     [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const;
     // Empty where the row has fewer cells or the column is not there.

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "skyloop/base/cell_end.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -120,14 +122,19 @@ bool TextLines::next() {
 
 void split_text_cells(std::string_view line, char separator, std::vector<std::string_view>& cells) {
     cells.clear();
-    const std::string_view separators = separator == ' ' ? std::string_view(" \t") : std::string_view(&separator, 1);
-    if (separator == ' ') line = trimmed_text(line);
+    constexpr std::string_view blanks = " \t";
+    const bool blank = separator == ' ';
+    const std::string_view separators = blank ? blanks : std::string_view(&separator, 1);
+    if (blank) {
+        line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+        line = line.substr(0, line.find_last_not_of(blanks) + 1);
+    }
     for (;;) {
-        const std::size_t end = line.find_first_of(separators);
+        const std::size_t end = end_of_cell(line, separators);
         cells.push_back(trimmed_text(line.substr(0, end)));
         if (end == std::string_view::npos) return;
         line.remove_prefix(end + 1);
-        if (separator == ' ') line.remove_prefix(std::min(line.find_first_not_of(separators), line.size()));
+        if (blank) line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
     }
 }
 

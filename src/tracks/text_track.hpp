@@ -54,7 +54,8 @@ private:
     std::size_t number_ = 0;
 };
 
-// Cells of a line, trimmed. With a blank as separator, several blanks and tabs count as one.
+// Cells of a line, trimmed. A separator between double quotes separates nothing. With a blank as separator, several
+// blanks and tabs count as one.
 void split_text_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);
 
 // An instant as ISO 8601 writes it: 2024-03-05T12:00:00.123456789Z, with any zone, or none.

@@ -1,23 +1,11 @@
 #include "track_cells.hpp"
 
+#include <algorithm>
+
+#include "skyloop/base/cell_end.hpp"
 #include "skyloop/geo/geodetic.hpp"
 
 namespace skyloop {
-namespace {
-
-// Of a cell that begins a line.
-std::size_t end_of_cell(std::string_view line, char separator) {
-    bool quoted = false;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        if (line[i] == '"') quoted = !quoted;
-        if (line[i] == separator && !quoted) return i;
-    }
-    // A quote without its other half is a letter.
-    return quoted ? line.find(separator) : std::string_view::npos;
-}
-
-}  // namespace
-
 std::string_view trimmed_track_cell(std::string_view text) {
     const std::size_t first = text.find_first_not_of(" \t\r\"");
     if (first == std::string_view::npos) return {};
@@ -32,19 +20,19 @@ char track_separator(std::string_view header) {
 
 void split_track_cells(std::string_view line, char separator, TrackCells& cells) {
     cells.clear();
-    if (separator == ' ')
-        while (line.starts_with(' ') || line.starts_with('\t'))
-            line.remove_prefix(1);
-    if (separator == ' ')
-        while (line.ends_with(' ') || line.ends_with('\t') || line.ends_with('\r'))
-            line.remove_suffix(1);
+    constexpr std::string_view blanks = " \t";
+    const bool blank = separator == ' ';
+    const std::string_view separators = blank ? blanks : std::string_view(&separator, 1);
+    if (blank) {
+        line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+        line = line.substr(0, line.find_last_not_of(" \t\r") + 1);
+    }
     for (;;) {
-        const std::size_t end = end_of_cell(line, separator);
+        const std::size_t end = end_of_cell(line, separators);
         cells.push_back(trimmed_track_cell(line.substr(0, end)));
         if (end == std::string_view::npos) return;
         line.remove_prefix(end + 1);
-        while (separator == ' ' && line.starts_with(' '))
-            line.remove_prefix(1);
+        if (blank) line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
     }
 }
 

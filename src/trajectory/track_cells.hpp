@@ -15,7 +15,7 @@ using TrackCells = std::vector<std::string_view>;
 std::string_view trimmed_track_cell(std::string_view text);
 // Comma, semicolon or tabulator, the first of them that a header has; else a blank.
 char track_separator(std::string_view header);
-// A separator between double quotes separates nothing. With a blank as separator, several blanks count as one.
+// A separator between double quotes separates nothing. With a blank as separator, several blanks and tabs count as one.
 void split_track_cells(std::string_view line, char separator, TrackCells& cells);
 
 // Upwards, m/s, from the heights of the rows beside: the slope of the parabola through three of them, or of a line.

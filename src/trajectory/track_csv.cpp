@@ -33,6 +33,7 @@ public:
 
 private:
     Result<void> take_line(std::string_view line);
+    Result<void> take_header(std::string_view line);
     Result<void> take_row();
     Result<std::optional<double>> number(TrackQuantity quantity);
     Result<std::optional<Nanoseconds>> time();
@@ -66,6 +67,7 @@ private:
     std::optional<LocalFrame> local_;
     std::optional<double> last_reset_;
     Track track_;
+    std::size_t names_ = 0;  // in the first line
     std::size_t line_ = 0, without_time_ = 0, without_place_ = 0, without_fix_ = 0, rows_ = 0;
     char separator_ = ',';
     bool has_header_ = false;
@@ -97,11 +99,20 @@ Result<void> TrackTable::take_line(std::string_view line) {
     if (line.size() > longest) return refusal(fmt::format("a line of {} characters; expected a table", line.size()));
     const std::string_view plain = trimmed_track_cell(line);
     if (plain.empty() || plain.front() == '#' || plain.front() == '%') return {};
-    if (has_header_) {
-        split_track_cells(line, separator_, cells_);
-        return take_row();
-    }
-    separator_ = track_separator(plain);
+    if (!has_header_) return take_header(line);
+    split_track_cells(line, separator_, cells_);
+    while (cells_.size() > names_ && cells_.back().empty())
+        cells_.pop_back();
+    if (cells_.size() > names_)
+        return refusal(
+            fmt::format("{} cells under {} names; expected one for each: numbers with a decimal point, texts that hold "
+                        "the separator in quotes",
+                        cells_.size(), names_));
+    return take_row();
+}
+
+Result<void> TrackTable::take_header(std::string_view line) {
+    separator_ = track_separator(trimmed_track_cell(line));
     split_track_cells(line, separator_, cells_);
     auto columns = TrackColumns::of(cells_);
     if (!columns) return refusal(columns.error().message);
@@ -118,6 +129,7 @@ Result<void> TrackTable::take_line(std::string_view line) {
     else if (!columns_.has(since_start))
         track_.origin = GpsTime{};
     has_header_ = true;
+    names_ = cells_.size();
     return {};
 }
 

@@ -149,6 +149,18 @@ TEST(TableDialects, ReadUnicsvOfGpsbabel) {
                 HasSubstr("t.txt:2: latitude is '47,5'; expected a number with a decimal point"));
 }
 
+// As gpsbabel writes names and comments that hold commas and quotes.
+TEST(TableDialects, ReadCellsInQuotesAsOne) {
+    const Track track = track_of(
+        "No,Latitude,Longitude,Name,Altitude,Description,Date,Time\n"
+        "1,47.500000,8.250000,\"Alm, 12\",500.0,\"a \"\"b\"\", 7\",2024/03/05,12:00:00\n");
+    ASSERT_EQ(track.points.size(), 1u);
+    EXPECT_NEAR(height_of(track, 0), 510, 1e-4);
+    EXPECT_EQ(utc_of(track, 0), "2024-03-05T12:00:00.000Z");
+    EXPECT_THAT(refusal_of_track("Latitude,Longitude,Altitude,Date,Time\n47,5,8,25,500,2024/03/05,12:00:00\n"),
+                HasSubstr("t.txt:2: 7 cells under 5 names"));
+}
+
 TEST(TableDialects, ReadTheReceiversFixesOfGnssLogger) {
     const std::string head =
         "# Header\n# Fix,Provider,LatitudeDegrees,LongitudeDegrees,AltitudeMeters,SpeedMps,AccuracyMeters,"

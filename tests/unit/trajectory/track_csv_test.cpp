@@ -84,6 +84,18 @@ TEST(TrackCsv, SeparatorsBetweenQuotesSeparateNothing) {
     EXPECT_EQ(track.points[2].time, std::chrono::seconds(2));
 }
 
+TEST(TrackCsv, RefusesRowsWithMoreCellsThanNames) {
+    EXPECT_THAT(refused("t_s,lat_deg,lon_deg,h_ell_m\n0,47,0001,8,5000,500,0\n"),
+                HasSubstr("t.csv:2: 7 cells under 4 names; expected one for each: numbers with a decimal point"));
+    EXPECT_THAT(refused("t_s,lat_deg,lon_deg,h_ell_m\n0,47,8,500,7\n"), HasSubstr("5 cells under 4 names"));
+    EXPECT_EQ(read_rows("t_s,lat_deg,lon_deg,h_ell_m\n0,47,8,500,,\n").points.size(), 1u);
+}
+
+TEST(TrackCsv, BlanksAndTabsMayBeMixed) {
+    const Track track = read_rows("t_s lat_deg lon_deg  h_ell_m\n\t0  47.5\t8.5 \t 500\n");
+    EXPECT_NEAR(to_geodetic(track.points.at(0).position).longitude.deg(), 8.5, 1e-9);
+}
+
 TEST(TrackCsv, ReadsTheRecordingsOfThisProgram) {
     const Track track = read_rows(
         "time_utc,gps_week,tow_s,true_lat_deg,lat_deg,lon_deg,height_m,vel_north_mps,vel_east_mps,vel_down_mps\n"
