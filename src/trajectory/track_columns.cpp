@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <numbers>
+
+#include "skyloop/base/column_name.hpp"
 
 namespace skyloop {
 namespace {
@@ -81,105 +82,59 @@ constexpr std::array known_columns{KnownColumn{"t_s", Q::since_start, 1},
                                    KnownColumn{"fix", Q::fix, 1},
                                    KnownColumn{"reset", Q::reset, 1}};
 
+std::string lowered_column(std::string_view name) {
+    std::string lower(name);
+    for (char& letter : lower)
+        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    return lower;
+}
+
+// In letters of either case; names of one word, such as "fix", stand for something else when they begin with a capital.
+bool is_called(const KnownColumn& column, std::string_view name) {
+    return column.name == name || (name.find('_') != std::string_view::npos && column.name == lowered_column(name));
+}
+
 // What other programs call a quantity, and what its unit measures. Of several for one quantity the earlier one counts.
 struct OtherName {
     std::string_view name;
     TrackQuantity quantity;
-    std::string_view measures;
+    Measured measures;
 };
-constexpr std::string_view times = "time", calendars = "calendar", angles = "angle", lengths = "length",
-                           speeds = "speed";
-constexpr std::array other_names{OtherName{"datetime", Q::utc, calendars},
-                                 OtherName{"timestamp", Q::utc, calendars},
-                                 OtherName{"time", Q::utc, calendars},
-                                 OtherName{"time", Q::since_start, times},
-                                 OtherName{"elapsed_time", Q::since_start, times},
-                                 OtherName{"unix_time", Q::posix, times},
-                                 OtherName{"latitude", Q::latitude, angles},
-                                 OtherName{"lat", Q::latitude, angles},
-                                 OtherName{"longitude", Q::longitude, angles},
-                                 OtherName{"lon", Q::longitude, angles},
-                                 OtherName{"lng", Q::longitude, angles},
-                                 OtherName{"height_above_ellipsoid", Q::height, lengths},
-                                 OtherName{"ellipsoidal_height", Q::height, lengths},
-                                 OtherName{"altitude_above_sealevel", Q::altitude, lengths},
-                                 OtherName{"altitude_msl", Q::altitude, lengths},
-                                 OtherName{"altitude", Q::altitude, lengths},
-                                 OtherName{"alt", Q::altitude, lengths},
-                                 OtherName{"elevation", Q::altitude, lengths},
-                                 OtherName{"ele", Q::altitude, lengths},
-                                 OtherName{"ground_speed", Q::speed, speeds},
-                                 OtherName{"speed", Q::speed, speeds},
-                                 OtherName{"course", Q::course, angles},
-                                 OtherName{"course_over_ground", Q::course, angles},
-                                 OtherName{"climb", Q::climb, speeds},
-                                 OtherName{"vertical_speed", Q::climb, speeds},
-                                 OtherName{"roll", Q::roll, angles},
-                                 OtherName{"pitch", Q::pitch, angles},
-                                 OtherName{"yaw", Q::yaw, angles}};
+constexpr std::array other_names{OtherName{"datetime", Q::utc, Measured::calendar},
+                                 OtherName{"timestamp", Q::utc, Measured::calendar},
+                                 OtherName{"time", Q::utc, Measured::calendar},
+                                 OtherName{"time", Q::since_start, Measured::time},
+                                 OtherName{"elapsed_time", Q::since_start, Measured::time},
+                                 OtherName{"unix_time", Q::posix, Measured::time},
+                                 OtherName{"latitude", Q::latitude, Measured::angle},
+                                 OtherName{"lat", Q::latitude, Measured::angle},
+                                 OtherName{"longitude", Q::longitude, Measured::angle},
+                                 OtherName{"lon", Q::longitude, Measured::angle},
+                                 OtherName{"lng", Q::longitude, Measured::angle},
+                                 OtherName{"height_above_ellipsoid", Q::height, Measured::length},
+                                 OtherName{"ellipsoidal_height", Q::height, Measured::length},
+                                 OtherName{"altitude_above_sealevel", Q::altitude, Measured::length},
+                                 OtherName{"altitude_msl", Q::altitude, Measured::length},
+                                 OtherName{"altitude", Q::altitude, Measured::length},
+                                 OtherName{"alt", Q::altitude, Measured::length},
+                                 OtherName{"elevation", Q::altitude, Measured::length},
+                                 OtherName{"ele", Q::altitude, Measured::length},
+                                 OtherName{"ground_speed", Q::speed, Measured::speed},
+                                 OtherName{"speed", Q::speed, Measured::speed},
+                                 OtherName{"course", Q::course, Measured::angle},
+                                 OtherName{"course_over_ground", Q::course, Measured::angle},
+                                 OtherName{"climb", Q::climb, Measured::speed},
+                                 OtherName{"vertical_speed", Q::climb, Measured::speed},
+                                 OtherName{"roll", Q::roll, Measured::angle},
+                                 OtherName{"pitch", Q::pitch, Measured::angle},
+                                 OtherName{"yaw", Q::yaw, Measured::angle}};
 
-struct OtherUnit {
-    std::string_view name, measures;
-    double scale;
-};
-constexpr std::array other_units{OtherUnit{"s", times, 1},
-                                 OtherUnit{"sec", times, 1},
-                                 OtherUnit{"seconds", times, 1},
-                                 OtherUnit{"ms", times, 1e-3},
-                                 OtherUnit{"millisecond", times, 1e-3},
-                                 OtherUnit{"milliseconds", times, 1e-3},
-                                 OtherUnit{"us", times, 1e-6},
-                                 OtherUnit{"ns", times, 1e-9},
-                                 OtherUnit{"utc", calendars, 1},
-                                 OtherUnit{"deg", angles, 1},
-                                 OtherUnit{"degrees", angles, 1},
-                                 OtherUnit{"\xC2\xB0", angles, 1},
-                                 OtherUnit{"rad", angles, degrees_of},
-                                 OtherUnit{"e7", angles, 1e-7},
-                                 OtherUnit{"m", lengths, 1},
-                                 OtherUnit{"meters", lengths, 1},
-                                 OtherUnit{"metres", lengths, 1},
-                                 OtherUnit{"km", lengths, 1000},
-                                 OtherUnit{"cm", lengths, 1e-2},
-                                 OtherUnit{"mm", lengths, 1e-3},
-                                 OtherUnit{"ft", lengths, foot},
-                                 OtherUnit{"feet", lengths, foot},
-                                 OtherUnit{"m/s", speeds, 1},
-                                 OtherUnit{"mps", speeds, 1},
-                                 OtherUnit{"km/h", speeds, 1 / 3.6},
-                                 OtherUnit{"kmh", speeds, 1 / 3.6},
-                                 OtherUnit{"kph", speeds, 1 / 3.6},
-                                 OtherUnit{"kn", speeds, knot},
-                                 OtherUnit{"kt", speeds, knot},
-                                 OtherUnit{"knots", speeds, knot},
-                                 OtherUnit{"mph", speeds, mile_per_hour},
-                                 OtherUnit{"ft/s", speeds, foot},
-                                 OtherUnit{"fps", speeds, foot}};
-
-// "Ground Speed [km/h]" as "ground_speed" and "km/h", "alt_ft" as "alt" and "ft", "latitude" as itself in degrees.
-struct NameAndUnit {
-    std::string name, unit;
-};
-NameAndUnit name_and_unit(std::string_view text) {
-    std::string lower(text);
-    for (char& letter : lower)
-        letter = letter == ' ' || letter == '-'   ? '_'
-                 : letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a')
-                                                  : letter;
-    std::string name = lower, unit;
-    if (const std::size_t open = lower.find_first_of("(["); open != std::string::npos) {
-        const std::size_t close = std::min(lower.find_first_of(")]", open), lower.size());
-        name = lower.substr(0, open);
-        unit = lower.substr(open + 1, close - open - 1);
-    } else if (lower == "latitude" || lower == "longitude" || lower == "lat" || lower == "lon") {
-        unit = "deg";
-    } else if (const std::size_t last = lower.rfind('_'); last != std::string::npos) {
-        name = lower.substr(0, last);
-        unit = lower.substr(last + 1);
-    }
-    while (name.ends_with('_'))
-        name.pop_back();
-    return {name, unit};
+// Places are in degrees where they do not tell a unit.
+ColumnName name_and_unit(std::string_view text) {
+    ColumnName parts = column_name(text);
+    constexpr std::array<std::string_view, 5> places{"latitude", "longitude", "lat", "lon", "lng"};
+    if (parts.unit.empty() && std::find(places.begin(), places.end(), parts.name) != places.end()) parts.unit = "deg";
+    return parts;
 }
 
 std::size_t rank_of_other_name(std::string_view text) {
@@ -193,17 +148,15 @@ std::size_t rank_of_other_name(std::string_view text) {
 
 // By a name and a unit that others use. The format's own names go before these, whatever their order.
 bool TrackColumns::take_other_name(std::string_view name, std::size_t index) {
-    const NameAndUnit parts = name_and_unit(name);
+    const ColumnName parts = name_and_unit(name);
     for (const OtherName& other : other_names) {
-        if (other.name != parts.name) continue;
-        for (const OtherUnit& unit : other_units) {
-            if (unit.name != parts.unit || unit.measures != other.measures) continue;
-            auto& column = columns_[static_cast<std::size_t>(other.quantity)];
-            if (column) return false;
-            column = TrackColumn{index, unit.scale, std::string(name)};
-            if (other.quantity == Q::altitude) understood_.push_back(std::string(name) + " is taken above sea level");
-            return true;
-        }
+        const auto scale = other.name == parts.name ? unit_scale(parts.unit, other.measures) : std::nullopt;
+        if (!scale) continue;
+        auto& column = columns_[static_cast<std::size_t>(other.quantity)];
+        if (column) return false;
+        column = TrackColumn{index, *scale, std::string(name)};
+        if (other.quantity == Q::altitude) understood_.push_back(std::string(name) + " is taken above sea level");
+        return true;
     }
     return false;
 }
@@ -214,7 +167,7 @@ Result<TrackColumns> TrackColumns::of(std::span<const std::string_view> header) 
     for (std::size_t i = 0; i < header.size(); ++i) {
         const std::string_view name = header[i];
         const auto* const known = std::find_if(known_columns.begin(), known_columns.end(),
-                                               [&](const KnownColumn& column) { return column.name == name; });
+                                               [&](const KnownColumn& column) { return is_called(column, name); });
         if (known == known_columns.end()) {
             others.push_back(i);
             continue;
@@ -239,9 +192,7 @@ namespace {
 
 // A name whose unit is not known: its table is no route.
 bool looks_like_a_time(std::string_view name) {
-    std::string lower(name);
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string lower = lowered_column(name);
     constexpr std::array<std::string_view, 4> words{"time", "date", "utc", "epoch"};
     return std::any_of(words.begin(), words.end(),
                        [&](std::string_view word) { return lower.find(word) != std::string::npos; });

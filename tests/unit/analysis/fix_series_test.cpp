@@ -108,6 +108,50 @@ TEST(FixSeries, seconds_in_a_time_column_give_the_interval_and_no_date) {
     EXPECT_EQ(series->interval, Seconds(0.5));
 }
 
+TEST(FixSeries, units_of_columns_count) {
+    const auto feet = parse_fix_series(
+        "Time (ms),Latitude (deg),Longitude [rad],Altitude (ft)\n0,47,0.1,1000\n500,47,0.1,1000\n", "d.csv");
+    ASSERT_TRUE(feet) << feet.error().message;
+    EXPECT_EQ(feet->interval, Seconds(0.5));
+    EXPECT_NEAR(feet->samples[0].position.longitude.rad(), 0.1, 1e-12);
+    EXPECT_NEAR(feet->samples[0].position.height.above_ellipsoid.value(), 304.8, 1e-9);
+    const auto behind =
+        parse_fix_series("t_ms,lat_rad,lon_e7,alt_ft\n0,0.5,80000000,10\n250,0.5,80000000,10\n", "d.csv");
+    ASSERT_TRUE(behind) << behind.error().message;
+    EXPECT_EQ(behind->interval, Seconds(0.25));
+    EXPECT_NEAR(behind->samples[0].position.longitude.deg(), 8, 1e-12);
+    EXPECT_NEAR(behind->samples[0].position.height.above_ellipsoid.value(), 3.048, 1e-12);
+    EXPECT_THAT(message_of("lat,lon,Altitude (furlongs)\n1,2,3\n"),
+                AllOf(HasSubstr("a.csv:1:"), HasSubstr("'Altitude (furlongs)' is not known; expected one such as m")));
+}
+
+TEST(FixSeries, tables_that_are_tracks_are_read) {
+    const auto track = parse_fix_series("t_s,lat_deg,lon_deg,h_ell_m,vn_mps\n0,47,8,500,0\n1,47,8,501,0\n", "t.csv");
+    ASSERT_TRUE(track) << track.error().message;
+    EXPECT_EQ(track->interval, Seconds(1));
+    EXPECT_EQ(track->samples[1].position.height.above_ellipsoid.value(), 501);
+    EXPECT_THAT(track->warnings, ElementsAre());
+    const auto sea = parse_fix_series("t_s,lat_deg,lon_deg,alt_msl_m\n0,47,8,500\n", "t.csv");
+    ASSERT_TRUE(sea) << sea.error().message;
+    EXPECT_THAT(sea->warnings, ElementsAre(HasSubstr("the heights of alt_msl_m are above sea level")));
+}
+
+TEST(FixSeries, rows_without_a_place_are_no_fixes) {
+    const auto series = parse_fix_series("lat,lon,alt\n1,2,3\n0,0,0\nnan,nan,nan\n1,2,\n", "d.csv");
+    ASSERT_TRUE(series) << series.error().message;
+    EXPECT_EQ(series->samples.size(), 4u);
+    EXPECT_EQ(series->fixes(), 1u);
+    EXPECT_THAT(series->warnings, ElementsAre(HasSubstr("1 rows at latitude 0, longitude 0 are not counted as fixes"),
+                                              HasSubstr("1 rows without one of latitude, longitude and height")));
+}
+
+TEST(FixSeries, a_last_line_that_is_cut_is_left_out) {
+    const auto series = parse_fix_series(fixes_header + fix_row + fix_row.substr(0, 60), "f.csv");
+    ASSERT_TRUE(series) << series.error().message;
+    EXPECT_EQ(series->samples.size(), 1u);
+    EXPECT_THAT(series->warnings, ElementsAre("f.csv:3: the last line is cut and was left out"));
+}
+
 TEST(FixSeries, errors_name_file_line_and_what_was_found) {
     EXPECT_THAT(message_of(""), AllOf(HasSubstr("a.csv"), HasSubstr("empty")));
     EXPECT_THAT(message_of(" \n\n"), HasSubstr("empty"));
@@ -116,7 +160,8 @@ TEST(FixSeries, errors_name_file_line_and_what_was_found) {
                 AllOf(HasSubstr("a.csv:2:"), HasSubstr("latitude 91"), HasSubstr("-90 to 90")));
     EXPECT_THAT(message_of("1,-181,3\n"), AllOf(HasSubstr("a.csv:1:"), HasSubstr("longitude -181")));
     EXPECT_THAT(message_of("1,2,1e9\n"), HasSubstr("height"));
-    EXPECT_THAT(message_of("1,2,3\nnan,2,3\n"), AllOf(HasSubstr("a.csv:2:"), HasSubstr("'nan'"), HasSubstr("number")));
+    EXPECT_THAT(message_of("1,2,3\nn.a.,2,3\n"),
+                AllOf(HasSubstr("a.csv:2:"), HasSubstr("'n.a.'"), HasSubstr("number")));
     EXPECT_THAT(message_of("inf,2,3\n"), AllOf(HasSubstr("a.csv:1:"), HasSubstr("'inf'")));
     EXPECT_THAT(message_of("1,2,3\n1,2\n"), AllOf(HasSubstr("a.csv:2:"), HasSubstr("2 cells, expected 3")));
     EXPECT_THAT(message_of("1,2,3\n1,2,3x\n"), AllOf(HasSubstr("a.csv:2:"), HasSubstr("column 3"), HasSubstr("'3x'")));
