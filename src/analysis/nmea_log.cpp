@@ -57,26 +57,25 @@ struct DateMark {
 class NmeaLogReader {
 public:
     explicit NmeaLogReader(const std::string& name) { series_.name = name; }
-    Result<FixSeries> read(std::string_view text);
+    FixSeries read(std::string_view text);
 
 private:
-    Result<void> take_line(std::string_view line);
-    Result<void> take_sentence(std::string_view sentence);
-    Result<void> take_gga(const Gga& gga);
+    void take_line(std::string_view line);
+    void take_sentence(std::string_view sentence);
+    void take_gga(const Gga& gga);
     bool take_satellites(std::string_view sentence);
     void finish_epoch();
     void take_rmc(const Rmc& rmc);
     void date_samples();
     void add_warnings();
-    [[nodiscard]] tl::unexpected<Error> refusal(const std::string& what) const {
-        return fail(ErrorCode::input, fmt::format("{}:{}: {}", series_.name, line_, what));
-    }
 
     FixSeries series_;
     SentenceSplitter splitter_;
     std::size_t line_ = 1;
     std::size_t damaged_ = 0, without_checksum_ = 0, without_separation_ = 0, damaged_of_satellites_ = 0;
-    int listed_used_ = 0;  // by the GSA sentences since the last GGA
+    std::size_t senseless_ = 0, without_altitude_ = 0;
+    std::string first_senseless_;  // and where it stands
+    int listed_used_ = 0;          // by the GSA sentences since the last GGA
     // For each sample its time of day and the number of dates said before it.
     struct Clock {
         std::optional<double> seconds;
@@ -86,11 +85,11 @@ private:
     std::vector<DateMark> dates_;
 };
 
-Result<FixSeries> NmeaLogReader::read(std::string_view text) {
+FixSeries NmeaLogReader::read(std::string_view text) {
     while (!text.empty()) {
         // Loggers end lines in LF, CR, CR LF and even CR CR LF.
         const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-        if (auto taken = take_line(text.substr(0, end)); !taken) return fail(std::move(taken.error()));
+        take_line(text.substr(0, end));
         if (end < text.size() && text[end] == '\n') ++line_;
         text.remove_prefix(std::min(end + 1, text.size()));
     }
@@ -100,10 +99,10 @@ Result<FixSeries> NmeaLogReader::read(std::string_view text) {
     return std::move(series_);
 }
 
-Result<void> NmeaLogReader::take_line(std::string_view line) {
+void NmeaLogReader::take_line(std::string_view line) {
     std::size_t begun = count_sentences(line, wanted);
     std::size_t begun_of_satellites = count_sentences(line, of_satellites);
-    if (begun + begun_of_satellites == 0) return {};
+    if (begun + begun_of_satellites == 0) return;
     for (const std::string& sentence : splitter_.feed(to_bytes(std::string(line) + '\n'))) {
         if (of_satellites(address_at(sentence, 0))) {
             if (take_satellites(sentence)) --begun_of_satellites;
@@ -111,27 +110,28 @@ Result<void> NmeaLogReader::take_line(std::string_view line) {
         }
         if (!wanted(address_at(sentence, 0))) continue;
         --begun;
-        if (auto taken = take_sentence(sentence); !taken) return taken;
+        take_sentence(sentence);
     }
     damaged_ += begun;  // what the splitter has thrown away
     damaged_of_satellites_ += begun_of_satellites;
-    return {};
 }
 
-Result<void> NmeaLogReader::take_sentence(std::string_view sentence) {
+void NmeaLogReader::take_sentence(std::string_view sentence) {
     const std::size_t star = sentence.find('*');
     // Loggers may write something of their own behind the checksum.
     const Result<SentenceView> view =
         parse_sentence(sentence.substr(0, star == std::string_view::npos ? star : star + 3));
     if (!view) {
         ++(star == std::string_view::npos ? without_checksum_ : damaged_);
-        return {};
+        return;
     }
     const Result<NmeaMessage> message = decode_nmea(*view);
-    if (!message) return refusal(message.error().message);
-    if (const auto* gga = std::get_if<Gga>(&*message)) return take_gga(*gga);
+    if (!message) {
+        if (senseless_++ == 0) first_senseless_ = fmt::format("line {}: {}", line_, message.error().message);
+        return;
+    }
+    if (const auto* gga = std::get_if<Gga>(&*message)) take_gga(*gga);
     if (const auto* rmc = std::get_if<Rmc>(&*message)) take_rmc(*rmc);
-    return {};
 }
 
 // False for a sentence that is damaged or makes no sense. GSA follows the GGA of its epoch, one for each system.
@@ -155,23 +155,22 @@ void NmeaLogReader::finish_epoch() {
     listed_used_ = 0;
 }
 
-Result<void> NmeaLogReader::take_gga(const Gga& gga) {
+void NmeaLogReader::take_gga(const Gga& gga) {
     finish_epoch();
     FixSample sample;
     sample.satellites_used = gga.satellites_used;
-    sample.has_fix = gga.quality != 0 && gga.position.has_value();
-    if (sample.has_fix) {
-        if (!gga.altitude) return refusal("GGA has a position without an altitude; expected metres in field 9");
-        if (!gga.geoid_separation) ++without_separation_;
-        const Metres height = *gga.altitude + gga.geoid_separation.value_or(Metres(0));
+    if (gga.quality != 0 && gga.position) {
+        const Metres height = gga.altitude.value_or(Metres(0)) + gga.geoid_separation.value_or(Metres(0));
         const auto position =
             checked_position(gga.position->latitude.deg(), gga.position->longitude.deg(), height.value());
-        if (!position) return refusal("GGA " + position.error());
-        sample.position = *position;
+        if (!position && senseless_++ == 0) first_senseless_ = fmt::format("line {}: GGA {}", line_, position.error());
+        if (position && !gga.altitude) ++without_altitude_;
+        sample.has_fix = position && gga.altitude;
+        if (sample.has_fix && !gga.geoid_separation) ++without_separation_;
+        if (sample.has_fix) sample.position = *position;
     }
     series_.samples.push_back(sample);
     clocks_.push_back({gga.time ? std::optional(seconds_of_day(*gga.time)) : std::nullopt, dates_.size()});
-    return {};
 }
 
 void NmeaLogReader::take_rmc(const Rmc& rmc) {
@@ -212,6 +211,13 @@ void NmeaLogReader::add_warnings() {
     if (damaged_of_satellites_ > 0)
         series_.warnings.push_back(
             fmt::format("{}: {} damaged GSA or GSV sentences were skipped", series_.name, damaged_of_satellites_));
+    if (senseless_ > 0)
+        series_.warnings.push_back(fmt::format(
+            "{}: {} GGA or RMC sentences with a right checksum that make no sense were skipped, the first in {}",
+            series_.name, senseless_, first_senseless_));
+    if (without_altitude_ > 0)
+        series_.warnings.push_back(fmt::format("{}: {} positions without an altitude are not counted as fixes",
+                                               series_.name, without_altitude_));
     if (without_separation_ > 0)
         series_.warnings.push_back(
             fmt::format("{}: {} fixes without geoid separation; their heights are above sea level, "
@@ -229,8 +235,6 @@ bool has_nmea_sentence(std::string_view text) {
     return false;
 }
 
-Result<FixSeries> parse_nmea_log(std::string_view text, const std::string& name) {
-    return NmeaLogReader(name).read(text);
-}
+FixSeries parse_nmea_log(std::string_view text, const std::string& name) { return NmeaLogReader(name).read(text); }
 
 }  // namespace skyloop

@@ -14,8 +14,8 @@ bool has_nmea_sentence(std::string_view text);
 /// A sample from each GGA sentence whose checksum holds; heights are altitude plus geoid separation. RMC sentences with
 /// status A give the date, GSV signal strengths (of every signal listed), GSA the satellites used where they are more
 /// than GGA can show. Damaged sentences, other sentences and binary data between them are skipped; damaged ones of
-/// these kinds are counted in the warnings. A GGA or RMC that passes its checksum and makes no sense is an
-/// error with its line.
-Result<FixSeries> parse_nmea_log(std::string_view text, const std::string& name);
+/// these kinds, and those that pass their checksum and make no sense, are counted in the warnings. A position without
+/// an altitude is no fix.
+FixSeries parse_nmea_log(std::string_view text, const std::string& name);
 
 }  // namespace skyloop

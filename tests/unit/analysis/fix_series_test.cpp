@@ -309,13 +309,27 @@ TEST(FixSeries, lines_may_end_in_any_way_and_go_on_behind_the_checksum) {
 
 TEST(FixSeries, a_sentence_that_passes_its_checksum_must_make_sense) {
     EXPECT_THAT(message_of("\n" + nmea("GPGGA,120000.00,9128.650,N,03043.956,E,1,08,1.0,50.5,M,30.5,M,,")),
-                AllOf(HasSubstr("a.csv:2:"), HasSubstr("'9128.650'; expected a latitude")));
+                AllOf(HasSubstr("line 2:"), HasSubstr("'9128.650'; expected a latitude")));
     EXPECT_THAT(message_of(nmea("GPGGA,120000.00,4628.650,X,03043.956,E,1,08,1.0,50.5,M,30.5,M,,")),
-                AllOf(HasSubstr("a.csv:1:"), HasSubstr("field 3 is 'X'; expected N or S")));
+                AllOf(HasSubstr("line 1:"), HasSubstr("field 3 is 'X'; expected N or S")));
     EXPECT_THAT(message_of(nmea("GPGGA,120000.00,nan,N,03043.956,E,1,08,1.0,50.5,M,30.5,M,,")), HasSubstr("'nan'"));
     EXPECT_THAT(message_of(nmea("GPGGA,996000.00,4628.650,N,03043.956,E,1,08,1.0,50.5,M,30.5,M,,")),
                 HasSubstr("996000"));
     EXPECT_THAT(message_of(nmea("GPGGA,120000.00,4628.650,N")), HasSubstr("3 fields; expected at least 12"));
+}
+
+TEST(FixSeries, a_strange_sentence_costs_no_other_fix) {
+    const std::string good = nmea("GPGGA,120000.00,4628.650,N,03043.956,E,1,08,1.0,50.5,M,30.5,M,,");
+    const auto series = parse_fix_series(good + nmea("GPGGA,120001.00,4628.650,N,03043.956,E,1,03,2.0,,M,,M,,") +
+                                             nmea("GPRMC,120001.00,A,4628.65,N,03043.956,E,0,0,2208-1,,,A") + good,
+                                         "log.nmea");
+    ASSERT_TRUE(series) << series.error().message;
+    EXPECT_EQ(series->samples.size(), 3u);
+    EXPECT_EQ(series->fixes(), 2u);
+    EXPECT_THAT(series->warnings,
+                ElementsAre(AllOf(HasSubstr("1 GGA or RMC sentences with a right checksum that make no sense"),
+                                  HasSubstr("line 3"), HasSubstr("'2208-1'")),
+                            HasSubstr("1 positions without an altitude are not counted as fixes")));
 }
 
 TEST(FixSeries, truncation_anywhere_never_crashes) {
