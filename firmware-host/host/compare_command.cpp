@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
@@ -46,6 +47,16 @@ Result<FixSeries> read_view(const FileView& view) {
     return slice(view.own_mean ? without_truth(std::move(*series)) : std::move(*series), view.part);
 }
 
+// Errors up and in space would be about the ellipsoid, without a height.
+Result<Geodetic> reference_place(const std::string& text) {
+    auto place = parse_place(text, "--reference");
+    if (place && std::count(text.begin(), text.end(), ',') < 2)
+        return fail(
+            ErrorCode::usage,
+            fmt::format("--reference {}: expected LAT,LON,HEIGHT, the height above the ellipsoid in metres", text));
+    return place;
+}
+
 int compare_files(const CompareOptions& options) {
     const Messages messages(options.verbosity);
     ComparisonOptions wanted;
@@ -53,8 +64,8 @@ int compare_files(const CompareOptions& options) {
     wanted.window = options.window;
     const bool own_mean = options.reference == "own-mean";
     if (!options.reference.empty() && !own_mean) {
-        const auto place = parse_place(options.reference);
-        if (!place) return messages.error({place.error().code, "--reference" + place.error().message.substr(4)});
+        const auto place = reference_place(options.reference);
+        if (!place) return messages.error(place.error());
         wanted.reference = *place;
     }
     const auto a =

@@ -67,6 +67,7 @@ MISUSES = [
     (["sky", "--mask", "nan"], 2, ["--mask: 'nan'; expected a number from 0 to 90"]),
     (["sky", "--grid-size", "-4"], 2, ["--grid-size: '-4'; expected a whole number from 1 to 1000"]),
     (["sky", "--threads", "0"], 2, ["--threads: '0'; expected a whole number from 1 to 256"]),
+    (["compare", "a", "b", "--reference", "47,8"], 2, ["--reference 47,8: expected LAT,LON,HEIGHT"]),
     (["compare", "a", "b", "--window", "-4"], 2, ["--window: '-4'; expected a whole number from 0 to"]),
     (["compare", "a", "b", "--skip-a", "0x10"], 2, ["--skip-a: '0x10'; expected a whole number"]),
     (["compare", "a", "b", "--every-b", "0"], 2, ["--every-b: '0'; expected a whole number from 1 to 1000000"]),
