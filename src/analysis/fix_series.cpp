@@ -62,13 +62,28 @@ std::optional<std::size_t> first_binary_byte(std::string_view text) {
     return std::nullopt;
 }
 
+// Of a log that holds both: UBX, which tells more, unless a few polled messages stand in a log of NMEA. It is told.
+FixSeries richer(FixSeries ubx, FixSeries nmea) {
+    constexpr std::size_t many_more = 2;
+    const bool of_nmea = nmea.fixes() > many_more * ubx.fixes();
+    FixSeries& taken = of_nmea ? nmea : ubx;
+    const std::size_t others = (of_nmea ? ubx : nmea).fixes();
+    if (others > (of_nmea ? 0 : taken.fixes()))
+        taken.warnings.push_back(fmt::format("{}: the {} fixes of {} are taken; {} tell {}", taken.name, taken.fixes(),
+                                             of_nmea ? "NMEA" : "UBX", of_nmea ? "UBX messages" : "NMEA sentences",
+                                             others));
+    return std::move(taken);
+}
+
 Result<FixSeries> parse_by_content(std::string_view text, const std::string& name) {
     if (blank(text)) return fail(ErrorCode::input, fmt::format("{}: is empty; expected {}", name, known_formats));
     if (!rinex_label(text).empty()) return fail(rinex_refusal(text, name));
     std::size_t ubx_messages = 0;
     if (has_ubx_sync(text)) {
         UbxLog log = parse_ubx_log(text, name);
-        if (!log.series.samples.empty()) return std::move(log.series);
+        if (!log.series.samples.empty())
+            return has_nmea_sentence(text) ? richer(std::move(log.series), parse_nmea_log(text, name))
+                                           : std::move(log.series);
         ubx_messages = log.messages;
     }
     if (has_nmea_sentence(text)) return parse_nmea_log(text, name);

@@ -32,6 +32,7 @@ bool is_ubx_track(const TrackFile& file) {
 Result<Track> read_ubx_track(const TrackFile& file) {
     auto log = read_receiver_log(file.bytes, file.name, {file.reading.geoid, 0, true});
     if (!log) return fail(log.error());
+    if (log->format == "NMEA") return read_nmea_track(file);  // a few polled messages among its sentences
     Track track;
     track.name = file.name;
     track.format = log->format;

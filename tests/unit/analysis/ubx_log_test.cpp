@@ -230,5 +230,20 @@ TEST(UbxLog, of_the_real_f9t_gives_the_measured_signal_strengths) {
     }
 }
 
+// A program polls a fix or two over UBX from a receiver that says everything else in NMEA.
+TEST(UbxLog, a_few_polled_messages_do_not_hide_a_log_of_nmea) {
+    const std::string gga = "$GPGGA,120000.00,4628.650,N,03043.956,E,1,08,1.0,50.5,M,30.5,M,,*55\r\n";
+    std::string log = pvt(friday_noon_ms, 100).bytes() + gga + gga + gga + gga + gga;
+    const auto nmea = parse_fix_series(log, "log.ubx");
+    ASSERT_TRUE(nmea) << nmea.error().message;
+    EXPECT_EQ(nmea->fixes(), 5u);
+    EXPECT_THAT(nmea->warnings, ElementsAre("log.ubx: the 5 fixes of NMEA are taken; UBX messages tell 1"));
+    log += pvt(friday_noon_ms + 1000, 100).bytes() + pvt(friday_noon_ms + 2000, 100).bytes();
+    const auto ubx = parse_fix_series(log, "log.ubx");
+    ASSERT_TRUE(ubx) << ubx.error().message;
+    EXPECT_EQ(ubx->fixes(), 3u);
+    EXPECT_THAT(ubx->warnings, ElementsAre("log.ubx: the 3 fixes of UBX are taken; NMEA sentences tell 5"));
+}
+
 }  // namespace
 }  // namespace skyloop

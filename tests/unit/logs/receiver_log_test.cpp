@@ -196,6 +196,24 @@ TEST(NmeaLog, EpochsWithoutAFixNeverOutdateThoseWithOne) {
     EXPECT_EQ(log.epochs[5].time, log_noon + std::chrono::seconds(5));
 }
 
+TEST(NmeaLog, AFewPolledMessagesDoNotHideIt) {
+    std::string text;
+    for (int i = 0; i < 5; ++i)
+        text += epoch_after_noon(i, i);
+    Bytes bytes = to_bytes(text);
+    append(bytes, encode_frame(pvt_at(5, 3, 1)));
+    const ReceiverLog nmea = read_whole(bytes);
+    EXPECT_EQ(nmea.format, "NMEA");
+    EXPECT_EQ(nmea.epochs.size(), 5u);
+    EXPECT_THAT(nmea.notes,
+                testing::ElementsAre("5 epochs of NMEA and 1 of UBX have a place; those of NMEA are taken"));
+    append(bytes, encode_frame(pvt_at(6, 3, 1)));
+    append(bytes, encode_frame(pvt_at(7, 3, 1)));
+    const ReceiverLog ubx = read_whole(bytes);
+    EXPECT_EQ(ubx.format, "UBX");
+    EXPECT_THAT(ubx.notes, testing::ElementsAre("5 epochs of NMEA and 3 of UBX have a place; those of UBX are taken"));
+}
+
 TEST(NmeaLog, PutsRecordingsOfOneFileInTheirOrder) {
     std::string text;
     for (int i = 0; i < 10; ++i)
