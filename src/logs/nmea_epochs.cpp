@@ -217,28 +217,49 @@ void NmeaEpochs::place(Row& row) {
     // Up is not told: two thirds of a velocity are none.
 }
 
-// A row without a date is of the day of the row before, or of the next one where the time of day falls by more than
-// half a day (FEEDS.md 1.5); those before the first date are counted back from it.
-bool NmeaEpochs::date_rows() {
-    const auto dated = std::find_if(rows_.begin(), rows_.end(), [](const Row& row) { return row.date.has_value(); });
-    log_.dated = dated != rows_.end();
-    if (!log_.dated && !for_track_) return false;
+// Days of each row after the first one. The next day begins where the time of day falls by more than half a day
+// (FEEDS.md 1.5). What a receiver says without a fix counts for those with one only where its clock runs on through it.
+std::vector<int> NmeaEpochs::days_of_rows() const {
     constexpr double day = 86400, half_day = day / 2, late = 3600;  // a sentence may come late over midnight
+    constexpr double longest_step = 3600;
+    constexpr int most_days = 10000;  // more are nonsense, which finish_log() leaves out
     const auto days_from = [&](const Row& before, const Row& row) {
         const double step = row.seconds - before.seconds;
         return step < -half_day ? 1 : step > day - late ? -1 : 0;
     };
+    std::vector<int> days(rows_.size(), 0);
+    std::optional<std::size_t> placed;  // the last row with a fix
+    bool runs_on = true;                // since then
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        if (i > 0) {
+            const int change = days_from(rows_[i - 1], rows_[i]);
+            days[i] = std::clamp(days[i - 1] + change, -most_days, most_days);
+            const double step = rows_[i].seconds - rows_[i - 1].seconds + change * day;
+            runs_on &= std::abs(step) <= longest_step;
+        }
+        if (!rows_[i].position || rows_[i].epoch.type == FixType::none) continue;
+        if (placed && !runs_on) days[i] = days[*placed] + days_from(rows_[*placed], rows_[i]);
+        placed = i;
+        runs_on = true;
+    }
+    return days;
+}
+
+// A row without a date is dated by the one before that has one, those before the first date by that.
+bool NmeaEpochs::date_rows() {
+    const auto dated = std::find_if(rows_.begin(), rows_.end(), [](const Row& row) { return row.date.has_value(); });
+    log_.dated = dated != rows_.end();
+    if (!log_.dated && !for_track_) return false;
+    const std::vector<int> days = days_of_rows();
     NmeaDate date = log_.dated ? *dated->date : NmeaDate{};
-    int days = 0;  // after `date`
-    for (auto row = rows_.begin(); row < dated; ++row)
-        if (log_.dated) days -= days_from(*row, *(row + 1));
-    for (auto row = rows_.begin(); row != rows_.end(); ++row) {
-        if (row != rows_.begin()) days += days_from(*(row - 1), *row);
-        if (row->date) date = *row->date, days = 0;
-        constexpr int most_days = 10000;  // more are nonsense, which finish_log() leaves out
-        days = std::clamp(days, -most_days, most_days);
+    int days_of_date = log_.dated ? days[static_cast<std::size_t>(dated - rows_.begin())] : 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        Row& row = rows_[i];
+        if (row.date) date = *row.date, days_of_date = days[i];
         const UtcTime midnight{date.year, date.month, date.day, 0, 0, 0, 0};
-        row->epoch.time = advanced(to_gps_time(midnight, LeapSeconds::announced()), Seconds(row->seconds + days * day));
+        constexpr double day = 86400;
+        row.epoch.time = advanced(to_gps_time(midnight, LeapSeconds::announced()),
+                                  Seconds(row.seconds + (days[i] - days_of_date) * day));
     }
     return true;
 }

@@ -37,6 +37,7 @@ private:
     void take_ground(const std::optional<NmeaPosition>& position);
     void finish_row();
     void place(Row& row);
+    [[nodiscard]] std::vector<int> days_of_rows() const;
     bool date_rows();
 
     const Geoid* geoid_;

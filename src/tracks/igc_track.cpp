@@ -66,6 +66,8 @@ public:
 private:
     struct Fix {
         TextRow row;
+        std::optional<Nanoseconds> midnight;  // of the last date before it
+        Nanoseconds of_day{0};
         bool valid = false;
         std::optional<double> gnss_m, pressure_m;
     };
@@ -74,7 +76,9 @@ private:
     void take_date(std::string_view line);
     void take_extensions(std::string_view line);
     void take_fix(std::string_view line, std::size_t number);
-    std::optional<Nanoseconds> time_of(std::string_view line);
+    [[nodiscard]] std::optional<Nanoseconds> time_of_day(std::string_view line) const;
+    [[nodiscard]] bool is_kept(const Fix& fix) const;
+    void date_fixes();
     Result<void> add_fixes();
     void place_height(TextRow& row, const Fix& fix) const;
     void add_notes();
@@ -84,9 +88,7 @@ private:
     std::vector<Fix> fixes_;
     IgcField decimals_, latitude_digits_, longitude_digits_;
     Datum datum_ = Datum::untold;
-    std::optional<Nanoseconds> midnight_;  // before the last fix; nothing: no date yet
-    int days_ = 0;                         // counted on since the last date
-    std::optional<Nanoseconds> last_of_day_;
+    std::optional<Nanoseconds> midnight_;  // of the last date; nothing: none yet
     bool any_valid_ = false, any_gnss_height_ = false;
 };
 
@@ -123,8 +125,6 @@ void IgcReader::take_date(std::string_view line) {
     const auto midnight = utc_since_1980({full, *month, *day, 0, 0, 0, 0});
     if (!midnight) return;
     midnight_ = midnight;
-    days_ = 0;
-    last_of_day_.reset();
 }
 
 // "I023636TDS3738LAD": a count, then each first and last column, from 1, and a code.
@@ -141,8 +141,8 @@ void IgcReader::take_extensions(std::string_view line) {
     }
 }
 
-// UTC; a time of day that falls by more than half a day is of the next one.
-std::optional<Nanoseconds> IgcReader::time_of(std::string_view line) {
+// UTC.
+std::optional<Nanoseconds> IgcReader::time_of_day(std::string_view line) const {
     const auto hour = igc_digits(line.substr(1, 2)), minute = igc_digits(line.substr(3, 2)),
                second = igc_digits(line.substr(5, 2));
     if (!hour || !minute || !second || *hour > 23 || *minute > 59 || *second > 60) return std::nullopt;
@@ -153,11 +153,33 @@ std::optional<Nanoseconds> IgcReader::time_of(std::string_view line) {
         of_day += unit * (digit - '0');
         unit /= 10;
     }
-    if (last_of_day_ && *last_of_day_ - of_day > std::chrono::hours(12)) ++days_;
-    last_of_day_ = of_day;
+    return of_day;
+}
+
+// Recorders without a fix may write any place and any time of day.
+bool IgcReader::is_kept(const Fix& fix) const { return fix.valid || !any_valid_; }
+
+// Of the fixes that are kept a time of day that falls by more than half a day is of the next one. A date counts from
+// the fix behind it on, unless it repeats the one before.
+void IgcReader::date_fixes() {
     constexpr int most_days = 10000;  // only damaged files have more
-    if (days_ > most_days) return std::nullopt;
-    return midnight_.value_or(Nanoseconds(0)) + days_ * Nanoseconds(std::chrono::hours(24)) + of_day;
+    constexpr Nanoseconds half_day = std::chrono::hours(12);
+    const Fix* before = nullptr;
+    int days = 0;
+    for (Fix& fix : fixes_) {
+        if (!is_kept(fix)) continue;
+        const bool somewhere = fix.row.latitude_deg != 0 || fix.row.longitude_deg != 0;
+        int its_days = days;
+        if (before && before->midnight != fix.midnight)
+            its_days = 0;
+        else if (before && before->of_day - fix.of_day > half_day)
+            its_days = std::min(days + 1, most_days);
+        fix.row.time =
+            fix.midnight.value_or(Nanoseconds(0)) + its_days * Nanoseconds(std::chrono::hours(24)) + fix.of_day;
+        if (!somewhere) continue;  // which is left out
+        days = its_days;
+        before = &fix;
+    }
 }
 
 void IgcReader::take_fix(std::string_view line, std::size_t number) {
@@ -167,9 +189,10 @@ void IgcReader::take_fix(std::string_view line, std::size_t number) {
     const auto latitude = igc_angle(line.substr(7, 7), 2, latitude_digits_.of(line));
     const auto longitude = igc_angle(line.substr(15, 8), 3, longitude_digits_.of(line));
     if (!latitude || !longitude || *latitude > 90 || *longitude > 180) return track_.leave_out("are damaged", number);
-    const auto time = time_of(line);
+    const auto time = time_of_day(line);
     if (!time) return track_.leave_out("are damaged", number);
-    fix.row.time = *time;
+    fix.of_day = *time;
+    fix.midnight = midnight_;
     fix.row.latitude_deg = line[14] == 'S' ? -*latitude : *latitude;
     fix.row.longitude_deg = line[23] == 'W' ? -*longitude : *longitude;
     fix.valid = line[24] == 'A';
@@ -190,8 +213,9 @@ void IgcReader::place_height(TextRow& row, const Fix& fix) const {
 }
 
 Result<void> IgcReader::add_fixes() {
+    date_fixes();
     for (const Fix& fix : fixes_) {
-        if (any_valid_ && !fix.valid) {
+        if (!is_kept(fix)) {
             track_.leave_out("are marked V, without a fix in three dimensions", fix.row.line);
             continue;
         }

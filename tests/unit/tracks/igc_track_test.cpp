@@ -47,6 +47,22 @@ TEST(IgcTrack, CountsOnOverMidnightAndTakesBothFormsOfTheDate) {
     EXPECT_EQ(utc_of(track, 1), "2024-01-01T00:00:00.000Z");
 }
 
+TEST(IgcTrack, WhatIsLeftOutMovesNoDate) {
+    const std::string place = "4730000N00815000EA0048000500\n";
+    const Track track = track_of(igc_head + "B140000" + place + "B0000000000000N00000000EV0000000000\n" +
+                                 "B0000000000000N00000000EA0000000000\n" + "B140001" + place);
+    ASSERT_EQ(track.points.size(), 2u);
+    EXPECT_EQ(utc_of(track, 1), "2024-03-05T14:00:01.000Z");
+}
+
+TEST(IgcTrack, ADateThatIsSaidAgainBehindMidnightIsThatOfTheFirstDay) {
+    const std::string place = "4730000N00815000EA0048000500\n";
+    const Track track = track_of(igc_head + "B235959" + place + "HFDTE050324\nB000000" + place);
+    EXPECT_EQ(utc_of(track, 1), "2024-03-06T00:00:00.000Z");
+    const Track next = track_of(igc_head + "B235959" + place + "HFDTE060324\nB000000" + place);
+    EXPECT_EQ(utc_of(next, 1), "2024-03-06T00:00:00.000Z");
+}
+
 TEST(IgcTrack, TakesHeightsByTheHeader) {
     const std::string fixes = "B1200004730000N00815000EA0048000500\n";
     EXPECT_NEAR(height_of(track_of("HFDTE050324\nHFALGALTGPS:ELL\n" + fixes), 0), 500, 1e-4);

@@ -87,6 +87,22 @@ TEST(NmeaTrack, DatesEpochsBeforeAndLongAfterADate) {
     EXPECT_EQ(utc_of(track, 5), "2024-03-07T01:00:00.000Z");
 }
 
+TEST(NmeaTrack, AMidnightOfARowWithoutAFixMovesNoDate) {
+    const std::string none = nmea("GPGGA,000000.00,,,,,0,00,99.9,,M,,M,,");
+    for (const std::string& date : {std::string(), rmc("140000.00")}) {
+        const Track track = track_of(date + gga("140000.00") + none + gga("140001.00") + gga("140002.00"));
+        ASSERT_EQ(track.points.size(), 3u);
+        EXPECT_EQ(track.points[2].time - track.points[0].time, std::chrono::seconds(2)) << date;
+    }
+    // A clock that runs on through the midnight without a fix is believed.
+    std::string night = gga("233000.00");
+    for (const char* const time : {"235959.00", "000500.00", "005000.00"})
+        night += nmea(fmt::format("GPGGA,{},,,,,0,00,99.9,,M,,M,,", time));
+    const Track through = track_of(night + gga("013000.00"));
+    ASSERT_EQ(through.points.size(), 2u);
+    EXPECT_EQ(through.points[1].time - through.points[0].time, std::chrono::hours(2));
+}
+
 TEST(NmeaTrack, TakesTheGeoidWhereTheSeparationIsZeroEverywhere) {
     const Track zero = track_of(rmc("120000.00") + gga("120000.00", "500.0,M,0.0,M"));
     EXPECT_NEAR(height_of(zero, 0), 510, 1e-4);
