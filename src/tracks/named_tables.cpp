@@ -1,11 +1,14 @@
 // Tables that programs and receivers write with names of their own over the columns.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
 
+#include "skyloop/base/column_name.hpp"
 #include "table_cells.hpp"
 
 namespace skyloop {
@@ -18,7 +21,7 @@ class NamedRow {
 public:
     explicit NamedRow(const TableCells& table) : table_(table) {}
     std::optional<double> number(std::string_view name, double scale = 1) {
-        if (fault_) return std::nullopt;
+        if (fault_ || name.empty()) return std::nullopt;
         const auto value = table_.number(table_.column(name));
         if (!value) fault_ = value.error();
         return value && *value ? std::optional(**value * scale) : std::nullopt;
@@ -32,7 +35,7 @@ private:
 };
 
 // A dialect: its rows one by one.
-using RowTaker = Result<void> (*)(TextTrack&, const TableCells&);
+using RowTaker = std::function<Result<void>(TextTrack&, const TableCells&)>;
 
 // Latitude and longitude of columns with these names; false: left out, as one of them is empty.
 bool named_place(TextTrack& track, NamedRow& columns, std::array<std::string_view, 2> names, TextRow& row) {
@@ -99,8 +102,43 @@ Result<void> take_yodel_row(TextTrack& track, const TableCells& table) {
     return track.add(row);
 }
 
-// gpsbabel's unicsv: date and time in UTC in two columns, metres above sea level, m/s.
-Result<void> take_unicsv_row(TextTrack& track, const TableCells& table) {
+// What columns of unicsv are called that may tell a unit: "Altitude", "Altitude (ft)" or "alt_ft".
+struct UnicsvQuantity {
+    std::array<std::string_view, 4> names;
+    Measured measured;
+};
+constexpr UnicsvQuantity unicsv_altitude{{"altitude", "alt", "elevation", "ele"}, Measured::length},
+    unicsv_speed{{"speed", "ground_speed"}, Measured::speed}, unicsv_course{{"course"}, Measured::angle};
+
+// What the numbers of a column are multiplied by when it says this quantity.
+std::optional<double> unicsv_scale(std::string_view column, const UnicsvQuantity& quantity) {
+    const auto is_one = [&](const std::string& name) {
+        return !name.empty() && std::find(quantity.names.begin(), quantity.names.end(), name) != quantity.names.end();
+    };
+    const ColumnName bracketed = bracketed_column_name(column), behind = column_name(column);
+    if (is_one(bracketed.name))
+        return bracketed.unit.empty() ? std::optional(1.0) : unit_scale(bracketed.unit, quantity.measured);
+    return is_one(behind.name) ? unit_scale(behind.unit, quantity.measured) : std::nullopt;
+}
+
+// Where a quantity stands; an empty name: nowhere.
+struct UnicsvColumn {
+    std::string name;
+    double scale = 1;
+};
+struct UnicsvColumns {
+    UnicsvColumn altitude, speed, course;
+};
+
+UnicsvColumn unicsv_column(const std::vector<std::string>& names, const UnicsvQuantity& quantity) {
+    for (const std::string& name : names)
+        if (const auto scale = unicsv_scale(name, quantity)) return {name, *scale};
+    return {};
+}
+
+// gpsbabel's unicsv: date and time in UTC in two columns, metres above sea level, m/s. Tables of others that have its
+// names may tell other units behind them.
+Result<void> take_unicsv_row(TextTrack& track, const TableCells& table, const UnicsvColumns& told) {
     if (auto fits = table.check_width(); !fits) return fits;
     NamedRow columns(table);
     TextRow row;
@@ -116,11 +154,22 @@ Result<void> take_unicsv_row(TextTrack& track, const TableCells& table) {
     row.time = time->time.time_since_epoch();
     if (!named_place(track, columns, {"Latitude", "Longitude"}, row))
         return columns.fault() ? Result<void>(fail(*columns.fault())) : Result<void>();
-    row.sea_level_m = columns.number("Altitude");
-    row.speed_mps = columns.number("Speed");
-    row.course_deg = columns.number("Course");
+    row.sea_level_m = columns.number(told.altitude.name, told.altitude.scale);
+    row.speed_mps = columns.number(told.speed.name, told.speed.scale);
+    row.course_deg = columns.number(told.course.name, told.course.scale);
     if (columns.fault()) return fail(*columns.fault());
     return track.add(row);
+}
+
+// Names that gpsbabel writes and that say nothing of the way, and those that are read.
+bool is_unicsv_name(const std::string& text) {
+    static constexpr std::array<std::string_view, 27> plain{
+        "no",          "name",       "description", "symbol",    "date",    "time",      "latitude",
+        "longitude",   "notes",      "note",        "url",       "depth",   "comment",   "proximity",
+        "fix",         "satellites", "hdop",        "vdop",      "pdop",    "heartrate", "cadence",
+        "temperature", "power",      "geoidheight", "container", "terrain", "type"};
+    return std::find(plain.begin(), plain.end(), text) != plain.end() || unicsv_scale(text, unicsv_altitude) ||
+           unicsv_scale(text, unicsv_speed) || unicsv_scale(text, unicsv_course);
 }
 
 // Nanoseconds since 1980 of a whole count of POSIX nanoseconds, which a double cannot hold.
@@ -149,7 +198,7 @@ Result<void> take_euroc_row(TextTrack& track, const TableCells& table) {
 }
 
 // A table whose line of names is the first that begins so.
-Result<Track> read_rows(const TrackFile& file, TextTrack& track, RowTaker take, std::string_view names_begin) {
+Result<Track> read_rows(const TrackFile& file, TextTrack& track, const RowTaker& take, std::string_view names_begin) {
     TableCells table(file, names_begin.empty() ? ',' : separator_in(names_begin), "");
     bool named = false;
     while (table.next()) {
@@ -203,10 +252,31 @@ std::string_view unicsv_names(std::string_view head) {
     return {};
 }
 
+// A column that says a height in a way that is not unicsv's; the path would lie at sea level.
+bool is_other_height(const std::string& name) {
+    return name.starts_with("alt") || name.starts_with("ele") || name.starts_with("height");
+}
+
 Result<Track> read_unicsv(const TrackFile& file) {
     constexpr std::size_t looked_at = 65536;
     TextTrack track(file, "unicsv");
-    return read_rows(file, track, take_unicsv_row, unicsv_names(file.text.substr(0, looked_at)));
+    const std::string_view names = unicsv_names(file.text.substr(0, looked_at));
+    std::vector<std::string_view> cells;
+    split_text_cells(names, separator_in(names), cells);
+    std::vector<std::string> all, unused;
+    for (const std::string_view cell : cells) {
+        all.push_back(lowered_text(cell));
+        if (!is_unicsv_name(all.back()) && !all.back().empty()) unused.push_back(all.back());
+    }
+    const UnicsvColumns columns{unicsv_column(all, unicsv_altitude), unicsv_column(all, unicsv_speed),
+                                unicsv_column(all, unicsv_course)};
+    const auto other = std::find_if(unused.begin(), unused.end(), is_other_height);
+    if (columns.altitude.name.empty() && other != unused.end())
+        return track.refusal(
+            fmt::format("the column '{:.40}' is not known; expected Altitude, or Altitude (ft)", *other));
+    if (!unused.empty()) track.note(fmt::format("columns without a meaning here: {}", fmt::join(unused, ", ")));
+    const auto take = [&](TextTrack& to, const TableCells& table) { return take_unicsv_row(to, table, columns); };
+    return read_rows(file, track, take, names);
 }
 
 // Whether one of the first lines begins so, letters of either case.

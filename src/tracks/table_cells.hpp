@@ -27,6 +27,7 @@ public:
     void take_names();
     // Fails where the row has more cells than there are names: a decimal comma made two of one.
     [[nodiscard]] Result<void> check_width() const;
+    [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  // in lower case
     // Of the column with this name, letters of either case; nothing: there is none.
     [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const;
     // Empty where the row has fewer cells or the column is not there.

@@ -149,6 +149,18 @@ TEST(TableDialects, ReadUnicsvOfGpsbabel) {
                 HasSubstr("t.txt:2: latitude is '47,5'; expected a number with a decimal point"));
 }
 
+// The names of unicsv with units that others write behind them.
+TEST(TableDialects, TablesLikeUnicsvKeepTheirUnitsAndTellWhatIsNotRead) {
+    const Track track = track_of(
+        "Date,Time,Latitude,Longitude,Altitude (ft),Speed (km/h),Course,Battery (%)\n"
+        "2024-03-05,12:00:00,47.5,8.25,1000,36,90,80\n2024-03-05,12:00:01,47.5,8.25,1000,36,90,80\n");
+    EXPECT_NEAR(height_of(track, 0), 314.8, 1e-4);
+    EXPECT_LT((enu_velocity(track, 0) - Eigen::Vector3d(10, 0, 0)).norm(), 1e-6);
+    EXPECT_THAT(track.notes, ElementsAre("columns without a meaning here: battery (%)"));
+    EXPECT_THAT(refusal_of_track("Date,Time,Latitude,Longitude,Alt (furlong)\n2024-03-05,12:00:00,47,8,500\n"),
+                HasSubstr("the column 'alt (furlong)' is not known; expected Altitude"));
+}
+
 // As gpsbabel writes names and comments that hold commas and quotes.
 TEST(TableDialects, ReadCellsInQuotesAsOne) {
     const Track track = track_of(
