@@ -67,9 +67,13 @@ public:
     }
     [[nodiscard]] bool has(TrackQuantity quantity) const { return (*this)[quantity].has_value(); }
     /// Without one the rows are a route.
-    [[nodiscard]] bool has_time() const {
-        return has(TrackQuantity::since_start) || has(TrackQuantity::posix) || has(TrackQuantity::utc) ||
-               (has(TrackQuantity::gps_week) && has(TrackQuantity::tow));
+    [[nodiscard]] bool has_time() const { return has(TrackQuantity::since_start) || date() != nullptr; }
+    /// The column that dates a row, of week and time of week the former; nullptr: none.
+    [[nodiscard]] const TrackColumn* date() const {
+        if (has(TrackQuantity::gps_week) && has(TrackQuantity::tow)) return &*(*this)[TrackQuantity::gps_week];
+        for (const TrackQuantity quantity : {TrackQuantity::utc, TrackQuantity::posix})
+            if (has(quantity)) return &*(*this)[quantity];
+        return nullptr;
     }
     /// A place in metres from an origin, east, north and up or north, east and down.
     [[nodiscard]] bool has_local() const {

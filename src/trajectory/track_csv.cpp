@@ -12,6 +12,7 @@
 #include "skyloop/time/utc_time.hpp"
 #include "track_cells.hpp"
 #include "track_columns.hpp"
+#include "track_dates.hpp"
 
 namespace skyloop {
 namespace {
@@ -37,6 +38,7 @@ private:
     Result<void> take_row();
     Result<std::optional<double>> number(TrackQuantity quantity);
     Result<std::optional<Nanoseconds>> time();
+    Result<std::optional<Nanoseconds>> dated_time();
     Result<std::optional<Nanoseconds>> counted_time(TrackQuantity quantity);
     Result<std::optional<Nanoseconds>> utc_time();
     Result<std::optional<Nanoseconds>> gps_time();
@@ -72,6 +74,7 @@ private:
     char separator_ = ',';
     bool has_header_ = false;
     TrackColumns columns_;
+    TrackDates dates_;
     std::vector<std::size_t> level_;  // rows of track_ whose velocity has no climb yet
     Cells cells_;
 };
@@ -90,6 +93,8 @@ Result<Track> TrackTable::read(std::string_view text) {
                                 "h_ell_m and rows of numbers",
                                 track_.name));
     add_climbs();
+    if (columns_.has(since_start) && columns_.date())
+        dates_.date(track_, columns_[since_start]->name, columns_.date()->name);
     add_notes();
     return std::move(track_);
 }
@@ -204,7 +209,15 @@ Result<std::optional<Nanoseconds>> TrackTable::gps_time() {
 
 Result<std::optional<Nanoseconds>> TrackTable::time() {
     if (!columns_.has_time()) return Nanoseconds(0);
-    if (columns_.has(since_start)) return counted_time(since_start);
+    if (!columns_.has(since_start)) return dated_time();
+    const auto counted = counted_time(since_start);
+    if (!counted || !*counted || !columns_.date()) return counted;
+    // A date that cannot be read costs no row whose count can.
+    if (const auto dated = dated_time(); dated && *dated) dates_.add(**counted, **dated);
+    return counted;
+}
+
+Result<std::optional<Nanoseconds>> TrackTable::dated_time() {
     if (columns_.has(gps_week) && columns_.has(tow)) return gps_time();
     if (columns_.has(utc)) return utc_time();
     const auto counted = counted_time(posix);

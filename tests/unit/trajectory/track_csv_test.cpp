@@ -41,6 +41,25 @@ TEST(TrackCsv, ReadsTimesOfEveryKind) {
     }
 }
 
+TEST(TrackCsv, CountsBesideDatesGiveTheSteps) {
+    const Track track = read_rows(
+        "t_s,utc,lat_deg,lon_deg,h_ell_m\n100.25,2024-03-05T12:00:00.25Z,47,8,500\n100.5,,47,8,500\n"
+        "100.75,2024-03-05T12:00:00.75Z,47,8,500\n");
+    const GpsTime noon = to_gps_time(*parse_utc("2024-03-05T12:00:00Z"), LeapSeconds::announced());
+    ASSERT_EQ(track.points.size(), 3u);
+    EXPECT_EQ(*track.origin + track.points[1].time, noon + std::chrono::milliseconds(500));
+    EXPECT_THAT(track.notes, testing::ElementsAre("times count by t_s; what GPS time that is follows from utc"));
+    // Dates that are cut to whole seconds: the latest of them tells most.
+    const Track cut = read_rows(
+        "t_ms,utc,lat_deg,lon_deg,h_ell_m\n0,2024-03-05T12:00:00Z,47,8,500\n600,2024-03-05T12:00:00Z,47,8,500\n"
+        "1200,2024-03-05T12:00:01Z,47,8,500\n");
+    EXPECT_EQ(*cut.origin + cut.points[2].time, noon + std::chrono::milliseconds(1200));
+    const Track other = read_rows(
+        "t_s,unix_s,lat_deg,lon_deg,h_ell_m\n0,1709640000,47,8,500\n10,1709640000,47,8,500\n20,1709640000,47,8,500\n");
+    EXPECT_FALSE(other.origin.has_value());
+    EXPECT_THAT(other.notes, testing::ElementsAre("times are those of t_s alone: unix_s does not run with it"));
+}
+
 TEST(TrackCsv, ReadsPlacesAndVelocities) {
     const Track track = read_rows(
         "# a comment\nt_s,lat_e7,lon_e7,h_ell_ft,speed_kmh,course_deg,climb_mps\n"
@@ -119,6 +138,12 @@ TEST(TrackCsv, UnderstandsTheNamesAndUnitsOfOthers) {
     EXPECT_THAT(named.notes, testing::Contains("columns without a meaning here: time(s), flags"));
     EXPECT_EQ(read_rows("datetime(utc),lat,lon,h_ell_m\n2024-03-05 12:00:00,47,8,1").points.size(), 1u);
     EXPECT_THAT(refused("time(fortnight),lat,lon,h_ell_m\n1,47,8,1"), HasSubstr("no column says the time"));
+}
+
+TEST(TrackCsv, TakesItsNamesInCapitals) {
+    const Track track = read_rows("T_S,LAT_DEG,LON_DEG,H_ELL_M,Fix\n0,47.5,8.5,500,3D\n");
+    EXPECT_NEAR(to_geodetic(track.points.at(0).position).height.above_ellipsoid.value(), 500, 1e-6);
+    EXPECT_EQ(read_rows("t_s,lat,lng,h_ell_m\n0,47.5,8.5,500\n").points.size(), 1u);
 }
 
 TEST(TrackCsv, ReadsLocalMetresQuaternionsAndResets) {
