@@ -43,6 +43,28 @@ bool changes_at_once(const Trajectory& path, GpsTime from, GpsTime to, const Qua
     return (after - before).norm() > whole / 2;
 }
 
+Vector3d velocity_of(const TruthState& state) { return state.velocity.vector(); }
+
+// Whether the velocity steps on the way from one state to a later one: more than a vehicle changes it, and at once.
+bool velocity_steps(const Trajectory& path, const TruthState& before, const TruthState& now) {
+    constexpr double suspicious_mps2 = 20, least_step_mps = 0.05;
+    const double changed = (velocity_of(now) - velocity_of(before)).norm();
+    const double span = difference(now.time, before.time).value();
+    return changed > std::max(suspicious_mps2 * span, least_step_mps) &&
+           changes_at_once(path, before.time, now.time, velocity_of);
+}
+
+// Whether the place jumps there: further than the velocities lead, and at once.
+bool place_jumps(const Trajectory& path, const TruthState& before, const TruthState& now) {
+    constexpr double least_m = 0.5;
+    const Vector3d moved = (now.position - before.position).vector();
+    const double span = difference(now.time, before.time).value();
+    const Vector3d expected = (velocity_of(now) + velocity_of(before)) * (span / 2);
+    return (moved - expected).norm() > std::max(least_m, expected.norm()) &&
+           changes_at_once(path, before.time, now.time,
+                           [](const TruthState& s) -> Vector3d { return s.position.vector(); });
+}
+
 // Walks along a path and keeps what is largest.
 class Surveyor {
 public:
@@ -95,12 +117,9 @@ private:
     void compare(const TruthState& now, double t) {
         const double step = difference(now.time, before_.time).value();
         if (!(step > 0)) return;
-        compare_places(now, t, step);
+        compare_places(now, t);
         const Vector3d changed = now.velocity.vector() - before_.velocity.vector();
-        constexpr double suspicious_mps2 = 20, least_step_mps = 0.05;
-        if (changed.norm() > std::max(suspicious_mps2 * step, least_step_mps) &&
-            changes_at_once(path_, before_.time, now.time,
-                            [](const TruthState& s) -> Vector3d { return s.velocity.vector(); })) {
+        if (velocity_steps(path_, before_, now)) {
             ++survey_.velocity_steps;
             keep_larger(survey_.largest_step, changed.norm(), t);
             acceleration_.reset();
@@ -112,17 +131,13 @@ private:
         acceleration_ = acceleration;
     }
 
-    void compare_places(const TruthState& now, double t, double step) {
-        constexpr double least_m = 0.5;
-        const Vector3d moved = (now.position - before_.position).vector();
-        const Vector3d expected = (now.velocity.vector() + before_.velocity.vector()) * (step / 2);
-        if ((moved - expected).norm() > std::max(least_m, expected.norm()) &&
-            changes_at_once(path_, before_.time, now.time,
-                            [](const TruthState& s) -> Vector3d { return s.position.vector(); })) {
+    void compare_places(const TruthState& now, double t) {
+        const double moved = (now.position - before_.position).vector().norm();
+        if (place_jumps(path_, before_, now)) {
             ++survey_.jumps;
-            keep_larger(survey_.largest_jump, moved.norm(), t);
+            keep_larger(survey_.largest_jump, moved, t);
         } else {
-            survey_.length_m += moved.norm();
+            survey_.length_m += moved;
         }
     }
 
@@ -176,9 +191,38 @@ std::vector<ExceededLimit> exceeded_limits(const PathSurvey& survey, std::option
     return exceeded;
 }
 
+namespace {
+
+// Slope of the velocity at an instant, over half a millisecond before and after it, or over the one of them in which
+// the velocity does not step; nothing where it does in both. Inside the span: before it and after it the path stands.
+Vector3d acceleration_at(const Trajectory& path, const TruthState& state, GpsTime from, GpsTime to) {
+    constexpr Nanoseconds beside = std::chrono::microseconds(500);
+    const TruthState before = path.at(std::max(state.time - beside, from)),
+                     after = path.at(std::min(state.time + beside, to));
+    const auto slope = [&](const TruthState& a, const TruthState& b) -> std::optional<Vector3d> {
+        if (b.time <= a.time || velocity_steps(path, a, b)) return std::nullopt;
+        return (velocity_of(b) - velocity_of(a)) / difference(b.time, a.time).value();
+    };
+    for (const auto& found : {slope(before, after), slope(state, after), slope(before, state)})
+        if (found) return *found;
+    return Vector3d::Zero();
+}
+
+// Whether a path jumps between two states, looked at as finely as a survey does.
+bool jumps_between(const Trajectory& path, TruthState before, const TruthState& to) {
+    constexpr Nanoseconds finest = std::chrono::milliseconds(10);
+    while (before.time < to.time) {
+        TruthState now = path.at(std::min(before.time + finest, to.time));
+        if (place_jumps(path, before, now)) return true;
+        before = std::move(now);
+    }
+    return false;
+}
+
+}  // namespace
+
 Result<std::vector<PathSample>> sample_path(const Trajectory& path, const PathSpan& span, Hertz rate) {
     constexpr double most_samples = 1e7;
-    constexpr Nanoseconds beside = std::chrono::microseconds(500);
     const double count = std::max(1.0, std::floor(span.length.value() * rate.value() + 1e-9) + 1);
     if (!(count <= most_samples))
         return fail(ErrorCode::usage, fmt::format("{:g} s at {:g} Hz are {:g} samples; expected ten million at most",
@@ -189,15 +233,10 @@ Result<std::vector<PathSample>> sample_path(const Trajectory& path, const PathSp
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
         PathSample sample;
         sample.time_s = static_cast<double>(i) / rate.value();
-        const GpsTime time = advanced(span.from, Seconds(sample.time_s));
-        sample.state = path.at(time);
-        sample.velocity_ned = ned_of(sample.state, sample.state.velocity.vector());
-        // Inside the span: before it and after it the path stands.
-        const GpsTime before = std::max(time - beside, span.from), after = std::min(time + beside, end);
-        if (after > before) {
-            const Vector3d changed = path.at(after).velocity.vector() - path.at(before).velocity.vector();
-            sample.acceleration_ned = ned_of(sample.state, changed / difference(after, before).value());
-        }
+        sample.state = path.at(advanced(span.from, Seconds(sample.time_s)));
+        sample.velocity_ned = ned_of(sample.state, velocity_of(sample.state));
+        sample.acceleration_ned = ned_of(sample.state, acceleration_at(path, sample.state, span.from, end));
+        sample.jumped = i > 0 && jumps_between(path, samples.back().state, sample.state);
         samples.push_back(std::move(sample));
     }
     return samples;
@@ -206,7 +245,10 @@ Result<std::vector<PathSample>> sample_path(const Trajectory& path, const PathSp
 std::string path_csv(const std::vector<PathSample>& samples) {
     const bool stands = !samples.empty() && samples.front().state.orientation.has_value();
     std::string text = "t_s,lat_deg,lon_deg,h_ell_m,vn_mps,ve_mps,vd_mps,an_mps2,ae_mps2,ad_mps2";
-    text += stands ? ",roll_deg,pitch_deg,yaw_deg\n" : "\n";
+    if (stands) text += ",roll_deg,pitch_deg,yaw_deg";
+    const bool jumps = std::any_of(samples.begin(), samples.end(), [](const PathSample& s) { return s.jumped; });
+    text += jumps ? ",reset\n" : "\n";
+    std::size_t beginnings = 0;
     for (const PathSample& sample : samples) {
         const Geodetic& place = sample.state.geodetic;
         const Vector3d &v = sample.velocity_ned, &a = sample.acceleration_ned;
@@ -218,7 +260,11 @@ std::string path_csv(const std::vector<PathSample>& samples) {
             const Attitude& attitude = sample.state.orientation->attitude;
             fmt::format_to(std::back_inserter(text), ",{:.4f},{:.4f},{:.4f}", attitude.roll().deg(),
                            attitude.pitch().deg(), attitude.yaw().deg());
+        } else if (stands) {
+            text += ",,,";
         }
+        if (sample.jumped) ++beginnings;
+        if (jumps) fmt::format_to(std::back_inserter(text), ",{}", beginnings);
         text += '\n';
     }
     return text;

@@ -61,14 +61,16 @@ struct PathSample {
     double time_s = 0;  ///< after the beginning of the span
     TruthState state;
     Eigen::Vector3d velocity_ned = Eigen::Vector3d::Zero();      ///< m/s
-    Eigen::Vector3d acceleration_ned = Eigen::Vector3d::Zero();  ///< m/s²; the difference over a millisecond
+    Eigen::Vector3d acceleration_ned = Eigen::Vector3d::Zero();  ///< m/s²; over a millisecond, without steps
+    bool jumped = false;                                         ///< the path jumps since the sample before
 };
 
 /// From the beginning of the span to its end, both among them where the rate fits.
 /// Fails with `usage` for more than ten million samples.
 Result<std::vector<PathSample>> sample_path(const Trajectory& path, const PathSpan& span, Hertz rate);
 
-/// A table that read_track_csv() takes: t_s, place, velocity, acceleration, and attitude where it is told.
+/// A table that read_track_csv() takes: t_s, place, velocity, acceleration, attitude where it is told, and of a path
+/// that jumps the count of its jumps as `reset`.
 std::string path_csv(const std::vector<PathSample>& samples);
 
 }  // namespace skyloop

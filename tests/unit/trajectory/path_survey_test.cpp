@@ -99,5 +99,25 @@ TEST(PathSurvey, ItsTableIsATrackAgain) {
     EXPECT_FALSE(sample_path(path, {recorded_start, Seconds(1e7)}, Hertz(100)).has_value());
 }
 
+TEST(PathSurvey, SamplesOfAJumpHaveNoAccelerationOfItAndAReset) {
+    const PathLaw law = [](double t) { return Eigen::Vector3d(t < 5 ? 10 * t : 10 * t + 1000, 0, 0); };
+    Track track = track_of(law, evenly(0, 10, 1), false);
+    track.points[5].jump = true;
+    const auto gaps = clean_track(track, Seconds(10));
+    const RecordedPath path(track, *gaps, recorded_start);
+    const auto samples = sample_path(path, {recorded_start, path.duration()}, Hertz(1));
+    ASSERT_TRUE(samples.has_value());
+    for (const PathSample& sample : *samples) {
+        EXPECT_LT(sample.acceleration_ned.norm(), 0.5) << sample.time_s;
+        EXPECT_EQ(sample.jumped, sample.time_s == 5) << sample.time_s;
+    }
+    const std::string table = path_csv(*samples);
+    EXPECT_THAT(table, testing::HasSubstr("ad_mps2,reset\n"));
+    const auto again = read_track_csv(table, "again.csv", nullptr);
+    ASSERT_TRUE(again.has_value()) << again.error().message;
+    for (std::size_t i = 0; i < again->points.size(); ++i)
+        EXPECT_EQ(again->points[i].jump, i == 5);
+}
+
 }  // namespace
 }  // namespace skyloop
