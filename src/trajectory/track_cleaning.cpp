@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -63,6 +64,21 @@ void leave_out_what_is_no_number(Track& track) {
     no_time.tell(track, "rows have a time further than 70 years from the others' and were left out");
     no_place.tell(track, "rows have no place on the Earth and were left out");
     no_velocity.tell(track, "rows have a velocity that is no number, which was left out");
+}
+
+// Some programs write the newest row first. Where the way begins anew is told by the later one of two rows.
+void turn_round_what_falls(Track& track) {
+    TrackRows& rows = track.points;
+    constexpr std::size_t fewest = 3;
+    const auto goes_on = [](const TrackRow& a, const TrackRow& b) { return b.time > a.time; };
+    if (rows.size() < fewest || std::adjacent_find(rows.begin(), rows.end(), goes_on) != rows.end() ||
+        rows.front().time == rows.back().time)
+        return;
+    std::reverse(rows.begin(), rows.end());
+    for (std::size_t i = rows.size() - 1; i > 0; --i)
+        rows[i].jump = rows[i - 1].jump;
+    rows.front().jump = false;
+    track.notes.emplace_back("the rows stand newest first and were turned round");
 }
 
 // Whether the first row alone stands before a part that goes on earlier and does not say that it begins anew.
@@ -322,14 +338,16 @@ void leave_out_gaps(Track& track, std::span<const TrackGap> gaps, Seconds longes
 
 Result<std::vector<TrackGap>> clean_track(Track& track, Seconds gap, GapPolicy policy) {
     leave_out_what_is_no_number(track);
+    turn_round_what_falls(track);
     join_parts(track);
     leave_out_backward(track);
     if (stamps_are_coarse(track.points)) spread_coarse_stamps(track);
     leave_out_repeated(track);
     if (track.points.size() < 2)
-        return fail(ErrorCode::input,
-                    fmt::format("{}: {} rows with a time and a place of their own; expected two or more", track.name,
-                                track.points.size()));
+        return fail(
+            ErrorCode::input,
+            fmt::format("{}: {} rows with a time and a place of their own; expected two or more{}{}", track.name,
+                        track.points.size(), track.notes.empty() ? "" : "; ", fmt::join(track.notes, "; ")));
     find_teleports(track);
     std::vector<TrackGap> gaps = gaps_of(track, gap, policy);
     if (policy == GapPolicy::hold) {

@@ -74,8 +74,9 @@ enum class GapPolicy {
 /// times all but the last row. Where three rows or more share a time at different places, the rows are spread over the
 /// step of the stamps. Times that go back further are a new beginning: where all parts have a time of their own (and an
 /// origin), they are put in its order; else each part follows the one before at once, by a jump. A path that leaps and
-/// stays there jumps. Stretches longer than `gap` become what `policy` says. All of it is told in the notes, with
-/// counts. Fails with `input` when fewer than two rows are left.
+/// stays there jumps. Rows whose times only fall are turned round. Stretches longer than `gap` become what `policy`
+/// says. All of it is told in the notes, with counts. Fails with `input`, and the notes, when fewer than two rows are
+/// left.
 /// @returns the gaps that are to be bridged
 Result<std::vector<TrackGap>> clean_track(Track& track, Seconds gap, GapPolicy policy = GapPolicy::bridge);
 

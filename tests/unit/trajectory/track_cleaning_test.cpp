@@ -75,6 +75,28 @@ TEST(TrackCleaning, PartsOfOneClockArePutInOrder) {
     EXPECT_THAT(track.notes, ElementsAre(HasSubstr("2 parts do not follow each other in time")));
 }
 
+TEST(TrackCleaning, RowsThatStandNewestFirstAreTurnedRound) {
+    Track track = stamped({20, 15, 10, 5, 0});
+    const Position<Ecef> newest = track.points.front().position;
+    track.points[3].jump = true;  // no way between 10 s and 5 s
+    ASSERT_TRUE(clean_track(track, Seconds(100)).has_value());
+    EXPECT_THAT(times_of(track), ElementsAre(0, 5, 10, 15, 20));
+    EXPECT_EQ((track.points.back().position - newest).length().value(), 0);
+    EXPECT_THAT(jumps_of(track), ElementsAre(2u));
+    EXPECT_THAT(track.notes, ElementsAre("the rows stand newest first and were turned round"));
+}
+
+TEST(TrackCleaning, ARefusalSaysWhyRowsWereLeftOut) {
+    Track track = stamped({5, 5, 5});
+    track.notes.emplace_back("7 epochs without a fix were left out");
+    for (TrackRow& row : track.points)
+        row.position = track.points.front().position;
+    const auto cleaned = clean_track(track, Seconds(100));
+    ASSERT_FALSE(cleaned.has_value());
+    EXPECT_THAT(cleaned.error().message, HasSubstr("1 rows with a time and a place of their own; expected two or more; "
+                                                   "7 epochs without a fix were left out; 2 rows repeat the time"));
+}
+
 TEST(TrackCleaning, AFirstTimeThatRanAheadIsLeftOut) {
     Track track = stamped({100, 5, 6, 7, 8});
     track.origin = recorded_start;
