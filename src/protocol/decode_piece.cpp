@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
@@ -38,11 +39,45 @@ void list_msp(const MspFrameView& frame, DecodedMessage& message) {
     keep_payload(frame.payload, message);
 }
 
+// Counts the fields of a message that lie before its extensions.
+class BaseFields {
+public:
+    explicit BaseFields(std::size_t base_size) : left_(base_size) {}
+    template <class... T>
+    void operator()(const T&... field) {
+        (take(wire_size_of(field)), ...);
+    }
+    [[nodiscard]] std::size_t count() const { return count_; }
+
+private:
+    template <class T>
+    static std::size_t wire_size_of(const T& field) {
+        return sizeof field;  // numbers and arrays of them
+    }
+    void take(std::size_t size) {
+        if (left_ == 0) return;
+        left_ -= std::min(size, left_);
+        ++count_;
+    }
+    std::size_t left_, count_ = 0;
+};
+
+// Frames of version 1 have no extensions.
+template <class Message>
+void leave_out_extensions(DecodedMessage& message) {
+    BaseFields base(Message::base_size);
+    const Message any{};
+    Message::fields(any, base);
+    for (std::size_t i = base.count(); i < message.fields.size(); ++i)
+        message.fields[i].value = {};
+}
+
 template <class Message>
 bool list_mavlink_as(const MavlinkFrameView& frame, DecodedMessage& message) {
     if (frame.message != Message::message_id) return false;
     message.name = Message::message_name;
     list_message(decode_mavlink<Message>(frame.payload), message);
+    if (frame.version == 1) leave_out_extensions<Message>(message);
     return true;
 }
 

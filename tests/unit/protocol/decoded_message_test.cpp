@@ -157,6 +157,16 @@ TEST(DecodedMessage, ValuesThatMeanNothingAreMissing) {
     EXPECT_TRUE(input.ends_with("yaw_deg=-"));
 }
 
+TEST(DecodedMessage, FramesOfVersionOneHaveNoExtensions) {
+    Bytes payload = encode_payload(MavlinkGpsRawInt{});
+    payload.resize(MavlinkGpsRawInt::base_size);
+    const std::string one = json_of(StreamKind::mavlink, encode_mavlink_v1({}, MavlinkGpsRawInt::message_id, payload));
+    EXPECT_NE(one.find("\"fix_type\":0,\"satellites\":null,\"height_m\":null,\"h_acc_m\":null"), std::string::npos)
+        << one;
+    EXPECT_NE(json_of(StreamKind::mavlink, encode_mavlink({}, MavlinkGpsRawInt{})).find("\"height_m\":0,"),
+              std::string::npos);
+}
+
 TEST(DecodedMessage, SinglePrecisionIsNotDressedUp) {
     MavlinkGpsInput m;
     m.alt = 77.3F;
