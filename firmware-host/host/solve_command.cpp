@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 #include <memory>
+#include <set>
 
 #include "commands.hpp"
 #include "data_folders.hpp"
@@ -75,19 +76,51 @@ ReceiverSettings settings_of(const SolveOptions& options) {
     return settings;
 }
 
+// Records that do not reach the observations serve nobody.
+void warn_of_span(const ObservationFile& file, const NavigationSource& source, const Messages& messages) {
+    const auto span = source.span();
+    const GpsTime first = file.epochs.front().receive_time, last = file.epochs.back().receive_time;
+    if (!span || (first >= span->first && last <= span->last)) return;
+    const auto text = [](GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); };
+    messages.warning(fmt::format("the observations of {} to {} are not all in the time of the navigation data, {} to {}",
+                                 text(first), text(last), text(span->first), text(span->last)));
+}
+
 // The broadcast records for the span of the observations; none without a file.
 Result<std::unique_ptr<NavigationSource>> broadcast_of(const SolveOptions& options, const ObservationFile& file,
                                                        const Messages& messages) {
     if (options.nav.empty()) return std::make_unique<NavigationData>(std::vector<Ephemeris>{}, std::nullopt, "nothing");
     Scenario scenario;
     scenario.sky.navigation.assign(options.nav.begin(), options.nav.end());
-    scenario.run.start = file.epochs.front().receive_time;
-    scenario.run.duration = difference(file.epochs.back().receive_time, file.epochs.front().receive_time);
-    auto loaded = load_navigation(scenario, *scenario.run.start);
+    auto loaded = load_navigation(scenario, file.epochs.front().receive_time);
     if (!loaded) return fail(loaded.error());
     for (const std::string& warning : loaded->warnings)
         messages.warning(warning);
+    warn_of_span(file, *loaded->source, messages);
     return std::move(loaded->source);
+}
+
+// Why no fix is to be expected of a system: it is not observed, or there are no orbits of it.
+void warn_of_systems(const SolveOptions& options, const ObservationFile& file, const NavigationSource& broadcast,
+                     const Messages& messages) {
+    std::set<Constellation> observed, in_orbit;
+    for (const Observations& epoch : file.epochs)
+        for (const Observation& o : epoch.signals) {
+            const Constellation system = o.satellite.constellation;
+            observed.insert(system);
+            if (!in_orbit.contains(system) && broadcast.ephemeris(o.satellite, epoch.receive_time))
+                in_orbit.insert(system);
+        }
+    std::set<Constellation> wanted = observed;
+    if (!options.systems.empty()) wanted.clear();
+    for (const std::string& name : options.systems)
+        if (const auto system = constellation_from_name(name)) wanted.insert(*system);
+    for (const Constellation system : wanted) {
+        if (!observed.contains(system))
+            messages.warning(fmt::format("{}: no observations of {}", options.observations, constellation_name(system)));
+        else if (options.sp3.empty() && !in_orbit.contains(system))
+            messages.warning(fmt::format("no orbits of {} at the time of the observations", constellation_name(system)));
+    }
 }
 
 // Observation files may leave out the channels of GLONASS, which the broadcast records know.
@@ -133,6 +166,7 @@ int solve_file(const SolveOptions& options) {
         messages.warning(warning);
     const auto broadcast = broadcast_of(options, *file, messages);
     if (!broadcast) return messages.error(broadcast.error());
+    warn_of_systems(options, *file, **broadcast, messages);
     std::optional<PreciseOrbitFile> precise;
     std::optional<PreciseTransmitters> transmitters;
     if (!options.sp3.empty()) {
