@@ -58,12 +58,17 @@ constexpr TrackFormat formats[] = {
     {{".pos"}, is_table_dialect, read_table_dialect},
     {{".nmea", ".log"}, is_nmea_track, read_nmea_track},
     {{"", "", ""}, is_named_flight_log, refuse_flight_log},
+    {{"", "", ""}, is_other_file, refuse_other_file},
     {{".csv", ".txt", ""}, [](const TrackFile&) { return true; }, read_csv},
 };
 
 }  // namespace
 
 Result<Track> read_track(ByteSpan bytes, const std::string& name, const TrackReading& reading) {
+    constexpr std::array<std::uint8_t, 3> byte_order_mark{0xEF, 0xBB, 0xBF};
+    if (bytes.size() >= byte_order_mark.size() &&
+        std::equal(byte_order_mark.begin(), byte_order_mark.end(), bytes.begin()))
+        bytes = bytes.subspan(byte_order_mark.size());
     const TrackFile file{bytes, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name, reading};
     const auto format = std::find_if(std::begin(formats), std::end(formats),
                                      [&](const TrackFormat& candidate) { return candidate.fits(file); });

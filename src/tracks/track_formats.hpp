@@ -37,5 +37,8 @@ Result<Track> read_ubx_track(const TrackFile& file);
 // A file that no format knows by its content and whose name says that it is one of these logs.
 bool is_named_flight_log(const TrackFile& file);
 Result<Track> refuse_flight_log(const TrackFile& file);
+// A file that is known to hold no track, whatever a reader of tables would find in it.
+bool is_other_file(const TrackFile& file);
+Result<Track> refuse_other_file(const TrackFile& file);
 
 }  // namespace skyloop

@@ -104,7 +104,8 @@ Result<void> TrackTable::take_line(std::string_view line) {
     if (line.size() > longest) return refusal(fmt::format("a line of {} characters; expected a table", line.size()));
     const std::string_view plain = trimmed_track_cell(line);
     if (plain.empty() || plain.front() == '#' || plain.front() == '%') return {};
-    if (!has_header_) return take_header(line);
+    // "sep=;" is a word of Excel to itself.
+    if (!has_header_) return plain.starts_with("sep=") ? Result<void>() : take_header(line);
     split_track_cells(line, separator_, cells_);
     while (cells_.size() > names_ && cells_.back().empty())
         cells_.pop_back();

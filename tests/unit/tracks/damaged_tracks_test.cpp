@@ -1,4 +1,5 @@
 // Files of every format cut at every offset, with flipped bits and exchanged pieces: one clear line or sound rows.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -64,6 +65,24 @@ void expect_sound(std::string_view bytes, const std::string& name, const Geoid& 
     }
     for (const std::string& note : track->notes)
         EXPECT_EQ(note.find_first_of("\r\n"), std::string::npos) << note;
+}
+
+TEST(DamagedTracks, FilesThatAreNoTracksAreRefusedByWhatTheyAre) {
+    const auto refused = [](std::string_view text) { return test::refusal_of_track(text); };
+    EXPECT_THAT(refused("$GPGGA,120000,4700.0,N,00800.0,E,1,08,1.0,500,M,48,M,,\n"),
+                testing::HasSubstr("NMEA sentences without a checksum"));
+    EXPECT_THAT(refused("     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE\n"),
+                testing::HasSubstr("is a RINEX file"));
+    EXPECT_THAT(refused({"\xFF\xFEt\0_\0s\0", 8}), testing::HasSubstr("UTF-16"));
+    EXPECT_THAT(refused({"t_s,\0\1", 6}), testing::HasSubstr("is not text (byte 0x00 at offset 4)"));
+    EXPECT_THAT(refused("t_s,lat_deg,lon_deg,h_ell_m\r0,47,8,500\r"), testing::HasSubstr("end in CR alone"));
+}
+
+TEST(DamagedTracks, AMarkOfTheByteOrderIsPassedOver) {
+    const Track table = test::track_of("\xEF\xBB\xBFsep=;\nt_s;lat_deg;lon_deg;h_ell_m\n0;47;8;500\n");
+    EXPECT_EQ(table.points.size(), 1u);
+    EXPECT_THAT(test::refusal_of_track("\xEF\xBB\xBF{\"fileType\": \"Plan\"}"),
+                testing::Not(testing::HasSubstr("column")));
 }
 
 TEST(DamagedTracks, AreWholeToBeginWith) {
