@@ -10,7 +10,7 @@ namespace skyloop {
 namespace {
 
 // KML 2.2 (OGC 07-147r2) with Google's gx:Track: the n-th <when> belongs to the n-th <gx:coord>. Without such a track,
-// placemarks of one point with a TimeStamp each (FEEDS.md 1.4).
+// placemarks of one point with a TimeStamp, or the begin of a TimeSpan, each (FEEDS.md 1.4).
 class KmlReader {
 public:
     explicit KmlReader(const TrackFile& file) : file_(file), track_(file, "KML", "points") {}
@@ -108,7 +108,8 @@ Result<void> KmlReader::take_placemarks() {
     const pugi::xml_node root = tree_.root();
     for (pugi::xml_node at = root; at; at = xml_following(at, root)) {
         if (xml_name(at) != "Placemark") continue;
-        const pugi::xml_node when = xml_child(xml_child(at, "TimeStamp"), "when"), point = xml_child(at, "Point");
+        const pugi::xml_node stamp = xml_child(xml_child(at, "TimeStamp"), "when"), point = xml_child(at, "Point");
+        const pugi::xml_node when = stamp ? stamp : xml_child(xml_child(at, "TimeSpan"), "begin");
         if (!when || !point) continue;
         TextRow row;
         row.line = tree_.line_of(point);

@@ -138,5 +138,17 @@ TEST(KmzTrack, IsUnpackedToABound) {
     EXPECT_THAT(refusal_of_track(bomb, "t.kmz").substr(0, 200), HasSubstr("unpacks to more than 67108864 bytes"));
 }
 
+TEST(KmlTrack, TimeSpansCountByTheirBegin) {
+    std::string text = "<kml>";
+    for (const char* const time : {"12:00:00", "12:00:01"})
+        text += std::string("<Placemark><TimeSpan><begin>2024-03-05T") + time +
+                "Z</begin><end>2024-03-05T12:00:09Z</end></TimeSpan><Point><altitudeMode>absolute</altitudeMode>"
+                "<coordinates>8,47,500</coordinates></Point></Placemark>";
+    const Track track = track_of(text + "</kml>");
+    ASSERT_EQ(track.points.size(), 2u);
+    EXPECT_FALSE(track.route.has_value());
+    EXPECT_EQ(utc_of(track, 1), "2024-03-05T12:00:01.000Z");
+}
+
 }  // namespace
 }  // namespace skyloop
