@@ -89,6 +89,11 @@ Result<void> PlanReader::take_simple(const PlanJson& item) {
     taken.command = *command;
     taken.frame = *frame;
     const PlanJson &params = plan_member(item, "params"), &place = plan_member(item, "coordinate");
+    for (const PlanJson* numbers : {&params, &place})
+        for (const PlanJson& value : *numbers)
+            if (numbers->is_array() && value.is_string())
+                return refusal(fmt::format("item {}: '{}' in its params; expected a number or null", number_,
+                                           value.get<std::string>().substr(0, 40)));
     if (params.is_array()) {
         for (std::size_t i = 0; i < std::min(params.size(), taken.parameters.size()); ++i)
             taken.parameters.at(i) = plan_number(params[i]);

@@ -100,6 +100,11 @@ const std::string wpl_items =
     "3\t0\t3\t19\t30\t0\t80\t0\t47.001\t8.01\t100\t1\r\n"
     "4\t0\t3\t21\t0\t0\t0\tnan\t47.003\t8.01\t0\t1\r\n";
 
+TEST(QgcPlan, RefusesTextsInPlaceOfNumbers) {
+    EXPECT_THAT(refusal_of_track(plan(simple(16, 3, "0,0,0,null,\"47,001\",8.0,40")), "t.plan"),
+                HasSubstr("item 1: '47,001' in its params; expected a number or null"));
+}
+
 TEST(WplMission, IsARouteThatBeginsAtHome) {
     const Track track =
         track_of("QGC WPL 110\r\n0\t1\t0\t16\t0\t0\t0\t0\t47\t8\t500\t1\r\n" + wpl_items, "t.waypoints");
