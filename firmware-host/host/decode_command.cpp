@@ -165,6 +165,14 @@ Result<void> decode_stream(InputStream& input, const std::string& path, Decoder&
     return {};
 }
 
+std::string nothing_in(const DecodeOptions& options, const std::string& name, std::uint64_t bytes) {
+    const bool any = options.protocols == std::vector<std::string>{"auto"};
+    return fmt::format("{}: no message of {} in its {} bytes{}", name,
+                       any ? "UBX, NMEA, RTCM 3, MSP, MAVLink or SBF"
+                           : fmt::format("{}", fmt::join(options.protocols, " or ")),
+                       bytes, options.input == "-" ? "; gzip is unpacked from files alone" : "");
+}
+
 int decode(const DecodeOptions& options) {
     const Messages messages(options.verbosity);
     catch_stop_signals();
@@ -180,8 +188,7 @@ int decode(const DecodeOptions& options) {
         messages.info(decoder.counts_text());
         return read ? 0 : messages.error(read.error());
     }
-    return messages.error({ErrorCode::input, fmt::format("{}: no message of {} in its {} bytes", input->name(),
-                                                         fmt::join(options.protocols, " "), decoder.bytes())});
+    return messages.error({ErrorCode::input, nothing_in(options, input->name(), decoder.bytes())});
 }
 
 }  // namespace
