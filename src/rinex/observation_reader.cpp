@@ -69,17 +69,37 @@ private:
         }
     }
 
+    void skip_unordered(const Line& head, std::string_view expected) {
+        ++file().skipped.unordered;
+        unordered_.add_with([&] { return sentence(head, in_quotes(columns(head.text, 0, 29)), expected); });
+    }
+
+    // An epoch whose time ran ahead costs itself: the one now follows the one before it, or, where it was the first of
+    // the file, a second one that is earlier and goes on from the one that was left out for that.
+    void leave_out_ahead(GpsTime now) {
+        auto& epochs = file().epochs;
+        constexpr Nanoseconds disorder = std::chrono::seconds(2);
+        if (epochs.empty() || now >= epochs.back().receive_time - disorder) return;
+        const bool follows =
+            epochs.size() >= 2 ? now > epochs[epochs.size() - 2].receive_time : went_back_ && now > *went_back_;
+        if (!follows) return;
+        skip_unordered(last_head_, "no epoch later than those that follow");
+        epochs.pop_back();
+    }
+
     void measured(const EpochHead& head, const Line& first) {
         Observations at;
         at.receive_time = epoch_in_gpst(*head.time, file().time_system);
         slips_ = head.flag == 6;
+        if (!slips_) leave_out_ahead(at.receive_time);
         const bool unordered = !file().epochs.empty() && at.receive_time <= file().epochs.back().receive_time;
         kept_ = !slips_ && !unordered;
         if (!slips_ && unordered) {
-            ++file().skipped.unordered;
-            unordered_.add_with([&] {
-                return sentence(first, in_quotes(columns(first.text, 0, 29)), "an epoch later than the one before");
-            });
+            went_back_ = at.receive_time;
+            skip_unordered(first, "an epoch later than the one before");
+        } else if (kept_) {
+            went_back_.reset();
+            last_head_ = first;
         }
         if (head.flag == 1) signals_.break_all();
         seen_.clear();
@@ -207,8 +227,10 @@ private:
     ObservationHeaderReading header_;
     std::optional<Line> line_;
     SignalReading signals_;
-    bool kept_ = true;    // the epoch at hand goes into the file
-    bool slips_ = false;  // it is a list of cycle slips
+    bool kept_ = true;                  // the epoch at hand goes into the file
+    bool slips_ = false;                // it is a list of cycle slips
+    Line last_head_;                    // of the last epoch that was kept
+    std::optional<GpsTime> went_back_;  // the time of the epoch left out since, as not later than it
     std::vector<Line> record_ = std::vector<Line>(1);
     std::vector<std::string_view> names_;
     std::set<SatelliteId> seen_;
