@@ -15,18 +15,6 @@ namespace skyloop {
 namespace rinex {
 namespace {
 
-// The words of a line.
-std::vector<std::string_view> words_of(std::string_view line) {
-    std::vector<std::string_view> words;
-    for (std::size_t at = 0; at < line.size();) {
-        const std::size_t first = line.find_first_not_of(" \t", at);
-        if (first == std::string_view::npos) break;
-        at = std::min(line.find_first_of(" \t", first), line.size());
-        words.push_back(line.substr(first, at - first));
-    }
-    return words;
-}
-
 bool contains_word(std::string_view line, std::string_view lower_case) {
     const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
     return std::search(line.begin(), line.end(), lower_case.begin(), lower_case.end(), same) != line.end();

@@ -19,6 +19,17 @@ std::string_view columns(std::string_view line, std::size_t first, std::size_t w
     return first < line.size() ? line.substr(first, width) : std::string_view{};
 }
 
+std::vector<std::string_view> words_of(std::string_view line) {
+    std::vector<std::string_view> words;
+    for (std::size_t at = 0; at < line.size();) {
+        const std::size_t first = line.find_first_not_of(" \t", at);
+        if (first == std::string_view::npos) break;
+        at = std::min(line.find_first_of(" \t", first), line.size());
+        words.push_back(line.substr(first, at - first));
+    }
+    return words;
+}
+
 std::string_view trimmed(std::string_view text) {
     while (text.starts_with(' '))
         text.remove_prefix(1);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace skyloop::rinex {
 
@@ -32,6 +33,9 @@ std::string_view columns(std::string_view line, std::size_t first, std::size_t w
 /// Without spaces at either end.
 std::string_view trimmed(std::string_view text);
 inline bool is_blank(std::string_view text) { return trimmed(text).empty(); }
+
+/// The words of a line, parted by blanks and tabs.
+std::vector<std::string_view> words_of(std::string_view line);
 
 /// The label of a header line, in columns 61-80.
 inline std::string_view header_label(std::string_view line) { return trimmed(columns(line, 60, 20)); }

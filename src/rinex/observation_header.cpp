@@ -178,9 +178,23 @@ void ObservationHeaderReading::scale_factors(const Line& line) {
     if (!scaled_) return;
     SystemLayout& layout = layouts_[index_of(*scaled_)];
     layout.scale.resize(layout.types.size(), 1.0);
-    const std::string_view named = columns(columns(line.text, 0, 60), 10, 50);
-    for (std::size_t i = 0; i < layout.types.size(); ++i)
-        if (is_blank(named) || named.find(layout.types[i]) != std::string_view::npos) layout.scale[i] = factor_;
+    std::vector<std::string_view> named = words_of(columns(columns(line.text, 0, 60), 6, 54));
+    if (!is_blank(columns(line.text, 0, 1)) && !named.empty()) {
+        constexpr int on_a_line = 12;
+        const std::optional<int> count = whole_field(named.front());
+        named.erase(named.begin());
+        if (!count || std::min(*count, on_a_line) != static_cast<int>(named.size()))
+            warn(line, fmt::format("{} observation types", named.size()), "as many as their count in front of them");
+    }
+    if (named.empty()) return layout.scale.assign(layout.types.size(), factor_);
+    for (const std::string_view name : named) {
+        const auto type = std::find_if(layout.types.begin(), layout.types.end(),
+                                       [&](const std::string& one) { return trimmed(one) == name; });
+        if (type == layout.types.end())
+            warn(line, in_quotes(name), fmt::format("an observation type of {}", constellation_name(*scaled_)));
+        else
+            layout.scale[static_cast<std::size_t>(type - layout.types.begin())] = factor_;
+    }
 }
 
 // Lists of types are used when they are complete: at the end of the header, or before the next epoch.

@@ -170,6 +170,36 @@ TEST(ObservationReader, DividesByScaleFactors) {
     EXPECT_EQ(file.epochs.at(0).signals.at(0).carrier_phase, 1e7);
 }
 
+TEST(ObservationReader, ScaleFactorsNameTheirTypes) {
+    const auto scaled = [](const std::string& factor) {
+        return read_or_fail(
+            observation_header("3.04", types_line("G    2 C1C L1C") + label_line(factor, "SYS / SCALE FACTOR")) +
+            epoch_line(0, 1) + "G07" + observed(2e7) + observed(1e9));
+    };
+    EXPECT_EQ(scaled("G  10  1 C1C").epochs.at(0).signals.at(0).pseudorange->value(), 2e6);
+    EXPECT_EQ(scaled("G   10").epochs.at(0).signals.at(0).carrier_phase, 1e8);
+    const ObservationFile strange = scaled("G   10   2 C5Q");
+    EXPECT_EQ(strange.epochs.at(0).signals.at(0).pseudorange->value(), 2e7);
+    ASSERT_EQ(strange.warnings.size(), 2u);
+    EXPECT_NE(strange.warnings[0].find("found 1 observation types; expected as many as their count"),
+              std::string::npos);
+    EXPECT_NE(strange.warnings[1].find("found 'C5Q'; expected an observation type of gps"), std::string::npos);
+}
+
+TEST(ObservationReader, AnEpochThatRanAheadCostsNoOther) {
+    const std::string good = "G07" + observed(2e7) + observed(1e8) + "\n";
+    const std::string head = observation_header("3.04", types_line("G    2 C1C L1C"));
+    const ObservationFile middle = read_or_fail(head + epoch_line(0, 1) + good + epoch_line(50, 1) + good +
+                                                epoch_line(2, 1) + good + epoch_line(3, 1) + good);
+    EXPECT_EQ(middle.epochs.size(), 3u);
+    EXPECT_EQ(middle.skipped.unordered, 1u);
+    const ObservationFile first = read_or_fail(head + epoch_line(50, 1) + good + epoch_line(1, 1) + good +
+                                               epoch_line(2, 1) + good + epoch_line(3, 1) + good);
+    EXPECT_EQ(first.epochs.size(), 2u);  // the one that went back costs itself, too
+    EXPECT_EQ(difference(first.epochs[1].receive_time, first.epochs[0].receive_time), Seconds(1));
+    ASSERT_FALSE(first.warnings.empty());
+}
+
 TEST(ObservationReader, CountsWhatItPassesOver) {
     const std::string good = "G07" + observed(2e7) + observed(1e8) + "\n";
     const std::string text = observation_header("3.04", types_line("G    2 C1C L1C")) + epoch_line(0, 1) + good +  //
