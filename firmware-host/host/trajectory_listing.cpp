@@ -40,8 +40,9 @@ std::string trajectory_text(const TrajectoryListing& listing) {
     line("duration", fmt::format("{:.3f} s", s.duration_s));
     line("extent", fmt::format("{:.1f} m east-west, {:.1f} m north-south, {:.1f} m up", s.east_west_m, s.north_south_m,
                                s.highest.value - s.lowest.value));
+    const LongitudeSpan longitudes = longitude_span(s);
     line("", fmt::format("latitude {:.7f} to {:.7f}, longitude {:.7f} to {:.7f}", s.south_west.latitude.deg(),
-                         s.north_east.latitude.deg(), s.south_west.longitude.deg(), s.north_east.longitude.deg()));
+                         s.north_east.latitude.deg(), longitudes.west_deg, longitudes.east_deg));
     line("length", fmt::format("{:.1f} m", s.length_m));
     line("height", fmt::format("{} to {}, above the ellipsoid", when_text(s.lowest, "m"), when_text(s.highest, "m")));
     line("speed", when_text(s.fastest, "m/s"));
@@ -72,10 +73,11 @@ std::string trajectory_json(const TrajectoryListing& listing) {
     Json json{{"file", listing.name}, {"kind", listing.kind}, {"description", listing.description}};
     json["details"] = listing.details;
     json["duration_s"] = s.duration_s;
+    const LongitudeSpan longitudes = longitude_span(s);
     json["extent"] = {{"south_deg", s.south_west.latitude.deg()},
                       {"north_deg", s.north_east.latitude.deg()},
-                      {"west_deg", s.south_west.longitude.deg()},
-                      {"east_deg", s.north_east.longitude.deg()},
+                      {"west_deg", longitudes.west_deg},
+                      {"east_deg", longitudes.east_deg},
                       {"east_west_m", s.east_west_m},
                       {"north_south_m", s.north_south_m}};
     json["length_m"] = s.length_m;

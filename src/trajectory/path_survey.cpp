@@ -167,6 +167,16 @@ private:
 
 PathSurvey survey_path(const Trajectory& path, const PathSpan& span) { return Surveyor(path, span).run(); }
 
+LongitudeSpan longitude_span(const PathSurvey& survey) {
+    constexpr double round_deg = 360, half_deg = 180;
+    const double west = survey.south_west.longitude.deg(), east = survey.north_east.longitude.deg();
+    if (east - west >= round_deg) return {-half_deg, half_deg};
+    const auto inside = [](double deg) {
+        return deg >= -half_deg && deg <= half_deg ? deg : std::remainder(deg, round_deg);
+    };
+    return {inside(west), inside(east)};
+}
+
 std::vector<ExceededLimit> exceeded_limits(const PathSurvey& survey, std::optional<VehicleClass> vehicle) {
     constexpr double standard_gravity = 9.80665;
     std::vector<ExceededLimit> exceeded;

@@ -52,6 +52,13 @@ struct ExceededLimit {
     PathExtreme found;
 };
 
+/// West and east of a survey's box from -180 to 180 degrees; across 180 degrees east is less than west, and a path
+/// round a pole has them all.
+struct LongitudeSpan {
+    double west_deg = 0, east_deg = 0;
+};
+LongitudeSpan longitude_span(const PathSurvey& survey);
+
 /// Against what receivers keep their fix at (u-blox data sheets, "operational limits": 4 g, 50 000 m, 500 m/s; COCOM,
 /// which others follow: 18 288 m and 515 m/s) and against a class of vehicles.
 std::vector<ExceededLimit> exceeded_limits(const PathSurvey& survey, std::optional<VehicleClass> vehicle);

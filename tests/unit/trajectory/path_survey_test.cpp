@@ -75,6 +75,13 @@ TEST(PathSurvey, TheBoxCrossesTheDateLine) {
     const PathSurvey survey = survey_path(way, {recorded_start, way.duration()});
     EXPECT_NEAR(survey.south_west.longitude.deg(), 179.99, 1e-6);
     EXPECT_NEAR(survey.north_east.longitude.deg(), 180.01, 1e-6);
+    EXPECT_NEAR(longitude_span(survey).west_deg, 179.99, 1e-6);
+    EXPECT_NEAR(longitude_span(survey).east_deg, -179.99, 1e-6);
+    PathSurvey round;
+    round.south_west = Geodetic::degrees(89, 180, 0), round.north_east = Geodetic::degrees(90, 180, 0);
+    round.north_east.longitude = Angle::degrees(540);
+    EXPECT_EQ(longitude_span(round).west_deg, -180);
+    EXPECT_EQ(longitude_span(round).east_deg, 180);
     EXPECT_NEAR(survey.east_west_m, 0.02 / 180 * std::numbers::pi * 6378137 * std::cos(10 / 57.29577951), 10);
 }
 
