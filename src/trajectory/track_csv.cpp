@@ -192,9 +192,9 @@ Result<std::optional<Nanoseconds>> TrackTable::counted_time(TrackQuantity quanti
 Result<std::optional<Nanoseconds>> TrackTable::utc_time() {
     const std::string_view text = cell(utc);
     if (absent(text)) return std::nullopt;
-    const auto parsed = parse_utc(text);
-    if (!parsed) return refusal(fmt::format("{}: {}", columns_[utc]->name, parsed.error().message));
-    return skyloop::to_gps_time(*parsed, LeapSeconds::announced()).time_since_epoch();
+    const auto time = time_of_utc_cell(text);
+    if (!time) return refusal(fmt::format("{}: {}", columns_[utc]->name, time.error().message));
+    return time->time_since_epoch();
 }
 
 Result<std::optional<Nanoseconds>> TrackTable::gps_time() {

@@ -31,7 +31,9 @@ TEST(TrackCsv, ReadsTimesOfEveryKind) {
     EXPECT_FALSE(counted.origin.has_value());
     EXPECT_EQ(counted.points.at(1).time, Nanoseconds(250'000'000));
     const GpsTime noon = to_gps_time(*parse_utc("2024-03-05T12:00:00Z"), LeapSeconds::announced());
-    for (const std::string row : {"utc;lat_deg;lon_deg;h_ell_m\n2024-03-05T12:00:00Z;47;8;500",
+    for (const std::string row : {"utc,lat_deg,lon_deg,h_ell_m\n2024-03-05T13:00:00+01:00,47,8,500",
+                                  "utc,lat_deg,lon_deg,h_ell_m\n2024-03-05 08:30:00.000-0330,47,8,500",
+                                  "utc;lat_deg;lon_deg;h_ell_m\n2024-03-05T12:00:00Z;47;8;500",
                                   "unix_s lat_deg lon_deg h_ell_m\n1709640000  47 8 500",
                                   "gps_week,tow_s,lat_deg,lon_deg,h_ell_m\n2304,216018,47,8,500",
                                   "unix_ns\tlat_deg\tlon_deg\th_ell_m\n1709640000000000000\t47\t8\t500"}) {
