@@ -167,10 +167,10 @@ Result<void> decode_stream(InputStream& input, const std::string& path, Decoder&
 
 std::string nothing_in(const DecodeOptions& options, const std::string& name, std::uint64_t bytes) {
     const bool any = options.protocols == std::vector<std::string>{"auto"};
-    return fmt::format("{}: no message of {} in its {} bytes{}", name,
-                       any ? "UBX, NMEA, RTCM 3, MSP, MAVLink or SBF"
-                           : fmt::format("{}", fmt::join(options.protocols, " or ")),
-                       bytes, options.input == "-" ? "; gzip is unpacked from files alone" : "");
+    return fmt::format(
+        "{}: no message of {} in its {} bytes{}", name,
+        any ? "UBX, NMEA, RTCM 3, MSP, MAVLink or SBF" : fmt::format("{}", fmt::join(options.protocols, " or ")), bytes,
+        options.input == "-" ? "; gzip is unpacked from files alone" : "");
 }
 
 int decode(const DecodeOptions& options) {

@@ -82,8 +82,9 @@ void warn_of_span(const ObservationFile& file, const NavigationSource& source, c
     const GpsTime first = file.epochs.front().receive_time, last = file.epochs.back().receive_time;
     if (!span || (first >= span->first && last <= span->last)) return;
     const auto text = [](GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); };
-    messages.warning(fmt::format("the observations of {} to {} are not all in the time of the navigation data, {} to {}",
-                                 text(first), text(last), text(span->first), text(span->last)));
+    messages.warning(
+        fmt::format("the observations of {} to {} are not all in the time of the navigation data, {} to {}",
+                    text(first), text(last), text(span->first), text(span->last)));
 }
 
 // The broadcast records for the span of the observations; none without a file.
@@ -117,9 +118,11 @@ void warn_of_systems(const SolveOptions& options, const ObservationFile& file, c
         if (const auto system = constellation_from_name(name)) wanted.insert(*system);
     for (const Constellation system : wanted) {
         if (!observed.contains(system))
-            messages.warning(fmt::format("{}: no observations of {}", options.observations, constellation_name(system)));
+            messages.warning(
+                fmt::format("{}: no observations of {}", options.observations, constellation_name(system)));
         else if (options.sp3.empty() && !in_orbit.contains(system))
-            messages.warning(fmt::format("no orbits of {} at the time of the observations", constellation_name(system)));
+            messages.warning(
+                fmt::format("no orbits of {} at the time of the observations", constellation_name(system)));
     }
 }
 

@@ -17,7 +17,8 @@ bool is_utf16(std::string_view head) { return head.starts_with("\xFF\xFE") || he
 std::optional<std::size_t> binary_byte(std::string_view head) {
     const auto at = std::find_if(head.begin(), head.end(), [](char letter) {
         const auto byte = static_cast<unsigned char>(letter);
-        return byte == 0x7F || (byte < 0x20 && std::string_view("\t\n\v\f\r\x1A").find(letter) == std::string_view::npos);
+        return byte == 0x7F ||
+               (byte < 0x20 && std::string_view("\t\n\v\f\r\x1A").find(letter) == std::string_view::npos);
     });
     return at == head.end() ? std::nullopt : std::optional(static_cast<std::size_t>(at - head.begin()));
 }
@@ -53,8 +54,7 @@ std::string what_it_is(std::string_view head) {
     if (const auto at = binary_byte(head))
         return fmt::format("is not text (byte {:#04x} at offset {}) and no log that is known; expected a track",
                            static_cast<unsigned char>(head[*at]), *at);
-    if (is_rinex(head))
-        return "is a RINEX file, which holds no track; skyloop solve makes fixes of RINEX observations";
+    if (is_rinex(head)) return "is a RINEX file, which holds no track; skyloop solve makes fixes of RINEX observations";
     if (has_unchecked_sentences(head))
         return "holds NMEA sentences without a checksum, which are not read; expected …*hh behind each";
     if (head.find('\r') != std::string_view::npos && head.find('\n') == std::string_view::npos)
@@ -67,8 +67,7 @@ std::string what_it_is(std::string_view head) {
 bool is_other_file(const TrackFile& file) { return !what_it_is(file.text.substr(0, other_looked_at)).empty(); }
 
 Result<Track> refuse_other_file(const TrackFile& file) {
-    return fail(ErrorCode::input,
-                fmt::format("{}: {}", file.name, what_it_is(file.text.substr(0, other_looked_at))));
+    return fail(ErrorCode::input, fmt::format("{}: {}", file.name, what_it_is(file.text.substr(0, other_looked_at))));
 }
 
 }  // namespace skyloop
