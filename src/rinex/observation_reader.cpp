@@ -85,6 +85,7 @@ private:
         if (!follows) return;
         skip_unordered(last_head_, "no epoch later than those that follow");
         epochs.pop_back();
+        signals_.break_all();  // whose counts may have begun in it
     }
 
     void measured(const EpochHead& head, const Line& first) {
