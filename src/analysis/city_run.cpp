@@ -39,7 +39,7 @@ public:
             const std::string_view line = text_.substr(0, end);
             text_.remove_prefix(std::min(end + 1, text_.size()));
             ++line_;
-            if (without_blanks(line).empty()) continue;
+            if (trimmed_cell(line).empty()) continue;
             cells_ = split_cells(line, ',');
             return true;
         }

@@ -33,12 +33,6 @@ struct TableRow {
 // What a message may quote of a cell that can be anything.
 std::string_view quotable(std::string_view text) { return text.substr(0, 40); }
 
-char separator_of(std::string_view line) {
-    for (const char c : {',', ';', '\t'})
-        if (line.find(c) != std::string_view::npos) return c;
-    return ' ';
-}
-
 Result<double> cell_number(const TableRow& row, const FixColumn& column, std::string_view what) {
     const std::string_view cell = row.cells[column.index];
     const std::optional<double> value = cell_value(cell);
@@ -217,9 +211,9 @@ Result<FixSeries> parse_fix_table(std::string_view text, const std::string& name
         const bool unended = end == text.size();
         const std::string_view content = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
-        if (without_blanks(content).empty() || without_blanks(content).starts_with('#')) continue;
-        if (!columns) separator = separator_of(without_blanks(content));
-        const TableRow row{name, line, split_cells(separator == ' ' ? without_blanks(content) : content, separator)};
+        if (trimmed_cell(content).empty() || trimmed_cell(content).starts_with('#')) continue;
+        if (!columns) separator = separator_in(trimmed_cell(content));
+        const TableRow row{name, line, split_cells(separator == ' ' ? trimmed_cell(content) : content, separator)};
         if (!columns) {
             const Result<FixColumns> found = columns_of(row);
             if (!found) return fail(found.error());

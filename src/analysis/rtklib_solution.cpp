@@ -193,7 +193,7 @@ Result<FixSeries> parse_rtklib_solution(std::string_view text, const std::string
             if (auto taken = take_header_line(content, header, series); !taken) return fail(taken.error());
             continue;
         }
-        if (without_blanks(content).empty()) continue;
+        if (trimmed_cell(content).empty()) continue;
         PosRow row(content);
         const FixSample sample = pos_sample(row, header.value_or(PosHeader{}));
         if (row.fault()) return fail(ErrorCode::input, fmt::format("{}:{}: {}", name, line, *row.fault()));

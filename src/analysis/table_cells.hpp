@@ -3,16 +3,14 @@
 
 #include <optional>
 #include <string_view>
-#include <vector>
+
+#include "skyloop/base/table_line.hpp"
 
 namespace skyloop {
 
-/// `text` without blanks, line ends and quotation marks around it.
-std::string_view without_blanks(std::string_view text);
-
 /// The cells of a line, each without blanks around it. A separator between double quotes separates nothing. With a
 /// space as `separator` several count as one.
-std::vector<std::string_view> split_cells(std::string_view line, char separator);
+LineCells split_cells(std::string_view line, char separator);
 
 /// The number that a cell is, or nothing.
 std::optional<double> cell_value(std::string_view cell);

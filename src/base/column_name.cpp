@@ -4,6 +4,8 @@
 #include <array>
 #include <numbers>
 
+#include "skyloop/base/table_line.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -56,11 +58,9 @@ constexpr std::array column_units{ColumnUnit{"s", Unit::time, 1},
                                   ColumnUnit{"fps", Unit::speed, unit_foot}};
 
 std::string lowered_name(std::string_view text) {
-    std::string lower(text);
+    std::string lower = lowered_text(text);
     for (char& letter : lower)
-        letter = letter == ' ' || letter == '-'   ? '_'
-                 : letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a')
-                                                  : letter;
+        if (letter == ' ' || letter == '-') letter = '_';
     return lower;
 }
 

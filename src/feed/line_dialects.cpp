@@ -8,6 +8,7 @@
 #include "dialects.hpp"
 #include "heard_pieces.hpp"
 #include "motion_filter.hpp"
+#include "skyloop/base/table_line.hpp"
 
 namespace skyloop {
 namespace {
@@ -107,13 +108,6 @@ constexpr std::array<std::string_view, line_columns> jsbsim_properties{
     "velocities/v-north-fps",  "velocities/v-east-fps", "velocities/v-down-fps", "attitude/phi-rad",
     "attitude/theta-rad",      "attitude/psi-rad"};
 
-std::string_view without_blanks(std::string_view text) {
-    constexpr std::string_view blanks = " \t\"";
-    const std::size_t first = text.find_first_not_of(blanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
 // The first line names the columns; of those that are there twice (Time and simulation/sim-time-sec) the last counts.
 class JsbsimDialect : public LineDialect {
 public:
@@ -161,7 +155,7 @@ private:
 
     // Labels are properties, with "/fdm/jsbsim/" before them or, of JSBSim 2020.3, the last part of them alone.
     static bool fits(std::size_t column, std::string_view label) {
-        label = without_blanks(label);
+        label = trimmed_cell(label);
         if (column == LineColumn::time_s && label == "Time") return true;
         const std::string_view wanted = jsbsim_properties[column];
         const auto is_end_of = [](std::string_view end, std::string_view whole) {
@@ -174,7 +168,7 @@ private:
     // JSBSim 2020.3 writes seven digits whatever it is asked for: a grid of a metre.
     bool is_coarse(std::string_view latitude_cell) {
         constexpr std::size_t fine_decimals = 7;
-        const std::string_view cell = without_blanks(latitude_cell);
+        const std::string_view cell = trimmed_cell(latitude_cell);
         const std::size_t point = cell.find('.');
         if (point != std::string_view::npos) decimals_ = std::max(decimals_, cell.size() - point - 1);
         return decimals_ < fine_decimals;

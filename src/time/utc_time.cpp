@@ -206,6 +206,33 @@ Result<UtcTime> parse_utc(std::string_view text) {
     return t;
 }
 
+std::optional<int> zone_minutes(std::string_view text) {
+    if (text.empty() || text == "Z" || text == "z") return 0;
+    const int sign = text.front() == '-' ? -1 : 1;
+    unsigned hours = 0, minutes = 0;
+    if (!read_mark(text, "+-") || !read_number(text, 2, hours)) return std::nullopt;
+    read_mark(text, ":");
+    if (!text.empty() && !read_number(text, 2, minutes)) return std::nullopt;
+    if (!text.empty() || hours > 14 || minutes > 59) return std::nullopt;
+    return sign * static_cast<int>(hours * 60 + minutes);
+}
+
+UtcTime utc_of_local(const UtcTime& local, int minutes) {
+    using namespace std::chrono;
+    const sys_days day = year_month_day(year(local.year), month(local.month), std::chrono::day(local.day));
+    const auto utc = day + hours(local.hour) + std::chrono::minutes(static_cast<int>(local.minute) - minutes);
+    const auto midnight = floor<days>(utc);
+    const year_month_day date(midnight);
+    const hh_mm_ss clock(utc - midnight);
+    return {static_cast<int>(date.year()),
+            static_cast<unsigned>(date.month()),
+            static_cast<unsigned>(date.day()),
+            static_cast<unsigned>(clock.hours().count()),
+            static_cast<unsigned>(clock.minutes().count()),
+            local.second,
+            local.nanosecond};
+}
+
 std::string format_utc(const UtcTime& utc, int decimals) {
     std::string text = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}", utc.year, utc.month, utc.day, utc.hour,
                                    utc.minute, utc.second);

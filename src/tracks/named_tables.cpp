@@ -242,7 +242,7 @@ std::string_view unicsv_names(std::string_view head) {
         const std::string_view line = lines.line();
         if (trimmed_text(line).empty()) continue;
         std::vector<std::string_view> cells;
-        split_text_cells(line, separator_in(line), cells);
+        split_table_line(line, separator_in(line), cells);
         std::size_t found = 0;
         for (const std::string_view cell : cells)
             for (const std::string_view name : {"latitude", "longitude", "date", "time"})
@@ -262,7 +262,7 @@ Result<Track> read_unicsv(const TrackFile& file) {
     TextTrack track(file, "unicsv");
     const std::string_view names = unicsv_names(file.text.substr(0, looked_at));
     std::vector<std::string_view> cells;
-    split_text_cells(names, separator_in(names), cells);
+    split_table_line(names, separator_in(names), cells);
     std::vector<std::string> all, unused;
     for (const std::string_view cell : cells) {
         all.push_back(lowered_text(cell));

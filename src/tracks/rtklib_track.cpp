@@ -140,7 +140,7 @@ Result<void> RtklibRows::take_row(std::string_view line, std::size_t number) {
     std::string blanked(line);
     std::replace_if(
         blanked.begin(), blanked.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-    split_text_cells(blanked, ' ', cells_);
+    split_table_line(blanked, ' ', cells_);
     TextRow row;
     row.line = number;
     const auto when = time();

@@ -27,7 +27,7 @@ FirstRow first_row_of(const TrackFile& file) {
         if (line.empty() || shaped_comments.find(line.front()) != std::string_view::npos) continue;
         first.separator = separator_in(line);
         std::vector<std::string_view> cells;
-        split_text_cells(line, first.separator, cells);
+        split_table_line(line, first.separator, cells);
         for (const std::string_view cell : cells) {
             const auto number = text_number(cell);
             if (!number) return {};

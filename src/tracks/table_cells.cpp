@@ -8,17 +8,11 @@
 
 namespace skyloop {
 
-char separator_in(std::string_view line) {
-    for (const char candidate : {',', ';', '\t'})
-        if (line.find(candidate) != std::string_view::npos) return candidate;
-    return ' ';
-}
-
 bool TableCells::next() {
     while (lines_.next()) {
         const std::string_view plain = trimmed_text(lines_.line());
         if (plain.empty() || comments_.find(plain.front()) != std::string::npos) continue;
-        split_text_cells(lines_.line(), separator_, cells_);
+        split_table_line(lines_.line(), separator_, cells_);
         return true;
     }
     return false;
@@ -31,14 +25,8 @@ void TableCells::take_names() {
 }
 
 Result<void> TableCells::check_width() const {
-    std::size_t count = cells_.size();
-    while (count > names_.size() && cells_[count - 1].empty())
-        --count;
-    if (count <= names_.size()) return {};
-    return refusal(
-        fmt::format("{} cells under {} names; expected one for each: numbers with a decimal point, texts "
-                    "that hold the separator in quotes",
-                    count, names_.size()));
+    if (const auto mistake = width_mistake(cells_, names_.size())) return refusal(*mistake);
+    return {};
 }
 
 std::optional<std::size_t> TableCells::column(std::string_view name) const {

@@ -9,10 +9,6 @@
 #include "text_track.hpp"
 
 namespace skyloop {
-
-// The separator of a line: the first of comma, semicolon and tab that is in it, or blanks.
-char separator_in(std::string_view line);
-
 // Lines of cells, without empty lines and comments.
 class TableCells {
 public:

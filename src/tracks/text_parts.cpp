@@ -6,8 +6,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "skyloop/base/cell_end.hpp"
-
 namespace skyloop {
 namespace {
 
@@ -42,35 +40,6 @@ bool take_fraction(std::string_view& text, std::uint32_t& nanosecond) {
     return any;
 }
 
-// Minutes east of UTC; nothing for what is no zone. An empty text is one without a zone.
-std::optional<int> zone_minutes(std::string_view text) {
-    if (text.empty() || text == "Z" || text == "z") return 0;
-    const int sign = text.front() == '-' ? -1 : 1;
-    if (!take_char(text, "+-")) return std::nullopt;
-    const auto hours = take_digits(text, 2);
-    take_char(text, ":");
-    const auto minutes = text.empty() ? std::optional(0u) : take_digits(text, 2);
-    if (!hours || !minutes || !text.empty() || *hours > 14 || *minutes > 59) return std::nullopt;
-    return sign * static_cast<int>(*hours * 60 + *minutes);
-}
-
-// The same instant in UTC. The second stays, so that a leap second does.
-UtcTime moved_back(const UtcTime& local, int minutes) {
-    using namespace std::chrono;
-    const sys_days day = year_month_day(year(local.year), month(local.month), std::chrono::day(local.day));
-    const auto utc = day + hours(local.hour) + std::chrono::minutes(static_cast<int>(local.minute) - minutes);
-    const auto midnight = floor<days>(utc);
-    const year_month_day date(midnight);
-    const hh_mm_ss clock(utc - midnight);
-    return {static_cast<int>(date.year()),
-            static_cast<unsigned>(date.month()),
-            static_cast<unsigned>(date.day()),
-            static_cast<unsigned>(clock.hours().count()),
-            static_cast<unsigned>(clock.minutes().count()),
-            local.second,
-            local.nanosecond};
-}
-
 bool could_be(const UtcTime& local) {
     using namespace std::chrono;
     return year_month_day(year(local.year), month(local.month), day(local.day)).ok() && local.hour < 24 &&
@@ -84,13 +53,6 @@ std::string_view trimmed_text(std::string_view text) {
     const std::size_t first = text.find_first_not_of(blanks);
     if (first == std::string_view::npos) return {};
     return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-std::string lowered_text(std::string_view text) {
-    std::string lower(text);
-    for (char& letter : lower)
-        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
-    return lower;
 }
 
 std::string one_line_of(std::string text) {
@@ -120,24 +82,6 @@ bool TextLines::next() {
     return true;
 }
 
-void split_text_cells(std::string_view line, char separator, std::vector<std::string_view>& cells) {
-    cells.clear();
-    constexpr std::string_view blanks = " \t";
-    const bool blank = separator == ' ';
-    const std::string_view separators = blank ? blanks : std::string_view(&separator, 1);
-    if (blank) {
-        line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
-        line = line.substr(0, line.find_last_not_of(blanks) + 1);
-    }
-    for (;;) {
-        const std::size_t end = end_of_cell(line, separators);
-        cells.push_back(trimmed_text(line.substr(0, end)));
-        if (end == std::string_view::npos) return;
-        line.remove_prefix(end + 1);
-        if (blank) line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
-    }
-}
-
 std::optional<IsoTime> parse_iso_time(std::string_view text) {
     text = trimmed_text(text);
     UtcTime local;
@@ -159,7 +103,7 @@ std::optional<IsoTime> parse_iso_time(std::string_view text) {
     text = trimmed_text(text);
     const auto zone = zone_minutes(text);
     if (!zone || !could_be(local)) return std::nullopt;
-    const auto since = utc_since_1980(moved_back(local, *zone));
+    const auto since = utc_since_1980(utc_of_local(local, *zone));
     return IsoTime{GpsTime(since.value_or(Nanoseconds(0))), !text.empty(), since.has_value()};
 }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "skyloop/base/table_line.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/time/utc_time.hpp"
 #include "track_formats.hpp"
@@ -36,7 +37,6 @@ struct TextRow {
 std::optional<double> text_number(std::string_view text);
 // Without blanks, tabs, line ends and quotation marks around it.
 std::string_view trimmed_text(std::string_view text);
-std::string lowered_text(std::string_view text);
 // Line ends and other control characters as blanks: what a file holds does not break a message.
 std::string one_line_of(std::string text);
 
@@ -53,10 +53,6 @@ private:
     std::string_view rest_, line_;
     std::size_t number_ = 0;
 };
-
-// Cells of a line, trimmed. A separator between double quotes separates nothing. With a blank as separator, several
-// blanks and tabs count as one.
-void split_text_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);
 
 // An instant as ISO 8601 writes it: 2024-03-05T12:00:00.123456789Z, with any zone, or none.
 struct IsoTime {

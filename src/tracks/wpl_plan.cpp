@@ -32,7 +32,7 @@ private:
 Result<void> WplReader::take_line(std::string_view line, std::size_t number) {
     constexpr std::size_t columns = 12;
     constexpr double most = 65535;
-    split_text_cells(line, ' ', cells_);
+    split_table_line(line, ' ', cells_);
     if (cells_.size() < columns)
         return refusal(number, fmt::format("{} columns; expected {}: index, current, frame, command, four parameters, "
                                            "latitude, longitude, height, autocontinue",

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "skyloop/base/column_name.hpp"
+#include "skyloop/base/table_line.hpp"
 
 namespace skyloop {
 namespace {
@@ -82,16 +83,9 @@ constexpr std::array known_columns{KnownColumn{"t_s", Q::since_start, 1},
                                    KnownColumn{"fix", Q::fix, 1},
                                    KnownColumn{"reset", Q::reset, 1}};
 
-std::string lowered_column(std::string_view name) {
-    std::string lower(name);
-    for (char& letter : lower)
-        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
-    return lower;
-}
-
 // In letters of either case; names of one word, such as "fix", stand for something else when they begin with a capital.
 bool is_called(const KnownColumn& column, std::string_view name) {
-    return column.name == name || (name.find('_') != std::string_view::npos && column.name == lowered_column(name));
+    return column.name == name || (name.find('_') != std::string_view::npos && column.name == lowered_text(name));
 }
 
 // What other programs call a quantity, and what its unit measures. Of several for one quantity the earlier one counts.
@@ -192,7 +186,7 @@ namespace {
 
 // A name whose unit is not known: its table is no route.
 bool looks_like_a_time(std::string_view name) {
-    const std::string lower = lowered_column(name);
+    const std::string lower = lowered_text(name);
     constexpr std::array<std::string_view, 4> words{"time", "date", "utc", "epoch"};
     return std::any_of(words.begin(), words.end(),
                        [&](std::string_view word) { return lower.find(word) != std::string::npos; });

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "skyloop/base/table_line.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/time/utc_time.hpp"
 #include "track_cells.hpp"
@@ -17,7 +18,6 @@
 namespace skyloop {
 namespace {
 
-using Cells = TrackCells;
 using enum TrackQuantity;
 
 // Whole seconds beyond which a time is none: the year 2261, the end of GpsTime, less a margin.
@@ -76,7 +76,7 @@ private:
     TrackColumns columns_;
     TrackDates dates_;
     std::vector<std::size_t> level_;  // rows of track_ whose velocity has no climb yet
-    Cells cells_;
+    LineCells cells_;
 };
 
 Result<Track> TrackTable::read(std::string_view text) {
@@ -102,24 +102,19 @@ Result<Track> TrackTable::read(std::string_view text) {
 Result<void> TrackTable::take_line(std::string_view line) {
     constexpr std::size_t longest = 65536;
     if (line.size() > longest) return refusal(fmt::format("a line of {} characters; expected a table", line.size()));
-    const std::string_view plain = trimmed_track_cell(line);
+    const std::string_view plain = trimmed_cell(line);
     if (plain.empty() || plain.front() == '#' || plain.front() == '%') return {};
     // "sep=;" is a word of Excel to itself.
     if (!has_header_) return plain.starts_with("sep=") ? Result<void>() : take_header(line);
-    split_track_cells(line, separator_, cells_);
-    while (cells_.size() > names_ && cells_.back().empty())
-        cells_.pop_back();
-    if (cells_.size() > names_)
-        return refusal(
-            fmt::format("{} cells under {} names; expected one for each: numbers with a decimal point, texts that hold "
-                        "the separator in quotes",
-                        cells_.size(), names_));
+    split_table_line(line, separator_, cells_);
+    if (const auto mistake = width_mistake(cells_, names_)) return refusal(*mistake);
+    cells_.resize(std::min(cells_.size(), names_));
     return take_row();
 }
 
 Result<void> TrackTable::take_header(std::string_view line) {
-    separator_ = track_separator(trimmed_track_cell(line));
-    split_track_cells(line, separator_, cells_);
+    separator_ = separator_in(trimmed_cell(line));
+    split_table_line(line, separator_, cells_);
     auto columns = TrackColumns::of(cells_);
     if (!columns) return refusal(columns.error().message);
     columns_ = std::move(*columns);

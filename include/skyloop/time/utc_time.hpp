@@ -3,6 +3,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -76,6 +77,12 @@ bool is_calendar_time(const UtcTime& utc);
 /// be a space and `Z` be left out. Fails with `usage`, and a sentence that quotes the text, for anything else and for
 /// what is no calendar time.
 Result<UtcTime> parse_utc(std::string_view text);
+/// Minutes east of UTC of a zone as ISO 8601 writes it: "+01:00", "-0330", "+02", "Z"; 0 for an empty text. Nothing for
+/// what is no zone.
+std::optional<int> zone_minutes(std::string_view text);
+/// The same instant in UTC. The second stays, so that a leap second does.
+/// @param local of a calendar that has its day @param minutes east of UTC
+UtcTime utc_of_local(const UtcTime& local, int minutes);
 /// ISO 8601 with `decimals` (0 … 9) digits of fraction, cut off and not rounded as a clock shows them, and a final Z.
 std::string format_utc(const UtcTime& utc, int decimals = 3);
 
