@@ -74,7 +74,7 @@ void Receiver::Core::start(GpsTime now) {
 Result<void> Receiver::Core::configure(const std::map<std::uint32_t, std::uint64_t>& items) {
     if (!items.empty() && board_.personality != Personality::ublox)
         return fail(ErrorCode::usage, board_.name + " is no u-blox receiver and has no configuration items");
-    const bool was_consistent = is_consistent(board_, store_.values_at_start());
+    ConfigStore after = store_;
     for (const auto& [id, value] : items) {
         const ConfigKey* item = find_config_key(id);
         const std::string name = item == nullptr ? fmt::format("item 0x{:08x}", id) : std::string(item->name);
@@ -82,12 +82,13 @@ Result<void> Receiver::Core::configure(const std::map<std::uint32_t, std::uint64
         if (!is_in_range(board_, id, value))
             return fail(ErrorCode::usage,
                         fmt::format("{} is {}, which {} itself would refuse", name, value, board_.name));
-        store_.set(has_flash(board_) ? in_flash : in_battery, id, value);
+        after.set(has_flash(board_) ? in_flash : in_battery, id, value);
     }
-    if (was_consistent && !is_consistent(board_, store_.values_at_start()))
+    if (spoils_start(board_, store_, after))
         return fail(ErrorCode::usage, "these items do not go together: " + board_.name +
                                           " would refuse them, as no system that gives a position, too many, or "
                                           "signals that exclude each other");
+    store_ = std::move(after);
     begin_as_stored();
     return {};
 }

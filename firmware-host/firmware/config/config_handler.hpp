@@ -49,8 +49,6 @@ private:
     /// Does now what a message asks for, or adds it to a transaction.
     ConfigOutcome take(std::uint8_t transaction, Change change);
     ConfigOutcome apply(const Change& change);
-    /// Whether what is kept could not stand together at the next start, and does now.
-    [[nodiscard]] bool spoils_start(const ConfigStore& after) const;
     /// False, and nothing is forgotten, when that would spoil the next start.
     bool erase(const Change& change);
     /// The items that a wildcard means, or the one of this id; nothing when there is none.
@@ -84,6 +82,8 @@ ConfigValues factory_config(const BoardProfile& board);
 /// Whether values may stand together in RAM: each in its range, at least one major system enabled, a signal plan that
 /// the board can track (RECEIVER.md 4.4).
 bool is_consistent(const BoardProfile& board, const ConfigValues& ram);
+/// Whether what is kept could not stand together at the next start, and did before.
+bool spoils_start(const BoardProfile& board, const ConfigStore& before, const ConfigStore& after);
 /// Whether one value is in the range of its item: enumerations, logicals, the board's speeds and rates.
 bool is_in_range(const BoardProfile& board, std::uint32_t key, std::uint64_t value);
 

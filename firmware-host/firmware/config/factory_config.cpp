@@ -295,4 +295,9 @@ bool is_consistent(const BoardProfile& board, const ConfigValues& ram) {
     return is_signal_plan(board, ram);
 }
 
+// A change of the kept layers alone shows at the next start, which must have a system as well.
+bool spoils_start(const BoardProfile& board, const ConfigStore& before, const ConfigStore& after) {
+    return !is_consistent(board, after.values_at_start()) && is_consistent(board, before.values_at_start());
+}
+
 }  // namespace skyloop::firmware

@@ -138,16 +138,11 @@ ConfigOutcome ValueConfig::take(std::uint8_t transaction, Change change) {
     return cancel(), apply(whole);
 }
 
-// A change of the kept layers alone shows at the next start, which must have a system as well.
-bool ValueConfig::spoils_start(const ConfigStore& after) const {
-    return !is_consistent(board_, after.values_at_start()) && is_consistent(board_, store_.values_at_start());
-}
-
 bool ValueConfig::erase(const Change& change) {
     ConfigStore after = store_;
     for (const auto& [key, value] : change.items)
         after.erase(change.layers, key);
-    if (spoils_start(after)) return false;
+    if (spoils_start(board_, store_, after)) return false;
     store_ = std::move(after);
     return true;
 }
@@ -165,7 +160,7 @@ ConfigOutcome ValueConfig::apply(const Change& change) {
         ConfigStore after = store_;
         for (const auto& [key, value] : change.items)
             after.set(change.layers, key, value);
-        if (spoils_start(after)) return refused();
+        if (spoils_start(board_, store_, after)) return refused();
     }
     for (const auto& [key, value] : change.items) {
         const std::uint64_t before = store_.value(key);
