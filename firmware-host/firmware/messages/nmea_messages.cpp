@@ -12,12 +12,6 @@ namespace skyloop::firmware {
 namespace {
 
 // Nothing where the board leaves it empty.
-std::optional<double> hdop_of(const NmeaReport& r) {
-    constexpr double unknown_dop = 99.99;
-    if (has_dops(r.fix())) return r.fix().dop.hdop;
-    return r.context.board.style.zeros_without_fix ? std::nullopt : std::optional(unknown_dop);
-}
-
 // What GGA and GNS share: height, age and station of corrections.
 template <class Message>
 void add_height_and_corrections(Message& m, const NmeaReport& r) {
@@ -40,7 +34,7 @@ Gga gga(const NmeaReport& r) {
     m.position = r.position;
     m.quality = r.quality;
     m.satellites_used = std::min(r.satellites_counted, r.context.board.max_listed_satellites);
-    m.hdop = hdop_of(r);
+    if (const auto dops = shown_dops(r)) m.hdop = dops->hdop;
     add_height_and_corrections(m, r);
     return m;
 }
@@ -69,7 +63,7 @@ Gns gns(const NmeaReport& r) {
     m.position = r.position;
     m.modes = modes_of_systems(r);
     m.satellites_used = r.satellites_counted;
-    m.hdop = hdop_of(r);
+    if (const auto dops = shown_dops(r)) m.hdop = dops->hdop;
     add_height_and_corrections(m, r);
     return m;
 }

@@ -190,6 +190,13 @@ std::string nmea_talker(const BoardProfile& board, const ConfigStore& config) {
     return talker.empty() ? "GP" : talker;
 }
 
+std::optional<Dop> shown_dops(const NmeaReport& report) {
+    constexpr double not_computed = 99.99;
+    if (has_dops(report.fix())) return report.fix().dop;
+    if (report.context.board.style.zeros_without_fix) return std::nullopt;
+    return Dop{.pdop = not_computed, .hdop = not_computed, .vdop = not_computed};
+}
+
 NmeaFormat nmea_format(const BoardProfile& board, const ConfigStore& config) {
     constexpr int compatible_time_decimals = 3, precise_coordinate_decimals = 7, precise_altitude_decimals = 3;
     NmeaFormat format{.version = configured_version(board, config),

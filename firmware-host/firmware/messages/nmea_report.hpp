@@ -51,6 +51,9 @@ struct NmeaReport {
 };
 
 NmeaReport nmea_report(const ReportContext& context);
+/// DOPs of position as sentences show them: 99.99 where none was computed; nothing where the board leaves them out
+/// then.
+std::optional<Dop> shown_dops(const NmeaReport& report);
 /// Sentences of the classes F0 (NMEA) and F1 (PUBX 00, 03, 04), as make_message() gives them.
 std::vector<Bytes> make_nmea_message(UbxMessageId message, const NmeaReport& report);
 

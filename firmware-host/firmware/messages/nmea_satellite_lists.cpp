@@ -9,7 +9,6 @@
 namespace skyloop::firmware {
 namespace {
 
-constexpr double no_dop_in_list = 99.99;
 constexpr std::size_t used_slots = 12;
 
 // A C/N0 of one signal; nothing: not tracked.
@@ -150,13 +149,10 @@ std::vector<Gsa> gsa_messages(const NmeaReport& r) {
     m.automatic =
         !r.context.config.has(key::navspg_fixmode) || r.context.config.value(key::navspg_fixmode) == automatic;
     m.fix_mode = r.fix_mode;
-    const Dop& dop = r.fix().dop;
-    if (has_dops(r.fix())) {
-        m.pdop = dop.pdop;
-        m.hdop = dop.hdop;
-        m.vdop = dop.vdop;
-    } else if (!r.context.board.style.zeros_without_fix) {
-        m.pdop = m.hdop = m.vdop = no_dop_in_list;
+    if (const auto dops = shown_dops(r)) {
+        m.pdop = dops->pdop;
+        m.hdop = dops->hdop;
+        m.vdop = dops->vdop;
     }
     std::vector<Gsa> out;
     for (const NmeaGroup& group : r.groups) {
