@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <utility>
 
 #include "log_parts.hpp"
@@ -72,21 +73,19 @@ LogEpochs joined(LogEpochs epochs, OrderCounts& counts) {
         counts.repeated += leave_out_repeated(part);
     std::stable_sort(parts.begin(), parts.end(),
                      [](const LogEpochs& a, const LogEpochs& b) { return a.size() > b.size(); });
-    std::vector<LogEpochs> kept;
+    std::map<GpsTime, LogEpochs> kept;  // by their begin; none reaches into the next
     for (LogEpochs& part : parts) {
-        const bool overlaps = std::any_of(kept.begin(), kept.end(), [&](const LogEpochs& other) {
-            return part.front().time <= other.back().time && other.front().time <= part.back().time;
-        });
+        const auto next = kept.upper_bound(part.front().time);
+        const bool overlaps = (next != kept.begin() && std::prev(next)->second.back().time >= part.front().time) ||
+                              (next != kept.end() && next->first <= part.back().time);
         if (overlaps)
             counts.repeated += part.size();
         else
-            kept.push_back(std::move(part));
+            kept.emplace_hint(next, part.front().time, std::move(part));
     }
-    std::sort(kept.begin(), kept.end(),
-              [](const LogEpochs& a, const LogEpochs& b) { return earlier(a.front(), b.front()); });
     counts.parts = kept.size();
     LogEpochs whole;
-    for (LogEpochs& part : kept)
+    for (auto& [begin, part] : kept)
         whole.insert(whole.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
     return whole;
 }
