@@ -18,7 +18,7 @@ using PoolClock = std::chrono::steady_clock;
 
 constexpr int pool_look_ms = 100;
 constexpr std::chrono::seconds patience{2};  // with a worker that is asked to end
-constexpr int most_deaths = 100;             // of workers that were all of them, before any answered
+constexpr int most_deaths = 100;             // of workers, before any has answered
 
 // Who does what.
 class Pool {

@@ -120,12 +120,17 @@ void with_toml_value(const CampaignValue& value, const std::function<void(const 
 
 namespace {
 
+// A value that is written as TOML writes texts and arrays, and no plain word.
+bool begins_as_toml(std::string_view text) {
+    return !text.empty() && std::string_view("\"'[").find(text.front()) != std::string_view::npos;
+}
+
 // Of the first value: the comma behind it, or npos. Where it begins with a quote or a bracket, those within do not
 // count.
 std::size_t end_of_value(std::string_view text) {
     char quote = 0;
     int brackets = 0;
-    const bool is_toml = !text.empty() && std::string_view("\"'[").find(text.front()) != std::string_view::npos;
+    const bool is_toml = begins_as_toml(text);
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
         if (c == ',' && quote == 0 && brackets == 0) return i;
@@ -155,8 +160,7 @@ Result<std::vector<CampaignValue>> parse_campaign_values(std::string_view text) 
                                                       "such as 1.5,2 or town,street",
                                                       text));
         auto one = as_array(word);
-        const bool is_toml = std::string_view("\"'[").find(word.front()) != std::string_view::npos;
-        if (is_toml && (!one || one->size() != 1))
+        if (begins_as_toml(word) && (!one || one->size() != 1))
             return fail(ErrorCode::usage,
                         fmt::format("'{}' is no value; expected its quotes and brackets closed", word));
         if (!one || one->size() != 1) one = as_array(quoted_text(word));
