@@ -132,6 +132,21 @@ TEST(Emulator, ARecordingThatFailsEndsTheRun) {
     EXPECT_GE(run.emulator->counts().epochs, 2U);
 }
 
+// A row of a port's times: when a part of its bytes left, by both clocks, in ns, and which.
+struct WrittenPart {
+    std::int64_t monotonic = 0, gps = 0;
+    std::size_t at = 0, count = 0;
+};
+
+std::vector<WrittenPart> written_parts(const std::filesystem::path& times) {
+    std::vector<WrittenPart> parts;
+    for (const std::string& line : lines_of(content_of(times))) {
+        WrittenPart& part = parts.emplace_back();
+        std::istringstream(line) >> part.monotonic >> part.gps >> part.at >> part.count;
+    }
+    return parts;
+}
+
 TEST(Emulator, TheRecordingHoldsTheBytesOfTheWire) {
     const TemporaryFolder folder;
     auto recorder = Recorder::create(folder / "run");
@@ -145,10 +160,7 @@ TEST(Emulator, TheRecordingHoldsTheBytesOfTheWire) {
     EXPECT_EQ(run.emulator->wires()[0].link.counters().bytes_out, bytes.size());
     std::size_t offset = 0;
     std::int64_t latest = 0;
-    for (const std::string& line : lines_of(content_of(folder / "run/port0.times"))) {
-        std::int64_t monotonic = 0, gps = 0;
-        std::size_t at = 0, count = 0;
-        std::istringstream(line) >> monotonic >> gps >> at >> count;
+    for (const auto& [monotonic, gps, at, count] : written_parts(folder / "run/port0.times")) {
         EXPECT_EQ(at, offset);
         EXPECT_GT(monotonic, latest);
         EXPECT_EQ(gps - run.start.time_since_epoch().count(), monotonic);
@@ -168,10 +180,7 @@ TEST(Emulator, KnowsInVirtualTimeWhenEachMessageLeft) {
     constexpr double byte_ns = 1e10 / 9600;
     std::int64_t before = 0;
     std::size_t messages = 0;
-    for (const std::string& line : lines_of(content_of(folder / "run/port0.times"))) {
-        std::int64_t monotonic = 0, gps = 0;
-        std::size_t at = 0, count = 0;
-        std::istringstream(line) >> monotonic >> gps >> at >> count;
+    for (const auto& [monotonic, gps, at, count] : written_parts(folder / "run/port0.times")) {
         EXPECT_EQ(bytes.substr(at, 1), "$");
         EXPECT_EQ(bytes.find('\n', at), at + count - 1) << "a sentence by itself";
         if (messages > 0 && gps - before < 200'000'000) {
