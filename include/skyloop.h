@@ -142,9 +142,9 @@ typedef struct sky_fix {
     int64_t sim_time_ns;                               ///< of the epoch
     int64_t gps_time_ns;                               ///< since 1980-01-06, as the receiver believes
     double lat_deg, lon_deg, height_ellipsoid_m, height_msl_m;
-    double vel_ned[3];      ///< m/s
-    double error_enu_m[3];  ///< reported less true position
-    float pdop, hdop, vdop, reserved;
+    double vel_ned[3];                                  ///< m/s
+    double error_enu_m[3];                              ///< reported less true position
+    float pdop, hdop, vdop, reserved;                   ///< in a 2D fix with a held height PDOP and VDOP are NaN
     float h_acc_m, v_acc_m, speed_acc_mps, course_deg;  ///< 1 σ estimates; course over ground
 } sky_fix;
 

@@ -195,7 +195,9 @@ void StateTracker::keep_within_limits(const ConfigStore& config) {
     const double p_dop = static_cast<double>(config.value(key::navspg_pdop)) / 10;
     const double p_acc = static_cast<double>(config.value(key::navspg_pacc));
     const double accuracy = std::hypot(fix.horizontal_accuracy.value(), fix.vertical_accuracy.value());
-    state_.fix_ok = moves_as_expected && (p_dop <= 0 || fix.dop.pdop <= p_dop) && (p_acc <= 0 || accuracy <= p_acc);
+    // Of two dimensions there is no other DOP of the position.
+    const double dop = two_d ? fix.dop.hdop : fix.dop.pdop;
+    state_.fix_ok = moves_as_expected && (p_dop <= 0 || dop <= p_dop) && (p_acc <= 0 || accuracy <= p_acc);
 }
 
 void StateTracker::apply_corrections(const CorrectionStatus& corrections) {

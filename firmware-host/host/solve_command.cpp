@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <set>
@@ -45,8 +46,9 @@ std::string solved_row(const Fix& fix) {
                        fix.position.height.above_ellipsoid.value());
     row += fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},", fix.velocity.north, fix.velocity.east, fix.velocity.down,
                        fix.speed.value(), fix.course.deg());
-    row += fmt::format("{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},", fix_type_name(fix.type), fix.satellites_used(),
-                       fix.dop.gdop, fix.dop.pdop, fix.dop.hdop, fix.dop.vdop, fix.dop.tdop);
+    row += fmt::format("{},{},", fix_type_name(fix.type), fix.satellites_used());
+    for (const double dop : {fix.dop.gdop, fix.dop.pdop, fix.dop.hdop, fix.dop.vdop, fix.dop.tdop})
+        row += std::isfinite(dop) ? fmt::format("{:.3f},", dop) : ",";
     return row + fmt::format("{:.3f},{:.3f},{:.4f}\n", fix.horizontal_accuracy.value(), fix.vertical_accuracy.value(),
                              fix.clock_bias.value());
 }

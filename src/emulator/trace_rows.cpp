@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <optional>
 #include <string_view>
@@ -61,7 +62,7 @@ void append_solution(CsvRows& row, const Trace& trace) {
 
 void append_quality(CsvRows& row, const Fix& fix) {
     for (const double dilution : {fix.dop.gdop, fix.dop.pdop, fix.dop.hdop, fix.dop.vdop, fix.dop.tdop})
-        row.number(dilution, 3);
+        std::isfinite(dilution) ? row.number(dilution, 3) : row.nothing();
     row.number(fix.horizontal_accuracy.value(), 3).number(fix.vertical_accuracy.value(), 3);
     row.number(fix.speed_accuracy.value(), 3).number(fix.time_accuracy.value(), 3);
     row.number(fix.clock_bias.value(), 4);

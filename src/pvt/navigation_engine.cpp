@@ -66,7 +66,7 @@ private:
     [[nodiscard]] bool plausible(const FilteredPosition& filtered, const ReceiverSettings& settings) const;
     void fill_solved(const EpochSolution& epoch, const ReceiverSettings& settings, Fix& fix);
     void fill_motion(const FilteredPosition& filtered, const ReceiverSettings& settings, Fix& fix);
-    void fill_accuracy(const EpochSolution& epoch, Fix& fix) const;
+    Metres fill_accuracy(const EpochSolution& epoch, Fix& fix) const;
     void fill_coasting(const ReceiverSettings& settings, Fix& fix);
     void begin_regime(CorrectionState state);
     Observations prepared(const Observations& observations, const ReceiverSettings& settings);
@@ -87,8 +87,8 @@ private:
     std::optional<GpsTime> clock_known_at_;  // receiver's reading at the last solution
     Metres clock_bias_;
     MetresPerSecond clock_drift_;
-    std::optional<Position<Ecef>> position_;   // the last one
-    std::optional<EllipsoidalHeight> height_;  // of the last fix in three dimensions
+    std::optional<Position<Ecef>> position_;  // the last one
+    std::optional<HeldHeight> height_;        // of the last fix in three dimensions
     Angle course_;
     CorrectionState corrected_ = CorrectionState::none;  // by a base station, this epoch
     Fix last_;
@@ -240,7 +240,8 @@ void NavigationEngine::State::fill_motion(const FilteredPosition& filtered, cons
     fix.course = course_;
 }
 
-void NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& fix) const {
+// Returns 1 σ of the height, as no scale has touched it.
+Metres NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& fix) const {
     const SinglePoint& point = *epoch.point;
     double scale = parameters_.accuracy.position_scale;
     // Residuals that noise does not explain make the formal covariance a lie.
@@ -248,7 +249,7 @@ void NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& fix
         scale *= std::sqrt(std::max(1.0, point.statistic / point.redundancy));
     const ExpectedError expected = expected_error(point, parameters_.accuracy);
     fix.time_accuracy = Metres(scale * std::sqrt(expected.clock));
-    if (epoch.time_only) return;
+    if (epoch.time_only) return Metres(0);
     const Eigen::Matrix3d q = in_enu(LocalFrame(fix.position), expected.position);
     const DifferentialParameters& d = parameters_.differential;
     const DifferentialKind kind = differential_kind();
@@ -263,6 +264,7 @@ void NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& fix
     fix.speed_accuracy = MetresPerSecond(parameters_.accuracy.velocity_scale * std::sqrt(velocity_variance));
     const double turn = fix.speed.value() > 0 ? fix.speed_accuracy.value() / fix.speed.value() : std::numbers::pi;
     fix.course_accuracy = Angle::radians(std::min(turn, std::numbers::pi));
+    return Metres(std::sqrt(q(2, 2)));
 }
 
 void NavigationEngine::State::fill_solved(const EpochSolution& epoch, const ReceiverSettings& settings, Fix& fix) {
@@ -293,8 +295,8 @@ void NavigationEngine::State::fill_solved(const EpochSolution& epoch, const Rece
     fill_motion(filtered, settings, fix);
     static constexpr std::array differential{FixType::fix_3d, FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
     fix.type = point.height_held ? FixType::fix_2d : differential[static_cast<std::size_t>(differential_kind())];
-    fill_accuracy(epoch, fix);
-    if (!point.height_held) height_ = to_geodetic(point.position).height;
+    const Metres height_deviation = fill_accuracy(epoch, fix);
+    if (!point.height_held) height_ = {to_geodetic(point.position).height, height_deviation};
 }
 
 void NavigationEngine::State::fill_coasting(const ReceiverSettings& settings, Fix& fix) {

@@ -21,4 +21,15 @@ inline std::optional<Eigen::Matrix3d> inverse_of(const Eigen::Matrix3d& m) {
     return Eigen::Matrix3d(m.inverse());
 }
 
+/// The same of the plane across a unit vector, along which nothing is unknown: the inverse has nothing of it either.
+inline std::optional<Eigen::Matrix3d> inverse_across(const Eigen::Matrix3d& m, const Eigen::Vector3d& known) {
+    const Eigen::Matrix3d along = known * known.transpose();
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - along;
+    const Eigen::Matrix3d flat = across * m * across;
+    const double filling = flat.trace() / 2;
+    const std::optional<Eigen::Matrix3d> inverse = inverse_of(flat + filling * along);
+    if (!inverse) return std::nullopt;
+    return Eigen::Matrix3d(*inverse - along / filling);
+}
+
 }  // namespace skyloop

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "normal_equations.hpp"
 #include "skyloop/geo/local_frame.hpp"
@@ -25,8 +26,6 @@ constexpr int most_passes = 8;
 // Passes after which the mask decides no more, lest a satellite on its edge come and go.
 constexpr int masking_passes = 3;
 constexpr double farthest_m = 1e8;
-constexpr double held_height_variance = 1;     // m²
-constexpr double held_height_certainty = 1e8;  // weight among unit weights
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -132,7 +131,7 @@ private:
     [[nodiscard]] double misfit_deviation();
     [[nodiscard]] NormalEquations normal_equations(const ClockMeans& clocks) const;
     std::optional<double> improve();
-    [[nodiscard]] Dop dilution(const Geodetic& place, const SinglePoint& solution) const;
+    [[nodiscard]] std::optional<Dop> dilution(const Geodetic& place, const SinglePoint& solution) const;
     void tell_ranges(const ClockMeans& clocks, SinglePoint& solution) const;
 
     std::span<const RangeEquation> equations_;
@@ -204,9 +203,10 @@ NormalEquations Adjustment::normal_equations(const ClockMeans& clocks) const {
     if (setup_.held_height) {
         const Geodetic place = to_geodetic(Position<Ecef>(position_));
         const Vector3d up = up_at(place);
-        const double low = (setup_.held_height->above_ellipsoid - place.height.above_ellipsoid).value();
-        n.matrix.noalias() += up * up.transpose() / held_height_variance;
-        n.right += up * low / held_height_variance;
+        const double low = (setup_.held_height->height.above_ellipsoid - place.height.above_ellipsoid).value();
+        const double variance = setup_.held_height->deviation.value() * setup_.held_height->deviation.value();
+        n.matrix.noalias() += up * up.transpose() / variance;
+        n.right += up * low / variance;
     }
     return n;
 }
@@ -259,7 +259,7 @@ void Adjustment::correct(bool mask) {
     }
 }
 
-Dop Adjustment::dilution(const Geodetic& place, const SinglePoint& solution) const {
+std::optional<Dop> Adjustment::dilution(const Geodetic& place, const SinglePoint& solution) const {
     // The same geometry with unit weights.
     std::array<Vector3d, clock_count> rows;
     std::array<int, clock_count> counts{};
@@ -277,9 +277,9 @@ Dop Adjustment::dilution(const Geodetic& place, const SinglePoint& solution) con
         const Vector3d row = -work_[i].line - rows[work_[i].clock];
         normal.noalias() += row * row.transpose();
     }
-    if (solution.height_held) normal += held_height_certainty * up_at(place) * up_at(place).transpose();
-    const std::optional<Matrix3d> inverse = inverse_of(normal);
-    if (!inverse) return {};
+    const std::optional<Matrix3d> inverse =
+        solution.height_held ? inverse_across(normal, up_at(place)) : inverse_of(normal);
+    if (!inverse) return std::nullopt;
     const Matrix3d rotation = enu_rotation(place);
     const Matrix3d q = rotation * *inverse * rotation.transpose();
     const Vector3d& clock_row = rows[solution.reference];
@@ -292,6 +292,8 @@ Dop Adjustment::dilution(const Geodetic& place, const SinglePoint& solution) con
     dop.tdop = std::sqrt(clock);
     dop.edop = std::sqrt(q(0, 0));
     dop.ndop = std::sqrt(q(1, 1));
+    // The satellites tell nothing of a height that was held.
+    if (solution.height_held) dop.gdop = dop.pdop = dop.vdop = std::numeric_limits<double>::quiet_NaN();
     return dop;
 }
 
@@ -346,7 +348,11 @@ std::optional<SinglePoint> Adjustment::result(bool position_known) {
     s.ranges.reserve(work_.size());
     tell_ranges(clocks, s);
     s.redundancy = s.used - unknowns;
-    if (!position_known) s.dop = dilution(to_geodetic(s.position), s);
+    if (!position_known) {
+        const std::optional<Dop> dop = dilution(to_geodetic(s.position), s);
+        if (!dop) return std::nullopt;
+        s.dop = *dop;
+    }
     return s;
 }
 

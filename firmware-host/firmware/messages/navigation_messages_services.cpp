@@ -252,7 +252,7 @@ NavPl protection_level(const ReportContext& context) {
 }  // namespace
 
 std::uint16_t dop_field(double dop, bool computed) {
-    if (!computed) return unknown_dop;
+    if (!computed || !std::isfinite(dop)) return unknown_dop;
     return std::min(unknown_dop, field<std::uint16_t>(dop * 1e2));
 }
 

@@ -162,14 +162,15 @@ SbfPosCovGeodetic sbf_position_covariance(const NavigationState& state) {
 SbfVelCovGeodetic sbf_velocity_covariance(const NavigationState& state) {
     SbfVelCovGeodetic block{sbf_time(state), sbf_mode(state), sbf_error(state), no_sbf_covariance};
     const Fix& fix = state.epoch.fix;
-    const double all = std::hypot(fix.dop.ndop, fix.dop.edop, fix.dop.vdop);
+    const bool flat = fix.type == FixType::fix_2d;
+    const double all = std::hypot(fix.dop.ndop, fix.dop.edop, flat ? 0 : fix.dop.vdop);
     if (!has_solution(state) || !(all > 0)) return block;
     const double one = fix.speed_accuracy.value() / all;
     block.covariance[0] = sbf_square(one * fix.dop.ndop);
     block.covariance[1] = sbf_square(one * fix.dop.edop);
     block.covariance[4] = 0;
     // Of the drift nothing is known; nor of what stands still in two dimensions.
-    if (fix.type == FixType::fix_2d) return block;
+    if (flat) return block;
     block.covariance[2] = sbf_square(one * fix.dop.vdop);
     block.covariance[5] = block.covariance[7] = 0;
     return block;

@@ -9,7 +9,8 @@
 
 namespace skyloop {
 
-/// Dilutions of precision, dimensionless, and the cofactor matrix's variances east, north, up (MODELS.md 3.9).
+/// Dilutions of precision, dimensionless, and the cofactor matrix's variances east, north, up (MODELS.md 3.9). Not a
+/// number: unknown, since the satellites do not tell of that direction.
 struct Dop {
     double gdop = 0, pdop = 0, hdop = 0, vdop = 0, tdop = 0, edop = 0, ndop = 0;
 };

@@ -28,14 +28,20 @@ struct RangeEquation {
     bool excluded = false;
 };
 
+/// A height that is known from elsewhere.
+struct HeldHeight {
+    EllipsoidalHeight height;
+    Metres deviation;  ///< 1 σ, above 0
+};
+
 /// How an epoch is solved.
 struct SinglePointSetup {
     GpsTime time{};  ///< of the corrections
     WeightParameters weights{};
-    Angle elevation_mask = Angle::degrees(-90);      ///< >= is used
-    const RangeCorrections* corrections = nullptr;   ///< absent: none
-    std::optional<Position<Ecef>> start{};           ///< absent: the centre of the Earth
-    std::optional<EllipsoidalHeight> held_height{};  ///< for solutions that three ranges must carry
+    Angle elevation_mask = Angle::degrees(-90);     ///< >= is used
+    const RangeCorrections* corrections = nullptr;  ///< absent: none
+    std::optional<Position<Ecef>> start{};          ///< absent: the centre of the Earth
+    std::optional<HeldHeight> held_height{};        ///< for solutions that three ranges must carry
 };
 
 /// What became of one pseudorange.
@@ -73,7 +79,8 @@ struct SinglePoint {
 /// Weighted least squares, iterated until less than 1e-8 m is left; corrections follow the position until they are
 /// finer than 1e-6 m, or than a ten-thousandth of the residuals (MODELS.md 7.13). The clocks are eliminated: the
 /// satellites of a system count against their weighted mean, so that one which is alone in its system tells nothing and
-/// is not used. DOPs come from unit weights; TDOP and GDOP take the reference clock.
+/// is not used. DOPs come from unit weights; TDOP and GDOP take the reference clock. With a held height HDOP and TDOP
+/// are those of the two other directions, and GDOP, PDOP and VDOP are not numbers.
 /// @return nothing for too few ranges or a singular geometry
 std::optional<SinglePoint> solve_single_point(std::span<const RangeEquation> equations, const SinglePointSetup& setup);
 

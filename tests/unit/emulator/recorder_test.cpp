@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <charconv>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "run_parts.hpp"
@@ -114,6 +115,17 @@ TEST(Recorder, AFixHasAllItsColumns) {
     EXPECT_EQ(row["tdop"], "0.800");
     EXPECT_EQ(row["h_acc_m"], "2.250");
     EXPECT_EQ(row["v_acc_m"], "3.500");
+    EXPECT_THAT(row, SizeIs(31));
+}
+
+TEST(Recorder, DopsThatNobodyKnowsAreEmpty) {
+    Trace trace = recorded_trace();
+    Dop& dop = trace.epoch.fix.dop;
+    dop.gdop = dop.pdop = dop.vdop = std::numeric_limits<double>::quiet_NaN();
+    auto row = row_of(tables_of({trace}).first, 1);
+    for (const char* name : {"gdop", "pdop", "vdop"})
+        EXPECT_EQ(row[name], "") << name;
+    EXPECT_EQ(row["tdop"], "0.800");
     EXPECT_THAT(row, SizeIs(31));
 }
 

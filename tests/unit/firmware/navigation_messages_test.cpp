@@ -304,6 +304,19 @@ TEST(NavDopMessage, KeepsTimeInATimeOnlySolution) {
     EXPECT_EQ(f9.report<NavPvt>().num_sv, 9);
 }
 
+TEST(NavDopMessage, ShowsDopsThatNobodyKnowsAsTheWorst) {
+    UbxReport m9(9);
+    Dop& dop = m9.state.epoch.fix.dop;
+    m9.state.epoch.fix.type = FixType::fix_2d;
+    dop.gdop = dop.pdop = dop.vdop = std::numeric_limits<double>::quiet_NaN();
+    const auto m = m9.report<NavDop>();
+    EXPECT_EQ(m.g_dop, 9999);
+    EXPECT_EQ(m.p_dop, 9999);
+    EXPECT_EQ(m.v_dop, 9999);
+    EXPECT_EQ(m.h_dop, 110);
+    EXPECT_EQ(m9.report<NavPvt>().p_dop, 9999);
+}
+
 TEST(NavCovMessage, SplitsTheAccuracies) {
     const UbxReport m9(9);
     const auto m = m9.report<NavCov>();

@@ -219,6 +219,19 @@ TEST_F(OtherProtocols, SbfWithoutAFixSaysNothing) {
     EXPECT_EQ(sbf_receiver_status(without_fix()).rx_state, 0u);
 }
 
+TEST_F(OtherProtocols, SbfLeavesOutTheDopsOfAHeightThatIsHeld) {
+    NavigationState state = navigating();
+    Fix& fix = state.epoch.fix;
+    fix.type = FixType::fix_2d;
+    fix.dop.gdop = fix.dop.pdop = fix.dop.vdop = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(sbf_dop(state).pdop, 0);
+    EXPECT_EQ(sbf_dop(state).vdop, 0);
+    EXPECT_EQ(sbf_dop(state).hdop, 110);
+    const auto velocity = sbf_velocity_covariance(state).covariance;
+    EXPECT_NEAR(velocity[0] + velocity[1], std::pow(fix.speed_accuracy.value(), 2), 1e-6);
+    EXPECT_EQ(velocity[2], static_cast<float>(sbf_nothing));
+}
+
 TEST_F(OtherProtocols, CovariancesAddUpToTheAccuracies) {
     const NavigationState state = navigating();
     const auto position = sbf_position_covariance(state).covariance;

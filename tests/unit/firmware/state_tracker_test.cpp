@@ -281,6 +281,17 @@ TEST(StateTracker, IsNotOkBeyondTheUsersMasks) {
     EXPECT_EQ(t.step().epoch.fix.type, FixType::none);
 }
 
+TEST(StateTracker, MeasuresTwoDimensionsByTheirOwnDop) {
+    Tracked t(tracked_board());
+    t.tracker().start(t.fix().time, {}, true);
+    t.fix().type = FixType::fix_2d;
+    t.fix().dop.pdop = t.fix().dop.vdop = std::numeric_limits<double>::quiet_NaN();
+    t.fix().dop.hdop = 8;
+    EXPECT_TRUE(t.step().fix_ok);
+    t.fix().dop.hdop = 26;
+    EXPECT_FALSE(t.step().fix_ok);
+}
+
 TEST(StateTracker, HoldsPositionAndCourseBelowTheThreshold) {
     Tracked t(tracked_board());
     t.tracker().start(t.fix().time, {}, true);

@@ -274,6 +274,7 @@ TEST(NavigationEngine, CoastsThenGivesUpThenReturns) {
 TEST(NavigationEngine, HoldsTheHeightWithThreeSatellites) {
     const SyntheticSky sky = test::synthetic_sky(sample_time, {Constellation::gps});
     NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
+    Metres last_vertical;
     for (int s = 0; s < 6; ++s) {
         const TrueReceiver now = later(receiver_at(antenna, sample_time), s);
         Observations observations = measure(sky, now);
@@ -281,6 +282,13 @@ TEST(NavigationEngine, HoldsTheHeightWithThreeSatellites) {
         const Fix fix = engine.solve(observations, {});
         EXPECT_EQ(fix.type, s < 3 ? FixType::fix_3d : FixType::fix_2d);
         EXPECT_LT(error_of(fix, now), 1e-5);
+        EXPECT_GT(fix.dop.hdop, 0.5);
+        EXPECT_EQ(std::isnan(fix.dop.pdop), s >= 3);
+        // The height is no better known than when it was solved.
+        if (s >= 3) {
+            EXPECT_GE(fix.vertical_accuracy, last_vertical - Metres(1e-6));
+        }
+        last_vertical = fix.vertical_accuracy;
     }
 }
 
