@@ -195,7 +195,6 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     const double path_rate = arrival.range_rate.value() + arrival.range_rate_error.value() +
                              arrival.excess_rate.value() + arrival.false_range_rate.value() +
                              epoch.clock_drift.value() - speed_of_light * arrival.clock_drift;
-    const double phase_ratio = parameters.multipath_model.phase_ratio;
     const double floor = parameters.multipath_model.floor.value();
 
     Observation result;
@@ -215,8 +214,8 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     if (!lock_.phase_locked()) return result;
     const double carrier_path = path - iono + terms_.phase_multipath.value() + terms_.phase_noise.value();
     result.carrier_phase = carrier_path / wavelength + count_.cycles();
-    result.carrier_phase_deviation =
-        root_of_squares(deviations_.total_phase().rad() / (2 * std::numbers::pi), phase_ratio * floor / wavelength);
+    // What the loop itself sees: multipath does not shake it.
+    result.carrier_phase_deviation = deviations_.total_phase().rad() / (2 * std::numbers::pi);
     result.slipped = slipped_;
     result.lock_time = difference(epoch.now, counting_since_);
     return result;
