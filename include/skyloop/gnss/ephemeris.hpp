@@ -50,8 +50,10 @@ struct KeplerEphemeris {
     double accuracy_m = 0;  ///< user range or signal-in-space accuracy, m; negative: unknown
     double fit_interval_h = 0;
     /// No bit is set; of Galileo, of the signal that carries the message: E1-B (I/NAV) or E5a (F/NAV), RINEX 3.05,
-    /// table A8.
+    /// table A8. The last bit of QZSS is about L1C/B, which nobody here tracks and the satellites send unhealthy for
+    /// years (IS-QZSS-PNT-004, SV health).
     [[nodiscard]] bool healthy() const {
+        if (satellite.constellation == Constellation::qzss) return (health & ~1) == 0;
         if (satellite.constellation != Constellation::galileo || message == NavigationMessage::almanac)
             return health == 0;
         return (health & (message == NavigationMessage::fnav ? 0b000'111'000 : 0b000'000'111)) == 0;

@@ -78,6 +78,16 @@ TEST(Signal, TellsHealthByTheSignalThatCarriesTheMessage) {
     inav.health = fnav.health = 0b000'000'001;  // E1-B without guarantee
     EXPECT_FALSE(inav.healthy());
     EXPECT_TRUE(fnav.healthy());
+    KeplerEphemeris qzss = delayed(Constellation::qzss, NavigationMessage::lnav);
+    qzss.health = 0b000'001;  // L1C/B, as in all files since about 2023
+    EXPECT_TRUE(qzss.healthy());
+    for (const int health : {0b000'010, 0b010'000, 0b100'000, 0b111'111}) {
+        qzss.health = health;
+        EXPECT_FALSE(qzss.healthy()) << health;
+    }
+    KeplerEphemeris gps = delayed(Constellation::gps, NavigationMessage::lnav);
+    gps.health = 1;
+    EXPECT_FALSE(gps.healthy());
     SbasEphemeris sbas;
     sbas.health = 0b10;  // corrections off, ranging on
     EXPECT_TRUE(sbas.healthy());
