@@ -22,8 +22,6 @@ constexpr std::array<Limits, 10> model_limits{{{12'000, 310, 50, true},
                                                {80'000, 250, 10'000, false},
                                                {80'000, 500, 20'000, false},
                                                {9'000, 30, 20, true}}};
-// Of the airborne models on M8 and before.
-constexpr double old_airborne_altitude = 50'000;
 // The export limit of all receivers: "velocity 500 m/s" of their data sheets, whose direction they leave open.
 constexpr double fastest_mps = 500;
 
@@ -39,10 +37,15 @@ bool within_dynamic_model(std::uint64_t number, const Fix& fix, int generation) 
     const bool airborne = number >= 6 && number <= 8;
     const Limits limits = model_limits[number < model_limits.size() ? number : 0];
     const double altitude = altitude_of(fix);
-    const double highest = airborne && generation <= 8 ? old_airborne_altitude : limits.altitude;
+    const double highest = airborne ? airborne_ceiling(generation).value() : limits.altitude;
     if (speed_in_space(fix) > fastest_mps || altitude > highest) return false;
     if (!limits.speeds) return true;
     return fix.speed.value() <= limits.horizontal && std::abs(fix.velocity.down) <= limits.vertical;
+}
+
+Metres airborne_ceiling(int generation) {
+    constexpr Metres up_to_m8(50'000), since_m9(80'000);
+    return generation <= 8 ? up_to_m8 : since_m9;
 }
 
 bool within_export_limits(ExportLimits limits, const Fix& fix) {

@@ -126,6 +126,7 @@ ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board
     settings.minimum_cn0 = DbHz(static_cast<double>(store.value(key::navspg_min_cno)));
     if (is_changed(store, key::navspg_dynmodel))
         settings.dynamic_model = dynamic_model_of(store.value(key::navspg_dynmodel));
+    settings.airborne_ceiling = airborne_ceiling(board.identity.generation);
     if (is_changed(store, key::mot_speed_threshold))
         settings.static_hold_below =
             MetresPerSecond(static_cast<double>(store.value(key::mot_speed_threshold)) / 100.0);

@@ -69,6 +69,8 @@ private:
 /// Whether a dynamic model allows a fix (RECEIVER.md 4.8, table of dynamic models; generation as in Identity).
 /// @param number of CFG-NAVSPG-DYNMODEL
 bool within_dynamic_model(std::uint64_t number, const Fix& fix, int generation);
+/// Height above sea level up to which the airborne models have a fix.
+Metres airborne_ceiling(int generation);
 /// Whether the limits of export allow a fix, by its height above sea level and its speed in space.
 bool within_export_limits(ExportLimits limits, const Fix& fix);
 

@@ -218,7 +218,7 @@ EpochSolution NavigationEngine::State::solve_epoch(const Observations& observati
 
 bool NavigationEngine::State::plausible(const FilteredPosition& filtered, const ReceiverSettings& settings) const {
     if (parameters_.filter.kind == FilterKind::none) return true;
-    const MotionLimits limits = motion_limits(settings.dynamic_model);
+    const MotionLimits limits = motion_limits(settings);
     const Geodetic place = to_geodetic(filtered.position);
     const Metres undulation =
         knowledge_.geoid ? knowledge_.geoid->undulation(place.latitude, place.longitude) : Metres(0);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace skyloop {
 namespace {
@@ -46,11 +47,11 @@ double memory_factor(DynamicModel model) {
 
 }  // namespace
 
-MotionLimits motion_limits(DynamicModel model) {
+MotionLimits motion_limits(const ReceiverSettings& settings) {
     const auto limits = [](double height, double horizontal, double vertical) {
         return MotionLimits{Metres(height), MetresPerSecond(horizontal), MetresPerSecond(vertical)};
     };
-    switch (model) {
+    switch (settings.dynamic_model) {
         case DynamicModel::portable:
             return limits(12000, 310, 50);
         case DynamicModel::stationary:
@@ -62,11 +63,11 @@ MotionLimits motion_limits(DynamicModel model) {
         case DynamicModel::sea:
             return limits(500, 25, 5);
         case DynamicModel::airborne_1g:
-            return limits(50000, 100, 100);
         case DynamicModel::airborne_2g:
-            return limits(50000, 250, 100);
-        case DynamicModel::airborne_4g:
-            return limits(50000, 500, 100);
+        case DynamicModel::airborne_4g: {
+            constexpr double any = std::numeric_limits<double>::infinity();
+            return limits(settings.airborne_ceiling.value(), any, any);
+        }
     }
     return limits(12000, 310, 50);
 }

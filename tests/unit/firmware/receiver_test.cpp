@@ -56,6 +56,15 @@ TEST(Receiver, SolvesWithFewerSatellitesAboveARate) {
     EXPECT_EQ(Receiver(board, {10}).settings().most_satellites, 16U);
 }
 
+// RECEIVER.md 4.8, table of dynamic models.
+TEST(Receiver, HasTheCeilingOfItsGeneration) {
+    BoardProfile board = sample_board(NmeaVersion::v4_0, {gps});
+    board.identity.generation = 8;
+    EXPECT_EQ(Receiver(board, {1}).settings().airborne_ceiling, Metres(50'000));
+    board.identity.generation = 9;
+    EXPECT_EQ(Receiver(board, {1}).settings().airborne_ceiling, Metres(80'000));
+}
+
 TEST(Receiver, BeginsOneLatencyAfterTheEpoch) {
     BoardProfile board = sample_board(NmeaVersion::v4_0, {gps});
     board.solution_latency = Seconds(0.07);

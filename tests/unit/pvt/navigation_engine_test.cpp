@@ -380,6 +380,13 @@ TEST(NavigationEngine, KeepsToTheLimitsOfItsDynamicModel) {
     EXPECT_EQ(engine.solve(measure(sky, balloon), settings).type, FixType::none);
     settings.dynamic_model = DynamicModel::airborne_1g;
     EXPECT_EQ(engine.solve(measure(sky, later(balloon, 1)), settings).type, FixType::fix_3d);
+    settings.airborne_ceiling = Metres(29'000);
+    EXPECT_EQ(engine.solve(measure(sky, later(balloon, 2)), settings).type, FixType::none);
+
+    TrueReceiver rocket = receiver_at(Geodetic::degrees(46, 30, 79'000), sample_time);
+    rocket.velocity = LocalFrame(antenna).to_ecef(Velocity<Enu>(0, 0, 150)).vector();
+    NavigationEngine another(plain(FilterKind::smoothed), {&sky});
+    EXPECT_EQ(another.solve(measure(sky, rocket), {.dynamic_model = DynamicModel::airborne_4g}).type, FixType::fix_3d);
 }
 
 TEST(NavigationEngine, FindsAClockThatWanderedOffWhileNoSatelliteWasSeen) {

@@ -146,9 +146,19 @@ TEST(PositionFilter, CoastsForAsLongAsItMay) {
 }
 
 TEST(MotionLimits, GrowWithTheModel) {
-    EXPECT_EQ(motion_limits(DynamicModel::airborne_4g).horizontal_speed, MetresPerSecond(500));
-    EXPECT_EQ(motion_limits(DynamicModel::sea).height, Metres(500));
-    EXPECT_EQ(motion_limits(DynamicModel::portable).vertical_speed, MetresPerSecond(50));
+    const auto limits = [](DynamicModel model) { return motion_limits({.dynamic_model = model}); };
+    EXPECT_EQ(limits(DynamicModel::sea).height, Metres(500));
+    EXPECT_EQ(limits(DynamicModel::portable).vertical_speed, MetresPerSecond(50));
+}
+
+// RECEIVER.md 4.8, "check: alt only".
+TEST(MotionLimits, OfAirborneModelsAreTheCeilingAlone) {
+    for (const auto model : {DynamicModel::airborne_1g, DynamicModel::airborne_2g, DynamicModel::airborne_4g}) {
+        const MotionLimits limits = motion_limits({.dynamic_model = model, .airborne_ceiling = Metres(50'000)});
+        EXPECT_EQ(limits.height, Metres(50'000));
+        EXPECT_GT(limits.vertical_speed, MetresPerSecond(20'000));
+        EXPECT_GT(limits.horizontal_speed, MetresPerSecond(500));
+    }
 }
 
 }  // namespace
