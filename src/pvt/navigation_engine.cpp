@@ -56,11 +56,19 @@ public:
     Fix solve(const Observations& observations, const ReceiverSettings& settings);
 
 private:
+    // Of the last fix in three dimensions.
+    struct LastHeight {
+        HeldHeight then;
+        GpsTime time;
+        MetresPerSecond rate;  // at which it may have changed since
+    };
+
     void begin(const ReceiverSettings& settings, GpsTime time);
     TransmitterSource& transmitters() { return knowledge_.transmitters ? *knowledge_.transmitters : transmitters_; }
     [[nodiscard]] GpsTime presumed_time(const Observations& observations) const;
     EpochSolution solve_epoch(const Observations& observations, const ReceiverSettings& settings);
     void add_equations(const Observations& observations, const ReceiverSettings& settings, EpochSolution& epoch);
+    [[nodiscard]] std::optional<HeldHeight> held_height(const ReceiverSettings& settings) const;
     void solve_position(const ReceiverSettings& settings, EpochSolution& epoch);
     static void solve_doppler(EpochSolution& epoch);
     [[nodiscard]] bool plausible(const FilteredPosition& filtered, const ReceiverSettings& settings) const;
@@ -88,7 +96,7 @@ private:
     Metres clock_bias_;
     MetresPerSecond clock_drift_;
     std::optional<Position<Ecef>> position_;  // the last one
-    std::optional<HeldHeight> height_;        // of the last fix in three dimensions
+    std::optional<LastHeight> height_;
     Angle course_;
     CorrectionState corrected_ = CorrectionState::none;  // by a base station, this epoch
     Fix last_;
@@ -148,6 +156,13 @@ void NavigationEngine::State::add_equations(const Observations& observations, co
     }
 }
 
+// The less exact the longer ago it was solved. What flies holds none (RECEIVER.md 4.8).
+std::optional<HeldHeight> NavigationEngine::State::held_height(const ReceiverSettings& settings) const {
+    if (!position_ || !height_ || settings.dynamic_model >= DynamicModel::airborne_1g) return std::nullopt;
+    const double moved = height_->rate.value() * difference(time_, height_->time).value();
+    return HeldHeight{height_->then.height, Metres(std::hypot(height_->then.deviation.value(), moved))};
+}
+
 void NavigationEngine::State::solve_position(const ReceiverSettings& settings, EpochSolution& epoch) {
     const CorrectionParameters& c = parameters_.corrections;
     const bool models = c.ionosphere != IonosphereCorrection::none || c.troposphere != TroposphereCorrection::none;
@@ -167,8 +182,8 @@ void NavigationEngine::State::solve_position(const ReceiverSettings& settings, E
         checked = monitor_.solve(epoch.equations, setup);
         setup.start = position_;
     }
-    if (!checked && position_ && height_) {
-        setup.held_height = height_;
+    if (!checked) setup.held_height = held_height(settings);
+    if (setup.held_height) {
         checked = monitor_.solve(epoch.equations, setup);
     }
     if (!checked) return;
@@ -296,7 +311,9 @@ void NavigationEngine::State::fill_solved(const EpochSolution& epoch, const Rece
     static constexpr std::array differential{FixType::fix_3d, FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
     fix.type = point.height_held ? FixType::fix_2d : differential[static_cast<std::size_t>(differential_kind())];
     const Metres height_deviation = fill_accuracy(epoch, fix);
-    if (!point.height_held) height_ = {to_geodetic(point.position).height, height_deviation};
+    if (point.height_held) return;
+    const MetresPerSecond rate(std::hypot(fix.velocity.down, fix.speed_accuracy.value()));
+    height_ = LastHeight{{to_geodetic(point.position).height, height_deviation}, time_, rate};
 }
 
 void NavigationEngine::State::fill_coasting(const ReceiverSettings& settings, Fix& fix) {

@@ -292,6 +292,31 @@ TEST(NavigationEngine, HoldsTheHeightWithThreeSatellites) {
     }
 }
 
+TEST(NavigationEngine, KnowsAHeldHeightTheLessTheLongerAgoItWas) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, {Constellation::gps});
+    TrueReceiver climbing = receiver_at(antenna, sample_time);
+    climbing.velocity = LocalFrame(antenna).to_ecef(Velocity<Enu>(0, 0, 10)).vector();
+    for (const auto model : {DynamicModel::portable, DynamicModel::airborne_1g, DynamicModel::airborne_4g}) {
+        NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
+        for (int s = 0; s < 30; ++s) {
+            const TrueReceiver now = later(climbing, s);
+            Observations observations = measure(sky, now);
+            if (s >= 3) observations.signals.resize(3);
+            const Fix fix = engine.solve(observations, {.dynamic_model = model});
+            if (s < 3) continue;
+            if (model != DynamicModel::portable) {
+                EXPECT_EQ(fix.type, s < 5 ? FixType::dead_reckoning : FixType::none) << s;
+                continue;
+            }
+            ASSERT_EQ(fix.type, FixType::fix_2d) << s;
+            const auto error = LocalFrame(to_geodetic(Position<Ecef>(now.position))).to_enu(to_ecef(fix.position));
+            EXPECT_LT(std::abs(error.vector().z()), 1.2 * fix.vertical_accuracy.value()) << s;
+            EXPECT_LT(error.vector().head<2>().norm(), 1.2 * fix.horizontal_accuracy.value()) << s;
+            EXPECT_GT(fix.vertical_accuracy.value(), 10 * (s - 2)) << s;
+        }
+    }
+}
+
 TEST(NavigationEngine, ReportsAccuraciesThatHold) {
     const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
     const WeightParameters weights;
