@@ -20,16 +20,15 @@ bool time_before_toe(GpsTime time, const Ephemeris& record) { return time < toe_
 
 // Which records serve: messages of one satellite are not mixed.
 std::vector<std::size_t> serving_records(const std::vector<Ephemeris>& records) {
-    bool inav = false;
-    std::set<SatelliteId> with_ephemeris;
+    std::set<SatelliteId> with_inav, with_ephemeris;
     for (const Ephemeris& r : records) {
-        inav = inav || message_of(r) == NavigationMessage::inav;
+        if (message_of(r) == NavigationMessage::inav) with_inav.insert(satellite_of(r));
         if (message_of(r) != NavigationMessage::almanac) with_ephemeris.insert(satellite_of(r));
     }
     std::vector<std::size_t> serving;
     for (std::size_t i = 0; i < records.size(); ++i) {
         const NavigationMessage message = message_of(records[i]);
-        if (message == NavigationMessage::fnav && inav) continue;
+        if (message == NavigationMessage::fnav && with_inav.contains(satellite_of(records[i]))) continue;
         if (message == NavigationMessage::almanac && with_ephemeris.contains(satellite_of(records[i]))) continue;
         serving.push_back(i);
     }

@@ -171,7 +171,8 @@ TEST(NavigationData, NeverMixesMessages) {
     const auto other = record_of_message(monday, e13, NavigationMessage::fnav);
     const NavigationData both = data_of({inav, fnav, other});
     EXPECT_EQ(message_of(*both.ephemeris(e12, monday + 10min)), NavigationMessage::inav);
-    EXPECT_FALSE(both.ephemeris(e13, monday)) << "I/NAV is there for the system";
+    ASSERT_TRUE(both.ephemeris(e13, monday)) << "of this one there is nothing else";
+    EXPECT_EQ(message_of(*both.ephemeris(e13, monday)), NavigationMessage::fnav);
     EXPECT_EQ(data_of({fnav, other}).record_count(), 2u);
 
     const auto almanac = record_of_message(monday + 3h, g15, NavigationMessage::almanac);
