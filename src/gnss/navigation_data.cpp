@@ -65,6 +65,12 @@ std::vector<Ephemeris>::const_iterator last_of_toe(const std::vector<Ephemeris>&
     return std::upper_bound(first, records.end(), toe_of(*first), time_before_toe) - 1;
 }
 
+GpsTime moved_in_utc(GpsTime time, std::int64_t days) {
+    const LeapSeconds& leap_seconds = LeapSeconds::announced();
+    const Nanoseconds count = time.time_since_epoch() - std::chrono::seconds(leap_seconds.offset(time));
+    return from_utc_count(count + days * one_day, leap_seconds);
+}
+
 std::int64_t floor_days(Nanoseconds span) { return std::chrono::floor<std::chrono::days>(span).count(); }
 
 }  // namespace
@@ -183,8 +189,9 @@ KeplerEphemeris moved_by_days(const KeplerEphemeris& record, std::int64_t days) 
 Ephemeris moved_by_days(const Ephemeris& record, std::int64_t days) {
     if (const auto* kepler = std::get_if<KeplerEphemeris>(&record)) return moved_by_days(*kepler, days);
     Ephemeris moved = record;
-    // State vectors are Earth-fixed: only their time moves.
-    if (auto* glonass = std::get_if<GlonassEphemeris>(&moved)) glonass->toe += days * one_day;
+    // State vectors are Earth-fixed: only their time moves. That of GLONASS is a whole quarter of an hour of UTC, and
+    // must stay one where leap seconds came between.
+    if (auto* glonass = std::get_if<GlonassEphemeris>(&moved)) glonass->toe = moved_in_utc(glonass->toe, days);
     if (auto* sbas = std::get_if<SbasEphemeris>(&moved)) sbas->toe += days * one_day;
     return moved;
 }

@@ -37,8 +37,8 @@ public:
     /// @param records in any order; repetitions of one (satellite, toe, iode) are kept once, the last of them
     /// @param description for people: the name of the file or files
     ///
-    /// Messages are not mixed: of Galileo I/NAV is taken, and F/NAV only when no record of I/NAV is there; an almanac
-    /// serves a satellite only when it has no ephemeris.
+    /// Messages of a satellite are not mixed: of Galileo I/NAV is taken, and F/NAV only when it has no record of I/NAV;
+    /// an almanac serves a satellite only when it has no ephemeris.
     NavigationData(const std::vector<Ephemeris>& records, const BroadcastIonosphere& ionosphere,
                    std::string description, EphemerisSelection selection = {});
 
@@ -72,7 +72,7 @@ private:
 /// The record moved by `days` whole days: toe and toc keep their time of day, and omega0 takes up the change of the
 /// time of week, so that every ECEF position at the same time of day stays what it was.
 KeplerEphemeris moved_by_days(const KeplerEphemeris& record, std::int64_t days);
-/// The same for a record of any system.
+/// The same for a record of any system; of GLONASS the time of day is that of UTC.
 Ephemeris moved_by_days(const Ephemeris& record, std::int64_t days);
 
 /// A copy of `data` moved by the whole number of days that gives the most satellites at `start`; among equals by the

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "skyloop/gnss/orbit.hpp"
+#include "skyloop/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop::test {
@@ -210,6 +211,18 @@ TEST(Rebase, KeepsEcefPositionsOfEverySystem) {
         EXPECT_LT(displacement_by_move(plain_record(toe, other_system(Constellation::galileo)), days), 1e-5);
         EXPECT_EQ(displacement_by_move(glonass_record(toe), days), 0);
     }
+}
+
+// Of GLONASS the time of day is one of UTC: readers round t_b to a quarter of an hour.
+TEST(Rebase, KeepsTheQuarterHoursOfGlonass) {
+    const LeapSeconds& leap = LeapSeconds::announced();
+    const GlonassEphemeris record = glonass_record(to_gps_time(UtcTime{2009, 4, 1, 12, 15, 0}, leap));
+    const auto moved_to = [&](std::int64_t days) {
+        return to_utc(toe_of(moved_by_days(Ephemeris(record), days)), leap);
+    };
+    EXPECT_EQ(moved_to(6239), (UtcTime{2026, 5, 1, 12, 15, 0}));
+    EXPECT_EQ(moved_to(-3622), (UtcTime{1999, 5, 2, 12, 15, 0}));
+    EXPECT_EQ(moved_to(0), (UtcTime{2009, 4, 1, 12, 15, 0}));
 }
 
 TEST(Rebase, KeepsTimeOfDayAndClock) {
