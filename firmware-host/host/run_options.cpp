@@ -69,7 +69,7 @@ Result<void> apply_time(const RunOptions& options, Scenario& scenario) {
         scenario.run.start.reset();
         scenario.run.start_now = true;
     } else if (!options.start.empty()) {
-        const auto utc = parse_utc(options.start);
+        const auto utc = parse_instant(options.start);
         if (!utc) return fail(ErrorCode::usage, "--start: " + utc.error().message + ", or now");
         scenario.run.start = to_gps_time(*utc, LeapSeconds::announced());
         scenario.run.start_now = false;

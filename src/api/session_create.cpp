@@ -38,7 +38,7 @@ Answer<void> apply_start(const char* start, RunSettings& run) {
     run.start_now = std::string_view(start) == "now";
     run.start.reset();
     if (run.start_now) return {};
-    const auto utc = parse_utc(start);
+    const auto utc = parse_instant(start);
     if (!utc) return refuse(SKY_E_PARSE, "start_utc: " + utc.error().message + ", or now");
     run.start = to_gps_time(*utc, LeapSeconds::announced());
     return {};

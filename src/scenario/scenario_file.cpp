@@ -21,7 +21,7 @@ void read_run_keys(TableReader& run, RunSettings& settings) {
     if (start == "now") {
         settings.start_now = true;
     } else if (start) {
-        const auto utc = parse_utc(*start);
+        const auto utc = parse_instant(*start);
         if (utc)
             settings.start = to_gps_time(*utc, LeapSeconds::announced());
         else

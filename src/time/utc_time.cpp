@@ -102,6 +102,30 @@ bool read_fraction(std::string_view& text, std::uint32_t& nanosecond) {
     return digits >= 1 && digits <= 9;
 }
 
+// The marks stand between all parts, or between none.
+bool read_date(std::string_view& text, UtcTime& time, bool& marked) {
+    unsigned year = 0;
+    if (!read_number(text, 4, year)) return false;
+    time.year = static_cast<int>(year);
+    marked = read_mark(text, "-");
+    return read_number(text, 2, time.month) && (!marked || read_mark(text, "-")) && read_number(text, 2, time.day);
+}
+
+// Hours and minutes, and seconds where there are some.
+bool read_clock(std::string_view& text, UtcTime& time, bool marked) {
+    if (!read_number(text, 2, time.hour) || (marked && !read_mark(text, ":")) || !read_number(text, 2, time.minute))
+        return false;
+    const bool seconds = marked ? read_mark(text, ":") : !text.empty() && text.front() >= '0' && text.front() <= '9';
+    return !seconds || (read_number(text, 2, time.second) && read_fraction(text, time.nanosecond));
+}
+
+tl::unexpected<Error> no_utc_time(std::string_view text) {
+    return fail(ErrorCode::usage,
+                fmt::format("'{}' is not a UTC time; expected ISO 8601 from 1980-01-06 to 2199, such as "
+                            "2024-03-05T12:00:00Z",
+                            text));
+}
+
 }  // namespace
 
 bool is_calendar_time(const UtcTime& utc) {
@@ -197,13 +221,24 @@ Result<UtcTime> parse_utc(std::string_view text) {
                       read_mark(rest, ":") && read_number(rest, 2, t.second) && read_fraction(rest, t.nanosecond);
     if (read) read_mark(rest, "Z");
     t.year = static_cast<int>(year);
-    if (!read || !rest.empty() || !is_calendar_time(t))
-        return fail(
-            ErrorCode::usage,
-            fmt::format(
-                "'{}' is not a UTC time; expected ISO 8601 from 1980-01-06 to 2199, such as 2024-03-05T12:00:00Z",
-                text));
+    if (!read || !rest.empty() || !is_calendar_time(t)) return no_utc_time(text);
     return t;
+}
+
+Result<UtcTime> parse_instant(std::string_view text) {
+    std::string_view rest = text;
+    UtcTime local;
+    bool marked = false;
+    if (!read_date(rest, local, marked)) return no_utc_time(text);
+    if (!rest.empty() && !(read_mark(rest, "T ") && read_clock(rest, local, marked))) return no_utc_time(text);
+    const auto zone = zone_minutes(rest);
+    // A zone's leap second is not at its midnight.
+    UtcTime on_calendar = local;
+    if (local.second == 60) on_calendar.second = 59;
+    if (!zone || !is_calendar_time(on_calendar)) return no_utc_time(text);
+    const UtcTime utc = utc_of_local(local, *zone);
+    if (!is_calendar_time(utc)) return no_utc_time(text);
+    return utc;
 }
 
 std::optional<int> zone_minutes(std::string_view text) {

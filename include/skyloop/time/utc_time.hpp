@@ -77,6 +77,9 @@ bool is_calendar_time(const UtcTime& utc);
 /// be a space and `Z` be left out. Fails with `usage`, and a sentence that quotes the text, for anything else and for
 /// what is no calendar time.
 Result<UtcTime> parse_utc(std::string_view text);
+/// Reads an instant as ISO 8601 has many ways to write it: what parse_utc() reads, without the seconds or the time of
+/// day, without marks (20240305T120000Z), and with a zone (+02:00). In UTC; fails as parse_utc().
+Result<UtcTime> parse_instant(std::string_view text);
 /// Minutes east of UTC of a zone as ISO 8601 writes it: "+01:00", "-0330", "+02", "Z"; 0 for an empty text. Nothing for
 /// what is no zone.
 std::optional<int> zone_minutes(std::string_view text);

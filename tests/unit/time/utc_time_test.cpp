@@ -218,6 +218,30 @@ TEST(ParseUtc, RefusesAllElseAndQuotesIt) {
     }
 }
 
+TEST(ParseInstant, ReadsWhatPeopleAndProgramsWrite) {
+    const UtcTime noon{2026, 3, 1, 12, 0, 0, 0};
+    for (const char* text :
+         {"2026-03-01T12:00:00Z", "2026-03-01 12:00:00", "2026-03-01T12:00:00+00:00", "2026-03-01T12:00:00.000-00:00",
+          "20260301T120000Z", "20260301T120000.0+0000", "2026-03-01T12:00Z", "2026-03-01T12:00", "20260301T1200",
+          "2026-03-01T14:00:00+02:00", "2026-03-01T08:30-0330", "2026-03-02T02:00:00+14", "2026-02-28T23:00:00-13:00"})
+        EXPECT_EQ(parse_instant(text).value(), noon) << text;
+    for (const char* text : {"2026-03-01", "20260301"})
+        EXPECT_EQ(parse_instant(text).value(), (UtcTime{2026, 3, 1, 0, 0, 0, 0})) << text;
+    EXPECT_EQ(parse_instant("2026-03-01T12:00:00.123456+00:00").value().nanosecond, 123'456'000u);
+    EXPECT_EQ(parse_instant("2017-01-01T00:59:60+01:00").value(), (UtcTime{2016, 12, 31, 23, 59, 60, 0}));
+}
+
+TEST(ParseInstant, RefusesAllElseAndQuotesIt) {
+    for (const char* text : {"", "now", "2026", "2026-03", "2026-0301", "202603-01", "2026-03-01T", "2026-03-01T12",
+                             "2026-03-01T1200", "20260301T12:00", "2026-03-01T12:00:", "2026-03-01T12:00:00.Z",
+                             "2026-03-01T12:00:00+15:00", "2026-03-01T12:00:00 UTC", "2026-02-29T12:00:00Z",
+                             "2026-03-01T24:00Z", "2026-03-01T12:00:60Z", "1980-01-06T00:00:00+01:00", "2200-01-01"}) {
+        const Result<UtcTime> result = parse_instant(text);
+        ASSERT_FALSE(result.has_value()) << text;
+        EXPECT_THAT(result.error().message, testing::HasSubstr("'" + std::string(text) + "'"));
+    }
+}
+
 TEST(ParseUtc, NeverFailsOtherwiseOnNoise) {
     RandomStream random(1, "test.parse_utc");
     constexpr std::string_view letters = "0123456789-:TZ ., \x01";
