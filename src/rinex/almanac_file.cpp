@@ -109,6 +109,14 @@ KeplerEphemeris almanac_record(const AlmanacValues& v, GpsTime near) {
     return e;
 }
 
+// Unlike the columns of RINEX what stands here may be set with tabs.
+std::string_view without_tabs_around(std::string_view text) {
+    constexpr std::string_view blanks = " \t";
+    const std::size_t first = text.find_first_not_of(blanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(blanks) + 1 - first);
+}
+
 // "******** Week 862 almanac for PRN-01 ********" and thirteen lines "name: value", in any order.
 class YumaReading {
 public:
@@ -133,7 +141,7 @@ public:
 private:
     Result<void> take(const Line& line) {
         const std::size_t colon = line.text.find(':');
-        const std::string_view key = trimmed(line.text.substr(0, colon));
+        const std::string_view key = without_tabs_around(line.text.substr(0, colon));
         std::size_t field = 0;
         while (field < almanac_field_count && !key.starts_with(almanac_ranges[field].name))
             ++field;
@@ -143,7 +151,7 @@ private:
             return almanac_error(name_, line.number,
                                  fmt::format("'{}' for the second time", almanac_ranges[field].name),
                                  "one of each in a record");
-        const std::string_view text = trimmed(line.text.substr(colon + 1));
+        const std::string_view text = without_tabs_around(line.text.substr(colon + 1));
         const std::optional<double> value = real_field(text);
         if (!value || text.empty())
             return almanac_error(name_, line.number, in_quotes(text),
@@ -279,15 +287,20 @@ bool is_sem(std::string_view text) {
     if (!first || !second) return false;
     const auto head = words_of(first->text);
     const auto time = words_of(second->text);
-    return head.size() <= 2 && is_whole(head[0]) && time.size() == 2 && is_whole(time[0]) && is_whole(time[1]);
+    return head.size() <= 2 && is_whole(head[0]) && time.size() == 2 && is_whole(time[0]) &&
+           is_whole(time[1]);
 }
 
 }  // namespace
 }  // namespace rinex
 
-bool is_almanac(std::string_view text) { return rinex::is_yuma(text) || rinex::is_sem(text); }
+bool is_almanac(std::string_view text) {
+    const std::string_view unmarked = rinex::without_byte_order_mark(text);
+    return rinex::is_yuma(unmarked) || rinex::is_sem(unmarked);
+}
 
 Result<std::vector<KeplerEphemeris>> read_almanac(std::string_view text, std::string_view name, GpsTime near) {
+    text = rinex::without_byte_order_mark(text);
     if (rinex::is_yuma(text)) return rinex::YumaReading(text, name, near).read();
     if (rinex::is_sem(text)) return rinex::SemReading(text, name, near).read();
     return fail(ErrorCode::input, fmt::format("{}:1: found no almanac; expected YUMA or SEM", name));

@@ -28,6 +28,8 @@ private:
     int number_ = 0;
 };
 
+/// Without the mark of UTF-8 that some editors put before everything.
+std::string_view without_byte_order_mark(std::string_view text);
 /// Columns `first` (from 0) and on, as far as the line goes.
 std::string_view columns(std::string_view line, std::size_t first, std::size_t width);
 /// Without spaces at either end.

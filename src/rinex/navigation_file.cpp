@@ -196,9 +196,7 @@ std::map<Constellation, int> NavigationFile::counts() const {
 }
 
 Result<NavigationFile> read_navigation(std::string_view text, std::string_view name) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
-    return rinex::NavigationReading(text, name).read();
+    return rinex::NavigationReading(rinex::without_byte_order_mark(text), name).read();
 }
 
 Result<NavigationFile> read_navigation_file(const std::filesystem::path& path) {

@@ -84,7 +84,9 @@ struct VersionLine {
 Result<VersionLine> read_version(const Line& line, std::string_view name) {
     if (header_label(line.text) != version_label)
         return header_error(name, line.number, line.text.empty() ? "an empty line" : in_quotes(line.text),
-                            fmt::format("a RINEX header, its label '{}' in columns 61-80", version_label));
+                            fmt::format("a RINEX header, its label '{}' in columns 61-80, or the first line of a YUMA "
+                                        "or SEM almanac",
+                                        version_label));
     const std::string_view field = columns(line.text, 0, 20);
     const std::optional<double> version = real_field(field);
     if (!version || !supported(*version))

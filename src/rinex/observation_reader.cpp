@@ -243,9 +243,7 @@ private:
 }  // namespace rinex
 
 Result<ObservationFile> read_observations(std::string_view text, std::string_view name) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
-    return rinex::ObservationReading(text, name).read();
+    return rinex::ObservationReading(rinex::without_byte_order_mark(text), name).read();
 }
 
 Result<ObservationFile> read_observation_file(const std::filesystem::path& path) {

@@ -91,6 +91,21 @@ TEST(AlmanacFile, ReadsSem) {
     EXPECT_EQ(e.af1, 3.6e-12);
 }
 
+TEST(AlmanacFile, PassesOverTheMarksOfEditorsAndTabs) {
+    std::string tabs = yuma_record;
+    for (std::size_t colon = tabs.find(":  "); colon != std::string::npos; colon = tabs.find(":  "))
+        tabs.replace(colon, tabs.find_first_not_of(' ', colon + 1) - colon, ":\t");
+    EXPECT_FALSE(is_almanac("\t\n377 319488\n"));
+    for (const std::string& text : {yuma_record, tabs, with_line(tabs, "\nID", "\n\tID"), sem_text}) {
+        const std::string marked = "\xEF\xBB\xBF" + text;
+        EXPECT_TRUE(is_almanac(marked)) << text;
+        const auto records = read_almanac(marked, "made.alm", pivot);
+        ASSERT_TRUE(records) << records.error().message;
+        EXPECT_EQ(records->at(0).sqrt_a, read_almanac(text, "made.alm", pivot)->at(0).sqrt_a);
+        EXPECT_NEAR(records->at(0).sqrt_a, 5153.683594, 1e-6);
+    }
+}
+
 TEST(AlmanacFile, ServesForAWeek) {
     const auto records = read_almanac(yuma_record, "made.alm", pivot);
     const NavigationData data({records->begin(), records->end()}, std::nullopt, "made.alm");

@@ -252,6 +252,7 @@ TEST(NavigationFile, RefusesWhatIsNoNavigationFile) {
     EXPECT_EQ(read_bad(""),
               "made.nav:1: found an empty file; expected navigation data (RINEX 2.00-2.12, 3.00-3.05 or 4.00-4.02)");
     EXPECT_THAT(read_bad("\n \r\n"), HasSubstr("an empty file"));
+    EXPECT_THAT(read_bad("An almanac\n\n****\n"), HasSubstr("or the first line of a YUMA or SEM almanac"));
     EXPECT_THAT(read_bad("{\"a\": 1}\n"), StartsWith("made.nav:1: found '{\"a\": 1}'; expected a RINEX header"));
     EXPECT_THAT(read_bad(std::string("\x00\x01\xff\x1b[2J", 7)), StartsWith("made.nav:1: found '????[2J'"));
     EXPECT_THAT(read_bad(std::string(100'000, 'x')), HasSubstr("…'"));
