@@ -287,8 +287,7 @@ bool is_sem(std::string_view text) {
     if (!first || !second) return false;
     const auto head = words_of(first->text);
     const auto time = words_of(second->text);
-    return head.size() <= 2 && is_whole(head[0]) && time.size() == 2 && is_whole(time[0]) &&
-           is_whole(time[1]);
+    return head.size() <= 2 && is_whole(head[0]) && time.size() == 2 && is_whole(time[0]) && is_whole(time[1]);
 }
 
 }  // namespace

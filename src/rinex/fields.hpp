@@ -9,6 +9,9 @@
 
 namespace skyloop::rinex {
 
+/// Years of epochs: those of GPS time which 64-bit nanoseconds hold whole, so that all that a run writes is read back.
+constexpr bool is_epoch_year(int year) { return year >= 1980 && year <= 2269; }
+
 /// A line without its end, and its number, from 1.
 struct Line {
     std::string_view text;

@@ -23,7 +23,7 @@ std::optional<GpsTime> epoch_time(std::string_view line, const EpochColumns& at)
     const std::optional<double> second = real_field(columns(line, at.second, 11));
     if (is_blank(year_text) || !year || !month || !day || !hour || !minute || !second) return std::nullopt;
     if (at.year_width == 2) year = *year + (*year >= 80 ? 1900 : 2000);
-    if (*year < 1980 || *year >= 2100 || *month < 1 || *month > 12 || *day < 1 ||
+    if (!is_epoch_year(*year) || *month < 1 || *month > 12 || *day < 1 ||
         !(std::chrono::year(*year) / *month / *day).ok())
         return std::nullopt;
     // Some writers round up to second 60.

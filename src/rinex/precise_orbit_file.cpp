@@ -92,10 +92,10 @@ private:
         };
         const auto year = part(3, 4), month = part(8, 2), day = part(11, 2), hour = part(14, 2), minute = part(17, 2);
         const auto second = real_field(columns(line.text, 20, 11));
-        const bool good = year && month && day && hour && minute && second && *year >= 1980 && *year < 2100 &&
-                          *month >= 1 && *day >= 1 && (std::chrono::year(*year) / *month / *day).ok() && *hour >= 0 &&
-                          *hour <= 24 && *minute >= 0 && *minute < 60 && *second >= 0 && *second < 61;
-        if (!good) return failure(line.number, in_quotes(line.text), "an epoch from 1980 to 2099");
+        const bool good = year && month && day && hour && minute && second && is_epoch_year(*year) && *month >= 1 &&
+                          *day >= 1 && (std::chrono::year(*year) / *month / *day).ok() && *hour >= 0 && *hour <= 24 &&
+                          *minute >= 0 && *minute < 60 && *second >= 0 && *second < 61;
+        if (!good) return failure(line.number, in_quotes(line.text), "an epoch from 1980 to 2269");
         GpsTime time = gps_calendar_time(*year, static_cast<unsigned>(*month), static_cast<unsigned>(*day),
                                          static_cast<unsigned>(*hour), static_cast<unsigned>(*minute), *second);
         const LeapSeconds& leap = LeapSeconds::announced();

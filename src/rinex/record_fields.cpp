@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t field_width = 19;
 
 bool valid_date(int year, int month, int day) {
-    if (month < 1 || day < 1 || year < 1980 || year >= 2100) return false;
+    if (month < 1 || day < 1 || !is_epoch_year(year)) return false;
     return (std::chrono::year(year) / month / day).ok();
 }
 
@@ -65,7 +65,7 @@ GpsTime RecordFields::epoch() {
         !valid_clock(*hour, *minute, *second)) {
         if (!defect_)
             defect_ = Defect{lines_[0].number, static_cast<int>(first) + 1, in_quotes(text),
-                             "a calendar epoch from 1980 to 2099"};
+                             "a calendar epoch from 1980 to 2269"};
         return {};
     }
     return gps_calendar_time(*year, static_cast<unsigned>(*month), static_cast<unsigned>(*day),

@@ -173,6 +173,17 @@ TEST(NavigationWriter, LosesNothingOfAnyRealFile) {
     EXPECT_EQ(files, 34);
 }
 
+TEST(NavigationWriter, LosesNothingOfTheNextCentury) {
+    KeplerEphemeris record = kepler(Constellation::gps, 7, NavigationMessage::lnav);
+    record.tgd2 = 0;
+    record.toc = record.toe = gps_calendar_time(2150, 1, 1, 2, 0, 0);
+    const std::vector<Ephemeris> records{record};
+    const auto again = read_navigation(navigation_text(records, {}), "a.nav");
+    ASSERT_TRUE(again) << again.error().message;
+    ASSERT_EQ(again->records.size(), 1u);
+    EXPECT_TRUE(same_ephemeris(record, again->records[0])) << navigation_record_text(again->records[0]);
+}
+
 TEST(NavigationWriter, LosesNothingOfMadeUpRecords) {
     std::vector<Ephemeris> records{kepler(Constellation::gps, 7, NavigationMessage::lnav),
                                    kepler(Constellation::qzss, 2, NavigationMessage::lnav),

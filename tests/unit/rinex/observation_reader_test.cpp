@@ -66,6 +66,20 @@ TEST(ObservationReader, ReadsVersion3) {
     EXPECT_FALSE(r.doppler);
 }
 
+// To a run's last day.
+TEST(ObservationReader, ReadsTheYearsThatARunMayHave) {
+    const auto epochs_of = [](std::string_view date) {
+        const std::string text = observation_header("3.04", types_line("G    1 C1C")) + "> " + std::string(date) +
+                                 " 12 00  0.0000000  0  1\nG 7" + observed(21000000.5) + "\n";
+        const auto file = read_observations(text, "a.obs");
+        return file ? file->epochs.size() : 0;
+    };
+    for (const char* date : {"1980 01 06", "2099 12 31", "2100 01 01", "2269 12 30"})
+        EXPECT_EQ(epochs_of(date), 1u) << date;
+    for (const char* date : {"1979 12 31", "2270 01 01"})
+        EXPECT_EQ(epochs_of(date), 0u) << date;
+}
+
 TEST(ObservationReader, TakesTheFirstCodeThatHasAPseudorange) {
     const std::string text = observation_header("3.04", types_line("G    6 C1W L1W C1C L1C C2W C2L")) +
                              epoch_line(0, 2) + "G07" + observed(1e7) + observed(5) + observed(2e7) + observed(6) +

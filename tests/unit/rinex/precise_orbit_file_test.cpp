@@ -131,7 +131,7 @@ TEST(PreciseOrbitFile, NamesTheLineThatIsWrong) {
     EXPECT_THAT(precise_refusal(swapped(good, "*  2024  3  5  0 15", "*  2024  3  5  0  0")),
                 StartsWith("made.sp3:9: found '*  2024"));
     EXPECT_THAT(precise_refusal(swapped(good, "*  2024  3  5  0 15", "*  2024 13  5  0 15")),
-                HasSubstr("expected an epoch from 1980 to 2099"));
+                HasSubstr("expected an epoch from 1980 to 2269"));
     EXPECT_THAT(precise_refusal(swapped(good, "    100.000000", "    1oo.000000")),
                 HasSubstr("made.sp3:8:47: found '1oo.000000'; expected microseconds"));
     EXPECT_THAT(precise_refusal(swapped(good, "EOF", "PG03 1e9")), HasSubstr("expected kilometres, up to 1e6"));
