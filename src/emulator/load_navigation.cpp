@@ -154,6 +154,37 @@ void warn_outside(const Scenario& scenario, const LoadedNavigation& loaded, std:
         loaded.start < span->first || loaded.start > span->last ? "starts outside" : "outlasts", span_text(*span)));
 }
 
+// From when on `count` satellites have orbits.
+std::optional<GpsTime> first_time_of(std::size_t count, const NavigationData& data) {
+    const bool before_toe = data.selection().rule == EphemerisRule::nearest;
+    std::vector<GpsTime> beginnings;
+    for (const SatelliteRecords& satellite : data.records())
+        for (const Ephemeris& r : satellite.records)
+            beginnings.push_back(toe_of(r) -
+                                 (before_toe ? to_nanoseconds(data.selection().validity_of(r)) : Nanoseconds(0)));
+    std::sort(beginnings.begin(), beginnings.end());
+    const auto found =
+        std::find_if(beginnings.begin(), beginnings.end(), [&](GpsTime t) { return data.satellites_at(t) >= count; });
+    return found == beginnings.end() ? std::nullopt : std::optional(*found);
+}
+
+// A record that stands alone before all others, as one of SBAS may, makes a run begin where nothing can be solved.
+void warn_of_early_start(const Scenario& scenario, const NavigationData& data, LoadedNavigation& loaded) {
+    constexpr std::size_t enough = 4;
+    const RunSettings& run = scenario.run;
+    if (run.start || run.start_now || scenario.sky.rebase_navigation) return;
+    const std::size_t there = data.satellites_at(loaded.start);
+    if (there >= enough) return;
+    const std::optional<GpsTime> first = first_time_of(enough, data);
+    if (!first || *first <= loaded.start) return;
+    const auto text = [](GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); };
+    loaded.warnings.push_back(
+        fmt::format("the run starts with the first record of the navigation data, at {}, when {} "
+                    "{}; {} have them first at {}: --start moves the run",
+                    text(loaded.start), there, there == 1 ? "satellite has orbits" : "satellites have orbits", enough,
+                    text(*first)));
+}
+
 Result<LoadedNavigation> load_nominal(const Scenario& scenario, GpsTime now) {
     const auto& wanted = scenario.sky.constellations;
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), Constellation::gps) == wanted.end())
@@ -184,6 +215,7 @@ Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now) 
         if (!moved) return fail(moved.error());
         data = std::move(*moved);
     }
+    warn_of_early_start(scenario, data, loaded);
     loaded.source = std::make_unique<NavigationData>(std::move(data));
     warn_outside(scenario, loaded, loaded.warnings);
     return loaded;

@@ -152,6 +152,22 @@ TEST_F(LoadNavigation, WarnsOnceOfARunOutsideItsData) {
     EXPECT_THAT(warnings("duration_s = 14400"), IsEmpty());
 }
 
+TEST_F(LoadNavigation, WarnsWhereItBeginsBeforeThereIsEnough) {
+    KeplerEphemeris early = NominalConstellation().record({Constellation::gps, 1}, data_day - 8h).value();
+    early.satellite.number = 32;
+    std::ofstream(folder_ / "early.rnx") << nominal_records() << rinex_record(early);
+    const auto warnings = [&](const std::string& more) {
+        return load(emulator_scenario("[sky]\nnavigation = \"" + (folder_ / "early.rnx").string() + "\"\n" + more))
+            .warnings;
+    };
+    const auto first = warnings("");
+    ASSERT_THAT(first, SizeIs(1));
+    EXPECT_THAT(first[0], HasSubstr("at 2024-03-04T15:59:42Z, when 1 satellite has orbits; 4 have them first at "
+                                    "2024-03-04T23:59:42Z: --start moves the run"));
+    EXPECT_THAT(warnings("[run]\nstart = 2024-03-05T03:00:00Z\n"), IsEmpty());
+    EXPECT_THAT(warnings("[run]\nstart = 2024-03-04T16:00:00Z\n"), IsEmpty());
+}
+
 TEST_F(LoadNavigation, RebasingMovesTheDataByWholeDays) {
     const LoadedNavigation moved =
         load(scenario("rebase_navigation = true", std::string(baseline) + "[run]\nstart = 2026-07-08T03:00:00Z"));
