@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "skyloop/gnss/navigation_data.hpp"
 #include "skyloop/gnss/orbit.hpp"
 
 namespace skyloop {
@@ -29,6 +30,14 @@ TimeSpan record_window(const NavigationSource& source, GpsTime start, GpsTime en
     return {std::max(span->first, start - track_record_reach), std::min(span->last, end + track_record_reach)};
 }
 
+// A geostationary satellite stays where its record still served: the acceleration that is sent for minutes would carry
+// it off within hours.
+GpsTime time_on_orbit(const Ephemeris& record, GpsTime time) {
+    if (message_of(record) != NavigationMessage::sbas) return time;
+    const Nanoseconds validity = to_nanoseconds(usual_validity(record));
+    return std::clamp(time, toe_of(record) - validity, toe_of(record) + validity);
+}
+
 SatelliteTrack extrapolated_track(SatelliteId satellite, const std::vector<Ephemeris>& records,
                                   const TrackTimes& times) {
     SatelliteTrack track{satellite, {}};
@@ -39,7 +48,7 @@ SatelliteTrack extrapolated_track(SatelliteId satellite, const std::vector<Ephem
         while (serving + 1 < records.size() &&
                std::chrono::abs(t - toe_of(records[serving + 1])) <= std::chrono::abs(t - toe_of(records[serving])))
             ++serving;
-        track.points.push_back({t, satellite_state(records[serving], t).position});
+        track.points.push_back({t, satellite_state(records[serving], time_on_orbit(records[serving], t)).position});
     }
     return track;
 }

@@ -30,7 +30,7 @@ struct TrackTimes {
 
 /// ECEF tracks of every satellite of `source`, ascending by satellite. Each point comes from the record with the
 /// nearest toe within two days of the track, however old: beyond a record's validity a track is an illustration, not an
-/// ephemeris. Satellites without such a record are absent.
+/// ephemeris, and an SBAS satellite stands where it last was. Satellites without such a record are absent.
 std::vector<SatelliteTrack> satellite_tracks(const NavigationSource& source, const TrackTimes& times);
 
 }  // namespace skyloop

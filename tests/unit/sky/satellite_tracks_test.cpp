@@ -83,6 +83,22 @@ TEST(SatelliteTracks, TakesTheNearestRecordAndGoesOnBeyondTheLast) {
     }
 }
 
+TEST(SatelliteTracks, LeavesGeostationarySatellitesWhereTheirRecordEnds) {
+    SbasEphemeris record;
+    record.satellite = {Constellation::sbas, 43};
+    record.toe = noon;
+    record.position_m = {-30e6, 29e6, 1e5};
+    record.velocity_mps = {0.5, 1, -2};
+    record.acceleration_mps2 = {2e-4, -1e-4, 0};
+    const NavigationData source({record}, std::nullopt, "test");
+    const auto tracks = satellite_tracks(source, {.start = noon - 6h, .duration = Seconds(30 * 3600)});
+    ASSERT_EQ(tracks.size(), 1u);
+    for (const TrackPoint& p : tracks[0].points) {
+        const GpsTime served = std::clamp(p.time, noon - 6min, noon + 6min);
+        EXPECT_EQ(p.position.vector(), satellite_state(Ephemeris(record), served).position.vector());
+    }
+}
+
 TEST(SatelliteTracks, LeavesOutSatellitesWithoutNearRecords) {
     const NavigationData source({*nominal.record({Constellation::gps, 1}, noon)}, std::nullopt, "test");
     EXPECT_TRUE(satellite_tracks(source, {.start = noon + std::chrono::days(30)}).empty());
