@@ -1,6 +1,29 @@
 #include "rinex_recording.hpp"
 
+#include <utility>
+
+#include "skyloop/gnss/carried_almanac.hpp"
+
 namespace skyloop {
+namespace {
+
+// As GPS sends them: reference times in the middle of two hours, each with an issue of its own.
+constexpr std::chrono::hours ephemeris_spacing{2};
+
+KeplerEphemeris ephemeris_of_almanac(const KeplerEphemeris& almanac, GpsTime time) {
+    const std::int64_t number = (time.time_since_epoch() + ephemeris_spacing / 2) / ephemeris_spacing;
+    KeplerEphemeris record = carried_almanac(almanac, GpsTime(number * ephemeris_spacing));
+    constexpr std::int64_t issues = 256;
+    constexpr double usual_accuracy_m = 2.4, usual_fit_h = 4;
+    record.message = NavigationMessage::lnav;
+    record.iode = record.iodc = static_cast<int>(number % issues);
+    // In the run the almanac is the truth.
+    record.accuracy_m = usual_accuracy_m;
+    record.fit_interval_h = usual_fit_h;
+    return record;
+}
+
+}  // namespace
 
 Result<RinexRecording> RinexRecording::create(const std::filesystem::path& folder, const RinexRecordingSetup& setup) {
     RinexRecording recording(setup);
@@ -17,12 +40,20 @@ Result<RinexRecording> RinexRecording::create(const std::filesystem::path& folde
 
 void RinexRecording::record(const Trace& trace, const NavigationSource& broadcast) {
     for (const SatelliteInView& satellite : trace.sky.satellites) {
-        const std::pair issue{satellite.toe, satellite.iode};
+        const GpsTime now = trace.truth.time;
         const auto found = written_.find(satellite.id);
-        if (found != written_.end() && found->second == issue) continue;
-        written_[satellite.id] = issue;
-        if (const auto record = broadcast.ephemeris(satellite.id, trace.truth.time))
-            navigation_.write(navigation_record_text(*record));
+        if (found != written_.end() && found->second.toe == satellite.toe && found->second.issue == satellite.iode &&
+            now < found->second.until)
+            continue;
+        Written& written = written_[satellite.id];
+        written = {satellite.toe, satellite.iode, GpsTime::max()};
+        auto record = broadcast.ephemeris(satellite.id, now);
+        if (!record) continue;
+        if (message_of(*record) == NavigationMessage::almanac) {
+            record = ephemeris_of_almanac(std::get<KeplerEphemeris>(*record), now);
+            written.until = toe_of(*record) + ephemeris_spacing / 2;
+        }
+        navigation_.write(navigation_record_text(*record));
     }
     if (!trace.epoch.observations.signals.empty()) observations_.write(writer_.epoch(trace.epoch.observations));
 }

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <map>
-#include <utility>
 
 #include "skyloop/base/result.hpp"
 #include "skyloop/emulator/output_file.hpp"
@@ -20,7 +19,8 @@ struct RinexRecordingSetup {
     NavigationTextHeader navigation;
 };
 
-/// Writes what was measured, and each record of an orbit when it first serves a satellite in the sky.
+/// Writes what was measured, and each record of an orbit when it first serves a satellite in the sky. An almanac is
+/// written as ephemerides of the hours that the run has: no reader takes orbits with a time of reference days away.
 class RinexRecording {
 public:
     static Result<RinexRecording> create(const std::filesystem::path& folder, const RinexRecordingSetup& setup);
@@ -36,7 +36,14 @@ private:
 
     ObservationWriter writer_;
     OutputFile observations_, navigation_;
-    std::map<SatelliteId, std::pair<GpsTime, int>> written_;  // toe and issue of the last record of each satellite
+    // The last record of a satellite.
+    struct Written {
+        GpsTime toe;
+        int issue = 0;
+        GpsTime until;  // its successor is due
+    };
+
+    std::map<SatelliteId, Written> written_;
 };
 
 }  // namespace skyloop

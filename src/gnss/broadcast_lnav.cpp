@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "broadcast_fields.hpp"
+#include "skyloop/gnss/carried_almanac.hpp"
 
 namespace skyloop {
 
@@ -186,26 +187,22 @@ BitWriter empty_page() {
 BitWriter almanac_page(const LnavPage& page, int number) {
     const std::optional<KeplerEphemeris> found = page.record(number);
     if (!found) return empty_page();
-    const KeplerEphemeris& r = *found;
     const GpsTime reference = page.reference();
-    const double passed = difference(reference, r.toe).value();
-    constexpr double earth_rate = 7.2921151467e-5;  // rad/s (IS-GPS-200, table 20-IV)
-    const double weeks = static_cast<double>(week_and_tow(r.toe).week - week_and_tow(reference).week);
-    const double motion = std::sqrt(3.986005e14) / std::pow(r.sqrt_a, 3) + r.delta_n;
+    const KeplerEphemeris r = carried_almanac(*found, reference);
 
     BitWriter bits;
     put_page_head(bits, static_cast<std::uint64_t>(number));
     put_scaled_unsigned(bits, r.e, 16, power_of_two(-21));
     put_scaled_unsigned(bits, tow_of(reference), 8, almanac_step_s);
-    put_semicircles(bits, r.i0 + r.idot * passed - 0.3 * std::numbers::pi, 16, -19);
+    put_semicircles(bits, r.i0 - 0.3 * std::numbers::pi, 16, -19);
     put_semicircles(bits, r.omega_dot, 16, -38);
     bits.put(r.healthy() ? 0 : 0xFF, 8);
     put_scaled_unsigned(bits, r.sqrt_a, 24, power_of_two(-11));
-    put_circle(bits, r.omega0 + r.omega_dot * passed + earth_rate * static_cast<double>(seconds_per_week) * weeks, 24);
+    put_circle(bits, r.omega0, 24);
     put_circle(bits, r.omega, 24);
-    put_circle(bits, r.m0 + motion * passed, 24);
+    put_circle(bits, r.m0, 24);
     BitWriter offset;
-    put_scaled(offset, r.af0 + r.af1 * difference(reference, r.toc).value(), 11, power_of_two(-20));
+    put_scaled(offset, r.af0, 11, power_of_two(-20));
     bits.put(offset.field(0, 8), 8);
     put_scaled(bits, r.af1, 11, power_of_two(-38));
     bits.put(offset.field(8, 3), 3);

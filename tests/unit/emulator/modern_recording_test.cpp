@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "run_parts.hpp"
 #include "skyloop/gnss/orbit.hpp"
@@ -16,6 +17,7 @@
 namespace skyloop {
 namespace {
 
+using namespace std::chrono_literals;
 using test::content_of;
 using test::emulator_data;
 using test::emulator_scenario;
@@ -121,7 +123,7 @@ TEST_F(ModernRecording, ObservationsReadBackAreThoseOfTheReceiver) {
 }
 
 TEST_F(ModernRecording, NavigationReadBackIsWhatTheSatellitesSent) {
-    const std::string scenario = text(receiver_of_four, 3600) + "rate_hz = 0.02\n";
+    const std::string scenario = text(receiver_of_four, 3600) + "rate_hz = 0.1\n";
     const auto traces = run(scenario);
     const auto source = load_navigation(emulator_scenario(scenario), {});
     ASSERT_TRUE(source);
@@ -149,6 +151,43 @@ TEST_F(ModernRecording, NavigationReadBackIsWhatTheSatellitesSent) {
         }
     EXPECT_GT(used, 1000U);
     EXPECT_GT(records.size(), 60U) << "GLONASS changes its records within the hour";
+}
+
+// Its own time of applicability is days away from the run, where no reader takes an ephemeris.
+TEST_F(ModernRecording, AnAlmanacIsWrittenAsTheEphemeridesOfTheRun) {
+    constexpr int satellites = 12;
+    std::string almanac;
+    for (int i = 0; i < satellites; ++i)
+        almanac += fmt::format(
+            "******** Week  256 almanac for PRN-{0:02} ********\nID: {0:02}\nHealth: 000\nEccentricity: 0.0066\n"
+            "Time of Applicability(s): 405504.0\nOrbital Inclination(rad): 0.989\nRate of Right Ascen(r/s): -7.5E-009\n"
+            "SQRT(A)  (m 1/2): 5153.68\nRight Ascen at Week(rad): {1}\nArgument of Perigee(rad): -1.78\n"
+            "Mean Anom(rad): {2}\nAf0(s): 0.9E-004\nAf1(s/s): 0.36E-011\nweek: 256\n\n",
+            i + 1, 1.047 * (i % 6), 0.5 * i - 3);
+    std::ofstream(folder_ / "yuma.txt") << almanac;
+    const std::string scenario = "[run]\nstart = 2024-03-05T12:00:00Z\nduration_s = 7500\n[sky]\nnavigation = \"" +
+                                 (folder_ / "yuma.txt").string() + "\"\n[[receiver]]\nrate_hz = 0.1\n";
+    run(scenario);
+    const auto written = read_navigation_file(folder_ / "run" / "navigation.rnx");
+    ASSERT_TRUE(written) << written.error().message;
+    const GpsTime noon = to_gps_time({2024, 3, 5, 12, 0, 0, 0}, LeapSeconds::announced());
+    const auto read = load_navigation(emulator_scenario(scenario), noon);
+    ASSERT_TRUE(read);
+    std::set<int> issues;
+    for (const Ephemeris& record : written->records) {
+        const SatelliteId id = satellite_of(record);
+        EXPECT_LE(std::chrono::abs(toe_of(record) - noon - 1h), 1h + 18s) << to_string(id);
+        const auto sent = read->source->ephemeris(id, toe_of(record));
+        ASSERT_TRUE(sent) << to_string(id);
+        for (const auto offset : {-1h, 0h, 1h}) {
+            const GpsTime t = toe_of(record) + offset;
+            const SatelliteState is = satellite_state(record, t), was = satellite_state(*sent, t);
+            EXPECT_LT((is.position - was.position).length().value(), 1e-3) << to_string(id);
+            EXPECT_NEAR(is.clock_bias, was.clock_bias, 1e-14);
+        }
+        issues.insert(iode_of(record));
+    }
+    EXPECT_EQ(issues.size(), 2u) << "of 12:00 and of 14:00";
 }
 
 TEST_F(ModernRecording, SensorModelsMeasureNothingAndRemoveWhatAnotherRunLeft) {
