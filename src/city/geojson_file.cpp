@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "city_text.hpp"
@@ -30,6 +31,7 @@ private:
 
     const CityFileSettings& settings_;
     std::string_view name_;
+    UnnamedOutline unnamed_ = UnnamedOutline::house;
     Outlines found_;
     std::size_t other_shapes_ = 0, other_uses_ = 0;
 };
@@ -44,7 +46,7 @@ bool read_positions(const json& positions, std::vector<Eigen::Vector2d>& ring) {
     return true;
 }
 
-/// Texts and numbers, by keys in small letters.
+/// Texts and numbers, by keys in small letters. An empty text is a column of a table without a value.
 OutlineTags tags_of(const json& properties) {
     OutlineTags tags;
     if (!properties.is_object()) return tags;
@@ -52,10 +54,18 @@ OutlineTags tags_of(const json& properties) {
         std::string lower = key;
         for (char& c : lower)
             if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-        if (value.is_string()) tags.emplace(std::move(lower), value.get<std::string>());
+        if (value.is_string() && !value.get_ref<const std::string&>().empty())
+            tags.emplace(std::move(lower), value.get<std::string>());
         if (value.is_number()) tags.emplace(std::move(lower), fmt::format("{}", value.get<double>()));
         if (value.is_boolean()) tags.emplace(std::move(lower), value.get<bool>() ? "yes" : "no");
     }
+    return tags;
+}
+
+OutlineTags tags_of_feature(const json& feature) {
+    const json& properties = member(feature, "properties");
+    OutlineTags tags = tags_of(properties);
+    tags.merge(tags_of(member(properties, "tags")));
     return tags;
 }
 
@@ -92,10 +102,7 @@ void GeoJsonReader::read_geometry(const json& geometry, const OutlineUse& use) {
 }
 
 void GeoJsonReader::read_feature(const json& feature) {
-    const json& properties = member(feature, "properties");
-    OutlineTags tags = tags_of(properties);
-    tags.merge(tags_of(member(properties, "tags")));
-    const OutlineUse use = outline_use(tags, settings_, true);
+    const OutlineUse use = outline_use(tags_of_feature(feature), settings_, unnamed_);
     if (use.kind == OutlineUse::Kind::none)
         ++other_uses_;
     else
@@ -124,12 +131,16 @@ Result<Outlines> GeoJsonReader::read(const json& root) {
         const json& features = member(root, "features");
         if (!features.is_array())
             return fail(ErrorCode::input, fmt::format("{}: \"features\" is missing or no list", name_));
+        // Exports of maps name their buildings among roads, car parks and lakes; footprints alone need no name.
+        if (std::any_of(features.begin(), features.end(),
+                        [](const json& feature) { return tells_buildings(tags_of_feature(feature)); }))
+            unnamed_ = UnnamedOutline::tall_house;
         for (const json& feature : features)
             read_feature(feature);
     } else if (type == "Feature") {
         read_feature(root);
     } else if (type == "Polygon" || type == "MultiPolygon" || type == "GeometryCollection") {
-        read_geometry(root, outline_use({}, settings_, true));
+        read_geometry(root, outline_use({}, settings_, unnamed_));
     } else {
         return fail(ErrorCode::input,
                     fmt::format("{}: \"type\" is \"{}\", expected \"FeatureCollection\", \"Feature\", "

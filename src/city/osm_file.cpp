@@ -64,7 +64,7 @@ void OsmReader::take(const osmium::Way& way) {
     kept = {};
     for (const osmium::NodeRef& node : way.nodes())
         kept.nodes.push_back(node.ref());
-    const OutlineUse use = outline_use(tags_of_object(way.tags()), settings_, false);
+    const OutlineUse use = outline_use(tags_of_object(way.tags()), settings_, UnnamedOutline::nothing);
     if (use.kind != OutlineUse::Kind::none) kept.use = use;
 }
 
@@ -73,7 +73,7 @@ void OsmReader::take(const osmium::Relation& relation) {
     const auto type = tags.find("type");
     if (type == tags.end() || type->second != "multipolygon") return;
     Area area;
-    area.use = outline_use(tags, settings_, false);
+    area.use = outline_use(tags, settings_, UnnamedOutline::nothing);
     if (area.use.kind == OutlineUse::Kind::none) return;
     for (const osmium::RelationMember& one : relation.members())
         if (one.type() == osmium::item_type::way)

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -76,17 +77,36 @@ std::string material_of(const OutlineTags& tags) {
 
 bool affirmed(std::string_view value) { return !value.empty() && value != "no" && value != "false" && value != "0"; }
 
-OutlineUse::Kind kind_of(const OutlineTags& tags, bool any_polygon) {
+/// Of surfaces of the Earth, whatever height they tell.
+constexpr std::array<std::string_view, 8> surface_keys{"natural",  "landuse",  "leisure", "highway",
+                                                       "waterway", "boundary", "place",   "water"};
+/// Of places and things that may be a building but mostly are car parks, pitches, platforms (OpenStreetMap wiki, "Map
+/// features").
+constexpr std::array<std::string_view, 22> thing_keys{
+    "aerialway", "aeroway",  "amenity",    "area:highway", "barrier",          "craft",  "emergency", "geological",
+    "golf",      "historic", "healthcare", "man_made",     "military",         "office", "power",     "playground",
+    "railway",   "route",    "shop",       "sport",        "public_transport", "tourism"};
+
+template <std::size_t n>
+bool any_of_keys(const OutlineTags& tags, const std::array<std::string_view, n>& keys) {
+    return std::any_of(keys.begin(), keys.end(), [&](std::string_view key) { return tags.contains(key); });
+}
+
+bool is_unnamed_house(const OutlineTags& tags, UnnamedOutline unnamed) {
+    if (unnamed == UnnamedOutline::nothing || any_of_keys(tags, surface_keys)) return false;
+    const bool thing = any_of_keys(tags, thing_keys);
+    const bool tall = first_length(tags, height_keys) || first_length(tags, level_keys);
+    return unnamed == UnnamedOutline::tall_house ? tall && !thing : tall || !thing;
+}
+
+OutlineUse::Kind kind_of(const OutlineTags& tags, UnnamedOutline unnamed) {
     using Kind = OutlineUse::Kind;
     if (affirmed(tag(tags, "building:part"))) return Kind::part;
     if (affirmed(tag(tags, "building"))) return Kind::building;
     if (tags.contains("building")) return Kind::none;
     if (tag(tags, "natural") == "wood" || tag(tags, "landuse") == "forest" || tag(tags, "landuse") == "orchard")
         return Kind::trees;
-    if (!any_polygon) return Kind::none;
-    for (const std::string_view key : {"natural", "landuse", "leisure", "highway", "waterway", "boundary", "place"})
-        if (tags.find(key) != tags.end()) return Kind::none;
-    return Kind::building;
+    return is_unnamed_house(tags, unnamed) ? Kind::building : Kind::none;
 }
 
 }  // namespace
@@ -108,9 +128,11 @@ std::optional<double> length_of_tag(std::string_view text) {
     return *value >= 0 && *value <= tallest ? value : std::nullopt;
 }
 
-OutlineUse outline_use(const OutlineTags& tags, const CityFileSettings& settings, bool any_polygon) {
+bool tells_buildings(const OutlineTags& tags) { return tags.contains("building") || tags.contains("building:part"); }
+
+OutlineUse outline_use(const OutlineTags& tags, const CityFileSettings& settings, UnnamedOutline unnamed) {
     OutlineUse use;
-    use.kind = kind_of(tags, any_polygon);
+    use.kind = kind_of(tags, unnamed);
     if (use.kind == OutlineUse::Kind::none) return use;
     use.material = material_of(tags);
     use.top = first_length(tags, height_keys);

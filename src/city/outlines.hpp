@@ -23,8 +23,15 @@ struct OutlineUse {
     bool canopy = false;        ///< a roof without walls
     std::string material;       ///< empty where no tag tells it
 };
-/// @param any_polygon an outline whose tags name no use is a building
-OutlineUse outline_use(const OutlineTags& tags, const CityFileSettings& settings, bool any_polygon);
+/// What an outline is whose tags name neither a building nor a wood.
+enum class UnnamedOutline {
+    nothing,     ///< OpenStreetMap names all
+    tall_house,  ///< a building where the tags tell a height and are of no other thing: beside ones that are named
+    house        ///< a building unless the tags are of another thing and tell no height
+};
+OutlineUse outline_use(const OutlineTags& tags, const CityFileSettings& settings, UnnamedOutline unnamed);
+/// True when tags tell buildings from other things.
+bool tells_buildings(const OutlineTags& tags);
 
 /// A length: "12", "12.5 m", "40 ft", "39'6\""; m. Absent for what is none or no height of a thing, 0 … 1000 m.
 std::optional<double> length_of_tag(std::string_view text);

@@ -86,6 +86,24 @@ TEST(GeoJson, ReadsLevelsMaterialsAndWoods) {
     EXPECT_THAT(file->warnings[0], HasSubstr("1 features"));
 }
 
+TEST(GeoJson, BuildsNoHousesOnCarParksAndLakes) {
+    const std::string others = feature(R"({"amenity":"parking"})", square(0.001, 0.01)) + "," +
+                               feature(R"({"water":"lake","height":3})", square(0.001, 0.02)) + "," +
+                               feature(R"({"power":"substation"})", square(0.001, 0.03));
+    const std::string plain = feature(R"({"id":7,"building":""})", square(0.001, 0.04));
+    const std::string tall = feature(R"({"name":"tower","height":80})", square(0.001, 0.05));
+    const std::string tank = feature(R"({"man_made":"storage_tank","height":15})", square(0.001, 0.06));
+    const auto buildings = [&](const std::string& features) {
+        const auto file = read_geojson(collection(features));
+        EXPECT_TRUE(file) << file.error().message;
+        return file ? file->buildings : 0;
+    };
+    const std::string rest = others + "," + plain + "," + tall + "," + tank;
+    EXPECT_EQ(buildings(rest), 3U) << "where nothing is named a building, what has a height or no other name is one";
+    const std::string named = feature(R"({"tags":{"building":"yes"}})", square(0.001));
+    EXPECT_EQ(buildings(named + "," + rest), 2U) << "the one that is named and the tower";
+}
+
 TEST(GeoJson, CountsMissingHeightsInOneWarning) {
     CityFileSettings settings;
     settings.default_height = 7;
