@@ -20,12 +20,18 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-/// Takes a number off the front of a text.
+bool is_digit(std::string_view text, std::size_t at) { return at < text.size() && text[at] >= '0' && text[at] <= '9'; }
+
+/// Takes a number off the front of a text. A comma between digits is taken for a point, as much of Europe writes.
 std::optional<double> take_tag_number(std::string_view& text) {
+    std::string plain(text);
+    const std::size_t comma = text.find_first_not_of("0123456789");
+    if (comma != 0 && comma != std::string_view::npos && text[comma] == ',' && is_digit(text, comma + 1))
+        plain[comma] = '.';
     double value = 0;
-    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const auto [rest, error] = std::from_chars(plain.data(), plain.data() + plain.size(), value);
     if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
-    text.remove_prefix(static_cast<std::size_t>(rest - text.data()));
+    text.remove_prefix(static_cast<std::size_t>(rest - plain.data()));
     text = trimmed(text);
     return value;
 }
@@ -35,11 +41,18 @@ std::string_view tag(const OutlineTags& tags, std::string_view key) {
     return found == tags.end() ? std::string_view() : std::string_view(found->second);
 }
 
+/// The first of some keys that tells a length of at least so much.
 template <std::size_t n>
-std::optional<double> first_length(const OutlineTags& tags, const std::array<std::string_view, n>& keys) {
+std::optional<double> first_length(const OutlineTags& tags, const std::array<std::string_view, n>& keys,
+                                   double least = 0) {
     for (const std::string_view key : keys)
-        if (const auto length = length_of_tag(tag(tags, key))) return length;
+        if (const auto length = length_of_tag(tag(tags, key)); length && *length >= least) return length;
     return std::nullopt;
+}
+/// The same of what stands above the ground: 0 is how tables write that they do not know.
+template <std::size_t n>
+std::optional<double> first_height(const OutlineTags& tags, const std::array<std::string_view, n>& keys) {
+    return first_length(tags, keys, 1e-3);
 }
 
 constexpr std::array<std::string_view, 8> height_keys{"height",         "building:height", "render_height",
@@ -95,7 +108,7 @@ bool any_of_keys(const OutlineTags& tags, const std::array<std::string_view, n>&
 bool is_unnamed_house(const OutlineTags& tags, UnnamedOutline unnamed) {
     if (unnamed == UnnamedOutline::nothing || any_of_keys(tags, surface_keys)) return false;
     const bool thing = any_of_keys(tags, thing_keys);
-    const bool tall = first_length(tags, height_keys) || first_length(tags, level_keys);
+    const bool tall = first_height(tags, height_keys) || first_height(tags, level_keys);
     return unnamed == UnnamedOutline::tall_house ? tall && !thing : tall || !thing;
 }
 
@@ -112,7 +125,8 @@ OutlineUse::Kind kind_of(const OutlineTags& tags, UnnamedOutline unnamed) {
 }  // namespace
 
 std::optional<double> length_of_tag(std::string_view text) {
-    text = trimmed(text);
+    // Of several values ("5;6") the first.
+    text = trimmed(text.substr(0, text.find(';')));
     auto value = take_tag_number(text);
     if (!value) return std::nullopt;
     if (text == "ft" || text == "feet" || text == "'") {
@@ -135,10 +149,10 @@ OutlineUse outline_use(const OutlineTags& tags, const CityFileSettings& settings
     use.kind = kind_of(tags, unnamed);
     if (use.kind == OutlineUse::Kind::none) return use;
     use.material = material_of(tags);
-    use.top = first_length(tags, height_keys);
+    use.top = first_height(tags, height_keys);
     if (!use.top)
-        if (const auto levels = first_length(tags, level_keys)) use.top = *levels * settings.metres_per_level;
-    if (use.top && !(*use.top > 0 && *use.top <= tallest)) use.top.reset();
+        if (const auto levels = first_height(tags, level_keys)) use.top = *levels * settings.metres_per_level;
+    if (use.top && *use.top > tallest) use.top.reset();
     if (const auto base = first_length(tags, base_keys))
         use.base = *base;
     else if (const auto levels = first_length(tags, base_level_keys))

@@ -33,7 +33,8 @@ OutlineUse outline_use(const OutlineTags& tags, const CityFileSettings& settings
 /// True when tags tell buildings from other things.
 bool tells_buildings(const OutlineTags& tags);
 
-/// A length: "12", "12.5 m", "40 ft", "39'6\""; m. Absent for what is none or no height of a thing, 0 … 1000 m.
+/// A length: "12", "12.5 m", "12,5", "40 ft", "39'6\"", the first of "12;14"; m. Absent for what is none or no height
+/// of a thing, 0 … 1000 m.
 std::optional<double> length_of_tag(std::string_view text);
 
 /// An outline in the file's coordinates.

@@ -138,6 +138,22 @@ TEST(GeoJson, TakesMetresWhenNumbersAreNoDegrees) {
     EXPECT_THAT(utm->warnings.at(0), HasSubstr("EPSG:25832"));
 }
 
+TEST(GeoJson, AHeightThatTellsNothingHidesNoOther) {
+    const auto top_of = [](std::string_view properties) {
+        const auto file = read_geojson(feature(properties, square(0.001)));
+        EXPECT_TRUE(file) << file.error().message;
+        return file ? std::round(100 * highest_of(file->model).z()) / 100 : 0;
+    };
+    EXPECT_EQ(top_of(R"({"height":0,"levels":7})"), 21);
+    EXPECT_EQ(top_of(R"({"height":-1,"levels":7})"), 21);
+    EXPECT_EQ(top_of(R"({"height":"0 m","render_height":"0","est_height":14})"), 14);
+    EXPECT_EQ(top_of(R"({"height":"20,5"})"), 20.5);
+    EXPECT_EQ(top_of(R"({"height":"20,5 m"})"), 20.5);
+    EXPECT_EQ(top_of(R"({"building:levels":"5;6"})"), 15);
+    EXPECT_EQ(top_of(R"({"height":"20,m","levels":2})"), 6);
+    EXPECT_EQ(top_of(R"({"height":0,"levels":0})"), 9);
+}
+
 TEST(GeoJson, PartsReplaceTheirBuilding) {
     const std::string whole = feature(R"({"building":"yes","height":50})", square(0.001));
     const std::string part = feature(R"({"building:part":"yes","height":20})", square(0.00099));
