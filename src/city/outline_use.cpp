@@ -55,13 +55,16 @@ std::optional<double> first_height(const OutlineTags& tags, const std::array<std
     return first_length(tags, keys, 1e-3);
 }
 
-constexpr std::array<std::string_view, 8> height_keys{"height",         "building:height", "render_height",
-                                                      "measuredheight", "building_height", "roof_height",
-                                                      "hoehe",          "est_height"};
+constexpr std::array<std::string_view, 7> height_keys{
+    "height", "building:height", "render_height", "measuredheight", "building_height", "hoehe", "est_height"};
 constexpr std::array<std::string_view, 3> base_keys{"min_height", "building:min_height", "render_min_height"};
 constexpr std::array<std::string_view, 7> level_keys{"building:levels", "levels",  "num_floors",     "floors",
                                                      "storeys",         "stories", "building_levels"};
-constexpr std::array<std::string_view, 2> base_level_keys{"building:min_level", "min_level"};
+constexpr std::array<std::string_view, 3> base_level_keys{"building:min_level", "min_level", "min_floor"};
+constexpr std::array<std::string_view, 2> buried_level_keys{"building:levels:underground", "num_floors_underground"};
+/// Of the roof alone, which levels do not count.
+constexpr std::array<std::string_view, 2> roof_height_keys{"roof:height", "roof_height"};
+constexpr std::array<std::string_view, 1> roof_level_keys{"roof:levels"};
 constexpr std::array<std::string_view, 4> material_keys{"building:material", "building:facade:material",
                                                         "building:cladding", "material"};
 
@@ -88,6 +91,15 @@ std::string material_of(const OutlineTags& tags) {
     return {};
 }
 
+/// Height by the levels and the roof above them (OpenStreetMap wiki, "Key:building:levels": "excluding roof levels").
+std::optional<double> height_by_levels(const OutlineTags& tags, double metres_per_level) {
+    const auto levels = first_height(tags, level_keys);
+    const auto roof_levels = first_height(tags, roof_level_keys);
+    if (!levels && !roof_levels) return std::nullopt;
+    return levels.value_or(0) * metres_per_level +
+           first_height(tags, roof_height_keys).value_or(roof_levels.value_or(0) * metres_per_level);
+}
+
 bool affirmed(std::string_view value) { return !value.empty() && value != "no" && value != "false" && value != "0"; }
 
 /// Of surfaces of the Earth, whatever height they tell.
@@ -112,8 +124,17 @@ bool is_unnamed_house(const OutlineTags& tags, UnnamedOutline unnamed) {
     return unnamed == UnnamedOutline::tall_house ? tall && !thing : tall || !thing;
 }
 
+/// Said to be below the ground, or with levels there alone.
+bool is_underground(const OutlineTags& tags) {
+    if (tag(tags, "location") == "underground" || affirmed(tag(tags, "is_underground"))) return true;
+    const auto levels = first_length(tags, level_keys);
+    return levels && *levels == 0 && first_height(tags, buried_level_keys) && !first_height(tags, height_keys) &&
+           !first_height(tags, roof_level_keys);
+}
+
 OutlineUse::Kind kind_of(const OutlineTags& tags, UnnamedOutline unnamed) {
     using Kind = OutlineUse::Kind;
+    if (is_underground(tags)) return Kind::none;
     if (affirmed(tag(tags, "building:part"))) return Kind::part;
     if (affirmed(tag(tags, "building"))) return Kind::building;
     if (tags.contains("building")) return Kind::none;
@@ -150,8 +171,7 @@ OutlineUse outline_use(const OutlineTags& tags, const CityFileSettings& settings
     if (use.kind == OutlineUse::Kind::none) return use;
     use.material = material_of(tags);
     use.top = first_height(tags, height_keys);
-    if (!use.top)
-        if (const auto levels = first_height(tags, level_keys)) use.top = *levels * settings.metres_per_level;
+    if (!use.top) use.top = height_by_levels(tags, settings.metres_per_level);
     if (use.top && *use.top > tallest) use.top.reset();
     if (const auto base = first_length(tags, base_keys))
         use.base = *base;

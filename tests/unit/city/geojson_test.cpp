@@ -154,6 +154,19 @@ TEST(GeoJson, AHeightThatTellsNothingHidesNoOther) {
     EXPECT_EQ(top_of(R"({"height":0,"levels":0})"), 9);
 }
 
+TEST(GeoJson, ReadsThePropertiesOfOverture) {
+    const auto file = read_geojson(
+        collection(feature(R"({"num_floors":10,"roof_height":2.5,"is_underground":false})", square(0.001)) + "," +
+                   feature(R"({"num_floors":3,"is_underground":true})", square(0.001, 0.01))));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->buildings, 1U);
+    EXPECT_NEAR(highest_of(file->model).z(), 32.5, 0.05);
+    const auto high = read_geojson(feature(R"({"num_floors":20,"min_floor":10})", square(0.001)));
+    ASSERT_TRUE(high) << high.error().message;
+    for (const Eigen::Vector3d& vertex : high->model.vertices)
+        EXPECT_GT(vertex.z(), 29.9);
+}
+
 TEST(GeoJson, PartsReplaceTheirBuilding) {
     const std::string whole = feature(R"({"building":"yes","height":50})", square(0.001));
     const std::string part = feature(R"({"building:part":"yes","height":20})", square(0.00099));

@@ -78,6 +78,35 @@ TEST(OpenStreetMap, RaisesWaysByHeightElseByLevels) {
         EXPECT_GT(vertex.z(), 5.9);
 }
 
+TEST(OpenStreetMap, CountsTheRoofAboveTheLevels) {
+    const auto top_of = [](std::initializer_list<std::pair<std::string_view, std::string_view>> tags) {
+        const auto file =
+            read_osm(osm_file(osm_way(1, {1, 2, 3, 4, 1}, R"(<tag k="building" v="yes"/>)" + osm_tags(tags))));
+        EXPECT_TRUE(file) << file.error().message;
+        return file ? std::round(100 * highest_of(file->model).z()) / 100 : 0;
+    };
+    EXPECT_EQ(top_of({{"building:levels", "5"}, {"roof:levels", "2"}}), 21);
+    EXPECT_EQ(top_of({{"building:levels", "5"}, {"roof:levels", "2"}, {"roof:height", "4 m"}}), 19);
+    EXPECT_EQ(top_of({{"building:levels", "5"}, {"roof:levels", "2"}, {"height", "17"}}), 17);
+    EXPECT_EQ(top_of({{"building:levels", "0"}, {"roof:levels", "1"}}), 3);
+    EXPECT_EQ(top_of({{"roof:height", "4"}}), 9) << "of a house of unknown height";
+}
+
+TEST(OpenStreetMap, LeavesOutWhatIsBelowTheGround) {
+    const auto building = osm_tags({{"building", "yes"}, {"height", "10"}});
+    const auto buildings = [&](std::initializer_list<std::pair<std::string_view, std::string_view>> tags) {
+        const auto file =
+            read_osm(osm_file(osm_way(1, {1, 2, 3, 4, 1}, building) +
+                              osm_way(2, {5, 6, 7, 8, 5}, R"(<tag k="building" v="yes"/>)" + osm_tags(tags))));
+        EXPECT_TRUE(file) << file.error().message;
+        return file ? file->buildings : 0;
+    };
+    EXPECT_EQ(buildings({{"building:levels", "0"}, {"building:levels:underground", "2"}}), 1U);
+    EXPECT_EQ(buildings({{"location", "underground"}, {"layer", "-1"}}), 1U);
+    EXPECT_EQ(buildings({{"building:levels", "3"}, {"building:levels:underground", "2"}}), 2U);
+    EXPECT_EQ(buildings({{"building:levels", "0"}}), 2U) << "unknown levels";
+}
+
 TEST(OpenStreetMap, JoinsWaysOfAMultipolygonAroundItsCourtyard) {
     const auto file = read_osm(osm_file(
         osm_way(1, {1, 2, 3}) + osm_way(2, {1, 4, 3}) + osm_way(3, {5, 6, 7, 8, 5}) + R"(<relation id="1">
