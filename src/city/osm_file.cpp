@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "city_text.hpp"
+#include "osm_deletions.hpp"
 #include "outlines.hpp"
 #include "pbf_blobs.hpp"
 
@@ -46,6 +47,7 @@ private:
     void add_area(const Area& area);
 
     const CityFileSettings& settings_;
+    OsmDeletions deletions_;
     std::unordered_map<osmium::object_id_type, Eigen::Vector2d> places_;
     std::map<osmium::object_id_type, Way> ways_;
     std::vector<Area> areas_;
@@ -59,7 +61,16 @@ OutlineTags tags_of_object(const osmium::TagList& list) {
     return tags;
 }
 
+/// Deleted objects stay in the files of editors, and in those that hold a history behind what they were.
+bool is_there(const osmium::OSMObject& object, const std::set<std::int64_t>& deleted) {
+    return object.visible() && !deleted.contains(object.id());
+}
+
 void OsmReader::take(const osmium::Way& way) {
+    if (!is_there(way, deletions_.ways)) {
+        ways_.erase(way.id());
+        return;
+    }
     Way& kept = ways_[way.id()];
     kept = {};
     for (const osmium::NodeRef& node : way.nodes())
@@ -69,6 +80,7 @@ void OsmReader::take(const osmium::Way& way) {
 }
 
 void OsmReader::take(const osmium::Relation& relation) {
+    if (!is_there(relation, deletions_.relations)) return;
     const OutlineTags tags = tags_of_object(relation.tags());
     const auto type = tags.find("type");
     if (type == tags.end() || type->second != "multipolygon") return;
@@ -82,12 +94,14 @@ void OsmReader::take(const osmium::Relation& relation) {
 }
 
 void OsmReader::read(std::string_view bytes, const std::string& format) {
+    if (format == "osm") deletions_ = osm_deletions(bytes);
     const osmium::io::File file(bytes.data(), bytes.size(), format);
     osmium::thread::Pool pool(1);
     osmium::io::Reader reader(file, osmium::osm_entity_bits::nwr, osmium::io::read_meta::no, pool);
     while (const osmium::memory::Buffer buffer = reader.read()) {
         for (const auto& node : buffer.select<osmium::Node>())
-            if (node.location().valid()) places_[node.id()] = {node.location().lon(), node.location().lat()};
+            if (is_there(node, deletions_.nodes) && node.location().valid())
+                places_[node.id()] = {node.location().lon(), node.location().lat()};
         for (const auto& way : buffer.select<osmium::Way>())
             take(way);
         for (const auto& relation : buffer.select<osmium::Relation>())

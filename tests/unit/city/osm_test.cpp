@@ -107,6 +107,23 @@ TEST(OpenStreetMap, LeavesOutWhatIsBelowTheGround) {
     EXPECT_EQ(buildings({{"building:levels", "0"}}), 2U) << "unknown levels";
 }
 
+TEST(OpenStreetMap, BuildsNothingThatIsDeleted) {
+    const std::string kept = osm_way(2, {5, 6, 7, 8, 5}, osm_tags({{"building", "yes"}, {"height", "5"}}));
+    const std::string house = R"(<nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="4"/><nd ref="1"/>)" +
+                              osm_tags({{"building", "yes"}, {"height", "20"}}) + "</way>";
+    for (const std::string_view attributes :
+         {"id='1' action='delete' visible='true'", "action=\"delete\"\n id=\"1\"", "id='1' visible='false'"}) {
+        const auto file = read_osm(osm_file(fmt::format("<way {}>", attributes) + house + kept));
+        ASSERT_TRUE(file) << file.error().message;
+        EXPECT_EQ(file->buildings, 1U) << attributes;
+        EXPECT_NEAR(highest_of(file->model).z(), 5, 0.01) << attributes;
+    }
+    const auto changed =
+        read_osm(osm_file("<!-- <way id='1' action='delete'> --><way id='1' action='modify' user='>'>" + house + kept));
+    ASSERT_TRUE(changed) << changed.error().message;
+    EXPECT_EQ(changed->buildings, 2U);
+}
+
 TEST(OpenStreetMap, JoinsWaysOfAMultipolygonAroundItsCourtyard) {
     const auto file = read_osm(osm_file(
         osm_way(1, {1, 2, 3}) + osm_way(2, {1, 4, 3}) + osm_way(3, {5, 6, 7, 8, 5}) + R"(<relation id="1">
