@@ -40,6 +40,12 @@ std::optional<double> take_number(const char*& at, const char* end) {
     return value;
 }
 
+std::string_view without_byte_order_mark(std::string_view text) {
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    if (text.starts_with(mark)) text.remove_prefix(mark.size());
+    return text;
+}
+
 std::string line_place(std::string_view name, std::string_view text, std::size_t offset) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text.size()));
     return fmt::format("{}:{}", name, 1 + std::count(text.begin(), end, '\n'));

@@ -12,6 +12,9 @@ namespace skyloop {
 /// large for a double is infinite, one too small is zero. @returns nothing, `at` unmoved, where there is no number
 std::optional<double> take_number(const char*& at, const char* end);
 
+/// A text without the UTF-8 mark that Windows' editors put before it.
+std::string_view without_byte_order_mark(std::string_view text);
+
 /// "NAME:LINE" of a byte of a text, the first line being 1.
 std::string line_place(std::string_view name, std::string_view text, std::size_t offset);
 

@@ -164,7 +164,7 @@ private:
 }  // namespace
 
 Result<CityFile> parse_obj(std::string_view text, std::string_view name, const CityFileSettings& settings) {
-    return ObjReader(text, name, settings).read();
+    return ObjReader(without_byte_order_mark(text), name, settings).read();
 }
 
 }  // namespace skyloop

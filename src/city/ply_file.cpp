@@ -183,6 +183,7 @@ private:
 }  // namespace
 
 Result<void> add_ply(MeshBuilder& builder, std::string_view bytes, std::string_view name, MeshPart part) {
+    bytes = without_byte_order_mark(bytes);
     const auto header = parse_ply_header(bytes, name);
     if (!header) return fail(header.error());
     PlyBody body(builder, bytes, name, *header);

@@ -39,6 +39,14 @@ TEST(ObjFile, TellsWallRoofAndGroundOfABox) {
     EXPECT_DOUBLE_EQ(test::area_of(file->model), 2 * 100 + 4 * 200);
 }
 
+TEST(ObjFile, AMarkOfTheEncodingIsNoPartOfTheFirstVertex) {
+    const auto file = read_obj("\xEF\xBB\xBF" + box(0, 0, 10, 20));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->model.vertices.size(), 8U);
+    EXPECT_DOUBLE_EQ(test::area_of(file->model), 2 * 100 + 4 * 200);
+    EXPECT_TRUE(file->warnings.empty());
+}
+
 TEST(ObjFile, AFloorThatCoversLittleStaysARoof) {
     const auto file = read_obj(box(0, 0, 10, 20) + box(100, 100, 10, 20, 9));
     ASSERT_TRUE(file);

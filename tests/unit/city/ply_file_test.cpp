@@ -66,6 +66,12 @@ TEST(PlyFile, ReadsText) {
     EXPECT_DOUBLE_EQ(test::area_of(file->model), 50);
 }
 
+TEST(PlyFile, AMarkOfTheEncodingMayStandBeforeIt) {
+    const auto file = read_ply(std::string("\xEF\xBB\xBF") + ascii_wall);
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->model.triangles.size(), 2U);
+}
+
 TEST(PlyFile, ReadsBothOrdersOfBytes) {
     for (const bool big : {false, true}) {
         const auto file = read_ply(binary_wall(big));
