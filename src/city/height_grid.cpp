@@ -12,19 +12,22 @@
 namespace skyloop {
 namespace {
 
-// A cell so small in degrees, in a grid that fits on the globe, is geographic: 0.1° are 11 km, while no grid in metres
-// has cells of a decimetre.
+// A cell so small in degrees, in a grid that fits on the globe, is geographic: 0.1° are 11 km, while few grids in
+// metres have cells of a decimetre. Those of drones do, and are more than a few metres wide; a city is not so many
+// degrees wide.
 constexpr double largest_geographic_cell = 0.1;
+constexpr double widest_geographic_grid = 6;
 
 struct HeightGridHeader {
     std::size_t columns = 0, rows = 0;
     double west = 0, south = 0;  ///< of the middle of the south-western cell
     double cell = 0;
-    double no_data = std::numeric_limits<double>::quiet_NaN();
+    double no_data = -9999;  ///< where the header names none (Esri, "ESRI ASCII raster format")
     [[nodiscard]] bool geographic() const {
         const double east = west + static_cast<double>(columns) * cell,
                      north = south + static_cast<double>(rows) * cell;
-        return cell <= largest_geographic_cell && west >= -180 && east <= 361 && south >= -90 && north <= 91;
+        return cell <= largest_geographic_cell && std::max(east - west, north - south) <= widest_geographic_grid &&
+               west >= -180 && east <= 361 && south >= -90 && north <= 91;
     }
 };
 
@@ -211,7 +214,7 @@ private:
 }  // namespace
 
 Result<CityFile> parse_height_grid(std::string_view text, std::string_view name, const CityFileSettings& settings) {
-    return HeightGridReader(text, name, settings).read();
+    return HeightGridReader(without_byte_order_mark(text), name, settings).read();
 }
 
 }  // namespace skyloop

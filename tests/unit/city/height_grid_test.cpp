@@ -47,6 +47,28 @@ TEST(HeightGrid, LeavesOutCellsWithoutData) {
     EXPECT_THAT(refusal(read_grid(head + "-9999 -9999 1 1")), HasSubstr("no four neighbours"));
 }
 
+TEST(HeightGrid, AHoleIsMarkedAsTheFormatSaysWhereNothingElseIsNamed) {
+    const auto file =
+        read_grid("\xEF\xBB\xBFncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n-9999 500 500 500");
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->model.triangles.size(), 1U);
+    EXPECT_EQ(file->dropped, 0U);
+    const auto named =
+        read_grid("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value 0\n-9999 5 5 5");
+    ASSERT_TRUE(named);
+    EXPECT_EQ(named->model.triangles.size(), 2U);
+}
+
+TEST(HeightGrid, FineGridsInMetresAreNoDegrees) {
+    std::string text = "ncols 100\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 0.1\n";
+    for (int i = 0; i < 200; ++i)
+        text += "3 ";
+    const auto file = read_grid(text);
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_NEAR(test::highest_of(file->model).z(), 3, 1e-12);
+    EXPECT_NEAR(file->model.vertices.at(99).x(), 9.95, 1e-9);
+}
+
 TEST(HeightGrid, PlacesDegreesOnTheGlobe) {
     const std::string text =
         "ncols 3\nnrows 3\nxllcenter 30.73\nyllcenter 46.47\ncellsize 0.001\n50 50 50\n50 50 50\n50 50 50\n";
