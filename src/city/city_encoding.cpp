@@ -163,6 +163,10 @@ std::string encode_city(const CityFile& file, std::uint64_t key) {
     out.count(file.buildings);
     out.count(file.dropped);
     out.list(file.warnings, [&](const std::string& warning) { out.text(warning); });
+    out.list(file.companions, [&](const CityCompanion& companion) {
+        out.text(companion.name);
+        out.number(companion.digest);
+    });
     const std::string body = out.take();
     CacheHeader header;
     header.key = key;
@@ -187,6 +191,10 @@ std::optional<CityFile> decode_city(std::string_view bytes, std::uint64_t key) {
     file.buildings = static_cast<std::size_t>(in.number<std::uint64_t>());
     file.dropped = static_cast<std::size_t>(in.number<std::uint64_t>());
     in.list(file.warnings, 8, [&] { return in.text(); });
+    in.list(file.companions, 16, [&] {
+        std::string name = in.text();
+        return CityCompanion{std::move(name), in.number<std::uint64_t>()};
+    });
     if (!in.finished() || !consistent(file.model)) return std::nullopt;
     return file;
 }

@@ -1,6 +1,8 @@
 /// Files that another file names.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -11,6 +13,12 @@ namespace skyloop {
 /// Gives the content of a file by its name inside the folder of the one that names it (name_inside() has been asked).
 /// Fails when there is none.
 using CompanionFiles = std::function<Result<std::string>(const std::string& inside)>;
+
+/// The file that a path to a city means: itself, or the one scene of a folder. Fails when that holds none or several.
+Result<std::filesystem::path> file_of_city(const std::filesystem::path& path);
+
+/// Of a file's bytes as they stand on the disk.
+Result<std::uint64_t> digest_of_file(const std::filesystem::path& path);
 
 /// A Mitsuba scene (version 2 and 3): the shapes of kind "ply" that it names, their to_world transform, and
 /// materials by the identity of their bsdf; z is up. Shapes of other kinds are dropped with a warning.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <system_error>
 
 #include "city_text.hpp"
@@ -18,15 +19,29 @@ namespace fs = std::filesystem;
 // Bytes after decompression: 50 million triangles as text.
 constexpr std::size_t max_city_file_size = std::size_t{4} << 30;
 
-// The files of a folder, those that links lead out of it excepted.
-CompanionFiles files_of_folder(const fs::path& folder) {
-    return [folder](const std::string& inside) -> Result<std::string> {
+using CompanionDigests = std::map<std::string, std::uint64_t>;
+
+// The files of a folder, those that links lead out of it excepted. What was opened is noted.
+CompanionFiles files_of_folder(const fs::path& folder, CompanionDigests& opened) {
+    return [folder, &opened](const std::string& inside) -> Result<std::string> {
         std::error_code error;
         const fs::path root = fs::weakly_canonical(folder, error), path = fs::weakly_canonical(folder / inside, error);
         if (std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first != root.end())
             return fail(ErrorCode::input, fmt::format("{}: leads out of its folder", (folder / inside).string()));
-        return read_text_file(path, max_city_file_size);
+        auto content = read_text_file(path, max_city_file_size);
+        if (!content) return content;
+        const auto digest = digest_of_file(path);
+        if (!digest) return fail(digest.error());
+        opened[inside] = *digest;
+        return content;
     };
+}
+
+Result<CityFile> with_companions(Result<CityFile> city, const CompanionDigests& opened) {
+    if (city)
+        for (const auto& [name, digest] : opened)
+            city->companions.push_back({name, digest});
+    return city;
 }
 
 // The name of an XML text's first element, without its namespace's prefix.
@@ -50,7 +65,10 @@ std::string_view root_element(std::string_view xml) {
 Result<CityFile> parse_xml(std::string_view text, const fs::path& path, const CityFileSettings& settings) {
     const std::string name = path.string();
     const std::string_view root = root_element(text);
-    if (root == "scene") return parse_mitsuba(text, name, settings, files_of_folder(path.parent_path()));
+    CompanionDigests opened;
+    if (root == "scene")
+        return with_companions(parse_mitsuba(text, name, settings, files_of_folder(path.parent_path(), opened)),
+                               opened);
     if (root == "osm") return parse_osm(text, "osm", name, settings);
     if (root == "CityModel") return parse_citygml(text, name, settings);
     return fail(ErrorCode::input,
@@ -72,20 +90,6 @@ bool is_cityjson(std::string_view text) {
     return false;
 }
 
-Result<CityFile> read_folder(const fs::path& folder, const CityFileSettings& settings) {
-    std::error_code error;
-    std::vector<fs::path> scenes;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-        if (lower_case(entry->path().extension().string()) == ".xml") scenes.push_back(entry->path());
-    if (error) return fail(ErrorCode::outside, fmt::format("{}: {}", folder.string(), error.message()));
-    if (scenes.size() != 1)
-        return fail(ErrorCode::input,
-                    fmt::format("{}: holds {} .xml files; expected one Mitsuba scene", folder.string(), scenes.size()));
-    const auto text = read_text_file(scenes.front(), max_city_file_size);
-    if (!text) return fail(text.error());
-    return parse_xml(*text, scenes.front(), settings);
-}
-
 using Parser = Result<CityFile> (*)(std::string_view, const fs::path&, const CityFileSettings&);
 
 struct CityEnding {
@@ -98,7 +102,9 @@ Result<CityFile> parse_named(std::string_view bytes, const fs::path& path, const
     return parse(bytes, path.string(), settings);
 }
 Result<CityFile> parse_gltf_file(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
-    return parse_gltf_with(bytes, path.string(), settings, files_of_folder(path.parent_path()));
+    CompanionDigests opened;
+    return with_companions(parse_gltf_with(bytes, path.string(), settings, files_of_folder(path.parent_path(), opened)),
+                           opened);
 }
 Result<CityFile> parse_any_json(std::string_view text, const fs::path& path, const CityFileSettings& settings) {
     return (is_cityjson(text) ? parse_cityjson : parse_geojson)(text, path.string(), settings);
@@ -168,9 +174,23 @@ Result<CityFile> parse_mitsuba_archive(std::string_view bytes, std::string_view 
     return parse_mitsuba(members->at(scene), fmt::format("{}:{}", name, scene), settings, companions);
 }
 
-Result<CityFile> read_city(const fs::path& path, const CityFileSettings& settings) {
+Result<fs::path> file_of_city(const fs::path& path) {
     std::error_code error;
-    auto city = fs::is_directory(path, error) ? read_folder(path, settings) : read_by_ending(path, settings);
+    if (!fs::is_directory(path, error)) return path;
+    std::vector<fs::path> scenes;
+    for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
+        if (lower_case(entry->path().extension().string()) == ".xml") scenes.push_back(entry->path());
+    if (error) return fail(ErrorCode::outside, fmt::format("{}: {}", path.string(), error.message()));
+    if (scenes.size() != 1)
+        return fail(ErrorCode::input,
+                    fmt::format("{}: holds {} .xml files; expected one Mitsuba scene", path.string(), scenes.size()));
+    return scenes.front();
+}
+
+Result<CityFile> read_city(const fs::path& path, const CityFileSettings& settings) {
+    const auto source = file_of_city(path);
+    if (!source) return fail(source.error());
+    auto city = read_by_ending(*source, settings);
     if (!city) return city;
     for (std::string& doubt : doubts_about(city->model)) {
         std::string line = fmt::format("{}: {}", path.string(), doubt);

@@ -20,13 +20,9 @@ struct CityCache {
 /// A city and what it was read from.
 struct CityReading {
     CityFile file;
-    std::uint64_t digest = 0;  ///< city_source_digest()
+    std::uint64_t digest = 0;  ///< of the bytes of the file and of those that it names
     bool from_cache = false;
 };
-
-/// Of the bytes of a city file. A folder counts with the files in it and in its folders; formats that name others
-/// (.xml, .gltf) with the .ply and .bin around them. Fails with `outside` when something cannot be read.
-Result<std::uint64_t> city_source_digest(const std::filesystem::path& path);
 
 /// As read_city(), but from the cache when it holds what these bytes and settings give; what was read is kept there. A
 /// damaged, cut or foreign file in the cache is replaced; a cache that cannot be written is none. Fails as read_city().

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -37,13 +38,20 @@ struct CityFileSettings {
     std::size_t most_triangles = 50'000'000;  ///< a file with more is refused with an estimate of its memory
 };
 
+/// A file that a city names and that was read with it.
+struct CityCompanion {
+    std::string name;          ///< from the folder of the city's file
+    std::uint64_t digest = 0;  ///< of its bytes
+};
+
 /// What was read, and what was not.
 struct CityFile {
     CityModel model;
-    std::string format;                 ///< "obj", "cityjson", …
-    std::size_t buildings = 0;          ///< where the format tells them apart
-    std::size_t dropped = 0;            ///< facets or footprints that could not be used
-    std::vector<std::string> warnings;  ///< one clear line each: what was dropped and why, doubtful units
+    std::string format;                     ///< "obj", "cityjson", …
+    std::size_t buildings = 0;              ///< where the format tells them apart
+    std::size_t dropped = 0;                ///< facets or footprints that could not be used
+    std::vector<std::string> warnings;      ///< one clear line each: what was dropped and why, doubtful units
+    std::vector<CityCompanion> companions;  ///< in the order of their names
 };
 
 /// Reads a city by the ending of its name: .obj .ply .gltf .glb .geojson .json (CityJSON or GeoJSON) .osm .pbf .gml
@@ -74,9 +82,9 @@ Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std:
 /// A tar archive, not compressed, with one Mitsuba scene and the .ply files that it names.
 Result<CityFile> parse_mitsuba_archive(std::string_view bytes, std::string_view name, const CityFileSettings& settings);
 
-/// A height grid (ESRI ASCII, .asc) as ground. Cells are geographic degrees when they fit on the globe and are at most
-/// 0.1° wide, heights then metres above the ellipsoid; else both are metres from the frame's origin. `metres_per_unit`
-/// and `origin` apply; `metres_per_unit` to heights alone where cells are degrees.
+/// A height grid (ESRI ASCII, .asc) as ground. Cells are geographic degrees when they fit on the globe, are at most
+/// 0.1° wide and all together 6°, heights then metres above the ellipsoid; else both are metres from the frame's
+/// origin. `metres_per_unit` and `origin` apply; `metres_per_unit` to heights alone where cells are degrees.
 Result<CityFile> parse_height_grid(std::string_view text, std::string_view name, const CityFileSettings& settings);
 
 /// What is doubtful about a city as a whole: a few metres or a hundred kilometres wide, no more than 3 m tall or more

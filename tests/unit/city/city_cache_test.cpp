@@ -24,8 +24,8 @@ protected:
     void put(const std::string& name, const std::string& content) const {
         std::ofstream(folder_ / name, std::ios::binary) << content;
     }
-    CityReading read(const CityFileSettings& settings = {}) const {
-        auto reading = read_city(folder_ / "a.obj", settings, cache());
+    CityReading read(const CityFileSettings& settings = {}, const std::string& name = "a.obj") const {
+        auto reading = read_city(folder_ / name, settings, cache());
         EXPECT_TRUE(reading) << reading.error().message;
         return reading ? std::move(*reading) : CityReading{};
     }
@@ -70,6 +70,34 @@ TEST_F(CityCacheTest, DamagedCutAndForeignFilesAreIgnoredAndReplaced) {
     }
 }
 
+constexpr const char* wall_of_20_m =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n20 0 0\n0 0 20\n3 0 1 2\n";
+
+TEST_F(CityCacheTest, AChangeOfAFileThatIsNamedIsSeenAndNoOther) {
+    fs::create_directories(folder_ / "town/meshes/deep");
+    std::string wall = wall_of_20_m;
+    put("town/meshes/deep/x.PLY", wall);
+    put("town/scene.xml",
+        R"(<scene version="3.0.0"><shape type="ply"><string name="filename" value="meshes/deep/x.PLY"/></shape></scene>)");
+    for (const std::string name : {"town/scene.xml", "town"}) {
+        put("town/meshes/deep/x.PLY", wall_of_20_m);
+        const CityReading first = read({}, name);
+        EXPECT_FALSE(first.from_cache) << name;
+        put("town/other.bin", "not of this city");
+        put("town/meshes/other.ply", "ply");
+        const CityReading second = read({}, name);
+        EXPECT_TRUE(second.from_cache) << name;
+        EXPECT_EQ(second.digest, first.digest);
+        put("town/meshes/deep/x.PLY", wall.replace(wall.find("0 0 20"), 6, "0 0 70"));
+        const CityReading third = read({}, name);
+        EXPECT_FALSE(third.from_cache) << name;
+        EXPECT_NE(third.digest, first.digest);
+        EXPECT_EQ(third.file.model.vertices.back().z(), 70);
+        wall = wall_of_20_m;
+    }
+}
+
 TEST_F(CityCacheTest, AFolderThatCannotBeWrittenIsNoError) {
     put("cache", "a file where the folder should be");
     EXPECT_FALSE(read().from_cache);
@@ -89,6 +117,7 @@ TEST(CityEncoding, NoByteCanBeChangedOrLeftOut) {
     CityFile file;
     file.format = "obj";
     file.warnings = {"one"};
+    file.companions = {{"meshes/a.ply", 7}};
     file.model.add_triangle({Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 0, 1)},
                             SurfaceKind::roof, file.model.material_index("glass"));
     file.model.foliage.push_back({{{0, 0}, {1, 0}, {0, 1}}, 0, 9, 1.5});
