@@ -241,6 +241,45 @@ PlaceOnEarth::Extent extent_of(const std::vector<CityObject>& objects) {
     return extent;
 }
 
+template <class Change>
+void change_points(std::vector<CityObject>& objects, Change change) {
+    for (CityObject& object : objects)
+        for (auto& [level, surfaces] : object.levels)
+            for (ObjectSurface& surface : surfaces)
+                for (auto& ring : surface.rings)
+                    std::for_each(ring.begin(), ring.end(), change);
+}
+
+/// Whether numbers are degrees though their system is none that is known, by themselves. Those of EPSG stand in its
+/// order, latitude first, others with the longitude first unless that is too great for a latitude.
+bool turn_out_to_be_degrees(std::vector<CityObject>& objects, const ReferenceSystem& system) {
+    PlaceOnEarth::Extent extent = extent_of(objects);
+    const auto swap_axes = [](Eigen::Vector3d& point) { std::swap(point.x(), point.y()); };
+    if (system.code || (std::abs(extent.middle().y()) > 90 && std::abs(extent.middle().x()) <= 90)) {
+        std::swap(extent.lowest.x(), extent.lowest.y());
+        std::swap(extent.highest.x(), extent.highest.y());
+        if (!extent.is_of_degrees()) return false;
+        change_points(objects, swap_axes);
+        return true;
+    }
+    return extent.is_of_degrees();
+}
+
+/// The system of what was read; longitudes lie together afterwards.
+ReferenceSystem settle_system(CityObjects& read, std::vector<std::string>& warnings) {
+    ReferenceSystem system = read.system.value_or(ReferenceSystem{CoordinateKind::projected, false, "unnamed", {}});
+    if (system.kind == CoordinateKind::projected && turn_out_to_be_degrees(read.objects, system)) {
+        warnings.push_back(fmt::format("coordinates ({}) are taken as degrees of WGS-84, {} first", system.name,
+                                       system.code ? "latitude" : "longitude"));
+        system.kind = CoordinateKind::geographic;
+    }
+    if (system.kind == CoordinateKind::geographic) {
+        LongitudeTurn turn;
+        change_points(read.objects, [&](Eigen::Vector3d& point) { point.x() = turn(point.x()); });
+    }
+    return system;
+}
+
 }  // namespace
 
 ObjectClass object_class(std::string_view type) {
@@ -279,13 +318,15 @@ Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std:
     file.format = format;
     file.dropped = read.dropped;
     file.warnings = std::move(read.warnings);
+    const ReferenceSystem system = settle_system(read, file.warnings);
     const auto extent = extent_of(read.objects);
     if (extent.empty()) return fail(ErrorCode::input, fmt::format("{}: no surface that could be used", name));
-    const ReferenceSystem system = read.system.value_or(ReferenceSystem{CoordinateKind::projected, false, "unnamed"});
     const double ground = ground_level(read.objects);
     const auto place = PlaceOnEarth::make(system, extent, ground, settings);
     if (!place) return fail(place.error().code, fmt::format("{}: {}: {}", name, system.name, place.error().message));
     file.model.origin = place->origin();
+    for (std::string& warning : PlaceOnEarth::unused_settings(system, settings))
+        file.warnings.push_back(std::move(warning));
     warn_of_place(file, system, {extent.middle(), ground}, settings.origin.has_value());
     const std::vector<bool> replaced = replaced_objects(read.objects);
     ObjectBuilder builder(file, settings);

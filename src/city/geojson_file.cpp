@@ -6,6 +6,7 @@
 #include "city_text.hpp"
 #include "json_text.hpp"
 #include "outlines.hpp"
+#include "skyloop/base/middle.hpp"
 
 namespace skyloop {
 
@@ -109,20 +110,45 @@ void GeoJsonReader::read_feature(const json& feature) {
         read_geometry(member(feature, "geometry"), use);
 }
 
+/// Whether outlines are in degrees (RFC 7946, 4), by their numbers: all on the globe, and together or mostly narrower
+/// than metres would be. Parts of the file may lie on either side of the 180th meridian, or far away from the others.
+bool are_in_degrees(const std::vector<Outline>& outlines) {
+    PlaceOnEarth::Extent stated, turned;
+    LongitudeTurn turn;
+    std::vector<double> widths;
+    for (const Outline& outline : outlines) {
+        PlaceOnEarth::Extent own;
+        LongitudeTurn own_turn;
+        for (const Eigen::Vector2d& point : outline.footprint.outer) {
+            stated.include(point);
+            turned.include({turn(point.x()), point.y()});
+            own.include({own_turn(point.x()), point.y()});
+        }
+        if (!own.empty()) widths.push_back(own.width());
+    }
+    if (!stated.on_globe() || widths.empty()) return false;
+    PlaceOnEarth::Extent typical;
+    typical.include({0, 0});
+    typical.include({middle_of(widths), 0});
+    return turned.fits_degrees() || typical.is_of_degrees();
+}
+
 ReferenceSystem GeoJsonReader::find_system(const json& root) const {
+    auto named = reference_system(text_member(member(member(root, "crs"), "properties"), "name"));
+    // GeoJSON writes longitude first whatever the system says.
+    if (named) named->latitude_first = false;
+    if (named && named->kind == CoordinateKind::geographic) return *named;
     PlaceOnEarth::Extent extent;
     for (const Outline& outline : found_.outlines)
         for (const Eigen::Vector2d& point : outline.footprint.outer)
             extent.include(point);
+    if (named ? extent.is_of_degrees() : are_in_degrees(found_.outlines))
+        return {CoordinateKind::geographic, false, named ? named->name : "degrees", {}};
     const double farthest =
         extent.empty() ? 0 : std::max(extent.lowest.cwiseAbs().maxCoeff(), extent.highest.cwiseAbs().maxCoeff());
-    const ReferenceSystem metres{farthest > farthest_local ? CoordinateKind::projected : CoordinateKind::local, false,
-                                 "metres"};
-    const auto named = reference_system(text_member(member(member(root, "crs"), "properties"), "name"));
-    // GeoJSON writes longitude first whatever the system says.
-    if (named && named->kind == CoordinateKind::geographic) return {CoordinateKind::geographic, false, named->name};
-    if (named) return {metres.kind, false, named->name};
-    return extent.fits_degrees() ? ReferenceSystem{CoordinateKind::geographic, false, "degrees"} : metres;
+    ReferenceSystem metres = named.value_or(ReferenceSystem{CoordinateKind::local, false, "metres", {}});
+    metres.kind = farthest > farthest_local ? CoordinateKind::projected : CoordinateKind::local;
+    return metres;
 }
 
 Result<Outlines> GeoJsonReader::read(const json& root) {

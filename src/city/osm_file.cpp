@@ -176,7 +176,7 @@ void OsmReader::add_area(const Area& area) {
 }
 
 Outlines OsmReader::outlines() {
-    found_.system = {CoordinateKind::geographic, false, "EPSG:4326"};
+    found_.system = {CoordinateKind::geographic, false, "EPSG:4326", 4326};
     for (const auto& [id, way] : ways_) {
         if (!way.use) continue;
         if (auto ring = ring_of(way.nodes))

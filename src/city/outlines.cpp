@@ -161,6 +161,17 @@ double place_footprint(Footprint& footprint, const PlaceOnEarth& place) {
     return count > 0 ? sum / count : 0;
 }
 
+PlaceOnEarth::Extent extent_of(std::vector<Outline>& outlines, const ReferenceSystem& system) {
+    PlaceOnEarth::Extent extent;
+    LongitudeTurn turn;
+    for (Outline& outline : outlines) {
+        if (system.kind == CoordinateKind::geographic) turn_longitudes(outline.footprint, turn);
+        for (const Eigen::Vector2d& point : outline.footprint.outer)
+            extent.include(point);
+    }
+    return extent;
+}
+
 void add_outline_warnings(CityFile& file, std::size_t without_height, const CityFileSettings& settings) {
     if (without_height > 0)
         file.warnings.push_back(fmt::format("{} of {} buildings have no height or levels: taken as {:g} m tall",
@@ -171,6 +182,14 @@ void add_outline_warnings(CityFile& file, std::size_t without_height, const City
 }
 
 }  // namespace
+
+void turn_longitudes(Footprint& footprint, LongitudeTurn& turn) {
+    for (Eigen::Vector2d& point : footprint.outer)
+        point.x() = turn(point.x());
+    for (auto& hole : footprint.holes)
+        for (Eigen::Vector2d& point : hole)
+            point.x() = turn(point.x());
+}
 
 bool inside_ring(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& p) {
     bool inside = false;
@@ -188,14 +207,13 @@ Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::s
     file.format = format;
     file.dropped = read.dropped;
     file.warnings = std::move(read.warnings);
-    PlaceOnEarth::Extent extent;
-    for (const Outline& outline : read.outlines)
-        for (const Eigen::Vector2d& point : outline.footprint.outer)
-            extent.include(point);
+    const PlaceOnEarth::Extent extent = extent_of(read.outlines, read.system);
     if (extent.empty()) return fail(ErrorCode::input, fmt::format("{}: no outline of a building or wood", name));
     const auto place = PlaceOnEarth::make(read.system, extent, 0, settings);
     if (!place) return fail(place.error().code, fmt::format("{}: {}", name, place.error().message));
     file.model.origin = place->origin();
+    for (std::string& warning : PlaceOnEarth::unused_settings(read.system, settings))
+        file.warnings.push_back(std::move(warning));
     std::vector<double> grounds;
     for (Outline& outline : read.outlines)
         grounds.push_back(place_footprint(outline.footprint, *place));

@@ -51,6 +51,8 @@ struct Outlines {
     std::vector<std::string> warnings;
 };
 
+void turn_longitudes(Footprint& footprint, LongitudeTurn& turn);
+
 /// Whether a place is inside of a ring, by the crossings of a line from it.
 bool inside_ring(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& place);
 

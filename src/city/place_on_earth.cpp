@@ -2,12 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
-
-#include "city_text.hpp"
 
 namespace skyloop {
 
@@ -16,38 +11,15 @@ namespace {
 /// Wider files of numbers that fit degrees are metres: no city is 500 km wide.
 constexpr double most_degrees = 5;
 
-/// Geographic systems whose difference from WGS-84 is no more than a metre; axes latitude, longitude [height].
-constexpr std::array geographic_codes{4258, 4269, 4283, 4326, 4612, 4937, 4939, 4979, 6318, 6319,
-                                      6667, 6668, 6697, 7842, 7843, 7844, 9057, 9755, 9782};
-
-std::optional<int> epsg_code(std::string_view name) {
-    std::string capitals(
-        name.substr(0, name.find(',', name.find("EPSG") == std::string_view::npos ? 0 : name.find("EPSG"))));
-    const auto found = capitals.find("EPSG");
-    if (found == std::string::npos) return std::nullopt;
-    const auto end = capitals.find_last_of("0123456789");
-    if (end == std::string::npos || end < found) return std::nullopt;
-    auto start = end;
-    while (start > found && capitals[start - 1] >= '0' && capitals[start - 1] <= '9')
-        --start;
-    int code = 0;
-    const auto [rest, error] = std::from_chars(capitals.data() + start, capitals.data() + end + 1, code);
-    if (error != std::errc()) return std::nullopt;
-    return code;
-}
+/// Degrees that no file in metres is as narrow as.
+constexpr double least_metres = 0.5;
 
 }  // namespace
 
-std::optional<ReferenceSystem> reference_system(std::string_view name) {
-    if (name.empty()) return std::nullopt;
-    if (name.find("CRS84") != std::string_view::npos)
-        return ReferenceSystem{CoordinateKind::geographic, false, "OGC:CRS84"};
-    const std::optional<int> code = epsg_code(name);
-    if (!code) return ReferenceSystem{CoordinateKind::projected, false, shown(name)};
-    const bool geographic =
-        std::find(geographic_codes.begin(), geographic_codes.end(), *code) != geographic_codes.end();
-    return ReferenceSystem{geographic ? CoordinateKind::geographic : CoordinateKind::projected, geographic,
-                           fmt::format("EPSG:{}", *code)};
+double LongitudeTurn::operator()(double longitude) {
+    if (!std::isfinite(longitude)) return longitude;
+    if (!first_) first_ = longitude;
+    return std::abs(longitude - *first_) <= 180 ? longitude : *first_ + std::remainder(longitude - *first_, 360);
 }
 
 void PlaceOnEarth::Extent::include(const Eigen::Vector2d& place) {
@@ -56,9 +28,21 @@ void PlaceOnEarth::Extent::include(const Eigen::Vector2d& place) {
     highest = highest.cwiseMax(place);
 }
 
-bool PlaceOnEarth::Extent::fits_degrees() const {
-    return !empty() && lowest.x() >= -180 && highest.x() <= 180 && lowest.y() >= -90 && highest.y() <= 90 &&
-           (highest - lowest).maxCoeff() <= most_degrees;
+bool PlaceOnEarth::Extent::on_globe() const {
+    return !empty() && lowest.x() >= -360 && highest.x() <= 360 && lowest.y() >= -90 && highest.y() <= 90;
+}
+
+bool PlaceOnEarth::Extent::fits_degrees() const { return on_globe() && width() <= most_degrees; }
+
+bool PlaceOnEarth::Extent::is_of_degrees() const { return on_globe() && width() < least_metres; }
+
+std::vector<std::string> PlaceOnEarth::unused_settings(const ReferenceSystem& system,
+                                                       const CityFileSettings& settings) {
+    std::vector<std::string> warnings;
+    if (settings.axes) warnings.emplace_back("axes mean nothing for this format, east and north are told by it");
+    if (settings.metres_per_unit != 1 && system.kind == CoordinateKind::geographic)
+        warnings.emplace_back("the length of a unit means nothing for degrees and heights in metres");
+    return warnings;
 }
 
 Result<PlaceOnEarth> PlaceOnEarth::make(const ReferenceSystem& system, const Extent& extent, double ground,
@@ -73,7 +57,8 @@ Result<PlaceOnEarth> PlaceOnEarth::make(const ReferenceSystem& system, const Ext
                                     most_degrees, extent.lowest.x(), extent.highest.x(), extent.lowest.y(),
                                     extent.highest.y()));
         const Eigen::Vector2d middle = extent.middle();
-        place.origin_ = settings.origin.value_or(Geodetic::degrees(middle.y(), middle.x(), ground));
+        place.origin_ =
+            settings.origin.value_or(Geodetic::degrees(middle.y(), std::remainder(middle.x(), 360), ground));
         place.ground_ = place.origin_.height.above_ellipsoid.value();
         place.frame_.emplace(place.origin_);
         return place;

@@ -7,28 +7,20 @@
 #include <string_view>
 #include <vector>
 
+#include "reference_system.hpp"
 #include "skyloop/city/city_file.hpp"
 #include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop {
 
-/// What a file's numbers are.
-enum class CoordinateKind {
-    geographic,  ///< longitude, latitude (degrees), height (m)
-    projected,   ///< east, north, height of a map projection, m
-    local        ///< metres from the frame's origin as they stand
-};
+/// Turns longitudes to within 180° of the first, so that what lies on both sides of the 180th meridian lies together.
+class LongitudeTurn {
+public:
+    [[nodiscard]] double operator()(double longitude);
 
-/// The kind of a named reference system and the order of its axes.
-struct ReferenceSystem {
-    CoordinateKind kind = CoordinateKind::projected;
-    bool latitude_first = false;
-    std::string name;  ///< for messages: "EPSG:7415"
+private:
+    std::optional<double> first_;
 };
-
-/// Reads "EPSG:4326", "urn:ogc:def:crs:EPSG::25832", "http://www.opengis.net/def/crs/EPSG/0/6697" and CRS84; anything
-/// else counts as projected. Absent for an empty name.
-std::optional<ReferenceSystem> reference_system(std::string_view name);
 
 /// Takes coordinates of a file to metres east, north and up.
 ///
@@ -44,13 +36,20 @@ public:
         void include(const Eigen::Vector2d& place);
         [[nodiscard]] bool empty() const { return !(lowest.x() <= highest.x()); }
         [[nodiscard]] Eigen::Vector2d middle() const { return (lowest + highest) / 2; }
-        /// True when all of it are longitudes and latitudes within a few degrees.
+        [[nodiscard]] double width() const { return (highest - lowest).maxCoeff(); }
+        /// True when all of it are longitudes and latitudes, those turned by LongitudeTurn, too.
+        [[nodiscard]] bool on_globe() const;
+        /// The same within a few degrees.
         [[nodiscard]] bool fits_degrees() const;
+        /// The same and so narrow that metres are out of the question.
+        [[nodiscard]] bool is_of_degrees() const;
     };
 
     /// Fails with `input` when geographic coordinates are no degrees.
     static Result<PlaceOnEarth> make(const ReferenceSystem& system, const Extent& extent, double ground,
                                      const CityFileSettings& settings);
+    /// What of the settings means nothing for a file, as warnings.
+    static std::vector<std::string> unused_settings(const ReferenceSystem& system, const CityFileSettings& settings);
 
     [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& place) const;
     /// The place at the origin's level.

@@ -116,6 +116,34 @@ TEST(CityJson, ReadsLatitudesAndLongitudes) {
     EXPECT_NEAR(by_itself->model.origin.height.above_ellipsoid.value(), 100, 1e-9);
 }
 
+TEST(CityJson, KnowsDegreesByTheirSystemOrTheirNumbers) {
+    const auto read_as = [](std::string_view metadata, bool latitude_first) {
+        return read_cityjson(fmt::format(
+            R"({{"type":"CityJSON","version":"1.1","metadata":{{{}}},"CityObjects":{{"a":{{"type":"Building","geometry":
+            [{{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2]]]}}]}}}},"vertices":[{}]}})",
+            metadata,
+            latitude_first ? "[50,10,100],[50.0001,10,100],[50,10,130]" : "[10,50,100],[10,50.0001,100],[10,50,130]"));
+    };
+    for (const std::string_view system :
+         {"EPSG:4326+5773", "urn:ogc:def:crs:EPSG::4490", "epsg:4326", "urn:ogc:def:crs,crs:EPSG::4258,crs:EPSG::5783",
+          "https://www.opengis.net/def/crs-compound?1=http://www.opengis.net/def/crs/EPSG/0/4258&2=http://"
+          "www.opengis.net/def/crs/EPSG/0/5621"}) {
+        const auto file = read_as(fmt::format(R"("referenceSystem":"{}")", system), true);
+        ASSERT_TRUE(file) << file.error().message;
+        EXPECT_NEAR(file->model.origin.latitude.deg(), 50.00005, 1e-9) << system;
+        EXPECT_NEAR(file->model.origin.longitude.deg(), 10, 1e-9) << system;
+    }
+    const auto unknown = read_as(R"("referenceSystem":"EPSG:4314")", true);
+    ASSERT_TRUE(unknown) << unknown.error().message;
+    EXPECT_NEAR(unknown->model.origin.latitude.deg(), 50.00005, 1e-9);
+    EXPECT_THAT(unknown->warnings,
+                ::testing::Contains(HasSubstr("(EPSG:4314) are taken as degrees of WGS-84, latitude")));
+    const auto unnamed = read_as("", false);
+    ASSERT_TRUE(unnamed) << unnamed.error().message;
+    EXPECT_NEAR(unnamed->model.origin.latitude.deg(), 50.00005, 1e-9);
+    EXPECT_THAT(unnamed->warnings, ::testing::Contains(HasSubstr("degrees of WGS-84, longitude first")));
+}
+
 TEST(CityJson, DropsWrongCornersAndSaysSo) {
     const auto file = read_cityjson(cube_file(R"("a":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"2",
         "boundaries":[[[0,1,5,4]],[[0,1,99]],[[0,-1,2]],[["a",1,2]],[[0,1]],[[0,0,0]],7]}]})"));

@@ -167,6 +167,58 @@ TEST(GeoJson, ReadsThePropertiesOfOverture) {
         EXPECT_GT(vertex.z(), 29.9);
 }
 
+/// A square between two longitudes at 16.8° S.
+std::string fijian_square(double west, double east) {
+    return fmt::format(
+        R"({{"type":"Polygon","coordinates":[[[{0},-16.8],[{1},-16.8],[{1},-16.7998],[{0},-16.7998],[{0},-16.8]]]}})",
+        west, east);
+}
+
+TEST(GeoJson, JoinsWhatIsCutAtThe180thMeridian) {
+    const auto file = read_geojson(collection(feature(R"({"height":20})", fijian_square(179.9998, 180)) + "," +
+                                              feature(R"({"height":20})", fijian_square(-180, -179.9998))));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_TRUE(file->warnings.empty());
+    EXPECT_NEAR(std::abs(file->model.origin.longitude.deg()), 180, 1e-9);
+    for (const Eigen::Vector3d& vertex : file->model.vertices) {
+        EXPECT_LT(vertex.head<2>().norm(), 30);
+        EXPECT_LT(vertex.z(), 20.1);
+    }
+    CityFileSettings east;
+    east.origin = Geodetic::degrees(-16.8, -179.9998, 0);
+    const auto seen = read_geojson(feature("{}", fijian_square(179.9998, 180)), east);
+    ASSERT_TRUE(seen) << seen.error().message;
+    EXPECT_LT(seen->model.vertices.front().norm(), 60);
+}
+
+TEST(GeoJson, AStrayFeatureMakesNoMetresOfDegrees) {
+    const std::string town = feature("{}", square(0.001)) + "," + feature("{}", square(0.001, 0.002));
+    EXPECT_THAT(geojson_refusal(collection(town + "," + feature("{}", square(0.001, 6)))),
+                HasSubstr("within 5 degrees of each other, found 10 … 16.001"));
+}
+
+TEST(GeoJson, KnowsDegreesByTheirSystemOrTheirNumbers) {
+    for (const std::string_view system :
+         {"urn:ogc:def:crs:EPSG::4490", "EPSG:4674", "epsg:4617", "urn:ogc:def:crs:EPSG:6.9:4167",
+          "http://www.opengis.net/gml/srs/epsg.xml#4171", "EPSG:4258+5773", "EPSG:4314", "one of our own"}) {
+        const auto file =
+            read_geojson(collection(feature(R"({"height":20})", square(0.001)),
+                                    fmt::format(R"(,"crs":{{"type":"name","properties":{{"name":"{}"}}}})", system)));
+        ASSERT_TRUE(file) << file.error().message;
+        EXPECT_NEAR(file->model.origin.longitude.deg(), 10.0005, 1e-9) << system;
+        EXPECT_TRUE(file->warnings.empty()) << system;
+    }
+}
+
+TEST(GeoJson, SaysWhichSettingsMeanNothing) {
+    CityFileSettings settings;
+    settings.axes = FileAxes{};
+    settings.metres_per_unit = 0.01;
+    const auto file = read_geojson(feature(R"({"height":5})", square(0.001)), settings);
+    ASSERT_TRUE(file);
+    EXPECT_THAT(file->warnings, ::testing::ElementsAre(HasSubstr("axes mean nothing"), HasSubstr("length of a unit")));
+}
+
 TEST(GeoJson, PartsReplaceTheirBuilding) {
     const std::string whole = feature(R"({"building":"yes","height":50})", square(0.001));
     const std::string part = feature(R"({"building:part":"yes","height":20})", square(0.00099));

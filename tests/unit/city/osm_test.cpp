@@ -124,6 +124,16 @@ TEST(OpenStreetMap, BuildsNothingThatIsDeleted) {
     EXPECT_EQ(changed->buildings, 2U);
 }
 
+TEST(OpenStreetMap, BuildsAcrossThe180thMeridian) {
+    const auto file = read_osm(
+        R"(<osm version="0.6"><node id="1" lat="-16.8" lon="179.9999"/><node id="2" lat="-16.8" lon="-179.9999"/>
+        <node id="3" lat="-16.7998" lon="-179.9999"/><node id="4" lat="-16.7998" lon="179.9999"/>)" +
+        osm_way(1, {1, 2, 3, 4, 1}, osm_tags({{"building", "yes"}, {"height", "10"}})) + "</osm>");
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_NEAR(roof_area(file->model), 21.32 * 22.13, 1);
+    EXPECT_NEAR(std::abs(file->model.origin.longitude.deg()), 180, 1e-9);
+}
+
 TEST(OpenStreetMap, JoinsWaysOfAMultipolygonAroundItsCourtyard) {
     const auto file = read_osm(osm_file(
         osm_way(1, {1, 2, 3}) + osm_way(2, {1, 4, 3}) + osm_way(3, {5, 6, 7, 8, 5}) + R"(<relation id="1">
