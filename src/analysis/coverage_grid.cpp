@@ -22,12 +22,14 @@ Result<CoverageGrid> parse_area(std::string_view text) {
     double degrees[4];
     for (std::size_t i = 0; i < 4; ++i) {
         const std::optional<double> value = cell_value(cells[i]);
-        const double limit = i % 2 == 0 ? 180 : 89;
+        const double limit = i % 2 == 0 ? 360 : 89;
         if (!value || !(std::abs(*value) <= limit))
             return refusal(
                 fmt::format("'{}' is no {} within ±{:g}", cells[i], i % 2 == 0 ? "longitude" : "latitude", limit));
         degrees[i] = *value;
     }
+    // Across the 180th meridian east is the lesser number; more than half the Earth is a mistake.
+    if (degrees[2] < degrees[0] && degrees[2] + 360 - degrees[0] < 180) degrees[2] += 360;
     if (!(degrees[0] < degrees[2])) return refusal("west is not less than east");
     if (!(degrees[1] < degrees[3])) return refusal("south is not less than north");
     CoverageGrid grid{Angle::degrees(degrees[0]), Angle::degrees(degrees[1]), Angle::degrees(degrees[2]),
@@ -67,7 +69,8 @@ Result<CoverageGrid> CoverageGrid::parse(std::string_view text, int cells) {
 }
 
 Geodetic CoverageGrid::middle() const {
-    return {(south + north) * 0.5, (west + east) * 0.5, EllipsoidalHeight{Metres(0)}};
+    const Angle longitude = Angle::degrees(std::remainder((west + east).deg() / 2, 360));
+    return {(south + north) * 0.5, longitude, EllipsoidalHeight{Metres(0)}};
 }
 
 double CoverageGrid::width() const {

@@ -19,11 +19,11 @@ namespace skyloop {
 
 /// A piece of the Earth between two meridians and two parallels, cut into equal cells.
 struct CoverageGrid {
-    Angle west, south, east, north;
+    Angle west, south, east, north;  ///< east is greater than west, beyond 180° where the 180th meridian lies between
     int columns = 0, rows = 0;
 
     /// Reads "WEST,SOUTH,EAST,NORTH" in degrees; cells are about `step` wide and high. Fails with `usage` for what is
-    /// no area, crosses the date line, is wider or higher than 100 km or has more than a million cells.
+    /// no area, is wider or higher than 100 km or has more than a million cells.
     static Result<CoverageGrid> parse(std::string_view text, Metres step);
     /// The same with `cells` cells along the longer side.
     static Result<CoverageGrid> parse(std::string_view text, int cells);

@@ -44,6 +44,16 @@ CoverageGrid small_grid(double step) {
     return CoverageGrid::parse("30.73234,46.47723,30.73286,46.47777", Metres(step)).value();
 }
 
+TEST(CoverageGrid, lies_across_the_180th_meridian) {
+    for (const char* area : {"179.999,-16.801,-179.999,-16.799", "179.999,-16.801,180.001,-16.799"}) {
+        const auto grid = CoverageGrid::parse(area, 10);
+        ASSERT_TRUE(grid) << grid.error().message;
+        EXPECT_NEAR(grid->width(), 213.2, 0.2) << area;
+        EXPECT_NEAR(std::abs(grid->middle().longitude.deg()), 180, 1e-9);
+        EXPECT_LE(std::abs(grid->middle().longitude.deg()), 180);
+    }
+}
+
 TEST(CoverageGrid, cuts_an_area_into_cells_of_about_the_step) {
     const CoverageGrid grid = small_grid(5);
     EXPECT_NEAR(grid.width(), 39.95, 0.1);
