@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <system_error>
 
@@ -16,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int meaning_version = 6;  // of what readers make of a file; one more when any of them makes something else
+constexpr int meaning_version = 7;  // of what readers make of a file; one more when any of them makes something else
 
 std::uint64_t cache_key(std::uint64_t source, const CityFileSettings& s) {
     std::string text = fmt::format("{} {:016x} {} {} {} {} {}", meaning_version, source, s.metres_per_unit, s.material,
@@ -24,6 +25,10 @@ std::uint64_t cache_key(std::uint64_t source, const CityFileSettings& s) {
     if (s.origin)
         text += fmt::format(" at {} {} {}", s.origin->latitude.rad(), s.origin->longitude.rad(),
                             s.origin->height.above_ellipsoid.value());
+    if (s.origin_is_guess) text += " guessed";
+    if (s.anchor)
+        text += fmt::format(" beside {} {} {} {}", s.anchor->system, s.anchor->east, s.anchor->north,
+                            s.anchor->level.value_or(std::nan("")));
     if (s.axes)
         for (std::size_t i = 0; i < 3; ++i)
             text += fmt::format(" axis {} {}", s.axes->axis[i], s.axes->sign[i]);

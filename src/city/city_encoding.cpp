@@ -144,6 +144,28 @@ CityModel read_model(CityReader& in) {
     return model;
 }
 
+void write_anchor(CityWriter& out, const std::optional<MapAnchor>& anchor) {
+    const MapAnchor known = anchor.value_or(MapAnchor{});
+    for (const bool part : {anchor.has_value(), known.named, known.level.has_value()})
+        out.number(static_cast<std::uint8_t>(part ? 1 : 0));
+    out.text(known.system);
+    for (const double part : {known.east, known.north, known.level.value_or(0)})
+        out.number(part);
+}
+
+std::optional<MapAnchor> read_anchor(CityReader& in) {
+    MapAnchor anchor;
+    bool present = false, levelled = false;
+    for (bool* part : {&present, &anchor.named, &levelled})
+        *part = in.number<std::uint8_t>() != 0;
+    anchor.system = in.text();
+    double level = 0;
+    for (double* part : {&anchor.east, &anchor.north, &level})
+        *part = in.number<double>();
+    if (levelled) anchor.level = level;
+    return present ? std::optional<MapAnchor>(std::move(anchor)) : std::nullopt;
+}
+
 bool consistent(const CityModel& model) {
     for (const CityTriangle& t : model.triangles) {
         if (static_cast<std::size_t>(t.kind) >= surface_kind_names.size()) return false;
@@ -167,6 +189,7 @@ std::string encode_city(const CityFile& file, std::uint64_t key) {
         out.text(companion.name);
         out.number(companion.digest);
     });
+    write_anchor(out, file.anchor);
     const std::string body = out.take();
     CacheHeader header;
     header.key = key;
@@ -195,6 +218,7 @@ std::optional<CityFile> decode_city(std::string_view bytes, std::uint64_t key) {
         std::string name = in.text();
         return CityCompanion{std::move(name), in.number<std::uint64_t>()};
     });
+    file.anchor = read_anchor(in);
     if (!in.finished() || !consistent(file.model)) return std::nullopt;
     return file;
 }

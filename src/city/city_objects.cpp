@@ -222,15 +222,6 @@ std::vector<bool> replaced_objects(const std::vector<CityObject>& objects) {
     return replaced;
 }
 
-void warn_of_place(CityFile& file, const ReferenceSystem& system, std::pair<Eigen::Vector2d, double> origin,
-                   bool given) {
-    if (system.kind != CoordinateKind::projected) return;
-    file.warnings.push_back(
-        fmt::format("coordinates are projected ({}): the frame's origin{} is at {:.3f}, {:.3f}, {:.3f} of the file{}",
-                    system.name, given ? " as given" : "", origin.first.x(), origin.first.y(), origin.second,
-                    given ? "" : "; its place on Earth is not known: give an origin"));
-}
-
 PlaceOnEarth::Extent extent_of(const std::vector<CityObject>& objects) {
     PlaceOnEarth::Extent extent;
     for (const CityObject& object : objects)
@@ -267,7 +258,8 @@ bool turn_out_to_be_degrees(std::vector<CityObject>& objects, const ReferenceSys
 
 /// The system of what was read; longitudes lie together afterwards.
 ReferenceSystem settle_system(CityObjects& read, std::vector<std::string>& warnings) {
-    ReferenceSystem system = read.system.value_or(ReferenceSystem{CoordinateKind::projected, false, "unnamed", {}});
+    ReferenceSystem system =
+        read.system.value_or(ReferenceSystem{CoordinateKind::projected, false, "unnamed", {}, false});
     if (system.kind == CoordinateKind::projected && turn_out_to_be_degrees(read.objects, system)) {
         warnings.push_back(fmt::format("coordinates ({}) are taken as degrees of WGS-84, {} first", system.name,
                                        system.code ? "latitude" : "longitude"));
@@ -327,7 +319,8 @@ Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std:
     file.model.origin = place->origin();
     for (std::string& warning : PlaceOnEarth::unused_settings(system, settings))
         file.warnings.push_back(std::move(warning));
-    warn_of_place(file, system, {extent.middle(), ground}, settings.origin.has_value());
+    file.anchor = place->anchor();
+    if (std::string doubt = place->doubt_of_map(settings); !doubt.empty()) file.warnings.push_back(std::move(doubt));
     const std::vector<bool> replaced = replaced_objects(read.objects);
     ObjectBuilder builder(file, settings);
     std::set<std::size_t> buildings;

@@ -14,9 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Numbers beyond are places in a map projection, not metres from an origin.
-constexpr double farthest_local = 100'000;
-
 /// Reads GeoJSON (RFC 7946, and the "crs" member of the 2008 format).
 class GeoJsonReader {
 public:
@@ -146,7 +143,7 @@ ReferenceSystem GeoJsonReader::find_system(const json& root) const {
         return {CoordinateKind::geographic, false, named ? named->name : "degrees", {}};
     const double farthest =
         extent.empty() ? 0 : std::max(extent.lowest.cwiseAbs().maxCoeff(), extent.highest.cwiseAbs().maxCoeff());
-    ReferenceSystem metres = named.value_or(ReferenceSystem{CoordinateKind::local, false, "metres", {}});
+    ReferenceSystem metres = named.value_or(ReferenceSystem{CoordinateKind::local, false, "metres", {}, false});
     metres.kind = farthest > farthest_local ? CoordinateKind::projected : CoordinateKind::local;
     return metres;
 }
@@ -174,11 +171,9 @@ Result<Outlines> GeoJsonReader::read(const json& root) {
                                 name_, shown(type)));
     }
     found_.system = find_system(root);
-    if (found_.system.kind != CoordinateKind::geographic)
-        found_.warnings.push_back(fmt::format("coordinates are taken as metres ({}) from {}", found_.system.name,
-                                              found_.system.kind == CoordinateKind::local
-                                                  ? "the origin"
-                                                  : "the middle of the file, where the origin is taken to be"));
+    if (found_.system.kind == CoordinateKind::local)
+        found_.warnings.push_back(
+            fmt::format("coordinates are taken as metres ({}) from the origin", found_.system.name));
     if (other_shapes_ + other_uses_ > 0)
         found_.warnings.push_back(
             fmt::format("{} shapes that are no polygons and {} features that are no buildings or "

@@ -6,8 +6,9 @@
 #include <limits>
 
 #include "city_text.hpp"
+#include "place_on_earth.hpp"
+#include "skyloop/base/middle.hpp"
 #include "skyloop/city/city_file.hpp"
-#include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop {
 namespace {
@@ -39,7 +40,7 @@ public:
     Result<CityFile> read() {
         if (auto done = read_header(); !done) return fail(std::move(done.error()));
         if (auto done = read_heights(); !done) return fail(std::move(done.error()));
-        place_cells();
+        if (auto done = place_cells(); !done) return fail(std::move(done.error()));
         join_cells();
         if (file_.model.triangles.empty())
             return fail(ErrorCode::input, fmt::format("{}: no four neighbours have a height", name_));
@@ -160,25 +161,52 @@ private:
         return {};
     }
 
-    void place_cells() {
-        const bool geographic = header_.geographic();
-        const double middle_x = header_.west + header_.cell * static_cast<double>(header_.columns - 1) / 2;
-        const double middle_y = header_.south + header_.cell * static_cast<double>(header_.rows - 1) / 2;
-        file_.model.origin =
-            settings_.origin.value_or(geographic ? Geodetic::degrees(middle_y, middle_x, 0) : Geodetic{});
+    // Metres that far from 0, 0 are those of a map; the grid does not say of which.
+    [[nodiscard]] bool of_a_map() const {
+        return !header_.geographic() &&
+               std::max(std::abs(header_.west), std::abs(header_.south)) * settings_.metres_per_unit > farthest_local;
+    }
+    [[nodiscard]] double middle_height() const {
+        std::vector<double> heights;
+        std::copy_if(heights_.begin(), heights_.end(), std::back_inserter(heights),
+                     [](double h) { return !std::isnan(h); });
+        return heights.empty() ? 0 : middle_of(heights);
+    }
+    [[nodiscard]] Eigen::Vector2d middle_of_cell(std::size_t column, std::size_t row) const {
+        const double unit = header_.geographic() ? 1 : settings_.metres_per_unit;
+        return Eigen::Vector2d(header_.west + header_.cell * static_cast<double>(column),
+                               header_.south + header_.cell * static_cast<double>(header_.rows - 1 - row)) *
+               unit;
+    }
+    Result<PlaceOnEarth> find_place() const {
+        const CoordinateKind kind = header_.geographic() ? CoordinateKind::geographic
+                                    : of_a_map()         ? CoordinateKind::projected
+                                                         : CoordinateKind::local;
+        PlaceOnEarth::Extent extent;
+        extent.include(middle_of_cell(0, 0));
+        extent.include(middle_of_cell(header_.columns - 1, header_.rows - 1));
+        CityFileSettings settings = settings_;
+        settings.metres_per_unit = 1;  // has been applied to all numbers
+        return PlaceOnEarth::make({kind, false, "unnamed", {}, false}, extent, of_a_map() ? middle_height() : 0,
+                                  settings);
+    }
+
+    Result<void> place_cells() {
+        const auto place = find_place();
+        if (!place) return fail(place.error().code, fmt::format("{}: {}", name_, place.error().message));
+        file_.model.origin = place->origin();
+        file_.anchor = place->anchor();
+        if (std::string doubt = place->doubt_of_map(settings_); !doubt.empty())
+            file_.warnings.push_back(fmt::format("{}: {}", name_, doubt));
         file_.model.materials = {settings_.material};
-        const LocalFrame frame(file_.model.origin);
         numbers_.assign(heights_.size(), ~0U);
         for (std::size_t i = 0; i < heights_.size(); ++i) {
             if (std::isnan(heights_[i])) continue;
-            const double x = header_.west + header_.cell * static_cast<double>(i % header_.columns);
-            const double y = header_.south + header_.cell * static_cast<double>(header_.rows - 1 - i / header_.columns);
-            const double unit = settings_.metres_per_unit;
+            const Eigen::Vector2d middle = middle_of_cell(i % header_.columns, i / header_.columns);
             numbers_[i] = static_cast<std::uint32_t>(file_.model.vertices.size());
-            file_.model.vertices.push_back(geographic
-                                               ? frame.to_enu(to_ecef(Geodetic::degrees(y, x, heights_[i]))).vector()
-                                               : Eigen::Vector3d(x * unit, y * unit, heights_[i]));
+            file_.model.vertices.push_back((*place)({middle.x(), middle.y(), heights_[i]}));
         }
+        return {};
     }
 
     // Two triangles between four neighbours; one where a fourth is absent.

@@ -209,9 +209,14 @@ Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::s
     file.warnings = std::move(read.warnings);
     const PlaceOnEarth::Extent extent = extent_of(read.outlines, read.system);
     if (extent.empty()) return fail(ErrorCode::input, fmt::format("{}: no outline of a building or wood", name));
-    const auto place = PlaceOnEarth::make(read.system, extent, 0, settings);
+    const auto place = PlaceOnEarth::make(read.system, extent, std::nullopt, settings);
     if (!place) return fail(place.error().code, fmt::format("{}: {}", name, place.error().message));
     file.model.origin = place->origin();
+    file.anchor = place->anchor();
+    // Outlines have no heights that could count from elsewhere.
+    if (!place->on_earth())
+        if (std::string doubt = place->doubt_of_map(settings); !doubt.empty())
+            file.warnings.push_back(std::move(doubt));
     for (std::string& warning : PlaceOnEarth::unused_settings(read.system, settings))
         file.warnings.push_back(std::move(warning));
     std::vector<double> grounds;

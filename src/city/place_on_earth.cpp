@@ -40,13 +40,16 @@ std::vector<std::string> PlaceOnEarth::unused_settings(const ReferenceSystem& sy
                                                        const CityFileSettings& settings) {
     std::vector<std::string> warnings;
     if (settings.axes) warnings.emplace_back("axes mean nothing for this format, east and north are told by it");
-    if (settings.metres_per_unit != 1 && system.kind == CoordinateKind::geographic)
-        warnings.emplace_back("the length of a unit means nothing for degrees and heights in metres");
+    const bool of_the_earth =
+        system.kind == CoordinateKind::geographic ||
+        (system.kind == CoordinateKind::projected && system.code && MapProjection::of_epsg(*system.code));
+    if (settings.metres_per_unit != 1 && of_the_earth)
+        warnings.emplace_back("the length of a unit means nothing for places on the Earth and heights in metres");
     return warnings;
 }
 
-Result<PlaceOnEarth> PlaceOnEarth::make(const ReferenceSystem& system, const Extent& extent, double ground,
-                                        const CityFileSettings& settings) {
+Result<PlaceOnEarth> PlaceOnEarth::make(const ReferenceSystem& system, const Extent& extent,
+                                        std::optional<double> ground, const CityFileSettings& settings) {
     PlaceOnEarth place;
     place.kind_ = system.kind;
     if (system.kind == CoordinateKind::geographic) {
@@ -57,25 +60,69 @@ Result<PlaceOnEarth> PlaceOnEarth::make(const ReferenceSystem& system, const Ext
                                     most_degrees, extent.lowest.x(), extent.highest.x(), extent.lowest.y(),
                                     extent.highest.y()));
         const Eigen::Vector2d middle = extent.middle();
-        place.origin_ =
-            settings.origin.value_or(Geodetic::degrees(middle.y(), std::remainder(middle.x(), 360), ground));
+        place.origin_ = settings.origin.value_or(
+            Geodetic::degrees(middle.y(), std::remainder(middle.x(), 360), ground.value_or(0)));
         place.ground_ = place.origin_.height.above_ellipsoid.value();
         place.frame_.emplace(place.origin_);
         return place;
     }
     place.origin_ = settings.origin.value_or(Geodetic{});
     place.metres_per_unit_ = settings.metres_per_unit;
-    if (system.kind == CoordinateKind::projected) {
-        place.middle_ = extent.middle();
-        place.ground_ = ground;
-    }
+    if (system.kind == CoordinateKind::projected) place.lay_map(system, extent, ground, settings);
     return place;
 }
 
+void PlaceOnEarth::lay_map(const ReferenceSystem& system, const Extent& extent, std::optional<double> ground,
+                           const CityFileSettings& settings) {
+    const Eigen::Vector2d middle = extent.middle();
+    anchor_ = MapAnchor{system.name, system.named, middle.x(), middle.y(), ground};
+    // Files that name no map are taken to be of that of the others.
+    const auto& before = settings.anchor;
+    if (before && (!system.named || !before->named || before->system == system.name)) {
+        anchor_ = before;
+        if (!anchor_->level) anchor_->level = ground;
+    }
+    ground_ = anchor_->level.value_or(0);
+    const auto known = reference_system(anchor_->system);
+    if (known && known->code) projection_ = MapProjection::of_epsg(*known->code);
+    if (!projection_) return;
+    metres_per_unit_ = 1;
+    const EarthPlace place = projection_->on_earth({middle.x(), middle.y()});
+    origin_ = settings.origin.value_or(Geodetic{place.latitude, place.longitude, {Metres(ground_)}});
+    frame_.emplace(origin_);
+}
+
+std::string PlaceOnEarth::doubt_of_map(const CityFileSettings& settings) const {
+    if (!anchor_) return "";
+    if (projection_)
+        return settings.origin
+                   ? fmt::format(
+                         "heights ({}) count from the ground, which is at {:.3f} of the file and taken to be at "
+                         "the height of the origin",
+                         anchor_->system, ground_)
+                   : "";
+    const std::string_view origin =
+        settings.origin ? settings.origin_is_guess ? ", which is a guess," : " as given" : "";
+    const bool told = settings.origin && !settings.origin_is_guess;
+    return fmt::format("coordinates are projected ({}): the frame's origin{} is at {:.3f}, {:.3f}, {:.3f} of the {}{}",
+                       anchor_->system, origin, anchor_->east, anchor_->north, ground_,
+                       settings.anchor ? "map, as for the file before" : "file",
+                       told ? "" : "; its place on Earth is not known: give an origin");
+}
+
+Eigen::Vector3d PlaceOnEarth::at_place(double latitude_deg, double longitude_deg, double height) const {
+    return frame_->to_enu(to_ecef(Geodetic::degrees(latitude_deg, longitude_deg, height))).vector();
+}
+
 Eigen::Vector3d PlaceOnEarth::operator()(const Eigen::Vector3d& place) const {
-    if (kind_ == CoordinateKind::geographic)
-        return frame_->to_enu(to_ecef(Geodetic::degrees(place.y(), place.x(), place.z()))).vector();
-    const Eigen::Vector2d flat = (place.head<2>() - middle_) * metres_per_unit_;
+    if (kind_ == CoordinateKind::geographic) return at_place(place.y(), place.x(), place.z());
+    if (projection_) {
+        const EarthPlace on_earth = projection_->on_earth({place.x(), place.y()});
+        return at_place(on_earth.latitude.deg(), on_earth.longitude.deg(),
+                        origin_.height.above_ellipsoid.value() + place.z() - ground_);
+    }
+    const Eigen::Vector2d middle = anchor_ ? Eigen::Vector2d(anchor_->east, anchor_->north) : Eigen::Vector2d::Zero();
+    const Eigen::Vector2d flat = (place.head<2>() - middle) * metres_per_unit_;
     return {flat.x(), flat.y(), (place.z() - ground_) * metres_per_unit_};
 }
 

@@ -10,6 +10,7 @@
 #include "reference_system.hpp"
 #include "skyloop/city/city_file.hpp"
 #include "skyloop/geo/local_frame.hpp"
+#include "skyloop/geo/map_projection.hpp"
 
 namespace skyloop {
 
@@ -22,12 +23,16 @@ private:
     std::optional<double> first_;
 };
 
+/// Numbers farther from 0, 0 are places in a map projection, not metres from an origin.
+constexpr double farthest_local = 100'000;
+
 /// Takes coordinates of a file to metres east, north and up.
 ///
 /// Geographic places lie in the tangent frame at `settings.origin`, else at the middle of the extent and the `ground`
-/// level; heights are subtracted as they stand, above the ellipsoid or above the sea. Projected ones count from the
-/// middle of the extent and the `ground` level, where `settings.origin` is taken to be: the convergence of the map's
-/// north and its scale are neglected.
+/// level (0 m where it is absent); heights are subtracted as they stand. So do those of a projection that
+/// geo/map_projection knows, but that the `ground` level lies at the height of the origin. Of another projection the
+/// middle of the extent lies at the origin, or what `settings.anchor` says: the convergence of the map's north and its
+/// scale are neglected.
 class PlaceOnEarth {
 public:
     /// The box around what a file holds.
@@ -46,7 +51,7 @@ public:
     };
 
     /// Fails with `input` when geographic coordinates are no degrees.
-    static Result<PlaceOnEarth> make(const ReferenceSystem& system, const Extent& extent, double ground,
+    static Result<PlaceOnEarth> make(const ReferenceSystem& system, const Extent& extent, std::optional<double> ground,
                                      const CityFileSettings& settings);
     /// What of the settings means nothing for a file, as warnings.
     static std::vector<std::string> unused_settings(const ReferenceSystem& system, const CityFileSettings& settings);
@@ -57,13 +62,24 @@ public:
         return (*this)(Eigen::Vector3d(place.x(), place.y(), ground_));
     }
     [[nodiscard]] const Geodetic& origin() const { return origin_; }
+    /// Whether the file tells where on the Earth it lies.
+    [[nodiscard]] bool on_earth() const { return frame_.has_value(); }
+    /// Of places of a map, for the files that come after.
+    [[nodiscard]] const std::optional<MapAnchor>& anchor() const { return anchor_; }
+    /// How a map lies on the Earth as far as that is not told by the file; nothing where it is.
+    [[nodiscard]] std::string doubt_of_map(const CityFileSettings& settings) const;
 
 private:
+    void lay_map(const ReferenceSystem& system, const Extent& extent, std::optional<double> ground,
+                 const CityFileSettings& settings);
+    [[nodiscard]] Eigen::Vector3d at_place(double latitude_deg, double longitude_deg, double height) const;
+
     CoordinateKind kind_ = CoordinateKind::local;
     Geodetic origin_;
-    Eigen::Vector2d middle_ = Eigen::Vector2d::Zero();
-    double ground_ = 0;
+    double ground_ = 0;  ///< of the file's heights, at the level of the origin
     double metres_per_unit_ = 1;
+    std::optional<MapAnchor> anchor_;
+    std::optional<MapProjection> projection_;
     std::optional<LocalFrame> frame_;
 };
 

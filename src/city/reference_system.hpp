@@ -20,6 +20,7 @@ struct ReferenceSystem {
     bool latitude_first = false;
     std::string name;         ///< for messages: "EPSG:7415"
     std::optional<int> code;  ///< of EPSG, of the horizontal part of a compound where that is told
+    bool named = true;        ///< false where `name` is a word of ours
 };
 
 /// Reads "EPSG:4326", "urn:ogc:def:crs:EPSG::25832", "http://www.opengis.net/def/crs/EPSG/0/6697", the first part of

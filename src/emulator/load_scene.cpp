@@ -65,6 +65,8 @@ Result<CityReading> read_terrain(const std::filesystem::path& path, const CityFi
     // Units and axes are those of the buildings; a grid has its own.
     CityFileSettings settings;
     settings.origin = reading.origin;
+    settings.origin_is_guess = reading.origin_is_guess;
+    settings.anchor = reading.anchor;
     settings.material = terrain_material;
     settings.most_triangles = reading.most_triangles;
     auto grid = read_city(path, settings, cache);
@@ -131,6 +133,7 @@ Decibels hand_rejection(ModernPreset preset) {
 Result<JoinedCity> read_scene_files(const SceneEntry& entry, const std::optional<Geodetic>& start,
                                     const CityCache& cache) {
     CityFileSettings reading = entry.reading;
+    reading.origin_is_guess = !reading.origin;
     if (!reading.origin && start) reading.origin = below_antenna(*start);
     const CityCache kept = entry.cache ? cache : CityCache{};
     JoinedCity city;
@@ -144,6 +147,8 @@ Result<JoinedCity> read_scene_files(const SceneEntry& entry, const std::optional
             auto read = read_city(path, reading, kept);
             if (!read) return fail(read.error());
             city.from_cache = city.from_cache || read->from_cache;
+            const std::optional<MapAnchor>& anchor = read->file.anchor;
+            if (anchor && (!reading.anchor || reading.anchor->system == anchor->system)) reading.anchor = anchor;
             add_part(city, path, std::move(read->file), read->digest);
         }
         // What follows lies in the frame of the first file.

@@ -25,13 +25,23 @@ struct FileAxes {
     static Result<FileAxes> parse(std::string_view text);
 };
 
+/// What of a map lies at the origin of a city's frame.
+struct MapAnchor {
+    std::string system;           ///< "EPSG:7415", or a word where the file names none
+    bool named = true;            ///< false for such a word
+    double east = 0, north = 0;   ///< of the map, m
+    std::optional<double> level;  ///< of the ground in its heights, m; absent after outlines, which have none
+};
+
 /// How a file is to be read.
 struct CityFileSettings {
-    /// Where the frame lies. When it is absent, files with geographic coordinates take the middle of what they hold;
-    /// local and projected ones lie at 0° N 0° E, the latter with a warning.
+    /// Where the frame lies. When it is absent, files with places on the Earth take the middle of what they hold; local
+    /// ones, and those of a map projection that is not known, lie at 0° N 0° E, the latter with a warning.
     std::optional<Geodetic> origin;
-    std::optional<FileAxes> axes;             ///< absent: as the format says
-    double metres_per_unit = 1;               ///< 0.01 for levels in centimetres
+    bool origin_is_guess = false;     ///< for what warnings say
+    std::optional<MapAnchor> anchor;  ///< of a file of the same scene that was read before, beside which this one lies
+    std::optional<FileAxes> axes;     ///< absent: as the format says
+    double metres_per_unit = 1;       ///< 0.01 for levels in centimetres
     std::string material = "concrete";        ///< of triangles of which the file tells none
     double default_height = 9;                ///< of footprints without height or levels, m
     double metres_per_level = 3;              ///< OpenStreetMap
@@ -52,6 +62,7 @@ struct CityFile {
     std::size_t dropped = 0;                ///< facets or footprints that could not be used
     std::vector<std::string> warnings;      ///< one clear line each: what was dropped and why, doubtful units
     std::vector<CityCompanion> companions;  ///< in the order of their names
+    std::optional<MapAnchor> anchor;        ///< of files in a map projection
 };
 
 /// Reads a city by the ending of its name: .obj .ply .gltf .glb .geojson .json (CityJSON or GeoJSON) .osm .pbf .gml
@@ -83,8 +94,9 @@ Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std:
 Result<CityFile> parse_mitsuba_archive(std::string_view bytes, std::string_view name, const CityFileSettings& settings);
 
 /// A height grid (ESRI ASCII, .asc) as ground. Cells are geographic degrees when they fit on the globe, are at most
-/// 0.1° wide and all together 6°, heights then metres above the ellipsoid; else both are metres from the frame's
-/// origin. `metres_per_unit` and `origin` apply; `metres_per_unit` to heights alone where cells are degrees.
+/// 0.1° wide and all together 6°, heights then metres above the ellipsoid. Metres farther than 100 km from 0, 0
+/// are places of a map, that of `anchor` where there is one; else both are metres from the frame's origin.
+/// `metres_per_unit` and `origin` apply; `metres_per_unit` to heights alone where cells are degrees.
 Result<CityFile> parse_height_grid(std::string_view text, std::string_view name, const CityFileSettings& settings);
 
 /// What is doubtful about a city as a whole: a few metres or a hundred kilometres wide, no more than 3 m tall or more

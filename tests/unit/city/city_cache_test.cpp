@@ -118,6 +118,7 @@ TEST(CityEncoding, NoByteCanBeChangedOrLeftOut) {
     file.format = "obj";
     file.warnings = {"one"};
     file.companions = {{"meshes/a.ply", 7}};
+    file.anchor = MapAnchor{"EPSG:28992", true, 1, 2, 3};
     file.model.add_triangle({Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 0, 1)},
                             SurfaceKind::roof, file.model.material_index("glass"));
     file.model.foliage.push_back({{{0, 0}, {1, 0}, {0, 1}}, 0, 9, 1.5});

@@ -14,7 +14,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-std::string gml_file(std::string_view members, std::string_view system = "urn:ogc:def:crs:EPSG::25832") {
+std::string gml_file(std::string_view members, std::string_view system = "urn:ogc:def:crs:EPSG::28992") {
     return fmt::format(R"(<?xml version="1.0"?><CityModel xmlns:gml="g" xmlns:bldg="b"><gml:boundedBy>
         <gml:Envelope srsName="{}" srsDimension="3"/></gml:boundedBy>{}</CityModel>)",
                        system, members);
@@ -33,7 +33,9 @@ const std::string roof_places = "0 0 9 10 0 9 10 10 9 0 10 9 0 0 9";
 const std::string wall_places = "0 0 1 10 0 1 10 0 9 0 0 9 0 0 1";
 const std::string floor_places = "0 0 1 10 0 1 10 10 1 0 10 1 0 0 1";
 
-Result<CityFile> read_citygml(std::string_view text) { return parse_citygml(text, "town.gml", {}); }
+Result<CityFile> read_citygml(std::string_view text, const CityFileSettings& settings = {}) {
+    return parse_citygml(text, "town.gml", settings);
+}
 
 std::string citygml_refusal(std::string_view text) {
     const auto file = read_citygml(text);
@@ -63,7 +65,7 @@ TEST(CityGml, TakesToldSurfacesOfTheHighestLevel) {
     EXPECT_EQ(count_of(file->model, SurfaceKind::wall), 2u);
     EXPECT_EQ(count_of(file->model, SurfaceKind::ground), 0u);
     EXPECT_DOUBLE_EQ(highest_of(file->model).z(), 8);
-    EXPECT_THAT(file->warnings.at(0), HasSubstr("EPSG:25832"));
+    EXPECT_THAT(file->warnings.at(0), HasSubstr("EPSG:28992"));
 }
 
 TEST(CityGml, TellsWallsAndRoofsOfASolidBySlope) {
@@ -87,6 +89,51 @@ TEST(CityGml, ReadsGeographicPlacesAndRelief) {
     EXPECT_NEAR(file->model.origin.longitude.deg(), 139.0005, 1e-9);
     EXPECT_NEAR(file->model.origin.height.above_ellipsoid.value(), 3, 1e-9);
     EXPECT_NEAR(file->model.vertices.at(1).y() - file->model.vertices.at(0).y(), 110.94, 0.02);
+}
+
+std::string square_roof(double east, double north, double height) {
+    return "<Building><lod2MultiSurface>" +
+           gml_polygon(fmt::format("{0} {1} {4} {2} {1} {4} {2} {3} {4} {0} {3} {4} {0} {1} {4}", east, north,
+                                   east + 100, north + 100, height)) +
+           "</lod2MultiSurface></Building>";
+}
+
+TEST(CityGml, LaysKnownProjectionsOnTheEarth) {
+    // The middle of Munich in UTM 32: east of the grid is 1.9187° south of east, 1.0000509 m of the grid are a
+    // metre of the ellipsoid, 1.0000815 m at 520 m.
+    const std::string town = gml_file(square_roof(691553.032, 5334730.031, 520), "EPSG:25832");
+    const auto file = read_citygml(town);
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_NEAR(file->model.origin.latitude.deg(), 48.1374, 1e-8);
+    EXPECT_NEAR(file->model.origin.longitude.deg(), 11.5755, 1e-8);
+    EXPECT_TRUE(file->warnings.empty()) << file->warnings.at(0);
+    const Eigen::Vector3d edge = file->model.vertices.at(1) - file->model.vertices.at(0);
+    EXPECT_NEAR(edge.head<2>().norm(), 100 * 1.0000815 / 1.0000509, 1e-3);
+    EXPECT_NEAR(std::atan2(-edge.y(), edge.x()), Angle::degrees(1.9187).rad(), 1e-5);
+
+    CityFileSettings aside;
+    aside.origin = Geodetic::degrees(48.1374, 11.5755 + 0.001, 600);
+    const auto seen = read_citygml(town, aside);
+    ASSERT_TRUE(seen) << seen.error().message;
+    const Eigen::Vector3d middle = (seen->model.vertices.at(0) + seen->model.vertices.at(2)) / 2;
+    EXPECT_NEAR(middle.x(), -74.4, 0.1);
+    EXPECT_NEAR(middle.z(), 0, 0.01) << "the ground of the file lies at the height of the origin";
+    EXPECT_THAT(seen->warnings, ::testing::ElementsAre(HasSubstr("at 520.000 of the file")));
+}
+
+TEST(CityGml, FilesOfOneMapLieBesideEachOther) {
+    for (const std::string_view system : {"EPSG:28992", "EPSG:25832", "our own"}) {
+        const auto first = read_citygml(gml_file(square_roof(691550, 5334730, 20), system));
+        ASSERT_TRUE(first) << first.error().message;
+        CityFileSettings beside;
+        beside.origin = first->model.origin;
+        beside.anchor = first->anchor;
+        const auto second = read_citygml(gml_file(square_roof(692150, 5334730, 27), system), beside);
+        ASSERT_TRUE(second) << second.error().message;
+        const Eigen::Vector3d way = second->model.vertices.at(0) - first->model.vertices.at(0);
+        EXPECT_NEAR(way.head<2>().norm(), 600, 0.1) << system;
+        EXPECT_NEAR(way.z(), 7, 0.1) << system;
+    }
 }
 
 TEST(CityGml, DropsWrongPolygonsAndSaysSo) {

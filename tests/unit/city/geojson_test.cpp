@@ -130,12 +130,12 @@ TEST(GeoJson, TakesMetresWhenNumbersAreNoDegrees) {
         feature(
             R"({"height":5})",
             R"({"type":"Polygon","coordinates":[[[500000,5500000],[500040,5500000],[500040,5500030],[500000,5500030]]]})"),
-        R"(,"crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::25832"}})"));
+        R"(,"crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::28992"}})"));
     ASSERT_TRUE(utm) << utm.error().message;
     EXPECT_DOUBLE_EQ(highest_of(utm->model).z(), 5);
     EXPECT_DOUBLE_EQ(area_of(utm->model), 140 * 5 + 1200);
     EXPECT_LE(utm->model.vertices.front().head<2>().norm(), 25.001);
-    EXPECT_THAT(utm->warnings.at(0), HasSubstr("EPSG:25832"));
+    EXPECT_THAT(utm->warnings.at(0), HasSubstr("EPSG:28992"));
 }
 
 TEST(GeoJson, AHeightThatTellsNothingHidesNoOther) {
@@ -217,6 +217,18 @@ TEST(GeoJson, SaysWhichSettingsMeanNothing) {
     const auto file = read_geojson(feature(R"({"height":5})", square(0.001)), settings);
     ASSERT_TRUE(file);
     EXPECT_THAT(file->warnings, ::testing::ElementsAre(HasSubstr("axes mean nothing"), HasSubstr("length of a unit")));
+}
+
+TEST(GeoJson, ScalesWebMercator) {
+    const auto file = read_geojson(collection(
+        feature(R"({"height":5})", R"({"type":"Polygon","coordinates":[[[1224464.4,6123457.4],[1224564.4,6123457.4],
+            [1224564.4,6123557.4],[1224464.4,6123557.4]]]})"),
+        R"(,"crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::3857"}})"));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_TRUE(file->warnings.empty());
+    EXPECT_NEAR(file->model.origin.latitude.deg(), 48.1, 1e-6);
+    EXPECT_NEAR(file->model.origin.longitude.deg(), 11, 1e-6);
+    EXPECT_NEAR(area_of(file->model), 66.9 * 66.7 + 2 * 5 * (66.9 + 66.7), 10);
 }
 
 TEST(GeoJson, PartsReplaceTheirBuilding) {

@@ -69,6 +69,26 @@ TEST(HeightGrid, FineGridsInMetresAreNoDegrees) {
     EXPECT_NEAR(file->model.vertices.at(99).x(), 9.95, 1e-9);
 }
 
+TEST(HeightGrid, LiesBesideTheCityOfItsMap) {
+    const std::string text =
+        "ncols 3\nnrows 3\nxllcenter 691590\nyllcenter 5334770\ncellsize 10\n520 520 520 520 521 520 520 520 520";
+    CityFileSettings settings;
+    settings.origin = Geodetic::degrees(48.1374, 11.5755, 600);
+    for (const std::string system : {"EPSG:25832", "EPSG:28992"}) {
+        settings.anchor = MapAnchor{system, true, 691603.032, 5334780.031, 515};
+        const auto file = read_grid(text, settings);
+        ASSERT_TRUE(file) << file.error().message;
+        EXPECT_NEAR(file->model.vertices.at(4).x(), -3.03, 0.1) << system;
+        EXPECT_NEAR(file->model.vertices.at(4).y(), 0, 0.15) << system;
+        EXPECT_NEAR(file->model.vertices.at(4).z(), 6, 0.01) << system;
+    }
+    settings.anchor.reset();
+    const auto alone = read_grid(text, settings);
+    ASSERT_TRUE(alone) << alone.error().message;
+    EXPECT_NEAR(alone->model.vertices.at(4).norm(), 1, 1e-9) << "its middle at the origin, its ground at its height";
+    EXPECT_THAT(alone->warnings, ::testing::Contains(HasSubstr("coordinates are projected (unnamed)")));
+}
+
 TEST(HeightGrid, PlacesDegreesOnTheGlobe) {
     const std::string text =
         "ncols 3\nnrows 3\nxllcenter 30.73\nyllcenter 46.47\ncellsize 0.001\n50 50 50\n50 50 50\n50 50 50\n";
