@@ -8,7 +8,7 @@
 namespace skyloop {
 namespace {
 
-constexpr std::uint32_t layout_version = 1;  // one more when a number is added, dropped or moved
+constexpr std::uint32_t layout_version = 2;  // one more when a number is added, dropped or moved
 
 struct CacheHeader {
     char name[8] = {'s', 'k', 'y', 'c', 'i', 't', 'y', '\n'};
@@ -104,7 +104,7 @@ void write_model(CityWriter& out, const CityModel& model) {
             out.number(v.x());
             out.number(v.y());
         });
-        for (const double part : {trees.base, trees.top, trees.attenuation})
+        for (const double part : {trees.base, trees.top})
             out.number(part);
     });
 }
@@ -124,7 +124,7 @@ FoliageVolume read_foliage(CityReader& in) {
         const double east = in.number<double>(), north = in.number<double>();
         return Eigen::Vector2d(east, north);
     });
-    for (double* part : {&trees.base, &trees.top, &trees.attenuation})
+    for (double* part : {&trees.base, &trees.top})
         *part = in.number<double>();
     return trees;
 }
@@ -140,7 +140,7 @@ CityModel read_model(CityReader& in) {
     });
     in.list(model.triangles, 14, [&] { return read_triangle(in); });
     in.list(model.materials, 8, [&] { return in.text(); });
-    in.list(model.foliage, 32, [&] { return read_foliage(in); });
+    in.list(model.foliage, 24, [&] { return read_foliage(in); });
     return model;
 }
 

@@ -202,7 +202,7 @@ bool ObjectBuilder::add_plants(const std::vector<ObjectSurface>& surfaces, bool 
     }
     FoliageVolume& foliage = file_.model.foliage.emplace_back();
     foliage.ring = hull;
-    foliage.base = lowest;
+    foliage.base = crown_base(lowest, top);
     foliage.top = top;
     return true;
 }

@@ -119,8 +119,8 @@ private:
 void OutlineBuilder::add_trees(const Outline& outline, double ground) {
     FoliageVolume foliage;
     foliage.ring = EarClipper(outline.footprint).bridged_ring();
-    foliage.base = ground + outline.use.base;
     foliage.top = ground + outline.use.top.value_or(tree_height);
+    foliage.base = outline.use.base > 0 ? ground + outline.use.base : crown_base(ground, foliage.top);
     if (foliage.ring.size() < 3 || foliage.top <= foliage.base)
         ++file_.dropped;
     else

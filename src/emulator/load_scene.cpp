@@ -198,9 +198,10 @@ RayTracedSceneSettings scene_effect_settings(const Scenario& scenario, double ep
     settings.search.threads = entry.threads;
     settings.epochs_per_second = epochs_per_second;
     settings.diffraction = entry.diffraction;
-    settings.foliage = entry.foliage;
     if (!modern) return settings;
     const ModernPropagationParameters& propagation = scenario.model.modern.propagation;
+    settings.crowns = {propagation.loss_model.canopy_db_per_m, propagation.loss_model.most_foliage,
+                       entry.foliage ? propagation.foliage.factor() : 0};
     settings.antenna =
         propagation.antenna.enabled ? propagation.link.antenna : AntennaPattern(Decibels(0), Decibels(0), 1);
     settings.opposite_hand_rejection = hand_rejection(scenario.model.modern.preset);

@@ -148,7 +148,9 @@ void RayTracedScene::apply(Arrivals& arrivals, const SkyView& sky, const TruthSt
         if (settings_.profile == SceneProfile::baseline)
             arrive_by_article(arrival, paths_[i]);
         else
-            arrive_by_rays(arrival, city, {observer_, to_antenna, satellites[i], paths_[i], first_carrier(arrival)});
+            arrive_by_rays(
+                arrival, city,
+                {observer_, to_antenna, satellites[i], paths_[i], first_carrier(arrival), arrival.foliage_loss});
     }
 }
 

@@ -23,10 +23,6 @@ SceneRay line_to(const ArrivingSatellite& arriving) {
     return {arriving.observer.position, way.normalized()};
 }
 
-Decibels foliage_loss(const UrbanScene& scene, const SceneRay& ray) {
-    return Decibels(foliage_loss_db(scene.foliage(), ray));
-}
-
 }  // namespace
 
 SkyDirection sky_direction(const Eigen::Vector3d& enu) {
@@ -39,6 +35,14 @@ SceneRays::SceneRays(const UrbanScene& scene, const RayTracedSceneSettings& sett
     : scene_(scene), settings_(settings) {
     for (const std::string& name : scene.materials())
         materials_.push_back(surface_material(name).value_or(*surface_material("concrete")));
+}
+
+// What the crowns around leave of the limit.
+Decibels SceneRays::crown_loss(const SceneRay& ray, Decibels around) const {
+    const CrownLoss& crowns = settings_.crowns;
+    if (crowns.factor == 0) return {};
+    const Decibels loss(crowns.db_per_m * foliage_length(scene_.foliage(), ray) * crowns.factor);
+    return std::clamp(crowns.most * crowns.factor - around, Decibels(0), loss);
 }
 
 double SceneRays::gain_over_direct(const ArrivingSatellite& arriving, const Eigen::Vector3d& from) const {
@@ -70,7 +74,7 @@ void SceneRays::add_bent(const ArrivingSatellite& arriving, std::vector<Arriving
     for (const SceneEdge& edge : edges_around_obstacle(scene_, line)) {
         const double v = knife_edge_parameter(edge.detour, edge.distance, arriving.carrier);
         Decibels loss = knife_edge_loss(v);
-        if (settings_.foliage) loss += foliage_loss(scene_, {antenna, edge.direction});
+        loss += crown_loss({antenna, edge.direction}, arriving.around);
         const Eigen::Vector3d place = antenna + edge.distance.value() * edge.direction;
         const Eigen::Vector3d onward = (arriving.satellite.position - place).normalized();
         const double detour = (place - antenna).norm() + nearer_by(antenna, place, arriving.satellite.position);
@@ -97,7 +101,7 @@ std::vector<ArrivingRay> SceneRays::beside_direct(const ArrivingSatellite& arriv
 DirectLoss SceneRays::direct_loss(const ArrivingSatellite& arriving) const {
     const SceneRay line = line_to(arriving);
     DirectLoss loss;
-    if (settings_.foliage) loss.foliage = foliage_loss(scene_, line);
+    loss.foliage = crown_loss(line, arriving.around);
     if (!settings_.diffraction) return loss;
     for (const SceneEdge& edge : edges_near_sight(scene_, line))
         loss.edges += knife_edge_loss(knife_edge_parameter(-edge.detour, edge.distance, arriving.carrier));

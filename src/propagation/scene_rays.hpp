@@ -25,6 +25,7 @@ struct ArrivingSatellite {
     const SceneSatellite& satellite;
     const SatellitePaths& found;
     Hertz carrier;
+    Decibels around;  ///< foliage loss that the arrival has already, of crowns wherever the antenna is
 };
 
 /// What the direct ray loses.
@@ -42,6 +43,7 @@ public:
     [[nodiscard]] DirectLoss direct_loss(const ArrivingSatellite& arriving) const;
 
 private:
+    [[nodiscard]] Decibels crown_loss(const SceneRay& ray, Decibels around) const;
     [[nodiscard]] ArrivingRay reflected(const ArrivingSatellite& arriving, const ScenePath& path) const;
     void add_bent(const ArrivingSatellite& arriving, std::vector<ArrivingRay>& rays) const;
     [[nodiscard]] double gain_over_direct(const ArrivingSatellite& arriving, const Eigen::Vector3d& from) const;

@@ -63,11 +63,11 @@ double length_inside(const FoliageVolume& volume, const SceneRay& ray) {
 
 }  // namespace
 
-double foliage_loss_db(std::span<const FoliageVolume> foliage, const SceneRay& ray) {
-    double loss = 0;
+double foliage_length(std::span<const FoliageVolume> foliage, const SceneRay& ray) {
+    double length = 0;
     for (const FoliageVolume& volume : foliage)
-        loss += volume.attenuation * length_inside(volume, ray);
-    return loss;
+        length += length_inside(volume, ray);
+    return length;
 }
 
 }  // namespace skyloop

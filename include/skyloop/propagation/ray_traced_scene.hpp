@@ -24,15 +24,23 @@ enum class SceneProfile {
     modern,
 };
 
+/// What crowns of trees take from a ray: MODELS.md 7.5.
+struct CrownLoss {
+    double db_per_m = 0.8;  ///< at L1
+    Decibels most{12};      ///< together with the crowns that stand around wherever the antenna is
+    double factor = 1;      ///< of the error term; 0: trees do nothing
+};
+
 /// How a scene acts.
 struct RayTracedSceneSettings {
     SceneProfile profile = SceneProfile::modern;
-    PathSearchSettings search{};              ///< the profile decides whether paths of blocked satellites alone matter
-    double epochs_per_second = 1;             ///< decides the number of rays where `search` does not
-    AntennaPattern antenna{};                 ///< modern
-    Decibels opposite_hand_rejection{10};     ///< modern: of the antenna; 10 a patch, 20 a survey antenna
-    Metres wall_roughness{0.01};              ///< modern: rms height
-    bool diffraction = true, foliage = true;  ///< modern
+    PathSearchSettings search{};           ///< the profile decides whether paths of blocked satellites alone matter
+    double epochs_per_second = 1;          ///< decides the number of rays where `search` does not
+    AntennaPattern antenna{};              ///< modern
+    Decibels opposite_hand_rejection{10};  ///< modern: of the antenna; 10 a patch, 20 a survey antenna
+    Metres wall_roughness{0.01};           ///< modern: rms height
+    bool diffraction = true;               ///< modern
+    CrownLoss crowns{};                    ///< modern
 };
 
 /// Writes line_of_sight, paths, reflections, excess_path and reflection_loss, in the modern profile the echoes too, and

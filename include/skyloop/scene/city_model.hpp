@@ -25,12 +25,14 @@ struct CityTriangle {
     std::uint8_t material = 0;  ///< index of CityModel::materials
 };
 
-/// Trees: what is inside an upright prism.
+/// Crowns of trees: what is inside an upright prism.
 struct FoliageVolume {
     std::vector<Eigen::Vector2d> ring;  ///< east, north, m; not closed, either sense
     double base = 0, top = 0;           ///< up, m
-    double attenuation = 1.3;           ///< at L1, dB/m; MODELS.md 7.7
 };
+
+/// Where crowns begin of trees that stand on `ground`, m: trunks, a quarter of the height, let signals through.
+inline double crown_base(double ground, double top) { return ground + (top - ground) / 4; }
 
 /// Everything that stands around: coordinates are metres east, north and up in the LocalFrame at `origin`.
 struct CityModel {

@@ -102,7 +102,7 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
-/// Metres of a half-line that lie in trees, times their attenuation: dB at L1.
-double foliage_loss_db(std::span<const FoliageVolume> foliage, const SceneRay& ray);
+/// Metres of a half-line that lie in crowns of trees.
+double foliage_length(std::span<const FoliageVolume> foliage, const SceneRay& ray);
 
 }  // namespace skyloop

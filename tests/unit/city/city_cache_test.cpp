@@ -121,7 +121,7 @@ TEST(CityEncoding, NoByteCanBeChangedOrLeftOut) {
     file.anchor = MapAnchor{"EPSG:28992", true, 1, 2, 3};
     file.model.add_triangle({Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 0, 1)},
                             SurfaceKind::roof, file.model.material_index("glass"));
-    file.model.foliage.push_back({{{0, 0}, {1, 0}, {0, 1}}, 0, 9, 1.5});
+    file.model.foliage.push_back({{{0, 0}, {1, 0}, {0, 1}}, 0, 9});
     const std::string bytes = encode_city(file, 7);
     const auto decoded = decode_city(bytes, 7);
     ASSERT_TRUE(decoded);

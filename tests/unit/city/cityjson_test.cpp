@@ -92,7 +92,7 @@ TEST(CityJson, ReadsTerrainTreesAndTheRoomsOfNobody) {
     EXPECT_EQ(file->model.triangles.size(), 4u);
     ASSERT_EQ(file->model.foliage.size(), 1u);
     EXPECT_EQ(file->model.foliage[0].ring.size(), 4u);
-    EXPECT_NEAR(file->model.foliage[0].top - file->model.foliage[0].base, 10, 1e-9);
+    EXPECT_NEAR(file->model.foliage[0].top - file->model.foliage[0].base, 7.5, 1e-9);
 }
 
 TEST(CityJson, ReadsLatitudesAndLongitudes) {

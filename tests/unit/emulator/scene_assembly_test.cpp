@@ -82,6 +82,18 @@ TEST(SceneAssembly, TheProfileIsThatOfTheModel) {
     EXPECT_TRUE(article.search.blocked_only);
 }
 
+TEST(SceneAssembly, CrownsOfTheSceneFollowTheKeysOfTrees) {
+    Scenario scenario = emulator_scenario(std::string(demo_text) +
+                                          "[model.modern.losses]\nmost_foliage_db = 5\ncanopy_db_per_m = 0.1\n"
+                                          "[model.modern.terms.foliage]\nscale = 0.5\n");
+    const CrownLoss crowns = scene_effect_settings(scenario, 1).crowns;
+    EXPECT_EQ(crowns.db_per_m, 0.1);
+    EXPECT_EQ(crowns.most.value(), 5);
+    EXPECT_EQ(crowns.factor, 0.5);
+    scenario.scene.foliage = false;
+    EXPECT_EQ(scene_effect_settings(scenario, 1).crowns.factor, 0);
+}
+
 TEST(SceneAssembly, MissingAndDamagedFilesAreNamed) {
     const test::TemporaryFolder folder;
     const auto missing = with_scene("[scene]\nbuildings = \"/no/such/city.obj\"");

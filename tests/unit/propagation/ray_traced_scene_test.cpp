@@ -186,13 +186,40 @@ TEST(ModernScene, StrengthDoesNotJumpAtTheShadow) {
 
 TEST(ModernScene, TreesWeakenTheDirectRay) {
     CityModel city = walls({{-150, 1}});
-    city.foliage.push_back({{{-50, 10}, {50, 10}, {50, 20}, {-50, 20}}, -5, 60, 1.3});
+    city.foliage.push_back({{{-50, 10}, {50, 10}, {50, 20}, {-50, 20}}, -5, 60});
     const Arrival through = by_rays(city, 0, 30), past = by_rays(city, 180, 30);
-    EXPECT_NEAR(through.foliage_loss.value(), 1.3 * 10 / std::cos(Angle::degrees(30).rad()), 1e-3);
+    EXPECT_NEAR(through.foliage_loss.value(), 0.8 * 10 / std::cos(Angle::degrees(30).rad()), 1e-3);
     EXPECT_EQ(past.foliage_loss.value(), 0);
-    RayTracedSceneSettings bare = plain_settings(SceneProfile::modern);
-    bare.foliage = false;
-    EXPECT_EQ(outcome(city, bare, 0, 30).arrival.foliage_loss.value(), 0);
+    RayTracedSceneSettings settings = plain_settings(SceneProfile::modern);
+    settings.crowns = {0.1, Decibels(12), 2};
+    EXPECT_NEAR(outcome(city, settings, 0, 30).arrival.foliage_loss.value(),
+                2 * 0.1 * 10 / std::cos(Angle::degrees(30).rad()), 1e-3);
+    settings.crowns.factor = 0;
+    EXPECT_EQ(outcome(city, settings, 0, 30).arrival.foliage_loss.value(), 0);
+}
+
+TEST(ModernScene, NoWoodIsDarkerThanTheLimit) {
+    CityModel city = walls({{-150, 1}});
+    city.foliage.push_back({{{-900, -900}, {900, -900}, {900, 900}, {-900, 900}}, -5, 60});
+    RayTracedSceneSettings settings = plain_settings(SceneProfile::modern);
+    EXPECT_NEAR(outcome(city, settings, 0, 5).arrival.foliage_loss.value(), 12, 1e-12);
+    settings.crowns = {0.8, Decibels(5), 0.5};
+    EXPECT_NEAR(outcome(city, settings, 0, 5).arrival.foliage_loss.value(), 2.5, 1e-12);
+}
+
+TEST(ModernScene, TheLimitIsOneForCrownsAllAroundAndThoseOfTheScene) {
+    CityModel city = walls({{-150, 1}});
+    city.foliage.push_back({{{-900, 10}, {900, 10}, {900, 900}, {-900, 900}}, -5, 60});
+    auto scene = UrbanScene::build(city);
+    ASSERT_TRUE(scene);
+    RayTracedScene effect(*scene, plain_settings(SceneProfile::modern));
+    SkyView sky;
+    sky.satellites.push_back(satellite_at(g01, 0, 20));
+    Arrivals arrivals;
+    arrivals.satellites.resize(1);
+    arrivals.satellites[0].foliage_loss = Decibels(9);
+    effect.apply(arrivals, sky, truth_of(odessa_place, april_noon));
+    EXPECT_NEAR(arrivals.satellites[0].foliage_loss.value(), 12, 1e-12);
 }
 
 /// A house around the antenna.

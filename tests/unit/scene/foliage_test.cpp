@@ -12,10 +12,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-FoliageVolume square_grove() { return {{{10, -5}, {20, -5}, {20, 5}, {10, 5}}, 2, 12, 1.0}; }
+FoliageVolume square_grove() { return {{{10, -5}, {20, -5}, {20, 5}, {10, 5}}, 2, 12}; }
 
 double metres_in(const FoliageVolume& volume, const Vector3d& origin, const Vector3d& direction) {
-    return foliage_loss_db(std::span(&volume, 1), {origin, direction.normalized()});
+    return foliage_length(std::span(&volume, 1), {origin, direction.normalized()});
 }
 
 TEST(Foliage, LevelRayCrossesTheWholeGrove) {
@@ -60,7 +60,7 @@ TEST(Foliage, EitherSenseOfTheRingIsTheSame) {
 
 TEST(Foliage, AGapBetweenTwoArmsDoesNotCount) {
     // A U open to the north, arms 2 m wide and 6 m apart.
-    const FoliageVolume horseshoe{{{0, 0}, {10, 0}, {10, 10}, {8, 10}, {8, 2}, {2, 2}, {2, 10}, {0, 10}}, 0, 10, 1.0};
+    const FoliageVolume horseshoe{{{0, 0}, {10, 0}, {10, 10}, {8, 10}, {8, 2}, {2, 2}, {2, 10}, {0, 10}}, 0, 10};
     EXPECT_NEAR(metres_in(horseshoe, {-5, 5, 1}, {1, 0, 0}), 4, 1e-12);
     EXPECT_NEAR(metres_in(horseshoe, {-5, 1, 1}, {1, 0, 0}), 10, 1e-12);
     EXPECT_NEAR(metres_in(horseshoe, {5, 20, 1}, {0, -1, 0}), 2, 1e-12);
@@ -68,26 +68,25 @@ TEST(Foliage, AGapBetweenTwoArmsDoesNotCount) {
 }
 
 TEST(Foliage, RayThroughTwoCornersCountsOnce) {
-    const FoliageVolume diamond{{{0, -5}, {5, 0}, {0, 5}, {-5, 0}}, 0, 10, 1.0};
+    const FoliageVolume diamond{{{0, -5}, {5, 0}, {0, 5}, {-5, 0}}, 0, 10};
     EXPECT_NEAR(metres_in(diamond, {-20, 0, 1}, {1, 0, 0}), 10, 1e-12);
     EXPECT_EQ(metres_in(diamond, {-20, 5, 1}, {1, 0, 0}), 0);
 }
 
-TEST(Foliage, LossesOfSeveralGrovesAddByTheirAttenuation) {
-    FoliageVolume thick = square_grove(), thin = square_grove();
-    thick.attenuation = 1.3;
-    thin.attenuation = 0.4;
-    for (Vector2d& corner : thin.ring)
+TEST(Foliage, LengthsInSeveralGrovesAdd) {
+    FoliageVolume far = square_grove();
+    far.ring[2].x() = far.ring[1].x() = 14;
+    for (Vector2d& corner : far.ring)
         corner.x() += 30;
-    const std::vector groves{thick, thin};
-    EXPECT_NEAR(foliage_loss_db(groves, {{0, 0, 5}, {1, 0, 0}}), 17, 1e-12);
-    EXPECT_NEAR(foliage_loss_db(groves, {{30, 0, 5}, {1, 0, 0}}), 4, 1e-12);
-    EXPECT_EQ(foliage_loss_db({}, {{0, 0, 5}, {1, 0, 0}}), 0);
+    const std::vector groves{square_grove(), far};
+    EXPECT_NEAR(foliage_length(groves, {{0, 0, 5}, {1, 0, 0}}), 14, 1e-12);
+    EXPECT_NEAR(foliage_length(groves, {{30, 0, 5}, {1, 0, 0}}), 4, 1e-12);
+    EXPECT_EQ(foliage_length({}, {{0, 0, 5}, {1, 0, 0}}), 0);
 }
 
 TEST(Foliage, VolumesWithoutAnInsideLoseNothing) {
-    EXPECT_EQ(metres_in({{}, 0, 10, 1.0}, {0, 0, 5}, {1, 0, 0}), 0);
-    EXPECT_EQ(metres_in({{{10, -5}, {10, 5}}, 0, 10, 1.0}, {0, 0, 5}, {1, 0, 0}), 0);
+    EXPECT_EQ(metres_in({{}, 0, 10}, {0, 0, 5}, {1, 0, 0}), 0);
+    EXPECT_EQ(metres_in({{{10, -5}, {10, 5}}, 0, 10}, {0, 0, 5}, {1, 0, 0}), 0);
     FoliageVolume flat = square_grove();
     flat.top = flat.base;
     EXPECT_EQ(metres_in(flat, {0, 0, 2}, {1, 0, 0}), 0);
@@ -114,7 +113,7 @@ TEST(Foliage, AgreesWithTheClosedFormOfABoxForAnyRay) {
                            Vector3d(random.normal(), random.normal(), random.normal()).normalized()};
         const double metres = metres_in_box({10, -5, 2}, {20, 5, 12}, ray);
         crossed += metres > 0;
-        ASSERT_NEAR(foliage_loss_db(std::span(&grove, 1), ray), metres, 1e-9) << i;
+        ASSERT_NEAR(foliage_length(std::span(&grove, 1), ray), metres, 1e-9) << i;
     }
     EXPECT_GT(crossed, 2'000);
 }

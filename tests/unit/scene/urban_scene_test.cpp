@@ -259,7 +259,7 @@ TEST(UrbanScene, SlopingGroundIsAsHighAsItIs) {
 
 TEST(UrbanScene, CountsWhatItHolds) {
     CityModel city = some_houses(50);
-    city.foliage.push_back({{{0, 0}, {1, 0}, {0, 1}}, 0, 5, 1.3});
+    city.foliage.push_back({{{0, 0}, {1, 0}, {0, 1}}, 0, 5});
     city.origin = Geodetic::degrees(48.1, 11.6, 500);
     const auto scene = built(city);
     const SceneStatistics& counts = scene->statistics();
