@@ -7,6 +7,7 @@
 
 #include "city_objects.hpp"
 #include "ear_clipper.hpp"
+#include "skyloop/scene/ring_pieces.hpp"
 
 namespace skyloop {
 
@@ -15,6 +16,7 @@ namespace {
 using Kind = OutlineUse::Kind;
 
 constexpr double tree_height = 12;      ///< m, of woods without a height
+constexpr double wood_width = 500;      ///< m, of one prism: 10 km from the origin the ground falls 0.8 m across it
 constexpr double canopy_thickness = 1;  ///< m, of roofs without walls
 constexpr double cell_width = 100;      ///< m, of the grid in which parts look for their building
 
@@ -100,36 +102,63 @@ std::vector<bool> outlines_of_parts(const std::vector<Outline>& outlines) {
     return replaced;
 }
 
+/// The ground level with the origin, below the plane that touches the Earth there; flat where a file's metres are.
+class LevelGround {
+public:
+    LevelGround(const PlaceOnEarth& place, const PlaceOnEarth::Extent& extent) {
+        for (const Eigen::Vector2d& corner : {extent.lowest, extent.highest}) {
+            const Eigen::Vector3d placed = place.on_ground(corner);
+            const double square = placed.head<2>().squaredNorm();
+            if (square > farthest_) fall_ = placed.z() / square;
+            farthest_ = std::max(farthest_, square);
+        }
+    }
+    [[nodiscard]] double below(const std::vector<Eigen::Vector2d>& ring) const {
+        double sum = 0;
+        for (const Eigen::Vector2d& corner : ring)
+            sum += fall_ * corner.squaredNorm();
+        return sum / static_cast<double>(ring.size());
+    }
+
+private:
+    double farthest_ = 1, fall_ = 0;  ///< m², m
+};
+
 /// Raises what stands on outlines.
 class OutlineBuilder {
 public:
-    OutlineBuilder(CityFile& file, const CityFileSettings& settings) : file_(file), settings_(settings) {
+    OutlineBuilder(CityFile& file, const CityFileSettings& settings, const LevelGround& level)
+        : file_(file), settings_(settings), level_(level) {
         file.model.materials.front() = settings.material;
     }
     void add(const Outline& outline, double ground);
     std::size_t without_height = 0;
 
 private:
-    void add_trees(const Outline& outline, double ground);
+    void add_trees(const Outline& outline);
 
     CityFile& file_;
     const CityFileSettings& settings_;
+    const LevelGround& level_;
 };
 
-void OutlineBuilder::add_trees(const Outline& outline, double ground) {
-    FoliageVolume foliage;
-    foliage.ring = EarClipper(outline.footprint).bridged_ring();
-    foliage.top = ground + outline.use.top.value_or(tree_height);
-    foliage.base = outline.use.base > 0 ? ground + outline.use.base : crown_base(ground, foliage.top);
-    if (foliage.ring.size() < 3 || foliage.top <= foliage.base)
+void OutlineBuilder::add_trees(const Outline& outline) {
+    const double height = outline.use.top.value_or(tree_height);
+    const double base = outline.use.base > 0 ? outline.use.base : crown_base(0, height);
+    const auto pieces = ring_pieces(EarClipper(outline.footprint).bridged_ring(), wood_width);
+    if (pieces.empty() || height <= base) {
         ++file_.dropped;
-    else
-        file_.model.foliage.push_back(std::move(foliage));
+        return;
+    }
+    for (const std::vector<Eigen::Vector2d>& ring : pieces) {
+        const double ground = level_.below(ring);
+        file_.model.foliage.push_back({ring, ground + base, ground + height});
+    }
 }
 
 void OutlineBuilder::add(const Outline& outline, double ground) {
     if (outline.use.kind == Kind::trees) {
-        add_trees(outline, ground);
+        add_trees(outline);
         return;
     }
     double top = outline.use.top.value_or(settings_.default_height), base = outline.use.base;
@@ -223,7 +252,8 @@ Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::s
     for (Outline& outline : read.outlines)
         grounds.push_back(place_footprint(outline.footprint, *place));
     const std::vector<bool> replaced = outlines_of_parts(read.outlines);
-    OutlineBuilder builder(file, settings);
+    const LevelGround level(*place, extent);
+    OutlineBuilder builder(file, settings, level);
     for (std::size_t i = 0; i < read.outlines.size(); ++i) {
         if (!replaced[i]) builder.add(read.outlines[i], grounds[i]);
         if (file.model.triangles.size() > settings.most_triangles) return too_many_triangles(name, settings);

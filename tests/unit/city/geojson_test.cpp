@@ -105,6 +105,25 @@ TEST(GeoJson, BuildsNoHousesOnCarParksAndLakes) {
     EXPECT_EQ(buildings(named + "," + rest), 2U) << "the one that is named and the tower";
 }
 
+TEST(GeoJson, WideWoodsFollowTheEarth) {
+    const auto file = read_geojson(collection(feature(R"({"natural":"wood"})", square(0.1))));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_GT(file->model.foliage.size(), 100u);
+    double area = 0;
+    for (const FoliageVolume& trees : file->model.foliage) {
+        Eigen::Vector2d lowest = trees.ring.front(), highest = lowest;
+        for (const Eigen::Vector2d& corner : trees.ring) {
+            lowest = lowest.cwiseMin(corner);
+            highest = highest.cwiseMax(corner);
+        }
+        EXPECT_LE((highest - lowest).maxCoeff(), 500);
+        area += (highest - lowest).prod();
+        EXPECT_NEAR(trees.top, 12 - ((lowest + highest) / 2).squaredNorm() / 2 / 6.378e6, 0.1);
+        EXPECT_NEAR(trees.top - trees.base, 9, 1e-9);
+    }
+    EXPECT_NEAR(area / (0.1 * 111'230 * 0.1 * 71'580), 1, 0.01);
+}
+
 TEST(GeoJson, CountsMissingHeightsInOneWarning) {
     CityFileSettings settings;
     settings.default_height = 7;
