@@ -41,7 +41,7 @@ SceneRays::SceneRays(const UrbanScene& scene, const RayTracedSceneSettings& sett
 Decibels SceneRays::crown_loss(const SceneRay& ray, Decibels around) const {
     const CrownLoss& crowns = settings_.crowns;
     if (crowns.factor == 0) return {};
-    const Decibels loss(crowns.db_per_m * foliage_length(scene_.foliage(), ray) * crowns.factor);
+    const Decibels loss(crowns.db_per_m * scene_.length_in_foliage(ray) * crowns.factor);
     return std::clamp(crowns.most * crowns.factor - around, Decibels(0), loss);
 }
 

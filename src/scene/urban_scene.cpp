@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "foliage_tree.hpp"
 #include "plane_merge.hpp"
 #include "triangle_tree.hpp"
 
@@ -128,7 +129,7 @@ struct UrbanScene::Parts {
 
     LocalFrame frame;
     std::vector<std::string> materials;
-    std::vector<FoliageVolume> foliage;
+    FoliageTree foliage;
     std::vector<Eigen::Vector3d> vertices;
     std::vector<CityTriangle> triangles;
     MergedPlanes merged;
@@ -211,7 +212,8 @@ std::size_t UrbanScene::estimated_memory(std::size_t triangles) {
 const LocalFrame& UrbanScene::frame() const { return parts_->frame; }
 std::span<const ScenePlane> UrbanScene::planes() const { return parts_->merged.planes; }
 const std::vector<std::string>& UrbanScene::materials() const { return parts_->materials; }
-const std::vector<FoliageVolume>& UrbanScene::foliage() const { return parts_->foliage; }
+const std::vector<FoliageVolume>& UrbanScene::foliage() const { return parts_->foliage.volumes(); }
+double UrbanScene::length_in_foliage(const SceneRay& ray) const { return parts_->foliage.length(ray); }
 const SceneStatistics& UrbanScene::statistics() const { return parts_->statistics; }
 std::array<Eigen::Vector3d, 3> UrbanScene::triangle(std::uint32_t index) const { return parts_->corners(index); }
 std::uint32_t UrbanScene::plane_of(std::uint32_t triangle) const { return parts_->merged.plane_of[triangle]; }

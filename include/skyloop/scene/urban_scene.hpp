@@ -78,6 +78,8 @@ public:
     [[nodiscard]] std::span<const ScenePlane> planes() const;
     [[nodiscard]] const std::vector<std::string>& materials() const;
     [[nodiscard]] const std::vector<FoliageVolume>& foliage() const;
+    /// Metres of a half-line that lie in its crowns of trees.
+    [[nodiscard]] double length_in_foliage(const SceneRay& ray) const;
     [[nodiscard]] const SceneStatistics& statistics() const;
     /// Corners of a triangle as built, m; triangles are numbered as kept.
     [[nodiscard]] std::array<Eigen::Vector3d, 3> triangle(std::uint32_t index) const;
@@ -102,7 +104,7 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
-/// Metres of a half-line that lie in crowns of trees.
+/// Metres of a half-line that lie in crowns of trees; looks at every one of them.
 double foliage_length(std::span<const FoliageVolume> foliage, const SceneRay& ray);
 
 }  // namespace skyloop

@@ -118,5 +118,40 @@ TEST(Foliage, AgreesWithTheClosedFormOfABoxForAnyRay) {
     EXPECT_GT(crossed, 2'000);
 }
 
+/// Thousands of small woods, a few wide ones, and some that have no inside.
+CityModel woodland() {
+    RandomStream random(7, "woodland");
+    CityModel city;
+    city.add_triangle({Vector3d(0, 0, 0), Vector3d(1, 0, 0), Vector3d(0, 0, 1)}, SurfaceKind::wall);
+    for (int i = 0; i < 3000; ++i) {
+        const double size = i % 500 == 0 ? 700 : 25, base = 4 * random.uniform();
+        const Vector2d middle(3000 * random.normal(), 3000 * random.normal());
+        FoliageVolume trees{{}, base, i % 400 == 1 ? base : base + 20 * random.uniform()};
+        for (int corner = 0; corner < 7 && i % 300 != 2; ++corner)
+            trees.ring.push_back(middle + size * Vector2d(std::cos(corner), std::sin(corner)));
+        city.foliage.push_back(trees);
+    }
+    return city;
+}
+
+TEST(Foliage, TheSceneFindsEveryCrownThatARayPasses) {
+    const CityModel city = woodland();
+    const auto scene = UrbanScene::build(city);
+    ASSERT_TRUE(scene);
+    RandomStream random(8, "rays");
+    int crossed = 0;
+    for (int i = 0; i < 2000; ++i) {
+        Vector3d towards(random.normal(), random.normal(), i % 3 == 0 ? 0 : 0.1 * random.normal());
+        if (i % 50 == 0) towards = {0, 0, 1};
+        if (i % 50 == 1) towards = {0, 1, 0};
+        const SceneRay ray{{4000 * random.normal(), 4000 * random.normal(), 10 * random.uniform()},
+                           towards.normalized()};
+        const double metres = foliage_length(city.foliage, ray);
+        crossed += metres > 0;
+        ASSERT_EQ((*scene)->length_in_foliage(ray), metres) << i;
+    }
+    EXPECT_GT(crossed, 500);
+}
+
 }  // namespace
 }  // namespace skyloop
