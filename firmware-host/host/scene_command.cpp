@@ -75,8 +75,9 @@ SceneViewpoint viewpoint_at(Geodetic place, bool has_height, const UrbanScene& s
         place = to_geodetic(scene.frame().to_ecef(Position<Enu>(view.antenna.x(), view.antenna.y(), view.antenna.z())));
     }
     view.place = place;
-    view.enclosed = sees_no_sky(scene, view.antenna);
-    view.mask = sky_mask(scene, view.antenna);
+    const Eigen::Vector3d free_place = scene.above_surface(view.antenna);
+    view.enclosed = sees_no_sky(scene, free_place);
+    view.mask = sky_mask(scene, free_place);
     return view;
 }
 

@@ -45,7 +45,9 @@ struct CityPlace {
 // to 16 times, and only what is not in line of sight needs them.
 CityPlace city_place(const SkyOptions& options, const World& world, const Trace& trace) {
     const LocalFrame& frame = world.scene->frame();
-    CityPlace place{frame.to_enu(trace.truth.position).vector(), scene_satellites(frame, trace.sky), {}};
+    CityPlace place{world.scene->above_surface(frame.to_enu(trace.truth.position).vector()),
+                    scene_satellites(frame, trace.sky),
+                    {}};
     PathSearchSettings search;
     search.roofs_reflect = search.ground_reflects = options.all_paths;
     search.blocked_only = !options.all_paths;

@@ -115,6 +115,7 @@ CoverageCell cell_at(const CoverageTask& task, const CoverageGrid& grid, std::si
     if (task.scene)
         position.z() = task.scene->ground_at(position.x(), position.y()).value_or(task.scene->statistics().lowest.z());
     position.z() += task.settings.antenna_height.value();
+    if (task.scene) position = task.scene->above_surface(position);
     return {to_geodetic(task.frame.to_ecef(Position<Enu>(position))), position, std::nullopt};
 }
 

@@ -123,7 +123,8 @@ RayTracedScene::RayTracedScene(std::shared_ptr<const UrbanScene> scene, const Ra
 void RayTracedScene::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
     assert(arrivals.satellites.size() == sky.satellites.size());
     const LocalFrame& frame = scene().frame();
-    observer_ = {truth.time, frame.to_enu(truth.position).vector(), frame.to_enu(truth.velocity).vector()};
+    observer_ = {truth.time, scene().above_surface(frame.to_enu(truth.position).vector()),
+                 frame.to_enu(truth.velocity).vector()};
     const LocalFrame antenna(truth.geodetic);
     std::vector<SceneSatellite> satellites;
     satellites.reserve(sky.satellites.size());

@@ -257,6 +257,14 @@ std::optional<double> UrbanScene::top_at(double east, double north) const {
     return ray.origin.z() - hit.distance;
 }
 
+Eigen::Vector3d UrbanScene::above_surface(const Eigen::Vector3d& place) const {
+    constexpr double reach_m = 0.05, clearance_m = 0.005;
+    const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+    const SceneHit hit = first_hit({place + reach_m * up, -up});
+    if (!hit.any() || hit.distance >= reach_m + clearance_m) return place;
+    return place + (reach_m - hit.distance + clearance_m) * up;
+}
+
 std::optional<double> UrbanScene::ground_at(double east, double north) const {
     const SceneRay ray = plumb_line(parts_->statistics, east, north);
     TreeHit found = parts_->tree->nearest(ray);

@@ -57,7 +57,7 @@ public:
 
     /// Of the last epoch, in the sky's order, in the scene's frame.
     [[nodiscard]] const std::vector<SatellitePaths>& paths() const { return paths_; }
-    /// Where the antenna was then, m in the scene's frame.
+    /// Where the antenna was then, m in the scene's frame; on a surface, just above it.
     [[nodiscard]] const Eigen::Vector3d& antenna() const { return observer_.position; }
     [[nodiscard]] const UrbanScene& scene() const { return finder_.scene(); }
     [[nodiscard]] const PathSearchCounters& counters() const { return finder_.counters(); }

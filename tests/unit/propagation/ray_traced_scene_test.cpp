@@ -260,6 +260,21 @@ TEST(RayTracedScene, BelowTheGroundIsNoCellar) {
     EXPECT_NE(below.notice->find("3.0 m below the ground"), std::string::npos) << *below.notice;
 }
 
+TEST(RayTracedScene, AnAntennaOnTheGroundIsUnderTheSky) {
+    for (const double ground : {-0.001, 0.0, 0.04}) {
+        CityModel meadow;
+        meadow.origin = odessa_place;
+        meadow.add_quad(
+            {Eigen::Vector3d(-2e4, -2e4, ground), {2e4, -2e4, ground}, {2e4, 2e4, ground}, {-2e4, 2e4, ground}},
+            SurfaceKind::ground);
+        for (const double elevation : {5.0, 40.0, 89.0}) {
+            const Outcome on = outcome(meadow, plain_settings(SceneProfile::modern), 90, elevation);
+            EXPECT_FALSE(on.notice) << ground;
+            EXPECT_TRUE(on.arrival.line_of_sight) << ground << ' ' << elevation;
+        }
+    }
+}
+
 // ---- The edges themselves.
 
 TEST(SceneEdges, LieWhereTheWallEnds) {

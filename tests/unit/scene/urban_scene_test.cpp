@@ -257,6 +257,19 @@ TEST(UrbanScene, SlopingGroundIsAsHighAsItIs) {
     EXPECT_NEAR(scene->top_at(150, 20).value(), 115, 1e-9);
 }
 
+TEST(UrbanScene, WhatLiesOnASurfaceIsPutJustAboveIt) {
+    CityModel city;
+    city.add_quad({Vector3d(-90, -90, 2), {90, -90, 2}, {90, 90, 2}, {-90, 90, 2}}, SurfaceKind::ground);
+    city.add_quad({Vector3d(0, 0, 12), {9, 0, 12}, {9, 9, 12}, {0, 9, 12}}, SurfaceKind::roof);
+    const auto scene = built(city);
+    EXPECT_NEAR(scene->above_surface({-5, -5, 2}).z(), 2.005, 1e-9);
+    EXPECT_NEAR(scene->above_surface({-5, -5, 1.96}).z(), 2.005, 1e-9);
+    EXPECT_NEAR(scene->above_surface({4, 4, 12.001}).z(), 12.005, 1e-9);
+    for (const Vector3d& place :
+         {Vector3d(-5, -5, 1.9), Vector3d(-5, -5, 2.01), Vector3d(4, 4, 11), Vector3d(99, 0, 2)})
+        EXPECT_EQ(scene->above_surface(place), place);
+}
+
 TEST(UrbanScene, CountsWhatItHolds) {
     CityModel city = some_houses(50);
     city.foliage.push_back({{{0, 0}, {1, 0}, {0, 1}}, 0, 5});
