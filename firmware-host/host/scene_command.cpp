@@ -71,7 +71,7 @@ SceneViewpoint viewpoint_at(Geodetic place, bool has_height, const UrbanScene& s
     view.antenna = scene.frame().to_enu(to_ecef(place)).vector();
     view.ground = scene.ground_at(view.antenna.x(), view.antenna.y());
     if (!has_height) {
-        view.antenna.z() = view.ground.value_or(0) + antenna_above_scene.value();
+        view.antenna.z() = scene.foot_at(view.antenna.x(), view.antenna.y()) + antenna_above_scene.value();
         place = to_geodetic(scene.frame().to_ecef(Position<Enu>(view.antenna.x(), view.antenna.y(), view.antenna.z())));
     }
     view.place = place;

@@ -13,14 +13,12 @@
 namespace skyloop::host {
 namespace {
 
-// --at LAT,LON names a place on a street: its height is that of the ground there.
+// --at LAT,LON names a place on a street: its height is that of the ground there, or of the foot of the buildings.
 void stand_on_ground(Scenario& scenario, const UrbanScene& scene, const std::string& at) {
     auto* fixed = std::get_if<FixedSettings>(&scenario.trajectory);
     if (!fixed || at.empty() || std::count(at.begin(), at.end(), ',') > 1) return;
     Eigen::Vector3d place = scene.frame().to_enu(to_ecef(fixed->at)).vector();
-    const auto ground = scene.ground_at(place.x(), place.y());
-    if (!ground) return;
-    place.z() = *ground + antenna_above_scene.value();
+    place.z() = scene.foot_at(place.x(), place.y()) + antenna_above_scene.value();
     fixed->at.height = to_geodetic(scene.frame().to_ecef(Position<Enu>(place))).height;
 }
 
@@ -41,9 +39,13 @@ Result<World> make_world(const Scenario& asked, const SkyOptions& options, const
     auto loaded = load_scene(scenario, place, CityCache{data_folders().cache});
     if (!loaded) return fail(loaded.error());
     warnings.insert(warnings.end(), loaded->warnings.begin(), loaded->warnings.end());
+    if (loaded->scene) {
+        stand_on_ground(scenario, *loaded->scene, options.run.at);
+        const Geodetic start_place = make_trajectory(scenario.trajectory, start)->at(start).geodetic;
+        if (auto doubt = doubt_of_height(*loaded->scene, start_place)) warnings.push_back(std::move(*doubt));
+    }
     for (const std::string& warning : warnings)
         messages.warning(warning);
-    if (loaded->scene) stand_on_ground(scenario, *loaded->scene, options.run.at);
     auto simulation = make_simulation(
         scenario, {std::move(navigation->source), geoid.get(), start, data_folders(), 0, loaded->scene});
     if (!simulation) return fail(simulation.error());

@@ -69,6 +69,8 @@ Result<void> add_scene(const Scenario& scenario, const DataFolders& data, Assemb
     const Geodetic place = make_trajectory(scenario.trajectory, assembly.start)->at(assembly.start).geodetic;
     auto loaded = load_scene(scenario, place, CityCache{data.cache});
     if (!loaded) return fail(loaded.error());
+    if (loaded->scene)
+        if (auto doubt = doubt_of_height(*loaded->scene, place)) loaded->warnings.push_back(std::move(*doubt));
     assembly.scene = std::move(*loaded);
     const std::vector<std::string>& warnings = assembly.scene.warnings;
     assembly.warnings.insert(assembly.warnings.end(), warnings.begin(), warnings.end());

@@ -90,8 +90,9 @@ double distance_to_scene(const Geodetic& place, const UrbanScene& scene) {
     return away.head<2>().norm();
 }
 
+constexpr double far_m = 2000;
+
 void warn_of_scene(const UrbanScene& scene, const Geodetic& start, std::vector<std::string>& warnings) {
-    constexpr double far_m = 2000;
     const SceneStatistics& s = scene.statistics();
     if (s.not_finite > 0)
         warnings.push_back(
@@ -160,6 +161,18 @@ Result<JoinedCity> read_scene_files(const SceneEntry& entry, const std::optional
         add_part(city, entry.terrain, std::move(terrain->file), terrain->digest);
     }
     return city;
+}
+
+std::optional<std::string> doubt_of_height(const UrbanScene& scene, const Geodetic& start) {
+    constexpr double far_below_m = 20, far_above_m = 300;
+    if (distance_to_scene(start, scene) > far_m) return std::nullopt;
+    const SceneStatistics& s = scene.statistics();
+    const double up = scene.frame().to_enu(to_ecef(start)).vector().z();
+    const bool below = up < s.lowest.z() - far_below_m;
+    if (!below && up <= s.highest.z() + far_above_m) return std::nullopt;
+    return fmt::format(
+        "scene: the antenna starts {:.0f} m {} point of the scene; are the heights of both above the ellipsoid?",
+        below ? s.lowest.z() - up : up - s.highest.z(), below ? "below the lowest" : "above the highest");
 }
 
 std::string scene_description(const std::vector<std::string>& names, const UrbanScene& scene) {

@@ -257,6 +257,26 @@ std::optional<double> UrbanScene::top_at(double east, double north) const {
     return ray.origin.z() - hit.distance;
 }
 
+double UrbanScene::foot_at(double east, double north) const {
+    if (const auto ground = ground_at(east, north)) return *ground;
+    constexpr double around_m = 50;
+    const Eigen::Vector2d place(east, north);
+    std::vector<std::pair<double, double>> boxes;  // how far off, how low
+    boxes.reserve(parts_->triangles.size());
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < parts_->triangles.size(); ++i) {
+        const auto [a, b, c] = parts_->corners(i);
+        const Eigen::Vector3d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+        const Eigen::Vector2d away = (low.head<2>() - place).cwiseMax(place - high.head<2>()).cwiseMax(0);
+        boxes.emplace_back(away.norm(), low.z());
+        nearest = std::min(nearest, away.norm());
+    }
+    double lowest = parts_->statistics.highest.z();
+    for (const auto& [distance, low] : boxes)
+        if (distance <= nearest + around_m) lowest = std::min(lowest, low);
+    return lowest;
+}
+
 Eigen::Vector3d UrbanScene::above_surface(const Eigen::Vector3d& place) const {
     constexpr double reach_m = 0.05, clearance_m = 0.005;
     const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();

@@ -48,6 +48,14 @@ class SceneTest(unittest.TestCase):
             for picture in (top, sky):
                 self.assertIn("<svg", picture.read_text(encoding="utf-8"))
 
+    def test_without_ground_a_place_is_above_the_foot_of_the_buildings(self):
+        with open_folder() as folder:
+            walls = pathlib.Path(folder, "walls.obj")
+            walls.write_text("v 0 0 503\nv 50 0 503\nv 50 0 523\nv 0 0 523\nf 1 2 3 4\n", encoding="ascii")
+            told = json.loads(skyloop("scene", walls, "--origin", "48,11,0", "--at", "47.9999,11.0002", "--json").stdout)
+            self.assertAlmostEqual(told["at"]["up_m"], 504.5, delta=0.01)
+            self.assertLess(told["at"]["open_sky"], 0.8)
+
     def test_check_reads_the_scene(self):
         self.assertIn("scene       demo, ", skyloop("check", "--scene", "demo").stdout)
 

@@ -47,6 +47,10 @@ struct LoadedScene {
 /// allowed or nothing is in it, and as read_scene_files().
 Result<LoadedScene> load_scene(const Scenario& scenario, const Geodetic& start, const CityCache& cache);
 
+/// What to say of an antenna that starts more than 20 m below all of a scene, or 300 m above it: mostly its heights
+/// count from somewhere else. Nothing where it stands farther than 2 km aside.
+std::optional<std::string> doubt_of_height(const UrbanScene& scene, const Geodetic& start);
+
 /// "munich.tar.gz, 38938 triangles, 12104 planes, 15 MB".
 std::string scene_description(const std::vector<std::string>& names, const UrbanScene& scene);
 

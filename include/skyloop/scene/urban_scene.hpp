@@ -97,6 +97,8 @@ public:
     [[nodiscard]] std::optional<double> top_at(double east, double north) const;
     /// Height of the highest ground there, m.
     [[nodiscard]] std::optional<double> ground_at(double east, double north) const;
+    /// The ground there; without any the lowest corner of what stands nearest and within 50 m of that, m.
+    [[nodiscard]] double foot_at(double east, double north) const;
     /// The place itself, but 5 mm above a surface on which it lies or that is up to 5 cm above it: heights are rounded,
     /// and rays that begin in a facet meet it.
     [[nodiscard]] Eigen::Vector3d above_surface(const Eigen::Vector3d& place) const;

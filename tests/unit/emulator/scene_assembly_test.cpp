@@ -1,4 +1,5 @@
 // What buildings a scenario names become in a run.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -105,6 +106,23 @@ TEST(SceneAssembly, MissingAndDamagedFilesAreNamed) {
     ASSERT_FALSE(damaged);
     EXPECT_EQ(damaged.error().code, ErrorCode::input);
     EXPECT_THAT(damaged.error().message, HasSubstr("bad.obj"));
+}
+
+TEST(SceneAssembly, AnAntennaFarBelowOrAboveTheSceneIsAWarning) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "a.obj") << "v 0 0 503\nv 50 0 503\nv 0 0 523\nf 1 2 3\n";
+    const auto warnings = [&](double height) {
+        const auto assembly =
+            with_scene(fmt::format("[scene]\nbuildings = \"{}\"\norigin = [48, 11, 0]\n[trajectory]\n"
+                                   "kind = \"fixed\"\nat = [48, 11, {:.1f}]\n",
+                                   (folder / "a.obj").string(), height));
+        EXPECT_TRUE(assembly) << assembly.error().message;
+        return assembly ? assembly->warnings : std::vector<std::string>();
+    };
+    EXPECT_THAT(warnings(0), Contains(HasSubstr("503 m below the lowest point of the scene")));
+    EXPECT_THAT(warnings(900), Contains(HasSubstr("377 m above the highest point of the scene")));
+    for (const double height : {490, 510, 800})
+        EXPECT_THAT(warnings(height), Not(Contains(HasSubstr("point of the scene"))));
 }
 
 TEST(SceneAssembly, TheDigestCoversTheFiles) {

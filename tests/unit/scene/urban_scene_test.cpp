@@ -257,6 +257,21 @@ TEST(UrbanScene, SlopingGroundIsAsHighAsItIs) {
     EXPECT_NEAR(scene->top_at(150, 20).value(), 115, 1e-9);
 }
 
+TEST(UrbanScene, TheFootIsThatOfTheNearestHouseWhereNoGroundIs) {
+    CityModel city;
+    const auto wall = [&](double east, double low, double high) {
+        city.add_quad({Vector3d(east, 0, low), {east, 9, low}, {east, 9, high}, {east, 0, high}}, SurfaceKind::wall);
+    };
+    wall(0, 503, 520);
+    wall(20, 505, 507);
+    wall(400, 460, 490);
+    EXPECT_NEAR(built(city)->foot_at(25, 30), 503, 1e-9);
+    EXPECT_NEAR(built(city)->foot_at(390, 5), 460, 1e-9);
+    EXPECT_NEAR(built(city)->foot_at(9'000, 5), 460, 1e-9);
+    city.add_quad({Vector3d(-90, -90, 499), {90, -90, 499}, {90, 90, 499}, {-90, 90, 499}}, SurfaceKind::ground);
+    EXPECT_NEAR(built(city)->foot_at(25, 30), 499, 1e-9);
+}
+
 TEST(UrbanScene, WhatLiesOnASurfaceIsPutJustAboveIt) {
     CityModel city;
     city.add_quad({Vector3d(-90, -90, 2), {90, -90, 2}, {90, 90, 2}, {-90, 90, 2}}, SurfaceKind::ground);
