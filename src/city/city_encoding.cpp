@@ -104,8 +104,14 @@ void write_model(CityWriter& out, const CityModel& model) {
             out.number(v.x());
             out.number(v.y());
         });
-        for (const double part : {trees.base, trees.top})
+        for (const double part : {trees.base, trees.top, trees.ground.value_or(0)})
             out.number(part);
+        out.number(static_cast<std::uint8_t>(trees.ground ? 1 : 0));
+    });
+    out.list(model.grounded, [&](const GroundedBuilding& building) {
+        out.number(building.first);
+        out.number(building.count);
+        out.number(building.ground);
     });
 }
 
@@ -124,9 +130,19 @@ FoliageVolume read_foliage(CityReader& in) {
         const double east = in.number<double>(), north = in.number<double>();
         return Eigen::Vector2d(east, north);
     });
-    for (double* part : {&trees.base, &trees.top})
+    double ground = 0;
+    for (double* part : {&trees.base, &trees.top, &ground})
         *part = in.number<double>();
+    if (in.number<std::uint8_t>() != 0) trees.ground = ground;
     return trees;
+}
+
+GroundedBuilding read_grounded(CityReader& in) {
+    GroundedBuilding building;
+    building.first = in.number<std::uint32_t>();
+    building.count = in.number<std::uint32_t>();
+    building.ground = in.number<double>();
+    return building;
 }
 
 CityModel read_model(CityReader& in) {
@@ -140,7 +156,8 @@ CityModel read_model(CityReader& in) {
     });
     in.list(model.triangles, 14, [&] { return read_triangle(in); });
     in.list(model.materials, 8, [&] { return in.text(); });
-    in.list(model.foliage, 24, [&] { return read_foliage(in); });
+    in.list(model.foliage, 33, [&] { return read_foliage(in); });
+    in.list(model.grounded, 16, [&] { return read_grounded(in); });
     return model;
 }
 
@@ -173,6 +190,8 @@ bool consistent(const CityModel& model) {
         for (const std::uint32_t corner : t.corners)
             if (corner >= model.vertices.size()) return false;
     }
+    for (const GroundedBuilding& building : model.grounded)
+        if (std::uint64_t{building.first} + building.count > model.vertices.size()) return false;
     return true;
 }
 

@@ -152,7 +152,7 @@ void OutlineBuilder::add_trees(const Outline& outline) {
     }
     for (const std::vector<Eigen::Vector2d>& ring : pieces) {
         const double ground = level_.below(ring);
-        file_.model.foliage.push_back({ring, ground + base, ground + height});
+        file_.model.foliage.push_back({ring, ground + base, ground + height, ground});
     }
 }
 
@@ -167,10 +167,12 @@ void OutlineBuilder::add(const Outline& outline, double ground) {
     if (!outline.use.top && top <= base) top = base + settings_.metres_per_level;
     const std::uint8_t material =
         outline.use.material.empty() ? std::uint8_t{0} : file_.model.material_index(outline.use.material);
+    const auto first = static_cast<std::uint32_t>(file_.model.vertices.size());
     if (!add_extruded(file_.model, outline.footprint, ground + base, ground + top, material)) {
         ++file_.dropped;
         return;
     }
+    file_.model.grounded.push_back({first, static_cast<std::uint32_t>(file_.model.vertices.size()) - first, ground});
     ++file_.buildings;
     if (!outline.use.top) ++without_height;
 }

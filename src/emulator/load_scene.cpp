@@ -10,6 +10,7 @@
 #include "skyloop/base/digest.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/scene/generated_city.hpp"
+#include "skyloop/scene/stand_on_terrain.hpp"
 
 namespace skyloop {
 namespace {
@@ -42,7 +43,14 @@ void join_city(CityModel& whole, const CityModel& part) {
             corner = moved({corner.x(), corner.y(), trees.base}).head<2>();
         trees.base += shift;
         trees.top += shift;
+        if (trees.ground) *trees.ground += shift;
         whole.foliage.push_back(std::move(trees));
+    }
+    for (GroundedBuilding building : part.grounded) {
+        const Eigen::Vector3d& corner = part.vertices.at(building.first);
+        building.ground = moved({corner.x(), corner.y(), building.ground}).z();
+        building.first += first;
+        whole.grounded.push_back(building);
     }
 }
 
@@ -74,6 +82,23 @@ Result<CityReading> read_terrain(const std::filesystem::path& path, const CityFi
         return fail(ErrorCode::input, fmt::format("{}: is of format {}; expected terrain as a height grid (.asc)",
                                                   path.string(), grid->file.format));
     return grid;
+}
+
+// What counts its heights from the ground stands on the terrain.
+Result<void> put_on_terrain(JoinedCity& city, const CityModel& terrain, const std::filesystem::path& path) {
+    const auto counts = [](const FoliageVolume& trees) { return trees.ground.has_value(); };
+    if (city.model.grounded.empty() && std::ranges::none_of(city.model.foliage, counts)) return {};
+    CityModel ground;
+    ground.origin = city.model.origin;
+    join_city(ground, terrain);
+    const auto scene = UrbanScene::build(ground);
+    if (!scene) return fail(scene.error().code, fmt::format("{}: {}", path.string(), scene.error().message));
+    if (const std::size_t beyond = stand_on_terrain(city.model, **scene); beyond > 0)
+        city.warnings.push_back(
+            fmt::format("{} buildings and woods stand beyond {}: they stay at the height of the "
+                        "frame's origin",
+                        beyond, path.filename().string()));
+    return {};
 }
 
 // Where the trajectory starts, less the height of an antenna that is carried there.
@@ -158,6 +183,7 @@ Result<JoinedCity> read_scene_files(const SceneEntry& entry, const std::optional
     if (!entry.terrain.empty()) {
         auto terrain = read_terrain(entry.terrain, reading, kept);
         if (!terrain) return fail(terrain.error());
+        if (const auto put = put_on_terrain(city, terrain->file.model, entry.terrain); !put) return fail(put.error());
         add_part(city, entry.terrain, std::move(terrain->file), terrain->digest);
     }
     return city;

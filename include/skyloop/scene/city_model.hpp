@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,10 +30,18 @@ struct CityTriangle {
 struct FoliageVolume {
     std::vector<Eigen::Vector2d> ring;  ///< east, north, m; not closed, either sense
     double base = 0, top = 0;           ///< up, m
+    /// Up, m: where the ground was taken to be from which base and top count; absent where the file told all heights.
+    std::optional<double> ground{};
 };
 
 /// Where crowns begin of trees that stand on `ground`, m: trunks, a quarter of the height, let signals through.
 inline double crown_base(double ground, double top) { return ground + (top - ground) / 4; }
+
+/// A building whose heights count from the ground, wherever that is: vertices in a row.
+struct GroundedBuilding {
+    std::uint32_t first = 0, count = 0;  ///< of CityModel::vertices; no other building has them
+    double ground = 0;                   ///< up, m: where the ground was taken to be
+};
 
 /// Everything that stands around: coordinates are metres east, north and up in the LocalFrame at `origin`.
 struct CityModel {
@@ -42,6 +51,7 @@ struct CityModel {
     /// Names of surface_material(); the first is what triangles are made of that no file tells more of.
     std::vector<std::string> materials{"concrete"};
     std::vector<FoliageVolume> foliage;
+    std::vector<GroundedBuilding> grounded;  ///< those of files that tell no height of their ground
 
     /// The index of a material, added when it is new; 0 when there are 256 already.
     std::uint8_t material_index(std::string_view name);

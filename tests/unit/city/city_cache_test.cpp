@@ -121,10 +121,13 @@ TEST(CityEncoding, NoByteCanBeChangedOrLeftOut) {
     file.anchor = MapAnchor{"EPSG:28992", true, 1, 2, 3};
     file.model.add_triangle({Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 0, 1)},
                             SurfaceKind::roof, file.model.material_index("glass"));
-    file.model.foliage.push_back({{{0, 0}, {1, 0}, {0, 1}}, 0, 9});
+    file.model.foliage.push_back({{{0, 0}, {1, 0}, {0, 1}}, 0, 9, -2});
+    file.model.grounded.push_back({0, 3, 1.5});
     const std::string bytes = encode_city(file, 7);
     const auto decoded = decode_city(bytes, 7);
     ASSERT_TRUE(decoded);
+    EXPECT_EQ(decoded->model.foliage.at(0).ground, -2);
+    EXPECT_EQ(decoded->model.grounded.at(0).ground, 1.5);
     EXPECT_EQ(encode_city(*decoded, 7), bytes);
     EXPECT_FALSE(decode_city(bytes, 8)) << "another key";
     EXPECT_FALSE(decode_city(bytes + "x", 7));

@@ -125,6 +125,26 @@ TEST(SceneAssembly, AnAntennaFarBelowOrAboveTheSceneIsAWarning) {
         EXPECT_THAT(warnings(height), Not(Contains(HasSubstr("point of the scene"))));
 }
 
+constexpr const char* house_on_a_hill = R"({"type":"FeatureCollection","features":[{"type":"Feature",
+    "properties":{"building":"yes","height":12},"geometry":{"type":"Polygon","coordinates":
+    [[[11.0002,48],[11.0004,48],[11.0004,48.0002],[11.0002,48.0002],[11.0002,48]]]}}]})";
+
+TEST(SceneAssembly, OutlinesStandOnTheTerrain) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "town.geojson") << house_on_a_hill;
+    std::ofstream(folder / "hill.asc")
+        << "ncols 2\nnrows 2\nxllcorner 10.99\nyllcorner 47.99\ncellsize 0.01\n542 542\n542 542\n";
+    const auto assembly =
+        with_scene(fmt::format("[scene]\nbuildings = \"{}\"\nterrain = \"{}\"\norigin = [48, 11, 510]\n"
+                               "[trajectory]\nkind = \"fixed\"\nat = [48, 11, 543.5]\n",
+                               (folder / "town.geojson").string(), (folder / "hill.asc").string()));
+    ASSERT_TRUE(assembly) << assembly.error().message;
+    const UrbanScene& scene = *assembly->scene.scene;
+    EXPECT_NEAR(scene.top_at(22, 10).value(), 44, 0.05);
+    EXPECT_NEAR(scene.ground_at(0, 0).value(), 32, 0.05);
+    EXPECT_NEAR(scene.statistics().lowest.z(), 32, 0.2) << "no wall begins at the origin's height";
+}
+
 TEST(SceneAssembly, TheDigestCoversTheFiles) {
     const test::TemporaryFolder folder;
     const auto digest = [&](const char* top) {
