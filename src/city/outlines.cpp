@@ -152,6 +152,7 @@ void OutlineBuilder::add_trees(const Outline& outline) {
     }
     for (const std::vector<Eigen::Vector2d>& ring : pieces) {
         const double ground = level_.below(ring);
+        if (!(ground + base < ground + height)) continue;  // so low that rounding leaves nothing
         file_.model.foliage.push_back({ring, ground + base, ground + height, ground});
     }
 }

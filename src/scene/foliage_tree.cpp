@@ -8,6 +8,7 @@ namespace skyloop {
 namespace {
 
 constexpr std::size_t most_in_leaf = 4;
+constexpr double farthest_tree = 1e8;  // m, as far as corners of triangles may lie
 constexpr double crown_margin = 1e-3;  // m: a ray along a side is inside for all that rounding does
 
 }  // namespace
@@ -46,8 +47,10 @@ FoliageTree::FoliageTree(std::vector<FoliageVolume> volumes) : volumes_(std::mov
     std::vector<Box> boxes;
     for (std::uint32_t i = 0; i < volumes_.size(); ++i) {
         boxes.push_back(box_around(volumes_[i]));
-        const bool finite = boxes.back().lowest.allFinite() && boxes.back().highest.allFinite();
-        if (volumes_[i].ring.size() >= 3 && volumes_[i].top > volumes_[i].base && finite) order_.push_back(i);
+        // Written so that what is no number fails.
+        const bool near =
+            boxes.back().lowest.minCoeff() >= -farthest_tree && boxes.back().highest.maxCoeff() <= farthest_tree;
+        if (volumes_[i].ring.size() >= 3 && volumes_[i].top > volumes_[i].base && near) order_.push_back(i);
     }
     if (!order_.empty()) add_nodes(order_, boxes);
 }

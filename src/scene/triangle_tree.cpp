@@ -178,7 +178,10 @@ Result<std::unique_ptr<TriangleTree>> TriangleTree::build(std::span<const Eigen:
     rtcSetSceneFlags(parts->scene, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(parts->scene, RTC_BUILD_QUALITY_MEDIUM);
     RTCGeometry geometry = rtcNewGeometry(parts->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    if (fill(geometry, vertices, triangles)) {
+    // Woods alone have no triangle: the scene stays empty.
+    if (triangles.empty()) {
+        rtcCommitScene(parts->scene);
+    } else if (fill(geometry, vertices, triangles)) {
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(parts->scene, geometry);
         rtcCommitScene(parts->scene);

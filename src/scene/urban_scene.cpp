@@ -84,11 +84,6 @@ Result<KeptTriangles> kept_triangles(const CityModel& city) {
                                                       triangle.material, city.materials.size()));
         kept.look_at(triangle, corners);
     }
-    if (kept.triangles.empty())
-        return fail(ErrorCode::input,
-                    fmt::format("the city has no triangle to build on: {} given, {} without area, {} with a corner "
-                                "that is no number or farther than 100,000 km",
-                                city.triangles.size(), kept.statistics.degenerate, kept.statistics.not_finite));
     kept.statistics.triangles = kept.triangles.size();
     kept.statistics.sloped_share = kept.wall_area > 0 ? kept.sloped_area / kept.wall_area : 0;
     return kept;
@@ -189,8 +184,16 @@ Result<std::shared_ptr<const UrbanScene>> UrbanScene::build(const CityModel& cit
     auto kept = kept_triangles(city);
     if (!kept) return fail(kept.error());
     auto parts = std::make_unique<Parts>(city);
+    SceneStatistics& counts = kept->statistics;
+    counts.lowest = counts.lowest.cwiseMin(parts->foliage.lowest());
+    counts.highest = counts.highest.cwiseMax(parts->foliage.highest());
+    if (!(counts.lowest.x() <= counts.highest.x()))
+        return fail(ErrorCode::input,
+                    fmt::format("the city has no tree and no triangle to build on: {} given, {} without area, "
+                                "{} with a corner that is no number or farther than 100,000 km",
+                                city.triangles.size(), counts.degenerate, counts.not_finite));
     parts->triangles = std::move(kept->triangles);
-    parts->statistics = kept->statistics;
+    parts->statistics = counts;
     parts->merged = merge_planes(parts->vertices, parts->triangles, settings.merge_tolerance);
     auto tree = TriangleTree::build(parts->vertices, parts->triangles);
     if (!tree) return fail(tree.error());
@@ -271,6 +274,11 @@ double UrbanScene::foot_at(double east, double north) const {
         boxes.emplace_back(away.norm(), low.z());
         nearest = std::min(nearest, away.norm());
     }
+    for (const FoliageVolume& trees : foliage())
+        for (const Eigen::Vector2d& corner : trees.ring) {
+            boxes.emplace_back((corner - place).norm(), trees.ground.value_or(trees.base));
+            nearest = std::min(nearest, boxes.back().first);
+        }
     double lowest = parts_->statistics.highest.z();
     for (const auto& [distance, low] : boxes)
         if (distance <= nearest + around_m) lowest = std::min(lowest, low);

@@ -53,7 +53,7 @@ struct SceneStatistics {
     std::array<std::size_t, 3> triangles_of_kind{};  ///< by SurfaceKind
     std::size_t degenerate = 0;                      ///< triangles without area, left out
     std::size_t not_finite = 0;                      ///< triangles with a corner that is no number, left out
-    Eigen::Vector3d lowest, highest;                 ///< corners of the box around it, m
+    Eigen::Vector3d lowest, highest;                 ///< corners of the box around it and its trees, m
     double sloped_share = 0;   ///< of the wall area that stands more than 0.1° from the vertical, 0 … 1
     std::size_t memory = 0;    ///< of the tree, the planes and the tables, bytes
     double build_seconds = 0;  ///< on the steady clock, for messages alone
@@ -63,8 +63,8 @@ struct SceneStatistics {
 class UrbanScene {
 public:
     /// Builds the tree and merges coplanar facets. Triangles without area or with a corner that is no number are left
-    /// out and counted. Fails with `input` when no triangle is left, and when it would take more memory than allowed,
-    /// with the estimate.
+    /// out and counted. Fails with `input` when neither a triangle is left nor a tree, and when it would take more
+    /// memory than allowed, with the estimate.
     static Result<std::shared_ptr<const UrbanScene>> build(const CityModel& city, const SceneSettings& settings = {});
     /// Bytes that a scene of so many triangles takes while it is built, within a third.
     static std::size_t estimated_memory(std::size_t triangles);

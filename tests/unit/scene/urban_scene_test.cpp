@@ -272,6 +272,21 @@ TEST(UrbanScene, TheFootIsThatOfTheNearestHouseWhereNoGroundIs) {
     EXPECT_NEAR(built(city)->foot_at(25, 30), 499, 1e-9);
 }
 
+TEST(UrbanScene, WoodsAloneAreAScene) {
+    CityModel city;
+    city.foliage.push_back({{{-700, -30}, {800, -30}, {800, 30}, {-700, 30}}, 8, 17, 5});
+    const auto scene = built(city);
+    EXPECT_EQ(scene->statistics().triangles, 0U);
+    EXPECT_EQ(scene->statistics().lowest, Vector3d(-700, -30, 8));
+    EXPECT_EQ(scene->statistics().highest, Vector3d(800, 30, 17));
+    EXPECT_FALSE(scene->blocked({{0, 0, 5}, {0, 0, 1}}));
+    EXPECT_FALSE(scene->ground_at(0, 0));
+    EXPECT_EQ(scene->foot_at(0, 0), 5);
+    EXPECT_EQ(scene->length_in_foliage({{0, 0, 5}, {0, 0, 1}}), 9);
+    city.foliage.front().ring.clear();
+    EXPECT_FALSE(UrbanScene::build(city)) << "nothing stands anywhere";
+}
+
 TEST(UrbanScene, WhatLiesOnASurfaceIsPutJustAboveIt) {
     CityModel city;
     city.add_quad({Vector3d(-90, -90, 2), {90, -90, 2}, {90, 90, 2}, {-90, 90, 2}}, SurfaceKind::ground);
@@ -340,8 +355,8 @@ TEST(UrbanScene, TrianglesThatAreNoneAreLeftOutAndCounted) {
 
 TEST(UrbanScene, ACityOfNothingIsRefused) {
     EXPECT_EQ(why_not(CityModel{}),
-              "the city has no triangle to build on: 0 given, 0 without area, 0 with a corner that is no number or "
-              "farther than 100,000 km");
+              "the city has no tree and no triangle to build on: 0 given, 0 without area, 0 with a corner that is no "
+              "number or farther than 100,000 km");
     CityModel city;
     city.add_triangle({Vector3d(1, 1, 1), {2, 2, 2}, {4, 4, 4}}, SurfaceKind::wall);
     city.add_triangle({Vector3d(not_a_number, 1, 1), {2, 0, 2}, {4, 4, 4}}, SurfaceKind::wall);
