@@ -81,6 +81,27 @@ SceneViewpoint viewpoint_at(Geodetic place, bool has_height, const UrbanScene& s
     return view;
 }
 
+// Without --origin a model lies where it says. One that says nothing is taken to --at, the demo always; what tells no
+// height of its ground stays at height 0.
+void place_guessed(JoinedCity& city, const Geodetic& at, bool has_height) {
+    const std::string &format = city.formats.front(), &name = city.names.front();
+    const Geodetic &origin = city.model.origin, nowhere{};
+    const bool demo = format == demo_scene_name;
+    if (demo || (origin.latitude == nowhere.latitude && origin.longitude == nowhere.longitude)) {
+        city.model.origin = below_antenna(at);
+        if (!demo)
+            city.warnings.push_back(
+                fmt::format("{} does not say where it lies; its origin is taken to be {} m below --at; "
+                            "--origin tells another",
+                            name, antenna_above_scene.value()));
+    } else if (has_height && !city.model.grounded.empty()) {
+        city.warnings.push_back(
+            fmt::format("{} does not say how high its ground lies; it is taken to be at height {:g}; "
+                        "--origin LAT,LON,HEIGHT tells another",
+                        name, origin.height.above_ellipsoid.value()));
+    }
+}
+
 Result<SceneReport> report_of(const SceneOptions& options) {
     const auto entry = scene_entry(options);
     if (!entry) return fail(entry.error());
@@ -90,13 +111,14 @@ Result<SceneReport> report_of(const SceneOptions& options) {
         if (!place) return fail(place.error());
         at = *place;
     }
-    auto city = read_scene_files(*entry, at, CityCache{data_folders().cache});
+    const bool has_height = std::count(options.at.begin(), options.at.end(), ',') > 1;
+    auto city = read_scene_files(*entry, std::nullopt, CityCache{data_folders().cache});
     if (!city) return fail(city.error());
+    if (at && !entry->reading.origin) place_guessed(*city, *at, has_height);
     const SceneSettings settings{SceneSettings().merge_tolerance, entry->memory_limit_mb << 20};
     auto scene = UrbanScene::build(city->model, settings);
     if (!scene) return fail(scene.error().code, fmt::format("{}: {}", options.file, scene.error().message));
     SceneReport report{std::move(*city), std::move(*scene), std::nullopt};
-    const bool has_height = std::count(options.at.begin(), options.at.end(), ',') > 1;
     if (at) report.viewpoint = viewpoint_at(*at, has_height, *report.scene);
     return report;
 }

@@ -101,12 +101,6 @@ Result<void> put_on_terrain(JoinedCity& city, const CityModel& terrain, const st
     return {};
 }
 
-// Where the trajectory starts, less the height of an antenna that is carried there.
-Geodetic below_antenna(Geodetic start) {
-    start.height.above_ellipsoid = start.height.above_ellipsoid - antenna_above_scene;
-    return start;
-}
-
 // Metres between a place and the box around a scene, over ground; 0 within.
 double distance_to_scene(const Geodetic& place, const UrbanScene& scene) {
     const Eigen::Vector3d at = scene.frame().to_enu(to_ecef(place)).vector();
@@ -129,16 +123,25 @@ void warn_of_scene(const UrbanScene& scene, const Geodetic& start, std::vector<s
             distance / 1000, scene.frame().origin().latitude.deg(), scene.frame().origin().longitude.deg()));
 }
 
-// Coordinates that say nothing of the Earth lie where the run starts, which is a guess.
+// Coordinates that say nothing of the Earth lie where the run starts, and so does the ground of outlines without a
+// terrain, which are guesses.
 void warn_of_guessed_origin(const SceneEntry& entry, const JoinedCity& city, std::vector<std::string>& warnings) {
     constexpr std::array<std::string_view, 4> local{"obj", "ply", "gltf", "mitsuba"};
+    constexpr std::array<std::string_view, 3> outlines{"osm", "osm.pbf", "geojson"};
     if (entry.reading.origin) return;
-    for (std::size_t i = 0; i < city.names.size(); ++i)
-        if (std::find(local.begin(), local.end(), city.formats[i]) != local.end())
+    for (std::size_t i = 0; i < city.names.size(); ++i) {
+        const auto is_one_of = [&](const auto& formats) { return std::ranges::count(formats, city.formats[i]) > 0; };
+        if (is_one_of(local))
             warnings.push_back(
                 fmt::format("scene: {} does not say where it lies; its origin is taken to be {} m below the start of "
                             "the trajectory; scene.origin tells another",
                             city.names[i], antenna_above_scene.value()));
+        else if (is_one_of(outlines) && entry.terrain.empty())
+            warnings.push_back(fmt::format(
+                "scene: {} does not say how high its ground lies; it is taken to be {} m below the start of "
+                "the trajectory; scene.origin tells another, and scene.terrain its shape",
+                city.names[i], antenna_above_scene.value()));
+    }
 }
 
 // Of the opposite hand, by the antenna of the preset: a telephone's is polarised linearly and hears both alike.

@@ -56,6 +56,40 @@ class SceneTest(unittest.TestCase):
             self.assertAlmostEqual(told["at"]["up_m"], 504.5, delta=0.01)
             self.assertLess(told["at"]["open_sky"], 0.8)
 
+    def test_a_place_counts_in_a_model_that_lies_on_the_earth(self):
+        corners = ((46.4775, 30.7328), (46.4775, 30.7331), (46.4779, 30.7331), (46.4779, 30.7328))
+        nodes = "".join(f'<node id="{k}" lat="{lat}" lon="{lon}"/>' for k, (lat, lon) in enumerate(corners, 1))
+        way = "".join(f'<nd ref="{k}"/>' for k in (1, 2, 3, 4, 1)) + '<tag k="building" v="yes"/><tag k="height" v="20"/>'
+        with open_folder() as folder:
+            town = pathlib.Path(folder, "town.osm")
+            town.write_text(f'<osm version="0.6">{nodes}<way id="9">{way}</way></osm>', encoding="ascii")
+
+            def told(*more):
+                answer = skyloop("scene", town, "--json", *more)
+                return json.loads(answer.stdout), answer.stderr
+            on_roof, warned = told("--at", "46.4777,30.73295,25")
+            self.assertAlmostEqual(on_roof["at"]["up_m"], 25, delta=0.01)
+            self.assertAlmostEqual(on_roof["at"]["east_m"], 0, delta=0.1)
+            self.assertEqual(on_roof["at"]["open_sky"], 1)
+            self.assertIn("does not say how high its ground lies", warned)
+            street, warned = told("--at", "46.4777,30.7326")
+            self.assertAlmostEqual(street["at"]["up_m"], 1.5, delta=0.01)
+            self.assertAlmostEqual(street["at"]["east_m"], -26.9, delta=0.1)
+            self.assertEqual(warned, "")
+            ran = skyloop("simulate", "--scene", town, "--at", "46.4777,30.7326,600", "--start", "2026-03-01T09:00:00Z",
+                          "--duration", 1, "--out", pathlib.Path(folder, "run"))
+            self.assertIn("town.osm does not say how high its ground lies", ran.stderr)
+
+    def test_a_model_in_local_coordinates_is_taken_to_the_place(self):
+        with open_folder() as folder:
+            walls = pathlib.Path(folder, "walls.obj")
+            walls.write_text("v 0 10 0\nv 50 10 0\nv 50 10 20\nv 0 10 20\nf 1 2 3 4\n", encoding="ascii")
+            answer = skyloop("scene", walls, "--at", "46,30,100", "--json")
+            told = json.loads(answer.stdout)
+            self.assertAlmostEqual(told["at"]["up_m"], 1.5, delta=0.01)
+            self.assertAlmostEqual(told["origin"][2], 98.5, delta=0.01)
+            self.assertIn("walls.obj does not say where it lies", answer.stderr)
+
     def test_check_reads_the_scene(self):
         self.assertIn("scene       demo, ", skyloop("check", "--scene", "demo").stdout)
 

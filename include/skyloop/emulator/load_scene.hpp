@@ -16,6 +16,12 @@ namespace skyloop {
 /// Above the frame of a scene that has no origin stands the antenna at the start of the trajectory, as a pedestrian's.
 inline constexpr Metres antenna_above_scene{1.5};
 
+/// The place `antenna_above_scene` below another.
+inline Geodetic below_antenna(Geodetic place) {
+    place.height.above_ellipsoid = place.height.above_ellipsoid - antenna_above_scene;
+    return place;
+}
+
 /// All files of a scene in one frame.
 struct JoinedCity {
     CityModel model;
