@@ -75,6 +75,7 @@ void ActiveFaults::apply(Edit<Value> Fault::*edit, Value& value, const Trace& tr
         FaultMoment now = moment(running, trace.truth.time);
         now.truth = &trace.truth;
         now.sky = &trace.sky;
+        now.lost_cycles = &lost_cycles_;
         (running.fault.*edit)(value, now);
     }
 }
@@ -88,7 +89,12 @@ Value ActiveFaults::collected(Edit<Value> Fault::*edit, GpsTime now) const {
 }
 
 void ActiveFaults::edit_arrivals(Trace& trace) { apply(&Fault::arrivals, trace.arrivals, trace); }
-void ActiveFaults::edit_observations(Trace& trace) { apply(&Fault::observations, trace.epoch.observations, trace); }
+void ActiveFaults::edit_observations(Trace& trace) {
+    Observations& observations = trace.epoch.observations;
+    lost_cycles_.follow(observations);
+    apply(&Fault::observations, observations, trace);
+    lost_cycles_.apply(observations, trace.truth.time);
+}
 void ActiveFaults::edit_epoch(Trace& trace) { apply(&Fault::epoch, trace.epoch, trace); }
 void ActiveFaults::edit_report(firmware::NavigationState& state, const Trace& trace) {
     apply(&Fault::report, state, trace);

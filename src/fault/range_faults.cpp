@@ -55,9 +55,9 @@ FaultKind pseudorange_ramp() {
     return kind;
 }
 
-// Breaks the counts of cycles again and again.
+// Breaks the counts of cycles again and again; what they have lost is kept by the receiver, whose counts they are.
 //
-// State: of each signal the cycles that have been lost, and the random numbers that say when.
+// State: of each signal the random numbers that say when.
 class CycleSlips {
 public:
     CycleSlips(const Parameters& parameters, FaultContext context, SignalSelector selector)
@@ -68,41 +68,34 @@ public:
           flagged_(parameters.flag("flagged")) {}
 
     void operator()(Observations& observations, const FaultMoment& moment) {
+        if (moment.lost_cycles == nullptr) return;
         const double passed = last_ ? difference(moment.now, *last_).value() : 0;
         last_ = moment.now;
         const double chance = 1 - std::exp(-per_second_ * moment.strength * passed);
         for (Observation& o : observations.signals) {
             if (!o.carrier_phase || !selector_.takes(o.signal) || !takes(o.satellite)) continue;
-            Count& count = count_of(o);
-            if (o.slipped) count.cycles = 0;  // it counts anew by itself
-            if (count.numbers.uniform() < chance) {
-                const double size = 1 + std::floor(count.numbers.uniform() * most_);
-                count.cycles += count.numbers.uniform() < 0.5 ? -size : size;
-                count.since = moment.now;
+            RandomStream& numbers = numbers_of(o);
+            if (numbers.uniform() < chance) {
+                const double size = 1 + std::floor(numbers.uniform() * most_);
+                moment.lost_cycles->slip(o, moment.now, numbers.uniform() < 0.5 ? -size : size, flagged_);
                 o.slipped = o.slipped || flagged_;
             }
-            *o.carrier_phase += count.cycles;
-            if (flagged_ && count.since) o.lock_time = std::min(o.lock_time, difference(moment.now, *count.since));
+            if (!flagged_) moment.lost_cycles->hide(o);
         }
     }
 
 private:
-    struct Count {
-        RandomStream numbers;
-        double cycles = 0;
-        std::optional<GpsTime> since{};  // the last slip
-    };
     [[nodiscard]] bool takes(SatelliteId satellite) const {
         Arrival arrival;
         arrival.id = satellite;
         return selector_.takes(arrival);
     }
-    Count& count_of(const Observation& o) {
+    RandomStream& numbers_of(const Observation& o) {
         const std::pair key{o.satellite, o.signal};
-        const auto found = counts_.find(key);
-        if (found != counts_.end()) return found->second;
+        const auto found = numbers_.find(key);
+        if (found != numbers_.end()) return found->second;
         const std::string name = to_string(o.satellite) + "." + std::to_string(static_cast<int>(o.signal));
-        return counts_.emplace(key, Count{context_.stream(name)}).first->second;
+        return numbers_.emplace(key, context_.stream(name)).first->second;
     }
 
     FaultContext context_;
@@ -110,7 +103,7 @@ private:
     double per_second_, most_;
     bool flagged_;
     std::optional<GpsTime> last_;
-    std::map<std::pair<SatelliteId, Signal>, Count> counts_;
+    std::map<std::pair<SatelliteId, Signal>, RandomStream> numbers_;
 };
 
 std::vector<ParameterSpec> cycle_slip_parameters() {
@@ -127,7 +120,9 @@ std::vector<ParameterSpec> cycle_slip_parameters() {
 FaultKind cycle_slips() {
     FaultKind kind;
     kind.name = "cycle_slips";
-    kind.effect = "Carrier phases lose or win whole cycles at random, which breaks fixed ambiguities.";
+    kind.effect =
+        "Carrier phases lose or win whole cycles at random, which breaks fixed ambiguities. The end of the fault "
+        "gives nothing back: a count stays off until its signal is tracked anew.";
     kind.cause = "Vibration, shocks and foliage that the carrier loop does not bear, scintillation.";
     kind.parameters = cycle_slip_parameters();
     kind.make = [](const Parameters& parameters, const FaultContext& context) -> Result<Fault> {

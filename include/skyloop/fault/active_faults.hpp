@@ -19,7 +19,8 @@ struct FaultSpan {
 
 /// Applies what is under way, in the order in which it began.
 ///
-/// State: the occurrences with theirs. An occurrence that has ended works on while its ramp out lasts.
+/// State: the occurrences with theirs, and the cycles that they have cost. An occurrence that has ended works on while
+/// its ramp out lasts.
 class ActiveFaults {
 public:
     void begin(Fault fault, const FaultSpan& span);
@@ -32,7 +33,8 @@ public:
     [[nodiscard]] std::optional<GpsTime> next_faded() const;
     /// Of one occurrence: 0 … 1 along its ramps; 0 when it is not at work.
     [[nodiscard]] double strength(std::size_t entry, int occurrence, GpsTime now) const;
-    [[nodiscard]] bool empty() const { return running_.empty(); }
+    /// Nothing is under way, and nothing left of what was.
+    [[nodiscard]] bool empty() const { return running_.empty() && lost_cycles_.empty(); }
 
     /// What an epoch is edited with; `trace` tells what is true, and its time.
     void edit_arrivals(Trace& trace);
@@ -57,6 +59,7 @@ private:
     [[nodiscard]] Value collected(Edit<Value> Fault::*edit, GpsTime now) const;
 
     std::vector<Running> running_;
+    LostCycles lost_cycles_;
     std::vector<firmware::ReceiverEvent> events_;
 };
 

@@ -11,6 +11,7 @@
 #include "firmware/firmware_faults.hpp"
 #include "skyloop/base/random.hpp"
 #include "skyloop/base/result.hpp"
+#include "skyloop/fault/lost_cycles.hpp"
 #include "skyloop/fault/parameters.hpp"
 #include "skyloop/fault/wire_conditions.hpp"
 #include "skyloop/flow/trace.hpp"
@@ -33,6 +34,7 @@ struct FaultMoment {
     double strength = 1;                ///< 0 … 1 along its ramps
     const TruthState* truth = nullptr;  ///< of the epoch; null for edits of the receiver, the wire and the pace
     const SkyView* sky = nullptr;       ///< as `truth`; its satellites stand as those of the arrivals
+    LostCycles* lost_cycles = nullptr;  ///< of the receiver, for edits of observations; else null
 };
 
 /// How simulated time passes against the clocks of the device under test.

@@ -197,9 +197,29 @@ TEST(SatelliteFaults, CyclesSlipAtTheirRateByWholeCycles) {
     }
     const double expected = signals / 60. * 6;
     EXPECT_NEAR(slips, expected, 5 * std::sqrt(expected));
-    const Trace after = run.until(81), sound = clean.until(81);
-    for (std::size_t i = 0; i < after.epoch.observations.signals.size(); ++i)
-        EXPECT_EQ(after.epoch.observations.signals[i].carrier_phase, sound.epoch.observations.signals[i].carrier_phase);
+}
+
+// The receiver goes on counting from where it is: the end of the cause mends nothing, and breaks nothing.
+TEST(SatelliteFaults, SlippedCountsStaySlippedAfterTheFault) {
+    for (const bool flagged : {true, false}) {
+        FaultyRun clean = faulty_run_at_rest(false), run = faulty_run_at_rest(false);
+        run.add(signal_fault("cycle_slips", {{"slips_per_minute", 30.}, {"flagged", flagged}}), 20, 40);
+        const auto lost = [&](double t) {
+            const Trace trace = run.until(t), sound = clean.until(t);
+            std::vector<double> cycles;
+            for (std::size_t i = 0; i < trace.epoch.observations.signals.size(); ++i) {
+                const Observation &o = trace.epoch.observations.signals[i], &s = sound.epoch.observations.signals[i];
+                cycles.push_back(std::round(o.carrier_phase.value_or(0) - s.carrier_phase.value_or(0)));
+                EXPECT_TRUE(t < 40 || !o.slipped) << to_string(o.satellite);
+                EXPECT_LE(o.lock_time, s.lock_time);
+            }
+            return cycles;
+        };
+        const std::vector<double> last = lost(39);
+        EXPECT_GT(std::count_if(last.begin(), last.end(), [](double cycles) { return cycles != 0; }), 5);
+        EXPECT_EQ(lost(40), last);
+        EXPECT_EQ(lost(60), last);
+    }
 }
 
 TEST(SatelliteFaults, ErrorsThatAreNotToldAreRefused) {

@@ -86,7 +86,9 @@ public:
         Measurement measured = measurement_.measure(trace.arrivals, now, receiver_);
         trace.measurement = std::move(measured.terms);
         trace.epoch.observations = std::move(measured.observations);
+        lost_cycles_.follow(trace.epoch.observations);
         edit(&Fault::observations, trace.epoch.observations, trace, since_start);
+        lost_cycles_.apply(trace.epoch.observations, now);
         trace.epoch.fix = navigation_.solve(trace.epoch.observations, receiver_);
         for (const Arrival& arrival : trace.arrivals.satellites)
             if (arrival.cn0)
@@ -113,7 +115,8 @@ private:
     void edit(Edit<Value> Fault::*which, Value& value, const Trace& trace, double since_start) {
         for (TimedFault& timed : faults_) {
             if (since_start < timed.from || since_start >= timed.to || !(timed.fault.*which)) continue;
-            FaultMoment moment{trace.truth.time, Seconds(since_start - timed.from), 1, &trace.truth, &trace.sky};
+            FaultMoment moment{trace.truth.time, Seconds(since_start - timed.from), 1, &trace.truth, &trace.sky,
+                               &lost_cycles_};
             (timed.fault.*which)(value, moment);
         }
     }
@@ -126,6 +129,7 @@ private:
     NavigationEngine navigation_;
     ReceiverSettings receiver_;
     std::vector<TimedFault> faults_;
+    LostCycles lost_cycles_;
     double next_ = 0;
 };
 
