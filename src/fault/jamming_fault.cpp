@@ -18,6 +18,8 @@ namespace {
 constexpr DbHz nominal_cn0{45.1};
 // By which a jammer that is ramped grows, evenly in dB.
 constexpr double ramp_range = 60;
+// A loop integrates for so long at least, and an estimate of C/N0 remembers no longer, s.
+constexpr double shortest_average = 0.02, longest_average = 1;
 // The carriers of all systems lie between these, Hz: the band that a sweep covers.
 constexpr double sweep_from = 1166e6, sweep_to = 1611e6;
 
@@ -31,26 +33,43 @@ struct Jammer {
     std::optional<double> sweep;     // s for one pass over the band
     double sweep_duty = 0.2;         // of a pass, for which it hits a carrier
     double pulse_duty = 1;
-    std::optional<double> pulse;  // s from one pulse to the next; absent: faster than any loop
+    std::optional<double> pulse;  // s from one pulse to the next; absent: the average of them
 };
 
-bool sweep_hits(const Jammer& jammer, Hertz carrier, Seconds since_start) {
-    if (!jammer.sweep) return true;
+// The time that an epoch stands for, s since the start of the fault: what a jammer does in it is averaged, as loops and
+// estimates of C/N0 average it.
+struct JammedTime {
+    double from = 0, to = 0;
+};
+
+// Of what comes once in each period and is on for the first `duty` of it, the share of that time for which it is on.
+double share_on(const JammedTime& time, double period, double duty, double phase) {
+    const auto on_until = [&](double t) {  // periods' worth
+        const double passed = t / period + phase, whole = std::floor(passed);
+        return whole * duty + std::min(passed - whole, duty);
+    };
+    return std::clamp((on_until(time.to) - on_until(time.from)) * period / (time.to - time.from), 0.0, 1.0);
+}
+
+double sweep_share(const Jammer& jammer, Hertz carrier, const JammedTime& time) {
+    if (!jammer.sweep) return 1;
     const double there = (carrier.value() - sweep_from) / (sweep_to - sweep_from);
-    const double phase = since_start.value() / *jammer.sweep - there;
-    return std::abs(std::remainder(phase, 1.0)) <= jammer.sweep_duty / 2;
+    return share_on(time, *jammer.sweep, jammer.sweep_duty, jammer.sweep_duty / 2 - there);
 }
 
-bool pulse_is_on(const Jammer& jammer, Seconds since_start) {
-    if (!jammer.pulse) return true;
-    const double phase = since_start.value() / *jammer.pulse;
-    return phase - std::floor(phase) < jammer.pulse_duty;
+double pulse_share(const Jammer& jammer, const JammedTime& time) {
+    return jammer.pulse ? share_on(time, *jammer.pulse, jammer.pulse_duty, 0) : jammer.pulse_duty;
 }
 
-// J over a signal of nominal power, dB, averaged over pulses that loops do not see one by one.
+// An instant of the jammer.
+struct JammedEpoch {
+    const FaultMoment& moment;
+    JammedTime time;
+};
+
+// J over a signal of nominal power, dB, while the jammer is on.
 double jammer_to_nominal(const Jammer& jammer, Hertz carrier, const FaultMoment& moment) {
-    double ratio = jammer.j_to_s.value_or(0) - ramp_range * (1 - moment.strength);
-    if (!jammer.pulse) ratio += 10 * std::log10(jammer.pulse_duty);
+    const double ratio = jammer.j_to_s.value_or(0) - ramp_range * (1 - moment.strength);
     if (!jammer.place) return ratio;
     const double distance = (jammer.place->seen_from(*moment.truth) - moment.truth->position).length().value();
     const double waves = std::max(distance, 1.0) * carrier.value() / speed_of_light;
@@ -59,19 +78,34 @@ double jammer_to_nominal(const Jammer& jammer, Hertz carrier, const FaultMoment&
 
 // What the jammer takes on top of `before`, which others have taken: it raises the noise floor for every satellite
 // alike, and a signal of nominal power stands for them all.
-Decibels jammer_loss(const Jammer& jammer, Hertz carrier, const FaultMoment& moment, Decibels before) {
-    if (moment.strength <= 0 || !sweep_hits(jammer, carrier, moment.since_start)) return Decibels(0);
+Decibels jammer_loss(const Jammer& jammer, Hertz carrier, const JammedEpoch& epoch, Decibels before) {
+    const double share = sweep_share(jammer, carrier, epoch.time) * pulse_share(jammer, epoch.time);
+    if (epoch.moment.strength <= 0 || share <= 0) return Decibels(0);
     const DbHz clear = nominal_cn0 - DbHz(before.value());
-    const Decibels ratio(jammer_to_nominal(jammer, carrier, moment));
+    const Decibels ratio(jammer_to_nominal(jammer, carrier, epoch.moment) + 10 * std::log10(share));
     return Decibels((clear - cn0_under_interference(clear, ratio, {rejection_quality(jammer.kind)})).value());
 }
+
+// The time from an epoch to the next, which is taken to come as soon as this one has come after the one before.
+class EpochClock {
+public:
+    JammedTime next(Seconds since_start) {
+        const double now = since_start.value();
+        const double period = last_ ? std::clamp(now - *last_, shortest_average, longest_average) : longest_average;
+        last_ = now;
+        return {now, now + period};
+    }
+
+private:
+    std::optional<double> last_;
+};
 
 // The largest rise of the noise floor, in the band of L1 and in that of L2 and L5.
 struct NoiseRise {
     Decibels upper, lower;
 };
 
-NoiseRise jam(Arrivals& arrivals, const Jammer& jammer, const FaultMoment& moment) {
+NoiseRise jam(Arrivals& arrivals, const Jammer& jammer, const JammedEpoch& epoch) {
     constexpr Hertz between_bands(1.4e9);
     NoiseRise most;
     for (Arrival& arrival : arrivals.satellites) {
@@ -80,7 +114,7 @@ NoiseRise jam(Arrivals& arrivals, const Jammer& jammer, const FaultMoment& momen
         arrival.interference_loss += weaken(arrival, [&](const SignalArrival& signal) {
             if (!jammer.selector.takes(signal.signal)) return Decibels(0);
             const Hertz carrier = signal.carrier.value() > 0 ? signal.carrier : Hertz(carrier_frequency_l1);
-            const Decibels loss = jammer_loss(jammer, carrier, moment, before);
+            const Decibels loss = jammer_loss(jammer, carrier, epoch, before);
             Decibels& band = carrier < between_bands ? most.lower : most.upper;
             band = std::max(band, before + loss);
             return loss;
@@ -135,10 +169,11 @@ Result<Fault> make_jamming(const Parameters& parameters, const FaultContext&) {
     if (const auto error = read_times(parameters, jammer)) return fail(*error);
     Fault fault;
     const auto rise = std::make_shared<NoiseRise>();
-    fault.arrivals = [jammer, rise](Arrivals& arrivals, const FaultMoment& moment) {
+    fault.arrivals = [jammer, rise, clock = EpochClock()](Arrivals& arrivals, const FaultMoment& moment) mutable {
         *rise = {};
+        const JammedTime time = clock.next(moment.since_start);
         if (jammer.place && moment.truth == nullptr) return;
-        if (pulse_is_on(jammer, moment.since_start)) *rise = jam(arrivals, jammer, moment);
+        *rise = jam(arrivals, jammer, {moment, time});
     };
     fault.epoch = [rise](Epoch& epoch, const FaultMoment&) {
         FrontEnd& front = epoch.front_end;
@@ -154,11 +189,12 @@ std::vector<ParameterSpec> jamming_parameters() {
             place_parameter("jammer_at", false, "where the jammer stands, in place of j_to_s_db: degrees, metres"),
             number_parameter("eirp_dbw", std::nullopt, -80, 60, "dBW that a jammer at a place radiates"),
             word_parameter("spectrum", "matched", {"narrow", "matched", "wide"}, "its spectrum against the signals'"),
-            number_parameter("sweep_s", std::nullopt, 1e-3, 3600, "s for one pass from 1166 to 1611 MHz"),
+            number_parameter("sweep_s", std::nullopt, 1e-3, 3600,
+                             "s for one pass from 1166 to 1611 MHz; epochs see the share"),
             number_parameter("sweep_duty", std::nullopt, 0.001, 1, "of a pass, for which it hits a carrier; 0.2"),
             number_parameter("pulse_duty", std::nullopt, 1e-4, 1, "of the time, for which it is on"),
             number_parameter("pulse_s", std::nullopt, 1e-3, 3600,
-                             "s from pulse to pulse; not given: so fast that the loops see the average")};
+                             "s from pulse to pulse, of which epochs see the share; not given: the average")};
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ TEST(ReceptionFaults, TwoJammersAddTheirPowers) {
 
 TEST(ReceptionFaults, JammersPulseAndSweep) {
     const FaultValues pulsed{{"j_to_s_db", 60.}, {"pulse_s", 10.}, {"pulse_duty", 0.3}};
-    EXPECT_LT(jammed_cn0(pulsed, 2.9), 10);
+    EXPECT_LT(jammed_cn0(pulsed, 1.9), 10);
     EXPECT_NEAR(jammed_cn0(pulsed, 3.1), 45, 1e-9);
     EXPECT_LT(jammed_cn0(pulsed, 10.1), 10);
     // L1 lies at 0.92 of the band, and the sweep passes it once in 100 s, for 20 s.
@@ -113,6 +113,34 @@ TEST(ReceptionFaults, JammersPulseAndSweep) {
     EXPECT_LT(jammed_cn0(swept, 92), 10);
     EXPECT_LT(jammed_cn0(swept, 0), 10);
     EXPECT_NEAR(jammed_cn0(swept, 10), 45, 1e-9);
+}
+
+// Whatever the phase of its pulses or passes against the epochs: of fast ones the epochs see the average.
+TEST(ReceptionFaults, FastPulsesAndSweepsAreAveraged) {
+    const double mean = jammed_cn0({{"j_to_s_db", 60.}, {"pulse_duty", 0.1}});
+    for (const double period : {0.001, 0.02, 0.1, 0.5})
+        for (const double phase : {0., 0.005, 0.05, 0.099, 20.3})
+            EXPECT_NEAR(jammed_cn0({{"j_to_s_db", 60.}, {"pulse_duty", 0.1}, {"pulse_s", period}}, phase), mean, 1e-6)
+                << period << " " << phase;
+    const double swept = jammed_cn0({{"j_to_s_db", 60.}, {"pulse_duty", 0.2}});
+    for (const double phase : {0., 0.0005, 0.0317, 20.3})
+        EXPECT_NEAR(jammed_cn0({{"j_to_s_db", 60.}, {"sweep_s", 0.001}}, phase), swept, 1e-6) << phase;
+}
+
+// Ten epochs a second see single pulses of half a second, and the edge of one as its share.
+TEST(ReceptionFaults, EpochsAverageOverTheirOwnPeriod) {
+    const ArrivalBench bench;
+    const Fault fault = signal_fault("jamming", {{"j_to_s_db", 60.}, {"pulse_s", 1.}, {"pulse_duty", 0.55}});
+    std::vector<double> cn0;
+    for (int epoch = 0; epoch < 20; ++epoch)
+        cn0.push_back(bench.after(fault, 0.1 * epoch).satellites[0].cn0->value());
+    const double on = jammed_cn0({{"j_to_s_db", 60.}}), half = jammed_cn0({{"j_to_s_db", 60.}, {"pulse_duty", 0.5}});
+    for (const int epoch : {1, 2, 3, 4, 10, 14})
+        EXPECT_NEAR(cn0[static_cast<std::size_t>(epoch)], on, 1e-6) << epoch;
+    EXPECT_NEAR(cn0[5], half, 1e-3);
+    EXPECT_NEAR(cn0[15], half, 1e-3);
+    for (const int epoch : {6, 9, 16, 19})
+        EXPECT_NEAR(cn0[static_cast<std::size_t>(epoch)], 45, 1e-6) << epoch;
 }
 
 TEST(ReceptionFaults, AJammerAtAPlaceWeakensWithTheSquareOfItsDistance) {
