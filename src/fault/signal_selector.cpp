@@ -39,10 +39,12 @@ std::optional<Error> read_sky(const Parameters& parameters, SignalSelector& sele
     const auto from = parameters.optional_number("azimuth_from_deg"), to = parameters.optional_number("azimuth_to_deg");
     if (from.has_value() != to.has_value())
         return Error{ErrorCode::usage, "a sector has one end; expected both azimuth_from_deg and azimuth_to_deg"};
-    if (from && std::remainder(*from - *to, 360.0) == 0 && std::abs(*from - *to) < 360)
+    // Once round is told by numbers that lie 360 apart; other numbers of one direction are no sector.
+    const bool all_round = from && std::abs(*from - *to) == 360;
+    if (from && !all_round && std::remainder(*from - *to, 360.0) == 0)
         return Error{ErrorCode::usage,
                      fmt::format("the sector begins and ends at {:g}°; expected two directions", *from)};
-    if (from && std::abs(*from - *to) < 360) selector.azimuth = {Angle::degrees(*from), Angle::degrees(*to)};
+    if (from && !all_round) selector.azimuth = {Angle::degrees(*from), Angle::degrees(*to)};
     const double low = parameters.optional_number("elevation_from_deg").value_or(-90);
     const double high = parameters.optional_number("elevation_to_deg").value_or(90);
     if (low > high)

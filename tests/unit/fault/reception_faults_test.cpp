@@ -28,6 +28,9 @@ TEST(ReceptionFaults, OutageTakesWhatIsSelected) {
     EXPECT_EQ(left_after({{"azimuth_from_deg", -60.}, {"azimuth_to_deg", 20.}}), 7);
     EXPECT_EQ(left_after({{"azimuth_from_deg", 20.}, {"azimuth_to_deg", 300.}}), 3);
     EXPECT_EQ(left_after({{"azimuth_from_deg", 0.}, {"azimuth_to_deg", 360.}}), 0);
+    EXPECT_EQ(left_after({{"azimuth_from_deg", 180.}, {"azimuth_to_deg", -180.}}), 0);
+    EXPECT_EQ(left_after({{"azimuth_from_deg", 300.}, {"azimuth_to_deg", -340.}}), 7) << "as from 300 to 20";
+    EXPECT_EQ(left_after({{"azimuth_from_deg", -340.}, {"azimuth_to_deg", 300.}}), 3);
     EXPECT_EQ(left_after({{"elevation_to_deg", 20.}}), 7);
     EXPECT_EQ(left_after({{"elevation_from_deg", 20.}, {"elevation_to_deg", 50.}}), 6);
 }
@@ -55,6 +58,9 @@ TEST(ReceptionFaults, OutageFadesWhileItIsRamped) {
 
 TEST(ReceptionFaults, SelectorsThatContradictEachOtherAreRefused) {
     EXPECT_THAT(refusal_of("outage", {{"azimuth_from_deg", 10.}}), HasSubstr("one end"));
+    EXPECT_THAT(refusal_of("outage", {{"azimuth_from_deg", -350.}, {"azimuth_to_deg", 350.}}), "");
+    EXPECT_THAT(refusal_of("outage", {{"azimuth_from_deg", -360.}, {"azimuth_to_deg", 360.}}),
+                HasSubstr("two directions"));
     EXPECT_THAT(refusal_of("outage", {{"azimuth_from_deg", 10.}, {"azimuth_to_deg", 10.}}),
                 HasSubstr("two directions"));
     EXPECT_THAT(refusal_of("outage", {{"elevation_from_deg", 30.}, {"elevation_to_deg", 20.}}), HasSubstr("above"));
