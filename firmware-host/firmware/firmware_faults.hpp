@@ -47,6 +47,7 @@ struct ForgetConfiguration {};
 /// The speed of its first UART is another one, as after a mistaken command of somebody else.
 struct ForceBaud {
     std::uint32_t baud = 9600;  ///< 0: that of before, unless it has been given another or was rebooted since
+    bool given_back = false;    ///< the speed was forced before, too: on the same condition as 0
 };
 /// What happens to a receiver once.
 using ReceiverEvent = std::variant<Reboot, RestartNavigation, ForgetConfiguration, ForceBaud>;

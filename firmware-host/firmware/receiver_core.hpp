@@ -75,7 +75,7 @@ private:
     [[nodiscard]] std::vector<Bytes> answers_of(UbxMessageId polled, PortId port);
     void report(const NavigationState& state);
     void forget_configuration(GpsTime now);
-    void force_baud(std::uint32_t baud, GpsTime now);
+    void force_baud(const ForceBaud& wanted, GpsTime now);
     void change_speeds_at_once(GpsTime now);
 
     // Output.

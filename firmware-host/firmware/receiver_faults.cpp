@@ -34,7 +34,7 @@ void Receiver::Core::happen(const ReceiverEvent& event, GpsTime now) {
                               restart_navigation(Forgotten::of(e.kind), now, board_.timing.signal_restart);
                           },
                           [&](const ForgetConfiguration&) { forget_configuration(now); },
-                          [&](const ForceBaud& e) { force_baud(e.baud, now); }},
+                          [&](const ForceBaud& e) { force_baud(e, now); }},
                event);
 }
 
@@ -48,15 +48,15 @@ void Receiver::Core::forget_configuration(GpsTime now) {
     change_speeds_at_once(now);
 }
 
-void Receiver::Core::force_baud(std::uint32_t baud, GpsTime now) {
+void Receiver::Core::force_baud(const ForceBaud& wanted, GpsTime now) {
     const auto current = static_cast<std::uint32_t>(store_.value(key::uart1_baudrate));
-    if (baud == 0) {
-        const bool holds = forced_speed_ && forced_speed_->forced == current;
+    const bool holds = forced_speed_ && forced_speed_->forced == current;
+    if (wanted.baud == 0) {
         if (holds) store_.set(in_ram, key::uart1_baudrate, forced_speed_->before);
         forced_speed_.reset();
-    } else {
-        forced_speed_ = ForcedSpeed{baud, forced_speed_ ? forced_speed_->before : current};
-        store_.set(in_ram, key::uart1_baudrate, baud);
+    } else if (holds || !wanted.given_back) {
+        forced_speed_ = ForcedSpeed{wanted.baud, holds ? forced_speed_->before : current};
+        store_.set(in_ram, key::uart1_baudrate, wanted.baud);
     }
     adopt_settings();
     change_speeds_at_once(now);

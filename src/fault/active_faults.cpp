@@ -1,6 +1,7 @@
 #include "skyloop/fault/active_faults.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 namespace skyloop {
@@ -8,6 +9,13 @@ namespace {
 
 void append(std::vector<firmware::ReceiverEvent>& events, const std::vector<firmware::ReceiverEvent>& more) {
     events.insert(events.end(), more.begin(), more.end());
+}
+
+// At which a fault has the line run; nothing: it leaves it alone.
+std::optional<std::uint32_t> forced_speed(const Fault& fault) {
+    for (const firmware::ReceiverEvent& event : fault.at_start)
+        if (const auto* forced = std::get_if<firmware::ForceBaud>(&event)) return forced->baud;
+    return std::nullopt;
 }
 
 }  // namespace
@@ -28,10 +36,26 @@ std::vector<firmware::ReceiverEvent> ActiveFaults::settle(GpsTime now) {
             ++running;
             continue;
         }
-        append(events_, running->fault.at_end);
+        const Fault over = std::move(running->fault);
         running = running_.erase(running);
+        if (forced_speed(over))
+            give_speed_back(over, static_cast<std::size_t>(running - running_.begin()));
+        else
+            append(events_, over.at_end);
     }
     return std::exchange(events_, {});
+}
+
+// The line runs as the youngest of those that force its speed has it.
+// @param place which the fault had among those that are running
+void ActiveFaults::give_speed_back(const Fault& over, std::size_t place) {
+    for (std::size_t i = running_.size(); i-- > 0;) {
+        const auto speed = forced_speed(running_[i].fault);
+        if (!speed) continue;
+        if (i < place) events_.emplace_back(firmware::ForceBaud{*speed, true});
+        return;
+    }
+    append(events_, over.at_end);
 }
 
 std::optional<GpsTime> ActiveFaults::next_faded() const {

@@ -52,6 +52,7 @@ private:
         FaultSpan span;
         std::optional<GpsTime> end;
     };
+    void give_speed_back(const Fault& over, std::size_t place);
     [[nodiscard]] static FaultMoment moment(const Running& running, GpsTime now);
     template <class Value>
     void apply(Edit<Value> Fault::*edit, Value& value, const Trace& trace);

@@ -140,8 +140,12 @@ TEST(FirmwareFaults, GivesTheSpeedOfBeforeBackOnceAndNotOverAReboot) {
     EXPECT_EQ(baud(), 9600U);
     r.receiver.happen(ForceBaud{19200}, r.now);
     EXPECT_EQ(baud(), 19200U);
+    r.receiver.happen(ForceBaud{9600, true}, r.now);
+    EXPECT_EQ(baud(), 9600U);
     r.receiver.happen(ForceBaud{0}, r.now);
     EXPECT_EQ(baud(), 38400U);
+    r.receiver.happen(ForceBaud{9600, true}, r.now);
+    EXPECT_EQ(baud(), 38400U) << "it has been given another";
     r.receiver.happen(ForceBaud{0}, r.now);
     EXPECT_EQ(baud(), 38400U);
     r.receiver.happen(ForceBaud{9600}, r.now);
