@@ -18,6 +18,13 @@ inline std::vector<FaultKind> all_kinds_of(std::initializer_list<std::vector<Fau
     return all;
 }
 
+/// The same kinds, as those that are there or are not.
+inline std::vector<FaultKind> without_strength(std::vector<FaultKind> kinds) {
+    for (FaultKind& kind : kinds)
+        kind.has_strength = false;
+    return kinds;
+}
+
 std::vector<FaultKind> reception_fault_kinds();  ///< outage, antenna, interference
 std::vector<FaultKind> spoofing_fault_kinds();   ///< false signals
 std::vector<FaultKind> satellite_fault_kinds();  ///< clocks, records, the air

@@ -63,6 +63,8 @@ Result<Command> checked_live_fault(ParameterMap members, std::string_view source
     members.emplace("kind", *name);
     const CheckedParameters checked = check_parameters(specs, members);
     if (!checked.mistakes.empty()) return fail(mistakes_error(checked.mistakes));
+    if (const auto mistakes = ramp_mistakes(*kind, checked.parameters); !mistakes.empty())
+        return fail(mistakes_error(mistakes));
     ParameterMap values = checked.parameters.values();
     if (checked.parameters.text("name").empty()) values["name"] = *name;
     command.parameters = Parameters(std::move(values));

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "catalogue_parts.hpp"
@@ -17,6 +19,15 @@ const FaultKind* find_fault_kind(std::string_view name) {
     const auto found =
         std::find_if(kinds.begin(), kinds.end(), [&](const FaultKind& kind) { return kind.name == name; });
     return found == kinds.end() ? nullptr : &*found;
+}
+
+std::vector<ParameterMistake> ramp_mistakes(const FaultKind& kind, const Parameters& values) {
+    std::vector<ParameterMistake> mistakes;
+    for (const char* key : {"ramp_in_s", "ramp_out_s"})
+        if (!kind.has_strength && values.optional_number(key).value_or(0) > 0)
+            mistakes.push_back({key, fmt::format("is {:g}, and {} is there or is not; expected no ramp",
+                                                 *values.optional_number(key), kind.name)});
+    return mistakes;
 }
 
 }  // namespace skyloop

@@ -84,9 +84,9 @@ std::string kinds_markdown() {
     for (const FaultKind& kind : fault_kinds()) {
         if (before == nullptr || before->layer != kind.layer) page += layer_heading(kind.layer);
         before = &kind;
-        page += fmt::format("### {}\n\n{}{} In the world: {}\n\n{}", kind.name, kind.effect,
-                            kind.measuring_receivers_only ? " (`modern` only.)" : "", kind.cause,
-                            parameter_table(kind.parameters));
+        page += fmt::format("### {}\n\n{}{}{} In the world: {}\n\n{}", kind.name, kind.effect,
+                            kind.measuring_receivers_only ? " (`modern` only.)" : "",
+                            kind.has_strength ? "" : " (No ramps.)", kind.cause, parameter_table(kind.parameters));
     }
     return page;
 }

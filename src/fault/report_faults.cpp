@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "catalogue_parts.hpp"
 #include "edit_shortcuts.hpp"
 
 namespace skyloop {
@@ -220,67 +221,69 @@ std::vector<ParameterSpec> rtk_parameters() {
             number_parameter("accuracy_m", 0.3, 0.001, 1000, "horizontal accuracy that is told, 1 σ, m")};
 }
 
-std::vector<FaultKind> old_and_empty_kinds() {
+std::vector<FaultKind> untrue_report_kinds() {
     using enum FaultLayer;
-    return {{"freeze",
-             solution,
-             "Position and velocity stay as they are while the time goes on.",
-             "Firmware that hangs in its navigation while its output goes on.",
-             {word_parameter("velocity", "kept", {"kept", "zero"}, "the velocity of before, or none")},
-             make_freeze},
-            {"stale_position",
-             solution,
-             "The last position is sent on with quality 0 and without the flag of a fix.",
-             "Receivers that keep their last place in view after the loss; naive drivers take it for a new one.",
-             {},
-             make_stale_position},
-            {"zero_position",
-             solution,
-             "Latitude and longitude are 0 while the flag of a fix is set.",
-             "Interference: receivers that report a fix before they have a place (ArduPilot #33142).",
-             {word_parameter("type", "3d", fix_type_words(true), "type of fix that is told")},
-             make_zero_position}};
+    return without_strength(
+        {{"freeze",
+          solution,
+          "Position and velocity stay as they are while the time goes on.",
+          "Firmware that hangs in its navigation while its output goes on.",
+          {word_parameter("velocity", "kept", {"kept", "zero"}, "the velocity of before, or none")},
+          make_freeze},
+         {"stale_position",
+          solution,
+          "The last position is sent on with quality 0 and without the flag of a fix.",
+          "Receivers that keep their last place in view after the loss; naive drivers take it for a new one.",
+          {},
+          make_stale_position},
+         {"zero_position",
+          solution,
+          "Latitude and longitude are 0 while the flag of a fix is set.",
+          "Interference: receivers that report a fix before they have a place (ArduPilot #33142).",
+          {word_parameter("type", "3d", fix_type_words(true), "type of fix that is told")},
+          make_zero_position},
+         {"wrong_fix_type",
+          solution,
+          "The type of fix is told wrong; the solution stays.",
+          "Firmware that reckons on without satellites and says 3D, or drivers' mistakes with it.",
+          {word_parameter("type", "2d", fix_type_words(false), "type of fix that is told")},
+          make_wrong_fix_type}});
 }
 
-std::vector<FaultKind> claim_kinds() {
+std::vector<FaultKind> rtk_kinds() {
+    return {{"rtk_transition", FaultLayer::solution,
+             "The solution falls back to another type and steps with it, and back at the end.",
+             "Corrections that stop, or ambiguities that are lost: RTK fixed becomes float (PX4 #21555).",
+             rtk_parameters(), make_rtk_transition}};
+}
+
+std::vector<FaultKind> pair_and_count_kinds() {
     using enum FaultLayer;
-    return {
-        {"wrong_fix_type",
-         solution,
-         "The type of fix is told wrong; the solution stays.",
-         "Firmware that reckons on without satellites and says 3D, or drivers' mistakes with it.",
-         {word_parameter("type", "2d", fix_type_words(false), "type of fix that is told")},
-         make_wrong_fix_type},
-        {"rtk_transition", solution, "The solution falls back to another type and steps with it, and back at the end.",
-         "Corrections that stop, or ambiguities that are lost: RTK fixed becomes float (PX4 #21555).", rtk_parameters(),
-         make_rtk_transition},
-        {"heading_lost",
-         solution,
-         "The vector between the antennas of a pair is gone.",
-         "One of the two antennas is shaded, or its corrections do not arrive.",
-         {},
-         make_heading_lost},
-        {"heading_flipped",
-         solution,
-         "The vector between the antennas of a pair points the other way.",
-         "Ambiguities fixed to wrong numbers on a short baseline, or antennas connected the wrong way round.",
-         {},
-         make_heading_flipped},
-        {"satellites_misreported",
-         solution,
-         "The number of satellites in use is told wrong.",
-         "Counts of signals instead of satellites, or of what is in view.",
-         {whole_number_parameter("count", 0, 0, 40, "how many are told")},
-         make_satellites_misreported}};
+    return without_strength(
+        {{"heading_lost",
+          solution,
+          "The vector between the antennas of a pair is gone.",
+          "One of the two antennas is shaded, or its corrections do not arrive.",
+          {},
+          make_heading_lost},
+         {"heading_flipped",
+          solution,
+          "The vector between the antennas of a pair points the other way.",
+          "Ambiguities fixed to wrong numbers on a short baseline, or antennas connected the wrong way round.",
+          {},
+          make_heading_flipped},
+         {"satellites_misreported",
+          solution,
+          "The number of satellites in use is told wrong.",
+          "Counts of signals instead of satellites, or of what is in view.",
+          {whole_number_parameter("count", 0, 0, 40, "how many are told")},
+          make_satellites_misreported}});
 }
 
 }  // namespace
 
 std::vector<FaultKind> report_fault_kinds() {
-    std::vector<FaultKind> all = old_and_empty_kinds();
-    for (FaultKind& kind : claim_kinds())
-        all.push_back(std::move(kind));
-    return all;
+    return all_kinds_of({untrue_report_kinds, rtk_kinds, pair_and_count_kinds});
 }
 
 std::vector<FaultKind> epoch_fault_kinds() {

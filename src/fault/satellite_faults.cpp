@@ -150,6 +150,7 @@ FaultKind unhealthy() {
         };
         return fault;
     };
+    kind.has_strength = false;
     return kind;
 }
 

@@ -247,6 +247,7 @@ FaultKind spoof_flapping() {
                        number_parameter("duty", 0.5, 0.001, 0.999, "of the period, for which it indicates"),
                        word_parameter("indication", "indicated", {"indicated", "several"}, "what it says")};
     kind.make = make_spoof_flapping;
+    kind.has_strength = false;
     return kind;
 }
 

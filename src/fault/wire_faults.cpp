@@ -255,7 +255,10 @@ std::vector<FaultKind> wire_fault_kinds() {
     add_damaged_messages(kinds);
     add_late_bytes(kinds);
     add_disorder(kinds);
-    add_broken_wires(kinds);
+    std::vector<FaultKind> broken;
+    add_broken_wires(broken);
+    for (FaultKind& kind : without_strength(std::move(broken)))
+        kinds.push_back(std::move(kind));
     return kinds;
 }
 

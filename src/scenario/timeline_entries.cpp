@@ -125,6 +125,7 @@ void read_fault(TableReader& table, Scenario& scenario) {
     if (kind != nullptr) {
         entry.kind = kind->name;
         entry.parameters = own_parameters(table, kind->parameters, timeline_keys(), given.own);
+        tell(table, ramp_mistakes(*kind, Parameters(given.timeline)));
         if (const auto made = kind->make(entry.parameters, {1, "check"}); !made)
             table.mistake_here(made.error().message);
     }

@@ -82,11 +82,16 @@ struct FaultKind {
     /// Fails with `usage` for parameters that contradict each other.
     std::function<Result<Fault>(const Parameters&, const FaultContext&)> make{};
     bool measuring_receivers_only = false;  ///< nothing to see with a sensor model, which measures nothing
+    bool has_strength = true;               ///< it can be there in part, and so grow and fade along ramps
 };
 
 /// All of them, by layer, then in the order in which people list them.
 const std::vector<FaultKind>& fault_kinds();
 /// The one of that name, or null.
 const FaultKind* find_fault_kind(std::string_view name);
+
+/// What is wrong with the ramps of a fault of this kind: what is there or not, cannot have any.
+/// @param values `ramp_in_s` and `ramp_out_s` among them
+std::vector<ParameterMistake> ramp_mistakes(const FaultKind& kind, const Parameters& values);
 
 }  // namespace skyloop

@@ -111,7 +111,7 @@ Overlay random_overlay(std::uint64_t seed, FaultBench bench) {
         overlay.exact = overlay.exact && row.bound_m < 0;
         const double begin = 20 + static_cast<double>(below(20)), end = begin + 5 + static_cast<double>(below(15));
         std::string parameters(row.parameters);
-        if (below(2) == 0) parameters += "\nramp_in_s = 3\nramp_out_s = 4";
+        if (below(2) == 0 && find_fault_kind(row.kind)->has_strength) parameters += "\nramp_in_s = 3\nramp_out_s = 4";
         overlay.toml += bench_fault(row.kind, parameters, begin, end);
     }
     return overlay;

@@ -7,11 +7,13 @@
 #include <string>
 
 #include "receiver_bench.hpp"
+#include "skyloop/fault/checked_command.hpp"
 
 namespace skyloop::fault_test {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 GpsTime second_of_faults(double s) { return advanced(to_gps_time(2300, 0), Seconds(s)); }
@@ -54,6 +56,30 @@ TEST(ActiveFaults, LeaveTheLineAtTheSpeedOfTheYoungest) {
     EXPECT_THAT(last_ends_first.settled(30), ElementsAre("back to 9600"));
     last_ends_first.end(0, 40);
     EXPECT_THAT(last_ends_first.settled(40), ElementsAre("0"));
+}
+
+// A fault that is there or is not would stay at full strength until its ramp is over, beyond the end that is told.
+TEST(RampMistakes, AreThoseOfFaultsWithoutAStrength) {
+    const auto mistakes = [](std::string_view kind, const std::string& key) {
+        return ramp_mistakes(*find_fault_kind(kind), Parameters({{key, 10.0}})).size();
+    };
+    for (const char* whole :
+         {"receiver_silent", "withheld_messages", "line_break", "unplugged", "one_direction_dead", "power_cut",
+          "speed_mismatch", "zero_position", "stale_position", "freeze", "wrong_fix_type", "heading_lost", "unhealthy",
+          "week_rollover", "date_unknown", "changed_baud", "refuses_keys", "spoof_flapping"}) {
+        EXPECT_EQ(mistakes(whole, "ramp_in_s"), 1U) << whole;
+        EXPECT_EQ(mistakes(whole, "ramp_out_s"), 1U) << whole;
+        EXPECT_EQ(mistakes(whole, "for_s"), 0U) << whole;
+    }
+    for (const char* graded : {"outage", "jamming", "position_step", "time_step", "rtk_transition", "slow_answers",
+                               "byte_loss", "saturated_uart", "cycle_slips", "dropped_epochs"})
+        EXPECT_EQ(mistakes(graded, "ramp_out_s"), 0U) << graded;
+    const auto live = [](std::string_view kind) {
+        return checked_live_fault({{"kind", std::string(kind)}, {"ramp_out_s", 5.0}}, "test");
+    };
+    EXPECT_TRUE(live("outage"));
+    ASSERT_FALSE(live("line_break"));
+    EXPECT_THAT(live("line_break").error().message, HasSubstr("'ramp_out_s' is 5, and line_break is there or is not"));
 }
 
 }  // namespace

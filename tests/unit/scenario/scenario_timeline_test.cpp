@@ -93,6 +93,8 @@ TEST(ScenarioTimeline, MistakesAreToldWhereTheyStand) {
                 HasSubstr("test.toml:6:12: command.receiver: names 2 receivers"));
     EXPECT_THAT(mistakes("[[command]]\nkind = \"move_to\"\nat = [91, 0]\n"),
                 HasSubstr("test.toml:3:6: command.at: latitude is 91"));
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"receiver_silent\"\nramp_out_s = 10\n"),
+                HasSubstr(":3:14: fault.ramp_out_s: is 10, and receiver_silent is there or is not"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"saturated_uart\"\nbytes_per_s = 10\nbaud = 9600\n"),
                 HasSubstr("test.toml:1:1: [fault]"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"refuses_keys\"\nkeys = \"CFG-RATE-MESA\"\n"), HasSubstr("CFG-RATE-MEAS"));
