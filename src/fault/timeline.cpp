@@ -120,6 +120,13 @@ std::vector<TimelineEvent> Timeline::advance(GpsTime now) {
     while (!planned_.empty() && planned_.front().event.time <= now) {
         TimelineEvent event = planned_.front().event;
         planned_.erase(planned_.begin());
+        // A fault works once at a time: twice the same step would be another one. It ends, and begins anew.
+        if (event.begins && is_under_way(event.entry)) {
+            if (event.by_hand) continue;
+            end(event.entry, event.time);
+            insert(event);
+            continue;
+        }
         if (event.begins) event.occurrence = ++states_[event.entry].begun;
         due.push_back(event);
         follow(event);

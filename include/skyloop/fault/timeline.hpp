@@ -87,8 +87,9 @@ public:
     Timeline(std::vector<TimelineEntry> entries, GpsTime start, std::uint64_t seed);
 
     /// What begins and ends by `now`, in the order of time; at the same instant what ends comes first, then by entry.
+    /// What is under way when its time to begin has come ends there, and begins anew.
     std::vector<TimelineEvent> advance(GpsTime now);
-    /// Shows the run to the triggers; what they make begin comes with the next advance().
+    /// Shows the run to the triggers, at an epoch; what they make begin begins behind it, with the next advance().
     void look(GpsTime now, const TriggerView& view);
     /// The same for a client's message, by its name.
     void hear(GpsTime now, std::string_view client_message);

@@ -240,6 +240,22 @@ TEST(Timeline, CountsOccurrencesAsTheyBegin) {
     EXPECT_THAT(begun, ElementsAre(std::pair(8.0, 1), std::pair(20.0, 2), std::pair(26.0, 3), std::pair(30.0, 4)));
 }
 
+// What is there cannot come on top of itself: a step would be twice as large.
+TEST(Timeline, BeginsAnewWhatIsUnderWay) {
+    TimelineEntry often = entry("often", 5, 15), endless = entry("endless", 5);
+    often.every = endless.every = Seconds(10);
+    often.times = endless.times = 2;
+    EXPECT_THAT(happenings({often}, 100), ElementsAre(Happening{"often", 5, true}, Happening{"often", 15, false},
+                                                      Happening{"often", 15, true}, Happening{"often", 30, false}));
+    EXPECT_THAT(happenings({endless}, 100), ElementsAre(Happening{"endless", 5, true}, Happening{"endless", 15, false},
+                                                        Happening{"endless", 15, true}));
+    TimelineEntry late = entry("late", 20, 10);
+    Timeline timeline({late}, begin_of_run, 1);
+    EXPECT_TRUE(timeline.begin(0, after(15), Seconds(10)));
+    EXPECT_THAT(happenings(timeline, 100), ElementsAre(Happening{"late", 15, true}, Happening{"late", 20, false},
+                                                       Happening{"late", 20, true}, Happening{"late", 30, false}));
+}
+
 TEST(Timeline, DrawsTheSameTimesWhateverIsBegunByHand) {
     TimelineEntry random = entry("random", 0, 1);
     random.at.reset();
