@@ -25,19 +25,32 @@ std::string stream_name(const TimelineEntry& entry, std::string_view of, int occ
     return "timeline." + entry.name + "." + std::string(of) + "." + std::to_string(occurrence);
 }
 
-// Even-odd rule on latitude and longitude; an area smaller than half the Earth that does not hold a pole. Longitudes
-// are counted from the place and from corner to corner, so that an area across 180° is one.
-bool is_inside(const Geodetic& place, const std::vector<std::array<double, 2>>& polygon) {
-    const double latitude = place.latitude.deg();
-    std::vector<double> east;
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-        east.push_back(i == 0 ? std::remainder(polygon[0][1] - place.longitude.deg(), 360)
-                              : east.back() + std::remainder(polygon[i][1] - polygon[i - 1][1], 360));
-    bool inside = false;
+// Degrees by which the longitude grows from a corner to the next, the short way.
+double eastward(const std::array<double, 2>& from, const std::array<double, 2>& to) {
+    return std::remainder(to[1] - from[1], 360);
+}
+
+// An area smaller than half the Earth whose edges are straight in latitude and longitude, each the short way. Edges
+// that lead once round hold a pole: the one that they are nearer to.
+bool holds_north_pole(const std::vector<std::array<double, 2>>& polygon) {
+    double turned = 0, latitudes = 0;
     for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-        const double from = polygon[i][0], to = polygon[j][0];
-        if ((from > latitude) == (to > latitude)) continue;
-        if (east[i] + (east[j] - east[i]) * (latitude - from) / (to - from) > 0) inside = !inside;
+        turned += eastward(polygon[j], polygon[i]);
+        latitudes += polygon[i][0];
+    }
+    return std::abs(turned) > 180 && latitudes > 0;
+}
+
+// Who goes north from the place to the pole crosses the edges an odd number of times where one of both is inside.
+bool is_inside(const Geodetic& place, const std::vector<std::array<double, 2>>& polygon) {
+    const std::array here{place.latitude.deg(), place.longitude.deg()};
+    bool inside = holds_north_pole(polygon);
+    for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+        const double from = eastward(here, polygon[j]), to = eastward(here, polygon[i]);
+        const bool on_this_side = std::abs(to - from) <= 180;  // else it crosses the meridian behind the pole
+        if ((from > 0) == (to > 0) || !on_this_side) continue;
+        const double latitude = polygon[j][0] + (polygon[i][0] - polygon[j][0]) * from / (from - to);
+        if (latitude > here[0]) inside = !inside;
     }
     return inside;
 }

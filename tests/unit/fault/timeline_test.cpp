@@ -146,6 +146,35 @@ TEST(Timeline, KnowsWhatLiesInsideAPolygonAcrossTheDateLine) {
     }
 }
 
+TEST(Timeline, KnowsWhatLiesInsideAPolygonRoundAPole) {
+    const auto holds = [](std::vector<std::array<double, 2>> polygon, double latitude, double longitude) {
+        Trigger inside;
+        inside.inside = std::move(polygon);
+        Timeline timeline({triggered(inside)}, begin_of_run, 1);
+        timeline.look(after(1), at(latitude, longitude, 0));
+        return timeline.next_event().has_value();
+    };
+    const std::vector<std::array<double, 2>> north{{80, 0}, {80, 90}, {80, 180}, {80, -90}},
+        west_about{{80, 0}, {80, -90}, {80, 180}, {80, 90}}, south{{-70, -120}, {-60, 0}, {-65, 120}};
+    for (const double longitude : {0., 20., 90., 135., 180., -180., -179., -90., -1e-9}) {
+        for (const auto& round : {north, west_about}) {
+            EXPECT_TRUE(holds(round, 85, longitude)) << longitude;
+            EXPECT_TRUE(holds(round, 90, longitude)) << longitude;
+            EXPECT_FALSE(holds(round, 79, longitude)) << longitude;
+            EXPECT_FALSE(holds(round, -85, longitude)) << longitude;
+        }
+        EXPECT_TRUE(holds(south, -75, longitude)) << longitude;
+        EXPECT_FALSE(holds(south, -55, longitude)) << longitude;
+        EXPECT_FALSE(holds(south, 75, longitude)) << longitude;
+    }
+    EXPECT_TRUE(holds(south, -61, 0));
+    EXPECT_FALSE(holds(south, -61, 100));
+    const std::vector<std::array<double, 2>> beside{{80, 0}, {80, 90}, {89, 45}};
+    EXPECT_TRUE(holds(beside, 82, 45));
+    EXPECT_FALSE(holds(beside, 89.5, 45));
+    EXPECT_FALSE(holds(beside, 82, -135));
+}
+
 TEST(Timeline, WaitsForAFixWithoutGaps) {
     Trigger fix;
     fix.fix_for = Seconds(5);
