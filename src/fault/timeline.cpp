@@ -86,6 +86,8 @@ void Timeline::plan(std::size_t index, GpsTime begin, bool by_hand, std::optiona
     event.by_hand = by_hand;
     event.length = length;
     if (!by_hand) ++states_[index].drawn;
+    // What an epoch has shown acts behind it: as long as told, and on as many epochs as if it had been known before.
+    if (looked_ && event.time <= *looked_) event.time = *looked_ + Nanoseconds(1);
     insert(event);
 }
 
@@ -202,6 +204,7 @@ bool Timeline::holds(const Trigger& trigger, GpsTime now) const {
 
 void Timeline::look(GpsTime now, const TriggerView& view) {
     last_view_ = view;
+    looked_ = now;
     if (!view.has_fix)
         fix_since_.reset();
     else if (!fix_since_)

@@ -135,6 +135,7 @@ private:
     std::vector<Planned> planned_;    // ascending
     std::vector<EntryState> states_;  // of each entry
     TriggerView last_view_;
+    std::optional<GpsTime> looked_;
     VehicleState vehicle_;
     std::optional<GpsTime> fix_since_;
 };

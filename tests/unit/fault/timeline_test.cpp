@@ -16,6 +16,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 const GpsTime begin_of_run = to_gps_time(2300, 100'000.0);
@@ -125,6 +126,22 @@ TEST(Timeline, BeginsWhenAHeightIsReached) {
                 ElementsAre(Happening{"triggered", 4, true}, Happening{"triggered", 5, false}));
 }
 
+// The epoch that has shown it is over; the epochs of one second behind it are hit, as those of one second are.
+TEST(Timeline, BeginsBehindTheEpochThatShowsIt) {
+    Trigger high;
+    high.height_above = Metres(100);
+    TimelineEntry chained = entry("chained", 0, 1);
+    chained.after = "triggered";
+    Timeline timeline({triggered(high), chained}, begin_of_run, 1);
+    (void)timeline.advance(after(2));
+    timeline.look(after(2), at(0, 0, 101));
+    const GpsTime behind = after(2) + Nanoseconds(1);
+    EXPECT_EQ(timeline.next_event(), behind);
+    EXPECT_THAT(timeline.advance(behind), SizeIs(2));
+    EXPECT_THAT(timeline.advance(after(3)), IsEmpty()) << "it hits the epoch of 3 s";
+    EXPECT_THAT(timeline.advance(behind + Nanoseconds(1'000'000'000)), SizeIs(2));
+}
+
 TEST(Timeline, BeginsAgainWhereItIsToldTo) {
     Trigger low;
     low.height_below = Metres(10);
@@ -184,7 +201,7 @@ TEST(Timeline, WaitsForAFixWithoutGaps) {
         view.has_fix = i != 4;
         timeline.look(after(i), view);
     }
-    EXPECT_THAT(happenings(timeline, 100)[0], (Happening{"triggered", 10, true}));
+    EXPECT_EQ(timeline.advance(after(100))[0].time, after(10) + Nanoseconds(1));
 }
 
 TEST(Timeline, HearsTheClient) {
