@@ -160,6 +160,9 @@ void refuse_contradictions(const Parameters& keys, const TimelineEntry& entry,
     const auto refuse = [&](const std::string& key, const std::string& sentence) {
         mistakes.push_back({key, sentence});
     };
+    if (entry.name == "run") refuse("name", "is 'run', which means the run itself; expected another name");
+    if (entry.name.find('#') != std::string::npos)
+        refuse("name", "has a '#', which stands before the number of an occurrence; expected none");
     if (entry.when && !entry.after.empty()) refuse("after", "stands beside a condition 'when_…'; expected one of them");
     if (entry.at_time && (entry.when || !entry.after.empty()))
         refuse("at_utc", "is a time of its own; expected none beside 'after' or 'when_…'");

@@ -84,6 +84,9 @@ TimelineEntry read_times(TableReader& table, const std::vector<ParameterSpec>& k
     table.note_parameters(keys);
     const CheckedParameters checked = check_parameters(keys, given);
     tell(table, checked.mistakes);
+    const auto name = given.find("name");
+    if (name != given.end() && name->second == ParameterValue(std::string()))
+        table.mistake("name", "is empty; expected a name, or none");
     TimelineReading reading = read_timeline_entry(checked.parameters);
     tell(table, reading.mistakes);
     return reading.entry;

@@ -369,6 +369,8 @@ TEST(TimelineKeys, ContradictionsAreTold) {
     EXPECT_THAT(mistakes({{"when_inside", std::vector<double>{1, 2, 3, 4, 5, 6, 7}}}), HasSubstr("three pairs"));
     EXPECT_THAT(mistakes({{"when_inside", std::vector<double>{91, 2, 3, 4, 5, 6}}}), HasSubstr("latitude"));
     EXPECT_THAT(mistakes({{"at_utc", std::string("noon")}}), HasSubstr("at_utc"));
+    EXPECT_THAT(mistakes({{"name", std::string("run")}}), HasSubstr("the run itself"));
+    EXPECT_THAT(mistakes({{"name", std::string("o#2")}}), HasSubstr("'#'"));
 }
 
 TEST(TimelineKeys, NoFaultOrCommandHasAParameterOfTheirNames) {
