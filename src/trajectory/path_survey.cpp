@@ -84,7 +84,7 @@ public:
         survey_.has_orientation = before_.orientation.has_value();
         look(before_, 0);
         for (std::int64_t i = 1; i <= steps_; ++i) {
-            const double t = survey_.duration_s * static_cast<double>(i) / static_cast<double>(steps_);
+            const double t = time_of(i);
             const TruthState now = path_.at(advanced(span_.from, Seconds(t)));
             look(now, t);
             compare(now, t);
@@ -95,6 +95,13 @@ public:
     }
 
 private:
+    // The last instant lies before the end: whether a plan stops dead on it or behind it is a matter of rounding.
+    [[nodiscard]] double time_of(std::int64_t step) const {
+        constexpr double before_end_s = 1e-6;
+        const double t = survey_.duration_s * static_cast<double>(step) / static_cast<double>(steps_);
+        return step < steps_ ? t : std::max(0.0, t - before_end_s);
+    }
+
     void look(const TruthState& state, double t) {
         const double height = state.geodetic.height.above_ellipsoid.value();
         if (height < survey_.lowest.value) survey_.lowest = {height, t};

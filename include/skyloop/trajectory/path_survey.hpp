@@ -40,7 +40,8 @@ struct PathSurvey {
 };
 
 /// Looks at the path 100 times a second, more seldom at spans of more than three hours, and searches the steps that it
-/// finds down to a microsecond. Acceleration and jerk are differences of neighbouring velocities.
+/// finds down to a microsecond. Acceleration and jerk are differences of neighbouring velocities. That the vehicle
+/// stops where the span ends is no step.
 PathSurvey survey_path(const Trajectory& path, const PathSpan& span);
 
 /// A limit that a path exceeds.

@@ -85,6 +85,19 @@ TEST(PathSurvey, TheBoxCrossesTheDateLine) {
     EXPECT_NEAR(survey.east_west_m, 0.02 / 180 * std::numbers::pi * 6378137 * std::cos(10 / 57.29577951), 10);
 }
 
+// All plans end so; whether a sample fell on the end or before it was a matter of rounding.
+TEST(PathSurvey, StoppingAtTheEndIsNoStep) {
+    for (const double east_deg : {0.01, 0.013, 0.0131, 0.02}) {
+        const Waypoints plan(recorded_start, {{Geodetic::degrees(46, 7, 0), MetresPerSecond(20), {}},
+                                              {Geodetic::degrees(46, 7 + east_deg, 0), {}, {}}});
+        for (const double beyond_s : {0., 1e-9}) {
+            const PathSurvey survey = survey_path(plan, {recorded_start, Seconds(plan.duration().value() + beyond_s)});
+            EXPECT_EQ(survey.velocity_steps, 0U) << east_deg;
+            EXPECT_NEAR(survey.fastest.value, 20, 0.01);
+        }
+    }
+}
+
 TEST(PathSurvey, ItsTableIsATrackAgain) {
     Track track = track_of(circle_of(60, 20), evenly(0, 30, 0.5), true);
     const auto gaps = clean_track(track, Seconds(10));
