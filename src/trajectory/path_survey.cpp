@@ -119,6 +119,7 @@ private:
         east_ = std::max(east_, longitude);
         south_ = std::min(south_, state.geodetic.latitude.rad());
         north_ = std::max(north_, state.geodetic.latitude.rad());
+        positions_ += state.position.vector();
     }
 
     void compare(const TruthState& now, double t) {
@@ -148,13 +149,45 @@ private:
         }
     }
 
+    // Where meridians run together, a box of them says little: its sides are those of the plane that touches the
+    // middle of the way, and a way round the pole holds it.
+    void close_polar_box() {
+        constexpr double round = 0.99 * 2 * std::numbers::pi, least_off_axis = 1e-3;
+        if (east_ - west_ > round) {
+            west_ = -std::numbers::pi;
+            east_ = std::numbers::pi;
+            (north_ > 0 ? north_ : south_) = std::copysign(std::numbers::pi / 2, north_);
+        }
+        Geodetic middle = to_geodetic(Position<Ecef>(positions_ / static_cast<double>(steps_ + 1)));
+        const TruthState first = path_.at(span_.from);
+        const double off_axis = positions_.head<2>().norm() / static_cast<double>(steps_ + 1);
+        if (off_axis < least_off_axis) middle.longitude = first.geodetic.longitude;  // at the pole any is right
+        const LocalFrame plane(middle);
+        Vector3d least = plane.to_enu(first.position).vector(), most = least;
+        for (std::int64_t i = 1; i <= steps_; ++i) {
+            const Vector3d enu = plane.to_enu(path_.at(advanced(span_.from, Seconds(time_of(i)))).position).vector();
+            least = least.cwiseMin(enu);
+            most = most.cwiseMax(enu);
+        }
+        survey_.east_west_m = most.x() - least.x();
+        survey_.north_south_m = most.y() - least.y();
+    }
+
     void close_box() {
+        constexpr double polar = 85 * std::numbers::pi / 180;
+        if (north_ > polar || south_ < -polar)
+            close_polar_box();
+        else
+            measure_box();
         const auto corner = [](double latitude, double longitude, double height) {
             return Geodetic{Angle::radians(latitude), Angle::radians(longitude), {Metres(height)}};
         };
         survey_.south_west = corner(south_, west_, survey_.lowest.value);
         survey_.north_east = corner(north_, east_, survey_.highest.value);
-        // Lengths of the parallel and the meridian through the middle (MODELS.md 3.10).
+    }
+
+    // Lengths of the parallel and the meridian through the middle (MODELS.md 3.10).
+    void measure_box() {
         const double middle = (south_ + north_) / 2;
         const CurvatureRadii radii = curvature_radii(Angle::radians(middle));
         survey_.east_west_m = (east_ - west_) * radii.prime_vertical * std::cos(middle);
@@ -168,6 +201,7 @@ private:
     TruthState before_;
     std::optional<Vector3d> acceleration_;                // of the step before, ECEF, m/s²
     double west_ = 0, east_ = 0, south_ = 0, north_ = 0;  // rad
+    Vector3d positions_ = Vector3d::Zero();               // their sum, ECEF, m
 };
 
 }  // namespace

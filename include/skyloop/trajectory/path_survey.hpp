@@ -28,7 +28,7 @@ struct PathExtreme {
 struct PathSurvey {
     double duration_s = 0;
     Geodetic south_west, north_east;            ///< of the box around it; east of 180° the longitude goes on counting
-    double east_west_m = 0, north_south_m = 0;  ///< sides of the box, through its middle
+    double east_west_m = 0, north_south_m = 0;  ///< sides of the box, through its middle; beyond 85° of the plane there
     double length_m = 0;                        ///< of the way, jumps not in it
     PathExtreme lowest, highest;                ///< m
     PathExtreme fastest, fastest_over_ground;   ///< m/s

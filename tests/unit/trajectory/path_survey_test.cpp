@@ -85,6 +85,28 @@ TEST(PathSurvey, TheBoxCrossesTheDateLine) {
     EXPECT_NEAR(survey.east_west_m, 0.02 / 180 * std::numbers::pi * 6378137 * std::cos(10 / 57.29577951), 10);
 }
 
+// Meridians run together there: a box of degrees would be long and thin, and leave out the pole itself.
+TEST(PathSurvey, TheBoxOfAPoleIsAsWideAsTheWay) {
+    for (const double pole : {90., -90.})
+        for (const double off_deg : {0., 0.005}) {
+            const Geodetic centre = Geodetic::degrees(pole - std::copysign(off_deg, pole), 0, 0);
+            const Circle circle(recorded_start, {centre, Metres(1000), MetresPerSecond(100), Angle()});
+            const PathSurvey survey = survey_path(circle, {recorded_start, Seconds(20 * std::numbers::pi)});
+            EXPECT_NEAR(survey.east_west_m, 2000, 1) << pole << " " << off_deg;
+            EXPECT_NEAR(survey.north_south_m, 2000, 1) << pole << " " << off_deg;
+            const auto [west, east] = longitude_span(survey);
+            EXPECT_EQ(west, -180);
+            EXPECT_EQ(east, 180);
+            const Geodetic& near = pole > 0 ? survey.north_east : survey.south_west;
+            EXPECT_NEAR(near.latitude.deg(), pole, 1e-12);
+        }
+    const Waypoints across(recorded_start, {{Geodetic::degrees(89.999, 0, 0), MetresPerSecond(10), {}},
+                                            {Geodetic::degrees(89.999, 180, 0), {}, {}}});
+    const PathSurvey survey = survey_path(across, {recorded_start, across.duration()});
+    EXPECT_NEAR(survey.east_west_m, 0, 0.5);
+    EXPECT_NEAR(survey.north_south_m, 223.4, 0.5);
+}
+
 // All plans end so; whether a sample fell on the end or before it was a matter of rounding.
 TEST(PathSurvey, StoppingAtTheEndIsNoStep) {
     for (const double east_deg : {0.01, 0.013, 0.0131, 0.02}) {
