@@ -224,7 +224,9 @@ void add_broken_wires(std::vector<FaultKind>& kinds) {
                               "A short to ground, or a sender whose output stays low without power.", {},
                               whole_wire(&WireConditions::line_break)));
     kinds.push_back(
-        wire_kind("unplugged", "Neither end hears the other, as with the cable pulled.",
+        wire_kind("unplugged",
+                  "Neither end hears the other, as with the cable pulled. What the receiver sends leaves it, and is in "
+                  "`port0.out` of a recording.",
                   "Vibration works a connector loose, or a USB hub resets and its devices vanish for a while.", {},
                   whole_wire(&WireConditions::unplugged)));
     kinds.push_back(
@@ -235,11 +237,13 @@ void add_broken_wires(std::vector<FaultKind>& kinds) {
                   {word_parameter("start", "cold", {"hot", "warm", "cold"},
                                   "how it starts afterwards: cold without a backup battery")},
                   make_power_cut));
-    kinds.push_back(
-        wire_kind("speed_mismatch", "The receiver's line runs at another speed than the one it was set to.",
-                  "A receiver that restarted unnoticed speaks at its default speed while its client does not.",
-                  {whole_number_parameter("baud", 9600, 300, 4e6, "at which the receiver's line runs, bit/s")},
-                  make_speed_mismatch));
+    kinds.push_back(wire_kind(
+        "speed_mismatch",
+        "The receiver's line runs at another speed than the one it was set to: a client that listens at that one "
+        "hears garble. `port0.out` of a recording has the bytes as they were sent.",
+        "A receiver that restarted unnoticed speaks at its default speed while its client does not.",
+        {whole_number_parameter("baud", 9600, 300, 4e6, "at which the receiver's line runs, bit/s")},
+        make_speed_mismatch));
     kinds.push_back(
         wire_kind("one_direction_dead", "One end hears nothing of the other, which still hears it.",
                   "A bad crimp, a pin never wired or a level shifter of the wrong voltage cuts one lead.",
