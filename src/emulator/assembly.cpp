@@ -125,6 +125,16 @@ std::unique_ptr<Pacer> make_pacer(const RunMode& mode, GpsTime start, double spe
     return std::make_unique<RealtimePacer>(start, start == mode.now ? mode.now_steady_ns : steady_clock_ns(), speed);
 }
 
+std::vector<WireEnd> ends_of(const std::vector<PlannedStation>& plans, const Scenario& scenario) {
+    std::vector<WireEnd> ends;
+    for (std::size_t i = 0; i < plans.size(); ++i)
+        for (const WireRequest& wire : plans[i].wires)
+            ends.push_back(end_of_wire(fmt::format("port of '{}'", receiver_name(scenario, i)), wire.uri));
+    for (const OutputSettings& output : scenario.outputs)
+        ends.push_back(end_of_output(output));
+    return ends;
+}
+
 // All receivers, with their wires and recordings.
 Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& assembly) {
     std::vector<PlannedStation> plans;
@@ -134,6 +144,7 @@ Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& 
         assembly.details.push_back(receiver_detail(plan->parts));
         plans.push_back(std::move(*plan));
     }
+    if (const auto apart = check_ends(ends_of(plans, shared.scenario)); !apart) return fail(apart.error());
     for (std::size_t i = 0; i < plans.size() && shared.mode.open_ports; ++i)
         if (i == 0 || !shared.mode.first_ports_only)
             if (const auto plugged = plug_in(plans[i], shared, i); !plugged) return fail(plugged.error());

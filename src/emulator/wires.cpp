@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "skyloop/base/spelling.hpp"
 #include "skyloop/client/open_client.hpp"
@@ -36,7 +37,61 @@ bool leads_to_client(const std::string& wire) {
     return client_of_uri(name == std::string_view::npos ? wire : wire.substr(name + 1)).has_value();
 }
 
+// Devices such as /dev/null may be written to by all.
+std::string place_of_file(const std::string& path) {
+    if (path.empty() || path.starts_with("/dev/")) return {};
+    return path == "-" ? path : std::filesystem::absolute(path).lexically_normal().string();
+}
+
+std::string place_of_server(const TcpAddress& address) {
+    return address.port == 0 ? std::string() : fmt::format("{}:{}", address.host, address.port);
+}
+
 }  // namespace
+
+WireEnd end_of_wire(const std::string& owner, const std::string& uri) {
+    WireEnd end{owner, uri, {}};
+    const auto parsed = parse_port_uri(uri);
+    if (!parsed) return end;
+    switch (parsed->kind) {
+        case WireKind::pty:
+        case WireKind::file:
+            end.place = place_of_file(parsed->path);
+            break;
+        case WireKind::standard_output:
+            end.place = "-";
+            break;
+        case WireKind::serial:
+            end.place = parsed->serial.device.string();
+            break;
+        case WireKind::tcp:
+        case WireKind::rfc2217:
+        case WireKind::usbip:
+            end.place = place_of_server(parsed->address);
+            break;
+        case WireKind::tcp_connect:  // a server may take several
+        case WireKind::usb:          // of several alike, each takes its own
+        case WireKind::hid:
+            break;
+    }
+    return end;
+}
+
+WireEnd end_of_output(const OutputSettings& output) {
+    WireEnd end{"output", output.uri, {}};
+    if (output.way == OutputWay::file) end.place = place_of_file(output.path);
+    if (output.way == OutputWay::tcp_server) end.place = place_of_server(output.address);
+    return end;
+}
+
+Result<void> check_ends(const std::vector<WireEnd>& ends) {
+    for (std::size_t i = 0; i < ends.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k)
+            if (!ends[i].place.empty() && ends[i].place == ends[k].place)
+                return fail(ErrorCode::usage, fmt::format("{} '{}' is where {} '{}' goes; expected another place",
+                                                          ends[i].owner, ends[i].uri, ends[k].owner, ends[k].uri));
+    return {};
+}
 
 firmware::PortId default_port(const BoardProfile& board) {
     const bool has_uart1 = std::find(board.ports.begin(), board.ports.end(), PortId::uart1) != board.ports.end();

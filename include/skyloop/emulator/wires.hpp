@@ -32,6 +32,18 @@ Result<WireRequest> parse_wire(std::string_view text, const firmware::BoardProfi
 /// The wires of one receiver, as they were asked for; opens none. Without any in the scenario it is one pty.
 Result<std::vector<WireRequest>> wires_of(const ReceiverEntry& entry, const firmware::BoardProfile& board);
 
+/// A place at which bytes come out, and what messages call whose it is.
+struct WireEnd {
+    std::string owner;  ///< "port of 'rover'"
+    std::string uri;    ///< as it was written
+    std::string place;  ///< a path, or a port that is listened at; empty: it is free or may be shared
+};
+WireEnd end_of_wire(const std::string& owner, const std::string& uri);
+WireEnd end_of_output(const OutputSettings& output);
+
+/// What is wrong where two of them are one place: the second would take it from the first. Fails with `usage`.
+Result<void> check_ends(const std::vector<WireEnd>& ends);
+
 /// Whether a wire leads to a client that lives in simulated time: "client:NAME".
 bool has_scripted_client(const Scenario& scenario);
 

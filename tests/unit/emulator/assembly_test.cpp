@@ -175,6 +175,26 @@ TEST(Assembly, AConstellationThatTheReceiverDoesNotTrackIsAWarning) {
         << "sensor models take what is in the sky";
 }
 
+TEST(Assembly, TwoEndsAtOnePlaceAreRefused) {
+    const auto two = [](const std::string& a, const std::string& b) {
+        return refusal("[[receiver]]\nport = \"" + a + "\"\n[[receiver]]\nport = \"" + b + "\"").message;
+    };
+    EXPECT_EQ(two("pty:/tmp/gps", "pty:/tmp/gps"),
+              "port of 'receiver1' 'pty:/tmp/gps' is where port of 'receiver0' 'pty:/tmp/gps' goes; expected another "
+              "place");
+    EXPECT_THAT(two("file:a.bin", "file:./b/../a.bin"), HasSubstr("expected another place"));
+    EXPECT_THAT(two("tcp:2000", "rfc2217:2000"), HasSubstr("expected another place"));
+    EXPECT_THAT(two("-", "-"), HasSubstr("expected another place"));
+    EXPECT_THAT(two("serial:/dev/ttyS7@9600", "serial:/dev/ttyS7"), HasSubstr("expected another place"));
+    for (const char* shared : {"pty", "file:/dev/null", "tcp:0", "tcp-connect:127.0.0.1:2000", "client:careful-ubx"})
+        EXPECT_EQ(two(shared, shared), "accepted") << shared;
+    EXPECT_EQ(two("tcp:2000", "tcp:2001"), "accepted");
+    EXPECT_THAT(refusal("[[receiver]]\nport = [\"uart1=pty:/tmp/gps\", \"uart2=pty:/tmp/gps\"]").message,
+                HasSubstr("expected another place"));
+    EXPECT_THAT(refusal("[[output]]\nto = \"json-file:o.json\"\n[[output]]\nto = \"json-file:o.json\"").message,
+                HasSubstr("output 'json-file:o.json' is where output"));
+}
+
 TEST(Assembly, OnlyTheModernModelMeasures) {
     for (const std::string_view name : model_names())
         EXPECT_EQ(assembled("[model]\nname = \"" + std::string(name) + "\"").emulator->simulation().measures(),
