@@ -1,5 +1,6 @@
 #include "skyloop/emulator/assembly.hpp"
 
+#include "fault_warnings.hpp"
 #include "modern_assembly.hpp"
 #include "receiver_assembly.hpp"
 
@@ -155,6 +156,9 @@ Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& 
             if (const auto added = add_recorder(plans[i].parts, shared, i); !added) return fail(added.error());
         stations.emplace_back(std::move(plans[i].parts));
     }
+    for (std::string& warning :
+         idle_fault_warnings(shared.scenario, *shared.navigation, stations, shared.mode.virtual_time))
+        assembly.warnings.push_back(std::move(warning));
     return stations;
 }
 

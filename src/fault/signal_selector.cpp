@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "skyloop/fault/known_names.hpp"
+#include "skyloop/fault/selected_signals.hpp"
 
 namespace skyloop {
 namespace {
@@ -106,6 +107,16 @@ Result<SignalSelector> read_selector(const Parameters& parameters) {
                                     to_string(satellite), constellation_title(satellite.constellation)));
     if (const auto error = read_sky(parameters, selector)) return fail(*error);
     return selector;
+}
+
+bool is_for(const Parameters& parameters, SatelliteId satellite, Signal signal) {
+    const auto selector = read_selector(parameters);
+    if (!selector) return true;  // refused elsewhere
+    Arrival arrival;
+    arrival.id = satellite;
+    if (selector->azimuth) arrival.direction.azimuth = (*selector->azimuth)[0];
+    arrival.direction.elevation = selector->elevation[0];
+    return selector->takes(arrival) && selector->takes(signal);
 }
 
 std::vector<ParameterSpec> chosen_satellite_parameters() {

@@ -195,6 +195,32 @@ TEST(Assembly, TwoEndsAtOnePlaceAreRefused) {
                 HasSubstr("output 'json-file:o.json' is where output"));
 }
 
+TEST(Assembly, AFaultThatWillShowNothingIsAWarning) {
+    const auto told = [](const std::string& fault, const std::string& rest = "") {
+        for (const std::string& warning : assembled("[[fault]]\nkind = " + fault + "\n" + rest).warnings)
+            if (warning.starts_with("[[fault]]")) return warning;
+        return std::string();
+    };
+    const auto tracks_none = HasSubstr("'outage' will show nothing: no receiver tracks what it is for");
+    EXPECT_THAT(told("\"outage\"\nconstellations = [\"galileo\"]"), tracks_none) << "the nominal sky is of GPS";
+    EXPECT_THAT(told("\"outage\"\nsatellites = [\"R05\"]"), tracks_none);
+    EXPECT_THAT(told("\"outage\"\nsatellites = [\"R05\", \"G05\"]"), "");
+    EXPECT_THAT(told("\"outage\"\nsignals = [\"L5\"]"), tracks_none);
+    EXPECT_THAT(told("\"outage\"\nsignals = [\"L2\"]", "[[receiver]]\nboard = \"ublox-f9p\""), "");
+    EXPECT_THAT(told("\"outage\"\nazimuth_from_deg = 10\nazimuth_to_deg = 20"), "");
+    EXPECT_THAT(told("\"outage\"\nsatellites = [\"E05\"]", "[model]\nname = \"ideal\""), tracks_none);
+    EXPECT_THAT(told("\"heading_lost\""), HasSubstr("no base antenna"));
+    EXPECT_THAT(told("\"heading_lost\"", "[[receiver]]\nname = \"a\"\n[[receiver]]\nbase = \"a\""), "");
+    EXPECT_THAT(told("\"multipath_burst\"", "[model]\nerrors = \"none\""), HasSubstr("leaves echoes out"));
+    EXPECT_THAT(told("\"multipath_burst\""), "");
+    for (const std::string model : {"constant-sigma", "ideal", "refraction", "satellite-count"})
+        EXPECT_THAT(told("\"ionospheric_storm\"\nvertical_delay_m = 10", "[model]\nname = \"" + model + "\""),
+                    HasSubstr("has no ionosphere"));
+    for (const std::string model : {"baseline", "whole-path", "modern"})
+        EXPECT_THAT(told("\"ionospheric_storm\"\nvertical_delay_m = 10", "[model]\nname = \"" + model + "\""), "");
+    EXPECT_THAT(told("\"clock_drift\""), HasSubstr("in virtual time nothing does"));
+}
+
 TEST(Assembly, OnlyTheModernModelMeasures) {
     for (const std::string_view name : model_names())
         EXPECT_EQ(assembled("[model]\nname = \"" + std::string(name) + "\"").emulator->simulation().measures(),
