@@ -267,7 +267,8 @@ std::vector<FaultKind> slowness_kinds() {
              make_solution_latency},
             {"clock_drift",
              receiver,
-             "The receiver's clock, and with it the rate of its epochs, runs off the client's.",
+             "The receiver's clock, and with it the rate of its epochs, runs off the client's; all receivers of a run "
+             "have one clock. Seen in runs against the clock alone: virtual time has no other clock.",
              "Crystals of flight controllers that are off by tens of ppm (ArduPilot #20566).",
              {number_parameter("ppm", 100, -100'000, 100'000, "how much faster the receiver is, 1e-6")},
              make_clock_drift}};

@@ -129,8 +129,13 @@ void read_fault(TableReader& table, Scenario& scenario) {
         entry.kind = kind->name;
         entry.parameters = own_parameters(table, kind->parameters, timeline_keys(), given.own);
         tell(table, ramp_mistakes(*kind, Parameters(given.timeline)));
-        if (const auto made = kind->make(entry.parameters, {1, "check"}); !made)
+        const auto made = kind->make(entry.parameters, {1, "check"});
+        if (!made)
             table.mistake_here(made.error().message);
+        else if (made->pace && entry.receivers.size() < scenario.receivers.size())
+            table.mistake("receiver", fmt::format("stands beside kind = \"{}\", and the receivers of a run have one "
+                                                  "clock; expected no 'receiver'",
+                                                  kind->name));
     }
     name_entry(entry.when, entry.kind, scenario.faults);
     scenario.faults.push_back(std::move(entry));

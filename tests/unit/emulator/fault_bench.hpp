@@ -190,7 +190,8 @@ inline BenchRun bench_run(FaultBench bench, const std::string& faults, double le
 /// One fault as a scenario would have it, at the rover, for the bench's time.
 inline std::string bench_fault(std::string_view kind, std::string_view parameters, double begin_s = bench_begin_s,
                                double end_s = bench_end_s) {
-    return "[[fault]]\nkind = \"" + std::string(kind) + "\"\nreceiver = \"rover\"\nat_s = " + std::to_string(begin_s) +
+    const std::string receiver = kind == "clock_drift" ? "" : "receiver = \"rover\"\n";  // all have one clock
+    return "[[fault]]\nkind = \"" + std::string(kind) + "\"\n" + receiver + "at_s = " + std::to_string(begin_s) +
            "\nfor_s = " + std::to_string(end_s - begin_s) + "\n" + std::string(parameters) + "\n";
 }
 

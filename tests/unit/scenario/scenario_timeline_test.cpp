@@ -93,6 +93,11 @@ TEST(ScenarioTimeline, MistakesAreToldWhereTheyStand) {
                 HasSubstr("test.toml:6:12: command.receiver: names 2 receivers"));
     EXPECT_THAT(mistakes("[[command]]\nkind = \"move_to\"\nat = [91, 0]\n"),
                 HasSubstr("test.toml:3:6: command.at: latitude is 91"));
+    EXPECT_THAT(mistakes("[[receiver]]\nname = \"a\"\n[[receiver]]\nname = \"b\"\n[[fault]]\nreceiver = \"a\"\n"
+                         "kind = \"clock_drift\"\n"),
+                HasSubstr("test.toml:6:12: fault.receiver: stands beside kind = \"clock_drift\""));
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nname = \"\"\n"),
+                HasSubstr("test.toml:3:8: fault.name: is empty"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"receiver_silent\"\nramp_out_s = 10\n"),
                 HasSubstr(":3:14: fault.ramp_out_s: is 10, and receiver_silent is there or is not"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"saturated_uart\"\nbytes_per_s = 10\nbaud = 9600\n"),
