@@ -130,7 +130,15 @@ Result<Assembly> checked_assembly(const Scenario& scenario, const DataFolders& d
     RunMode mode = campaign_mode(scenario);
     mode.open_ports = false;
     mode.only_checked = true;
-    return assemble(scenario, data, mode);
+    // What a value is refused for is told of the value, not of the key that it has taken the place of.
+    Scenario unplaced = scenario;
+    for (ReceiverEntry& receiver : unplaced.receivers)
+        receiver.told_at.clear();
+    for (FaultEntry& fault : unplaced.faults)
+        fault.told_at = scenario.name + ": ";
+    for (CommandEntry& command : unplaced.commands)
+        command.told_at = scenario.name + ": ";
+    return assemble(unplaced, data, mode);
 }
 
 std::string place_of_varied(const CampaignSource& source, std::string_view key) {

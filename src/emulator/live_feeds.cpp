@@ -90,7 +90,7 @@ Result<LiveFeeds::Source*> LiveFeeds::source_of(const LiveSettings& settings, co
         return source.get();
     }
     const auto address = parse_feed_address(settings.source);
-    if (!address) return fail(address.error().code, "trajectory.source: " + address.error().message);
+    if (!address) return fail(address.error().code, settings.source_told_at + address.error().message);
     const bool leads = settings.clock != ClockMode::realtime;
     if (leads && leader_ != nullptr)
         return fail(ErrorCode::usage,
@@ -131,7 +131,7 @@ Result<std::unique_ptr<LiveFeeds>> LiveFeeds::open(Scenario& scenario, const Geo
 Result<void> LiveFeeds::check(Scenario& scenario) {
     for (LiveSettings* live : live_settings(scenario)) {
         const auto address = parse_feed_address(live->source);
-        if (!address) return fail(address.error().code, "trajectory.source: " + address.error().message);
+        if (!address) return fail(address.error().code, live->source_told_at + address.error().message);
         live->path = std::make_shared<LivePath>(feed_settings(*live, nullptr).path);
     }
     return {};

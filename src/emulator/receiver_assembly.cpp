@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "rinex_recording.hpp"
 #include "skyloop/actuator/actuator_uri.hpp"
 #include "skyloop/base/digest.hpp"
@@ -93,22 +95,39 @@ Result<std::vector<HeardBytes>> repeated_input(const std::filesystem::path& fold
     return read_repeated_input(recording_of(folder, index), ports);
 }
 
+// What a key of the scenario's file is refused for, with its place there.
+Error at_key(std::string_view key, Error error, const ReceiverEntry& entry) {
+    if (const auto place = entry.told_at.find(key); place != entry.told_at.end())
+        error.message = place->second + error.message;
+    return error;
+}
+
 // What is known of the actuator before it is opened.
 Result<void> check_power(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings) {
     const std::vector<ReceiverEntry>& receivers = shared.scenario.receivers;
     const std::string& power = receivers[index].power;
     if (power.empty()) return {};
-    if (const auto known = parse_actuator_uri(power); !known) return fail(known.error());
+    const auto refused = [&](Error error) { return fail(at_key("power", std::move(error), receivers[index])); };
+    if (const auto known = parse_actuator_uri(power); !known) return refused(known.error());
     for (std::size_t i = 0; i < index; ++i)
         if (receivers[i].power == power)
-            return fail(ErrorCode::usage, fmt::format("power '{}' is that of {} too; expected an actuator of its own",
-                                                      power, receiver_name(shared.scenario, i)));
+            return refused(
+                {ErrorCode::usage, fmt::format("power '{}' is that of {} too; expected an actuator of its own", power,
+                                               receiver_name(shared.scenario, i))});
     if (shared.mode.virtual_time)
         warnings.push_back(
             fmt::format("power {}: skyloop run switches it, at the clock's pace; in virtual time nothing "
                         "does",
                         power));
     return {};
+}
+
+// A place in the file tells which receiver it is.
+Error of_named_receiver(Error error, const Scenario& scenario, std::size_t index) {
+    const auto& places = scenario.receivers.at(index).told_at;
+    const bool placed = std::any_of(places.begin(), places.end(),
+                                    [&](const auto& place) { return error.message.starts_with(place.second); });
+    return placed ? error : of_receiver(std::move(error), scenario, index);
 }
 
 // Opened, and the power on.
@@ -130,9 +149,9 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     const Scenario& scenario = shared.scenario;
     const ReceiverEntry& entry = scenario.receivers.at(index);
     auto board = board_of(entry, shared.data);
-    if (!board) return fail(board.error());
+    if (!board) return fail(at_key("board", board.error(), entry));
     auto wires = wires_of(entry, *board);
-    if (!wires) return fail(wires.error());
+    if (!wires) return fail(at_key("port", wires.error(), entry));
     if (const auto known = check_power(shared, index, warnings); !known) return fail(known.error());
     std::optional<StateFile> state;
     if (!entry.state_file.empty()) {
@@ -186,7 +205,7 @@ Result<PlannedStation> plan_station(const SharedParts& shared, std::size_t index
     auto station = planned(shared, index, own);
     for (const std::string& warning : own)
         warnings.push_back(of_receiver({ErrorCode::usage, warning}, shared.scenario, index).message);
-    if (!station) return fail(of_receiver(station.error(), shared.scenario, index));
+    if (!station) return fail(of_named_receiver(station.error(), shared.scenario, index));
     return station;
 }
 

@@ -14,6 +14,7 @@ void read_live(TableReader& table, PlaceReader& places, TrajectorySettings& traj
     LiveSettings live;
     live.heading = read_heading(table);
     table.text("source", live.source);
+    live.source_told_at = table.told_at("source");
     table.needs_one_of({"source"}, "kind \"live\" has no source; expected source = \"udp-json:29990\" or another");
     table.text("vehicle_id", live.vehicle);
     live.at = places.read(table, "at");

@@ -39,8 +39,10 @@ void read_run_keys(TableReader& run, RunSettings& settings) {
 void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesystem::path& folder) {
     std::vector<std::string> files;
     sky.text_or_texts("navigation", files);
-    for (const std::string& file : files)
+    for (const std::string& file : files) {
+        if (file.empty()) sky.mistake("navigation", "is empty; expected the path of a file");
         settings.navigation.push_back(folder / file);
+    }
     sky.boolean("rebase_navigation", settings.rebase_navigation);
     read_constellation_list(sky, settings.constellations);
     if (sky.has("elevation_mask_deg")) {

@@ -76,6 +76,11 @@ toml::source_position MistakeList::place_of(const toml::source_region& where, st
     return changes_.empty() ? toml::source_position{1, 1} : changes_.front().second;
 }
 
+std::string MistakeList::told_at(const toml::source_region& where, std::string_view key) const {
+    const toml::source_position place = place_of(where, key);
+    return fmt::format("{}:{}:{}: ", file_, place.line, place.column);
+}
+
 std::string MistakeList::text() const {
     std::vector<Mistake> sorted = mistakes_;
     std::stable_sort(sorted.begin(), sorted.end(), [](const Mistake& a, const Mistake& b) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <concepts>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <initializer_list>
 #include <limits>
@@ -32,6 +33,8 @@ public:
     /// A part of the file has been changed since it was parsed: mistakes at `path` ("run.duration_s") are told at
     /// `where`. @param words that end each sentence from here on
     void changed(std::string path, const toml::source_region& where, const std::string& words);
+    /// "FILE:LINE:COLUMN: ".
+    [[nodiscard]] std::string told_at(const toml::source_region& where, std::string_view key) const;
     /// All lines, in the order of the file.
     [[nodiscard]] std::string text() const;
 
@@ -148,6 +151,13 @@ public:
     void mistake(std::string_view key, const std::string& sentence);
     /// mistake() for what shows only when more of the file has been read. Valid while the file is read.
     [[nodiscard]] std::function<void(std::string_view key, const std::string& sentence)> mistake_later() const;
+    /// "FILE:LINE:COLUMN: KEY: ", for what shows only when the run is put together; of the table where the key is
+    /// absent.
+    [[nodiscard]] std::string told_at(std::string_view key) const;
+    /// "FILE:LINE:COLUMN: " of the table.
+    [[nodiscard]] std::string told_at() const { return mistakes_.told_at(table_.source(), path_); }
+    /// The path of a file, which has a name. @param folder to which it is relative
+    void file_path(std::string_view key, const std::filesystem::path& folder, std::filesystem::path& value);
     /// Whatever stands there, as faults and commands take it; lists of lists of numbers become one list. Nothing, and a
     /// mistake, for a table or a list that is neither of numbers nor of texts.
     std::optional<ParameterValue> value(std::string_view key);

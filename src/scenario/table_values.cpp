@@ -56,4 +56,17 @@ const toml::node* TableReader::node(std::string_view key, KeyType type) {
     return find(key);
 }
 
+std::string TableReader::told_at(std::string_view key) const {
+    const toml::node* node = table_.get(key);
+    const std::string path = path_of(key);
+    return mistakes_.told_at(node ? node->source() : table_.source(), path) + path + ": ";
+}
+
+void TableReader::file_path(std::string_view key, const std::filesystem::path& folder, std::filesystem::path& value) {
+    std::string path;
+    text(key, path);
+    if (path.empty() && !recording() && table_.contains(key)) mistake(key, "is empty; expected the path of a file");
+    value = folder / path;
+}
+
 }  // namespace skyloop

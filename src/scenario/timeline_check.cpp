@@ -16,7 +16,8 @@ template <class Entry>
 std::optional<std::string> early_time(std::string_view table, const std::vector<Entry>& entries, GpsTime start) {
     for (const Entry& entry : entries)
         if (entry.when.at_time && *entry.when.at_time < start)
-            return fmt::format("[[{}]] '{}': at_utc is {}, before the start of the run; expected {} or later", table,
+            return entry.told_at +
+                   fmt::format("[[{}]] '{}': at_utc is {}, before the start of the run; expected {} or later", table,
                                entry.when.name, check_utc_text(*entry.when.at_time), check_utc_text(start));
     return std::nullopt;
 }
@@ -45,13 +46,13 @@ Result<void> check_timeline(const Scenario& scenario, GpsTime start) {
         const FaultKind* kind = find_fault_kind(fault.kind);
         if (kind != nullptr && kind->measuring_receivers_only && scenario.model.sensor_model)
             return fail(ErrorCode::input,
-                        fmt::format("{}: [[fault]] '{}': kind = \"{}\" spoils measurements, and model.name = \"{}\" "
+                        fmt::format("{}[[fault]] '{}': kind = \"{}\" spoils measurements, and model.name = \"{}\" "
                                     "makes none; expected model.name = \"modern\"",
-                                    scenario.name, fault.when.name, fault.kind, model_name(scenario.model)));
+                                    fault.told_at, fault.when.name, fault.kind, model_name(scenario.model)));
     }
     auto early = early_time("fault", scenario.faults, start);
     if (!early) early = early_time("command", scenario.commands, start);
-    if (early) return fail(ErrorCode::input, fmt::format("{}: {}", scenario.name, *early));
+    if (early) return fail(ErrorCode::input, *early);
     return {};
 }
 

@@ -122,6 +122,7 @@ std::vector<std::size_t> read_receiver_choice(TableReader& table, const Scenario
 void read_fault(TableReader& table, Scenario& scenario) {
     const FaultKind* kind = read_kind(table, fault_kinds());
     FaultEntry entry;
+    entry.told_at = table.told_at();
     entry.receivers = read_receiver_choice(table, scenario);
     GivenKeys given = given_keys(table, timeline_keys());
     entry.when = read_times(table, timeline_keys(), given.timeline);
@@ -144,6 +145,7 @@ void read_fault(TableReader& table, Scenario& scenario) {
 void read_command(TableReader& table, Scenario& scenario) {
     const CommandKind* kind = read_kind(table, command_kinds());
     CommandEntry entry;
+    entry.told_at = table.told_at();
     const GivenKeys given = given_keys(table, timeline_keys_of_commands());
     entry.when = read_times(table, timeline_keys_of_commands(), given.timeline);
     entry.when.once = true;

@@ -6,7 +6,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-READERS = ("number|boolean|text|texts|text_or_texts|integer|numbers|whole_numbers|place|utc|choice|choices|word|quantity|"
+READERS = ("number|file_path|boolean|text|texts|text_or_texts|integer|numbers|whole_numbers|place|utc|choice|choices|word|quantity|"
            "table|tables|named_values")
 COMMENT = re.compile(r"//[^\n]*")
 CODE_SPAN = re.compile(r"`([^`]*)`")

@@ -105,7 +105,8 @@ enum class LostSource { hold, outage, pause, stop };
 /// A path that another program flies at this moment. It becomes a LivePath when the source is opened, by open_feeds()
 /// (emulator/live_feeds.hpp).
 struct LiveSettings {
-    std::string source{};   ///< "udp-json:5000": parse_feed_address()
+    std::string source{};                                ///< "udp-json:5000": parse_feed_address()
+    std::string source_told_at = "trajectory.source: ";  ///< "FILE:LINE:COLUMN: KEY: ", for messages
     std::string vehicle{};  ///< which one of the source's; empty: the first that it speaks of
     Angle heading{};
     std::optional<Geodetic> at{};  ///< where the vehicle stands until the source speaks; nothing: the run waits for it
@@ -169,6 +170,8 @@ struct ReceiverEntry {
     std::array<double, 3> antenna_offset{};  ///< forward, right, down from the point that follows the trajectory, m
     std::optional<TrajectorySettings> trajectory{};  ///< of the vehicle it rides on; nothing: the scenario's
     std::optional<std::size_t> base;  ///< the receiver, by its place in the list, that carries the base antenna
+    /// "FILE:LINE:COLUMN: KEY: " of board, port and power, for messages; what an option has given is not among them.
+    std::map<std::string, std::string, std::less<>> told_at{};
 };
 
 /// A fault and when it works.
@@ -177,12 +180,14 @@ struct FaultEntry {
     std::string kind;  ///< of fault_kinds()
     Parameters parameters;
     std::vector<std::size_t> receivers;  ///< by their places in the list, ascending; all of them unless told otherwise
+    std::string told_at{};               ///< "FILE:LINE:COLUMN: ", for messages; empty: in no file
 };
 
 /// A command and when it is carried out.
 struct CommandEntry {
     TimelineEntry when;
     Command command;
+    std::string told_at{};  ///< as that of a fault
 };
 
 struct Scenario {

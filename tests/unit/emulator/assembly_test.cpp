@@ -12,9 +12,11 @@ namespace {
 
 using test::emulator_data;
 using test::emulator_scenario;
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 RunMode virtual_mode() {
     RunMode mode;
@@ -48,6 +50,25 @@ TEST(Assembly, UnknownBoardsAreUsageErrors) {
     const Error board = refusal("[[receiver]]\nboard = \"ublox-m7\"");
     EXPECT_EQ(board.code, ErrorCode::usage);
     EXPECT_THAT(board.message, HasSubstr("board 'ublox-m7' is not known"));
+}
+
+TEST(Assembly, WhatAKeyIsRefusedForHasItsPlaceInTheFile) {
+    const auto told = [](const std::string& text) { return refusal(text).message; };
+    EXPECT_THAT(told("[[receiver]]\nboard = \"ublox-m7\""),
+                StartsWith("test.toml:2:9: receiver.board: board 'ublox-m7' is not known"));
+    EXPECT_THAT(told("[[receiver]]\n[[receiver]]\nport = \"foo:1\""),
+                StartsWith("test.toml:3:8: receiver.port: port 'foo:1': no such kind of port"));
+    EXPECT_THAT(told("[[receiver]]\npower = \"relay:x\""), StartsWith("test.toml:2:9: receiver.power: "));
+    EXPECT_THAT(told("[trajectory]\nkind = \"live\"\nsource = \"udp-jsn:5000\""),
+                AllOf(StartsWith("test.toml:3:10: trajectory.source: "), HasSubstr("udp-jsn")));
+    EXPECT_THAT(told("[run]\nstart = 2024-03-05T12:00:00Z\n[[fault]]\nkind = \"outage\"\nat_utc = "
+                     "2024-03-05T11:00:00Z"),
+                StartsWith("test.toml:3:1: [[fault]] 'outage': at_utc is 2024-03-05T11:00:00.000Z"));
+    Scenario by_option = emulator_scenario("[[receiver]]\nboard = \"ublox-m8\"");
+    by_option.receivers[0].board = "ublox-m7";
+    by_option.receivers[0].told_at.erase("board");
+    EXPECT_THAT(assemble(by_option, emulator_data(), virtual_mode()).error().message,
+                StartsWith("board 'ublox-m7' is not known"));
 }
 
 TEST(Assembly, TheScenarioChangesTheBoard) {

@@ -102,8 +102,9 @@ TEST(Power, IsRefusedBeforeAnythingIsOpened) {
     const std::string same = "command:true|true";
     const Error shared = refusal(receiver_with("a", same) + receiver_with("b", same));
     EXPECT_EQ(shared.code, ErrorCode::usage);
-    EXPECT_EQ(shared.message,
-              "receiver 'b': power 'command:true|true' is that of a too; expected an actuator of its own");
+    EXPECT_THAT(shared.message, testing::MatchesRegex(R"(test\.toml:[0-9]+:[0-9]+: receiver\.power: power )"
+                                                      R"('command:true\|true' is that of a too; expected an actuator )"
+                                                      R"(of its own)"));
 }
 
 }  // namespace

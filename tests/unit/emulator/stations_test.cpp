@@ -180,7 +180,8 @@ TEST(Stations, MistakesAndWarningsNameTheReceiver) {
     const auto refused =
         assemble(emulator_scenario(two_receivers + "port = \"uart9=pty\"\n"), test::emulator_data(), {});
     ASSERT_FALSE(refused);
-    EXPECT_THAT(refused.error().message, testing::StartsWith("receiver 'rear': port 'uart9=pty'"));
+    EXPECT_THAT(refused.error().message, testing::HasSubstr(": receiver.port: port 'uart9=pty'"));
+    EXPECT_THAT(refused.error().message, testing::StartsWith("test.toml:")) << "its place tells which one";
     EXPECT_THAT(stations_assembly(two_receivers + "rate_hz = 90\n").warnings,
                 testing::Contains(testing::StartsWith("receiver 'rear': 90 Hz is more than")));
 }

@@ -117,6 +117,10 @@ TEST(ScenarioMistakes, EmptyTextsAndListsAreNotTakenForNothing) {
     EXPECT_THAT(mistakes_of("[sky]\nconstellations = []"), HasSubstr("is an empty list; expected a list of some of"));
     EXPECT_THAT(mistakes_of("[[receiver]]\nsentences = []"),
                 HasSubstr("is an empty list; expected a list of some of RMC"));
+    EXPECT_EQ(mistakes_of("[trajectory]\nkind = \"file\"\npath = \"\""),
+              "test.toml:3:8: trajectory.path: is empty; expected the path of a file");
+    EXPECT_EQ(mistakes_of("[sky]\nnavigation = [\"a.24n\", \"\"]"),
+              "test.toml:2:14: sky.navigation: is empty; expected the path of a file");
 }
 
 TEST(ScenarioMistakes, KeysThatExcludeEachOtherAreRefused) {
