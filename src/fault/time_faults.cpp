@@ -130,7 +130,7 @@ std::vector<FaultKind> calendar_kinds() {
           make_leap_second_event},
          {"week_rollover",
           solution,
-          "Dates lie 1024 weeks back; the time of week is right.",
+          "Dates lie 1024 weeks back; the time of week is right. Refused where that leads to before 1980-01-06.",
           "The ten bits of the week number: firmware resolves them about the date of its making.",
           {whole_number_parameter("rollovers", 1, 1, 2, "times 1024 weeks")},
           make_week_rollover},
@@ -144,24 +144,25 @@ std::vector<FaultKind> calendar_kinds() {
 
 std::vector<FaultKind> clock_kinds() {
     using enum FaultLayer;
-    return {{"time_step",
-             solution,
-             "The time jumps by a constant; the solution stays.",
-             "False signals that carry another time, or a clock that was set wrong after a restart.",
-             {number_parameter("step_s", 3600, -1e9, 1e9, "later than the true time, s")},
-             make_time_step},
-            {"time_backwards",
-             solution,
-             "The time runs backwards from the start of the fault on.",
-             "Recorded signals that are sent again, and firmware that corrects its clock in the wrong direction.",
-             {number_parameter("rate", 1, 0.001, 100, "how fast, s per s")},
-             make_time_backwards},
-            {"time_drift",
-             solution,
-             "The time runs away from the true one; epochs keep their rate.",
-             "A receiver that has lost its satellites and counts by its crystal, or false signals.",
-             {number_parameter("ppm", 1000, -500'000, 500'000, "how much faster, 1e-6")},
-             make_time_drift}};
+    return {
+        {"time_step",
+         solution,
+         "The time jumps by a constant; the solution stays. Before 1980-01-06 there is no time: it stands still there.",
+         "False signals that carry another time, or a clock that was set wrong after a restart.",
+         {number_parameter("step_s", 3600, -1e9, 1e9, "later than the true time, s")},
+         make_time_step},
+        {"time_backwards",
+         solution,
+         "The time runs backwards from the start of the fault on.",
+         "Recorded signals that are sent again, and firmware that corrects its clock in the wrong direction.",
+         {number_parameter("rate", 1, 0.001, 100, "how fast, s per s")},
+         make_time_backwards},
+        {"time_drift",
+         solution,
+         "The time runs away from the true one; epochs keep their rate.",
+         "A receiver that has lost its satellites and counts by its crystal, or false signals.",
+         {number_parameter("ppm", 1000, -500'000, 500'000, "how much faster, 1e-6")},
+         make_time_drift}};
 }
 
 std::vector<FaultKind> unknown_time_kinds() {

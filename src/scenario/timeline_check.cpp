@@ -28,6 +28,20 @@ std::optional<GpsTime> first_beginning(const TimelineEntry& entry, GpsTime start
     return Timeline({entry}, start, seed).next_event();
 }
 
+// Weeks are counted from the beginning of GPS time; before it there are none to roll back to.
+std::optional<std::string> too_early_to_roll_over(const FaultEntry& fault, GpsTime start, std::uint64_t seed) {
+    if (fault.kind != "week_rollover") return std::nullopt;
+    const double rollovers = fault.parameters.optional_number("rollovers").value_or(1);
+    const GpsTime first = advanced(GpsTime{}, Seconds(rollovers * 1024 * static_cast<double>(seconds_per_week)));
+    const GpsTime begins = first_beginning(fault.when, start, seed).value_or(start);
+    if (begins >= first) return std::nullopt;
+    return fault.told_at +
+           fmt::format(
+               "[[fault]] '{}': rollovers = {:g} leads to before 1980-01-06; expected {}a beginning at {} or "
+               "later",
+               fault.when.name, rollovers, rollovers > 1 ? "fewer, or " : "", check_utc_text(first));
+}
+
 template <class Entry>
 void warn_of_late(std::string_view table, const std::vector<Entry>& entries, const Scenario& scenario,
                   std::array<GpsTime, 2> run, std::vector<std::string>& warnings) {
@@ -50,6 +64,9 @@ Result<void> check_timeline(const Scenario& scenario, GpsTime start) {
                                     "makes none; expected model.name = \"modern\"",
                                     fault.told_at, fault.when.name, fault.kind, model_name(scenario.model)));
     }
+    for (const FaultEntry& fault : scenario.faults)
+        if (const auto mistake = too_early_to_roll_over(fault, start, scenario.run.seed))
+            return fail(ErrorCode::input, *mistake);
     auto early = early_time("fault", scenario.faults, start);
     if (!early) early = early_time("command", scenario.commands, start);
     if (early) return fail(ErrorCode::input, *early);

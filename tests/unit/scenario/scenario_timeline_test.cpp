@@ -131,6 +131,14 @@ TEST(ScenarioTimeline, WhatNeverHappensInThisRunIsRefused) {
                 HasSubstr("[[fault]] 'cycle_slips': kind = \"cycle_slips\" spoils measurements, and model.name = "
                           "\"baseline\" makes none; expected model.name = \"modern\""));
     EXPECT_THAT(refusal_of(slips + "\"modern\"\n", start), IsEmpty());
+    const std::string weeks = "[[fault]]\nkind = \"week_rollover\"\nrollovers = ";
+    const GpsTime early = to_gps_time(1600, 0);
+    EXPECT_THAT(refusal_of(weeks + "2\n", start), IsEmpty());
+    EXPECT_THAT(refusal_of(weeks + "1\n", early), IsEmpty());
+    EXPECT_THAT(
+        refusal_of(weeks + "2\n", early),
+        HasSubstr("'week_rollover': rollovers = 2 leads to before 1980-01-06; expected fewer, or a beginning at "
+                  "2019-04-06T23:59:42.000Z or later"));
     const std::string note = "[[command]]\nkind = \"note\"\nat_utc = ";
     EXPECT_THAT(
         refusal_of(note + "2024-03-05T11:00:00Z\n", start),
