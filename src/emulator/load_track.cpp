@@ -54,6 +54,9 @@ std::vector<std::string> track_warnings(const FileSettings& file, const CurveRep
     std::vector<std::string> warnings;
     for (const std::string& note : file.track->notes)
         warnings.push_back(fmt::format("{}: {}", file.track->name, note));
+    if (file.route_told && !file.route)
+        warnings.push_back(fmt::format("{}: its rows have times; speed_mps and route_tolerance_m are of files without",
+                                       file.track->name));
     if (report.contradictions > 0)
         warnings.push_back(fmt::format("{}: between {} pairs of rows the velocities do not fit the places",
                                        file.track->name, report.contradictions));

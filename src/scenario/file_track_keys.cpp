@@ -43,6 +43,7 @@ void read_file_track(TableReader& table, const std::filesystem::path& folder, Tr
     MetresPerSecond speed(12);
     table.quantity("speed_mps", speed, {1e-2, 12000});
     if (table.has("speed_mps")) file.route_speed = speed;
+    file.route_told = table.has("speed_mps") || table.has("route_tolerance_m");
     table.quantity("route_tolerance_m", file.route_tolerance, {0, 1e5});
     trajectory = file;
 }

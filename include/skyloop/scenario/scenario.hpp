@@ -86,6 +86,7 @@ struct FileSettings {
     Smoothing smoothing = Smoothing::none;
     std::optional<MetresPerSecond> route_speed{};  ///< of places without times; nothing: the file's or the vehicle's
     Metres route_tolerance{2};                     ///< RouteSettings::tolerance
+    bool route_told = false;                       ///< one of both has been given
     std::shared_ptr<const Track> track{};          ///< clean; null until it has been loaded
     std::vector<TrackGap> gaps{};
     std::shared_ptr<const FlownRoute> route{};  ///< of a track without times; null for others

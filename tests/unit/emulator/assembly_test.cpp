@@ -196,6 +196,20 @@ TEST(Assembly, AConstellationThatTheReceiverDoesNotTrackIsAWarning) {
         << "sensor models take what is in the sky";
 }
 
+TEST(Assembly, KeysOfRoutesBesideTimesAreAWarning) {
+    const test::TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "track.csv";
+    const auto warnings = [&](const std::string& rows, const std::string& keys) {
+        std::ofstream(file) << rows;
+        return assembled("[trajectory]\nkind = \"file\"\npath = \"" + file.string() + "\"\n" + keys).warnings;
+    };
+    const std::string timed = "t_s,lat_deg,lon_deg,h_ell_m\n0,46,7,100\n1,46.0001,7,100\n2,46.0002,7,100\n";
+    const auto told = HasSubstr("its rows have times; speed_mps and route_tolerance_m are of files without");
+    EXPECT_THAT(warnings(timed, "speed_mps = 3"), Contains(told));
+    EXPECT_THAT(warnings(timed, "route_tolerance_m = 3"), Contains(told));
+    EXPECT_THAT(warnings(timed, ""), Not(Contains(told)));
+}
+
 TEST(Assembly, TwoEndsAtOnePlaceAreRefused) {
     const auto two = [](const std::string& a, const std::string& b) {
         return refusal("[[receiver]]\nport = \"" + a + "\"\n[[receiver]]\nport = \"" + b + "\"").message;
