@@ -15,7 +15,7 @@ tl::expected<Geodetic, std::string> place_from_degrees(double latitude, double l
     if (!(std::abs(latitude) <= 90))
         return tl::make_unexpected(fmt::format("latitude is {:g}; expected -90 to 90 degrees", latitude));
     if (!(std::abs(longitude) <= 360))
-        return tl::make_unexpected(fmt::format("longitude is {:g}; expected -180 to 180 degrees", longitude));
+        return tl::make_unexpected(fmt::format("longitude is {:g}; expected -360 to 360 degrees", longitude));
     if (!(height_m >= -1e4 && height_m <= 1e7))
         return tl::make_unexpected(
             fmt::format("height is {:g}; expected metres above the ellipsoid, -10 000 to 10 000 000", height_m));

@@ -232,6 +232,12 @@ std::optional<std::vector<double>> TableReader::numbers(std::string_view key, st
 std::optional<Geodetic> TableReader::place(std::string_view key) {
     if (recording()) note(key, {.type = KeyType::place, .count_least = 2, .count_most = 3});
     const auto* list = table_.get(key) ? table_.get(key)->as_array() : nullptr;
+    if (list && list->size() != 2 && list->size() != 3) {
+        (void)find(key);
+        return mistake(key, fmt::format("has {} numbers; expected latitude and longitude, or both and a height",
+                                        list->size())),
+               std::nullopt;
+    }
     const std::size_t count = list && list->size() == 2 ? 2 : 3;
     const auto values = numbers(key, count);
     if (!values) return std::nullopt;

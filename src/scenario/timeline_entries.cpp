@@ -65,8 +65,8 @@ void tell(TableReader& table, const std::vector<ParameterMistake>& mistakes) {
 }
 
 // Unknown keys suggest those of the timeline too.
-Parameters own_parameters(TableReader& table, const std::vector<ParameterSpec>& own,
-                          const std::vector<ParameterSpec>& timeline, const GivenValues& given) {
+CheckedParameters own_parameters(TableReader& table, const std::vector<ParameterSpec>& own,
+                                 const std::vector<ParameterSpec>& timeline, const GivenValues& given) {
     table.note_parameters(own);
     CheckedParameters checked = check_parameters(own, given);
     std::vector<std::string_view> known{"kind", "receiver"};
@@ -77,7 +77,7 @@ Parameters own_parameters(TableReader& table, const std::vector<ParameterSpec>& 
         if (std::find(known.begin(), known.end(), mistake.name) == known.end())
             mistake.sentence = "unknown key" + did_you_mean(mistake.name, known);
     tell(table, checked.mistakes);
-    return checked.parameters;
+    return checked;
 }
 
 TimelineEntry read_times(TableReader& table, const std::vector<ParameterSpec>& keys, const GivenValues& given) {
@@ -128,12 +128,13 @@ void read_fault(TableReader& table, Scenario& scenario) {
     entry.when = read_times(table, timeline_keys(), given.timeline);
     if (kind != nullptr) {
         entry.kind = kind->name;
-        entry.parameters = own_parameters(table, kind->parameters, timeline_keys(), given.own);
+        const CheckedParameters own = own_parameters(table, kind->parameters, timeline_keys(), given.own);
+        entry.parameters = own.parameters;
         tell(table, ramp_mistakes(*kind, Parameters(given.timeline)));
         const auto made = kind->make(entry.parameters, {1, "check"});
-        if (!made)
+        if (!made && own.mistakes.empty())
             table.mistake_here(made.error().message);
-        else if (made->pace && entry.receivers.size() < scenario.receivers.size())
+        else if (made && made->pace && entry.receivers.size() < scenario.receivers.size())
             table.mistake("receiver", fmt::format("stands beside kind = \"{}\", and the receivers of a run have one "
                                                   "clock; expected no 'receiver'",
                                                   kind->name));
@@ -151,7 +152,8 @@ void read_command(TableReader& table, Scenario& scenario) {
     entry.when.once = true;
     if (kind != nullptr) {
         entry.command.verb = kind->verb;
-        entry.command.parameters = own_parameters(table, kind->parameters, timeline_keys_of_commands(), given.own);
+        entry.command.parameters =
+            own_parameters(table, kind->parameters, timeline_keys_of_commands(), given.own).parameters;
         if (const auto mistake = place_mistake(entry.command)) table.mistake("at", *mistake);
         if (!kind->of_receiver) {
             table.refuse("receiver",

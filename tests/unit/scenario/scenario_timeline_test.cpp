@@ -93,6 +93,10 @@ TEST(ScenarioTimeline, MistakesAreToldWhereTheyStand) {
                 HasSubstr("test.toml:6:12: command.receiver: names 2 receivers"));
     EXPECT_THAT(mistakes("[[command]]\nkind = \"move_to\"\nat = [91, 0]\n"),
                 HasSubstr("test.toml:3:6: command.at: latitude is 91"));
+    EXPECT_EQ(
+        mistakes("[[fault]]\nkind = \"spoof_takeover\"\noffset_m = [1, 2]\n"),
+        "test.toml:3:12: fault.offset_m: is a list of 2 numbers; expected a list of 3 numbers from -100000 to 100000")
+        << "that nothing is told follows from it";
     EXPECT_THAT(mistakes("[[receiver]]\nname = \"a\"\n[[receiver]]\nname = \"b\"\n[[fault]]\nreceiver = \"a\"\n"
                          "kind = \"clock_drift\"\n"),
                 HasSubstr("test.toml:6:12: fault.receiver: stands beside kind = \"clock_drift\""));
