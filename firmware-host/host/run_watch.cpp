@@ -51,11 +51,13 @@ Result<void> write_report(const std::filesystem::path& path, const std::string& 
 Result<std::unique_ptr<RunWatch>> RunWatch::start(const Scenario& scenario, Assembly& assembly,
                                                   const WatchOptions& options, CommandQueue& commands) {
     std::unique_ptr<RunWatch> watch(new RunWatch(scenario, assembly));
-    if (const auto opened = watch->open_log(); !opened) return fail(opened.error());
     watch->appoint_judge(options.live);
     if (const auto opened = watch->open_control(options, commands); !opened) return fail(opened.error());
     if (const auto opened = watch->open_mavlink(options.mavlink, commands); !opened) return fail(opened.error());
     if (const auto opened = watch->open_outputs(options.live); !opened) return fail(opened.error());
+    // After everything that may be refused: it empties the files of a former recording.
+    if (const auto begun = assembly.emulator->begin_recordings(); !begun) return fail(begun.error());
+    if (const auto opened = watch->open_log(); !opened) return fail(opened.error());
     return watch;
 }
 

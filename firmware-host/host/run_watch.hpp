@@ -29,6 +29,7 @@ struct WatchOptions {
 /// Watches the emulator of an assembly. It must end before the assembly does.
 class RunWatch {
 public:
+    /// Opens what is asked for, then begins the recordings, and fails as they do.
     /// @param commands that clients from outside ask for
     static Result<std::unique_ptr<RunWatch>> start(const Scenario& scenario, Assembly& assembly,
                                                    const WatchOptions& options, CommandQueue& commands);

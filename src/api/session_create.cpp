@@ -121,6 +121,7 @@ Answer<void> Session::assemble_run(const sky_create_info& info) {
     watcher_ = std::make_unique<RunWatcher>(StatusSetup{scenario_.name, assembly_.start, std::nullopt, {}},
                                             emulator.stations(), std::move(sources));
     emulator.add_observer(watcher_.get());
+    if (const auto begun = emulator.begin_recordings(); !begun) return refuse(begun.error());
     for (const std::string& detail : assembly_.details)
         log(SKY_LOG_DETAIL, detail);
     for (const std::string& warning : assembly_.warnings)

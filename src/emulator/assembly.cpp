@@ -146,16 +146,15 @@ Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& 
         plans.push_back(std::move(*plan));
     }
     if (const auto apart = check_ends(ends_of(plans, shared.scenario)); !apart) return fail(apart.error());
+    // Before anything is opened that another run may be using, too.
+    for (std::size_t i = 0; i < plans.size() && shared.mode.record; ++i)
+        if (const auto added = add_recorder(plans[i].parts, shared, i); !added) return fail(added.error());
     for (std::size_t i = 0; i < plans.size() && shared.mode.open_ports; ++i)
         if (i == 0 || !shared.mode.first_ports_only)
             if (const auto plugged = plug_in(plans[i], shared, i); !plugged) return fail(plugged.error());
     std::vector<Station> stations;
-    for (std::size_t i = 0; i < plans.size(); ++i) {
-        // After everything that may be refused: it empties the files of a former recording.
-        if (shared.mode.record)
-            if (const auto added = add_recorder(plans[i].parts, shared, i); !added) return fail(added.error());
-        stations.emplace_back(std::move(plans[i].parts));
-    }
+    for (PlannedStation& plan : plans)
+        stations.emplace_back(std::move(plan.parts));
     for (std::string& warning :
          idle_fault_warnings(shared.scenario, *shared.navigation, stations, shared.mode.virtual_time))
         assembly.warnings.push_back(std::move(warning));

@@ -21,6 +21,14 @@ Emulator::Emulator(Parts parts, GpsTime start)
     if (parts_.feeds) parts_.feeds->begin(start, parts_.pacer->due_at(start));
 }
 
+Result<void> Emulator::begin_recordings() {
+    for (Station& station : parts_.stations)
+        if (Recorder* recorder = station.recorder())
+            if (const auto begun = recorder->begin(std::max<std::size_t>(station.wires().size(), 1)); !begun)
+                return begun;
+    return {};
+}
+
 GpsTime Emulator::next_instant(GpsTime end) const {
     GpsTime next = end;
     bool busy = false, wired = false;

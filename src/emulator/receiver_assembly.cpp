@@ -230,11 +230,9 @@ Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::si
 
 Result<void> add_recorder(Station::Parts& parts, const SharedParts& shared, std::size_t index) {
     const std::filesystem::path& folder = *shared.mode.record;
-    auto recorder = Recorder::create(recording_of(folder, index), std::max<std::size_t>(parts.wires.size(), 1));
+    auto recorder = Recorder::claim(recording_of(folder, index));
     if (!recorder) return fail(recorder.error());
-    if (parts.simulation.measures())
-        if (const auto added = recorder->add_rinex(rinex_setup(parts, shared.start)); !added)
-            return fail(added.error());
+    if (parts.simulation.measures()) recorder->add_rinex(rinex_setup(parts, shared.start));
     parts.recorder = std::move(*recorder);
     return {};
 }

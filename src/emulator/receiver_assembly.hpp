@@ -33,7 +33,7 @@ struct PlannedStation {
 Result<PlannedStation> plan_station(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings);
 /// Opens its wires and, against the clock, its actuator.
 Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::size_t index);
-/// Makes the files of its recording: the first receiver's in the folder itself, the others' in receiver1 and so on.
+/// Claims the folder of its recording: the first receiver's is the folder itself, the others' are receiver1 and so on.
 Result<void> add_recorder(Station::Parts& parts, const SharedParts& shared, std::size_t index);
 
 /// The seed of a receiver's own random numbers. The first has that of the run; the world has it too.

@@ -15,35 +15,49 @@ Recorder::~Recorder() = default;
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 
-Result<Recorder> Recorder::create(const std::filesystem::path& folder, std::size_t wires) {
-    std::error_code reason;
-    std::filesystem::create_directories(folder, reason);
-    if (reason)
-        return fail(ErrorCode::outside,
-                    fmt::format("{}: cannot be made a folder: {}", folder.string(), reason.message()));
+Result<Recorder> Recorder::claim(const std::filesystem::path& folder) {
+    auto claimed = ClaimedFolder::claim(folder);
+    if (!claimed) return fail(claimed.error());
     Recorder recorder;
-    recorder.folder_ = folder;
+    recorder.folder_ = std::move(*claimed);
+    return recorder;
+}
+
+void Recorder::add_rinex(const RinexRecordingSetup& setup) {
+    rinex_setup_ = std::make_unique<RinexRecordingSetup>(setup);
+}
+
+Result<void> Recorder::begin(std::size_t wires) {
+    std::error_code reason;
     // Whatever becomes of this run, it must not leave the summary of the run before.
-    std::filesystem::remove(folder / "run.json", reason);
+    std::filesystem::remove(folder() / "run.json", reason);
     // Nor the observations of a receiver that measured, when this one does not.
-    std::filesystem::remove(folder / "observations.rnx", reason);
-    std::filesystem::remove(folder / "navigation.rnx", reason);
-    const std::pair<OutputFile*, const char*> files[] = {{&recorder.fixes_, "fixes.csv"},
-                                                         {&recorder.satellites_, "satellites.csv"}};
+    std::filesystem::remove(folder() / "observations.rnx", reason);
+    std::filesystem::remove(folder() / "navigation.rnx", reason);
+    if (const auto tables = create_tables(); !tables) return tables;
+    if (const auto ports = create_ports(wires); !ports) return ports;
+    if (!rinex_setup_) return {};
+    auto rinex = RinexRecording::create(folder(), *rinex_setup_);
+    if (!rinex) return fail(rinex.error());
+    rinex_ = std::make_unique<RinexRecording>(std::move(*rinex));
+    return {};
+}
+
+Result<void> Recorder::create_tables() {
+    const std::pair<OutputFile*, const char*> files[] = {{&fixes_, "fixes.csv"}, {&satellites_, "satellites.csv"}};
     for (const auto& [file, name] : files) {
-        auto created = OutputFile::create(folder / name);
+        auto created = OutputFile::create(folder() / name);
         if (!created) return fail(created.error());
         *file = std::move(*created);
     }
-    if (const auto ports = recorder.create_ports(wires); !ports) return fail(ports.error());
-    recorder.fixes_.write(fixes_header);
-    recorder.satellites_.write(satellites_header);
-    return recorder;
+    fixes_.write(fixes_header);
+    satellites_.write(satellites_header);
+    return {};
 }
 
 Result<void> Recorder::create_ports(std::size_t wires) {
     const auto name = [&](std::size_t wire, const char* extension) {
-        return folder_ / fmt::format("port{}.{}", wire, extension);
+        return folder() / fmt::format("port{}.{}", wire, extension);
     };
     for (std::size_t wire = 0; wire < wires; ++wire) {
         PortFiles port;
@@ -61,13 +75,6 @@ Result<void> Recorder::create_ports(std::size_t wires) {
     for (std::size_t wire = wires; std::filesystem::remove(name(wire, "out"), reason); ++wire)
         for (const char* extension : {"in", "times", "in_times"})
             std::filesystem::remove(name(wire, extension), reason);
-    return {};
-}
-
-Result<void> Recorder::add_rinex(const RinexRecordingSetup& setup) {
-    auto rinex = RinexRecording::create(folder_, setup);
-    if (!rinex) return fail(rinex.error());
-    rinex_ = std::make_unique<RinexRecording>(std::move(*rinex));
     return {};
 }
 
@@ -103,7 +110,7 @@ void Recorder::PortFiles::write_heard() {
 }
 
 void Recorder::record_summary(const std::string& content) {
-    const auto replaced = replace_file(folder_ / "run.json", content);
+    const auto replaced = replace_file(folder() / "run.json", content);
     summary_failure_ = replaced ? std::nullopt : std::optional(replaced.error());
 }
 

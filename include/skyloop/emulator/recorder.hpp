@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "skyloop/base/result.hpp"
+#include "skyloop/emulator/claimed_folder.hpp"
 #include "skyloop/emulator/output_file.hpp"
 #include "skyloop/emulator/pacer.hpp"
 #include "skyloop/flow/trace.hpp"
@@ -24,12 +25,13 @@ public:
     ~Recorder();
     Recorder(Recorder&&) noexcept;
     Recorder& operator=(Recorder&&) noexcept;
-    /// Makes the folder and its files; old files of a former run are replaced.
+    /// Holds the folder against other runs and leaves what is in it as it is, so that the run can still be refused.
+    static Result<Recorder> claim(const std::filesystem::path& folder);
+    /// There will be observations.rnx and navigation.rnx, for a receiver that measures. Before begin().
+    void add_rinex(const RinexRecordingSetup& setup);
+    /// Makes the files, in the place of those of a former run. Comes before anything is recorded.
     /// @param wires how many sets of port files there are to be: port0, port1, …
-    static Result<Recorder> create(const std::filesystem::path& folder, std::size_t wires = 1);
-
-    /// Adds observations.rnx and navigation.rnx, for a receiver that measures.
-    Result<void> add_rinex(const RinexRecordingSetup& setup);
+    Result<void> begin(std::size_t wires);
 
     /// @param broadcast the records that the satellites send
     void record(const Trace& trace, const NavigationSource& broadcast);
@@ -43,7 +45,7 @@ public:
     void flush();
     /// The first failure to write, a sentence that names the file; after it that file stays as it is.
     [[nodiscard]] std::optional<Error> failure() const;
-    [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+    [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
 
 private:
     struct PortFiles {
@@ -54,12 +56,14 @@ private:
         void write_heard();
     };
     Recorder();
+    Result<void> create_tables();
     Result<void> create_ports(std::size_t wires);
     [[nodiscard]] std::vector<const OutputFile*> files() const;
 
-    std::filesystem::path folder_;
+    ClaimedFolder folder_;
     OutputFile fixes_, satellites_;
     std::vector<PortFiles> ports_;
+    std::unique_ptr<RinexRecordingSetup> rinex_setup_;  // null: it measures nothing
     std::unique_ptr<RinexRecording> rinex_;
     std::optional<Error> summary_failure_;
 };

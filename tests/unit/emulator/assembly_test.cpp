@@ -146,6 +146,21 @@ TEST(Assembly, ARecordingThatCannotBeMadeIsTheOutsideWorldsFailure) {
     EXPECT_EQ(refusal("", mode).code, ErrorCode::outside);
 }
 
+TEST(Assembly, ARunThatIsRefusedLeavesAFormerRecordingAsItWas) {
+    const test::TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "run");
+    std::ofstream(folder / "run/fixes.csv") << "of a former run";
+    RunMode mode = virtual_mode();
+    mode.open_ports = true;
+    mode.record = folder / "run";
+    EXPECT_EQ(refusal("[[receiver]]\nport = \"file:/dev/null/no\"", mode).code, ErrorCode::outside);
+    EXPECT_EQ(test::content_of(folder / "run/fixes.csv"), "of a former run");
+    EXPECT_TRUE(Recorder::claim(folder / "run")) << "it is free again";
+    mode.record = folder / "new";
+    (void)refusal("[[receiver]]\nport = \"file:/dev/null/no\"", mode);
+    EXPECT_FALSE(std::filesystem::exists(folder / "new"));
+}
+
 firmware::BoardProfile board_of(const char* name) { return find_board(name, board_folders(emulator_data())).value(); }
 
 TEST(ReceiverSettingsOfAScenario, TracksWhatTheBoardTracksUnlessToldOtherwise) {

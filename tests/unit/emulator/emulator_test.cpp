@@ -116,7 +116,7 @@ TEST(Emulator, TheStopFlagEndsTheRun) {
 
 TEST(Emulator, ARecordingThatFailsEndsTheRun) {
     const TemporaryFolder folder;
-    auto recorder = Recorder::create(folder / "run");
+    auto recorder = test::recorder_in(folder / "run");
     ASSERT_TRUE(recorder);
     MemoryRun run = memory_run(emulator_scenario(at_noon("")), {1ms, std::move(*recorder), {true, std::nullopt}});
     rlimit before{};
@@ -149,7 +149,7 @@ std::vector<WrittenPart> written_parts(const std::filesystem::path& times) {
 
 TEST(Emulator, TheRecordingHoldsTheBytesOfTheWire) {
     const TemporaryFolder folder;
-    auto recorder = Recorder::create(folder / "run");
+    auto recorder = test::recorder_in(folder / "run");
     MemoryRun run = memory_run(emulator_scenario(at_noon("")), {1ms, std::move(*recorder), {true, std::nullopt}});
     run.wire->feed(to_bytes("$PUBX,00*33\r\n"));
     run.emulator->run_until(run.start + 5s, never_stop);
@@ -173,7 +173,7 @@ TEST(Emulator, TheRecordingHoldsTheBytesOfTheWire) {
 
 TEST(Emulator, KnowsInVirtualTimeWhenEachMessageLeft) {
     const TemporaryFolder folder;
-    auto recorder = Recorder::create(folder / "run");
+    auto recorder = test::recorder_in(folder / "run");
     MemoryRun run = memory_run(emulator_scenario(at_noon("")), {Nanoseconds(0), std::move(*recorder), {true, {}}});
     run.emulator->run_until(run.start + 3s, never_stop);
     const std::string bytes = content_of(folder / "run/port0.out");
@@ -196,7 +196,7 @@ TEST(Emulator, KnowsInVirtualTimeWhenEachMessageLeft) {
 // fixes.csv and satellites.csv of a minute.
 std::pair<std::string, std::string> recorded_minute(const std::string& text) {
     const TemporaryFolder folder;
-    auto recorder = Recorder::create(folder / "run");
+    auto recorder = test::recorder_in(folder / "run");
     MemoryRun run = memory_run(emulator_scenario(text), {0ns, std::move(*recorder), {true, std::nullopt}});
     run.emulator->run_until(run.start + 60s, never_stop);
     return {content_of(folder / "run/fixes.csv"), content_of(folder / "run/satellites.csv")};

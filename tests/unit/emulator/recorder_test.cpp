@@ -82,7 +82,7 @@ std::map<std::string, std::string> row_of(const std::string& table, std::size_t 
 std::pair<std::string, std::string> tables_of(const std::vector<Trace>& traces) {
     const TemporaryFolder folder;
     {
-        auto recorder = Recorder::create(folder / "run");
+        auto recorder = test::recorder_in(folder / "run");
         EXPECT_TRUE(recorder);
         for (const Trace& trace : traces)
             recorder->record(trace, NominalConstellation());
@@ -175,7 +175,7 @@ TEST(Recorder, TheTimesOfBytesFollowTheBytes) {
     const TemporaryFolder folder;
     const GpsTime start = to_gps_time(2304, 0);
     {
-        auto recorder = Recorder::create(folder / "run");
+        auto recorder = test::recorder_in(folder / "run");
         recorder->record_output(to_bytes("abc"), {start, 100});
         recorder->record_output({}, {start, 150});
         recorder->record_output(to_bytes("de"), {start + std::chrono::milliseconds(1), 200});
@@ -191,18 +191,18 @@ TEST(Recorder, TheTimesOfBytesFollowTheBytes) {
 TEST(Recorder, AFolderThatCannotBeMadeIsNamed) {
     const TemporaryFolder folder;
     std::ofstream(folder / "file") << "x";
-    const auto in_file = Recorder::create(folder / "file/run");
+    const auto in_file = test::recorder_in(folder / "file/run");
     ASSERT_FALSE(in_file);
     EXPECT_EQ(in_file.error().code, ErrorCode::outside);
     EXPECT_THAT(in_file.error().message, HasSubstr("file/run: cannot be made a folder: Not a directory"));
     std::filesystem::create_directories(folder / "run/fixes.csv");
-    EXPECT_THAT(Recorder::create(folder / "run").error().message, HasSubstr("fixes.csv: cannot be written"));
+    EXPECT_THAT(test::recorder_in(folder / "run").error().message, HasSubstr("fixes.csv: cannot be written"));
 }
 
 TEST(Recorder, ReplacesAFormerRunAndTellsFailures) {
     const TemporaryFolder folder;
-    { Recorder::create(folder / "run")->record_output(to_bytes("old"), {}); }
-    auto recorder = Recorder::create(folder / "run");
+    { test::recorder_in(folder / "run")->record_output(to_bytes("old"), {}); }
+    auto recorder = test::recorder_in(folder / "run");
     recorder->flush();
     EXPECT_EQ(content_of(folder / "run/port0.out"), "");
     EXPECT_FALSE(recorder->failure());
@@ -212,6 +212,28 @@ TEST(Recorder, ReplacesAFormerRunAndTellsFailures) {
     recorder->record_summary("{}\n");
     ASSERT_TRUE(recorder->failure());
     EXPECT_THAT(recorder->failure()->message, HasSubstr("run.json: cannot be written"));
+}
+
+TEST(Recorder, WhatIsThereStaysUntilTheRecordingBegins) {
+    const TemporaryFolder folder;
+    { test::recorder_in(folder / "run")->record_output(to_bytes("old"), {}); }
+    auto recorder = Recorder::claim(folder / "run");
+    ASSERT_TRUE(recorder);
+    EXPECT_EQ(content_of(folder / "run/port0.out"), "old");
+    ASSERT_TRUE(recorder->begin(1));
+    EXPECT_EQ(content_of(folder / "run/port0.out"), "");
+}
+
+TEST(Recorder, TwoDoNotRecordIntoOneFolder) {
+    const TemporaryFolder folder;
+    auto first = test::recorder_in(folder / "run");
+    first->record_output(to_bytes("first"), {});
+    first->flush();
+    const auto second = Recorder::claim(folder / "run");
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, ErrorCode::outside);
+    EXPECT_THAT(second.error().message, HasSubstr("run: another run is recording there"));
+    EXPECT_EQ(content_of(folder / "run/port0.out"), "first");
 }
 
 TEST(RunSummary, CountsWhatWasRecorded) {
@@ -224,6 +246,7 @@ TEST(RunSummary, CountsWhatWasRecorded) {
     mode.record = folder / "run";
     auto assembly = assemble(scenario, test::emulator_data(), mode);
     ASSERT_TRUE(assembly) << assembly.error().message;
+    ASSERT_TRUE(assembly->emulator->begin_recordings());
     assembly->emulator->run_until(*assembly->end, false);
     const auto summary = nlohmann::json::parse(run_summary(scenario, *assembly, "1.2.3"));
     EXPECT_EQ(summary["version"], "1.2.3");

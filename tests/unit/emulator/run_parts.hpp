@@ -68,6 +68,14 @@ inline std::vector<std::string> cells_of(const std::string& row) {
     return cells;
 }
 
+/// A recording that has begun.
+inline Result<Recorder> recorder_in(const std::filesystem::path& folder, std::size_t wires = 1) {
+    auto recorder = Recorder::claim(folder);
+    if (!recorder) return recorder;
+    if (const auto begun = recorder->begin(wires); !begun) return fail(begun.error());
+    return recorder;
+}
+
 /// A run whose one wire ends in memory.
 struct MemoryRun {
     std::unique_ptr<Emulator> emulator;

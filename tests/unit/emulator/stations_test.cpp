@@ -87,7 +87,7 @@ TEST(Stations, ARecordingWithoutWiresIsOfUart1) {
     const Scenario scenario = emulator_scenario("[run]\nstart = 2024-03-05T12:00:00Z");
     const GpsTime start = *scenario.run.start;
     Station::Parts parts = test::station_parts(scenario, 0, start);
-    parts.recorder = std::move(Recorder::create(folder / "run").value());
+    parts.recorder = std::move(test::recorder_in(folder / "run").value());
     std::vector<Station> stations;
     stations.emplace_back(std::move(parts));
     Emulator emulator({std::move(stations), std::make_unique<VirtualPacer>(start)}, start);
@@ -108,6 +108,7 @@ Assembly stations_assembly(const std::string& text, std::optional<std::filesyste
     mode.record = std::move(record);
     auto assembly = assemble(emulator_scenario(text), test::emulator_data(), mode);
     EXPECT_TRUE(assembly) << assembly.error().message;
+    EXPECT_TRUE(!assembly || assembly->emulator->begin_recordings());
     return assembly ? std::move(*assembly) : Assembly{};
 }
 
@@ -239,7 +240,7 @@ TEST(Stations, EachWireHearsItsOwnPort) {
         wires.push_back(transport.get());
         parts.wires.push_back({port, Link(std::move(transport), port_speed(parts.receiver, port))});
     }
-    parts.recorder = std::move(Recorder::create(folder / "run", 3).value());
+    parts.recorder = std::move(test::recorder_in(folder / "run", 3).value());
     std::vector<Station> stations;
     stations.emplace_back(std::move(parts));
     Emulator emulator({std::move(stations), std::make_unique<test::TickingPacer>(start, 1ms)}, start);

@@ -139,7 +139,7 @@ public:
             "[run]\nstart = 2024-03-05T00:00:00Z\n[model]\nname = \"ideal\"\n[[receiver]]\nbaud = 38400\n");
         start_ = *scenario.run.start;
         Station::Parts parts = test::station_parts(scenario, 0, start_);
-        parts.recorder = std::move(Recorder::create(folder_ / "run").value());
+        parts.recorder = std::move(test::recorder_in(folder_ / "run").value());
         parts.wires.push_back({firmware::PortId::uart1, Link(std::move(wire), PortSpeed(38400))});
         std::vector<Station> stations;
         stations.emplace_back(std::move(parts));

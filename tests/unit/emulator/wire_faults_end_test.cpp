@@ -112,7 +112,7 @@ TEST(WireFaultsEnd, AlsoTwoAtATime) {
 TEST(WireFaultsEnd, GarbageReachesTheReceiverInBursts) {
     for (const OtherEnd end : {OtherEnd::nothing, OtherEnd::memory, OtherEnd::client}) {
         const TemporaryFolder folder;
-        auto recorder = Recorder::create(folder.path(), 1);
+        auto recorder = test::recorder_in(folder.path(), 1);
         ASSERT_TRUE(recorder);
         const std::string fault =
             "[[fault]]\nkind = \"inserted_garbage\"\nat_s = 1.2\nfor_s = 4\nbursts_per_s = 5\n"

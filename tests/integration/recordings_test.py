@@ -1,0 +1,56 @@
+"""What a run does to the folder that it records into, and to what lies there already."""
+import pathlib
+import socket
+import unittest
+
+from session import Emulator, open_folder, skyloop
+
+
+def files_of(folder):
+    return {path.name: path.read_bytes() for path in pathlib.Path(folder).iterdir() if path.is_file()}
+
+
+class RecordingsTest(unittest.TestCase):
+    def setUp(self):
+        folder = open_folder()
+        self.addCleanup(folder.cleanup)
+        self.path = pathlib.Path(folder.name)
+        self.out = self.path / "out"
+
+    def scenario(self, text, name="s.toml"):
+        path = self.path / name
+        path.write_text("[run]\nstart = 2024-03-05T12:00:00Z\nduration_s = 5\n[model]\nname = \"ideal\"\n" + text, encoding="utf-8")
+        return path
+
+    def simulate(self, *arguments, check=True):
+        return skyloop("simulate", *arguments, "--out", self.out, check=check)
+
+    def test_a_run_that_is_refused_leaves_the_recording_as_it_was(self):
+        scenario = self.scenario("")
+        self.simulate(scenario)
+        before = files_of(self.out)
+        taken = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(taken.close)
+        port = taken.getsockname()[1]
+        for options in (("--control", port), ("--control", 0, "--token", "a b"), ("--mavlink", "udp:nosuch.invalid:1"),
+                        ("--output", f"json-tcp:{port}"), ("--port", "pigeon:1"), ("--port", f"tcp:{port}")):
+            done = skyloop("run", scenario, "--record", self.out, *options, check=False)
+            self.assertIn(done.returncode, (1, 2), done.stderr)
+            self.assertEqual(files_of(self.out), before, options)
+        self.assertEqual(self.simulate(scenario, "--output", f"json-tcp:{port}", check=False).returncode, 1)
+        self.assertEqual(files_of(self.out), before)
+
+    def test_two_runs_do_not_record_into_one_folder(self):
+        with Emulator("--model", "ideal", "--port", "pty", "--record", self.out, "--duration", 4) as first:
+            for second in (skyloop("run", "--record", self.out, check=False), self.simulate("--duration", 9, check=False)):
+                self.assertEqual(second.returncode, 1, second.stderr)
+                self.assertIn("out: another run is recording there; expected another folder", second.stderr)
+            self.assertEqual(first.finish(), 0, first.log)
+        files = files_of(self.out)
+        self.assertEqual(len(files["fixes.csv"].splitlines()), 5)
+        self.assertNotIn(b"\0", files["fixes.csv"])
+        self.simulate("--duration", 9)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
