@@ -64,14 +64,10 @@ void RunSession::await_clients() const {
 
 int RunSession::run(const Scenario& scenario, RunWatch& watch) {
     Emulator& emulator = *assembly_.emulator;
-    const auto summarise = [&](SummaryOf what) {
-        if (Recorder* recorder = emulator.recorder())
-            recorder->record_summary(run_summary(scenario, assembly_, SKYLOOP_VERSION, what));
-    };
-    summarise(SummaryOf::beginning);
     go(emulator, watch);
     watch.finish_outputs();
-    summarise(SummaryOf::end);
+    if (Recorder* recorder = emulator.recorder())
+        recorder->record_summary(run_summary(scenario, assembly_, SKYLOOP_VERSION, SummaryOf::end));
     int code = watch.finish(messages_);
     for (std::size_t i = 0; i < emulator.stations().size(); ++i)
         for (const std::string& news : wire_news(i))

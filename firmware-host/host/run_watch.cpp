@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "skyloop/control/status_json.hpp"
+#include "skyloop/emulator/run_summary.hpp"
 #include "skyloop/emulator/thread_priority.hpp"
 #include "skyloop/verdict/reports.hpp"
 
@@ -56,14 +57,16 @@ Result<std::unique_ptr<RunWatch>> RunWatch::start(const Scenario& scenario, Asse
     if (const auto opened = watch->open_mavlink(options.mavlink, commands); !opened) return fail(opened.error());
     if (const auto opened = watch->open_outputs(options.live); !opened) return fail(opened.error());
     // After everything that may be refused: it empties the files of a former recording.
-    if (const auto begun = assembly.emulator->begin_recordings(); !begun) return fail(begun.error());
-    if (const auto opened = watch->open_log(); !opened) return fail(opened.error());
+    if (const auto begun = watch->begin_recording(); !begun) return fail(begun.error());
     return watch;
 }
 
-Result<void> RunWatch::open_log() {
+Result<void> RunWatch::begin_recording() {
     Emulator& emulator = *assembly_.emulator;
     if (emulator.recorder() == nullptr) return {};
+    if (const auto begun = emulator.begin_recordings(); !begun) return begun;
+    // Before anybody is waited for: a run that is killed then has been recorded, too.
+    emulator.recorder()->record_summary(run_summary(scenario_, assembly_, SKYLOOP_VERSION, SummaryOf::beginning));
     auto log = RunLog::create(emulator.recorder()->folder(), assembly_.start);
     if (!log) return fail(log.error());
     log_.emplace(std::move(*log));

@@ -49,7 +49,7 @@ public:
 
 private:
     RunWatch(const Scenario& scenario, Assembly& assembly) : scenario_(scenario), assembly_(assembly) {}
-    Result<void> open_log();
+    Result<void> begin_recording();
     void appoint_judge(bool live);
     Result<void> open_control(const WatchOptions& options, CommandQueue& commands);
     Result<void> open_mavlink(const std::string& address, CommandQueue& commands);

@@ -3,6 +3,7 @@
 #include "fault_warnings.hpp"
 #include "modern_assembly.hpp"
 #include "receiver_assembly.hpp"
+#include "recorded_files.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -146,6 +147,9 @@ Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& 
         plans.push_back(std::move(*plan));
     }
     if (const auto apart = check_ends(ends_of(plans, shared.scenario)); !apart) return fail(apart.error());
+    if (shared.mode.record)
+        if (const auto spared = spare_inputs(shared.scenario, *shared.mode.record); !spared)
+            return fail(spared.error());
     // Before anything is opened that another run may be using, too.
     for (std::size_t i = 0; i < plans.size() && shared.mode.record; ++i)
         if (const auto added = add_recorder(plans[i].parts, shared, i); !added) return fail(added.error());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "recorded_files.hpp"
 #include "skyloop/base/steady_clock.hpp"
 
 namespace skyloop {
@@ -22,10 +23,12 @@ Emulator::Emulator(Parts parts, GpsTime start)
 }
 
 Result<void> Emulator::begin_recordings() {
+    if (recorder() == nullptr) return {};
+    const bool former = holds_recording(recorder()->folder());
     for (Station& station : parts_.stations)
-        if (Recorder* recorder = station.recorder())
-            if (const auto begun = recorder->begin(std::max<std::size_t>(station.wires().size(), 1)); !begun)
-                return begun;
+        if (const auto begun = station.recorder()->begin({std::max<std::size_t>(station.wires().size(), 1), former});
+            !begun)
+            return begun;
     return {};
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "recorded_files.hpp"
 #include "rinex_recording.hpp"
 #include "skyloop/actuator/actuator_uri.hpp"
 #include "skyloop/base/digest.hpp"
@@ -78,11 +79,6 @@ RinexRecordingSetup rinex_setup(const Station::Parts& parts, GpsTime start) {
     setup.navigation.leap_seconds = LeapSeconds::announced().offset(start);
     setup.navigation.date = start;
     return setup;
-}
-
-// Where the recording of a receiver lies: the first one's in the folder itself.
-std::filesystem::path recording_of(const std::filesystem::path& folder, std::size_t index) {
-    return index == 0 ? folder : folder / fmt::format("receiver{}", index);
 }
 
 Result<std::vector<HeardBytes>> repeated_input(const std::filesystem::path& folder, std::size_t index,

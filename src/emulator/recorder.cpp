@@ -27,15 +27,15 @@ void Recorder::add_rinex(const RinexRecordingSetup& setup) {
     rinex_setup_ = std::make_unique<RinexRecordingSetup>(setup);
 }
 
-Result<void> Recorder::begin(std::size_t wires) {
+Result<void> Recorder::begin(const Beginning& beginning) {
     std::error_code reason;
     // Whatever becomes of this run, it must not leave the summary of the run before.
     std::filesystem::remove(folder() / "run.json", reason);
-    // Nor the observations of a receiver that measured, when this one does not.
-    std::filesystem::remove(folder() / "observations.rnx", reason);
-    std::filesystem::remove(folder() / "navigation.rnx", reason);
+    // Nor the observations of a receiver that measured, when this one does not. What no run has left is the user's.
+    for (const char* name : {"observations.rnx", "navigation.rnx"})
+        if (beginning.former) std::filesystem::remove(folder() / name, reason);
     if (const auto tables = create_tables(); !tables) return tables;
-    if (const auto ports = create_ports(wires); !ports) return ports;
+    if (const auto ports = create_ports(beginning.wires); !ports) return ports;
     if (!rinex_setup_) return {};
     auto rinex = RinexRecording::create(folder(), *rinex_setup_);
     if (!rinex) return fail(rinex.error());

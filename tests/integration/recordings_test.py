@@ -51,6 +51,23 @@ class RecordingsTest(unittest.TestCase):
         self.assertNotIn(b"\0", files["fixes.csv"])
         self.simulate("--duration", 9)
 
+    def test_files_of_the_user_stay(self):
+        self.simulate(self.scenario(""), "--model", "modern")
+        own = self.path / "own"
+        own.mkdir()
+        for name in ("navigation.rnx", "observations.rnx", "fixes.csv"):
+            (own / name).write_bytes((self.out / name).read_bytes())
+        before = files_of(own)
+        for options in (("--nav", own / "navigation.rnx"), ("--trajectory", own / "fixes.csv")):
+            done = skyloop("simulate", *options, "--duration", 3, "--model", "ideal", "--out", own, check=False)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(f"{options[1]}: the run reads this file", done.stderr)
+            self.assertEqual(files_of(own), before)
+        skyloop("simulate", "--nav", self.out / "navigation.rnx", "--model", "ideal", "--duration", 3, "--out", own)
+        self.assertEqual({**files_of(own), **{name: before[name] for name in ("navigation.rnx", "observations.rnx")}}, files_of(own))
+        skyloop("simulate", "--model", "ideal", "--duration", 3, "--out", self.out)
+        self.assertFalse((self.out / "navigation.rnx").exists(), "that of a former run")
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

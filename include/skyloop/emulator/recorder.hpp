@@ -30,8 +30,11 @@ public:
     /// There will be observations.rnx and navigation.rnx, for a receiver that measures. Before begin().
     void add_rinex(const RinexRecordingSetup& setup);
     /// Makes the files, in the place of those of a former run. Comes before anything is recorded.
-    /// @param wires how many sets of port files there are to be: port0, port1, …
-    Result<void> begin(std::size_t wires);
+    struct Beginning {
+        std::size_t wires = 1;  ///< how many sets of port files there are to be: port0, port1, …
+        bool former = false;    ///< a run has been recorded there: what is not replaced of it goes, too
+    };
+    Result<void> begin(const Beginning& beginning);
 
     /// @param broadcast the records that the satellites send
     void record(const Trace& trace, const NavigationSource& broadcast);

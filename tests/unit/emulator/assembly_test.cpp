@@ -161,6 +161,24 @@ TEST(Assembly, ARunThatIsRefusedLeavesAFormerRecordingAsItWas) {
     EXPECT_FALSE(std::filesystem::exists(folder / "new"));
 }
 
+TEST(Assembly, ARecordingDoesNotTakeThePlaceOfWhatTheRunReads) {
+    const test::TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "run");
+    std::ofstream(folder / "run/fixes.csv") << "time_s,lat_deg,lon_deg,height_m\n0,47,8,500\n9,47.001,8,500\n";
+    std::filesystem::create_symlink(folder / "run/fixes.csv", folder / "track.csv");
+    for (const char* name : {"run/fixes.csv", "track.csv"}) {
+        const std::string track =
+            "[trajectory]\nkind = \"file\"\npath = \"" + (folder / name).string() + "\"\n[run]\nduration_s = 5\n";
+        RunMode mode = virtual_mode();
+        mode.record = folder / "run";
+        const Error refused = refusal(track, mode);
+        EXPECT_EQ(refused.code, ErrorCode::usage);
+        EXPECT_THAT(refused.message, HasSubstr("would take the place of it; expected another folder than"));
+        mode.record = folder / "other";
+        EXPECT_TRUE(assembled(track, mode).emulator);
+    }
+}
+
 firmware::BoardProfile board_of(const char* name) { return find_board(name, board_folders(emulator_data())).value(); }
 
 TEST(ReceiverSettingsOfAScenario, TracksWhatTheBoardTracksUnlessToldOtherwise) {

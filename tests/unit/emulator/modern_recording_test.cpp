@@ -63,6 +63,7 @@ protected:
         std::vector<Trace> traces;
         assembly->emulator->on_status([&](const Status& status) { traces.push_back(*status.trace); });
         assembly->emulator->run_until(*assembly->end, false);
+        assembly->emulator->recorder()->record_summary("{\"program\": \"skyloop\"}");
         EXPECT_FALSE(assembly->emulator->recorder()->failure());
         return traces;
     }

@@ -220,8 +220,18 @@ TEST(Recorder, WhatIsThereStaysUntilTheRecordingBegins) {
     auto recorder = Recorder::claim(folder / "run");
     ASSERT_TRUE(recorder);
     EXPECT_EQ(content_of(folder / "run/port0.out"), "old");
-    ASSERT_TRUE(recorder->begin(1));
+    ASSERT_TRUE(recorder->begin({1}));
     EXPECT_EQ(content_of(folder / "run/port0.out"), "");
+}
+
+TEST(Recorder, WhatNoRunHasLeftIsTheUsers) {
+    const TemporaryFolder folder;
+    for (const bool former : {false, true}) {
+        auto recorder = Recorder::claim(folder / "run");
+        std::ofstream(folder / "run/navigation.rnx") << "downloaded";
+        ASSERT_TRUE(recorder->begin({1, former}));
+        EXPECT_EQ(std::filesystem::exists(folder / "run/navigation.rnx"), !former);
+    }
 }
 
 TEST(Recorder, TwoDoNotRecordIntoOneFolder) {

@@ -72,7 +72,7 @@ inline std::vector<std::string> cells_of(const std::string& row) {
 inline Result<Recorder> recorder_in(const std::filesystem::path& folder, std::size_t wires = 1) {
     auto recorder = Recorder::claim(folder);
     if (!recorder) return recorder;
-    if (const auto begun = recorder->begin(wires); !begun) return fail(begun.error());
+    if (const auto begun = recorder->begin({wires}); !begun) return fail(begun.error());
     return recorder;
 }
 

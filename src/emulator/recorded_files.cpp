@@ -1,0 +1,78 @@
+#include "recorded_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "skyloop/base/text_file.hpp"
+
+namespace skyloop {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view once_a_recording[] = {"fixes.csv",      "satellites.csv", "observations.rnx",
+                                                 "navigation.rnx", "commands.jsonl", "verdicts.json",
+                                                 "junit.xml",      "run.json"};
+constexpr std::string_view once_a_port[] = {".out", ".in", ".times", ".in_times"};
+
+// All files whose content decides what the run does, but for those that no recording is mistaken for.
+std::vector<fs::path> inputs_of(const Scenario& scenario) {
+    std::vector<fs::path> inputs(scenario.sky.navigation.begin(), scenario.sky.navigation.end());
+    inputs.insert(inputs.end(), scenario.scene.buildings.begin(), scenario.scene.buildings.end());
+    const auto add_track = [&](const TrajectorySettings& way) {
+        if (const auto* file = std::get_if<FileSettings>(&way)) inputs.push_back(file->path);
+    };
+    add_track(scenario.trajectory);
+    for (const ReceiverEntry& receiver : scenario.receivers) {
+        if (receiver.trajectory) add_track(*receiver.trajectory);
+        if (!receiver.state_file.empty()) inputs.push_back(receiver.state_file);
+    }
+    return inputs;
+}
+
+}  // namespace
+
+fs::path recording_of(const fs::path& folder, std::size_t receiver) {
+    return receiver == 0 ? folder : folder / fmt::format("receiver{}", receiver);
+}
+
+bool is_recorded_name(std::string_view name) {
+    if (std::find(std::begin(once_a_recording), std::end(once_a_recording), name) != std::end(once_a_recording))
+        return true;
+    if (!name.starts_with("port")) return false;
+    const std::size_t end = std::min(name.find_first_not_of("0123456789", 4), name.size());
+    return end > 4 &&
+           std::find(std::begin(once_a_port), std::end(once_a_port), name.substr(end)) != std::end(once_a_port);
+}
+
+bool holds_recording(const fs::path& folder) {
+    std::error_code absent;
+    if (!fs::exists(folder / "run.json", absent)) return false;
+    const auto text = read_text_file(folder / "run.json");
+    const auto summary = text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
+    return summary.is_object() && summary.contains("program") && summary["program"] == "skyloop";
+}
+
+Result<void> spare_inputs(const Scenario& scenario, const fs::path& folder) {
+    const std::vector<fs::path> inputs = inputs_of(scenario);
+    std::error_code absent;
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
+        for (const fs::directory_entry& there : fs::directory_iterator(recording_of(folder, i), absent)) {
+            if (!is_recorded_name(there.path().filename().string())) continue;
+            for (const fs::path& input : inputs)
+                if (fs::equivalent(there.path(), input, absent))
+                    return fail(
+                        ErrorCode::usage,
+                        fmt::format("{}: the run reads this file, and its recording would take the place of it; "
+                                    "expected another folder than {}",
+                                    input.string(), folder.string()));
+        }
+    return {};
+}
+
+}  // namespace skyloop

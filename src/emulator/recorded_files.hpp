@@ -1,0 +1,24 @@
+/// The files that a recording consists of, and what may happen to those that are in its folder already.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "skyloop/base/result.hpp"
+#include "skyloop/scenario/scenario.hpp"
+
+namespace skyloop {
+
+/// Where the recording of a receiver lies: the first one's in the folder itself, the others' in receiver1 and so on.
+std::filesystem::path recording_of(const std::filesystem::path& folder, std::size_t receiver);
+
+/// Whether a recording may have a file of this name: fixes.csv, port0.out, …
+bool is_recorded_name(std::string_view name);
+
+/// Whether a run has been recorded there: it has left its run.json.
+bool holds_recording(const std::filesystem::path& folder);
+
+/// Fails with `usage` when a recording in this folder would take the place of a file that the run reads.
+Result<void> spare_inputs(const Scenario& scenario, const std::filesystem::path& folder);
+
+}  // namespace skyloop
