@@ -31,8 +31,8 @@ Result<void> Recorder::begin(const Beginning& beginning) {
     std::error_code reason;
     // Whatever becomes of this run, it must not leave the summary of the run before.
     std::filesystem::remove(folder() / "run.json", reason);
-    // Nor the observations of a receiver that measured, when this one does not. What no run has left is the user's.
-    for (const char* name : {"observations.rnx", "navigation.rnx"})
+    // Nor its verdicts, which a run leaves at its end, or its observations. What no run has left is the user's.
+    for (const char* name : {"junit.xml", "verdicts.json", "commands.jsonl", "observations.rnx", "navigation.rnx"})
         if (beginning.former) std::filesystem::remove(folder() / name, reason);
     if (const auto tables = create_tables(); !tables) return tables;
     if (const auto ports = create_ports(beginning.wires); !ports) return ports;

@@ -1,5 +1,7 @@
 """What a run does to the folder that it records into, and to what lies there already."""
+import json
 import pathlib
+import signal
 import socket
 import unittest
 
@@ -67,6 +69,19 @@ class RecordingsTest(unittest.TestCase):
         self.assertEqual({**files_of(own), **{name: before[name] for name in ("navigation.rnx", "observations.rnx")}}, files_of(own))
         skyloop("simulate", "--model", "ideal", "--duration", 3, "--out", self.out)
         self.assertFalse((self.out / "navigation.rnx").exists(), "that of a former run")
+
+    def test_the_verdicts_of_a_former_run_do_not_stay(self):
+        expecting = self.scenario("[[expect]]\nwhat = \"fix within 3 s of the run\"\n", "expecting.toml")
+        self.simulate(expecting)
+        self.assertTrue((self.out / "junit.xml").exists())
+        self.simulate(self.scenario(""))
+        self.assertFalse((self.out / "junit.xml").exists())
+        self.assertFalse((self.out / "verdicts.json").exists())
+        self.simulate(expecting)
+        with Emulator(expecting, "--port", "pty", "--record", self.out) as killed:
+            killed.stop(signal.SIGKILL)
+        self.assertFalse(json.loads((self.out / "run.json").read_text(encoding="utf-8"))["ended"])
+        self.assertFalse((self.out / "junit.xml").exists(), "a run that was killed has not passed")
 
 
 if __name__ == "__main__":

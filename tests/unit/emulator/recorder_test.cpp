@@ -228,9 +228,12 @@ TEST(Recorder, WhatNoRunHasLeftIsTheUsers) {
     const TemporaryFolder folder;
     for (const bool former : {false, true}) {
         auto recorder = Recorder::claim(folder / "run");
-        std::ofstream(folder / "run/navigation.rnx") << "downloaded";
+        const std::string others[] = {"navigation.rnx", "observations.rnx", "junit.xml", "verdicts.json"};
+        for (const std::string& name : others)
+            std::ofstream(folder / "run" / name) << "downloaded";
         ASSERT_TRUE(recorder->begin({1, former}));
-        EXPECT_EQ(std::filesystem::exists(folder / "run/navigation.rnx"), !former);
+        for (const std::string& name : others)
+            EXPECT_EQ(std::filesystem::exists(folder / "run" / name), !former) << name;
     }
 }
 
