@@ -26,9 +26,10 @@ Result<void> Emulator::begin_recordings() {
     if (recorder() == nullptr) return {};
     const bool former = holds_recording(recorder()->folder());
     for (Station& station : parts_.stations)
-        if (const auto begun = station.recorder()->begin({std::max<std::size_t>(station.wires().size(), 1), former});
-            !begun)
-            return begun;
+        if (Recorder* own = station.recorder())
+            if (const auto begun = own->begin({std::max<std::size_t>(station.wires().size(), 1), former}); !begun)
+                return begun;
+    if (former) remove_recordings_from(recorder()->folder(), parts_.stations.size());
     return {};
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "skyloop/base/text_file.hpp"
+#include "skyloop/emulator/claimed_folder.hpp"
 
 namespace skyloop {
 namespace {
@@ -56,6 +57,20 @@ bool holds_recording(const fs::path& folder) {
     const auto text = read_text_file(folder / "run.json");
     const auto summary = text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
     return summary.is_object() && summary.contains("program") && summary["program"] == "skyloop";
+}
+
+void remove_recordings_from(const fs::path& folder, std::size_t receiver) {
+    std::error_code reason;
+    for (; fs::is_directory(recording_of(folder, receiver), reason); ++receiver) {
+        const auto claimed = ClaimedFolder::claim(recording_of(folder, receiver));
+        if (!claimed) continue;  // another run records there
+        std::vector<fs::path> files;
+        for (const fs::directory_entry& there : fs::directory_iterator(claimed->path(), reason))
+            if (is_recorded_name(there.path().filename().string())) files.push_back(there.path());
+        for (const fs::path& file : files)
+            fs::remove(file, reason);
+        fs::remove(claimed->path(), reason);  // refused by the system where there is anything else
+    }
 }
 
 Result<void> spare_inputs(const Scenario& scenario, const fs::path& folder) {

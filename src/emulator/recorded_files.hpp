@@ -18,6 +18,10 @@ bool is_recorded_name(std::string_view name);
 /// Whether a run has been recorded there: it has left its run.json.
 bool holds_recording(const std::filesystem::path& folder);
 
+/// Takes away the recordings of receivers from this one on, which a former run with more of them has left. What else
+/// lies in their folders stays.
+void remove_recordings_from(const std::filesystem::path& folder, std::size_t receiver);
+
 /// Fails with `usage` when a recording in this folder would take the place of a file that the run reads.
 Result<void> spare_inputs(const Scenario& scenario, const std::filesystem::path& folder);
 

@@ -83,6 +83,21 @@ class RecordingsTest(unittest.TestCase):
         self.assertFalse(json.loads((self.out / "run.json").read_text(encoding="utf-8"))["ended"])
         self.assertFalse((self.out / "junit.xml").exists(), "a run that was killed has not passed")
 
+    def test_receivers_of_a_former_run_do_not_stay(self):
+        receiver = "[[receiver]]\nboard = \"ublox-m8\"\n"
+        self.simulate(self.scenario(3 * receiver))
+        (self.out / "receiver2/notes.txt").write_text("of the user", encoding="utf-8")
+        self.simulate(self.scenario(2 * receiver))
+        self.assertTrue((self.out / "receiver1/fixes.csv").exists())
+        self.assertEqual(list(files_of(self.out / "receiver2")), ["notes.txt"])
+        self.simulate(self.scenario(""))
+        self.assertFalse((self.out / "receiver1").exists())
+        (self.out / "run.json").unlink()
+        (self.out / "receiver1").mkdir()
+        (self.out / "receiver1/fixes.csv").write_text("of the user", encoding="utf-8")
+        self.simulate(self.scenario(""))
+        self.assertTrue((self.out / "receiver1/fixes.csv").exists(), "no run has left it")
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)
