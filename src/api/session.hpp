@@ -88,6 +88,7 @@ private:
     std::map<std::uint32_t, Vehicle> vehicles_;
     std::set<std::string> started_;  // names of faults that were asked for
     std::set<std::size_t> noticed_;  // receivers whose surroundings have been told of
+    bool begun_ = false;             // create() has not refused it
     std::atomic<bool> never_{false};
 };
 

@@ -49,11 +49,12 @@ GpsTime wall_clock_gps() {
     return from_posix(duration_cast<Nanoseconds>(system_clock::now().time_since_epoch()), LeapSeconds::announced());
 }
 
-Answer<Geodetic> origin_of(const sky_create_info& info, const Geodetic& standard) {
-    if ((info.set & SKY_CREATE_ORIGIN) == 0) return standard;
+// Nothing: where the antenna is at the start.
+Answer<std::optional<Geodetic>> origin_of(const sky_create_info& info) {
+    if ((info.set & SKY_CREATE_ORIGIN) == 0) return std::nullopt;
     const auto place = place_from_degrees(info.origin_lla[0], info.origin_lla[1], info.origin_lla[2]);
     if (!place) return refuse(SKY_E_RANGE, "origin_lla: " + place.error());
-    return *place;
+    return std::optional(*place);
 }
 
 }  // namespace
@@ -95,6 +96,8 @@ Embedding Session::embedding() {
 }
 
 Answer<void> Session::assemble_run(const sky_create_info& info) {
+    const auto origin = origin_of(info);
+    if (!origin) return refuse(origin.error());
     for (std::size_t i = 0; i < scenario_.receivers.size(); ++i)
         obstacles_.push_back(std::make_shared<ToldPaths>());
     const Embedding parts = embedding();
@@ -110,9 +113,8 @@ Answer<void> Session::assemble_run(const sky_create_info& info) {
     Emulator& emulator = *assembly_.emulator;
     for (const Port& port : ports_)
         port.led->tell_time(assembly_.start);
-    const auto origin = origin_of(info, emulator.first().simulation().truth_at(assembly_.start).geodetic);
-    if (!origin) return refuse(origin.error());
-    local_ = std::make_unique<LocalFrame>(*origin);
+    local_ = std::make_unique<LocalFrame>(
+        origin->value_or(emulator.first().simulation().truth_at(assembly_.start).geodetic));
     StatusSources sources;
     sources.pace = [] { return PaceStatus{false, 1, true}; };
     sources.strength = [&emulator](std::string_view fault, int occurrence, GpsTime time) {
@@ -121,7 +123,9 @@ Answer<void> Session::assemble_run(const sky_create_info& info) {
     watcher_ = std::make_unique<RunWatcher>(StatusSetup{scenario_.name, assembly_.start, std::nullopt, {}},
                                             emulator.stations(), std::move(sources));
     emulator.add_observer(watcher_.get());
+    // From here on nothing is refused.
     if (const auto begun = emulator.begin_recordings(); !begun) return refuse(begun.error());
+    begun_ = true;
     for (const std::string& detail : assembly_.details)
         log(SKY_LOG_DETAIL, detail);
     for (const std::string& warning : assembly_.warnings)
@@ -136,7 +140,7 @@ void Session::summarise(SummaryOf what) {
 }
 
 Session::~Session() {
-    if (!assembly_.emulator) return;
+    if (!begun_) return;  // nobody has had it, and there is nothing to sum up
     assembly_.emulator->finish();
     summarise(SummaryOf::end);
 }

@@ -282,6 +282,12 @@ TEST(LedRecording, IsLeftWhenTheHandleIs) {
     EXPECT_EQ(kept, bytes);
     std::ifstream summary(folder / "run.json");
     EXPECT_EQ(Json::parse(summary)["seed"], 21);
+    info.set = SKY_CREATE_ORIGIN;
+    info.origin_lla[0] = 100;
+    EXPECT_EQ(create_status(info), SKY_E_RANGE);
+    std::ifstream refused(folder / "port0.out", std::ios::binary);
+    EXPECT_EQ(std::string((std::istreambuf_iterator<char>(refused)), {}), bytes) << "a refused call changes nothing";
+    info.set = 0;
     std::filesystem::remove_all(folder);
     info.record_dir = "/proc/nowhere";
     EXPECT_EQ(create_status(info), SKY_E_IO);
