@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "skyloop/base/spelling.hpp"
@@ -50,6 +51,7 @@ std::string take_number(std::string_view key, std::string_view text, int least, 
 }
 
 std::string take_option(std::string_view key, std::string_view value, OutputSettings& settings) {
+    if (const auto foreign = foreign_option(settings.format, key); !foreign.empty()) return foreign;
     if (key == "receiver") {
         settings.receiver = value;
         return value.empty() ? "receiver is empty; expected a name" : "";
@@ -99,7 +101,26 @@ bool is_option(std::string_view piece, OutputWay way) {
     return equals != std::string_view::npos && index_in(option_names, piece.substr(0, equals)).has_value();
 }
 
+// The formats that have an option which not all have.
+std::vector<OutputFormat> formats_of(std::string_view key) {
+    if (key == "system" || key == "component") return {OutputFormat::gps_input, OutputFormat::hil_gps};
+    if (key == "id") return {OutputFormat::gps_input, OutputFormat::hil_gps, OutputFormat::msp};
+    if (key == "eph") return {OutputFormat::hil_gps};
+    return {};
+}
+
+std::string_view name_of(OutputFormat format) { return output_format_names[static_cast<std::size_t>(format)]; }
+
 }  // namespace
+
+std::string foreign_option(OutputFormat format, std::string_view key) {
+    const std::vector<OutputFormat> formats = formats_of(key);
+    if (formats.empty() || std::find(formats.begin(), formats.end(), format) != formats.end()) return {};
+    std::vector<std::string_view> names;
+    for (const OutputFormat one : formats)
+        names.push_back(name_of(one));
+    return fmt::format("'{}' is an option of {}; {} does not have it", key, fmt::join(names, ", "), name_of(format));
+}
 
 Result<OutputSettings> parse_output_uri(std::string_view text) {
     OutputSettings settings;
@@ -109,13 +130,16 @@ Result<OutputSettings> parse_output_uri(std::string_view text) {
     const std::size_t colon = std::min(text.find(':'), text.size());
     if (const auto wrong = take_scheme(text.substr(0, colon), settings); !wrong.empty()) return refused(wrong);
     if (settings.format == OutputFormat::json) settings.when = OutputMoment::epoch;
+    std::set<std::string_view> taken;
     std::string_view rest = colon < text.size() ? text.substr(colon + 1) : std::string_view();
     for (std::size_t comma = rest.rfind(','); comma != std::string_view::npos; comma = rest.rfind(',')) {
         const std::string_view piece = rest.substr(comma + 1);
         if (!is_option(piece, settings.way)) break;
         const std::size_t equals = piece.find('=');
         if (equals == std::string_view::npos) return refused(fmt::format("'{}': expected KEY=VALUE", piece));
-        const auto wrong = take_option(piece.substr(0, equals), piece.substr(equals + 1), settings);
+        const std::string_view key = piece.substr(0, equals);
+        if (!taken.insert(key).second) return refused(fmt::format("'{}' is there twice; expected it once", key));
+        const auto wrong = take_option(key, piece.substr(equals + 1), settings);
         if (!wrong.empty()) return refused(wrong);
         rest = rest.substr(0, comma);
     }

@@ -31,6 +31,13 @@ void read_receiver_of(TableReader& table, const Scenario& scenario, OutputSettin
                                               output.receiver, fmt::join(names, ", ")));
 }
 
+void refuse_foreign_keys(TableReader& table, const OutputSettings& output) {
+    if (table.recording() || output.uri.empty()) return;
+    for (const std::string_view key : {"system", "component", "id", "eph"})
+        if (const std::string foreign = foreign_option(output.format, key); table.has(key) && !foreign.empty())
+            table.mistake(key, foreign);
+}
+
 }  // namespace
 
 void read_outputs(TableReader& top, Scenario& scenario) {
@@ -47,6 +54,7 @@ void read_outputs(TableReader& top, Scenario& scenario) {
         table.integer("component", output.component, named);
         table.integer("id", output.id, counted);
         table.word("eph", accuracies, output.eph);
+        refuse_foreign_keys(table, output);
         scenario.outputs.push_back(std::move(output));
     });
 }

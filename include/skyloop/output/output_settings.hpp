@@ -58,8 +58,12 @@ struct OutputSettings {
 
 /// Reads FORMAT[-WAY]:TARGET[,KEY=VALUE]…: the formats as above; `udp:HOST:PORT`, `tcp:[HOST:]PORT` (a server),
 /// `tcp-to:HOST:PORT` (calls a server) or `file:PATH`, "-" for standard output. Without a way gps-input and hil-gps go
-/// by udp. Keys: receiver, when, system, component, id, eph. Fails with `usage` and a sentence that quotes the text.
+/// by udp. Keys: receiver, when, system, component, id, eph, each once and where foreign_option() has
+/// nothing against it. Fails with `usage` and a sentence that quotes the text.
 Result<OutputSettings> parse_output_uri(std::string_view text);
+
+/// What to say of an option that messages of this format have no place for; empty: they have one.
+std::string foreign_option(OutputFormat format, std::string_view key);
 
 /// Which of these receivers an output tells. Fails with `usage` when it names another.
 Result<std::vector<bool>> told_receivers(const OutputSettings& settings, const std::vector<std::string>& names);

@@ -84,6 +84,16 @@ TEST(OutputSettings, WhatIsNoOutputIsRefusedWithItsReason) {
     EXPECT_THAT(refusal_of_output("gps-input:h:1,receiver="), HasSubstr("receiver is empty"));
 }
 
+TEST(OutputSettings, AnOptionThatWouldDoNothingIsRefused) {
+    EXPECT_THAT(refusal_of_output("json-file:o.json,id=3"),
+                HasSubstr("'id' is an option of gps-input, hil-gps, msp; json does not have it"));
+    for (const char* uri : {"json-tcp:1,eph=dop100", "json-tcp:1,system=9", "json-tcp:1,component=7",
+                            "msp-tcp:1,system=9", "msp-tcp:1,eph=dop100", "gps-input:h:1,eph=dop100"})
+        EXPECT_THAT(refusal_of_output(uri), HasSubstr("does not have it")) << uri;
+    EXPECT_THAT(refusal_of_output("gps-input:h:1,id=1,when=epoch,id=2"), HasSubstr("'id' is there twice"));
+    EXPECT_THAT(refusal_of_output("json-file:a,receiver=x,receiver=x"), HasSubstr("'receiver' is there twice"));
+}
+
 // Cut, changed and lengthened at random: a sentence or settings, and never more.
 TEST(OutputSettings, AnyTextIsUnderstoodOrRefused) {
     RandomStream random(3, "output uris");

@@ -53,6 +53,8 @@ TEST(ScenarioOutput, MistakesAreToldWithTheirPlace) {
     EXPECT_THAT(mistakes_of("[[output]]\nto = \"json-tcp:1\"\nid = 256\n"), HasSubstr("test.toml:3:6"));
     EXPECT_THAT(mistakes_of("[[output]]\nto = \"json-tcp:1\"\nsystem = 0\n"), HasSubstr("test.toml:3:10"));
     EXPECT_THAT(mistakes_of("[[output]]\nto = \"json-tcp:1\"\nwehn = \"epoch\"\n"), HasSubstr("did you mean 'when'?"));
+    EXPECT_THAT(mistakes_of("[[output]]\nto = \"gps-input:h:1\"\neph = \"dop100\"\n"),
+                StartsWith("test.toml:3:7: output.eph: 'eph' is an option of hil-gps; gps-input does not have it"));
     EXPECT_THAT(mistakes_of("[[output]]\nto = 5\n"), HasSubstr("test.toml:2:6"));
 }
 
