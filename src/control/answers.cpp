@@ -145,10 +145,10 @@ ControlResponse get_answer(const ControlRequest& request, const ControlSources& 
 
 // The methods of a path below /api; empty: there is no such path.
 std::string_view methods_of(std::string_view path) {
-    if (path == "/api/commands" || path == "/api/faults") return "GET, POST";
+    if (path == "/api/commands" || path == "/api/faults") return "GET, HEAD, POST";
     for (const std::string_view known :
          {"/api/status", "/api/timeline", "/api/scene", "/api/openapi.json", "/api/stream"})
-        if (path == known) return "GET";
+        if (path == known) return "GET, HEAD";
     return path.starts_with(live_fault_prefix) ? "DELETE" : "";
 }
 
@@ -170,7 +170,7 @@ ControlResponse api_answer(const ControlRequest& request, const ControlSources& 
         response.headers.emplace_back("Allow", methods);
         return response;
     }
-    if (request.method == "GET") return get_answer(request, sources);
+    if (request.method == "GET" || request.method == "HEAD") return get_answer(request, sources);
     if (request.method == "DELETE") return stop_fault(request, sources);
     if (auto wrong = wrong_content(request)) return std::move(*wrong);
     const auto read = request.path() == "/api/faults" ? live_fault_from_json : command_from_json;

@@ -63,8 +63,10 @@ public:
                          boost::beast::bind_front_handler(&HttpSession::on_read, shared_from_this()));
     }
 
-    void write(const ControlResponse& response, bool keep_alive) {
+    /// @param head what is asked for: the body is told of, and not sent
+    void write(const ControlResponse& response, bool keep_alive, bool head = false) {
         response_ = http_response(response, keep_alive);
+        if (head) response_.body().clear();
         stream_.expires_after(request_patience);
         http::async_write(stream_, response_,
                           boost::beast::bind_front_handler(&HttpSession::on_written, shared_from_this(), keep_alive));
@@ -80,9 +82,7 @@ private:
         const bool keep_alive = message.keep_alive(), head = message.method() == http::verb::head;
         if (boost::beast::websocket::is_upgrade(message)) return upgrade(std::move(message));
         const ControlRequest request = control_request(std::move(message));
-        ControlResponse response = answer(request, core_.rules, core_.sources(request.path() == "/api/status"));
-        if (head) response.body.clear();
-        write(response, keep_alive);
+        write(answer(request, core_.rules, core_.sources(request.path() == "/api/status")), keep_alive, head);
     }
 
     void upgrade(HttpRequest message) {

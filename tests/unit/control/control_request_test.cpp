@@ -63,6 +63,16 @@ TEST(ControlRequest, AnswersWhatIsAsked) {
     EXPECT_EQ(desk.get("/../etc/passwd").status, 404);
 }
 
+TEST(ControlRequest, HeadIsWhereGetIs) {
+    Desk desk;
+    for (const char* target : {"/", "/api/timeline", "/api/commands", "/api/scene", "/api/nothing"}) {
+        const ControlResponse told = desk.ask({"HEAD", target, {{"Host", "localhost"}}, {}}), whole = desk.get(target);
+        EXPECT_EQ(told.status, whole.status) << target;
+        EXPECT_EQ(told.body.size(), whole.body.size()) << "the server tells its length, " << target;
+    }
+    EXPECT_EQ(desk.ask({"HEAD", "/api/faults/x", {{"Host", "localhost"}}, {}}).status, 405);
+}
+
 TEST(ControlRequest, QueuesCommands) {
     Desk desk;
     EXPECT_EQ(desk.post("/api/commands", R"({"command":"pause"})").status, 202);

@@ -174,6 +174,27 @@ TEST(ControlServer, RefusesWhatIsTooLargeOrNoRequest) {
     EXPECT_EQ(rig.status({"GET", "/api/status"}), 200);
 }
 
+// RFC 9110, section 8.6: the length is that of the answer to GET.
+TEST(ControlServer, TellsTheLengthOfWhatHeadAsksForAndSendsNothingOfIt) {
+    const auto rig = std::make_unique<ServerRig>();
+    const std::string got = [&] {
+        RawClient client(rig->server->port());
+        client.send(plain_get("/page.js"));
+        return client.read_all();
+    }();
+    const std::size_t body = got.find("\r\n\r\n") + 4;
+    RawClient client(rig->server->port());
+    // A second request on the same connection shows that the first answer has ended where its client thinks it has.
+    client.send(
+        "HEAD /page.js HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\nHEAD /api/scene HTTP/1.1\r\nHost: 127.0.0.1\r\n"
+        "Connection: close\r\n\r\n");
+    const std::string told = client.read_all();
+    EXPECT_THAT(told, HasSubstr("Content-Length: " + std::to_string(got.size() - body) + "\r\n"));
+    const std::size_t second = told.find("\r\n\r\n") + 4;
+    EXPECT_THAT(told.substr(second), StartsWith("HTTP/1.1 200"));
+    EXPECT_EQ(told.find("\r\n\r\n", second) + 4, told.size());
+}
+
 TEST(ControlServer, AnswersOneWhoHasClosedHisHalf) {
     const ServerRig rig;
     RawClient half(rig.server->port());
