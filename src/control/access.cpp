@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/asio/ip/address_v6.hpp>
 
+#include "header_text.hpp"
 #include "skyloop/control/control_request.hpp"
 
 namespace skyloop {
@@ -19,12 +21,22 @@ bool is_ipv4(std::string_view host) {
            std::all_of(host.begin(), host.end(), [](char c) { return c == '.' || (c >= '0' && c <= '9'); });
 }
 
-// A name can be made to lead anywhere by whoever owns it; an address cannot.
+// However it is written: [::1], [0:0:0:0:0:0:0:1].
+bool is_ipv6_loopback(std::string_view host) {
+    if (!host.starts_with('[') || !host.ends_with(']')) return false;
+    boost::system::error_code no_address;
+    const std::string inside(host.substr(1, host.size() - 2));
+    return boost::asio::ip::make_address_v6(inside, no_address).is_loopback();
+}
+
+// A name can be made to lead anywhere by whoever owns it; an address cannot. Case and the dot of the root change no
+// name (RFC 9110, section 4.2.3; RFC 1034, section 3.1).
 bool host_is_ours(std::string_view header, const AccessRules& rules) {
-    const std::string_view host = without_port(header);
+    std::string host = in_lower_case(without_port(header));
+    if (host.size() > 1 && host.ends_with('.')) host.pop_back();
     if (host.empty()) return false;
-    if (host == "localhost" || host == "[::1]" || (is_ipv4(host) && host.starts_with("127."))) return true;
-    if (host == rules.host) return true;
+    if (host == "localhost" || is_ipv6_loopback(host) || (is_ipv4(host) && host.starts_with("127."))) return true;
+    if (host == in_lower_case(rules.host)) return true;
     return !rules.loopback && (is_ipv4(host) || (host.starts_with('[') && host.ends_with(']')));
 }
 
@@ -52,14 +64,21 @@ bool shows_token(const ControlRequest& request, const std::string& token) {
     return false;
 }
 
+// Off loopback a machine has names of its own. A page of a foreign one that leads here does not know the token, and
+// what is not below /api is no secret.
+bool any_name_will_do(const ControlRequest& request, const AccessRules& rules) {
+    if (rules.loopback || rules.token.empty()) return false;
+    return !request.path().starts_with("/api/") || shows_token(request, rules.token);
+}
+
 }  // namespace
 
 std::optional<ControlResponse> refusal(const ControlRequest& request, const AccessRules& rules) {
     const auto host = request.header("Host");
-    if (!host || !host_is_ours(*host, rules))
-        return error_response(421,
-                              fmt::format("the request is for host '{}'; expected {}", host.value_or("several"),
-                                          rules.loopback ? "127.0.0.1 or localhost" : "an address or " + rules.host));
+    if (!host || (!host_is_ours(*host, rules) && !any_name_will_do(request, rules)))
+        return error_response(421, fmt::format("the request is for host '{}'; expected {}", host.value_or("several"),
+                                               rules.loopback ? "127.0.0.1 or localhost"
+                                                              : "an address, " + rules.host + " or the token"));
     const auto origin = request.header("Origin");
     if (!origin || (!origin->empty() && *origin != fmt::format("http://{}", *host)))
         return error_response(403, fmt::format("a page of '{}' may not ask; expected one of http://{}",

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 
+#include "header_text.hpp"
 #include "json_text.hpp"
 
 namespace skyloop {
 namespace {
 
 bool same_header(std::string_view a, std::string_view b) {
-    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [&](char left, char right) { return lower(left) == lower(right); });
+    return a.size() == b.size() && in_lower_case(a) == in_lower_case(b);
 }
 
 }  // namespace

@@ -154,7 +154,8 @@ class HostileControlTest(unittest.TestCase):
         site = f"Authorization: Bearer {TOKEN}\nOrigin: http://evil.example\n"
         self.assert_refused(self.hear(self.upgrade(site))[0], 403, "http://evil.example")
         self.assert_refused(self.hear(self.upgrade("Sec-WebSocket-Protocol: bearer.wrong\n"))[0], 401, "no token")
-        self.assert_refused(self.hear(self.upgrade(site, host="rebound.example"))[0], 421, "rebound.example")
+        self.assert_refused(self.hear(self.upgrade(site, host="rebound.example"))[0], 403, "http://evil.example")
+        self.assert_refused(self.hear(self.upgrade(host="rebound.example"))[0], 421, "rebound.example")
         self.assert_answers()
 
     def test_2_requests_too_large_and_none_at_all(self):

@@ -63,7 +63,8 @@ struct ControlSources {
 ControlResponse error_response(int status, std::string_view sentence);
 
 /// Why a request is not answered, or nothing. The Host must be an address, "localhost" or the name that the server
-/// listens at, on loopback one of loopback, so that no foreign name leads here (DNS rebinding); an Origin must be this
+/// listens at, on loopback one of loopback, so that no foreign name leads here (DNS rebinding); off loopback any
+/// name for who shows the token, and for the page; an Origin must be this
 /// server's own, so that no other site's page speaks to it; below /api the token must be shown, as a bearer or, of a
 /// WebSocket, as the subprotocol "bearer.TOKEN".
 std::optional<ControlResponse> refusal(const ControlRequest& request, const AccessRules& rules);

@@ -134,14 +134,29 @@ TEST(ControlRequest, RefusesForeignHosts) {
     const auto status = [&](const std::string& host) {
         return desk.ask({"GET", "/api/status", {{"Host", host}}, {}}).status;
     };
-    for (const char* host : {"127.0.0.1:8080", "localhost", "[::1]:1"})
+    for (const char* host : {"127.0.0.1:8080", "localhost", "[::1]:1", "LocalHost:80", "localhost.", "localhost.:80",
+                             "[0:0:0:0:0:0:0:1]", "127.0.0.9"})
         EXPECT_EQ(status(host), 200) << host;
-    for (const char* host : {"evil.example", "127.0.0.1.evil.example", "192.168.1.5", "", "localhost.evil.example"})
+    for (const char* host :
+         {"evil.example", "127.0.0.1.evil.example", "192.168.1.5", "", ".", "localhost.evil.example", "[::2]", "[::1"})
         EXPECT_EQ(status(host), 421) << host;
     EXPECT_EQ(desk.ask({"GET", "/api/status", {{"Host", "localhost"}, {"host", "evil"}}, {}}).status, 421);
     desk.rules = {"", "0.0.0.0", false};
     EXPECT_EQ(status("192.168.1.5:8080"), 200);
     EXPECT_EQ(status("evil.example"), 421);
+    desk.rules = {"s3cret", "0.0.0.0", false};
+    const auto shown = [&](const std::string& token) {
+        return desk
+            .ask({"GET", "/api/status", {{"Host", "raspberrypi.local:80"}, {"Authorization", "Bearer " + token}}, {}})
+            .status;
+    };
+    EXPECT_EQ(shown("s3cret"), 200) << "a foreign page does not know the token";
+    EXPECT_EQ(shown("guess"), 421);
+    EXPECT_EQ(desk.ask({"GET", "/", {{"Host", "raspberrypi.local:80"}}, {}}).status, 200);
+    desk.rules.loopback = true;
+    EXPECT_EQ(shown("s3cret"), 421);
+    desk.rules = {"", "Pi.local", true};
+    EXPECT_EQ(status("pi.Local:1"), 200);
 }
 
 TEST(ControlRequest, RefusesPagesOfOtherSites) {
