@@ -50,9 +50,10 @@ bool same_secret(std::string_view given, std::string_view wanted) {
 }
 
 bool shows_token(const ControlRequest& request, const std::string& token) {
-    constexpr std::string_view bearer = "Bearer ", subprotocol = "bearer.";
-    const std::string_view authorization = request.header("Authorization").value_or("");
-    if (authorization.starts_with(bearer)) return same_secret(authorization.substr(bearer.size()), token);
+    constexpr std::string_view bearer = "bearer ", subprotocol = "bearer.";
+    const std::string_view authorization = without_blanks(request.header("Authorization").value_or(""));
+    if (in_lower_case(authorization.substr(0, bearer.size())) == bearer)
+        return same_secret(without_blanks(authorization.substr(bearer.size())), token);
     std::string_view list = request.header("Sec-WebSocket-Protocol").value_or("");
     while (!list.empty()) {
         std::string_view word = list.substr(0, list.find(','));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "header_text.hpp"
 #include "json_text.hpp"
 #include "page_files.hpp"
 #include "skyloop/control/command_json.hpp"
@@ -120,7 +121,7 @@ ControlResponse stop_fault(const ControlRequest& request, const ControlSources& 
 
 std::optional<ControlResponse> wrong_content(const ControlRequest& request) {
     const std::string_view type = request.header("Content-Type").value_or("");
-    if (type.substr(0, type.find(';')) == "application/json") return std::nullopt;
+    if (in_lower_case(without_blanks(type.substr(0, type.find(';')))) == "application/json") return std::nullopt;
     return error_response(415, fmt::format("the body is '{}'; expected application/json", type));
 }
 

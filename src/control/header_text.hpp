@@ -15,4 +15,10 @@ inline std::string in_lower_case(std::string_view text) {
     return lower;
 }
 
+/// Without blanks and tabs at both ends.
+inline std::string_view without_blanks(std::string_view text) {
+    const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
+    return text.substr(begin, text.find_last_not_of(" \t") + 1 - begin);
+}
+
 }  // namespace skyloop

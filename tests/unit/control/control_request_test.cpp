@@ -185,11 +185,15 @@ TEST(ControlRequest, WantsTheTokenBelowApiAlone) {
             .status;
     };
     EXPECT_EQ(status("Authorization", "Bearer s3cret"), 200);
+    EXPECT_EQ(status("Authorization", "bearer s3cret"), 200);
+    EXPECT_EQ(status("Authorization", "BEARER  s3cret "), 200);
     EXPECT_EQ(status("sec-websocket-protocol", "skyloop, bearer.s3cret"), 200);
     EXPECT_EQ(status("Authorization", "Bearer s3creT"), 401);
     EXPECT_EQ(status("Authorization", "Bearer s3cret0"), 401);
     EXPECT_EQ(status("Authorization", "Bearer "), 401);
     EXPECT_EQ(status("Authorization", "s3cret"), 401);
+    EXPECT_EQ(status("Authorization", "bearer"), 401);
+    EXPECT_EQ(status("Authorization", ""), 401);
     EXPECT_EQ(status("X-Other", ""), 401);
     EXPECT_EQ(desk.get("/").status, 200);
 }
@@ -212,6 +216,23 @@ TEST(ControlRequest, TakesJsonOfItsSizeAlone) {
                       .status,
                   405);
     EXPECT_TRUE(desk.pushed.empty());
+}
+
+// RFC 9110, sections 8.3.1 and 5.6.6.
+TEST(ControlRequest, TakesEveryWritingOfItsMediaType) {
+    Desk desk;
+    const auto status = [&](std::string type) {
+        return desk
+            .ask({"POST",
+                  "/api/commands",
+                  {{"Host", "localhost"}, {"Content-Type", std::move(type)}},
+                  R"({"command":"pause"})"})
+            .status;
+    };
+    for (const char* type : {"Application/JSON", "application/json ; charset=utf-8", "application/json;charset=UTF-8"})
+        EXPECT_EQ(status(type), 202) << type;
+    for (const char* type : {"", " ", ";", "application/jsonx", "application/json+x", "text/json"})
+        EXPECT_EQ(status(type), 415) << type;
 }
 
 TEST(ControlRequest, DescribesItselfByTheSameTables) {
