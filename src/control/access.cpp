@@ -76,8 +76,12 @@ bool any_name_will_do(const ControlRequest& request, const AccessRules& rules) {
 
 std::optional<ControlResponse> refusal(const ControlRequest& request, const AccessRules& rules) {
     const auto host = request.header("Host");
-    if (!host || (!host_is_ours(*host, rules) && !any_name_will_do(request, rules)))
-        return error_response(421, fmt::format("the request is for host '{}'; expected {}", host.value_or("several"),
+    if (!host) return error_response(400, "the request has several headers Host; expected one");
+    // HTTP/1.0 has none, and no browser speaks that.
+    if (host->empty() && request.version >= 11)
+        return error_response(400, "the request has no header Host; expected one");
+    if (!host->empty() && !host_is_ours(*host, rules) && !any_name_will_do(request, rules))
+        return error_response(421, fmt::format("the request is for host '{}'; expected {}", *host,
                                                rules.loopback ? "127.0.0.1 or localhost"
                                                               : "an address, " + rules.host + " or the token"));
     const auto origin = request.header("Origin");

@@ -24,6 +24,17 @@ std::optional<std::string_view> ControlRequest::header(std::string_view name) co
     return found.value_or(std::string_view());
 }
 
+void ControlRequest::take_absolute_form() {
+    constexpr std::string_view scheme = "http://";
+    if (in_lower_case(std::string_view(target).substr(0, scheme.size())) != scheme) return;
+    const std::size_t end = std::min(target.find_first_of("/?", scheme.size()), target.size());
+    std::string host = target.substr(scheme.size(), end - scheme.size());
+    target.erase(0, end);
+    if (!target.starts_with('/')) target.insert(0, "/");
+    std::erase_if(headers, [](const auto& one) { return same_header(one.first, "Host"); });
+    headers.emplace_back("Host", std::move(host));
+}
+
 std::string_view ControlRequest::path() const { return std::string_view(target).substr(0, target.find('?')); }
 
 std::optional<std::string_view> ControlRequest::query(std::string_view key) const {

@@ -24,6 +24,8 @@ ControlRequest control_request(HttpRequest&& message) {
     for (const auto& field : message.base())
         request.headers.emplace_back(as_string(field.name_string()), as_string(field.value()));
     request.body = std::move(message.body());
+    request.version = static_cast<int>(message.version());
+    request.take_absolute_form();
     return request;
 }
 

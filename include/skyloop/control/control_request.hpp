@@ -23,9 +23,13 @@ struct ControlRequest {
     std::string method, target;  ///< "GET", "/api/status?pretty"
     std::vector<std::pair<std::string, std::string>> headers{};
     std::string body{};
+    int version = 11;  ///< of HTTP: 11 for 1.1
 
     /// Empty when it is not there; nothing when it is there more than once.
     [[nodiscard]] std::optional<std::string_view> header(std::string_view name) const;
+    /// A target with scheme and host, as proxies are asked, becomes a path, and its host the Host (RFC 9112, section
+    /// 3.2.2).
+    void take_absolute_form();
     /// The target before its '?'.
     [[nodiscard]] std::string_view path() const;
     /// The value of a key behind the '?', as it stands there; nothing when it is not there.

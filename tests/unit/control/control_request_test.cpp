@@ -138,9 +138,12 @@ TEST(ControlRequest, RefusesForeignHosts) {
                              "[0:0:0:0:0:0:0:1]", "127.0.0.9"})
         EXPECT_EQ(status(host), 200) << host;
     for (const char* host :
-         {"evil.example", "127.0.0.1.evil.example", "192.168.1.5", "", ".", "localhost.evil.example", "[::2]", "[::1"})
+         {"evil.example", "127.0.0.1.evil.example", "192.168.1.5", ".", "localhost.evil.example", "[::2]", "[::1"})
         EXPECT_EQ(status(host), 421) << host;
-    EXPECT_EQ(desk.ask({"GET", "/api/status", {{"Host", "localhost"}, {"host", "evil"}}, {}}).status, 421);
+    EXPECT_EQ(desk.ask({"GET", "/api/status", {{"Host", "localhost"}, {"host", "evil"}}, {}}).status, 400);
+    EXPECT_EQ(desk.ask({"GET", "/api/status", {}, {}}).status, 400);
+    EXPECT_EQ(desk.ask({"GET", "/api/status", {}, {}, 10}).status, 200) << "HTTP/1.0 has no Host";
+    EXPECT_EQ(desk.ask({"GET", "/api/status", {{"Host", "evil.example"}}, {}, 10}).status, 421);
     desk.rules = {"", "0.0.0.0", false};
     EXPECT_EQ(status("192.168.1.5:8080"), 200);
     EXPECT_EQ(status("evil.example"), 421);
@@ -157,6 +160,26 @@ TEST(ControlRequest, RefusesForeignHosts) {
     EXPECT_EQ(shown("s3cret"), 421);
     desk.rules = {"", "Pi.local", true};
     EXPECT_EQ(status("pi.Local:1"), 200);
+}
+
+TEST(ControlRequest, MayNameTheServerInItsTarget) {
+    Desk desk;
+    const auto asked = [](std::string target) {
+        ControlRequest request{"GET", std::move(target), {{"host", "a"}, {"Accept", "*/*"}}, {}};
+        request.take_absolute_form();
+        return request;
+    };
+    const ControlRequest status = asked("HTTP://127.0.0.1:8080/api/status?rate=2");
+    EXPECT_EQ(status.path(), "/api/status");
+    EXPECT_EQ(status.query("rate"), "2");
+    EXPECT_EQ(status.header("Host"), "127.0.0.1:8080");
+    EXPECT_EQ(status.header("Accept"), "*/*");
+    EXPECT_EQ(desk.ask(status).status, 200);
+    EXPECT_EQ(desk.ask(asked("http://localhost")).status, 200);
+    EXPECT_EQ(asked("http://localhost?x=1").target, "/?x=1");
+    EXPECT_EQ(desk.ask(asked("http://evil.example/api/status")).status, 421);
+    EXPECT_EQ(desk.ask(asked("http:///api/status")).status, 400);
+    EXPECT_EQ(asked("/http://a/").header("Host"), "a") << "a path is left alone";
 }
 
 TEST(ControlRequest, RefusesPagesOfOtherSites) {
