@@ -62,7 +62,9 @@ void Link::send(ByteSpan bytes, PortSpeed speed, bool at_rest) {
     if (heard.empty()) return;
     const std::size_t taken = transport_->write(heard);
     counters_.bytes_out += taken;
-    counters_.bytes_lost += heard.size() - taken;
+    // Who has gone has not read too slowly.
+    if (taken < heard.size())
+        (transport_->line().connected ? counters_.bytes_lost : counters_.bytes_unheard) += heard.size() - taken;
     if (client_baud != receiver_baud) counters_.bytes_garbled += taken;
 }
 

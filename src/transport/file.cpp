@@ -78,8 +78,7 @@ std::size_t FileTransport::write(ByteSpan bytes) {
         else if (errno != EINTR)
             failure_ = fmt::format("{}: writing failed: {}", name_, std::strerror(errno));
     }
-    lost_bytes_ += bytes.size() - taken;
-    return bytes.size();
+    return taken;
 }
 
 }  // namespace skyloop

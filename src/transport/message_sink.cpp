@@ -157,7 +157,9 @@ public:
         look();
         if (!wire_->line().connected) {
             ++counts_.unheard;
-        } else if (peer_.send(message, patience_, writer(), waiter())) {
+        } else if (const bool taken = peer_.send(message, patience_, writer(), waiter()); !wire_->failure().empty()) {
+            ++counts_.lost;
+        } else if (taken) {
             count_sent(message.size());
         } else {
             ++counts_.lost;

@@ -200,6 +200,12 @@ class CommandLineTest(unittest.TestCase):
                            "--port", "file:/dev/full", check=False)
             self.assertEqual(done.returncode, 1, done.stderr)
             self.assertIn("/dev/full", done.stderr)
+            port = json.loads(pathlib.Path(folder, "run.json").read_text(encoding="utf-8"))["ports"][0]
+            self.assertEqual((port["bytes_out"], port["bytes_lost"]), (0, 0), port)
+            self.assertGreater(port["bytes_unheard"], 0)
+            done = skyloop("simulate", "--duration", 5, "--out", folder, "--output", "json-file:/dev/full", check=False)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertIn("output 0 (json: /dev/full (file)): 0 messages, 0 bytes, 4 messages while", done.stderr)
         with open("/dev/full", "w", encoding="utf-8") as full:
             done = subprocess.run([SKYLOOP, "sky", "--start", "2026-01-01T00:00:00Z"], stdout=full,
                                   stderr=subprocess.PIPE, text=True, timeout=120, check=False)

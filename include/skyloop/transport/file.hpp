@@ -1,7 +1,6 @@
 /// The receiver's bytes into a file or to standard output.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -14,8 +13,8 @@ namespace skyloop {
 
 /// A wire in one direction that ends in a file, a pipe or a terminal. It has no speed, and nothing ever comes in.
 ///
-/// The first write that fails (a full disk, a closed pipe) ends the file there: later bytes are taken and lost, so that
-/// a run goes on and the file has no gap. failure() then says so.
+/// The first write that fails (a full disk, a closed pipe) ends the file there: nobody is connected any more and later
+/// bytes are not taken, so that the file has no gap. failure() then says so.
 class FileTransport : public Transport {
 public:
     /// Creates the file, or empties the one that is there. Fails with `outside`.
@@ -29,8 +28,6 @@ public:
     LineState line() override { return {failure_.empty(), std::nullopt}; }
     [[nodiscard]] std::string failure() const override { return failure_; }
     [[nodiscard]] std::string description() const override { return name_; }
-    /// Bytes lost since the failure.
-    [[nodiscard]] std::uint64_t lost_bytes() const { return lost_bytes_; }
 
 private:
     FileTransport(FileDescriptor owned, int descriptor, std::string name)
@@ -40,7 +37,6 @@ private:
     int descriptor_;
     std::string name_;
     std::string failure_;
-    std::uint64_t lost_bytes_ = 0;
     int patience_ms_ = 0;  // as poll() takes it: 0 asks and goes on, −1 waits for as long as it takes
 };
 

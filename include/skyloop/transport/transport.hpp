@@ -49,7 +49,8 @@ public:
     virtual std::optional<Belief> new_belief() { return std::nullopt; }
     /// What has happened to the wire since the last call and its owner should hear at once, in sentences.
     virtual std::vector<std::string> take_news() { return {}; }
-    /// What has gone wrong with the wire since it was opened, in one sentence; empty while nothing has.
+    /// What has ended the wire for good since it was opened, in one sentence; empty while nothing has. From then on it
+    /// takes nothing.
     [[nodiscard]] virtual std::string failure() const { return {}; }
     /// What its owner should know at the end of a run, in one sentence; empty: nothing.
     [[nodiscard]] virtual std::string notice() const { return {}; }
