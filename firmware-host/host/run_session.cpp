@@ -16,7 +16,7 @@
 namespace skyloop::host {
 namespace {
 
-// The one door between a signal and the loop.
+// The one door between a signal and the loop; a run that is in vain ends by it, too.
 std::atomic<bool> stop_asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
@@ -111,6 +111,18 @@ int RunSession::tell_outputs(RunWatch& watch) const {
     return code;
 }
 
+bool RunSession::in_vain(const RunWatch& watch) const {
+    bool wired = false;
+    for (const Station& station : assembly_.emulator->stations()) {
+        if (station.power() != nullptr) return false;  // a real device is switched
+        for (const Wire& wire : station.wires()) {
+            if (!wire.link.ended()) return false;
+            wired = true;
+        }
+    }
+    return wired && !watch.serves();
+}
+
 void RunSession::go(Emulator& emulator, RunWatch& watch) {
     constexpr std::size_t most_lines = 1000;
     JobThread writer(most_lines);
@@ -130,6 +142,7 @@ void RunSession::go(Emulator& emulator, RunWatch& watch) {
         for (std::string& news : watch.take_news())
             tell(std::move(news));
         progress.show(status, emulator);
+        if (in_vain(watch)) stop_asked = true;
     });
     emulator.run_until(assembly_.end.value_or(GpsTime::max()), stop_asked);
     emulator.on_status({});

@@ -31,6 +31,8 @@ public:
     [[nodiscard]] std::string port_name(const Station& station, std::size_t wire) const;
 
 private:
+    // Every wire has ended, and nothing else is left for which the run would go on.
+    [[nodiscard]] bool in_vain(const RunWatch& watch) const;
     // The loop. What it says meanwhile is written by a thread of its own.
     void go(Emulator& emulator, RunWatch& watch);
     // Exit code: 1 where one of them could not be written.

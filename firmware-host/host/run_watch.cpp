@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "skyloop/control/status_json.hpp"
 #include "skyloop/emulator/run_summary.hpp"
 #include "skyloop/emulator/thread_priority.hpp"
@@ -168,6 +170,13 @@ std::vector<std::string> RunWatch::take_news() {
         for (const std::string& news : outputs_[i]->take_news())
             all.push_back(fmt::format("output {}: {}", i, news));
     return all;
+}
+
+bool RunWatch::serves() const {
+    const Emulator& emulator = *assembly_.emulator;
+    const bool led = emulator.feeds() != nullptr && emulator.feeds()->leads();
+    return led || server_ || mavlink_ || judge_ || emulator.stations().front().recorder() != nullptr ||
+           std::any_of(outputs_.begin(), outputs_.end(), [](const auto& output) { return output->failure().empty(); });
 }
 
 void RunWatch::finish_outputs() {

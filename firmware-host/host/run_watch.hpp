@@ -41,6 +41,8 @@ public:
     [[nodiscard]] const std::vector<std::unique_ptr<RunOutput>>& outputs() const { return outputs_; }
     /// What has happened to them since the last call, in sentences.
     std::vector<std::string> take_news();
+    /// Somebody hears of the run, or leads it, whatever has become of its wires.
+    [[nodiscard]] bool serves() const;
     /// The run is over: what still waits is told, and what became of all of it is kept in the assembly.
     void finish_outputs();
     /// The run is over: says the verdicts, and leaves verdicts.json and junit.xml in the recording.

@@ -31,6 +31,10 @@ std::optional<Nanoseconds> Replay::next_write() const {
     return next;
 }
 
+bool Replay::all_ended() const {
+    return std::all_of(links_.begin(), links_.end(), [](const Link& link) { return link.ended(); });
+}
+
 void Replay::look(Nanoseconds now) {
     for (Link& link : links_) {
         link.look(on_clock(now));
@@ -44,6 +48,7 @@ void Replay::write_due(Nanoseconds now, Nanoseconds late) {
         const RecordedPort& port = parts_.ports[i];
         for (; done_[i] < port.writes.size() && port.writes[done_[i]].at <= now; ++done_[i]) {
             const RecordedWrite& write = port.writes[done_[i]];
+            if (links_[i].ended()) continue;
             links_[i].send(ByteSpan(port.bytes).subspan(write.offset, write.length), parts_.baud, false);
             lateness_.add(late +
                           Nanoseconds(std::llround(static_cast<double>((now - write.at).count()) / parts_.speed)));
@@ -64,7 +69,7 @@ void Replay::play(const Stop& stop) {
     RealtimePacer pacer(on_clock(Nanoseconds(0)), steady_clock_ns(), parts_.speed);
     Nanoseconds now{0};
     std::optional<Nanoseconds> end;
-    while (!stop() && (!end || now < *end)) {
+    while (!stop() && (!end || now < *end) && !all_ended()) {
         const auto next = next_write();
         if (!next && !end) end = now + Nanoseconds(std::llround(static_cast<double>(grace.count()) * parts_.speed));
         const Nanoseconds due = std::min(next ? *next : *end, now + pacer.tick(true));

@@ -212,6 +212,29 @@ class CommandLineTest(unittest.TestCase):
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("standard output", done.stderr)
 
+    def test_a_run_that_nobody_hears_any_more_ends(self):
+        def goes_on_without_reader(*options):
+            command = [SKYLOOP, "run", "--model", "ideal", "--rate", "5", "--port", "-", *map(str, options)]
+            with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+                process.stdout.read(100)
+                process.stdout.close()
+                try:
+                    process.wait(timeout=5)
+                    return False
+                except subprocess.TimeoutExpired:
+                    process.send_signal(signal.SIGTERM)
+                    return True
+                finally:
+                    told = process.stderr.read().decode()
+                    process.wait(timeout=20)
+                    self.assertEqual(process.returncode, 1, told)
+                    self.assertIn("standard output: writing failed: Broken pipe", told)
+
+        self.assertFalse(goes_on_without_reader())
+        with open_folder() as folder:
+            for options in (("--record", folder), ("--control", 0), ("--port", "pty"), ("--output", f"json-file:{folder}/o.json")):
+                self.assertTrue(goes_on_without_reader(*options), options)
+
     def test_simulated_bytes_wait_for_a_slow_reader(self):
         with open_folder() as folder:
             arguments = ["--duration", "1800", "--start", "2026-01-01T00:00:00Z", "--out", folder, "--port", "-"]

@@ -56,6 +56,8 @@ public:
     [[nodiscard]] Transport& transport() { return *transport_; }
     [[nodiscard]] const LinkCounters& counters() const { return counters_; }
     [[nodiscard]] bool connected() const { return connected_; }
+    /// Nothing will ever cross it again.
+    [[nodiscard]] bool ended() const { return !transport_->failure().empty(); }
     /// Bytes are on their way to the receiver.
     [[nodiscard]] bool input_pending() const { return !incoming_.empty(); }
 

@@ -28,8 +28,8 @@ public:
     using Stop = std::function<bool()>;
     /// Waits until each wire has a client.
     void await_clients(const Stop& stop);
-    /// Plays to the end of the recording. At last it gives clients half a second to read what is left, since a wire
-    /// that is closed takes with it what was not read.
+    /// Plays to the end of the recording, or until every wire has ended. At last it gives clients half a second to read
+    /// what is left, since a wire that is closed takes with it what was not read.
     void play(const Stop& stop);
 
     [[nodiscard]] const std::vector<Link>& links() const { return links_; }
@@ -40,6 +40,7 @@ public:
 
 private:
     [[nodiscard]] std::optional<Nanoseconds> next_write() const;
+    [[nodiscard]] bool all_ended() const;
     void look(Nanoseconds now);
     void write_due(Nanoseconds now, Nanoseconds late);
 

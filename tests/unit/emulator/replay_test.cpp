@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "run_parts.hpp"
+#include "skyloop/transport/file.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
 namespace skyloop {
@@ -124,6 +125,19 @@ TEST(Replay, WritesEachPortOnItsWireInItsTime) {
     EXPECT_EQ(to_string(heard.written()), "abcdefghij");
     EXPECT_EQ(to_string(other.written()), "xy");
     EXPECT_EQ(replay.writes(), 4U);
+}
+
+// The second write is due after an hour.
+TEST(Replay, EndsWithTheLastOfItsWires) {
+    Replay::Parts parts;
+    parts.ports = {*recorded("1000000000 5 0 3\n3601000000000 6 3 7\n", "abcdefghij")};
+    parts.wires.push_back(FileTransport::open("/dev/full").value());
+    Replay replay(std::move(parts));
+    replay.play([] { return false; });
+    EXPECT_EQ(replay.writes(), 1U);
+    EXPECT_EQ(replay.links()[0].counters().bytes_out, 0U);
+    EXPECT_EQ(replay.links()[0].counters().bytes_lost, 0U) << "nobody has read too slowly";
+    EXPECT_EQ(replay.links()[0].counters().bytes_unheard, 3U);
 }
 
 TEST(Replay, WaitsForAClientUntilItIsToStop) {
