@@ -18,10 +18,24 @@ Json error_answer(std::string_view description) {
             {"content", {{"application/json", {{"schema", {{"$ref", "#/components/schemas/Error"}}}}}}}};
 }
 
-Json reading(std::string_view summary) {
-    return {{"get",
-             {{"summary", summary},
-              {"responses", {{"200", json_answer(summary)}, {"401", error_answer("no token, or a wrong one")}}}}}};
+// With what any request may be answered, whatever its path.
+Json answers(const Json& own) {
+    Json all{{"400", error_answer("no HTTP request, or none that names one host")},
+             {"401", error_answer("no token, or a wrong one")},
+             {"403", error_answer("from a page of another site")},
+             {"421", error_answer("for a host that this is not")}};
+    all.update(own);
+    Json sorted = Json::object();
+    for (const char* status :
+         {"101", "200", "202", "400", "401", "403", "404", "413", "415", "421", "422", "426", "429", "503"})
+        if (all.contains(status)) sorted[status] = all[status];
+    return sorted;
+}
+
+Json reading(std::string_view summary, const Json& others = Json::object()) {
+    Json own{{"200", json_answer(summary)}};
+    own.update(others);
+    return {{"get", {{"summary", summary}, {"responses", answers(own)}}}};
 }
 
 Json posting(std::string_view summary, std::string_view schema) {
@@ -30,13 +44,11 @@ Json posting(std::string_view summary, std::string_view schema) {
              {{"required", true},
               {"content",
                {{"application/json", {{"schema", {{"$ref", "#/components/schemas/" + std::string(schema)}}}}}}}}},
-            {"responses",
-             {{"202", json_answer("taken; the run carries it out at its next instant")},
-              {"401", error_answer("no token, or a wrong one")},
-              {"413", error_answer("more than 64 kB")},
-              {"415", error_answer("not application/json")},
-              {"422", error_answer("a mistake in it")},
-              {"429", error_answer("too many commands wait")}}}};
+            {"responses", answers({{"202", json_answer("taken; the run carries it out at its next instant")},
+                                   {"413", error_answer("more than 64 kB")},
+                                   {"415", error_answer("not application/json")},
+                                   {"422", error_answer("a mistake in it")},
+                                   {"429", error_answer("too many commands wait")}})}};
 }
 
 // An object of these parameters, one of which tells the kind.
@@ -85,7 +97,9 @@ Json stream_path() {
     return {{"get",
              {{"summary", "A WebSocket: a snapshot as text, as often as asked for; lines of dialogue once each"},
               {"parameters", Json::array({rate})},
-              {"responses", {{"101", {{"description", "snapshots follow"}}}, {"426", error_answer("no WebSocket")}}}}}};
+              {"responses", answers({{"101", {{"description", "snapshots follow"}}},
+                                     {"400", error_answer("a rate that is no number from 1 to 10")},
+                                     {"426", error_answer("no WebSocket")}})}}}};
 }
 
 Json fault_path() {
@@ -93,17 +107,18 @@ Json fault_path() {
     return {{"delete",
              {{"summary", "Ends a fault, all occurrences of it; its ramp out still runs"},
               {"parameters", Json::array({name})},
-              {"responses",
-               {{"202", json_answer("taken")},
-                {"404", error_answer("no such fault")},
-                {"429", error_answer("too many commands wait")}}}}}};
+              {"responses", answers({{"202", json_answer("taken")},
+                                     {"404", error_answer("no such fault")},
+                                     {"429", error_answer("too many commands wait")}})}}}};
 }
 
 Json paths() {
     Json paths;
-    paths["/api/status"] = reading("The last snapshot, at most a second old");
-    paths["/api/timeline"] = reading("Faults and commands with their known times");
-    paths["/api/scene"] = reading("Roofs and trees around, from above");
+    const Json not_begun{{"503", error_answer("the run has not begun")}};
+    paths["/api/status"] = reading("The last snapshot, at most a second old", not_begun);
+    paths["/api/timeline"] = reading("Faults and commands with their known times", not_begun);
+    paths["/api/scene"] =
+        reading("Roofs and trees around, from above", {{"404", error_answer("nothing stands around")}});
     paths["/api/openapi.json"] = reading("This description");
     paths["/api/commands"] = reading("Kinds of commands with their parameters");
     paths["/api/commands"]["post"] = posting("Gives a command", "Command");

@@ -258,6 +258,32 @@ TEST(ControlRequest, TakesEveryWritingOfItsMediaType) {
         EXPECT_EQ(status(type), 415) << type;
 }
 
+// Whatever a server without sockets answers stands in the description.
+TEST(ControlRequest, DescribesEveryAnswer) {
+    const auto paths = nlohmann::json::parse(openapi_json("1.2.3"))["paths"];
+    Desk desk;
+    const std::pair<std::string, std::string> json{"Content-Type", "application/json"};
+    const std::pair<std::string, std::string> methods[] = {{"GET", "get"}, {"POST", "post"}, {"DELETE", "delete"}};
+    for (const auto& [path, operations] : paths.items())
+        for (const auto& [method, operation] : methods) {
+            if (!operations.contains(operation)) continue;
+            const std::string target = path == "/api/faults/{name}" ? "/api/faults/wet%20plug" : path;
+            const auto expect_described = [&](const ControlRequest& request) {
+                const std::string status = std::to_string(desk.ask(request).status);
+                EXPECT_TRUE(operations[operation]["responses"].contains(status)) << method << " " << path << status;
+            };
+            desk.rules.token.clear();
+            expect_described({method, target, {{"Host", "localhost"}, json}, "{}"});
+            expect_described({method, target, {{"Host", "localhost"}, json}, std::string(R"({"command":"pause"})")});
+            expect_described({method, target, {{"Host", "evil.example"}, json}, {}});
+            expect_described({method, target, {{"Host", "localhost"}, {"Origin", "http://evil.example"}}, {}});
+            expect_described({method, target, {}, {}});
+            desk.rules.token = "s3cret";
+            expect_described({method, target, {{"Host", "localhost"}, json}, {}});
+        }
+    EXPECT_TRUE(paths["/api/stream"]["get"]["responses"].contains("101"));
+}
+
 TEST(ControlRequest, DescribesItselfByTheSameTables) {
     const auto json = nlohmann::json::parse(openapi_json("1.2.3"));
     EXPECT_EQ(json["openapi"], "3.1.0");
