@@ -192,7 +192,7 @@ tl::expected<Geodetic, std::string> checked_position(double latitude_deg, double
             fmt::format("latitude {} is out of range; expected -90 to 90 degrees", latitude_deg));
     if (!(longitude_deg >= -180 && longitude_deg <= 360))
         return tl::make_unexpected(
-            fmt::format("longitude {} is out of range; expected -180 to 180 degrees", longitude_deg));
+            fmt::format("longitude {} is out of range; expected -180 to 360 degrees", longitude_deg));
     if (!(std::abs(height_m) <= highest_height))
         return tl::make_unexpected(
             fmt::format("height {} m is out of range; expected at most {} m", height_m, highest_height));
