@@ -31,6 +31,7 @@ Result<std::unique_ptr<PowerSwitch>> PowerSwitch::start(Parts parts) {
     if (!actuator) return fail(actuator.error());
     one->actuator_ = std::move(*actuator);
     one->description_ = one->actuator_->description();
+    one->actuator_->ask_while_cutting([self = one.get()] { return !self->is_outdated(PowerState::cut); });
     if (const auto restored = one->actuator_->restore(); !restored) return fail(restored.error());
     with_signals_held_back([&] { one->thread_ = std::thread([self = one.get()] { self->work(); }); });
     return one;
@@ -53,18 +54,17 @@ void PowerSwitch::finish() {
 }
 
 void PowerSwitch::work() {
-    std::uint64_t done = 0;
     for (;;) {
-        orders_.wait(done);
+        orders_.wait(followed_);
         const std::uint64_t orders = orders_.load();
         if ((orders & end_of_thread) != 0) break;
-        if (orders == done) continue;
-        if (orders - done > most_waiting) {
-            const std::uint64_t left_out = (orders - done - most_waiting + 1) & ~std::uint64_t{1};
-            done += left_out;
+        if (orders == followed_) continue;
+        if (orders - followed_ > most_waiting) {
+            const std::uint64_t left_out = (orders - followed_ - most_waiting + 1) & ~std::uint64_t{1};
+            followed_ += left_out;
             tell(fmt::format("{} orders were left out: it switches too slowly for them", left_out));
         }
-        follow(wanted_after(++done));
+        follow(wanted_after(++followed_));
     }
     if (!known_on_) follow(PowerState::on);
     actuator_.reset();
@@ -85,6 +85,11 @@ void PowerSwitch::follow(PowerState wanted) {
         fmt::format("the power was not {}: {}", wanted == PowerState::cut ? "cut" : "restored", done.error().message));
 }
 
+// A cut that a wish to restore follows, or the end, is not tried for again. A restore is, whatever follows.
+bool PowerSwitch::is_outdated(PowerState wanted) const {
+    return wanted == PowerState::cut && orders_.load() != followed_;
+}
+
 Result<void> PowerSwitch::try_repeatedly(PowerState wanted) {
     // Before the first bit moves: from then on somebody has to put it back, whatever becomes of this process.
     if (wanted == PowerState::cut && parts_.watchdog != nullptr)
@@ -93,6 +98,7 @@ Result<void> PowerSwitch::try_repeatedly(PowerState wanted) {
     Result<void> done;
     for (int i = 0; i < tries_of_an_order; ++i) {
         if (i > 0) std::this_thread::sleep_for(before_next_try);
+        if (i > 0 && is_outdated(wanted)) break;
         done = try_once(wanted);
         if (done) break;
         actuator_.reset();  // what is plugged in again needs a fresh one
@@ -108,6 +114,7 @@ Result<void> PowerSwitch::try_once(PowerState wanted) {
         auto opened = parts_.open();
         if (!opened) return fail(opened.error());
         actuator_ = std::move(*opened);
+        actuator_->ask_while_cutting([this] { return !is_outdated(PowerState::cut); });
     }
     return wanted == PowerState::cut ? actuator_->cut() : actuator_->restore();
 }

@@ -151,7 +151,7 @@ ProcessOutcome RunningProcess::wait() {
         const bool over = is_over();
         read_outputs(over ? 0 : look_every_ms);
         if (over) break;
-        outcome_.cancelled = request_.cancelled != nullptr && request_.cancelled->load();
+        outcome_.cancelled = request_.cancelled && request_.cancelled();
         outcome_.timed_out = !outcome_.cancelled && ProcessClock::now() >= end;
         if (outcome_.cancelled || outcome_.timed_out) break;
     }

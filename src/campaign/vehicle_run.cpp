@@ -73,7 +73,7 @@ Result<Verdict> run_with_vehicle(Assembly& assembly, const CampaignVehicle& vehi
     const Seconds length = assembly.end ? difference(*assembly.end, assembly.start) : Seconds(0);
     const Seconds timeout = vehicle.timeout > Seconds(0) ? vehicle.timeout : length + grace;
     ProcessRequest request = request_of(vehicle, run, pty, timeout);
-    request.cancelled = &stop;
+    request.cancelled = [&stop] { return stop.load(); };
     std::atomic<bool> over = false;
     Result<ProcessOutcome> outcome = fail(ErrorCode::outside, "vehicle: was not started");
     std::thread beside;

@@ -80,7 +80,7 @@ bool ProbeRun::try_once() {
     request.command = command_of(probe_);
     request.environment = environment_;
     request.timeout = probe_.timeout;
-    request.cancelled = &cancelled_;
+    request.cancelled = [this] { return cancelled_.load(); };
     if (probe_.condition)
         request.line = [&](std::string_view line) {
             if (!fulfilled && fulfils(*probe_.condition, line)) {

@@ -1,6 +1,7 @@
 /// What cuts the power, or a line, of a real device, and puts it back.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -22,6 +23,9 @@ public:
     virtual Result<void> restore() = 0;
     /// As the hardware tells; nothing where it cannot be asked. Fails with `outside`.
     virtual Result<std::optional<PowerState>> state() = 0;
+    /// Whether an order to cut is still wanted may be asked while it is being carried out: one that takes long then
+    /// ends early, and fails. Called before any order.
+    virtual void ask_while_cutting(std::function<bool()> wanted) { static_cast<void>(wanted); }
     /// For people: "relay 1 of USBRelay2 (16c0:05df at 1-1.2)".
     [[nodiscard]] virtual std::string description() const = 0;
 };

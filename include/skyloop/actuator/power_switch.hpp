@@ -59,6 +59,7 @@ private:
     explicit PowerSwitch(Parts parts) : parts_(std::move(parts)) {}
     void work();
     void follow(PowerState wanted);
+    [[nodiscard]] bool is_outdated(PowerState wanted) const;
     Result<void> try_once(PowerState wanted);
     [[nodiscard]] Result<void> try_repeatedly(PowerState wanted);
     void tell(std::string news);
@@ -67,6 +68,7 @@ private:
     std::string description_;
     std::unique_ptr<Actuator> actuator_;  // of the thread alone once that runs; null: to be opened anew
     bool known_on_ = true;                // likewise
+    std::uint64_t followed_ = 0;          // likewise: orders, that which is being carried out among them
     // Orders alternate, so that their number says everything: odd, and a cut is wanted. The top bit ends the thread.
     std::atomic<std::uint64_t> orders_{0};
     mutable std::mutex told_mutex_;

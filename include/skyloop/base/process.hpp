@@ -1,7 +1,6 @@
 /// Runs a program of the host, bounded in time and output.
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <optional>
 #include <string>
@@ -22,7 +21,7 @@ struct ProcessRequest {
     /// Called with each whole line of the standard output, without its end, at most 65 536 bytes of it; true: that was
     /// enough, the process is killed.
     std::function<bool(std::string_view)> line{};
-    const std::atomic<bool>* cancelled = nullptr;  ///< looked at all the time; true: the process is killed
+    std::function<bool()> cancelled{};  ///< asked some fifty times a second; true: the process is killed
 };
 
 /// How it ended.

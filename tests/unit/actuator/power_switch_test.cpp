@@ -25,9 +25,11 @@ struct Hardware {
     int opened = 0;
     int failing_cuts = 0, failing_restores = 0, failing_opens = 0;  // of the next
     std::atomic<bool> slow{false};
+    std::atomic<int> begun{0};        // orders
     std::counting_semaphore<> go{0};  // a slow order waits for it
 
     Result<void> carry_out(const std::string& order, int& failing) {
+        ++begun;
         if (slow) go.acquire();
         const std::lock_guard lock(mutex);
         if (failing > 0) {
@@ -144,6 +146,28 @@ TEST(PowerSwitch, AFailureIsToldAndCountedAndTheEndRestores) {
     (*power)->finish();  // the state is not known: an order may have arrived whose answer did not
     EXPECT_THAT((*power)->take_news(), ElementsAre("the power was not restored: no answer in time"));
     EXPECT_EQ((*power)->counts().failures, 2U);
+}
+
+TEST(PowerSwitch, ACutThatIsNotWantedAnyMoreIsNotTriedAgain) {
+    Hardware hardware;
+    const auto power = switch_on(hardware);
+    ASSERT_TRUE(power);
+    hardware.failing_cuts = 1;
+    hardware.slow = true;
+    (*power)->want(PowerState::cut);
+    (*power)->want(PowerState::on);
+    hardware.go.release(2);  // the cut, once, and the restore
+    EXPECT_TRUE(eventually([&] { return (*power)->counts().restores == 1; }));
+    EXPECT_THAT(hardware.seen(), ElementsAre("on", "on"));
+    EXPECT_EQ((*power)->counts().failures, 1U) << "the device under test has not felt it";
+    hardware.failing_cuts = 1;
+    (*power)->want(PowerState::cut);
+    EXPECT_TRUE(eventually([&] { return hardware.begun == 4; }));
+    std::thread end([&] { (*power)->finish(); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    hardware.go.release(2);
+    end.join();
+    EXPECT_THAT(hardware.seen(), ElementsAre("on", "on", "on"));
 }
 
 TEST(PowerSwitch, LeavesOutPairsOfOrdersThatItCannotFollow) {

@@ -54,6 +54,21 @@ TEST(CommandSwitch, TellsWhatWentWrong) {
               "'echo' printed 'off'; expected on or cut");
 }
 
+TEST(CommandSwitch, ACutThatTakesTooLongGivesWayToTheWishToRestore) {
+    const auto actuator = opened("command:sleep 8|true");
+    ASSERT_TRUE(actuator);
+    bool wanted = true;
+    int asked = 0;
+    actuator->ask_while_cutting([&] { return wanted = ++asked < 10; });
+    EXPECT_EQ(actuator->cut().error().message, "'sleep' had not ended when the power was wanted back");
+    EXPECT_FALSE(wanted);
+    const auto quick = opened("command:sleep 0.2|sleep 0.2");
+    ASSERT_TRUE(quick);
+    quick->ask_while_cutting([] { return false; });
+    EXPECT_TRUE(quick->cut()) << "a short cut has the time to begin";
+    EXPECT_TRUE(quick->restore());
+}
+
 // A device with modem lines, which no pseudo-terminal has.
 class PlayedLines : public SerialSystem {
 public:
