@@ -65,7 +65,6 @@ bool Emulator::all_connected() {
 }
 
 void Emulator::await_clients(const std::atomic<bool>& stop) {
-    if (parts_.pacer->is_virtual()) return;
     parts_.pacer->pause(now_);
     while (!stop && !all_connected()) {
         Pacer::rest();

@@ -44,7 +44,7 @@ public:
     /// Makes the files of the recordings, in the place of those of a former run: once nothing can refuse this one any
     /// more, and before it begins. Fails with `outside`.
     Result<void> begin_recordings();
-    /// Waits until each wire has a client, or until `stop` is true; real time begins then, and no byte is lost before.
+    /// Waits until each wire has a client, or until `stop` is true; time begins then, and no byte is lost before.
     void await_clients(const std::atomic<bool>& stop);
     /// Waits until each vehicle that has no place yet is told one, or until `stop` is true; time begins then.
     void await_feeds(const std::atomic<bool>& stop);
