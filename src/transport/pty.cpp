@@ -5,7 +5,9 @@
 #include <poll.h>
 #include <sys/inotify.h>
 #include <sys/ioctl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +15,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <utility>
 
 #include "line_settings.hpp"
@@ -53,6 +56,23 @@ short poll_master(int master) {
     return state.revents;
 }
 
+// A name that one program at a time has, and that goes with it however it ends: a socket that has no file. It names the
+// folder itself, since other names of it, or another folder of the same name in a container, may be there too.
+// Closed: another program has it, or the system knows no such names (errno).
+FileDescriptor claim_of(const fs::path& link) {
+    struct stat folder {};
+    if (::stat(link.parent_path().c_str(), &folder) != 0) return {};
+    FileDescriptor claim(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+    const std::string name = fmt::format("skyloop pty {:x}:{:x} {:x}", folder.st_dev, folder.st_ino,
+                                         std::hash<std::string>{}(link.filename().string()));
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::copy(name.begin(), name.end(), address.sun_path + 1);  // the zero before it: no file
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+    if (::bind(claim.value(), reinterpret_cast<const sockaddr*>(&address), size) != 0) return {};
+    return claim;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<PtyTransport>> PtyTransport::open(const std::optional<fs::path>& link) {
@@ -90,6 +110,11 @@ Result<void> PtyTransport::publish(const fs::path& link) {
     if (!fs::is_directory(target.parent_path(), error))
         return fail(ErrorCode::outside,
                     fmt::format("{}: the folder {} does not exist", link.string(), target.parent_path().string()));
+    errno = 0;
+    claim_ = claim_of(target);
+    if (!claim_.open() && errno == EADDRINUSE)
+        return fail(ErrorCode::outside,
+                    fmt::format("{}: a terminal of another run is published there; it is left alone", link.string()));
     const std::string fresh = fmt::format("{}.{}.new", target.string(), ::getpid());
     (void)::unlink(fresh.c_str());
     if (::symlink(terminal_.c_str(), fresh.c_str()) != 0) return refused(link.string() + ": the link cannot be made");

@@ -21,8 +21,9 @@ class PtyTransport : public Transport {
 public:
     /// A terminal in raw mode, 8N1, that every user may open.
     /// @param link where to publish it: a symbolic link, made in one step, that replaces another symbolic link but no
-    ///        other file. Its folder must exist. Removed at the end if it still leads here.
-    /// Fails with `outside` when the system refuses.
+    ///        other file, nor a link that a terminal of a living program is published under. Its folder must exist.
+    ///        Removed at the end if it still leads here.
+    /// Fails with `outside` when the link is another's, or the system refuses.
     static Result<std::unique_ptr<PtyTransport>> open(const std::optional<std::filesystem::path>& link = std::nullopt);
     ~PtyTransport() override;
     PtyTransport(const PtyTransport&) = delete;
@@ -56,6 +57,7 @@ private:
     int watch_ = -1;
     std::string terminal_;
     std::filesystem::path link_;  ///< absolute; empty when not published
+    FileDescriptor claim_;        ///< that the link is ours, while this is open
     int clients_ = 0;
     bool counted_early_ = false;
     bool unread_possible_ = false;  ///< bytes were written that a client may have left

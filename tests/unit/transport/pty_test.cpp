@@ -7,6 +7,7 @@
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -217,15 +218,44 @@ TEST(PtyLink, LeadsToTheTerminalAndGoesWithIt) {
 TEST(PtyLink, ReplacesAnotherLinkAndLeavesAForeignOne) {
     const test::TemporaryFolder folder;
     fs::create_symlink("/dev/pts/no-longer-there", folder / "gps0");
+    auto pty = PtyTransport::open(folder / "gps0");
+    ASSERT_TRUE(pty) << pty.error().message;
+    EXPECT_EQ(fs::read_symlink(folder / "gps0"), (*pty)->terminal());
+    fs::remove(folder / "gps0");
+    fs::create_symlink("/dev/pts/of-another-program", folder / "gps0");
+    pty->reset();
+    EXPECT_EQ(fs::read_symlink(folder / "gps0"), "/dev/pts/of-another-program");
+}
+
+TEST(PtyLink, IsNotTakenFromATerminalThatLives) {
+    const test::TemporaryFolder folder;
     auto first = PtyTransport::open(folder / "gps0");
     ASSERT_TRUE(first) << first.error().message;
-    auto second = PtyTransport::open(folder / "gps0");
-    ASSERT_TRUE(second) << second.error().message;
-    const std::string terminal = (*second)->terminal();
+    fs::create_directory_symlink(folder / "", folder / "alias");
+    for (const char* name : {"gps0", "alias/gps0"}) {
+        const auto second = PtyTransport::open(folder / name);
+        ASSERT_FALSE(second) << name;
+        EXPECT_EQ(second.error().code, ErrorCode::outside);
+        EXPECT_THAT(second.error().message, HasSubstr("gps0: a terminal of another run is published there"));
+    }
+    EXPECT_EQ(fs::read_symlink(folder / "gps0"), (*first)->terminal());
+    EXPECT_TRUE(PtyTransport::open(folder / "gps1"));
     first->reset();
-    EXPECT_EQ(fs::read_symlink(folder / "gps0"), terminal);
-    second->reset();
-    EXPECT_FALSE(fs::is_symlink(folder / "gps0"));
+    EXPECT_TRUE(PtyTransport::open(folder / "gps0"));
+}
+
+TEST(PtyLink, IsTakenFromAProgramThatDied) {
+    const test::TemporaryFolder folder;
+    const pid_t child = ::fork();
+    if (child == 0) {
+        static_cast<void>(PtyTransport::open(folder / "gps0")->release());
+        ::_exit(0);
+    }
+    ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+    ASSERT_TRUE(fs::is_symlink(folder / "gps0"));
+    auto pty = PtyTransport::open(folder / "gps0");
+    ASSERT_TRUE(pty) << pty.error().message;
+    EXPECT_EQ(fs::read_symlink(folder / "gps0"), (*pty)->terminal());
 }
 
 TEST(PtyLink, RefusesOtherFilesAndMissingFolders) {
