@@ -59,12 +59,24 @@ struct LiveFeeds::Source {
     std::int64_t heard_ns = 0;   // when they had become more
     bool lost = false;
     int times_lost = 0;
+    std::string outage;                    // the fault that its silence has begun; empty: none
+    std::optional<GpsTime> known_at_loss;  // known_until() then
+    std::optional<GpsTime> outage_end;     // in the run, once it is heard again
     SampleAge age;
 
     // Everybody who has no place without it has one.
     [[nodiscard]] bool is_known() const {
         return !waited_for ||
                std::all_of(paths.begin(), paths.end(), [](const auto& path) { return path->newest().has_value(); });
+    }
+
+    [[nodiscard]] bool leads() const { return settings.clock != ClockMode::realtime; }
+
+    [[nodiscard]] std::optional<GpsTime> known_until() const {
+        std::optional<GpsTime> newest;
+        for (const auto& path : paths)
+            if (const auto own = path->newest()) newest = std::max(newest.value_or(*own), *own);
+        return newest;
     }
 };
 
@@ -157,6 +169,7 @@ std::vector<Command> LiveFeeds::pump(GpsTime now, std::optional<std::int64_t> du
                 commands.push_back(std::move(command));
         if (source->settings.clock == ClockMode::lock_step && !source->is_known()) source->feed->skip_steps();
         look_for_silence(*source, commands);
+        end_outage(*source, now, commands);
         for (std::string& news : source->feed->take_news())
             news_.push_back(std::move(news));
     }
@@ -167,8 +180,6 @@ std::vector<Command> LiveFeeds::pump(GpsTime now, std::optional<std::int64_t> du
 void LiveFeeds::look_for_silence(Source& source, std::vector<Command>& commands) {
     const std::int64_t now_ns = steady_clock_ns();
     const std::uint64_t messages = source.feed->counts().samples;
-    // Each loss is a fault of its own.
-    const auto fault = [&] { return fmt::format("{} lost {}", source.settings.source, source.times_lost); };
     if (messages != source.messages) {
         source.messages = messages;
         source.heard_ns = now_ns;
@@ -176,9 +187,6 @@ void LiveFeeds::look_for_silence(Source& source, std::vector<Command>& commands)
         source.lost = false;
         news_.push_back(fmt::format("{}: heard again", source.feed->description()));
         if (source.settings.when_lost == LostSource::pause) commands.push_back(plain_command(CommandVerb::resume));
-        if (source.settings.when_lost != LostSource::outage) return;
-        commands.push_back(plain_command(CommandVerb::stop_fault));
-        commands.back().parameters = Parameters({{"fault", fault()}});
         return;
     }
     const double silent_s = static_cast<double>(now_ns - source.heard_ns) * 1e-9;
@@ -196,13 +204,31 @@ void LiveFeeds::look_for_silence(Source& source, std::vector<Command>& commands)
         case LostSource::hold:
             return;
         case LostSource::outage:
+            source.known_at_loss = source.known_until();
+            source.outage_end.reset();
+            if (!source.outage.empty()) return;  // the run has not come to the end of the one before
+            source.outage = fmt::format("{} lost {}", source.settings.source, source.times_lost);
             return commands.push_back(
-                checked_live_fault({{"kind", std::string("outage")}, {"name", fault()}}, "feed").value());
+                checked_live_fault({{"kind", std::string("outage")}, {"name", source.outage}}, "feed").value());
         case LostSource::pause:
             return commands.push_back(plain_command(CommandVerb::pause));
         case LostSource::stop:
             return commands.push_back(plain_command(CommandVerb::stop));
     }
+}
+
+// A run that is led stood still meanwhile, and has the time of the silence yet to go.
+void LiveFeeds::end_outage(Source& source, GpsTime now, std::vector<Command>& commands) {
+    if (source.outage.empty() || source.lost) return;
+    if (!source.outage_end) {
+        const auto known = source.known_until();
+        if (source.leads() && known == source.known_at_loss) return;  // heard, and not on the path yet
+        source.outage_end = source.leads() ? known : now;
+    }
+    if (now < *source.outage_end) return;
+    source.outage_end.reset();
+    commands.push_back(plain_command(CommandVerb::stop_fault));
+    commands.back().parameters = Parameters({{"fault", std::exchange(source.outage, {})}});
 }
 
 std::optional<GpsTime> LiveFeeds::horizon() const { return leader_->horizon(); }

@@ -78,6 +78,7 @@ private:
     LiveFeeds();
     Result<Source*> source_of(const LiveSettings& settings, const Geoid* geoid);
     void look_for_silence(Source& source, std::vector<Command>& commands);
+    static void end_outage(Source& source, GpsTime now, std::vector<Command>& commands);
 
     std::vector<std::unique_ptr<Source>> sources_;
     std::vector<std::string> receivers_;  // whom a source may ask something of

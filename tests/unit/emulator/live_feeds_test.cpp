@@ -1,0 +1,117 @@
+// What becomes of a run whose source of truth falls silent.
+#include "skyloop/emulator/live_feeds.hpp"
+
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <cstdio>
+#include <thread>
+
+#include "run_parts.hpp"
+#include "skyloop/base/steady_clock.hpp"
+#include "skyloop/transport/file_descriptor.hpp"
+
+namespace skyloop {
+namespace {
+
+using namespace std::chrono_literals;
+using test::emulator_scenario;
+
+// A source on the same machine, and the run that it flies in.
+class LiveFeedsTest : public testing::Test {
+protected:
+    void open(const std::string& clock) {
+        scenario_ = emulator_scenario(
+            "[run]\nstart = 2024-03-05T12:00:00Z\n[trajectory]\nkind = \"live\"\n"
+            "source = \"udp-json:0\"\nwhen_lost = \"outage\"\nlost_after_s = 0.2\nclock = \"" +
+            clock + "\"\n");
+        auto feeds = LiveFeeds::open(scenario_, nullptr);
+        ASSERT_TRUE(feeds) << feeds.error().message;
+        feeds_ = std::move(*feeds);
+        start_ = *scenario_.run.start;
+        feeds_->begin(start_, steady_clock_ns());
+        const std::string name = feeds_->descriptions().at(0);
+        sockaddr_in to{};
+        to.sin_family = AF_INET;
+        to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        to.sin_port = htons(static_cast<std::uint16_t>(std::stoi(name.substr(name.rfind(':') + 1))));
+        ASSERT_EQ(::connect(source_.value(), reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
+    }
+    void say(double t) const {
+        char line[120];
+        const int size = std::snprintf(line, sizeof line, R"({"t":%.3f,"lla":[48,11,500],"h_ref":"ell"})", t);
+        ASSERT_EQ(::send(source_.value(), line, static_cast<std::size_t>(size), 0), size);
+    }
+    // The first command that is asked for at `now`, within two seconds.
+    std::optional<Command> command_at(GpsTime now, std::chrono::milliseconds patience = 2s) {
+        const auto end = std::chrono::steady_clock::now() + patience;
+        while (std::chrono::steady_clock::now() < end) {
+            auto commands = feeds_->pump(now, std::nullopt);
+            if (!commands.empty()) return commands.front();
+            std::this_thread::sleep_for(5ms);
+        }
+        return std::nullopt;
+    }
+    bool reaches(GpsTime horizon) {
+        for (int i = 0; i < 400; ++i) {
+            EXPECT_TRUE(feeds_->pump(start_, std::nullopt).empty());
+            if (feeds_->horizon() == horizon) return true;
+            std::this_thread::sleep_for(5ms);
+        }
+        return false;
+    }
+
+    Scenario scenario_;
+    std::unique_ptr<LiveFeeds> feeds_;
+    GpsTime start_;
+    FileDescriptor source_{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
+};
+
+TEST_F(LiveFeedsTest, AnOutageLastsForTheTimeThatARunThatFollowsHasYetToGo) {
+    open("follow");
+    say(10);
+    ASSERT_TRUE(reaches(start_));
+    auto begun = command_at(start_);
+    ASSERT_TRUE(begun);
+    EXPECT_EQ(begun->verb, CommandVerb::start_fault);
+    say(13);
+    EXPECT_TRUE(reaches(start_ + 3s)) << "the run has not gone there yet: the signals stay away";
+    say(13.1);
+    EXPECT_FALSE(command_at(start_ + 2900ms, 50ms));
+    const auto ended = command_at(start_ + 3s);
+    ASSERT_TRUE(ended);
+    EXPECT_EQ(ended->verb, CommandVerb::stop_fault);
+    EXPECT_FALSE(command_at(start_ + 3s, 50ms)) << "once";
+}
+
+TEST_F(LiveFeedsTest, ASecondSilenceBeforeTheEndOfAnOutageGoesOnWithIt) {
+    open("follow");
+    say(10);
+    ASSERT_TRUE(reaches(start_));
+    ASSERT_TRUE(command_at(start_));
+    say(13);
+    ASSERT_TRUE(reaches(start_ + 3s));
+    EXPECT_FALSE(command_at(start_ + 1s, 500ms)) << "lost again, with the signals still gone";
+    say(15);
+    EXPECT_FALSE(command_at(start_ + 3s, 50ms));
+    const auto ended = command_at(start_ + 5s);
+    ASSERT_TRUE(ended);
+    EXPECT_EQ(ended->verb, CommandVerb::stop_fault);
+}
+
+TEST_F(LiveFeedsTest, AnOutageInRealTimeEndsAtOnce) {
+    open("realtime");
+    say(10);
+    const auto begun = command_at(start_);
+    ASSERT_TRUE(begun);
+    EXPECT_EQ(begun->verb, CommandVerb::start_fault);
+    say(13);
+    const auto ended = command_at(start_);
+    ASSERT_TRUE(ended);
+    EXPECT_EQ(ended->verb, CommandVerb::stop_fault);
+}
+
+}  // namespace
+}  // namespace skyloop
