@@ -1,14 +1,19 @@
 // What dialects of lines and of receivers' streams have in common: bytes into pieces, and what is bad among them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "skyloop/feed/feed_dialect.hpp"
+#include "skyloop/protocol/nmea_sentence.hpp"
 #include "skyloop/protocol/stream_splitter.hpp"
 #include "source_pose.hpp"
 
 namespace skyloop {
+
+inline constexpr std::array<std::uint8_t, 1> line_end{'\n'};
 
 // A source that speaks in lines of text.
 class LineSource : public FeedDialect {
@@ -19,6 +24,9 @@ public:
         FeedNews news;
         for (const std::string& line : lines_.feed(bytes))
             take(line, received_ns, news);
+        if (context_.datagrams)
+            for (const std::string& line : lines_.feed(line_end))
+                take(line, received_ns, news);
         if (lines_.take_thrown_away() > 0) report_refusal(news, "a line of more than 65536 bytes");
         return news;
     }
@@ -42,8 +50,14 @@ public:
 
     FeedNews hear(ByteSpan bytes, std::int64_t received_ns) override {
         FeedNews news;
-        for (const StreamPiece& piece : splitter_.feed(bytes))
-            if (piece.kind == kind_) take(piece.bytes, received_ns, news);
+        const auto take_all = [&](ByteSpan some) {
+            for (const StreamPiece& piece : splitter_.feed(some))
+                if (piece.kind == kind_) take(piece.bytes, received_ns, news);
+        };
+        const bool by_sentences = context_.datagrams && kind_ == StreamKind::nmea;
+        if (by_sentences && begins_sentence(bytes)) take_all(line_end);
+        take_all(bytes);
+        if (by_sentences && ends_sentence(bytes)) take_all(line_end);
         const std::uint64_t bad = splitter_.counts().bad[static_cast<std::size_t>(kind_)];
         for (; bad_ < bad; ++bad_)
             report_refusal(news, bad_piece_);
@@ -59,6 +73,15 @@ protected:
     [[nodiscard]] const FeedContext& context() const { return context_; }
 
 private:
+    // Sentences in datagrams need no line ends; and those of a stream that somebody sends on in pieces go over the
+    // edges of datagrams.
+    static bool begins_sentence(ByteSpan bytes) { return !bytes.empty() && (bytes[0] == '$' || bytes[0] == '!'); }
+    static bool ends_sentence(ByteSpan bytes) {
+        const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        const std::size_t begin = text.rfind('$');
+        return begin != std::string_view::npos && !text.ends_with('\n') && parse_sentence(text.substr(begin));
+    }
+
     FeedContext context_;
     StreamKind kind_;
     const char* bad_piece_;

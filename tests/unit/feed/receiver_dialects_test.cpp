@@ -108,6 +108,26 @@ TEST(NmeaDialect, MergesTheSentencesOfAnEpoch) {
     EXPECT_TRUE(hear_text(*dialect, sentence("GPVTG,53.1,T,,M,9.7,N,18.0,K,A")).samples.empty());
 }
 
+TEST(NmeaDialect, DatagramsNeedNoLineEnds) {
+    FeedContext context;
+    context.datagrams = true;
+    const auto bare = [](std::string text) { return text.substr(0, text.size() - 2); };
+    const auto dialect = dialect_named("nmea", context);
+    hear_text(*dialect, bare(rmc("120000")));
+    hear_text(*dialect, bare(gga("120000")));
+    hear_text(*dialect, bare(rmc("120001")));
+    EXPECT_EQ(hear_text(*dialect, bare(gga("120001"))).samples.size(), 1U) << "at once";
+    // Cut; and a stream that somebody sends on in pieces.
+    const std::string cut = rmc("120002"), last = gga("120002");
+    EXPECT_EQ(hear_text(*dialect, cut.substr(0, 30)).refused, 0U);
+    EXPECT_EQ(hear_text(*dialect, rmc("120002")).refused, 1U) << "it does not swallow the next one";
+    EXPECT_TRUE(hear_text(*dialect, last.substr(0, 30)).samples.empty());
+    EXPECT_EQ(hear_text(*dialect, last.substr(30)).samples.size(), 1U);
+    const auto stream = dialect_named("nmea");
+    hear_text(*stream, bare(rmc("120000")));
+    EXPECT_EQ(hear_text(*stream, rmc("120000")).refused, 0U) << "a stream has line ends";
+}
+
 TEST(NmeaDialect, AHeadingIsAnAttitude) {
     const auto dialect = dialect_named("nmea");
     const auto epoch = [](const std::string& time) { return rmc(time) + gga(time) + sentence("GPHDT,53.13,T"); };

@@ -138,6 +138,16 @@ TEST(FlightgearGenericDialect, ATimeThatStandsIsAPause) {
     EXPECT_EQ(goes_on.samples.size(), 1u);
 }
 
+TEST(FlightgearGenericDialect, ALineEndsWithItsDatagram) {
+    const auto bare = [](std::string line) { return line.substr(0, line.find('\n')); };
+    EXPECT_TRUE(hear_text(*dialect_named("flightgear-generic"), bare(generic_line(1))).samples.empty());
+    FeedContext context;
+    context.datagrams = true;
+    const auto dialect = dialect_named("flightgear-generic", context);
+    EXPECT_EQ(hear_text(*dialect, bare(generic_line(1))).samples.size(), 1u);
+    EXPECT_EQ(hear_text(*dialect, generic_line(2)).samples.size(), 1u);
+}
+
 TEST(FlightgearGenericDialect, RefusesOtherLines) {
     const auto dialect = dialect_named("flightgear-generic");
     EXPECT_THAT(hear_text(*dialect, "1,2,3\n").refusal, HasSubstr("3 cells"));
