@@ -66,7 +66,6 @@ private:
 struct ClimbFilter {
     AxisFilter height{3};
     Nanoseconds time{0};
-    bool settled = false;
 };
 
 class NmeaDialect : public StreamSource {
@@ -190,19 +189,20 @@ private:
         report_sample(news, std::move(sample), time, epoch_.received_ns);
     }
 
-    // Sentences tell no climb: it comes from the heights. Courses of standing vehicles are left out by receivers.
+    // Sentences tell no climb: it comes from the heights, and is none in the first epoch, which would begin at rest
+    // without a velocity and jump to the second. Courses of standing vehicles are left out by receivers.
     std::optional<Eigen::Vector3d> velocity(Nanoseconds time) {
         constexpr double standing_mps = 0.5;
-        const std::optional<double> climb = climb_rate(time);
-        if (!epoch_.speed || !climb) return std::nullopt;
+        const double climb = climb_rate(time);
+        if (!epoch_.speed) return std::nullopt;
         const double speed = epoch_.speed->value();
         if (!epoch_.course && speed > standing_mps) return std::nullopt;
         const double course = epoch_.course ? epoch_.course->rad() : 0;
         const double horizontal = epoch_.course ? speed : 0;
-        return Eigen::Vector3d(horizontal * std::cos(course), horizontal * std::sin(course), -*climb);
+        return Eigen::Vector3d(horizontal * std::cos(course), horizontal * std::sin(course), -climb);
     }
 
-    std::optional<double> climb_rate(Nanoseconds time) {
+    double climb_rate(Nanoseconds time) {
         constexpr double height_sigma = 0.3, longest_s = 5;
         const double step = climb_ ? to_seconds(time - climb_->time).value() : -1;
         if (step < 0 || step > longest_s) {
@@ -211,10 +211,9 @@ private:
         } else {
             climb_->height.predict(step);
             climb_->height.see_position(height_->metres, height_sigma);
-            climb_->settled = true;
         }
         climb_->time = time;
-        return climb_->settled ? std::optional(climb_->height.velocity()) : std::nullopt;
+        return climb_->height.velocity();
     }
 
     NmeaCalendar calendar_;

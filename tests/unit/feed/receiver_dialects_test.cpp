@@ -6,6 +6,7 @@
 #include "dialect_bytes.hpp"
 #include "dialect_pose.hpp"
 #include "skyloop/feed/feed_dialect.hpp"
+#include "skyloop/trajectory/live_path.hpp"
 
 namespace skyloop {
 namespace {
@@ -99,13 +100,30 @@ TEST(NmeaDialect, MergesTheSentencesOfAnEpoch) {
     const FeedNews first = hear_text(*dialect, gga("123456.00", 462.5), 5);
     ASSERT_EQ(first.samples.size(), 1u) << first.refusal;
     EXPECT_EQ(first.samples[0].source_time, Nanoseconds((gps_s - 1) * 1'000'000'000));
-    EXPECT_FALSE(first.samples[0].velocity);  // one height tells no climb
+    ASSERT_TRUE(first.samples[0].velocity);  // one height tells no climb: it is level
+    EXPECT_NEAR(first.samples[0].velocity->vector().norm(), 5, 1e-3);
     const FeedNews second = hear_text(*dialect, rmc("123456.00"), 6);
     ASSERT_EQ(second.samples.size(), 1u) << second.refusal;
     EXPECT_EQ(second.samples[0].received_ns, 6);
     EXPECT_EQ(second.samples[0].source_time, Nanoseconds(gps_s * 1'000'000'000));
     expect_pose(second.samples[0], {1e-7, 1e-3, 0.1, 0, 0, false, false});
     EXPECT_TRUE(hear_text(*dialect, sentence("GPVTG,53.1,T,,M,9.7,N,18.0,K,A")).samples.empty());
+}
+
+TEST(NmeaDialect, AMovingReceiverBeginsWithoutAJump) {
+    const auto dialect = dialect_named("nmea");
+    LivePath path({});
+    for (int i = 0; i < 10; ++i) {
+        const std::string time = fmt::format("120000.{}", i);
+        const std::string place = fmt::format("{:.6f},N,00832.73600,E", 4723.862 + 0.1 * i * 30 / 1852);
+        const FeedNews news =
+            hear_text(*dialect, sentence("GPRMC," + time + ",A," + place + ",58.315335,0.0,201126,,,A") +
+                                    sentence("GPGGA," + time + "," + place + ",1,08,0.9,462.5,M,47.5,M,,"));
+        for (const TruthSample& sample : news.samples)
+            path.add(GpsTime(*sample.source_time), sample);
+    }
+    EXPECT_GE(path.counts().samples, 9U);
+    EXPECT_EQ(path.counts().jumps, 0U);
 }
 
 TEST(NmeaDialect, DatagramsNeedNoLineEnds) {
