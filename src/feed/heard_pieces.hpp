@@ -58,14 +58,12 @@ public:
         if (by_sentences && begins_sentence(bytes)) take_all(line_end);
         take_all(bytes);
         if (by_sentences && ends_sentence(bytes)) take_all(line_end);
-        const std::uint64_t bad = splitter_.counts().bad[static_cast<std::size_t>(kind_)];
-        for (; bad_ < bad; ++bad_)
-            report_refusal(news, bad_piece_);
+        refuse_bad(news);
         return news;
     }
     void reconnected() override {
         splitter_ = StreamSplitter();
-        bad_ = 0;
+        bad_ = unchecked_ = 0;
     }
 
 protected:
@@ -82,11 +80,21 @@ private:
         return begin != std::string_view::npos && !text.ends_with('\n') && parse_sentence(text.substr(begin));
     }
 
+    void refuse_bad(FeedNews& news) {
+        const StreamCounts& counts = splitter_.counts();
+        const std::uint64_t bad = counts.bad[static_cast<std::size_t>(kind_)] - bad_;
+        const std::uint64_t unchecked = kind_ == StreamKind::nmea ? counts.unchecked - unchecked_ : 0;
+        for (std::uint64_t i = 0; i < bad; ++i)
+            report_refusal(news, i < unchecked ? "a sentence without a checksum; expected *hh at its end" : bad_piece_);
+        bad_ += bad;
+        unchecked_ += unchecked;
+    }
+
     FeedContext context_;
     StreamKind kind_;
     const char* bad_piece_;
     StreamSplitter splitter_;
-    std::uint64_t bad_ = 0;
+    std::uint64_t bad_ = 0, unchecked_ = 0;  // told of
 };
 
 }  // namespace skyloop

@@ -135,6 +135,12 @@ Candidate piece_at(ByteSpan bytes, const StreamProtocols& protocols) {
     }
 }
 
+// Of a line, a right checksum or a wrong one.
+bool ends_in_checksum(ByteSpan line) {
+    const auto end = std::find_if(line.begin(), line.end(), [](std::uint8_t c) { return c == '\r' || c == '\n'; });
+    return end - line.begin() > 3 && *(end - 3) == '*';
+}
+
 constexpr std::size_t index_of(StreamKind kind) { return static_cast<std::size_t>(kind); }
 
 }  // namespace
@@ -176,7 +182,10 @@ void StreamSplitter::search(bool at_end, std::vector<StreamPiece>& pieces) {
     while (at < bytes.size()) {
         const Candidate found = piece_at(bytes.subspan(at), protocols_);
         if (found.verdict == Candidate::Verdict::unfinished && !at_end && !is_overtaken(bytes.subspan(at))) break;
-        if (found.verdict == Candidate::Verdict::bad) ++counts_.bad[index_of(found.kind)];
+        if (found.verdict == Candidate::Verdict::bad) {
+            ++counts_.bad[index_of(found.kind)];
+            if (found.kind == StreamKind::nmea && !ends_in_checksum(bytes.subspan(at))) ++counts_.unchecked;
+        }
         if (found.verdict != Candidate::Verdict::whole) {
             keep_noise(bytes[at], pieces);
             ++at;

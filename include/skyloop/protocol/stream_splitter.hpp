@@ -38,8 +38,9 @@ struct StreamCounts {
     /// Frames that were whole, but whose checksum did not hold; of NMEA: lines from `$` or `!` to their end without a
     /// right checksum. What begins a frame by chance counts too.
     std::array<std::uint64_t, stream_kind_count> bad{};
-    std::uint64_t bytes = 0;    ///< decided
-    std::uint64_t skipped = 0;  ///< of them, in no frame
+    std::uint64_t unchecked = 0;  ///< of bad sentences: those that end in no checksum at all
+    std::uint64_t bytes = 0;      ///< decided
+    std::uint64_t skipped = 0;    ///< of them, in no frame
 };
 
 /// Bytes that belong together; all pieces one after the other are the stream.

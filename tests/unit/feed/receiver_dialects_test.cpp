@@ -146,6 +146,14 @@ TEST(NmeaDialect, DatagramsNeedNoLineEnds) {
     EXPECT_EQ(hear_text(*stream, rmc("120000")).refused, 0U) << "a stream has line ends";
 }
 
+TEST(NmeaDialect, TellsAMissingChecksumFromAWrongOne) {
+    const auto dialect = dialect_named("nmea");
+    EXPECT_THAT(hear_text(*dialect, "$GPRMC,120000,A,4723.86200,N,00832.73600,E,9.7,53.1,201126,,,A\r\n").refusal,
+                HasSubstr("without a checksum"));
+    EXPECT_THAT(hear_text(*dialect, "$GPRMC,120000,A,4723.86200,N,00832.73600,E,9.7,53.1,201126,,,A*00\r\n").refusal,
+                HasSubstr("a wrong checksum"));
+}
+
 TEST(NmeaDialect, AHeadingIsAnAttitude) {
     const auto dialect = dialect_named("nmea");
     const auto epoch = [](const std::string& time) { return rmc(time) + gga(time) + sentence("GPHDT,53.13,T"); };
