@@ -64,7 +64,8 @@ public:
         }
     }
 
-    [[nodiscard]] std::uint16_t port() const override { return own_port(socket_.value()); }
+    // Of a connected one the other end's is what people know.
+    [[nodiscard]] std::uint16_t port() const override { return connected_ ? 0 : own_port(socket_.value()); }
 
 private:
     void remember(const FeedPeer& from, std::int64_t now_ns) {

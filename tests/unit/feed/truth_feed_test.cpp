@@ -118,6 +118,11 @@ TEST(TruthFeed, HearsDatagramsAndPutsThemOnThePathOfTheFirstVehicle) {
     EXPECT_NEAR(other->at(*other->newest()).geodetic.latitude.deg(), 48, 1e-9);
 }
 
+TEST(TruthFeed, IsCalledByTheAddressThatPeopleKnow) {
+    for (const char* text : {"xplane:127.0.0.1:49123", "mavlink-udpout:127.0.0.1:14551"})
+        EXPECT_EQ(open_feed(text)->description(), text) << "not by the port that the system gave us";
+}
+
 TEST(TruthFeed, TellsOnceOfManyStrangersAndBinary) {
     const auto feed = open_feed("udp-json:0");
     const auto any = feed->path("");
