@@ -217,8 +217,8 @@ void RunSession::tell_wire(const Station& station, std::size_t wire) const {
     messages_.info(fmt::format("{}: {} bytes out, {} in, {} while nobody listened", name, counted.bytes_out,
                                counted.bytes_in, counted.bytes_unheard));
     if (counted.bytes_garbled > 0)
-        messages_.warning(fmt::format("{}: {} bytes went out garbled: the client's line speed was not {} baud", name,
-                                      counted.bytes_garbled, station.speed(port).value_or(0)));
+        messages_.warning(fmt::format("{}: {} bytes went out garbled: the client's line speed was not the receiver's",
+                                      name, counted.bytes_garbled));
     if (counted.bytes_lost > 0)
         messages_.warning(fmt::format("{}: {} bytes were lost: the client read too slowly", name, counted.bytes_lost));
     if (const std::string notice = link.transport().notice(); !notice.empty())
