@@ -229,13 +229,16 @@ void SourceClock::set_run(GpsTime now, std::int64_t steady_ns) {
 }
 
 std::optional<double> SourceClock::rate() const {
-    if (window_.size() < 2) return std::nullopt;
-    const auto received = static_cast<double>(window_.back().received_ns - window_.front().received_ns);
+    if (window_.empty()) return std::nullopt;
+    // Late statements may stand behind it.
+    const auto newest =
+        std::max_element(window_.begin(), window_.end(), [](Seen a, Seen b) { return a.source_ns < b.source_ns; });
+    const auto received = static_cast<double>(newest->received_ns - window_.front().received_ns);
     if (received < static_cast<double>(clock_bucket_ns)) return std::nullopt;
     if (mode_ == ClockMode::realtime && edge_ && received > static_cast<double>(slope_window_ns) &&
         edge_->slope > least_slope && edge_->slope < most_slope)
         return 1 / (1 + edge_->slope);
-    return static_cast<double>(window_.back().source_ns - window_.front().source_ns) / received;
+    return static_cast<double>(newest->source_ns - window_.front().source_ns) / received;
 }
 
 }  // namespace skyloop

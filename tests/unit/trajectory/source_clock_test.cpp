@@ -47,6 +47,17 @@ TEST(SourceClock, FollowTakesTheSourcesOwnTimeWhateverTheWallClockDoes) {
     }
 }
 
+TEST(SourceClock, ALateStatementTellsNoRate) {
+    SourceClock clock = clock_of(ClockMode::lock_step);
+    clock.stamp(100s, clock_start_ns);
+    clock.stamp(101s, clock_start_ns + 10 * ms);
+    clock.stamp(100s, clock_start_ns + 1000 * ms);
+    EXPECT_FALSE(clock.rate());
+    clock.stamp(103s, clock_start_ns + 2010 * ms);
+    clock.stamp(102s + 500ms, clock_start_ns + 2400 * ms);
+    EXPECT_NEAR(clock.rate().value_or(0), 1, 0.01);
+}
+
 TEST(SourceClock, GoesOnFromWhereItWasWhenTheSourceBeginsAnew) {
     SourceClock clock = clock_of(ClockMode::follow);
     clock.stamp(100s, clock_start_ns);
