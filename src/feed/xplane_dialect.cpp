@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "dialects.hpp"
 #include "motion_filter.hpp"
@@ -163,7 +164,21 @@ private:
         const auto time = source_nanoseconds(seconds);
         if (!time) return;
         // Held still between two statements that say the same, it would creep on and fall back.
-        if (!time_ || time_->time != *time) time_ = Stated{*time, received_ns};
+        if (time_ && time_->said == *time) return;
+        Nanoseconds even = *time;
+        if (time_) {
+            const Nanoseconds half = half_grid(seconds);
+            even = std::clamp(time_->time + Nanoseconds(received_ns - time_->received_ns), *time - half, *time + half);
+        }
+        time_ = Stated{*time, even, received_ns};
+    }
+
+    // It is a float: after a day its grid is 8 ms, and whoever took its steps for the source's would have it fly by
+    // jerks. Within the grid time goes on as it passes here.
+    static Nanoseconds half_grid(double seconds) {
+        const auto said = static_cast<float>(std::abs(seconds));
+        const double grid_s = double{std::nextafter(said, std::numeric_limits<float>::max())} - double{said};
+        return to_nanoseconds(Seconds(grid_s / 2));
     }
 
     void take_paused(bool paused, FeedNews& news) {
@@ -215,7 +230,7 @@ private:
     }
 
     struct Stated {
-        Nanoseconds time;
+        Nanoseconds said, time;
         std::int64_t received_ns;
     };
     FeedContext context_;

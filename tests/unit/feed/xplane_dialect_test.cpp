@@ -39,6 +39,28 @@ TEST(XplaneDialect, ReadsRposWithTheTimeOfRref) {
     EXPECT_EQ(dialect->hear(rpos(), 1'005'000'000).samples.at(0).source_time, Nanoseconds(100'505'000'000));
 }
 
+// A float of 200 000 s has steps of 15.6 ms.
+TEST(XplaneDialect, ItsTimeGoesOnEvenlyAfterDays) {
+    const auto dialect = dialect_named("xplane");
+    constexpr std::int64_t step_ns = 33'333'333;
+    Nanoseconds last{0};
+    for (int i = 0; i < 300; ++i) {
+        const std::int64_t now = i * step_ns;
+        dialect->hear(rref({{1, 200'000 + static_cast<double>(now) * 1e-9}}), now);
+        const auto time = dialect->hear(rpos(), now).samples.at(0).source_time;
+        ASSERT_TRUE(time);
+        EXPECT_NEAR(static_cast<double>(time->count()) * 1e-9, 200'000 + static_cast<double>(now) * 1e-9, 0.0079);
+        if (i > 60) {
+            EXPECT_NEAR(static_cast<double>((*time - last).count()), step_ns, 1e5) << i;
+        }
+        last = *time;
+    }
+    // Scenery that loads.
+    dialect->hear(rref({{1, 200'020}}), 20'000'000'000);
+    EXPECT_NEAR(static_cast<double>(dialect->hear(rpos(), 20'000'000'000).samples.at(0).source_time->count()) * 1e-9,
+                200'020, 0.0079);
+}
+
 TEST(XplaneDialect, TellsPauses) {
     const auto dialect = dialect_named("xplane");
     EXPECT_FALSE(dialect->hear(rref({{2, 0}}), 0).paused);
