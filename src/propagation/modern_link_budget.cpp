@@ -120,10 +120,10 @@ DecibelWatts ModernLinkBudget::isotropic_power(const Arrival& arrival, const Tru
 DecibelWattsPerHertz ModernLinkBudget::noise(Hertz carrier) const {
     DecibelWattsPerHertz density = noise_density(system_temperature(link_.noise));
     if (link_.man_made) {
-        // Over k · 290 K, and added to what the receiver has.
+        // Over k · 290 K at the antenna, and added to what the receiver has behind its line.
         const double over = link_ratio(man_made_noise_p372(*link_.man_made, carrier).value());
         const double receiver = system_temperature(link_.noise).value();
-        density = noise_density(Kelvin(receiver + 290 * over));
+        density = noise_density(Kelvin(receiver + 290 * over / link_ratio(link_.noise.line_loss.value())));
     }
     return density + DecibelWattsPerHertz(link_.platform_noise.value());
 }
@@ -131,14 +131,16 @@ DecibelWattsPerHertz ModernLinkBudget::noise(Hertz carrier) const {
 void ModernLinkBudget::set_cn0(Arrival& arrival, const TruthState& truth) const {
     const Decibels losses = arrival.gas_loss + arrival.cloud_loss + arrival.rain_loss + arrival.foliage_loss +
                             arrival.iono_loss + arrival.reflection_loss;
-    // At the antenna's port, and with the implementation loss as if it were part of the signal.
+    // At the antenna's port.
     const double signal = isotropic_power(arrival, truth).value() + arrival.antenna_gain.value() +
                           arrival.power_offset.value() - losses.value();
     const double density = noise(first_carrier(arrival)).value();
-    const DbHz clear(std::min(signal - link_.implementation_loss.value() - density, most_cn0));
+    // The noise is that at the receiver's end of the line, where the signal is weaker, too (Friis).
+    const Decibels inside = link_.noise.line_loss + link_.implementation_loss;
+    const DbHz clear(std::min(signal - inside.value() - density, most_cn0));
     arrival.cn0 = clear;
     if (!link_.jammer_to_signal || interference_factor_ == 0) return;
-    // The jammer is as strong as it is; a weaker satellite suffers more.
+    // The jammer is as strong as it is; a weaker satellite suffers more. The line weakens both alike.
     const Decibels jammer_over_signal(nominal_signal_power.value() + link_.jammer_to_signal->value() - signal);
     const DbHz jammed = cn0_under_interference(clear, jammer_over_signal, {rejection_quality(link_.jammer)});
     arrival.interference_loss = Decibels(interference_factor_ * (clear - jammed).value());

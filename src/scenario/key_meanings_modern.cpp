@@ -95,7 +95,7 @@ constexpr KeyMeaning modern_meanings[] = {
     {"model.modern.link", "antenna_exponent", "the higher, the later the gain falls", "1.3; phone 1"},
     {"model.modern.link", "antenna_table", "CSV file [azimuth_deg,]elevation_deg,gain_dbic in place of these", "none"},
     {"model.modern.link", "antenna_temperature_k", "noise that the antenna hears"},
-    {"model.modern.link", "line_loss_db", "between antenna and receiver"},
+    {"model.modern.link", "line_loss_db", "between antenna and receiver: weakens the signal, and adds its own noise"},
     {"model.modern.link", "noise_figure_db", "of the receiver"},
     {"model.modern.link", "implementation_loss_db", "of the receiver", "2.5; phone 3.5"},
     {"model.modern.link", "platform_noise_db", "noise of the vehicle over the receiver's: car or drone 1 to 3"},

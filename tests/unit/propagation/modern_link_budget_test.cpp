@@ -135,6 +135,34 @@ TEST(ModernLinkBudget, CountsNoiseAndFilm) {
     EXPECT_NEAR(link_cn0(parameters, 10), link_cn0(parameters, 80), 0.02);
 }
 
+// What a line of 290 K takes, it takes of the signal alone where the antenna is as warm; a cold antenna hears its
+// warmth.
+TEST(ModernLinkBudget, ALossyLineWeakensTheSignalAndWhatTheAntennaHears) {
+    const auto lost = [](double antenna_kelvin, double line_db, std::optional<NoiseEnvironment> around = std::nullopt) {
+        ModernPropagationParameters parameters = even_powers();
+        parameters.link.noise.antenna_temperature = Kelvin(antenna_kelvin);
+        parameters.link.man_made = around;
+        const double clear = link_cn0(parameters, 40);
+        parameters.link.noise.line_loss = Decibels(line_db);
+        return clear - link_cn0(parameters, 40);
+    };
+    for (const double db : {1., 3., 10.})
+        EXPECT_NEAR(lost(290, db), db, 1e-9);
+    EXPECT_NEAR(lost(130, 3), 4.20, 0.01);
+    EXPECT_NEAR(lost(500, 3), 3 - 0.81, 0.01);
+    EXPECT_GT(lost(130, 3, NoiseEnvironment::city), 3.1);
+    EXPECT_LT(lost(130, 3, NoiseEnvironment::city), lost(130, 3)) << "city noise warms what the antenna hears";
+}
+
+TEST(ModernLinkBudget, ALossyLineTakesAsMuchOfAJammer) {
+    ModernPropagationParameters parameters = even_powers();
+    parameters.link.implementation_loss = Decibels(-40);
+    parameters.link.jammer_to_signal = Decibels(30);
+    const double jammed = link_cn0(parameters, 40);
+    parameters.link.noise.line_loss = Decibels(3);
+    EXPECT_NEAR(link_cn0(parameters, 40), jammed, 0.01) << "where noise does not count";
+}
+
 TEST(ModernLinkBudget, AcceptsThePatternOfTheSatellites) {
     ModernPropagationParameters parameters = even_powers();
     parameters.link.satellite_pattern = {{Angle::degrees(0), DecibelWatts(25)}, {Angle::degrees(14), DecibelWatts(27)}};
