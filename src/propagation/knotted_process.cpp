@@ -4,13 +4,24 @@
 #include <cmath>
 
 namespace skyloop {
-namespace {}  // namespace
+namespace {
+
+constexpr double knots_of_memory = 10;
+constexpr Nanoseconds closest_knots = std::chrono::milliseconds(1);
+
+Nanoseconds spacing_within(Nanoseconds most, Seconds correlation_time) {
+    if (!(correlation_time.value() > 0)) return most;
+    const double parts = std::ceil(knots_of_memory * to_seconds(most).value() / correlation_time.value() - 1e-9);
+    return std::max(most / static_cast<std::int64_t>(std::clamp(parts, 1.0, 1e6)), closest_knots);
+}
+
+}  // namespace
 
 KnottedProcess::KnottedProcess(GaussMarkovParameters parameters, Nanoseconds spacing, RandomStream stream)
     : parameters_(parameters),
-      spacing_(spacing),
+      spacing_(spacing_within(spacing, parameters.correlation_time)),
       stream_(stream),
-      step_(gauss_markov_step(parameters, to_seconds(spacing))) {}
+      step_(gauss_markov_step(parameters, to_seconds(spacing_))) {}
 
 KnottedProcess KnottedProcess::walk(double per_root_second, Nanoseconds spacing, RandomStream stream) {
     KnottedProcess process({per_root_second, Seconds(0)}, spacing, stream);

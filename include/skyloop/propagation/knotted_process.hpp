@@ -17,8 +17,9 @@ namespace skyloop {
 /// State: the four knots around the present instant and a stream of random numbers.
 class KnottedProcess {
 public:
-    /// A first-order Gauss-Markov process from its stationary distribution (MODELS.md 7.15). The spacing should be
-    /// short against its correlation time: the cubic leaves out what lies between the knots.
+    /// A first-order Gauss-Markov process from its stationary distribution (MODELS.md 7.15).
+    /// @param spacing at most; for correlation times below ten of it a whole part, so that a tenth of the time is not
+    /// exceeded: the cubic leaves out what lies between the knots
     KnottedProcess(GaussMarkovParameters parameters, Nanoseconds spacing, RandomStream stream);
     /// A random walk that starts from 0. @param per_root_second 1 σ after one second
     static KnottedProcess walk(double per_root_second, Nanoseconds spacing, RandomStream stream);

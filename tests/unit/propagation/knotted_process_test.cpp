@@ -29,6 +29,25 @@ TEST(KnottedProcess, KeepsSigmaAndCorrelation) {
     EXPECT_NEAR(lagged / square, std::exp(-1), 0.05);
 }
 
+TEST(KnottedProcess, KeepsShortCorrelationTimesToo) {
+    for (const double memory : {0.1, 1., 10.}) {
+        double square = 0, lagged = 0;
+        int count = 0;
+        for (int run = 0; run < 20; ++run) {
+            KnottedProcess process({2, Seconds(memory)}, seconds(60), RandomStream(6, "run " + std::to_string(run)));
+            double before = 0;
+            for (int i = 0; i < 4000; ++i, ++count) {
+                const double value = process.at(advanced(knotted_start, Seconds(memory * i)));
+                square += value * value;
+                lagged += value * before;
+                before = value;
+            }
+        }
+        EXPECT_NEAR(std::sqrt(square / count), 2, 0.06) << memory;
+        EXPECT_NEAR(lagged / square, std::exp(-1), 0.03) << memory;
+    }
+}
+
 TEST(KnottedProcess, DoesNotDependOnHowOftenItIsLookedAt) {
     KnottedProcess often({1, Seconds(600)}, seconds(30), RandomStream(1, "x"));
     KnottedProcess seldom({1, Seconds(600)}, seconds(30), RandomStream(1, "x"));
