@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "modern_sky.hpp"
 #include "skyloop/propagation/modern_effects.hpp"
+#include "support/oracle_table.hpp"
 
 namespace skyloop {
 namespace {
@@ -37,6 +39,20 @@ double cn0_curve(double elevation_deg) {
 TEST(ModernLinkBudget, FollowsTheCurveOfRealReceivers) {
     for (const double elevation : {5., 15., 25., 35., 45., 55., 65., 75., 90.})
         EXPECT_NEAR(link_cn0(even_powers(), elevation), cn0_curve(elevation), 0.05) << elevation;
+}
+
+// Means by bins of elevation of real open-sky records: cn0_gps_l1ca_el_10_20.
+TEST(ModernLinkBudget, LiesAmongTheRecordsOfRealReceivers) {
+    const std::string prefix = "cn0_gps_l1ca_el_";
+    int rows = 0;
+    for (const test::OracleRow& row : test::oracle_rows("empirical_reference.csv")) {
+        const std::string item = row.text("item");
+        if (item.rfind(prefix, 0) != 0) continue;
+        const double middle = (std::stod(item.substr(16, 2)) + std::stod(item.substr(19, 2))) / 2;
+        EXPECT_NEAR(link_cn0(even_powers(), middle), row.number("value"), 1) << item;
+        ++rows;
+    }
+    EXPECT_GE(rows, 3);
 }
 
 TEST(ModernLinkBudget, FollowsItThroughClearAirToo) {

@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "skyloop/gnss/constants.hpp"
+#include "skyloop/gnss/signal.hpp"
+#include "skyloop/time/utc_time.hpp"
 #include "support/flat_geoid.hpp"
+#include "support/oracle_table.hpp"
 
 namespace skyloop {
 namespace {
@@ -52,6 +56,52 @@ TEST(RangeCorrections, TakesEachSystemsOwnIonosphereWhereItIsHeard) {
     EXPECT_NEAR(at(all, Constellation::beidou, b1i),
                 beidou_klobuchar_delay(*heard.beidou, odessa, slanting, noon).value(), 1e-12);
     EXPECT_EQ(gps_alone.at(odessa, noon).ionosphere(Constellation::gps, {Angle(), Angle::degrees(-3)}, l1), Metres(0));
+}
+
+// What stands behind the pseudoranges of oracles/spp: the coefficients of their headers, and where their receivers are.
+constexpr KlobucharCoefficients oracle_air{{4.6566e-9, 1.4901e-8, -5.9605e-8, -1.1921e-7},
+                                           {8.1920e4, 9.8304e4, -6.5536e4, -5.2429e5}};
+Geodetic oracle_place(const std::string& scenario) {
+    const Eigen::Vector3d third(3783288.8564, 901655.4393, 5038277.8237);
+    const Eigen::Vector3d others(3782096.1791, 2248555.9434, 4601986.9856);
+    return to_geodetic(Position<Ecef>(scenario == "PS3" ? third : others));
+}
+
+GpsTime oracle_time(const std::string& gpst) {
+    const auto number = [&](std::size_t at, std::size_t count) {
+        return static_cast<unsigned>(std::stoul(gpst.substr(at, count)));
+    };
+    return gps_calendar_time(static_cast<int>(number(0, 4)), number(5, 2), number(8, 2), number(11, 2), number(14, 2),
+                             number(17, 2));
+}
+
+Hertz oracle_carrier(const std::string& satellite) {
+    // Of GLONASS' slots 1 to 24, as the constellation has had them for years.
+    constexpr int channels[] = {1, -4, 5, 6, 1, -4, 5, 6, -2, -7, 0, -1, -2, -7, 0, -1, 4, -3, 3, 2, 4, -3, 3, 2};
+    if (satellite[0] == 'C') return carrier_frequency(Signal::b1i);
+    if (satellite[0] != 'R') return l1;
+    return Hertz(1602e6 + 562.5e3 * channels[std::stoi(satellite.substr(1)) - 1]);
+}
+
+TEST(RangeCorrections, AreThoseOfTheAtmosphereComponents) {
+    CorrectionParameters parameters;
+    parameters.ionosphere = IonosphereCorrection::klobuchar;
+    parameters.troposphere = TroposphereCorrection::saastamoinen;
+    parameters.relative_humidity = 0.7;
+    const RangeCorrections corrections(parameters, {BroadcastIonosphere(oracle_air)});
+    int rows = 0;
+    for (const test::OracleRow& row : test::oracle_rows("spp_atmosphere_components.csv")) {
+        const double tolerance = row.number("tol_m");
+        const SiteCorrections site = corrections.at(oracle_place(row.text("scenario")), oracle_time(row.text("gpst")));
+        const SkyDirection direction{Angle::degrees(row.number("az_deg")), Angle::degrees(row.number("el_deg"))};
+        const double iono = site.ionosphere(Constellation::gps, direction, oracle_carrier(row.text("sat"))).value();
+        const double tropo = site.troposphere(direction.elevation).value();
+        EXPECT_NEAR(iono, row.number("iono_m"), tolerance) << row.id();
+        EXPECT_NEAR(tropo, row.number("tropo_m"), tolerance) << row.id();
+        EXPECT_NEAR(row.number("clean_m") + iono + tropo, row.number("pseudorange_m"), tolerance) << row.id();
+        ++rows;
+    }
+    EXPECT_GE(rows, 4);
 }
 
 TEST(BeidouKlobuchar, HasItsNightAndItsNoonAtTheZenith) {
