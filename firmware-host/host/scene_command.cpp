@@ -13,6 +13,7 @@
 #include "run_options.hpp"
 #include "run_session.hpp"
 #include "skyloop/analysis/scene_sky.hpp"
+#include "skyloop/emulator/assembly.hpp"
 #include "skyloop/emulator/load_scene.hpp"
 #include "skyloop/plot/scene_plot.hpp"
 #include "skyloop/plot/sky_plot.hpp"
@@ -112,7 +113,9 @@ Result<SceneReport> report_of(const SceneOptions& options) {
         at = *place;
     }
     const bool has_height = std::count(options.at.begin(), options.at.end(), ',') > 1;
-    auto city = read_scene_files(*entry, std::nullopt, CityCache{data_folders().cache});
+    std::vector<std::string> unknown_geoid;  // is told by the files where it matters
+    const auto geoid = find_geoid(data_folders(), unknown_geoid);
+    auto city = read_scene_files(*entry, std::nullopt, CityCache{data_folders().cache}, geoid.get());
     if (!city) return fail(city.error());
     if (at && !entry->reading.origin) place_guessed(*city, *at, has_height);
     const SceneSettings settings{SceneSettings().merge_tolerance, entry->memory_limit_mb << 20};

@@ -36,7 +36,7 @@ Result<World> make_world(const Scenario& asked, const SkyOptions& options, const
     if (!track) return fail(track.error());
     warnings.insert(warnings.end(), track->warnings.begin(), track->warnings.end());
     const Geodetic place = make_trajectory(scenario.trajectory, start)->at(start).geodetic;
-    auto loaded = load_scene(scenario, place, CityCache{data_folders().cache});
+    auto loaded = load_scene(scenario, place, CityCache{data_folders().cache}, geoid.get());
     if (!loaded) return fail(loaded.error());
     warnings.insert(warnings.end(), loaded->warnings.begin(), loaded->warnings.end());
     if (loaded->scene) {
@@ -58,7 +58,9 @@ int show_city_run(const SkyOptions& options, const Scenario& scenario, const Mes
     const auto run = read_city_run(options.run_folder, mask);
     if (!run) return messages.error(run.error());
     // Buildings without an origin stand where the run started, as they did in it.
-    const auto loaded = load_scene(scenario, run->epochs.front().truth, CityCache{data_folders().cache});
+    std::vector<std::string> unknown_geoid;  // is told by the scene where it matters
+    const auto geoid = find_geoid(data_folders(), unknown_geoid);
+    const auto loaded = load_scene(scenario, run->epochs.front().truth, CityCache{data_folders().cache}, geoid.get());
     if (!loaded) return messages.error(loaded.error());
     for (const std::string& warning : loaded->warnings)
         messages.warning(warning);

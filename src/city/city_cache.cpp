@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int meaning_version = 7;  // of what readers make of a file; one more when any of them makes something else
+constexpr int meaning_version = 8;  // of what readers make of a file; one more when any of them makes something else
 
 std::uint64_t cache_key(std::uint64_t source, const CityFileSettings& s) {
     std::string text = fmt::format("{} {:016x} {} {} {} {} {}", meaning_version, source, s.metres_per_unit, s.material,
@@ -25,6 +25,7 @@ std::uint64_t cache_key(std::uint64_t source, const CityFileSettings& s) {
     if (s.origin)
         text += fmt::format(" at {} {} {}", s.origin->latitude.rad(), s.origin->longitude.rad(),
                             s.origin->height.above_ellipsoid.value());
+    text += fmt::format(" heights {} {}", static_cast<int>(s.heights), s.geoid != nullptr);
     if (s.origin_is_guess) text += " guessed";
     if (s.anchor)
         text += fmt::format(" beside {} {} {} {}", s.anchor->system, s.anchor->east, s.anchor->north,

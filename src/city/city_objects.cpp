@@ -320,7 +320,8 @@ Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std:
     for (std::string& warning : PlaceOnEarth::unused_settings(system, settings))
         file.warnings.push_back(std::move(warning));
     file.anchor = place->anchor();
-    if (std::string doubt = place->doubt_of_map(settings); !doubt.empty()) file.warnings.push_back(std::move(doubt));
+    for (std::string doubt : {place->doubt_of_map(settings), PlaceOnEarth::doubt_of_heights(system, settings)})
+        if (!doubt.empty()) file.warnings.push_back(std::move(doubt));
     const std::vector<bool> replaced = replaced_objects(read.objects);
     ObjectBuilder builder(file, settings);
     std::set<std::size_t> buildings;

@@ -178,17 +178,19 @@ private:
                                header_.south + header_.cell * static_cast<double>(header_.rows - 1 - row)) *
                unit;
     }
-    Result<PlaceOnEarth> find_place() const {
+    Result<PlaceOnEarth> find_place() {
         const CoordinateKind kind = header_.geographic() ? CoordinateKind::geographic
                                     : of_a_map()         ? CoordinateKind::projected
                                                          : CoordinateKind::local;
         PlaceOnEarth::Extent extent;
         extent.include(middle_of_cell(0, 0));
         extent.include(middle_of_cell(header_.columns - 1, header_.rows - 1));
+        const ReferenceSystem system{kind, false, "unnamed", {}, false};
+        if (std::string doubt = PlaceOnEarth::doubt_of_heights(system, settings_); !doubt.empty())
+            file_.warnings.push_back(fmt::format("{}: {}", name_, doubt));
         CityFileSettings settings = settings_;
         settings.metres_per_unit = 1;  // has been applied to all numbers
-        return PlaceOnEarth::make({kind, false, "unnamed", {}, false}, extent, of_a_map() ? middle_height() : 0,
-                                  settings);
+        return PlaceOnEarth::make(system, extent, of_a_map() ? middle_height() : 0, settings);
     }
 
     Result<void> place_cells() {

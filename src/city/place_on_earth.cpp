@@ -8,11 +8,21 @@ namespace skyloop {
 
 namespace {
 
-/// Wider files of numbers that fit degrees are metres: no city is 500 km wide.
+/// No city is 500 km wide.
 constexpr double most_degrees = 5;
 
 /// Degrees that no file in metres is as narrow as.
 constexpr double least_metres = 0.5;
+
+bool counts_from_the_sea(const ReferenceSystem& system, const CityFileSettings& settings) {
+    if (settings.heights != CityHeights::as_told) return settings.heights == CityHeights::sea_level;
+    return system.sea_level;
+}
+
+bool lies_on_earth(const ReferenceSystem& system) {
+    return system.kind == CoordinateKind::geographic ||
+           (system.kind == CoordinateKind::projected && system.code && MapProjection::of_epsg(*system.code));
+}
 
 }  // namespace
 
@@ -40,18 +50,23 @@ std::vector<std::string> PlaceOnEarth::unused_settings(const ReferenceSystem& sy
                                                        const CityFileSettings& settings) {
     std::vector<std::string> warnings;
     if (settings.axes) warnings.emplace_back("axes mean nothing for this format, east and north are told by it");
-    const bool of_the_earth =
-        system.kind == CoordinateKind::geographic ||
-        (system.kind == CoordinateKind::projected && system.code && MapProjection::of_epsg(*system.code));
-    if (settings.metres_per_unit != 1 && of_the_earth)
+    if (settings.metres_per_unit != 1 && lies_on_earth(system))
         warnings.emplace_back("the length of a unit means nothing for places on the Earth and heights in metres");
     return warnings;
+}
+
+std::string PlaceOnEarth::doubt_of_heights(const ReferenceSystem& system, const CityFileSettings& settings) {
+    if (settings.geoid || !lies_on_earth(system) || !counts_from_the_sea(system, settings)) return "";
+    return fmt::format(
+        "heights ({}) count from the sea, and the geoid's grid is not there: they are taken as above the "
+        "ellipsoid",
+        system.name);
 }
 
 Result<PlaceOnEarth> PlaceOnEarth::make(const ReferenceSystem& system, const Extent& extent,
                                         std::optional<double> ground, const CityFileSettings& settings) {
     PlaceOnEarth place;
-    place.kind_ = system.kind;
+    place.count_heights(system, settings);
     if (system.kind == CoordinateKind::geographic) {
         if (!extent.fits_degrees())
             return fail(ErrorCode::input,
@@ -60,16 +75,31 @@ Result<PlaceOnEarth> PlaceOnEarth::make(const ReferenceSystem& system, const Ext
                                     most_degrees, extent.lowest.x(), extent.highest.x(), extent.lowest.y(),
                                     extent.highest.y()));
         const Eigen::Vector2d middle = extent.middle();
-        place.origin_ = settings.origin.value_or(
-            Geodetic::degrees(middle.y(), std::remainder(middle.x(), 360), ground.value_or(0)));
-        place.ground_ = place.origin_.height.above_ellipsoid.value();
-        place.frame_.emplace(place.origin_);
+        place.heights_known_ = true;
+        place.set_origin(middle.y(), middle.x(), ground, settings);
         return place;
     }
     place.origin_ = settings.origin.value_or(Geodetic{});
     place.metres_per_unit_ = settings.metres_per_unit;
     if (system.kind == CoordinateKind::projected) place.lay_map(system, extent, ground, settings);
     return place;
+}
+
+void PlaceOnEarth::count_heights(const ReferenceSystem& system, const CityFileSettings& settings) {
+    sea_level_ = counts_from_the_sea(system, settings);
+    heights_known_ = sea_level_ || settings.heights != CityHeights::as_told;
+}
+
+void PlaceOnEarth::set_origin(double latitude_deg, double longitude_deg, std::optional<double> ground,
+                              const CityFileSettings& settings) {
+    const double level = ground.value_or(0);
+    origin_ = settings.origin.value_or(Geodetic::degrees(latitude_deg, std::remainder(longitude_deg, 360), level));
+    const double geoid =
+        sea_level_ && settings.geoid ? settings.geoid->undulation(origin_.latitude, origin_.longitude).value() : 0;
+    if (!settings.origin) origin_.height.above_ellipsoid += Metres(geoid);
+    raise_ = heights_known_ ? geoid : origin_.height.above_ellipsoid.value() - level;
+    ground_ = origin_.height.above_ellipsoid.value() - raise_;
+    frame_.emplace(origin_);
 }
 
 void PlaceOnEarth::lay_map(const ReferenceSystem& system, const Extent& extent, std::optional<double> ground,
@@ -86,14 +116,14 @@ void PlaceOnEarth::lay_map(const ReferenceSystem& system, const Extent& extent, 
     const auto known = reference_system(anchor_->system);
     if (known && known->code) projection_ = MapProjection::of_epsg(*known->code);
     if (!projection_) return;
+    count_heights(*known, settings);
     metres_per_unit_ = 1;
     const EarthPlace place = projection_->on_earth({middle.x(), middle.y()});
-    origin_ = settings.origin.value_or(Geodetic{place.latitude, place.longitude, {Metres(ground_)}});
-    frame_.emplace(origin_);
+    set_origin(place.latitude.deg(), place.longitude.deg(), ground_, settings);
 }
 
 std::string PlaceOnEarth::doubt_of_map(const CityFileSettings& settings) const {
-    if (!anchor_) return "";
+    if (!anchor_ || (projection_ && heights_known_)) return "";
     if (projection_)
         return settings.origin
                    ? fmt::format(
@@ -110,16 +140,11 @@ std::string PlaceOnEarth::doubt_of_map(const CityFileSettings& settings) const {
                        told ? "" : "; its place on Earth is not known: give an origin");
 }
 
-Eigen::Vector3d PlaceOnEarth::at_place(double latitude_deg, double longitude_deg, double height) const {
-    return frame_->to_enu(to_ecef(Geodetic::degrees(latitude_deg, longitude_deg, height))).vector();
-}
-
 Eigen::Vector3d PlaceOnEarth::operator()(const Eigen::Vector3d& place) const {
-    if (kind_ == CoordinateKind::geographic) return at_place(place.y(), place.x(), place.z());
-    if (projection_) {
-        const EarthPlace on_earth = projection_->on_earth({place.x(), place.y()});
-        return at_place(on_earth.latitude.deg(), on_earth.longitude.deg(),
-                        origin_.height.above_ellipsoid.value() + place.z() - ground_);
+    if (frame_) {
+        const EarthPlace on_earth = projection_ ? projection_->on_earth({place.x(), place.y()})
+                                                : EarthPlace{Angle::degrees(place.y()), Angle::degrees(place.x())};
+        return frame_->to_enu(to_ecef({on_earth.latitude, on_earth.longitude, {Metres(place.z() + raise_)}})).vector();
     }
     const Eigen::Vector2d middle = anchor_ ? Eigen::Vector2d(anchor_->east, anchor_->north) : Eigen::Vector2d::Zero();
     const Eigen::Vector2d flat = (place.head<2>() - middle) * metres_per_unit_;

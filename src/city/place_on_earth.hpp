@@ -29,10 +29,10 @@ constexpr double farthest_local = 100'000;
 /// Takes coordinates of a file to metres east, north and up.
 ///
 /// Geographic places lie in the tangent frame at `settings.origin`, else at the middle of the extent and the `ground`
-/// level (0 m where it is absent); heights are subtracted as they stand. So do those of a projection that
-/// geo/map_projection knows, but that the `ground` level lies at the height of the origin. Of another projection the
-/// middle of the extent lies at the origin, or what `settings.anchor` says: the convergence of the map's north and its
-/// scale are neglected.
+/// level (0 m where it is absent). Heights above the sea are raised by the geoid's at the origin. So do places of a
+/// projection that geo/map_projection knows; where neither it nor `settings.heights` tells what heights count from, the
+/// `ground` level lies at the height of the origin. Of another projection the middle of the extent lies there, or what
+/// `settings.anchor` says: the convergence of the map's north and its scale are neglected.
 class PlaceOnEarth {
 public:
     /// The box around what a file holds.
@@ -55,6 +55,8 @@ public:
                                      const CityFileSettings& settings);
     /// What of the settings means nothing for a file, as warnings.
     static std::vector<std::string> unused_settings(const ReferenceSystem& system, const CityFileSettings& settings);
+    /// Of a geoid that would be needed and is not there; else nothing.
+    static std::string doubt_of_heights(const ReferenceSystem& system, const CityFileSettings& settings);
 
     [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& place) const;
     /// The place at the origin's level.
@@ -70,13 +72,17 @@ public:
     [[nodiscard]] std::string doubt_of_map(const CityFileSettings& settings) const;
 
 private:
+    void count_heights(const ReferenceSystem& system, const CityFileSettings& settings);
+    void set_origin(double latitude_deg, double longitude_deg, std::optional<double> ground,
+                    const CityFileSettings& settings);
     void lay_map(const ReferenceSystem& system, const Extent& extent, std::optional<double> ground,
                  const CityFileSettings& settings);
-    [[nodiscard]] Eigen::Vector3d at_place(double latitude_deg, double longitude_deg, double height) const;
 
-    CoordinateKind kind_ = CoordinateKind::local;
     Geodetic origin_;
-    double ground_ = 0;  ///< of the file's heights, at the level of the origin
+    double ground_ = 0;           ///< of the file's heights, at the level of the origin
+    double raise_ = 0;            ///< from the file's heights to those above the ellipsoid
+    bool sea_level_ = false;      ///< heights count from there
+    bool heights_known_ = false;  ///< and are not fitted to the level of the origin
     double metres_per_unit_ = 1;
     std::optional<MapAnchor> anchor_;
     std::optional<MapProjection> projection_;

@@ -29,6 +29,12 @@ static_assert(std::is_sorted(geographic_codes.begin(), geographic_codes.end()));
 /// The same with axes longitude, latitude.
 constexpr std::array longitude_first_codes{7036, 7037, 7042, 7084, 7085, 7086, 9778, 9779, 9783, 9784};
 
+/// Compounds of a horizontal system with heights above the sea. Sorted.
+constexpr std::array sea_level_codes{5498, 5499, 5500, 5554, 5555, 5556, 5628, 5698, 5699, 5942, 5971, 5972, 5973,
+                                     5974, 5975, 5976, 6144, 6349, 6649, 6696, 6697, 7409, 7423, 8360, 9286, 9422,
+                                     9423, 9424, 9449, 9450, 9462, 9463, 9464, 9500, 9505, 9518, 9705};
+static_assert(std::is_sorted(sea_level_codes.begin(), sea_level_codes.end()));
+
 bool is_decimal(char c) { return c >= '0' && c <= '9'; }
 
 /// The last number of a text.
@@ -43,13 +49,17 @@ std::optional<int> last_number(std::string_view text) {
     return error == std::errc() ? std::optional<int>(number) : std::nullopt;
 }
 
-/// The code of the first system that a name holds; a version may stand before it.
-std::optional<int> epsg_code(std::string_view name) {
+/// The code of the first system that a name holds, before which may stand a version, and that of heights behind it.
+struct EpsgName {
+    std::optional<int> code, heights;
+};
+EpsgName epsg_name(std::string_view name) {
     const std::string lower = lower_case(name);
     const std::size_t start = lower.find("epsg");
-    if (start == std::string::npos) return std::nullopt;
+    if (start == std::string::npos) return {};
     const std::size_t end = std::min(lower.find_first_of(",&+; ", start), lower.size());
-    return last_number(std::string_view(lower).substr(start, end - start));
+    const std::string_view all = lower;
+    return {last_number(all.substr(start, end - start)), last_number(all.substr(end))};
 }
 
 }  // namespace
@@ -58,12 +68,16 @@ std::optional<ReferenceSystem> reference_system(std::string_view name) {
     if (name.empty()) return std::nullopt;
     if (lower_case(name).find("crs84") != std::string::npos)
         return ReferenceSystem{CoordinateKind::geographic, false, "OGC:CRS84", {}};
-    const std::optional<int> code = epsg_code(name);
+    const auto [code, heights] = epsg_name(name);
     if (!code) return ReferenceSystem{CoordinateKind::projected, false, shown(name), {}};
+    ReferenceSystem system;
+    system.code = code;
+    system.name = heights ? fmt::format("EPSG:{}+{}", *code, *heights) : fmt::format("EPSG:{}", *code);
+    system.sea_level = heights || std::binary_search(sea_level_codes.begin(), sea_level_codes.end(), *code);
     const bool turned = std::binary_search(longitude_first_codes.begin(), longitude_first_codes.end(), *code);
-    const bool geographic = turned || std::binary_search(geographic_codes.begin(), geographic_codes.end(), *code);
-    return ReferenceSystem{geographic ? CoordinateKind::geographic : CoordinateKind::projected, geographic && !turned,
-                           fmt::format("EPSG:{}", *code), code};
+    system.latitude_first = std::binary_search(geographic_codes.begin(), geographic_codes.end(), *code);
+    if (turned || system.latitude_first) system.kind = CoordinateKind::geographic;
+    return system;
 }
 
 }  // namespace skyloop

@@ -21,11 +21,12 @@ struct ReferenceSystem {
     std::string name;         ///< for messages: "EPSG:7415"
     std::optional<int> code;  ///< of EPSG, of the horizontal part of a compound where that is told
     bool named = true;        ///< false where `name` is a word of ours
+    bool sea_level = false;   ///< its heights count from the sea, or nearly so: all vertical systems are taken for that
 };
 
 /// Reads "EPSG:4326", "urn:ogc:def:crs:EPSG::25832", "http://www.opengis.net/def/crs/EPSG/0/6697", the first part of
 /// compounds ("EPSG:4326+5773", "urn:ogc:def:crs,crs:EPSG::4258,crs:EPSG::5783"), in any case, and CRS84; anything else
-/// counts as projected. Absent for an empty name.
+/// counts as projected. A second part names heights. Absent for an empty name.
 std::optional<ReferenceSystem> reference_system(std::string_view name);
 
 }  // namespace skyloop

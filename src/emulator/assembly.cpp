@@ -69,7 +69,7 @@ void add_obstacles(std::vector<std::unique_ptr<PropagationEffect>>& effects, con
 // What stands around, and what its user should be told of it.
 Result<void> add_scene(const Scenario& scenario, const DataFolders& data, Assembly& assembly) {
     const Geodetic place = make_trajectory(scenario.trajectory, assembly.start)->at(assembly.start).geodetic;
-    auto loaded = load_scene(scenario, place, CityCache{data.cache});
+    auto loaded = load_scene(scenario, place, CityCache{data.cache}, assembly.geoid.get());
     if (!loaded) return fail(loaded.error());
     if (loaded->scene)
         if (auto doubt = doubt_of_height(*loaded->scene, place)) loaded->warnings.push_back(std::move(*doubt));

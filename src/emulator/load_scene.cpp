@@ -75,6 +75,8 @@ Result<CityReading> read_terrain(const std::filesystem::path& path, const CityFi
     settings.origin = reading.origin;
     settings.origin_is_guess = reading.origin_is_guess;
     settings.anchor = reading.anchor;
+    settings.heights = reading.heights;
+    settings.geoid = reading.geoid;
     settings.material = terrain_material;
     settings.most_triangles = reading.most_triangles;
     auto grid = read_city(path, settings, cache);
@@ -160,8 +162,9 @@ Decibels hand_rejection(ModernPreset preset) {
 }  // namespace
 
 Result<JoinedCity> read_scene_files(const SceneEntry& entry, const std::optional<Geodetic>& start,
-                                    const CityCache& cache) {
+                                    const CityCache& cache, const Geoid* geoid) {
     CityFileSettings reading = entry.reading;
+    reading.geoid = geoid;
     reading.origin_is_guess = !reading.origin;
     if (!reading.origin && start) reading.origin = below_antenna(*start);
     const CityCache kept = entry.cache ? cache : CityCache{};
@@ -210,10 +213,11 @@ std::string scene_description(const std::vector<std::string>& names, const Urban
                        static_cast<double>(s.memory) * 1e-6);
 }
 
-Result<LoadedScene> load_scene(const Scenario& scenario, const Geodetic& start, const CityCache& cache) {
+Result<LoadedScene> load_scene(const Scenario& scenario, const Geodetic& start, const CityCache& cache,
+                               const Geoid* geoid) {
     LoadedScene loaded;
     if (!scenario.scene.given()) return loaded;
-    auto city = read_scene_files(scenario.scene, start, cache);
+    auto city = read_scene_files(scenario.scene, start, cache, geoid);
     if (!city) return fail(city.error());
     const SceneSettings settings{SceneSettings().merge_tolerance, scenario.scene.memory_limit_mb << 20};
     auto scene = UrbanScene::build(city->model, settings);

@@ -97,6 +97,8 @@ constexpr KeyMeaning run_meanings[] = {
     {"scene", "origin", "of the files' frame: latitude, longitude, height", "1.5 m below the start of the trajectory"},
     {"scene", "axes", "the file's axes that point east, north and up: \"x,y,z\", \"x,-z,y\", \"y,x,z\"",
      "as the format says"},
+    {"scene", "heights", "what the heights of files on the Earth count from",
+     "as the file's system says, else the ellipsoid"},
     {"scene", "unit_m", "length of one unit of the file; 0.01 for centimetres"},
     {"scene", "material", "of surfaces of which the file tells none"},
     {"scene", "default_height_m", "of outlines without height or levels"},

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <array>
+
 #include "scenario_keys.hpp"
 #include "skyloop/base/spelling.hpp"
 #include "skyloop/propagation/fresnel.hpp"
@@ -42,6 +44,11 @@ void read_file_keys(TableReader& table, CityFileSettings& reading) {
             reading.axes = *axes;
         else
             table.mistake("axes", axes.error().message);
+    }
+    if (table.has("heights")) {
+        constexpr std::array<std::string_view, 2> names{"sea_level", "ellipsoid"};
+        if (const auto index = table.choice("heights", names, names[0]))
+            reading.heights = *index == 0 ? CityHeights::sea_level : CityHeights::ellipsoid;
     }
     table.number("unit_m", reading.metres_per_unit, {1e-6, 1e6});
     read_surface_material(table, reading.material);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "skyloop/base/result.hpp"
+#include "skyloop/geo/geoid.hpp"
 #include "skyloop/scene/city_model.hpp"
 
 namespace skyloop {
@@ -33,6 +34,13 @@ struct MapAnchor {
     std::optional<double> level;  ///< of the ground in its heights, m; absent after outlines, which have none
 };
 
+/// What the heights of a file that lies on the Earth count from.
+enum class CityHeights {
+    as_told,    ///< by its reference system: the sea where that names heights of its own, else the ellipsoid
+    sea_level,  ///< the geoid
+    ellipsoid
+};
+
 /// How a file is to be read.
 struct CityFileSettings {
     /// Where the frame lies. When it is absent, files with places on the Earth take the middle of what they hold; local
@@ -40,8 +48,10 @@ struct CityFileSettings {
     std::optional<Geodetic> origin;
     bool origin_is_guess = false;     ///< for what warnings say
     std::optional<MapAnchor> anchor;  ///< of a file of the same scene that was read before, beside which this one lies
-    std::optional<FileAxes> axes;     ///< absent: as the format says
-    double metres_per_unit = 1;       ///< 0.01 for levels in centimetres
+    CityHeights heights = CityHeights::as_told;
+    const Geoid* geoid = nullptr;             ///< without one heights above the sea are taken as they stand
+    std::optional<FileAxes> axes;             ///< absent: as the format says
+    double metres_per_unit = 1;               ///< 0.01 for levels in centimetres
     std::string material = "concrete";        ///< of triangles of which the file tells none
     double default_height = 9;                ///< of footprints without height or levels, m
     double metres_per_level = 3;              ///< OpenStreetMap
@@ -94,9 +104,9 @@ Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std:
 Result<CityFile> parse_mitsuba_archive(std::string_view bytes, std::string_view name, const CityFileSettings& settings);
 
 /// A height grid (ESRI ASCII, .asc) as ground. Cells are geographic degrees when they fit on the globe, are at most
-/// 0.1° wide and all together 6°, heights then metres above the ellipsoid. Metres farther than 100 km from 0, 0
-/// are places of a map, that of `anchor` where there is one; else both are metres from the frame's origin.
-/// `metres_per_unit` and `origin` apply; `metres_per_unit` to heights alone where cells are degrees.
+/// 0.1° wide and all together 6°, heights then metres above the ellipsoid unless `heights` says another. Metres farther
+/// than 100 km from 0, 0 are places of a map, that of `anchor` where there is one; else both are metres from the
+/// frame's origin. `metres_per_unit` and `origin` apply; `metres_per_unit` to heights alone where cells are degrees.
 Result<CityFile> parse_height_grid(std::string_view text, std::string_view name, const CityFileSettings& settings);
 
 /// What is doubtful about a city as a whole: a few metres or a hundred kilometres wide, no more than 3 m tall or more

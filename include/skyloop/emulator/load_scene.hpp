@@ -37,8 +37,9 @@ struct JoinedCity {
 /// Reads the files of a scene and joins them. Fails as read_city() and parse_height_grid() do.
 /// @param start where the trajectory starts; a scene without an origin lies antenna_above_scene below it, and without
 /// either where its first file says
+/// @param geoid of files whose heights count from the sea; may be absent
 Result<JoinedCity> read_scene_files(const SceneEntry& entry, const std::optional<Geodetic>& start,
-                                    const CityCache& cache);
+                                    const CityCache& cache, const Geoid* geoid = nullptr);
 
 /// A scene that receivers share; without one nothing stands around.
 struct LoadedScene {
@@ -51,7 +52,8 @@ struct LoadedScene {
 
 /// Reads the scene of a scenario and makes it ready for rays. Fails with `input` when it would take more memory than
 /// allowed or nothing is in it, and as read_scene_files().
-Result<LoadedScene> load_scene(const Scenario& scenario, const Geodetic& start, const CityCache& cache);
+Result<LoadedScene> load_scene(const Scenario& scenario, const Geodetic& start, const CityCache& cache,
+                               const Geoid* geoid = nullptr);
 
 /// What to say of an antenna that starts more than 20 m below all of a scene, or 300 m above it: mostly its heights
 /// count from somewhere else. Nothing where it stands farther than 2 km aside.

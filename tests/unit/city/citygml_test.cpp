@@ -136,6 +136,69 @@ TEST(CityGml, FilesOfOneMapLieBesideEachOther) {
     }
 }
 
+/// The grid that the build made; where the machine has no proj-data there is none.
+class CityHeightsTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        auto geoid = Geoid::open(built_data() / "geoids/egm96-15.pgm");
+        if (!geoid) GTEST_SKIP() << geoid.error().message;
+        geoid_.emplace(std::move(*geoid));
+        settings_.geoid = &*geoid_;
+    }
+    /// Up of a roof at 20 m in the file, at an origin of 100 m above the ellipsoid.
+    [[nodiscard]] double up_of_roof(std::string_view places, std::string_view system) {
+        const auto file = read_citygml(
+            gml_file("<Building><lod2MultiSurface>" + gml_polygon(places) + "</lod2MultiSurface></Building>", system),
+            settings_);
+        EXPECT_TRUE(file) << file.error().message;
+        return file ? file->model.vertices.at(0).z() : 0;
+    }
+    std::optional<Geoid> geoid_;
+    CityFileSettings settings_;
+};
+
+TEST_F(CityHeightsTest, CountFromTheSeaWhereTheSystemOrTheKeySaysSo) {
+    const std::string_view yokosuka = "35.26 139.74 20 35.2601 139.74 20 35.2601 139.7401 20 35.26 139.74 20";
+    settings_.origin = Geodetic::degrees(35.26, 139.74, 100);
+    const double geoid = geoid_->undulation(Angle::degrees(35.26), Angle::degrees(139.74)).value();
+    EXPECT_GT(geoid, 30);
+    EXPECT_NEAR(up_of_roof(yokosuka, "http://www.opengis.net/def/crs/EPSG/0/6697"), 20 + geoid - 100, 1e-3);
+    EXPECT_NEAR(up_of_roof(yokosuka, "urn:ogc:def:crs,crs:EPSG::6668,crs:EPSG::6695"), 20 + geoid - 100, 1e-3);
+    EXPECT_NEAR(up_of_roof(yokosuka, "EPSG:6667"), 20 - 100, 1e-3);
+    settings_.heights = CityHeights::sea_level;
+    EXPECT_NEAR(up_of_roof(yokosuka, "EPSG:6667"), 20 + geoid - 100, 1e-3);
+    settings_.heights = CityHeights::ellipsoid;
+    EXPECT_NEAR(up_of_roof(yokosuka, "EPSG:6697"), 20 - 100, 1e-3);
+}
+
+TEST_F(CityHeightsTest, OfAProjectionAreFittedToTheOriginUnlessTheyAreTold) {
+    const std::string_view munich = "691603 5334780 20 691613 5334780 20 691613 5334790 20 691603 5334780 20";
+    settings_.origin = Geodetic::degrees(48.1374, 11.5755, 100);
+    const double geoid = geoid_->undulation(Angle::degrees(48.1374), Angle::degrees(11.5755)).value();
+    EXPECT_NEAR(up_of_roof(munich, "EPSG:25832"), 0, 1e-3);
+    EXPECT_NEAR(up_of_roof(munich, "EPSG:5555"), 20 + geoid - 100, 1e-3);
+    EXPECT_NEAR(up_of_roof(munich, "EPSG:25832+7837"), 20 + geoid - 100, 1e-3);
+    settings_.heights = CityHeights::ellipsoid;
+    EXPECT_NEAR(up_of_roof(munich, "EPSG:25832"), 20 - 100, 1e-3);
+}
+
+TEST_F(CityHeightsTest, AnOriginOfTheFileIsOnItsGroundAndAMissingGeoidIsTold) {
+    const std::string town =
+        gml_file("<Building><lod2MultiSurface>" +
+                     gml_polygon("35.26 139.74 20 35.2601 139.74 20 35.2601 139.7401 20 35.26 139.74 20") +
+                     "</lod2MultiSurface></Building>",
+                 "EPSG:6697");
+    const auto file = read_citygml(town, settings_);
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_NEAR(file->model.origin.height.above_ellipsoid.value(), 55.3, 0.1);
+    EXPECT_NEAR(file->model.vertices.at(0).z(), 0, 1e-3);
+    EXPECT_TRUE(file->warnings.empty());
+    const auto without = read_citygml(town);
+    ASSERT_TRUE(without) << without.error().message;
+    EXPECT_NEAR(without->model.origin.height.above_ellipsoid.value(), 20, 1e-9);
+    EXPECT_THAT(without->warnings, ::testing::ElementsAre(HasSubstr("the geoid's grid is not there")));
+}
+
 TEST(CityGml, DropsWrongPolygonsAndSaysSo) {
     const auto file = read_citygml(gml_file(
         "<Building><lod2MultiSurface>" + gml_polygon(roof_places) + gml_polygon("0 0 1 2") + gml_polygon("") +

@@ -31,6 +31,7 @@ TEST(ScenarioScene, EveryKeyLandsInItsField) {
     EXPECT_EQ(scene.reading.origin->height.above_ellipsoid, Metres(520));
     ASSERT_TRUE(scene.reading.axes);
     EXPECT_THAT(scene.reading.axes->axis, ElementsAre(1, 0, 2));
+    EXPECT_EQ(scene.reading.heights, CityHeights::sea_level);
     EXPECT_EQ(scene.reading.metres_per_unit, 0.01);
     EXPECT_EQ(scene.reading.material, "brick");
     EXPECT_EQ(scene.reading.default_height, 12);

@@ -141,6 +141,7 @@ buildings = ["a.obj", "demo"]
 terrain = "hills.asc"
 origin = [48.5, 11.5, 520]
 axes = "y,x,z"
+heights = "sea_level"
 unit_m = 0.01
 material = "brick"
 default_height_m = 12
