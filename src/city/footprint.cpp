@@ -1,7 +1,9 @@
 #include "skyloop/city/footprint.hpp"
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "ear_clipper.hpp"
 
@@ -37,6 +39,51 @@ bool all_finite(const std::vector<std::vector<Eigen::Vector2d>>& rings) {
     return true;
 }
 
+/// Corners up to which a ring is searched for crossings of its edges; what is drawn by hand has fewer.
+constexpr std::size_t most_untangled = 256;
+
+double side_of(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& p) {
+    const Eigen::Vector2d u = b - a, v = p - a;
+    return u.x() * v.y() - u.y() * v.x();
+}
+
+/// Where two edges cross inside of both.
+std::optional<Eigen::Vector2d> crossing(const std::array<Eigen::Vector2d, 2>& e,
+                                        const std::array<Eigen::Vector2d, 2>& f) {
+    const double from = side_of(f[0], f[1], e[0]), to = side_of(f[0], f[1], e[1]);
+    if (!(from * to < 0 && side_of(e[0], e[1], f[0]) * side_of(e[0], e[1], f[1]) < 0)) return std::nullopt;
+    return e[0] + (e[1] - e[0]) * (from / (from - to));
+}
+
+/// Cuts a ring in two at the first crossing of its edges. @returns what is cut off; empty without a crossing
+std::vector<Eigen::Vector2d> cut_at_crossing(std::vector<Eigen::Vector2d>& ring) {
+    const auto edge = [&](std::size_t i) { return std::array{ring[i], ring[(i + 1) % ring.size()]}; };
+    for (std::size_t i = 0; i + 2 < ring.size(); ++i)
+        for (std::size_t j = i + 2; j < ring.size(); ++j) {
+            const auto place = crossing(edge(i), edge(j));
+            if (!place) continue;
+            const auto first = ring.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                       last = ring.begin() + static_cast<std::ptrdiff_t>(j) + 1;
+            std::vector<Eigen::Vector2d> loop(first, last);
+            loop.push_back(*place);
+            *first = *place;
+            ring.erase(first + 1, last);
+            return loop;
+        }
+    return {};
+}
+
+/// A footprint whose outer ring crosses itself, as a bow-tie does, in loops that do not; others as they are.
+std::vector<Footprint> untangled(const Footprint& footprint) {
+    std::vector<Footprint> whole{footprint};
+    if (footprint.outer.size() > most_untangled) return whole;
+    for (std::size_t i = 0; i < whole.size() && whole.size() < most_untangled; ++i)
+        for (auto loop = cut_at_crossing(whole[i].outer); !loop.empty() && whole.size() < most_untangled;
+             loop = cut_at_crossing(whole[i].outer))
+            whole.push_back({std::move(loop), footprint.holes});
+    return whole;
+}
+
 /// Adds triangles that index `points`.
 void add_indexed(CityModel& city, const std::vector<Eigen::Vector3d>& points,
                  const std::vector<std::array<std::uint32_t, 3>>& triangles, CityTriangle like) {
@@ -48,6 +95,22 @@ void add_indexed(CityModel& city, const std::vector<Eigen::Vector3d>& points,
     }
 }
 
+bool add_prism(CityModel& city, const Footprint& footprint, std::pair<double, double> heights, std::uint8_t material) {
+    const auto roof = EarClipper(footprint).triangles();
+    if (roof.empty()) return false;
+    add_walls(city, footprint.outer, heights, material);
+    for (const auto& hole : footprint.holes)
+        add_walls(city, hole, heights, material);
+    std::vector<Eigen::Vector3d> points;
+    for (const Eigen::Vector2d& point : footprint.outer)
+        points.emplace_back(point.x(), point.y(), heights.second);
+    for (const auto& hole : footprint.holes)
+        for (const Eigen::Vector2d& point : hole)
+            points.emplace_back(point.x(), point.y(), heights.second);
+    add_indexed(city, points, roof, {{}, SurfaceKind::roof, material});
+    return true;
+}
+
 }  // namespace
 
 std::vector<std::array<std::uint32_t, 3>> triangulated(const Footprint& footprint) {
@@ -57,19 +120,10 @@ std::vector<std::array<std::uint32_t, 3>> triangulated(const Footprint& footprin
 bool add_extruded(CityModel& city, const Footprint& footprint, double base, double top, std::uint8_t material) {
     if (!(std::isfinite(base) && std::isfinite(top) && base < top) || !all_finite({footprint.outer})) return false;
     if (!all_finite(footprint.holes)) return false;
-    const auto roof = triangulated(footprint);
-    if (roof.empty()) return false;
-    add_walls(city, footprint.outer, {base, top}, material);
-    for (const auto& hole : footprint.holes)
-        add_walls(city, hole, {base, top}, material);
-    std::vector<Eigen::Vector3d> points;
-    for (const Eigen::Vector2d& point : footprint.outer)
-        points.emplace_back(point.x(), point.y(), top);
-    for (const auto& hole : footprint.holes)
-        for (const Eigen::Vector2d& point : hole)
-            points.emplace_back(point.x(), point.y(), top);
-    add_indexed(city, points, roof, {{}, SurfaceKind::roof, material});
-    return true;
+    bool added = false;
+    for (const Footprint& part : untangled(footprint))
+        added = add_prism(city, part, {base, top}, material) || added;
+    return added;
 }
 
 bool add_polygon(CityModel& city, const std::vector<std::vector<Eigen::Vector3d>>& rings, SurfaceKind kind,

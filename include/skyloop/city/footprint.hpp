@@ -19,7 +19,8 @@ struct Footprint {
 /// repeat and edges that cross are tolerated: the result covers what can be covered. Empty for a polygon without area.
 std::vector<std::array<std::uint32_t, 3>> triangulated(const Footprint& footprint);
 
-/// Adds walls from `base` to `top` and a roof. @returns false, and adds nothing, for an outline without area
+/// Adds walls from `base` to `top` and a roof; an outer ring that crosses itself (a bow-tie) covers all its loops.
+/// @returns false, and adds nothing, for an outline without area
 bool add_extruded(CityModel& city, const Footprint& footprint, double base, double top, std::uint8_t material = 0);
 
 /// Adds a plane polygon in space with holes, by triangles; kind by the caller. @returns false when it has no area

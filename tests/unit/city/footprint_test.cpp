@@ -153,6 +153,29 @@ TEST(AddExtruded, MakesAClosedPrismWithoutFloor) {
     EXPECT_EQ(area[static_cast<std::size_t>(SurfaceKind::ground)], 0);
 }
 
+double roof_area_of(const CityModel& city) {
+    double area = 0;
+    for (const CityTriangle& t : city.triangles) {
+        const Eigen::Vector3d a = city.vertices[t.corners[0]], b = city.vertices[t.corners[1]],
+                              c = city.vertices[t.corners[2]];
+        if (t.kind == SurfaceKind::roof) area += (b - a).cross(c - a).norm() / 2;
+    }
+    return area;
+}
+
+TEST(AddExtruded, CoversAllLoopsOfARingThatCrossesItself) {
+    CityModel bow;
+    ASSERT_TRUE(add_extruded(bow, {{{0, 0}, {4, 4}, {4, 0}, {0, 4}, {0, 0}}, {}}, 0, 9));
+    EXPECT_NEAR(roof_area_of(bow), 8, 1e-9) << "two triangles, 4 m wide and 2 m high";
+    // A five-pointed star drawn without lifting the pen: its points and its middle, a pentagon.
+    Ring pentagram;
+    for (int i = 0; i < 5; ++i)
+        pentagram.emplace_back(std::sin(0.8 * std::numbers::pi * i), std::cos(0.8 * std::numbers::pi * i));
+    CityModel star_city;
+    ASSERT_TRUE(add_extruded(star_city, {pentagram, {}}, 0, 9));
+    EXPECT_GT(roof_area_of(star_city), 1.12);
+}
+
 TEST(AddExtruded, AddsNothingWithoutAreaOrHeight) {
     CityModel city;
     EXPECT_FALSE(add_extruded(city, {{{0, 0}, {1, 1}, {2, 2}}, {}}, 0, 9));
