@@ -62,12 +62,28 @@ EpsgName epsg_name(std::string_view name) {
     return {last_number(all.substr(start, end - start)), last_number(all.substr(end))};
 }
 
+/// Names of Germany's surveying authorities (AdV, GeoInfoDok): "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH" is UTM, and
+/// behind the asterisk stand heights.
+std::optional<ReferenceSystem> adv_system(std::string_view name) {
+    const std::size_t start = lower_case(name).find("etrs89_utm");
+    if (start == std::string::npos) return std::nullopt;
+    constexpr std::size_t length = 12;  // with the zone
+    const std::optional<int> zone = last_number(name.substr(start, length));
+    if (!zone || *zone < 28 || *zone > 38) return std::nullopt;
+    ReferenceSystem system;
+    system.code = 25800 + *zone;
+    system.name = shown(name.substr(start));
+    system.sea_level = name.find('*', start) != std::string_view::npos;
+    return system;
+}
+
 }  // namespace
 
 std::optional<ReferenceSystem> reference_system(std::string_view name) {
     if (name.empty()) return std::nullopt;
     if (lower_case(name).find("crs84") != std::string::npos)
         return ReferenceSystem{CoordinateKind::geographic, false, "OGC:CRS84", {}};
+    if (auto system = adv_system(name)) return system;
     const auto [code, heights] = epsg_name(name);
     if (!code) return ReferenceSystem{CoordinateKind::projected, false, shown(name), {}};
     ReferenceSystem system;

@@ -25,8 +25,8 @@ struct ReferenceSystem {
 };
 
 /// Reads "EPSG:4326", "urn:ogc:def:crs:EPSG::25832", "http://www.opengis.net/def/crs/EPSG/0/6697", the first part of
-/// compounds ("EPSG:4326+5773", "urn:ogc:def:crs,crs:EPSG::4258,crs:EPSG::5783"), in any case, and CRS84; anything else
-/// counts as projected. A second part names heights. Absent for an empty name.
+/// compounds ("EPSG:4326+5773", "urn:ogc:def:crs,crs:EPSG::4258,crs:EPSG::5783"), in any case, CRS84 and the AdV's
+/// names of UTM; anything else counts as projected. A second part names heights. Absent for an empty name.
 std::optional<ReferenceSystem> reference_system(std::string_view name);
 
 }  // namespace skyloop

@@ -178,6 +178,8 @@ TEST_F(CityHeightsTest, OfAProjectionAreFittedToTheOriginUnlessTheyAreTold) {
     EXPECT_NEAR(up_of_roof(munich, "EPSG:25832"), 0, 1e-3);
     EXPECT_NEAR(up_of_roof(munich, "EPSG:5555"), 20 + geoid - 100, 1e-3);
     EXPECT_NEAR(up_of_roof(munich, "EPSG:25832+7837"), 20 + geoid - 100, 1e-3);
+    EXPECT_NEAR(up_of_roof(munich, "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH"), 20 + geoid - 100, 1e-3);
+    EXPECT_NEAR(up_of_roof(munich, "urn:adv:crs:ETRS89_UTM32"), 0, 1e-3);
     settings_.heights = CityHeights::ellipsoid;
     EXPECT_NEAR(up_of_roof(munich, "EPSG:25832"), 20 - 100, 1e-3);
 }
