@@ -89,6 +89,15 @@ Result<KeptTriangles> kept_triangles(const CityModel& city) {
     return kept;
 }
 
+/// The foot of a scene is that of what is built there: woods far off, where the Earth falls away, do not lower it.
+SceneStatistics with_trees(SceneStatistics counts, const FoliageTree& trees) {
+    const double foot = counts.lowest.z();
+    counts.lowest = counts.lowest.cwiseMin(trees.lowest());
+    counts.highest = counts.highest.cwiseMax(trees.highest());
+    if (std::isfinite(foot)) counts.lowest.z() = foot;
+    return counts;
+}
+
 /// How far a line segment passes from the origin of a plane.
 double distance_of_segment(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
     const Eigen::Vector2d edge = to - from;
@@ -185,8 +194,7 @@ Result<std::shared_ptr<const UrbanScene>> UrbanScene::build(const CityModel& cit
     if (!kept) return fail(kept.error());
     auto parts = std::make_unique<Parts>(city);
     SceneStatistics& counts = kept->statistics;
-    counts.lowest = counts.lowest.cwiseMin(parts->foliage.lowest());
-    counts.highest = counts.highest.cwiseMax(parts->foliage.highest());
+    counts = with_trees(counts, parts->foliage);
     if (!(counts.lowest.x() <= counts.highest.x()))
         return fail(ErrorCode::input,
                     fmt::format("the city has no tree and no triangle to build on: {} given, {} without area, "

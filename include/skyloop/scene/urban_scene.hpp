@@ -53,7 +53,7 @@ struct SceneStatistics {
     std::array<std::size_t, 3> triangles_of_kind{};  ///< by SurfaceKind
     std::size_t degenerate = 0;                      ///< triangles without area, left out
     std::size_t not_finite = 0;                      ///< triangles with a corner that is no number, left out
-    Eigen::Vector3d lowest, highest;                 ///< corners of the box around it and its trees, m
+    Eigen::Vector3d lowest, highest;                 ///< of the box around it, m; trees lower it where alone
     double sloped_share = 0;   ///< of the wall area that stands more than 0.1° from the vertical, 0 … 1
     std::size_t memory = 0;    ///< of the tree, the planes and the tables, bytes
     double build_seconds = 0;  ///< on the steady clock, for messages alone

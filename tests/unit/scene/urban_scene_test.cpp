@@ -287,6 +287,16 @@ TEST(UrbanScene, WoodsAloneAreAScene) {
     EXPECT_FALSE(UrbanScene::build(city)) << "nothing stands anywhere";
 }
 
+TEST(UrbanScene, WoodsWidenTheSceneAndDoNotLowerItsFoot) {
+    CityModel city = one_wall();
+    const double foot = built(city)->statistics().lowest.z();
+    city.foliage.push_back({{{-9000, 0}, {-8000, 0}, {-8000, 30}}, foot - 6, foot + 90, foot - 9});
+    EXPECT_EQ(built(city)->statistics().lowest.head<2>(),
+              Eigen::Vector2d(-9000, built(one_wall())->statistics().lowest.y()));
+    EXPECT_EQ(built(city)->statistics().lowest.z(), foot);
+    EXPECT_EQ(built(city)->statistics().highest.z(), foot + 90);
+}
+
 TEST(UrbanScene, WhatLiesOnASurfaceIsPutJustAboveIt) {
     CityModel city;
     city.add_quad({Vector3d(-90, -90, 2), {90, -90, 2}, {90, 90, 2}, {-90, 90, 2}}, SurfaceKind::ground);
