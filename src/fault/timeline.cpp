@@ -87,7 +87,8 @@ void Timeline::plan(std::size_t index, GpsTime begin, bool by_hand, std::optiona
     event.length = length;
     if (!by_hand) ++states_[index].drawn;
     // What an epoch has shown acts behind it: as long as told, and on as many epochs as if it had been known before.
-    if (looked_ && event.time <= *looked_) event.time = *looked_ + Nanoseconds(1);
+    const bool shown = entries_[index].when && !by_hand;
+    if (shown && looked_ && event.time <= *looked_) event.time = *looked_ + Nanoseconds(1);
     insert(event);
 }
 

@@ -140,6 +140,9 @@ TEST(Timeline, BeginsBehindTheEpochThatShowsIt) {
     EXPECT_THAT(timeline.advance(behind), SizeIs(2));
     EXPECT_THAT(timeline.advance(after(3)), IsEmpty()) << "it hits the epoch of 3 s";
     EXPECT_THAT(timeline.advance(behind + Nanoseconds(1'000'000'000)), SizeIs(2));
+    timeline.look(after(5), at(0, 0, 99));
+    EXPECT_TRUE(timeline.begin(0, after(5)));
+    EXPECT_EQ(timeline.next_event(), after(5)) << "a command knows nothing of epochs";
 }
 
 TEST(Timeline, BeginsAgainWhereItIsToldTo) {
