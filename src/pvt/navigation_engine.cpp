@@ -175,11 +175,11 @@ void NavigationEngine::State::solve_position(const ReceiverSettings& settings, E
         epoch.time_only = true;
         return;
     }
-    std::optional<CheckedSolution> checked = monitor_.solve(epoch.equations, setup);
+    std::optional<CheckedSolution> checked = solve_free_of_ionosphere(monitor_, epoch.equations, setup);
     if (!checked && setup.start) {
         // Perhaps the last position is too far off to begin with.
         setup.start.reset();
-        checked = monitor_.solve(epoch.equations, setup);
+        checked = solve_free_of_ionosphere(monitor_, epoch.equations, setup);
         setup.start = position_;
     }
     if (!checked) setup.held_height = held_height(settings);

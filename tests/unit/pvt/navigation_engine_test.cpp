@@ -104,6 +104,35 @@ TEST(NavigationEngine, TakesTheIonosphereOutWithTwoCarriers) {
     EXPECT_GT(error_of(single.solve(observations, settings), receiver), 0.5);
 }
 
+// The model knows a tenth of what there is, and some satellites have one signal.
+TEST(NavigationEngine, LeavesOutWhatTheIonosphereTouchesWhereEnoughIsFreeOfIt) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    NavigationParameters parameters = plain(FilterKind::none);
+    parameters.corrections.ionosphere_free = true;
+    const TrueReceiver receiver = receiver_at(antenna, sample_time);
+    test::MeasureOptions options;
+    options.all_signals = true;
+    Observations observations =
+        measure(sky, receiver, options, [](const SatelliteId&, const SkyDirection& d, Hertz carrier) {
+            return ionosphere_delay_at(Metres(20 / std::sin(d.elevation.rad())), carrier).value();
+        });
+    const auto keep_second_signals_of = [&](Constellation system) {
+        std::erase_if(observations.signals, [&](const Observation& o) {
+            return o.satellite.constellation != system && o.signal != first_signal(o.satellite.constellation);
+        });
+    };
+    keep_second_signals_of(Constellation::galileo);
+    const Fix fix = NavigationEngine(parameters, {&sky}).solve(observations, {});
+    EXPECT_LT(error_of(fix, receiver), 1e-4);
+    for (const SatelliteStatus& s : fix.satellites)
+        if (s.used) {
+            EXPECT_EQ(s.id.constellation, Constellation::galileo);
+        }
+    keep_second_signals_of(Constellation::sbas);
+    const Fix mixed = NavigationEngine(parameters, {&sky}).solve(observations, {});
+    EXPECT_GT(mixed.satellites_used(), 20) << "where no satellite has two signals, one is all there is";
+}
+
 TEST(NavigationEngine, HoldsTheCourseBelowTheReceiversOwnSpeed) {
     const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
     TrueReceiver receiver = receiver_at(antenna, sample_time);
