@@ -301,6 +301,8 @@ void NavigationEngine::State::fill_solved(const EpochSolution& epoch, const Rece
             input.velocity = epoch.velocity->velocity;
             input.velocity_deviation = MetresPerSecond(std::sqrt(epoch.velocity->covariance.trace()));
         }
+        // Carrier phases need no filter, which would only add the noise of the velocity.
+        if (differential_kind() >= DifferentialKind::rtk_float) filter_.reset();
         filtered = filter_.update(input, settings);
     }
     if (!plausible(filtered, settings)) {

@@ -115,7 +115,7 @@ std::vector<NamedTerm> error_terms(ModernSettings& settings) {
 }
 
 // What corrections from outside leave of each error. Both ends of a baseline see the same orbits, clocks and air; with
-// carrier phases the receiver's own noise and echoes are those of the carrier.
+// carrier phases the receiver's own noise and echoes are those of the carrier. The Doppler is its own in any case.
 void apply_differential(ModernSettings& s) {
     const DifferentialKind kind = s.navigation.differential.kind;
     if (kind == DifferentialKind::none) return;
@@ -130,7 +130,7 @@ void apply_differential(ModernSettings& s) {
     for (ErrorTerm* term : {&s.propagation.troposphere, &s.propagation.troposphere_residual})
         term->scale = 0;
     const double own = kind == DifferentialKind::rtk_float ? 0.15 : 0.008;
-    for (ErrorTerm* term : {&s.measurement.multipath, &s.measurement.code_noise, &s.measurement.doppler_noise})
+    for (ErrorTerm* term : {&s.measurement.multipath, &s.measurement.code_noise})
         term->scale *= own;
 }
 
