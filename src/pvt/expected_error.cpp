@@ -1,8 +1,10 @@
 #include "skyloop/pvt/expected_error.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
+#include "skyloop/gnss/constants.hpp"
 #include "skyloop/gnss/thin_shell.hpp"
 
 namespace skyloop {
@@ -38,6 +40,27 @@ ExpectedError expected_error(const SinglePoint& solution, const AccuracyParamete
         expected.clock += e.clock * e.clock;
     }
     return expected;
+}
+
+ExpectedError expected_error_left(SinglePoint solution, const NavigationParameters& parameters,
+                                  const SiteCorrections& air) {
+    const double left = parameters.differential.sbas_left;
+    for (RangeOutcome& r : solution.ranges)
+        r.ionosphere = left * air.ionosphere(Constellation::gps, r.direction, Hertz(carrier_frequency_l1));
+    AccuracyParameters accuracy = parameters.accuracy;
+    accuracy.ionosphere_share = 1;
+    return expected_error(solution, accuracy);
+}
+
+ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, const Dop& dop, DifferentialKind kind,
+                           const DifferentialParameters& parameters) {
+    if (kind == DifferentialKind::rtk_float || kind == DifferentialKind::rtk_fixed) {
+        const Metres good = kind == DifferentialKind::rtk_fixed ? parameters.fixed_accuracy : parameters.float_accuracy;
+        return {good * std::max(1.0, dop.hdop), good * std::max(parameters.vertical_proportion, dop.vdop)};
+    }
+    const double scale = kind == DifferentialKind::sbas ? parameters.sbas_scale : 1;
+    return {Metres(scale * std::sqrt(covariance(0, 0) + covariance(1, 1))),
+            Metres(scale * std::sqrt(covariance(2, 2)))};
 }
 
 }  // namespace skyloop

@@ -48,6 +48,8 @@ public:
           transmitters_(received_),
           corrections_(parameters.corrections,
                        {knowledge.broadcast->ionosphere(), knowledge.geoid, knowledge.leap_seconds}),
+          air_({IonosphereCorrection::klobuchar, TroposphereCorrection::none, 0, true, false},
+               {knowledge.broadcast->ionosphere(), nullptr, knowledge.leap_seconds}),
           monitor_(parameters.integrity),
           smoother_(parameters.filter.code_smoothing),
           filter_(parameters.filter),
@@ -85,6 +87,7 @@ private:
     ReceivedRecords received_;
     BroadcastTransmitters transmitters_;
     RangeCorrections corrections_;
+    RangeCorrections air_;  // as far as the receiver can tell, corrected or not
     IntegrityMonitor monitor_;
     CodeSmoother smoother_;
     PositionFilter filter_;
@@ -262,19 +265,17 @@ Metres NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& f
     // Residuals that noise does not explain make the formal covariance a lie.
     if (!epoch.consistent && point.redundancy > 0)
         scale *= std::sqrt(std::max(1.0, point.statistic / point.redundancy));
-    const ExpectedError expected = expected_error(point, parameters_.accuracy);
+    const DifferentialKind kind = differential_kind();
+    const bool augmented = kind == DifferentialKind::sbas && corrected_ == CorrectionState::none;
+    const ExpectedError expected =
+        augmented ? expected_error_left(point, parameters_, air_.at(to_geodetic(point.position), time_))
+                  : expected_error(point, parameters_.accuracy);
     fix.time_accuracy = Metres(scale * std::sqrt(expected.clock));
     if (epoch.time_only) return Metres(0);
     const Eigen::Matrix3d q = in_enu(LocalFrame(fix.position), expected.position);
-    const DifferentialParameters& d = parameters_.differential;
-    const DifferentialKind kind = differential_kind();
-    if (kind == DifferentialKind::sbas) scale *= d.sbas_scale;
-    fix.horizontal_accuracy = Metres(scale * std::sqrt(q(0, 0) + q(1, 1)));
-    fix.vertical_accuracy = Metres(scale * std::sqrt(q(2, 2)));
-    if (kind == DifferentialKind::rtk_float || kind == DifferentialKind::rtk_fixed) {
-        fix.horizontal_accuracy = kind == DifferentialKind::rtk_fixed ? d.fixed_accuracy : d.float_accuracy;
-        fix.vertical_accuracy = d.vertical_proportion * fix.horizontal_accuracy;
-    }
+    const ToldAccuracy told = told_accuracy(scale * scale * q, fix.dop, kind, parameters_.differential);
+    fix.horizontal_accuracy = told.horizontal;
+    fix.vertical_accuracy = told.vertical;
     const double velocity_variance = epoch.velocity ? epoch.velocity->covariance.trace() : 0;
     fix.speed_accuracy = MetresPerSecond(parameters_.accuracy.velocity_scale * std::sqrt(velocity_variance));
     const double turn = fix.speed.value() > 0 ? fix.speed_accuracy.value() / fix.speed.value() : std::numbers::pi;

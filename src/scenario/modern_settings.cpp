@@ -122,7 +122,7 @@ void apply_differential(ModernSettings& s) {
     // What is left of the ionosphere is what the corrections from outside did not take.
     s.ionosphere_correction = IonosphereCorrection::none;
     const bool sbas = kind == DifferentialKind::sbas;
-    const double common = sbas ? 0.1 : 0;
+    const double common = sbas ? s.navigation.differential.sbas_left : 0;
     for (ErrorTerm* term : {&s.propagation.signal_in_space, &s.propagation.ionosphere})
         term->scale *= common;
     if (sbas) return;  // which leaves the troposphere and the antenna's surroundings to the receiver

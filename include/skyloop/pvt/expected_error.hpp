@@ -20,4 +20,18 @@ struct ExpectedError {
 /// many satellites there are.
 ExpectedError expected_error(const SinglePoint& solution, const AccuracyParameters& parameters);
 
+/// The same where a service of corrections has taken most of the ionosphere before it was measured: what it leaves is
+/// of one sign, so that all satellites share it, and 1 σ of it is `differential.sbas_left` of what `air` tells.
+ExpectedError expected_error_left(SinglePoint solution, const NavigationParameters& parameters,
+                                  const SiteCorrections& air);
+
+/// What a receiver tells of its position, 1 σ.
+struct ToldAccuracy {
+    Metres horizontal, vertical;
+};
+/// Of solutions by carrier phases the accuracy of a good sky, the more in a poor one.
+/// @param covariance of the position, east, north, up, m²
+ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, const Dop& dop, DifferentialKind kind,
+                           const DifferentialParameters& parameters);
+
 }  // namespace skyloop

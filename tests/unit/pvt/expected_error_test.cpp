@@ -114,6 +114,44 @@ TEST(ExpectedError, WithoutCorrectionsNoneIsWrong) {
     EXPECT_EQ(expected.clock, point.clock_variance);
 }
 
+// What an augmentation leaves is of one sign, and of the size that the receiver's own model of the air makes of it.
+TEST(ExpectedError, HoldsWhatAnAugmentationLeaves) {
+    CorrectedEpoch epoch;
+    const RangeCorrections air({.troposphere = TroposphereCorrection::none, .default_ionosphere = true}, {});
+    epoch.leave_uncorrected();
+    const SinglePoint before = epoch.solved();
+    const SiteCorrections site = air.at(to_geodetic(before.position), test::sample_time);
+    for (std::size_t i = 0; i < epoch.equations.size(); ++i)
+        epoch.equations[i].pseudorange +=
+            0.1 * site.ionosphere(Constellation::gps, before.ranges[i].direction, Hertz(carrier_frequency_l1));
+    const SinglePoint after = epoch.solved();
+    NavigationParameters parameters;
+    parameters.accuracy = nothing_shared;
+    const ExpectedError expected = expected_error_left(before, parameters, site);
+    const Vector3d d = moved(before, after);
+    EXPECT_GT(d.norm(), 0.1);
+    EXPECT_LT((expected.position - before.covariance - d * d.transpose()).norm(), 0.02 * d.squaredNorm());
+    EXPECT_NEAR(std::sqrt(expected.clock - before.clock_variance), std::abs((after.clock() - before.clock()).value()),
+                0.01);
+}
+
+TEST(ToldAccuracy, GrowsWithThePoorGeometryOfCarrierPhases) {
+    const DifferentialParameters parameters;
+    Dop good, poor;
+    good.hdop = 0.7, good.vdop = 1.1;
+    poor.hdop = 2, poor.vdop = 3.5;
+    const Matrix3d covariance = Matrix3d::Identity();
+    const auto told = [&](const Dop& dop, DifferentialKind kind) {
+        return told_accuracy(covariance, dop, kind, parameters);
+    };
+    EXPECT_EQ(told(good, DifferentialKind::rtk_fixed).horizontal, Metres(0.014));
+    EXPECT_NEAR(told(good, DifferentialKind::rtk_fixed).vertical.value(), 0.021, 1e-12);
+    EXPECT_NEAR(told(poor, DifferentialKind::rtk_fixed).horizontal.value(), 0.028, 1e-12);
+    EXPECT_NEAR(told(poor, DifferentialKind::rtk_fixed).vertical.value(), 0.049, 1e-12);
+    EXPECT_NEAR(told(poor, DifferentialKind::rtk_float).horizontal.value(), 0.6, 1e-12);
+    EXPECT_NEAR(told(poor, DifferentialKind::none).horizontal.value(), std::sqrt(2.0), 1e-12);
+}
+
 TEST(ExpectedError, OfTimeAloneIsInTheClock) {
     const SinglePoint point = CorrectedEpoch().timed();
     const ExpectedError expected = expected_error(point, AccuracyParameters());
