@@ -29,8 +29,8 @@ SignalProcesses::SignalProcesses(const MeasurementParameters& parameters, std::u
       phase(parameters.phase_noise.stream(seed, signal_stream_name("phase_noise", satellite, signal))),
       frequency(parameters.doppler_noise.stream(seed, signal_stream_name("doppler_noise", satellite, signal))),
       multipath(parameters.multipath.stream(seed, signal_stream_name("multipath", satellite, signal))),
-      scintillation(parameters.phase_noise.stream(seed, signal_stream_name("phase_scintillation", satellite, signal))) {
-}
+      scintillation(
+          parameters.scintillation.stream(seed, signal_stream_name("phase_scintillation", satellite, signal))) {}
 
 void SignalProcesses::advance(const NoiseSteps& steps, bool scintillates) {
     code.advance(steps.code);
@@ -42,8 +42,8 @@ void SignalProcesses::advance(const NoiseSteps& steps, bool scintillates) {
 
 AmplitudeFading::AmplitudeFading(const MeasurementParameters& parameters, std::uint64_t seed, SatelliteId satellite,
                                  Signal signal)
-    : in_phase_(parameters.code_noise.stream(seed, signal_stream_name("fading.in_phase", satellite, signal))),
-      quadrature_(parameters.code_noise.stream(seed, signal_stream_name("fading.quadrature", satellite, signal))) {}
+    : in_phase_(parameters.scintillation.stream(seed, signal_stream_name("fading.in_phase", satellite, signal))),
+      quadrature_(parameters.scintillation.stream(seed, signal_stream_name("fading.quadrature", satellite, signal))) {}
 
 Decibels AmplitudeFading::at(double s4, GpsTime now, const MeasurementParameters& parameters) {
     if (!(s4 > 0)) return Decibels(0);

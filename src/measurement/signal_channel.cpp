@@ -112,9 +112,10 @@ void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& e
     const MeasurementParameters& parameters = epoch.parameters;
     const double metres_per_radian = speed_of_light / input.signal.carrier.value() / (2 * std::numbers::pi);
     terms_.code_noise = deviations_.code * (parameters.code_noise.factor() * processes_.code.value());
-    terms_.phase_noise = Metres(metres_per_radian * parameters.phase_noise.factor() *
-                                (deviations_.phase.rad() * processes_.phase.value() +
-                                 deviations_.scintillation.rad() * processes_.scintillation.value()));
+    const double thermal = parameters.phase_noise.factor() * deviations_.phase.rad() * processes_.phase.value();
+    // A term of its own: its scale is in the deviation that arrives.
+    const double scintillating = deviations_.scintillation.rad() * processes_.scintillation.value();
+    terms_.phase_noise = Metres(metres_per_radian * (thermal + scintillating));
     terms_.doppler_noise = deviations_.frequency * (parameters.doppler_noise.factor() * processes_.frequency.value());
     if (input.arrival.echoes_known) {
         terms_.multipath = echoes_.code;

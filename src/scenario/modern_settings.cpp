@@ -142,6 +142,7 @@ ModernSettings effective(ModernSettings settings) {
         // A filter has errors of its own: it follows a turn a little late.
         settings.navigation.filter.kind = FilterKind::none;
     }
+    settings.measurement.scintillation = settings.propagation.scintillation;
     CorrectionParameters& c = settings.navigation.corrections;
     const bool air = settings.propagation.troposphere.factor() != 0;
     const bool plasma = settings.propagation.ionosphere.factor() != 0;

@@ -51,6 +51,7 @@ struct MeasurementParameters {
     double slips_per_hour = 0;        ///< of each tracked carrier in good conditions; more come with weak signals
 
     ErrorTerm code_noise, phase_noise, doppler_noise, multipath, receiver_clock, cycle_slips;
+    ErrorTerm scintillation;  ///< its dice alone: how strong it is, what arrives says
 };
 
 }  // namespace skyloop

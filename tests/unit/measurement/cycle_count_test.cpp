@@ -154,7 +154,8 @@ TEST(CycleCount, SwitchedOffItNeverBreaks) {
     for (int i = 0; i < 200; ++i) {
         const Measurement measured = run.epoch(arrivals);
         EXPECT_FALSE(measured.observations.signals.at(0).slipped);
-        EXPECT_EQ(measured.observations.signals.at(0).carrier_phase, phase);
+        EXPECT_NEAR(measured.observations.signals.at(0).carrier_phase.value_or(0), phase, 0.95)
+            << "one radian of scintillation, 1 σ, is no cycle";
     }
 }
 

@@ -205,6 +205,41 @@ TEST(LoopNoise, ScintillationFadesWhatIsReported) {
     EXPECT_EQ(run.epoch(arrivals).observations.signals[0].cn0.value(), 45);
 }
 
+// What the code and phase of a scintillating signal are told with these dice; equal for equal dice.
+struct Scintillating {
+    double phase_m = 0, cn0 = 0, code_m = 0;
+};
+Scintillating scintillating_with(const MeasurementParameters& parameters) {
+    Arrivals arrivals = plain_arrivals({g07}, 55);
+    arrivals.satellites[0].amplitude_scintillation = 0.4;
+    arrivals.satellites[0].phase_scintillation = Angle::radians(0.1);
+    MeasuredRun run(parameters);
+    const Measurement measured = run.epochs(arrivals, 20);
+    const SignalTerms& terms = measured.terms.signals.at(0);
+    return {terms.phase_noise.value(), measured.observations.signals[0].cn0.value(), terms.code_noise.value()};
+}
+
+TEST(LoopNoise, ScintillationIsATermOfItsOwn) {
+    MeasurementParameters parameters = plain_parameters();
+    parameters.cn0_resolution = Decibels(0);
+    const Scintillating plain = scintillating_with(parameters);
+    MeasurementParameters other = parameters;
+    other.code_noise.seed = 99;
+    EXPECT_EQ(scintillating_with(other).cn0, plain.cn0) << "another cause's dice";
+    EXPECT_NE(scintillating_with(other).code_m, plain.code_m);
+    other = parameters;
+    other.scintillation.seed = 99;
+    EXPECT_NE(scintillating_with(other).cn0, plain.cn0);
+    EXPECT_NE(scintillating_with(other).phase_m, plain.phase_m);
+    other = parameters;
+    other.phase_noise.enabled = false;
+    const double alone = scintillating_with(other).phase_m;
+    EXPECT_NE(alone, 0);
+    other.phase_noise.enabled = true;
+    other.phase_noise.scale = 3;
+    EXPECT_NEAR(scintillating_with(other).phase_m - alone, 3 * (plain.phase_m - alone), 1e-12);
+}
+
 TEST(LoopNoise, AnInterruptedSignalKeepsItsDistribution) {
     // Lost and found again every few epochs: the processes take longer steps, and stay what they are.
     MeasurementParameters parameters = plain_parameters();

@@ -82,6 +82,12 @@ TEST(EffectiveSettings, CorrectionsFromOutsideTakeWhatBothEndsSee) {
     }
 }
 
+TEST(EffectiveSettings, ScintillationHasOneTermOnBothSidesOfTheAntenna) {
+    ModernSettings settings;
+    settings.propagation.scintillation.seed = 7;
+    EXPECT_EQ(effective(settings).measurement.scintillation.seed, 7U);
+}
+
 TEST(EffectiveSettings, WhatIsNamedGoesBeforeIt) {
     ModernSettings settings;
     settings.errors = false;
