@@ -45,6 +45,7 @@ SkyView Simulation::view(const TruthState& truth) const { return observe_sky(tru
 
 Trace Simulation::run(GpsTime time, const ReceiverSettings& settings, ActiveFaults* faults) {
     Trace trace;
+    trace.measures = measures();
     trace.truth = parts_.trajectory->at(time);
     trace.sky = observer_.observe(trace.truth, *parts_.navigation);
     trace.arrivals = free_space(trace.sky);

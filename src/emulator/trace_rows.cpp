@@ -143,7 +143,6 @@ std::string fix_row(const Trace& trace) {
 
 std::string satellite_rows(const Trace& trace) {
     const std::string time = utc_text(trace.truth.time);
-    const bool measured = !trace.epoch.observations.signals.empty();
     CsvRows rows;
     for (std::size_t i = 0; i < trace.sky.satellites.size(); ++i) {
         const SatelliteInView& sky = trace.sky.satellites[i];
@@ -151,7 +150,7 @@ std::string satellite_rows(const Trace& trace) {
         const SatelliteStatus* status = find_status(trace.epoch.fix.satellites, sky.id);
         rows.text(time).text(to_string(sky.id));
         append_arrival(rows, sky, arrival);
-        rows.number(measured ? measured_pseudorange(trace, sky.id) : ideal_pseudorange(sky, arrival), 4);
+        rows.number(trace.measures ? measured_pseudorange(trace, sky.id) : ideal_pseudorange(sky, arrival), 4);
         rows.text(status && status->used ? "1" : "0");
         append_errors(rows, arrival, find_first_signal(trace.measurement.signals, sky.id));
         status && status->residual ? rows.number(status->residual->value(), 4) : rows.nothing();

@@ -16,6 +16,7 @@ struct Trace {
     Arrivals arrivals;
     MeasurementTerms measurement;
     Epoch epoch;
+    bool measures = false;  ///< by a receiver that measures, though it may track nothing just now; sensor models do not
 };
 
 }  // namespace skyloop

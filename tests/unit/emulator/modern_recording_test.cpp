@@ -289,6 +289,16 @@ TEST_F(ModernRecording, EveryTermStandsInItsColumn) {
     EXPECT_GT(untracked, 50U) << "Galileo and BeiDou stand in the sky all the same";
 }
 
+TEST_F(ModernRecording, WhereNothingIsTrackedThereIsNoPseudorange) {
+    const auto traces = run(text("[model.modern.interference]\njammer_to_signal_db = 60\n", 3));
+    const auto rows = rows_of(recorded("satellites.csv"));
+    for (const Trace& trace : traces)
+        EXPECT_THAT(trace.epoch.observations.signals, testing::IsEmpty());
+    EXPECT_GT(rows.size(), 30U);
+    for (const Row& row : rows)
+        EXPECT_EQ(row.at("pseudorange_m"), "") << row.at("satellite");
+}
+
 // B2I stands before B1I among the measurements.
 TEST_F(ModernRecording, RowsSpeakOfTheFirstSignalOfTwo) {
     const auto traces = run(text(receiver_of_four, 5));

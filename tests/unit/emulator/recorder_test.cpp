@@ -171,6 +171,12 @@ TEST(Recorder, EachSatelliteHasARow) {
     EXPECT_EQ(hidden["used"], "0");
 }
 
+TEST(Recorder, AReceiverThatMeasuresHasNoPseudorangeOfWhatItDoesNotTrack) {
+    Trace trace = recorded_trace();
+    trace.measures = true;
+    EXPECT_EQ(row_of(tables_of({trace}).second, 1)["pseudorange_m"], "");
+}
+
 TEST(Recorder, TheTimesOfBytesFollowTheBytes) {
     const TemporaryFolder folder;
     const GpsTime start = to_gps_time(2304, 0);
