@@ -173,6 +173,25 @@ Result<void> judge_timeline(const Scenario& scenario, Assembly& assembly) {
     return {};
 }
 
+// Weather whose upper end is known to lie below the antenna; the geoid is some metres more or less.
+void warn_of_weather_below(const Scenario& scenario, std::vector<std::string>& warnings) {
+    const auto* fixed = std::get_if<FixedSettings>(&scenario.trajectory);
+    if (fixed == nullptr) return;
+    const Metres height = fixed->at.height.above_ellipsoid;
+    const Rain& rain = scenario.atmosphere.rain;
+    if (rain.rate_mm_h > 0 && height >= rain.top)
+        warnings.push_back(
+            fmt::format("atmosphere.rain_top_m: rain falls from {:g} m above the sea, below the antenna "
+                        "at {:g} m, and weakens nothing there",
+                        rain.top.value(), height.value()));
+    for (const CloudDeck& deck : scenario.atmosphere.clouds)
+        if (height >= deck.top)
+            warnings.push_back(
+                fmt::format("atmosphere.cloud: {} ends {:g} m above the sea, below the antenna at {:g} m, "
+                            "and weakens nothing there",
+                            deck.kind, deck.top.value(), height.value()));
+}
+
 }  // namespace
 
 std::string scenario_digest(const Scenario& scenario, GpsTime start, std::uint64_t scene) {
@@ -211,6 +230,9 @@ std::vector<std::string> scenario_warnings(const Scenario& scenario) {
             fmt::format("atmosphere.{}: of the sensor models; the modern model takes clouds and rain from [atmosphere] "
                         "and the rest from [model.modern]",
                         fmt::join(scenario.sensor_model_keys, ", atmosphere.")));
+    if (!scenario.model.sensor_model)
+        warnings.insert(warnings.end(), scenario.model.modern.idle_keys.begin(), scenario.model.modern.idle_keys.end());
+    warn_of_weather_below(scenario, warnings);
     if (scenario.scene.given() && !city_acts(scenario))
         warnings.push_back("scene: errors = \"none\" leaves the buildings out, whose echoes are errors");
     return warnings;

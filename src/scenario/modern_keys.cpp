@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 
 #include "scenario_keys.hpp"
@@ -23,7 +26,8 @@ void read_terms(TableReader& modern, ModernSettings& settings) {
     });
 }
 
-void read_clock(TableReader& table, ReceiverClockParameters& clock) {
+void read_clock(TableReader& table, ModernSettings& settings) {
+    ReceiverClockParameters& clock = settings.measurement.clock;
     table.number("h0_s", clock.noise.h0, {0, 1e-10});
     table.number("h_minus_2_per_s", clock.noise.h_minus_2, {0, 1e-10});
     table.quantity("bias_m", clock.bias, {-3e8, 3e8});
@@ -33,6 +37,10 @@ void read_clock(TableReader& table, ReceiverClockParameters& clock) {
          {"millisecond-jumps", ClockSteering::millisecond_jumps},
          {"continuous", ClockSteering::continuous}}};
     table.word("steering", steerings, clock.steering);
+    if (clock.steering == ClockSteering::continuous)
+        tell_idle(table, settings, "clock", {"drift_mps"},
+                  "with steering = \"free\" or \"millisecond-jumps\"; a clock that is steered continuously starts "
+                  "without drift");
 }
 
 void read_tracking(TableReader& table, MeasurementParameters& p) {
@@ -116,7 +124,27 @@ void read_solution(TableReader& table, ModernSettings& settings) {
     table.word("differential", kinds, p.differential.kind);
 }
 
+// What was told idle beside the truth acts after all where the receiver does not correct, or Galileo by the very truth.
+void forget_acting_residual(ModernSettings& settings) {
+    const IonosphereParameters& truth = settings.propagation.ionosphere_model;
+    const auto correction = settings.ionosphere_correction;
+    const bool uncorrected =
+        correction == IonosphereCorrection::none || settings.navigation.differential.kind != DifferentialKind::none;
+    const bool own = correction == IonosphereCorrection::broadcast && truth.model == IonosphereModel::ntcm_g;
+    if (truth.residual != Choice::automatic || !(uncorrected || own)) return;
+    std::erase_if(settings.idle_keys,
+                  [](const std::string& told) { return told.starts_with("model.modern.ionosphere.residual_"); });
+}
+
 }  // namespace
+
+void tell_idle(TableReader& table, ModernSettings& settings, std::string_view name,
+               std::initializer_list<std::string_view> keys, std::string_view acts) {
+    for (const std::string_view key : keys)
+        if (table.has(key))
+            settings.idle_keys.push_back(
+                fmt::format("model.modern.{}.{}: has no effect here; it acts {}", name, key, acts));
+}
 
 void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder) {
     const auto preset =
@@ -129,11 +157,12 @@ void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::
     settings.errors = errors;
     read_terms(modern, settings);
     read_modern_propagation_keys(modern, settings, folder);
-    modern.table("clock", [&](TableReader& t) { read_clock(t, settings.measurement.clock); });
+    modern.table("clock", [&](TableReader& t) { read_clock(t, settings); });
     modern.table("tracking", [&](TableReader& t) { read_tracking(t, settings.measurement); });
     modern.table("acquisition", [&](TableReader& t) { read_acquisition(t, settings.measurement.acquisition); });
     modern.table("multipath", [&](TableReader& t) { read_multipath(t, settings.measurement.multipath_model); });
     modern.table("solution", [&](TableReader& t) { read_solution(t, settings); });
+    forget_acting_residual(settings);
 }
 
 }  // namespace skyloop

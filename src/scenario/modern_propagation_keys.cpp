@@ -24,6 +24,26 @@ void read_ionisation(TableReader& table, IonosphereParameters& p) {
     if (const auto b = table.numbers("klobuchar_beta", 4)) std::copy(b->begin(), b->end(), p.klobuchar.beta.begin());
 }
 
+// Of the ionosphere's keys those that the chosen truth does not look at.
+void tell_idle_ionosphere(TableReader& table, ModernSettings& settings) {
+    const IonosphereParameters& p = settings.propagation.ionosphere_model;
+    const auto tell = [&](std::initializer_list<std::string_view> keys, std::string_view acts) {
+        tell_idle(table, settings, "ionosphere", keys, acts);
+    };
+    if (p.model != IonosphereModel::constant) tell({"content_tecu"}, "with truth = \"constant\"");
+    if (p.model != IonosphereModel::ionex) tell({"maps"}, "with truth = \"ionex\"");
+    if (p.model != IonosphereModel::ntcm_g && p.model != IonosphereModel::nequick_g)
+        tell({"ionisation"}, "with truth = \"ntcm-g\" or \"nequick-g\"");
+    if (p.model != IonosphereModel::klobuchar)
+        tell({"klobuchar_alpha", "klobuchar_beta"}, "with truth = \"klobuchar\"");
+    const bool departs =
+        p.residual == Choice::on || (p.residual == Choice::automatic && p.model == IonosphereModel::klobuchar);
+    if (!departs)
+        tell({"residual_common", "residual_gradient", "residual_common_time_s", "residual_single",
+              "residual_single_time_s"},
+             "with residual = \"on\", or automatic where the receiver corrects with the model of the truth");
+}
+
 void read_ionosphere_truth(TableReader& table, ModernSettings& settings, const std::filesystem::path& folder) {
     IonosphereParameters& p = settings.propagation.ionosphere_model;
     static constexpr std::array<Word<IonosphereModel>, 5> models{{{"klobuchar", IonosphereModel::klobuchar},
@@ -47,6 +67,7 @@ void read_ionosphere_truth(TableReader& table, ModernSettings& settings, const s
     table.quantity("residual_common_time_s", p.common_time, {1, 1e7});
     table.number("residual_single", p.single, {0, 10});
     table.quantity("residual_single_time_s", p.single_time, {1, 1e7});
+    tell_idle_ionosphere(table, settings);
 }
 
 void read_weather(TableReader& table, TroposphereParameters& p) {
@@ -61,7 +82,8 @@ void read_weather(TableReader& table, TroposphereParameters& p) {
     table.number("sea_level_vapour_g_m3", p.sea_level_vapour_g_m3, {0, 100});
 }
 
-void read_troposphere_truth(TableReader& table, TroposphereParameters& p) {
+void read_troposphere_truth(TableReader& table, ModernSettings& settings) {
+    TroposphereParameters& p = settings.propagation.troposphere_model;
     read_weather(table, p);
     static constexpr std::array<Word<TroposphereMappingModel>, 4> mappings{
         {{"niell", TroposphereMappingModel::niell},
@@ -79,6 +101,12 @@ void read_troposphere_truth(TableReader& table, TroposphereParameters& p) {
     table.quantity("walk_in_rain_m_per_sqrt_h", p.walk_in_rain, {0, 1});
     table.quantity("walk_in_thunderstorm_m_per_sqrt_h", p.walk_in_thunderstorm, {0, 1});
     table.number("thunderstorm_rain_mm_h", p.thunderstorm_rain_mm_h, {0, 1000});
+    if (p.weather != WeatherSource::given)
+        tell_idle(table, settings, "troposphere", {"pressure_hpa", "temperature_k"}, "with weather = \"given\"");
+    if (p.weather != WeatherSource::p835)
+        tell_idle(table, settings, "troposphere", {"sea_level_vapour_g_m3"}, "with weather = \"p835\"");
+    if (p.mapping != TroposphereMappingModel::vmf1)
+        tell_idle(table, settings, "troposphere", {"vmf1_a_hydrostatic", "vmf1_a_wet"}, "with mapping = \"vmf1\"");
 }
 
 void read_losses(TableReader& table, LossParameters& p) {
@@ -152,7 +180,8 @@ void read_link(TableReader& table, ModernLinkParameters& p, const std::filesyste
     table.quantity("ripple_time_s", p.ripple_time, {0.1, 1e6});
 }
 
-void read_interference(TableReader& table, ModernLinkParameters& p) {
+void read_interference(TableReader& table, ModernSettings& settings) {
+    ModernLinkParameters& p = settings.propagation.link;
     if (table.has("jammer_to_signal_db")) {
         Decibels ratio(0);
         table.quantity("jammer_to_signal_db", ratio, {-100, 200});
@@ -162,9 +191,11 @@ void read_interference(TableReader& table, ModernLinkParameters& p) {
                                                             {"matched", JammerKind::matched},
                                                             {"wide-band", JammerKind::wide_band}}};
     table.word("kind", kinds, p.jammer);
+    if (!p.jammer_to_signal) tell_idle(table, settings, "interference", {"kind"}, "beside jammer_to_signal_db");
 }
 
-void read_scintillation(TableReader& table, ScintillationParameters& p) {
+void read_scintillation(TableReader& table, ModernSettings& settings) {
+    ScintillationParameters& p = settings.propagation.scintillation_model;
     table.number("s4", p.s4, {0, 0.7});
     double sigma = p.sigma_phi.rad();
     table.number("sigma_phi_rad", sigma, {0, 3});
@@ -172,6 +203,12 @@ void read_scintillation(TableReader& table, ScintillationParameters& p) {
     table.boolean("equatorial_evening", p.equatorial_evening);
     table.number("evening_peak_h", p.evening_peak_h, {0, 24});
     table.number("evening_width_h", p.evening_width_h, {0.1, 24});
+    const bool restless = p.s4 > 0 || p.sigma_phi > Angle();
+    if (!restless || !p.equatorial_evening)
+        tell_idle(table, settings, "scintillation", {"evening_peak_h", "evening_width_h"},
+                  "with equatorial_evening = true, and s4 or sigma_phi_rad above 0");
+    if (!restless)
+        tell_idle(table, settings, "scintillation", {"equatorial_evening"}, "with s4 or sigma_phi_rad above 0");
 }
 
 }  // namespace
@@ -180,11 +217,11 @@ void read_modern_propagation_keys(TableReader& modern, ModernSettings& settings,
     ModernPropagationParameters& p = settings.propagation;
     modern.table("signal_in_space", [&](TableReader& t) { read_signal_in_space(t, p.signal_in_space_model); });
     modern.table("ionosphere", [&](TableReader& t) { read_ionosphere_truth(t, settings, folder); });
-    modern.table("troposphere", [&](TableReader& t) { read_troposphere_truth(t, p.troposphere_model); });
+    modern.table("troposphere", [&](TableReader& t) { read_troposphere_truth(t, settings); });
     modern.table("losses", [&](TableReader& t) { read_losses(t, p.loss_model); });
     modern.table("link", [&](TableReader& t) { read_link(t, p.link, folder); });
-    modern.table("interference", [&](TableReader& t) { read_interference(t, p.link); });
-    modern.table("scintillation", [&](TableReader& t) { read_scintillation(t, p.scintillation_model); });
+    modern.table("interference", [&](TableReader& t) { read_interference(t, settings); });
+    modern.table("scintillation", [&](TableReader& t) { read_scintillation(t, settings); });
 }
 
 }  // namespace skyloop

@@ -13,6 +13,10 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
 
 /// @param folder that paths are relative to
 void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder);
+/// Tells of each of `keys` that was given that it cannot act. @param name of the table within model.modern
+/// @param acts when it does: "with truth = \"constant\""
+void tell_idle(TableReader& table, ModernSettings& settings, std::string_view name,
+               std::initializer_list<std::string_view> keys, std::string_view acts);
 /// Those of the world: air, antenna, interference.
 void read_modern_propagation_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder);
 void read_model_keys(TableReader& model, ModelSettings& settings, const std::filesystem::path& folder);

@@ -312,5 +312,18 @@ TEST(MakeTrajectory, BeginsAtTheStart) {
     EXPECT_NEAR(round->at(start).velocity.vector().norm(), 10, 1e-3);
 }
 
+TEST(Assembly, TellsOfKeysAndWeatherThatCannotAct) {
+    const auto idle = testing::Contains(HasSubstr("model.modern.ionosphere.content_tecu: has no effect here"));
+    const std::string content = "[model.modern.ionosphere]\ncontent_tecu = 100\n";
+    EXPECT_THAT(assembled(content).warnings, idle);
+    EXPECT_THAT(assembled("[model]\nname = \"ideal\"\n" + content).warnings, Not(idle)) << "nobody asked for modern";
+    const std::string mountain = "[trajectory]\nkind = \"fixed\"\nat = [-16.5, -68.15, 4100]\n[atmosphere]\n";
+    EXPECT_THAT(assembled(mountain + "rain_mm_h = 100").warnings, Contains(HasSubstr("rain falls from 4000 m above")));
+    EXPECT_THAT(assembled(mountain + "[[atmosphere.cloud]]\nkind = \"fog\"").warnings,
+                Contains(HasSubstr("atmosphere.cloud: fog ends")));
+    EXPECT_THAT(assembled(mountain + "rain_mm_h = 100\nrain_top_m = 5000").warnings,
+                Not(Contains(HasSubstr("rain falls from"))));
+}
+
 }  // namespace
 }  // namespace skyloop

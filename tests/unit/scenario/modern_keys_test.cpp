@@ -329,5 +329,41 @@ TEST(ModernKeys, MistakesSayWhereAndWhat) {
     EXPECT_THAT(mistakes_of("[model.modern.troposphere]\nmapping = \"nial\""), HasSubstr("did you mean 'niell'?"));
 }
 
+// Keys that the words beside them leave without effect.
+TEST(ModernKeys, TellWhichCannotAct) {
+    const auto idle = [](const std::string& table, const std::string& keys) {
+        return modern_of("[model.modern." + table + "]\n" + keys).idle_keys;
+    };
+    const auto tells = [&](const std::string& table, const std::string& keys, const std::string& key) {
+        EXPECT_THAT(idle(table, keys), testing::ElementsAre(HasSubstr("model.modern." + table + "." + key + ": ")));
+    };
+    tells("ionosphere", "content_tecu = 100", "content_tecu");
+    tells("ionosphere", "truth = \"klobuchar\"\nionisation = [80, 0, 0]", "ionisation");
+    tells("ionosphere", "klobuchar_alpha = [1e-8, 0, 0, 0]", "klobuchar_alpha");
+    tells("ionosphere", "residual_common = 0.5", "residual_common");
+    tells("ionosphere", "truth = \"klobuchar\"\nresidual = \"off\"\nresidual_single = 0.5", "residual_single");
+    tells("troposphere", "pressure_hpa = 900", "pressure_hpa");
+    tells("troposphere", "sea_level_vapour_g_m3 = 9", "sea_level_vapour_g_m3");
+    tells("troposphere", "vmf1_a_wet = 1e-3", "vmf1_a_wet");
+    tells("interference", "kind = \"wide-band\"", "kind");
+    tells("scintillation", "equatorial_evening = true", "equatorial_evening");
+    tells("scintillation", "s4 = 0.3\nevening_peak_h = 20", "evening_peak_h");
+    tells("clock", "steering = \"continuous\"\ndrift_mps = 10", "drift_mps");
+}
+
+TEST(ModernKeys, TellNothingOfThoseThatAct) {
+    for (const char* keys :
+         {"[ionosphere]\ntruth = \"constant\"\ncontent_tecu = 100",
+          "[ionosphere]\nresidual = \"on\"\nresidual_single = 1",
+          "[ionosphere]\ntruth = \"klobuchar\"\nresidual_common = 0.5",
+          "[ionosphere]\nresidual_common = 0.5\n[model.modern.solution]\nionosphere_correction = \"broadcast\"",
+          "[ionosphere]\nresidual_common = 0.5\n[model.modern.solution]\nionosphere_correction = \"none\"",
+          "[troposphere]\nweather = \"given\"\npressure_hpa = 900\ntemperature_k = 280",
+          "[troposphere]\nmapping = \"vmf1\"\nvmf1_a_wet = 1e-3",
+          "[interference]\njammer_to_signal_db = 20\nkind = \"wide-band\"",
+          "[scintillation]\ns4 = 0.3\nequatorial_evening = true\nevening_peak_h = 20", "[clock]\ndrift_mps = 10"})
+        EXPECT_THAT(modern_of("[model.modern." + std::string(keys).substr(1)).idle_keys, testing::IsEmpty()) << keys;
+}
+
 }  // namespace
 }  // namespace skyloop
