@@ -26,10 +26,18 @@ Fix Baseline::fix(const TruthState& truth, const SkyView& sky, const Arrivals& a
     Fix fix = builder_.start(truth, sky, arrivals);
     if (!fix.has_position()) return fix;
     const UereScale scale = uere_scale(fix, arrivals, parameters_);
-    fix.horizontal_accuracy = fix.dop.hdop * scale.sigma_uere;
-    fix.vertical_accuracy = fix.dop.vdop * scale.sigma_uere;
-    builder_.place(fix, truth.position + position_error(fix, truth.geodetic, scale, normals));
+    tell_accuracy(fix, scale);
+    const Displacement<Ecef> error = position_error(fix, truth.geodetic, scale, normals);
+    builder_.place(fix, truth.position + error, scale.position_error);
     return fix;
+}
+
+// Of the noise that is drawn, whose axes know the geometry or do not.
+void Baseline::tell_accuracy(Fix& fix, const UereScale& scale) const {
+    const bool covariance = parameters_.axes == NoiseAxes::covariance;
+    const Metres per_axis = scale.position_error / std::sqrt(3.0);
+    fix.horizontal_accuracy = covariance ? fix.dop.hdop * scale.sigma_uere : per_axis * std::sqrt(2.0);
+    fix.vertical_accuracy = covariance ? fix.dop.vdop * scale.sigma_uere : per_axis;
 }
 
 Displacement<Ecef> Baseline::position_error(const Fix& fix, const Geodetic& place, const UereScale& scale,

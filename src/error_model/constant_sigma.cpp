@@ -13,7 +13,7 @@ Fix ConstantSigma::fix(const TruthState& truth, const SkyView& sky, const Arriva
     const double per_axis = parameters_.horizontal_sigma.value() / std::sqrt(2.0);
     const Eigen::Vector3d sigmas(per_axis, per_axis, parameters_.vertical_sigma.value());
     const Displacement<Enu> error(sigmas.cwiseProduct(normals));
-    builder_.place(fix, truth.position + LocalFrame(truth.geodetic).to_ecef(error));
+    builder_.place(fix, truth.position + LocalFrame(truth.geodetic).to_ecef(error), Metres(sigmas.norm()));
     fix.horizontal_accuracy = parameters_.horizontal_sigma;
     fix.vertical_accuracy = parameters_.vertical_sigma;
     return fix;

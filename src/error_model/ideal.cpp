@@ -7,13 +7,15 @@ namespace skyloop {
 Fix Ideal::fix(const TruthState& truth, const SkyView& sky, const Arrivals& arrivals) {
     Fix fix = builder_.start(truth, sky, arrivals);
     if (!fix.has_position()) return fix;
-    builder_.place(fix, truth.position);
+    builder_.place(fix, truth.position, Metres(0));
     fix.position = truth.geodetic;
     const Eigen::Vector3d enu = LocalFrame(truth.geodetic).to_enu(truth.velocity).vector();
     const GroundMotion motion = ground_motion({enu.y(), enu.x(), -enu.z()});
     fix.velocity = motion.velocity;
     fix.speed = motion.speed;
     fix.course = motion.course;
+    fix.speed_accuracy = MetresPerSecond(0);
+    fix.course_accuracy = Angle();
     return fix;
 }
 

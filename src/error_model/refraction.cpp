@@ -23,10 +23,10 @@ Fix Refraction::fix(const TruthState& truth, const SkyView& sky, const Arrivals&
     Fix fix = builder_.start(truth, sky, arrivals);
     if (!fix.has_position()) return fix;
     const UereScale scale = uere_scale(fix, arrivals, residual_of_refraction(parameters_));
-    const double per_axis = scale.position_error.value() / std::sqrt(3.0);
-    builder_.place(fix, truth.position + Displacement<Ecef>(per_axis * normals));
-    fix.horizontal_accuracy = fix.dop.hdop * scale.sigma_uere;
-    fix.vertical_accuracy = fix.dop.vdop * scale.sigma_uere;
+    const Metres per_axis = scale.position_error / std::sqrt(3.0);
+    builder_.place(fix, truth.position + Displacement<Ecef>(per_axis.value() * normals), scale.position_error);
+    fix.horizontal_accuracy = per_axis * std::sqrt(2.0);
+    fix.vertical_accuracy = per_axis;
     return fix;
 }
 

@@ -15,7 +15,7 @@ Fix SatelliteCount::fix(const TruthState& truth, const SkyView& sky, const Arriv
     Fix fix = builder_.start(truth, sky, arrivals);
     if (!fix.has_position()) return fix;
     const Metres sigma = sigma_for_count(parameters_, fix.satellites_used());
-    builder_.place(fix, truth.position + Displacement<Ecef>(sigma.value() * normals));
+    builder_.place(fix, truth.position + Displacement<Ecef>(sigma.value() * normals), sigma * std::sqrt(3.0));
     fix.horizontal_accuracy = sigma * std::sqrt(2.0);
     fix.vertical_accuracy = sigma;
     return fix;

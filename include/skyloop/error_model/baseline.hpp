@@ -13,7 +13,7 @@ namespace skyloop {
 /// Adds noise of scale E = PDOP·σ_uere to the true position, in ECEF, white from epoch to epoch; velocity and course
 /// follow from the noised positions (MODELS.md 3.5–3.10, D-08 … D-11).
 ///
-/// Reported accuracies are HDOP·σ_uere and VDOP·σ_uere.
+/// Reported accuracies are those of the noise: E·√(2/3) and E/√3, with axes by covariance HDOP·σ_uere and VDOP·σ_uere.
 class Baseline : public ErrorModel {
 public:
     /// @param stream name of the random stream
@@ -22,6 +22,7 @@ public:
     Fix fix(const TruthState& truth, const SkyView& sky, const Arrivals& arrivals) override;
 
 private:
+    void tell_accuracy(Fix& fix, const UereScale& scale) const;
     [[nodiscard]] Displacement<Ecef> position_error(const Fix& fix, const Geodetic& place, const UereScale& scale,
                                                     const Eigen::Vector3d& normals) const;
 

@@ -10,7 +10,7 @@ namespace skyloop {
 /// Adds noise of scale PDOP·σ, σ being the root mean square over the used satellites of what remains of their excess
 /// paths (MODELS.md section 6). Needs RefractionDelay, which writes the excess paths as tropospheric delays.
 ///
-/// Variance is equal on the axes of ECEF; reported accuracies are HDOP·σ and VDOP·σ.
+/// Variance is equal on the axes of ECEF, and so are the reported accuracies: E·√(2/3) and E/√3 of E = PDOP·σ.
 class Refraction : public ErrorModel {
 public:
     Refraction(const RefractionParameters& parameters, const SensorContext& context)

@@ -24,8 +24,8 @@ TEST(Baseline, ReportsTimeSatellitesDopAndAccuracies) {
     EXPECT_EQ(fix.leap_seconds, 18);
     EXPECT_EQ(fix.type, FixType::fix_3d);
     EXPECT_EQ(fix.satellites_used(), 10);
-    EXPECT_NEAR(fix.horizontal_accuracy.value(), fix.dop.hdop * scale.sigma_uere.value(), 1e-12);
-    EXPECT_NEAR(fix.vertical_accuracy.value(), fix.dop.vdop * scale.sigma_uere.value(), 1e-12);
+    EXPECT_NEAR(fix.horizontal_accuracy.value(), scale.position_error.value() * std::sqrt(2.0 / 3), 1e-12);
+    EXPECT_NEAR(fix.vertical_accuracy.value(), scale.position_error.value() / std::sqrt(3.0), 1e-12);
     EXPECT_EQ(fix.geoid_undulation, Metres(0));
     ASSERT_EQ(fix.satellites.size(), baseline_sky.satellites.size());
     for (std::size_t i = 0; i < fix.satellites.size(); ++i) {
@@ -138,6 +138,9 @@ TEST(Baseline, CovarianceAxesFollowTheGeometryWithTheSameTrace) {
     const Eigen::Matrix3d expected = variance * q->topLeftCorner<3, 3>();
     EXPECT_LT((sum / n - expected).norm(), 0.03 * expected.norm());
     EXPECT_NEAR(expected.trace(), std::pow(scale.position_error.value(), 2), 1e-6);
+    const Fix& fix = trace.epoch.fix;
+    EXPECT_NEAR(fix.horizontal_accuracy.value(), std::sqrt(expected(0, 0) + expected(1, 1)), 1e-9);
+    EXPECT_NEAR(fix.vertical_accuracy.value(), std::sqrt(expected(2, 2)), 1e-9);
 }
 
 }  // namespace

@@ -47,6 +47,7 @@ TEST(Ideal, IsTheTruthWithItsVelocity) {
     EXPECT_NEAR(fix.speed.value(), 5, 1e-12);
     EXPECT_NEAR(fix.course.deg(), 36.8698976, 1e-6);
     EXPECT_EQ(fix.horizontal_accuracy, Metres(0));
+    EXPECT_EQ(fix.speed_accuracy, MetresPerSecond(0));
     EXPECT_EQ(fix.satellites_used(), 10);
 }
 
@@ -101,8 +102,9 @@ TEST(Refraction, ErrorIsDopTimesTheResidualOfTheExcessPaths) {
         squares += std::pow(0.05 * arrival.tropo_delay.value(), 2);
     }
     const double sigma = std::sqrt(squares / 10);
-    EXPECT_NEAR(trace.epoch.fix.horizontal_accuracy.value(), trace.epoch.fix.dop.hdop * sigma, 1e-12);
     const double expected = trace.epoch.fix.dop.pdop * sigma;
+    EXPECT_NEAR(trace.epoch.fix.horizontal_accuracy.value(), expected * std::sqrt(2.0 / 3), 1e-9);
+    EXPECT_NEAR(trace.epoch.fix.vertical_accuracy.value(), expected / std::sqrt(3.0), 1e-9);
     EXPECT_NEAR(spread_of(run, simple_sky, 10000).norm(), expected, 0.03 * expected);
 }
 
@@ -121,6 +123,32 @@ TEST(WholePath, HasTheDelaysOfTheBaselineAndItsOwnLossAndNoise) {
     }
     EXPECT_EQ(a.epoch.fix.horizontal_accuracy, b.epoch.fix.horizontal_accuracy);
     EXPECT_GT((test::position_error(a) - test::position_error(b)).norm(), 0.01);
+}
+
+// At rest, where every velocity is an error.
+TEST(EveryModel, TellsHowWrongPositionsAndVelocitiesAre) {
+    for (const ErrorModelKind kind : error_model_kinds()) {
+        if (kind == ErrorModelKind::ideal) continue;
+        SCOPED_TRACE(std::string(error_model_name(kind)));
+        ModelRun run(settings_of(kind));
+        EXPECT_GT(run.epoch(simple_sky, 0).epoch.fix.speed_accuracy.value(), 10) << "nothing is known of the motion";
+        double speed = 0, horizontal = 0, vertical = 0;
+        constexpr int epochs = 4000;
+        for (int i = 1; i <= epochs; ++i) {
+            const Trace trace = run.epoch(simple_sky, 0.5 * i);
+            const Fix& fix = trace.epoch.fix;
+            const VelocityNed& v = fix.velocity;
+            const Eigen::Vector3d error =
+                LocalFrame(trace.truth.geodetic).to_enu(Displacement<Ecef>(test::position_error(trace))).vector();
+            speed += Eigen::Vector3d(v.north, v.east, v.down).squaredNorm() / std::pow(fix.speed_accuracy.value(), 2);
+            horizontal += error.head<2>().squaredNorm() / std::pow(fix.horizontal_accuracy.value(), 2);
+            vertical += error.z() * error.z() / std::pow(fix.vertical_accuracy.value(), 2);
+            EXPECT_LE(fix.course_accuracy.deg(), 180.0001);
+        }
+        EXPECT_NEAR(std::sqrt(speed / epochs), 1, 0.04);
+        EXPECT_NEAR(std::sqrt(horizontal / epochs), 1, 0.04);
+        EXPECT_NEAR(std::sqrt(vertical / epochs), 1, 0.04);
+    }
 }
 
 TEST(EveryModel, ReportsSignalStrengthsAndLosesTheFixWithTheSatellites) {
