@@ -265,8 +265,8 @@ Metres NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& f
     // Residuals that noise does not explain make the formal covariance a lie.
     if (!epoch.consistent && point.redundancy > 0)
         scale *= std::sqrt(std::max(1.0, point.statistic / point.redundancy));
-    const DifferentialKind kind = differential_kind();
-    const bool augmented = kind == DifferentialKind::sbas && corrected_ == CorrectionState::none;
+    const bool augmented = corrected_ == CorrectionState::none && differential_kind() == DifferentialKind::sbas;
+    const DifferentialKind kind = augmented ? DifferentialKind::none : differential_kind();
     const ExpectedError expected =
         augmented ? expected_error_left(point, parameters_, air_.at(to_geodetic(point.position), time_))
                   : expected_error(point, parameters_.accuracy);

@@ -21,7 +21,8 @@ struct ExpectedError {
 ExpectedError expected_error(const SinglePoint& solution, const AccuracyParameters& parameters);
 
 /// The same where a service of corrections has taken most of the ionosphere before it was measured: what it leaves is
-/// of one sign, so that all satellites share it, and 1 σ of it is `differential.sbas_left` of what `air` tells.
+/// of one sign, so that all satellites share it, and 1 σ of it is `differential.sbas_left` of what `air` tells. The
+/// noise of the position is scaled by `differential.sbas_scale`.
 ExpectedError expected_error_left(SinglePoint solution, const NavigationParameters& parameters,
                                   const SiteCorrections& air);
 

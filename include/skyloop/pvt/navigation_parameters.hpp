@@ -75,7 +75,7 @@ enum class DifferentialKind { none, sbas, rtk_float, rtk_fixed };
 struct DifferentialParameters {
     DifferentialKind kind = DifferentialKind::none;
     double sbas_left = 0.1;            ///< of signal-in-space error and ionosphere, by SBAS
-    double sbas_scale = 0.5;           ///< of the reported position accuracies
+    double sbas_scale = 0.5;           ///< of the noise in the reported position accuracies
     Metres float_accuracy{0.3};        ///< reported, horizontal, up to an HDOP of 1; times the HDOP above it
     Metres fixed_accuracy{0.014};      ///< the same with integer ambiguities
     double vertical_proportion = 1.5;  ///< vertical over horizontal, of the two above, up to a VDOP of as much
