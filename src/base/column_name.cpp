@@ -1,4 +1,5 @@
 #include "skyloop/base/column_name.hpp"
+#include "skyloop/base/lowered_text.hpp"
 
 #include <algorithm>
 #include <array>

@@ -26,13 +26,6 @@ std::string_view trimmed_cell(std::string_view text) {
     return text.substr(first, text.find_last_not_of(around) - first + 1);
 }
 
-std::string lowered_text(std::string_view text) {
-    std::string lower(text);
-    for (char& letter : lower)
-        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
-    return lower;
-}
-
 char separator_in(std::string_view line) {
     for (const char candidate : {',', ';', '\t'})
         if (line.find(candidate) != std::string_view::npos) return candidate;

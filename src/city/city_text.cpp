@@ -1,4 +1,5 @@
 #include "city_text.hpp"
+#include "skyloop/base/lowered_text.hpp"
 
 #include <fmt/format.h>
 
@@ -58,15 +59,8 @@ std::string shown(std::string_view word) {
     return word.size() > 40 ? text + "…" : text;
 }
 
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    for (char& c : lower)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return lower;
-}
-
 std::string material_of_name(std::string_view name) {
-    const std::string lower = lower_case(name);
+    const std::string lower = lowered_text(name);
     if (lower.find("ground") != std::string::npos) {
         for (const char* wetness : {"dry", "medium", "wet"})
             // P.2040 has a "medium dry ground": medium goes before dry.
@@ -96,7 +90,7 @@ std::string material_of_name(std::string_view name) {
 }
 
 bool names_ground(std::string_view name) {
-    const std::string lower = lower_case(name);
+    const std::string lower = lowered_text(name);
     if (lower.find("ground") != std::string::npos || lower.find("terrain") != std::string::npos) return true;
     const std::size_t plane = lower.find("plane");
     if (plane == std::string::npos) return false;

@@ -21,8 +21,6 @@ std::string line_place(std::string_view name, std::string_view text, std::size_t
 /// What to show of a file's word in a message: at most 40 characters, unprintable ones as '?'.
 std::string shown(std::string_view word);
 
-std::string lower_case(std::string_view text);
-
 /// The material of surface_materials() that a name such as "itu_concrete", "Glass.003" or "wet ground" speaks of; empty
 /// when it speaks of none. ("facade_brick" is brick; "plate_glass_metal" the one that comes first, glass.)
 std::string material_of_name(std::string_view name);

@@ -6,6 +6,7 @@
 #include "city_text.hpp"
 #include "json_text.hpp"
 #include "outlines.hpp"
+#include "skyloop/base/lowered_text.hpp"
 #include "skyloop/base/middle.hpp"
 
 namespace skyloop {
@@ -49,9 +50,7 @@ OutlineTags tags_of(const json& properties) {
     OutlineTags tags;
     if (!properties.is_object()) return tags;
     for (const auto& [key, value] : properties.items()) {
-        std::string lower = key;
-        for (char& c : lower)
-            if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+        std::string lower = lowered_text(key);
         if (value.is_string() && !value.get_ref<const std::string&>().empty())
             tags.emplace(std::move(lower), value.get<std::string>());
         if (value.is_number()) tags.emplace(std::move(lower), fmt::format("{}", value.get<double>()));

@@ -7,6 +7,7 @@
 
 #include "city_text.hpp"
 #include "place_on_earth.hpp"
+#include "skyloop/base/lowered_text.hpp"
 #include "skyloop/base/middle.hpp"
 #include "skyloop/city/city_file.hpp"
 
@@ -85,7 +86,7 @@ private:
         unsigned seen = 0;
         for (;;) {
             const char* before = at_;
-            const std::string key = lower_case(next_word());
+            const std::string key = lowered_text(next_word());
             const auto found = std::find(keys.begin(), keys.end(), key);
             if (found == keys.end()) {
                 const bool letter = !key.empty() && key[0] >= 'a' && key[0] <= 'z' && key != "nan" && key != "inf";

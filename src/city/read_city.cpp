@@ -7,6 +7,7 @@
 
 #include "city_text.hpp"
 #include "companion_files.hpp"
+#include "skyloop/base/lowered_text.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/city/city_file.hpp"
 #include "tar_archive.hpp"
@@ -133,7 +134,7 @@ constexpr std::array<CityEnding, 15> city_endings{{{".obj", parse_named<parse_ob
                                                    {".cityjson", parse_named<parse_cityjson>}}};
 
 Result<CityFile> read_by_ending(const fs::path& path, const CityFileSettings& settings) {
-    std::string name = lower_case(path.filename().string());
+    std::string name = lowered_text(path.filename().string());
     if (name.ends_with(".gz")) name.resize(name.size() - 3);
     for (const CityEnding& known : city_endings) {
         if (!name.ends_with(known.ending)) continue;
@@ -160,7 +161,7 @@ Result<CityFile> parse_mitsuba_archive(std::string_view bytes, std::string_view 
     std::string scene;
     std::size_t scenes = 0;
     for (const auto& [member, content] : *members)
-        if (lower_case(member).ends_with(".xml") && scenes++ == 0) scene = member;
+        if (lowered_text(member).ends_with(".xml") && scenes++ == 0) scene = member;
     if (scenes != 1)
         return fail(ErrorCode::input, fmt::format("{}: holds {} .xml files; expected one Mitsuba scene", name, scenes));
     const std::string folder = scene.substr(0, scene.rfind('/') + 1);
@@ -179,7 +180,7 @@ Result<fs::path> file_of_city(const fs::path& path) {
     if (!fs::is_directory(path, error)) return path;
     std::vector<fs::path> scenes;
     for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
-        if (lower_case(entry->path().extension().string()) == ".xml") scenes.push_back(entry->path());
+        if (lowered_text(entry->path().extension().string()) == ".xml") scenes.push_back(entry->path());
     if (error) return fail(ErrorCode::outside, fmt::format("{}: {}", path.string(), error.message()));
     if (scenes.size() != 1)
         return fail(ErrorCode::input,

@@ -1,4 +1,5 @@
 #include "reference_system.hpp"
+#include "skyloop/base/lowered_text.hpp"
 
 #include <fmt/format.h>
 
@@ -54,7 +55,7 @@ struct EpsgName {
     std::optional<int> code, heights;
 };
 EpsgName epsg_name(std::string_view name) {
-    const std::string lower = lower_case(name);
+    const std::string lower = lowered_text(name);
     const std::size_t start = lower.find("epsg");
     if (start == std::string::npos) return {};
     const std::size_t end = std::min(lower.find_first_of(",&+; ", start), lower.size());
@@ -65,7 +66,7 @@ EpsgName epsg_name(std::string_view name) {
 /// Names of Germany's surveying authorities (AdV, GeoInfoDok): "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH" is UTM, and
 /// behind the asterisk stand heights.
 std::optional<ReferenceSystem> adv_system(std::string_view name) {
-    const std::size_t start = lower_case(name).find("etrs89_utm");
+    const std::size_t start = lowered_text(name).find("etrs89_utm");
     if (start == std::string::npos) return std::nullopt;
     constexpr std::size_t length = 12;  // with the zone
     const std::optional<int> zone = last_number(name.substr(start, length));
@@ -81,7 +82,7 @@ std::optional<ReferenceSystem> adv_system(std::string_view name) {
 
 std::optional<ReferenceSystem> reference_system(std::string_view name) {
     if (name.empty()) return std::nullopt;
-    if (lower_case(name).find("crs84") != std::string::npos)
+    if (lowered_text(name).find("crs84") != std::string::npos)
         return ReferenceSystem{CoordinateKind::geographic, false, "OGC:CRS84", {}};
     if (auto system = adv_system(name)) return system;
     const auto [code, heights] = epsg_name(name);

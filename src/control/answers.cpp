@@ -6,6 +6,7 @@
 #include "header_text.hpp"
 #include "json_text.hpp"
 #include "page_files.hpp"
+#include "skyloop/base/lowered_text.hpp"
 #include "skyloop/control/command_json.hpp"
 #include "skyloop/control/control_request.hpp"
 #include "skyloop/control/status_json.hpp"
@@ -121,7 +122,7 @@ ControlResponse stop_fault(const ControlRequest& request, const ControlSources& 
 
 std::optional<ControlResponse> wrong_content(const ControlRequest& request) {
     const std::string_view type = request.header("Content-Type").value_or("");
-    if (in_lower_case(without_blanks(type.substr(0, type.find(';')))) == "application/json") return std::nullopt;
+    if (lowered_text(without_blanks(type.substr(0, type.find(';')))) == "application/json") return std::nullopt;
     return error_response(415, fmt::format("the body is '{}'; expected application/json", type));
 }
 

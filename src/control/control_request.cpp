@@ -1,4 +1,5 @@
 #include "skyloop/control/control_request.hpp"
+#include "skyloop/base/lowered_text.hpp"
 
 #include <algorithm>
 
@@ -9,7 +10,7 @@ namespace skyloop {
 namespace {
 
 bool same_header(std::string_view a, std::string_view b) {
-    return a.size() == b.size() && in_lower_case(a) == in_lower_case(b);
+    return a.size() == b.size() && lowered_text(a) == lowered_text(b);
 }
 
 }  // namespace
@@ -26,7 +27,7 @@ std::optional<std::string_view> ControlRequest::header(std::string_view name) co
 
 void ControlRequest::take_absolute_form() {
     constexpr std::string_view scheme = "http://";
-    if (in_lower_case(std::string_view(target).substr(0, scheme.size())) != scheme) return;
+    if (lowered_text(std::string_view(target).substr(0, scheme.size())) != scheme) return;
     const std::size_t end = std::min(target.find_first_of("/?", scheme.size()), target.size());
     std::string host = target.substr(scheme.size(), end - scheme.size());
     target.erase(0, end);

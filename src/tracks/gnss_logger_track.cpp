@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "skyloop/base/lowered_text.hpp"
 #include "table_cells.hpp"
 
 namespace skyloop {

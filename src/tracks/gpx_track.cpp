@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "skyloop/base/lowered_text.hpp"
 #include "text_track.hpp"
 #include "xml_tree.hpp"
 

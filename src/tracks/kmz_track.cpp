@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "skyloop/base/lowered_text.hpp"
 #include "text_track.hpp"
 
 namespace skyloop {

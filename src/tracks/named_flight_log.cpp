@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
+#include "skyloop/base/lowered_text.hpp"
 #include "track_formats.hpp"
 
 namespace skyloop {
@@ -19,9 +19,7 @@ constexpr std::array named_flight_logs{
     NamedFlightLog{".ubx", "a UBX log with NAV-PVT, NAV-PVAT, NAV-HPPOSLLH, NAV-POSLLH or NAV-SOL"}};
 
 const NamedFlightLog* named_flight_log(const std::string& name) {
-    std::string lower(name);
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string lower = lowered_text(name);
     const auto found = std::find_if(named_flight_logs.begin(), named_flight_logs.end(),
                                     [&](const NamedFlightLog& log) { return lower.ends_with(log.ending); });
     return found == named_flight_logs.end() ? nullptr : &*found;

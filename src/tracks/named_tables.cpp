@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "skyloop/base/column_name.hpp"
+#include "skyloop/base/lowered_text.hpp"
 #include "table_cells.hpp"
 
 namespace skyloop {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mission_items.hpp"
+#include "skyloop/base/lowered_text.hpp"
 #include "text_track.hpp"
 
 namespace skyloop {

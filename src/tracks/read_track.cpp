@@ -1,4 +1,5 @@
 #include "skyloop/tracks/read_track.hpp"
+#include "skyloop/base/lowered_text.hpp"
 
 #include "track_formats.hpp"
 

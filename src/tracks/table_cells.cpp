@@ -1,4 +1,5 @@
 #include "table_cells.hpp"
+#include "skyloop/base/lowered_text.hpp"
 
 #include <fmt/format.h>
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mission_items.hpp"
+#include "skyloop/base/lowered_text.hpp"
 #include "text_track.hpp"
 
 namespace skyloop {

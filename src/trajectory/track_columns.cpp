@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "skyloop/base/column_name.hpp"
+#include "skyloop/base/lowered_text.hpp"
 #include "skyloop/base/table_line.hpp"
 
 namespace skyloop {

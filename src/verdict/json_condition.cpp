@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sentence_words.hpp"
+#include "skyloop/base/lowered_text.hpp"
 
 namespace skyloop {
 namespace {
@@ -123,7 +124,7 @@ bool value_fulfils(const JsonCondition& condition, const JsonValue& value) {
 bool names_class(const JsonValue& object, const std::string& part) {
     const auto found = object.find("class");
     return found != object.end() && found->is_string() &&
-           small_letters(found->get_ref<const std::string&>()) == small_letters(part);
+           lowered_text(found->get_ref<const std::string&>()) == lowered_text(part);
 }
 
 std::string value_text(const ConditionValue& value) {

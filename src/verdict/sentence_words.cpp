@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "skyloop/base/lowered_text.hpp"
 #include "skyloop/base/spelling.hpp"
 
 namespace skyloop {
@@ -25,16 +26,9 @@ bool is_blank(char character) {
 
 }  // namespace
 
-std::string small_letters(std::string_view text) {
-    std::string small(text);
-    std::transform(small.begin(), small.end(), small.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return small;
-}
-
 bool needs_quotes(std::string_view name) {
     if (name.empty() || name.front() == '\'' || name.front() == '"') return true;
-    const std::string small = small_letters(name);
+    const std::string small = lowered_text(name);
     return std::any_of(name.begin(), name.end(), is_blank) ||
            std::find(std::begin(own_words), std::end(own_words), small) != std::end(own_words);
 }
@@ -65,7 +59,7 @@ void SentenceWords::split(std::string_view text) {
 }
 
 bool SentenceWords::is_next(std::string_view word) const {
-    return !at_end() && !words_[next_].quoted && small_letters(words_[next_].text) == small_letters(word);
+    return !at_end() && !words_[next_].quoted && lowered_text(words_[next_].text) == lowered_text(word);
 }
 
 void SentenceWords::take() {
@@ -84,7 +78,7 @@ bool SentenceWords::accept(std::initializer_list<std::string_view> words) {
     if (mistake_) return false;
     std::size_t at = next_;
     for (const std::string_view word : words) {
-        const bool same = at < words_.size() && !words_[at].quoted && small_letters(words_[at].text) == word;
+        const bool same = at < words_.size() && !words_[at].quoted && lowered_text(words_[at].text) == word;
         if (!same) {
             // The first word alone was right: the mistake is in the second.
             wanted(fmt::format("{}", fmt::join(words, " ")));

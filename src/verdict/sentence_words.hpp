@@ -63,7 +63,5 @@ bool needs_quotes(std::string_view name);
 bool means_a_stretch(const TimeClause& time);
 /// A subject that is a message, which takes no time.
 bool is_message(ExpectedSubject subject);
-/// The same text in small letters (ASCII).
-std::string small_letters(std::string_view text);
 
 }  // namespace skyloop

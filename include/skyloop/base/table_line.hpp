@@ -14,9 +14,6 @@ using LineCells = std::vector<std::string_view>;
 /// Without blanks, line ends and quotation marks around it.
 std::string_view trimmed_cell(std::string_view text);
 
-/// A to Z as a to z, every other byte as it is.
-std::string lowered_text(std::string_view text);
-
 /// Comma, semicolon or tabulator, the first of them that the line has; else a blank.
 char separator_in(std::string_view line);
 
