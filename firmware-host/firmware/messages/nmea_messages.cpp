@@ -11,7 +11,6 @@
 namespace skyloop::firmware {
 namespace {
 
-// Nothing where the board leaves it empty.
 // What GGA and GNS share: height, age and station of corrections.
 template <class Message>
 void add_height_and_corrections(Message& m, const NmeaReport& r) {
