@@ -20,7 +20,7 @@ std::size_t end_of_cell(std::string_view line, std::string_view separators) {
 }  // namespace
 
 std::string_view trimmed_cell(std::string_view text) {
-    constexpr std::string_view around = " \t\r\"";
+    constexpr std::string_view around = " \t\r\n\"";
     const std::size_t first = text.find_first_not_of(around);
     if (first == std::string_view::npos) return {};
     return text.substr(first, text.find_last_not_of(around) - first + 1);

@@ -112,7 +112,7 @@ Result<void> GpxReader::take_point(const pugi::xml_node& point) {
     TextRow row;
     row.line = tree_.line_of(point);
     const std::string time = xml_content(xml_child(point, "time"));
-    const std::string_view plain = trimmed_text(time);
+    const std::string_view plain = trimmed_cell(time);
     if (!plain.empty())
         if (const auto timed = take_time(plain, row); !timed) return timed;
     if (const auto placed = take_place(point, row); !placed) return placed;
@@ -156,7 +156,7 @@ Result<void> GpxReader::take_place(const pugi::xml_node& point, TextRow& row) {
 // Nothing where the point has no such child, or an empty one.
 Result<std::optional<double>> GpxReader::child_number(const pugi::xml_node& point, std::string_view name) {
     const std::string text = xml_content(xml_child(point, name));
-    const std::string_view plain = trimmed_text(text);
+    const std::string_view plain = trimmed_cell(text);
     if (plain.empty() || lowered_text(plain) == "nan") return std::nullopt;
     const auto number = text_number(plain);
     if (!number)

@@ -95,7 +95,7 @@ private:
 Result<Track> IgcReader::read() {
     TextLines lines(file_.text);
     while (lines.next()) {
-        const std::string_view line = trimmed_text(lines.line());
+        const std::string_view line = trimmed_cell(lines.line());
         if (line.starts_with('H')) take_header(line);
         if (line.starts_with('I')) take_extensions(line);
         if (line.starts_with('B')) take_fix(line, lines.number());
@@ -248,7 +248,7 @@ bool is_igc(const TrackFile& file) {
     constexpr std::size_t looked_at = 65536;
     TextLines lines(file.text.substr(0, looked_at));
     while (lines.next()) {
-        const std::string_view line = trimmed_text(lines.line());
+        const std::string_view line = trimmed_cell(lines.line());
         if (is_igc_fix(line) || (line.starts_with("HFDTE") && line.size() < 80)) return true;
     }
     return false;

@@ -62,7 +62,7 @@ Result<void> KmlReader::take_tracks() {
         const pugi::xml_node group = at.parent();
         const bool grouped = xml_name(group) == "MultiTrack";
         const bool first = !grouped || xml_child(group, "Track") == at;
-        const bool joined = !first && trimmed_text(xml_content(xml_child(group, "interpolate"))) == "1";
+        const bool joined = !first && trimmed_cell(xml_content(xml_child(group, "interpolate"))) == "1";
         if (first) track_.begin_part(xml_content(xml_child(grouped ? group.parent() : group, "name")));
         if (const auto taken = take_track(at, joined); !taken) return taken;
     }
@@ -176,11 +176,11 @@ Result<void> KmlReader::take_points() {
 // Nothing: the point has none and is left out.
 Result<std::optional<Nanoseconds>> KmlReader::time_of(const pugi::xml_node& when, std::size_t line) {
     const std::string text = xml_content(when);
-    if (trimmed_text(text).empty()) return track_.leave_out("have no time", line), std::nullopt;
+    if (trimmed_cell(text).empty()) return track_.leave_out("have no time", line), std::nullopt;
     const auto time = parse_iso_time(text);
     if (!time)
         return track_.refusal(line, fmt::format("<when> is '{}'; expected a time as 2024-03-05T12:00:00.25Z",
-                                                trimmed_text(text).substr(0, 40)));
+                                                trimmed_cell(text).substr(0, 40)));
     if (!time->in_range) return track_.leave_out("have a time before 1980-01-06 or after 2199", line), std::nullopt;
     if (!time->zoned) ++without_zone_;
     return time->time.time_since_epoch();
@@ -195,14 +195,14 @@ Result<bool> KmlReader::take_coordinates(const std::string& text, std::string_vi
         if (!number || numbers.size() == 3)
             return track_.refusal(row.line, fmt::format("the place is '{}'; expected longitude, latitude and altitude, "
                                                         "numbers with a decimal point",
-                                                        trimmed_text(text).substr(0, 60)));
+                                                        trimmed_cell(text).substr(0, 60)));
         numbers.push_back(*number);
         at = text.find_first_not_of(separators, end);
     }
     if (numbers.empty()) return false;
     if (numbers.size() < 2)
         return track_.refusal(row.line, fmt::format("the place is '{}'; expected longitude and latitude",
-                                                    trimmed_text(text).substr(0, 60)));
+                                                    trimmed_cell(text).substr(0, 60)));
     row.longitude_deg = numbers[0], row.latitude_deg = numbers[1];
     if (numbers.size() < 3) return true;
     clamped_ += altitudes_ == Altitudes::none;
@@ -218,7 +218,7 @@ KmlReader::Altitudes KmlReader::altitudes_of(const pugi::xml_node& holder) {
     pugi::xml_node mode = xml_child(holder, "altitudeMode");
     if (!mode) mode = xml_child(holder.parent(), "altitudeMode");
     const std::string text = xml_content(mode);
-    const std::string_view plain = trimmed_text(text);
+    const std::string_view plain = trimmed_cell(text);
     if (plain == "absolute") return Altitudes::sea_level;
     return plain.starts_with("relativeTo") ? Altitudes::ground : Altitudes::none;
 }

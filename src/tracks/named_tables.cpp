@@ -204,7 +204,7 @@ Result<Track> read_rows(const TrackFile& file, TextTrack& track, const RowTaker&
     bool named = false;
     while (table.next()) {
         if (!named) {
-            named = lowered_text(trimmed_text(table.text())).starts_with(lowered_text(names_begin));
+            named = lowered_text(trimmed_cell(table.text())).starts_with(lowered_text(names_begin));
             if (named) table.take_names();
             continue;
         }
@@ -241,14 +241,14 @@ std::string_view unicsv_names(std::string_view head) {
     TextLines lines(head);
     while (lines.next()) {
         const std::string_view line = lines.line();
-        if (trimmed_text(line).empty()) continue;
+        if (trimmed_cell(line).empty()) continue;
         std::vector<std::string_view> cells;
         split_table_line(line, separator_in(line), cells);
         std::size_t found = 0;
         for (const std::string_view cell : cells)
             for (const std::string_view name : {"latitude", "longitude", "date", "time"})
                 found += lowered_text(cell) == name;
-        return found == 4 ? trimmed_text(line) : std::string_view();
+        return found == 4 ? trimmed_cell(line) : std::string_view();
     }
     return {};
 }
@@ -284,7 +284,7 @@ Result<Track> read_unicsv(const TrackFile& file) {
 bool has_line(std::string_view head, std::string_view begin) {
     TextLines lines(head);
     while (lines.next())
-        if (lowered_text(trimmed_text(lines.line()).substr(0, begin.size())) == lowered_text(begin)) return true;
+        if (lowered_text(trimmed_cell(lines.line()).substr(0, begin.size())) == lowered_text(begin)) return true;
     return false;
 }
 

@@ -34,7 +34,7 @@ bool is_rinex(std::string_view head) {
 // A line "$GPGGA,…" without "*hh".
 bool is_unchecked_sentence(std::string_view line) {
     constexpr std::size_t address_end = 6;
-    const std::string_view plain = trimmed_text(line);
+    const std::string_view plain = trimmed_cell(line);
     if (plain.size() <= address_end || plain[0] != '$' || plain[address_end] != ',') return false;
     constexpr std::array<std::string_view, 5> kinds{"GGA", "RMC", "GLL", "GNS", "VTG"};
     const std::string_view kind = plain.substr(3, 3);

@@ -180,7 +180,7 @@ Result<Track> PlanReader::read() {
 bool is_qgc_plan(const TrackFile& file) {
     constexpr std::size_t looked_at = 1 << 20;
     const std::string_view text = file.text.substr(0, looked_at);
-    if (!trimmed_text(text.substr(0, 64)).starts_with('{')) return false;
+    if (!trimmed_cell(text.substr(0, 64)).starts_with('{')) return false;
     return lowered_text(file.name).ends_with(".plan") ||
            (text.find("\"fileType\"") != std::string_view::npos && text.find("\"Plan\"") != std::string_view::npos);
 }

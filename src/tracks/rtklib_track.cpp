@@ -43,7 +43,7 @@ private:
 Result<Track> RtklibRows::read() {
     TextLines lines(file_.text);
     while (lines.next()) {
-        const std::string_view line = trimmed_text(lines.line());
+        const std::string_view line = trimmed_cell(lines.line());
         if (line.starts_with('%')) {
             take_header(line);
             if (header_.baseline)
@@ -160,7 +160,7 @@ Result<void> RtklibRows::take_row(std::string_view line, std::size_t number) {
 bool is_rtklib_track(std::string_view head) {
     TextLines lines(head);
     while (lines.next()) {
-        const std::string_view line = trimmed_text(lines.line());
+        const std::string_view line = trimmed_cell(lines.line());
         if (line.starts_with('%') && names_rtklib_columns(line)) return true;
         if (!line.empty() && !line.starts_with('%')) return false;
     }

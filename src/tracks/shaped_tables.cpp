@@ -23,7 +23,7 @@ FirstRow first_row_of(const TrackFile& file) {
     TextLines lines(file.text);
     constexpr std::size_t most_lines = 1000;  // of comments before it
     while (lines.next() && lines.number() < most_lines) {
-        const std::string_view line = trimmed_text(lines.line());
+        const std::string_view line = trimmed_cell(lines.line());
         if (line.empty() || shaped_comments.find(line.front()) != std::string_view::npos) continue;
         first.separator = separator_in(line);
         std::vector<std::string_view> cells;

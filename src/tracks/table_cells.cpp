@@ -11,7 +11,7 @@ namespace skyloop {
 
 bool TableCells::next() {
     while (lines_.next()) {
-        const std::string_view plain = trimmed_text(lines_.line());
+        const std::string_view plain = trimmed_cell(lines_.line());
         if (plain.empty() || comments_.find(plain.front()) != std::string::npos) continue;
         split_table_line(lines_.line(), separator_, cells_);
         return true;

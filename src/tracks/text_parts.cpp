@@ -48,13 +48,6 @@ bool could_be(const UtcTime& local) {
 
 }  // namespace
 
-std::string_view trimmed_text(std::string_view text) {
-    constexpr std::string_view blanks = " \t\r\n\"";
-    const std::size_t first = text.find_first_not_of(blanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
 std::string one_line_of(std::string text) {
     for (char& letter : text)
         if (static_cast<unsigned char>(letter) < 0x20) letter = ' ';
@@ -62,7 +55,7 @@ std::string one_line_of(std::string text) {
 }
 
 std::optional<double> text_number(std::string_view text) {
-    text = trimmed_text(text);
+    text = trimmed_cell(text);
     if (text.starts_with('+')) text.remove_prefix(1);
     double value = 0;
     const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -83,7 +76,7 @@ bool TextLines::next() {
 }
 
 std::optional<IsoTime> parse_iso_time(std::string_view text) {
-    text = trimmed_text(text);
+    text = trimmed_cell(text);
     UtcTime local;
     const auto year = take_digits(text, 4);
     const bool first = take_char(text, "-/");
@@ -100,7 +93,7 @@ std::optional<IsoTime> parse_iso_time(std::string_view text) {
     if (!first || !second || !between || !third || !fourth) return std::nullopt;
     local = {static_cast<int>(*year), *month, *day, *hour, *minute, *whole, 0};
     if (!take_fraction(text, local.nanosecond)) return std::nullopt;
-    text = trimmed_text(text);
+    text = trimmed_cell(text);
     const auto zone = zone_minutes(text);
     if (!zone || !could_be(local)) return std::nullopt;
     const auto since = utc_since_1980(utc_of_local(local, *zone));

@@ -35,8 +35,6 @@ struct TextRow {
 
 // The number that the whole of a cell is, with a decimal point and without blanks around it; nothing for anything else.
 std::optional<double> text_number(std::string_view text);
-// Without blanks, tabs, line ends and quotation marks around it.
-std::string_view trimmed_text(std::string_view text);
 // Line ends and other control characters as blanks: what a file holds does not break a message.
 std::string one_line_of(std::string text);
 

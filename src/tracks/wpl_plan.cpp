@@ -68,13 +68,13 @@ Result<void> WplReader::take_line(std::string_view line, std::size_t number) {
 Result<Track> WplReader::read() {
     TextLines lines(file_.text);
     lines.next();
-    const std::string_view version = trimmed_text(lines.line().substr(wpl_mark.size()));
+    const std::string_view version = trimmed_cell(lines.line().substr(wpl_mark.size()));
     if (version != "110" && version != "120")
         return refusal(
             1, fmt::format("a mission of the version '{}'; expected QGC WPL 110 or 120", version.substr(0, 20)));
     mission_.format = fmt::format("QGC WPL {}", version);
     while (lines.next()) {
-        const std::string_view line = trimmed_text(lines.line());
+        const std::string_view line = trimmed_cell(lines.line());
         if (line.empty() || line.starts_with('#')) continue;
         if (const auto taken = take_line(line, lines.number()); !taken) return fail(taken.error());
     }
