@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -150,21 +151,32 @@ TEST(Bench, AMachineWithoutUsbHasNone) {
     EXPECT_THAT(*watch->wait(milliseconds(50)), IsEmpty());
 }
 
+DeviceSpec numbered(DeviceSpec device, int number) {
+    device.address = static_cast<std::uint8_t>(20 + number);
+    return device;
+}
+
 // Listing goes on while a device comes and goes under its hands.
 TEST(Bench, DevicesMayVanishWhileTheyAreDescribed) {
+    constexpr int times = 30;
     mock::Testbed bed;
     plug_in_bench(bed);
     const auto profiles = bench_profiles();
+    // umockdev ends the program where a listener leaves while it sends an event: this session keeps libusb listening.
+    const auto session = open_usb();
+    ASSERT_TRUE(session) << session.error().message;
     std::atomic<bool> stop{false};
     std::thread listing([&] {
         while (!stop)
             if (const auto devices = list_devices(profiles); !devices) ADD_FAILURE() << devices.error().message;
     });
-    for (int i = 0; i < 30; ++i) {
-        bed.unplug(ftdi());
+    DeviceSpec last = ftdi();
+    for (int i = 0; i < times; ++i) {
+        bed.unplug_in_use(last);
         std::this_thread::sleep_for(milliseconds(2));
-        bed.plug_in(ftdi(), silent());
-        bed.add_tty(ftdi(), 0, fmt::format("ttyUSB{}", i + 1), "ftdi_sio");  // umockdev knows each name once
+        last = numbered(ftdi(), 60 + i);  // past the addresses of the others
+        bed.plug_in(last, silent());
+        bed.add_tty(last, 0, fmt::format("ttyUSB{}", i + 1), "ftdi_sio");  // umockdev knows each name once
         std::this_thread::sleep_for(milliseconds(2));
     }
     stop = true;
@@ -183,11 +195,6 @@ std::vector<UsbChange> changes_within(UsbWatch& watch, milliseconds time, std::s
         all.insert(all.end(), changes->begin(), changes->end());
     }
     return all;
-}
-
-DeviceSpec numbered(DeviceSpec device, int number) {
-    device.address = static_cast<std::uint8_t>(20 + number);
-    return device;
 }
 
 // In and out once, both heard of in their order.

@@ -103,7 +103,8 @@ void Testbed::plug_in(const DeviceSpec& spec, std::shared_ptr<MockDevice> device
     state_->devices[path] = std::move(device);
 }
 
-void Testbed::unplug(const DeviceSpec& spec) {
+// Gives the nodes where the device was answered for.
+std::vector<std::string> Testbed::take_away(const DeviceSpec& spec) {
     const std::string path = device_path(spec);
     for (const std::string& line : std::exchange(state_->lines_of[path], {}))
         (void)::unlink((root() + line).c_str());
@@ -114,14 +115,19 @@ void Testbed::unplug(const DeviceSpec& spec) {
     }
     for (const std::string& one : state_->paths.at(path))
         umockdev_testbed_remove_device(state_->bed, ("/sys" + one).c_str());
-    for (const std::string& node : state_->nodes_of.at(path)) {
+    state_->paths.erase(path);
+    state_->devices.erase(path);
+    return state_->nodes_of.extract(path).mapped();
+}
+
+void Testbed::unplug(const DeviceSpec& spec) {
+    for (const std::string& node : take_away(spec)) {
         umockdev_testbed_detach_ioctl(state_->bed, node.c_str(), nullptr);
         state_->pulled_nodes.push_back(std::move(state_->nodes.extract(node).mapped()));
     }
-    state_->paths.erase(path);
-    state_->nodes_of.erase(path);
-    state_->devices.erase(path);
 }
+
+void Testbed::unplug_in_use(const DeviceSpec& spec) { take_away(spec); }
 
 void Testbed::add_hidraw(const DeviceSpec& spec, int number, std::shared_ptr<MockDevice> device, const Bytes& report) {
     const std::string path = device_path(spec);

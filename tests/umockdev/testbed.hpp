@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "descriptors.hpp"
 #include "mock_device.hpp"
@@ -29,6 +30,9 @@ public:
     void plug_in(const DeviceSpec& spec, std::shared_ptr<MockDevice> device);
     /// Every call to it fails from now on, then it goes, with a uevent.
     void unplug(const DeviceSpec& spec);
+    /// The same of a device that another thread may be opening at this moment. Its node's socket stays until the end:
+    /// umockdev ends a program whose call it closes it under. To be plugged in again it needs another address.
+    void unplug_in_use(const DeviceSpec& spec);
     /// The kernel's HID driver makes /dev/hidrawN of a HID device that has been plugged in. umockdev takes each N once.
     void add_hidraw(const DeviceSpec& spec, int number, std::shared_ptr<MockDevice> device, const Bytes& report);
     /// The kernel's driver makes the line `name`, "ttyACM0", of its interface; nothing answers there. Each name once.
@@ -41,6 +45,7 @@ public:
 private:
     void add(const std::string& description);
     void attach(const std::string& node, std::unique_ptr<Node> answers);
+    std::vector<std::string> take_away(const DeviceSpec& spec);
 
     struct State;
     std::unique_ptr<State> state_;
