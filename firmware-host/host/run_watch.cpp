@@ -58,15 +58,17 @@ Result<std::unique_ptr<RunWatch>> RunWatch::start(const Scenario& scenario, Asse
     if (const auto opened = watch->open_control(options, commands); !opened) return fail(opened.error());
     if (const auto opened = watch->open_mavlink(options.mavlink, commands); !opened) return fail(opened.error());
     if (const auto opened = watch->open_outputs(options.live); !opened) return fail(opened.error());
-    // After everything that may be refused: it empties the files of a former recording.
-    if (const auto begun = watch->begin_recording(); !begun) return fail(begun.error());
+    // After everything that may be refused: it empties the files of a former run.
+    if (const auto begun = watch->begin(); !begun) return fail(begun.error());
     return watch;
 }
 
-Result<void> RunWatch::begin_recording() {
+Result<void> RunWatch::begin() {
     Emulator& emulator = *assembly_.emulator;
+    if (const auto begun = emulator.begin(); !begun) return begun;
+    for (const auto& output : outputs_)
+        output->begin();
     if (emulator.recorder() == nullptr) return {};
-    if (const auto begun = emulator.begin_recordings(); !begun) return begun;
     // Before anybody is waited for: a run that is killed then has been recorded, too.
     emulator.recorder()->record_summary(run_summary(scenario_, assembly_, SKYLOOP_VERSION, SummaryOf::beginning));
     auto log = RunLog::create(emulator.recorder()->folder(), assembly_.start);

@@ -51,7 +51,7 @@ public:
 
 private:
     RunWatch(const Scenario& scenario, Assembly& assembly) : scenario_(scenario), assembly_(assembly) {}
-    Result<void> begin_recording();
+    Result<void> begin();
     void appoint_judge(bool live);
     Result<void> open_control(const WatchOptions& options, CommandQueue& commands);
     Result<void> open_mavlink(const std::string& address, CommandQueue& commands);

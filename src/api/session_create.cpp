@@ -124,7 +124,7 @@ Answer<void> Session::assemble_run(const sky_create_info& info) {
                                             emulator.stations(), std::move(sources));
     emulator.add_observer(watcher_.get());
     // From here on nothing is refused.
-    if (const auto begun = emulator.begin_recordings(); !begun) return refuse(begun.error());
+    if (const auto begun = emulator.begin(); !begun) return refuse(begun.error());
     begun_ = true;
     for (const std::string& detail : assembly_.details)
         log(SKY_LOG_DETAIL, detail);

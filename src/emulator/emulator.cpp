@@ -22,6 +22,14 @@ Emulator::Emulator(Parts parts, GpsTime start)
     if (parts_.feeds) parts_.feeds->begin(start, parts_.pacer->due_at(start));
 }
 
+Result<void> Emulator::begin() {
+    if (const auto begun = begin_recordings(); !begun) return begun;
+    for (Station& station : parts_.stations)
+        for (std::size_t i = 0; i < station.wires().size(); ++i)
+            station.transport(i).begin();
+    return {};
+}
+
 Result<void> Emulator::begin_recordings() {
     if (recorder() == nullptr) return {};
     const bool former = holds_recording(recorder()->folder());

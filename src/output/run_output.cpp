@@ -69,6 +69,14 @@ public:
     Impl& operator=(const Impl&) = delete;
     ~Impl() { finish(); }
 
+    void begin() {
+        {
+            const std::scoped_lock lock(mutex_);
+            begun_ = true;
+        }
+        changed_.notify_one();
+    }
+
     void take(const EpochSeen& seen) {
         if (seen.station >= told_.size() || !told_[seen.station]) return;
         const bool at_report = settings_.when == OutputMoment::report && seen.leaves.has_value();
@@ -164,6 +172,8 @@ private:
     void work() {
         if (parts_.waits_for_readers) sink_->wait_for_readers(patience_of_virtual);
         std::unique_lock lock(mutex_);
+        changed_.wait(lock, [this] { return begun_ || ends_ || !queue_.empty(); });
+        if (begun_) sink_->begin();
         while (!ends_ || !queue_.empty()) {
             if (ends_ || first_is_due())
                 tell_first(lock);
@@ -224,6 +234,7 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable changed_, room_;
     Queue queue_;
+    bool begun_ = false;
     std::uint64_t pushed_ = 0, left_out_ = 0;
     GpsTime now_{};
     SinkCounts sent_;
@@ -245,6 +256,7 @@ Result<std::unique_ptr<RunOutput>> RunOutput::open(const OutputSettings& setting
         new RunOutput(std::make_unique<Impl>(settings, std::move(parts), std::move(*told), std::move(*sink))));
 }
 
+void RunOutput::begin() { impl_->begin(); }
 void RunOutput::on_epoch(const EpochSeen& seen) { impl_->take(seen); }
 void RunOutput::finish() { impl_->finish(); }
 OutputCounts RunOutput::counts() const { return impl_->counts(); }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <pthread.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -51,16 +52,37 @@ ssize_t write_when_ready(int descriptor, ByteSpan bytes, int patience_ms) {
     return ::write(descriptor, bytes.data(), std::min<std::size_t>(bytes.size(), PIPE_BUF));
 }
 
+bool is_regular(int descriptor) {
+    struct stat kind {};
+    return ::fstat(descriptor, &kind) == 0 && S_ISREG(kind.st_mode);
+}
+
 }  // namespace
 
 Result<std::unique_ptr<FileTransport>> FileTransport::open(const std::filesystem::path& path) {
     // Non-blocking, so that a named pipe nobody reads is refused instead of waited for.
-    const int flags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
-    FileDescriptor file(::open(path.c_str(), flags, 0666));
+    const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+    FileDescriptor file(::open(path.c_str(), flags | O_EXCL, 0666));
+    const bool made = file.open();
+    if (!made) file = FileDescriptor(::open(path.c_str(), flags, 0666));
     if (!file.open())
         return fail(ErrorCode::outside, fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
     const int descriptor = file.value();
-    return std::unique_ptr<FileTransport>(new FileTransport(std::move(file), descriptor, path.string() + " (file)"));
+    std::unique_ptr<FileTransport> transport(new FileTransport(std::move(file), descriptor, path.string() + " (file)"));
+    if (made) transport->made_ = path;
+    return transport;
+}
+
+FileTransport::~FileTransport() {
+    if (!made_.empty()) ::unlink(made_.c_str());
+}
+
+void FileTransport::begin() {
+    if (begun_) return;
+    begun_ = true;
+    made_.clear();
+    if (owned_.open() && is_regular(descriptor_) && ::ftruncate(descriptor_, 0) != 0)
+        failure_ = fmt::format("{}: cannot be emptied: {}", name_, std::strerror(errno));
 }
 
 std::unique_ptr<FileTransport> FileTransport::standard_output() {
@@ -68,6 +90,7 @@ std::unique_ptr<FileTransport> FileTransport::standard_output() {
 }
 
 std::size_t FileTransport::write(ByteSpan bytes) {
+    begin();
     std::size_t taken = 0;
     while (failure_.empty() && taken < bytes.size()) {
         const ssize_t count = write_when_ready(descriptor_, bytes.subspan(taken), patience_ms_);

@@ -153,6 +153,7 @@ class WireSink : public MessageSink {
 public:
     explicit WireSink(std::unique_ptr<Transport> wire) : wire_(std::move(wire)) {}
 
+    void begin() override { wire_->begin(); }
     void send(ByteSpan message) override {
         look();
         if (!wire_->line().connected) {

@@ -214,7 +214,7 @@ void simulated_hour(benchmark::State& state, std::optional<ErrorModelKind> senso
         mode.open_ports = false;
         mode.record = folder;
         auto assembly = assemble(open_sky(sensor_model), bench_data(), mode);
-        if (!assembly->emulator->begin_recordings()) return state.SkipWithError("the recording cannot be written");
+        if (!assembly->emulator->begin()) return state.SkipWithError("the recording cannot be written");
         const std::atomic<bool> stop{false};
         assembly->emulator->run_until(advanced(bench_start, Seconds(3600)), stop);
     }

@@ -93,7 +93,7 @@ Table simulated(const fs::path& file) {
     EXPECT_TRUE(assembly) << assembly.error().message;
     if (!assembly) return {};
     EXPECT_THAT(assembly->warnings, testing::IsEmpty());
-    EXPECT_TRUE(assembly->emulator->begin_recordings());
+    EXPECT_TRUE(assembly->emulator->begin());
     assembly->emulator->run_until(assembly->end.value(), false);
     EXPECT_FALSE(assembly->emulator->recorder()->failure());
     return read_table(folder / "run/fixes.csv");

@@ -42,6 +42,22 @@ class RecordingsTest(unittest.TestCase):
         self.assertEqual(self.simulate(scenario, "--output", f"json-tcp:{port}", check=False).returncode, 1)
         self.assertEqual(files_of(self.out), before)
 
+    def test_a_run_that_is_refused_leaves_the_files_of_its_wires_as_they_were(self):
+        names = ("wire.ubx", "epochs.json")
+        for name in names:
+            (self.path / name).write_text("of a former run")
+        wires = [argument for name in ("wire.ubx", "new.ubx") for argument in ("--port", f"file:{self.path / name}")]
+        outputs = ("--output", f"json-file:{self.path / 'epochs.json'}", "--output", f"json-file:{self.path / 'new.json'}")
+        before = files_of(self.path)
+        done = skyloop("run", "--model", "ideal", *wires, *outputs, "--control", 0, "--token", "a b", "--duration", 2, check=False)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(files_of(self.path), before)
+        skyloop("run", "--model", "ideal", *wires, *outputs, "--duration", 2)
+        for name in (*names, "new.ubx", "new.json"):
+            data = (self.path / name).read_bytes()
+            self.assertNotIn(b"former", data)
+            self.assertGreater(len(data), 100, name)
+
     def test_two_runs_do_not_record_into_one_folder(self):
         with Emulator("--model", "ideal", "--port", "pty", "--record", self.out, "--duration", 4) as first:
             for second in (skyloop("run", "--record", self.out, check=False), self.simulate("--duration", 9, check=False)):

@@ -35,13 +35,13 @@ std::vector<std::filesystem::path> board_folders(const DataFolders& data);
 
 /// How a run is driven.
 struct RunMode {
-    bool virtual_time = false;                    ///< as fast as possible, on the virtual clock
-    GpsTime now{};                                ///< the wall clock at start, GPST
-    std::int64_t now_steady_ns = 0;               ///< the steady clock at that instant
-    std::optional<std::filesystem::path> record;  ///< where the recording goes that Emulator::begin_recordings() begins
-    bool open_ports = true;                       ///< false: no wires, the recording alone
-    bool only_checked = false;                    ///< nothing will run: live sources are not opened
-    bool first_ports_only = false;                ///< of several receivers only the first gets its wires
+    bool virtual_time = false;                      ///< as fast as possible, on the virtual clock
+    GpsTime now{};                                  ///< the wall clock at start, GPST
+    std::int64_t now_steady_ns = 0;                 ///< the steady clock at that instant
+    std::optional<std::filesystem::path> record;    ///< where the recording goes that Emulator::begin() begins
+    bool open_ports = true;                         ///< false: no wires, the recording alone
+    bool only_checked = false;                      ///< nothing will run: live sources are not opened
+    bool first_ports_only = false;                  ///< of several receivers only the first gets its wires
     std::optional<std::filesystem::path> repeat{};  ///< a recording whose clients' bytes are heard again
     CommandQueue* live_commands = nullptr;          ///< where other threads ask for something; outlives the run
     PowerWatchdog* power_watchdog = nullptr;        ///< over the actuators, by receiver; outlives the run; null: none
@@ -71,7 +71,7 @@ struct Assembly {
 };
 
 /// Takes a scenario apart and gives each part its piece. What is in the folder of a recording stays as it is until
-/// Emulator::begin_recordings(), which has to come before the run.
+/// Emulator::begin(), which has to come before the run.
 Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, const RunMode& mode);
 
 /// What a user gives that decides the bytes of a run, as 16 hexadecimal digits: the scenario's text with the options

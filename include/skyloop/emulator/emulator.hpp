@@ -41,9 +41,9 @@ public:
     void add_observer(RunObserver* observer) { parts_.director.add_observer(observer); }
     /// Called again and again while time stands still.
     void on_rest(std::function<void(GpsTime)> callback) { rest_ = std::move(callback); }
-    /// Makes the files of the recordings, in the place of those of a former run: once nothing can refuse this one any
-    /// more, and before it begins. Fails with `outside`.
-    Result<void> begin_recordings();
+    /// Once nothing can refuse this run any more: makes the files of the recordings, in the place of those of a former
+    /// run, and lets the wires make room. Fails with `outside`.
+    Result<void> begin();
     /// Waits until each wire has a client, or until `stop` is true; time begins then, and no byte is lost before.
     void await_clients(const std::atomic<bool>& stop);
     /// Waits until each vehicle that has no place yet is told one, or until `stop` is true; time begins then.
@@ -80,6 +80,7 @@ public:
     [[nodiscard]] const LiveFeeds* feeds() const { return parts_.feeds.get(); }
 
 private:
+    Result<void> begin_recordings();
     [[nodiscard]] GpsTime next_instant(GpsTime end) const;
     [[nodiscard]] Nanoseconds look_every() const;
     [[nodiscard]] bool all_connected();

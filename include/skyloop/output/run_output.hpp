@@ -38,13 +38,15 @@ struct OutputCounts {
 /// thread instead, which waits at most 2 s for an other end that does not read, and then never again for this one.
 class RunOutput : public RunObserver {
 public:
-    /// Connected, listening or created when it returns. Fails with `usage` for a receiver that there is not, and as the
+    /// Connected, listening or opened when it returns. Fails with `usage` for a receiver that there is not, and as the
     /// ways themselves fail.
     static Result<std::unique_ptr<RunOutput>> open(const OutputSettings& settings, OutputParts parts);
     ~RunOutput() override;
     RunOutput(const RunOutput&) = delete;
     RunOutput& operator=(const RunOutput&) = delete;
 
+    /// Nothing refuses the run any more: a file that was there is emptied. An epoch begins it, too.
+    void begin();
     void on_epoch(const EpochSeen& seen) override;
     /// The run is over: what still waits is told now. May wait for slow readers, for 0.2 s; with waits_for_readers for
     /// 2 s.

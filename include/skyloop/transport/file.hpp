@@ -17,11 +17,16 @@ namespace skyloop {
 /// bytes are not taken, so that the file has no gap. failure() then says so.
 class FileTransport : public Transport {
 public:
-    /// Creates the file, or empties the one that is there. Fails with `outside`.
+    /// Creates the file, or opens the one that is there, which keeps what it holds until begin() or the first bytes.
+    /// One that was created and never begun is taken away again. Fails with `outside`.
     static Result<std::unique_ptr<FileTransport>> open(const std::filesystem::path& path);
     /// Writes to the program's standard output.
     static std::unique_ptr<FileTransport> standard_output();
+    ~FileTransport() override;
+    FileTransport(const FileTransport&) = delete;
+    FileTransport& operator=(const FileTransport&) = delete;
 
+    void begin() override;
     std::size_t write(ByteSpan bytes) override;
     Bytes read() override { return {}; }
     void allow_waiting() override { patience_ms_ = -1; }
@@ -36,6 +41,8 @@ private:
     FileDescriptor owned_;  // none for standard output
     int descriptor_;
     std::string name_;
+    std::filesystem::path made_;  // here, and nothing has begun to fill it
+    bool begun_ = false;
     std::string failure_;
     int patience_ms_ = 0;  // as poll() takes it: 0 asks and goes on, −1 waits for as long as it takes
 };

@@ -28,6 +28,8 @@ struct SinkCounts {
 class MessageSink {
 public:
     virtual ~MessageSink() = default;
+    /// Nothing refuses the run any more; before the first message.
+    virtual void begin() {}
     /// Sends a message to every other end. One that still has a part of an earlier message before it does not get it.
     virtual void send(ByteSpan message) = 0;
     /// Looks after connections and goes on with what was half sent; to be called every 100 ms or more often.

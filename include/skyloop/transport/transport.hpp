@@ -28,6 +28,8 @@ public:
     /// What has come in since the last call.
     virtual Bytes read() = 0;
     virtual LineState line() = 0;
+    /// Nothing refuses the run any more: what was there before it may make room.
+    virtual void begin() {}
     /// Tells the wire the receiver's own speed: at first, so that a client that sets none finds the right one, and
     /// after each change, before the first bytes of the new speed.
     virtual void set_receiver_baud(std::uint32_t) {}

@@ -79,7 +79,7 @@ std::string simulated_bytes(std::string_view text, double seconds) {
     mode.record = folder;
     auto assembly = assemble(*scenario, {{built_data()}}, mode);
     EXPECT_TRUE(assembly) << assembly.error().message;
-    EXPECT_TRUE(assembly->emulator->begin_recordings());
+    EXPECT_TRUE(assembly->emulator->begin());
     const std::atomic<bool> stop{false};
     assembly->emulator->run_until(*assembly->end, stop);
     std::string bytes = bytes_of_file(folder / "port0.out");

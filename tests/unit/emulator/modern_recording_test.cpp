@@ -59,7 +59,7 @@ protected:
         auto assembly = assemble(emulator_scenario(scenario), emulator_data(), mode);
         EXPECT_TRUE(assembly) << assembly.error().message;
         if (!assembly) return {};
-        EXPECT_TRUE(assembly->emulator->begin_recordings());
+        EXPECT_TRUE(assembly->emulator->begin());
         std::vector<Trace> traces;
         assembly->emulator->on_status([&](const Status& status) { traces.push_back(*status.trace); });
         assembly->emulator->run_until(*assembly->end, false);

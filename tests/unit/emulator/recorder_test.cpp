@@ -265,7 +265,7 @@ TEST(RunSummary, CountsWhatWasRecorded) {
     mode.record = folder / "run";
     auto assembly = assemble(scenario, test::emulator_data(), mode);
     ASSERT_TRUE(assembly) << assembly.error().message;
-    ASSERT_TRUE(assembly->emulator->begin_recordings());
+    ASSERT_TRUE(assembly->emulator->begin());
     assembly->emulator->run_until(*assembly->end, false);
     const auto summary = nlohmann::json::parse(run_summary(scenario, *assembly, "1.2.3"));
     EXPECT_EQ(summary["version"], "1.2.3");

@@ -108,7 +108,7 @@ Assembly stations_assembly(const std::string& text, std::optional<std::filesyste
     mode.record = std::move(record);
     auto assembly = assemble(emulator_scenario(text), test::emulator_data(), mode);
     EXPECT_TRUE(assembly) << assembly.error().message;
-    EXPECT_TRUE(!assembly || assembly->emulator->begin_recordings());
+    EXPECT_TRUE(!assembly || assembly->emulator->begin());
     return assembly ? std::move(*assembly) : Assembly{};
 }
 

@@ -37,6 +37,32 @@ TEST(FileTransport, WritesAndTruncates) {
     }
 }
 
+// A run that is refused after its wires are open leaves what was there.
+TEST(FileTransport, KeepsWhatIsThereUntilItBegins) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "out.nmea") << "a former run";
+    ASSERT_TRUE(FileTransport::open(folder / "out.nmea"));
+    EXPECT_EQ(content(folder / "out.nmea"), "a former run");
+    auto file = FileTransport::open(folder / "out.nmea");
+    ASSERT_TRUE(file);
+    (*file)->begin();
+    EXPECT_EQ(content(folder / "out.nmea"), "");
+    EXPECT_EQ((*file)->write(to_bytes("this one")), 8U);
+    (*file)->begin();
+    EXPECT_EQ(content(folder / "out.nmea"), "this one");
+}
+
+TEST(FileTransport, LeavesNothingWhereNothingBegan) {
+    const test::TemporaryFolder folder;
+    ASSERT_TRUE(FileTransport::open(folder / "out.nmea"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.nmea"));
+    auto file = FileTransport::open(folder / "out.nmea");
+    ASSERT_TRUE(file);
+    (*file)->begin();
+    file->reset();
+    EXPECT_TRUE(std::filesystem::exists(folder / "out.nmea"));
+}
+
 TEST(FileTransport, TakesMoreThanAPipefulAtOnce) {
     const test::TemporaryFolder folder;
     auto file = FileTransport::open(folder / "big");
