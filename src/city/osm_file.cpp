@@ -10,7 +10,7 @@
 #include <unordered_map>
 
 #include "city_text.hpp"
-#include "osm_deletions.hpp"
+#include "osm_text.hpp"
 #include "outlines.hpp"
 #include "pbf_blobs.hpp"
 
@@ -207,6 +207,11 @@ Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std:
     if (bytes.empty()) return fail(ErrorCode::input, fmt::format("{}: the file is empty", name));
     if (format != "osm")
         if (const auto whole = check_pbf_blobs(bytes, name); !whole) return fail(whole.error());
+    if (const auto wild = format == "osm" ? wild_coordinate(bytes) : std::nullopt)
+        return fail(
+            ErrorCode::input,
+            fmt::format("{}: coordinate \"{}\"; expected degrees",
+                        line_place(name, bytes, static_cast<std::size_t>(wild->data() - bytes.data())), shown(*wild)));
     OsmReader reader(settings);
     try {
         reader.read(bytes, std::string(format));

@@ -175,6 +175,12 @@ TEST(OpenStreetMap, RefusesWithOneClearLine) {
     EXPECT_THAT(osm_refusal("<osm version='0.6'>\n<node"), HasSubstr("town.osm:2"));
     EXPECT_THAT(osm_refusal("<html/>"), HasSubstr("town.osm"));
     EXPECT_THAT(osm_refusal(osm_file("")), HasSubstr("no outline"));
+    for (const char* wild : {"50e50", "1e9", "-18e400", "&#53;0e50"})
+        EXPECT_EQ(osm_refusal(fmt::format("<osm version='0.6'>\n<node id='9' lat='{}' lon='1'/></osm>", wild)),
+                  fmt::format("town.osm:2: coordinate \"{}\"; expected degrees", wild));
+    EXPECT_THAT(osm_refusal("<osm version='0.6'>\n<bounds minlat='1e99'/></osm>"),
+                StartsWith("town.osm:2: coordinate"));
+    EXPECT_THAT(osm_refusal(osm_file("<node id='9' lat='4.8e1' lon='1e-400'/>")), HasSubstr("no outline"));
     EXPECT_THAT(osm_refusal("<osm version='0.6'><node id='1' lat='x' lon='9'/></osm>"), HasSubstr("damaged"));
     EXPECT_THAT(osm_refusal("no blocks at all", "osm.pbf"), HasSubstr("damaged"));
     EXPECT_THAT(osm_refusal("x", "o5m"), HasSubstr("\"o5m\""));

@@ -1,7 +1,10 @@
-#include "osm_deletions.hpp"
+#include "osm_text.hpp"
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+
+#include "city_text.hpp"
 
 namespace skyloop {
 
@@ -49,14 +52,11 @@ bool is_marked_deleted(std::string_view attributes, std::int64_t& id) {
     return deleted && numbered;
 }
 
-}  // namespace
-
-OsmDeletions osm_deletions(std::string_view xml) {
-    OsmDeletions deletions;
-    if (xml.find("action") == std::string_view::npos) return deletions;
+/// Tells `use` of the type of each element and what stands behind it in its head, until it returns false.
+template <class Use>
+void for_each_element(std::string_view xml, const Use& use) {
     for (std::size_t at = xml.find('<'); at < xml.size(); at = xml.find('<', at)) {
-        const std::string_view rest = xml.substr(at);
-        if (rest.starts_with("<!--")) {
+        if (xml.substr(at).starts_with("<!--")) {
             at = comment_end(xml, at);
             continue;
         }
@@ -64,14 +64,46 @@ OsmDeletions osm_deletions(std::string_view xml) {
         const std::string_view head = xml.substr(at + 1, end - at - 1);
         at = end;
         const std::string_view type = head.substr(0, head.find_first_of(" \t\r\n"));
+        if (!use(type, head.substr(type.size()))) return;
+    }
+}
+
+bool is_wild(std::string_view coordinate) {
+    constexpr double beyond_all = 1000;  // degrees
+    const std::size_t exponent = coordinate.find_first_of("eE&");
+    if (exponent == std::string_view::npos) return false;
+    if (coordinate[exponent] == '&') return true;  // nobody writes digits so
+    const char* at = coordinate.data();
+    return std::abs(take_number(at, at + coordinate.size()).value_or(0)) > beyond_all;
+}
+
+}  // namespace
+
+OsmDeletions osm_deletions(std::string_view xml) {
+    OsmDeletions deletions;
+    if (xml.find("action") == std::string_view::npos) return deletions;
+    for_each_element(xml, [&](std::string_view type, std::string_view attributes) {
         std::set<std::int64_t>* ids = type == "node"       ? &deletions.nodes
                                       : type == "way"      ? &deletions.ways
                                       : type == "relation" ? &deletions.relations
                                                            : nullptr;
         std::int64_t id = 0;
-        if (ids && is_marked_deleted(head.substr(type.size()), id)) ids->insert(id);
-    }
+        if (ids && is_marked_deleted(attributes, id)) ids->insert(id);
+        return true;
+    });
     return deletions;
+}
+
+std::optional<std::string_view> wild_coordinate(std::string_view xml) {
+    std::optional<std::string_view> found;
+    for_each_element(xml, [&](std::string_view type, std::string_view attributes) {
+        if (type == "tag") return true;
+        // Of nodes, of the nodes of ways, and those of bounds, such as maxlat.
+        for (std::string_view name, value; !found && take_attribute(attributes, name, value);)
+            if ((name.ends_with("lat") || name.ends_with("lon")) && is_wild(value)) found = value;
+        return !found;
+    });
+    return found;
 }
 
 }  // namespace skyloop
