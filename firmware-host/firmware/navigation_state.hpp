@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "firmware/base_survey.hpp"
 #include "firmware/board_profile.hpp"
 #include "firmware/config/config_store.hpp"
 #include "firmware/port_id.hpp"
@@ -77,9 +78,8 @@ struct NavigationState {
     std::optional<Angle> course;  ///< frozen at low speed; nothing before the first
     bool course_is_frozen = false;
     double odometer_m = 0, odometer_total_m = 0, odometer_deviation_m = 0;
-    std::uint64_t epoch_index = 0;  ///< since the last start
-    Seconds survey_time{0};         ///< since a survey-in began
-    std::uint64_t surveyed = 0;     ///< epochs with a position since then
+    std::uint64_t epoch_index = 0;       ///< since the last start
+    std::optional<BaseSurvey> survey{};  ///< with CFG-TMODE-MODE 1
     std::optional<LeapEvent> leap_event{};
     bool old_position_shown = false;  ///< sentences show it without a valid fix too, whatever is configured
     int week_offset = 0;              ///< on week numbers alone: dates and times of week stay

@@ -123,6 +123,7 @@ void Receiver::Core::apply_changes(GpsTime now) {
     if (store_.revision() == revision_) return;
     const std::set<SystemSignal> signals = settings_.signals;
     adopt_settings();
+    tracker_.adopt(store_);
     if (settings_.signals != signals) restart_navigation({}, now, board_.timing.signal_restart);
 }
 

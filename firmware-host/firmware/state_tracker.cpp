@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/base_place.hpp"
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/signal_keys.hpp"
-#include "firmware/fixed_place.hpp"
 #include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop::firmware {
@@ -93,7 +93,6 @@ void StateTracker::start(GpsTime now, const Forgotten& forgotten, bool running) 
     state_.time.accuracy = Seconds(running ? 20e-9 : 1.0);
     first_tracking_.reset();
     first_fix_.reset();
-    survey_began_.reset();
     last_good_.reset();
     held_.reset();
     epochs_beyond_limits_ = 0;
@@ -267,23 +266,25 @@ void StateTracker::hold(const ConfigStore& config) {
     state_.position_held = true;
 }
 
-// With CFG-TMODE-MODE 1 (RECEIVER.md 4.12).
-void StateTracker::survey(const ConfigStore& config) {
-    const Fix& fix = state_.epoch.fix;
-    if (config.value(key::tmode_mode) != 1) {
-        survey_began_.reset();
-        state_.surveyed = 0;
-        return;
-    }
-    if (!survey_began_) survey_began_ = fix.time;
-    state_.survey_time = difference(fix.time, *survey_began_);
-    if (fix.has_position()) ++state_.surveyed;
+void StateTracker::adopt(const ConfigStore& config) {
+    if (state_.survey && survey_limits(config) != state_.survey->limits()) state_.survey.reset();
 }
 
-// A base that was told where it stands solves for the time alone (RECEIVER.md 4.12). What was solved goes on beneath,
+void StateTracker::survey(const ConfigStore& config) {
+    adopt(config);
+    const Fix& fix = state_.epoch.fix;
+    const auto limits = survey_limits(config);
+    if (!limits) return;
+    if (!state_.survey) state_.survey.emplace(*limits, fix.time);
+    const bool solved_in_space =
+        fix.has_position() && fix.type != FixType::fix_2d && fix.type != FixType::dead_reckoning;
+    state_.survey->take(fix, solved_in_space && state_.fix_ok);
+}
+
+// A base that knows where it stands solves for the time alone (RECEIVER.md 4.12). What was solved goes on beneath,
 // for the epochs after it moves again.
 void StateTracker::stand_still(const ConfigStore& config) {
-    const auto place = fixed_place(config);
+    const auto place = base_place(config, state_.survey);
     if (!place) return;
     Fix& fix = state_.epoch.fix;
     const bool solved = fix.has_position() && fix.type != FixType::dead_reckoning;

@@ -34,6 +34,8 @@ public:
     /// The next epoch, in the receiver's own words. @param corrections of CorrectionInput at that instant
     const NavigationState& update(const Epoch& epoch, const ConfigStore& config, const CorrectionStatus& corrections);
     [[nodiscard]] const NavigationState& state() const { return state_; }
+    /// A client has changed the configuration: a survey-in ends with its mode, and begins anew with other limits.
+    void adopt(const ConfigStore& config);
     void reset_odometer() { state_.odometer_m = state_.odometer_deviation_m = 0; }
 
 private:
@@ -59,7 +61,6 @@ private:
     bool measured_ = false;                  ///< the model acquires satellites itself
     std::optional<GpsTime> first_tracking_;  ///< since the start
     std::optional<GpsTime> first_fix_;
-    std::optional<GpsTime> survey_began_;
     std::optional<GpsTime> last_good_;  ///< epoch of the last solution that was not coasted
     Fix last_fix_;
     std::optional<Fix> held_;  ///< the fix of static hold

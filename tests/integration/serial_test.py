@@ -11,19 +11,10 @@ import unittest
 
 from pty_client_test import good_share
 from session import Emulator, open_folder, skyloop
+from ubx_frames import ubx
 
 START = "2026-03-01T00:00:00Z"
 TCGETS2 = 0x802C542A  # <asm-generic/ioctls.h>; struct termios2: four words, line, 19 characters, two speeds
-
-
-def ubx(number, payload):
-    """A UBX frame with its checksum (u-blox M8 protocol, section 32.4)."""
-    body = bytes(number) + struct.pack("<H", len(payload)) + payload
-    a = b = 0
-    for byte in body:
-        a = (a + byte) & 0xFF
-        b = (b + a) & 0xFF
-    return b"\xb5\x62" + body + bytes((a, b))
 
 
 def port_settings(baud):

@@ -13,6 +13,7 @@ import unittest
 import usbip_client
 from pty_client_test import good_share
 from session import Emulator, open_folder, skyloop
+from ubx_frames import ubx, valset
 from usbip_client import DATA_IN, NOTIFY, STALLED, UNLINKED, Host, ImportRefused, listed
 
 START = "2026-03-01T00:00:00Z"
@@ -23,16 +24,6 @@ duration_s = {duration}
 board = "{board}"
 port = "usbip:0"
 {rest}"""
-
-
-def ubx(kind, identity, payload=b""):
-    """A whole UBX frame."""
-    body = struct.pack("<BBH", kind, identity, len(payload)) + payload
-    a = b = 0
-    for byte in body:
-        a = (a + byte) & 255
-        b = (b + a) & 255
-    return b"\xb5\x62" + body + bytes([a, b])
 
 
 class UsbipTest(unittest.TestCase):
@@ -101,22 +92,21 @@ class UsbipTest(unittest.TestCase):
         with self.emulator("--board", "ublox-f9p") as emulator, Host(emulator.tty) as host:
             host.enumerate()
             host.open()
-            host.write(ubx(0x0A, 0x04))
+            host.write(ubx((0x0A, 0x04)))
             self.assertIn(b"\xb5\x62\x0a\x04", host.read_for(1))
             # CFG-MSGOUT-UBX_NAV_PVT_USB, CFG-USBOUTPROT-NMEA off
-            values = struct.pack("<IB", 0x20910009, 1) + struct.pack("<IB", 0x10780002, 0)
-            host.write(ubx(0x06, 0x8A, b"\0\x01\0\0" + values))
+            host.write(valset([(0x20910009, 1), (0x10780002, 0)]))
             answer = host.read_for(1.5)
-            self.assertIn(ubx(0x05, 0x01, b"\x06\x8a"), answer)
+            self.assertIn(ubx((0x05, 0x01), b"\x06\x8a"), answer)
             data = host.read_for(2.2)
             self.assertGreaterEqual(data.count(b"\xb5\x62\x01\x07\x5c\x00"), 2)
             self.assertNotIn(b"$G", data)
-            host.write(ubx(0x06, 0x1B))  # CFG-USB
+            host.write(ubx((0x06, 0x1B)))  # CFG-USB
             told = host.read_for(1)
             told = told[told.index(b"\xb5\x62\x06\x1b"):]
             self.assertEqual(struct.unpack("<HH", told[6:10]), (0x1546, 0x01A9))
             self.assertEqual(told[50:82].rstrip(b"\0"), b"u-blox GNSS receiver")
-            host.write(ubx(0x06, 0x00, b"\x03"))  # CFG-PRT of port 3
+            host.write(ubx((0x06, 0x00), b"\x03"))  # CFG-PRT of port 3
             self.assertIn(b"\xb5\x62\x06\x00\x14\x00\x03", host.read_for(1))
             self.assertEqual(emulator.stop(), 0, emulator.log)
 

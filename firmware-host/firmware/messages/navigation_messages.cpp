@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "firmware/fixed_place.hpp"
+#include "firmware/base_place.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/navigation_parts.hpp"
 #include "skyloop/geo/local_frame.hpp"
@@ -128,7 +128,7 @@ NavPosllh navigation_posllh(const ReportContext& context) {
 // A base that solves for the time alone knows its place all the same.
 bool place_is_valid(const ReportContext& context) {
     const Fix& fix = context.state.epoch.fix;
-    return fix.has_position() || (fix.type == FixType::time_only && fixed_place(context.config));
+    return fix.has_position() || (fix.type == FixType::time_only && base_place(context.config, context.state.survey));
 }
 
 NavHpposllh navigation_hpposllh(const ReportContext& context) {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware/base_place.hpp"
 #include "firmware/error_ellipse.hpp"
-#include "firmware/fixed_place.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/navigation_parts.hpp"
@@ -46,7 +46,7 @@ NavCov solution_covariance(const ReportContext& context) {
     m.pos_cov_valid = m.vel_cov_valid = 1;
     m.pos_cov = covariance(unknown_m * unknown_m, unknown_m * unknown_m, 0, unknown_m * unknown_m);
     m.vel_cov = covariance(unknown_mps * unknown_mps, unknown_mps * unknown_mps, 0, unknown_mps * unknown_mps);
-    if (fix.type == FixType::time_only && fixed_place(context.config)) {
+    if (fix.type == FixType::time_only && base_place(context.config, context.state.survey)) {
         const double level = std::pow(fix.horizontal_accuracy.value(), 2) / 2;
         m.pos_cov = covariance(level, level, 0, std::pow(fix.vertical_accuracy.value(), 2));
         m.vel_cov = {};
@@ -169,26 +169,24 @@ NavRelposned relative_position(const ReportContext& context) {
     return m;
 }
 
-// With CFG-TMODE-MODE 1 the receiver surveys until its solution is one of time alone (RECEIVER.md 4.12).
 NavSvin survey(const ReportContext& context) {
-    const NavigationState& state = context.state;
+    const std::optional<BaseSurvey>& survey = context.state.survey;
     NavSvin m;
     m.i_tow = service_tow(context);
-    if (context.config.value(key::tmode_mode) != 1) return m;
-    m.valid = state.epoch.fix.type == FixType::time_only ? 1 : 0;
-    m.active = m.valid == 0 ? 1 : 0;
-    m.dur = field<std::uint32_t>(std::floor(state.survey_time.value()));
+    if (!survey) return m;
+    m.valid = survey->done() ? 1 : 0;
+    m.active = survey->done() ? 0 : 1;
+    m.dur = field<std::uint32_t>(std::floor(survey->time().value()));
     m.mean_acc = unknown_accuracy;
-    if (!state.ever_had_fix) return m;
-    const Fix& fix = state.epoch.fix;
-    const Eigen::Vector3d place = to_ecef(fix.position).vector();
+    const auto mean = survey->mean();
+    if (!mean) return m;
     for (std::size_t i = 0; i < 3; ++i) {
-        const SplitValue value = split_value(place[static_cast<Eigen::Index>(i)] * 1e4, 100);
+        const SplitValue value = split_value(mean->vector()[static_cast<Eigen::Index>(i)] * 1e4, 100);
         m.mean[i] = value.whole;
         m.mean_hp[i] = value.rest;
     }
-    m.mean_acc = field<std::uint32_t>(std::hypot(fix.horizontal_accuracy.value(), fix.vertical_accuracy.value()) * 1e4);
-    m.obs = field<std::uint32_t>(static_cast<double>(state.surveyed));
+    m.mean_acc = field<std::uint32_t>(survey->accuracy().value() * 1e4);
+    m.obs = field<std::uint32_t>(static_cast<double>(survey->positions()));
     return m;
 }
 

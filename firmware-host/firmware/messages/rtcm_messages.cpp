@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "firmware/base_place.hpp"
 #include "firmware/config/config_keys.hpp"
-#include "firmware/fixed_place.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "skyloop/gnss/constants.hpp"
@@ -114,9 +114,9 @@ Bytes observations_message(const MsmOutput& output, const ReportContext& context
     return encode(message);
 }
 
-// Only a receiver that has been told where it stands says so (CFG-TMODE).
+// Only a receiver that knows where it stands says so (CFG-TMODE).
 std::vector<Bytes> station_message(const ReportContext& context) {
-    const auto place = fixed_place(context.config);
+    const auto place = base_place(context.config, context.state.survey);
     if (!place) return {};
     Rtcm3Station station;
     station.station = rtcm_station_of(context);

@@ -416,18 +416,32 @@ TEST(NavHpposecefMessage, IsValidOfAFixedBase) {
     EXPECT_EQ(covariance.vel_cov[0], 0);
 }
 
-TEST(NavSvinMessage, RunsUntilTheTimeOnlySolution) {
+TEST(NavSvinMessage, ShowsTheMeanUntilTheSurveyIsDone) {
     UbxReport f9(9);
     EXPECT_EQ(f9.report<NavSvin>().active, 0);
-    f9.config.set(in_ram, key::tmode_mode, 1);
-    f9.state.survey_time = Seconds(9.9);
-    f9.state.surveyed = 8;
+    Fix fix = f9.state.epoch.fix;
+    fix.horizontal_accuracy = Metres(0.3);
+    fix.vertical_accuracy = Metres(0.4);
+    f9.state.survey.emplace(SurveyLimits{Seconds(9), Metres(0.5)}, fix.time);
     EXPECT_EQ(f9.report<NavSvin>().active, 1);
-    EXPECT_EQ(f9.report<NavSvin>().dur, 9u);
-    EXPECT_EQ(f9.report<NavSvin>().obs, 8u);
-    f9.state.epoch.fix.type = FixType::time_only;
+    EXPECT_EQ(f9.report<NavSvin>().mean_acc, 0xFFFFFFFFu);
+    f9.state.survey->take(fix, true);
+    fix.time = advanced(fix.time, Seconds(8.9));
+    f9.state.survey->take(fix, false);
+    const auto under_way = f9.report<NavSvin>();
+    EXPECT_EQ(under_way.active, 1);
+    EXPECT_EQ(under_way.valid, 0);
+    EXPECT_EQ(under_way.dur, 8u);
+    EXPECT_EQ(under_way.obs, 1u);
+    EXPECT_EQ(under_way.mean_acc, 5000u);
+    const Eigen::Vector3d at = to_ecef(fix.position).vector();
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(under_way.mean[i] * 1e-2 + under_way.mean_hp[i] * 1e-4, at[static_cast<Eigen::Index>(i)], 1e-4);
+    fix.time = advanced(fix.time, Seconds(1));
+    f9.state.survey->take(fix, true);
     EXPECT_EQ(f9.report<NavSvin>().valid, 1);
     EXPECT_EQ(f9.report<NavSvin>().active, 0);
+    EXPECT_EQ(f9.report<NavSvin>().obs, 2u);
 }
 
 TEST(NavDgpsMessage, ListsTheCorrectedSatellites) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware/config/config_handler.hpp"
+#include "firmware/config/legacy_keys.hpp"
 #include "sample_epochs.hpp"
 
 namespace skyloop::firmware {
@@ -458,8 +459,76 @@ TEST(StateTracker, CountsASurveyFromItsBegin) {
     (void)t.step();
     (void)t.step();
     const NavigationState& state = t.step();
-    EXPECT_NEAR(state.survey_time.value(), 2, 1e-9);
-    EXPECT_EQ(state.surveyed, 3U);
+    ASSERT_TRUE(state.survey);
+    EXPECT_NEAR(state.survey->time().value(), 2, 1e-9);
+    EXPECT_EQ(state.survey->positions(), 3U);
+    EXPECT_FALSE(state.survey->done()) << "no limit of accuracy is ever met that is not given";
+    t.store().set(in_ram, key::tmode_mode, 0);
+    EXPECT_FALSE(t.step().survey);
+}
+
+// 20 s, 1.5 m.
+void survey_in(ConfigStore& store, std::uint64_t seconds = 20, std::uint64_t tenths_of_mm = 15000) {
+    store.set(in_ram, legacy_key::tmode_svin_min_dur, seconds);
+    store.set(in_ram, legacy_key::tmode_svin_acc_limit, tenths_of_mm);
+    store.set(in_ram, key::tmode_mode, 1);
+}
+
+TEST(StateTracker, StandsWhereASurveyEnds) {
+    Tracked t(tracked_board());
+    t.tracker().start(t.fix().time, {}, true);
+    t.fix().horizontal_accuracy = Metres(0.6);
+    t.fix().vertical_accuracy = Metres(0.8);
+    survey_in(t.store());
+    EXPECT_FALSE(t.steps(20).survey->done()) << "19 s";
+    EXPECT_EQ(t.tracker().state().epoch.fix.type, FixType::fix_3d);
+    const Geodetic at = t.fix().position;
+    const NavigationState& state = t.step();
+    ASSERT_TRUE(state.survey->done());
+    EXPECT_EQ(state.epoch.fix.type, FixType::time_only);
+    EXPECT_TRUE(state.fix_ok);
+    EXPECT_NEAR(state.epoch.fix.position.latitude.deg(), at.latitude.deg(), 1e-9);
+    // The first position in full, a hundredth of each of the 20 behind it.
+    const double deviation = 1 / std::sqrt(1 + 20 * 0.01);
+    EXPECT_NEAR(state.survey->accuracy().value(), deviation, 1e-9);
+    EXPECT_NEAR(state.epoch.fix.horizontal_accuracy.value(), deviation, 1e-9);
+    t.fix().position.latitude = Angle::degrees(47.5);
+    EXPECT_NEAR(t.steps(5).epoch.fix.position.latitude.deg(), at.latitude.deg(), 1e-9) << "the place is settled";
+    EXPECT_EQ(t.tracker().state().survey->positions(), 21U);
+    EXPECT_NEAR(t.tracker().state().survey->time().value(), 20, 1e-9);
+}
+
+TEST(StateTracker, SurveysUntilItIsAccurateEnoughByPositionsInSpaceAlone) {
+    Tracked t(tracked_board());
+    t.tracker().start(t.fix().time, {}, true);
+    t.fix().horizontal_accuracy = Metres(3);
+    t.fix().vertical_accuracy = Metres(4);
+    survey_in(t.store(), 10, 35355);  // half of the variance of one: after 100 s
+    EXPECT_FALSE(t.steps(100).survey->done());
+    t.fix().type = FixType::fix_2d;
+    EXPECT_FALSE(t.steps(5).survey->done());
+    EXPECT_EQ(t.tracker().state().survey->positions(), 100U);
+    t.fix().type = FixType::fix_3d;
+    EXPECT_TRUE(t.steps(2).survey->done());
+}
+
+// A base station program ends a survey and begins another between two epochs.
+TEST(StateTracker, SurveysAnewAfterTheModeWasOff) {
+    Tracked t(tracked_board());
+    t.tracker().start(t.fix().time, {}, true);
+    survey_in(t.store(), 3, 1'000'000);
+    EXPECT_TRUE(t.steps(10).survey->done());
+    survey_in(t.store(), 3, 1'000'000);
+    t.tracker().adopt(t.store());
+    EXPECT_TRUE(t.step().survey->done()) << "the same again";
+    t.store().set(in_ram, key::tmode_mode, 0);
+    t.tracker().adopt(t.store());
+    survey_in(t.store(), 3, 1'000'000);
+    t.tracker().adopt(t.store());
+    EXPECT_EQ(t.step().survey->positions(), 1U);
+    EXPECT_TRUE(t.steps(3).survey->done());
+    survey_in(t.store(), 4, 1'000'000);
+    EXPECT_EQ(t.step().survey->positions(), 1U) << "other limits";
 }
 
 TEST(StateTracker, TellsWhichBandIsJammedWhereItHasTwo) {

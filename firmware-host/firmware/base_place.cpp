@@ -1,4 +1,4 @@
-#include "firmware/fixed_place.hpp"
+#include "firmware/base_place.hpp"
 
 #include <array>
 
@@ -31,10 +31,11 @@ Position<Ecef> configured_position(const ConfigStore& config) {
 
 }  // namespace
 
-std::optional<FixedPlace> fixed_place(const ConfigStore& config) {
+std::optional<BasePlace> base_place(const ConfigStore& config, const std::optional<BaseSurvey>& survey) {
+    if (survey && survey->done()) return BasePlace{*survey->mean(), survey->accuracy()};
     if (config.value(key::tmode_mode) != fixed_mode) return std::nullopt;
     const double tenths_of_mm = static_cast<double>(config.value(legacy_key::tmode_fixed_pos_acc));
-    return FixedPlace{configured_position(config), Metres(tenths_of_mm * 1e-4)};
+    return BasePlace{configured_position(config), Metres(tenths_of_mm * 1e-4)};
 }
 
 }  // namespace skyloop::firmware
