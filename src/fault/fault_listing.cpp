@@ -78,15 +78,20 @@ std::string layer_heading(FaultLayer layer) {
     return "";
 }
 
+// What the kind cannot do.
+std::string bounds_of(const FaultKind& kind, std::string_view modern) {
+    return fmt::format("{}{}", kind.measuring_receivers_only ? fmt::format(" ({} only.)", modern) : "",
+                       kind.has_strength ? "" : " (No ramps.)");
+}
+
 std::string kinds_markdown() {
     std::string page;
     const FaultKind* before = nullptr;
     for (const FaultKind& kind : fault_kinds()) {
         if (before == nullptr || before->layer != kind.layer) page += layer_heading(kind.layer);
         before = &kind;
-        page += fmt::format("### {}\n\n{}{}{} In the world: {}\n\n{}", kind.name, kind.effect,
-                            kind.measuring_receivers_only ? " (`modern` only.)" : "",
-                            kind.has_strength ? "" : " (No ramps.)", kind.cause, parameter_table(kind.parameters));
+        page += fmt::format("### {}\n\n{}{} In the world: {}\n\n{}", kind.name, kind.effect,
+                            bounds_of(kind, "`modern`"), kind.cause, parameter_table(kind.parameters));
     }
     return page;
 }
@@ -115,8 +120,9 @@ std::string fault_list_text() {
 }
 
 std::string fault_text(const FaultKind& kind) {
-    std::string text = fmt::format("{} ({})\n  {}\n  In the world: {}\n", kind.name,
-                                   fault_layer_names[static_cast<std::size_t>(kind.layer)], kind.effect, kind.cause);
+    std::string text = fmt::format("{} ({})\n  {}{}\n  In the world: {}\n", kind.name,
+                                   fault_layer_names[static_cast<std::size_t>(kind.layer)], kind.effect,
+                                   bounds_of(kind, "modern"), kind.cause);
     for (const ParameterSpec& spec : kind.parameters)
         text += fmt::format("  {:<24} {} ({}; default {})\n", spec.name, spec.meaning, type_text(spec),
                             standard_text(spec));
