@@ -73,6 +73,13 @@ GpsTime moved_in_utc(GpsTime time, std::int64_t days) {
 
 std::int64_t floor_days(Nanoseconds span) { return std::chrono::floor<std::chrono::days>(span).count(); }
 
+// A file may hold records two hundred years apart; those that a move takes past the end of time serve nobody.
+bool can_move(const Ephemeris& record, std::int64_t days) {
+    constexpr std::chrono::days end =
+        std::chrono::floor<std::chrono::days>(GpsTime::max().time_since_epoch()) - 2 * one_day;
+    return floor_days(toe_of(record).time_since_epoch()) + days < end.count();
+}
+
 }  // namespace
 
 Seconds usual_validity(const Ephemeris& record) {
@@ -221,7 +228,7 @@ Result<NavigationData> rebased(const NavigationData& data, GpsTime start) {
     records.reserve(data.record_count());
     for (const SatelliteRecords& s : data.records())
         for (const Ephemeris& r : s.records)
-            records.push_back(moved_by_days(r, best_days));
+            if (can_move(r, best_days)) records.push_back(moved_by_days(r, best_days));
     return NavigationData(records, data.ionosphere(), data.description(), data.selection());
 }
 

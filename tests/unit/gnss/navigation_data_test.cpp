@@ -255,6 +255,15 @@ TEST(Rebase, BringsADayOfDataToTheStart) {
     EXPECT_EQ(rebased(data, monday + 1h)->span()->first, data.span()->first) << "data of the same day stays";
 }
 
+TEST(Rebase, LeavesWhatItWouldMovePastTheEndOfTime) {
+    const GpsTime two_centuries_on = monday + std::chrono::days(73'000);
+    const NavigationData data = data_of({plain_record(monday), plain_record(two_centuries_on)});
+    const Result<NavigationData> moved = rebased(data, two_centuries_on + std::chrono::days(1'234));
+    ASSERT_TRUE(moved);
+    EXPECT_EQ(moved->satellites_at(two_centuries_on + std::chrono::days(1'234)), 1u);
+    EXPECT_EQ(moved->record_count(), 1u);
+}
+
 TEST(Rebase, RefusesATimeOfDayWithoutData) {
     const NavigationData data = data_of({plain_record(monday + 12h)});
     EXPECT_TRUE(rebased(data, to_gps_time(2300, 10 * 3600.0)));
