@@ -1,5 +1,6 @@
 #include "signal_channel.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -32,8 +33,10 @@ MetresPerSecond added_rate(const Arrival& arrival) {
 }
 
 DbHz reported_cn0(DbHz cn0, Decibels resolution) {
-    if (!(resolution.value() > 0)) return cn0;
-    return DbHz(std::round(cn0.value() / resolution.value()) * resolution.value());
+    constexpr double highest = 63;  // of RTCM's six bits (10403.3, DF403), where receivers' own estimates end, too
+    const double value = std::min(cn0.value(), highest);
+    if (!(resolution.value() > 0)) return DbHz(value);
+    return DbHz(std::round(value / resolution.value()) * resolution.value());
 }
 
 double multipath_deviation(const StatisticalMultipath& model, Angle elevation) {

@@ -264,6 +264,8 @@ TEST(MeasurementEngine, ReportedStrengthIsInWholeSteps) {
     EXPECT_EQ(MeasuredRun(parameters).epoch(arrivals).observations.signals.at(0).cn0, DbHz(43.6));
     parameters.cn0_resolution = Decibels(0.25);
     EXPECT_EQ(MeasuredRun(parameters).epoch(arrivals).observations.signals.at(0).cn0, DbHz(43.5));
+    EXPECT_EQ(MeasuredRun(parameters).epoch(plain_arrivals({g07}, 120)).observations.signals.at(0).cn0, DbHz(63))
+        << "a receiver's estimate ends somewhere";
 }
 
 TEST(MeasurementEngine, ASecondSignalHasItsOwnStrength) {
