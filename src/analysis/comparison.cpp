@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace skyloop {
@@ -26,6 +27,7 @@ bool is_radial(ErrorQuantity quantity) {
 // A relative difference says something only where the reference is clear of zero: a mean beside its deviation, any
 // other figure beside the size of the errors.
 bool comparable(std::string_view figure, double of_b, const SampleStatistics& b) {
+    if (std::abs(of_b) < rounding_dust_m) return false;
     if (figure == "mean") return std::abs(b.mean) >= b.std / 4;
     return std::abs(of_b) > b.rms * 1e-2;
 }
@@ -49,7 +51,7 @@ std::vector<FigureDifference> figure_differences(const SeriesStatistics& a, cons
             if (figure.radial_only && !is_radial(quantity)) continue;
             const SampleStatistics& of_b = b.of(quantity).figures;
             FigureDifference d{quantity, figure.name, a.of(quantity).figures.*figure.value, of_b.*figure.value, {}};
-            if (d.b != 0 && comparable(figure.name, d.b, of_b)) d.percent = 100 * (d.a - d.b) / std::abs(d.b);
+            if (comparable(figure.name, d.b, of_b)) d.percent = 100 * (d.a - d.b) / std::abs(d.b);
             differences.push_back(d);
         }
     return differences;
@@ -57,16 +59,15 @@ std::vector<FigureDifference> figure_differences(const SeriesStatistics& a, cons
 
 std::string article_warning(const Comparison& comparison) {
     const std::string_view name = error_quantity_name(comparison.quantity);
-    if (!comparison.article)
-        return fmt::format("{}: the {} error has a mean or a standard deviation of zero: no percentage can be given",
-                           comparison.b.name, name);
-    if (comparison.article->mean_near_zero)
+    const SampleStatistics& of_b = comparison.b.of(comparison.quantity).figures;
+    if (comparison.article ? comparison.article->mean_near_zero : of_b.std >= rounding_dust_m)
         return fmt::format(
             "{}: the mean {} error, {:.3f} m, is small beside its standard deviation, {:.3f} m: the relative "
             "difference of the means, and the percentage made with it, says nothing; choose horizontal",
-            comparison.b.name, name, comparison.b.of(comparison.quantity).figures.mean,
-            comparison.b.of(comparison.quantity).figures.std);
-    return {};
+            comparison.b.name, name, of_b.mean, of_b.std);
+    if (comparison.article) return {};
+    return fmt::format("{}: the {} error has a mean or a standard deviation of zero: no percentage can be given",
+                       comparison.b.name, name);
 }
 
 // One wild fix outweighs thousands of good ones in a mean and a standard deviation.
@@ -74,11 +75,12 @@ void add_outlier_warnings(Comparison& comparison) {
     constexpr double wild = 100;  // times the median; of Gaussian errors the largest is not six times
     for (const SeriesStatistics* series : {&comparison.a, &comparison.b}) {
         const SampleStatistics& s = series->of(ErrorQuantity::spatial).figures;
-        if (s.max > wild * s.median)
+        const double median = std::max(s.median, rounding_dust_m);
+        if (s.max > wild * median)
             comparison.warnings.push_back(
                 fmt::format("{}: the largest 3d error, {:.0f} m, is {:.0f} times the median: an "
                             "outlier dominates the mean and the standard deviation",
-                            series->name, s.max, s.max / s.median));
+                            series->name, s.max, s.max / median));
     }
 }
 

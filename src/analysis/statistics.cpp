@@ -39,14 +39,17 @@ void transform(Spectrum& a) {
 }
 
 Geodetic mean_position(const FixSeries& series) {
+    // From the first fix on, so that the sum stays small and its rounding does.
+    std::optional<Eigen::Vector3d> first;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    std::size_t count = 0;
-    for (const FixSample& sample : series.samples)
-        if (sample.has_fix) {
-            sum += to_ecef(sample.position).vector();
-            ++count;
-        }
-    return to_geodetic(Position<Ecef>(count == 0 ? sum : Eigen::Vector3d(sum / static_cast<double>(count))));
+    for (const FixSample& sample : series.samples) {
+        if (!sample.has_fix) continue;
+        const Eigen::Vector3d ecef = to_ecef(sample.position).vector();
+        if (!first) first = ecef;
+        sum += ecef - *first;
+    }
+    if (!first) return to_geodetic(Position<Ecef>(sum));
+    return to_geodetic(Position<Ecef>(Eigen::Vector3d(*first + sum / static_cast<double>(series.fixes()))));
 }
 
 bool every_fix_has_truth(const FixSeries& series) {
@@ -139,7 +142,8 @@ std::optional<double> correlation_length(std::span<const double> values) {
 
 std::optional<ComparisonPercent> comparison_percent(const SampleStatistics& candidate,
                                                     const SampleStatistics& reference) {
-    if (candidate.n == 0 || reference.mean == 0 || reference.std == 0) return std::nullopt;
+    if (candidate.n == 0 || std::abs(reference.mean) < rounding_dust_m || reference.std < rounding_dust_m)
+        return std::nullopt;
     ComparisonPercent result;
     result.mean_part = 100 * std::abs(candidate.mean - reference.mean) / std::abs(reference.mean);
     result.std_part = 100 * std::abs(candidate.std - reference.std) / reference.std;

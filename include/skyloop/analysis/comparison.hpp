@@ -73,7 +73,7 @@ struct FigureDifference {
     ErrorQuantity quantity = ErrorQuantity::east;
     std::string_view figure;        ///< "mean", "std", "rms", "min", "max", "cep", "p95"
     double a = 0, b = 0;            ///< metres
-    std::optional<double> percent;  ///< 100 · (a − b) / |b|; nothing where b is zero or a mean near zero
+    std::optional<double> percent;  ///< 100 · (a − b) / |b|; nothing where b is zero or small beside the errors
 };
 
 /// One window of B and how far A is from it.
@@ -97,7 +97,7 @@ struct Comparison {
     std::vector<FigureDifference> differences;
     /// Between the distributions of the errors, in the order of ErrorQuantity.
     std::array<DistributionDistance, error_quantities.size()> distances;
-    std::optional<ComparisonPercent> article;  ///< of `quantity`; nothing when B's mean or deviation is zero
+    std::optional<ComparisonPercent> article;  ///< of `quantity`; see comparison_percent()
     std::size_t window = 0;                    ///< samples in a window; 0: none were asked for
     std::vector<WindowComparison> windows;
     std::vector<WindowPair> yardstick;  ///< every ordered pair of different windows

@@ -68,7 +68,12 @@ struct ComparisonPercent {
     bool mean_near_zero = false;  ///< |mean_r| < std_r / 4: the relative difference of the means says nothing
 };
 
-/// Nothing when the reference's mean or standard deviation is zero or the candidate is empty.
+/// Mean and standard deviation of errors that are smaller are what rounding has left of zero, metres: in double
+/// precision a coordinate on the Earth is known to a nanometre.
+inline constexpr double rounding_dust_m = 1e-6;
+
+/// Of errors in metres. Nothing when the reference's mean or standard deviation is zero, rounding_dust_m included, or
+/// the candidate is empty.
 std::optional<ComparisonPercent> comparison_percent(const SampleStatistics& candidate,
                                                     const SampleStatistics& reference);
 

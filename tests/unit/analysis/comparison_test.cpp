@@ -89,6 +89,20 @@ TEST(Comparison, warns_of_signed_means_and_of_unlike_references) {
     EXPECT_THAT(compare(a, a, options)->warnings.at(0), HasSubstr("reference point is not used"));
 }
 
+// A receiver that holds its position: about its own mean nothing but the rounding of coordinates is left.
+TEST(Comparison, of_a_constant_reference_has_no_percentages) {
+    FixSeries constant{"constant", {}, false, {}, {}};
+    for (int i = 0; i < 100; ++i)
+        constant.samples.push_back({std::nullopt, true, Geodetic::degrees(47.1234567, 8.7654321, 512.345), {}});
+    const auto c = compare(scattered("sim", 100, 2, false), constant);
+    ASSERT_TRUE(c) << c.error().message;
+    EXPECT_FALSE(c->article);
+    for (const FigureDifference& d : c->differences)
+        EXPECT_FALSE(d.percent) << error_quantity_name(d.quantity) << " " << d.figure;
+    EXPECT_THAT(c->warnings, ::testing::ElementsAre(HasSubstr("mean or a standard deviation of zero")));
+    EXPECT_TRUE(compare(constant, scattered("sim", 100, 2, false))->warnings.empty());
+}
+
 TEST(Comparison, warns_of_a_wild_fix) {
     FixSeries b = scattered("glitch", 300, 2, true);
     b.samples[7].position.height.above_ellipsoid += Metres(1000);

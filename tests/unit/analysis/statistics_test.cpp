@@ -109,6 +109,13 @@ TEST(Statistics, errors_are_about_the_given_point_or_else_the_mean) {
     EXPECT_TRUE(position_errors(FixSeries{}).east.empty());
 }
 
+TEST(Statistics, the_own_mean_of_many_equal_fixes_is_where_they_are) {
+    const FixSeries series = offsets(odessa, std::vector<Eigen::Vector3d>(200'000, {1, 2, 3}), false);
+    const auto errors = sample_statistics(position_errors(series).spatial);
+    ASSERT_TRUE(errors);
+    EXPECT_LT(errors->max, rounding_dust_m / 100);
+}
+
 TEST(Statistics, autocorrelation_equals_the_sum_over_pairs) {
     const std::vector<double> values{1, 4, 2, 5, 3, 8, 6};
     const std::vector<double> r = autocorrelation(values, 4);
@@ -156,8 +163,12 @@ TEST(Statistics, percentage_warns_of_a_signed_mean_near_zero_and_refuses_zero) {
     EXPECT_FALSE(comparison_percent(candidate, reference)->mean_near_zero);
     reference.mean = 0;
     EXPECT_FALSE(comparison_percent(candidate, reference));
+    reference.mean = 3e-9;  // what rounding leaves of the mean about the own mean
+    EXPECT_FALSE(comparison_percent(candidate, reference));
     reference.mean = 1;
     reference.std = 0;
+    EXPECT_FALSE(comparison_percent(candidate, reference));
+    reference.std = 3e-9;
     EXPECT_FALSE(comparison_percent(candidate, reference));
 }
 
