@@ -101,11 +101,13 @@ void add_comparison_warnings(Comparison& comparison, const ComparisonOptions& op
 
 void compare_windows(Comparison& comparison, const std::vector<FixSeries>& parts, const ComparisonOptions& options) {
     const SampleStatistics& of_a = comparison.a.of(comparison.quantity).figures;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
+    std::size_t samples = 0;
+    for (const FixSeries& part : parts) {
         WindowComparison window;
-        window.first_sample = i * options.window;
-        if (parts[i].dated) window.start = parts[i].samples.front().time;
-        const PositionErrors errors = position_errors(parts[i], options.reference);
+        window.first_sample = samples;
+        samples += part.samples.size();
+        if (part.dated) window.start = part.samples.front().time;
+        const PositionErrors errors = position_errors(part, options.reference);
         window.figures = sample_statistics(error_values(errors, comparison.quantity)).value_or(SampleStatistics{});
         window.difference = comparison_percent(of_a, window.figures);
         comparison.windows.push_back(window);
@@ -218,10 +220,10 @@ Result<Comparison> compare(const FixSeries& a, const FixSeries& b, const Compari
     add_comparison_warnings(comparison, options);
     if (options.window == 0) return comparison;
 
-    const std::size_t count = b.samples.size() / options.window;
+    const std::size_t count = of_b->fixes / options.window;
     if (count == 0 || count > most_windows)
-        return fail(ErrorCode::usage, fmt::format("{}: {} samples make {} windows of {}; expected 1 to {} windows",
-                                                  b.name, b.samples.size(), count, options.window, most_windows));
+        return fail(ErrorCode::usage, fmt::format("{}: {} fixes make {} windows of {}; expected 1 to {} windows",
+                                                  b.name, of_b->fixes, count, options.window, most_windows));
     comparison.window = options.window;
     compare_windows(comparison, windows(b, options.window), options);
     return comparison;

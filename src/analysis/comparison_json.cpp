@@ -142,7 +142,7 @@ std::string comparison_json(const Comparison& comparison) {
     json["comparison"] = percent_json(comparison.article);
     json["quantity"] = error_quantity_name(comparison.quantity);
     if (comparison.window > 0) {
-        json["window_samples"] = comparison.window;
+        json["window_fixes"] = comparison.window;
         json["windows"] = windows_json(comparison);
         json["window_pairs"] = yardstick_json(comparison);
     }

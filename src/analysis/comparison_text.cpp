@@ -130,7 +130,7 @@ std::string spread_text(std::vector<double> values) {
 }
 
 std::string windows_text(const Comparison& comparison) {
-    std::string text = fmt::format("\nA against each window of B ({} samples each, {} error, metres)\n",
+    std::string text = fmt::format("\nA against each window of B ({} fixes each, {} error, metres)\n",
                                    comparison.window, heading_of(comparison.quantity));
     text += fmt::format("{:>6}  {:<22}{:>7}{:>9}{:>9}{:>9}{:>12}{:>11}\n", "window", "from", "fixes", "mean", "std",
                         "95 %", "difference", "agreement");
@@ -141,7 +141,7 @@ std::string windows_text(const Comparison& comparison) {
                                          : fmt::format("sample {}", w.first_sample + 1);
         text += fmt::format("{:>6}  {:<22}{:>7}", i + 1, from, w.figures.n);
         for (const double figure : {w.figures.mean, w.figures.std, w.figures.p95})
-            text += w.figures.n == 0 ? fmt::format("{:>9}", "-") : fmt::format("{:>9.3f}", figure);
+            text += fmt::format("{:>9.3f}", figure);
         const std::string agreement = w.difference ? fmt::format("{:.1f} %", 100 - w.difference->difference) : "-";
         text += fmt::format("{:>12}{:>11}\n", difference_cell(w.difference), agreement);
         if (w.difference) percents.push_back(w.difference->difference);

@@ -62,6 +62,10 @@ std::optional<std::size_t> first_binary_byte(std::string_view text) {
     return std::nullopt;
 }
 
+FixSeries without_samples(const FixSeries& series) {
+    return {series.name, {}, series.dated, series.interval, series.warnings, series.signal_strength};
+}
+
 // Of a log that holds both: UBX, which tells more, unless a few polled messages stand in a log of NMEA. It is told.
 FixSeries richer(FixSeries ubx, FixSeries nmea) {
     constexpr std::size_t many_more = 2;
@@ -135,12 +139,17 @@ FixSeries without_truth(FixSeries series) {
 }
 
 FixSeries slice(const FixSeries& series, const Slice& slice) {
-    FixSeries part = series;
-    part.samples.clear();
+    FixSeries part = without_samples(series);
     const std::size_t step = std::max<std::size_t>(slice.every, 1);
-    for (std::size_t i = slice.offset; i < series.samples.size(); i += step) {
-        if (slice.count != 0 && part.samples.size() == slice.count) break;
-        part.samples.push_back(series.samples[i]);
+    std::size_t left_out = 0, fixes = 0, gaps = 0, kept = 0;
+    for (const FixSample& sample : series.samples) {
+        if (left_out < slice.offset) {
+            if (sample.has_fix) ++left_out;
+            continue;
+        }
+        if ((sample.has_fix ? fixes : gaps)++ % step != 0) continue;
+        part.samples.push_back(sample);
+        if (sample.has_fix && ++kept == slice.count) break;
     }
     if (part.interval) part.interval = *part.interval * static_cast<double>(step);
     return part;
@@ -148,10 +157,15 @@ FixSeries slice(const FixSeries& series, const Slice& slice) {
 
 std::vector<FixSeries> windows(const FixSeries& series, std::size_t length) {
     std::vector<FixSeries> parts;
-    const std::size_t step = std::max<std::size_t>(length, 1);
-    for (std::size_t at = 0; at + step <= series.samples.size(); at += step) {
-        parts.push_back(slice(series, {at, 1, step}));
-        parts.back().name = fmt::format("{} window {}", series.name, parts.size());
+    FixSeries part = without_samples(series);
+    std::size_t fixes = 0;
+    for (const FixSample& sample : series.samples) {
+        part.samples.push_back(sample);
+        if (!sample.has_fix || ++fixes < length) continue;
+        part.name = fmt::format("{} window {}", series.name, parts.size() + 1);
+        parts.push_back(std::move(part));
+        part = without_samples(series);
+        fixes = 0;
     }
     return parts;
 }

@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         require(!comparison_text(*comparison).empty() && !comparison_json(*comparison).empty());
     }
     const FixSeries part = slice(*series, {1, 2, 5});
-    require(part.samples.size() <= 5 && part.samples.size() <= series->samples.size());
-    require(windows(*series, 3).size() == series->samples.size() / 3);
+    require(part.fixes() <= 5 && part.samples.size() <= series->samples.size());
+    require(windows(*series, 3).size() == series->fixes() / 3);
     return 0;
 }

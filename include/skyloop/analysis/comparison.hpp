@@ -65,7 +65,7 @@ Result<SeriesStatistics> series_statistics(const FixSeries& series,
 struct ComparisonOptions {
     std::optional<Geodetic> reference;                   ///< for a file without truth
     ErrorQuantity quantity = ErrorQuantity::horizontal;  ///< of the article's figure
-    std::size_t window = 0;                              ///< samples of B in a window; 0: no windows
+    std::size_t window = 0;                              ///< fixes of B in a window; 0: no windows
 };
 
 /// One figure of both files.
@@ -98,7 +98,7 @@ struct Comparison {
     /// Between the distributions of the errors, in the order of ErrorQuantity.
     std::array<DistributionDistance, error_quantities.size()> distances;
     std::optional<ComparisonPercent> article;  ///< of `quantity`; see comparison_percent()
-    std::size_t window = 0;                    ///< samples in a window; 0: none were asked for
+    std::size_t window = 0;                    ///< fixes in a window; 0: none were asked for
     std::vector<WindowComparison> windows;
     std::vector<WindowPair> yardstick;  ///< every ordered pair of different windows
     std::vector<std::string> warnings;

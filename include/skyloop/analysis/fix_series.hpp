@@ -56,18 +56,19 @@ Result<FixSeries> parse_fix_series(std::string_view text, const std::string& nam
 /// The series as a receiver would have written it, without the truth: errors are then about a point or its own mean.
 FixSeries without_truth(FixSeries series);
 
-/// Which samples to keep.
+/// Which fixes to keep.
 struct Slice {
-    std::size_t offset = 0;  ///< samples left out at the start
-    std::size_t every = 1;   ///< keep one sample of so many, at least 1
-    std::size_t count = 0;   ///< samples to keep at most; 0: all
+    std::size_t offset = 0;  ///< fixes left out at the start
+    std::size_t every = 1;   ///< keep one fix of so many, at least 1
+    std::size_t count = 0;   ///< fixes to keep at most; 0: all
 };
 
-/// The samples that `slice` keeps. The interval grows with `slice.every`.
+/// The fixes that `slice` keeps, with the samples without a fix between them and before the first; of these, too, one
+/// of `slice.every` is kept, so that the share of fixes stays. The interval grows with `slice.every`.
 FixSeries slice(const FixSeries& series, const Slice& slice);
 
-/// The series cut into consecutive windows of `length` samples; what is left at the end is dropped. `length` at
-/// least 1.
+/// The series cut into consecutive windows of `length` fixes, each with the samples without a fix before and between
+/// them; what is left at the end is dropped. `length` at least 1.
 std::vector<FixSeries> windows(const FixSeries& series, std::size_t length);
 
 }  // namespace skyloop

@@ -121,7 +121,7 @@ TEST(Comparison, needs_two_fixes_and_a_whole_window) {
     const auto no_window = compare(many, many, {std::nullopt, ErrorQuantity::horizontal, 101});
     ASSERT_FALSE(no_window);
     EXPECT_EQ(no_window.error().code, ErrorCode::usage);
-    EXPECT_THAT(no_window.error().message, HasSubstr("100 samples make 0 windows of 101"));
+    EXPECT_THAT(no_window.error().message, HasSubstr("100 fixes make 0 windows of 101"));
 }
 
 TEST(Comparison, windows_are_measured_one_by_one_and_pairwise) {
@@ -141,18 +141,21 @@ TEST(Comparison, windows_are_measured_one_by_one_and_pairwise) {
     EXPECT_DOUBLE_EQ(c->yardstick[1].difference->difference, pair->article->difference);
 }
 
-TEST(Comparison, a_window_without_a_fix_has_no_percentage) {
+// So that none is empty, whatever the receiver has missed.
+TEST(Comparison, windows_hold_as_many_fixes_each) {
     const FixSeries a = scattered("sim", 200, 2, true);
     FixSeries b = a;
     for (std::size_t i = 0; i < 100; ++i)
-        b.samples[i].has_fix = false;
-    const auto c = compare(a, b, {std::nullopt, ErrorQuantity::horizontal, 100});
+        b.samples[i].has_fix = i % 2 == 0;
+    const auto c = compare(a, b, {std::nullopt, ErrorQuantity::horizontal, 60});
     ASSERT_TRUE(c) << c.error().message;
-    EXPECT_EQ(c->windows[0].figures.n, 0u);
-    EXPECT_FALSE(c->windows[0].difference);
-    EXPECT_TRUE(c->windows[1].difference);
-    EXPECT_THAT(comparison_text(*c),
-                HasSubstr("     1  2013-02-09T23:59:44Z        0        -        -        -           -          -\n"));
+    ASSERT_EQ(c->windows.size(), 2u);
+    EXPECT_EQ(c->windows[0].figures.n, 60u);
+    EXPECT_EQ(c->windows[1].figures.n, 60u);
+    EXPECT_EQ(c->windows[1].first_sample, 110u);
+    EXPECT_EQ(c->windows[1].start, to_gps_time(1727, 110.0));
+    EXPECT_THAT(comparison_text(*c), HasSubstr("A against each window of B (60 fixes each,"));
+    EXPECT_THAT(comparison_json(*c), HasSubstr("\"window_fixes\": 60"));
 }
 
 TEST(Comparison, text_is_aligned_and_names_units_and_the_article_figure) {

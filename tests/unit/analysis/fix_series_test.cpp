@@ -381,6 +381,28 @@ TEST(FixSeries, slices_keep_every_nth_sample) {
     EXPECT_TRUE(slice(counted_series(10), {10, 1, 0}).samples.empty());
 }
 
+// Every second sample is none: fixes are counted, and what lies between them shows that it does.
+TEST(FixSeries, slices_and_windows_count_fixes) {
+    FixSeries series = counted_series(40);
+    for (std::size_t i = 0; i < 40; i += 2)
+        series.samples[i].has_fix = false;
+    const FixSeries first = slice(series, {0, 1, 10});
+    EXPECT_EQ(first.fixes(), 10u);
+    EXPECT_EQ(first.samples.size(), 20u);
+    const FixSeries rest = slice(series, {10, 1, 0});
+    EXPECT_EQ(rest.fixes(), 10u);
+    EXPECT_EQ(height_at(rest, 0), 20);
+    const FixSeries thin = slice(series, {1, 2, 0});
+    EXPECT_EQ(thin.fixes(), 10u);
+    EXPECT_EQ(thin.samples.size(), 20u);
+    EXPECT_EQ(height_at(thin, 1), 3);
+    EXPECT_EQ(height_at(thin, 3), 7);
+    const std::vector<FixSeries> parts = windows(series, 8);
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_EQ(parts[1].fixes(), 8u);
+    EXPECT_EQ(height_at(parts[1], 0), 16);
+}
+
 TEST(FixSeries, windows_are_whole_and_consecutive) {
     const std::vector<FixSeries> parts = windows(counted_series(11), 4);
     ASSERT_EQ(parts.size(), 2u);
