@@ -59,6 +59,9 @@ Result<Geodetic> reference_place(const std::string& text) {
 
 int compare_files(const CompareOptions& options) {
     const Messages messages(options.verbosity);
+    if (options.format == "svg" && options.window > 0)
+        return messages.error(
+            {ErrorCode::usage, "--window: the figure shows no windows; expected --format text or json"});
     ComparisonOptions wanted;
     wanted.quantity = *error_quantity_from_name(options.series);
     wanted.window = options.window;

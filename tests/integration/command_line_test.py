@@ -69,6 +69,7 @@ MISUSES = [
     (["sky", "--threads", "0"], 2, ["--threads: '0'; expected a whole number from 1 to 256"]),
     (["compare", "a", "b", "--reference", "47,8"], 2, ["--reference 47,8: expected LAT,LON,HEIGHT"]),
     (["compare", "a", "b", "--window", "-4"], 2, ["--window: '-4'; expected a whole number from 0 to"]),
+    (["compare", "a", "b", "--window", "5", "--format", "svg"], 2, ["--window", "expected --format text or json"]),
     (["compare", "a", "b", "--skip-a", "0x10"], 2, ["--skip-a: '0x10'; expected a whole number"]),
     (["compare", "a", "b", "--every-b", "0"], 2, ["--every-b: '0'; expected a whole number from 1 to 1000000"]),
     (["campaign", "x.toml", "--run-limit", "nan"], 2, ["--run-limit: 'nan'; expected a number from 0.1 to 1e+09"]),
