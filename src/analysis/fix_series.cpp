@@ -43,7 +43,13 @@ std::string_view rinex_label(std::string_view text) {
 
 Error rinex_refusal(std::string_view text, const std::string& name) {
     constexpr std::size_t type_column = 20;
-    if (!rinex_label(text).starts_with("CRINEX") && text[type_column] != 'O')
+    if (rinex_label(text).starts_with("CRINEX"))
+        return {
+            ErrorCode::input,
+            fmt::format("{}: is a compact RINEX observation file (Hatanaka), which holds measurements and no fixes; "
+                        "crx2rnx unpacks it, and `skyloop solve` makes fixes of what it unpacks",
+                        name)};
+    if (text[type_column] != 'O')
         return {ErrorCode::input, fmt::format("{}: is a RINEX file without observations (type '{}'), which holds no "
                                               "fixes; expected {}",
                                               name, quoted_letter(text[type_column]), known_formats)};
