@@ -199,7 +199,7 @@ Result<SeriesStatistics> series_statistics(const FixSeries& series, const std::o
         result.quantities[static_cast<std::size_t>(quantity)] =
             quantity_statistics(series, times, error_values(errors, quantity));
     result.satellites_used = satellites_used_statistics(series);
-    result.signal_strength = series.signal_strength;
+    result.signal_strength = series.signal_strength();
     return result;
 }
 

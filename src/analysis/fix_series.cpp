@@ -69,7 +69,7 @@ std::optional<std::size_t> first_binary_byte(std::string_view text) {
 }
 
 FixSeries without_samples(const FixSeries& series) {
-    return {series.name, {}, series.dated, series.interval, series.warnings, series.signal_strength};
+    return {series.name, {}, series.dated, series.interval, series.warnings};
 }
 
 // Of a log that holds both: UBX, which tells more, unless a few polled messages stand in a log of NMEA. It is told.
@@ -114,6 +114,14 @@ Result<FixSeries> parse_by_content(std::string_view text, const std::string& nam
 std::size_t FixSeries::fixes() const {
     return static_cast<std::size_t>(
         std::count_if(samples.begin(), samples.end(), [](const FixSample& s) { return s.has_fix; }));
+}
+
+SignalStrengthByElevation FixSeries::signal_strength() const {
+    SignalStrengthByElevation strengths;
+    for (const FixSample& sample : samples)
+        for (const SignalReport& report : sample.signals)
+            strengths.add(report);
+    return strengths;
 }
 
 Result<FixSeries> parse_fix_series(std::string_view text, const std::string& name) {

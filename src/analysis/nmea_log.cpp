@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "fix_table.hpp"
 #include "skyloop/protocol/nmea_decode.hpp"
@@ -74,8 +75,9 @@ private:
     std::size_t line_ = 1;
     std::size_t damaged_ = 0, without_checksum_ = 0, without_separation_ = 0, damaged_of_satellites_ = 0;
     std::size_t senseless_ = 0, without_altitude_ = 0;
-    std::string first_senseless_;  // and where it stands
-    int listed_used_ = 0;          // by the GSA sentences since the last GGA
+    std::string first_senseless_;             // and where it stands
+    int listed_used_ = 0;                     // by the GSA sentences since the last GGA
+    std::vector<SignalReport> before_first_;  // before the first GGA
     // For each sample its time of day and the number of dates said before it.
     struct Clock {
         std::optional<double> seconds;
@@ -134,17 +136,18 @@ void NmeaLogReader::take_sentence(std::string_view sentence) {
     if (const auto* rmc = std::get_if<Rmc>(&*message)) take_rmc(*rmc);
 }
 
-// False for a sentence that is damaged or makes no sense. GSA follows the GGA of its epoch, one for each system.
+// False for a sentence that is damaged or makes no sense. GSA and GSV follow the GGA of their epoch.
 bool NmeaLogReader::take_satellites(std::string_view sentence) {
     const std::size_t star = sentence.find('*');
     const Result<NmeaMessage> message =
         decode_nmea(sentence.substr(0, star == std::string_view::npos ? star : star + 3));
     if (!message) return false;
     if (const auto* gsa = std::get_if<Gsa>(&*message)) listed_used_ += static_cast<int>(gsa->satellites.size());
+    std::vector<SignalReport>& signals = series_.samples.empty() ? before_first_ : series_.samples.back().signals;
     if (const auto* gsv = std::get_if<Gsv>(&*message))
         for (const GsvSatellite& satellite : gsv->satellites)
             if (satellite.elevation_deg && satellite.cn0_dbhz)
-                series_.signal_strength.add(Angle::degrees(*satellite.elevation_deg), DbHz(*satellite.cn0_dbhz));
+                signals.push_back({Angle::degrees(*satellite.elevation_deg), DbHz(*satellite.cn0_dbhz)});
     return true;
 }
 
@@ -158,6 +161,7 @@ void NmeaLogReader::finish_epoch() {
 void NmeaLogReader::take_gga(const Gga& gga) {
     finish_epoch();
     FixSample sample;
+    sample.signals = std::exchange(before_first_, {});
     sample.satellites_used = gga.satellites_used;
     if (gga.quality != 0 && gga.position) {
         const Metres height = gga.altitude.value_or(Metres(0)) + gga.geoid_separation.value_or(Metres(0));
@@ -169,7 +173,7 @@ void NmeaLogReader::take_gga(const Gga& gga) {
         if (sample.has_fix && !gga.geoid_separation) ++without_separation_;
         if (sample.has_fix) sample.position = *position;
     }
-    series_.samples.push_back(sample);
+    series_.samples.push_back(std::move(sample));
     clocks_.push_back({gga.time ? std::optional(seconds_of_day(*gga.time)) : std::nullopt, dates_.size()});
 }
 

@@ -4,17 +4,24 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "skyloop/analysis/fix_series.hpp"
 
 namespace skyloop {
 
-/// Sums up the columns elevation_deg and cn0_dbhz of a table (INTERFACE.md, section 3). Rows without C/N0 are
-/// satellites that are not tracked.
-Result<SignalStrengthByElevation> parse_satellites_table(std::string_view text, const std::string& name);
+/// What a row tells.
+struct DatedSignal {
+    GpsTime time;
+    SignalReport report;
+};
 
-/// Where `fixes` is a file fixes.csv or fixes.csv.gz, adds what the satellites.csv (or .gz) in its folder tells. What
-/// cannot be read there becomes a warning of `series`: its fixes are good without it.
+/// Reads the columns time_utc, elevation_deg and cn0_dbhz of a table (INTERFACE.md, section 3). Rows without C/N0 are
+/// satellites that are not tracked, and are left out.
+Result<std::vector<DatedSignal>> parse_satellites_table(std::string_view text, const std::string& name);
+
+/// Where `fixes` is a file fixes.csv or fixes.csv.gz, adds what the satellites.csv (or .gz) in its folder tells to
+/// the samples of these times. What cannot be read there becomes a warning of `series`: its fixes are good without it.
 void add_satellites_beside(const std::filesystem::path& fixes, FixSeries& series);
 
 }  // namespace skyloop

@@ -14,11 +14,12 @@ void RunningStatistics::add(double value) {
 
 double RunningStatistics::std() const { return n_ < 2 ? 0 : std::sqrt(squares_ / static_cast<double>(n_ - 1)); }
 
-void SignalStrengthByElevation::add(Angle elevation, DbHz cn0) {
+void SignalStrengthByElevation::add(const SignalReport& report) {
     constexpr double rounding = 1e-9;  // degrees that the way through radians may cost
-    const double degrees = elevation.deg() + rounding;
-    if (!(degrees >= 0 && degrees <= 90 + 2 * rounding) || !(cn0.value() > 0) || !std::isfinite(cn0.value())) return;
-    bins_[std::min(static_cast<std::size_t>(degrees / bin_width_deg), bins - 1)].add(cn0.value());
+    const double degrees = report.elevation.deg() + rounding;
+    const double cn0 = report.cn0.value();
+    if (!(degrees >= 0 && degrees <= 90 + 2 * rounding) || !(cn0 > 0) || !std::isfinite(cn0)) return;
+    bins_[std::min(static_cast<std::size_t>(degrees / bin_width_deg), bins - 1)].add(cn0);
 }
 
 bool SignalStrengthByElevation::empty() const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "fix_table.hpp"
 #include "skyloop/time/utc_time.hpp"
@@ -91,6 +92,7 @@ private:
     void take_satellites(const UbxFrame& frame);
     void take_week(std::int64_t week);
     void finish_epoch();
+    void settle_signals();
     void date_samples();
     void add_warnings(std::size_t damaged);
     std::optional<Geodetic> checked(double latitude_deg, double longitude_deg, double height_m);
@@ -102,7 +104,8 @@ private:
     UbxLog log_;
     std::optional<UbxEpoch> epoch_;
     std::vector<Clock> clocks_;
-    SignalStrengthByElevation svinfo_;
+    std::vector<SignalReport> of_sat_, of_svinfo_;   // since the last sample
+    std::vector<std::vector<SignalReport>> svinfo_;  // of each sample
     std::size_t senseless_ = 0, time_only_ = 0, without_flags_ = 0;
 };
 
@@ -114,7 +117,7 @@ UbxLog UbxLogReader::read(std::string_view text) {
     }
     finish_epoch();
     date_samples();
-    if (log_.series.signal_strength.empty()) log_.series.signal_strength = svinfo_;
+    settle_signals();
     add_warnings(frames.damaged());
     return std::move(log_);
 }
@@ -218,7 +221,7 @@ void UbxLogReader::take_satellites(const UbxFrame& frame) {
         const double cn0 = frame.u1(block + (sat ? 2 : 4));
         const double elevation = frame.i1(block + (sat ? 3 : 5));
         if ((sat ? frame.u1(block + 8) & 8u : frame.u1(block + 2) & 1u) != 0) ++used;
-        (sat ? log_.series.signal_strength : svinfo_).add(Angle::degrees(elevation), DbHz(cn0));
+        if (cn0 > 0) (sat ? of_sat_ : of_svinfo_).push_back({Angle::degrees(elevation), DbHz(cn0)});
     }
     epoch_->listed_used = used;
 }
@@ -241,8 +244,21 @@ void UbxLogReader::finish_epoch() {
     sample.satellites_used = e.used ? e.used : e.listed_used;
     if (fix == UbxFix::time_only) ++time_only_;
     if (!fix) ++without_flags_;
-    log_.series.samples.push_back(sample);
+    sample.signals = std::exchange(of_sat_, {});
+    svinfo_.push_back(std::exchange(of_svinfo_, {}));
+    log_.series.samples.push_back(std::move(sample));
     clocks_.push_back({e.itow_ms, e.week});
+}
+
+// What came behind the last position is of its sample, and NAV-SVINFO counts where no NAV-SAT does.
+void UbxLogReader::settle_signals() {
+    std::vector<FixSample>& samples = log_.series.samples;
+    if (samples.empty()) return;
+    samples.back().signals.insert(samples.back().signals.end(), of_sat_.begin(), of_sat_.end());
+    svinfo_.back().insert(svinfo_.back().end(), of_svinfo_.begin(), of_svinfo_.end());
+    if (!log_.series.signal_strength().empty()) return;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        samples[i].signals = std::move(svinfo_[i]);
 }
 
 // A time of week belongs to the week that puts it within half a week of the last one whose week was said, or of the

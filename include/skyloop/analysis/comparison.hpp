@@ -46,7 +46,7 @@ struct SeriesStatistics {
     std::optional<Geodetic> point;
     std::array<QuantityStatistics, error_quantities.size()> quantities;  ///< in the order of ErrorQuantity
     std::optional<SampleStatistics> satellites_used;  ///< of the fixes; nothing when the file does not tell
-    SignalStrengthByElevation signal_strength;        ///< of the whole file
+    SignalStrengthByElevation signal_strength;        ///< of all samples; empty: not told
 
     /// 50 % of the horizontal errors are not larger, metres.
     [[nodiscard]] double cep() const { return of(ErrorQuantity::horizontal).figures.median; }

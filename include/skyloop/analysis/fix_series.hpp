@@ -23,19 +23,21 @@ struct FixSample {
     Geodetic position;              ///< means something only with `has_fix`
     std::optional<Geodetic> truth;  ///< where the antenna really was, when the file knows
     std::optional<int> satellites_used{};
+    std::vector<SignalReport> signals{};  ///< of the satellites tracked then; empty: not told
 };
 
 /// The samples of one file, or of a part of it, in the file's order.
 struct FixSeries {
     std::string name;  ///< for people: the file's name, or a window of it
     std::vector<FixSample> samples;
-    bool dated = false;                           ///< false: times only tell samples apart, their day is not known
-    std::optional<Seconds> interval;              ///< median time between samples; nothing when the file has no times
-    std::vector<std::string> warnings;            ///< what was skipped or assumed on reading, a sentence each
-    SignalStrengthByElevation signal_strength{};  ///< of the whole file, also in a slice of it; empty: not told
+    bool dated = false;                 ///< false: times only tell samples apart, their day is not known
+    std::optional<Seconds> interval;    ///< median time between samples; nothing when the file has no times
+    std::vector<std::string> warnings;  ///< what was skipped or assumed on reading, a sentence each
 
     /// The samples with a fix.
     [[nodiscard]] std::size_t fixes() const;
+    /// C/N0 by elevation in all samples; empty: not told.
+    [[nodiscard]] SignalStrengthByElevation signal_strength() const;
 };
 
 /// Reads a fix file, gzip-compressed or not. The format is known by its content:

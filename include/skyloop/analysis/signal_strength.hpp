@@ -22,6 +22,12 @@ private:
     double mean_ = 0, squares_ = 0;
 };
 
+/// What is told of one satellite at one time.
+struct SignalReport {
+    Angle elevation;
+    DbHz cn0;
+};
+
 /// C/N0 of tracked satellites in bins of ten degrees of elevation, dB-Hz.
 class SignalStrengthByElevation {
 public:
@@ -30,7 +36,7 @@ public:
 
     /// Counts one report of one satellite. Elevations outside 0 … 90° and C/N0 of zero or less (not tracked) are left
     /// out.
-    void add(Angle elevation, DbHz cn0);
+    void add(const SignalReport& report);
     /// The bin from 10·i to 10·(i + 1) degrees; the last one includes 90°.
     [[nodiscard]] const RunningStatistics& bin(std::size_t i) const { return bins_[i]; }
     [[nodiscard]] bool empty() const;

@@ -31,8 +31,8 @@ FixSeries reported_series(const std::string& name, std::size_t n, double sigma, 
         FixSample sample{std::nullopt, true, to_geodetic(frame.to_ecef(Position<Enu>(enu))), place};
         if (timed) sample.time = to_gps_time(2000, static_cast<double>(i));
         sample.satellites_used = 8 + static_cast<int>(i % 2);
+        sample.signals.push_back({Angle::degrees(35), DbHz(timed ? 40 : 43)});
         series.samples.push_back(sample);
-        series.signal_strength.add(Angle::degrees(35), DbHz(timed ? 40 : 43));
     }
     return series;
 }
@@ -66,9 +66,10 @@ TEST(ComparisonReport, text_has_a_table_of_each) {
     EXPECT_THAT(text, ContainsRegex("epoch to epoch +2\\.[0-9]+ m"));
     EXPECT_THAT(text, Not(HasSubstr("nan")));
     FixSeries bare = reported_series("bare", 100, 1, false);
-    bare.signal_strength = {};
-    for (FixSample& sample : bare.samples)
+    for (FixSample& sample : bare.samples) {
+        sample.signals.clear();
         sample.satellites_used.reset();
+    }
     const std::string without = comparison_text(*compare(bare, bare));
     EXPECT_THAT(without, Not(HasSubstr("C/N0")));
     EXPECT_THAT(without, Not(HasSubstr("satellites used")));

@@ -63,10 +63,10 @@ TEST(SignalStrength, is_summed_up_by_elevation_without_keeping_values) {
     SignalStrengthByElevation strengths;
     EXPECT_TRUE(strengths.empty());
     for (const double cn0 : {40.0, 42.0, 47.0})
-        strengths.add(Angle::degrees(20), DbHz(cn0));
-    strengths.add(Angle::degrees(90), DbHz(50));
-    strengths.add(Angle::degrees(-5), DbHz(50));
-    strengths.add(Angle::degrees(25), DbHz(0));
+        strengths.add({Angle::degrees(20), DbHz(cn0)});
+    strengths.add({Angle::degrees(90), DbHz(50)});
+    strengths.add({Angle::degrees(-5), DbHz(50)});
+    strengths.add({Angle::degrees(25), DbHz(0)});
     EXPECT_EQ(strengths.bin(2).n(), 3u);
     EXPECT_DOUBLE_EQ(strengths.bin(2).mean(), 43);
     EXPECT_DOUBLE_EQ(strengths.bin(2).std(), std::sqrt(13.0));

@@ -241,10 +241,10 @@ TEST(FixSeries, nmea_tells_satellites_used_and_signal_strengths) {
     ASSERT_EQ(series->samples.size(), 2u);
     EXPECT_EQ(series->samples[0].satellites_used, 15);
     EXPECT_EQ(series->samples[1].satellites_used, 12);
-    EXPECT_EQ(series->signal_strength.bin(4).n(), 2u);
-    EXPECT_DOUBLE_EQ(series->signal_strength.bin(4).mean(), 42);
-    EXPECT_EQ(series->signal_strength.bin(8).n(), 1u);
-    EXPECT_EQ(series->signal_strength.bin(1).n(), 0u);
+    EXPECT_EQ(series->signal_strength().bin(4).n(), 2u);
+    EXPECT_DOUBLE_EQ(series->signal_strength().bin(4).mean(), 42);
+    EXPECT_EQ(series->signal_strength().bin(8).n(), 1u);
+    EXPECT_EQ(series->signal_strength().bin(1).n(), 0u);
     std::string damaged = satellites;
     damaged[10] = '2';
     const auto rest = parse_fix_series(gga + damaged, "log.nmea");
@@ -256,19 +256,24 @@ TEST(FixSeries, nmea_tells_satellites_used_and_signal_strengths) {
 TEST(FixSeries, signal_strengths_come_from_the_satellites_table_beside_fixes) {
     const std::filesystem::path folder = testing::TempDir() + "fix_series_run";
     std::filesystem::create_directories(folder);
-    std::ofstream(folder / "fixes.csv") << fixes_header + fix_row;
+    std::ofstream(folder / "fixes.csv") << fixes_header + fix_row + no_fix_row;
     const auto alone = read_fix_series(folder / "fixes.csv");
     ASSERT_TRUE(alone) << alone.error().message;
-    EXPECT_TRUE(alone->signal_strength.empty() && alone->warnings.empty());
-    std::ofstream(folder / "satellites.csv")
-        << "time_utc,satellite,elevation_deg,cn0_dbhz,used\nt,G01,35.0,44,1\nt,G02,39.9,46,0\nt,G03,5,,0\n";
+    EXPECT_TRUE(alone->signal_strength().empty() && alone->warnings.empty());
+    std::ofstream(folder / "satellites.csv") << "time_utc,satellite,elevation_deg,cn0_dbhz,used\n"
+                                                "2010-07-01T12:00:00.000Z,G01,35.0,44,1\n"
+                                                "2010-07-01T12:00:00.000Z,G02,39.9,46,0\n"
+                                                "2010-07-01T12:00:00.000Z,G03,5,,0\n"
+                                                "2010-07-01T12:00:01.000Z,G01,35.1,50,1\n";
     const auto series = read_fix_series(folder / "fixes.csv");
     ASSERT_TRUE(series) << series.error().message;
-    EXPECT_EQ(series->signal_strength.bin(3).n(), 2u);
-    EXPECT_DOUBLE_EQ(series->signal_strength.bin(3).mean(), 45);
-    EXPECT_DOUBLE_EQ(series->signal_strength.bin(3).std(), std::sqrt(2.0));
-    EXPECT_EQ(series->signal_strength.bin(0).n(), 0u);
-    std::ofstream(folder / "satellites.csv") << "elevation_deg,cn0_dbhz\nlow,44\n";
+    EXPECT_EQ(series->signal_strength().bin(3).n(), 3u);
+    EXPECT_EQ(series->signal_strength().bin(0).n(), 0u);
+    const SignalStrengthByElevation first = slice(*series, {0, 1, 1}).signal_strength();
+    EXPECT_EQ(first.bin(3).n(), 2u);
+    EXPECT_DOUBLE_EQ(first.bin(3).mean(), 45);
+    EXPECT_DOUBLE_EQ(first.bin(3).std(), std::sqrt(2.0));
+    std::ofstream(folder / "satellites.csv") << "time_utc,elevation_deg,cn0_dbhz\n2010-07-01T12:00:00Z,low,44\n";
     const auto broken = read_fix_series(folder / "fixes.csv");
     ASSERT_TRUE(broken) << broken.error().message;
     EXPECT_THAT(broken->warnings, ElementsAre(AllOf(HasSubstr("satellites.csv:2:"), HasSubstr("left out"))));
@@ -430,7 +435,7 @@ TEST(FixSeries, reads_a_real_nmea_log_of_an_indoor_receiver) {
     EXPECT_NEAR(static_cast<double>(series->fixes()), 3759, 2);
     EXPECT_TRUE(series->dated);
     EXPECT_EQ(series->interval, Seconds(1));
-    EXPECT_NEAR(series->signal_strength.bin(3).mean(), 24.4, 0.1);
+    EXPECT_NEAR(series->signal_strength().bin(3).mean(), 24.4, 0.1);
     EXPECT_EQ(format_utc(to_utc(*series->samples[0].time, LeapSeconds::announced()), 0), "2024-07-26T11:24:35Z");
 }
 

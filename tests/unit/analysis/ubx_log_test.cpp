@@ -155,8 +155,8 @@ TEST(UbxLog, satellites_come_from_nav_sat_else_nav_svinfo) {
     svinfo.put(20 + 4, 0, 1).put(20 + 5, 45, 1);  // not tracked
     const auto old = parse_fix_series(posllh(9000, 1).bytes() + svinfo.bytes(), "log.ubx");
     ASSERT_TRUE(old) << old.error().message;
-    EXPECT_EQ(old->signal_strength.bin(4).n(), 1u);
-    EXPECT_DOUBLE_EQ(old->signal_strength.bin(4).mean(), 40);
+    EXPECT_EQ(old->signal_strength().bin(4).n(), 1u);
+    EXPECT_DOUBLE_EQ(old->signal_strength().bin(4).mean(), 40);
     EXPECT_EQ(old->samples[0].satellites_used, 1);
     UbxMessage sat(0x35, 8 + 3 * 12);
     sat.put(0, 9000, 4).put(4, 1, 1).put(5, 3, 1);
@@ -165,9 +165,16 @@ TEST(UbxLog, satellites_come_from_nav_sat_else_nav_svinfo) {
     sat.put(8 + 3, 5, 1).put(20 + 3, -91, 1).put(32 + 3, 90, 1);  // an elevation that is not known
     const auto both = parse_fix_series(posllh(9000, 1).bytes() + svinfo.bytes() + sat.bytes(), "log.ubx");
     ASSERT_TRUE(both) << both.error().message;
-    EXPECT_EQ(both->signal_strength.bin(0).n(), 1u);
-    EXPECT_EQ(both->signal_strength.bin(4).n(), 0u);
-    EXPECT_DOUBLE_EQ(both->signal_strength.bin(8).mean(), 50);
+    EXPECT_EQ(both->signal_strength().bin(0).n(), 1u);
+    EXPECT_EQ(both->signal_strength().bin(4).n(), 0u);
+    EXPECT_DOUBLE_EQ(both->signal_strength().bin(8).mean(), 50);
+    // What is told beside no position, and behind the last one, is counted, too, with the nearest.
+    const auto apart = parse_fix_series(
+        svinfo.bytes() + posllh(9200, 1).bytes() + posllh(9400, 1).bytes() + UbxMessage(svinfo).put(0, 9600, 4).bytes(),
+        "log.ubx");
+    ASSERT_TRUE(apart);
+    EXPECT_EQ(apart->signal_strength().bin(4).n(), 2u);
+    EXPECT_EQ(slice(*apart, {1, 1, 1}).signal_strength().bin(4).n(), 1u);
     EXPECT_EQ(both->samples[0].satellites_used, 3);
 }
 
@@ -209,8 +216,8 @@ TEST(UbxLog, of_the_real_m8p_gives_the_measured_figures) {
     constexpr std::array<std::array<double, 2>, 8> measured{
         {{18.7, 7.3}, {27.4, 7.7}, {31.4, 8.6}, {38.3, 8.0}, {42.3, 4.3}, {46.9, 2.3}, {48.9, 1.1}, {47.8, 1.1}}};
     for (std::size_t i = 0; i < measured.size(); ++i) {
-        EXPECT_NEAR(series->signal_strength.bin(i).mean(), measured[i][0], 0.06) << i;
-        EXPECT_NEAR(series->signal_strength.bin(i).std(), measured[i][1], 0.06) << i;
+        EXPECT_NEAR(series->signal_strength().bin(i).mean(), measured[i][0], 0.06) << i;
+        EXPECT_NEAR(series->signal_strength().bin(i).std(), measured[i][1], 0.06) << i;
     }
 }
 
@@ -225,8 +232,8 @@ TEST(UbxLog, of_the_real_f9t_gives_the_measured_signal_strengths) {
     };
     for (const Bin& bin : {Bin{0, 25.7, 6.8}, Bin{1, 30.8, 7.2}, Bin{2, 34.3, 7.6}, Bin{3, 42.0, 3.3},
                            Bin{4, 45.4, 2.0}, Bin{6, 45.0, 2.6}}) {
-        EXPECT_NEAR(series->signal_strength.bin(bin.index).mean(), bin.mean, 0.06) << bin.index;
-        EXPECT_NEAR(series->signal_strength.bin(bin.index).std(), bin.std, 0.06) << bin.index;
+        EXPECT_NEAR(series->signal_strength().bin(bin.index).mean(), bin.mean, 0.06) << bin.index;
+        EXPECT_NEAR(series->signal_strength().bin(bin.index).std(), bin.std, 0.06) << bin.index;
     }
 }
 
