@@ -183,7 +183,7 @@ int solve_file(const SolveOptions& options) {
     // Heights above the ellipsoid are taken for those above the sea, as other solvers do.
     NavigationEngine engine(parameters_of(options), {broadcast->get(), nullptr, LeapSeconds::announced(),
                                                      transmitters ? &*transmitters : nullptr});
-    auto out = OutputFile::create(options.out.empty() ? "/dev/stdout" : options.out);
+    auto out = options.out.empty() ? OutputFile::standard_output() : OutputFile::create(options.out);
     if (!out) return messages.error(out.error());
     const SolvedCounts counts = solve_epochs(*file, engine, settings_of(options), **broadcast, *out);
     out->flush();

@@ -19,6 +19,16 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
     return file;
 }
 
+// A path to it (/dev/stdout) would open a regular file anew: emptied, with a place in it of its own. Sockets have none.
+Result<OutputFile> OutputFile::standard_output() {
+    OutputFile file;
+    file.path_ = "standard output";
+    file.descriptor_ = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+    if (file.descriptor_ < 0)
+        return fail(ErrorCode::outside, fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
+    return file;
+}
+
 OutputFile::OutputFile(OutputFile&& other) noexcept { *this = std::move(other); }
 
 OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {

@@ -16,6 +16,9 @@ class OutputFile {
 public:
     OutputFile() = default;
     static Result<OutputFile> create(const std::filesystem::path& path);
+    /// The program's standard output, behind what already went there; nothing of it is emptied. Fails when it is
+    /// closed.
+    static Result<OutputFile> standard_output();
     OutputFile(OutputFile&& other) noexcept;
     OutputFile& operator=(OutputFile&& other) noexcept;
     ~OutputFile();

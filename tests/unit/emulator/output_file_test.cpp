@@ -1,9 +1,13 @@
 #include "skyloop/emulator/output_file.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <unistd.h>
+
+#include <cstdio>
 
 #include "run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
@@ -50,6 +54,44 @@ TEST(OutputFile, ReplacesAnOldFile) {
     std::ofstream(folder / "x") << "a long old content";
     { OutputFile::create(folder / "x")->write(std::string_view("new")); }
     EXPECT_EQ(content_of(folder / "x"), "new");
+}
+
+// What the program's standard output was, once the test is over.
+class StandardOutputKept {
+public:
+    StandardOutputKept() : kept_(dup(STDOUT_FILENO)) { std::fflush(stdout); }
+    ~StandardOutputKept() {
+        dup2(kept_, STDOUT_FILENO);
+        close(kept_);
+    }
+    StandardOutputKept(const StandardOutputKept&) = delete;
+    StandardOutputKept& operator=(const StandardOutputKept&) = delete;
+
+private:
+    int kept_;
+};
+
+TEST(OutputFile, WritesToStandardOutputBehindWhatIsThere) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "x") << "head ";
+    {
+        const StandardOutputKept kept;
+        const int shared = open((folder / "x").c_str(), O_WRONLY);
+        lseek(shared, 0, SEEK_END);
+        dup2(shared, STDOUT_FILENO);
+        close(shared);
+        OutputFile::standard_output()->write(std::string_view("rows "));
+        ASSERT_EQ(::write(STDOUT_FILENO, "tail", 4), 4) << "the descriptor of the program stays open";
+    }
+    EXPECT_EQ(content_of(folder / "x"), "head rows tail");
+}
+
+TEST(OutputFile, FailsWithoutAStandardOutput) {
+    const StandardOutputKept kept;
+    close(STDOUT_FILENO);
+    const auto file = OutputFile::standard_output();
+    ASSERT_FALSE(file);
+    EXPECT_EQ(file.error().message, "standard output: cannot be written: Bad file descriptor");
 }
 
 TEST(OutputFile, FailsOnAPathThatCannotBeWritten) {

@@ -1,0 +1,70 @@
+"""`skyloop solve`: fixes of observation files, where they go and what is told of what cannot be solved."""
+import csv
+import io
+import pathlib
+import re
+import socket
+import subprocess
+import unittest
+
+from session import SHARED, SKYLOOP, open_folder, skyloop
+
+VELOCITY = ("vel_north_mps", "vel_east_mps", "vel_down_mps", "speed_mps", "course_deg")
+
+
+def rows_of(text):
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def solved(folder, *arguments):
+    """The rows for the observations of a run, and what was said beside them."""
+    done = skyloop("solve", folder / "observations.rnx", *arguments)
+    return rows_of(done.stdout), done.stderr
+
+
+class Solve(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        temporary = open_folder()
+        cls.addClassCleanup(temporary.cleanup)
+        cls.folder = pathlib.Path(temporary.name)
+        scenario = cls.folder / "moves.toml"
+        scenario.write_text('[run]\nstart = 2026-03-01T12:00:00Z\n[trajectory]\nkind = "circle"\ncentre = [46.5, 30.7, 50]\n'
+                            'radius_m = 200\nspeed_mps = 20\n', encoding="utf-8")
+        skyloop("simulate", scenario, "--board", "ublox-f9p", "--duration", 5, "--out", cls.folder)
+        cls.nav = ["--nav", cls.folder / "navigation.rnx"]
+
+    def rewrite(self, change):
+        """A folder with the observations as `change` leaves their lines."""
+        temporary = open_folder()
+        self.addCleanup(temporary.cleanup)
+        lines = (self.folder / "observations.rnx").read_text(encoding="ascii").splitlines(keepends=True)
+        folder = pathlib.Path(temporary.name)
+        (folder / "observations.rnx").write_text("".join(map(change, lines)), encoding="ascii")
+        return folder
+
+    def test_standard_output_keeps_what_it_holds(self):
+        command = [SKYLOOP, "solve", self.folder / "observations.rnx", *self.nav, "--quiet"]
+        path = self.folder / "log.csv"
+        for mode in ("w", "a"):
+            path.write_text("kept\n" if mode == "a" else "", encoding="ascii")
+            with open(path, mode, encoding="ascii") as log:
+                if mode == "w":
+                    log.write("kept\n")
+                    log.flush()
+                subprocess.run(command, stdout=log, check=True, timeout=60)
+                log.write("tail\n")
+            lines = path.read_text(encoding="ascii").splitlines()
+            self.assertEqual((lines[0], lines[1][:8], len(lines), lines[-1]), ("kept", "time_utc", 8, "tail"), mode)
+
+    def test_standard_output_may_be_a_socket(self):
+        ours, theirs = socket.socketpair()
+        with ours, theirs:
+            subprocess.run([SKYLOOP, "solve", self.folder / "observations.rnx", *self.nav], stdout=theirs, check=True,
+                           stderr=subprocess.DEVNULL, timeout=60)
+            theirs.close()
+            with ours.makefile(encoding="ascii") as stream:
+                self.assertEqual(len(rows_of(stream.read())), 5)
+
+if __name__ == "__main__":
+    unittest.main()
