@@ -37,15 +37,17 @@ constexpr std::string_view solved_header =
     "time_utc,gps_week,tow_s,lat_deg,lon_deg,height_m,vel_north_mps,vel_east_mps,vel_down_mps,speed_mps,course_deg,"
     "fix_type,satellites_used,gdop,pdop,hdop,vdop,tdop,h_acc_m,v_acc_m,clock_bias_m\n";
 
-std::string solved_row(const Fix& fix) {
+// @param velocity_known a file may hold no Dopplers
+std::string solved_row(const Fix& fix, bool velocity_known) {
     const WeekAndTow gps = week_and_tow(fix.time);
     std::string row = fmt::format("{},{},{:.3f},", format_utc(to_utc(fix.time, LeapSeconds::announced())), gps.week,
                                   gps.tow_seconds());
     if (!fix.has_position()) return row + fmt::format(",,,,,,,,{},0,,,,,,,,\n", fix_type_name(fix.type));
     row += fmt::format("{:.9f},{:.9f},{:.4f},", fix.position.latitude.deg(), fix.position.longitude.deg(),
                        fix.position.height.above_ellipsoid.value());
-    row += fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},", fix.velocity.north, fix.velocity.east, fix.velocity.down,
-                       fix.speed.value(), fix.course.deg());
+    row += velocity_known ? fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},", fix.velocity.north, fix.velocity.east,
+                                        fix.velocity.down, fix.speed.value(), fix.course.deg())
+                          : ",,,,,";
     row += fmt::format("{},{},", fix_type_name(fix.type), fix.satellites_used());
     for (const double dop : {fix.dop.gdop, fix.dop.pdop, fix.dop.hdop, fix.dop.vdop, fix.dop.tdop})
         row += std::isfinite(dop) ? fmt::format("{:.3f},", dop) : ",";
@@ -152,7 +154,7 @@ SolvedCounts solve_epochs(ObservationFile& file, NavigationEngine& engine, const
                           [&](const Observation& o) { return !settings.tracks(o.satellite.constellation, o.signal); });
         set_glonass_carriers(epoch, broadcast);
         const Fix fix = engine.solve(epoch, settings);
-        out.write(solved_row(fix));
+        out.write(solved_row(fix, engine.velocity_known()));
         ++counts.epochs;
         if (fix.has_position()) ++counts.fixes;
     }

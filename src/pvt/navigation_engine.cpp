@@ -56,6 +56,7 @@ public:
           report_(*knowledge.broadcast, received_) {}
 
     Fix solve(const Observations& observations, const ReceiverSettings& settings);
+    [[nodiscard]] bool velocity_known() const { return velocity_known_; }
 
 private:
     // Of the last fix in three dimensions.
@@ -101,6 +102,7 @@ private:
     std::optional<Position<Ecef>> position_;  // the last one
     std::optional<LastHeight> height_;
     Angle course_;
+    bool velocity_known_ = false;                        // of the last solution
     CorrectionState corrected_ = CorrectionState::none;  // by a base station, this epoch
     Fix last_;
 };
@@ -186,9 +188,7 @@ void NavigationEngine::State::solve_position(const ReceiverSettings& settings, E
         setup.start = position_;
     }
     if (!checked) setup.held_height = held_height(settings);
-    if (setup.held_height) {
-        checked = monitor_.solve(epoch.equations, setup);
-    }
+    if (setup.held_height) checked = monitor_.solve(epoch.equations, setup);
     if (!checked) return;
     epoch.point = std::move(checked->solution);
     epoch.consistent = checked->consistent;
@@ -323,12 +323,10 @@ void NavigationEngine::State::fill_coasting(const ReceiverSettings& settings, Fi
     if (parameters_.filter.kind == FilterKind::none || !last_.has_position()) return;
     const std::optional<FilteredPosition> carried = filter_.coast(time_);
     if (!carried) return;
-    const GpsTime time = fix.time;
-    const std::vector<SatelliteStatus> none;
     Fix coasting = last_;
-    coasting.time = time;
+    coasting.time = fix.time;
     coasting.leap_seconds = fix.leap_seconds;
-    coasting.satellites = none;
+    coasting.satellites.clear();
     coasting.type = FixType::dead_reckoning;
     fill_motion(*carried, settings, coasting);
     const double t = carried->coasted.value();
@@ -374,6 +372,7 @@ Fix NavigationEngine::State::solve(const Observations& observations, const Recei
         clock_known_at_ = observations.receive_time;
         clock_bias_ = epoch.point->clock();
         clock_drift_ = fix.clock_drift;
+        velocity_known_ = epoch.velocity.has_value();
         if (!epoch.time_only) position_ = epoch.point->position;
     } else {
         fill_coasting(settings, fix);
@@ -396,5 +395,6 @@ NavigationEngine& NavigationEngine::operator=(NavigationEngine&&) noexcept = def
 Fix NavigationEngine::solve(const Observations& observations, const ReceiverSettings& settings) {
     return state_->solve(observations, settings);
 }
+bool NavigationEngine::velocity_known() const { return state_->velocity_known(); }
 
 }  // namespace skyloop

@@ -66,5 +66,21 @@ class Solve(unittest.TestCase):
             with ours.makefile(encoding="ascii") as stream:
                 self.assertEqual(len(rows_of(stream.read())), 5)
 
+    def test_a_velocity_is_told_where_one_was_measured(self):
+        rows, _ = solved(self.folder, *self.nav)
+        self.assertTrue(all(abs(float(row["speed_mps"]) - 20) < 1 for row in rows))
+        still = self.rewrite(lambda line: re.sub(r" D(?=\d)", " X", line) if "OBS TYPES" in line else line)
+        rows, _ = solved(still, *self.nav)
+        self.assertEqual(len(rows), 5)
+        for row in rows:
+            self.assertEqual(row["fix_type"], "3d")
+            self.assertEqual({row[name] for name in VELOCITY}, {""})
+        # What reads such tables knows that an empty cell tells nothing.
+        path = still / "solved.csv"
+        solved(still, *self.nav, "--out", path)
+        track = skyloop("trajectory", path).stdout
+        self.assertIn("velocity: by the places of the rows", " ".join(track.split()))
+        self.assertIn("5 fixes", skyloop("compare", path, path).stdout)
+
 if __name__ == "__main__":
     unittest.main()

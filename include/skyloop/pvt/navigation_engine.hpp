@@ -34,6 +34,8 @@ public:
 
     /// The fix of one epoch; epochs come in ascending time.
     Fix solve(const Observations& observations, const ReceiverSettings& settings);
+    /// Whether the last fix has a velocity that was measured: without Dopplers it is told as 0.
+    [[nodiscard]] bool velocity_known() const;
 
 private:
     class State;

@@ -69,6 +69,20 @@ TEST(NavigationEngine, FindsAPerfectReceiverWithAndWithoutAFilter) {
         }
 }
 
+TEST(NavigationEngine, KnowsNoVelocityWithoutDopplers) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    NavigationEngine engine(plain(FilterKind::none), {&sky});
+    EXPECT_FALSE(engine.velocity_known());
+    for (const bool told : {true, false, true}) {
+        Observations observations = measure(sky, receiver_at(antenna, sample_time));
+        if (!told)
+            for (Observation& o : observations.signals)
+                o.doppler.reset();
+        EXPECT_EQ(engine.solve(observations, {}).type, FixType::fix_3d);
+        EXPECT_EQ(engine.velocity_known(), told);
+    }
+}
+
 TEST(NavigationEngine, IsExactAtThePolesTheDateLineAndTheEndOfTheWeek) {
     const GpsTime sunday = to_gps_time(2300, 0.0);
     const SyntheticSky sky = test::synthetic_sky(sunday, test::four_systems);
