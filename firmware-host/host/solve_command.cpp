@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -7,8 +8,8 @@
 #include <set>
 
 #include "commands.hpp"
-#include "data_folders.hpp"
 #include "run_session.hpp"
+#include "skyloop/emulator/navigation_files.hpp"
 #include "skyloop/emulator/output_file.hpp"
 #include "skyloop/gnss/navigation_data.hpp"
 #include "skyloop/pvt/navigation_engine.hpp"
@@ -74,21 +75,36 @@ ReceiverSettings settings_of(const SolveOptions& options) {
     settings.elevation_mask = Angle::degrees(options.mask_deg);
     settings.minimum_cn0 = DbHz(0);  // a file may not tell it
     settings.dynamic_model = DynamicModel::airborne_4g;
-    for (const std::string& name : options.systems)
-        if (const auto system = constellation_from_name(name))
-            settings.signals.insert({*system, first_signal(*system)});
     return settings;
 }
 
-// Records that do not reach the observations serve nobody.
-void warn_of_span(const ObservationFile& file, const NavigationSource& source, const Messages& messages) {
-    const auto span = source.span();
+// Those of --systems; none: all that are observed.
+std::set<Constellation> wanted_systems(const SolveOptions& options) {
+    std::set<Constellation> wanted;
+    for (const std::string& name : options.systems)
+        if (const auto system = constellation_from_name(name)) wanted.insert(*system);
+    return wanted;
+}
+
+// Orbits that do not reach the observations serve nobody.
+void warn_of_span(const ObservationFile& file, const std::optional<TimeSpan>& span, std::string_view orbits,
+                  const Messages& messages) {
     const GpsTime first = file.epochs.front().receive_time, last = file.epochs.back().receive_time;
     if (!span || (first >= span->first && last <= span->last)) return;
     const auto text = [](GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); };
-    messages.warning(
-        fmt::format("the observations of {} to {} are not all in the time of the navigation data, {} to {}",
-                    text(first), text(last), text(span->first), text(span->last)));
+    messages.warning(fmt::format("the observations of {} to {} are not all in the time of the {}, {} to {}",
+                                 text(first), text(last), orbits, text(span->first), text(span->last)));
+}
+
+// From the first row of any satellite to the last.
+std::optional<TimeSpan> span_of(const PreciseOrbits& orbits) {
+    std::optional<TimeSpan> span;
+    for (const auto& [satellite, rows] : orbits.samples()) {
+        if (rows.empty()) continue;
+        if (!span) span = TimeSpan{rows.front().time, rows.back().time};
+        *span = {std::min(span->first, rows.front().time), std::max(span->last, rows.back().time)};
+    }
+    return span;
 }
 
 // The broadcast records for the span of the observations; none without a file.
@@ -97,34 +113,51 @@ Result<std::unique_ptr<NavigationSource>> broadcast_of(const SolveOptions& optio
     if (options.nav.empty()) return std::make_unique<NavigationData>(std::vector<Ephemeris>{}, std::nullopt, "nothing");
     Scenario scenario;
     scenario.sky.navigation.assign(options.nav.begin(), options.nav.end());
-    auto loaded = load_navigation(scenario, file.epochs.front().receive_time);
-    if (!loaded) return fail(loaded.error());
-    for (const std::string& warning : loaded->warnings)
+    std::vector<std::string> warnings;
+    auto data = read_navigation_files(scenario, file.epochs.front().receive_time, warnings);
+    if (!data) return fail(data.error());
+    for (const std::string& warning : warnings)
         messages.warning(warning);
-    warn_of_span(file, *loaded->source, messages);
-    return std::move(loaded->source);
+    warn_of_span(file, data->span(), "navigation data", messages);
+    return std::make_unique<NavigationData>(std::move(*data));
 }
 
+// The precise ones; nothing without a file.
+Result<std::optional<PreciseOrbits>> precise_of(const SolveOptions& options, const ObservationFile& file,
+                                                const Messages& messages) {
+    if (options.sp3.empty()) return std::nullopt;
+    auto read = read_precise_orbit_file(options.sp3);
+    if (!read) return fail(read.error());
+    warn_of_span(file, span_of(read->orbits), "precise orbits", messages);
+    return std::move(read->orbits);
+}
+
+// Where the satellites were, as far as the files tell.
+struct KnownOrbits {
+    std::unique_ptr<NavigationSource> broadcast;
+    std::optional<PreciseOrbits> precise;  // in place of the others
+
+    [[nodiscard]] bool tell(SatelliteId satellite, GpsTime time) const {
+        return precise ? precise->state(satellite, time).has_value()
+                       : broadcast->ephemeris(satellite, time).has_value();
+    }
+};
+
 // Why no fix is to be expected of a system: it is not observed, or there are no orbits of it.
-void warn_of_systems(const SolveOptions& options, const ObservationFile& file, const NavigationSource& broadcast,
+void warn_of_systems(const SolveOptions& options, const ObservationFile& file, const KnownOrbits& orbits,
                      const Messages& messages) {
     std::set<Constellation> observed, in_orbit;
     for (const Observations& epoch : file.epochs)
         for (const Observation& o : epoch.signals) {
             const Constellation system = o.satellite.constellation;
             observed.insert(system);
-            if (!in_orbit.contains(system) && broadcast.ephemeris(o.satellite, epoch.receive_time))
-                in_orbit.insert(system);
+            if (!in_orbit.contains(system) && orbits.tell(o.satellite, epoch.receive_time)) in_orbit.insert(system);
         }
-    std::set<Constellation> wanted = observed;
-    if (!options.systems.empty()) wanted.clear();
-    for (const std::string& name : options.systems)
-        if (const auto system = constellation_from_name(name)) wanted.insert(*system);
-    for (const Constellation system : wanted) {
+    for (const Constellation system : options.systems.empty() ? observed : wanted_systems(options)) {
         if (!observed.contains(system))
             messages.warning(
                 fmt::format("{}: no observations of {}", options.observations, constellation_name(system)));
-        else if (options.sp3.empty() && !in_orbit.contains(system))
+        else if (!in_orbit.contains(system))
             messages.warning(
                 fmt::format("no orbits of {} at the time of the observations", constellation_name(system)));
     }
@@ -144,14 +177,16 @@ struct SolvedCounts {
     std::size_t epochs = 0, fixes = 0;
 };
 
-SolvedCounts solve_epochs(ObservationFile& file, NavigationEngine& engine, const ReceiverSettings& settings,
+SolvedCounts solve_epochs(ObservationFile& file, NavigationEngine& engine, const SolveOptions& options,
                           const NavigationSource& broadcast, OutputFile& out) {
+    const ReceiverSettings settings = settings_of(options);
+    const std::set<Constellation> wanted = wanted_systems(options);
     SolvedCounts counts;
     out.write(solved_header);
     for (Observations& epoch : file.epochs) {
-        if (!settings.signals.empty())
+        if (!wanted.empty())
             std::erase_if(epoch.signals,
-                          [&](const Observation& o) { return !settings.tracks(o.satellite.constellation, o.signal); });
+                          [&](const Observation& o) { return !wanted.contains(o.satellite.constellation); });
         set_glonass_carriers(epoch, broadcast);
         const Fix fix = engine.solve(epoch, settings);
         out.write(solved_row(fix, engine.velocity_known()));
@@ -171,23 +206,20 @@ int solve_file(const SolveOptions& options) {
     if (!file) return messages.error(file.error());
     for (const std::string& warning : file->warnings)
         messages.warning(warning);
-    const auto broadcast = broadcast_of(options, *file, messages);
+    auto broadcast = broadcast_of(options, *file, messages);
     if (!broadcast) return messages.error(broadcast.error());
-    warn_of_systems(options, *file, **broadcast, messages);
-    std::optional<PreciseOrbitFile> precise;
+    auto precise = precise_of(options, *file, messages);
+    if (!precise) return messages.error(precise.error());
+    const KnownOrbits orbits{std::move(*broadcast), std::move(*precise)};
+    warn_of_systems(options, *file, orbits, messages);
     std::optional<PreciseTransmitters> transmitters;
-    if (!options.sp3.empty()) {
-        auto read = read_precise_orbit_file(options.sp3);
-        if (!read) return messages.error(read.error());
-        precise = std::move(*read);
-        transmitters.emplace(precise->orbits, options.nav.empty() ? nullptr : broadcast->get());
-    }
+    if (orbits.precise) transmitters.emplace(*orbits.precise, options.nav.empty() ? nullptr : orbits.broadcast.get());
     // Heights above the ellipsoid are taken for those above the sea, as other solvers do.
-    NavigationEngine engine(parameters_of(options), {broadcast->get(), nullptr, LeapSeconds::announced(),
+    NavigationEngine engine(parameters_of(options), {orbits.broadcast.get(), nullptr, LeapSeconds::announced(),
                                                      transmitters ? &*transmitters : nullptr});
     auto out = options.out.empty() ? OutputFile::standard_output() : OutputFile::create(options.out);
     if (!out) return messages.error(out.error());
-    const SolvedCounts counts = solve_epochs(*file, engine, settings_of(options), **broadcast, *out);
+    const SolvedCounts counts = solve_epochs(*file, engine, options, *orbits.broadcast, *out);
     out->flush();
     if (out->failure()) return messages.error(*out->failure());
     messages.info(fmt::format("{} epochs, {} with a fix", counts.epochs, counts.fixes));

@@ -8,6 +8,7 @@
 #include "skyloop/base/text_file.hpp"
 
 #include "skyloop/emulator/assembly.hpp"
+#include "skyloop/emulator/navigation_files.hpp"
 #include "skyloop/gnss/foreign_records.hpp"
 #include "skyloop/gnss/navigation_data.hpp"
 #include "skyloop/gnss/nominal_constellation.hpp"
@@ -201,13 +202,19 @@ Result<LoadedNavigation> load_nominal(const Scenario& scenario, GpsTime now) {
 
 }  // namespace
 
+Result<NavigationData> read_navigation_files(const Scenario& scenario, GpsTime near,
+                                             std::vector<std::string>& warnings) {
+    const auto all = read_all(scenario, near, warnings);
+    if (!all) return fail(all.error());
+    return NavigationData(all->records, all->ionosphere, all->description, selection_of(scenario));
+}
+
 Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now) {
     if (scenario.sky.navigation.empty()) return load_nominal(scenario, now);
     LoadedNavigation loaded;
-    const auto all = read_all(scenario, scenario.run.start.value_or(now), loaded.warnings);
-    if (!all) return fail(all.error());
-
-    NavigationData data(all->records, all->ionosphere, all->description, selection_of(scenario));
+    auto read = read_navigation_files(scenario, scenario.run.start.value_or(now), loaded.warnings);
+    if (!read) return fail(read.error());
+    NavigationData& data = *read;
     loaded.start = start_of(scenario, data.first_epoch(), now);
     if (const auto checked = check_end(scenario.run, loaded.start); !checked) return fail(checked.error());
     if (scenario.sky.rebase_navigation) {

@@ -82,5 +82,39 @@ class Solve(unittest.TestCase):
         self.assertIn("velocity: by the places of the rows", " ".join(track.split()))
         self.assertIn("5 fixes", skyloop("compare", path, path).stdout)
 
+    def test_systems_are_solved_whatever_their_signals_are(self):
+        # L2 is left of a receiver of two carriers.
+        other = self.rewrite(lambda line: re.sub(r" [CLDS]1C", " X1C", line) if "OBS TYPES" in line else line)
+        every, _ = solved(other, *self.nav)
+        named, text = solved(other, *self.nav, "--systems", "gps")
+        self.assertEqual(named, every)
+        self.assertGreater(int(named[0]["satellites_used"]), 4)
+        self.assertNotIn("no observations", text)
+        _, text = solved(other, *self.nav, "--systems", "gps,galileo")
+        self.assertIn("no observations of galileo", text)
+
+    def test_orbits_of_another_day_are_told_of(self):
+        path = self.folder / "other_day.sp3"
+        start = "2023  1  1  0 {:2d}  0.00000000"
+        head = ["#dP" + start.format(0) + "      12 ORBIT IGS20 FIT  IGS", "## 2243      0.00000000   300.00000000 59945 0.0",
+                "+    1   G01", "%c G  cc GPS ccc cccc cccc cccc cccc ccccc ccccc ccccc ccccc"]
+        rows = [line for k in range(12) for line in
+                ("*  " + start.format(5 * k), f"PG01{15000.0 + k:14.6f}{10000.0:14.6f}{19000.0:14.6f}{100.0:14.6f}")]
+        path.write_text("\n".join([*head, *rows, "EOF", ""]), encoding="ascii")
+        rows, text = solved(self.folder, "--sp3", path)
+        self.assertEqual({row["fix_type"] for row in rows}, {"none"})
+        self.assertRegex(text, "are not all in the time of the precise orbits, 2022-12-31T23:59:42Z to 2023-01-01T00:54:42Z")
+        self.assertIn("no orbits of gps at the time of the observations", text)
+
+    def test_speaks_of_no_run(self):
+        folder = SHARED / "receivers/hk_tst_static_20200603"
+        if not folder.is_dir():
+            self.skipTest(f"shared data absent: {folder}")
+        done = skyloop("solve", folder / "2020_06_03_TST_03.obs.gz", "--nav", folder / "hksc155c.20b", "--out", "/dev/null")
+        self.assertIn("986 with a fix", done.stderr)
+        self.assertNotIn("the run", done.stderr)
+        self.assertNotIn("--start", done.stderr)
+
+
 if __name__ == "__main__":
     unittest.main()

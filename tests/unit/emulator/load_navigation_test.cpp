@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "run_parts.hpp"
+#include "skyloop/emulator/navigation_files.hpp"
 #include "skyloop/time/utc_time.hpp"
 #include "unit/rinex/navigation_text.hpp"
 #include "unit/transport/temporary_folder.hpp"
@@ -166,6 +167,13 @@ TEST_F(LoadNavigation, WarnsWhereItBeginsBeforeThereIsEnough) {
                                     "2024-03-04T23:59:42Z: --start moves the run"));
     EXPECT_THAT(warnings("[run]\nstart = 2024-03-05T03:00:00Z\n"), IsEmpty());
     EXPECT_THAT(warnings("[run]\nstart = 2024-03-04T16:00:00Z\n"), IsEmpty());
+    std::vector<std::string> of_files;
+    Scenario no_run;
+    no_run.sky.navigation = {folder_ / "early.rnx"};
+    const auto data = read_navigation_files(no_run, data_day, of_files);
+    ASSERT_TRUE(data);
+    EXPECT_EQ(data->first_epoch(), data_day - 8h);
+    EXPECT_THAT(of_files, IsEmpty()) << "who only reads the files has no run to be moved";
 }
 
 TEST_F(LoadNavigation, RebasingMovesTheDataByWholeDays) {
