@@ -255,7 +255,7 @@ constexpr auto ubx_listing_table = std::to_array<UbxListing>({
            "lat_deg*1e-7 height_m*1e-3 msl_m*1e-3 speed_mps*1e-3 speed_3d_mps*1e-3 course_deg*1e-5 heading_deg*1e-5 "
            "h_acc_m*1e-3 v_acc_m*1e-3 speed_acc_mps*1e-3 course_acc_deg*1e-5 -reserved">,
     listed<HnrAtt, "tow_s*1e-3 version -reserved roll_pitch_heading_deg*1e-5 roll_pitch_heading_acc_deg*1e-5">,
-    listed<HnrIns, "validity -reserved tow_s*1e-3 angular_rate_degps*1e-3 acceleration_mps2*1e-3">,
+    listed<HnrIns, "validity -reserved tow_s*1e-3 angular_rate_degps*1e-3 acceleration_mps2*1e-2">,
     listed<CfgTp5,
            "pulse version -reserved cable_delay_ns rf_group_delay_ns period period_locked length length_locked "
            "user_delay_ns flags">,

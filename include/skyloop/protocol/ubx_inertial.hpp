@@ -165,7 +165,7 @@ struct HnrIns {
     std::array<std::uint8_t, 4> reserved{};
     std::uint32_t i_tow = 0;                 ///< ms, GPS time of week of the epoch
     std::array<std::int32_t, 3> ang_rate{};  ///< 1e-3 deg/s about x, y, z
-    std::array<std::int32_t, 3> accel{};     ///< mm/s² along x, y, z
+    std::array<std::int32_t, 3> accel{};     ///< 1e-2 m/s² along x, y, z
 
     template <class M, class V>
     static void fields(M& m, V& v) {

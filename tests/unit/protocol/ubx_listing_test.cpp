@@ -87,5 +87,15 @@ TEST(UbxListing, AttitudeIsInDegrees) {
     EXPECT_NE(listing_of(attitude).find(" roll_pitch_heading_deg=[1 -2.5 359] "), std::string::npos);
 }
 
+// 1e-2 m/s², as pyubx2 and SparkFun's library have it.
+TEST(UbxListing, AccelerationsBetweenTheEpochsAreInHundredths) {
+    HnrIns motion;
+    motion.ang_rate = {1500, 0, -250};
+    motion.accel = {981, -5, 0};
+    EXPECT_NE(listing_of(motion).find(" angular_rate_degps=[1.5 0 -0.25] acceleration_mps2=[9.81 -0.05 0]"),
+              std::string::npos)
+        << listing_of(motion);
+}
+
 }  // namespace
 }  // namespace skyloop
