@@ -165,11 +165,14 @@ private:
         if (kind == 's') return {std::string(text)};
         return plain_value(text);
     }
-    // Empty fields are left out: the list is filled up with them.
+    // Empty fields at the end are left out: the list is filled up with them. Those before a value keep its place, since
+    // the n-th residual of GRS is that of the n-th satellite of GSA.
     DecodedValue several(std::size_t count) {
         std::vector<DecodedValue> values;
         for (; count > 0 && left() > 0; --count)
-            if (DecodedValue value = one(0); value.content.index() != 0) values.push_back(std::move(value));
+            values.push_back(one(0));
+        while (!values.empty() && values.back().content.index() == 0)
+            values.pop_back();
         return {std::move(values)};
     }
     DecodedValue groups(std::string_view names) {

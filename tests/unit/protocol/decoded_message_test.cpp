@@ -123,6 +123,15 @@ TEST(DecodedMessage, SentencesAreListedByTheirFields) {
               "NMEA PUBX-41 port=1 in_protocols=0007 out_protocols=0003 baud=9600 autobaud=0");
 }
 
+TEST(DecodedMessage, ResidualsKeepTheirPlacesAmongTheSatellites) {
+    EXPECT_EQ(sentence_text("GPGRS,104148.00,1,2.6,,-1.6,,,,,,,,,,1,1"),
+              "NMEA GPGRS time=10:41:48.00 mode=1 residuals_m=[2.6 - -1.6] system_id=1 signal_id=1");
+    EXPECT_EQ(sentence_text("GPGRS,104148.00,1,,,,,,,,,,,,,1,1"),
+              "NMEA GPGRS time=10:41:48.00 mode=1 residuals_m=[] system_id=1 signal_id=1");
+    EXPECT_EQ(sentence_text("GPGSA,A,3,05,,12,,,,,,,,,,1.5,0.9,1.2,1"),
+              "NMEA GPGSA mode=A fix_mode=3 satellites=[5 - 12] pdop=1.5 hdop=0.9 vdop=1.2 system_id=1");
+}
+
 TEST(DecodedMessage, SentencesThatAreNotKnownOrNotRightLoseNothing) {
     EXPECT_EQ(sentence_text("PMTK605"), "NMEA PMTK605");
     EXPECT_EQ(sentence_text("PMTK705,AXN_2.31,5 6"), "NMEA PMTK705 fields=[AXN_2.31 \"5 6\"]");
