@@ -55,9 +55,13 @@ bool& flag_of(StreamProtocols& protocols, StreamKind kind) {
     }
 }
 
+bool is_automatic(const std::vector<std::string>& words) {
+    return std::find(words.begin(), words.end(), "auto") != words.end();
+}
+
 Wanted wanted_of(const std::vector<std::string>& words) {
     Wanted wanted;
-    const bool automatic = std::find(words.begin(), words.end(), "auto") != words.end();
+    const bool automatic = is_automatic(words);
     for (const StreamKind kind : all_kinds) {
         const bool named = std::find(words.begin(), words.end(), stream_kind_name(kind)) != words.end();
         flag_of(wanted.protocols, kind) = automatic || named;
@@ -166,7 +170,7 @@ Result<void> decode_stream(InputStream& input, const std::string& path, Decoder&
 }
 
 std::string nothing_in(const DecodeOptions& options, const std::string& name, std::uint64_t bytes) {
-    const bool any = options.protocols == std::vector<std::string>{"auto"};
+    const bool any = is_automatic(options.protocols);
     return fmt::format(
         "{}: no message of {} in its {} bytes{}", name,
         any ? "UBX, NMEA, RTCM 3, MSP, MAVLink or SBF" : fmt::format("{}", fmt::join(options.protocols, " or ")), bytes,
@@ -175,6 +179,11 @@ std::string nothing_in(const DecodeOptions& options, const std::string& name, st
 
 int decode(const DecodeOptions& options) {
     const Messages messages(options.verbosity);
+    if (options.protocols.size() > 1 && is_automatic(options.protocols))
+        return messages.error(
+            {ErrorCode::usage, fmt::format("--protocol {}: auto looks for all protocols; expected auto alone, or names "
+                                           "of protocols",
+                                           fmt::join(options.protocols, ","))});
     catch_stop_signals();
     auto input = InputStream::open(options.input);
     if (!input) return messages.error(input.error());

@@ -65,6 +65,13 @@ class DecodeTest(unittest.TestCase):
         self.assertEqual([line["protocol"] for line in lines[:-1]], ["msp"])
         self.assertEqual(set(lines[-1]["counts"]), {"bytes", "skipped_bytes", "msp"})
 
+    def test_auto_stands_alone(self):
+        for words in ("auto,ubx", "nmea,auto"):
+            done = decode(ACK + GLL, "--protocol", words)
+            self.assertEqual((done.returncode, done.stdout), (2, b""))
+            self.assertIn(f"--protocol {words}: auto looks for all protocols; expected auto alone".encode(), done.stderr)
+        self.assertEqual(decode(ACK + GLL, "--protocol", "auto").stdout, decode(ACK + GLL).stdout)
+
     def test_nothing_found_is_a_bad_file(self):
         done = decode(b"nothing in here\n")
         self.assertEqual(done.returncode, 2)
