@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "commands.hpp"
 #include "data_folders.hpp"
@@ -99,8 +102,26 @@ int print_tracks(const SkyOptions& options, const World& world) {
     return 0;
 }
 
+// The first option that says what a recorded run has said already, or how to draw something else; empty: none.
+std::string_view not_of_a_run(const SkyOptions& options) {
+    const std::array<std::pair<bool, std::string_view>, 10> others{{{!options.run.at.empty(), "--at"},
+                                                                    {!options.run.nav.empty(), "--nav"},
+                                                                    {options.run.rebase_nav, "--rebase-nav"},
+                                                                    {!options.run.start.empty(), "--start"},
+                                                                    {!options.run.model.empty(), "--model"},
+                                                                    {options.tracks_h > 0, "--tracks"},
+                                                                    {options.step > 0, "--step"},
+                                                                    {!options.grid.empty(), "--grid"},
+                                                                    {options.all_paths, "--all-paths"},
+                                                                    {options.view != "sky", "--view"}}};
+    const auto* const given = std::find_if(others.begin(), others.end(), [](const auto& other) { return other.first; });
+    return given == others.end() ? std::string_view() : given->second;
+}
+
 // What contradicts itself on the command line.
 std::optional<std::string> sky_misuse(const SkyOptions& options, const Scenario& scenario) {
+    const std::string_view beside_run = options.run_folder.empty() ? std::string_view() : not_of_a_run(options);
+    if (!beside_run.empty()) return fmt::format("--run draws what was recorded; expected it without {}", beside_run);
     if (options.tracks_h > 0 && options.format == "json") return "--tracks comes as --format csv or svg";
     if (options.tracks_h > 0 && !options.grid.empty()) return "--tracks and --grid show different things; expected one";
     if (options.step > 0 && options.tracks_h == 0 && options.grid.empty())

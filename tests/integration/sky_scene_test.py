@@ -136,6 +136,15 @@ class Runs(unittest.TestCase):
             self.assertEqual(broken.returncode, 2)
             self.assertIn("satellites.csv:1", broken.stderr)
 
+    def test_take_no_options_of_another_sky(self):
+        with open_folder() as folder:
+            skyloop("simulate", *PLACE, "--duration", 2, "--out", folder)
+            for arguments in (["--at", "1,2"], ["--nav", "/no/such/file"], ["--rebase-nav"], ["--start", "now"], ["--tracks", 1],
+                              ["--view", "plan", "--scene", "demo"], ["--all-paths"], ["--model", "ideal"], GRID[:2]):
+                done = skyloop("sky", "--run", folder, "--format", "svg", *arguments, check=False)
+                self.assertEqual((done.returncode, done.stdout), (2, ""), arguments)
+                self.assertIn(f"--run draws what was recorded; expected it without {arguments[0]}", done.stderr)
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)
