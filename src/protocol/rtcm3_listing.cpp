@@ -54,13 +54,20 @@ constexpr std::array<std::string_view, 7> msm_systems{"GPS", "GLONASS", "Galileo
 // MSM1 … MSM7 of seven systems: 1071 … 1137 (RTCM 10403.3, table 3.5-78).
 bool is_msm(unsigned number) { return number >= 1071 && number <= 1137 && number % 10 >= 1 && number % 10 <= 7; }
 
+bool is_gps_observables(unsigned number) { return number >= 1001 && number <= 1004; }
+bool is_glonass_observables(unsigned number) { return number >= 1009 && number <= 1012; }
+
+// On L1, extended with ambiguity and C/N0 or not, then on both carriers.
+std::string observables_name(unsigned number) {
+    const unsigned form = number - (is_gps_observables(number) ? 1001 : 1009);
+    return fmt::format("{} L1{} observables{}", is_gps_observables(number) ? "GPS" : "GLONASS",
+                       form >= 2 ? " and L2" : "", form % 2 == 0 ? ", basic" : "");
+}
+
 std::string rtcm3_name(unsigned number) {
+    if (is_gps_observables(number) || is_glonass_observables(number)) return observables_name(number);
     if (is_msm(number)) return fmt::format("{} MSM{}", msm_systems[(number - 1071) / 10], number % 10);
     switch (number) {
-        case 1002:
-            return "GPS L1 observables";
-        case 1004:
-            return "GPS L1 and L2 observables";
         case 1005:
             return "station position";
         case 1006:
@@ -68,10 +75,6 @@ std::string rtcm3_name(unsigned number) {
         case 1007:
         case 1008:
             return "antenna";
-        case 1010:
-            return "GLONASS L1 observables";
-        case 1012:
-            return "GLONASS L1 and L2 observables";
         case 1019:
             return "GPS ephemeris";
         case 1020:
@@ -141,7 +144,7 @@ void list_descriptors(unsigned number, RtcmLister& to) {
 // Legacy observables: the head alone (RTCM 10403.3, tables 3.5-1 and 3.5-9).
 void list_observables(unsigned number, RtcmLister& to) {
     to.number("station", 12);
-    if (number <= 1004)
+    if (is_gps_observables(number))
         to.scaled("tow_s*1e-3", 30, false);
     else
         to.scaled("time_of_day_s*1e-3", 27, false);
@@ -156,7 +159,7 @@ bool list_known(unsigned number, RtcmLister& to) {
         list_station(number, to);
     } else if (number == 1007 || number == 1008 || number == 1033) {
         list_descriptors(number, to);
-    } else if (number == 1002 || number == 1004 || number == 1010 || number == 1012) {
+    } else if (is_gps_observables(number) || is_glonass_observables(number)) {
         list_observables(number, to);
     } else if (number == 1019 || number == 1020 || (number >= 1042 && number <= 1046 && number != 1043)) {
         to.number("satellite", number == 1044 ? 4 : 6);

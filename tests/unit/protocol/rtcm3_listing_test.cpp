@@ -85,12 +85,14 @@ TEST(Rtcm3Listing, ObservablesAreDatedAsTheirSystemCounts) {
     const auto head = [](unsigned number, int width) {
         return Rtcm3Writer(number).bits(7, 12).bits(86399123, width).bits(1, 1).bits(9, 5).bytes();
     };
-    for (const unsigned gps : {1002U, 1004U})
+    for (const unsigned gps : {1001U, 1002U, 1003U, 1004U})
         EXPECT_NE(listed(head(gps, 30)).find("station=7 tow_s=86399.1230 more_follow=1 satellites=9"),
                   std::string::npos);
-    for (const unsigned glonass : {1010U, 1012U})
+    for (const unsigned glonass : {1009U, 1010U, 1011U, 1012U})
         EXPECT_NE(listed(head(glonass, 27)).find("station=7 time_of_day_s=86399.1230 more_follow=1 satellites=9"),
                   std::string::npos);
+    EXPECT_NE(listed(head(1003, 30)).find("1003 GPS L1 and L2 observables, basic: "), std::string::npos);
+    EXPECT_NE(listed(head(1009, 27)).find("1009 GLONASS L1 observables, basic: "), std::string::npos);
 }
 
 TEST(Rtcm3Listing, MsmTellTheirSatellitesAndSignals) {
