@@ -1,5 +1,7 @@
 #include "skyloop/trajectory/live_path.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,19 +22,14 @@ constexpr double longest_step_s = 2;
 constexpr double return_s = 0.3;               // FEEDS.md 3.1
 constexpr double jump_m = 2, jump_part = 0.5;  // FEEDS.md 3.1
 constexpr double first_speed_mps = 300;        // of a source that tells no velocity and has said one place
-constexpr double farthest_height_m = 1e6, fastest_mps = 12e3;  // FEEDS.md 3.1
-constexpr double hardest_mps2 = 1000, fastest_turn_radps = 200;
+constexpr double farthest_height_m = 1e6, fastest_mps = 12e3;             // FEEDS.md 3.1
 constexpr double unseen_m = 0.01, unseen_mps = 0.05, unseen_rad = 0.002;  // differences that no receiver shows
 
-bool is_plausible(const TruthSample& sample) {
-    const Eigen::Vector3d& place = sample.position.vector();
-    // Latitude and longitude zero is what sources say that do not know yet.
-    if (!place.allFinite() || (place.y() == 0 && place.z() == 0) || place.norm() > 1e8) return false;
-    if (std::abs(to_geodetic(sample.position).height.above_ellipsoid.value()) >= farthest_height_m) return false;
-    if (sample.velocity && !(sample.velocity->vector().norm() < fastest_mps)) return false;
-    if (sample.acceleration && !sample.acceleration->allFinite()) return false;
-    if (sample.attitude && !sample.attitude->body_to_ned().coeffs().allFinite()) return false;
-    return !sample.turn_rate || sample.turn_rate->allFinite();
+bool is_finite(const TruthSample& sample) {
+    return sample.position.vector().allFinite() && (!sample.velocity || sample.velocity->vector().allFinite()) &&
+           (!sample.acceleration || sample.acceleration->allFinite()) &&
+           (!sample.attitude || sample.attitude->body_to_ned().coeffs().allFinite()) &&
+           (!sample.turn_rate || sample.turn_rate->allFinite());
 }
 
 // Of the turn from one attitude to another, body axes, rad.
@@ -43,9 +40,35 @@ Eigen::Vector3d turn_between(const Eigen::Quaterniond& from, const Eigen::Quater
     return angle.angle() * angle.axis();
 }
 
+// What was concluded from the samples before does not hold behind a jump.
+void leave_untold(Motion& motion, const TruthSample& sample, bool same) {
+    if (!sample.velocity) motion.velocity.setZero();
+    if (!sample.acceleration) motion.acceleration.setZero();
+    if (!sample.turn_rate) motion.turn_rate.setZero();
+    if (!sample.attitude && !same) motion.body_to_ned.reset();
+}
+
 double seconds_between(GpsTime from, GpsTime to) { return difference(to, from).value(); }
 
 }  // namespace
+
+std::optional<std::string> implausible(const TruthSample& sample) {
+    constexpr double farthest_m = 1e8;
+    if (!is_finite(sample)) return "a number is not finite; expected finite ones";
+    const Eigen::Vector3d& place = sample.position.vector();
+    if (place.norm() > farthest_m)
+        return fmt::format("the place is {:g} m from the centre of the Earth; expected less than 1 000 000 m of height",
+                           place.norm());
+    if (place.y() == 0 && place.z() == 0)
+        return "the place is at latitude and longitude 0, as of a source that does not know its own yet; expected "
+               "another";
+    const double height = to_geodetic(sample.position).height.above_ellipsoid.value();
+    if (std::abs(height) >= farthest_height_m)
+        return fmt::format("the height is {:.0f} m above the ellipsoid; expected less than 1 000 000", height);
+    if (sample.velocity && !(sample.velocity->vector().norm() < fastest_mps))
+        return fmt::format("the speed is {:g} m/s; expected less than 12 000", sample.velocity->vector().norm());
+    return std::nullopt;
+}
 
 std::string_view live_state_name(LiveState state) {
     constexpr std::array<std::string_view, 5> names{"silent", "live", "coasting", "fading", "holding"};
@@ -55,12 +78,13 @@ std::string_view live_state_name(LiveState state) {
 LivePath::LivePath(const LivePathSettings& settings) : settings_(settings) {}
 
 void LivePath::add(GpsTime time, const TruthSample& sample) {
-    if (!is_plausible(sample)) {
+    if (implausible(sample)) {
         ++counts_.refused;
         return;
     }
     bool begins = sample.jump || knots_.empty();
     bool same = false;
+    std::optional<Knot> replaced;
     if (!knots_.empty()) {
         // A statement that came twice may have got another time, since the way between the clocks moves.
         same = time == knots_.back().time || (sample.source_time && sample.source_time == knots_.back().source_time);
@@ -74,16 +98,20 @@ void LivePath::add(GpsTime time, const TruthSample& sample) {
     if (same) {
         begins = begins || knots_.back().begins;
         if (sample.jump && !knots_.back().begins) ++counts_.jumps;
+        replaced = knots_.back();
         knots_.pop_back();
     }
     while (sample.jump && !knots_.empty() && knots_.back().time > time)
         knots_.pop_back();
     Knot knot = completed(time, sample);
+    if (replaced && !sample.attitude && !sample.jump) {
+        knot.motion.body_to_ned = replaced->motion.body_to_ned;
+        knot.own_attitude = replaced->own_attitude;
+        if (!sample.turn_rate) knot.motion.turn_rate = replaced->motion.turn_rate;
+    }
     knot.begins = begins || knots_.empty() || (!same && is_jump(knot));
     if (!same && !knots_.empty() && knot.begins) ++counts_.jumps;
-    if (knot.begins && !sample.velocity) knot.motion.velocity.setZero();
-    if (knot.begins && !sample.acceleration) knot.motion.acceleration.setZero();
-    if (knot.begins && !sample.turn_rate) knot.motion.turn_rate.setZero();
+    if (knot.begins) leave_untold(knot.motion, sample, same);
     if (!knots_.empty() && !same) remember_shown(knot);
     if (!knots_.empty() && !knot.begins) learn_step(seconds_between(knots_.back().time, time));
     knots_.push_back(knot);
@@ -106,14 +134,35 @@ LivePath::Knot LivePath::completed(GpsTime time, const TruthSample& sample) cons
         motion.acceleration = estimated(&Motion::velocity, knot);
     if (!(motion.velocity.norm() < fastest_mps)) motion.velocity.setZero();
     if (!(motion.acceleration.norm() < hardest_mps2)) motion.acceleration.setZero();
-    if (sample.attitude) motion.body_to_ned = sample.attitude->body_to_ned();
-    if (sample.turn_rate)
-        motion.turn_rate = *sample.turn_rate;
-    else if (motion.body_to_ned && !knots_.empty() && knots_.back().motion.body_to_ned && time > knots_.back().time)
-        motion.turn_rate = turn_between(*knots_.back().motion.body_to_ned, *motion.body_to_ned) /
-                           seconds_between(knots_.back().time, time);
-    if (!(motion.turn_rate.norm() < fastest_turn_radps)) motion.turn_rate.setZero();
+    complete_attitude(knot, sample);
     return knot;
+}
+
+void LivePath::complete_attitude(Knot& knot, const TruthSample& sample) const {
+    Motion& motion = knot.motion;
+    knot.own_attitude = sample.attitude.has_value();
+    if (sample.attitude) {
+        motion.body_to_ned = sample.attitude->body_to_ned();
+        motion.turn_rate = told_turn_rate(knot);
+    } else if (!sample.jump && !knots_.empty()) {
+        const Knot& last = knots_.back();
+        const Motion carried = carried_on(last.motion, patience(), seconds_between(last.time, knot.time));
+        motion.body_to_ned = carried.body_to_ned;
+        motion.turn_rate = carried.turn_rate;
+    }
+    if (sample.turn_rate) motion.turn_rate = *sample.turn_rate;
+    if (!(motion.turn_rate.norm() < fastest_turn_radps)) motion.turn_rate.setZero();
+}
+
+// From the attitude that was told before: what lies between was carried on from it, and says nothing new.
+Eigen::Vector3d LivePath::told_turn_rate(const Knot& newest) const {
+    for (auto knot = knots_.rbegin(); knot != knots_.rend(); ++knot) {
+        if (knot->own_attitude && newest.time > knot->time)
+            return turn_between(*knot->motion.body_to_ned, *newest.motion.body_to_ned) /
+                   seconds_between(knot->time, newest.time);
+        if (knot->begins) break;
+    }
+    return Eigen::Vector3d::Zero();
 }
 
 // The slope of a member at the newest sample, which is not among the others yet.
@@ -296,6 +345,11 @@ LiveState LivePath::state(GpsTime time) const {
 std::optional<GpsTime> LivePath::newest() const {
     if (knots_.empty()) return std::nullopt;
     return knots_.back().time;
+}
+
+std::optional<GpsTime> LivePath::rests_at() const {
+    if (knots_.empty()) return std::nullopt;
+    return advanced(knots_.back().time, settings_.delay + Seconds(patience().fade));
 }
 
 }  // namespace skyloop

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "skyloop/base/units.hpp"
@@ -17,10 +18,11 @@ namespace skyloop {
 
 /// What becomes of a path whose source is silent (FEEDS.md 3.1).
 struct LivePathSettings {
-    Geodetic before{};   ///< where the vehicle stands until the first sample
-    Seconds delay{0};    ///< the path is this much late, so that slow sources are interpolated and not extrapolated
-    Seconds coast{0.3};  ///< after the newest sample the vehicle goes on with its velocity and acceleration
-    Seconds fade{1.5};   ///< until then it comes to rest
+    Geodetic before{};  ///< where the vehicle stands until the first sample
+    Seconds delay{0};   ///< the path is this much late, so that slow sources are interpolated and not extrapolated
+    /// After the newest sample the vehicle goes on with its velocity, while its acceleration and turn rate fade.
+    Seconds coast{0.3};
+    Seconds fade{1.5};  ///< until then it comes to rest
 };
 
 /// How fresh a path is.
@@ -38,17 +40,24 @@ struct LivePathCounts {
     std::uint64_t holds = 0;    ///< times that it came to rest for want of samples
 };
 
+/// Why a sample says nothing that a vehicle does, FEEDS.md 3.1: a number and what was expected; nothing: it may be so.
+std::optional<std::string> implausible(const TruthSample& sample);
+
 /// Samples of the last seconds and the way through them: between two samples a quintic curve that keeps their
 /// positions, velocities and accelerations; beyond the newest as LivePathSettings says, where a source whose samples
 /// are far apart is given one and a half of its steps. What a sample does not tell of its velocity and acceleration is
-/// estimated from the ones before it. A sample that is far from where the path was expected (FEEDS.md 3.1: more than
-/// 2 m and than half of its speed times the silence) is a jump, which nothing leads across; a smaller difference from
-/// what was shown is taken away smoothly: within 0.3 s after a silence, else within two steps.
+/// estimated from the ones before it; an attitude that it does not tell is the one before it, turned on by the turn
+/// rate, which fades. A sample that is far from where the path was expected (FEEDS.md 3.1: more than 2 m and than half
+/// of its speed times the silence) is a jump, which nothing leads across; a smaller difference from what was shown is
+/// taken away smoothly: within 0.3 s after a silence, else within two steps.
 ///
 /// State: the samples of five seconds, at most 8192, and what was asked for beyond the newest. Not for several threads;
 /// at() may be asked in any order within the last two seconds, and its latest time counts as shown.
 class LivePath : public Trajectory {
 public:
+    /// Accelerations and turn rates from here on are no vehicle's: they are estimated, as if they had not been told.
+    static constexpr double hardest_mps2 = 1000, fastest_turn_radps = 200;
+
     explicit LivePath(const LivePathSettings& settings);
     /// @param time of the sample in the run, SourceClock::stamp()
     void add(GpsTime time, const TruthSample& sample);
@@ -56,6 +65,8 @@ public:
     [[nodiscard]] LiveState state(GpsTime time) const;
     /// Of the newest sample; nothing before the first.
     [[nodiscard]] std::optional<GpsTime> newest() const;
+    /// When the vehicle comes to rest, unless another sample comes; nothing before the first.
+    [[nodiscard]] std::optional<GpsTime> rests_at() const;
     [[nodiscard]] const LivePathCounts& counts() const { return counts_; }
 
     /// A state of motion; ECEF, m and s.
@@ -67,7 +78,7 @@ public:
     /// How long a path goes on without samples, s.
     struct Patience {
         double live = 0;         ///< as if there were samples
-        double coast = 0;        ///< with what velocity and acceleration it had
+        double coast = 0;        ///< with the velocity it had
         double fade = 0;         ///< until it has come to rest
         double fading_time = 0;  ///< in which acceleration and turn rate fall to 1/e
     };
@@ -78,8 +89,8 @@ private:
         GpsTime time;
         std::optional<Nanoseconds> source_time{};
         Motion motion{};
-        bool own_velocity = false;  // the source told it
-        bool begins = false;        // nothing leads from the knot before to this one
+        bool own_velocity = false, own_attitude = false;  // the source told it
+        bool begins = false;                              // nothing leads from the knot before to this one
     };
     // The path went on from the sample at `knot` alone, and was asked for until `until`. From there what it then
     // differed from the path through the samples is taken away.
@@ -94,6 +105,8 @@ private:
     };
 
     [[nodiscard]] Knot completed(GpsTime time, const TruthSample& sample) const;
+    void complete_attitude(Knot& knot, const TruthSample& sample) const;
+    [[nodiscard]] Eigen::Vector3d told_turn_rate(const Knot& newest) const;
     [[nodiscard]] Eigen::Vector3d estimated(const Eigen::Vector3d Motion::*member, const Knot& newest) const;
     [[nodiscard]] bool is_jump(const Knot& knot) const;
     [[nodiscard]] Patience patience() const;

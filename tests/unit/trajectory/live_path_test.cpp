@@ -245,6 +245,82 @@ TEST(LivePath, RefusesWhatCannotBe) {
     EXPECT_EQ(path.counts().samples, 0u);
 }
 
+double yaw_at(const LivePath& path, double t) {
+    const TruthState state = path.at(live_time(t));
+    return state.orientation ? state.orientation->attitude.yaw().rad() : std::numeric_limits<double>::quiet_NaN();
+}
+
+// A source may tell its attitude less often than its place.
+TEST(LivePath, CarriesAnAttitudeOnThroughSamplesThatTellNone) {
+    const RoundFlight circle;
+    LivePath path = live_path();
+    for (int i = 0; i <= 200; ++i) {
+        TruthSample sample = circle.at(0.02 * i);
+        if (i % 5 != 0) sample.attitude.reset();
+        path.add(live_time(0.02 * i), sample);
+        if (i < 20) continue;
+        const double wanted = std::numbers::pi / 2 + 0.02 * i / 3;
+        EXPECT_NEAR(std::remainder(yaw_at(path, 0.02 * i) - wanted, 2 * std::numbers::pi), 0, 0.01) << i;
+        EXPECT_NEAR(path.at(live_time(0.02 * i)).orientation->turn_rate.z(), 1 / 3.0, 0.15) << i;
+    }
+    TruthSample silent = circle.at(14);
+    silent.attitude.reset();
+    path.add(live_time(14), silent);
+    EXPECT_TRUE(std::isnan(yaw_at(path, 14))) << "behind a jump nothing is known of it";
+}
+
+TEST(LivePath, TurnsAnAttitudeOnByTheRateThatIsTold) {
+    const RoundFlight standing{.speed = 0};
+    LivePath path = live_path();
+    for (int i = 0; i <= 50; ++i) {
+        TruthSample sample = standing.at(0.02 * i);
+        if (i > 0) sample.attitude.reset();
+        sample.turn_rate = Eigen::Vector3d(0, 0, 0.5);
+        path.add(live_time(0.02 * i), sample);
+    }
+    EXPECT_NEAR(yaw_at(path, 1), std::numbers::pi / 2 + 0.5, 0.03);
+    TruthSample reset = standing.at(1.02);
+    reset.attitude.reset();
+    reset.jump = true;
+    path.add(live_time(1.02), reset);
+    EXPECT_TRUE(std::isnan(yaw_at(path, 1.02)));
+}
+
+TEST(LivePath, KeepsTheAttitudeOfAnInstantThatIsToldAgainWithoutOne) {
+    const RoundFlight circle;
+    LivePath path = live_path();
+    for (int i = 0; i <= 50; ++i) {
+        path.add(live_time(0.02 * i), circle.at(0.02 * i));
+        TruthSample again = circle.at(0.02 * i);
+        again.attitude.reset();
+        path.add(live_time(0.02 * i), again);
+    }
+    EXPECT_NEAR(yaw_at(path, 0.5), std::numbers::pi / 2 + 0.5 / 3, 1e-3);
+    EXPECT_NEAR(yaw_at(path, 1), std::numbers::pi / 2 + 1 / 3.0, 1e-9);
+}
+
+TEST(LivePath, TellsWhenItComesToRest) {
+    const RoundFlight circle;
+    LivePath path = live_path({.delay = Seconds(0.1)});
+    EXPECT_FALSE(path.rests_at());
+    for (int i = 0; i <= 100; ++i)
+        path.add(live_time(0.02 * i), circle.at(0.02 * i));
+    ASSERT_TRUE(path.rests_at());
+    EXPECT_EQ(*path.rests_at(), live_time(3.6));
+    EXPECT_EQ(path.state(*path.rests_at()), LiveState::fading);
+    EXPECT_EQ(path.state(*path.rests_at() + 1ms), LiveState::holding);
+}
+
+TEST(LivePath, SaysWhyASampleCannotBe) {
+    TruthSample sample = RoundFlight().at(0);
+    EXPECT_FALSE(implausible(sample));
+    sample.velocity = Velocity<Ecef>(0, 13e3, 0);
+    EXPECT_EQ(implausible(sample), "the speed is 13000 m/s; expected less than 12 000");
+    sample.velocity.reset();
+    sample.position = to_ecef(Geodetic::degrees(48, 11, 2e6));
+    EXPECT_EQ(implausible(sample), "the height is 2000000 m above the ellipsoid; expected less than 1 000 000");
+}
+
 TEST(LivePath, StaysFiniteUnderAnySamples) {
     std::mt19937 random(12);
     std::uniform_real_distribution<double> unit(-1, 1);
