@@ -1,5 +1,7 @@
 #include "run_watcher.hpp"
 
+#include <utility>
+
 #include "skyloop/control/status_json.hpp"
 
 namespace skyloop {
@@ -16,7 +18,13 @@ void RunWatcher::on_fault(const FaultSeen& seen) {
     board_.on_fault(seen);
 }
 
+void RunWatcher::on_command(const CommandSeen& seen) {
+    if (seen.command.verb == CommandVerb::move_to) ++moves_;
+    board_.on_command(seen);
+}
+
 std::string RunWatcher::status(GpsTime now) {
+    if (!std::exchange(stale_, false)) return recent_status_json(*board_.latest());
     for (std::size_t i = 0; i < traces_.size(); ++i)
         if (traces_[i])
             board_.on_epoch({traces_[i]->truth.time, i, *traces_[i], stations_[i].receiver().state(), Nanoseconds(0)});

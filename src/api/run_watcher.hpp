@@ -18,13 +18,17 @@ public:
     RunWatcher(StatusSetup setup, const std::vector<Station>& stations, StatusSources sources);
     void on_epoch(const EpochSeen& seen) override { traces_[seen.station] = seen.trace; }
     void on_fault(const FaultSeen& seen) override;
-    void on_command(const CommandSeen& seen) override { board_.on_command(seen); }
+    void on_command(const CommandSeen& seen) override;
     void on_belief(const BeliefSeen& seen) override { board_.on_belief(seen); }
 
     /// Of the last epoch of a receiver; nothing before the first.
     [[nodiscard]] const std::optional<Trace>& trace(std::size_t station) const { return traces_[station]; }
-    /// recent_status_json() of now.
+    /// The run has been led on: what status() tells is not what it told before.
+    void went_on() { stale_ = true; }
+    /// recent_status_json() of now; the same text until the run goes on, so that it can be measured and fetched.
     [[nodiscard]] std::string status(GpsTime now);
+    /// How often the vehicles have been moved by a command.
+    [[nodiscard]] std::uint64_t moves() const { return moves_; }
     /// A fault of this name has begun or ended.
     [[nodiscard]] bool has_seen(const std::string& fault) const { return faults_.contains(fault); }
 
@@ -32,6 +36,8 @@ private:
     const std::vector<Station>& stations_;
     std::vector<std::optional<Trace>> traces_;
     std::set<std::string> faults_;
+    std::uint64_t moves_ = 0;
+    bool stale_ = true;
     std::int64_t clock_ns_ = 0;  // of the board: late enough each time for everything to be due
     StatusBoard board_;
 };

@@ -120,6 +120,7 @@ Answer<void> Session::advance(std::int64_t sim_time_ns) {
                                   sim_time_ns, sim_time(now())));
     if (const auto going = failure(); !going) return going;
     assembly_.emulator->advance_to(*time, never_, Emulator::LastInstant::included);
+    watcher_->went_on();
     tell_news();
     return failure();
 }

@@ -123,9 +123,9 @@ class Emulator:
 
     def query(self, what):
         """"status", "config", "ports", "faults" or "commands"."""
-        size = self.checked(self.library.sky_query(self.handle, what.encode(), None, 0))
-        buffer = ctypes.create_string_buffer(size + 1)
-        self.checked(self.library.sky_query(self.handle, what.encode(), buffer, len(buffer)))
+        buffer = ctypes.create_string_buffer(4096)
+        while (size := self.checked(self.library.sky_query(self.handle, what.encode(), buffer, len(buffer)))) >= len(buffer):
+            buffer = ctypes.create_string_buffer(size + 1)
         return json.loads(buffer.value)
 
 
