@@ -53,7 +53,8 @@ enum {
 
 /// How much a sentence of the log matters.
 enum { SKY_LOG_ERROR = 0, SKY_LOG_WARNING = 1, SKY_LOG_DETAIL = 2 };
-/// Told sentences while a call on the handle goes on, by its thread. It must not call back into the same handle.
+/// Told sentences while a call on the handle goes on, sky_destroy() among them, by its thread. It must not call back
+/// into the same handle.
 typedef void (*sky_log_fn)(void* user, int32_t level, const char* utf8);
 
 /// Fields of sky_create_info that count; others are what the scenario says.
@@ -183,7 +184,8 @@ SKY_API uint32_t sky_abi_version(void);
 /// Begins a run. @param out the handle; null after a failure
 SKY_API sky_status sky_create(const sky_create_info* info, sky_emulator** out);
 
-/// Ends a run, writes what is left of its recording. Null is nothing. No other call on it may be going on.
+/// Ends a run, writes what is left of its recording; what cannot be written is told to the log, as SKY_LOG_ERROR. Null
+/// is nothing. No other call on it may be going on.
 SKY_API void sky_destroy(sky_emulator* emulator);
 
 /// Says where a vehicle is. From the first time on the scenario's own trajectory of that vehicle does not count any

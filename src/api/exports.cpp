@@ -157,6 +157,7 @@ sky_status sky_create(const sky_create_info* info, sky_emulator** out) {
 
 void sky_destroy(sky_emulator* emulator) {
     if (emulator == nullptr) return;
+    emulator->busy.store(true, std::memory_order_relaxed);  // for the log function
     try {
         delete emulator;
     } catch (...) {  // what is left of it cannot be told to anybody

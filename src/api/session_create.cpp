@@ -143,6 +143,10 @@ Session::~Session() {
     if (!begun_) return;  // nobody has had it, and there is nothing to sum up
     assembly_.emulator->finish();
     summarise(SummaryOf::end);
+    // Most of a recording is written here, and nobody is left who could ask how it went.
+    for (const Station& station : assembly_.emulator->stations())
+        if (station.recorder() != nullptr && station.recorder()->failure())
+            log(SKY_LOG_ERROR, station.recorder()->failure()->message);
 }
 
 }  // namespace skyloop

@@ -267,6 +267,41 @@ TEST(LedQuery, TellsTheRunAsJson) {
     EXPECT_NE(run.last_error().find("did you mean"), std::string::npos) << run.last_error();
 }
 
+// "sequence" has a digit more from 10 on: whoever has measured the text is not to find another.
+TEST(LedQuery, TellsTheSameUntilTheRunGoesOn) {
+    LedRun run(noisy_scenario);
+    run.advance(led_s);
+    const std::string status = run.query("status");
+    for (int i = 0; i < 12; ++i)
+        ASSERT_EQ(run.query("status"), status);
+    ASSERT_EQ(sky_command(run, R"({"command": "note", "text": "x"})"), SKY_OK);
+    run.advance(led_s);
+    const Json later = Json::parse(run.query("status"));
+    EXPECT_GT(later["sequence"], Json::parse(status)["sequence"]);
+    EXPECT_NE(later["events"], Json::parse(status)["events"]);
+}
+
+TEST(LedRecording, ThatCannotBeWrittenIsTold) {
+    const auto folder = std::filesystem::temp_directory_path() / ("skyloop-full-" + std::to_string(::getpid()));
+    const std::string path = folder.string();
+    for (const std::int64_t seconds : {2, 60}) {
+        std::filesystem::create_directories(folder);
+        std::filesystem::create_symlink("/dev/full", folder / "satellites.csv");
+        ToldSentences told(SKY_LOG_ERROR);
+        sky_create_info info = led_info(nullptr);
+        told.listen(info);
+        info.record_dir = path.c_str();
+        {
+            LedRun run(info, noisy_scenario);
+            // What is short waits in memory until the end.
+            EXPECT_EQ(sky_advance(run, seconds * led_s, nullptr), seconds < 10 ? SKY_OK : SKY_E_IO);
+            EXPECT_TRUE(told.all.empty());
+        }
+        EXPECT_EQ(told.count("satellites.csv: cannot be written"), 1) << seconds;
+        std::filesystem::remove_all(folder);
+    }
+}
+
 TEST(LedRecording, IsLeftWhenTheHandleIs) {
     const auto folder = std::filesystem::temp_directory_path() / ("skyloop-led-" + std::to_string(::getpid()));
     sky_create_info info = led_info(nullptr);

@@ -36,6 +36,28 @@ inline sky_create_info led_info(const char* text) {
     return info;
 }
 
+/// Keeps the sentences of a run's log that matter as much as `level`. Outlives the run.
+class ToldSentences {
+public:
+    explicit ToldSentences(std::int32_t level) : level_(level) {}
+    void listen(sky_create_info& info) {
+        info.log_user = this;
+        info.log = [](void* user, std::int32_t level, const char* sentence) {
+            auto& self = *static_cast<ToldSentences*>(user);
+            if (level == self.level_) self.all.emplace_back(sentence);
+        };
+    }
+    /// How many of them have this in them.
+    [[nodiscard]] std::ptrdiff_t count(std::string_view part) const {
+        return std::count_if(all.begin(), all.end(),
+                             [&](const std::string& one) { return one.find(part) != std::string::npos; });
+    }
+    std::vector<std::string> all{};
+
+private:
+    std::int32_t level_;
+};
+
 /// A handle that ends with its owner, and the calls that tests use most; those expect success.
 class LedRun {
 public:
