@@ -1,6 +1,7 @@
 // How a led run begins.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "data_place.hpp"
@@ -23,6 +24,8 @@ Answer<void> check_info(const sky_create_info& info) {
     if ((info.set & ~known_overrides) != 0)
         return refuse(SKY_E_UNSUPPORTED, fmt::format("set is {:#x}, of which {:#x} is not known to this version",
                                                      info.set, info.set & ~known_overrides));
+    if (info.reserved != 0)
+        return refuse(SKY_E_UNSUPPORTED, fmt::format("reserved is {:#x}; expected 0", info.reserved));
     return {};
 }
 
@@ -49,12 +52,36 @@ GpsTime wall_clock_gps() {
     return from_posix(duration_cast<Nanoseconds>(system_clock::now().time_since_epoch()), LeapSeconds::announced());
 }
 
-// Nothing: where the antenna is at the start.
+// Nothing: what the scenario says.
 Answer<std::optional<Geodetic>> origin_of(const sky_create_info& info) {
     if ((info.set & SKY_CREATE_ORIGIN) == 0) return std::nullopt;
     const auto place = place_from_degrees(info.origin_lla[0], info.origin_lla[1], info.origin_lla[2]);
     if (!place) return refuse(SKY_E_RANGE, "origin_lla: " + place.error());
     return std::optional(*place);
+}
+
+// The one that the sources of the first receiver's vehicle would have, else where that vehicle begins.
+Geodetic origin_of_scenario(const Scenario& scenario, const Geodetic& begins) {
+    const auto* live = std::get_if<LiveSettings>(&trajectory_of(scenario, 0));
+    return live != nullptr ? live->origin.value_or(begins) : begins;
+}
+
+// What a scenario asks for beside its receivers, and a program that leads the run does itself.
+std::vector<std::string> left_out(const Scenario& scenario) {
+    std::vector<std::string> sentences;
+    if (!scenario.expectations.empty())
+        sentences.emplace_back("[[expect]]: a led run is not judged; skyloop simulate does that");
+    if (!scenario.outputs.empty())
+        sentences.emplace_back("[[output]]: a led run tells other programs nothing; skyloop run does that");
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
+        if (const auto* live = std::get_if<LiveSettings>(&trajectory_of(scenario, i)))
+            sentences.push_back(
+                fmt::format("{}nobody listens to {} in a led run; sky_set_truth() says where the "
+                            "vehicle is",
+                            live->source_told_at, live->source));
+    // Receivers on one vehicle have one source.
+    sentences.erase(std::unique(sentences.begin(), sentences.end()), sentences.end());
+    return sentences;
 }
 
 }  // namespace
@@ -72,8 +99,8 @@ Answer<void> Session::read_scenario_of(const sky_create_info& info) {
     if (!scenario) return refuse(scenario.error());
     scenario_ = std::move(*scenario);
     // Judged and ended is a run by its program; a led one by its caller.
-    if (!scenario_.expectations.empty())
-        scenario_.warnings.emplace_back("[[expect]]: a led run is not judged; skyloop simulate does that");
+    for (std::string& sentence : left_out(scenario_))
+        scenario_.warnings.push_back(std::move(sentence));
     scenario_.run.duration.reset();
     if ((info.set & SKY_CREATE_SEED) != 0) scenario_.run.seed = info.seed;
     if (const auto applied = apply_start(info.start_utc, scenario_.run); !applied) return applied;
@@ -113,8 +140,7 @@ Answer<void> Session::assemble_run(const sky_create_info& info) {
     Emulator& emulator = *assembly_.emulator;
     for (const Port& port : ports_)
         port.led->tell_time(assembly_.start);
-    local_ = std::make_unique<LocalFrame>(
-        origin->value_or(emulator.first().simulation().truth_at(assembly_.start).geodetic));
+    local_ = std::make_unique<LocalFrame>(origin->value_or(origin_of_scenario(scenario_, assembly_.place)));
     StatusSources sources;
     sources.pace = [] { return PaceStatus{false, 1, true}; };
     sources.strength = [&emulator](std::string_view fault, int occurrence, GpsTime time) {

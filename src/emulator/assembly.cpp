@@ -301,6 +301,7 @@ Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const 
     assembly.track_details = track->details;
     auto feeds = open_feeds(scenario, mode, assembly);
     if (!feeds) return fail(feeds.error());
+    assembly.place = make_trajectory(trajectory_of(scenario, 0), assembly.start)->at(assembly.start).geodetic;
     if (const auto added = add_scene(scenario, data, assembly); !added) return fail(added.error());
     assembly.digest = scenario_digest(scenario, assembly.start, assembly.scene.digest);
     for (std::string& detail : world_details(*navigation->source, assembly))

@@ -59,6 +59,7 @@ struct Assembly {
     std::unique_ptr<Geoid> geoid;  ///< outlives the emulator, which looks up undulations in it
     std::unique_ptr<Emulator> emulator;
     GpsTime start;
+    Geodetic place{};  ///< of the first receiver's vehicle at the start
     std::optional<GpsTime> end;
     std::string digest;                      ///< scenario_digest()
     std::string trajectory;                  ///< what the recorded path is; empty: it is none
