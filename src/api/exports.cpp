@@ -101,18 +101,37 @@ void give_sentence(const std::string& sentence, char* buffer, std::uint64_t capa
     buffer[size] = '\0';
 }
 
-Answer<sky_emulator*> created(const sky_create_info& info) {
+Answer<sky_emulator*> created(const sky_create_info* info) {
+    const auto known = read_struct(info, "info");
+    if (!known) return refuse(known.error());
     auto emulator = std::make_unique<sky_emulator>();
-    auto session = Session::create(info);
+    auto session = Session::create(*known);
     if (!session) return refuse(session.error());
     emulator->session = std::move(*session);
     return emulator.release();
 }
 
-sky_status fail_to_create(const Refusal& refusal, const sky_create_info& info) {
-    give_sentence(refusal.sentence, info.error, info.error_capacity);
-    return refusal.status;
-}
+// Where the sentence of sky_create() goes: also that of a structure which is too short, but has this much.
+class ErrorRoom {
+public:
+    explicit ErrorRoom(const sky_create_info* info) {
+        constexpr std::size_t end = offsetof(sky_create_info, error_capacity) + sizeof info->error_capacity;
+        if (info == nullptr || info->struct_size < end || info->struct_size > largest_struct) return;
+        buffer_ = info->error;
+        capacity_ = info->error_capacity;
+    }
+    void clear() const {
+        if (buffer_ != nullptr && capacity_ > 0) buffer_[0] = '\0';
+    }
+    [[nodiscard]] sky_status take(const Refusal& refusal) const {
+        give_sentence(refusal.sentence, buffer_, capacity_);
+        return refusal.status;
+    }
+
+private:
+    char* buffer_ = nullptr;
+    std::uint64_t capacity_ = 0;
+};
 
 Answer<void> check_array(const void* items, std::size_t count, const char* name) {
     if (items != nullptr || count == 0) return {};
@@ -141,17 +160,17 @@ extern "C" {
 uint32_t sky_abi_version(void) { return SKY_ABI_MAJOR << 16 | SKY_ABI_MINOR; }
 
 sky_status sky_create(const sky_create_info* info, sky_emulator** out) {
-    if (out == nullptr) return SKY_E_ARG;
-    *out = nullptr;
-    const auto known = skyloop::read_struct(info, "info");
-    if (!known) return known.error().status;
+    const skyloop::ErrorRoom room(info);
+    room.clear();
+    if (out != nullptr) *out = nullptr;
     try {
-        const auto made = skyloop::created(*known);
-        if (!made) return skyloop::fail_to_create(made.error(), *known);
+        if (out == nullptr) return room.take({SKY_E_ARG, "out is null"});
+        const auto made = skyloop::created(info);
+        if (!made) return room.take(made.error());
         *out = *made;
         return SKY_OK;
     } catch (...) {
-        return skyloop::fail_to_create(skyloop::refusal_of_exception(), *known);
+        return room.take(skyloop::refusal_of_exception());
     }
 }
 
@@ -267,7 +286,8 @@ int64_t sky_last_error(sky_emulator* emulator, char* buffer, size_t capacity) {
     if (emulator == nullptr) return SKY_E_ARG;
     const skyloop::Turn turn(*emulator);
     if (!turn.mine()) return SKY_E_BUSY;
-    return skyloop::give_text(emulator->error, buffer, capacity);
+    skyloop::give_sentence(emulator->error, buffer, capacity);
+    return static_cast<std::int64_t>(emulator->error.size());
 }
 
 }  // extern "C"

@@ -67,6 +67,10 @@ TEST(LedHandle, IsNotMadeOfWhatIsWrong) {
     info.set = 1U << 31U;
     EXPECT_EQ(create_status(info), SKY_E_UNSUPPORTED);
     info = led_info("");
+    info.reserved = 1;
+    EXPECT_EQ(create_status(info, &why), SKY_E_UNSUPPORTED);
+    EXPECT_EQ(why, "reserved is 0x1; expected 0");
+    info = led_info("");
     info.struct_size = 8;
     EXPECT_EQ(create_status(info), SKY_E_ARG);
     info = led_info("");
@@ -87,6 +91,56 @@ TEST(LedHandle, ASentenceIsCutWhereThereIsNoRoom) {
     sky_emulator* emulator = nullptr;
     EXPECT_EQ(sky_create(&info, &emulator), SKY_E_PARSE);
     EXPECT_EQ(std::string(text, 8), std::string("scen\0##\0", 8));
+    LedRun run;
+    ASSERT_EQ(sky_query(run, "statos", nullptr, 0), SKY_E_UNSUPPORTED);
+    const std::string whole = run.last_error();
+    EXPECT_EQ(sky_last_error(run, text, 5), static_cast<std::int64_t>(whole.size()));
+    EXPECT_EQ(text, whole.substr(0, 4));
+    EXPECT_EQ(sky_last_error(run, nullptr, 0), static_cast<std::int64_t>(whole.size()));
+}
+
+TEST(LedHandle, SaysWhatIsWrongWithTheSizeOfItsStructure) {
+    char text[128] = "#";
+    sky_create_info info = led_info("");
+    info.error = text;
+    info.error_capacity = sizeof text;
+    info.struct_size = offsetof(sky_create_info, start_sim_ns);
+    sky_emulator* emulator = nullptr;
+    EXPECT_EQ(sky_create(&info, &emulator), SKY_E_ARG);
+    EXPECT_EQ(std::string(text), "struct_size is 88; expected 128 to 4096");
+    EXPECT_EQ(sky_create(&info, nullptr), SKY_E_ARG);
+    EXPECT_EQ(std::string(text), "out is null");
+    // Nothing is read behind a size that was never set.
+    for (const std::uint32_t size : {0U, 80U, 0xCCCCCCCCU}) {
+        text[0] = '#';
+        info.struct_size = size;
+        EXPECT_EQ(sky_create(&info, &emulator), SKY_E_ARG);
+        EXPECT_EQ(text[0], '#');
+    }
+    info.struct_size = sizeof info;
+    EXPECT_EQ(sky_create(&info, &emulator), SKY_OK);
+    EXPECT_EQ(std::string(text), "");
+    sky_destroy(emulator);
+}
+
+TEST(LedHandle, TellsWhatALedRunLeavesOut) {
+    ToldSentences told(SKY_LOG_WARNING);
+    sky_create_info info = led_info(nullptr);
+    told.listen(info);
+    LedRun run(info, R"(
+[trajectory]
+kind = "live"
+source = "udp-json:29990"
+[[receiver]]
+[[receiver]]
+[[output]]
+to = "json-tcp:9000"
+[[expect]]
+what = "fix within 60 s of the start of the run"
+)");
+    EXPECT_EQ(told.count("[[expect]]: a led run is not judged"), 1);
+    EXPECT_EQ(told.count("[[output]]: a led run tells other programs nothing; skyloop run does that"), 1);
+    EXPECT_EQ(told.count("source: nobody listens to udp-json:29990 in a led run"), 1);
 }
 
 TEST(LedHandle, WithoutAHandleNothingIsDone) {
