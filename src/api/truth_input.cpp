@@ -7,6 +7,8 @@
 #include <span>
 #include <string_view>
 
+#include "skyloop/trajectory/live_path.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -34,7 +36,15 @@ Answer<void> check_numbers(const sky_truth& t) {
     return {};
 }
 
+Answer<void> check_below(const char* name, double size, const char* unit, double limit) {
+    if (size < limit) return {};
+    return refuse(SKY_E_RANGE, fmt::format("{} is {:g} {}; expected less than {:g}", name, size, unit, limit));
+}
+
 Answer<Position<Ecef>> place_of_degrees(const double (&pos)[3], Metres undulation) {
+    constexpr double lowest_m = -1e4, highest_m = 1e6;  // FEEDS.md 3.1
+    if (!(pos[2] >= lowest_m && pos[2] < highest_m))
+        return refuse(SKY_E_RANGE, fmt::format("pos: height is {:g} m; expected -10 000 to 1 000 000", pos[2]));
     const auto place = place_from_degrees(pos[0], pos[1], pos[2] + undulation.value());
     if (!place) return refuse(SKY_E_RANGE, "pos: " + place.error());
     return to_ecef(*place);
@@ -70,12 +80,24 @@ Answer<Attitude> attitude_of(const double (&q)[4]) {
     return Attitude(turn);
 }
 
+// Beyond them a path takes its own estimate for what was told.
+Answer<void> check_motion(const TruthSample& sample) {
+    if (sample.acceleration)
+        if (const auto soft = check_below("acc_ned", sample.acceleration->norm(), "m/s²", LivePath::hardest_mps2);
+            !soft)
+            return soft;
+    if (!sample.turn_rate) return {};
+    return check_below("rate_frd", sample.turn_rate->norm(), "rad/s", LivePath::fastest_turn_radps);
+}
+
 }  // namespace
 
 Answer<TruthSample> truth_sample(const sky_truth& truth, const TruthFrames& frames) {
     if ((truth.fields & ~known_fields) != 0)
         return refuse(SKY_E_UNSUPPORTED, fmt::format("fields is {:#x}, of which {:#x} is not known to this version",
                                                      truth.fields, truth.fields & ~known_fields));
+    if (truth.reserved != 0)
+        return refuse(SKY_E_UNSUPPORTED, fmt::format("reserved is {:#x}; expected 0", truth.reserved));
     if (std::popcount(truth.fields & positions) != 1)
         return refuse(SKY_E_ARG, fmt::format("fields is {:#x}; expected exactly one SKY_POS_…", truth.fields));
     if (const auto finite = check_numbers(truth); !finite) return refuse(finite.error());
@@ -89,8 +111,8 @@ Answer<TruthSample> truth_sample(const sky_truth& truth, const TruthFrames& fram
     const auto turned = [&](const double(&ned)[3]) { return axes.to_ecef(Velocity<Enu>(ned[1], ned[0], -ned[2])); };
     if ((truth.fields & SKY_VEL) != 0) sample.velocity = turned(truth.vel_ned);
     if ((truth.fields & SKY_ACC) != 0) sample.acceleration = turned(truth.acc_ned).vector();
-    if ((truth.fields & SKY_RATE) != 0)
-        sample.turn_rate = Eigen::Vector3d(truth.rate_frd[0], truth.rate_frd[1], truth.rate_frd[2]);
+    if ((truth.fields & SKY_RATE) != 0) sample.turn_rate = Eigen::Vector3d(truth.rate_frd);
+    if (const auto usable = check_motion(sample); !usable) return refuse(usable.error());
     if ((truth.fields & SKY_ATT) == 0) return sample;
     const auto attitude = attitude_of(truth.q_nb);
     if (!attitude) return refuse(attitude.error());
