@@ -10,7 +10,9 @@
 /// Threads: one handle for one thread at a time; a call beside another one on the same handle, from the log function
 /// too, does nothing and gives SKY_E_BUSY. Different handles know nothing of each other.
 /// Errors: negative numbers; sky_last_error() has the sentence. Nothing is thrown. After SKY_E_INTERNAL a handle can
-/// only be destroyed.
+/// only be destroyed. Once a command has ended the run, what leads it (sky_set_truth(), sky_advance(), sky_write(),
+/// sky_set_baud(), sky_set_los(), sky_command()) gives SKY_E_STATE.
+/// Language: C99 or C++11 and later.
 /// ABI: structures grow at their ends alone and say their own size; symbols are never removed while SKY_ABI_MAJOR and
 /// the library's SONAME (libskyloop.so.0) stay. A program built for minor n runs with every later one.
 #ifndef SKYLOOP_H
@@ -60,7 +62,8 @@ typedef void (*sky_log_fn)(void* user, int32_t level, const char* utf8);
 /// Fields of sky_create_info that count; others are what the scenario says.
 enum {
     SKY_CREATE_SEED = 1,   ///< seed
-    SKY_CREATE_ORIGIN = 2  ///< origin_lla
+    SKY_CREATE_ORIGIN = 2  ///< origin_lla; else the `origin` of the first receiver's live [trajectory], else the place
+                           ///< of its vehicle (not of its antenna) at the start
 };
 
 /// What sky_create() is told. Fill it with zeros first.
@@ -77,7 +80,9 @@ typedef struct sky_create_info {
     const char* start_utc;      ///< ISO 8601 in UTC, or "now"; null: what the scenario says
     sky_log_fn log;             ///< null: nobody
     void* log_user;             ///< handed to it
-    char* error;                ///< where the sentence of a failed sky_create() goes, ended by a zero; null: nowhere
+    char* error;                ///< where the sentence of a failed sky_create() goes, cut to its room and ended by a
+                                ///< zero, empty after SKY_OK; null: nowhere. Without a struct_size that reaches as
+                                ///< far as error_capacity there is none
     uint64_t error_capacity;    ///< bytes there
     int64_t start_sim_ns;       ///< the caller's time at the start of the run
     uint64_t seed;              ///< SKY_CREATE_SEED
@@ -89,7 +94,7 @@ enum {
     SKY_POS_ECEF = 1,           ///< pos: x, y, z, metres, WGS 84
     SKY_POS_LLA_ELLIPSOID = 2,  ///< pos: latitude, longitude, degrees; metres above the WGS-84 ellipsoid
     SKY_POS_LLA_MSL = 4,        ///< pos: latitude, longitude, degrees; metres above sea level (EGM96)
-    SKY_POS_LOCAL_NED = 8,      ///< pos: north, east, down from the origin, metres, in its tangent plane
+    SKY_POS_LOCAL_NED = 8,      ///< pos: north, east, down from the origin, less than 1e7 m, in its tangent plane
     SKY_VEL = 16,
     SKY_ACC = 32,
     SKY_ATT = 64,
@@ -97,8 +102,10 @@ enum {
     SKY_RESET = 256  ///< the vehicle was moved by hand: no way leads from the sample before to this one
 };
 
-/// Where a vehicle is at one instant. North, east, down are those of its own place; of SKY_POS_LOCAL_NED velocity and
-/// acceleration are along the axes of the origin, as its positions are.
+/// Where a vehicle is at one instant: in each frame less than 1000 km above the ellipsoid and not at latitude and
+/// longitude 0, which sources say that know no place; as a latitude and longitude no more than 10 km below it. North,
+/// east, down are those of its own place; of SKY_POS_LOCAL_NED velocity and acceleration are along the axes of the
+/// origin, as its positions are.
 typedef struct sky_truth {
     uint32_t struct_size;  ///< sizeof(sky_truth)
     uint32_t fields;       ///< SKY_POS_… | SKY_VEL | …
@@ -106,10 +113,10 @@ typedef struct sky_truth {
     uint32_t vehicle;    ///< 0: the scenario's; n + 1: that of receiver n, where it has a [receiver.trajectory]
     uint32_t reserved;   ///< 0
     double pos[3];       ///< SKY_POS_…
-    double vel_ned[3];   ///< SKY_VEL: over ground, m/s
-    double acc_ned[3];   ///< SKY_ACC: of the motion, gravity not in it, m/s²
+    double vel_ned[3];   ///< SKY_VEL: over ground, m/s; less than 12 km/s
+    double acc_ned[3];   ///< SKY_ACC: of the motion, gravity not in it, less than 1000 m/s²
     double q_nb[4];      ///< SKY_ATT: w, x, y, z; turns forward, right, down into north, east, down
-    double rate_frd[3];  ///< SKY_RATE: about forward, right, down, rad/s
+    double rate_frd[3];  ///< SKY_RATE: about forward, right, down, less than 200 rad/s
 } sky_truth;
 
 /// How far a run has come.
@@ -154,12 +161,13 @@ enum {
     SKY_SAT_TRACKED = 1,  ///< the receiver reports a strength
     SKY_SAT_USED = 2,     ///< in its solution
     SKY_SAT_HEALTHY = 4,
-    SKY_SAT_SEEN = 8  ///< in line of sight, by the scenario's scene or sky_set_los()
+    SKY_SAT_SEEN = 8  ///< in line of sight at the last epoch, by the scenario's scene and sky_set_los()
 };
 
 /// One satellite above a receiver's horizon.
 typedef struct sky_sat {
-    uint8_t gnss_id, sv_id;  ///< as UBX counts them: 0 GPS, 1 SBAS, 2 Galileo, 3 BeiDou, 5 QZSS, 6 GLONASS
+    uint8_t gnss_id, sv_id;  ///< as UBX counts them: 0 GPS, 1 SBAS, 2 Galileo, 3 BeiDou, 5 QZSS, 6 GLONASS,
+                             ///< 7 NavIC
     uint8_t flags;           ///< SKY_SAT_…
     uint8_t reserved;
     float az_deg, el_deg;  ///< azimuth clockwise from true north
@@ -189,12 +197,15 @@ SKY_API sky_status sky_create(const sky_create_info* info, sky_emulator** out);
 SKY_API void sky_destroy(sky_emulator* emulator);
 
 /// Says where a vehicle is. From the first time on the scenario's own trajectory of that vehicle does not count any
-/// more. Times ascend; they may lie up to 2 s behind the present of the run and up to 2 s ahead of it.
+/// more. Times ascend; they may lie up to 2 s behind the present of the run and up to 2 s ahead of it. Without SKY_ATT
+/// an attitude that was told before goes on, turned by its turn rate, which fades; SKY_RESET ends it.
 SKY_API sky_status sky_set_truth(sky_emulator* emulator, const sky_truth* truth);
 
 /// Does everything that happens up to and at this instant, in order. Between pushed positions the vehicle's way is
-/// interpolated; beyond the newest it goes on with its velocity and acceleration, then comes to rest. The same instant
-/// may be asked for again; one call goes at most a day ahead. @param out may be null
+/// interpolated; beyond the newest it goes on with its velocity and an acceleration that fades, then comes to rest. The
+/// same instant may be asked for again; one call goes at most a day ahead. A command that ends the run ends the call
+/// with SKY_OK, and now_ns tells when that was; the next gives SKY_E_STATE. SKY_E_IO: the recording could not be
+/// written. @param out may be null
 SKY_API sky_status sky_advance(sky_emulator* emulator, int64_t sim_time_ns, sky_progress* out);
 
 /// Takes bytes that have left a receiver's port by now, at its line speed. Ports are those of the scenario, receiver by
@@ -212,7 +223,8 @@ SKY_API sky_status sky_set_baud(sky_emulator* emulator, uint32_t port, uint32_t 
 /// What receiver number `receiver` of the scenario last reported.
 SKY_API sky_status sky_get_fix(sky_emulator* emulator, uint32_t receiver, sky_fix* out);
 
-/// All satellites above a receiver's antenna at its last epoch; before the first, now. @param stride bytes from one
+/// All satellites above a receiver's antenna at its last epoch; before the first, now, with SKY_SAT_HEALTHY as their
+/// only flag. @param stride bytes from one
 /// element to the next, at least sizeof(sky_sat) of version 0.1 @return how many there are, though at most `capacity`
 /// are written
 SKY_API int64_t sky_get_sats(sky_emulator* emulator, uint32_t receiver, sky_sat* out, size_t capacity, size_t stride);
@@ -224,15 +236,16 @@ SKY_API sky_status sky_set_los(sky_emulator* emulator, uint32_t receiver, const 
 
 /// Faults and other commands at the present instant, as JSON: {"command": "start_fault", "kind": "jamming",
 /// "j_to_s_db": 40, "for_s": 20}. The commands are those of the control interface (docs/faults.md); pause, resume, step
-/// and speed are SKY_E_UNSUPPORTED, for time is the caller's.
+/// and speed are SKY_E_UNSUPPORTED, for time is the caller's, and so is move_to once sky_set_truth() leads a vehicle.
 SKY_API sky_status sky_command(sky_emulator* emulator, const char* json);
 
 /// Text about the run as JSON, ended by a zero where it fits. @param what "status", "config", "ports", "faults"
 /// (kinds that sky_command() can start) or "commands" @return the bytes of the text without its zero; nothing is
-/// written unless there is room for all of it and the zero
+/// written unless there is room for all of it and the zero. "status" stays the same until the next sky_advance()
 SKY_API int64_t sky_query(sky_emulator* emulator, const char* what, char* buffer, size_t capacity);
 
-/// The sentence of the last call that failed, UTF-8, as sky_query() gives its texts; empty when none has.
+/// The sentence of the last call that failed, UTF-8, ended by a zero; empty when none has. Cut to its room, at the end
+/// of a character. @return the bytes of the whole sentence without its zero
 SKY_API int64_t sky_last_error(sky_emulator* emulator, char* buffer, size_t capacity);
 
 #ifdef __cplusplus

@@ -212,6 +212,7 @@ int64_t sky_read(sky_emulator* emulator, uint32_t port, void* buffer, size_t cap
 
 int64_t sky_write(sky_emulator* emulator, uint32_t port, const void* bytes, size_t size) {
     return skyloop::guarded(emulator, [&](Session& session) -> Answer<std::int64_t> {
+        if (const auto running = session.check_running(); !running) return refuse(running.error());
         if (const auto given = skyloop::check_array(bytes, size, "bytes"); !given) return refuse(given.error());
         const auto led = session.port(port);
         if (!led) return refuse(led.error());
@@ -222,6 +223,7 @@ int64_t sky_write(sky_emulator* emulator, uint32_t port, const void* bytes, size
 sky_status sky_set_baud(sky_emulator* emulator, uint32_t port, uint32_t baud) {
     constexpr std::uint32_t most_baud = 50'000'000;
     return skyloop::guarded_status(emulator, [&](Session& session) -> Answer<void> {
+        if (const auto running = session.check_running(); !running) return running;
         const auto led = session.port(port);
         if (!led) return refuse(led.error());
         if (baud > most_baud) return refuse(SKY_E_RANGE, fmt::format("baud is {}; expected 0 to {}", baud, most_baud));
@@ -258,6 +260,8 @@ int64_t sky_get_sats(sky_emulator* emulator, uint32_t receiver, sky_sat* out, si
 
 sky_status sky_set_los(sky_emulator* emulator, uint32_t receiver, const sky_los* los, size_t count, size_t stride) {
     return skyloop::guarded_status(emulator, [&](Session& session) -> Answer<void> {
+        if (const auto running = session.check_running(); !running) return running;
+        if (const auto there = session.check_receiver(receiver); !there) return there;
         if (const auto given = skyloop::check_array(los, count, "los"); !given) return given;
         if (const auto sized = skyloop::check_size<sky_los>(stride, "stride"); !sized) return sized;
         if (count > skyloop::most_told_paths)

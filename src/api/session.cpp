@@ -49,11 +49,16 @@ Answer<LedPort*> Session::port(std::uint32_t number) {
                                          number, ports_.size()));
 }
 
+// As sky_truth counts them.
+std::uint32_t Session::vehicle_of(std::size_t receiver) const {
+    return scenario_.receivers[receiver].trajectory ? static_cast<std::uint32_t>(receiver) + 1 : 0;
+}
+
 // The receivers of a vehicle; none: there is no such vehicle.
 std::vector<std::size_t> Session::riders(std::uint32_t vehicle) const {
     std::vector<std::size_t> receivers;
     for (std::size_t i = 0; i < scenario_.receivers.size(); ++i)
-        if (scenario_.receivers[i].trajectory ? vehicle == i + 1 : vehicle == 0) receivers.push_back(i);
+        if (vehicle_of(i) == vehicle) receivers.push_back(i);
     return receivers;
 }
 
@@ -76,6 +81,7 @@ Answer<std::shared_ptr<LivePath>> Session::path_of(const sky_truth& truth, const
 }
 
 Answer<void> Session::set_truth(const sky_truth& truth) {
+    if (const auto running = check_running(); !running) return running;
     const auto time = run_time(truth.sim_time_ns);
     if (!time) return refuse(time.error());
     if (*time < now() - most_behind || *time > now() + most_ahead)
@@ -83,28 +89,31 @@ Answer<void> Session::set_truth(const sky_truth& truth) {
                                               truth.sim_time_ns, sim_time(now())));
     const auto sample = truth_sample(truth, {assembly_.geoid.get(), local_.get()});
     if (!sample) return refuse(sample.error());
+    if (auto why = implausible(*sample)) return refuse(SKY_E_RANGE, std::move(*why));
     const auto path = path_of(truth, *sample);
     if (!path) return refuse(path.error());
     if ((*path)->newest() && *time < *(*path)->newest())
         return refuse(SKY_E_TIME, fmt::format("truth of {} ns after that of {} ns; expected times that ascend",
                                               truth.sim_time_ns, sim_time(*(*path)->newest())));
-    const std::uint64_t refused = (*path)->counts().refused;
     (*path)->add(*time, *sample);
-    if ((*path)->counts().refused > refused)
-        return refuse(SKY_E_RANGE,
-                      "no place or speed of a vehicle; expected another than latitude and longitude 0, less than "
-                      "1 000 km above the ellipsoid and 12 km/s");
-    if (vehicles_.try_emplace(truth.vehicle, Vehicle{*path}).second) put_on(riders(truth.vehicle), *path);
+    const auto [known, first] = vehicles_.try_emplace(truth.vehicle, Vehicle{*path});
+    Vehicle& vehicle = known->second;
+    // A command of the scenario may have moved it: where it is put by hand, it is there.
+    if (!first && !(sample->jump && vehicle.moves != watcher_->moves())) return {};
+    vehicle.moves = watcher_->moves();
+    put_on(riders(truth.vehicle), vehicle.path);
     return {};
 }
 
-// A recording that could not be written, or a command that has ended the run.
-Answer<void> Session::failure() const {
+Answer<void> Session::check_running() const {
+    if (!assembly_.emulator->stopped()) return {};
+    return refuse(SKY_E_STATE, "the run has ended: a command of the scenario, or of the caller, has stopped it");
+}
+
+Answer<void> Session::check_recordings() const {
     for (const Station& station : assembly_.emulator->stations())
         if (station.recorder() != nullptr && station.recorder()->failure())
             return refuse(*station.recorder()->failure());
-    if (assembly_.emulator->stopped())
-        return refuse(SKY_E_STATE, "a command of the scenario, or of the caller, has ended the run");
     return {};
 }
 
@@ -118,11 +127,12 @@ Answer<void> Session::advance(std::int64_t sim_time_ns) {
                       fmt::format("{} ns lies more than a day after the present, {} ns; is start_sim_ns the "
                                   "caller's time at the start?",
                                   sim_time_ns, sim_time(now())));
-    if (const auto going = failure(); !going) return going;
+    if (const auto running = check_running(); !running) return running;
+    if (const auto kept = check_recordings(); !kept) return kept;
     assembly_.emulator->advance_to(*time, never_, Emulator::LastInstant::included);
     watcher_->went_on();
     tell_news();
-    return failure();
+    return check_recordings();
 }
 
 void Session::tell_news() {
@@ -135,8 +145,9 @@ void Session::tell_news() {
     for (auto& [number, vehicle] : vehicles_) {
         if (vehicle.path->counts().holds == vehicle.holds) continue;
         vehicle.holds = vehicle.path->counts().holds;
-        log(SKY_LOG_WARNING, fmt::format("vehicle {} stands still at {} ns: nothing was said of it since {} ns", number,
-                                         sim_time(now()), sim_time(*vehicle.path->newest())));
+        log(SKY_LOG_WARNING,
+            fmt::format("vehicle {} stands still at {} ns: nothing was said of it since {} ns", number,
+                        sim_time(std::min(now(), *vehicle.path->rests_at())), sim_time(*vehicle.path->newest())));
     }
 }
 

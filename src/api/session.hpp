@@ -31,6 +31,9 @@ public:
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
+    /// Fails with SKY_E_STATE once a command has ended the run.
+    [[nodiscard]] Answer<void> check_running() const;
+    [[nodiscard]] Answer<void> check_receiver(std::uint32_t receiver) const;
     Answer<void> set_truth(const sky_truth& truth);
     Answer<void> advance(std::int64_t sim_time_ns);
     [[nodiscard]] sky_progress progress() const;
@@ -55,6 +58,7 @@ private:
     struct Vehicle {
         std::shared_ptr<LivePath> path;
         std::uint64_t holds = 0;  ///< of its path, that have been told
+        std::uint64_t moves = 0;  ///< RunWatcher::moves() when its receivers were put on that path
     };
 
     explicit Session(const sky_create_info& info) : log_(info.log), log_user_(info.log_user) {}
@@ -62,16 +66,17 @@ private:
     Answer<void> assemble_run(const sky_create_info& info);
     Embedding embedding();
     void log(std::int32_t level, const std::string& sentence) const;
-    Answer<void> check_receiver(std::uint32_t receiver) const;
     Answer<void> check_target(const Command& command) const;
     Answer<GpsTime> run_time(std::int64_t sim_time_ns) const;
     [[nodiscard]] std::int64_t sim_time(GpsTime time) const;
+    [[nodiscard]] std::uint32_t vehicle_of(std::size_t receiver) const;
     [[nodiscard]] std::vector<std::size_t> riders(std::uint32_t vehicle) const;
     Answer<std::shared_ptr<LivePath>> path_of(const sky_truth& truth, const TruthSample& first) const;
     void put_on(const std::vector<std::size_t>& receivers, const std::shared_ptr<LivePath>& path);
+    [[nodiscard]] SkyView sky_now(std::uint32_t receiver) const;
     void tell_news();
     void summarise(SummaryOf what);
-    [[nodiscard]] Answer<void> failure() const;
+    [[nodiscard]] Answer<void> check_recordings() const;
     [[nodiscard]] std::string config_text() const;
     [[nodiscard]] std::string ports_text() const;
 

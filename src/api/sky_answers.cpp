@@ -133,11 +133,20 @@ Answer<sky_fix> Session::fix(std::uint32_t receiver) const {
     return told;
 }
 
+// Before the first epoch. A path counts what it is asked for beyond its samples as shown: the question is a copy's.
+SkyView Session::sky_now(std::uint32_t receiver) const {
+    const Simulation& simulation = assembly_.emulator->stations()[receiver].simulation();
+    const auto vehicle = vehicles_.find(vehicle_of(receiver));
+    if (vehicle == vehicles_.end()) return simulation.view(simulation.truth_at(now()));
+    const auto antenna = make_antenna_path(scenario_, receiver, std::make_unique<LivePath>(*vehicle->second.path));
+    return simulation.view(antenna->at(now()));
+}
+
 Answer<std::vector<sky_sat>> Session::satellites(std::uint32_t receiver) const {
     if (const auto checked = check_receiver(receiver); !checked) return refuse(checked.error());
     const Station& station = assembly_.emulator->stations()[receiver];
     const auto& trace = watcher_->trace(receiver);
-    const SkyView view = trace ? trace->sky : station.simulation().view(station.simulation().truth_at(now()));
+    const SkyView view = trace ? trace->sky : sky_now(receiver);
     const Fix& fix = station.receiver().state().epoch.fix;
     std::vector<sky_sat> told;
     for (std::size_t i = 0; i < view.satellites.size(); ++i) {

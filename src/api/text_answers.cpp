@@ -47,10 +47,14 @@ Answer<void> Session::check_target(const Command& command) const {
 }
 
 Answer<void> Session::command(std::string_view json) {
+    if (const auto running = check_running(); !running) return running;
     const auto command = command_from_json(json, "caller");
     if (!command) return refuse(command.error());
     if (leads_time(command->verb))
         return refuse(SKY_E_UNSUPPORTED, fmt::format("{}: time is led by sky_advance()", command_name(command->verb)));
+    if (command->verb == CommandVerb::move_to && !vehicles_.empty())
+        return refuse(SKY_E_UNSUPPORTED,
+                      fmt::format("move_to: sky_set_truth() says where vehicle {} is", vehicles_.begin()->first));
     if (const auto checked = check_target(*command); !checked) return checked;
     if (!commands_.push(*command)) return refuse(SKY_E_STATE, "too many commands wait for the next sky_advance()");
     if (command->verb == CommandVerb::start_fault && command->parameters.has("kind"))
@@ -73,7 +77,7 @@ std::string Session::config_text() const {
     for (std::size_t i = 0; i < scenario_.receivers.size(); ++i)
         receivers.push_back({{"name", receiver_name(scenario_, i)},
                              {"board", scenario_.receivers[i].board},
-                             {"vehicle", scenario_.receivers[i].trajectory ? i + 1 : 0}});
+                             {"vehicle", vehicle_of(i)}});
     return text_of({{"version", SKYLOOP_VERSION},
                     {"abi", fmt::format("{}.{}", SKY_ABI_MAJOR, SKY_ABI_MINOR)},
                     {"scenario", scenario_.name},

@@ -68,6 +68,25 @@ TEST(LedSky, TellsDirectionsBeforeTheFirstEpochAndAfter) {
     EXPECT_NEAR(find(before, best)->az_deg, best.az_deg, 0.1);
 }
 
+// What is asked beyond the newest sample of a vehicle would be kept as shown.
+TEST(LedSky, MayBeAskedBeforeTheFirstEpochWithoutChangingIt) {
+    const auto first_fix = [](bool asked) {
+        sky_create_info info = led_info(nullptr);
+        info.start_utc = "2026-03-01T12:00:00.05Z";
+        LedRun run(info, ideal_scenario);
+        for (const std::int64_t time : {0 * led_ms, 100 * led_ms}) {
+            sky_truth truth = truth_there(time, 46 + (time > 0 ? 1e-5 : 0), 30, 100);
+            EXPECT_EQ(sky_set_truth(run, &truth), SKY_OK);
+            run.advance(time + 40 * led_ms);
+            if (asked) run.satellites();
+        }
+        run.advance(160 * led_ms);
+        EXPECT_EQ(run.fix().epochs, 1U);
+        return run.fix().lat_deg;
+    };
+    EXPECT_EQ(first_fix(true), first_fix(false));
+}
+
 TEST(LedSky, WhatIsBlockedIsNotUsed) {
     LedRun run(measuring_scenario);
     run.advance(2 * led_s);
@@ -164,6 +183,7 @@ TEST(LedSky, WhatCannotBeIsRefused) {
     EXPECT_EQ(sky_set_los(run, 0, nullptr, 0, sizeof good), SKY_OK);
     EXPECT_EQ(sky_set_los(run, 0, &good, SIZE_MAX, sizeof good), SKY_E_ARG);
     EXPECT_EQ(sky_set_los(run, 9, &good, 1, sizeof good), SKY_E_ARG);
+    EXPECT_EQ(sky_set_los(run, 9, nullptr, 0, sizeof good), SKY_E_ARG);
     EXPECT_EQ(sky_get_sats(run, 9, nullptr, 0, sizeof(sky_sat)), SKY_E_ARG);
     EXPECT_EQ(sky_get_sats(run, 0, nullptr, 3, sizeof(sky_sat)), SKY_E_ARG);
     EXPECT_GT(sky_get_sats(run, 0, nullptr, 0, sizeof(sky_sat)), 0);

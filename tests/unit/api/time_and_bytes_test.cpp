@@ -179,9 +179,26 @@ TEST(LedTime, ACommandMayEndTheRun) {
     LedRun run;
     run.advance(led_s);
     ASSERT_EQ(sky_command(run, R"({"command": "stop"})"), SKY_OK);
-    EXPECT_EQ(sky_advance(run, 2 * led_s, nullptr), SKY_E_STATE);
+    EXPECT_EQ(run.progress_at(2 * led_s).now_ns, led_s);
     EXPECT_EQ(sky_advance(run, 3 * led_s, nullptr), SKY_E_STATE);
     EXPECT_EQ(run.fix().sim_time_ns, led_s);
+}
+
+TEST(LedTime, OfARunThatHasEndedIsOverForAllThatLeadsIt) {
+    LedRun run("[model]\nname = \"ideal\"\n[[receiver]]\n[[command]]\nkind = \"stop\"\nat_s = 1.5\n");
+    const sky_progress progress = run.progress_at(2 * led_s);
+    EXPECT_EQ(progress.now_ns, 1'500 * led_ms);
+    EXPECT_EQ(progress.epochs, 2U);
+    EXPECT_NE(run.read().find("RMC"), std::string::npos);
+    const sky_truth truth = truth_there(led_s, 46, 30, 100);
+    EXPECT_EQ(sky_set_truth(run, &truth), SKY_E_STATE);
+    EXPECT_EQ(sky_command(run, R"({"command": "note", "text": "x"})"), SKY_E_STATE);
+    EXPECT_EQ(sky_set_baud(run, 0, 9600), SKY_E_STATE);
+    EXPECT_EQ(sky_set_los(run, 0, nullptr, 0, sizeof(sky_los)), SKY_E_STATE);
+    EXPECT_EQ(sky_write(run, 0, "x", 1), SKY_E_STATE);
+    EXPECT_EQ(sky_advance(run, 2 * led_s, nullptr), SKY_E_STATE);
+    EXPECT_EQ(run.last_error(), "the run has ended: a command of the scenario, or of the caller, has stopped it");
+    EXPECT_EQ(run.fix().epochs, 2U);
 }
 
 TEST(LedBytes, ReachTheReceiverAtTheSpeedOfTheLine) {

@@ -63,6 +63,73 @@ TEST(LedTruth, MayComeInEachFrame) {
     }
 }
 
+void expect_at_origin(LedRun& run, double latitude) {
+    sky_truth truth = truth_at(SKY_POS_LOCAL_NED, {0, 0, 0});
+    ASSERT_EQ(sky_set_truth(run, &truth), SKY_OK) << run.last_error();
+    run.advance(0);
+    EXPECT_NEAR(run.fix().lat_deg, latitude, 1e-8);
+}
+
+TEST(LedTruth, CountsLocalMetresFromWhereTheScenarioDoes) {
+    LedRun told(
+        "[model]\nname = \"ideal\"\n[trajectory]\nkind = \"live\"\nsource = \"udp-json:29990\"\n"
+        "at = [47, 9, 400]\norigin = [48, 9, 400]\n[[receiver]]\n");
+    expect_at_origin(told, 48);
+    LedRun begins("[model]\nname = \"ideal\"\n[trajectory]\nkind = \"fixed\"\nat = [47, 9, 400]\n[[receiver]]\n");
+    expect_at_origin(begins, 47);
+    // The vehicle's place, not that of an antenna on its mast.
+    LedRun beside(
+        "[model]\nname = \"ideal\"\n[trajectory]\nkind = \"fixed\"\nat = [47, 9, 400]\n[[receiver]]\n"
+        "antenna_offset_m = [0, 0, -2]\n");
+    expect_at_origin(beside, 47);
+    EXPECT_NEAR(beside.fix().height_ellipsoid_m, 402, 1e-3);
+}
+
+TEST(LedTruth, KeepsItsAttitudeWhereASampleTellsNone) {
+    LedRun run("[model]\nname = \"ideal\"\n[[receiver]]\nrate_hz = 5\nantenna_offset_m = [2, 0, 0]\n");
+    for (int i = 0; i <= 20; ++i) {
+        sky_truth truth = truth_there(i * 50 * led_ms, 46, 30, 100);
+        const double half = std::sqrt(0.5);
+        if (i % 10 == 0) {  // looks east
+            truth.fields |= SKY_ATT;
+            truth.q_nb[0] = truth.q_nb[3] = half;
+        }
+        ASSERT_EQ(sky_set_truth(run, &truth), SKY_OK);
+        run.advance(i * 50 * led_ms);
+        EXPECT_NEAR((run.fix().lon_deg - 30) * 111'320 * std::cos(46 / 57.29577951), 2, 0.02) << i;
+        EXPECT_NEAR(run.fix().lat_deg, 46, 1e-7) << i;
+    }
+}
+
+TEST(LedTruth, IsNotMovedByACommand) {
+    LedRun run;
+    constexpr const char* move = R"({"command": "move_to", "at": [10, 20]})";
+    ASSERT_EQ(sky_command(run, move), SKY_OK);
+    run.advance(0);
+    EXPECT_NEAR(run.fix().lat_deg, 10, 1e-7);
+    sky_truth truth = truth_there(led_s, 46, 30, 100);
+    ASSERT_EQ(sky_set_truth(run, &truth), SKY_OK);
+    run.advance(led_s);
+    EXPECT_NEAR(run.fix().lat_deg, 46, 1e-7);
+    EXPECT_EQ(sky_command(run, move), SKY_E_UNSUPPORTED);
+    EXPECT_EQ(run.last_error(), "move_to: sky_set_truth() says where vehicle 0 is");
+}
+
+TEST(LedTruth, AfterAMoveOfTheScenarioIsWhereAResetPutsIt) {
+    LedRun run("[model]\nname = \"ideal\"\n[[receiver]]\n[[command]]\nkind = \"move_to\"\nat = [10, 20]\nat_s = 0.5\n");
+    const auto latitude_with = [&](std::int64_t time, std::uint32_t more) {
+        sky_truth truth = truth_there(time, 46, 30, 100);
+        truth.fields |= more;
+        EXPECT_EQ(sky_set_truth(run, &truth), SKY_OK);
+        run.advance(time);
+        return run.fix().lat_deg;
+    };
+    EXPECT_NEAR(latitude_with(0, 0), 46, 1e-7);
+    EXPECT_NEAR(latitude_with(led_s, 0), 10, 1e-6);
+    EXPECT_NEAR(latitude_with(2 * led_s, SKY_RESET), 46, 1e-7);
+    EXPECT_NEAR(latitude_with(3 * led_s, SKY_RESET), 46, 1e-7);
+}
+
 TEST(LedTruth, IsInterpolatedBetweenSamplesAndLedOnBeyond) {
     LedRun run;
     fly_circle(run, 10 * led_s, 20 * led_ms);
@@ -78,20 +145,17 @@ TEST(LedTruth, IsInterpolatedBetweenSamplesAndLedOnBeyond) {
 }
 
 TEST(LedTruth, ThatCeasesIsTold) {
-    std::vector<std::string> told;
+    ToldSentences told(SKY_LOG_WARNING);
     sky_create_info info = led_info(nullptr);
-    info.log_user = &told;
-    info.log = [](void* user, std::int32_t level, const char* sentence) {
-        if (level == SKY_LOG_WARNING) static_cast<std::vector<std::string>*>(user)->emplace_back(sentence);
-    };
+    told.listen(info);
     LedRun run(info, ideal_scenario);
     fly_circle(run, 2 * led_s, 20 * led_ms);
-    told.clear();
+    told.all.clear();
     run.advance(3 * led_s);
-    EXPECT_TRUE(told.empty());
+    EXPECT_TRUE(told.all.empty());
     run.advance(10 * led_s);
-    ASSERT_EQ(told.size(), 1U);
-    EXPECT_NE(told[0].find("nothing was said of it since 2000000000 ns"), std::string::npos) << told[0];
+    EXPECT_EQ(told.all, std::vector<std::string>{
+                            "vehicle 0 stands still at 3500000000 ns: nothing was said of it since 2000000000 ns"});
 }
 
 TEST(LedTruth, ThatJumpsIsThereAtOnce) {
@@ -161,6 +225,9 @@ TEST(LedTruth, ThatCannotBeIsRefused) {
         {"too fast", SKY_E_RANGE, [](sky_truth& t) { t.vel_ned[0] = 20'000; }},
         {"long quaternion", SKY_E_RANGE, [](sky_truth& t) { t.fields |= SKY_ATT, t.q_nb[0] = 2; }},
         {"zero quaternion", SKY_E_RANGE, [](sky_truth& t) { t.fields |= SKY_ATT; }},
+        {"hard acceleration", SKY_E_RANGE, [](sky_truth& t) { t.fields |= SKY_ACC, t.acc_ned[1] = 1000; }},
+        {"fast turn", SKY_E_RANGE, [](sky_truth& t) { t.fields |= SKY_RATE, t.rate_frd[2] = -200; }},
+        {"something reserved", SKY_E_UNSUPPORTED, [](sky_truth& t) { t.reserved = 7; }},
         {"infinite rate", SKY_E_RANGE, [&](sky_truth& t) { t.fields |= SKY_RATE, t.rate_frd[0] = -inf; }},
         {"centre of the Earth", SKY_E_RANGE,
          [](sky_truth& t) {
@@ -193,6 +260,23 @@ TEST(LedTruth, ThatCannotBeIsRefused) {
     }
     LedRun run;
     EXPECT_EQ(sky_set_truth(run, nullptr), SKY_E_ARG);
+}
+
+TEST(LedTruth, ThatCannotBeIsToldWithItsBound) {
+    LedRun run;
+    const auto why = [&](const std::function<void(sky_truth&)>& spoil) {
+        sky_truth truth = truth_there(0, 46, 30, 100);
+        spoil(truth);
+        EXPECT_EQ(sky_set_truth(run, &truth), SKY_E_RANGE);
+        return run.last_error();
+    };
+    EXPECT_EQ(why([](sky_truth& t) { t.pos[2] = 2e6; }), "pos: height is 2e+06 m; expected -10 000 to 1 000 000");
+    EXPECT_EQ(why([](sky_truth& t) { t.pos[2] = -2e4; }), "pos: height is -20000 m; expected -10 000 to 1 000 000");
+    EXPECT_EQ(why([](sky_truth& t) { t.vel_ned[0] = 2e4; }), "the speed is 20000 m/s; expected less than 12 000");
+    EXPECT_EQ(why([](sky_truth& t) { t.fields |= SKY_ACC, t.acc_ned[0] = -1500; }),
+              "acc_ned is 1500 m/s²; expected less than 1000");
+    EXPECT_EQ(why([](sky_truth& t) { t.fields |= SKY_RATE, t.rate_frd[0] = 250; }),
+              "rate_frd is 250 rad/s; expected less than 200");
 }
 
 TEST(LedTruth, DoesNotGoBack) {
