@@ -134,7 +134,8 @@ TEST(Assembly, PortsAreOpenedOnlyWhenAskedFor) {
     EXPECT_FALSE(std::filesystem::exists(folder / "out.nmea"));
     RunMode open = virtual_mode();
     open.open_ports = true;
-    EXPECT_EQ(assembled(receiver, open).emulator->wires().size(), 1U);
+    const Assembly opened = assembled(receiver, open);
+    EXPECT_EQ(opened.emulator->wires().size(), 1U);
     EXPECT_TRUE(std::filesystem::exists(folder / "out.nmea"));
     EXPECT_THAT(refusal("[[receiver]]\nport = \"pigeon:1\"", open).message, HasSubstr("pigeon"));
     EXPECT_THAT(refusal("[[receiver]]\nport = \"pigeon:1\"").message, HasSubstr("pigeon")) << "though none is opened";
