@@ -16,7 +16,8 @@ namespace skyloop {
 namespace {
 
 constexpr std::string_view known_formats =
-    "fixes.csv, a table of lat,lon,height, an NMEA log with GGA sentences, a UBX log or an RTKLIB solution (.pos)";
+    "fixes.csv, a table of lat,lon,height, an NMEA log with GGA or GNS sentences, a UBX log or an RTKLIB solution "
+    "(.pos)";
 
 // The median of the times between neighbours, so that a pause in the log does not matter.
 std::optional<Seconds> sampling_interval(const std::vector<FixSample>& samples) {

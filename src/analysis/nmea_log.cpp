@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -28,7 +30,8 @@ std::string_view address_at(std::string_view text, std::size_t dollar) {
 
 // Positions and dates; not a maker's own sentences, which begin with P.
 bool wanted(std::string_view address) {
-    return !address.starts_with('P') && (address.ends_with("GGA") || address.ends_with("RMC"));
+    return !address.starts_with('P') &&
+           (address.ends_with("GGA") || address.ends_with("GNS") || address.ends_with("RMC"));
 }
 
 // Which satellites are used and how strong they are; a damaged one costs no fix.
@@ -54,6 +57,41 @@ struct DateMark {
     double seconds = 0;
 };
 
+// The calendar knows which days end in a leap second.
+UtcTime days_later(const UtcTime& midnight, int days) {
+    return gps_calendar(gps_calendar_time(midnight.year, midnight.month, midnight.day, 0, 0, 0) +
+                        std::chrono::days(days));
+}
+
+// What GGA and GNS say alike.
+struct FixSentence {
+    std::string source;  // talker and kind
+    std::optional<double> seconds;
+    bool valid = false;
+    std::optional<NmeaPosition> position;
+    std::optional<Metres> altitude, separation;
+    int satellites = 0;
+};
+
+// GNS has a mode for each system; a fix is made with any of them.
+std::optional<FixSentence> fix_sentence(const NmeaMessage& message) {
+    const auto taken = [](const auto& said, const char* kind, bool valid) {
+        return FixSentence{said.talker + kind,
+                           said.time ? std::optional(seconds_of_day(*said.time)) : std::nullopt,
+                           valid,
+                           said.position,
+                           said.altitude,
+                           said.geoid_separation,
+                           said.satellites_used};
+    };
+    if (const auto* gga = std::get_if<Gga>(&message)) return taken(*gga, "GGA", gga->quality != 0);
+    if (const auto* gns = std::get_if<Gns>(&message))
+        return taken(*gns, "GNS", std::any_of(gns->modes.begin(), gns->modes.end(), [](NmeaMode mode) {
+            return mode != NmeaMode::none;
+        }));
+    return std::nullopt;
+}
+
 // Takes a log line by line and keeps what the next one needs.
 class NmeaLogReader {
 public:
@@ -63,7 +101,8 @@ public:
 private:
     void take_line(std::string_view line);
     void take_sentence(std::string_view sentence);
-    void take_gga(const Gga& gga);
+    void take_fix(const FixSentence& said);
+    bool is_of_last_epoch(const FixSentence& said) const;
     bool take_satellites(std::string_view sentence);
     void finish_epoch();
     void take_rmc(const Rmc& rmc);
@@ -73,17 +112,18 @@ private:
     FixSeries series_;
     SentenceSplitter splitter_;
     std::size_t line_ = 1;
-    std::size_t damaged_ = 0, without_checksum_ = 0, without_separation_ = 0, damaged_of_satellites_ = 0;
-    std::size_t senseless_ = 0, without_altitude_ = 0;
+    std::size_t damaged_ = 0, without_checksum_ = 0, damaged_of_satellites_ = 0, senseless_ = 0;
     std::string first_senseless_;             // and where it stands
-    int listed_used_ = 0;                     // by the GSA sentences since the last GGA
-    std::vector<SignalReport> before_first_;  // before the first GGA
-    // For each sample its time of day and the number of dates said before it.
-    struct Clock {
+    int listed_used_ = 0;                     // by the GSA sentences of the last sample
+    std::vector<SignalReport> before_first_;  // before the first sample
+    // For each sample its time of day, the number of dates said before it, and what its position lacks.
+    struct Epoch {
         std::optional<double> seconds;
         std::size_t dates_before = 0;
+        bool without_altitude = false, without_separation = false;
     };
-    std::vector<Clock> clocks_;
+    std::vector<Epoch> epochs_;
+    std::vector<std::string> sources_;  // of the last sample
     std::vector<DateMark> dates_;
 };
 
@@ -132,11 +172,11 @@ void NmeaLogReader::take_sentence(std::string_view sentence) {
         if (senseless_++ == 0) first_senseless_ = fmt::format("line {}: {}", line_, message.error().message);
         return;
     }
-    if (const auto* gga = std::get_if<Gga>(&*message)) take_gga(*gga);
+    if (const auto said = fix_sentence(*message)) take_fix(*said);
     if (const auto* rmc = std::get_if<Rmc>(&*message)) take_rmc(*rmc);
 }
 
-// False for a sentence that is damaged or makes no sense. GSA and GSV follow the GGA of their epoch.
+// False for a sentence that is damaged or makes no sense. GSA and GSV follow GGA or GNS.
 bool NmeaLogReader::take_satellites(std::string_view sentence) {
     const std::size_t star = sentence.find('*');
     const Result<NmeaMessage> message =
@@ -158,23 +198,47 @@ void NmeaLogReader::finish_epoch() {
     listed_used_ = 0;
 }
 
-void NmeaLogReader::take_gga(const Gga& gga) {
-    finish_epoch();
+// Another talker or kind of sentence that tells the same time, or none; of one source each sentence is an epoch, even
+// while the receiver's clock stands.
+bool NmeaLogReader::is_of_last_epoch(const FixSentence& said) const {
+    constexpr double same = 1e-3;  // s; sentences of one epoch may show different numbers of digits
+    if (epochs_.empty() || std::find(sources_.begin(), sources_.end(), said.source) != sources_.end()) return false;
+    const std::optional<double> before = epochs_.back().seconds;
+    return !said.seconds || !before || std::abs(*said.seconds - *before) < same;
+}
+
+// Of several sentences of an epoch that is taken which has a fix, and the most satellites.
+void NmeaLogReader::take_fix(const FixSentence& said) {
     FixSample sample;
-    sample.signals = std::exchange(before_first_, {});
-    sample.satellites_used = gga.satellites_used;
-    if (gga.quality != 0 && gga.position) {
-        const Metres height = gga.altitude.value_or(Metres(0)) + gga.geoid_separation.value_or(Metres(0));
+    Epoch epoch{said.seconds, dates_.size()};
+    sample.satellites_used = said.satellites;
+    if (said.valid && said.position) {
+        const Metres height = said.altitude.value_or(Metres(0)) + said.separation.value_or(Metres(0));
         const auto position =
-            checked_position(gga.position->latitude.deg(), gga.position->longitude.deg(), height.value());
-        if (!position && senseless_++ == 0) first_senseless_ = fmt::format("line {}: GGA {}", line_, position.error());
-        if (position && !gga.altitude) ++without_altitude_;
-        sample.has_fix = position && gga.altitude;
-        if (sample.has_fix && !gga.geoid_separation) ++without_separation_;
+            checked_position(said.position->latitude.deg(), said.position->longitude.deg(), height.value());
+        if (!position && senseless_++ == 0)
+            first_senseless_ = fmt::format("line {}: {} {}", line_, said.source.substr(2), position.error());
+        sample.has_fix = position && said.altitude;
+        epoch.without_altitude = position && !said.altitude;
+        epoch.without_separation = sample.has_fix && !said.separation;
         if (sample.has_fix) sample.position = *position;
     }
-    series_.samples.push_back(std::move(sample));
-    clocks_.push_back({gga.time ? std::optional(seconds_of_day(*gga.time)) : std::nullopt, dates_.size()});
+    if (!is_of_last_epoch(said)) {
+        finish_epoch();
+        sources_ = {said.source};
+        sample.signals = std::exchange(before_first_, {});
+        series_.samples.push_back(std::move(sample));
+        epochs_.push_back(epoch);
+        return;
+    }
+    sources_.push_back(said.source);
+    FixSample& last = series_.samples.back();
+    if (!epochs_.back().seconds) epochs_.back().seconds = said.seconds;
+    if (std::pair(last.has_fix, last.satellites_used) >= std::pair(sample.has_fix, sample.satellites_used)) return;
+    sample.signals = std::move(last.signals);
+    last = std::move(sample);
+    epochs_.back().without_altitude = epoch.without_altitude;
+    epochs_.back().without_separation = epoch.without_separation;
 }
 
 void NmeaLogReader::take_rmc(const Rmc& rmc) {
@@ -189,44 +253,50 @@ void NmeaLogReader::date_samples() {
     series_.dated = !dates_.empty();
     double days = 0;
     double before = std::numeric_limits<double>::lowest();
-    for (std::size_t i = 0; i < clocks_.size(); ++i) {
-        if (!clocks_[i].seconds) continue;
-        const double seconds = *clocks_[i].seconds;
+    for (std::size_t i = 0; i < epochs_.size(); ++i) {
+        if (!epochs_[i].seconds) continue;
+        const double seconds = *epochs_[i].seconds;
         if (!series_.dated) {
             if (seconds < before - half_day) ++days;
             before = seconds;
             series_.samples[i].time = GpsTime(to_nanoseconds(Seconds(days * day + seconds)));
             continue;
         }
-        const DateMark& mark = dates_[clocks_[i].dates_before == 0 ? 0 : clocks_[i].dates_before - 1];
-        const double shift = seconds - mark.seconds > half_day ? -day : (mark.seconds - seconds > half_day ? day : 0);
+        const DateMark& mark = dates_[epochs_[i].dates_before == 0 ? 0 : epochs_[i].dates_before - 1];
+        const int shift = seconds - mark.seconds > half_day ? -1 : mark.seconds - seconds > half_day ? 1 : 0;
         series_.samples[i].time =
-            advanced(to_gps_time(mark.midnight, LeapSeconds::announced()), Seconds(shift + seconds));
+            advanced(to_gps_time(days_later(mark.midnight, shift), LeapSeconds::announced()), Seconds(seconds));
     }
 }
 
 void NmeaLogReader::add_warnings() {
+    const auto without = [&](bool Epoch::*what) {
+        return std::count_if(epochs_.begin(), epochs_.end(), [&](const Epoch& epoch) { return epoch.*what; });
+    };
+    const auto without_altitude = without(&Epoch::without_altitude);
+    const auto without_separation = without(&Epoch::without_separation);
     if (damaged_ > 0)
-        series_.warnings.push_back(fmt::format(
-            "{}: {} GGA or RMC sentences with a wrong checksum or stray bytes were skipped", series_.name, damaged_));
+        series_.warnings.push_back(
+            fmt::format("{}: {} GGA, GNS or RMC sentences with a wrong checksum or stray bytes were skipped",
+                        series_.name, damaged_));
     if (without_checksum_ > 0)
-        series_.warnings.push_back(fmt::format("{}: {} GGA or RMC sentences without a checksum were skipped",
+        series_.warnings.push_back(fmt::format("{}: {} GGA, GNS or RMC sentences without a checksum were skipped",
                                                series_.name, without_checksum_));
     if (damaged_of_satellites_ > 0)
         series_.warnings.push_back(
             fmt::format("{}: {} damaged GSA or GSV sentences were skipped", series_.name, damaged_of_satellites_));
     if (senseless_ > 0)
         series_.warnings.push_back(fmt::format(
-            "{}: {} GGA or RMC sentences with a right checksum that make no sense were skipped, the first in {}",
+            "{}: {} GGA, GNS or RMC sentences with a right checksum that make no sense were skipped, the first in {}",
             series_.name, senseless_, first_senseless_));
-    if (without_altitude_ > 0)
+    if (without_altitude > 0)
         series_.warnings.push_back(fmt::format("{}: {} positions without an altitude are not counted as fixes",
-                                               series_.name, without_altitude_));
-    if (without_separation_ > 0)
+                                               series_.name, without_altitude));
+    if (without_separation > 0)
         series_.warnings.push_back(
             fmt::format("{}: {} fixes without geoid separation; their heights are above sea level, "
                         "not above the ellipsoid",
-                        series_.name, without_separation_));
+                        series_.name, without_separation));
 }
 
 }  // namespace

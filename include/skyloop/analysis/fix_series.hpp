@@ -44,7 +44,7 @@ struct FixSeries {
 ///  - a table with a header line that names latitude, longitude and height: fixes.csv (INTERFACE.md, section 3) or any
 ///    other CSV with the usual names; columns in any order, others are ignored;
 ///  - a table of numbers without a header: latitude, longitude (degrees), height above the ellipsoid (metres);
-///  - a log with NMEA 0183 sentences: GGA for positions, RMC for the date, GSV for signal strengths;
+///  - a log with NMEA 0183 sentences: GGA or GNS for positions, RMC for the date, GSV for signal strengths;
 ///  - a log with u-blox UBX messages: NAV-PVT, NAV-SOL or NAV-POSLLH for positions, NAV-SAT or NAV-SVINFO for signal
 ///    strengths; other bytes between them are passed over;
 ///  - a solution of RTKLIB (.pos), geodetic or Earth-centred.

@@ -230,6 +230,58 @@ TEST(FixSeries, gga_without_a_date_still_gives_the_interval) {
     EXPECT_THAT(series->warnings[0], AllOf(HasSubstr("3 fixes without geoid separation"), HasSubstr("log.nmea")));
 }
 
+// GGA comes before RMC, whose date is that of the second 60, and so does its midnight.
+TEST(FixSeries, nmea_goes_over_a_leap_second) {
+    std::string text;
+    for (const char* time : {"235959.00,311216", "235960.00,311216", "000000.00,010117", "000001.00,010117"}) {
+        const std::string clock(time, 9), date(time + 10);
+        text += nmea("GPGGA," + clock + ",4628.650,N,03043.956,E,1,08,1.0,50.5,M,30.5,M,,") +
+                nmea("GPRMC," + clock + ",A,4628.650,N,03043.956,E,0.0,0.0," + date + ",,,A");
+    }
+    const auto series = parse_fix_series(text, "log.nmea");
+    ASSERT_TRUE(series) << series.error().message;
+    std::vector<std::string> times;
+    for (const FixSample& sample : series->samples)
+        times.push_back(format_utc(to_utc(*sample.time, LeapSeconds::announced()), 0));
+    EXPECT_THAT(times, ElementsAre("2016-12-31T23:59:59Z", "2016-12-31T23:59:60Z", "2017-01-01T00:00:00Z",
+                                   "2017-01-01T00:00:01Z"));
+}
+
+TEST(FixSeries, nmea_of_several_talkers_is_one_sample_an_epoch) {
+    std::string text;
+    for (const char* time : {"120000.00", "120001.00", "120002.00"})
+        text += nmea("GPGGA," + std::string(time) + ",4628.650,N,03043.956,E,1,07,1.0,50.5,M,30.5,M,,") +
+                nmea("GNGGA," + std::string(time) + ",4628.660,N,03043.956,E,1,11,1.0,50.5,M,,M,,") +
+                nmea("GLGGA," + std::string(time) + ",,,,,0,04,,,M,,M,,");
+    const auto series =
+        parse_fix_series(text + nmea("GNGGA,,,,,,0,,,,M,,M,,") + nmea("GPGGA,,,,,,0,,,,M,,M,,"), "log.nmea");
+    ASSERT_TRUE(series) << series.error().message;
+    EXPECT_EQ(series->samples.size(), 4u);
+    EXPECT_EQ(series->fixes(), 3u);
+    EXPECT_NEAR(series->samples[1].position.latitude.deg(), 46.4776667, 1e-6);
+    EXPECT_EQ(series->samples[1].satellites_used, 11);
+    EXPECT_THAT(series->warnings, ElementsAre(HasSubstr("3 fixes without geoid separation")));
+}
+
+// A fix is made with any of the systems; where GGA tells the same epoch, the sentence with more satellites is taken.
+TEST(FixSeries, nmea_gns_is_read_as_gga_is) {
+    const auto series = parse_fix_series(nmea("GNGNS,120000.00,4628.650,N,03043.956,E,NA,13,0.9,50.5,30.5,,,V") +
+                                             nmea("GNGNS,120001.00,,,,,NN,00,,,,,,V") +
+                                             nmea("GNGGA,120002.00,4628.650,N,03043.956,E,1,12,0.9,50.5,M,30.5,M,,") +
+                                             nmea("GNGNS,120002.00,4628.650,N,03043.956,E,AA,20,0.9,51.5,30.5,,"),
+                                         "log.nmea");
+    ASSERT_TRUE(series) << series.error().message;
+    ASSERT_EQ(series->samples.size(), 3u);
+    EXPECT_TRUE(series->samples[0].has_fix);
+    EXPECT_EQ(series->samples[0].satellites_used, 13);
+    EXPECT_EQ(series->samples[0].position.height.above_ellipsoid.value(), 81.0);
+    EXPECT_FALSE(series->samples[1].has_fix);
+    EXPECT_EQ(series->samples[2].satellites_used, 20);
+    EXPECT_EQ(series->interval, Seconds(1));
+    EXPECT_THAT(message_of(nmea("GNGNS,120000.00,4628.650,X,03043.956,E,AA,13,0.9,50.5,30.5,,")),
+                HasSubstr("1 GGA, GNS or RMC sentences with a right checksum that make no sense"));
+}
+
 TEST(FixSeries, nmea_tells_satellites_used_and_signal_strengths) {
     const std::string gga = nmea("GNGGA,120000.00,4628.650,N,03043.956,E,1,12,1.0,50.5,M,30.5,M,,");
     const std::string satellites = nmea("GNGSA,A,3,01,02,03,04,05,06,07,08,09,10,11,12,1.8,1.0,1.5,1") +
@@ -289,8 +341,8 @@ TEST(FixSeries, damaged_sentences_are_skipped_and_counted) {
     ASSERT_TRUE(series) << series.error().message;
     EXPECT_EQ(series->samples.size(), 1u);
     ASSERT_EQ(series->warnings.size(), 2u);
-    EXPECT_THAT(series->warnings[0], HasSubstr("1 GGA or RMC sentences with a wrong checksum"));
-    EXPECT_THAT(series->warnings[1], HasSubstr("1 GGA or RMC sentences without a checksum"));
+    EXPECT_THAT(series->warnings[0], HasSubstr("1 GGA, GNS or RMC sentences with a wrong checksum"));
+    EXPECT_THAT(series->warnings[1], HasSubstr("1 GGA, GNS or RMC sentences without a checksum"));
     EXPECT_THAT(message_of(bad), AllOf(HasSubstr("no fix in 0 rows"), HasSubstr("wrong checksum")));
 }
 
@@ -299,7 +351,7 @@ TEST(FixSeries, a_sentence_with_stray_bytes_is_skipped_and_counted) {
     const auto series = parse_fix_series("$GPGGA,1200\x01" + good + "$GPRMC,12" + good, "log.nmea");
     ASSERT_TRUE(series) << series.error().message;
     EXPECT_EQ(series->samples.size(), 2u);
-    EXPECT_THAT(series->warnings, ElementsAre(HasSubstr("2 GGA or RMC sentences with a wrong checksum or stray")));
+    EXPECT_THAT(series->warnings, ElementsAre(HasSubstr("2 GGA, GNS or RMC sentences with a wrong checksum or stray")));
 }
 
 TEST(FixSeries, lines_may_end_in_any_way_and_go_on_behind_the_checksum) {
@@ -332,7 +384,7 @@ TEST(FixSeries, a_strange_sentence_costs_no_other_fix) {
     EXPECT_EQ(series->samples.size(), 3u);
     EXPECT_EQ(series->fixes(), 2u);
     EXPECT_THAT(series->warnings,
-                ElementsAre(AllOf(HasSubstr("1 GGA or RMC sentences with a right checksum that make no sense"),
+                ElementsAre(AllOf(HasSubstr("1 GGA, GNS or RMC sentences with a right checksum that make no sense"),
                                   HasSubstr("line 3"), HasSubstr("'2208-1'")),
                             HasSubstr("1 positions without an altitude are not counted as fixes")));
 }
