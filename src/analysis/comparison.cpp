@@ -64,7 +64,7 @@ std::string article_warning(const Comparison& comparison) {
         return fmt::format(
             "{}: the mean {} error, {:.3f} m, is small beside its standard deviation, {:.3f} m: the relative "
             "difference of the means, and the percentage made with it, says nothing; choose horizontal",
-            comparison.b.name, name, of_b.mean, of_b.std);
+            comparison.b.name, name, std::abs(of_b.mean), of_b.std);
     if (comparison.article) return {};
     return fmt::format("{}: the {} error has a mean or a standard deviation of zero: no percentage can be given",
                        comparison.b.name, name);
