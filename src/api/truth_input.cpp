@@ -81,13 +81,11 @@ Answer<Attitude> attitude_of(const double (&q)[4]) {
 }
 
 // Beyond them a path takes its own estimate for what was told.
-Answer<void> check_motion(const TruthSample& sample) {
-    if (sample.acceleration)
-        if (const auto soft = check_below("acc_ned", sample.acceleration->norm(), "m/s²", LivePath::hardest_mps2);
-            !soft)
-            return soft;
-    if (!sample.turn_rate) return {};
-    return check_below("rate_frd", sample.turn_rate->norm(), "rad/s", LivePath::fastest_turn_radps);
+Answer<void> check_motion(const sky_truth& t) {
+    const double acceleration = (t.fields & SKY_ACC) != 0 ? Eigen::Vector3d(t.acc_ned).norm() : 0;
+    const double turn_rate = (t.fields & SKY_RATE) != 0 ? Eigen::Vector3d(t.rate_frd).norm() : 0;
+    if (auto soft = check_below("acc_ned", acceleration, "m/s²", LivePath::hardest_mps2); !soft) return soft;
+    return check_below("rate_frd", turn_rate, "rad/s", LivePath::fastest_turn_radps);
 }
 
 }  // namespace
@@ -101,6 +99,7 @@ Answer<TruthSample> truth_sample(const sky_truth& truth, const TruthFrames& fram
     if (std::popcount(truth.fields & positions) != 1)
         return refuse(SKY_E_ARG, fmt::format("fields is {:#x}; expected exactly one SKY_POS_…", truth.fields));
     if (const auto finite = check_numbers(truth); !finite) return refuse(finite.error());
+    if (const auto usable = check_motion(truth); !usable) return refuse(usable.error());
     const auto position = position_of(truth, frames);
     if (!position) return refuse(position.error());
     TruthSample sample;
@@ -112,7 +111,6 @@ Answer<TruthSample> truth_sample(const sky_truth& truth, const TruthFrames& fram
     if ((truth.fields & SKY_VEL) != 0) sample.velocity = turned(truth.vel_ned);
     if ((truth.fields & SKY_ACC) != 0) sample.acceleration = turned(truth.acc_ned).vector();
     if ((truth.fields & SKY_RATE) != 0) sample.turn_rate = Eigen::Vector3d(truth.rate_frd);
-    if (const auto usable = check_motion(sample); !usable) return refuse(usable.error());
     if ((truth.fields & SKY_ATT) == 0) return sample;
     const auto attitude = attitude_of(truth.q_nb);
     if (!attitude) return refuse(attitude.error());
