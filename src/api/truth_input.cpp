@@ -82,8 +82,8 @@ Answer<Attitude> attitude_of(const double (&q)[4]) {
 
 // Beyond them a path takes its own estimate for what was told.
 Answer<void> check_motion(const sky_truth& t) {
-    const double acceleration = (t.fields & SKY_ACC) != 0 ? Eigen::Vector3d(t.acc_ned).norm() : 0;
-    const double turn_rate = (t.fields & SKY_RATE) != 0 ? Eigen::Vector3d(t.rate_frd).norm() : 0;
+    const double acceleration = (t.fields & SKY_ACC) != 0 ? Eigen::Vector3d(t.acc_ned).stableNorm() : 0;
+    const double turn_rate = (t.fields & SKY_RATE) != 0 ? Eigen::Vector3d(t.rate_frd).stableNorm() : 0;
     if (auto soft = check_below("acc_ned", acceleration, "m/s²", LivePath::hardest_mps2); !soft) return soft;
     return check_below("rate_frd", turn_rate, "rad/s", LivePath::fastest_turn_radps);
 }

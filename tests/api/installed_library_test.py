@@ -42,7 +42,7 @@ class Binary(unittest.TestCase):
 
     def test_the_header_is_clean_in_both_languages(self):
         header = INSTALLED.prefix / "include/skyloop.h"
-        for compiler, words in (("cc", ["-x", "c", "-std=c11"]), ("c++", ["-x", "c++", "-std=c++20"]),
+        for compiler, words in (("cc", ["-x", "c", "-std=c99"]), ("c++", ["-x", "c++", "-std=c++20"]),
                                 ("c++", ["-x", "c++", "-std=c++11"])):
             run(compiler, *words, *STRICT, "-fsyntax-only", header)
 
