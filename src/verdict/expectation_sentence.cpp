@@ -20,6 +20,7 @@ namespace {
 
 constexpr double longest_span_s = 1e9;  // 31 years; nanoseconds of 64 bits reach 292
 constexpr double largest_limit = 1e9;
+constexpr std::string_view unit_rule = "times are in s, lengths in m, speeds in m/s, C/N0 in dBHz";
 
 // Reads one sentence, rule by rule as the header writes them.
 class SentenceParser {
@@ -153,7 +154,7 @@ void SentenceParser::read_comparison(std::initializer_list<std::string_view> uni
     else
         words_.refuse();
     subject_.limit = words_.number(largest_limit).value_or(0);
-    if (units.size() > 0) words_.one_of(units);
+    if (units.size() > 0) words_.unit(units, unit_rule);
 }
 
 void SentenceParser::read_sender(bool client) {
@@ -278,7 +279,7 @@ void SentenceParser::name_event(std::string text, std::size_t column) {
 
 Seconds SentenceParser::read_span() {
     const auto number = words_.number(longest_span_s);
-    words_.one_of({"s"});
+    words_.unit({"s"}, unit_rule);
     return Seconds(number.value_or(0));
 }
 

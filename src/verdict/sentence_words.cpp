@@ -101,6 +101,12 @@ std::optional<std::size_t> SentenceWords::one_of(std::initializer_list<std::stri
     return std::nullopt;
 }
 
+void SentenceWords::unit(std::initializer_list<std::string_view> units, std::string_view why) {
+    for (const std::string_view unit : units)
+        if (accept(unit)) return;
+    if (!mistake_) refuse(column(), fmt::format("{}: {}", complaint(), why));
+}
+
 bool SentenceWords::at_number() const {
     if (at_end() || words_[next_].quoted) return false;
     const char first = words_[next_].text.front();
@@ -140,14 +146,18 @@ void SentenceWords::wanted(std::string_view what) {
 
 std::size_t SentenceWords::column() const { return at_end() ? length_ + 1 : words_[next_].column; }
 
+std::string SentenceWords::complaint() const {
+    const std::string found =
+        at_end() ? std::string("the sentence ends here") : fmt::format("'{}' is not understood", words_[next_].text);
+    return fmt::format("{}; expected {}{}", found, welcome_.size() > 1 ? "one of " : "", fmt::join(welcome_, ", "));
+}
+
 void SentenceWords::refuse() {
     if (mistake_) return;
     const std::vector<std::string_view> candidates(welcome_.begin(), welcome_.end());
-    const std::string hint = at_end() ? std::string() : did_you_mean(words_[next_].text, candidates);
-    const std::string found =
-        at_end() ? std::string("the sentence ends here") : fmt::format("'{}' is not understood", words_[next_].text);
-    refuse(column(), fmt::format("{}; expected {}{}{}", found, welcome_.size() > 1 ? "one of " : "",
-                                 fmt::join(welcome_, ", "), hint));
+    // Of one word there is nothing to choose.
+    const bool choice = !at_end() && candidates.size() > 1;
+    refuse(column(), complaint() + (choice ? did_you_mean(words_[next_].text, candidates) : std::string()));
 }
 
 void SentenceWords::refuse(std::size_t column, std::string sentence) {

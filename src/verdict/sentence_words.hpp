@@ -24,6 +24,8 @@ public:
     bool accept(std::initializer_list<std::string_view> words);
     /// Takes the next word, which must be one of these; gives its index.
     std::optional<std::size_t> one_of(std::initializer_list<std::string_view> words);
+    /// The same for a unit. @param why "lengths are in metres", behind what was expected
+    void unit(std::initializer_list<std::string_view> units, std::string_view why);
     /// Takes a number from 0 to `most`; what stands behind it without a blank is the next word.
     std::optional<double> number(double most);
     /// Takes a word that is none of the grammar's own, or one in quotes. @param wanted "the name of a message"
@@ -48,6 +50,7 @@ private:
         bool quoted;
     };
     void split(std::string_view text);
+    [[nodiscard]] std::string complaint() const;
     void take();
     [[nodiscard]] bool is_next(std::string_view word) const;
 

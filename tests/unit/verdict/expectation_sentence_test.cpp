@@ -102,6 +102,10 @@ TEST(ExpectationSentence, TheWrongWordIsQuotedWithItsColumn) {
     EXPECT_THAT(mistake_in("client sendz X"), HasSubstr("did you mean 'sends'?"));
     EXPECT_THAT(mistake_in("fix within two s of outage"), StartsWith("12: 'two' is not understood; expected a number"));
     EXPECT_THAT(mistake_in("fix within 2 m of outage"), StartsWith("14: 'm' is not understood; expected s"));
+    EXPECT_EQ(mistake_in("fix within 2 min of outage"),
+              "14: 'min' is not understood; expected s: times are in s, lengths in m, speeds in m/s, C/N0 in dBHz");
+    EXPECT_EQ(mistake_in("h_acc below 300 cm"),
+              "17: 'cm' is not understood; expected m: times are in s, lengths in m, speeds in m/s, C/N0 in dBHz");
     EXPECT_THAT(mistake_in("fix within 2 s of"), StartsWith("18: the sentence ends here; expected one of"));
     EXPECT_THAT(mistake_in("fix always outage"), HasSubstr("12: 'outage' is not understood; expected the end of"));
     EXPECT_THAT(mistake_in("horizontal error below 5"), StartsWith("25: the sentence ends here; expected m"));
