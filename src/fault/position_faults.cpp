@@ -1,7 +1,11 @@
 // Errors of the solution itself: they are made before the firmware sees the epoch, and so pass through its own logic.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include "catalogue_parts.hpp"
 #include "edit_shortcuts.hpp"
@@ -19,17 +23,35 @@ ParameterSpec metres_parameter(std::string name, double standard, std::string me
     return number_parameter(std::move(name), standard, -farthest_m, farthest_m, std::move(meaning));
 }
 
-std::vector<ParameterSpec> offset_parameters() {
-    return {metres_parameter("east_m", 0, "how far east of the true solution, m"),
-            metres_parameter("north_m", 50, "how far north, m"), metres_parameter("up_m", 0, "how far above, m")};
+// Its components have no standards: a north that nobody asked for beside an east that somebody did would be a surprise.
+std::vector<ParameterSpec> vector_parameters(std::string_view unit, double most, double north) {
+    const auto part = [&](std::string_view name, std::string meaning) {
+        return number_parameter(fmt::format("{}_{}", name, unit), std::nullopt, -most, most, std::move(meaning));
+    };
+    const std::string shown = unit == "mps" ? "m/s" : "m";
+    return {part("east", fmt::format("east of the truth, {}; 0 when it is not given", shown)),
+            part("north", fmt::format("north, {}; {:g} when none of the three is given, else 0", shown, north)),
+            part("up", fmt::format("up, {}; 0 when it is not given", shown))};
 }
+
+constexpr double usual_step_m = 50, usual_ramp_mps = 1, usual_velocity_bias_mps = 2;  // north
+
+std::vector<ParameterSpec> offset_parameters() { return vector_parameters("m", farthest_m, usual_step_m); }
 
 // An offset east, north, up.
 struct Offset {
     double east = 0, north = 0, up = 0;
 };
 
-Offset read_offset(const Parameters& p) { return {p.number("east_m"), p.number("north_m"), p.number("up_m")}; }
+// @param north where no component is given
+Offset read_vector(const Parameters& p, const std::string& unit, double north) {
+    const auto e = p.optional_number("east_" + unit), n = p.optional_number("north_" + unit),
+               u = p.optional_number("up_" + unit);
+    if (!e && !n && !u) return {0, north, 0};
+    return {e.value_or(0), n.value_or(0), u.value_or(0)};
+}
+
+Offset read_offset(const Parameters& parameters) { return read_vector(parameters, "m", usual_step_m); }
 
 Offset operator*(const Offset& offset, double factor) {
     return {offset.east * factor, offset.north * factor, offset.up * factor};
@@ -46,7 +68,7 @@ Result<Fault> make_position_step(const Parameters& parameters, const FaultContex
 }
 
 Result<Fault> make_position_ramp(const Parameters& parameters, const FaultContext&) {
-    const Offset rate{parameters.number("east_mps"), parameters.number("north_mps"), parameters.number("up_mps")};
+    const Offset rate = read_vector(parameters, "mps", usual_ramp_mps);
     const double most = parameters.number("most_m");
     const bool velocity_too = parameters.flag("velocity_too");
     return fault_of_epoch([=](Epoch& epoch, const FaultMoment& moment) {
@@ -116,7 +138,7 @@ Result<Fault> make_wander(const Parameters& parameters, const FaultContext& cont
 }
 
 Result<Fault> make_velocity_bias(const Parameters& parameters, const FaultContext&) {
-    const Offset bias{parameters.number("east_mps"), parameters.number("north_mps"), parameters.number("up_mps")};
+    const Offset bias = read_vector(parameters, "mps", usual_velocity_bias_mps);
     return fault_of_epoch([bias](Epoch& epoch, const FaultMoment& moment) {
         if (!epoch.fix.has_position()) return;
         const Offset more = bias * moment.strength;
@@ -162,15 +184,8 @@ Result<Fault> make_accuracy_scale(const Parameters& parameters, const FaultConte
     });
 }
 
-std::vector<ParameterSpec> speed_parameters(double north) {
-    const auto speed = [](std::string name, double standard, std::string meaning) {
-        return number_parameter(std::move(name), standard, -fastest_error_mps, fastest_error_mps, std::move(meaning));
-    };
-    return {speed("east_mps", 0, "east, m/s"), speed("north_mps", north, "north, m/s"), speed("up_mps", 0, "up, m/s")};
-}
-
 std::vector<ParameterSpec> ramp_parameters() {
-    std::vector<ParameterSpec> all = speed_parameters(1);
+    std::vector<ParameterSpec> all = vector_parameters("mps", fastest_error_mps, usual_ramp_mps);
     all.push_back(number_parameter("most_m", farthest_m, 0, farthest_m, "the error grows no more beyond this, m"));
     all.push_back(flag_parameter("velocity_too", false, "the velocity tells of the ramp as well"));
     return all;
@@ -222,8 +237,8 @@ std::vector<FaultKind> motion_and_quality_kinds() {
          {metres_parameter("height_m", 30, "above the true solution, m")},
          make_height_bias},
         {"velocity_bias", solution, "The velocity lies off by a constant vector; the position stays right.",
-         "Doppler shifts of reflected signals, or a filter tuned for another vehicle.", speed_parameters(2),
-         make_velocity_bias},
+         "Doppler shifts of reflected signals, or a filter tuned for another vehicle.",
+         vector_parameters("mps", fastest_error_mps, usual_velocity_bias_mps), make_velocity_bias},
         {"accuracy_scale",
          solution,
          "The accuracies that the receiver tells of itself are too small, or too large.",

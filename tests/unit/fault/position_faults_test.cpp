@@ -1,9 +1,11 @@
 // Each fault of the solution in the client's bytes, UBX and NMEA alike, and its end.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "receiver_bench.hpp"
+#include "skyloop/fault/checked_command.hpp"
 #include "skyloop/protocol/ubx_relative.hpp"
 
 namespace skyloop {
@@ -45,6 +47,29 @@ TEST(PositionFaults, StepsByItsVectorTimesItsStrength) {
     EXPECT_NEAR(error.z(), -2.5, 0.02);
     EXPECT_NEAR(gga_minutes(bench) - minutes, 20 / 1852.9, 2e-5) << "and in NMEA";
     expect_no_residue(bench, before);
+}
+
+TEST(PositionFaults, AComponentThatIsGivenStandsAlone) {
+    const auto error_of = [](const std::string& kind, const ParameterMap& parameters) {
+        ReceiverBench bench;
+        bench.begin(kind, parameters);
+        bench.next();
+        const NavPvt pvt = bench.next();
+        const auto error = ReceiverBench::error(pvt).vector();
+        return std::array<double, 4>{error.x(), error.y(), double(pvt.vel_e), double(pvt.vel_n)};
+    };
+    const auto still = error_of("height_bias", {});
+    const auto step = error_of("position_step", {{"east_m", 100.0}});
+    EXPECT_NEAR(step[0], 100, 0.02);
+    EXPECT_NEAR(step[1], 0, 0.02);
+    EXPECT_NEAR(error_of("position_step", {})[1], 50, 0.02);
+    EXPECT_NEAR(error_of("biased_good_dop", {{"up_m", 3.0}})[1], 0, 0.02);
+    EXPECT_NEAR(error_of("position_ramp", {{"east_mps", 5.0}})[1], 0, 0.02);
+    EXPECT_GT(error_of("position_ramp", {})[1], 0.9);
+    const auto biased = error_of("velocity_bias", {{"east_mps", 1.0}});
+    EXPECT_EQ(biased[2] - still[2], 1000);
+    EXPECT_EQ(biased[3], still[3]);
+    EXPECT_EQ(error_of("velocity_bias", {})[3] - still[3], 2000);
 }
 
 TEST(PositionFaults, ALongStepFollowsTheGround) {
