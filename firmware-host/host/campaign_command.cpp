@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <iostream>
+#include <numeric>
 
 #include "campaign_options.hpp"
 #include "commands.hpp"
@@ -20,6 +21,15 @@ int print_plan_of(const CampaignOptions& options) {
     const Messages messages(options.verbosity);
     const auto campaign = open_campaign(campaign_request(options));
     if (!campaign) return messages.error(campaign.error());
+    // As before a first run: a plan of runs that would be refused is none.
+    std::vector<std::uint64_t> all(campaign->plan.size());
+    std::iota(all.begin(), all.end(), 0);
+    catch_stop_signals();
+    const auto warnings = check_runs(*campaign, all, stop_was_asked);
+    if (!warnings) return messages.error(warnings.error());
+    if (stop_was_asked()) return told_stopped(messages);
+    for (const std::string& warning : *warnings)
+        messages.warning(warning);
     fmt::print("number,key,seed");
     for (const std::string& name : campaign->plan.parameters())
         fmt::print(",{}", table_cell(name));

@@ -63,7 +63,7 @@ public:
     Result<void> check(const PlannedRun& run, bool assembled) {
         const auto changes = campaign_.plan.changes_of(run);
         const auto asked = read_changed_scenario(campaign_.setup.text, campaign_.setup.file, changes);
-        if (!asked) return fail(asked.error());  // it names the place itself
+        if (!asked) return fail(at_option(asked.error()));
         const auto scenario = campaign_scenario(*asked);
         if (!scenario) return fail(blamed(scenario.error(), run));
         if (!assembled) return {};
@@ -94,6 +94,19 @@ private:
             words +=
                 fmt::format("{}{} = {}", i == 0 ? "; with " : ", ", campaign_.plan.varied()[i].key, run.values[i].toml);
         warnings_.push_back(warning + words);
+    }
+    // It names the place itself; a parameter that an option gives has none in the file.
+    [[nodiscard]] Error at_option(Error error) const {
+        const std::string top = campaign_.setup.file.string() + ":1:1: ";
+        if (!error.message.starts_with(top)) return error;
+        const std::string_view sentence = std::string_view(error.message).substr(top.size());
+        for (const CampaignParameter& parameter : campaign_.plan.varied()) {
+            if (!sentence.starts_with(parameter.key) && !sentence.starts_with("'" + parameter.key)) continue;
+            const CampaignSource source{campaign_.setup.text, campaign_.setup.file, campaign_.options};
+            error.message = fmt::format("{}: {}", place_of_varied(source, parameter.key), sentence);
+            return error;
+        }
+        return error;
     }
     // Values that another run has been assembled with are good.
     [[nodiscard]] Error blamed(Error error, const PlannedRun& run) const {

@@ -1,7 +1,9 @@
 #include "skyloop/scenario/scenario_changes.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <set>
 
@@ -65,18 +67,32 @@ bool put(toml::node& parent, std::string_view part, const toml::node& value) {
     return true;
 }
 
-bool apply_change(toml::table& table, const ScenarioChange& change) {
+bool is_place(std::string_view part) {
+    return !part.empty() && part.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// A list is not made: what its entries would be nobody has said.
+bool lacks_list(const toml::node& parent, std::string_view part, std::string_view next) {
+    const toml::table* table = parent.as_table();
+    return table != nullptr && is_place(next) && !table->contains(part);
+}
+
+// @return how much of the key is not there: "receiver.0"; empty: it is changed
+std::string apply_change(toml::table& table, const ScenarioChange& change) {
     const std::vector<std::string_view> parts = parts_of(change.key);
+    const auto until = [&](std::size_t last) {
+        return fmt::format("{}", fmt::join(parts.data(), &parts[last] + 1, "."));
+    };
+    if (std::find(parts.begin(), parts.end(), "") != parts.end()) return change.key;
     toml::node* parent = &table;
     for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
-        if (parts[i].empty()) return false;
+        if (lacks_list(*parent, parts[i], parts[i + 1])) return until(i + 1);
         parent = step_down(*parent, parts[i]);
-        if (parent == nullptr) return false;
+        if (parent == nullptr) return until(i);
     }
-    if (parts.back().empty()) return false;
     bool done = false;
     with_toml_value(change.value, [&](const toml::node& value) { done = put(*parent, parts.back(), value); });
-    return done;
+    return done ? std::string() : change.key;
 }
 
 // @param with_places of the entries of lists; else, as the reader names the key in its mistakes, without
@@ -113,14 +129,14 @@ toml::source_region place_of_parameter(const toml::table& table, std::string_vie
 
 void apply_changes(toml::table& table, MistakeList& mistakes, std::span<const ScenarioChange> changes) {
     for (const ScenarioChange& change : changes)
-        mistakes.changed(path_of_change(table, change.key, false), place_of_parameter(table, change.key),
+        mistakes.changed(path_of_change(table, change.key, false), change.key, place_of_parameter(table, change.key),
                          fmt::format("{} = {}", change.key, change.value.toml));
     for (const ScenarioChange& change : changes)
-        if (!apply_change(table, change))
+        if (const std::string missing = apply_change(table, change); !missing.empty())
             mistakes.add(place_of_parameter(table, change.key),
-                         fmt::format("'{}' leads to no key; expected tables, and of a list an entry's place from 0 on, "
-                                     "or its name or kind",
-                                     change.key));
+                         fmt::format("'{}' leads to no key: the scenario has no {} to vary; expected tables, and of a "
+                                     "list an entry's place from 0 on, or its name or kind",
+                                     change.key, missing));
 }
 
 // Everything in a table as lines, and what may name a file.

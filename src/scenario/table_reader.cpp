@@ -42,57 +42,7 @@ std::string range_words(NumberRange range, std::string_view noun = "a number") {
     return noun == "a number" ? "a finite number" : std::string(noun);
 }
 
-// Keys and texts of a file may hold anything and be of any length; a mistake stays one line that can be read.
-std::string on_one_line(std::string_view sentence) {
-    constexpr std::size_t longest = 600;
-    std::size_t end = std::min(sentence.size(), longest);
-    while (end < sentence.size() && (static_cast<unsigned char>(sentence[end]) & 0xC0) == 0x80)
-        --end;  // not within a character of several bytes
-    std::string line;
-    for (const char c : sentence.substr(0, end))
-        line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f
-                    ? fmt::format("\\x{:02x}", static_cast<unsigned char>(c))
-                    : std::string(1, c);
-    return end < sentence.size() ? line + "..." : line;
-}
-
 }  // namespace
-
-void MistakeList::add(const toml::source_region& where, const std::string& sentence) {
-    const toml::source_position place = place_of(where, sentence);
-    mistakes_.push_back({place.line, place.column, on_one_line(sentence + changes_text_)});
-}
-
-void MistakeList::changed(std::string path, const toml::source_region& where, const std::string& words) {
-    changes_.emplace_back(std::move(path), where.begin);
-    changes_text_ += (changes_text_.empty() ? "; with " : ", ") + words;
-}
-
-// What was put in after parsing has no place of its own.
-toml::source_position MistakeList::place_of(const toml::source_region& where, std::string_view sentence) const {
-    if (where.begin.line > 0) return where.begin;
-    for (const auto& [path, place] : changes_)
-        if (sentence.starts_with(path)) return place;
-    return changes_.empty() ? toml::source_position{1, 1} : changes_.front().second;
-}
-
-std::string MistakeList::told_at(const toml::source_region& where, std::string_view key) const {
-    const toml::source_position place = place_of(where, key);
-    return fmt::format("{}:{}:{}: ", file_, place.line, place.column);
-}
-
-std::string MistakeList::text() const {
-    std::vector<Mistake> sorted = mistakes_;
-    std::stable_sort(sorted.begin(), sorted.end(), [](const Mistake& a, const Mistake& b) {
-        return std::pair(a.line, a.column) < std::pair(b.line, b.column);
-    });
-    // A key that is looked at twice is wrong once.
-    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-    std::string lines;
-    for (const Mistake& m : sorted)
-        lines += fmt::format("{}{}:{}:{}: {}", lines.empty() ? "" : "\n", file_, m.line, m.column, m.sentence);
-    return lines;
-}
 
 const toml::node* TableReader::find(std::string_view key) {
     known_.emplace_back(key);

@@ -31,8 +31,9 @@ public:
     void add(const toml::source_region& where, const std::string& sentence);
     [[nodiscard]] bool empty() const { return mistakes_.empty(); }
     /// A part of the file has been changed since it was parsed: mistakes at `path` ("run.duration_s") are told at
-    /// `where`. @param words that end each sentence from here on
-    void changed(std::string path, const toml::source_region& where, const std::string& words);
+    /// `where`, and begin with `key`, by which whoever changed it called it ("fault.gap.at_s"). @param words that end
+    /// each sentence from here on
+    void changed(std::string path, std::string key, const toml::source_region& where, const std::string& words);
     /// "FILE:LINE:COLUMN: ".
     [[nodiscard]] std::string told_at(const toml::source_region& where, std::string_view key) const;
     /// All lines, in the order of the file.
@@ -47,9 +48,17 @@ private:
     [[nodiscard]] toml::source_position place_of(const toml::source_region& where, std::string_view sentence) const;
     std::string file_;
     std::vector<Mistake> mistakes_;
-    std::vector<std::pair<std::string, toml::source_position>> changes_;
+    struct Change {
+        std::string path, key;
+        toml::source_position place;
+    };
+    [[nodiscard]] const Change* change_of(const toml::source_region& where, std::string_view sentence) const;
+    std::vector<Change> changes_;
     std::string changes_text_;
 };
+
+/// A sentence that stays one line and can be read: keys and texts of a file may hold anything and be of any length.
+std::string on_one_line(std::string_view sentence);
 
 /// Which numbers a key takes.
 struct NumberRange {

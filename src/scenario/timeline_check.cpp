@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <utility>
 
 #include "skyloop/fault/fault_kind.hpp"
 #include "skyloop/time/utc_time.hpp"
@@ -77,6 +78,8 @@ std::vector<std::string> timeline_warnings(const Scenario& scenario, GpsTime sta
     std::vector<std::string> warnings;
     warn_of_late("fault", scenario.faults, scenario, {start, end}, warnings);
     warn_of_late("command", scenario.commands, scenario, {start, end}, warnings);
+    for (std::string& warning : expectation_warnings(scenario, start, end))
+        warnings.push_back(std::move(warning));
     return warnings;
 }
 

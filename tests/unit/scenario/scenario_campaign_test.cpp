@@ -164,11 +164,14 @@ TEST(ScenarioChanges, ReachEveryKindOfPlace) {
 }
 
 TEST(ScenarioChanges, AWrongValueIsToldWhereTheFileChangesIt) {
-    EXPECT_THAT(change_mistake("fault.first.for_s", "-4"), StartsWith("c.toml:19:7: fault.for_s: "));
+    EXPECT_THAT(change_mistake("fault.first.for_s", "-4"), StartsWith("c.toml:19:7: fault.first.for_s: "));
     EXPECT_THAT(change_mistake("fault.first.for_s", "-4"), HasSubstr("; with fault.first.for_s = -4"));
     EXPECT_THAT(change_mistake("run.duration_s", "x"), StartsWith("c.toml:1:1: run.duration_s: is a text"));
     EXPECT_THAT(change_mistake("run.duratoin_s", "1"), HasSubstr("did you mean 'duration_s'"));
-    EXPECT_THAT(change_mistake("fault.7.for_s", "1"), HasSubstr("leads to no key"));
+    EXPECT_THAT(change_mistake("fault.7.for_s", "1"),
+                HasSubstr("leads to no key: the scenario has no fault.7 to vary"));
+    EXPECT_THAT(change_mistake("output.0.to", "\"x\""), HasSubstr("the scenario has no output.0 to vary"));
+    EXPECT_THAT(change_mistake("fault.0.foo", "1"), HasSubstr("fault.0.foo: unknown key"));
     EXPECT_THAT(change_mistake("fault.none.for_s", "1"), HasSubstr("leads to no key"));
     EXPECT_THAT(change_mistake("run.duration_s.x", "1"), HasSubstr("leads to no key"));
     EXPECT_THAT(change_mistake("run.", "1"), HasSubstr("leads to no key"));

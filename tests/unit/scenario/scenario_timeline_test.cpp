@@ -178,6 +178,48 @@ between_s = [70, 80]
     EXPECT_THAT(warnings[1], HasSubstr("[[command]] 'note' will not begin"));
 }
 
+TEST(ScenarioTimeline, WhatCannotBeMetBeforeTheEndIsWarnedOf) {
+    const GpsTime start = to_gps_time(*parse_utc("2024-03-05T12:00:00Z"), LeapSeconds::announced());
+    const auto warnings_of = [&](const std::string& expectation) {
+        const Scenario scenario = scenario_of(R"toml(
+[[fault]]
+kind = "outage"
+at_s = 20
+[[fault]]
+kind = "freeze"
+at_s = 90
+[[fault]]
+kind = "stall"
+when_fix_for_s = 10
+[[fault]]
+kind = "byte_loss"
+name = "hangs"
+after = "stall"
+)toml" + ("[[expect]]\n" + expectation));
+        std::vector<std::string> warnings;
+        for (const std::string& warning : timeline_warnings(scenario, start, advanced(start, Seconds(60))))
+            if (warning.starts_with("[[expect]]")) warnings.push_back(warning);
+        return warnings;
+    };
+    EXPECT_THAT(
+        warnings_of("what = \"fix at 300 s\""),
+        ElementsAre("[[expect]] 'fix at 300 s' cannot be met: it is due 300 s after the start of the run, which "
+                    "ends after 60 s"));
+    EXPECT_THAT(warnings_of("what = \"fix from 50 s to 200 s\""), ElementsAre(HasSubstr("it lasts until 200 s after")));
+    EXPECT_THAT(warnings_of("what = \"no fix within 2 s of freeze\""),
+                ElementsAre(HasSubstr("'freeze' does not begin before the run ends")));
+    EXPECT_THAT(warnings_of("what = \"no fix within 2 s of outage#2\""),
+                ElementsAre(HasSubstr("'outage#2' does not begin")));
+    EXPECT_THAT(warnings_of("what = \"fix within 2 s of the end of outage\""),
+                ElementsAre(HasSubstr("'outage' does not end before the run does")));
+    EXPECT_THAT(warnings_of("what = \"fix 50 s after outage\""), ElementsAre(HasSubstr("it is due 70 s after")));
+    EXPECT_THAT(warnings_of("command = \"true\"\nat_s = 70"), ElementsAre(HasSubstr("it is asked 70 s after")));
+    for (const char* met : {"fix at 60 s", "fix from 50 s to 60 s", "no fix throughout outage",
+                            "fix within 300 s of outage", "no fix within 2 s of stall",
+                            "no fix within 2 s of the end of hangs", "fix always", "fix until outage", "no fix never"})
+        EXPECT_THAT(warnings_of(fmt::format("what = \"{}\"", met)), IsEmpty()) << met;
+}
+
 TEST(ScenarioTimeline, CommandsFindTheFaultsThatTheyName) {
     const auto commanded = [](std::string_view command) {
         return mistakes_of(fmt::format("[[fault]]\nkind = \"jamming\"\nj_to_s_db = 30\n[[command]]\n{}", command));
