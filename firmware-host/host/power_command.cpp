@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
+#include <variant>
 
 #include "commands.hpp"
 #include "run_options.hpp"
@@ -14,8 +16,21 @@ struct PowerOptions {
     Verbosity verbosity;
 };
 
+// What cannot be asked without being changed.
+std::optional<Error> unaskable(const PowerOptions& options) {
+    if (options.what != "state") return std::nullopt;
+    const auto uri = parse_actuator_uri(options.uri);
+    if (!uri || !std::holds_alternative<ModemLineAddress>(*uri)) return std::nullopt;
+    return Error{
+        ErrorCode::usage,
+        fmt::format("{}: the state of a modem line cannot be asked: Linux asserts RTS and DTR when the device is "
+                    "opened, which would switch it; expected on or off",
+                    options.uri)};
+}
+
 int switch_power(const PowerOptions& options) {
     const Messages messages(options.verbosity);
+    if (const auto refused = unaskable(options)) return messages.error(*refused);
     const auto actuator = open_actuator(options.uri);
     if (!actuator) return messages.error(actuator.error());
     Result<void> done;
@@ -41,7 +56,9 @@ Action add_power_command(CLI::App& app) {
         ->add_option("uri", options->uri,
                      "relay:VID:PID/N gpio:VID:PID/N hub:PORT_PATH line:DEVICE/rts line:DEVICE/dtr command:CUT|RESTORE")
         ->required();
-    command->add_option("what", options->what, "on, off (it stays cut) or state")
+    command
+        ->add_option("what", options->what,
+                     "on, off (it stays cut) or state (not of a modem line, which asking would switch)")
         ->required()
         ->check(CLI::IsMember({"on", "off", "state"}));
     add_verbosity_options(*command, options->verbosity);

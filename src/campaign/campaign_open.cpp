@@ -56,7 +56,20 @@ Result<ValueContents> contents_of_values(const CampaignRequest& request, const C
     return contents;
 }
 
-Result<Scenario> base_scenario(const CampaignRequest& request, const std::string& text, CampaignSettings& settings) {
+// A campaign takes the power of its receivers away, with a vehicle too: hardware would be switched by many runs at
+// once.
+std::vector<std::string> unswitched_power(const Scenario& scenario) {
+    std::vector<std::string> warnings;
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
+        if (const std::string& power = scenario.receivers[i].power; !power.empty())
+            warnings.push_back(
+                fmt::format("{}: power {}: runs of a campaign switch nothing real; skyloop run does, one run at a time",
+                            receiver_name(scenario, i), power));
+    return warnings;
+}
+
+Result<Scenario> base_scenario(const CampaignRequest& request, const std::string& text, CampaignSettings& settings,
+                               std::vector<std::string>& warnings) {
     auto scenario = read_scenario(text, request.scenario);
     if (!scenario) return fail(scenario.error());
     settings = scenario->campaign.value_or(CampaignSettings{});
@@ -71,6 +84,7 @@ Result<Scenario> base_scenario(const CampaignRequest& request, const std::string
                         fmt::format("--vary {}: is given twice; expected it once, with all values", key));
     }
     scenario->campaign = settings;
+    warnings = unswitched_power(*scenario);
     return campaign_scenario(*scenario);
 }
 
@@ -81,7 +95,7 @@ Result<std::string> digest_of_base(const CampaignRequest& request, const std::st
     const auto assembly = checked_assembly(scenario, request.data);
     if (!assembly) return fail(assembly.error());
     CampaignBase base{request.version, std::move(*content), request.scenario.parent_path(), {}};
-    warnings = assembly->warnings;
+    warnings.insert(warnings.end(), assembly->warnings.begin(), assembly->warnings.end());
     add_boards(scenario, request.data, base);
     base.more["geoid"] = assembly->geoid ? "EGM96" : "none";
     if (assembly->scene.digest != 0) base.more["scene"] = fmt::format("{:016x}", assembly->scene.digest);
@@ -103,12 +117,12 @@ Result<OpenedCampaign> open_campaign(const CampaignRequest& request) {
     const auto text = read_text_file(request.scenario, largest);
     if (!text) return fail(text.error());
     CampaignSettings settings;
-    const auto scenario = base_scenario(request, *text, settings);
+    std::vector<std::string> warnings;
+    const auto scenario = base_scenario(request, *text, settings, warnings);
     if (!scenario) return fail(scenario.error());
     const std::vector<std::string> options = options_of(request);
     if (const auto once = check_parameter_keys({*text, request.scenario, options}, settings); !once)
         return fail(once.error());
-    std::vector<std::string> warnings;
     const auto digest = digest_of_base(request, *text, *scenario, warnings);
     if (!digest) return fail(digest.error());
     auto contents = contents_of_values(request, settings);

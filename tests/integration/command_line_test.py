@@ -79,6 +79,7 @@ MISUSES = [
     (["replay", "/dev/null", "--baud", "-1"], 2, ["--baud: '-1'; expected a whole number from 110 to"]),
     (["trajectory", "x.csv", "--origin", "46,nan,3"], 2, ["--origin: 'nan'; expected a number"]),
     (["ctl", "1", "step", "nan"], 2, ["step: 'nan' is no number"]),
+    (["power", "line:/dev/no-such-tty/rts", "state"], 2, ["the state of a modem line cannot be asked", "expected on or off"]),
 ]
 
 SCENARIO_MISTAKES = [

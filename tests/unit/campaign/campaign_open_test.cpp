@@ -143,6 +143,14 @@ TEST_F(CampaignOpen, WarnsOfValuesThatAreListed) {
                 testing::AllOf(HasSubstr("'gap' will not begin"), testing::EndsWith("; with fault.gap.at_s = 30")));
 }
 
+TEST_F(CampaignOpen, WarnsOfPowerThatNoRunSwitches) {
+    write_scenario("[[receiver]]\npower = \"command:true|true\"\n[campaign.vehicle]\ncommand = \"true\"\n");
+    const auto campaign = open({});
+    ASSERT_TRUE(campaign) << campaign.error().message;
+    EXPECT_THAT(campaign->warnings,
+                testing::Contains(HasSubstr("receiver0: power command:true|true: runs of a campaign switch nothing")));
+}
+
 TEST_F(CampaignOpen, StopsWhileItChecks) {
     write_scenario("[campaign]\nseeds = 3\n");
     const auto campaign = open({"run.duration_s=1,2,3"});
