@@ -65,7 +65,8 @@ int check(const RunOptions& options) {
     mode.only_checked = true;
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
-    if (const auto warning = vehicle_warning(*scenario)) assembly->warnings.push_back(*warning);
+    for (const auto& warning : {vehicle_warning(*scenario), pause_warning(*scenario)})
+        if (warning) assembly->warnings.push_back(*warning);
     for (const std::string& warning : assembly->warnings)
         messages.warning(warning);
     if (!options.verbosity.quiet) print_plan(*scenario, *assembly);

@@ -205,17 +205,33 @@ void print_answer(const CtlOptions& options, const ControlResponse& response) {
         fmt::print("{}\n", status_text(json, "\n  "));
     else if (json.is_array())
         print_kinds(json);
+    else if (const CtlJson accepted = json.value("accepted", CtlJson::object()); accepted.contains("kind"))
+        fmt::print("accepted as {}\n", accepted.at("name").get<std::string>());
     else
         fmt::print("accepted\n");
 }
 
+// What the server says to programs, in words of this command.
+std::string ctl_sentence(std::string sentence, const ControlResponse& response, const std::string& port) {
+    if (response.status == 401)
+        return "the run wants another token, or one at all; expected --token TOKEN, or SKYLOOP_TOKEN in the "
+               "environment, "
+               "as the run's line 'control:' tells it";
+    constexpr std::string_view asked = "GET /api/timeline lists them";
+    if (const std::size_t at = sentence.find(asked); at != std::string::npos)
+        sentence.replace(at, asked.size(), fmt::format("skyloop ctl {} status tells those under way", port));
+    return sentence;
+}
+
 // 429 and what begins with 5 are the other end's; other refusals are the user's.
-Error refused_answer(const ControlResponse& response) {
+Error refused_answer(const ControlResponse& response, const std::string& port) {
     const CtlJson json = CtlJson::parse(response.body, nullptr, false);
     const bool told = json.is_object() && json.contains("error") && json.at("error").is_string();
     const bool outside = response.status == 429 || response.status >= 500;
     return {outside ? ErrorCode::outside : ErrorCode::usage,
-            told ? json.at("error").get<std::string>() : fmt::format("refused with status {}", response.status)};
+            ctl_sentence(
+                told ? json.at("error").get<std::string>() : fmt::format("refused with status {}", response.status),
+                response, port)};
 }
 
 int watch_run(const CtlOptions& options, const ControlClient& client, const Messages& messages) {
@@ -231,7 +247,7 @@ int ask_run(const CtlOptions& options, const ControlClient& client, const Messag
     if (!request) return messages.error(request.error());
     const auto response = client.ask(*request);
     if (!response) return messages.error(response.error());
-    if (response->status >= 300) return messages.error(refused_answer(*response));
+    if (response->status >= 300) return messages.error(refused_answer(*response, options.words[0]));
     print_answer(options, *response);
     return 0;
 }

@@ -69,6 +69,11 @@ int watch_devices(std::span<const DeviceProfile> profiles, const DevicesOptions&
     auto usb = UsbWatch::start();
     if (!usb) return messages.error(usb.error());
     if (usb->polls()) messages.detail("udevd does not run: devices are looked for every 500 ms");
+    const auto there = list_devices(profiles);
+    if (!there) return messages.error(there.error());
+    for (const DeviceEntry& device : *there)
+        if (!device.usb)
+            print_news({true, device}, options.json);  // a line of the machine, which neither comes nor goes
     DeviceWatch watch(std::move(*usb), profiles);
     const auto end =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.duration_s));

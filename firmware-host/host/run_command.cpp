@@ -57,6 +57,8 @@ int run_live(const RunOptions& options) {
 
     const auto waiting = options.mavlink.empty() ? vehicle_warning(*scenario) : std::nullopt;
     if (waiting) assembly->warnings.push_back(*waiting);
+    const bool alone = !mode.virtual_time && options.control.empty();
+    if (const auto warning = alone ? pause_warning(*scenario) : std::nullopt) assembly->warnings.push_back(*warning);
     if (!mode.virtual_time && options.priority == "auto") assembly->deadlines = keep_deadlines(messages);
     const auto watch = RunWatch::start(*scenario, *assembly,
                                        {options.control, options.token, options.mavlink, !mode.virtual_time}, commands);

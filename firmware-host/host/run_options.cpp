@@ -270,6 +270,19 @@ std::optional<std::string> vehicle_warning(const Scenario& scenario) {
         fmt::join(waiting, ", "));
 }
 
+std::optional<std::string> pause_warning(const Scenario& scenario) {
+    std::vector<std::string> stopping;
+    for (const CommandEntry& entry : scenario.commands)
+        if (entry.command.verb == CommandVerb::pause || entry.command.verb == CommandVerb::step)
+            stopping.push_back("'" + entry.when.name + "'");
+    if (stopping.empty()) return std::nullopt;
+    return fmt::format(
+        "[[command]] {} stops time in skyloop run, and no entry with a later time comes then: a client of --control "
+        "has "
+        "to resume it",
+        fmt::join(stopping, ", "));
+}
+
 Result<Scenario> scenario_from(const RunOptions& options) {
     if (const auto kept = check_repeat(options); !kept) return fail(kept.error());
     Scenario scenario;

@@ -48,6 +48,10 @@ Result<Scenario> scenario_from(const RunOptions& options);
 /// nothing where there are none.
 std::optional<std::string> vehicle_warning(const Scenario& scenario);
 
+/// What to tell of commands that stop time in a run against the clock without a client who lets it go on; nothing where
+/// there are none.
+std::optional<std::string> pause_warning(const Scenario& scenario);
+
 /// Reads "LAT,LON" or "LAT,LON,HEIGHT": degrees and metres above the ellipsoid. @param option for messages
 Result<Geodetic> parse_place(const std::string& text, std::string_view option = "--at");
 

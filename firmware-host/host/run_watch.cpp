@@ -40,6 +40,16 @@ std::vector<VerdictStatus> verdict_states(const std::vector<Verdict>& verdicts, 
     return states;
 }
 
+// A port or an output writes to standard output, where a sentence would be garbage among its bytes.
+bool fills_standard_output(const Scenario& scenario, const Emulator& emulator) {
+    for (const Station& station : emulator.stations())
+        for (const Wire& wire : station.wires())
+            if (wire.link.transport().description() == "standard output") return true;
+    return std::any_of(scenario.outputs.begin(), scenario.outputs.end(), [](const OutputSettings& output) {
+        return output.way == OutputWay::file && output.path == "-";
+    });
+}
+
 Result<void> write_report(const std::filesystem::path& path, const std::string& text) {
     auto file = OutputFile::create(path);
     if (!file) return fail(file.error());
@@ -206,7 +216,7 @@ int RunWatch::report(const Messages& messages, const std::vector<Verdict>& verdi
         scenario_.name, scenario_.run.seed, assembly_.start, difference(emulator.now(), assembly_.start), {}};
     const Recorder* recorder = emulator.stations().front().recorder();
     if (recorder != nullptr) run.evidence = {"fixes.csv", "port0.out", "port0.in", "commands.jsonl"};
-    fmt::print("{}", verdict_text(verdicts, run));
+    fmt::print(fills_standard_output(scenario_, emulator) ? stderr : stdout, "{}", verdict_text(verdicts, run));
     int code = is_success(verdicts) ? 0 : expectations_not_met;
     if (recorder == nullptr) return code;
     for (const auto& [name, text] :

@@ -10,6 +10,7 @@
 #include "skyloop/control/command_json.hpp"
 #include "skyloop/control/control_request.hpp"
 #include "skyloop/control/status_json.hpp"
+#include "skyloop/emulator/director.hpp"
 #include "skyloop/fault/checked_command.hpp"
 #include "skyloop/fault/fault_kind.hpp"
 
@@ -65,6 +66,15 @@ bool has_fault(const ControlSources& sources, const std::string& name) {
                        [&](const TimelineBar& bar) { return !bar.command && bar.name == name; });
 }
 
+// As the director will call it; what it is asked for by may be the name of another entry.
+Command with_given_name(Command command, const ControlSources& sources) {
+    if (!begins_new_fault(command)) return command;
+    auto values = command.parameters.values();
+    values["name"] = given_fault_name(command, sources);
+    command.parameters = Parameters(std::move(values));
+    return command;
+}
+
 // What nobody of this run would carry out.
 std::optional<std::string> target_mistake(const Command& command, const ControlSources& sources) {
     const FaultKind* kind = find_fault_kind(command.parameters.text("kind"));
@@ -81,7 +91,7 @@ std::optional<std::string> target_mistake(const Command& command, const ControlS
 ControlResponse queued(const Result<Command>& command, const ControlSources& sources) {
     if (!command) return error_response(422, command.error().message);
     if (const auto mistake = target_mistake(*command, sources)) return error_response(422, *mistake);
-    const std::string told = command_json(*command);
+    const std::string told = command_json(with_given_name(*command, sources));
     if (sources.push && sources.push(*command)) return json_response("{\"accepted\":" + told + "}", 202);
     ControlResponse response = error_response(429, "too many commands wait already; expected fewer a second");
     response.headers.emplace_back("Retry-After", "1");
@@ -180,6 +190,16 @@ ControlResponse api_answer(const ControlRequest& request, const ControlSources& 
 }
 
 }  // namespace
+
+std::string given_fault_name(const Command& command, const ControlSources& sources) {
+    const auto is_taken = [&](const std::string& name) {
+        if (has_fault(sources, name)) return true;
+        if (!sources.snapshot) return false;
+        const auto& bars = sources.snapshot->timeline;
+        return std::any_of(bars.begin(), bars.end(), [&](const TimelineBar& bar) { return bar.name == name; });
+    };
+    return free_name(command.parameters.text("name"), is_taken);
+}
 
 ControlResponse answer(const ControlRequest& request, const AccessRules& rules, const ControlSources& sources) {
     if (auto refused = refusal(request, rules)) return std::move(*refused);

@@ -12,6 +12,7 @@
 
 #include "server_core.hpp"
 #include "skyloop/control/status_json.hpp"
+#include "skyloop/emulator/director.hpp"
 #include "skyloop/emulator/thread_priority.hpp"
 
 namespace skyloop {
@@ -55,10 +56,11 @@ std::string shown_host(const std::string& host) {
 }  // namespace
 
 bool ServerCore::push(Command command) {
-    std::string name = command.verb == CommandVerb::start_fault ? command.parameters.text("name") : std::string();
+    std::set<std::string> names;
+    if (begins_new_fault(command)) names = {command.parameters.text("name"), given_fault_name(command, sources(false))};
     if (!parts.commands.push(std::move(command))) return false;
     if (started.size() >= most_started_names) started.clear();
-    if (!name.empty()) started.insert(std::move(name));
+    started.merge(names);
     return true;
 }
 

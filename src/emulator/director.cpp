@@ -19,6 +19,12 @@ constexpr int most_rounds = 16;
 
 bool waits_for_client(const TimelineEntry& entry) { return entry.when && !entry.when->client_sends.empty(); }
 
+// Nobody stands by in virtual time who could wait for it.
+bool leads_time(const Command& command, const Pacer& pacer) {
+    const CommandKind* kind = find_command_kind(command_name(command.verb));
+    return kind != nullptr && kind->live_only && pacer.is_virtual();
+}
+
 // All receivers have one clock: a fault of several must not act on it several times.
 double faulty_pace(const std::vector<Station>& stations, GpsTime now) {
     double pace = 1;
@@ -31,12 +37,13 @@ double faulty_pace(const std::vector<Station>& stations, GpsTime now) {
 
 }  // namespace
 
-std::string free_name(const std::vector<TimelineEntry>& entries, const std::string& wanted) {
-    const auto taken = [&](const std::string& name) {
-        return std::any_of(entries.begin(), entries.end(), [&](const TimelineEntry& e) { return e.name == name; });
-    };
+bool begins_new_fault(const Command& command) {
+    return command.verb == CommandVerb::start_fault && command.parameters.has("kind");
+}
+
+std::string free_name(const std::string& wanted, const std::function<bool(const std::string&)>& is_taken) {
     std::string name = wanted;
-    for (int number = 2; taken(name); ++number)
+    for (int number = 2; is_taken(name); ++number)
         name = fmt::format("{} {}", wanted, number);
     return name;
 }
@@ -45,11 +52,11 @@ Director::Director(Parts parts) : parts_(std::move(parts)), timeline_({}, parts_
     std::vector<TimelineEntry> entries;
     for (FaultEntry& fault : parts_.faults) {
         entries.push_back(fault.when);
-        acts_.push_back({std::move(fault), std::nullopt});
+        acts_.push_back({std::move(fault), std::nullopt, {}});
     }
     for (CommandEntry& command : parts_.commands) {
         entries.push_back(command.when);
-        acts_.push_back({std::nullopt, std::move(command.command)});
+        acts_.push_back({std::nullopt, std::move(command.command), {}});
     }
     speed_ = parts_.speed;
     hears_ = std::any_of(entries.begin(), entries.end(), waits_for_client);
@@ -116,12 +123,15 @@ void Director::begin_fault(const TimelineEvent& event, Station& station) {
 }
 
 void Director::carry_out(const Command& command, std::string_view name, const Scene& scene) {
-    const std::string ignored = ignored_because(command);
+    const std::string ignored =
+        leads_time(command, scene.pacer) ? "time is virtual, and waits for nobody" : ignored_because(command);
     const CommandSeen seen{scene.now, name, command, ignored};
     for (RunObserver* observer : observers_)
         observer->on_command(seen);
+    if (!ignored.empty()) return;
     switch (command.verb) {
         case CommandVerb::start_fault:
+            return begins_new_fault(command) ? begin_new_fault(command, scene) : start_or_stop(command, scene);
         case CommandVerb::stop_fault:
             return start_or_stop(command, scene);
         case CommandVerb::pause:
@@ -152,10 +162,12 @@ void Director::carry_out(const Command& command, std::string_view name, const Sc
     }
 }
 
-// A fault that is under way does not begin a second time.
+// A fault that is under way does not begin a second time, and what is not cannot end.
 std::string Director::ignored_because(const Command& command) const {
-    if (command.verb != CommandVerb::start_fault || command.parameters.has("kind")) return {};
     const std::string name = command.parameters.text("fault");
+    if (command.verb == CommandVerb::stop_fault && faults_to_stop(name).empty())
+        return name.empty() ? "no fault is under way" : name + " is not under way";
+    if (command.verb != CommandVerb::start_fault || begins_new_fault(command)) return {};
     const auto& entries = timeline_.entries();
     for (std::size_t i = 0; i < entries.size(); ++i)
         if (!acts_[i].command && entries[i].name == name && timeline_.is_under_way(i)) return name + " is under way";
@@ -176,20 +188,29 @@ firmware::ReceiverEvent Director::receiver_event(const Command& command) {
     }
 }
 
+// Those under way that have this name; where there are none, those that were asked for by it. @param name empty: all
+std::vector<std::size_t> Director::faults_to_stop(const std::string& name) const {
+    std::vector<std::size_t> named, asked;
+    for (std::size_t i = 0; i < acts_.size(); ++i) {
+        if (!acts_[i].fault || !timeline_.can_end(i)) continue;
+        if (name.empty() || timeline_.entries()[i].name == name) named.push_back(i);
+        if (acts_[i].asked == name) asked.push_back(i);
+    }
+    return named.empty() ? asked : named;
+}
+
 void Director::start_or_stop(const Command& command, const Scene& scene) {
     const std::string name = command.parameters.text("fault");
-    if (command.verb == CommandVerb::start_fault && command.parameters.has("kind"))
-        return begin_new_fault(command, scene);
-    const auto& entries = timeline_.entries();
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-        if (acts_[i].command || (!name.empty() && entries[i].name != name)) continue;
-        if (command.verb == CommandVerb::stop_fault) {
-            timeline_.end(i, scene.now);
-            continue;
-        }
-        const auto length = command.parameters.optional_number("for_s");
-        timeline_.begin(i, scene.now, length ? std::optional(Seconds(*length)) : std::nullopt);
+    if (command.verb == CommandVerb::stop_fault) {
+        for (const std::size_t fault : faults_to_stop(name))
+            timeline_.end(fault, scene.now);
+        return;
     }
+    const auto& entries = timeline_.entries();
+    const auto length = command.parameters.optional_number("for_s");
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        if (acts_[i].fault && (name.empty() || entries[i].name == name))
+            timeline_.begin(i, scene.now, length ? std::optional(Seconds(*length)) : std::nullopt);
 }
 
 void Director::begin_new_fault(const Command& command, const Scene& scene) {
@@ -199,11 +220,15 @@ void Director::begin_new_fault(const Command& command, const Scene& scene) {
     entry.parameters = command.parameters;
     entry.when = read_timeline_entry(command.parameters).entry;
     entry.when.by_hand = true;
-    entry.when.name = free_name(timeline_.entries(), entry.when.name.empty() ? entry.kind : entry.when.name);
+    const std::string asked = entry.when.name.empty() ? entry.kind : entry.when.name;
+    entry.when.name = free_name(asked, [&](const std::string& name) {
+        const auto& entries = timeline_.entries();
+        return std::any_of(entries.begin(), entries.end(), [&](const TimelineEntry& e) { return e.name == name; });
+    });
     for (std::size_t i = 0; i < scene.stations.size(); ++i)
         if (command.receiver.empty() || command.receiver == scene.stations[i].name()) entry.receivers.push_back(i);
     const std::size_t index = timeline_.add(entry.when);
-    acts_.push_back({std::move(entry), std::nullopt});
+    acts_.push_back({std::move(entry), std::nullopt, asked});
     timeline_.begin(index, scene.now);
 }
 

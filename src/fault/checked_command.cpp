@@ -8,6 +8,7 @@
 
 #include "skyloop/base/spelling.hpp"
 #include "skyloop/fault/fault_kind.hpp"
+#include "skyloop/fault/timeline_keys.hpp"
 
 namespace skyloop {
 namespace {
@@ -61,7 +62,8 @@ Result<Command> checked_live_fault(ParameterMap members, std::string_view source
     std::vector<ParameterSpec> specs = live_fault_parameters();
     specs.insert(specs.end(), kind->parameters.begin(), kind->parameters.end());
     members.emplace("kind", *name);
-    const CheckedParameters checked = check_parameters(specs, members);
+    CheckedParameters checked = check_parameters(specs, members);
+    if (const auto mistake = entry_name_mistake(checked.parameters.text("name"))) checked.mistakes.push_back(*mistake);
     if (!checked.mistakes.empty()) return fail(mistakes_error(checked.mistakes));
     if (const auto mistakes = ramp_mistakes(*kind, checked.parameters); !mistakes.empty())
         return fail(mistakes_error(mistakes));

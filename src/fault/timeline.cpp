@@ -168,8 +168,17 @@ bool Timeline::begin(std::size_t index, GpsTime now, std::optional<Seconds> leng
     return true;
 }
 
+bool Timeline::can_end(std::size_t index) const {
+    return is_under_way(index) || std::any_of(planned_.begin(), planned_.end(), [&](const Planned& planned) {
+               return planned.event.entry == index && planned.event.begins && planned.event.by_hand;
+           });
+}
+
 bool Timeline::end(std::size_t index, GpsTime now) {
-    if (!is_under_way(index)) return false;
+    if (!can_end(index)) return false;
+    std::erase_if(planned_, [&](const Planned& planned) {
+        return planned.event.entry == index && planned.event.begins && planned.event.by_hand;
+    });
     std::erase_if(planned_, [&](const Planned& planned) {
         return planned.event.entry == index && !planned.event.begins &&
                states_[index].under_way.contains(planned.event.occurrence);

@@ -160,9 +160,7 @@ void refuse_contradictions(const Parameters& keys, const TimelineEntry& entry,
     const auto refuse = [&](const std::string& key, const std::string& sentence) {
         mistakes.push_back({key, sentence});
     };
-    if (entry.name == "run") refuse("name", "is 'run', which means the run itself; expected another name");
-    if (entry.name.find('#') != std::string::npos)
-        refuse("name", "has a '#', which stands before the number of an occurrence; expected none");
+    if (const auto mistake = entry_name_mistake(entry.name)) mistakes.push_back(*mistake);
     if (entry.when && !entry.after.empty()) refuse("after", "stands beside a condition 'when_…'; expected one of them");
     if (entry.at_time && (entry.when || !entry.after.empty()))
         refuse("at_utc", "is a time of its own; expected none beside 'after' or 'when_…'");
@@ -203,6 +201,13 @@ TimelineReading read_timeline_entry(const Parameters& keys) {
     entry.ramp_out = Seconds(keys.number("ramp_out_s"));
     refuse_contradictions(keys, entry, reading.mistakes);
     return reading;
+}
+
+std::optional<ParameterMistake> entry_name_mistake(const std::string& name) {
+    if (name == "run") return ParameterMistake{"name", "is 'run', which means the run itself; expected another name"};
+    if (name.find('#') != std::string::npos)
+        return ParameterMistake{"name", "has a '#', which stands before the number of an occurrence; expected none"};
+    return std::nullopt;
 }
 
 std::vector<std::pair<std::size_t, ParameterMistake>> timeline_mistakes(const std::vector<TimelineEntry>& entries) {

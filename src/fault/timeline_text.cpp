@@ -27,6 +27,24 @@ std::string conditions(const Trigger& trigger) {
     return text;
 }
 
+// Whether it begins, and when, is known where a condition has come true.
+bool hangs_on_a_condition(const TimelineEntry* entry, const std::vector<TimelineEntry>& entries) {
+    for (std::size_t steps = 0; steps <= entries.size() && entry != nullptr && !entry->after.empty(); ++steps) {
+        const auto before = std::find_if(entries.begin(), entries.end(),
+                                         [&](const TimelineEntry& other) { return other.name == entry->after; });
+        entry = before == entries.end() ? nullptr : &*before;
+        if (entry != nullptr && entry->when) return true;
+    }
+    return false;
+}
+
+std::string consequence(const TimelineEntry& entry) {
+    std::string begins = fmt::format("{:g} s", entry.at.value_or(Seconds(0)).value());
+    if (entry.between) begins = fmt::format("{:g} to {:g} s", (*entry.between)[0], (*entry.between)[1]);
+    return fmt::format("{:>14}  {}: {} after {}{}", "then", entry.name, begins, entry.after_end ? "the end of " : "",
+                       entry.after);
+}
+
 std::string line(const TimelineEvent& event, const TimelineEntry& entry, GpsTime start) {
     const double at = difference(event.time, start).value();
     const std::string number = event.occurrence > 1 ? fmt::format(" (no. {})", event.occurrence) : "";
@@ -52,6 +70,8 @@ std::vector<std::string> timeline_text(const std::vector<TimelineEntry>& entries
     if (left_out > 0) lines.push_back(fmt::format("{:>14}  and {} more", "", left_out));
     for (const TimelineEntry& entry : entries)
         if (entry.when) lines.push_back(fmt::format("{:>14}  {}: {}", "when", entry.name, conditions(*entry.when)));
+    for (const TimelineEntry& entry : entries)
+        if (hangs_on_a_condition(&entry, entries)) lines.push_back(consequence(entry));
     return lines;
 }
 

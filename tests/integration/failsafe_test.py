@@ -67,6 +67,23 @@ class VerdictsTest(unittest.TestCase):
         done = self.simulate(SCENARIO + '[[command]]\nkind = "pause"\nat_s = 10\n[[command]]\nkind = "step"\nseconds = 1\nat_s = 12\n')
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertIn("2 of 2 expectations met", done.stdout)
+        self.assertIn("[[command]] 'pause' will do nothing: skyloop run does it", done.stderr)
+        events = [json.loads(line) for line in (self.out / "commands.jsonl").read_text().splitlines()]
+        self.assertEqual([e["ignored"] for e in events if e["event"] == "command"],
+                         ["time is virtual, and waits for nobody"] * 2)
+        done = skyloop("check", self.scenario)
+        self.assertIn("[[command]] 'pause', 'step' stops time in skyloop run", done.stderr)
+
+    def test_verdicts_are_no_bytes_of_a_receiver(self):
+        self.scenario.write_text(SCENARIO)
+        for word, option, value in (("simulate", "--port", "-"), ("simulate", "--output", "json-file:-"),
+                                    ("run", "--port", "-"), ("run", "--output", "json-file:-")):
+            with self.subTest(word + option):
+                live = ["--speed", "max"] if word == "run" else ["--out", self.out]
+                done = skyloop(word, self.scenario, option, value, *live)
+                self.assertNotIn("PASSED", done.stdout)
+                self.assertGreater(len(done.stdout), 1000)
+                self.assertIn("2 of 2 expectations met", done.stderr)
 
     def test_a_client_that_the_scenario_plugs_in_is_there(self):
         port = '[[receiver]]\nboard = "ublox-m8"\nport = ["{}", "uart2=pty:/no/such/folder/gps0"]\n'
@@ -198,6 +215,33 @@ class LiveTest(unittest.TestCase):
                     self.assertIn("expected receiver0, or none for all of them", done.stderr)
             self.assertNotIn("fault outage", self.ctl(port, "status"))
             self.ctl(port, "fault", "outage", "receiver=receiver0")
+
+    def test_a_live_fault_is_stopped_by_the_name_it_was_asked_for_by(self):
+        self.scenario.write_text(self.scenario.read_text() + '[[fault]]\nkind = "outage"\nat_s = 900\n')
+        with Emulator(str(self.scenario), "--port", "pty", "--control", "0", "--record", str(self.path / "out"),
+                      "--duration", "20") as emulator:
+            port = emulator.said(r"^control: http://127\.0\.0\.1:(\d+)/")
+            self.assertEqual(self.ctl(port, "fault", "outage"), "accepted as outage 2\n")
+            for _ in range(2):
+                self.assertEqual(self.ctl(port, "stop", "outage"), "accepted\n")
+            emulator.stop()
+        events = [json.loads(line) for line in (self.path / "out/commands.jsonl").read_text().splitlines()]
+        self.assertEqual([(e["event"], e["name"]) for e in events if e["event"].startswith("fault")],
+                         [("fault_begins", "outage 2"), ("fault_ends", "outage 2")])
+        self.assertEqual([e.get("ignored") for e in events if e["name"] == "stop_fault"],
+                         [None, "outage is not under way"])
+
+    def test_ctl_tells_its_own_words_of_a_refusal(self):
+        with Emulator(str(self.scenario), "--port", "pty", "--control", "0", "--token", "secret",
+                      "--duration", "20") as emulator:
+            port = emulator.said(r"^control: http://127\.0\.0\.1:(\d+)/")
+            for words in (("status",), ("--token", "wrong", "status"), ("watch",)):
+                done = skyloop("ctl", port, *words)
+                self.assertNotEqual(done.returncode, 0)
+                self.assertIn("expected --token TOKEN, or SKYLOOP_TOKEN", done.stderr)
+            done = skyloop("ctl", "--token", "secret", port, "stop", "nothing")
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(f"no fault is called 'nothing'; skyloop ctl {port} status tells those under way", done.stderr)
 
     def test_what_a_live_source_asks_of_nobody_is_told(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:

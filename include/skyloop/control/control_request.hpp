@@ -76,6 +76,10 @@ std::optional<ControlResponse> refusal(const ControlRequest& request, const Acce
 /// The answer to a request, refusals among it. It changes nothing but by `push`.
 ControlResponse answer(const ControlRequest& request, const AccessRules& rules, const ControlSources& sources);
 
+/// What the fault will be called that a command begins: the name that it was asked for by, with a number where another
+/// entry of the run has it. @param command of begins_new_fault()
+std::string given_fault_name(const Command& command, const ControlSources& sources);
+
 /// The OpenAPI 3.1 description of all this, from the same tables.
 std::string openapi_json(std::string_view version);
 

@@ -62,6 +62,7 @@ private:
     struct Act {
         std::optional<FaultEntry> fault;
         std::optional<Command> command;
+        std::string asked{};  // the name that a live fault was asked for by
     };
     // Where something is done, and when.
     struct Scene {
@@ -74,6 +75,7 @@ private:
     void carry_out(const Command& command, std::string_view name, const Scene& scene);
     [[nodiscard]] std::string ignored_because(const Command& command) const;
     static firmware::ReceiverEvent receiver_event(const Command& command);
+    [[nodiscard]] std::vector<std::size_t> faults_to_stop(const std::string& name) const;
     void start_or_stop(const Command& command, const Scene& scene);
     void begin_new_fault(const Command& command, const Scene& scene);
     void set_pace(const Command& command, const Scene& scene);
@@ -89,7 +91,9 @@ private:
     std::optional<GpsTime> pause_at_;  // the end of a step
 };
 
-/// "jamming", where an entry has that name "jamming 2", and so on.
-std::string free_name(const std::vector<TimelineEntry>& entries, const std::string& wanted);
+/// It begins a fault that no entry of the scenario describes.
+bool begins_new_fault(const Command& command);
+/// "jamming", where that name is taken "jamming 2", and so on: what a new fault is called.
+std::string free_name(const std::string& wanted, const std::function<bool(const std::string&)>& is_taken);
 
 }  // namespace skyloop

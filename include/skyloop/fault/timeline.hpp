@@ -103,8 +103,11 @@ public:
     std::size_t add(TimelineEntry entry);
     /// Lets an entry begin now; false when it is under way. @param length nothing: the entry's own
     bool begin(std::size_t entry, GpsTime now, std::optional<Seconds> length = std::nullopt);
-    /// Ends an entry now, as if its time were over; false when it is not under way.
+    /// Ends an entry now, as if its time were over, also one that begin() lets begin with the next advance(); false
+    /// when it is neither.
     bool end(std::size_t entry, GpsTime now);
+    /// There is something that end() would end.
+    [[nodiscard]] bool can_end(std::size_t entry) const;
     [[nodiscard]] bool is_under_way(std::size_t entry) const { return !states_[entry].under_way.empty(); }
     [[nodiscard]] const std::vector<TimelineEntry>& entries() const { return entries_; }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -21,6 +23,9 @@ struct TimelineReading {
     std::vector<ParameterMistake> mistakes;
 };
 TimelineReading read_timeline_entry(const Parameters& keys);
+
+/// What is wrong with the name of an entry, of a scenario or of a live fault; nothing of an empty one.
+std::optional<ParameterMistake> entry_name_mistake(const std::string& name);
 
 /// What is wrong with the entries of a run together: `after` that names nobody, or a circle of them.
 /// @return by place in the list

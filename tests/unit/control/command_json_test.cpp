@@ -57,6 +57,16 @@ TEST(CommandJson, WritesWhatItReads) {
     }
 }
 
+TEST(CommandJson, RefusesNamesOfLiveFaultsThatAScenarioMayNotGive) {
+    const auto run = live_fault_from_json(R"({"kind":"outage","name":"run"})", "http");
+    ASSERT_FALSE(run);
+    EXPECT_EQ(run.error().message, "'name' is 'run', which means the run itself; expected another name");
+    const auto numbered = live_fault_from_json(R"({"kind":"outage","name":"a#b"})", "http");
+    ASSERT_FALSE(numbered);
+    EXPECT_THAT(numbered.error().message, HasSubstr("'name' has a '#'"));
+    EXPECT_TRUE(live_fault_from_json(R"({"kind":"outage","name":"a b"})", "http"));
+}
+
 TEST(CommandJson, RefusesALiveFaultOfNoKind) {
     const auto unnamed = live_fault_from_json(R"({"for_s":3})", "http");
     ASSERT_FALSE(unnamed);

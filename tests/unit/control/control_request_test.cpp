@@ -103,6 +103,17 @@ TEST(ControlRequest, RefusesCommandsForNobody) {
     EXPECT_EQ(desk.pushed.size(), 2U);
 }
 
+TEST(ControlRequest, TellsWhatALiveFaultIsCalled) {
+    Desk desk;
+    const auto called = [&](const std::string& body) {
+        const ControlResponse response = desk.post("/api/faults", body);
+        return nlohmann::json::parse(response.body).at("accepted").at("name").get<std::string>();
+    };
+    EXPECT_EQ(called(R"({"kind":"outage"})"), "outage");
+    EXPECT_EQ(called(R"({"kind":"byte_loss","name":"wet plug"})"), "wet plug 2");
+    EXPECT_EQ(desk.pushed.back().parameters.text("name"), "wet plug") << "by which it may be stopped, too";
+}
+
 TEST(ControlRequest, RefusesFaultsOfMeasurementsWhereNoneAreMade) {
     Desk desk;
     EXPECT_EQ(desk.post("/api/faults", R"({"kind":"cycle_slips"})").status, 202);

@@ -127,6 +127,15 @@ TEST(ControlServer, AnswersAndQueues) {
     EXPECT_THAT(rig->server->url(), StartsWith("http://127.0.0.1:"));
 }
 
+TEST(ControlServer, KnowsBothNamesOfAFaultThatWasBegun) {
+    const auto rig = std::make_unique<ServerRig>();
+    for (const char* path : {"/api/faults/noise", "/api/faults/noise%202"}) {
+        EXPECT_EQ(rig->status({"POST", "/api/faults", {}, R"({"kind":"bit_flips","name":"noise"})"}), 202);
+        EXPECT_EQ(rig->status({"DELETE", path}), 202) << path;
+    }
+    EXPECT_EQ(rig->status({"DELETE", "/api/faults/noise%203"}), 404);
+}
+
 TEST(ControlServer, FailsWhereItCannotListen) {
     const ServerRig rig;
     CommandQueue commands;

@@ -28,14 +28,17 @@ public:
     void on_fault(const FaultSeen& seen) override {
         happened.push_back(std::string(seen.name) + (seen.begins ? " begins" : " ends"));
     }
-    void on_command(const CommandSeen& seen) override { happened.push_back("command " + std::string(seen.name)); }
+    void on_command(const CommandSeen& seen) override {
+        happened.push_back("command " + std::string(seen.name));
+        if (!seen.ignored.empty()) ignored.emplace_back(seen.ignored);
+    }
     void on_message(const MessageSeen& seen) override {
         if (seen.from_client) heard.emplace_back(seen.name);
     }
     [[nodiscard]] bool wants_messages() const override { return curious; }
     bool curious = true;
     int epochs = 0, with_fix = 0;
-    std::vector<std::string> happened, heard;
+    std::vector<std::string> happened, heard, ignored;
 };
 
 struct DirectedRun {
@@ -170,6 +173,70 @@ TEST(Director, BeginsFaultsThatNoScenarioNames) {
     ASSERT_TRUE(run->live.push({CommandVerb::start_fault, Parameters(values), "", "http"}));
     run_for(*run, 10s);
     EXPECT_THAT(run->witness.happened, ElementsAre("command start_fault", "live begins", "live ends"));
+}
+
+// As a client asks for it.
+void begin_live(DirectedRun& run, const std::string& name) {
+    auto values = check_parameters(find_fault_kind("receiver_silent")->parameters, {}).parameters.values();
+    values.emplace("kind", std::string("receiver_silent"));
+    values.emplace("name", name);
+    ASSERT_TRUE(run.live.push({CommandVerb::start_fault, Parameters(values), "", "http"}));
+}
+
+void stop_live(DirectedRun& run, const std::string& name) {
+    ASSERT_TRUE(run.live.push({CommandVerb::stop_fault, Parameters({{"fault", name}}), "", "http"}));
+}
+
+TEST(Director, StopsALiveFaultByTheNameItWasAskedForBy) {
+    const auto run = directed("[[fault]]\nkind = \"receiver_silent\"\nname = \"quiet\"\nat_s = 1000\n");
+    begin_live(*run, "quiet");
+    run_for(*run, 3s);
+    stop_live(*run, "quiet");
+    run_for(*run, 3s);
+    EXPECT_THAT(run->witness.happened,
+                ElementsAre("command start_fault", "quiet 2 begins", "command stop_fault", "quiet 2 ends"));
+}
+
+TEST(Director, StopsWhatHasTheNameBeforeWhatWasAskedForByIt) {
+    const auto run = directed("");
+    begin_live(*run, "quiet");
+    begin_live(*run, "quiet");
+    run_for(*run, 3s);
+    run->witness.happened.clear();
+    stop_live(*run, "quiet");
+    run_for(*run, 1s);
+    EXPECT_THAT(run->witness.happened, ElementsAre("command stop_fault", "quiet ends"));
+    stop_live(*run, "quiet");
+    run_for(*run, 1s);
+    EXPECT_EQ(run->witness.happened.back(), "quiet 2 ends");
+    EXPECT_THAT(run->witness.ignored, IsEmpty());
+}
+
+TEST(Director, SaysThatNothingIsThereToStop) {
+    const auto run = directed("[[fault]]\nkind = \"receiver_silent\"\nname = \"quiet\"\nat_s = 1000\n");
+    stop_live(*run, "quiet");
+    stop_live(*run, "");
+    run_for(*run, 3s);
+    EXPECT_THAT(run->witness.ignored, ElementsAre("quiet is not under way", "no fault is under way"));
+}
+
+TEST(Director, StopsWhatWasBegunAtTheSameInstant) {
+    const auto run = directed("");
+    begin_live(*run, "quiet");
+    stop_live(*run, "quiet");
+    run_for(*run, 3s);
+    EXPECT_THAT(run->witness.happened, ElementsAre("command start_fault", "command stop_fault"));
+    EXPECT_THAT(run->witness.ignored, IsEmpty());
+    EXPECT_EQ(written(*run), sound_bytes(3s));
+}
+
+TEST(Director, SaysThatVirtualTimeWaitsForNobody) {
+    const std::string commands =
+        "[[command]]\nkind = \"pause\"\nat_s = 1\n[[command]]\nkind = \"speed\"\nfactor = 2\nat_s = 2\n";
+    const auto run = directed(commands);
+    run_for(*run, 3s);
+    EXPECT_THAT(run->witness.ignored,
+                ElementsAre("time is virtual, and waits for nobody", "time is virtual, and waits for nobody"));
 }
 
 TEST(Director, KnowsHowStrongAFaultIs) {

@@ -337,6 +337,21 @@ Parameters keys(std::map<std::string, ParameterValue, std::less<>> given) {
     return checked.parameters;
 }
 
+TEST(TimelineText, ListsWhatHangsOnACondition) {
+    TimelineEntry a = entry("a", 0, 5), loss = entry("loss", 2, 5), note = entry("note", 0);
+    a.when = Trigger{};
+    a.when->fix_for = Seconds(3);
+    loss.after = "a";
+    loss.after_end = true;
+    note.after = "loss";
+    note.at.reset();
+    note.between = {1, 4};
+    EXPECT_THAT(
+        timeline_text({a, loss, note, entry("b", 1, 1)}, begin_of_run, 1, Seconds(60)),
+        ElementsAre("       1.000 s  b begins", "       2.000 s  b ends", "          when  a: after a fix for 3 s",
+                    "          then  loss: 2 s after the end of a", "          then  note: 1 to 4 s after loss"));
+}
+
 TEST(TimelineKeys, AreRead) {
     const TimelineReading reading = read_timeline_entry(
         keys({{"name", std::string("jam")}, {"at_s", 5.0}, {"for_s", 7.0}, {"ramp_in_s", 2.0}, {"every_s", 60.0}}));
