@@ -235,6 +235,9 @@ Error refused_answer(const ControlResponse& response, const std::string& port) {
 }
 
 int watch_run(const CtlOptions& options, const ControlClient& client, const Messages& messages) {
+    // A stream tells a refusal in words for programs.
+    const auto asked = client.ask(ctl_get("/api/status"));
+    if (asked && asked->status == 401) return messages.error(refused_answer(*asked, options.words[0]));
     const auto watched = client.watch(1, [&](std::string_view text) {
         fmt::print("{}\n", options.json ? std::string(text) : status_text(CtlJson::parse(text), " | "));
         return std::fflush(stdout) == 0;

@@ -84,6 +84,12 @@ def test_plan(folder):
     assert len(rows) == RUNS and len({row["key"] for row in rows}) == RUNS
     assert [row["number"] for row in rows] == [str(i) for i in range(RUNS)]
     assert [row["seed"] for row in rows[:50]] == [str(i + 1) for i in range(50)]
+    # What the campaign would refuse before its first run, the plan does, too, in the words of the option.
+    for key, words in (("run.foo", "--vary run.foo: run.foo: unknown key"),
+                       ("fault.0.foo", "--vary fault.0.foo: fault.0.foo: unknown key"),
+                       ("output.0.to", "the scenario has no output.0 to vary")):
+        refused = campaign("plan", folder / "campaign.toml", "--vary", f"{key}=1", expected=(2,))
+        assert words in refused.stderr and not refused.stdout, refused.stderr
 
 
 def test_same_bytes(folder):

@@ -84,9 +84,9 @@ class Plugged(unittest.TestCase):
             self.assertIn(json.loads(line)["event"], ("arrived", "left"))
 
     def test_a_watch_begins_with_the_lines_of_the_machine(self):
-        own = [device for device in json.loads(devices("--json").stdout)["devices"] if device["vid"] is None]
+        own = [device for device in json.loads(devices("--json").stdout)["devices"] if device["usb"] is None]
         lines = [json.loads(line) for line in devices("--watch", "--duration", "0.3", "--json").stdout.splitlines()]
-        self.assertEqual([line["device"] for line in lines if line["device"]["vid"] is None], own)
+        self.assertEqual([line["device"] for line in lines if line["device"]["usb"] is None], own)
 
     def test_misuse(self):
         for arguments, words in ((["--duration", "3"], "--watch"), (["--watch", "--udev-rules"], "--udev-rules"),

@@ -224,7 +224,8 @@ class LiveTest(unittest.TestCase):
             self.assertEqual(self.ctl(port, "fault", "outage"), "accepted as outage 2\n")
             for _ in range(2):
                 self.assertEqual(self.ctl(port, "stop", "outage"), "accepted\n")
-            emulator.stop()
+            self.ctl(port, "end")
+            self.assertEqual(emulator.finish(), 0, emulator.log)
         events = [json.loads(line) for line in (self.path / "out/commands.jsonl").read_text().splitlines()]
         self.assertEqual([(e["event"], e["name"]) for e in events if e["event"].startswith("fault")],
                          [("fault_begins", "outage 2"), ("fault_ends", "outage 2")])
