@@ -76,7 +76,7 @@ std::vector<std::string> idle_fault_warnings(const Scenario& scenario, const Nav
         if (const std::string why = why_idle(fault, {scenario, navigation, stations, virtual_time}); !why.empty())
             warnings.push_back(fmt::format("[[fault]] '{}' will show nothing: {}", fault.when.name, why));
     for (const CommandEntry& command : scenario.commands)
-        if (virtual_time && is_live_only(command.command))
+        if (virtual_time && command.command.source == "scenario" && is_live_only(command.command))
             warnings.push_back(
                 fmt::format("[[command]] '{}' will do nothing: skyloop run does it, against the clock; in virtual time "
                             "nothing does",

@@ -219,7 +219,7 @@ def test_mistakes(folder):
     out = folder / "none"
     for options, words in [
             (["--vary", "run.duratoin_s=1"], "did you mean 'duration_s'"),
-            (["--vary", "fault.gap.for_s=1,-1"], "fault.for_s: is -1"),
+            (["--vary", "fault.gap.for_s=1,-1"], "fault.gap.for_s: is -1"),
             (["--seeds", "x"], "--seeds x: expected"),
             (["--vary", "run.speed=1", "--vary", "run.speed=2"], "--vary run.speed: is given twice"),
             (["--shard", "3/3"], "--shard 3/3: expected I/N"),
