@@ -99,7 +99,7 @@ bool Receiver::Core::accepts(const PortUnit& unit, StreamKind kind) const {
     const std::uint32_t protocol = kind == StreamKind::ubx    ? protocol_ubx
                                    : kind == StreamKind::nmea ? protocol_nmea
                                                               : protocol_rtcm3;
-    return store_.flag(key::in_protocol(unit.id, protocol));
+    return port_is_on(store_, unit.id) && store_.flag(key::in_protocol(unit.id, protocol));
 }
 
 void Receiver::Core::dispatch(PortUnit& unit, const StreamPiece& piece, GpsTime now) {

@@ -57,7 +57,7 @@ ReportContext Receiver::Core::context(PortId port, const NavigationState& state)
 }
 
 bool Receiver::Core::lets_out(PortId port, UbxMessageId message) const {
-    return store_.flag(key::out_protocol(port, protocol_item(message)));
+    return port_is_on(store_, port) && store_.flag(key::out_protocol(port, protocol_item(message)));
 }
 
 // Commands are worked off one after the other; each takes the board's usual time and what it has to do besides.

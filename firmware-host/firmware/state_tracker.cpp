@@ -175,6 +175,20 @@ void StateTracker::keep_level(const ConfigStore& config) {
     fix.velocity.down = 0;
 }
 
+// Fewer satellites than the user wants for a fix at all, or too few that are strong enough (CFG-NAVSPG-INFIL_MINSVS,
+// _NCNOTHRS and _CNOTHRS; CFG-NAV5 cnoThreshNumSVs and cnoThresh).
+bool StateTracker::hears_too_little(const ConfigStore& config) const {
+    const Fix& fix = state_.epoch.fix;
+    if (fix.type == FixType::dead_reckoning) return false;
+    constexpr std::uint64_t of_any_fix = 3;
+    const std::uint64_t fewest = config.value(key::navspg_min_svs), wanted = config.value(key::navspg_cno_count);
+    if (fewest > of_any_fix && static_cast<std::uint64_t>(fix.satellites_used()) < fewest) return true;
+    const DbHz threshold(static_cast<double>(config.value(key::navspg_cno_threshold)));
+    const auto strong = std::count_if(fix.satellites.begin(), fix.satellites.end(),
+                                      [&](const SatelliteStatus& s) { return s.cn0 && *s.cn0 >= threshold; });
+    return static_cast<std::uint64_t>(strong) < wanted;
+}
+
 void StateTracker::keep_within_limits(const ConfigStore& config) {
     Fix& fix = state_.epoch.fix;
     state_.fix_ok = false;
@@ -187,7 +201,7 @@ void StateTracker::keep_within_limits(const ConfigStore& config) {
     const bool two_d = fix.type == FixType::fix_2d;
     const std::uint64_t mode = config.value(key::navspg_fixmode);
     const bool mode_forbids = two_d && mode == 2;
-    if (epochs_beyond_limits_ >= epochs_until_no_fix || mode_forbids) {
+    if (epochs_beyond_limits_ >= epochs_until_no_fix || mode_forbids || hears_too_little(config)) {
         fix.type = FixType::none;
         return;
     }

@@ -41,6 +41,7 @@ public:
 private:
     void learn_time(const ConfigStore& config);
     void keep_level(const ConfigStore& config);
+    [[nodiscard]] bool hears_too_little(const ConfigStore& config) const;
     void keep_within_limits(const ConfigStore& config);
     void acquire();
     void coast(const Fix& before);

@@ -55,7 +55,8 @@ namespace key {
 inline constexpr std::uint32_t navspg_fixmode = 0x20110011, navspg_dynmodel = 0x20110021,
                                navspg_utcstandard = 0x2011001C, navspg_wknrollover = 0x30110017,
                                navspg_min_svs = 0x201100A1, navspg_max_svs = 0x201100A2, navspg_min_cno = 0x201100A3,
-                               navspg_min_elev = 0x201100A4, navspg_pdop = 0x301100B1, navspg_tdop = 0x301100B2,
+                               navspg_min_elev = 0x201100A4, navspg_cno_count = 0x201100AA,
+                               navspg_cno_threshold = 0x201100AB, navspg_pdop = 0x301100B1, navspg_tdop = 0x301100B2,
                                navspg_pacc = 0x301100B3, navspg_tacc = 0x301100B4, navspg_dgnss_timeout = 0x201100C4,
                                navspg_ackaiding = 0x10110025, navspg_constr_alt = 0x401100C1,
                                navspg_constr_altvar = 0x401100C2;
@@ -65,6 +66,8 @@ inline constexpr std::uint32_t mot_speed_threshold = 0x20250038, mot_distance_th
 inline constexpr std::uint32_t odo_use_odo = 0x10220001, sbas_scan_mask = 0x50360006;
 inline constexpr std::uint32_t itfm_enable = 0x1041000D;
 inline constexpr std::uint32_t uart1_baudrate = 0x40520001, uart2_baudrate = 0x40530001;
+inline constexpr std::uint32_t i2c_enabled = 0x10510003, uart1_enabled = 0x10520005, uart2_enabled = 0x10530005,
+                               usb_enabled = 0x10650001;
 inline constexpr std::uint32_t nmea_protver = 0x20930001, nmea_maxsvs = 0x20930002, nmea_compat = 0x10930003,
                                nmea_consider = 0x10930004, nmea_limit82 = 0x10930005, nmea_highprec = 0x10930006,
                                nmea_svnumbering = 0x20930007, nmea_filt_gps = 0x10930011, nmea_filt_sbas = 0x10930012,

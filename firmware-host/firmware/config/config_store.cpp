@@ -1,5 +1,6 @@
 #include "firmware/config/config_store.hpp"
 
+#include <array>
 #include <charconv>
 
 #include "skyloop/protocol/ubx_cfg_values.hpp"
@@ -157,6 +158,14 @@ Result<void> ConfigStore::restore(std::string_view text, std::string_view name) 
     flash_ = std::move(flash);
     reload();
     return {};
+}
+
+bool port_is_on(const ConfigStore& store, PortId port) {
+    // In the order of PortId. SPI has the pins of other ports, and is off at the factory: whoever has one has strapped
+    // it.
+    constexpr std::array items{key::i2c_enabled, key::uart1_enabled, key::uart2_enabled, key::usb_enabled};
+    const auto index = static_cast<std::size_t>(port);
+    return index >= items.size() || !store.has(items[index]) || store.flag(items[index]);
 }
 
 }  // namespace skyloop::firmware

@@ -72,4 +72,7 @@ private:
     std::uint64_t revision_ = 0;
 };
 
+/// Whether bytes pass a port at all (CFG-UART1-ENABLED and its like).
+bool port_is_on(const ConfigStore& store, PortId port);
+
 }  // namespace skyloop::firmware

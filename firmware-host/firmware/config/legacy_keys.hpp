@@ -37,9 +37,8 @@ inline constexpr std::uint32_t usb_vendor_string = 0x50FD0034, usb_product_strin
                                usb_serial_number = 0x50FD003C;
 
 // Navigation; section 3, navConf.
-inline constexpr std::uint32_t infil_ncnothrs = 0x201100AA, infil_cnothrs = 0x201100AB, inifix3d = 0x10110013,
-                               ack_aiding = 0x10110025, use_ppp = 0x10110019, sig_att_comp = 0x201100D6,
-                               use_ana = 0x10230001, ana_max_error = 0x30230002;
+inline constexpr std::uint32_t inifix3d = 0x10110013, ack_aiding = 0x10110025, use_ppp = 0x10110019,
+                               sig_att_comp = 0x201100D6, use_ana = 0x10230001, ana_max_error = 0x30230002;
 inline constexpr std::uint32_t dr_limit = 0x20FD0301, use_adr = 0x10FD0302, max_sbas = 0x20FD0303;
 inline constexpr std::uint32_t odo_use = 0x10220001, odo_use_cog = 0x10220002, odo_out_lp_vel = 0x10220003,
                                odo_out_lp_cog = 0x10220004, odo_profile = 0x20220005, odo_cog_max_speed = 0x20220021,

@@ -24,8 +24,8 @@ CfgNav5 describe_nav5(const LegacyContext& context) {
     message.t_acc = in_force<std::uint16_t>(context, key::navspg_tacc);
     message.static_hold_thresh = in_force<std::uint8_t>(context, key::mot_speed_threshold);
     message.dgnss_timeout = in_force<std::uint8_t>(context, key::navspg_dgnss_timeout);
-    message.cno_thresh_num_svs = in_force<std::uint8_t>(context, legacy_key::infil_ncnothrs);
-    message.cno_thresh = in_force<std::uint8_t>(context, legacy_key::infil_cnothrs);
+    message.cno_thresh_num_svs = in_force<std::uint8_t>(context, key::navspg_cno_count);
+    message.cno_thresh = in_force<std::uint8_t>(context, key::navspg_cno_threshold);
     message.static_hold_max_dist = in_force<std::uint16_t>(context, key::mot_distance_threshold);
     message.utc_standard = in_force<std::uint8_t>(context, key::navspg_utcstandard);
     return message;
@@ -56,8 +56,8 @@ void put_nav5(LegacyChanges& changes, const CfgNav5& message) {
     }
     if (masked(7)) changes.put(key::navspg_dgnss_timeout, message.dgnss_timeout);
     if (masked(8)) {
-        changes.put(legacy_key::infil_ncnothrs, message.cno_thresh_num_svs);
-        changes.put(legacy_key::infil_cnothrs, message.cno_thresh);
+        changes.put(key::navspg_cno_count, message.cno_thresh_num_svs);
+        changes.put(key::navspg_cno_threshold, message.cno_thresh);
     }
     if (masked(10)) changes.put(key::navspg_utcstandard, message.utc_standard);
 }

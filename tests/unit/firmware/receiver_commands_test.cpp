@@ -256,6 +256,18 @@ TEST(ReceiverCommands, ShutsAClientOutThatTurnsItsProtocolOff) {
     EXPECT_TRUE(silent.frames(ack_id).empty());
 }
 
+TEST(ReceiverCommands, ShutsAClientOutThatSwitchesItsPortOff) {
+    Bench bench;
+    bench.wait(1500ms);
+    bench.forget();
+    bench.send(valset({{key::uart1_enabled, 0}})).wait(2s);
+    bench.send(valset({{key::uart1_enabled, 1}})).wait(2s);
+    EXPECT_TRUE(bench.sent().empty()) << "neither sentences nor answers nor texts";
+    Bench other(sample_ublox(), {}, PortId::usb);
+    other.send(valset({{key::uart1_enabled, 0}})).wait(100ms);
+    EXPECT_EQ(other.frames(ack_id).size(), 1U) << "the others stay";
+}
+
 TEST(ReceiverCommands, KeepsItsPortsApart) {
     Bench bench(sample_ublox(), {}, PortId::usb);
     bench.wait(300ms).write(encode_frame(CfgMsgCurrentPort{0x01, 0x07, 1})).wait(2s);

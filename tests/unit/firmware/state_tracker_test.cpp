@@ -282,6 +282,29 @@ TEST(StateTracker, IsNotOkBeyondTheUsersMasks) {
     EXPECT_EQ(t.step().epoch.fix.type, FixType::none);
 }
 
+TEST(StateTracker, HasNoFixOfFewerOrWeakerSatellitesThanTheUserWants) {
+    Tracked t(tracked_board());
+    t.tracker().start(t.fix().time, {}, true);
+    const auto used = static_cast<std::uint64_t>(t.fix().satellites_used());
+    ASSERT_GT(used, 4U);
+    t.store().set(in_ram, key::navspg_min_svs, used);
+    EXPECT_EQ(t.step().epoch.fix.type, FixType::fix_3d);
+    t.store().set(in_ram, key::navspg_min_svs, used + 1);
+    EXPECT_EQ(t.step().epoch.fix.type, FixType::none);
+    t.store().set(in_ram, key::navspg_min_svs, 3);
+    EXPECT_EQ(t.step().epoch.fix.type, FixType::fix_3d);
+
+    for (SatelliteStatus& s : t.fix().satellites)
+        s.cn0 = DbHz(30);
+    t.fix().satellites.front().cn0 = t.fix().satellites.back().cn0 = DbHz(40);
+    t.store().set(in_ram, key::navspg_cno_threshold, 35);
+    EXPECT_EQ(t.step().epoch.fix.type, FixType::fix_3d) << "of none is it asked";
+    t.store().set(in_ram, key::navspg_cno_count, 2);
+    EXPECT_EQ(t.step().epoch.fix.type, FixType::fix_3d);
+    t.store().set(in_ram, key::navspg_cno_count, 3);
+    EXPECT_EQ(t.step().epoch.fix.type, FixType::none);
+}
+
 TEST(StateTracker, MeasuresTwoDimensionsByTheirOwnDop) {
     Tracked t(tracked_board());
     t.tracker().start(t.fix().time, {}, true);
