@@ -13,6 +13,7 @@
 #include "firmware/navigation_state.hpp"
 #include "firmware/port.hpp"
 #include "firmware/receiver.hpp"
+#include "firmware/septentrio/command_line_reader.hpp"
 #include "skyloop/protocol/stream_splitter.hpp"
 
 namespace skyloop::firmware {
@@ -42,6 +43,7 @@ struct PortUnit {
     PortId id;
     Port transmit;
     StreamSplitter splitter = command_splitter();
+    CommandLineReader command_line{};
     PortStatus status;
     GpsTime last_input{};
     std::uint32_t configured_baud = 0;  ///< to which it has been told to go

@@ -54,6 +54,7 @@ Receiver::Core::Core(BoardProfile board, const ReceiverOptions& options)
       revision_(store_.revision()) {
     tracker_.start({}, {}, true);
     report(tracker_.state());
+    if (board_.personality == Personality::sbf) console_.emplace(board_, store_);
     if (!board_.messages.empty()) return;
     for (const std::string_view name : nmea_sentence_names)
         board_.messages.push_back(find_output_message(name)->id);
@@ -101,6 +102,7 @@ Result<void> Receiver::Core::restore(const std::string& text, const std::string&
 
 void Receiver::Core::begin_as_stored() {
     store_.reload();
+    if (console_) console_.emplace(board_, store_);
     for (PortUnit& unit : units_) {
         unit.configured_baud = line_baud(store_, unit.id);
         unit.transmit = Port(unit.configured_baud, board_.transmit_buffer_bytes);
@@ -167,6 +169,7 @@ void Receiver::Core::reset(std::uint16_t nav_bbr_mask, std::uint8_t mode, GpsTim
 void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now, bool banner) {
     outbox_.clear();
     store_.reload();
+    if (console_) console_->restart(store_);
     adopt_settings();
     settings_.navigating = true;
     for (PortUnit& unit : units_) {

@@ -15,6 +15,7 @@
 #include "firmware/nmea_commands.hpp"
 #include "firmware/port_unit.hpp"
 #include "firmware/receiver.hpp"
+#include "firmware/septentrio/console.hpp"
 #include "firmware/state_tracker.hpp"
 #include "skyloop/base/random.hpp"
 
@@ -60,6 +61,8 @@ private:
     void dispatch(PortUnit& unit, const StreamPiece& piece, GpsTime now);
     void dispatch_ubx(PortUnit& unit, ByteSpan frame, GpsTime now);
     void dispatch_sentence(PortUnit& unit, ByteSpan line, GpsTime now);
+    void carry_out(PortUnit& unit, CommandOutcome outcome, UbxMessageId id, GpsTime now);
+    void read_command_lines(PortUnit& unit, ByteSpan bytes, GpsTime now);
     void answer_corrections(const Bytes& answer, GpsTime now);
     [[nodiscard]] bool accepts(const PortUnit& unit, StreamKind kind) const;
     void configure(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
@@ -139,6 +142,7 @@ private:
         std::uint32_t forced = 0, before = 0;
     };
     std::optional<ForcedSpeed> forced_speed_;
+    std::optional<SeptentrioConsole> console_;  ///< of a receiver that has a command line
 };
 
 /// The speed of a port's line by the configuration; never so slow that it stands still.

@@ -59,6 +59,7 @@ void Receiver::Core::input(PortId port, ByteSpan bytes, GpsTime now) {
     PortUnit* unit = find_unit(units_, port);
     if (unit == nullptr || faults_.deaf || now < deaf_until_ || bytes.empty()) return;
     unit->status.bytes_in += bytes.size();
+    if (console_) return read_command_lines(*unit, bytes, now);
     give_up_unfinished(*unit, now);
     unit->last_input = now;
     const auto damaged = [&] { return unit->splitter.counts().bad[static_cast<std::size_t>(StreamKind::rtcm3)]; };
@@ -203,7 +204,27 @@ void Receiver::Core::dispatch_sentence(PortUnit& unit, ByteSpan line, GpsTime no
     const UbxMessageId id = sentence_id(*sentence);
     // Sentences have no refusal: nothing happens.
     if (faults_.refused.contains(id)) return;
-    CommandOutcome outcome = execute_sentence(*sentence, board_, store_, unit.id);
+    carry_out(unit, execute_sentence(*sentence, board_, store_, unit.id), id, now);
+}
+
+void Receiver::Core::read_command_lines(PortUnit& unit, ByteSpan bytes, GpsTime now) {
+    if (!port_is_on(store_, unit.id)) return;
+    for (const StreamPiece& piece : unit.splitter.feed(bytes)) {
+        count_input(unit.status, piece);
+        if (piece.kind == StreamKind::rtcm3) corrections_.take(piece.bytes, now);
+    }
+    const std::uint32_t baud = unit.configured_baud;
+    for (const std::string& line : unit.command_line.feed(bytes)) {
+        carry_out(unit, console_->execute(line, store_, unit.id), {}, now);
+        // What follows was sent at a speed that the port no longer has.
+        if (unit.configured_baud != baud || now < deaf_until_) {
+            unit.command_line = {};
+            return;
+        }
+    }
+}
+
+void Receiver::Core::carry_out(PortUnit& unit, CommandOutcome outcome, UbxMessageId id, GpsTime now) {
     apply_changes(now);
     for (const UbxMessageId message : outcome.polled)
         for (Bytes& answer : make_message(message, context(unit.id)))

@@ -179,6 +179,8 @@ void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {
         tell_overflow(unit, now);
         if (unit.id == PortId::uart1)
             send(unit.id, make_protocol_messages(board_.personality, context(unit.id, state)), now);
+        if (console_ && port_is_on(store_, unit.id))
+            send(unit.id, septentrio_output(console_->state(), context(unit.id, state)), now);
         send(unit.id, messages, now);
     }
     tell_antenna_status(state, now);

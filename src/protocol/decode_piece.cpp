@@ -9,6 +9,7 @@
 #include "skyloop/protocol/message_listing.hpp"
 #include "skyloop/protocol/msp.hpp"
 #include "skyloop/protocol/sbf_blocks.hpp"
+#include "skyloop/protocol/sbf_status_blocks.hpp"
 
 namespace skyloop {
 namespace {
@@ -110,7 +111,10 @@ void list_sbf(const SbfBlockView& block, DecodedMessage& message) {
                        list_sbf_as<SbfVelCovGeodetic>(block, message) || list_sbf_as<SbfDop>(block, message) ||
                        list_sbf_as<SbfAttEuler>(block, message) || list_sbf_as<SbfChannelStatus>(block, message) ||
                        list_sbf_as<SbfReceiverStatus>(block, message) || list_sbf_as<SbfEndOfPvt>(block, message) ||
-                       list_sbf_as<SbfAuxAntPositions>(block, message);
+                       list_sbf_as<SbfAuxAntPositions>(block, message) || list_sbf_as<SbfAttCovEuler>(block, message) ||
+                       list_sbf_as<SbfBaseVectorGeod>(block, message) || list_sbf_as<SbfEndOfAtt>(block, message) ||
+                       list_sbf_as<SbfQualityInd>(block, message) || list_sbf_as<SbfRfStatus>(block, message) ||
+                       list_sbf_as<SbfGalAuthStatus>(block, message) || list_sbf_as<SbfReceiverTime>(block, message);
     if (!known) keep_payload(block.body, message);
 }
 

@@ -5,6 +5,7 @@ import gpsd_probes
 import inav
 import kumar_ros
 import px4
+import septentrio
 import sparkfun
 import u_center
 import ubloxcfg
@@ -13,6 +14,7 @@ CLIENTS = {
     "ardupilot": ardupilot.ArduPilot,
     "ardupilot_keys": ardupilot.ArduPilotKeys,
     "ardupilot_nmea": ardupilot.ArduPilotNmea,
+    "ardupilot_sbf": septentrio.ArduPilotSbf,
     "betaflight": betaflight.Betaflight,
     "gpsd_probes": gpsd_probes.GpsdProbes,
     "inav": inav.Inav,
@@ -20,6 +22,7 @@ CLIENTS = {
     "px4": px4.Px4,
     "px4_ublox6": px4.Px4Ublox6,
     "px4_nmea": px4.Px4Nmea,
+    "px4_septentrio": septentrio.Px4Septentrio,
     "sparkfun": sparkfun.SparkFun,
     "u_center": u_center.UCenter,
     "ubloxcfg": ubloxcfg.UbloxCfg,

@@ -46,6 +46,7 @@ BOARDS = {board.name: board for board in (
     Board("mtk3339", 9600),
     Board("airoha-ag33xx", 115200),
     Board("ublox-6", 9600, 6),
+    Board("septentrio-sbf", 115200),
 )}
 
 

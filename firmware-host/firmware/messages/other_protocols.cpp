@@ -135,16 +135,6 @@ std::vector<Bytes> make_protocol_messages(Personality personality, const ReportC
             return {encode_msp(msp_set_raw_gps(state))};
         case Personality::mavlink:
             return mavlink_messages(state);
-        case Personality::sbf:
-            return {encode_sbf(sbf_pvt_geodetic(context)),
-                    encode_sbf(sbf_position_covariance(state)),
-                    encode_sbf(sbf_velocity_covariance(state)),
-                    encode_sbf(sbf_dop(state)),
-                    encode_sbf(sbf_attitude(state)),
-                    encode_sbf(sbf_other_antenna(state)),
-                    encode_sbf(sbf_end_of_pvt(state)),
-                    encode_sbf(sbf_channel_status(state)),
-                    encode_sbf(sbf_receiver_status(state))};
         default:
             return {};
     }

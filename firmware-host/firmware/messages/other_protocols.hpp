@@ -1,5 +1,4 @@
-/// From the receiver's state to the messages of receivers that are no NMEA or UBX ones: MSP, MAVLink and SBF. They go
-/// one way: such a receiver takes no commands.
+/// From the receiver's state to the messages of receivers that are no NMEA or UBX ones: MSP, MAVLink and SBF.
 #pragma once
 
 #include <vector>
@@ -12,8 +11,7 @@
 namespace skyloop::firmware {
 
 /// What a receiver of this personality sends at every epoch, in order: msp MSP2_SENSOR_GPS; msp_v1 MSP_SET_RAW_GPS;
-/// mavlink HEARTBEAT and GPS_INPUT; sbf PVTGeodetic, PosCovGeodetic, VelCovGeodetic, DOP, AttEuler, ChannelStatus and
-/// ReceiverStatus. Nothing for the others.
+/// mavlink HEARTBEAT and GPS_INPUT. Nothing for the others; what sbf sends, its streams say (septentrio/output.hpp).
 std::vector<Bytes> make_protocol_messages(Personality personality, const ReportContext& context);
 
 /// Its values without a fix: fix type 1, zeros, accuracies 65535, DOP 99.99; week 65535 while time is not known.

@@ -6,43 +6,15 @@
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/other_protocols.hpp"
 #include "firmware/messages/reported_fix.hpp"
+#include "firmware/messages/sbf_parts.hpp"
 #include "skyloop/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {
 
-constexpr std::uint32_t antenna_active = 1u << 1, week_set = 1u << 4, tow_set = 1u << 5, fine_time = 1u << 6;
+constexpr std::uint32_t antenna_active = 1u << 1, week_set = 1u << 4, tow_set = 1u << 5, fine_time = 1u << 6,
+                        corrections_come = 1u << 17;
 constexpr std::uint32_t antenna_error = 1u << 5;
-
-SbfTime sbf_time(const NavigationState& state) {
-    const WeekAndTow stamp = gps_stamp(state);
-    SbfTime time;
-    if (state.time.time) time.tow = whole_milliseconds(stamp);
-    if (state.time.date) time.wnc = field<std::uint16_t>(static_cast<double>(stamp.week));
-    return time;
-}
-
-// PVT mode, bits 0-3 and 7 (PolaRx5TR reference guide, PVTGeodetic).
-std::uint8_t sbf_mode(const NavigationState& state) {
-    if (!has_solution(state)) return 0;
-    switch (state.epoch.fix.type) {
-        case FixType::fix_2d:
-            return 0x81;
-        case FixType::dgnss:
-            return state.corrections.state == CorrectionState::none ? 6 : 2;
-        case FixType::rtk_fixed:
-            return 4;
-        case FixType::rtk_float:
-            return 5;
-        default:
-            return 1;
-    }
-}
-
-std::uint8_t sbf_error(const NavigationState& state) { return has_solution(state) ? 0 : 1; }
-
-// Clipped to the largest number that still means something.
-std::uint16_t sbf_u2(double value) { return std::min(field<std::uint16_t>(value), std::uint16_t{65534}); }
 
 // Numbers of the open signals on L1 (NavIC: L5) in SignalInfo (section 4.1.10).
 int sbf_signal_number(Constellation constellation) {
@@ -83,8 +55,7 @@ void put_sbf_solution(const NavigationState& state, SbfPvtGeodetic& to) {
     to.time_system = 0;
     to.datum = 0;
     to.num_sv = reported_satellites(fix);
-    for (const SatelliteStatus& satellite : fix.satellites)
-        if (satellite.used) to.signal_info |= 1u << sbf_signal_number(satellite.id.constellation);
+    to.signal_info = sbf_signal_info(fix);
     if (state.corrections.age) to.mean_corr_age = sbf_u2(state.corrections.age->value() * 100);
     if (state.corrections.station) to.reference_id = sbf_u2(*state.corrections.station);
     to.num_bases = state.corrections.state == CorrectionState::none ? 0 : 1;
@@ -124,6 +95,13 @@ SbfChannel sbf_channel(const SatelliteStatus& satellite, std::uint8_t svid) {
 }
 
 }  // namespace
+
+std::uint32_t sbf_signal_info(const Fix& fix) {
+    std::uint32_t bits = 0;
+    for (const SatelliteStatus& satellite : fix.satellites)
+        if (satellite.used) bits |= 1u << sbf_signal_number(satellite.id.constellation);
+    return bits;
+}
 
 SbfPvtGeodetic sbf_pvt_geodetic(const ReportContext& context) {
     const NavigationState& state = context.state;
@@ -237,7 +215,8 @@ SbfReceiverStatus sbf_receiver_status(const NavigationState& state) {
     block.time = sbf_time(state);
     block.up_time = field<std::uint32_t>(std::floor(state.since_start.value()));
     block.rx_state = (state.monitors.antenna_power == 1 ? antenna_active : 0) | (state.time.date ? week_set : 0) |
-                     (state.time.time ? tow_set : 0) | (has_solution(state) ? fine_time : 0);
+                     (state.time.time ? tow_set : 0) | (has_solution(state) ? fine_time : 0) |
+                     (state.corrections.state != CorrectionState::none ? corrections_come : 0);
     block.rx_error = state.monitors.antenna == AntennaStatus::short_circuit ? antenna_error : 0;
     return block;
 }

@@ -298,9 +298,9 @@ struct SbfAuxAntPositions {
         "tow_s*1e-3!4294967295 week!65535 -antenna_bytes antennas[num_sv!255 error ambiguity_type antenna "
         "delta_east_m!-2e10 delta_north_m!-2e10 delta_up_m!-2e10 vel_east_mps!-2e10 vel_north_mps!-2e10 "
         "vel_up_mps!-2e10]";
-    static constexpr std::uint8_t antenna_bytes = 52;
+    static constexpr std::uint8_t part_bytes = 52;
     SbfTime time;
-    std::uint8_t sb_length = antenna_bytes;
+    std::uint8_t sb_length = part_bytes;
     std::vector<SbfAuxAntenna> antennas;
 
     template <class M, class V>
@@ -347,6 +347,8 @@ std::optional<Message> decode_sbf(ByteSpan body) {
     auto message = decode_front<Message>(body);
     if constexpr (requires(Message m) { m.sb1_length; })
         if (message && !has_known_parts(*message)) return std::nullopt;
+    if constexpr (requires { Message::part_bytes; })
+        if (message && message->sb_length != Message::part_bytes) return std::nullopt;
     return message;
 }
 

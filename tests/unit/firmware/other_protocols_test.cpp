@@ -267,11 +267,7 @@ TEST_F(OtherProtocols, ChannelsAreTheTrackedSatellites) {
 
 TEST_F(OtherProtocols, EveryPersonalityHasItsMessages) {
     const NavigationState state = navigating();
-    const std::vector<Bytes> sbf = messages(Personality::sbf, state);
-    std::vector<int> numbers;
-    for (const Bytes& block : sbf)
-        numbers.push_back(parse_sbf(block)->number);
-    EXPECT_EQ(numbers, (std::vector<int>{4007, 5906, 5908, 4001, 5938, 5942, 5921, 4013, 4014}));
+    EXPECT_TRUE(messages(Personality::sbf, state).empty()) << "its streams say what it sends";
     EXPECT_EQ(parse_msp(messages(Personality::msp, state).at(0))->function, 0x1F03);
     EXPECT_EQ(parse_msp(messages(Personality::msp_v1, state).at(0))->function, 201);
     EXPECT_EQ(parse_mavlink(messages(Personality::mavlink, state).at(1))->message, 232u);

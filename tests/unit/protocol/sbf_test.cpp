@@ -3,6 +3,7 @@
 #include <set>
 
 #include "skyloop/protocol/sbf_blocks.hpp"
+#include "skyloop/protocol/sbf_status_blocks.hpp"
 
 namespace skyloop {
 namespace {
@@ -29,6 +30,31 @@ TEST(Sbf, BlocksHaveTheLengthsOfTheReferenceGuide) {
     channels.channels.resize(3);
     EXPECT_EQ(encode_sbf(channels).size(), 8u + 12 + 3 * 20);
     EXPECT_EQ(encode_sbf(SbfReceiverStatus{}).size(), 8u + 24);
+    EXPECT_EQ(encode_sbf(SbfAttCovEuler{}).size(), 40u);
+    EXPECT_EQ(encode_sbf(SbfEndOfAtt{}).size(), 16u);
+    SbfBaseVectorGeod bases;
+    EXPECT_EQ(encode_sbf(bases).size(), 16u);
+    bases.bases.resize(1);
+    EXPECT_EQ(encode_sbf(bases).size(), 16u + 52);
+    SbfQualityInd quality;
+    quality.indicators.resize(4);
+    EXPECT_EQ(encode_sbf(quality).size(), 16u + 4 * 2);
+    SbfRfStatus radio;
+    radio.bands.resize(2);
+    EXPECT_EQ(encode_sbf(radio).size(), 20u + 2 * 8);
+    EXPECT_EQ(encode_sbf(SbfGalAuthStatus{}).size(), 52u);
+    EXPECT_EQ(encode_sbf(SbfReceiverTime{}).size(), 24u);  // 22 and two of padding
+}
+
+TEST(Sbf, PartsOfAnotherLengthAreNotRead) {
+    SbfRfStatus radio;
+    radio.bands.resize(1);
+    radio.bands[0].frequency = 1575420000;
+    const auto block = encode_sbf(radio);
+    ASSERT_TRUE(decode_sbf<SbfRfStatus>(parse_sbf(block)->body));
+    EXPECT_EQ(decode_sbf<SbfRfStatus>(parse_sbf(block)->body)->bands[0].frequency, 1575420000U);
+    radio.sb_length = 12;
+    EXPECT_FALSE(decode_sbf<SbfRfStatus>(parse_sbf(encode_sbf(radio))->body));
 }
 
 TEST(Sbf, ABlockSaysItsNumberRevisionAndLength) {

@@ -1,0 +1,145 @@
+#include "firmware/septentrio/settings.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+namespace skyloop::firmware {
+namespace {
+
+std::string key_of(std::string_view name, std::string_view index) {
+    return index.empty() ? std::string(name) : fmt::format("{}, {}", name, index);
+}
+
+bool is_angle(std::string_view text) {
+    int degrees = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), degrees);
+    return error == std::errc() && end == text.data() + text.size() && degrees >= -90 && degrees <= 90;
+}
+
+std::optional<std::string> spelled(WordKind kind, std::string_view word) {
+    const auto known = known_word(kind, word);
+    return known ? std::optional(std::string(*known)) : std::nullopt;
+}
+
+// One word of a value in the maker's spelling; nothing when it cannot be. What is not known here is taken as it is.
+std::optional<std::string> checked_word(std::string_view group, std::string_view argument, const std::string& word) {
+    const bool outputs = group == "SBFOutput" || group == "NMEAOutput";
+    if (outputs && argument == "Cd") return spelled(WordKind::port, word);
+    if (outputs && argument == "Interval") return spelled(WordKind::interval, word);
+    if (outputs && same_word(word, "none")) return "none";
+    if (group == "NMEAOutput") return spelled(WordKind::sentence, word);
+    if (group == "SBFOutput") {
+        const auto block = spelled(WordKind::block, word);
+        return block ? block : spelled(WordKind::block_group, word);
+    }
+    if (group == "COMSettings" && argument == "Rate") return spelled(WordKind::line_speed, word);
+    if (group == "ElevationMask" && !is_angle(word)) return std::nullopt;
+    return word;
+}
+
+// The list with what a + or - before its words adds or takes away. Without a sign before the first it is a new one.
+std::optional<std::string> merged_list(std::string_view group, std::string_view argument, const std::string& before,
+                                       std::string text) {
+    std::vector<std::string> list;
+    if (text.front() == '+' || text.front() == '-')
+        list = split_words(before, '+');
+    else
+        text.insert(0, "+");
+    std::erase(list, "none");
+    for (std::size_t at = 0; at < text.size();) {
+        const char sign = text[at];
+        const std::size_t end = std::min(text.find_first_of("+-", at + 1), text.size());
+        const auto word = checked_word(group, argument, split_words(text.substr(at + 1, end - at - 1), ',').front());
+        if (!word || word->empty()) return std::nullopt;
+        std::erase(list, *word);
+        if (sign == '+' && *word != "none") list.push_back(*word);
+        at = end;
+    }
+    return list.empty() ? "none" : fmt::format("{}", fmt::join(list, "+"));
+}
+
+}  // namespace
+
+std::vector<std::string> split_words(std::string_view text, char separator) {
+    std::vector<std::string> words;
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t end = std::min(text.find(separator, at), text.size());
+        std::string_view word = text.substr(at, end - at);
+        word.remove_prefix(std::min(word.find_first_not_of(" \t"), word.size()));
+        words.emplace_back(word.substr(0, word.find_last_not_of(" \t") + 1));
+        at = end + 1;
+    }
+    return words;
+}
+
+SeptentrioSettings::SeptentrioSettings() {
+    for (const SettingGroup& group : setting_groups()) {
+        const auto defaults = split_words(group.defaults, ',');
+        for (const std::string& index : split_words(group.indices, ' '))
+            values_[key_of(group.name, index)] = defaults;
+    }
+    values_["SBFOutput, Stream1"] = {"COM1", std::string(default_blocks), "OnChange"};
+}
+
+const std::vector<std::string>& SeptentrioSettings::values(std::string_view name, std::string_view index) const {
+    static const std::vector<std::string> none;
+    const auto found = values_.find(key_of(name, index));
+    return found == values_.end() ? none : found->second;
+}
+
+// Those that a command names: one, all, or nothing for one that there is not.
+std::vector<std::string> SeptentrioSettings::indices_of(const SettingGroup& group, std::string_view wanted) const {
+    std::vector<std::string> found;
+    for (const std::string& index : split_words(group.indices, ' '))
+        for (const std::string& word : split_words(wanted, '+'))
+            if (same_word(index, word) || same_word(word, "all")) found.push_back(index);
+    return found;
+}
+
+SettingAnswer SeptentrioSettings::set(const SettingGroup& group, const std::vector<std::string>& arguments) {
+    const bool indexed = !group.indices.empty();
+    const std::vector<std::string> names = split_words(group.arguments, ' ');
+    const auto wrong = [&](std::string_view argument) {
+        return SettingAnswer{{}, fmt::format("{}: Argument '{}' is invalid!", group.name, argument)};
+    };
+    std::vector<std::string> indices{{}};
+    if (indexed) indices = indices_of(group, arguments.empty() ? "" : arguments.front());
+    if (indices.empty()) return wrong("Index");
+    const std::size_t first = indexed ? 1 : 0;
+    if (arguments.size() > names.size() + first) return wrong(arguments[names.size() + first]);
+    Values after = values_;
+    for (const std::string& index : indices) {
+        std::vector<std::string>& values = after[key_of(group.name, index)];
+        for (std::size_t i = first; i < arguments.size(); ++i) {
+            if (arguments[i].empty()) continue;
+            std::string name = names[i - first];
+            const bool list = name.back() == '+';
+            if (list) name.pop_back();
+            std::string& value = values[i - first];
+            const auto now = list ? merged_list(group.name, name, value, arguments[i])
+                                  : checked_word(group.name, name, arguments[i]);
+            if (!now) return wrong(name);
+            value = *now;
+        }
+    }
+    values_ = std::move(after);
+    return get(group, indexed ? std::vector<std::string>{arguments.front()} : std::vector<std::string>{});
+}
+
+SettingAnswer SeptentrioSettings::get(const SettingGroup& group, const std::vector<std::string>& arguments) const {
+    SettingAnswer answer;
+    std::vector<std::string> indices{{}};
+    if (!group.indices.empty())
+        indices = indices_of(group, arguments.empty() || arguments.front().empty() ? "all" : arguments.front());
+    if (indices.empty()) return {{}, fmt::format("{}: Argument 'Index' is invalid!", group.name)};
+    for (const std::string& index : indices)
+        answer.states.push_back(
+            fmt::format("{}, {}", key_of(group.name, index), fmt::join(values(group.name, index), ", ")));
+    return answer;
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,183 @@
+#include "firmware/septentrio/settings_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+
+namespace skyloop::firmware {
+namespace {
+
+constexpr std::string_view serial_ports = "COM1 COM2";
+constexpr std::string_view connections =
+    "COM1 COM2 USB1 USB2 IPS1 IPS2 IPS3 IP10 IP11 IP12 IP13 IP14 IP15 IP16 IP17 NTR1";
+constexpr std::string_view streams = "Stream1 Stream2 Stream3 Stream4 Stream5 Stream6 Stream7 Stream8 Stream9 Stream10";
+constexpr std::string_view every_system = "GPS+GLONASS+GALILEO+SBAS+BEIDOU+QZSS+NAVIC";
+
+constexpr SettingGroup groups[] = {
+    {"scs", "gcs", "COMSettings", serial_ports, "Rate DataBits Parity StopBits FlowControl",
+     "baud115200,bits8,No,bit1,none"},
+    {"sdio", "gdio", "DataInOut", connections, "Input Output+ Show", "auto,SBF+NMEA+RTCMv3,(on)"},
+    {"sso", "gso", "SBFOutput", streams, "Cd Messages+ Interval", "none,none,off"},
+    {"sno", "gno", "NMEAOutput", streams, "Cd Messages+ Interval", "none,none,off"},
+    {"snti", "gnti", "NMEATalkerID", "", "TalkerID", "auto"},
+    {"spm", "gpm", "PVTMode", "", "Mode RoverMode+ StaticPosition",
+     "Rover,StandAlone+SBAS+DGNSS+RTKFloat+RTKFixed,auto"},
+    {"srd", "grd", "ReceiverDynamics", "", "Level Motion", "Moderate,Automotive"},
+    {"sem", "gem", "ElevationMask", "Tracking PVT", "Mask", "5"},
+    {"sst", "gst", "SatelliteTracking", "", "Satellite+", every_system},
+    {"ssu", "gsu", "SatelliteUsage", "", "Satellite+", every_system},
+    {"snt", "gnt", "SignalTracking", "", "Signal+", "GPSL1CA+GLOL1CA+GALL1BC+GEOL1+BDSB1I"},
+    {"snu", "gnu", "SignalUsage", "", "PVT+ NavData+",
+     "GPSL1CA+GLOL1CA+GALL1BC+GEOL1+BDSB1I,GPSL1CA+GLOL1CA+GALL1BC+GEOL1+BDSB1I"},
+    {"ssbc", "gsbc", "SBASCorrections", "", "Satellite SISMode NavMode DO229Version",
+     "auto,Operational,MixedSystems,auto"},
+    {"sdcu", "gdcu", "DiffCorrUsage", "", "Mode MaxAge BaseSelection BaseID MovingBase", "LowLatency,20.0,auto,0,off"},
+    {"sga", "gga", "GNSSAttitude", "", "Source", "MultiAntenna"},
+    {"sto", "gto", "AttitudeOffset", "", "Heading Pitch", "0.000,0.000"},
+    {"sal", "gal", "AntennaLocation", "Base Aux1", "Mode DeltaX DeltaY DeltaZ", "auto,0.0000,0.0000,0.0000"},
+    {"sao", "gao", "AntennaOffset", "Main Aux1", "DeltaE DeltaN DeltaU Type SerialNr SetupID",
+     "0.0000,0.0000,0.0000,Unknown,Unknown,0"},
+    {"smp", "gmp", "MarkerParameters", "",
+     "MarkerName MarkerNumber MarkerType StationCode MonumentIdx ReceiverIdx CountryCode",
+     "SEPT,Unknown,Unknown,,0,0,"},
+    {"sgd", "ggd", "GeodeticDatum", "", "TargetDatum", "Default"},
+    {"sgu", "ggu", "GeoidUndulation", "", "Mode Undulation", "auto,0.0"},
+    {"shm", "ghm", "HealthMask", "Tracking PVT", "Mask", "on"},
+    {"scm", "gcm", "CN0Mask", "", "Signal Mask", "all,0"},
+    {"srl", "grl", "RAIMLevels", "", "Mode Pfa Pmd Reliability", "on,-4,-4,-3"},
+    {"stsy", "gtsy", "TimingSystem", "", "System", "auto"},
+    {"sntp", "gntp", "NTPServer", "", "Enable", "off"},
+    {"spps", "gpps", "PPSParameters", "", "Interval Polarity Delay TimeScale MaxSyncAge PulseWidth",
+     "sec1,Low2High,0.00,GPS,60,5.000000"},
+    {"sep", "gep", "EventParameters", "EventA EventB", "Polarity Delay", "Low2High,0.000"},
+    {"snts", "gnts", "NtripSettings", "NTR1 NTR2 NTR3", "Mode Caster Port UserName Password MountPoint Version SendGGA",
+     "off,,2101,,,,v2,auto"},
+    {"sntt", "gntt", "NtripTLSSettings", "NTR1 NTR2 NTR3", "Enable Fingerprint", "off,"},
+    {"siss", "giss", "IPServerSettings", "IPS1 IPS2 IPS3", "Port Mode UDPAddress", "0,TCP2Way,255.255.255.255"},
+    {"spi", "gpi", "ProjectionParameters", "", "Name", "none"},
+    {"snf", "gnf", "NotchFiltering", "Notch1 Notch2 Notch3", "Mode CenterFreq Bandwidth", "auto,1100.000,30"},
+    {"swbi", "gwbi", "WBIMitigation", "", "Mode", "off"},
+    {"sou", "gou", "GalOSNMAUsage", "", "Mode", "off"},
+    {"sdo", "gdo", "DebugOutput", "", "Mode", "off"},
+    {"sfn", "gfn", "FileNaming", "DSK1", "NamingType FileName", "FileName,log"},
+};
+
+// Their order is that in which blocks leave within an epoch.
+constexpr std::string_view blocks =
+    "MeasEpoch MeasExtra Meas3Ranges Meas3CN0HiRes Meas3Doppler Meas3PP Meas3MP EndOfMeas PVTCartesian PVTGeodetic "
+    "PosCovCartesian PosCovGeodetic VelCovCartesian VelCovGeodetic DOP PosCart PosLocal PosProjected BaseVectorCart "
+    "BaseVectorGeod PVTSupport PVTSupportA EndOfPVT AttEuler AttCovEuler AuxAntPositions EndOfAtt ReceiverTime "
+    "xPPSOffset ExtEvent ExtEventPVTCartesian ExtEventPVTGeodetic ExtEventBaseVectGeod ExtEventAttEuler DiffCorrIn "
+    "BaseStation RTCMDatum ChannelStatus ReceiverStatus InputLink OutputLink NTRIPClientStatus NTRIPServerStatus "
+    "IPStatus DynDNSStatus QualityInd DiskStatus LogStatus RFStatus P2PPStatus CosmosStatus GALAuthStatus "
+    "FugroAuthorizationStatus SatVisibility ReceiverSetup RxMessage Commands Comment BBSamples ASCIIIn "
+    "EncapsulatedOutput GPSRawCA GPSRawL2C GPSRawL5 GPSRawL1C GLORawCA GALRawFNAV GALRawINAV GALRawCNAV GEORawL1 "
+    "GEORawL5 "
+    "BDSRaw BDSRawB1C BDSRawB2a BDSRawB2b QZSRawL1CA QZSRawL2C QZSRawL5 NAVICRaw GPSNav GPSAlm GPSIon GPSUtc GPSCNav "
+    "GLONav GLOAlm GLOTime GALNav GALAlm GALIon GALUtc GALGstGps GALSARRLM BDSNav BDSAlm BDSIon BDSUtc QZSNav QZSAlm "
+    "NAVICLNav GEOMT00 GEOPRNMask GEOFastCorr GEOIntegrity GEOFastCorrDegr GEONav GEODegrFactors GEONetworkTime GEOAlm "
+    "GEOIGPMask GEOLongTermCorr GEOIonoDelay GEOServiceLevel GEOClockEphCovMatrix";
+// Groups, and of their blocks those that this receiver has.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 12> block_groups{{
+    {"Measurements", ""},
+    {"Meas3", ""},
+    {"PVTCart", ""},
+    {"PVTGeod", "PVTGeodetic+PosCovGeodetic+VelCovGeodetic+DOP+BaseVectorGeod+EndOfPVT"},
+    {"PVTExtra", "DOP+EndOfPVT"},
+    {"Attitude", "AttEuler+AttCovEuler+EndOfAtt"},
+    {"Time", "ReceiverTime"},
+    {"Event", ""},
+    {"DiffCorr", ""},
+    {"Status", "ChannelStatus+ReceiverStatus+QualityInd+RFStatus+GALAuthStatus"},
+    {"PostProcess", ""},
+    {"Support", "ChannelStatus+ReceiverStatus"},
+}};
+constexpr std::string_view group_names =
+    "Measurements Meas3 RawNavBits GPS GLO GAL GEO BDS QZS NAVIC PVTCart PVTGeod PVTExtra Attitude Time Event DiffCorr "
+    "ExtEventCart ExtEventGeod Status LBand UserGroup1 UserGroup2 UserGroup3 UserGroup4 UserGroup5 UserGroup6 "
+    "UserGroup7 UserGroup8 PostProcess Rinex Rinex3 Support";
+constexpr std::string_view sentences =
+    "GGA RMC GLL GNS GRS GSA GST GSV VTG ZDA HDT ALM DTM GBS HRP LLQ RBP RBV ROT SNC TFM TXTbase AVR GGK HEA LLK PUMRD "
+    "THS VLW";
+constexpr std::string_view intervals =
+    "off OnChange msec10 msec20 msec40 msec50 msec100 msec200 msec500 sec1 sec2 sec5 sec10 sec15 sec30 sec60 min2 min5 "
+    "min10 min15 min30 min60";
+constexpr std::string_view output_ports =
+    "none COM1 COM2 USB1 USB2 IPS1 IPS2 IPS3 IP10 IP11 IP12 IP13 IP14 IP15 IP16 IP17 NTR1 NTR2 NTR3 DSK1";
+constexpr std::string_view line_speeds =
+    "baud1200 baud2400 baud4800 baud9600 baud19200 baud38400 baud57600 baud115200 baud230400 baud460800 baud500000 "
+    "baud576000 baud921600 baud1000000 baud1500000 baud2000000 baud2500000 baud3000000 baud3500000 baud4000000";
+
+std::string_view words_of(WordKind kind) {
+    switch (kind) {
+        case WordKind::block:
+            return blocks;
+        case WordKind::block_group:
+            return group_names;
+        case WordKind::sentence:
+            return sentences;
+        case WordKind::interval:
+            return intervals;
+        case WordKind::port:
+            return output_ports;
+        case WordKind::line_speed:
+            return line_speeds;
+    }
+    return {};
+}
+
+}  // namespace
+
+std::span<const SettingGroup> setting_groups() { return groups; }
+
+bool same_word(std::string_view a, std::string_view b) {
+    const auto low = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return low(x) == low(y); });
+}
+
+std::optional<std::string_view> known_word(WordKind kind, std::string_view word) {
+    for (std::string_view rest = words_of(kind); !rest.empty();) {
+        const std::string_view one = rest.substr(0, rest.find(' '));
+        if (same_word(one, word)) return one;
+        rest.remove_prefix(std::min(rest.size(), one.size() + 1));
+    }
+    return std::nullopt;
+}
+
+std::string_view blocks_of_group(std::string_view group) {
+    for (const auto& [name, members] : block_groups)
+        if (same_word(name, group)) return members;
+    return {};
+}
+
+std::optional<std::uint64_t> interval_ms(std::string_view interval) {
+    if (interval == "OnChange") return 0;
+    constexpr std::array<std::pair<std::string_view, std::uint64_t>, 3> units{
+        {{"msec", 1}, {"sec", 1000}, {"min", 60'000}}};
+    for (const auto& [unit, milliseconds] : units) {
+        if (!interval.starts_with(unit)) continue;
+        const std::string_view digits = interval.substr(unit.size());
+        std::uint64_t count = 0;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
+        if (error == std::errc() && end == digits.data() + digits.size() && count > 0) return count * milliseconds;
+    }
+    return std::nullopt;
+}
+
+std::string_view descriptor_of(PortId port) {
+    switch (port) {
+        case PortId::uart1:
+            return "COM1";
+        case PortId::uart2:
+            return "COM2";
+        case PortId::usb:
+            return "USB1";
+        case PortId::i2c:
+        case PortId::spi:
+            break;
+    }
+    return {};
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,45 @@
+/// What can be set on a Septentrio receiver's command line, and the words that its values are made of (Septentrio
+/// mosaic-X5 reference guide, firmware 4.14, chapter 3).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "firmware/port_id.hpp"
+
+namespace skyloop::firmware {
+
+/// What is set by `setNAME` and told by `getNAME`.
+struct SettingGroup {
+    std::string_view set, get;  ///< mnemonics of the two commands
+    std::string_view name;
+    std::string_view indices;    ///< each has values of its own: "COM1 COM2"; empty: there is one set of values
+    std::string_view arguments;  ///< names of the values behind the index; + behind those that are lists
+    std::string_view defaults;   ///< values, by commas
+};
+/// All that is known here.
+std::span<const SettingGroup> setting_groups();
+
+/// Words of one kind, in the maker's spelling.
+enum class WordKind { block, block_group, sentence, interval, port, line_speed };
+/// The maker's spelling of a word, whatever case the user wrote it in; nothing when there is no such word.
+std::optional<std::string_view> known_word(WordKind kind, std::string_view word);
+/// The blocks of a group such as Attitude, by +; empty for one of which this receiver has none.
+std::string_view blocks_of_group(std::string_view group);
+
+/// Milliseconds of an interval: 0 for OnChange, nothing for off.
+std::optional<std::uint64_t> interval_ms(std::string_view interval);
+
+/// "COM1", "USB1": how the receiver calls a port; empty for one that has no command line.
+std::string_view descriptor_of(PortId port);
+
+/// What it sends from the factory on by its first UART. A real one sends nothing until it is told to.
+inline constexpr std::string_view default_blocks =
+    "PVTGeodetic+PosCovGeodetic+VelCovGeodetic+DOP+EndOfPVT+AttEuler+AuxAntPositions+ChannelStatus+ReceiverStatus";
+
+/// Equal but for the case of letters.
+bool same_word(std::string_view a, std::string_view b);
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,144 @@
+"""The drivers of Septentrio receivers: ArduPilot's AP_GPS_SBF and PX4's septentrio.
+
+ArduPilot waits for the prompt before each command, and for the first line of its answer; while nothing goes on it asks
+for the port every 2 s. PX4 wants the same line, to the letter, within 200 ms, after it has hunted for the speed.
+"""
+import math
+import struct
+
+import receiver
+import sbf
+from dialogue import Client
+
+ATTENTION = b"SSSSSSSSSS\n"
+PVT, DOP, STATUS, BASE, VELOCITY, END, ATTITUDE, ATTITUDE_COV = 4007, 4001, 4014, 4028, 5908, 5921, 5938, 5939
+AUTHENTICATION, RADIO, QUALITY = 4245, 4092, 4082
+DISK = 1 << 7 | 1 << 9
+WHEN_SET = 1 << 4 | 1 << 5
+HEALTHY = 8.0
+
+
+class Septentrio(Client):
+    """What both have in common."""
+
+    after_power_on = 1.0
+
+    def __init__(self, wire, board):
+        super().__init__(wire, board)
+        self.parser = sbf.Parser()
+
+    def prompt(self, milliseconds):
+        return self.wait(lambda item: isinstance(item, sbf.Answer) and not item.text, milliseconds)
+
+    def command(self, line, milliseconds):
+        """Sends a command; its answer must repeat it to the letter."""
+        self.step(line)
+        self.forget()
+        self.send(line.encode() + b"\n")
+        answer = self.need(lambda item: isinstance(item, sbf.Answer) and item.text, milliseconds, f"$R: {line}")
+        self.check(answer.text.split("\r\n")[0] == f"$R: {line}", f"$R: {line}", answer)
+        return answer
+
+    def watch(self, numbers, period_ms):
+        """Blocks of so many seconds: those that were asked for, each at every epoch, and nothing else."""
+        self.step("the blocks that were asked for")
+        self.pump(0.5)
+        blocks = [item for item in self.collect(HEALTHY) if isinstance(item, sbf.Block)]
+        self.check(not self.parser.noise, "blocks and answers alone", bytes(self.parser.noise[:60]))
+        self.check({b.number for b in blocks} == set(numbers), sorted(numbers), sorted({b.number for b in blocks}))
+        for number in numbers:
+            times = [b.tow_ms for b in blocks if b.number == number]
+            self.check(all(b - a == period_ms for a, b in zip(times, times[1:])), f"{number} every {period_ms} ms", times)
+            self.check(len(times) >= (HEALTHY - 1) * 1000 / period_ms, f"{number} for {HEALTHY:g} s", len(times))
+        return blocks
+
+    def check_solution(self, blocks):
+        last = [b for b in blocks if b.number == PVT][-1].body
+        mode, error, latitude, longitude, height, undulation = struct.unpack_from("<BBdddf", last, 6)
+        self.check(mode & 15 in (1, 2, 4, 5, 6) and error == 0, "a solution", (mode, error))
+        apart = receiver.metres_apart(math.degrees(latitude), math.degrees(longitude))
+        self.check(apart < 20, "a position within 20 m of the scenario's", f"one {apart:.1f} m away")
+        self.check(abs(height - receiver.PLACE[2]) < 40 and 30 < undulation < 60, "its height", (height, undulation))
+        deviations = struct.unpack_from("<fff", [b for b in blocks if b.number == VELOCITY][-1].body, 8)
+        self.check(all(0 < d < 4 for d in deviations), "variances of the velocity", deviations)
+        state = struct.unpack_from("<I", [b for b in blocks if b.number == STATUS][-1].body, 12)[0]
+        self.check(state & WHEN_SET == WHEN_SET, "week and time of week set", hex(state))
+        return state
+
+
+class ArduPilotSbf(Septentrio):
+    """GPS type SBF on a port of 230400 baud, as its makers advise, with automatic configuration and logging."""
+
+    name = "ArduPilot SBF"
+    speeds = (115200, 230400)
+    lines = ("sso,Stream1,COM1,PVTGeodetic+DOP+ReceiverStatus+VelCovGeodetic+BaseVectorGeod,msec100", "srd,Moderate,UAV",
+             "sem,PVT,5", "spm,Rover,all", "sso,Stream2,Dsk1,postprocess+event+comment+ReceiverStatus,msec100",
+             "snt,+GEOL1+GEOL5", "sst,+SBAS", "ssbc,auto,Operational,MixedSystems,auto", "sga, none")
+
+    def run(self):
+        self.step("the prompt")
+        baud = "scs,COM1,baud230400,bits8,No,bit1,none"
+        for speed in self.speeds:
+            self.speed(speed)
+            self.send(b"\n" + ATTENTION)
+            if self.prompt(2000) is None:
+                continue  # the receiver has its new speed from an earlier dialogue
+            if speed != self.speeds[-1]:
+                self.send(baud.encode() + b"\n")  # the answer comes at the new speed, which ArduPilot does not have
+                self.pump(0.5)
+        self.command(baud, 1000)
+        for line in self.lines:
+            self.command(line, 1000)
+        self.pump(3)  # other systems begin to be tracked
+        state = self.check_solution(self.watch({PVT, DOP, STATUS, VELOCITY, BASE}, 100))
+        self.check(state & DISK == DISK, "a disk that is mounted and written", hex(state))
+        self.step("a command that there is not")
+        self.forget()
+        self.send(b"sxyz,1\n")
+        answer = self.need(lambda item: isinstance(item, sbf.Answer) and item.text, 500, "$R?")
+        self.check(answer.text.startswith("$R?"), "$R?", answer)
+
+
+class Px4Septentrio(Septentrio):
+    """PX4's driver with a chosen speed, logging and both antennas, and its watch over the blocks that it needs."""
+
+    name = "PX4 septentrio"
+    hunt = (230400, 115200, 230400, 57600, 460800)
+    fast = 200
+    blocks = (PVT, VELOCITY, DOP, ATTITUDE, ATTITUDE_COV, END, STATUS, AUTHENTICATION, RADIO, QUALITY)
+
+    def run(self):
+        self.find()
+        self.step("the name of the port")
+        self.forget()
+        self.send(b"gecm\n")
+        answer = self.need(lambda item: isinstance(item, sbf.Answer), 5 * self.fast, "a prompt")
+        self.check(answer.prompt == "COM1", "COM1>", answer)
+        self.send(b"scs,COM1,baud230400\n")
+        self.pump(2.0)
+        self.speed(230400)
+        for line in ("gecm", "sso,Stream1,COM1,none,off", "ssu,GPS+GLONASS+GALILEO+SBAS+BEIDOU",
+                     "sso,Stream2,DSK1,+Comment+ReceiverStatus+PostProcess+Event+Support,sec1", "sdio,COM1,Auto,SBF",
+                     "sto,0.000,0.000", "srd,high,UAV",
+                     "sso,Stream1,COM1,PVTGeodetic+VelCovGeodetic+DOP+AttEuler+AttCovEuler+EndOfPVT+ReceiverStatus+"
+                     "GALAuthStatus+RFStatus+QualityInd,msec200", "sga,MultiAntenna"):
+            self.command(line, 1000 if line.startswith("ssu") else self.fast)
+        self.pump(3)
+        blocks = self.watch(self.blocks, 200)
+        self.check_solution(blocks)
+        order = [b.number for b in blocks if b.tow_ms == blocks[len(blocks) // 2].tow_ms]
+        self.check(order.index(END) > max(order.index(n) for n in (PVT, VELOCITY, DOP, ATTITUDE, ATTITUDE_COV)),
+                   "EndOfPVT behind what it ends", order)
+        self.command("erst,soft,none", self.fast)
+
+    def find(self):
+        for speed in self.hunt:
+            self.step(f"an answer at {speed} baud")
+            self.speed(speed)
+            self.send(ATTENTION)
+            self.pump(0.01)
+            self.send(b"\n")
+            self.send(b"gecm\n")
+            if self.wait(lambda item: isinstance(item, sbf.Answer) and item.text.startswith("$R: gecm"), self.fast):
+                return
+        self.fail("$R: gecm at one of the speeds")

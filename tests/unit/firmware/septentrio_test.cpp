@@ -1,0 +1,297 @@
+// The command line of a Septentrio receiver, and what its streams send.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "firmware/config/config_handler.hpp"
+#include "firmware/messages/sbf_status_messages.hpp"
+#include "firmware/receiver.hpp"
+#include "firmware/septentrio/command_line_reader.hpp"
+#include "firmware/septentrio/console.hpp"
+#include "sample_epochs.hpp"
+#include "skyloop/protocol/sbf_blocks.hpp"
+#include "skyloop/protocol/stream_splitter.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+BoardProfile septentrio_board() {
+    BoardProfile board = sample_board(NmeaVersion::v4_0, {Constellation::gps, Constellation::galileo});
+    board.personality = Personality::sbf;
+    board.sentences.clear();
+    board.baud = 115200;
+    board.default_rate_hz = 5;
+    board.max_rate_hz = 50;
+    board.ports = {PortId::uart1, PortId::usb};
+    return board;
+}
+
+class Console : public testing::Test {
+protected:
+    std::string say(const std::string& line, PortId from = PortId::uart1) {
+        outcome_ = console_.execute(line, store_, from);
+        return outcome_.answers.empty() ? "" : to_string(outcome_.answers.front());
+    }
+    BoardProfile board_ = septentrio_board();
+    ConfigStore store_{factory_config(board_)};
+    SeptentrioConsole console_{board_, store_};
+    CommandOutcome outcome_;
+};
+
+TEST(CommandLineReader, CutsLinesAtAnyEndAndLeavesCorrectionsOut) {
+    CommandLineReader reader;
+    EXPECT_TRUE(reader.feed(to_bytes("gec")).empty());
+    EXPECT_THAT(reader.feed(to_bytes("m\r\n\nsso\r")), ElementsAre("gecm", "", "sso"));
+    // The body of a frame may look like anything.
+    Bytes frame{0xD3, 0x00, 0x04, 'a', '\n', 'b', '\n', 1, 2, 3};
+    const Bytes behind = to_bytes("grc\n");
+    frame.insert(frame.end(), behind.begin(), behind.end());
+    EXPECT_THAT(reader.feed(frame), ElementsAre("grc"));
+    EXPECT_THAT(reader.feed(Bytes{'x', 0x80, 'g', 'c', 's', '\n'}), ElementsAre("gcs")) << "behind noise";
+}
+
+TEST_F(Console, RepeatsACommandToTheLetterAndTellsWhatIsSet) {
+    EXPECT_EQ(say("sso, stream2, com1, dop+PVTGeodetic, MSEC200 "),
+              "$R: sso, stream2, com1, dop+PVTGeodetic, MSEC200 \r\n"
+              "  SBFOutput, Stream2, COM1, DOP+PVTGeodetic, msec200\r\nCOM1>");
+    EXPECT_EQ(say("getSBFOutput, Stream2", PortId::usb),
+              "$R: getSBFOutput, Stream2\r\n  SBFOutput, Stream2, COM1, DOP+PVTGeodetic, msec200\r\nUSB1>");
+    EXPECT_THAT(say("setElevationMask, all, 12"),
+                HasSubstr("  ElevationMask, Tracking, 12\r\n  ElevationMask, PVT, 12\r\n"));
+    EXPECT_EQ(store_.signed_value(key::navspg_min_elev), 12);
+}
+
+TEST_F(Console, AddsToListsAndTakesAway) {
+    say("sso,Stream3,COM1,DOP,sec1");
+    EXPECT_THAT(say("sso,Stream3,,+PVTGeodetic+EndOfPVT"), HasSubstr("COM1, DOP+PVTGeodetic+EndOfPVT, sec1"));
+    EXPECT_THAT(say("sso,Stream3,,-DOP"), HasSubstr("COM1, PVTGeodetic+EndOfPVT, sec1"));
+    EXPECT_THAT(say("sso,Stream3,,none"), HasSubstr("COM1, none, sec1"));
+    EXPECT_THAT(say("sst, -GALILEO"), HasSubstr("  SatelliteTracking, GPS\r\n"));
+    EXPECT_THAT(say("sst,+SBAS"), HasSubstr("  SatelliteTracking, GPS+SBAS\r\n"));
+}
+
+TEST_F(Console, RefusesWhatItDoesNotHaveAndChangesNothing) {
+    EXPECT_EQ(say("sso,Stream1,COM1,DOP,msec7"), "$R? SBFOutput: Argument 'Interval' is invalid!\r\nCOM1>");
+    EXPECT_EQ(say("sso,Stream11,COM1,DOP,sec1"), "$R? SBFOutput: Argument 'Index' is invalid!\r\nCOM1>");
+    EXPECT_EQ(say("sso,Stream1,COM1,Dope,sec1"), "$R? SBFOutput: Argument 'Messages' is invalid!\r\nCOM1>");
+    EXPECT_EQ(say("scs,COM1,baud12345"), "$R? COMSettings: Argument 'Rate' is invalid!\r\nCOM1>");
+    EXPECT_EQ(say("sem,PVT,95"), "$R? ElevationMask: Argument 'Mask' is invalid!\r\nCOM1>");
+    EXPECT_EQ(say("srd,a,b,c"), "$R? ReceiverDynamics: Argument 'c' is invalid!\r\nCOM1>");
+    EXPECT_EQ(say("make coffee"), "$R? ASCII commands: Invalid command!\r\nCOM1>");
+    EXPECT_THAT(say("gso,Stream1"), HasSubstr(std::string(default_blocks) + ", OnChange"));
+}
+
+TEST_F(Console, PromptsWhoAsksForIt) {
+    EXPECT_EQ(say(""), "COM1>");
+    EXPECT_EQ(say("# nothing"), "COM1>");
+    EXPECT_EQ(say("SSSSSSSSSS"), "COM1>");
+    say("sdio,COM1,none");
+    EXPECT_EQ(say("gecm"), "");
+    EXPECT_THAT(say("gecm", PortId::usb), StartsWith("$R: gecm\r\n"));
+    EXPECT_EQ(say("SSSSSSSSSS"), "COM1>");
+    EXPECT_THAT(say("gecm"), StartsWith("$R: gecm\r\n"));
+}
+
+TEST_F(Console, SolvesAsOftenAsItsStreamsNeed) {
+    const auto period = [&] { return store_.value(key::rate_meas); };
+    const std::uint64_t own = period();
+    say("sso,Stream1,COM1,DOP,msec100");
+    EXPECT_EQ(period(), 100U);
+    say("sno,Stream1,COM1,GGA,msec50");
+    EXPECT_EQ(period(), 50U);
+    say("sso,all,none,none,off");
+    EXPECT_EQ(period(), 50U);
+    say("sno,all,none,none,off");
+    EXPECT_EQ(period(), own);
+    say("sso,Stream1,COM1,DOP,sec10");
+    EXPECT_EQ(period(), 1000U) << "a solution each second at least";
+    say("sso,Stream1,COM1,DOP,msec10");
+    EXPECT_EQ(period(), 20U) << "no faster than the board";
+}
+
+TEST_F(Console, StartsAgainAsSaved) {
+    say("sem,PVT,20");
+    say("sso,Stream1,COM1,DOP,sec1");
+    EXPECT_THAT(say("eccf, Current, Boot"),
+                StartsWith("$R: eccf, Current, Boot\r\n  CopyConfigFile, Current, Boot\r\n"));
+    say("sem,PVT,30");
+    EXPECT_EQ(say("erst,soft,none"), "$R: erst,soft,none\r\n  ResetReceiver, soft, none\r\nSTOP>");
+    EXPECT_EQ(outcome_.restart, StartKind::hot);
+    store_.reload();
+    console_.restart(store_);
+    EXPECT_EQ(store_.signed_value(key::navspg_min_elev), 20);
+    EXPECT_THAT(say("gso,Stream1"), HasSubstr("COM1, DOP, sec1"));
+    say("erst,soft,PVTData");
+    EXPECT_EQ(outcome_.restart, StartKind::warm);
+    say("exeResetReceiver, hard, SatData+PVTData");
+    EXPECT_EQ(outcome_.restart, StartKind::cold);
+}
+
+NavigationState solved_state() {
+    NavigationState state;
+    state.epoch.fix = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500);
+    add_satellites(state.epoch.fix, Constellation::gps, 1, 8);
+    state.fix_ok = true;
+    state.time = {true, true, true, true, Seconds(1e-8)};
+    return state;
+}
+
+TEST(SbfStatus, APairHasABaseLineAndACovariance) {
+    NavigationState state = solved_state();
+    EXPECT_TRUE(sbf_base_vector(state).bases.empty());
+    EXPECT_EQ(sbf_attitude_covariance(state).error, 1);
+    state.epoch.relative = RelativePosition{0, 2, -1, Metres(0.02)};
+    const SbfBaseVectorGeod block = sbf_base_vector(state);
+    ASSERT_EQ(block.bases.size(), 1U);
+    EXPECT_EQ(block.bases[0].delta_east, 2);
+    EXPECT_EQ(block.bases[0].delta_up, 1);
+    EXPECT_EQ(block.bases[0].mode, 7);
+    EXPECT_EQ(block.bases[0].azimuth, 27000) << "the base is in the west";
+    EXPECT_EQ(block.bases[0].elevation, -2657);
+    EXPECT_NEAR(sbf_attitude_covariance(state).heading, 0.3283, 1e-4) << "0.01 rad, in square degrees";
+}
+
+TEST(SbfStatus, CorrectionsHaveTheBaseLineOfTheirStation) {
+    NavigationState state = solved_state();
+    state.corrections.state = CorrectionState::rtk_fixed;
+    state.corrections.base = to_ecef(Geodetic::degrees(47, 8, 400));
+    state.corrections.station = 12;
+    state.corrections.age = Seconds(0.8);
+    state.epoch.fix.type = FixType::rtk_fixed;
+    const SbfBaseVectorGeod block = sbf_base_vector(state);
+    ASSERT_EQ(block.bases.size(), 1U);
+    EXPECT_NEAR(block.bases[0].delta_up, 100, 1e-6);
+    EXPECT_EQ(block.bases[0].mode, 4);
+    EXPECT_EQ(block.bases[0].reference_id, 12);
+    EXPECT_EQ(block.bases[0].corr_age, 80);
+    EXPECT_EQ(sbf_receiver_status(state).rx_state >> 17 & 1, 1U);
+}
+
+TEST(SbfStatus, TellsJammingSpoofingAndQuality) {
+    NavigationState state = solved_state();
+    EXPECT_TRUE(sbf_radio_status(state).bands.empty());
+    const unsigned good = sbf_quality(state).indicators.at(0).value >> 8;
+    state.monitors.upper.jamming_state = 3;
+    state.monitors.spoofing = SpoofingIndication::indicated;
+    const SbfRfStatus radio = sbf_radio_status(state);
+    ASSERT_EQ(radio.bands.size(), 1U);
+    EXPECT_EQ(radio.bands[0].frequency, 1575420000U);
+    EXPECT_EQ(radio.bands[0].info & 15, 8);
+    EXPECT_EQ(radio.flags, 1);
+    EXPECT_LT(sbf_quality(state).indicators.at(0).value >> 8, good);
+    state.fix_ok = false;
+    EXPECT_EQ(sbf_quality(state).indicators.at(0).value, 0);
+}
+
+TEST(SbfStatus, TellsUtc) {
+    const SbfReceiverTime time = sbf_receiver_time(solved_state());
+    EXPECT_EQ(time.year, 24);
+    EXPECT_EQ(time.hour, 12);
+    EXPECT_EQ(time.second, 0);
+    EXPECT_EQ(time.leap_seconds, 18);
+    EXPECT_EQ(time.sync_level, 7);
+    EXPECT_EQ(sbf_receiver_time({}).hour, -128);
+}
+
+// Blocks of a receiver that its client has told to send.
+std::vector<int> blocks_in(const std::vector<StreamPiece>& pieces) {
+    std::vector<int> numbers;
+    for (const StreamPiece& piece : pieces)
+        if (piece.kind == StreamKind::sbf) numbers.push_back(parse_sbf(piece.bytes)->number);
+    return numbers;
+}
+
+class SeptentrioReceiver : public testing::Test {
+protected:
+    SeptentrioReceiver() {
+        fix_ = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500);
+        add_satellites(fix_, Constellation::gps, 1, 12);
+        receiver_.start(fix_.time);
+    }
+    // What has left after that long, an epoch each period of the receiver.
+    std::vector<StreamPiece> wait(Nanoseconds length) {
+        StreamProtocols protocols;
+        protocols.sbf = true;
+        StreamSplitter splitter(protocols);
+        std::vector<StreamPiece> pieces;
+        for (const GpsTime end = now_ + length; now_ < end;) {
+            now_ += 1ms;
+            for (const Receiver::Sent& sent : receiver_.output(now_))
+                for (StreamPiece& piece : splitter.feed(sent.bytes))
+                    pieces.push_back(std::move(piece));
+            if (now_.time_since_epoch() % receiver_.settings().navigation_period != 0ns) continue;
+            fix_.time = now_;
+            receiver_.on_epoch({fix_});
+        }
+        for (StreamPiece& piece : splitter.finish())
+            pieces.push_back(std::move(piece));
+        return pieces;
+    }
+    void say(const std::string& line) { receiver_.input(PortId::uart1, to_bytes(line + "\n"), now_); }
+
+    Receiver receiver_{septentrio_board(), ReceiverOptions{}};
+    Fix fix_;
+    GpsTime now_ = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500).time;
+};
+
+TEST_F(SeptentrioReceiver, SendsFromTheFactoryOnAndWhatItIsToldAfterwards) {
+    const auto first = blocks_in(wait(1010ms));
+    ASSERT_GE(first.size(), 9U);
+    EXPECT_EQ(std::vector<int>(first.begin(), first.begin() + 9),
+              (std::vector<int>{4007, 5906, 5908, 4001, 5938, 5942, 5921, 4013, 4014}));
+    say("sso,Stream1,COM1,none,off");
+    wait(100ms);
+    EXPECT_TRUE(blocks_in(wait(1s)).empty());
+    say("sso,Stream1,COM1,Attitude,msec100");
+    say("sso,Stream2,COM1,RFStatus+QualityInd,sec1");
+    wait(100ms);
+    const auto later = blocks_in(wait(2s));
+    EXPECT_EQ(std::count(later.begin(), later.end(), 5938), 20);
+    EXPECT_EQ(std::count(later.begin(), later.end(), 5939), 20);
+    EXPECT_EQ(std::count(later.begin(), later.end(), 5943), 20);
+    EXPECT_EQ(std::count(later.begin(), later.end(), 4092), 2);
+    EXPECT_EQ(std::count(later.begin(), later.end(), 4082), 2);
+}
+
+TEST_F(SeptentrioReceiver, SendsSentencesToo) {
+    say("sso,all,none,none,off");
+    say("sno,Stream1,COM1,GGA+RMC,sec1");
+    wait(100ms);
+    std::string text;
+    for (const StreamPiece& piece : wait(2s))
+        if (piece.kind == StreamKind::nmea) text += to_string(piece.bytes);
+    EXPECT_THAT(text, HasSubstr("GGA,120001.00,"));
+    EXPECT_THAT(text, HasSubstr("RMC,120002.00,"));
+    say("sdio,COM1,,-NMEA");
+    wait(100ms);
+    for (const StreamPiece& piece : wait(2s))
+        EXPECT_NE(piece.kind, StreamKind::nmea);
+}
+
+TEST_F(SeptentrioReceiver, AnswersAtItsNewSpeedAndOnePieceAtATime) {
+    say("sso,all,none,none,off");
+    wait(100ms);
+    say("scs,COM1,baud230400");
+    std::string text;
+    std::uint32_t baud = 0;
+    for (int i = 0; i < 100; ++i) {
+        now_ += 1ms;
+        for (const Receiver::Sent& sent : receiver_.output(now_)) {
+            text += to_string(sent.bytes);
+            baud = sent.baud;
+        }
+    }
+    EXPECT_EQ(baud, 230400U);
+    EXPECT_EQ(text, "$R: scs,COM1,baud230400\r\n  COMSettings, COM1, baud230400, bits8, No, bit1, none\r\nCOM1>");
+    say("erst,hard,none");
+    wait(4s);
+    say("gcs,COM1");
+    EXPECT_EQ(receiver_.baud(PortId::uart1), 115200U) << "it was not saved";
+}
+
+}  // namespace
+}  // namespace skyloop::firmware
