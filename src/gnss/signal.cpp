@@ -14,6 +14,13 @@ double second_carrier_delay(double delay, Signal second) {
     return delay * ratio * ratio;
 }
 
+// The broadcast tells the delay of S band, which is not emulated.
+double navic_l5_delay(double delay_of_s_band) {
+    constexpr double carrier_frequency_s = 2492.028e6;
+    const double ratio = carrier_frequency_s / carrier_frequency_l5;
+    return delay_of_s_band * ratio * ratio;
+}
+
 std::optional<double> galileo_delay(const KeplerEphemeris& record, Signal signal) {
     const bool fnav = record.message == NavigationMessage::fnav;
     const double delay = fnav ? record.tgd : record.tgd2;
@@ -37,7 +44,7 @@ std::optional<double> kepler_delay(const KeplerEphemeris& record, Signal signal)
         case Constellation::beidou:
             return beidou_delay(record, signal);
         case Constellation::navic:
-            return signal == Signal::l5 ? std::optional(record.tgd) : std::nullopt;
+            return signal == Signal::l5 ? std::optional(navic_l5_delay(record.tgd)) : std::nullopt;
         default:
             if (signal == Signal::l1) return record.tgd;
             if (signal == Signal::l2) return second_carrier_delay(record.tgd, signal);

@@ -10,7 +10,7 @@ from session import SHARED, open_folder, skip, skyloop
 
 LARGEST_ERROR_M = 2e-3
 OUR_LARGEST_ERROR_M = 1e-3
-SYSTEMS = {"gps": 1, "glonass": 4, "galileo": 8, "qzss": 16, "beidou": 32}
+SYSTEMS = {"gps": 1, "glonass": 4, "galileo": 8, "qzss": 16, "beidou": 32, "navic": 64}
 PLACE = (46.4775, 30.7326, 77.0)
 
 OPTIONS = """pos1-posmode =single
@@ -172,6 +172,10 @@ class Rnx2rtkpTest(unittest.TestCase):
         self.check(DAY_2009, ("gps", "glonass"), self.SHARE_AT_REST, start="2009-04-01T10:00:00Z")
         self.check(DAY_2024, ALL, self.SHARE_AT_REST, start="2024-01-01T06:30:00Z",
                    trajectory='kind = "fixed"\nat = [-77.85, 166.67, 150]')
+
+    def test_navics_group_delay_is_that_of_s_band(self):
+        self.check(DAY_2023, ("gps", "navic"), self.SHARE_AT_REST, start="2023-01-01T12:40:00Z",
+                   trajectory='kind = "fixed"\nat = [15, 85, 100]', receiver='board = "septentrio-sbf"')
 
     def test_without_errors_on_the_move(self):
         for systems in SETS:

@@ -41,7 +41,7 @@ struct KeplerEphemeris {
     double cuc = 0, cus = 0, crc = 0, crs = 0, cic = 0, cis = 0;  ///< rad, rad, m, m, rad, rad
 
     double af0 = 0, af1 = 0, af2 = 0;  ///< s, s/s, s/s²
-    double tgd = 0;                    ///< s; TGD, of Galileo BGD(E1,E5a), of BeiDou TGD1
+    double tgd = 0;                    ///< s; TGD, of NavIC that of S band, of Galileo BGD(E1,E5a), of BeiDou TGD1
     double tgd2 = 0;                   ///< s; of Galileo BGD(E1,E5b), of BeiDou TGD2
 
     int iode = 0;           ///< of Galileo IODnav, of BeiDou AODE
