@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
+#include "../../../src/gnss/gmf_gpt_table.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {
@@ -14,6 +19,33 @@ using test::OracleRow;
 
 Geodetic place_of(const OracleRow& row, const char* height) {
     return Geodetic::degrees(row.number("lat_deg"), row.number("lon_deg"), row.number(height));
+}
+
+TEST(Gmf, ItsHarmonicsAndThoseOfGptAreThePublishedOnes) {
+    const auto rows = test::oracle_rows("gmf_gpt_coefficients.csv");
+    if (test::shared_oracles_present()) {
+        EXPECT_EQ(rows.size(), gmf_gpt_terms.size());
+    }
+    for (const OracleRow& row : rows) {
+        SCOPED_TRACE(row.id() + ", " + row.text("m"));
+        const auto term = std::find_if(gmf_gpt_terms.begin(), gmf_gpt_terms.end(), [&](const GmfGptTerm& t) {
+            return t.n == row.integer("n") && t.m == row.integer("m");
+        });
+        ASSERT_NE(term, gmf_gpt_terms.end());
+        const std::array<std::pair<HarmonicPair, const char*>, 9> fields{{{term->hydrostatic_mean, "DryMean"},
+                                                                          {term->hydrostatic_amplitude, "DryAmp"},
+                                                                          {term->wet_mean, "WetMean"},
+                                                                          {term->wet_amplitude, "WetAmp"},
+                                                                          {term->undulation, "geoid"},
+                                                                          {term->pressure_mean, "PressMean"},
+                                                                          {term->pressure_amplitude, "PressAmp"},
+                                                                          {term->temperature_mean, "TempMean"},
+                                                                          {term->temperature_amplitude, "TempAmp"}}};
+        for (const auto& [pair, name] : fields) {
+            EXPECT_EQ(pair.cosine, row.number(std::string("A") + name)) << name;
+            EXPECT_EQ(pair.sine, row.number(std::string("B") + name)) << name;
+        }
+    }
 }
 
 TEST(Gpt, EveryOracleRow) {

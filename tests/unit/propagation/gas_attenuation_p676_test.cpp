@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "../../../src/propagation/gas_attenuation_p676_table.hpp"
 #include "skyloop/gnss/constants.hpp"
 #include "support/oracle_table.hpp"
 
@@ -26,6 +31,34 @@ void expect_gases(const OracleRow& row, double tolerance) {
     expect_close(gas.oxygen, "gamma_o_dB_km");
     expect_close(gas.vapour, "gamma_w_dB_km");
     expect_close(gas.total(), "gamma_dB_km");
+}
+
+using LineNumbers = std::array<double, 7>;
+
+LineNumbers numbers_of(const OxygenLine& l) { return {l.f0, l.a1, l.a2, l.a3, l.a4, l.a5, l.a6}; }
+LineNumbers numbers_of(const VapourLine& l) { return {l.f0, l.b1, l.b2, l.b3, l.b4, l.b5, l.b6}; }
+
+template <class Lines>
+void expect_lines_of_oracle(const Lines& lines, const std::string& table, char letter) {
+    const auto rows = test::oracle_rows(table);
+    if (test::shared_oracles_present()) {
+        EXPECT_EQ(lines.size(), rows.size());
+    }
+    for (const OracleRow& row : rows) {
+        SCOPED_TRACE(table + " " + row.id());
+        LineNumbers expected{row.number("f0_GHz")};
+        for (std::size_t i = 1; i < expected.size(); ++i)
+            expected[i] = row.number(letter + std::to_string(i));
+        const auto line =
+            std::find_if(lines.begin(), lines.end(), [&](const auto& l) { return l.f0 == expected.front(); });
+        ASSERT_NE(line, lines.end());
+        EXPECT_EQ(numbers_of(*line), expected);
+    }
+}
+
+TEST(GasAttenuationP676, ItsLinesAreThoseOfTheRecommendation) {
+    expect_lines_of_oracle(oxygen_lines_p676, "itu_p676_13_lines_oxygen.csv", 'a');
+    expect_lines_of_oracle(vapour_lines_p676, "itu_p676_13_lines_water_vapour.csv", 'b');
 }
 
 TEST(GasAttenuationP676, EveryOracleRow) {
