@@ -188,6 +188,7 @@ struct BoardProfile {
     std::uint8_t gnss_supported = 0,
                  gnss_simultaneous = 0;             ///< of MON-GNSS: bits 0 GPS, 1 GLONASS, 2 BeiDou, 3 Galileo
     std::map<std::uint32_t, std::uint64_t> config;  ///< factory values that differ from ConfigKey::default_value
+    std::size_t galileo_words = 8;                  ///< of a pair of pages in RXM-SFRBX; a ninth tells nothing
     std::set<std::uint32_t> absent_keys;            ///< items that it does not have
 };
 

@@ -173,6 +173,8 @@ std::vector<Bytes> received_subframes(const ReportContext& context) {
         m.chn = tracking_channel(subframe.satellite, context.state.epoch.fix);
         m.version = 2;
         m.words = subframe.words;
+        // What a ninth word holds in captures is of the satellite's channel, not of its message.
+        if (subframe.satellite.constellation == Constellation::galileo) m.words.resize(context.board.galileo_words);
         frames.push_back(encode_frame(m));
     }
     return frames;

@@ -156,6 +156,19 @@ TEST(RxmSfrbxMessage, NamesTheSignalThatCarriesTheData) {
     EXPECT_EQ(signals, (std::vector<int>{1, 5, 0, 0})) << "E1-B, E5b-I, L1 C/A and B1I D1: no pilots";
 }
 
+TEST(RxmSfrbxMessage, HasTheNinthWordOfOlderFirmwareForGalileoAlone) {
+    UbxReport f9(9);
+    f9.state.epoch.subframes = {{{Constellation::galileo, 3}, Signal::l1, {}, 0, {1, 2, 3, 4, 5, 6, 7, 8}},
+                                {{Constellation::glonass, 9}, Signal::g1, {}, -2, {1, 2, 3, 4}}};
+    const auto words = [&f9](std::size_t frame) {
+        return decode_payload<RxmSfrbx>(parse_frame(f9.frames(RxmSfrbx::message_id).at(frame))->payload)->words;
+    };
+    EXPECT_EQ(words(0), (std::vector<std::uint32_t>{1, 2, 3, 4, 5, 6, 7, 8}));
+    f9.board.galileo_words = 9;
+    EXPECT_EQ(words(0), (std::vector<std::uint32_t>{1, 2, 3, 4, 5, 6, 7, 8, 0}));
+    EXPECT_EQ(words(1).size(), 4u);
+}
+
 TEST(RxmSvsiMessage, TellsWhatIsKnown) {
     UbxReport m8(8);
     m8.state.epoch.fix.satellites[1].has_ephemeris = false;

@@ -106,6 +106,7 @@ gnss_channels_hardware = 32
 gnss_channels_used = 31
 gnss_supported = 15
 gnss_simultaneous = 3
+galileo_words = 9
 [ubx.legacy]
 CFG-PRT = "apply"
 CFG-GNSS = "refuse"
@@ -180,6 +181,7 @@ TEST(BoardFileUblox, ReadsMessagesAndConfiguration) {
     EXPECT_EQ(board.gnss_channels_used, 31);
     EXPECT_EQ(board.gnss_supported, 15);
     EXPECT_EQ(board.gnss_simultaneous, 3);
+    EXPECT_EQ(board.galileo_words, 9U);
     const auto legacy = [&board](std::uint8_t id) { return board.legacy.at({0x06, id}); };
     EXPECT_EQ(board.legacy.size(), 4U);
     EXPECT_EQ(legacy(0x00), LegacyAnswer::apply);
