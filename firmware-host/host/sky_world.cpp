@@ -28,9 +28,9 @@ Result<World> make_world(const Scenario& asked, const SkyOptions& options, const
     Scenario scenario = asked;
     auto navigation = load_navigation(scenario, wall_clock());
     if (!navigation) return fail(navigation.error());
-    std::vector<std::string> warnings = scenario_warnings(scenario);
+    auto geoid = find_geoid(data_folders(), navigation->warnings);
+    std::vector<std::string> warnings = scenario_warnings(scenario, geoid.get());
     warnings.insert(warnings.end(), navigation->warnings.begin(), navigation->warnings.end());
-    auto geoid = find_geoid(data_folders(), warnings);
     const GpsTime start = navigation->start;
     const auto track = load_track(scenario, geoid.get(), start);
     if (!track) return fail(track.error());

@@ -173,23 +173,36 @@ Result<void> judge_timeline(const Scenario& scenario, Assembly& assembly) {
     return {};
 }
 
-// Weather whose upper end is known to lie below the antenna; the geoid is some metres more or less.
-void warn_of_weather_below(const Scenario& scenario, std::vector<std::string>& warnings) {
+// The antenna's height as the model of the air takes it, and what it counts from.
+struct WeatherHeight {
+    Metres height;
+    std::string_view above;
+};
+
+// MODELS.md 3.6 has one sphere for the shells and the antenna; only D-03 asks for the geoid.
+WeatherHeight weather_height(const Scenario& scenario, const Geodetic& place, const Geoid* geoid) {
+    if (scenario.model.sensor_model) return {place.height.above_ellipsoid, "above the ellipsoid"};
+    const Metres undulation = geoid != nullptr ? geoid->undulation(place.latitude, place.longitude) : Metres(0);
+    return {above_sea_level(place.height, undulation).above_sea_level, "above the sea"};
+}
+
+// Weather whose upper end is known to lie below the antenna.
+void warn_of_weather_below(const Scenario& scenario, const Geoid* geoid, std::vector<std::string>& warnings) {
     const auto* fixed = std::get_if<FixedSettings>(&scenario.trajectory);
     if (fixed == nullptr) return;
-    const Metres height = fixed->at.height.above_ellipsoid;
+    const auto [height, above] = weather_height(scenario, fixed->at, geoid);
     const Rain& rain = scenario.atmosphere.rain;
     if (rain.rate_mm_h > 0 && height >= rain.top)
         warnings.push_back(
-            fmt::format("atmosphere.rain_top_m: rain falls from {:g} m above the sea, below the antenna "
-                        "at {:g} m, and weakens nothing there",
-                        rain.top.value(), height.value()));
+            fmt::format("atmosphere.rain_top_m: rain falls from {:g} m {}, below the antenna at {:.0f} m, and weakens "
+                        "nothing there",
+                        rain.top.value(), above, height.value()));
     for (const CloudDeck& deck : scenario.atmosphere.clouds)
         if (height >= deck.top)
             warnings.push_back(
-                fmt::format("atmosphere.cloud: {} ends {:g} m above the sea, below the antenna at {:g} m, "
-                            "and weakens nothing there",
-                            deck.kind, deck.top.value(), height.value()));
+                fmt::format("atmosphere.cloud: {} ends {:g} m {}, below the antenna at {:.0f} m, and weakens nothing "
+                            "there",
+                            deck.kind, deck.top.value(), above, height.value()));
 }
 
 }  // namespace
@@ -223,7 +236,7 @@ std::unique_ptr<Geoid> find_geoid(const DataFolders& data, std::vector<std::stri
     return nullptr;
 }
 
-std::vector<std::string> scenario_warnings(const Scenario& scenario) {
+std::vector<std::string> scenario_warnings(const Scenario& scenario, const Geoid* geoid) {
     std::vector<std::string> warnings = scenario.warnings;
     if (!scenario.model.sensor_model && !scenario.sensor_model_keys.empty())
         warnings.push_back(
@@ -232,7 +245,7 @@ std::vector<std::string> scenario_warnings(const Scenario& scenario) {
                         fmt::join(scenario.sensor_model_keys, ", atmosphere.")));
     if (!scenario.model.sensor_model)
         warnings.insert(warnings.end(), scenario.model.modern.idle_keys.begin(), scenario.model.modern.idle_keys.end());
-    warn_of_weather_below(scenario, warnings);
+    warn_of_weather_below(scenario, geoid, warnings);
     if (scenario.scene.given() && !city_acts(scenario))
         warnings.push_back("scene: errors = \"none\" leaves the buildings out, whose echoes are errors");
     return warnings;
@@ -284,11 +297,11 @@ std::vector<std::filesystem::path> board_folders(const DataFolders& data) {
 Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const RunMode& mode) {
     Scenario scenario = asked;
     Assembly assembly;
-    assembly.warnings = scenario_warnings(scenario);
     auto navigation = load_navigation(scenario, mode.now);
     if (!navigation) return fail(navigation.error());
+    assembly.geoid = find_geoid(data, navigation->warnings);
+    assembly.warnings = scenario_warnings(scenario, assembly.geoid.get());
     assembly.warnings.insert(assembly.warnings.end(), navigation->warnings.begin(), navigation->warnings.end());
-    assembly.geoid = find_geoid(data, assembly.warnings);
     assembly.start = navigation->start;
     const auto track = load_track(scenario, assembly.geoid.get(), assembly.start);
     if (!track) return fail(track.error());

@@ -121,8 +121,9 @@ Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSet
 Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation,
                                    const Geoid* geoid, GpsTime start, const DataFolders& data = {});
 
-/// What the user of a scenario should be told before anything is read from elsewhere.
-std::vector<std::string> scenario_warnings(const Scenario& scenario);
+/// What the user of a scenario should be told of the scenario alone. @param geoid null: the ellipsoid stands in for the
+/// sea
+std::vector<std::string> scenario_warnings(const Scenario& scenario, const Geoid* geoid);
 
 /// How a receiver of a scenario is configured when it starts. @param index its place in the scenario's list
 ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::BoardProfile& board,

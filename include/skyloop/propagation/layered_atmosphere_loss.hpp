@@ -11,8 +11,9 @@
 namespace skyloop {
 
 /// Losses over straight paths through uniform spherical shells (MODELS.md 3.6). Writes gas, cloud, rain and ionospheric
-/// loss. Layers are heights above the sphere; the antenna's is its ellipsoidal height. Of a layer that the antenna
-/// stands in, only the part above it counts: for the path and for the mean concentration.
+/// loss. Layers are heights above the sphere; the antenna's is its ellipsoidal height, as h is in MODELS.md, which asks
+/// for heights above the sea in the troposphere's delay alone (D-03). Of a layer that the antenna stands in, only the
+/// part above it counts: for the path and for the mean concentration.
 class LayeredAtmosphereLoss : public PropagationEffect {
 public:
     explicit LayeredAtmosphereLoss(AtmosphereParameters atmosphere, Hertz carrier = Hertz(carrier_frequency_l1));

@@ -326,5 +326,18 @@ TEST(Assembly, TellsOfKeysAndWeatherThatCannotAct) {
                 Not(Contains(HasSubstr("rain falls from"))));
 }
 
+TEST(Assembly, TakesTheHeightOfWeatherAsTheModelDoes) {
+    const std::string weather = "[atmosphere]\nrain_mm_h = 100\n";
+    const auto below = Contains(HasSubstr("below the antenna"));
+    // The geoid lies 97 m below the ellipsoid here, and 85 m above it there.
+    const std::string deep = "[trajectory]\nkind = \"fixed\"\nat = [5, 79, 3950]\n" + weather;
+    const std::string raised = "[trajectory]\nkind = \"fixed\"\nat = [-8.5, 147, 4050]\n" + weather;
+    const std::string baseline = "[model]\nname = \"baseline\"\n";
+    EXPECT_THAT(assembled(deep).warnings, below) << "4047 m above the sea";
+    EXPECT_THAT(assembled(raised).warnings, Not(below)) << "3975 m above the sea, in the rain";
+    EXPECT_THAT(assembled(baseline + deep).warnings, Not(below));
+    EXPECT_THAT(assembled(baseline + raised).warnings, Contains(HasSubstr("above the ellipsoid, below the antenna")));
+}
+
 }  // namespace
 }  // namespace skyloop
