@@ -166,6 +166,7 @@ struct BoardProfile {
     int fast_satellites = 16;
     int least_measurement_period_ms = 25;  ///< shorter ones are stored as this (CFG-RATE), or refused (VALSET)
     Angle elevation_mask = Angle::degrees(5);
+    bool dynamic_limits = true;                      ///< no fix beyond those of the dynamic model, as u-blox has them
     ExportLimits export_limits = ExportLimits::off;  ///< on top of 500 m/s, beyond which no fix is told
 
     NmeaVersion nmea_version = NmeaVersion::v4_0;
@@ -187,8 +188,8 @@ struct BoardProfile {
     std::uint8_t gnss_channels_hardware = 0, gnss_channels_used = 0;
     std::uint8_t gnss_supported = 0,
                  gnss_simultaneous = 0;             ///< of MON-GNSS: bits 0 GPS, 1 GLONASS, 2 BeiDou, 3 Galileo
-    std::map<std::uint32_t, std::uint64_t> config;  ///< factory values that differ from ConfigKey::default_value
     std::size_t galileo_words = 8;                  ///< of a pair of pages in RXM-SFRBX; a ninth tells nothing
+    std::map<std::uint32_t, std::uint64_t> config;  ///< factory values that differ from ConfigKey::default_value
     std::set<std::uint32_t> absent_keys;            ///< items that it does not have
 };
 

@@ -55,4 +55,11 @@ bool within_export_limits(ExportLimits limits, const Fix& fix) {
     return limits == ExportLimits::both_exceeded ? !(high && fast) : !(high || fast);
 }
 
+bool within_limits(const BoardProfile& board, std::uint64_t dynamic_model, const Fix& fix) {
+    const bool moves_as_expected = board.dynamic_limits
+                                       ? within_dynamic_model(dynamic_model, fix, board.identity.generation)
+                                       : speed_in_space(fix) <= fastest_mps;
+    return moves_as_expected && within_export_limits(board.export_limits, fix);
+}
+
 }  // namespace skyloop::firmware

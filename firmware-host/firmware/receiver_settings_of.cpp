@@ -67,7 +67,26 @@ DynamicModel dynamic_model_of(std::uint64_t number) {
     return number < models.size() ? models[number] : portable;
 }
 
-std::uint64_t number_of(DynamicModel model) {
+// Measurement and navigation period of the store, made longer by whole measurements until the board can follow.
+Nanoseconds navigation_period_of(const ConfigStore& store, const BoardProfile& board) {
+    const auto measurement = std::chrono::milliseconds(std::max<std::uint64_t>(1, store.value(key::rate_meas)));
+    auto cycles = static_cast<std::int64_t>(std::max<std::uint64_t>(1, store.value(key::rate_nav)));
+    // Periods are whole milliseconds: 56 ms is what 18 Hz are stored as.
+    const auto shortest = std::chrono::milliseconds(std::llround(1000.0 / board.max_rate_hz));
+    while (cycles * measurement < shortest)
+        ++cycles;
+    return cycles * measurement;
+}
+
+std::uint64_t measurement_period_of(const BoardProfile& board, double rate_hz) {
+    constexpr double longest_ms = 65535;  // CFG-RATE measRate is a U2
+    const double rate = std::min(rate_hz > 0 ? rate_hz : board.default_rate_hz, board.max_rate_hz);
+    return static_cast<std::uint64_t>(std::llround(std::clamp(1000.0 / rate, 1.0, longest_ms)));
+}
+
+}  // namespace
+
+std::uint64_t dynamic_model_number(DynamicModel model) {
     using enum DynamicModel;
     switch (model) {
         case portable:
@@ -90,25 +109,6 @@ std::uint64_t number_of(DynamicModel model) {
     return 0;
 }
 
-// Measurement and navigation period of the store, made longer by whole measurements until the board can follow.
-Nanoseconds navigation_period_of(const ConfigStore& store, const BoardProfile& board) {
-    const auto measurement = std::chrono::milliseconds(std::max<std::uint64_t>(1, store.value(key::rate_meas)));
-    auto cycles = static_cast<std::int64_t>(std::max<std::uint64_t>(1, store.value(key::rate_nav)));
-    // Periods are whole milliseconds: 56 ms is what 18 Hz are stored as.
-    const auto shortest = std::chrono::milliseconds(std::llround(1000.0 / board.max_rate_hz));
-    while (cycles * measurement < shortest)
-        ++cycles;
-    return cycles * measurement;
-}
-
-std::uint64_t measurement_period_of(const BoardProfile& board, double rate_hz) {
-    constexpr double longest_ms = 65535;  // CFG-RATE measRate is a U2
-    const double rate = std::min(rate_hz > 0 ? rate_hz : board.default_rate_hz, board.max_rate_hz);
-    return static_cast<std::uint64_t>(std::llround(std::clamp(1000.0 / rate, 1.0, longest_ms)));
-}
-
-}  // namespace
-
 ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board, const ReceiverSettings& base) {
     ReceiverSettings settings = base;
     settings.navigation_period = navigation_period_of(store, board);
@@ -126,6 +126,7 @@ ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board
     settings.minimum_cn0 = DbHz(static_cast<double>(store.value(key::navspg_min_cno)));
     if (is_changed(store, key::navspg_dynmodel))
         settings.dynamic_model = dynamic_model_of(store.value(key::navspg_dynmodel));
+    settings.dynamic_limits = board.dynamic_limits;
     settings.airborne_ceiling = airborne_ceiling(board.identity.generation);
     if (is_changed(store, key::mot_speed_threshold))
         settings.static_hold_below =
@@ -144,7 +145,7 @@ ConfigValues initial_config(const BoardProfile& board, const ReceiverOptions& op
     };
     put(key::rate_meas, measurement_period_of(board, options.rate_hz));
     const ReceiverSettings& s = options.settings;
-    put(key::navspg_dynmodel, number_of(s.dynamic_model));
+    put(key::navspg_dynmodel, dynamic_model_number(s.dynamic_model));
     put(key::navspg_min_elev, static_cast<std::uint8_t>(std::lround(s.elevation_mask.deg())));
     const double hold = std::round(s.static_hold_below.value() * 100);
     put(key::mot_speed_threshold, static_cast<std::uint64_t>(std::clamp(hold, 0.0, 255.0)));

@@ -194,9 +194,7 @@ void StateTracker::keep_within_limits(const ConfigStore& config) {
     state_.fix_ok = false;
     if (!fix.has_position()) return;
     constexpr int epochs_until_no_fix = 3;
-    const bool moves_as_expected =
-        within_dynamic_model(config.value(key::navspg_dynmodel), fix, board_.identity.generation) &&
-        within_export_limits(board_.export_limits, fix);
+    const bool moves_as_expected = within_limits(board_, config.value(key::navspg_dynmodel), fix);
     epochs_beyond_limits_ = moves_as_expected ? 0 : epochs_beyond_limits_ + 1;
     const bool two_d = fix.type == FixType::fix_2d;
     const std::uint64_t mode = config.value(key::navspg_fixmode);

@@ -68,6 +68,8 @@ private:
     int epochs_beyond_limits_ = 0;
 };
 
+/// The number of a dynamic model in CFG-NAVSPG-DYNMODEL.
+std::uint64_t dynamic_model_number(DynamicModel model);
 /// Whether a dynamic model allows a fix (RECEIVER.md 4.8, table of dynamic models; generation as in Identity).
 /// @param number of CFG-NAVSPG-DYNMODEL
 bool within_dynamic_model(std::uint64_t number, const Fix& fix, int generation);
@@ -75,5 +77,8 @@ bool within_dynamic_model(std::uint64_t number, const Fix& fix, int generation);
 Metres airborne_ceiling(int generation);
 /// Whether the limits of export allow a fix, by its height above sea level and its speed in space.
 bool within_export_limits(ExportLimits limits, const Fix& fix);
+/// Whether a board tells a fix there and so fast: by its dynamic model, where the board has limits of those, by its
+/// limits of export, and by the 500 m/s of all receivers. @param dynamic_model as of within_dynamic_model()
+bool within_limits(const BoardProfile& board, std::uint64_t dynamic_model, const Fix& fix);
 
 }  // namespace skyloop::firmware

@@ -1,6 +1,7 @@
 #include "skyloop/emulator/assembly.hpp"
 
 #include "fault_warnings.hpp"
+#include "limit_warnings.hpp"
 #include "modern_assembly.hpp"
 #include "receiver_assembly.hpp"
 #include "recorded_files.hpp"
@@ -144,6 +145,10 @@ Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& 
         auto plan = plan_station(shared, i, assembly.warnings);
         if (!plan) return fail(plan.error());
         assembly.details.push_back(receiver_detail(plan->parts));
+        const firmware::Receiver& receiver = plan->parts.receiver;
+        if (auto warning = limit_warning({shared.scenario, i, receiver.board(), receiver.settings().dynamic_model,
+                                          assembly.start, assembly.end, shared.geoid}))
+            assembly.warnings.push_back(std::move(*warning));
         plans.push_back(std::move(*plan));
     }
     if (const auto apart = check_ends(ends_of(plans, shared.scenario)); !apart) return fail(apart.error());

@@ -51,6 +51,8 @@ MotionLimits motion_limits(const ReceiverSettings& settings) {
     const auto limits = [](double height, double horizontal, double vertical) {
         return MotionLimits{Metres(height), MetresPerSecond(horizontal), MetresPerSecond(vertical)};
     };
+    constexpr double any = std::numeric_limits<double>::infinity();
+    if (!settings.dynamic_limits) return limits(any, any, any);
     switch (settings.dynamic_model) {
         case DynamicModel::portable:
             return limits(12000, 310, 50);
@@ -64,10 +66,8 @@ MotionLimits motion_limits(const ReceiverSettings& settings) {
             return limits(500, 25, 5);
         case DynamicModel::airborne_1g:
         case DynamicModel::airborne_2g:
-        case DynamicModel::airborne_4g: {
-            constexpr double any = std::numeric_limits<double>::infinity();
+        case DynamicModel::airborne_4g:
             return limits(settings.airborne_ceiling.value(), any, any);
-        }
     }
     return limits(12000, 310, 50);
 }

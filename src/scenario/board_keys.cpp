@@ -145,6 +145,8 @@ void read_board_navigation(TableReader& navigation, BoardProfile& board) {
     double mask = board.elevation_mask.deg();
     navigation.number("elevation_mask_deg", mask, {0, 90});
     board.elevation_mask = Angle::degrees(mask);
+    board.dynamic_limits = board.personality == Personality::ublox;
+    navigation.boolean("dynamic_limits", board.dynamic_limits);
     navigation.word("export_limits", export_limit_words, board.export_limits);
     navigation.quantity("solution_latency_s", board.solution_latency, {0, 2});
 }

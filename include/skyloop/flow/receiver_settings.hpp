@@ -50,6 +50,7 @@ struct ReceiverSettings {
     Angle elevation_mask = Angle::degrees(5);
     DbHz minimum_cn0{6};  ///< of a satellite that is used
     DynamicModel dynamic_model = DynamicModel::portable;
+    bool dynamic_limits = true;            ///< no fix beyond the limits of that model
     Metres airborne_ceiling{80'000};       ///< of a fix with an airborne model, above mean sea level
     MetresPerSecond static_hold_below{0};  ///< 0: never held
     MetresPerSecond course_held_below{0.3};

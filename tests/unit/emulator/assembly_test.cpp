@@ -326,6 +326,28 @@ TEST(Assembly, TellsOfKeysAndWeatherThatCannotAct) {
                 Not(Contains(HasSubstr("rain falls from"))));
 }
 
+TEST(Assembly, TellsOfPathsBeyondTheLimitsOfItsReceiver) {
+    const std::string run = "[run]\nstart = 2024-03-05T12:00:00Z\nduration_s = 9000\n";
+    const std::string balloon =
+        run + "[trajectory]\nat = [28.5, -80.6, 3]\nkind = \"balloon\"\npreset = \"balloon_32km\"\n[[receiver]]\n";
+    const auto beyond = Contains(HasSubstr("tells no fix"));
+    EXPECT_THAT(assembled(balloon + "board = \"ublox-f9p\"").warnings,
+                Contains(AllOf(StartsWith("ublox-f9p tells no fix in "), HasSubstr(" % of the run, from "),
+                               HasSubstr("is beyond the limits of its dynamic_model"))));
+    EXPECT_THAT(assembled(balloon + "board = \"ublox-f9p\"\ndynamic_model = \"airborne-1g\"").warnings, Not(beyond));
+    EXPECT_THAT(assembled(balloon + "board = \"septentrio-sbf\"").warnings, Not(beyond)) << "those are u-blox's";
+    EXPECT_THAT(assembled(balloon + "board = \"septentrio-sbf\"\nexport_limits = \"or\"").warnings,
+                Contains(HasSubstr("is beyond its export_limits")));
+    EXPECT_THAT(assembled(run + "[trajectory]\nkind = \"fixed\"\nat = [28, 87, 13000]").warnings,
+                Contains(HasSubstr("tells no fix in the whole run: 130")));
+    EXPECT_THAT(assembled(run +
+                          "[trajectory]\nkind = \"circle\"\ncentre = [28, -80, 3]\nradius_m = 50000\nspeed_mps = "
+                          "600\n[[receiver]]\n" +
+                          "board = \"septentrio-sbf\"")
+                    .warnings,
+                Contains(HasSubstr("is beyond 500 m/s, from which on no receiver does")));
+}
+
 TEST(Assembly, TakesTheHeightOfWeatherAsTheModelDoes) {
     const std::string weather = "[atmosphere]\nrain_mm_h = 100\n";
     const auto below = Contains(HasSubstr("below the antenna"));

@@ -13,10 +13,11 @@ struct FlightReport {
     bool has_fix_at_end = false;
 };
 
-FlightReport report_of(std::string_view flight, std::string_view receiver, double seconds, double step) {
+FlightReport report_of(std::string_view flight, std::string_view receiver, double seconds, double step,
+                       std::string_view board = "ublox-f9p") {
     const Scenario scenario = test::emulator_scenario(
         "[run]\nstart = 2024-03-05T12:00:00Z\n[model]\nname = \"ideal\"\n[trajectory]\nat = [28.5, -80.6, 3]\n" +
-        std::string(flight) + "\n[[receiver]]\nboard = \"ublox-f9p\"\n" + std::string(receiver));
+        std::string(flight) + "\n[[receiver]]\nboard = \"" + std::string(board) + "\"\n" + std::string(receiver));
     auto run = test::memory_run(scenario);
     FlightReport report;
     const std::atomic<bool> stop = false;
@@ -61,6 +62,14 @@ TEST(ExportLimits, ABalloonLosesItWithTheUsualModelAndWithTwoRules) {
     const FlightReport one_rule =
         report_of(balloon, "rate_hz = 0.1\ndynamic_model = \"airborne-1g\"\nexport_limits = \"and\"", 6400, 10);
     EXPECT_FALSE(one_rule.lost) << "high, and never fast";
+}
+
+TEST(ExportLimits, AnotherMakersBoardIsNotHeldToTheDynamicModelsOfUblox) {
+    const FlightReport report = report_of(balloon, "rate_hz = 0.1", 6400, 10, "septentrio-sbf");
+    EXPECT_GT(report.highest_with_fix, 31900);
+    EXPECT_FALSE(report.lost);
+    const FlightReport fast = report_of(rocket, "", 1500, 1, "septentrio-sbf");
+    EXPECT_LT(fast.fastest_with_fix, 500) << "no more than any other";
 }
 
 TEST(ExportLimits, ARocketAtMachThreeLosesIt) {

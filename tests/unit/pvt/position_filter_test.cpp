@@ -161,5 +161,11 @@ TEST(MotionLimits, OfAirborneModelsAreTheCeilingAlone) {
     }
 }
 
+TEST(MotionLimits, AreThoseOfBoardsThatHaveDynamicModels) {
+    const MotionLimits limits = motion_limits({.dynamic_model = DynamicModel::sea, .dynamic_limits = false});
+    EXPECT_GT(limits.height, Metres(100'000));
+    EXPECT_GT(limits.vertical_speed, MetresPerSecond(1000));
+}
+
 }  // namespace
 }  // namespace skyloop
