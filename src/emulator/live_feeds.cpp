@@ -32,6 +32,7 @@ FeedSettings feed_settings(const LiveSettings& live, const Geoid* geoid) {
     settings.context.rate_hz = live.rate_hz;
     settings.clock = live.clock;
     settings.path.before = live.at.value_or(FixedSettings().at);
+    settings.path.begins_at_first = !live.at;
     settings.path.delay = live.delay;
     return settings;
 }

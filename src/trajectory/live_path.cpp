@@ -207,9 +207,11 @@ Motion LivePath::through_samples(GpsTime time) const {
     const auto after = std::upper_bound(knots_.begin(), knots_.end(), time,
                                         [](GpsTime value, const Knot& knot) { return value < knot.time; });
     if (after == knots_.begin()) {
+        const Motion& first = knots_.front().motion;
         Motion standing;
-        standing.position = forgot_ ? knots_.front().motion.position : to_ecef(settings_.before).vector();
-        if (forgot_) standing.body_to_ned = knots_.front().motion.body_to_ned;
+        const bool at_first = forgot_ || settings_.begins_at_first;
+        standing.position = at_first ? first.position : to_ecef(settings_.before).vector();
+        if (at_first) standing.body_to_ned = first.body_to_ned;
         return standing;
     }
     const Knot& from = *std::prev(after);

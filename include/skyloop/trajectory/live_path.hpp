@@ -19,7 +19,9 @@ namespace skyloop {
 /// What becomes of a path whose source is silent (FEEDS.md 3.1).
 struct LivePathSettings {
     Geodetic before{};  ///< where the vehicle stands until the first sample
-    Seconds delay{0};   ///< the path is this much late, so that slow sources are interpolated and not extrapolated
+    /// Nobody named `before`: once there is a sample, the vehicle stands where the first one is up to its time.
+    bool begins_at_first = false;
+    Seconds delay{0};  ///< the path is this much late, so that slow sources are interpolated and not extrapolated
     /// After the newest sample the vehicle goes on with its velocity, while its acceleration and turn rate fade.
     Seconds coast{0.3};
     Seconds fade{1.5};  ///< until then it comes to rest

@@ -58,6 +58,25 @@ TEST(LivePath, StandsWhereItWasToldUntilTheFirstSample) {
     EXPECT_FALSE(path.newest());
 }
 
+TEST(LivePath, StandsWhereItsFirstSampleIsBeforeItWhereNobodyNamedAPlace) {
+    const RoundFlight circle;
+    LivePathSettings settings;
+    settings.begins_at_first = true;
+    settings.delay = Seconds(1);
+    LivePath path = live_path(settings);
+    for (int i = 0; i <= 100; ++i)
+        path.add(live_time(0.02 * i), circle.at(0.02 * i));
+    for (const double t : {-2.0, 0.0, 0.5, 0.999}) {
+        const TruthState state = path.at(live_time(t));
+        EXPECT_LT(circle.error(state, 0), 1e-6) << t;
+        EXPECT_EQ(state.velocity.length().value(), 0) << t;
+        ASSERT_TRUE(state.orientation) << t;
+        EXPECT_NEAR(state.orientation->attitude.yaw().rad(), std::numbers::pi / 2, 1e-9) << t;
+        EXPECT_EQ(state.orientation->turn_rate.norm(), 0) << t;
+    }
+    EXPECT_LT(circle.error(path.at(live_time(2.5)), 1.5), 0.001) << "later it is late by the delay";
+}
+
 TEST(LivePath, KeepsItsSamplesAndIsSmoothBetweenThem) {
     const RoundFlight circle;
     LivePath path = live_path();
