@@ -132,6 +132,7 @@ Result<std::unique_ptr<LiveFeeds>> LiveFeeds::open(Scenario& scenario, const Geo
         live->path = (*source)->feed->path(live->vehicle);
         (*source)->paths.push_back(live->path);
         (*source)->waited_for = (*source)->waited_for || !live->at;
+        if (!live->at) (*source)->feed->wait_for_all();
     }
     if (feeds->leader_ == nullptr && scenario.run.speed != 1)
         return fail(ErrorCode::usage,

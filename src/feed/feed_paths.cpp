@@ -94,23 +94,55 @@ void FeedPaths::take_item(FeedItem& item, std::vector<Command>& commands) {
 
 void FeedPaths::take_sample(TruthSample& sample) {
     ended_ = false;
-    if (!first_) first_ = sample.vehicle;
-    const auto wanted = vehicles_.find(sample.vehicle);
-    const bool of_any = any_ && *first_ == sample.vehicle;
-    const SourceClock::Stamp stamped = stamp(sample);
-    note(stamped, sample.received_ns);
-    if (wanted == vehicles_.end() && !of_any) {
-        if (!std::exchange(other_told_, true))
-            desk_.news.tell(
-                FeedNewsDesk::Kind::vehicle,
-                fmt::format("it also speaks of vehicle '{}', which nobody has asked for", sample.vehicle.substr(0, 40)),
-                sample.received_ns);
+    if (const auto why = implausible(sample)) {  // it starts no run
+        desk_.tallies.refused += 1;
+        desk_.news.tell(FeedNewsDesk::Kind::refusal, "refused: " + *why, sample.received_ns);
         return;
     }
+    if (!first_) first_ = sample.vehicle;
+    if (!is_wanted(sample.vehicle)) return take_unwanted(sample);
+    if (mode_ != ClockMode::follow || !waits_ || first_sample_) return place(sample);
+    // All that are waited for begin together: else those that are heard later would stand where they are not yet, and
+    // the path of the first would have forgotten its beginning.
+    std::erase_if(begun_with_, [&](const TruthSample& other) { return other.vehicle == sample.vehicle; });
+    begun_with_.push_back(std::move(sample));
+    if (!all_have_begun()) return;
+    for (TruthSample& first : std::exchange(begun_with_, {}))
+        place(first);
+}
+
+bool FeedPaths::is_wanted(const std::string& vehicle) const {
+    return vehicles_.contains(vehicle) || (any_ && *first_ == vehicle);
+}
+
+bool FeedPaths::all_have_begun() const {
+    const auto has_begun = [this](const std::string& vehicle) {
+        return std::any_of(begun_with_.begin(), begun_with_.end(),
+                           [&](const TruthSample& sample) { return sample.vehicle == vehicle; });
+    };
+    return (!any_ || has_begun(*first_)) &&
+           std::all_of(vehicles_.begin(), vehicles_.end(), [&](const auto& entry) { return has_begun(entry.first); });
+}
+
+// It tells of the source's clock, but starts no run that is about others.
+void FeedPaths::take_unwanted(const TruthSample& sample) {
+    const bool starts = mode_ == ClockMode::realtime || (mode_ == ClockMode::lock_step && !waits_);
+    if (starts || first_sample_) note(stamp(sample), sample.received_ns);
+    if (std::exchange(other_told_, true)) return;
+    desk_.news.tell(
+        FeedNewsDesk::Kind::vehicle,
+        fmt::format("it also speaks of vehicle '{}', which nobody has asked for", sample.vehicle.substr(0, 40)),
+        sample.received_ns);
+}
+
+void FeedPaths::place(TruthSample& sample) {
+    const auto wanted = vehicles_.find(sample.vehicle);
+    const SourceClock::Stamp stamped = stamp(sample);
+    note(stamped, sample.received_ns);
     if (!first_sample_) first_sample_ = stamped.time;
     newest_sample_ = std::max(newest_sample_.value_or(stamped.time), stamped.time);
     if (wanted != vehicles_.end()) add(wanted->second, wanted->first, stamped.time, sample);
-    if (!of_any) return;
+    if (!any_ || *first_ != sample.vehicle) return;
     // Kept beside the others under a name that no vehicle has.
     Vehicle& vehicle = vehicles_[""];
     vehicle.path = any_;
@@ -203,6 +235,8 @@ std::vector<FeedStep> FeedPaths::skip_steps() {
     steps_.clear();
     clock_ = SourceClock(mode_, start_, start_ns_);
     ++restarts_;
+    first_sample_.reset();
+    newest_sample_.reset();
     newest_step_.reset();
     answered_.reset();
     return skipped;

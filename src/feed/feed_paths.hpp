@@ -20,6 +20,8 @@ public:
     FeedPaths(const FeedSettings& settings, FeedDesk& desk);
 
     std::shared_ptr<LivePath> path(const std::string& vehicle);
+    /// Follow: the run starts once every path has a sample, with the newest of each.
+    void wait_for_all() { waits_ = true; }
     void begin(GpsTime start, std::int64_t steady_ns);
     void set_run(GpsTime now, std::int64_t steady_ns);
 
@@ -59,6 +61,10 @@ private:
     void keep_newest(std::vector<FeedItem>& items) const;
     void take_item(FeedItem& item, std::vector<Command>& commands);
     void take_sample(TruthSample& sample);
+    void take_unwanted(const TruthSample& sample);
+    void place(TruthSample& sample);
+    [[nodiscard]] bool is_wanted(const std::string& vehicle) const;
+    [[nodiscard]] bool all_have_begun() const;
     void take_step(const FeedStep& step);
     SourceClock::Stamp stamp(const TruthSample& sample);
     void note(const SourceClock::Stamp& stamp, std::int64_t now_ns);
@@ -74,7 +80,8 @@ private:
     std::map<std::string, Vehicle> vehicles_;  // that somebody wants
     std::shared_ptr<LivePath> any_;            // of the first that is spoken of
     std::optional<std::string> first_;
-    bool begun_ = false, fresh_ = false;
+    std::vector<TruthSample> begun_with_;  // the newest of each vehicle, until all that are waited for are heard
+    bool begun_ = false, fresh_ = false, waits_ = false;
     GpsTime start_;
     std::int64_t start_ns_ = 0;
     std::vector<FeedItem> taken_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "json_statement.hpp"
+#include "skyloop/trajectory/live_path.hpp"
 
 namespace skyloop {
 namespace {
@@ -110,6 +111,7 @@ private:
     Result<void> take_truth(const FeedJson& statement, FeedNews& news, std::int64_t received_ns) {
         auto sample = statement_sample(statement, origin_, context_);
         if (!sample) return fail(sample.error());
+        if (const auto why = implausible(*sample)) return fail(ErrorCode::input, "cannot be: " + *why);
         const auto id = vehicle_of(statement);
         if (!id) return fail(id.error());
         const auto time = statement_time(statement);

@@ -36,6 +36,8 @@ Result<std::unique_ptr<TruthFeed>> TruthFeed::open(const FeedAddress& address, c
 
 std::shared_ptr<LivePath> TruthFeed::path(const std::string& vehicle) { return impl_->paths_.path(vehicle); }
 
+void TruthFeed::wait_for_all() { impl_->paths_.wait_for_all(); }
+
 void TruthFeed::begin(GpsTime start, std::int64_t steady_ns) { impl_->paths_.begin(start, steady_ns); }
 
 void TruthFeed::set_run(GpsTime now, std::int64_t steady_ns) { impl_->paths_.set_run(now, steady_ns); }

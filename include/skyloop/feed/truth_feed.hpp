@@ -72,6 +72,9 @@ public:
 
     /// The path of one of the source's vehicles; empty: of the first that it speaks of. Before begin().
     std::shared_ptr<LivePath> path(const std::string& vehicle);
+    /// The run waits until every path has a sample: somebody has no place before. A run that follows then starts with
+    /// the newest statement about each of them. Before begin().
+    void wait_for_all();
     /// The run starts. @param steady_ns the steady clock at that instant
     void begin(GpsTime start, std::int64_t steady_ns);
     /// The run is at `now` when the steady clock reads `steady_ns`: after a pause or a change of speed.

@@ -135,6 +135,90 @@ TEST(FeedPaths, FollowStartsWithTheFirstStatementThoughItsTimeComesLater) {
     EXPECT_LT((feed.path->at(paths_start).position - told_at(0).position).length().value(), 0.01);
 }
 
+// As `told_at`, of a vehicle and with a time.
+TruthSample of_vehicle(const std::string& vehicle, std::chrono::milliseconds time) {
+    TruthSample sample = told_at(to_seconds(time).value());
+    sample.vehicle = vehicle;
+    sample.source_time = time;
+    sample.received_ns = paths_start_ns + time.count() * one_ms;
+    return sample;
+}
+
+// A run that follows, whose receivers want these vehicles and have no place before.
+struct FollowedVehicles {
+    explicit FollowedVehicles(const std::vector<std::string>& wanted) : paths(settings(), desk) {
+        for (const std::string& vehicle : wanted)
+            path.push_back(paths.path(vehicle));
+        paths.wait_for_all();
+        paths.begin(paths_start, paths_start_ns - one_ms);
+    }
+    static FeedSettings settings() {
+        FeedSettings settings = PathsUnderTest::settings_of(ClockMode::follow);
+        settings.path.begins_at_first = true;
+        return settings;
+    }
+    void say(TruthSample sample) {
+        const std::int64_t now_ns = sample.received_ns;
+        std::vector<FeedItem> items{std::move(sample)};
+        desk.inbox.put(items);
+        paths.take(now_ns);
+    }
+    // m from where told_at() is at a time of the source
+    [[nodiscard]] double error_m(std::size_t i, GpsTime time, double t) const {
+        return (path[i]->at(time).position - told_at(t).position).length().value();
+    }
+    FeedDesk desk;
+    FeedPaths paths;
+    std::vector<std::shared_ptr<LivePath>> path;
+};
+
+TEST(FeedPaths, VehiclesThatNobodyWantsStartNoRunThatFollows) {
+    FollowedVehicles feed({"b"});
+    for (auto t = 0ms; t < 2000ms; t += 20ms)
+        feed.say(of_vehicle("a", t));
+    EXPECT_FALSE(feed.paths.horizon());
+    for (auto t = 2000ms; t <= 2500ms; t += 20ms) {
+        feed.say(of_vehicle("a", t));
+        feed.say(of_vehicle("b", t));
+    }
+    EXPECT_EQ(feed.paths.horizon(), paths_start + 500ms);
+    EXPECT_LT(feed.error_m(0, paths_start, 2), 0.01);
+    EXPECT_EQ(feed.path[0]->counts().jumps, 0u);
+}
+
+TEST(FeedPaths, ARunThatFollowsBeginsOnceAllOfItsVehiclesAreHeard) {
+    FollowedVehicles feed({"a", "b"});
+    for (auto t = 0ms; t < 9000ms; t += 20ms)
+        feed.say(of_vehicle("a", t));
+    EXPECT_FALSE(feed.paths.horizon());
+    EXPECT_FALSE(feed.path[0]->newest());
+    for (auto t = 9000ms; t <= 9500ms; t += 20ms) {
+        feed.say(of_vehicle("b", t));
+        feed.say(of_vehicle("a", t));
+    }
+    EXPECT_EQ(feed.paths.horizon(), paths_start + 520ms) << "with what was said last before all were heard";
+    EXPECT_LT(feed.error_m(0, paths_start, 8.98), 0.01);
+    EXPECT_LT(feed.error_m(1, paths_start, 9), 0.01);
+    EXPECT_LT(feed.error_m(0, paths_start + 400ms, 9.38), 0.05);
+    EXPECT_LT(feed.error_m(1, paths_start + 400ms, 9.38), 0.05);
+    EXPECT_EQ(feed.path[0]->counts().jumps + feed.path[1]->counts().jumps, 0u);
+}
+
+TEST(FeedPaths, WhatCannotBeStartsNoRunThatFollowsAndIsTold) {
+    FollowedVehicles feed({""});
+    TruthSample nowhere = of_vehicle("a", 0ms);
+    nowhere.position = to_ecef(Geodetic::degrees(0, 0, 0));
+    feed.say(nowhere);
+    EXPECT_FALSE(feed.paths.horizon());
+    EXPECT_EQ(feed.desk.tallies.refused, 1u);
+    EXPECT_THAT(feed.desk.news.take(),
+                testing::ElementsAre(HasSubstr("refused: the place is at latitude and longitude 0")));
+    feed.say(of_vehicle("a", 3000ms));
+    feed.say(of_vehicle("a", 3020ms));
+    EXPECT_EQ(feed.paths.horizon(), paths_start + 20ms);
+    EXPECT_LT(feed.error_m(0, paths_start, 3), 0.01);
+}
+
 TEST(FeedPaths, StepsBeforeTheFirstPlaceAreAnsweredAndTheRunStartsAfterThem) {
     PathsUnderTest feed(ClockMode::lock_step);
     for (const auto until : {5000ms, 5100ms}) {

@@ -207,6 +207,8 @@ TEST(JsonDialect, RefusesInOneLineThatNamesTheKey) {
         {R"({"t_ns":9000000000000000000,"ecef":[4177000,854000,4728000]})", "'t_ns' is"},
         {R"({"q":[2,0,0,0],"ecef":[4177000,854000,4728000]})", "'q' has the length"},
         {R"({"vel_frd":[1,0,0],"ecef":[4177000,854000,4728000]})", "'vel_frd'"},
+        {R"({"lla":[0,0,0],"h_ref":"ell"})", "cannot be: the place is at latitude and longitude 0"},
+        {R"({"vel_ned":[20000,0,0],"lla":[48,11,500],"h_ref":"ell"})", "cannot be: the speed is 20000 m/s"},
         {R"({"id":"","ecef":[4177000,854000,4728000]})", "'id'"},
         {R"({"id":{},"ecef":[4177000,854000,4728000]})", "'id'"},
         {R"({"seq":1.5,"ecef":[4177000,854000,4728000]})", "'seq'"},
