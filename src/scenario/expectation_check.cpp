@@ -79,7 +79,7 @@ std::string why_no_event(const EventReference& event, const std::vector<KnownEnt
     return {};
 }
 
-// Why a sentence cannot be decided by the end; empty: it can.
+// Why a sentence cannot be decided by the end, or may not be; empty: it can.
 std::string why_too_late(const TimeClause& time, const std::vector<KnownEntry>& known, GpsTime start, GpsTime end) {
     std::optional<GpsTime> origin = start;
     if (time.event && time.event->is_run()) {
@@ -87,19 +87,23 @@ std::string why_too_late(const TimeClause& time, const std::vector<KnownEntry>& 
     } else if (time.event) {
         origin.reset();
         if (time.rule == TimeRule::until_event) return {};  // it holds until the end where nothing comes
-        if (std::string why = why_no_event(*time.event, known, origin); !why.empty()) return why;
+        if (std::string why = why_no_event(*time.event, known, origin); !why.empty()) return "cannot be met: " + why;
     }
     if (!origin) return {};
     const auto late = [&](Seconds offset) { return advanced(*origin, offset) > end; };
     const auto shown = [&](Seconds offset) { return difference(advanced(*origin, offset), start).value(); };
     const double length = difference(end, start).value();
     if (late(time.from))
-        return fmt::format("it is due {:g} s after the start of the run, which ends after {:g} s", shown(time.from),
-                           length);
+        return fmt::format("cannot be met: it is due {:g} s after the start of the run, which ends after {:g} s",
+                           shown(time.from), length);
     const bool lasts = time.never || time.rule == TimeRule::from_to || time.rule == TimeRule::after;
     if (lasts && time.until && late(*time.until))
-        return fmt::format("it lasts until {:g} s after the start of the run, which ends after {:g} s",
+        return fmt::format("cannot be met: it lasts until {:g} s after the start of the run, which ends after {:g} s",
                            shown(*time.until), length);
+    if (time.until && late(*time.until))  // it may come true before
+        return fmt::format(
+            "may stay undecided: it has until {:g} s after the start of the run, which ends after {:g} s",
+            shown(*time.until), length);
     return {};
 }
 
@@ -112,10 +116,9 @@ std::vector<std::string> expectation_warnings(const Scenario& scenario, GpsTime 
         std::string why;
         if (expectation.sentence) why = why_too_late(expectation.sentence->time, known, start, end);
         if (expectation.probe && advanced(start, expectation.probe->at) > end)
-            why = fmt::format("it is asked {:g} s after the start of the run, which ends after {:g} s",
+            why = fmt::format("cannot be met: it is asked {:g} s after the start of the run, which ends after {:g} s",
                               expectation.probe->at.value(), difference(end, start).value());
-        if (!why.empty())
-            warnings.push_back(fmt::format("[[expect]] '{}' cannot be met: {}", expectation.title(), why));
+        if (!why.empty()) warnings.push_back(fmt::format("[[expect]] '{}' {}", expectation.title(), why));
     }
     return warnings;
 }

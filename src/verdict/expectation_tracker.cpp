@@ -218,16 +218,18 @@ void ExpectationTracker::come_true(GpsTime now) {
     stretch_.reset();
 }
 
-// The stretch is over: what was not looked at within it is as it was before.
+// The stretch is over: what had to last and was not looked at within it is as it was before.
 void ExpectationTracker::close(GpsTime now) {
     const Stretch stretch = *stretch_;
     const GpsTime end = stretch.closes.value_or(now);
+    // An epoch of before fulfils nothing; that there have been none for long does, since it is still so.
+    if (!looked_at_ && once() && is_of_epochs(sentence_.subject.subject) && turn_)
+        return fail(end, fmt::format("did not come true by {}: no epoch came in that time", moment(end, stretch)));
     if (stretch.instant || !looked_at_) {
         if (!value_) return fail(end, "nothing was reported by then");
         const bool right = *value_ != sentence_.time.never;
         if (once() && right) return come_true(end);
         if (!once() && !right) return fail(end, "did not hold " + moment(end, stretch) + last_seen());
-        // A subject that is sampled and has come true before the stretch is a fulfilment; nothing else reaches here.
         if (!once()) remember();
     }
     if (once()) return fail(end, fmt::format("did not come true by {}{}", moment(end, stretch), last_seen()));
@@ -281,10 +283,10 @@ void ExpectationTracker::last_until_end(GpsTime now) {
     if (time.event && !time.event->is_run() && !event_came_) return fail(now, event_never_came());
     if (stretch_ && (!stretch_->closes || *stretch_->closes <= now)) close(now);
     if (finding_ || (!stretch_ && planned_.empty())) return;
-    const std::string ended = fmt::format("the run ended after {}", span_text(difference(now, start_)));
-    if (stretch_ && once())
-        return fail(now, fmt::format("{}, before the time was over; it had not come true{}", ended, last_seen()));
-    finding_ = Finding{Outcome::undecided, ended + ", before the time was over", std::nullopt};
+    std::string ended =
+        fmt::format("the run ended after {}, before the time was over", span_text(difference(now, start_)));
+    if (stretch_ && once()) ended += "; it had not come true" + last_seen();
+    finding_ = Finding{Outcome::undecided, std::move(ended), std::nullopt};
 }
 
 Finding ExpectationTracker::summary() const {

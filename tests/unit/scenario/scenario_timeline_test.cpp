@@ -214,8 +214,11 @@ after = "stall"
                 ElementsAre(HasSubstr("'outage' does not end before the run does")));
     EXPECT_THAT(warnings_of("what = \"fix 50 s after outage\""), ElementsAre(HasSubstr("it is due 70 s after")));
     EXPECT_THAT(warnings_of("command = \"true\"\nat_s = 70"), ElementsAre(HasSubstr("it is asked 70 s after")));
+    EXPECT_THAT(warnings_of("what = \"fix within 300 s of outage\""),
+                ElementsAre("[[expect]] 'fix within 300 s of outage' may stay undecided: it has until 320 s after the "
+                            "start of the run, which ends after 60 s"));
     for (const char* met : {"fix at 60 s", "fix from 50 s to 60 s", "no fix throughout outage",
-                            "fix within 300 s of outage", "no fix within 2 s of stall",
+                            "fix within 40 s of outage", "no fix within 2 s of stall",
                             "no fix within 2 s of the end of hangs", "fix always", "fix until outage", "no fix never"})
         EXPECT_THAT(warnings_of(fmt::format("what = \"{}\"", met)), IsEmpty()) << met;
 }

@@ -229,6 +229,21 @@ TEST(JudgeTimes, AnEpochOfBeforeTheEventDoesNotFulfilIt) {
               passed);
 }
 
+TEST(JudgeTimes, WithinNeedsAnEpochInThatTime) {
+    const Verdict none =
+        SeenRun("fix within 0.5 s of outage").epochs(8, 10).begins(10.2, "outage").epochs(11, 14).end(20);
+    EXPECT_EQ(none.outcome, failed);
+    EXPECT_EQ(none.evidence, "did not come true by 0.5 s after outage began: no epoch came in that time");
+    EXPECT_EQ(SeenRun("fix within 0.9 s of outage").epochs(8, 10).begins(10.2, "outage").epochs(11, 14).end(20).outcome,
+              passed);
+    EXPECT_EQ(SeenRun("fix 0.5 s after outage").epochs(8, 10).begins(10.2, "outage").epochs(11, 14).end(20).outcome,
+              passed)
+        << "an instant is as the last epoch was";
+    EXPECT_EQ(SeenRun("no fix within 1 s of outage").epochs(1, 4).begins(12, "outage").end(20).outcome, passed)
+        << "a receiver that tells of no epoch all that time has none";
+    EXPECT_EQ(SeenRun("fix within 1 s of outage").epochs(1, 4).begins(12, "outage").end(20).outcome, failed);
+}
+
 TEST(JudgeTimes, EachOccurrenceHasToBeAnswered) {
     SeenRun run("client reconfigures within 1 s of outage");
     run.begins(10, "outage", 1).client(10.4, "CFG-RST").begins(20, "outage", 2).client(20.8, "CFG-RST");
@@ -330,11 +345,30 @@ TEST(JudgeTimes, WindowsAndInstantsByAnEvent) {
               passed);
 }
 
-TEST(JudgeTimes, ARunThatEndsFirstFailsOrLeavesItOpen) {
-    const Verdict within = SeenRun("no fix within 9 s of outage").begins(5, "outage").epochs(5, 9).end(10);
-    EXPECT_EQ(within.outcome, failed);
-    EXPECT_THAT(within.evidence, HasSubstr("the run ended after 10 s, before the time was over"));
-    EXPECT_EQ(SeenRun("fix after the outage for 9 s").begins(5, "outage").epochs(5, 9).end(10).outcome, undecided);
+TEST(JudgeTimes, ARunThatEndsFirstLeavesItOpen) {
+    const Verdict within = SeenRun("no fix within 9 s of outage").epochs(1, 4).begins(5, "outage").epochs(5, 9).end(10);
+    EXPECT_EQ(within.outcome, undecided);
+    EXPECT_EQ(within.evidence, "the run ended after 10 s, before the time was over; it had not come true (seen: 3d)");
+    EXPECT_EQ(SeenRun("no fix within 9 s of outage")
+                  .epochs(1, 4)
+                  .begins(5, "outage")
+                  .epochs(5, 9)
+                  .epoch(9.5, no_fix)
+                  .end(10)
+                  .outcome,
+              passed);
+    EXPECT_EQ(SeenRun("receiver sends GGA within 9 s of outage")
+                  .epochs(1, 4)
+                  .begins(5, "outage")
+                  .epochs(5, 9)
+                  .end(10)
+                  .outcome,
+              undecided);
+    EXPECT_EQ(SeenRun("no fix within 5 s of outage").epochs(1, 4).begins(5, "outage").epochs(5, 9).end(10).outcome,
+              failed)
+        << "its time was over";
+    EXPECT_EQ(SeenRun("fix after the outage for 9 s").epochs(1, 4).begins(5, "outage").epochs(5, 9).end(10).outcome,
+              undecided);
     EXPECT_EQ(SeenRun("fix at 30 s").epochs(1, 9).end(10).outcome, undecided);
     EXPECT_EQ(SeenRun("fix from 20 s to 30 s").epochs(1, 9).end(10).outcome, undecided);
 }
