@@ -29,7 +29,7 @@ std::vector<ParameterSpec> beginning_keys() {
     return {
         text_parameter("name", "", "what messages and other entries call it; else its kind, with a number"),
         number_parameter("at_s", std::nullopt, 0, longest_s, "when it begins, seconds after the start of the run"),
-        text_parameter("at_utc", "", "when it begins, ISO 8601 in UTC"),
+        text_parameter("at_utc", "", "when it begins, ISO 8601, in UTC where no zone stands behind"),
         numbers_parameter("between_s", std::nullopt, bounds, "it begins at a random time within these, by the seed"),
         text_parameter("after", "", "the name of an entry from whose beginning its times count"),
         text_parameter("after_end_of", "", "the name of a fault from whose end its times count"),
@@ -131,7 +131,7 @@ std::optional<Trigger> trigger(const Parameters& keys, std::vector<ParameterMist
 std::optional<GpsTime> utc(const Parameters& keys, std::vector<ParameterMistake>& mistakes) {
     const std::string text = keys.text("at_utc");
     if (text.empty()) return std::nullopt;
-    const auto time = parse_utc(text);
+    const auto time = parse_instant(text);
     if (time) return to_gps_time(*time, LeapSeconds::announced());
     mistakes.push_back({"at_utc", time.error().message});
     return std::nullopt;

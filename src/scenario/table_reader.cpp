@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "skyloop/base/spelling.hpp"
 
@@ -120,13 +121,18 @@ std::optional<std::string> TableReader::utc(std::string_view key) {
     const toml::node* node = find(key);
     if (!node) return std::nullopt;
     if (const auto* written = node->as_string()) return written->get();
-    const auto* found = node->as_date_time();
-    if (!found) return wrong_type(key, *node, "a date with a time, in UTC"), std::nullopt;
-    const toml::date_time& t = found->get();
-    if (t.offset && t.offset->minutes != 0)
-        return mistake(key, "has an offset from UTC; expected UTC, ending in Z"), std::nullopt;
-    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:09}Z", t.date.year, t.date.month, t.date.day, t.time.hour,
-                       t.time.minute, t.time.second, t.time.nanosecond);
+    toml::date_time t;
+    if (const auto* day = node->as_date())
+        t = toml::date_time(day->get(), toml::time());
+    else if (const auto* found = node->as_date_time())
+        t = found->get();
+    else
+        return wrong_type(key, *node, "a date with a time, in UTC"), std::nullopt;
+    const int minutes = t.offset ? t.offset->minutes : 0, size = std::abs(minutes);
+    return fmt::format(
+        "{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:09}{}", t.date.year, t.date.month, t.date.day, t.time.hour,
+        t.time.minute, t.time.second, t.time.nanosecond,
+        minutes == 0 ? "Z" : fmt::format("{}{:02}:{:02}", minutes < 0 ? '-' : '+', size / 60, size % 60));
 }
 
 void TableReader::texts(std::string_view key, std::vector<std::string>& values) {

@@ -101,7 +101,7 @@ public:
                                                std::span<const double> standard = {});
     /// [latitude, longitude] or [latitude, longitude, height]: degrees, metres above the ellipsoid.
     std::optional<Geodetic> place(std::string_view key);
-    /// A UTC time as ISO 8601 text, given as a text or as a TOML date and time.
+    /// An instant as parse_instant() reads it, given as a text, or as a TOML date with or without a time.
     std::optional<std::string> utc(std::string_view key);
     /// One of the given words; gives its index.
     /// @param standard the word that stands for an absent key, for the catalogue of keys alone

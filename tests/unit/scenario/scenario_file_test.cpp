@@ -205,6 +205,9 @@ TEST(ScenarioFile, AStartIsUtcInEveryForm) {
     EXPECT_EQ(start("2024-03-05T12:00:00+00:00"), noon);
     EXPECT_EQ(start("2024-03-05T12:00:00"), noon) << "a local date and time is read as UTC";
     EXPECT_EQ(start("2024-03-05 12:00:00.125"), noon + std::chrono::milliseconds(125));
+    EXPECT_EQ(start("2024-03-05T14:00:00+02:00"), noon) << "a zone is taken away";
+    EXPECT_EQ(start("2024-03-05T08:29:59.5-03:30"), noon - std::chrono::milliseconds(500));
+    EXPECT_EQ(start("2024-03-05"), noon - std::chrono::hours(12)) << "a day is its midnight";
     const Scenario now = scenario_of("[run]\nstart = \"now\"");
     EXPECT_TRUE(now.run.start_now);
     EXPECT_FALSE(now.run.start);

@@ -149,6 +149,9 @@ TEST(ScenarioTimeline, WhatNeverHappensInThisRunIsRefused) {
         HasSubstr("[[command]] 'note': at_utc is 2024-03-05T11:00:00.000Z, before the start of the run; expected "
                   "2024-03-05T12:00:00.000Z or later"));
     EXPECT_THAT(refusal_of(note + "2024-03-05T12:00:00Z\n", start), IsEmpty());
+    EXPECT_THAT(refusal_of(note + "2024-03-05T14:00:00+02:00\n", start), IsEmpty());
+    EXPECT_THAT(refusal_of(note + "2024-03-05T13:30:00+02:00\n", start), HasSubstr("2024-03-05T11:30:00.000Z, before"));
+    EXPECT_THAT(refusal_of(note + "\"2024-03-05T14:00:00+02:00\"\n", start), IsEmpty());
 }
 
 TEST(ScenarioTimeline, WhatIsDueAfterTheEndIsWarnedOf) {
