@@ -28,6 +28,10 @@ void read_live(TableReader& table, PlaceReader& places, TrajectorySettings& traj
     table.quantity("delay_s", live.delay, {0, 10});
     table.quantity("lost_after_s", live.lost_after, {0.1, 1e7});
     live.when_lost = static_cast<LostSource>(table.choice("when_lost", ends, ends[0]).value_or(0));
+    if (live.source.starts_with("ardupilot-json:") && !live.origin)
+        places.warn(live.source +
+                    ": [trajectory] has no origin; places in metres from the physics are refused, and only those with "
+                    "latitude, longitude and altitude are taken: expected origin = SITL's --home");
     trajectory = live;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenario_keys.hpp"
@@ -21,6 +22,7 @@ public:
 
     // `key` = [lat, lon, height], or `key`_level = [x, y, z].
     std::optional<Geodetic> read(TableReader& table, const std::string& key);
+    void warn(std::string sentence) { warnings_.push_back(std::move(sentence)); }
 
 private:
     void warn_beyond_reach(const Position<Level>& point);

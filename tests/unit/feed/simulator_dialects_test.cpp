@@ -231,6 +231,35 @@ TEST(ArdupilotJsonDialect, ReadsThePhysicsAnswer) {
     expect_pose(angles.samples[0], {1e-9, 1e-6, 1e-9, 1e-9, 0, true, false});
 }
 
+TEST(ArdupilotJsonDialect, TakesThePlaceOnTheEarthWhereTheAnswerHasOne) {
+    const auto dialect = dialect_named("ardupilot-json");
+    const auto answer = [&](const std::string& more) {
+        return hear_text(*dialect, fmt::format("{{\"timestamp\":4.125,\"latitude\":{},\"longitude\":{},\"altitude\":{},"
+                                               "\"imu\":{{\"gyro\":[0.1,0.2,0.3]}},\"attitude\":[{},{},{}],"
+                                               "\"velocity\":[3,4,-2]{}}}\n",
+                                               Pose::latitude, Pose::longitude, Pose::height, radians(Pose::roll),
+                                               radians(Pose::pitch), radians(Pose::yaw), more));
+    };
+    for (const char* more : {"", ",\"position\":[1000,2000,-30]"}) {
+        const FeedNews news = answer(more);
+        ASSERT_EQ(news.samples.size(), 1u) << news.refusal;
+        expect_pose(news.samples[0], {1e-9, 1e-6, 1e-9, 1e-9, 1e-12, true, true});
+    }
+    EXPECT_THAT(hear_text(*dialect, "{\"timestamp\":1,\"latitude\":48,\"longitude\":11}\n").refusal,
+                HasSubstr("\"altitude\""));
+}
+
+TEST(ArdupilotJsonDialect, OfAnglesAndAQuaternionTheQuaternionCounts) {
+    FeedContext context;
+    context.origin = Geodetic::degrees(Pose::latitude, Pose::longitude, 500);
+    const auto sample = hear_text(*dialect_named("ardupilot-json", context),
+                                  "{\"timestamp\":1,\"position\":[0,0,0],\"attitude\":[0,0,0],"
+                                  "\"quaternion\":[0.7071067811865476,0,0,0.7071067811865476]}\n")
+                            .samples.at(0);
+    ASSERT_TRUE(sample.attitude);
+    EXPECT_NEAR(sample.attitude->yaw().deg(), 90, 1e-9);
+}
+
 TEST(ArdupilotJsonDialect, TheMapIsTheScenariosToChoose) {
     FeedContext context;
     context.origin = Geodetic::degrees(Pose::latitude, Pose::longitude, 500);

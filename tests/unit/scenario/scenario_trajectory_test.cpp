@@ -100,6 +100,18 @@ waypoint = [{ at_level = [0, 0, 0] }, { at_level = [0, -50, 10] }]
     expect_near(from_odessa(std::get<WaypointSettings>(path.trajectory).corners.at(1).place), {50, 0, 10});
 }
 
+TEST(ScenarioTrajectory, WarnsOfAPhysicsLinkWithoutAnOrigin) {
+    const auto warnings = [](const std::string& live) {
+        return scenario_of("[trajectory]\nkind = \"live\"\n" + live).warnings;
+    };
+    const std::string physics = "source = \"ardupilot-json:9002,127.0.0.1:9012\"\n";
+    EXPECT_THAT(warnings(physics),
+                testing::ElementsAre(HasSubstr("ardupilot-json:9002,127.0.0.1:9012: [trajectory] has "
+                                               "no origin")));
+    EXPECT_THAT(warnings(physics + "origin = [-35, 149, 600]\n"), IsEmpty());
+    EXPECT_THAT(warnings("source = \"udp-json:29990\"\n"), IsEmpty());
+}
+
 TEST(ScenarioTrajectory, WarnsOfPointsBeyondTheReachOfAPlane) {
     const std::string frame(level_at_odessa);
     const auto warnings = [&](const std::string& point, const std::string& more = "") {
