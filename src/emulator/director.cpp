@@ -162,16 +162,21 @@ void Director::carry_out(const Command& command, std::string_view name, const Sc
     }
 }
 
-// A fault that is under way does not begin a second time, and what is not cannot end.
+// A fault that is under way does not begin a second time, what is not cannot end, and what nobody has named does
+// neither.
 std::string Director::ignored_because(const Command& command) const {
     const std::string name = command.parameters.text("fault");
     if (command.verb == CommandVerb::stop_fault && faults_to_stop(name).empty())
         return name.empty() ? "no fault is under way" : name + " is not under way";
     if (command.verb != CommandVerb::start_fault || begins_new_fault(command)) return {};
     const auto& entries = timeline_.entries();
-    for (std::size_t i = 0; i < entries.size(); ++i)
-        if (!acts_[i].command && entries[i].name == name && timeline_.is_under_way(i)) return name + " is under way";
-    return {};
+    bool known = name.empty();  // all of them
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        if (acts_[i].command || entries[i].name != name) continue;
+        if (timeline_.is_under_way(i)) return name + " is under way";
+        known = true;
+    }
+    return known ? std::string() : "no fault is called " + name;
 }
 
 firmware::ReceiverEvent Director::receiver_event(const Command& command) {

@@ -19,6 +19,7 @@ Emulator::Emulator(Parts parts, GpsTime start)
                                                       [this](const BeliefSeen& seen) { parts_.director.show(seen); }});
     for (Station& station : parts_.stations)
         station.start(start);
+    if (parts_.feeds) parts_.director.add_observer(parts_.feeds.get());
     if (parts_.feeds) parts_.feeds->begin(start, parts_.pacer->due_at(start));
 }
 

@@ -257,6 +257,12 @@ std::string LiveFeeds::waits_for() const {
     return names;
 }
 
+void LiveFeeds::on_command(const CommandSeen& seen) {
+    if (seen.ignored.empty() || seen.command.source != "feed") return;
+    const std::string speaker = sources_.size() == 1 ? sources_.front()->feed->description() : "a live source";
+    news_.push_back(fmt::format("{}: {} is not done: {}", speaker, command_name(seen.command.verb), seen.ignored));
+}
+
 void LiveFeeds::note_epoch(GpsTime now) {
     for (const auto& source : sources_)
         for (const auto& path : source->paths)

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "skyloop/base/result.hpp"
+#include "skyloop/fault/run_observer.hpp"
 #include "skyloop/feed/truth_feed.hpp"
 #include "skyloop/geo/geoid.hpp"
 #include "skyloop/scenario/scenario.hpp"
@@ -36,12 +37,12 @@ struct FeedReport {
 /// share it. At most one source leads the run's time.
 ///
 /// State: when each source was last heard, and whether it is lost.
-class LiveFeeds {
+class LiveFeeds : public RunObserver {
 public:
     /// Opens every source that the scenario names and puts its paths into the settings. Null: it names none.
     /// Fails with `usage` for what contradicts itself, with `outside` for what cannot be opened.
     static Result<std::unique_ptr<LiveFeeds>> open(Scenario& scenario, const Geoid* geoid);
-    ~LiveFeeds();
+    ~LiveFeeds() override;
     LiveFeeds(const LiveFeeds&) = delete;
     LiveFeeds& operator=(const LiveFeeds&) = delete;
 
@@ -63,6 +64,8 @@ public:
     void rest(std::uint64_t bytes_out);
     /// Every source that a place waits for has spoken.
     [[nodiscard]] bool all_heard() const;
+    /// What a source has asked for and nothing comes of is told to people: it was checked before anybody knew the run.
+    void on_command(const CommandSeen& seen) override;
     /// Notes how old the truth of an epoch is.
     void note_epoch(GpsTime now);
 

@@ -220,6 +220,15 @@ TEST(Director, SaysThatNothingIsThereToStop) {
     EXPECT_THAT(run->witness.ignored, ElementsAre("quiet is not under way", "no fault is under way"));
 }
 
+TEST(Director, SaysThatAFaultThatIsToBeginIsNotThere) {
+    const auto run = directed("[[fault]]\nkind = \"receiver_silent\"\nname = \"quiet\"\nat_s = 1000\n");
+    for (const std::string name : {"zz", "quiet"})
+        ASSERT_TRUE(run->live.push({CommandVerb::start_fault, Parameters({{"fault", name}}), "", "feed"}));
+    run_for(*run, 3s);
+    EXPECT_THAT(run->witness.ignored, ElementsAre("no fault is called zz"));
+    EXPECT_THAT(run->witness.happened, ElementsAre("command start_fault", "command start_fault", "quiet begins"));
+}
+
 TEST(Director, StopsWhatWasBegunAtTheSameInstant) {
     const auto run = directed("");
     begin_live(*run, "quiet");

@@ -101,6 +101,19 @@ TEST_F(LiveFeedsTest, ASecondSilenceBeforeTheEndOfAnOutageGoesOnWithIt) {
     EXPECT_EQ(ended->verb, CommandVerb::stop_fault);
 }
 
+TEST_F(LiveFeedsTest, WhatASourceAsksForInVainIsTold) {
+    open("realtime");
+    const auto told_of = [&](const std::string& asks, const std::string& ignored) {
+        const Command command{CommandVerb::start_fault, Parameters({{"fault", std::string("zz")}}), "", asks};
+        feeds_->on_command({start_, "start_fault", command, ignored});
+        return feeds_->take_news();
+    };
+    EXPECT_THAT(told_of("feed", "no fault is called zz"),
+                testing::ElementsAre(testing::HasSubstr(": start_fault is not done: no fault is called zz")));
+    EXPECT_THAT(told_of("http", "no fault is called zz"), testing::IsEmpty()) << "who asked has been told";
+    EXPECT_THAT(told_of("feed", ""), testing::IsEmpty());
+}
+
 TEST_F(LiveFeedsTest, AnOutageInRealTimeEndsAtOnce) {
     open("realtime");
     say(10);
