@@ -26,12 +26,10 @@ PowerState wanted_after(std::uint64_t orders) { return (orders & 1) != 0 ? Power
 Result<std::unique_ptr<PowerSwitch>> PowerSwitch::start(Parts parts) {
     std::unique_ptr<PowerSwitch> one(new PowerSwitch(std::move(parts)));
     // Libraries of USB start threads of their own, too.
-    Result<std::unique_ptr<Actuator>> actuator;
-    with_signals_held_back([&] { actuator = one->parts_.open(); });
-    if (!actuator) return fail(actuator.error());
-    one->actuator_ = std::move(*actuator);
+    Result<void> opened;
+    with_signals_held_back([&] { opened = one->open(); });
+    if (!opened) return fail(opened.error());
     one->description_ = one->actuator_->description();
-    one->actuator_->ask_while_cutting([self = one.get()] { return !self->is_outdated(PowerState::cut); });
     if (const auto restored = one->actuator_->restore(); !restored) return fail(restored.error());
     with_signals_held_back([&] { one->thread_ = std::thread([self = one.get()] { self->work(); }); });
     return one;
@@ -70,7 +68,22 @@ void PowerSwitch::work() {
     actuator_.reset();
 }
 
+// What has come back by itself has not been without power for as long as the scenario says.
+void PowerSwitch::look_at_cut() {
+    const auto cut_at = std::exchange(cut_at_, std::nullopt);
+    if (!cut_at || !actuator_) return;
+    const auto state = actuator_->state();
+    if (!state || *state != PowerState::on) return;
+    const std::chrono::duration<double> after = SwitchClock::now() - *cut_at;
+    const std::lock_guard lock(told_mutex_);
+    ++counts_.failures;
+    news_.push_back(
+        fmt::format("the power came back by itself: it was on again {:.1f} s after its cut, before it was restored",
+                    after.count()));
+}
+
 void PowerSwitch::follow(PowerState wanted) {
+    if (wanted == PowerState::on) look_at_cut();
     const auto begin = SwitchClock::now();
     const Result<void> done = try_repeatedly(wanted);
     const std::chrono::duration<double, std::milli> took = SwitchClock::now() - begin;
@@ -103,19 +116,27 @@ Result<void> PowerSwitch::try_repeatedly(PowerState wanted) {
         if (done) break;
         actuator_.reset();  // what is plugged in again needs a fresh one
     }
+    if (done && wanted == PowerState::cut) cut_at_ = SwitchClock::now();
     if (!done || wanted == PowerState::cut) return done;
     known_on_ = true;
     if (parts_.watchdog != nullptr) parts_.watchdog->note_restored(parts_.ward);
     return done;
 }
 
+Result<void> PowerSwitch::open() {
+    auto opened = parts_.open();
+    if (!opened) return fail(opened.error());
+    actuator_ = std::move(*opened);
+    actuator_->ask_while_cutting([this] { return !is_outdated(PowerState::cut); });
+    if (parts_.watchdog != nullptr)
+        actuator_->tell_process_groups(
+            [this](std::optional<int> group) { parts_.watchdog->note_group(parts_.ward, group); });
+    return {};
+}
+
 Result<void> PowerSwitch::try_once(PowerState wanted) {
-    if (!actuator_) {
-        auto opened = parts_.open();
-        if (!opened) return fail(opened.error());
-        actuator_ = std::move(*opened);
-        actuator_->ask_while_cutting([this] { return !is_outdated(PowerState::cut); });
-    }
+    if (!actuator_)
+        if (auto opened = open(); !opened) return opened;
     return wanted == PowerState::cut ? actuator_->cut() : actuator_->restore();
 }
 

@@ -24,11 +24,18 @@ namespace {
 struct WatchdogNote {
     char what = 0;
     std::uint32_t ward = 0;
+    std::int32_t group = 0;  // of processes; 0: none
 };
-constexpr char noted_cut = 'c', noted_restored = 'r';
+constexpr char noted_cut = 'c', noted_restored = 'r', noted_group = 'g';
 
 constexpr int tries_to_restore = 5;
 constexpr std::chrono::milliseconds between_tries{300};  // a hub may take that long to come back
+
+// What the program left behind of a ward.
+struct WardLeft {
+    bool cut = false;
+    pid_t group = 0;  // of the command that was at work on it
+};
 
 void leave_the_program(int socket) {
     ::setsid();
@@ -50,24 +57,48 @@ void leave_the_program(int socket) {
     ::close_range(kept + 1, ~0U, 0);
 }
 
-// What is cut when the program is gone.
-std::vector<bool> follow_notes(int socket, std::size_t wards) {
-    std::vector<bool> cut(wards);
+// How things stand when the program is gone.
+std::vector<WardLeft> follow_notes(int socket, std::size_t wards) {
+    std::vector<WardLeft> left(wards);
     for (;;) {
         WatchdogNote note;
         const ssize_t size = ::recv(socket, &note, sizeof(note), 0);
         if (size < 0 && errno == EINTR) continue;
-        if (size != static_cast<ssize_t>(sizeof(note))) return cut;
-        if (note.ward < wards) cut[note.ward] = note.what == noted_cut;
+        if (size != static_cast<ssize_t>(sizeof(note))) return left;
+        if (note.ward >= wards) continue;
+        if (note.what == noted_group)
+            left[note.ward].group = note.group;
+        else
+            left[note.ward].cut = note.what == noted_cut;
     }
+}
+
+// A command that outlives the program would cut the power after it has been restored.
+void end_group(pid_t group) {
+    constexpr std::chrono::milliseconds look_every{10};
+    // Not for ever: where nobody reaps orphans, as in many a container, their group stays.
+    constexpr int most_looks = 100;
+    ::kill(-group, SIGKILL);
+    for (int i = 0; i < most_looks && ::kill(-group, 0) == 0; ++i)
+        std::this_thread::sleep_for(look_every);
+}
+
+// Restored, and still so when what was under way before has had its time.
+Result<void> restore_for_good(const std::string& uri) {
+    const auto actuator = open_actuator(uri);
+    if (!actuator) return fail(actuator.error());
+    if (auto done = (*actuator)->restore(); !done) return done;
+    std::this_thread::sleep_for(between_tries);
+    const auto state = (*actuator)->state();
+    if (state && *state == PowerState::cut) return fail(ErrorCode::outside, "it was cut again by something else");
+    return {};
 }
 
 void restore_ward(const std::string& uri) {
     std::string reason;
     for (int i = 0; i < tries_to_restore; ++i) {
         if (i > 0) std::this_thread::sleep_for(between_tries);
-        const auto actuator = open_actuator(uri);
-        const Result<void> done = actuator ? (*actuator)->restore() : Result<void>(fail(actuator.error()));
+        const Result<void> done = restore_for_good(uri);
         if (done) return fmt::print(stderr, "skyloop: power {}: restored, as the run had not done so\n", uri);
         reason = done.error().message;
     }
@@ -77,9 +108,11 @@ void restore_ward(const std::string& uri) {
 [[noreturn]] void watch_over(int socket, const std::vector<std::string>& wards) noexcept {
     leave_the_program(socket);
     constexpr int kept = 3;
-    const std::vector<bool> cut = follow_notes(kept, wards.size());
+    const std::vector<WardLeft> left = follow_notes(kept, wards.size());
+    for (const WardLeft& ward : left)
+        if (ward.cut && ward.group > 0) end_group(ward.group);
     for (std::size_t i = 0; i < wards.size(); ++i)
-        if (cut[i]) restore_ward(wards[i]);
+        if (left[i].cut) restore_ward(wards[i]);
     ::_exit(0);
 }
 
@@ -103,8 +136,8 @@ PowerWatchdog::~PowerWatchdog() {
     }
 }
 
-bool PowerWatchdog::note(char what, std::size_t ward) const {
-    const WatchdogNote note{what, static_cast<std::uint32_t>(ward)};
+bool PowerWatchdog::note(char what, std::size_t ward, int group) const {
+    const WatchdogNote note{what, static_cast<std::uint32_t>(ward), group};
     return ::send(socket_, &note, sizeof(note), MSG_NOSIGNAL) == static_cast<ssize_t>(sizeof(note));
 }
 
@@ -115,5 +148,9 @@ Result<void> PowerWatchdog::note_cut(std::size_t ward) {
 }
 
 void PowerWatchdog::note_restored(std::size_t ward) { static_cast<void>(note(noted_restored, ward)); }
+
+void PowerWatchdog::note_group(std::size_t ward, std::optional<int> group) {
+    static_cast<void>(note(noted_group, ward, group.value_or(0)));
+}
 
 }  // namespace skyloop

@@ -49,16 +49,18 @@ public:
                     fmt::format("'{}' printed '{}'; expected on or cut", commands_.state.front(), said));
     }
     void ask_while_cutting(std::function<bool()> wanted) override { cut_wanted_ = std::move(wanted); }
+    void tell_process_groups(ProcessGroupListener listener) override { group_listener_ = std::move(listener); }
     [[nodiscard]] std::string description() const override { return fmt::format("command {}", commands_.cut.front()); }
 
 private:
     // What it printed.
-    static Result<std::string> run(const std::vector<std::string>& command, std::function<bool()> cancelled = {}) {
+    Result<std::string> run(const std::vector<std::string>& command, std::function<bool()> cancelled = {}) {
         ProcessRequest request;
         request.command = command;
         request.timeout = command_patience;
         request.output_limit = 4096;
         request.cancelled = std::move(cancelled);
+        request.group = group_listener_;
         const auto done = run_process(request);
         if (!done) return fail(done.error());
         if (done->exit_code == 0) return done->output;
@@ -83,6 +85,7 @@ private:
 
     SwitchCommands commands_;
     std::function<bool()> cut_wanted_;
+    ProcessGroupListener group_listener_;
 };
 
 }  // namespace

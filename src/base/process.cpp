@@ -132,6 +132,7 @@ Result<void> RunningProcess::start() {
     if (error != 0)
         return fail(ErrorCode::outside,
                     fmt::format("cannot start '{}': {}", request_.command.front(), std::strerror(error)));
+    if (request_.group) request_.group(child_);
     output_.close_write();
     errors_.close_write();
     for (const int end : {output_.read, errors_.read})
@@ -205,6 +206,7 @@ void RunningProcess::end_group() {
     if (child_ < 0) return;
     const bool over = is_over();
     ::kill(-child_, SIGKILL);
+    if (request_.group) request_.group(std::nullopt);
     int status = 0;
     while (::waitpid(child_, &status, 0) < 0 && errno == EINTR) {
     }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "skyloop/base/process.hpp"
 #include "skyloop/base/result.hpp"
 
 namespace skyloop {
@@ -26,6 +27,9 @@ public:
     /// Whether an order to cut is still wanted may be asked while it is being carried out: one that takes long then
     /// ends early, and fails. Called before any order.
     virtual void ask_while_cutting(std::function<bool()> wanted) { static_cast<void>(wanted); }
+    /// Where orders are carried out by other programs: whom to tell their process group when one begins, and nothing
+    /// when it has been ended. Called before any order.
+    virtual void tell_process_groups(ProcessGroupListener listener) { static_cast<void>(listener); }
     /// For people: "relay 1 of USBRelay2 (16c0:05df at 1-1.2)".
     [[nodiscard]] virtual std::string description() const = 0;
 };

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,7 +21,7 @@ namespace skyloop {
 /// What a switch has done.
 struct PowerCounts {
     std::uint64_t cuts = 0, restores = 0;  ///< that succeeded
-    std::uint64_t failures = 0;            ///< orders that were not carried out, after several tries
+    std::uint64_t failures = 0;            ///< orders not carried out, after several tries; cuts that did not last
     double slowest_ms = 0;                 ///< of one order, its further tries among it
 };
 
@@ -57,8 +59,10 @@ public:
 
 private:
     explicit PowerSwitch(Parts parts) : parts_(std::move(parts)) {}
+    [[nodiscard]] Result<void> open();
     void work();
     void follow(PowerState wanted);
+    void look_at_cut();
     [[nodiscard]] bool is_outdated(PowerState wanted) const;
     Result<void> try_once(PowerState wanted);
     [[nodiscard]] Result<void> try_repeatedly(PowerState wanted);
@@ -69,6 +73,7 @@ private:
     std::unique_ptr<Actuator> actuator_;  // of the thread alone once that runs; null: to be opened anew
     bool known_on_ = true;                // likewise
     std::uint64_t followed_ = 0;          // likewise: orders, that which is being carried out among them
+    std::optional<std::chrono::steady_clock::time_point> cut_at_{};  // likewise: since a cut succeeded
     // Orders alternate, so that their number says everything: odd, and a cut is wanted. The top bit ends the thread.
     std::atomic<std::uint64_t> orders_{0};
     mutable std::mutex told_mutex_;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,13 @@ public:
     Result<void> note_cut(std::size_t ward);
     /// After it has been restored.
     void note_restored(std::size_t ward);
+    /// The process group of a command that works on the ward; nothing: none does any more. What is left of it when the
+    /// program is gone is killed before the ward is restored, lest it cut the power afterwards.
+    void note_group(std::size_t ward, std::optional<int> group);
 
 private:
     PowerWatchdog(int child, int socket) : child_(child), socket_(socket) {}
-    [[nodiscard]] bool note(char what, std::size_t ward) const;
+    [[nodiscard]] bool note(char what, std::size_t ward, int group = 0) const;
 
     int child_;
     int socket_;

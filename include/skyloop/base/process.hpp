@@ -12,6 +12,10 @@
 
 namespace skyloop {
 
+/// Hears the number of a process group when it has begun; nothing once it has been killed, before the number can become
+/// another's.
+using ProcessGroupListener = std::function<void(std::optional<int> group)>;
+
 /// What is run, and how far it may go.
 struct ProcessRequest {
     std::vector<std::string> command;        ///< a program, sought in PATH, and its arguments; at least the program
@@ -22,6 +26,7 @@ struct ProcessRequest {
     /// enough, the process is killed.
     std::function<bool(std::string_view)> line{};
     std::function<bool()> cancelled{};  ///< asked some fifty times a second; true: the process is killed
+    ProcessGroupListener group{};
 };
 
 /// How it ended.

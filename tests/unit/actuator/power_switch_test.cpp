@@ -25,8 +25,9 @@ struct Hardware {
     int opened = 0;
     int failing_cuts = 0, failing_restores = 0, failing_opens = 0;  // of the next
     std::atomic<bool> slow{false};
-    std::atomic<int> begun{0};        // orders
-    std::counting_semaphore<> go{0};  // a slow order waits for it
+    std::atomic<bool> comes_back{false};  // its state is on, whatever it was told
+    std::atomic<int> begun{0};            // orders
+    std::counting_semaphore<> go{0};      // a slow order waits for it
 
     Result<void> carry_out(const std::string& order, int& failing) {
         ++begun;
@@ -50,7 +51,9 @@ public:
     explicit PlayedActuator(Hardware& hardware) : hardware_(hardware) {}
     Result<void> cut() override { return hardware_.carry_out("cut", hardware_.failing_cuts); }
     Result<void> restore() override { return hardware_.carry_out("on", hardware_.failing_restores); }
-    Result<std::optional<PowerState>> state() override { return std::optional<PowerState>(); }
+    Result<std::optional<PowerState>> state() override {
+        return hardware_.comes_back ? std::optional(PowerState::on) : std::nullopt;
+    }
     [[nodiscard]] std::string description() const override { return "a played relay"; }
 
 private:
@@ -146,6 +149,22 @@ TEST(PowerSwitch, AFailureIsToldAndCountedAndTheEndRestores) {
     (*power)->finish();  // the state is not known: an order may have arrived whose answer did not
     EXPECT_THAT((*power)->take_news(), ElementsAre("the power was not restored: no answer in time"));
     EXPECT_EQ((*power)->counts().failures, 2U);
+}
+
+TEST(PowerSwitch, ACutThatDidNotLastIsAFailure) {
+    Hardware hardware;
+    const auto power = switch_on(hardware);
+    ASSERT_TRUE(power);
+    (*power)->want(PowerState::cut);
+    EXPECT_TRUE(eventually([&] { return (*power)->counts().cuts == 1; }));
+    hardware.comes_back = true;
+    (*power)->want(PowerState::on);
+    EXPECT_TRUE(eventually([&] { return (*power)->counts().restores == 1; }));
+    EXPECT_THAT((*power)->take_news(), ElementsAre(HasSubstr("the power came back by itself: it was on again 0.")));
+    EXPECT_EQ((*power)->counts().failures, 1U);
+    (*power)->finish();
+    EXPECT_THAT(hardware.seen(), ElementsAre("on", "cut", "on")) << "restored all the same";
+    EXPECT_EQ((*power)->counts().failures, 1U) << "told once";
 }
 
 TEST(PowerSwitch, ACutThatIsNotWantedAnyMoreIsNotTriedAgain) {

@@ -11,6 +11,8 @@
 #include <fstream>
 #include <functional>
 
+#include "skyloop/actuator/actuator_uri.hpp"
+#include "skyloop/actuator/power_switch.hpp"
 #include "told_orders.hpp"
 
 namespace skyloop {
@@ -49,6 +51,40 @@ TEST(PowerWatchdog, RestoresAfterAKill) {
     EXPECT_EQ(by, SIGKILL);
     EXPECT_TRUE(eventually([&] { return text_of(second) == "on\n"; })) << text_of(second);
     EXPECT_EQ(text_of(first), "") << "it had not been cut";
+}
+
+TEST(PowerWatchdog, EndsACutThatIsStillUnderWay) {
+    const test::TemporaryFolder folder;
+    const std::string file = (folder / "state").string();
+    const std::string power = "command:sh -c 'echo begun >>\"$1\"; sleep 1; echo cut >>\"$1\"' - '" + file +
+                              "'|sh -c 'echo on >>\"$1\"' - '" + file + "'";
+    const int by = die_in([&] {
+        const auto watchdog = watch({power});
+        const auto running = PowerSwitch::start({power, [&] { return open_actuator(power); }, watchdog.get(), 0});
+        (*running)->want(PowerState::cut);
+        static_cast<void>(eventually([&] { return text_of(file) == "on\nbegun\n"; }));
+        ::kill(::getpid(), SIGKILL);
+    });
+    EXPECT_EQ(by, SIGKILL);
+    EXPECT_TRUE(eventually([&] { return text_of(file) == "on\nbegun\non\n"; })) << text_of(file);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));  // longer than that cut takes
+    EXPECT_EQ(text_of(file), "on\nbegun\non\n");
+}
+
+TEST(PowerWatchdog, RestoresAgainWhatIsCutBehindItsBack) {
+    const test::TemporaryFolder folder;
+    const std::string file = (folder / "state").string();
+    // The first restore lasts only for a moment.
+    const std::string power =
+        "command:true|sh -c 'test -s \"$1\" || echo cut >>\"$1\"; echo on >>\"$1\".all; test $(wc "
+        "-l <\"$1\".all) = 1 || echo on >>\"$1\"' - '" +
+        file + "'|tail -n 1 '" + file + "'";
+    die_in([&] {
+        const auto watchdog = watch({power});
+        static_cast<void>(watchdog->note_cut(0));
+        ::kill(::getpid(), SIGKILL);
+    });
+    EXPECT_TRUE(eventually([&] { return text_of(file) == "cut\non\n"; })) << text_of(file);
 }
 
 TEST(PowerWatchdog, OutlivesWhatEndsItsProgramInOrder) {
