@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <chrono>
 #include <memory>
 #include <optional>
+#include <thread>
 #include <variant>
 
 #include "commands.hpp"
@@ -28,6 +30,17 @@ std::optional<Error> unaskable(const PowerOptions& options) {
                     options.uri)};
 }
 
+// A hub's port that the kernel has switched on again when what was plugged in had gone.
+Result<void> stays_off(Actuator& actuator, const PowerOptions& options) {
+    const auto uri = parse_actuator_uri(options.uri);
+    if (options.what != "off" || !uri || !std::holds_alternative<HubPortAddress>(*uri)) return {};
+    constexpr std::chrono::seconds until_kernel_has_looked{1};
+    std::this_thread::sleep_for(until_kernel_has_looked);
+    const auto state = actuator.state();
+    if (!state || *state != PowerState::on) return {};
+    return fail(ErrorCode::outside, fmt::format("{}: its power came back by itself", actuator.description()));
+}
+
 int switch_power(const PowerOptions& options) {
     const Messages messages(options.verbosity);
     if (const auto refused = unaskable(options)) return messages.error(*refused);
@@ -37,6 +50,7 @@ int switch_power(const PowerOptions& options) {
     if (options.what == "on") done = (*actuator)->restore();
     if (options.what == "off") done = (*actuator)->cut();
     if (!done) return messages.error(done.error());
+    if (const auto stays = stays_off(**actuator, options); !stays) return messages.error(stays.error());
     const auto state = (*actuator)->state();
     if (!state) return messages.error(state.error());
     const std::string asked = options.what == "off" ? "cut, as far as it was told" : "on, as far as it was told";

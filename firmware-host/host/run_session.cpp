@@ -27,8 +27,12 @@ void ask_to_stop(int) { stop_asked = true; }
 void catch_stop_signals() {
     struct sigaction action {};
     action.sa_handler = ask_to_stop;  // without SA_RESTART, so that a wait ends at once
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    for (const int signal : {SIGINT, SIGTERM})
         sigaction(signal, &action, nullptr);
+    // Whoever has it ignored, as nohup does, wants the program to outlive its terminal.
+    struct sigaction inherited {};
+    if (sigaction(SIGHUP, nullptr, &inherited) != 0 || inherited.sa_handler != SIG_IGN)
+        sigaction(SIGHUP, &action, nullptr);
     // A reader that goes away is a wire that is unplugged, not a reason to die.
     signal(SIGPIPE, SIG_IGN);
 }

@@ -53,7 +53,8 @@ private:
     std::set<std::size_t> noticed_;  // stations whose notice has been said
 };
 
-/// From here on SIGINT, SIGTERM and SIGHUP end a run in order. Called before any port is opened, so that none is left.
+/// From here on SIGINT, SIGTERM and SIGHUP end a run in order, SIGHUP not where it was ignored before. Called before
+/// any port is opened, so that none is left.
 void catch_stop_signals();
 /// One of them has come.
 bool stop_was_asked();

@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <optional>
+#include <type_traits>
 
 #include "switch_parts.hpp"
 
@@ -147,7 +148,36 @@ Result<ActuatorUri> parse_commands(std::string_view uri, std::string_view rest) 
     return SwitchCommands{std::move((*commands)[0]), std::move((*commands)[1]), std::move((*commands)[2])};
 }
 
+bool may_be_one_board(const UsbAddress& a, const UsbAddress& b) {
+    const auto anywhere = [](const UsbAddress& board) { return board.serial.empty() && board.port_path.empty(); };
+    if (a.ids != b.ids) return false;
+    return anywhere(a) || anywhere(b) || (a.serial == b.serial && a.port_path == b.port_path);
+}
+
+bool one_switch(const RelayAddress& a, const RelayAddress& b) {
+    return a.number == b.number && may_be_one_board(a.board, b.board);
+}
+bool one_switch(const GpioAddress& a, const GpioAddress& b) {
+    return a.number == b.number && may_be_one_board(a.board, b.board);
+}
+bool one_switch(const HubPortAddress& a, const HubPortAddress& b) { return a.port_path == b.port_path; }
+// Both lines of a device are one: who has it open has it alone.
+bool one_switch(const ModemLineAddress& a, const ModemLineAddress& b) {
+    std::error_code unknown;
+    return std::filesystem::weakly_canonical(a.device, unknown) == std::filesystem::weakly_canonical(b.device, unknown);
+}
+bool one_switch(const SwitchCommands& a, const SwitchCommands& b) { return a.cut == b.cut && a.restore == b.restore; }
+
 }  // namespace
+
+bool may_be_one_switch(const ActuatorUri& a, const ActuatorUri& b) {
+    return std::visit(
+        [](const auto& x, const auto& y) {
+            if constexpr (std::is_same_v<decltype(x), decltype(y)>) return one_switch(x, y);
+            return false;
+        },
+        a, b);
+}
 
 Result<ActuatorUri> parse_actuator_uri(std::string_view uri) {
     using Parse = Result<ActuatorUri> (*)(std::string_view, std::string_view);

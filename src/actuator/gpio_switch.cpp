@@ -26,6 +26,7 @@ public:
         return fmt::format("pin GP{} of {} ({} at {})", address_.number,
                            info.product.empty() ? "an MCP2221A" : info.product, to_string(info.ids), info.port_path);
     }
+    [[nodiscard]] std::string lock_name() const override { return description(); }
 
 private:
     // What has come for somebody else, another program or another pin of the chip, would be taken for an answer.
@@ -67,7 +68,9 @@ private:
             // From the factory on the pins are clocks, lamps and the like.
             const auto settings = ask(mcp2221::get_settings());
             if (!settings) return fail(settings.error());
-            const auto given = ask(mcp2221::give_to_gpio(*settings, address_.number, high));
+            const auto pins_now = ask(mcp2221::get_pins());
+            if (!pins_now) return fail(pins_now.error());
+            const auto given = ask(mcp2221::give_to_gpio(*settings, *pins_now, address_.number, high));
             if (!given) return fail(given.error());
             level = read_level();
             if (!level) return fail(level.error());

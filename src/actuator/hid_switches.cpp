@@ -44,10 +44,10 @@ namespace mcp2221 {
 namespace {
 
 constexpr std::uint8_t set_gpio = 0x50, get_gpio = 0x51, set_sram = 0x60, get_sram = 0x61;
-constexpr std::size_t gpio_step_set = 4, gpio_step_get = 2, first_pin = 2;  // both begin with command and status
-constexpr std::size_t settings_of_pins = 22;                                // in the answer to get_sram
-constexpr std::size_t alter_pins = 7, new_settings = 8;                     // in set_sram
-constexpr std::uint8_t alter = 0x80, high_output = 0x10;  // an output that is GPIO is otherwise all zeros
+constexpr std::size_t gpio_step_set = 4, gpio_step_get = 2, first_pin = 2;      // both begin with command and status
+constexpr std::size_t dac_setting = 6, adc_setting = 7, settings_of_pins = 22;  // of get_sram
+constexpr std::size_t new_dac_reference = 3, new_adc_reference = 5, alter_pins = 7, new_settings = 8;  // of set_sram
+constexpr std::uint8_t alter = 0x80, duty = 0x07, input = 0x08, high_output = 0x10;  // all zeros: a low output
 
 // One byte more: the id that hidapi wants.
 Bytes command(std::uint8_t code) {
@@ -57,6 +57,19 @@ Bytes command(std::uint8_t code) {
 }
 
 std::size_t at(int number) { return static_cast<std::size_t>(number); }
+
+// Where the settings tell the voltage (two bits) and the source (one bit) of a reference from bit `lowest` on.
+std::uint8_t reference(std::uint8_t setting, int lowest) { return static_cast<std::uint8_t>(setting >> lowest & 7); }
+
+// How a pin is to be set so that it stays as it is. The settings do not show what set_gpio has made of it since.
+std::uint8_t as_it_is(ByteSpan settings, ByteSpan pins_now, int number) {
+    const std::uint8_t setting = settings[settings_of_pins + at(number)];
+    const std::uint8_t value = pins_now[first_pin + gpio_step_get * at(number)];
+    const std::uint8_t direction = pins_now[first_pin + gpio_step_get * at(number) + 1];
+    if ((setting & duty) != 0 || value > 1) return setting;
+    if (direction != 0) return static_cast<std::uint8_t>(setting | input);
+    return value == 1 ? high_output : 0;
+}
 
 }  // namespace
 
@@ -74,11 +87,14 @@ Bytes get_pins() { return command(get_gpio); }
 
 Bytes get_settings() { return command(get_sram); }
 
-Bytes give_to_gpio(ByteSpan settings, int number, bool high) {
+Bytes give_to_gpio(ByteSpan settings, ByteSpan pins_now, int number, bool high) {
     Bytes report = command(set_sram);
+    // Left out, both references would fall back to the supply with any change of the pins (DS20005565, section 1.8).
+    report[1 + new_dac_reference] = alter | reference(settings[dac_setting], 5);
+    report[1 + new_adc_reference] = alter | reference(settings[adc_setting], 2);
     report[1 + alter_pins] = alter;
-    const ByteSpan before = settings.subspan(settings_of_pins, pins);
-    std::copy(before.begin(), before.end(), report.begin() + 1 + new_settings);
+    for (int pin = 0; pin < pins; ++pin)
+        report[1 + new_settings + at(pin)] = as_it_is(settings, pins_now, pin);
     report[1 + new_settings + at(number)] = high ? high_output : 0;
     return report;
 }

@@ -1,25 +1,50 @@
 #include <fmt/format.h>
 
+#include <chrono>
+#include <optional>
+#include <thread>
 #include <utility>
 
+#include "hub_port_claim.hpp"
 #include "skyloop/usb/hub_port_power.hpp"
 #include "switch_parts.hpp"
 
 namespace skyloop {
 namespace {
 
+using HubClock = std::chrono::steady_clock;  // the kernel's hub driver lives by the host's time
+// A hub tells within a quarter of a second that something has gone (its interrupt endpoint is asked that often), and
+// only then would the kernel switch the port on again.
+constexpr std::chrono::seconds until_kernel_has_looked{1};
+
 class HubSwitch : public Actuator {
 public:
     explicit HubSwitch(HubPort port) : port_(std::move(port)) {}
+    // A cut outlives its switch only where the kernel has been kept off until it has looked.
+    ~HubSwitch() override {
+        if (cut_since_ && claim_) std::this_thread::sleep_until(*cut_since_ + until_kernel_has_looked);
+    }
 
-    Result<void> cut() override { return set(PowerState::cut); }
-    Result<void> restore() override { return set(PowerState::on); }
+    Result<void> cut() override {
+        // Before what is plugged in goes. Without it, on old kernels or where another program has it, the port may come
+        // back by itself, which is seen when the cut ends.
+        if (!claim_) claim_ = HubPortClaim::take(port_.hub().node, port_.number());
+        auto done = set(PowerState::cut);
+        if (done) cut_since_ = HubClock::now();
+        return done;
+    }
+    Result<void> restore() override {
+        cut_since_.reset();
+        claim_.reset();  // what comes back wants its driver
+        return set(PowerState::on);
+    }
     Result<std::optional<PowerState>> state() override {
         const auto powered = port_.powered();
         if (!powered) return fail(powered.error());
         return *powered ? PowerState::on : PowerState::cut;
     }
     [[nodiscard]] std::string description() const override { return port_.description(); }
+    [[nodiscard]] std::string lock_name() const override { return description(); }
 
 private:
     Result<void> set(PowerState wanted) {
@@ -32,6 +57,8 @@ private:
         return {};
     }
     HubPort port_;
+    std::unique_ptr<HubPortClaim> claim_;  // while the power is off
+    std::optional<HubClock::time_point> cut_since_;
 };
 
 }  // namespace

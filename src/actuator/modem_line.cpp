@@ -19,6 +19,25 @@ class ModemLineSwitch : public Actuator {
 public:
     ModemLineSwitch(ModemLineAddress address, FileDescriptor device, std::shared_ptr<SerialSystem> system)
         : address_(std::move(address)), device_(std::move(device)), system_(std::move(system)) {}
+    ~ModemLineSwitch() override {
+        termios2 settings{};
+        if (!waited_for_carrier_ || system_->control(device_.value(), TCGETS2, &settings) != 0) return;
+        settings.c_cflag &= ~static_cast<tcflag_t>(CLOCAL);
+        system_->control(device_.value(), TCSETS2, &settings);
+    }
+
+    // From whatever else moves it. False, and errno says why: the device does not allow it.
+    [[nodiscard]] bool take_line() {
+        termios2 settings{};
+        if (system_->control(device_.value(), TCGETS2, &settings) != 0) return false;
+        waited_for_carrier_ = (settings.c_cflag & CLOCAL) == 0;
+        // Closing the device would drop both lines, and lost carrier close it. Given to flow control, RTS would follow
+        // the driver's buffer instead of us. Neither comes back at the end: the level is to stay.
+        settings.c_cflag &= ~static_cast<tcflag_t>(HUPCL);
+        if (address_.line == ModemLineAddress::Line::rts) settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS);
+        settings.c_cflag |= CLOCAL;
+        return system_->control(device_.value(), TCSETS2, &settings) == 0;
+    }
 
     Result<void> cut() override { return set(PowerState::cut); }
     Result<void> restore() override { return set(PowerState::on); }
@@ -53,6 +72,7 @@ private:
     ModemLineAddress address_;
     FileDescriptor device_;
     std::shared_ptr<SerialSystem> system_;
+    bool waited_for_carrier_ = false;  // before it was ours
 };
 
 Error line_error(const ModemLineAddress& address, std::string_view reason) {
@@ -69,14 +89,9 @@ Result<std::unique_ptr<Actuator>> open_modem_line(const ModemLineAddress& addres
     int lines = 0;
     if (system->control(device.value(), TIOCMGET, &lines) != 0)
         return fail(line_error(address, errno == ENOTTY || errno == EINVAL ? "it has none" : std::strerror(errno)));
-    // Otherwise closing the device would drop both lines.
-    termios2 settings{};
-    if (system->control(device.value(), TCGETS2, &settings) != 0)
-        return fail(line_error(address, std::strerror(errno)));
-    settings.c_cflag &= ~static_cast<tcflag_t>(HUPCL);
-    if (system->control(device.value(), TCSETS2, &settings) != 0)
-        return fail(line_error(address, std::strerror(errno)));
-    return std::make_unique<ModemLineSwitch>(address, std::move(device), std::move(system));
+    auto line = std::make_unique<ModemLineSwitch>(address, std::move(device), std::move(system));
+    if (!line->take_line()) return fail(line_error(address, std::strerror(errno)));
+    return line;
 }
 
 Result<std::unique_ptr<Actuator>> open_switch(const ModemLineAddress& address) {

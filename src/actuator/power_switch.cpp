@@ -6,6 +6,7 @@
 #include <chrono>
 #include <utility>
 
+#include "actuator_lock.hpp"
 #include "skyloop/base/signals_held_back.hpp"
 
 namespace skyloop {
@@ -30,10 +31,17 @@ Result<std::unique_ptr<PowerSwitch>> PowerSwitch::start(Parts parts) {
     with_signals_held_back([&] { opened = one->open(); });
     if (!opened) return fail(opened.error());
     one->description_ = one->actuator_->description();
+    if (const std::string name = one->actuator_->lock_name(); !name.empty()) {
+        auto lock = ActuatorLock::take(name);
+        if (!lock) return fail(lock.error());
+        one->lock_ = std::move(*lock);
+    }
     if (const auto restored = one->actuator_->restore(); !restored) return fail(restored.error());
     with_signals_held_back([&] { one->thread_ = std::thread([self = one.get()] { self->work(); }); });
     return one;
 }
+
+PowerSwitch::PowerSwitch(Parts parts) : parts_(std::move(parts)) {}
 
 PowerSwitch::~PowerSwitch() { finish(); }
 

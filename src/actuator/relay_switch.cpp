@@ -46,6 +46,7 @@ public:
         return fmt::format("relay {} of {} ({} at {})", address_.number, info.product, to_string(info.ids),
                            info.port_path);
     }
+    [[nodiscard]] std::string lock_name() const override { return description(); }
 
 private:
     Result<void> set(PowerState wanted) {

@@ -130,9 +130,12 @@ std::unique_ptr<Pacer> make_pacer(const RunMode& mode, GpsTime start, double spe
 
 std::vector<WireEnd> ends_of(const std::vector<PlannedStation>& plans, const Scenario& scenario) {
     std::vector<WireEnd> ends;
-    for (std::size_t i = 0; i < plans.size(); ++i)
+    for (std::size_t i = 0; i < plans.size(); ++i) {
         for (const WireRequest& wire : plans[i].wires)
             ends.push_back(end_of_wire(fmt::format("port of '{}'", receiver_name(scenario, i)), wire.uri));
+        ends.push_back(
+            end_of_power(fmt::format("power of '{}'", receiver_name(scenario, i)), scenario.receivers[i].power));
+    }
     for (const OutputSettings& output : scenario.outputs)
         ends.push_back(end_of_output(output));
     return ends;

@@ -104,12 +104,16 @@ Result<void> check_power(const SharedParts& shared, std::size_t index, std::vect
     const std::string& power = receivers[index].power;
     if (power.empty()) return {};
     const auto refused = [&](Error error) { return fail(at_key("power", std::move(error), receivers[index])); };
-    if (const auto known = parse_actuator_uri(power); !known) return refused(known.error());
-    for (std::size_t i = 0; i < index; ++i)
-        if (receivers[i].power == power)
-            return refused(
-                {ErrorCode::usage, fmt::format("power '{}' is that of {} too; expected an actuator of its own", power,
-                                               receiver_name(shared.scenario, i))});
+    const auto known = parse_actuator_uri(power);
+    if (!known) return refused(known.error());
+    for (std::size_t i = 0; i < index; ++i) {
+        const auto other = parse_actuator_uri(receivers[i].power);
+        if (!other || !may_be_one_switch(*known, *other)) continue;
+        const bool same = receivers[i].power == power;
+        return refused({ErrorCode::usage, fmt::format("power '{}' {} that of {} too{}; expected an actuator of its own",
+                                                      power, same ? "is" : "may be", receiver_name(shared.scenario, i),
+                                                      same ? "" : fmt::format(", '{}'", receivers[i].power))});
+    }
     if (shared.mode.virtual_time)
         warnings.push_back(
             fmt::format("power {}: skyloop run switches it, at the clock's pace; in virtual time nothing "

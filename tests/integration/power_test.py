@@ -26,6 +26,10 @@ for_s = {lasts}
 
 
 class PowerTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)  # whatever started the tests; programs inherit it
+
     def setUp(self):
         self.folder = open_folder()
         self.states = pathlib.Path(self.folder.name, "states")
@@ -72,6 +76,27 @@ class PowerTest(unittest.TestCase):
                 self.assertEqual(emulator.stop(by), 0, emulator.log)
                 self.assertEqual(self.seen(), ["on", "cut", "on"])
                 self.states.unlink()
+
+    def test_a_hang_up_that_is_ignored_ends_nothing(self):
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
+        try:
+            with Emulator(self.write(self.actuator(), at=0.2, lasts=60, duration=100)) as emulator:
+                self.await_states(["on", "cut"])
+                emulator.process.send_signal(signal.SIGHUP)
+                time.sleep(0.5)
+                self.assertIsNone(emulator.process.poll())
+                self.assertEqual(emulator.stop(signal.SIGTERM), 0, emulator.log)
+        finally:
+            signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+    def test_killed_in_the_middle_of_a_cut_the_watchdog_ends_the_cut_first(self):
+        cut = f"sh -c 'echo begun >>\"$1\"; sleep 1; echo cut >>\"$1\"' - '{self.states}'"
+        power = f"command:{cut}|" + self.actuator().split("|")[1]
+        with Emulator(self.write(power, at=0.2, lasts=60, duration=100)) as emulator:
+            self.await_states(["on", "begun"])
+            self.assertEqual(emulator.stop(signal.SIGKILL), -signal.SIGKILL)
+            time.sleep(1.2)  # longer than the cut takes
+            self.assertEqual(self.seen(), ["on", "begun", "on"])
 
     def test_killed_the_watchdog_restores(self):
         with Emulator(self.write(self.actuator(), at=0.2, lasts=60, duration=100)) as emulator:

@@ -222,7 +222,9 @@ public:
                 answer_[3 + 2 * pin] = gpio ? settings_[pin] >> 3 & 1 : 0xEF;
             }
             if (command[0] == 0x60 && (command[7] & 0x80) != 0) settings_[pin] = command[8 + pin];
-            if (command[0] == 0x61) answer_[22 + pin] = settings_[pin];
+            // What command 50 has done does not show here.
+            if (command[0] == 0x60 && (command[7] & 0x80) != 0) told_[pin] = settings_[pin];
+            if (command[0] == 0x61) answer_[22 + pin] = told_[pin];
         }
         return {};
     }
@@ -244,7 +246,7 @@ private:
         settings_[pin] = static_cast<std::uint8_t>((settings_[pin] & ~0x08) | (in != 0 ? 0x08 : 0));
     }
     mutable std::mutex mutex_;
-    std::array<std::uint8_t, 4> settings_{0x02, 0x01, 0x08, 0x00};
+    std::array<std::uint8_t, 4> settings_{0x02, 0x01, 0x08, 0x00}, told_ = settings_;
     Bytes answer_;
 };
 
@@ -288,6 +290,23 @@ TEST(Mcp2221, TakesAPinFromItsOtherDuty) {
     EXPECT_EQ(chip->setting(2), 0x08);
 }
 
+TEST(Mcp2221, LeavesAnotherPinCutThatItSharesTheChipWith) {
+    mock::Testbed bed;
+    const auto chip = std::make_shared<MockMcp2221>();
+    bed.plug_in(converter(), chip);
+    {
+        const auto other = open_actuator("gpio:04d8:00dd/3");  // a GPIO already
+        ASSERT_TRUE(other) << other.error().message;
+        ASSERT_TRUE((*other)->cut());
+        EXPECT_EQ(chip->setting(3), 0x10);
+    }
+    const auto pin = open_actuator("gpio:04d8:00dd/1");  // a clock
+    ASSERT_TRUE(pin) << pin.error().message;
+    ASSERT_TRUE((*pin)->restore());
+    EXPECT_EQ(chip->setting(1), 0x00);
+    EXPECT_EQ(chip->setting(3), 0x10);
+}
+
 // Requests of a hub (USB 2.0, table 11-16).
 class MockHub : public MockDevice {
 public:
@@ -299,8 +318,10 @@ public:
         if (setup.index < 1 || setup.index > 4) return stall();
         const auto bit = static_cast<std::uint8_t>(1U << setup.index);
         if (setup.type == 0x23 && setup.value == 8 && setup.request == 3 && !stuck) powered_ |= bit;
-        if (setup.type == 0x23 && setup.value == 8 && setup.request == 1 && !stuck)
+        if (setup.type == 0x23 && setup.value == 8 && setup.request == 1 && !stuck) {
             powered_ &= static_cast<std::uint8_t>(~bit);
+            claimed_at_cut = claimed.load();
+        }
         if (setup.type == 0x23) return {};
         if (setup.type != 0xa3 || setup.request != 0) return stall();
         return {Status::done, {0, static_cast<std::uint8_t>((powered_ & bit) != 0 ? 1 : 0), 0, 0}};
@@ -309,7 +330,9 @@ public:
         const std::lock_guard lock(mutex_);
         return powered_;
     }
+    void port_claimed(unsigned port, bool now) override { claimed = now ? static_cast<int>(port) : 0; }
     std::atomic<bool> stuck{false};
+    std::atomic<int> claimed{0}, claimed_at_cut{0};  // the port that the kernel's hub driver is kept off
 
 private:
     mutable std::mutex mutex_;
@@ -342,6 +365,29 @@ TEST(HubPort, IsSwitchedAlone) {
     EXPECT_EQ(device->powered(), 0x1e);
     device->stuck = true;
     EXPECT_THAT((*port)->cut().error().message, HasSubstr("did not follow: the hub says its power is on"));
+}
+
+// The driver switches a port on again when what was plugged in has gone, unless it is claimed. Here none does; what is
+// seen is that it would not.
+TEST(HubPort, IsKeptFromTheKernelWhileItIsCut) {
+    mock::Testbed bed;
+    const auto device = std::make_shared<MockHub>(std::uint8_t{0x09});
+    bed.plug_in(hub(), device);
+    auto port = open_actuator("hub:1-3.2");
+    ASSERT_TRUE(port) << port.error().message;
+    EXPECT_EQ(device->claimed, 0);
+    ASSERT_TRUE((*port)->cut());
+    EXPECT_EQ(device->claimed_at_cut, 2) << "before what is plugged in goes";
+    EXPECT_EQ(device->claimed, 2);
+    ASSERT_TRUE((*port)->restore());
+    EXPECT_EQ(device->claimed, 0) << "what comes back wants its driver";
+    ASSERT_TRUE((*port)->cut());
+    const auto begin = std::chrono::steady_clock::now();
+    port->reset();
+    EXPECT_GT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(500))
+        << "the driver looks within a quarter of a second, and afterwards lets it be";
+    EXPECT_EQ(device->claimed, 0);
+    EXPECT_EQ(device->powered(), 0x1a) << "it stays cut";
 }
 
 TEST(HubPort, IsRefusedWhereAllAreSwitchedTogether) {

@@ -51,6 +51,8 @@ public:
     virtual void detach_driver(unsigned /*interface*/) {}
     virtual void attach_driver(unsigned /*interface*/) {}
     virtual void claimed(unsigned /*interface*/, bool /*now*/) {}
+    /// The kernel's hub driver is kept off port N.
+    virtual void port_claimed(unsigned /*port*/, bool /*now*/) {}
 
     std::atomic<bool> present{true};  ///< false: pulled out
 };

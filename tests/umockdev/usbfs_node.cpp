@@ -109,6 +109,10 @@ void UsbfsNode::drivers(UMockdevIoctlClient* client, unsigned request) {
         case static_cast<unsigned>(USBDEVFS_DISCONNECT_CLAIM):
             claim_without_driver(argument);
             return answer(client, 0);
+        case static_cast<unsigned>(USBDEVFS_CLAIM_PORT):
+        case static_cast<unsigned>(USBDEVFS_RELEASE_PORT):
+            device_->port_claimed(number(), request == static_cast<unsigned>(USBDEVFS_CLAIM_PORT));
+            return answer(client, 0);
         case static_cast<unsigned>(USBDEVFS_IOCTL):
             return answer(client, driver_call(argument));
         case static_cast<unsigned>(USBDEVFS_GETDRIVER):

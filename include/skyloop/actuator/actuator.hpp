@@ -32,6 +32,9 @@ public:
     virtual void tell_process_groups(ProcessGroupListener listener) { static_cast<void>(listener); }
     /// For people: "relay 1 of USBRelay2 (16c0:05df at 1-1.2)".
     [[nodiscard]] virtual std::string description() const = 0;
+    /// What is the same for all that open this switch, and for no other switch of the machine. Empty: nothing tells, or
+    /// it is locked in another way.
+    [[nodiscard]] virtual std::string lock_name() const { return {}; }
 };
 
 /// "on" or "cut".

@@ -51,6 +51,10 @@ using ActuatorUri = std::variant<RelayAddress, GpioAddress, HubPortAddress, Mode
 /// sees them. Fails with `usage` and a sentence that quotes the URI.
 Result<ActuatorUri> parse_actuator_uri(std::string_view uri);
 
+/// Whether both may lead to one switch, whatever level cuts there. A board that is named by its ids alone may be any of
+/// them; what one names by its serial number and the other by its port is taken for two.
+bool may_be_one_switch(const ActuatorUri& a, const ActuatorUri& b);
+
 /// Finds the hardware and opens it; switches nothing. Fails with `usage` as parse_actuator_uri(), with `outside` when
 /// the hardware is not there, is another one than it was taken for, or may not be used.
 Result<std::unique_ptr<Actuator>> open_actuator(std::string_view uri);

@@ -50,9 +50,11 @@ Bytes set_pin(int number, bool high);
 Bytes get_pins();
 /// Get SRAM settings (3.1.14).
 Bytes get_settings();
-/// Set SRAM settings (3.1.13): pin `number` is given to its GPIO, an output of this level; the other pins keep what an
-/// answer to get_settings() says of them. @param settings of a length that is_answer() has checked
-Bytes give_to_gpio(ByteSpan settings, int number, bool high);
+/// Set SRAM settings (3.1.13): pin `number` is given to its GPIO, an output of this level. The other pins keep their
+/// duty, level and direction, and the converters their reference voltages, as the answers say.
+/// @param settings answer to get_settings(), of a length that is_answer() has checked
+/// @param pins_now answer to get_pins(), likewise
+Bytes give_to_gpio(ByteSpan settings, ByteSpan pins_now, int number, bool high);
 
 /// A whole report that answers the command, and says that it was carried out.
 bool is_answer(ByteSpan report, std::uint8_t command);

@@ -28,6 +28,8 @@ struct PowerCounts {
 /// How a switch comes by its actuator, and by a fresh one when the first has failed.
 using OpenActuator = std::function<Result<std::unique_ptr<Actuator>>()>;
 
+class ActuatorLock;
+
 /// Switches in a thread of its own, in the order in which it was asked.
 ///
 /// State: what is wanted, what has been reached, the actuator. When it goes, the power is on, or has been tried for.
@@ -39,8 +41,8 @@ public:
         PowerWatchdog* watchdog = nullptr;  ///< outlives the switch; null: nobody restores after a crash
         std::size_t ward = 0;               ///< the switch's place among those of the watchdog
     };
-    /// Opens the actuator and restores, so that a run begins with the power on. Fails as OpenActuator and
-    /// Actuator::restore() do. Waits for the hardware.
+    /// Opens the actuator, keeps other switches off it, and restores, so that a run begins with the power on. Fails as
+    /// OpenActuator and Actuator::restore() do, with `outside` when another switch has it. Waits for the hardware.
     static Result<std::unique_ptr<PowerSwitch>> start(Parts parts);
     ~PowerSwitch();
     PowerSwitch(const PowerSwitch&) = delete;
@@ -58,7 +60,7 @@ public:
     [[nodiscard]] const std::string& description() const { return description_; }
 
 private:
-    explicit PowerSwitch(Parts parts) : parts_(std::move(parts)) {}
+    explicit PowerSwitch(Parts parts);
     [[nodiscard]] Result<void> open();
     void work();
     void follow(PowerState wanted);
@@ -70,6 +72,7 @@ private:
 
     Parts parts_;
     std::string description_;
+    std::unique_ptr<ActuatorLock> lock_;
     std::unique_ptr<Actuator> actuator_;  // of the thread alone once that runs; null: to be opened anew
     bool known_on_ = true;                // likewise
     std::uint64_t followed_ = 0;          // likewise: orders, that which is being carried out among them

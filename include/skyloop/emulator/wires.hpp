@@ -39,6 +39,8 @@ struct WireEnd {
     std::string place;  ///< a path, or a port that is listened at; empty: it is free or may be shared
 };
 WireEnd end_of_wire(const std::string& owner, const std::string& uri);
+/// An actuator: a modem line has its device for itself.
+WireEnd end_of_power(const std::string& owner, const std::string& uri);
 WireEnd end_of_output(const OutputSettings& output);
 
 /// What is wrong where two of them are one place: the second would take it from the first. Fails with `usage`.

@@ -23,6 +23,10 @@ public:
     /// As the hub tells in the status of the port (USB 2.0, table 11-21; USB 3.2, table 10-13). Fails with `outside`.
     Result<bool> powered();
     [[nodiscard]] std::string description() const;
+    /// Of the hub.
+    [[nodiscard]] const UsbDeviceInfo& hub() const { return info_; }
+    /// Counted from 1.
+    [[nodiscard]] int number() const { return port_; }
 
 private:
     HubPort(UsbHandle hub, UsbDeviceInfo info, int port, bool superspeed)

@@ -106,5 +106,29 @@ TEST(OpenActuator, SaysWhatIsNotThere) {
     EXPECT_EQ(no_line.error().message, "cannot use the modem lines of /dev/null: it has none");
 }
 
+bool one_switch_of(std::string_view a, std::string_view b) {
+    const auto first = parse_actuator_uri(a), second = parse_actuator_uri(b);
+    EXPECT_TRUE(first && second) << a << ' ' << b;
+    EXPECT_EQ(may_be_one_switch(*first, *second), may_be_one_switch(*second, *first));
+    return may_be_one_switch(*first, *second);
+}
+
+TEST(ActuatorUri, IsTheSameHoweverItIsWritten) {
+    for (const char* same :
+         {"relay:16C0:05DF/1", "relay:16c0:05df/1,active=power", "relay:16c0:05df@1-1/1", "relay:16c0:05df:HURTM/1"})
+        EXPECT_TRUE(one_switch_of("relay:16c0:05df/1", same)) << same;
+    for (const char* other : {"relay:16c0:05df/2", "relay:16c0:05de/1", "gpio:16c0:05df/1", "hub:1-1"})
+        EXPECT_FALSE(one_switch_of("relay:16c0:05df/1", other)) << other;
+    EXPECT_FALSE(one_switch_of("relay:16c0:05df@1-1/1", "relay:16c0:05df@1-2/1"));
+    EXPECT_FALSE(one_switch_of("gpio:04d8:00dd:A/1", "gpio:04d8:00dd:B/1"));
+    EXPECT_FALSE(one_switch_of("gpio:04d8:00dd:A/1", "gpio:04d8:00dd@1-1/1")) << "the lock of a run tells";
+    EXPECT_TRUE(one_switch_of("hub:1-1.4", "hub:1-1.4"));
+    EXPECT_FALSE(one_switch_of("hub:1-1.4", "hub:1-1.3"));
+    EXPECT_TRUE(one_switch_of("line:/dev/ttyUSB0/rts", "line:/dev/../dev/ttyUSB0/dtr,active=power"));
+    EXPECT_FALSE(one_switch_of("line:/dev/ttyUSB0/rts", "line:/dev/ttyUSB1/rts"));
+    EXPECT_TRUE(one_switch_of("command:a|b", "command: a |'b'|c"));
+    EXPECT_FALSE(one_switch_of("command:a|b", "command:a|c"));
+}
+
 }  // namespace
 }  // namespace skyloop

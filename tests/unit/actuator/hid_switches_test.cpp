@@ -62,13 +62,35 @@ TEST(Mcp2221, GivesAPinToItsGpioAndKeepsTheOthers) {
     Bytes settings(64);
     settings[0] = 0x61;
     settings[22] = 0x02, settings[23] = 0x01, settings[24] = 0x0B, settings[25] = 0x11;
+    Bytes pins(64);
+    pins[0] = 0x51;
+    for (std::size_t i = 2; i < 10; i += 2)
+        pins[i] = 0xEE, pins[i + 1] = 0xEF;
     Bytes expected(65);
     expected[1] = 0x60;
+    expected[4] = expected[6] = 0x80;
     expected[8] = 0x80;
     expected[9] = 0x02, expected[10] = 0x10, expected[11] = 0x0B, expected[12] = 0x11;
-    EXPECT_EQ(mcp2221::give_to_gpio(settings, 1, true), expected);
+    EXPECT_EQ(mcp2221::give_to_gpio(settings, pins, 1, true), expected);
     expected[10] = 0;
-    EXPECT_EQ(mcp2221::give_to_gpio(settings, 1, false), expected);
+    EXPECT_EQ(mcp2221::give_to_gpio(settings, pins, 1, false), expected);
+}
+
+TEST(Mcp2221, LeavesLevelsAndReferencesThatTheSettingsDoNotTell) {
+    Bytes settings(64), pins(64);
+    settings[0] = 0x61, pins[0] = 0x51;
+    settings[6] = 0xA0 | 0x1F;                            // the DAC: 2.048 V of its own; 31 at power-up
+    settings[7] = 0x60 | 0x1C;                            // the ADC: 4.096 V of its own; edges
+    settings[22] = 0x00, pins[2] = 1, pins[3] = 0;        // set high since
+    settings[23] = 0x10, pins[4] = 0, pins[5] = 0;        // set low since
+    settings[24] = 0x10, pins[6] = 1, pins[7] = 1;        // made an input since
+    settings[25] = 0x03, pins[8] = 0xEE, pins[9] = 0xEF;  // the one that is wanted
+    const Bytes report = mcp2221::give_to_gpio(settings, pins, 3, true);
+    EXPECT_EQ(Bytes(report.begin() + 9, report.begin() + 13), (Bytes{0x10, 0x00, 0x18, 0x10}));
+    EXPECT_EQ(report[4], 0x85);
+    EXPECT_EQ(report[6], 0x87);
+    EXPECT_EQ(report[3], 0) << "the clock stays as it is";
+    EXPECT_EQ(report[5], 0) << "and the value of the DAC";
 }
 
 TEST(Mcp2221, TellsLevelsOfOutputs) {

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -22,6 +23,7 @@ using testing::SizeIs;
 struct Hardware {
     std::mutex mutex;
     std::vector<std::string> orders;
+    std::string name;  // by which it is locked
     int opened = 0;
     int failing_cuts = 0, failing_restores = 0, failing_opens = 0;  // of the next
     std::atomic<bool> slow{false};
@@ -55,6 +57,7 @@ public:
         return hardware_.comes_back ? std::optional(PowerState::on) : std::nullopt;
     }
     [[nodiscard]] std::string description() const override { return "a played relay"; }
+    [[nodiscard]] std::string lock_name() const override { return hardware_.name; }
 
 private:
     Hardware& hardware_;
@@ -210,6 +213,22 @@ TEST(PowerSwitch, LeavesOutPairsOfOrdersThatItCannotFollow) {
     hardware.slow = false;
     (*power)->finish();
     EXPECT_EQ(hardware.seen().back(), "on");
+}
+
+TEST(PowerSwitch, HasItsHardwareForItselfAlone) {
+    Hardware hardware, other;
+    hardware.name = "played relay 1 of process " + std::to_string(::getpid());
+    other.name = "played relay 2 of process " + std::to_string(::getpid());
+    auto first = switch_on(hardware);
+    ASSERT_TRUE(first);
+    EXPECT_TRUE(switch_on(other)) << "it is another one";
+    const auto second = switch_on(hardware);
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().message,
+              hardware.name + " is switched by another run already, or by another receiver of this one");
+    EXPECT_THAT(hardware.seen(), ElementsAre("on")) << "left alone";
+    first->reset();
+    EXPECT_TRUE(switch_on(hardware));
 }
 
 TEST(PowerSwitch, DoesNotStartWithoutItsHardware) {

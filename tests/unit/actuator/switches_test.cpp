@@ -106,6 +106,21 @@ TEST(ModemLineSwitch, MovesItsLineAlone) {
     EXPECT_EQ((*rts)->description(), "RTS of /dev/ttyUSB0");
 }
 
+TEST(ModemLineSwitch, TakesRtsFromFlowControl) {
+    const auto system = std::make_shared<PlayedLines>();
+    system->settings.c_cflag = CRTSCTS | CREAD;
+    {
+        const auto rts = open_modem_line({"/dev/ttyUSB0", ModemLineAddress::Line::rts, ActiveLevel::cuts}, system);
+        ASSERT_TRUE(rts) << rts.error().message;
+        EXPECT_EQ(system->settings.c_cflag, static_cast<tcflag_t>(CREAD | CLOCAL)) << "lost carrier is nothing to it";
+    }
+    EXPECT_EQ(system->settings.c_cflag, static_cast<tcflag_t>(CREAD)) << "flow control would move the line";
+    system->settings.c_cflag = CRTSCTS | CREAD;
+    const auto dtr = open_modem_line({"/dev/ttyUSB0", ModemLineAddress::Line::dtr, ActiveLevel::cuts}, system);
+    ASSERT_TRUE(dtr);
+    EXPECT_EQ(system->settings.c_cflag, static_cast<tcflag_t>(CRTSCTS | CREAD | CLOCAL));
+}
+
 TEST(ModemLineSwitch, MayPowerWhileAsserted) {
     const auto system = std::make_shared<PlayedLines>();
     const auto dtr = open_modem_line({"/dev/ttyUSB0", ModemLineAddress::Line::dtr, ActiveLevel::powers}, system);

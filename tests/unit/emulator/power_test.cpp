@@ -107,5 +107,20 @@ TEST(Power, IsRefusedBeforeAnythingIsOpened) {
                                                       R"(of its own)"));
 }
 
+TEST(Power, OfTwoReceiversIsNotOneHoweverItIsWritten) {
+    const auto told = [](const std::string& text) {
+        const auto assembly = assemble(emulator_scenario(text), emulator_data(), against_the_clock());
+        return assembly ? "accepted" : assembly.error().message;
+    };
+    EXPECT_THAT(told(receiver_with("a", "relay:16c0:05df/1") + receiver_with("b", "relay:16C0:05DF/1,active=power")),
+                HasSubstr("power 'relay:16C0:05DF/1,active=power' may be that of a too, 'relay:16c0:05df/1'; expected "
+                          "an actuator of its own"));
+    const std::string line = "[[receiver]]\nname = \"a\"\nport = \"serial:/dev/no-such-tty\"\n";
+    EXPECT_THAT(told(line + "power = \"line:/dev/../dev/no-such-tty/rts\"\n"),
+                HasSubstr("power of 'a' 'line:/dev/../dev/no-such-tty/rts' is where port of 'a' "
+                          "'serial:/dev/no-such-tty' goes; expected another place"));
+    EXPECT_THAT(told(line + receiver_with("b", "line:/dev/no-such-tty/dtr")), HasSubstr("expected another place"));
+}
+
 }  // namespace
 }  // namespace skyloop
