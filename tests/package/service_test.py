@@ -36,9 +36,11 @@ class Unit(unittest.TestCase):
         self.assertEqual((value("PrivateDevices"), value("RestrictRealtime")), (["no"], ["no"]))
         self.assertGreaterEqual(int(value("LimitRTPRIO")[0]), 10)  # src/emulator/thread_priority.cpp asks for 10
         self.assertEqual(value("LimitMEMLOCK"), ["infinity"])
-        devices = " ".join(value("DeviceAllow"))
-        for device in ("ttyS", "ttyUSB", "ttyACM", "pts", "/dev/ptmx", "hidraw", "usb_device"):
-            self.assertIn(device, devices)
+        for device in ("char-ttyS", "char-ttyUSB", "char-ttyACM", "char-ttyTHS", "char-ttymxc", "char-rfcomm", "char-pts",
+                       "/dev/ptmx", "char-hidraw", "char-usb_device"):
+            self.assertIn(f"{device} rw", value("DeviceAllow"))
+        # A run that restores the power by a command gives it 10 s, three times.
+        self.assertGreater(int(value("TimeoutStopSec")[0]), 30)
         self.assertEqual(value("SupplementaryGroups"), ["dialout plugdev"])
         self.assertNotIn("@", self.text.replace("@system-service", "").replace("@privileged", ""))  # all names were filled in
 
