@@ -75,14 +75,25 @@ std::string DeviceEntry::port() const {
     const bool carries_bytes = profile.kind == DeviceKind::bridge || profile.kind == DeviceKind::receiver ||
                                profile.kind == DeviceKind::autopilot;
     if (!carries_bytes || profile.transport == DeviceTransport::none) return {};
+    // A comma would end the serial number in the URI.
+    const bool serial_names_it =
+        !usb->serial.empty() && !serial_is_shared && usb->serial.find(',') == std::string::npos;
     const UsbAddress address =
-        usb->serial.empty() ? UsbAddress{usb->ids, {}, usb->port_path} : UsbAddress{usb->ids, usb->serial, {}};
+        serial_names_it ? UsbAddress{usb->ids, usb->serial, {}} : UsbAddress{usb->ids, {}, usb->port_path};
     return std::string(device_transport_name(profile.transport)) + ':' + to_string(address);
 }
 
 DeviceEntry look_up_device(const UsbDeviceInfo& usb, std::span<const DeviceProfile> profiles,
                            const SystemFolders& folders) {
     return {usb, match_device(profiles, usb), nodes_of_usb(usb, folders)};
+}
+
+void mark_shared_serials(std::span<DeviceEntry> devices) {
+    for (DeviceEntry& device : devices)
+        device.serial_is_shared = std::any_of(devices.begin(), devices.end(), [&](const DeviceEntry& other) {
+            return &other != &device && device.usb && other.usb && other.usb->ids == device.usb->ids &&
+                   other.usb->serial == device.usb->serial;
+        });
 }
 
 std::vector<DeviceEntry> own_serial_lines(const SystemFolders& folders) {
@@ -117,6 +128,7 @@ Result<std::vector<DeviceEntry>> list_devices(std::span<const DeviceProfile> pro
     std::stable_sort(all.begin(), all.end(), [](const DeviceEntry& a, const DeviceEntry& b) {
         return earlier_port(a.usb->port_path, b.usb->port_path);
     });
+    mark_shared_serials(all);
     for (DeviceEntry& line : own_serial_lines(folders))
         all.push_back(std::move(line));
     return all;

@@ -35,8 +35,9 @@ void DeviceWatch::settle(std::vector<DeviceNews>& news) {
             ++waiting;
             continue;
         }
-        there_.push_back(device);
-        news.push_back({true, std::move(device)});
+        there_.push_back(std::move(device));
+        mark_shared_serials(there_);
+        news.push_back({true, there_.back()});
         waiting = settling_.erase(waiting);
     }
 }

@@ -52,6 +52,7 @@ struct DeviceEntry {
     std::optional<UsbDeviceInfo> usb;  ///< none: a serial line of the machine itself
     std::optional<DeviceMatch> known;  ///< its profile stays the caller's
     std::vector<DeviceNode> nodes;     ///< serial lines by interface, then HID nodes, then the device's own
+    bool serial_is_shared = false;     ///< another device that is plugged in has its ids and serial number, too
 
     [[nodiscard]] bool is_hub() const;
     /// Its profile's description, else what it tells of itself.
@@ -65,6 +66,8 @@ struct DeviceEntry {
 /// Looks up profile and nodes of a USB device. One that is gone meanwhile has no nodes.
 DeviceEntry look_up_device(const UsbDeviceInfo& usb, std::span<const DeviceProfile> profiles,
                            const SystemFolders& folders = {});
+/// Says of each device whether its serial number is that of another one in the list, as of many cheap devices.
+void mark_shared_serials(std::span<DeviceEntry> devices);
 /// Serial lines of the machine itself with a UART behind them: ttyAMA0, ttyS0, by name.
 std::vector<DeviceEntry> own_serial_lines(const SystemFolders& folders = {});
 /// USB devices by port path, then the machine's own lines. Where the system has no USB the latter alone. Fails with

@@ -170,11 +170,27 @@ TEST_F(PlayedSystem, ADeviceWithoutItsLineIsTold) {
     EXPECT_EQ(entry().port(), "");
 }
 
+TEST_F(PlayedSystem, DevicesOfOneSerialNumberAreNamedByTheirPorts) {
+    profile.transport = DeviceTransport::hid;
+    std::vector<DeviceEntry> devices;
+    for (const auto& [serial, port] : {std::pair{"0001", "1-1"}, {"0001", "1-2"}, {"0002", "1-3"}})
+        devices.push_back(look_up_device({{0x10c4, 0xea80}, "", "", serial, port}, {}, folders));
+    for (DeviceEntry& device : devices)
+        device.known = DeviceMatch{&profile, false};
+    devices.push_back({});  // a line of the machine itself
+    mark_shared_serials(devices);
+    EXPECT_EQ(devices[0].port(), "hid:10c4:ea80@1-1");
+    EXPECT_EQ(devices[1].port(), "hid:10c4:ea80@1-2");
+    EXPECT_EQ(devices[2].port(), "hid:10c4:ea80:0002");
+}
+
 TEST_F(PlayedSystem, AHidBridgeIsNamedBySerialNumberOrPort) {
     profile.transport = DeviceTransport::hid;
     UsbDeviceInfo usb{{0x1546, 0x01a8}, "", "", "00A1", "1-2"};
     EXPECT_EQ(look_up_device(usb, {&profile, 1}, folders).port(), "hid:1546:01a8:00A1");
     usb.serial.clear();
+    EXPECT_EQ(look_up_device(usb, {&profile, 1}, folders).port(), "hid:1546:01a8@1-2");
+    usb.serial = "A,1";  // a URI would end it at the comma
     EXPECT_EQ(look_up_device(usb, {&profile, 1}, folders).port(), "hid:1546:01a8@1-2");
     profile.kind = DeviceKind::relay;  // carries no bytes
     EXPECT_EQ(look_up_device(usb, {&profile, 1}, folders).port(), "");
