@@ -152,7 +152,7 @@ std::optional<Bytes> CdcAcmDevice::standard(const UsbSetup& setup) {
         case set_configuration:
             return done(to == device && configure(setup.value));
         case set_interface:
-            return done(to == interface && known_interface && setup.value == 0);
+            return done(to == interface && known_interface && setup.value == 0 && begin_anew(setup.index));
         case set_feature:
         case clear_feature:
             return done(to == endpoint && set_halt(setup, setup.request == set_feature));
@@ -171,7 +171,7 @@ std::optional<Bytes> CdcAcmDevice::status(const UsbSetup& setup) const {
             return std::nullopt;
         case 2:
             if ((setup.index & 0x7F) == 0) return Bytes{0, 0};
-            if (const auto endpoint = endpoint_of(setup.index))
+            if (const auto endpoint = endpoint_of(setup.index); endpoint && configured_)
                 return Bytes{static_cast<std::uint8_t>(halted_[*endpoint]), 0};
             return std::nullopt;
         default:
@@ -196,8 +196,15 @@ std::optional<Bytes> CdcAcmDevice::descriptor(const UsbSetup& setup) const {
 
 bool CdcAcmDevice::set_halt(const UsbSetup& setup, bool halted) {
     const auto endpoint = endpoint_of(setup.index);
-    if (!endpoint || setup.value != endpoint_halt) return false;
+    if (!configured_ || !endpoint || setup.value != endpoint_halt) return false;
     halted_[*endpoint] = halted;
+    return true;
+}
+
+// An interface that is set begins with its endpoints (USB 2.0, 9.1.1.5).
+bool CdcAcmDevice::begin_anew(std::uint16_t interface) {
+    if (interface == 0) halted_[notify_in] = false;
+    if (interface == 1) halted_[data_out] = halted_[data_in] = false;
     return true;
 }
 

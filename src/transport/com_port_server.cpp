@@ -27,6 +27,9 @@ constexpr std::uint8_t transmitter_empty = 64 | 32;
 constexpr std::uint32_t least_baud = 50, most_baud = 12'000'000;
 constexpr std::size_t most_sub_bytes = 128;
 constexpr std::size_t most_answer_bytes = 65536;
+// Of commands that are followed at one call: a client that floods must not hold the loop. Clients send some ten at
+// once.
+constexpr int most_telnet_commands = 64;
 
 }  // namespace
 
@@ -60,8 +63,9 @@ std::size_t ComPortServer::receive(ByteSpan bytes) {
         held_ = false;
         finish_sub();
     }
+    followed_ = 0;
     std::size_t taken = 0;
-    while (taken < bytes.size() && !held_)
+    while (taken < bytes.size() && !held_ && followed_ < most_telnet_commands)
         take(bytes[taken++]);
     return taken;
 }
@@ -124,6 +128,7 @@ void ComPortServer::take_sub(std::uint8_t byte) {
 // A client whose own request met our offer on the way says nothing more of the option (pyserial does not): its first
 // command is an agreement, too.
 void ComPortServer::finish_sub() {
+    ++followed_;
     if (sub_too_long_ || sub_.size() < 2 || sub_[0] != com_port) return;
     agree();
     carry_out(sub_[1], ByteSpan(sub_).subspan(2));
@@ -137,6 +142,7 @@ ComPortServer::Option* ComPortServer::known(std::uint8_t option) {
 
 // Only a change is answered: RFC 854, "The Network Virtual Terminal", and RFC 1143.
 void ComPortServer::negotiate(std::uint8_t verb, std::uint8_t option) {
+    ++followed_;
     Option* const mine = known(option);
     const bool wanted = verb == will || verb == ask_do;
     const bool about_theirs = verb == will || verb == wont;
@@ -239,15 +245,16 @@ void ComPortServer::control(std::uint8_t value) {
                     static_cast<std::uint8_t>(state ? ask + 1 : ask + 2));
     };
     constexpr std::uint8_t ask_break = 4, ask_dtr = 7, ask_rts = 10, ask_inbound = 13, last_inbound = 16;
-    if (value < ask_break) {
-        if (value != 0) settings_.flow = value;
+    // Flow control by DCD (17), DTR (18, inbound) or DSR (19) the port does not have: the answer says what it has.
+    constexpr std::uint8_t by_dcd = 17, by_dsr = 19;
+    if (value < ask_break || value == by_dcd || value == by_dsr) {
+        if (value != 0 && value < ask_break) settings_.flow = value;
         return answer_byte(com_command::of_server + com_command::set_control, settings_.flow);
     }
     if (value < ask_dtr) return line(settings_.sends_break, ask_break);
     if (value < ask_rts) return line(settings_.dtr, ask_dtr);
     if (value < ask_inbound) return line(settings_.rts, ask_rts);
     if (value <= last_inbound && value != ask_inbound) settings_.inbound_flow = value;
-    // Flow control by DCD, DTR or DSR, 17 to 19, the port does not have: the answer says what it has.
     answer_byte(com_command::of_server + com_command::set_control, settings_.inbound_flow);
 }
 

@@ -96,6 +96,13 @@ Result<std::unique_ptr<Transport>> as_transport(Result<std::unique_ptr<Wire>> wi
 
 }  // namespace
 
+std::vector<std::string_view> port_shapes() {
+    std::vector<std::string_view> shapes;
+    for (const Scheme& scheme : schemes)
+        shapes.push_back(scheme.shape);
+    return shapes;
+}
+
 Result<PortUri> parse_port_uri(std::string_view uri) {
     PortUri port;
     if (uri == "-") return port.kind = WireKind::standard_output, port;

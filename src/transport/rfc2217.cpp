@@ -34,8 +34,11 @@ void Rfc2217Transport::follow() {
         if (server_->connections() != met_) meet_client();
         unparsed_ = std::move(fresh);
     }
-    const std::size_t taken = port_.receive(unparsed_);
-    unparsed_.erase(unparsed_.begin(), unparsed_.begin() + static_cast<std::ptrdiff_t>(taken));
+    parsed_ += port_.receive(ByteSpan(unparsed_).subspan(parsed_));
+    if (parsed_ == unparsed_.size()) {
+        unparsed_.clear();
+        parsed_ = 0;
+    }
     if (server_->connections() != met_ || waiting_.size() > most_bytes_waiting) return;
     const Bytes answers = port_.take_answers();
     waiting_.insert(waiting_.end(), answers.begin(), answers.end());
@@ -50,7 +53,8 @@ void Rfc2217Transport::send_waiting() {
 
 std::size_t Rfc2217Transport::write(ByteSpan bytes) {
     follow();
-    if (!server_->line().connected) return bytes.size();
+    // Nor is anything for a next client that is not met yet: its options come first.
+    if (!server_->line().connected || server_->connections() != met_) return bytes.size();
     if (port_.settings().suspended || !waiting_.empty()) return 0;
     std::size_t left = server_->write(ComPortServer::escaped(bytes));
     std::size_t taken = 0;

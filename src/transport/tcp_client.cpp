@@ -45,7 +45,7 @@ Result<std::unique_ptr<TcpClientTransport>> TcpClientTransport::open(const TcpAd
     if (address.port == 0)
         return fail(ErrorCode::usage, fmt::format("tcp-connect {}: port 0 cannot be called; expected 1 to 65535",
                                                   shown_address(address)));
-    auto found = look_up(address, "tcp", false);
+    auto found = look_up(address, "tcp-connect", false);
     if (!found) return fail(found.error());
     auto route = std::make_unique<Route>();
     route->all = std::move(*found);

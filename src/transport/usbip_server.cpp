@@ -31,6 +31,7 @@ struct UsbipTransport::Visitor {
     std::int64_t until_ns = 0;
     Bytes heard, answer;
     bool answered = false;
+    bool looked_at = false;  // what it may have said has been read
 };
 
 struct UsbipTransport::Importer {
@@ -84,7 +85,7 @@ void UsbipTransport::follow() {
 }
 
 void UsbipTransport::accept_visitors(std::int64_t now_ns) {
-    while (visitors_.size() < most_visitors) {
+    while (visitors_.size() < most_visitors || make_room()) {
         auto connection = listener_->accept();
         if (!connection) return;
         visitors_.push_back(std::make_unique<Visitor>());
@@ -93,10 +94,22 @@ void UsbipTransport::accept_visitors(std::int64_t now_ns) {
     }
 }
 
+// Who comes and says nothing must not keep the others out. False: nobody waits, or all have said something.
+bool UsbipTransport::make_room() {
+    if (!listener_->any_waits()) return false;
+    const auto silent = std::find_if(visitors_.begin(), visitors_.end(), [](const auto& visitor) {
+        return visitor->looked_at && visitor->heard.empty() && !visitor->answered;
+    });
+    if (silent == visitors_.end()) return false;
+    visitors_.erase(silent);
+    return true;
+}
+
 // False when nothing is left to do with it.
 bool UsbipTransport::serve(Visitor& visitor, std::int64_t now_ns) {
     const int socket = visitor.connection.socket.value();
     StreamState state = receive_available(socket, visitor.heard, most_request_bytes);
+    visitor.looked_at = true;
     if (!visitor.answered && !answer_request(visitor)) return false;
     const std::size_t count = send_available(socket, visitor.answer, state);
     visitor.answer.erase(visitor.answer.begin(), visitor.answer.begin() + static_cast<std::ptrdiff_t>(count));

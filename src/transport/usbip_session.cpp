@@ -11,7 +11,8 @@ namespace {
 constexpr std::int64_t bus_bytes_per_ms = 19 * 64, ns_per_ms = 1'000'000;
 // What the bus may catch up after a late look.
 constexpr std::int64_t most_budget = 20 * bus_bytes_per_ms;
-constexpr std::int64_t silence_of_listener_ns = 100 * ns_per_ms;
+// Without a read; a terminal that is closed lets DTR fall.
+constexpr std::int64_t silence_of_listener_ns = 5'000 * ns_per_ms, silence_with_dtr_ns = 30'000 * ns_per_ms;
 constexpr std::size_t most_pending = 256;  // transfers; Linux has 16 each way and one for the line's state
 // Of commands that are followed at one look: a client that floods must not hold the loop. Linux sends a dozen at most
 // in the millisecond between two looks.
@@ -39,9 +40,7 @@ void UsbipSession::sent(std::size_t count) {
     sent_ = 0;
 }
 
-bool UsbipSession::overwhelmed() const {
-    return output().size() >= most_output || pending() >= most_pending || out_bytes_ >= usbip_most_data;
-}
+bool UsbipSession::overwhelmed() const { return output().size() >= most_output || out_bytes_ >= usbip_most_data; }
 
 void UsbipSession::follow_commands() {
     for (int i = 0; i < most_commands && mistake_.empty() && !overwhelmed(); ++i) {
@@ -71,6 +70,8 @@ void UsbipSession::act(UsbipSubmit submit) {
                            ? submit.endpoint == CdcAcmDevice::data_in || submit.endpoint == CdcAcmDevice::notify_in
                            : submit.endpoint == CdcAcmDevice::data_out;
     if (!known || !device_.configured()) return answer(submit, UsbipStatus::stalled);
+    // Waiting for room instead would keep its cancelling, and endpoint 0, from being heard.
+    if (pending() >= most_pending) return answer(submit, UsbipStatus::no_memory);
     if (submit.endpoint == CdcAcmDevice::notify_in) {
         notify_.push_back(std::move(submit));
     } else if (submit.to_host) {
@@ -169,8 +170,10 @@ void UsbipSession::follow_listening(std::int64_t now_ns) {
     const bool closing = dtr_seen_ && !device_.dtr();
     dtr_seen_ = dtr_seen_ || device_.dtr();
     if (!in_.empty()) return;
-    // A reader that is slow has let its transfers end, and has yet to submit the next.
-    if (closing || (idle_since_ && now_ns - *idle_since_ >= silence_of_listener_ns)) stop_listening();
+    // A reader that is slow has let its transfers end, and has yet to submit the next; one that reads now and then has
+    // cancelled its last.
+    const std::int64_t patience_ns = device_.dtr() ? silence_with_dtr_ns : silence_of_listener_ns;
+    if (closing || (idle_since_ && now_ns - *idle_since_ >= patience_ns)) stop_listening();
 }
 
 // A next listener never reads what this one has left.

@@ -83,6 +83,7 @@ private:
     [[nodiscard]] std::optional<Bytes> descriptor(const UsbSetup& setup) const;
     [[nodiscard]] std::optional<Bytes> status(const UsbSetup& setup) const;
     bool set_halt(const UsbSetup& setup, bool halted);
+    bool begin_anew(std::uint16_t interface);
     bool configure(std::uint16_t value);
 
     Bytes device_, configuration_;

@@ -44,7 +44,7 @@ public:
     /// among the answers. Data stays.
     void begin();
     /// Takes bytes from the client; gives how many. It stops where the client changes the speed while data of the old
-    /// one has not been taken.
+    /// one has not been taken, and behind 64 commands.
     std::size_t receive(ByteSpan bytes);
     /// What the client has written for the device.
     Bytes take_data() { return std::exchange(data_, {}); }
@@ -89,6 +89,7 @@ private:
     std::uint8_t verb_ = 0;
     Bytes sub_;
     bool sub_too_long_ = false;
+    int followed_ = 0;   // commands of the present call
     bool held_ = false;  // a change of speed that waits until the data before it has been taken
     Bytes data_, answers_;
 };

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "skyloop/base/result.hpp"
 #include "skyloop/transport/cdc_acm_device.hpp"
@@ -25,6 +26,8 @@ struct PortUri {
     SerialAddress serial{};
     UsbBridgeAddress bridge{};  ///< of usb and hid
 };
+/// "pty[:LINK]" and so on: each kind that has a name, as help texts offer it.
+std::vector<std::string_view> port_shapes();
 /// Fails with `usage` and a sentence that quotes the URI.
 Result<PortUri> parse_port_uri(std::string_view uri);
 

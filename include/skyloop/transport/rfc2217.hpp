@@ -44,9 +44,10 @@ private:
 
     std::unique_ptr<TcpTransport> server_;
     ComPortServer port_;
-    std::uint64_t met_ = 0;  // connections of server_ that the port has begun with
-    Bytes unparsed_;         // of the client, behind a change of speed
-    Bytes waiting_;          // for the client: answers, and the second half of an escaped byte
+    std::uint64_t met_ = 0;   // connections of server_ that the port has begun with
+    Bytes unparsed_;          // of the client, behind a change of speed or many commands
+    std::size_t parsed_ = 0;  // of unparsed_
+    Bytes waiting_;           // for the client: answers, and the second half of an escaped byte
 };
 
 }  // namespace skyloop

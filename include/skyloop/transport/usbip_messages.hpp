@@ -22,8 +22,9 @@ inline constexpr std::size_t usbip_header_bytes = 48;
 /// How a transfer or its cancelling ended, as Linux numbers its errors.
 enum class UsbipStatus : std::int32_t {
     success = 0,
-    stalled = -32,   ///< EPIPE
-    unlinked = -104  ///< ECONNRESET
+    no_memory = -12,  ///< ENOMEM
+    stalled = -32,    ///< EPIPE
+    unlinked = -104   ///< ECONNRESET
 };
 
 /// What a client may ask for before it has imported a device.

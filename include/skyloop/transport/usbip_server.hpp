@@ -58,6 +58,7 @@ private:
     UsbipTransport(TcpListener listener, UsbFace face);
     void follow();
     void accept_visitors(std::int64_t now_ns);
+    bool make_room();
     bool serve(Visitor& visitor, std::int64_t now_ns);
     bool answer_request(Visitor& visitor);
     void import_by(Visitor& visitor);

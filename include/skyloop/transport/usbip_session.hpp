@@ -17,11 +17,12 @@ namespace skyloop {
 ///
 /// Transfers of the serial data end as bytes come and go, at the pace of a full-speed bus: 19 packets of 64 bytes in
 /// each frame of 1 ms, both ways together (USB 2.0, table 5-9). The host listens from its first transfer of data to it
-/// on, until it has cancelled all of them and submitted no other for 0.1 s: a terminal that is open polls all the time
-/// and one that is closed never does. DTR does not count; not every program sets it, and receivers send without it.
+/// on, until it has cancelled all of them and DTR falls, or it has submitted no other for 5 s, with DTR set for 30 s: a
+/// terminal that is open polls all the time and one that is closed never does, but a program may read now and then. DTR
+/// alone does not count; not every program sets it, and receivers send without it.
 ///
-/// All memory is bounded: while the client leaves answers unread, or more transfers wait than a host submits, no more
-/// of its commands are looked at.
+/// All memory is bounded: while the client leaves answers unread no more of its commands are looked at, and a transfer
+/// beyond those that any host submits is answered with an error, so that it can cancel the others.
 class UsbipSession {
 public:
     static constexpr std::size_t most_backlog = 16384;  ///< serial bytes that wait for the host, as a pty keeps

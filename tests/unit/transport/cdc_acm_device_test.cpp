@@ -100,6 +100,26 @@ TEST(CdcAcmDevice, HaltsAndClearsEndpoints) {
     EXPECT_THAT(device.control({from_endpoint, 0, 0, 0x80, 2}, {}).value(), ElementsAre(0, 0)) << "endpoint 0";
 }
 
+TEST(CdcAcmDevice, AnInterfaceThatIsSetBeginsWithItsEndpoints) {
+    CdcAcmDevice device = configured_device();
+    for (const std::uint16_t endpoint : std::initializer_list<std::uint16_t>{0x01, 0x82, 0x83})
+        EXPECT_TRUE(device.control({to_endpoint, 3, 0, endpoint, 0}, {}));
+    EXPECT_TRUE(device.control({to_interface, 11, 0, 1, 0}, {}));
+    EXPECT_FALSE(device.halted(CdcAcmDevice::data_in));
+    EXPECT_FALSE(device.halted(CdcAcmDevice::data_out));
+    EXPECT_TRUE(device.halted(CdcAcmDevice::notify_in)) << "that is the other one's";
+    EXPECT_TRUE(device.control({to_interface, 11, 0, 0, 0}, {}));
+    EXPECT_FALSE(device.halted(CdcAcmDevice::notify_in));
+}
+
+TEST(CdcAcmDevice, HasNoEndpointsBeforeItsConfiguration) {
+    CdcAcmDevice device(ublox_face());
+    EXPECT_TRUE(stalls(device, {to_endpoint, 3, 0, 0x82, 0}));
+    EXPECT_TRUE(stalls(device, {to_endpoint, 1, 0, 0x01, 0}));
+    EXPECT_TRUE(stalls(device, {from_endpoint, 0, 0, 0x82, 2}));
+    EXPECT_THAT(device.control({from_endpoint, 0, 0, 0, 2}, {}).value(), ElementsAre(0, 0)) << "but endpoint 0";
+}
+
 TEST(CdcAcmDevice, KeepsTheLineCoding) {
     CdcAcmDevice device = configured_device();
     EXPECT_FALSE(device.line_coding());

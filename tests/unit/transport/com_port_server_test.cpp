@@ -110,7 +110,9 @@ TEST(ComPortServer, KeepsModemLinesBreakAndFlow) {
     EXPECT_EQ(answer_to(port, 5, {5}), option_of_port(105, {5}));
     EXPECT_EQ(answer_to(port, 5, {3}), option_of_port(105, {3}));
     EXPECT_EQ(answer_to(port, 5, {0}), option_of_port(105, {3}));
-    EXPECT_EQ(answer_to(port, 5, {19}), option_of_port(105, {14})) << "no flow control by DSR";
+    EXPECT_EQ(answer_to(port, 5, {18}), option_of_port(105, {14})) << "no flow control by DTR";
+    EXPECT_EQ(answer_to(port, 5, {17}), answer_to(port, 5, {0})) << "none by DCD, which is of the outbound group";
+    EXPECT_EQ(answer_to(port, 5, {19}), answer_to(port, 5, {0})) << "nor by DSR";
     EXPECT_TRUE(port.settings().dtr && port.settings().rts && port.settings().sends_break);
     answer_to(port, 5, {6});
     answer_to(port, 5, {9});

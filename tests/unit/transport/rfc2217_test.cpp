@@ -126,6 +126,24 @@ TEST(Rfc2217Transport, AClientThatDoesNotReadLosesBytesAndKeepsTheStreamWhole) {
     EXPECT_EQ(heard.find_first_not_of('\xff'), heard.size() - 1);
 }
 
+TEST(Rfc2217Transport, AFloodOfCommandsDoesNotHoldTheLoop) {
+    const auto wire = any_com_port();
+    const TcpPeer client = met_client(*wire);
+    constexpr std::size_t asked = 8 * 64;
+    const std::string answer = modem_lines;
+    for (std::size_t i = 0; i < asked; ++i)
+        client.write(std::string("\xff\xfa\x2c\7\xff\xf0", 6));
+    int looks = 0;
+    std::string heard;
+    while (heard.size() < asked * answer.size() && looks < 1000) {
+        wire->line();
+        ++looks;
+        heard += client.read(64 * answer.size());
+    }
+    EXPECT_EQ(heard.size(), asked * answer.size());
+    EXPECT_GE(looks, 8) << "64 of them at a look";
+}
+
 TEST(Rfc2217Transport, WarnsOffLoopback) {
     EXPECT_TRUE(any_com_port()->take_news().empty());
     const auto open_to_all = Rfc2217Transport::listen({"0.0.0.0", 0});

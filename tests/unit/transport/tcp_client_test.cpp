@@ -91,7 +91,9 @@ TEST(TcpClientTransport, SurvivesAResetWhileItWrites) {
 
 TEST(TcpClientTransport, RefusesWhatCannotBeCalled) {
     EXPECT_EQ(TcpClientTransport::open({"127.0.0.1", 0}).error().code, ErrorCode::usage);
-    EXPECT_EQ(TcpClientTransport::open({"no.such.host.invalid", 2000}).error().code, ErrorCode::outside);
+    const auto unknown = TcpClientTransport::open({"no.such.host.invalid", 2000});
+    EXPECT_EQ(unknown.error().code, ErrorCode::outside);
+    EXPECT_THAT(unknown.error().message, testing::StartsWith("tcp-connect no.such.host.invalid:2000"));
 }
 
 }  // namespace

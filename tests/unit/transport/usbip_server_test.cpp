@@ -118,6 +118,23 @@ TEST(UsbipTransport, IsListedAtAnyTime) {
     EXPECT_EQ(server->imports(), 1U);
 }
 
+TEST(UsbipTransport, SilentVisitorsGiveWay) {
+    const auto server = usbip_server();
+    std::vector<std::unique_ptr<UsbipVisitor>> silent;
+    for (int i = 0; i < 8; ++i)
+        silent.push_back(std::make_unique<UsbipVisitor>(*server));
+    for (int i = 0; i < 50; ++i) {
+        server->line();
+        ::usleep(1000);
+    }
+    UsbipVisitor visitor(*server);
+    visitor.write(list_request);
+    EXPECT_EQ(visitor.read(1000).size(), 332U) << "at once, not when they have been waited for";
+    EXPECT_TRUE(silent.front()->is_closed()) << "the oldest";
+    silent.back()->write(list_request);
+    EXPECT_EQ(silent.back()->read(1000).size(), 332U);
+}
+
 TEST(UsbipTransport, CarriesBytesBothWays) {
     const auto server = usbip_server();
     EXPECT_FALSE(server->line().connected);

@@ -113,10 +113,33 @@ TEST(UsbipSession, StopsListeningWithTheLastPoll) {
     EXPECT_EQ(host.replies().back().status, -104);
     EXPECT_TRUE(host->listening()) << "a program that polls with a timeout does so again soon";
     host->put(to_bytes("stale"));
-    host.run(100 * frame_ms);
+    host.run(4'990 * frame_ms);
+    EXPECT_TRUE(host->listening());
+    host.run(10 * frame_ms);
     EXPECT_FALSE(host->listening());
     host.poll(4);
     EXPECT_TRUE(host.replies().empty()) << "nothing stale";
+}
+
+TEST(UsbipSession, AReaderNowAndThenHearsWhatCameMeanwhile) {
+    HostedSession host;
+    host.configure();
+    host.send(test::set_lines(2, 1));
+    std::uint32_t sequence = 10;
+    for (int i = 0; i < 3; ++i) {
+        host.poll(sequence);
+        host.send(test::unlink(sequence + 1, sequence));  // nothing has come within its patience
+        host.forget();
+        host->put(to_bytes("$GPGGA"));
+        host.run(20'000 * frame_ms);
+        host.poll(sequence + 2);
+        ASSERT_EQ(host.replies().at(0).data, "$GPGGA");
+        sequence += 10;
+    }
+    host.poll(sequence);
+    host.send(test::unlink(sequence + 1, sequence));
+    host.run(30'000 * frame_ms);
+    EXPECT_FALSE(host->listening()) << "as long as DTR is set by a program that has gone";
 }
 
 TEST(UsbipSession, DtrThatFallsEndsListeningAtOnce) {
@@ -236,14 +259,32 @@ TEST(UsbipSession, MemoryIsBoundedByTheHostsPatience) {
     host.configure();
     for (std::uint32_t i = 0; i < 1000; ++i)
         host->hear(test::submit_in(1000 + i, CdcAcmDevice::data_in, 64));
-    host.run();
-    EXPECT_LE(host->pending(), 256U);
+    for (int i = 0; i < 5; ++i)
+        host.run();
+    EXPECT_EQ(host->pending(), 256U);
+    EXPECT_EQ(host->output().size(), (1000 - 256) * usbip_header_bytes) << "the others are refused";
     for (int i = 0; i < 100'000 && host->wants_bytes(); ++i) {
         host->hear(test::set_configuration(5));
         host.run();
     }
     EXPECT_FALSE(host->wants_bytes()) << "a host that floods waits";
     EXPECT_LT(host->output().size(), 600'000U);
+}
+
+TEST(UsbipSession, TooManyTransfersDoNotKeepTheRestFromBeingHeard) {
+    HostedSession host;
+    host.configure();
+    for (std::uint32_t i = 0; i < 256; ++i)
+        host.poll(1000 + i);
+    EXPECT_TRUE(host.replies().empty());
+    host.poll(2000);
+    EXPECT_EQ(host.replies().at(0).status, -12);
+    host.send(test::set_lines(3000, 3));
+    EXPECT_EQ(host.replies().at(0).status, 0);
+    host.send(test::unlink(3001, 1000));
+    EXPECT_EQ(host.replies().at(0).status, -104);
+    host.poll(2001);
+    EXPECT_EQ(host->pending(), 256U);
 }
 
 TEST(UsbipSession, AForeignDeviceIsAMistake) {
