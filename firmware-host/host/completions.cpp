@@ -238,10 +238,13 @@ std::string zsh_specs(const CommandRow& command) {
                      single_quoted(fmt::format("{}{}{}", position, option.required ? ":" : "::", value));
         }
         const std::string others = option.repeatable ? "*" : fmt::format("({})", fmt::join(option.names, " "));
+        const bool valued = option.kind != ValueKind::none;
         for (const std::string& name : option.names)
-            specs += " \\\n                " +
-                     single_quoted(fmt::format("{}{}[{}]{}", others, name, zsh_escaped(option.meaning),
-                                               option.kind == ValueKind::none ? "" : ":" + value));
+            // With "=" a value may stand in the same word, as --rate=5, or in the next.
+            specs +=
+                " \\\n                " +
+                single_quoted(fmt::format("{}{}{}[{}]{}", others, name, valued && name.starts_with("--") ? "=" : "",
+                                          zsh_escaped(option.meaning), valued ? ":" + value : ""));
     }
     return specs;
 }

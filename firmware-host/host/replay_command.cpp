@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 
@@ -109,10 +110,9 @@ Action add_replay_command(CLI::App& app) {
     auto options = std::make_shared<ReplayOptions>();
     command->add_option("RECORDING", options->recording, "Folder of run --record or simulate --out, or a file of bytes")
         ->required();
-    command->add_option("--port", options->ports,
-                        "Where the bytes go: pty[:LINK], serial:DEVICE[@BAUD], tcp:[HOST:]PORT, tcp-connect:HOST:PORT, "
-                        "rfc2217:[HOST:]PORT, file:PATH or -; one a "
-                        "recorded port, in order");
+    command->add_option(
+        "--port", options->ports,
+        fmt::format("Where the bytes go: {} or -; one a recorded port, in order", fmt::join(port_shapes(), " ")));
     command->add_option("--speed", options->speed, "Recorded seconds per second")->check(CLI::Range(1e-3, 1e3));
     command->add_option("--from", options->from, "Seconds after the first recorded byte")->check(CLI::Range(0.0, 1e9));
     command->add_option("--duration", options->duration, "Recorded seconds")->check(CLI::Range(1e-3, 1e9));

@@ -14,6 +14,7 @@
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/scenario/scenario_file.hpp"
 #include "skyloop/time/utc_time.hpp"
+#include "skyloop/transport/open_transport.hpp"
 
 namespace skyloop::host {
 namespace {
@@ -213,11 +214,9 @@ void add_run_options(CLI::App& command, RunOptions& options) {
     command.add_option("--rate", options.rate, "Navigation rate at start, Hz");
     command
         .add_option("--port", options.ports,
-                    "Where the bytes go: pty[:LINK] serial:DEVICE[@BAUD] usb:VID:PID[:SERIAL] hid:VID:PID[:SERIAL] "
-                    "usbip:[HOST:]PORT tcp:[HOST:]PORT tcp-connect:HOST:PORT "
-                    "rfc2217:[HOST:]PORT file:PATH - client:NAME; "
-                    "NAME=… is the "
-                    "board's port of that name, such as uart2=pty; repeatable")
+                    fmt::format("Where the bytes go: {} - client:NAME; NAME=… is the board's port of that name, such "
+                                "as uart2=pty; repeatable",
+                                fmt::join(port_shapes(), " ")))
         ->allow_extra_args(false);
     command
         .add_option("--output", options.outputs,

@@ -259,6 +259,8 @@ class Zsh(unittest.TestCase):
         self.becomes("skyloop run --rebas", "skyloop run --rebase-nav\n")
         self.becomes("skyloop schema --format mark", "skyloop schema --format markdown\n")
         self.becomes("skyloop run --model whole", "skyloop run --model whole-path\n")
+        self.becomes("skyloop run --model=whole", "skyloop run --model=whole-path\n")
+        self.becomes("skyloop run --board=ublox-f", "skyloop run --board=ublox-f9p\n")
 
     def test_subcommands(self):
         self.becomes("skyloop campaign gath", "skyloop campaign gather\n")
