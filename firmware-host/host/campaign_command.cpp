@@ -11,6 +11,7 @@
 #include "data_folders.hpp"
 #include "run_session.hpp"
 #include "run_watch.hpp"
+#include "skyloop/base/watchdog_process.hpp"
 #include "skyloop/campaign/campaign_worker.hpp"
 
 namespace skyloop::host {
@@ -96,7 +97,10 @@ int serve_as_worker() {
     sigaction(SIGTERM, &action, nullptr);
     signal(SIGPIPE, SIG_IGN);
     const Messages messages({true, false, false});
-    const auto served = serve_runs(std::cin, std::cout, data_folders(), worker_stopped);
+    // Before any thread is. Without it a vehicle would go on behind a worker that is killed, as its leader's end does.
+    const auto watchdog = OrphanWatchdog::start();
+    const auto served =
+        serve_runs(std::cin, std::cout, data_folders(), worker_stopped, watchdog ? (*watchdog)->listener() : nullptr);
     return served ? 0 : messages.error(served.error());
 }
 

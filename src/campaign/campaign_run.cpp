@@ -154,7 +154,7 @@ Result<RunResult> run_of_campaign(const CampaignRunSetup& setup, const PlannedRu
     emulator.add_observer(&metrics);
     std::vector<Verdict> verdicts;
     if (scenario->campaign && scenario->campaign->vehicle) {
-        auto vehicle = run_with_vehicle(*assembly, *scenario->campaign->vehicle, run, stop);
+        auto vehicle = run_with_vehicle(*assembly, *scenario->campaign->vehicle, run, {stop, setup.vehicle_group});
         if (!vehicle) return fail(vehicle.error());
         verdicts.push_back(std::move(*vehicle));
     } else {

@@ -65,7 +65,7 @@ Verdict vehicle_verdict(const ProcessOutcome& outcome, Seconds timeout) {
 }
 
 Result<Verdict> run_with_vehicle(Assembly& assembly, const CampaignVehicle& vehicle, const PlannedRun& run,
-                                 const std::atomic<bool>& stop) {
+                                 const VehicleWatch& watch) {
     Emulator& emulator = *assembly.emulator;
     const std::string description = emulator.wires().front().link.transport().description();
     const std::string pty = description.substr(0, description.rfind(" ("));
@@ -73,7 +73,8 @@ Result<Verdict> run_with_vehicle(Assembly& assembly, const CampaignVehicle& vehi
     const Seconds length = assembly.end ? difference(*assembly.end, assembly.start) : Seconds(0);
     const Seconds timeout = vehicle.timeout > Seconds(0) ? vehicle.timeout : length + grace;
     ProcessRequest request = request_of(vehicle, run, pty, timeout);
-    request.cancelled = [&stop] { return stop.load(); };
+    request.cancelled = [&watch] { return watch.stop.load(); };
+    request.group = watch.process_group;
     std::atomic<bool> over = false;
     Result<ProcessOutcome> outcome = fail(ErrorCode::outside, "vehicle: was not started");
     std::thread beside;

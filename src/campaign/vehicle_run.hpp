@@ -11,12 +11,18 @@
 
 namespace skyloop {
 
+/// Who looks after a vehicle's processes.
+struct VehicleWatch {
+    const std::atomic<bool>& stop;              ///< true: they are killed
+    const ProcessGroupListener& process_group;  ///< may be empty
+};
+
 /// Runs the emulator in real time and the vehicle's command beside it, with the pty's path in the environment as
 /// SKYLOOP_PTY, until the run is over or the vehicle has ended; what is left of the vehicle's time it then has without
 /// a receiver. Its exit code is the verdict: passed for 0, failed for any other, for a signal and when its time is
 /// over.
 Result<Verdict> run_with_vehicle(Assembly& assembly, const CampaignVehicle& vehicle, const PlannedRun& run,
-                                 const std::atomic<bool>& stop);
+                                 const VehicleWatch& watch);
 
 /// What becomes of a vehicle's verdict: of one that failed, with the last line that it wrote to its standard error.
 Verdict vehicle_verdict(const ProcessOutcome& outcome, Seconds timeout);

@@ -240,6 +240,32 @@ def test_mistakes(folder):
     assert "other columns" in other, other
 
 
+def test_a_killed_worker_takes_its_vehicle_along(folder):
+    path = folder / "left.toml"
+    path.write_text(f"""
+[run]
+start = 2024-03-05T12:00:00Z
+duration_s = 20
+[model]
+name = "ideal"
+[campaign]
+seeds = 1
+[campaign.vehicle]
+command = "touch '{folder}/begun.'$$; sleep 4; touch '{folder}/late.'$$"
+""")
+    process = subprocess.Popen([SKYLOOP, "campaign", path, "--out", folder / "left", "--jobs", "1"],
+                               stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    end = time.monotonic() + 30
+    while not list(folder.glob("begun.*")) and time.monotonic() < end:
+        time.sleep(0.05)
+    workers = children_of(process.pid)
+    assert len(workers) == 1, workers
+    os.kill(workers[0], signal.SIGKILL)
+    assert process.wait(timeout=60) == 0, "the run is tried once more"
+    assert len(list(folder.glob("begun.*"))) == 2
+    assert len(list(folder.glob("late.*"))) == 1, "the first vehicle went on"
+
+
 def test_vehicle(folder):
     """A program with a pty of its own, in real time: its exit code is a verdict."""
     path = folder / "vehicle.toml"
@@ -264,7 +290,7 @@ def main():
     with open_folder() as name:
         folder = pathlib.Path(name)
         for test in (test_plan, test_same_bytes, test_database, test_replay, test_shards, test_kills, test_stop,
-                     test_mistakes, test_vehicle):
+                     test_mistakes, test_vehicle, test_a_killed_worker_takes_its_vehicle_along):
             began = time.monotonic()
             test(folder)
             print(f"{test.__name__}: {time.monotonic() - began:.1f} s")

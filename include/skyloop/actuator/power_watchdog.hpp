@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "skyloop/base/result.hpp"
+#include "skyloop/base/watchdog_process.hpp"
 
 namespace skyloop {
 
@@ -20,10 +21,6 @@ public:
     /// Forks: to be called before the program has any other thread. @param wards URIs of open_actuator()
     /// Fails with `outside` when the system has no process to spare.
     static Result<std::unique_ptr<PowerWatchdog>> start(const std::vector<std::string>& wards);
-    /// Lets it go: it restores what is still noted as cut. Waits for its end.
-    ~PowerWatchdog();
-    PowerWatchdog(const PowerWatchdog&) = delete;
-    PowerWatchdog& operator=(const PowerWatchdog&) = delete;
 
     /// Before a ward is cut. Fails with `outside` when the watchdog is gone: then nothing should be cut.
     Result<void> note_cut(std::size_t ward);
@@ -34,11 +31,10 @@ public:
     void note_group(std::size_t ward, std::optional<int> group);
 
 private:
-    PowerWatchdog(int child, int socket) : child_(child), socket_(socket) {}
+    explicit PowerWatchdog(std::unique_ptr<WatchdogProcess> process) : process_(std::move(process)) {}
     [[nodiscard]] bool note(char what, std::size_t ward, int group = 0) const;
 
-    int child_;
-    int socket_;
+    std::unique_ptr<WatchdogProcess> process_;
 };
 
 }  // namespace skyloop
