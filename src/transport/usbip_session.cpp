@@ -185,6 +185,14 @@ void UsbipSession::stop_listening() {
 
 std::size_t UsbipSession::put(ByteSpan bytes) {
     if (!listening_) return bytes.size();
+    if (idle_since_) {
+        // Who reads now and then wants what is new.
+        backlog_.insert(backlog_.end(), bytes.begin(), bytes.end());
+        if (backlog_.size() <= most_backlog) return bytes.size();
+        backlog_.erase(backlog_.begin(), backlog_.end() - static_cast<std::ptrdiff_t>(most_backlog));
+        device_.note_overrun();
+        return bytes.size();
+    }
     const std::size_t taken = std::min(bytes.size(), most_backlog - backlog_.size());
     backlog_.insert(backlog_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(taken));
     if (taken < bytes.size()) device_.note_overrun();

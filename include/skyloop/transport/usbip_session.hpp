@@ -42,7 +42,8 @@ public:
     /// So many of them have been sent.
     void sent(std::size_t count);
 
-    /// Offers serial bytes to the host; gives how many were taken. While it does not listen they are taken and lost.
+    /// Offers serial bytes to the host; gives how many were taken. While it does not listen they are taken and lost;
+    /// between the reads of one that reads now and then all are taken, and the oldest lost that do not fit.
     std::size_t put(ByteSpan bytes);
     /// Serial bytes of the host since the last call.
     Bytes take_received() { return std::exchange(received_, {}); }

@@ -142,6 +142,19 @@ TEST(UsbipSession, AReaderNowAndThenHearsWhatCameMeanwhile) {
     EXPECT_FALSE(host->listening()) << "as long as DTR is set by a program that has gone";
 }
 
+TEST(UsbipSession, AReaderNowAndThenHearsTheNewest) {
+    HostedSession host;
+    host.configure();
+    host.poll(2);
+    host.send(test::unlink(3, 2));
+    host.forget();
+    EXPECT_EQ(host->put(Bytes(100, 'o')), 100U);
+    EXPECT_EQ(host->put(Bytes(UsbipSession::most_backlog - 1, 'n')), UsbipSession::most_backlog - 1);
+    host.run(20 * frame_ms);
+    host.poll(4, CdcAcmDevice::data_in, 65536);
+    EXPECT_EQ(host.replies().at(0).data.substr(0, 3), "onn") << "and one that still fits";
+}
+
 TEST(UsbipSession, DtrThatFallsEndsListeningAtOnce) {
     HostedSession host;
     host.configure();
