@@ -1,8 +1,10 @@
 #include <array>
+#include <boost/asio/write.hpp>
 #include <boost/beast/websocket.hpp>
 #include <charconv>
 #include <chrono>
 #include <optional>
+#include <string_view>
 
 #include "server_core.hpp"
 
@@ -16,6 +18,13 @@ constexpr std::chrono::seconds request_patience{10}, drain_patience{2};
 constexpr std::size_t most_drained_bytes = std::size_t{32} << 20U;
 
 std::string as_string(boost::beast::string_view text) { return {text.data(), text.size()}; }
+
+constexpr std::string_view go_on_answer = "HTTP/1.1 100 Continue\r\n\r\n";
+
+// The client holds its body back until it is told to go on (RFC 9110, section 10.1.1).
+bool waits_to_go_on(const HttpRequest& message) {
+    return message.version() >= 11 && boost::beast::iequals(message[http::field::expect], "100-continue");
+}
 
 ControlRequest control_request(HttpRequest&& message) {
     ControlRequest request;
@@ -61,8 +70,8 @@ public:
         parser_->header_limit(control_header_limit);
         parser_->body_limit(control_body_limit);
         stream_.expires_after(request_patience);
-        http::async_read(stream_, buffer_, *parser_,
-                         boost::beast::bind_front_handler(&HttpSession::on_read, shared_from_this()));
+        http::async_read_header(stream_, buffer_, *parser_,
+                                boost::beast::bind_front_handler(&HttpSession::on_header, shared_from_this()));
     }
 
     /// @param head what is asked for: the body is told of, and not sent
@@ -75,6 +84,22 @@ public:
     }
 
 private:
+    void on_header(error_code error, std::size_t bytes) {
+        if (error) return on_read(error, bytes);
+        if (parser_->is_done() || !waits_to_go_on(parser_->get())) return read_body();
+        if (auto refused = refusal(control_request(HttpRequest(parser_->get())), core_.rules))
+            return write(*refused, false);
+        boost::asio::async_write(stream_, boost::asio::buffer(go_on_answer),
+                                 [self = shared_from_this()](error_code failed, std::size_t) {
+                                     if (!failed) self->read_body();
+                                 });
+    }
+
+    void read_body() {
+        http::async_read(stream_, buffer_, *parser_,
+                         boost::beast::bind_front_handler(&HttpSession::on_read, shared_from_this()));
+    }
+
     void on_read(error_code error, std::size_t) {
         if (error) {
             if (auto told = request_mistake(error)) write(*told, false);

@@ -183,6 +183,28 @@ TEST(ControlServer, RefusesWhatIsTooLargeOrNoRequest) {
     EXPECT_EQ(rig.status({"GET", "/api/status"}), 200);
 }
 
+TEST(ControlServer, TellsAClientThatWaitsWithItsBodyToGoOn) {
+    const auto rig = std::make_unique<ServerRig>();
+    const std::string body = R"({"command":"pause"})";
+    const auto head = [&](const std::string& host, std::size_t length) {
+        return "POST /api/commands HTTP/1.1\r\nHost: " + host +
+               "\r\nContent-Type: application/json\r\nConnection: close\r\nExpect: 100-Continue\r\nContent-Length: " +
+               std::to_string(length) + "\r\n\r\n";
+    };
+    RawClient client(rig->server->port());
+    client.send(head("127.0.0.1", body.size()));
+    EXPECT_EQ(client.read_all(500ms), "HTTP/1.1 100 Continue\r\n\r\n");
+    client.send(body);
+    EXPECT_THAT(client.read_all(), StartsWith("HTTP/1.1 202 "));
+    EXPECT_EQ(rig->commands.take().size(), 1U);
+    RawClient foreign(rig->server->port());
+    foreign.send(head("evil.example", body.size()));
+    EXPECT_THAT(foreign.read_all(), StartsWith("HTTP/1.1 421 ")) << "before it has sent its body";
+    RawClient large(rig->server->port());
+    large.send(head("127.0.0.1", 10485760));
+    EXPECT_THAT(large.read_all(), StartsWith("HTTP/1.1 413 "));
+}
+
 // RFC 9110, section 8.6: the length is that of the answer to GET.
 TEST(ControlServer, TellsTheLengthOfWhatHeadAsksForAndSendsNothingOfIt) {
     const auto rig = std::make_unique<ServerRig>();
