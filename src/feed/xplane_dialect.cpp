@@ -64,7 +64,8 @@ struct XplaneRow {
         v(m.index, m.values);
     }
 };
-// Rows that are read: their indices are X-Plane 9's to 12's.
+// Rows that are read: their indices are X-Plane 10's to 12's. 9 has the attitude one row behind, among the angles that
+// the others have there; nothing in a row tells which it is.
 struct XplaneRowIndex {
     enum : std::int32_t { attitude = 17, place = 20, motion = 21 };
 };
