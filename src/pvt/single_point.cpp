@@ -352,6 +352,8 @@ std::optional<SinglePoint> Adjustment::result(bool position_known) {
         const std::optional<Dop> dop = dilution(to_geodetic(s.position), s);
         if (!dop) return std::nullopt;
         s.dop = *dop;
+    } else {
+        s.dop.gdop = s.dop.tdop = 1 / std::sqrt(static_cast<double>(reference.count));
     }
     return s;
 }

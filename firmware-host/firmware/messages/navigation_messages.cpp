@@ -269,7 +269,7 @@ NavDop navigation_dop(const ReportContext& context) {
     const Fix& fix = context.state.epoch.fix;
     const bool place = has_dops(fix), time = place || fix.type == FixType::time_only;
     return {epoch_time(reported_time(context).time).i_tow,
-            dop_field(fix.dop.gdop, time),
+            dop_field(place ? fix.dop.gdop : fix.dop.tdop, time),  // of the time alone both are one
             dop_field(fix.dop.pdop, place),
             dop_field(fix.dop.tdop, time),
             dop_field(fix.dop.vdop, place),

@@ -269,6 +269,19 @@ TEST(SinglePoint, SolvesClocksWhereTheAntennaWasSurveyed) {
     ASSERT_TRUE(clocks);
     EXPECT_NEAR(clocks->clock().value(), receiver.clock_bias_m, 1e-6);
     EXPECT_EQ(clocks->used, 1);
+    EXPECT_EQ(clocks->dop.tdop, 1);
+}
+
+TEST(SinglePoint, TellsTheDilutionOfTheTimeThatItSolvesAlone) {
+    const auto sky = synthetic_sky(sample_time, {Constellation::gps});
+    const TrueReceiver receiver = receiver_at(Geodetic::degrees(46, 30, 80), sample_time);
+    auto equations = equations_of(sky, measure(sky, receiver));
+    ASSERT_GE(equations.size(), 4u);
+    equations.resize(4);
+    const auto clocks = solve_clocks(equations, {.time = sample_time, .start = Position<Ecef>(receiver.position)});
+    ASSERT_TRUE(clocks);
+    EXPECT_DOUBLE_EQ(clocks->dop.tdop, 1 / std::sqrt(static_cast<double>(clocks->used)));
+    EXPECT_EQ(clocks->dop.gdop, clocks->dop.tdop);
 }
 
 TEST(SinglePointVelocity, HoldsTheVerticalForThreeShifts) {
