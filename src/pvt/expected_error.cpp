@@ -54,6 +54,13 @@ ExpectedError expected_error_left(SinglePoint solution, const NavigationParamete
     return expected_error(solution, accuracy);
 }
 
+MetresPerSecond told_speed_accuracy(const std::optional<SinglePointVelocity>& velocity,
+                                    const AccuracyParameters& parameters) {
+    constexpr MetresPerSecond not_solved{20};  // as u-blox tells it before the first fix
+    if (!velocity) return not_solved;
+    return MetresPerSecond(parameters.velocity_scale * std::sqrt(velocity->covariance.trace()));
+}
+
 ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, const Dop& dop, DifferentialKind kind,
                            const DifferentialParameters& parameters) {
     if (kind == DifferentialKind::rtk_float || kind == DifferentialKind::rtk_fixed) {

@@ -276,8 +276,7 @@ Metres NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& f
     const ToldAccuracy told = told_accuracy(scale * scale * q, fix.dop, kind, parameters_.differential);
     fix.horizontal_accuracy = told.horizontal;
     fix.vertical_accuracy = told.vertical;
-    const double velocity_variance = epoch.velocity ? epoch.velocity->covariance.trace() : 0;
-    fix.speed_accuracy = MetresPerSecond(parameters_.accuracy.velocity_scale * std::sqrt(velocity_variance));
+    fix.speed_accuracy = told_speed_accuracy(epoch.velocity, parameters_.accuracy);
     const double turn = fix.speed.value() > 0 ? fix.speed_accuracy.value() / fix.speed.value() : std::numbers::pi;
     fix.course_accuracy = Angle::radians(std::min(turn, std::numbers::pi));
     return Metres(std::sqrt(q(2, 2)));

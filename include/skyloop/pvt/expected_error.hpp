@@ -26,6 +26,10 @@ ExpectedError expected_error(const SinglePoint& solution, const AccuracyParamete
 ExpectedError expected_error_left(SinglePoint solution, const NavigationParameters& parameters,
                                   const SiteCorrections& air);
 
+/// What a receiver tells of its velocity, 1 σ; 20 m/s where the epoch has none.
+MetresPerSecond told_speed_accuracy(const std::optional<SinglePointVelocity>& velocity,
+                                    const AccuracyParameters& parameters);
+
 /// What a receiver tells of its position, 1 σ.
 struct ToldAccuracy {
     Metres horizontal, vertical;

@@ -78,8 +78,13 @@ TEST(NavigationEngine, KnowsNoVelocityWithoutDopplers) {
         if (!told)
             for (Observation& o : observations.signals)
                 o.doppler.reset();
-        EXPECT_EQ(engine.solve(observations, {}).type, FixType::fix_3d);
+        const Fix fix = engine.solve(observations, {});
+        EXPECT_EQ(fix.type, FixType::fix_3d);
         EXPECT_EQ(engine.velocity_known(), told);
+        EXPECT_EQ(fix.speed_accuracy >= MetresPerSecond(20), !told) << "nothing was measured";
+        if (!told) {
+            EXPECT_NEAR(fix.course_accuracy.deg(), 180, 1e-9);
+        }
     }
 }
 
