@@ -168,6 +168,18 @@ std::string epoch_after_noon(int second, int number) {
     return sentence_of(date) + sentence_of(body);
 }
 
+TEST(NmeaLog, ADayWithALeapSecondIsASecondLonger) {
+    const auto place = [](const char* time) {
+        return sentence_of("GNGGA," + std::string(time) + ",4700.0000,N,00800.0000,E,1,08,1.0,500.0,M,47.0,M,,");
+    };
+    const ReceiverLog log =
+        read_whole(to_bytes(sentence_of("GNRMC,235959.00,A,4700.0,N,00800.0,E,0,0,311216,,,A") + place("235959.00") +
+                            place("235960.00") + place("000000.00") + place("000001.00")));
+    ASSERT_EQ(log.epochs.size(), 4u);
+    for (int i = 1; i < 4; ++i)
+        EXPECT_EQ(log.epochs[static_cast<std::size_t>(i)].time - log.epochs[0].time, std::chrono::seconds(i)) << i;
+}
+
 TEST(NmeaLog, OneTimeThatRanAheadCostsItsEpochAlone) {
     for (const int wrong : {0, 10, 19}) {
         std::string text;
