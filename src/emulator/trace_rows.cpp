@@ -28,7 +28,10 @@ public:
         return *this;
     }
     CsvRows& number(double value, int decimals) {
+        const std::size_t begin = text_.size();
         append_fixed(text_, value, decimals);
+        // What rounds to nothing has no sign.
+        if (text_[begin] == '-' && text_.find_first_not_of("0.", begin + 1) == std::string::npos) text_.erase(begin, 1);
         text_.push_back(',');
         return *this;
     }

@@ -118,6 +118,15 @@ TEST(Recorder, AFixHasAllItsColumns) {
     EXPECT_THAT(row, SizeIs(31));
 }
 
+TEST(Recorder, WhatRoundsToNothingHasNoSign) {
+    Trace trace = recorded_trace();
+    trace.epoch.fix.velocity = {-4e-5, -6e-5, -0.0};
+    auto row = row_of(tables_of({trace}).first, 1);
+    EXPECT_EQ(row["vel_north_mps"], "0.0000");
+    EXPECT_EQ(row["vel_east_mps"], "-0.0001");
+    EXPECT_EQ(row["vel_down_mps"], "0.0000");
+}
+
 TEST(Recorder, DopsThatNobodyKnowsAreEmpty) {
     Trace trace = recorded_trace();
     Dop& dop = trace.epoch.fix.dop;
