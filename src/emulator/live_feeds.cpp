@@ -21,6 +21,14 @@ Command plain_command(CommandVerb verb) {
     return command;
 }
 
+LivePathSettings path_settings(const LiveSettings& live) {
+    LivePathSettings settings;
+    settings.before = live.at.value_or(FixedSettings().at);
+    settings.begins_at_first = !live.at;
+    settings.delay = live.delay;
+    return settings;
+}
+
 FeedSettings feed_settings(const LiveSettings& live, const Geoid* geoid) {
     FeedSettings settings;
     settings.context.geoid = geoid;
@@ -31,9 +39,7 @@ FeedSettings feed_settings(const LiveSettings& live, const Geoid* geoid) {
     settings.context.vehicle = live.vehicle;
     settings.context.rate_hz = live.rate_hz;
     settings.clock = live.clock;
-    settings.path.before = live.at.value_or(FixedSettings().at);
-    settings.path.begins_at_first = !live.at;
-    settings.path.delay = live.delay;
+    settings.path = path_settings(live);
     return settings;
 }
 
@@ -129,7 +135,7 @@ Result<std::unique_ptr<LiveFeeds>> LiveFeeds::open(Scenario& scenario, const Geo
     for (LiveSettings* live : wanted) {
         const auto source = feeds->source_of(*live, geoid);
         if (!source) return fail(source.error());
-        live->path = (*source)->feed->path(live->vehicle);
+        live->path = (*source)->feed->path(live->vehicle, path_settings(*live));
         (*source)->paths.push_back(live->path);
         (*source)->waited_for = (*source)->waited_for || !live->at;
         if (!live->at) (*source)->feed->wait_for_all();
@@ -146,7 +152,7 @@ Result<void> LiveFeeds::check(Scenario& scenario) {
     for (LiveSettings* live : live_settings(scenario)) {
         const auto address = parse_feed_address(live->source);
         if (!address) return fail(address.error().code, live->source_told_at + address.error().message);
-        live->path = std::make_shared<LivePath>(feed_settings(*live, nullptr).path);
+        live->path = std::make_shared<LivePath>(path_settings(*live));
     }
     return {};
 }

@@ -19,14 +19,10 @@ constexpr std::size_t most_arrival_clocks = 256, most_pending_steps = 1024;
 FeedPaths::FeedPaths(const FeedSettings& settings, FeedDesk& desk)
     : path_settings_(settings.path), mode_(settings.clock), desk_(desk), clock_(settings.clock, GpsTime(), 0) {}
 
-std::shared_ptr<LivePath> FeedPaths::path(const std::string& vehicle) {
-    if (vehicle.empty()) {
-        if (!any_) any_ = std::make_shared<LivePath>(path_settings_);
-        return any_;
-    }
-    Vehicle& wanted = vehicles_[vehicle];
-    if (!wanted.path) wanted.path = std::make_shared<LivePath>(path_settings_);
-    return wanted.path;
+std::shared_ptr<LivePath> FeedPaths::path(const std::string& vehicle, const LivePathSettings& settings) {
+    std::shared_ptr<LivePath>& path = vehicle.empty() ? any_ : vehicles_[vehicle].path;
+    if (!path) path = std::make_shared<LivePath>(settings);
+    return path;
 }
 
 void FeedPaths::begin(GpsTime start, std::int64_t steady_ns) {

@@ -19,7 +19,8 @@ class FeedPaths {
 public:
     FeedPaths(const FeedSettings& settings, FeedDesk& desk);
 
-    std::shared_ptr<LivePath> path(const std::string& vehicle);
+    std::shared_ptr<LivePath> path(const std::string& vehicle) { return path(vehicle, path_settings_); }
+    std::shared_ptr<LivePath> path(const std::string& vehicle, const LivePathSettings& settings);
     /// Follow: the run starts once every path has a sample, with the newest of each.
     void wait_for_all() { waits_ = true; }
     void begin(GpsTime start, std::int64_t steady_ns);

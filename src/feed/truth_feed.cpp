@@ -36,6 +36,10 @@ Result<std::unique_ptr<TruthFeed>> TruthFeed::open(const FeedAddress& address, c
 
 std::shared_ptr<LivePath> TruthFeed::path(const std::string& vehicle) { return impl_->paths_.path(vehicle); }
 
+std::shared_ptr<LivePath> TruthFeed::path(const std::string& vehicle, const LivePathSettings& settings) {
+    return impl_->paths_.path(vehicle, settings);
+}
+
 void TruthFeed::wait_for_all() { impl_->paths_.wait_for_all(); }
 
 void TruthFeed::begin(GpsTime start, std::int64_t steady_ns) { impl_->paths_.begin(start, steady_ns); }

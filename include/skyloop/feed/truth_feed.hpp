@@ -72,6 +72,8 @@ public:
 
     /// The path of one of the source's vehicles; empty: of the first that it speaks of. Before begin().
     std::shared_ptr<LivePath> path(const std::string& vehicle);
+    /// The same with settings of its own, where nobody has asked for this vehicle before.
+    std::shared_ptr<LivePath> path(const std::string& vehicle, const LivePathSettings& settings);
     /// The run waits until every path has a sample: somebody has no place before. A run that follows then starts with
     /// the newest statement about each of them. Before begin().
     void wait_for_all();

@@ -101,6 +101,35 @@ TEST_F(LiveFeedsTest, ASecondSilenceBeforeTheEndOfAnOutageGoesOnWithIt) {
     EXPECT_EQ(ended->verb, CommandVerb::stop_fault);
 }
 
+TEST(LiveFeeds, EachVehicleOfASourceHasAPlaceOfItsOwnBefore) {
+    Scenario scenario = emulator_scenario(R"toml(
+[run]
+start = 2024-03-05T12:00:00Z
+[[receiver]]
+[receiver.trajectory]
+kind = "live"
+source = "udp-json:0"
+vehicle_id = "a"
+at = [1, 2, 3]
+[[receiver]]
+[receiver.trajectory]
+kind = "live"
+source = "udp-json:0"
+vehicle_id = "b"
+at = [4, 5, 6]
+delay_s = 2
+)toml");
+    const auto feeds = LiveFeeds::open(scenario, nullptr);
+    ASSERT_TRUE(feeds) << feeds.error().message;
+    EXPECT_EQ((*feeds)->descriptions().size(), 1u);
+    const auto latitude = [&](std::size_t receiver) {
+        const auto& live = std::get<LiveSettings>(*scenario.receivers.at(receiver).trajectory);
+        return live.path->at(*scenario.run.start).geodetic.latitude.deg();
+    };
+    EXPECT_EQ(latitude(0), 1);
+    EXPECT_EQ(latitude(1), 4);
+}
+
 TEST_F(LiveFeedsTest, WhatASourceAsksForInVainIsTold) {
     open("realtime");
     const auto told_of = [&](const std::string& asks, const std::string& ignored) {
