@@ -109,12 +109,12 @@ TEST(DeviceFile, TheProjectsFilesKnowTheBench) {
     const fs::path boards = fs::path(__FILE__).parent_path() / "../../../boards";
     const auto devices = load_devices(std::vector<fs::path>{boards});
     ASSERT_TRUE(devices) << devices.error().message;
-    for (const char* ids : {"1546:01a5", "1546:01a6", "1546:01a7", "1546:01a8", "1546:01a9", "1546:01ab", "152a:85c0",
-                            "0525:a4a7", "26ac:0011", "26ac:0012", "26ac:0032", "3185:0033", "3185:0035", "3185:0038",
-                            "1b8c:0036", "3643:001d", "2dae:1011", "2dae:1012", "2dae:1016", "2dae:1058", "2dae:1059",
-                            "3162:004b", "3162:0050", "3163:004c", "1209:5740", "1209:5741", "0483:5740", "0483:df11",
-                            "0403:6001", "0403:6010", "0403:6011", "0403:6014", "0403:6015", "10c4:ea60", "10c4:ea70",
-                            "1a86:7523", "1a86:5523", "067b:2303", "067b:23a3", "10c4:ea80", "04d8:00dd"}) {
+    for (const char* ids :
+         {"1546:01a5", "1546:01a6", "1546:01a7", "1546:01a8", "1546:01a9", "1546:01ab", "152a:85c0", "26ac:0011",
+          "26ac:0012", "26ac:0032", "3185:0033", "3185:0035", "3185:0038", "1b8c:0036", "3643:001d", "2dae:1011",
+          "2dae:1012", "2dae:1016", "2dae:1058", "2dae:1059", "3162:004b", "3162:0050", "3163:004c", "1209:5740",
+          "1209:5741", "0483:5740", "0483:df11", "0403:6001", "0403:6010", "0403:6011", "0403:6014", "0403:6015",
+          "10c4:ea60", "10c4:ea70", "1a86:7523", "1a86:5523", "067b:2303", "067b:23a3", "10c4:ea80", "04d8:00dd"}) {
         SCOPED_TRACE(ids);
         const auto match = match_device(*devices, {*parse_usb_ids(ids), "", "", "", "1-1"});
         ASSERT_TRUE(match);
@@ -126,6 +126,11 @@ TEST(DeviceFile, TheProjectsFilesKnowTheBench) {
         return match_device(*devices, {ids, manufacturer, product, "", "1-1"})->profile->name;
     };
     EXPECT_EQ(named({0x16c0, 0x05df}, "www.dcttech.com", "USBRelay2"), "usb-relay");
+    // Ids that are anybody's: only their names tell them apart.
+    EXPECT_FALSE(match_device(*devices, {{0x0525, 0xa4a7}, "", "", "", "1-1"}));
+    EXPECT_EQ(named({0x0525, 0xa4a7}, "skyloop", "GNSS receiver"), "skyloop");
+    EXPECT_EQ(named({0x0525, 0xa4a7}, "Linux 6.1.0 with musb-hdrc", "Gadget Serial v2.4"), "linux-gadget-serial");
+    EXPECT_EQ(named({0x0525, 0xa4a7}, "Trimble", "R2"), "trimble-usb");
     EXPECT_EQ(named({0x0483, 0x5740}, "Betaflight", "Betaflight STM32F405"), "betaflight");
     EXPECT_EQ(named({0x0483, 0x5740}, "INAV", "MATEKF722"), "inav");
     EXPECT_EQ(named({0x0483, 0x5740}, "ArduPilot", "fmuv3"), "ardupilot-stm32");
