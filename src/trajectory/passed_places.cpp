@@ -14,8 +14,9 @@ bool on_same_ground(const PlannedWaypoint& a, const PlannedWaypoint& b) {
     return (a.place - b.place).head<2>().norm() < shortest_leg_m;
 }
 
-void merge(PlannedWaypoint& into, const PlannedWaypoint& waypoint) {
-    into.place.z() = waypoint.place.z();
+// The way begins at the height of its first place: what lies above that one is climbed to on the way on.
+void merge(PlannedWaypoint& into, const PlannedWaypoint& waypoint, bool into_first) {
+    if (!into_first) into.place.z() = waypoint.place.z();
     into.speed = waypoint.speed;
     into.hold += waypoint.hold;
 }
@@ -115,7 +116,7 @@ void TightTurns::take_out(std::size_t i) {
 void TightTurns::close_up(std::size_t before) {
     Place& place = places_[before];
     while (place.after != before && on_same_ground(place.waypoint, places_[place.after].waypoint)) {
-        merge(place.waypoint, places_[place.after].waypoint);
+        merge(place.waypoint, places_[place.after].waypoint, place.before == before);
         take_out(place.after);
     }
 }
@@ -165,15 +166,22 @@ std::vector<PlannedWaypoint> TightTurns::left() const {
 
 }  // namespace
 
-void leave_out_same_ground(std::vector<PlannedWaypoint>& waypoints) {
+LeftOutAbove leave_out_same_ground(std::vector<PlannedWaypoint>& waypoints) {
+    constexpr double told_m = 0.05;
+    LeftOutAbove left_out;
     std::vector<PlannedWaypoint> kept;
     for (const PlannedWaypoint& waypoint : waypoints) {
-        if (!kept.empty() && on_same_ground(waypoint, kept.back()))
-            merge(kept.back(), waypoint);
-        else
+        if (kept.empty() || !on_same_ground(waypoint, kept.back())) {
             kept.push_back(waypoint);
+            continue;
+        }
+        const double rise = std::abs(waypoint.place.z() - kept.back().place.z());
+        left_out.count += rise > told_m;
+        left_out.most = std::max(left_out.most, rise);
+        merge(kept.back(), waypoint, kept.size() == 1);
     }
     waypoints = std::move(kept);
+    return left_out;
 }
 
 PassedPlaces pass_by_tight_turns(std::vector<PlannedWaypoint>& waypoints, const VehicleLimits& vehicle) {

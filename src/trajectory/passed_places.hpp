@@ -8,8 +8,15 @@
 
 namespace skyloop {
 
-// Places above one another become one, at the height of the last.
-void leave_out_same_ground(std::vector<PlannedWaypoint>& waypoints);
+// Places that lie at another height than the one before, straight above or below it.
+struct LeftOutAbove {
+    std::size_t count = 0;
+    double most = 0;  // of height, m
+};
+
+// Places above one another become one, at the height of the last; those above the first at the height of that, for
+// there the way begins.
+LeftOutAbove leave_out_same_ground(std::vector<PlannedWaypoint>& waypoints);
 
 struct PassedPlaces {
     std::size_t count = 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "passed_places.hpp"
@@ -44,8 +45,10 @@ private:
     Mistake fit_corner(std::size_t i);
     [[nodiscard]] double free_at(std::size_t i) const;
     Mistake pass_by();
+    Mistake turn_round(const std::vector<PlannedWaypoint>& wanted);
     void lay_out();
     void level_climbs();
+    void keep_ends(std::vector<double>& levels, const std::vector<double>& rises) const;
     [[nodiscard]] double highest_rise(double length) const;
     Mistake limit_climbs();
     [[nodiscard]] PathPlan timed();
@@ -110,14 +113,62 @@ double SteeredPlanner::free_at(std::size_t i) const {
 
 // Leaves out places until every turn fits.
 SteeredPlanner::Mistake SteeredPlanner::pass_by() {
-    leave_out_same_ground(wish_.waypoints);
-    if (auto mistake = measure_legs()) return mistake;
-    const PassedPlaces passed = pass_by_tight_turns(wish_.waypoints, wish_.vehicle);
+    const LeftOutAbove left_out = leave_out_same_ground(wish_.waypoints);
     if (wish_.waypoints.size() < 2) return "all places lie above one another; expected two that are apart";
+    if (left_out.count > 0)
+        notes_.add(
+            fmt::format("{} times it would go straight up or down, by up to {:.1f} m: a {} climbs and sinks on "
+                        "its way from place to place",
+                        left_out.count, left_out.most, vehicle_name(wish_.vehicle.kind)));
+    if (auto mistake = measure_legs()) return mistake;
+    const std::vector<PlannedWaypoint> wanted = wish_.waypoints;
+    const PassedPlaces passed = pass_by_tight_turns(wish_.waypoints, wish_.vehicle);
+    if (wish_.waypoints.size() < 2) return turn_round(wanted);
     if (passed.count > 0)
         notes_.add(fmt::format(
             "{} places are passed by, up to {:.1f} m from the way between those beside them: a {} cannot turn there",
             passed.count, passed.farthest, vehicle_name(wish_.vehicle.kind)));
+    return std::nullopt;
+}
+
+// How far to either side of a place, from which it came straight, the two corners lie by which it turns back across it,
+// m: as far as their turns reach. Nothing where that is too wide for the way.
+std::optional<double> aside_to_turn_back(const VehicleLimits& vehicle, double distance, double speed) {
+    constexpr double margin = 1.01, square = std::numbers::pi / 2;
+    double aside = 0;
+    for (int i = 0; i < 8; ++i)
+        aside = margin * tangent_length(turn_at_speed(vehicle, square + std::atan(aside / distance), speed));
+    return aside <= std::min(distance / 2, vehicle.corner) ? std::optional(aside) : std::nullopt;
+}
+
+// A way that ends where it begins, and of which no turn was left: out to the farthest place, across it, and back.
+SteeredPlanner::Mistake SteeredPlanner::turn_round(const std::vector<PlannedWaypoint>& wanted) {
+    const auto way_to = [&](const PlannedWaypoint& w) -> Eigen::Vector2d {
+        return (w.place - wanted.front().place).head<2>();
+    };
+    const auto farthest = std::max_element(wanted.begin(), wanted.end(), [&](const auto& a, const auto& b) {
+        return way_to(a).norm() < way_to(b).norm();
+    });
+    const double distance = way_to(*farthest).norm(), asked = std::min(wanted.front().speed, farthest->speed),
+                 slowest = std::min(asked, slowest_turn(wish_.vehicle));
+    const std::string_view name = vehicle_name(wish_.vehicle.kind);
+    auto aside = aside_to_turn_back(wish_.vehicle, distance, asked);
+    if (!aside) aside = aside_to_turn_back(wish_.vehicle, distance, slowest);
+    if (!aside)
+        return fmt::format(
+            "no turn fits, and at the farthest place, {:.1f} m from where it begins and ends, a {} does "
+            "not turn back: its turn there has a radius of {:.1f} m at its slowest, {:.3g} m/s; expected "
+            "waypoints further apart",
+            distance, name, turn_at_speed(wish_.vehicle, std::numbers::pi / 2, slowest).radius, slowest);
+    const Eigen::Vector2d out = way_to(*farthest) * (*aside / distance);
+    PlannedWaypoint before = *farthest, after = *farthest;
+    before.place.head<2>() += Eigen::Vector2d(-out.y(), out.x());
+    after.place.head<2>() += Eigen::Vector2d(out.y(), -out.x());
+    wish_.waypoints = {wanted.front(), before, after, wanted.back()};
+    notes_.add(
+        fmt::format("of {} places on its way the one farthest from where it begins and ends is gone to, {:.0f} m "
+                    "away, and turned back at by corners {:.1f} m to either side: a {} cannot turn at the others",
+                    wanted.size() - 2, distance, *aside, name));
     return std::nullopt;
 }
 
@@ -171,7 +222,21 @@ double SteeredPlanner::highest_rise(double length) const {
     return margin * std::min(slope * length / steepest_of_smooth_step, bend * length * length);
 }
 
-// Heights half way between the highest and the lowest that the vehicle can fly and that touch those asked for.
+// Moves heights that keep to the rises between them as little as lets the way begin where it should, on the ground of a
+// take-off, and end where it should, if it can reach that from there.
+void SteeredPlanner::keep_ends(std::vector<double>& levels, const std::vector<double>& rises) const {
+    const double first = wish_.waypoints.front().place.z(), last_one = wish_.waypoints.back().place.z();
+    double to_end = std::accumulate(rises.begin(), rises.end(), 0.0), from_start = 0;
+    const bool reaches = std::abs(last_one - first) <= to_end;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        if (reaches) levels[i] = std::clamp(levels[i], last_one - to_end, last_one + to_end);
+        levels[i] = std::clamp(levels[i], first - from_start, first + from_start);
+        if (i < rises.size()) from_start += rises[i], to_end = std::max(0.0, to_end - rises[i]);
+    }
+}
+
+// Heights half way between the highest and the lowest that the vehicle can fly and that touch those asked for; both
+// ends stay.
 void SteeredPlanner::level_climbs() {
     const std::size_t count = wish_.waypoints.size();
     std::vector<double> rises, above, below;
@@ -188,11 +253,15 @@ void SteeredPlanner::level_climbs() {
         reach(i, i + 1, rises[i]);
     for (std::size_t i = count - 1; i > 0; --i)
         reach(i, i - 1, rises[i - 1]);
+    std::vector<double> levels;
+    for (std::size_t i = 0; i < count; ++i)
+        levels.push_back((above[i] + below[i]) / 2);
+    keep_ends(levels, rises);
     constexpr double told_m = 0.05;
     double most = 0;
     for (std::size_t i = 0; i < count; ++i) {
         double& height = wish_.waypoints[i].place.z();
-        const double level = (above[i] + below[i]) / 2;
+        const double level = levels[i];
         most = std::max(most, std::abs(level - height));
         height = level;
     }

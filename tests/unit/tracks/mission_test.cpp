@@ -119,6 +119,50 @@ TEST(WplMission, IsARouteThatBeginsAtHome) {
         test::expect_flown_route(track, {vehicle, {}, 30, 0});
 }
 
+// A take-off without a place, and one at another place than home.
+TEST(WplMission, APlaneBeginsOnTheGroundAndClimbsOnItsWay) {
+    const std::string home = "QGC WPL 110\n0 1 0 16 0 0 0 0 47 8 500 1\n";
+    for (const std::string take_off : {"1 0 3 22 15 0 0 0 0 0 50 1\n", "1 0 3 22 15 0 0 0 47.003 8 50 1\n"}) {
+        const Track track =
+            track_of(home + take_off + "2 0 3 16 0 0 0 0 47.005 8 100 1\n3 0 3 16 0 0 0 0 47.005 8.01 100 1\n");
+        const auto route = fly_route(track, {VehicleClass::plane, {}, 2, 0});
+        ASSERT_TRUE(route.has_value()) << route.error().message;
+        EXPECT_NEAR(route->shape->at(0).position.z(), 510, 1e-3);
+        EXPECT_NEAR(route->shape->at(1).position.z(), 510, 5) << "at rest it does not climb";
+        EXPECT_NEAR(route->shape->at(1e9).position.z(), 610, 1e-3);
+        EXPECT_THAT(route->notes, Contains(HasSubstr("go straight up or down, by up to 50.0 m: a plane climbs")));
+        const auto copter = fly_route(track, {VehicleClass::multirotor, {}, 2, 0});
+        ASSERT_TRUE(copter.has_value());
+        EXPECT_GE(copter->waypoints.size(), 4u) << "what can stand goes straight up";
+    }
+}
+
+// Home, a place 111 m off, a circle that is too tight, and home.
+TEST(QgcPlan, APlaneTurnsBackAtTheFarthestPlaceWhereNoTurnIsLeft) {
+    const std::string begin = simple(22, 3, "0,0,0,null,47.0,8.0,50") + "," + simple(16, 3, "0,0,0,null,47.001,8,50");
+    const Track track = track_of(
+        plan(begin + "," + simple(18, 3, "1,1,-30,1,47.002,8.0,60") + "," + simple(20, 2, "0,0,0,0,0,0,0"), "1"),
+        "t.plan");
+    const auto route = fly_route(track, {});
+    ASSERT_TRUE(route.has_value()) << route.error().message;
+    EXPECT_THAT(route->notes, Contains(HasSubstr("and turned back at by corners")));
+    double farthest = 0;
+    for (double t = 0; t < route->shape->duration(); t += 0.1)
+        farthest = std::max(farthest, route->shape->at(t).position.y());
+    EXPECT_NEAR(farthest, 222 + 30, 10);
+    EXPECT_LT(route->shape->at(1e9).position.head<2>().norm(), 1e-3);
+
+    const Track near =
+        track_of(plan(simple(22, 3, "0,0,0,null,47.0,8.0,50") + "," + simple(16, 3, "0,0,0,null,47.0002,8,50") + "," +
+                          simple(20, 2, "0,0,0,0,0,0,0"),
+                      "1"),
+                 "t.plan");
+    const auto refused = fly_route(near, {});
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_THAT(refused.error().message, HasSubstr("22.2 m from where it begins and ends, a plane does not turn back"));
+    EXPECT_THAT(refused.error().message, HasSubstr("a radius of 14.7 m at its slowest, 12 m/s"));
+}
+
 TEST(WplMission, TakesTheHeightOfHomeFromTheOrigin) {
     const std::string homeless = "QGC WPL 110\n0 1 0 16 0 0 0 0 0 0 0 1\n2 0 3 16 0 0 0 0 47.001 8 100 1\n";
     EXPECT_THAT(refusal_of_track(homeless), HasSubstr("item 2 (command 16): its height is above home, whose height"));
