@@ -1,11 +1,13 @@
 #include "skyloop/propagation/scene_edges.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace skyloop {
 namespace {
@@ -55,10 +57,96 @@ void bisect(const UrbanScene& scene, const SightFan& fan, const Eigen::Vector3d&
     }
 }
 
-bool seen_from_edge(const UrbanScene& scene, const SceneRay& to_satellite, const SceneEdge& edge,
-                    const Eigen::Vector3d& side) {
-    const Eigen::Vector3d place = to_satellite.origin + edge.distance.value() * edge.direction + off_edge * side;
-    return !scene.blocked({place, to_satellite.direction});
+// Where a turned ray grazes the obstacle, and the straight edge there.
+struct GrazedEdge {
+    Eigen::Vector3d point, along;  // `along` is a unit vector
+    Eigen::Vector3d side;          // to which the line to the satellite was turned
+    std::uint32_t plane;
+    bool line_blocked;
+};
+
+// The side of the facet next to which it is met; nothing where none is as near as the bisection leaves open.
+std::optional<GrazedEdge> edge_of_facet(const UrbanScene& scene, const SceneHit& hit, const Eigen::Vector3d& place) {
+    const auto corners = scene.triangle(hit.triangle);
+    std::optional<GrazedEdge> nearest;
+    double least = 0.01 + 5e-4 * hit.distance;  // m; facets that are seen flatly are met further inside
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Eigen::Vector3d& from = corners.at(i);
+        const Eigen::Vector3d way = corners.at((i + 1) % corners.size()) - from, along = way.normalized();
+        const Eigen::Vector3d point = from + std::clamp((place - from).dot(along), 0.0, way.norm()) * along;
+        const double off = (place - point).norm();
+        if (off < least) least = off, nearest = GrazedEdge{point, along, {}, hit.plane, false};
+    }
+    return nearest;
+}
+
+// How far along the edge the way over it to a source that is very far is shortest, m: there it leaves the edge at the
+// angle at which it meets it.
+double shortest_over(const GrazedEdge& edge, const SceneRay& to_satellite) {
+    constexpr double least_sine = 1e-3;
+    const double cosine = edge.along.dot(to_satellite.direction), sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    if (sine < least_sine) return 0;
+    const Eigen::Vector3d from = edge.point - to_satellite.origin;
+    const double foot = -from.dot(edge.along);
+    return foot + (from + foot * edge.along).norm() * cosine / sine;
+}
+
+// The obstacle ends there: it stands on the one side of the edge, and a ray comes by on the other.
+bool bends_there(const UrbanScene& scene, const SceneRay& to_satellite, const GrazedEdge& edge, double along) {
+    constexpr double same_face = 0.5;  // m
+    const Eigen::Vector3d way = edge.point + along * edge.along - to_satellite.origin;
+    Eigen::Vector3d outwards = edge.along.cross(way).normalized();
+    if (outwards.dot(edge.side) < 0) outwards = -outwards;
+    const Eigen::Vector3d inner = way - off_edge * outwards, outer = way + off_edge * outwards;
+    const SceneHit hit = scene.first_hit({to_satellite.origin, inner.normalized()});
+    if (!hit.any() || (hit.plane != edge.plane && std::abs(hit.distance - inner.norm()) > same_face)) return false;
+    if (scene.blocked({to_satellite.origin, outer.normalized()}, outer.norm())) return false;
+    return !edge.line_blocked || !scene.blocked({to_satellite.origin + outer, to_satellite.direction});
+}
+
+// Where the ray over the edge bends: the shortest way, or the end of the edge before it. Nothing: the edge is none.
+std::optional<Eigen::Vector3d> bend_of(const UrbanScene& scene, const SceneRay& to_satellite, const GrazedEdge& edge) {
+    const auto bends = [&](double along) { return bends_there(scene, to_satellite, edge, along); };
+    double good = shortest_over(edge, to_satellite);
+    if (!bends(good)) {
+        double bad = std::exchange(good, 0);
+        if (!bends(good)) return std::nullopt;
+        for (int i = 0; i < bisections; ++i) {
+            const double middle = (good + bad) / 2;
+            (bends(middle) ? good : bad) = middle;
+        }
+    }
+    return edge.point + good * edge.along;
+}
+
+// Of an obstacle that a ray turned to `side` just meets. Without a straight edge it is where the free ray passes.
+std::optional<SceneEdge> edge_met(const UrbanScene& scene, const SightFan& fan, const Eigen::Vector3d& side,
+                                  const EdgeBracket& bracket, bool line_blocked) {
+    const SceneRay &line = fan.to_satellite, grazing = fan.turned(side, bracket.blocked);
+    const SceneHit hit = scene.first_hit(grazing);
+    if (!hit.any() || (!line_blocked && scene.planes()[hit.plane].kind == SurfaceKind::ground)) return std::nullopt;
+    if (auto edge = edge_of_facet(scene, hit, line.origin + hit.distance * grazing.direction)) {
+        edge->side = side, edge->line_blocked = line_blocked;
+        if (const auto bend = bend_of(scene, line, *edge)) {
+            const Eigen::Vector3d way = *bend - line.origin, towards = way.normalized();
+            return SceneEdge{
+                towards, Metres(way.norm()),
+                Angle::radians(std::atan2(towards.cross(line.direction).norm(), towards.dot(line.direction)))};
+        }
+    }
+    const SceneEdge passed{fan.turned(side, bracket.free).direction, Metres(hit.distance),
+                           Angle::radians(bracket.free)};
+    const Eigen::Vector3d place = line.origin + hit.distance * passed.direction + off_edge * side;
+    if (line_blocked && scene.blocked({place, line.direction})) return std::nullopt;
+    return passed;
+}
+
+// An oblique edge is met by rays turned up and by rays turned aside.
+bool is_among(std::span<const SceneEdge> edges, const SceneEdge& edge) {
+    const auto place = [](const SceneEdge& e) -> Eigen::Vector3d { return e.distance.value() * e.direction; };
+    const double same = 0.05 + 1e-3 * edge.distance.value();  // m
+    return std::any_of(edges.begin(), edges.end(),
+                       [&](const SceneEdge& other) { return (place(other) - place(edge)).norm() < same; });
 }
 
 std::vector<SceneEdge> edges_along(const UrbanScene& scene, const SightFan& fan, std::span<const Eigen::Vector3d> sides,
@@ -77,12 +165,8 @@ std::vector<SceneEdge> edges_along(const UrbanScene& scene, const SightFan& fan,
         auto bracket = first_change(steps, std::span(answers).subspan(i * steps.size(), steps.size()), line_blocked);
         if (!bracket) continue;
         bisect(scene, fan, sides[i], *bracket);
-        const SceneHit hit = scene.first_hit(fan.turned(sides[i], bracket->blocked));
-        if (!hit.any()) continue;
-        if (!line_blocked && scene.planes()[hit.plane].kind == SurfaceKind::ground) continue;
-        const SceneEdge edge{fan.turned(sides[i], bracket->free).direction, Metres(hit.distance),
-                             Angle::radians(bracket->free)};
-        if (!line_blocked || seen_from_edge(scene, fan.to_satellite, edge, sides[i])) edges.push_back(edge);
+        const auto edge = edge_met(scene, fan, sides[i], *bracket, line_blocked);
+        if (edge && !is_among(edges, *edge)) edges.push_back(*edge);
     }
     return edges;
 }

@@ -9,9 +9,11 @@
 
 namespace skyloop {
 
-/// Where a roof or a corner ends, as seen from the antenna.
+/// Where a ray bends round the end of a roof or a corner: of the straight edge there, the point over which the way to
+/// the satellite is shortest, so that it leaves the edge at the angle at which it meets it, or the end of the edge
+/// before it.
 struct SceneEdge {
-    Eigen::Vector3d direction;  ///< unit, from the antenna: the last that is free
+    Eigen::Vector3d direction;  ///< unit, from the antenna
     Metres distance;
     Angle detour;  ///< between the satellite and the edge, above 0
 };

@@ -296,6 +296,37 @@ TEST(SceneEdges, LieWhereTheWallEnds) {
     EXPECT_NEAR(beside[0].detour.rad(), std::atan2(4, 20) - std::atan2(3, 20), 1e-4);
 }
 
+// The top of a wall to which the line to the satellite is oblique.
+TEST(SceneEdges, BendWhereTheWayOverAnObliqueEdgeIsShortest) {
+    const auto wall_with_ends = [](double south, double north) {
+        CityModel city;
+        city.origin = odessa_place;
+        city.add_quad({Eigen::Vector3d(20, south, -5), {20, north, -5}, {20, north, 28.5}, {20, south, 28.5}},
+                      SurfaceKind::wall);
+        return city;
+    };
+    const double azimuth = 0.5, elevation = 0.5;
+    const SceneRay line{
+        {0, 0, 0},
+        {std::cos(elevation) * std::sin(azimuth), std::cos(elevation) * std::cos(azimuth), std::sin(elevation)}};
+    const double slant = line.direction.y();
+    const double shortest = std::hypot(20, 28.5) * slant / std::sqrt(1 - slant * slant);
+    struct Case {
+        double south, north, bend, within;
+    };
+    for (const Case& c : {Case{-3000, 3000, shortest, 1e-6}, Case{-3000, shortest - 4, shortest - 4, 0.15}}) {
+        const auto scene = UrbanScene::build(wall_with_ends(c.south, c.north));
+        ASSERT_TRUE(scene);
+        const std::vector<SceneEdge> edges = edges_around_obstacle(**scene, line);
+        ASSERT_FALSE(edges.empty());
+        const Eigen::Vector3d place = edges[0].distance.value() * edges[0].direction;
+        EXPECT_LT((place - Eigen::Vector3d(20, c.bend, 28.5)).norm(), c.within) << place.transpose();
+        EXPECT_NEAR(edges[0].detour.rad(), std::acos(edges[0].direction.dot(line.direction)), 1e-9);
+        for (std::size_t i = 1; i < edges.size(); ++i)
+            EXPECT_GT((edges[i].distance.value() * edges[i].direction - place).norm(), 1) << "an edge counts once";
+    }
+}
+
 TEST(SceneEdges, NoRayBendsTwice) {
     CityModel city = walls({{20, 15}, {60, 40}});
     const auto scene = UrbanScene::build(city);
