@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "table_cells.hpp"
 
@@ -16,6 +17,16 @@ struct RtklibHeader {
 bool names_rtklib_columns(std::string_view line) {
     return line.find("latitude(") != std::string_view::npos || line.find("x-ecef(") != std::string_view::npos ||
            line.find("-baseline(") != std::string_view::npos;
+}
+
+bool has_rtklib_header(std::string_view head) {
+    TextLines lines(head);
+    while (lines.next()) {
+        const std::string_view line = trimmed_cell(lines.line());
+        if (line.starts_with('%') && names_rtklib_columns(line)) return true;
+        if (!line.empty() && !line.starts_with('%')) return false;
+    }
+    return false;
 }
 
 class RtklibRows {
@@ -40,8 +51,42 @@ private:
     std::size_t at_ = 0;
 };
 
+// Cells may be parted by commas and semicolons, too, as the options of RTKLIB say.
+std::string blanked_rtklib_line(std::string_view line) {
+    std::string blanked(line);
+    std::replace_if(
+        blanked.begin(), blanked.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
+    return blanked;
+}
+
+// A row as without a header it can be told: a time of two cells, degrees, a height, quality, satellites, six
+// deviations, age and ratio.
+bool is_bare_rtklib_row(std::string_view line) {
+    constexpr std::size_t columns = 15, latest_week = 10'000, most_satellites = 200;
+    const std::string blanked = blanked_rtklib_line(line);
+    std::vector<std::string_view> cells;
+    split_table_line(blanked, ' ', cells);
+    if (cells.size() < columns) return false;
+    const bool calendar = cells[0].size() == 10 && cells[0][4] == '/' && cells[0][7] == '/' &&
+                          cells[1].find(':') != std::string_view::npos;
+    std::vector<double> numbers;
+    for (const std::string_view cell : std::span(cells).first(columns).subspan(calendar ? 2 : 0)) {
+        const auto number = text_number(cell);
+        if (!number) return false;
+        numbers.push_back(*number);
+    }
+    const auto whole = [](double value, double least, double most) {
+        return value >= least && value <= most && value == std::floor(value);
+    };
+    const std::span<const double> places = std::span(numbers).subspan(calendar ? 0 : 2);
+    const bool weeks = whole(numbers[0], 1, latest_week) && numbers[1] >= 0 && numbers[1] < seconds_per_week;
+    return (calendar || weeks) && std::abs(places[0]) <= 90 && std::abs(places[1]) <= 360 && whole(places[3], 1, 7) &&
+           whole(places[4], 0, most_satellites);
+}
+
 Result<Track> RtklibRows::read() {
     TextLines lines(file_.text);
+    if (!has_rtklib_header(file_.text)) track_.note("no header: taken as GPST, degrees, metres above the ellipsoid");
     while (lines.next()) {
         const std::string_view line = trimmed_cell(lines.line());
         if (line.starts_with('%')) {
@@ -137,9 +182,7 @@ bool RtklibRows::motion(TextRow& row) {
 }
 
 Result<void> RtklibRows::take_row(std::string_view line, std::size_t number) {
-    std::string blanked(line);
-    std::replace_if(
-        blanked.begin(), blanked.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
+    const std::string blanked = blanked_rtklib_line(line);
     split_table_line(blanked, ' ', cells_);
     TextRow row;
     row.line = number;
@@ -158,11 +201,11 @@ Result<void> RtklibRows::take_row(std::string_view line, std::size_t number) {
 }  // namespace
 
 bool is_rtklib_track(std::string_view head) {
+    if (has_rtklib_header(head)) return true;
     TextLines lines(head);
     while (lines.next()) {
         const std::string_view line = trimmed_cell(lines.line());
-        if (line.starts_with('%') && names_rtklib_columns(line)) return true;
-        if (!line.empty() && !line.starts_with('%')) return false;
+        if (!line.empty() && !line.starts_with('%')) return is_bare_rtklib_row(line);
     }
     return false;
 }

@@ -79,6 +79,18 @@ TEST(TableDialects, ReadSolutionsOfRtklib) {
                 HasSubstr("t.txt:4: the time is 'yesterday"));
 }
 
+// As receivers and tools write them that leave the header out.
+TEST(TableDialects, ReadSolutionsOfRtklibWithoutAHeader) {
+    const std::string tail = "   1  12   0.0270   0.0193   0.0440  -0.0115  -0.0122  -0.0107   0.79    3.9\n";
+    for (const std::string time : {"2024/03/05 12:00:18.000", "2304 216018.000"}) {
+        const Track track = track_of(time + "   47.500000000    8.250000000   500.0000" + tail, "t.LLH");
+        EXPECT_EQ(track.format, "RTKLIB solution");
+        EXPECT_EQ(utc_of(track, 0), "2024-03-05T12:00:00.000Z");
+        EXPECT_NEAR(height_of(track, 0), 500, 1e-4);
+        EXPECT_THAT(track.notes, Contains("no header: taken as GPST, degrees, metres above the ellipsoid"));
+    }
+}
+
 TEST(TableDialects, ReadTumWithAnOrigin) {
     const Geodetic origin = Geodetic::degrees(47.5, 8.25, 500);
     // Nose to the north: forward is ENU's y, a quarter turn about up; w last.
