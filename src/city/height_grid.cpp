@@ -22,16 +22,21 @@ constexpr double widest_geographic_grid = 6;
 
 struct HeightGridHeader {
     std::size_t columns = 0, rows = 0;
-    double west = 0, south = 0;  ///< of the middle of the south-western cell
-    double cell = 0;
-    double no_data = -9999;  ///< where the header names none (Esri, "ESRI ASCII raster format")
+    double west = 0, south = 0;       ///< of the middle of the south-western cell
+    double cell = 0, cell_north = 0;  ///< how wide and how tall a cell is
+    double no_data = -9999;           ///< where the header names none (Esri, "ESRI ASCII raster format")
     [[nodiscard]] bool geographic() const {
         const double east = west + static_cast<double>(columns) * cell,
-                     north = south + static_cast<double>(rows) * cell;
-        return cell <= largest_geographic_cell && std::max(east - west, north - south) <= widest_geographic_grid &&
-               west >= -180 && east <= 361 && south >= -90 && north <= 91;
+                     north = south + static_cast<double>(rows) * cell_north;
+        return std::max(cell, cell_north) <= largest_geographic_cell &&
+               std::max(east - west, north - south) <= widest_geographic_grid && west >= -180 && east <= 361 &&
+               south >= -90 && north <= 91;
     }
 };
+
+// Of the keys of a header, in the order in which they are known.
+constexpr std::size_t header_keys = 10;
+using HeaderValues = std::array<double, header_keys>;
 
 class HeightGridReader {
 public:
@@ -80,9 +85,10 @@ private:
 
     // Keywords in any order, until a number stands where one could be.
     Result<void> read_header() {
-        constexpr std::array<std::string_view, 8> keys{"ncols",     "nrows",     "cellsize",  "xllcorner",
-                                                       "yllcorner", "xllcenter", "yllcenter", "nodata_value"};
-        std::array<double, 8> values{};
+        constexpr std::array<std::string_view, header_keys> keys{"ncols",     "nrows",     "cellsize",  "xllcorner",
+                                                                 "yllcorner", "xllcenter", "yllcenter", "nodata_value",
+                                                                 "dx",        "dy"};
+        HeaderValues values{};
         unsigned seen = 0;
         for (;;) {
             const char* before = at_;
@@ -93,7 +99,7 @@ private:
                 if (letter || seen == 0)
                     return fail(ErrorCode::input,
                                 fmt::format("{}: '{}' is no key of a height grid; expected ncols, nrows, "
-                                            "xllcorner, yllcorner, cellsize or NODATA_value",
+                                            "xllcorner, yllcorner, cellsize, dx, dy or NODATA_value",
                                             here(), shown(key)));
                 at_ = before;
                 break;
@@ -107,24 +113,29 @@ private:
         return take_header(values, seen);
     }
 
-    Result<void> take_header(const std::array<double, 8>& values, unsigned seen) {
+    Result<void> take_header(const HeaderValues& values, unsigned seen) {
         const auto has = [seen](unsigned key) { return (seen >> key & 1U) != 0; };
-        if (!has(0) || !has(1) || !has(2) || (!has(3) && !has(5)) || (!has(4) && !has(6)))
+        const bool oblong = has(8) && has(9);
+        if (!has(0) || !has(1) || !(has(2) || oblong) || (!has(3) && !has(5)) || (!has(4) && !has(6)))
             return fail(ErrorCode::input,
-                        fmt::format("{}: expected ncols, nrows, xllcorner, yllcorner and cellsize before "
-                                    "the heights",
+                        fmt::format("{}: expected ncols, nrows, xllcorner, yllcorner and cellsize, or dx and "
+                                    "dy, before the heights",
                                     here()));
         const auto whole = [](double value) { return value >= 2 && value <= 1e9 && value == std::floor(value); };
         if (!whole(values[0]) || !whole(values[1]))
             return fail(ErrorCode::input, fmt::format("{}: a grid of {} by {} cells; expected 2 or more each way",
                                                       name_, values[0], values[1]));
-        if (!(values[2] > 0 && values[2] < 1e7))
-            return fail(ErrorCode::input, fmt::format("{}: cellsize {}; expected more than 0", name_, values[2]));
+        const double cell = has(2) ? values[2] : values[8], cell_north = has(2) ? values[2] : values[9];
+        if (!(std::min(cell, cell_north) > 0 && std::max(cell, cell_north) < 1e7))
+            return fail(ErrorCode::input,
+                        has(2) ? fmt::format("{}: cellsize {}; expected more than 0", name_, cell)
+                               : fmt::format("{}: dx {} and dy {}; expected more than 0", name_, cell, cell_north));
         header_.columns = static_cast<std::size_t>(values[0]);
         header_.rows = static_cast<std::size_t>(values[1]);
-        header_.cell = values[2];
-        header_.west = has(5) ? values[5] : values[3] + values[2] / 2;
-        header_.south = has(6) ? values[6] : values[4] + values[2] / 2;
+        header_.cell = cell;
+        header_.cell_north = cell_north;
+        header_.west = has(5) ? values[5] : values[3] + cell / 2;
+        header_.south = has(6) ? values[6] : values[4] + cell_north / 2;
         if (has(7)) header_.no_data = values[7];
         if (!(std::abs(header_.west) < 1e9 && std::abs(header_.south) < 1e9))
             return fail(ErrorCode::input,
@@ -176,7 +187,7 @@ private:
     [[nodiscard]] Eigen::Vector2d middle_of_cell(std::size_t column, std::size_t row) const {
         const double unit = header_.geographic() ? 1 : settings_.metres_per_unit;
         return Eigen::Vector2d(header_.west + header_.cell * static_cast<double>(column),
-                               header_.south + header_.cell * static_cast<double>(header_.rows - 1 - row)) *
+                               header_.south + header_.cell_north * static_cast<double>(header_.rows - 1 - row)) *
                unit;
     }
     Result<PlaceOnEarth> find_place() {

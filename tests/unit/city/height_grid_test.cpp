@@ -108,6 +108,18 @@ TEST(HeightGrid, PlacesDegreesOnTheGlobe) {
     EXPECT_NEAR(lower->model.vertices[4].z(), 30, 1e-6);
 }
 
+// As GDAL writes grids whose cells are no squares, Copernicus' north of 50° among them.
+TEST(HeightGrid, CellsMayBeWiderThanTall) {
+    const auto file = read_grid("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ndx 20\ndy 10\n1 2 3\n4 5 6\n");
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->model.vertices[0], Eigen::Vector3d(10, 15, 1));
+    EXPECT_EQ(file->model.vertices[5], Eigen::Vector3d(50, 5, 6));
+    EXPECT_THAT(refusal(read_grid("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ndx 1\ndy 0\n1 1 1 1")),
+                HasSubstr("dx 1 and dy 0; expected more than 0"));
+    EXPECT_THAT(refusal(read_grid("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ndx 1\n1 1 1 1")),
+                HasSubstr("cellsize, or dx and dy"));
+}
+
 TEST(HeightGrid, NamesTheLineOfWhatIsWrong) {
     const std::string head = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
     EXPECT_THAT(refusal(read_grid("")), HasSubstr("hills.asc:1: '' is no key"));
