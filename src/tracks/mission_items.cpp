@@ -346,6 +346,14 @@ std::optional<VehicleClass> vehicle_of_mav_type(int type) {
         case 13:  // HEXAROTOR
         case 14:  // OCTOROTOR
         case 15:  // TRICOPTER
+        // VTOLs, which go straight up and down; the plane between cannot.
+        case 19:  // VTOL_TAILSITTER_DUOROTOR
+        case 20:  // VTOL_TAILSITTER_QUADROTOR
+        case 21:  // VTOL_TILTROTOR
+        case 22:  // VTOL_FIXEDROTOR
+        case 23:  // VTOL_TAILSITTER
+        case 24:  // VTOL_TILTWING
+        case 25:  // VTOL_RESERVED5
             return VehicleClass::multirotor;
         case 10:  // GROUND_ROVER
             return VehicleClass::rover;
@@ -354,6 +362,11 @@ std::optional<VehicleClass> vehicle_of_mav_type(int type) {
         default:
             return std::nullopt;
     }
+}
+
+bool is_vtol_mav_type(int type) {
+    constexpr int first = 19, last = 25;
+    return type >= first && type <= last;
 }
 
 }  // namespace skyloop

@@ -45,4 +45,7 @@ Result<Track> track_of_mission(const TrackFile& file, const Mission& mission);
 // The vehicle of a MAV_TYPE; nothing for others.
 std::optional<VehicleClass> vehicle_of_mav_type(int type);
 
+// One that takes off as a multirotor and cruises as a plane.
+bool is_vtol_mav_type(int type);
+
 }  // namespace skyloop

@@ -70,9 +70,21 @@ std::optional<std::array<double, 3>> PlanReader::three(const PlanJson& place) {
 void PlanReader::take_head(const PlanJson& mission) {
     if (const auto home = three(plan_member(mission, "plannedHomePosition")))
         mission_.home = MissionHome{(*home)[0], (*home)[1], (*home)[2]};
-    if (const auto type = plan_whole(plan_member(mission, "vehicleType")))
-        mission_.vehicle = vehicle_of_mav_type(*type);
-    const bool hovers = mission_.vehicle == VehicleClass::multirotor;
+    const auto type = plan_whole(plan_member(mission, "vehicleType"));
+    if (type) mission_.vehicle = vehicle_of_mav_type(*type);
+    const bool vtol = type && is_vtol_mav_type(*type);
+    if (vtol)
+        mission_.notes.push_back(
+            fmt::format("vehicleType {}, a VTOL: flown as a multirotor at its cruiseSpeed; vehicle "
+                        "= \"plane\" flies it as a plane, which goes nowhere straight up",
+                        *type));
+    constexpr int generic = 0;
+    if (type && *type != generic && !mission_.vehicle)
+        mission_.notes.push_back(
+            fmt::format("vehicleType {} is not known: the vehicle and its speed are not those of "
+                        "the plan",
+                        *type));
+    const bool hovers = mission_.vehicle == VehicleClass::multirotor && !vtol;
     const auto speed = plan_number(plan_member(mission, hovers ? "hoverSpeed" : "cruiseSpeed"));
     constexpr double slowest_mps = 0.01, fastest_mps = 12000;
     if (mission_.vehicle && speed && *speed >= slowest_mps && *speed <= fastest_mps) mission_.speed_mps = *speed;

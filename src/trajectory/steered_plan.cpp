@@ -117,7 +117,7 @@ SteeredPlanner::Mistake SteeredPlanner::pass_by() {
     if (wish_.waypoints.size() < 2) return "all places lie above one another; expected two that are apart";
     if (left_out.count > 0)
         notes_.add(
-            fmt::format("{} times it would go straight up or down, by up to {:.1f} m: a {} climbs and sinks on "
+            fmt::format("it does not go straight up or down ({} places, up to {:.1f} m): a {} climbs and sinks on "
                         "its way from place to place",
                         left_out.count, left_out.most, vehicle_name(wish_.vehicle.kind)));
     if (auto mistake = measure_legs()) return mistake;

@@ -100,6 +100,19 @@ const std::string wpl_items =
     "3\t0\t3\t19\t30\t0\t80\t0\t47.001\t8.01\t100\t1\r\n"
     "4\t0\t3\t21\t0\t0\t0\tnan\t47.003\t8.01\t0\t1\r\n";
 
+TEST(QgcPlan, AVtolRisesAsAMultirotorAndFliesAtItsCruiseSpeed) {
+    const std::string items = simple(84, 3, "0,0,0,null,47.0,8.0,30") + "," + simple(16, 3, "0,0,0,null,47.01,8.0,80");
+    for (const std::string type : {"19", "20", "21", "22", "23", "24", "25"}) {
+        const Track track = track_of(plan(items, type), "t.plan");
+        EXPECT_EQ(track.route->vehicle, VehicleClass::multirotor);
+        EXPECT_EQ(track.route->speed, 17.0);
+        EXPECT_THAT(track.notes, Contains(HasSubstr("vehicleType " + type + ", a VTOL")));
+    }
+    const Track unknown = track_of(plan(items, "77"), "t.plan");
+    EXPECT_FALSE(unknown.route->vehicle.has_value());
+    EXPECT_THAT(unknown.notes, Contains(HasSubstr("vehicleType 77 is not known")));
+}
+
 TEST(QgcPlan, RefusesTextsInPlaceOfNumbers) {
     EXPECT_THAT(refusal_of_track(plan(simple(16, 3, "0,0,0,null,\"47,001\",8.0,40")), "t.plan"),
                 HasSubstr("item 1: '47,001' in its params; expected a number or null"));
@@ -130,7 +143,7 @@ TEST(WplMission, APlaneBeginsOnTheGroundAndClimbsOnItsWay) {
         EXPECT_NEAR(route->shape->at(0).position.z(), 510, 1e-3);
         EXPECT_NEAR(route->shape->at(1).position.z(), 510, 5) << "at rest it does not climb";
         EXPECT_NEAR(route->shape->at(1e9).position.z(), 610, 1e-3);
-        EXPECT_THAT(route->notes, Contains(HasSubstr("go straight up or down, by up to 50.0 m: a plane climbs")));
+        EXPECT_THAT(route->notes, Contains(HasSubstr("up or down (1 places, up to 50.0 m): a plane climbs")));
         const auto copter = fly_route(track, {VehicleClass::multirotor, {}, 2, 0});
         ASSERT_TRUE(copter.has_value());
         EXPECT_GE(copter->waypoints.size(), 4u) << "what can stand goes straight up";
