@@ -38,7 +38,7 @@ private:
     XmlTree tree_;
     TextTrack track_;
     Altitudes altitudes_ = Altitudes::sea_level;
-    std::size_t clamped_ = 0, above_ground_ = 0, angles_ = 0, without_zone_ = 0;
+    std::size_t clamped_ = 0, above_ground_ = 0, angles_ = 0, without_zone_ = 0, without_clock_ = 0;
 };
 
 Result<Track> KmlReader::read() {
@@ -177,7 +177,12 @@ Result<void> KmlReader::take_points() {
 Result<std::optional<Nanoseconds>> KmlReader::time_of(const pugi::xml_node& when, std::size_t line) {
     const std::string text = xml_content(when);
     if (trimmed_cell(text).empty()) return track_.leave_out("have no time", line), std::nullopt;
-    const auto time = parse_iso_time(text);
+    constexpr std::size_t date_alone = 10;  // characters
+    auto time = parse_iso_time(text);
+    if (const std::string_view plain = trimmed_cell(text); !time && plain.size() == date_alone) {
+        time = parse_iso_time(fmt::format("{}T00:00Z", plain));
+        without_clock_ += time.has_value();
+    }
     if (!time)
         return track_.refusal(line, fmt::format("<when> is '{}'; expected a time as 2024-03-05T12:00:00.25Z",
                                                 trimmed_cell(text).substr(0, 40)));
@@ -233,6 +238,8 @@ Result<Track> KmlReader::refused() {
 }
 
 Result<Track> KmlReader::finish() {
+    if (without_clock_ > 0)
+        track_.note(fmt::format("{} times are dates alone and are taken as their midnight, UTC", without_clock_));
     if (without_zone_ > 0) track_.note(fmt::format("{} times say no zone and are taken as UTC", without_zone_));
     if (clamped_ > 0)
         track_.note(

@@ -87,12 +87,12 @@ std::optional<IsoTime> parse_iso_time(std::string_view text) {
     const auto hour = take_digits(text, 2);
     const bool third = take_char(text, ":");
     const auto minute = take_digits(text, 2);
-    const bool fourth = take_char(text, ":");
-    const auto whole = take_digits(text, 2);
+    const bool with_seconds = take_char(text, ":");
+    const auto whole = with_seconds ? take_digits(text, 2) : std::optional(0U);
     if (!year || !month || !day || !hour || !minute || !whole) return std::nullopt;
-    if (!first || !second || !between || !third || !fourth) return std::nullopt;
+    if (!first || !second || !between || !third) return std::nullopt;
     local = {static_cast<int>(*year), *month, *day, *hour, *minute, *whole, 0};
-    if (!take_fraction(text, local.nanosecond)) return std::nullopt;
+    if (with_seconds && !take_fraction(text, local.nanosecond)) return std::nullopt;
     text = trimmed_cell(text);
     const auto zone = zone_minutes(text);
     if (!zone || !could_be(local)) return std::nullopt;

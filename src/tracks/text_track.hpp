@@ -58,8 +58,8 @@ struct IsoTime {
     bool zoned = false;     // says its zone; else UTC is taken
     bool in_range = false;  // of GpsTime: 1980-01-06 to 2199; `time` means nothing outside
 };
-// `T` may be a blank, the zone Z, +01:00, +0100, +01 or absent, the fraction of any length; beyond the ninth digit it
-// is cut. Nothing for any other text.
+// `T` may be a blank, seconds may be absent, the zone Z, +01:00, +0100, +01 or absent, the fraction of any length;
+// beyond the ninth digit it is cut. Nothing for any other text.
 std::optional<IsoTime> parse_iso_time(std::string_view text);
 
 // GPS time of a calendar in UTC, or nothing outside 1980-01-06 … 2199 and for what is no calendar time.

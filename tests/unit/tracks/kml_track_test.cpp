@@ -73,6 +73,16 @@ TEST(KmlTrack, ReadsPlacemarksOfOnePointEach) {
     EXPECT_NEAR(place_of(track, 1).latitude.deg(), 47.1, 1e-9);
 }
 
+TEST(KmlTrack, ADateIsItsMidnightAndSecondsMayBeAbsent) {
+    const Track track = track_of(kml("<gx:Track>" + std::string(absolute) +
+                                     "<when>2024-03-05</when><when>2024-03-06T12:00Z</when><gx:coord>8 47 "
+                                     "1</gx:coord><gx:coord>8 47.1 1</gx:coord></gx:Track>"));
+    ASSERT_EQ(track.points.size(), 2u);
+    EXPECT_EQ(utc_of(track, 0), "2024-03-05T00:00:00.000Z");
+    EXPECT_EQ(utc_of(track, 1), "2024-03-06T12:00:00.000Z");
+    EXPECT_THAT(track.notes, testing::Contains("1 times are dates alone and are taken as their midnight, UTC"));
+}
+
 TEST(KmlTrack, TellsWhatAltitudesMean) {
     const std::string rows = two_whens + "<gx:coord>8 47 20</gx:coord><gx:coord>8 47 20</gx:coord></gx:Track>";
     EXPECT_THAT(track_of(kml("<gx:Track>" + rows)).notes, ElementsAre(HasSubstr("altitudeMode is clampToGround")));
