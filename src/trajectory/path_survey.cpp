@@ -279,11 +279,14 @@ Result<std::vector<PathSample>> sample_path(const Trajectory& path, const PathSp
         return fail(ErrorCode::usage, fmt::format("{:g} s at {:g} Hz are {:g} samples; expected ten million at most",
                                                   span.length.value(), rate.value(), count));
     std::vector<PathSample> samples;
-    samples.reserve(static_cast<std::size_t>(count));
+    samples.reserve(static_cast<std::size_t>(count) + 1);
     const GpsTime end = advanced(span.from, span.length);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    const auto whole = static_cast<std::size_t>(count);
+    constexpr double at_once = 1e-6;  // s
+    const bool ends_between = span.length.value() - (count - 1) / rate.value() > at_once;
+    for (std::size_t i = 0; i < whole + (ends_between ? 1 : 0); ++i) {
         PathSample sample;
-        sample.time_s = static_cast<double>(i) / rate.value();
+        sample.time_s = i < whole ? static_cast<double>(i) / rate.value() : span.length.value();
         sample.state = path.at(advanced(span.from, Seconds(sample.time_s)));
         sample.velocity_ned = ned_of(sample.state, velocity_of(sample.state));
         sample.acceleration_ned = ned_of(sample.state, acceleration_at(path, sample.state, span.from, end));

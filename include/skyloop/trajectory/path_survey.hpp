@@ -73,7 +73,7 @@ struct PathSample {
     bool jumped = false;                                         ///< the path jumps since the sample before
 };
 
-/// From the beginning of the span to its end, both among them where the rate fits.
+/// From the beginning of the span to its end, both among them: the last step may be a shorter one.
 /// Fails with `usage` for more than ten million samples.
 Result<std::vector<PathSample>> sample_path(const Trajectory& path, const PathSpan& span, Hertz rate);
 

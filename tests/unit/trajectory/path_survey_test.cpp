@@ -141,6 +141,17 @@ TEST(PathSurvey, ItsTableIsATrackAgain) {
     EXPECT_FALSE(sample_path(path, {recorded_start, Seconds(1e7)}, Hertz(100)).has_value());
 }
 
+TEST(PathSurvey, SamplesEndWhereThePathEnds) {
+    Track track = track_of(circle_of(60, 20), evenly(0, 30, 0.5), true);
+    const auto gaps = clean_track(track, Seconds(10));
+    const RecordedPath path(track, *gaps, recorded_start, {VehicleClass::plane, {}, {}});
+    const auto samples = sample_path(path, {recorded_start, Seconds(29.4)}, Hertz(1));
+    ASSERT_TRUE(samples.has_value());
+    ASSERT_EQ(samples->size(), 31u);
+    EXPECT_EQ((*samples)[29].time_s, 29);
+    EXPECT_EQ(samples->back().time_s, 29.4);
+}
+
 TEST(PathSurvey, SamplesOfAJumpHaveNoAccelerationOfItAndAReset) {
     const PathLaw law = [](double t) { return Eigen::Vector3d(t < 5 ? 10 * t : 10 * t + 1000, 0, 0); };
     Track track = track_of(law, evenly(0, 10, 1), false);
