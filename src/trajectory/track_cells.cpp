@@ -3,10 +3,23 @@
 #include <algorithm>
 #include <chrono>
 
+#include "skyloop/base/table_line.hpp"
 #include "skyloop/geo/geodetic.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
+
+bool says_nothing(std::string_view plain) { return plain.empty() || plain.front() == '#' || plain.front() == '%'; }
+
+std::string_view first_row_line(std::string_view text) {
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        if (!says_nothing(trimmed_cell(text.substr(0, end)))) return text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return {};
+}
+
 Result<GpsTime> time_of_utc_cell(std::string_view text) {
     constexpr std::size_t date_and_time = 19;  // characters, at least
     const std::size_t sign = text.find_last_of("+-");

@@ -59,8 +59,10 @@ struct TrackColumn {
 class TrackColumns {
 public:
     /// @param header names, as they stand
+    /// @param first_row its cells, which tell what a time without a unit is; may be empty
     /// Fails with `input`, without the name of the file, when a place is missing.
-    static Result<TrackColumns> of(std::span<const std::string_view> header);
+    static Result<TrackColumns> of(std::span<const std::string_view> header,
+                                   std::span<const std::string_view> first_row);
 
     [[nodiscard]] const std::optional<TrackColumn>& operator[](TrackQuantity quantity) const {
         return columns_[static_cast<std::size_t>(quantity)];
@@ -87,6 +89,7 @@ public:
 
 private:
     Result<void> check() const;
+    bool take_bare_time(std::string_view name, std::size_t index, std::string_view cell);
     bool take_other_name(std::string_view name, std::size_t index);
 
     std::optional<TrackColumn> columns_[static_cast<std::size_t>(TrackQuantity::count)];

@@ -71,6 +71,7 @@ private:
     Track track_;
     std::size_t names_ = 0;  // in the first line
     std::size_t line_ = 0, without_time_ = 0, without_place_ = 0, without_fix_ = 0, rows_ = 0;
+    std::string_view below_;  // the line being read
     char separator_ = ',';
     bool has_header_ = false;
     TrackColumns columns_;
@@ -84,8 +85,10 @@ Result<Track> TrackTable::read(std::string_view text) {
     while (!text.empty()) {
         const std::size_t end = std::min(text.find('\n'), text.size());
         ++line_;
-        if (auto taken = take_line(text.substr(0, end)); !taken) return fail(std::move(taken.error()));
+        const std::string_view line = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
+        below_ = text;
+        if (auto taken = take_line(line); !taken) return fail(std::move(taken.error()));
     }
     if (!has_header_)
         return fail(ErrorCode::input,
@@ -103,7 +106,7 @@ Result<void> TrackTable::take_line(std::string_view line) {
     constexpr std::size_t longest = 65536;
     if (line.size() > longest) return refusal(fmt::format("a line of {} characters; expected a table", line.size()));
     const std::string_view plain = trimmed_cell(line);
-    if (plain.empty() || plain.front() == '#' || plain.front() == '%') return {};
+    if (says_nothing(plain)) return {};
     // "sep=;" is a word of Excel to itself.
     if (!has_header_) return plain.starts_with("sep=") ? Result<void>() : take_header(line);
     split_table_line(line, separator_, cells_);
@@ -115,7 +118,9 @@ Result<void> TrackTable::take_line(std::string_view line) {
 Result<void> TrackTable::take_header(std::string_view line) {
     separator_ = separator_in(trimmed_cell(line));
     split_table_line(line, separator_, cells_);
-    auto columns = TrackColumns::of(cells_);
+    LineCells first;
+    split_table_line(first_row_line(below_), separator_, first);
+    auto columns = TrackColumns::of(cells_, first);
     if (!columns) return refusal(columns.error().message);
     columns_ = std::move(*columns);
     if (columns_.has(altitude) && !columns_.has(height) && !columns_.has(x) && !geoid_)

@@ -6,6 +6,7 @@
 
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/time/utc_time.hpp"
+#include "support/flat_geoid.hpp"
 
 namespace skyloop {
 namespace {
@@ -140,6 +141,55 @@ TEST(TrackCsv, UnderstandsTheNamesAndUnitsOfOthers) {
     EXPECT_THAT(named.notes, testing::Contains("columns without a meaning here: time(s), flags"));
     EXPECT_EQ(read_rows("datetime(utc),lat,lon,h_ell_m\n2024-03-05 12:00:00,47,8,1").points.size(), 1u);
     EXPECT_THAT(refused("time(fortnight),lat,lon,h_ell_m\n1,47,8,1"), HasSubstr("no column says the time"));
+}
+
+// Tables of GPSLogger for Android and its like.
+TEST(TrackCsv, ATimeWithoutAUnitIsWhatItsFirstRowShows) {
+    const std::string names = "latitude,longitude,h_ell_m\n", place = ",47,8,500\n";
+    constexpr std::int64_t posix_s = 1709640000;  // 2024-03-05 12:00:00 UTC
+    const auto time_of = [&](const std::string& name, const std::string& cell) {
+        const Track track = read_rows(name + "," + names + cell + place);
+        EXPECT_THAT(track.notes, testing::Contains(HasSubstr(name + " tells no unit, and is taken as")));
+        return track.origin.value_or(GpsTime{}) + track.points.at(0).time;
+    };
+    const GpsTime noon = from_posix(std::chrono::seconds(posix_s), LeapSeconds::announced());
+    for (const std::string name : {"time", "Timestamp", "datetime", "date time"}) {
+        EXPECT_EQ(time_of(name, "2024-03-05T12:00:00.000Z"), noon);
+        EXPECT_EQ(time_of(name, "2024-03-05 14:00:00+02:00"), noon);
+    }
+    for (const std::string zeros : {"", "000", "000000", "000000000"})
+        EXPECT_EQ(time_of("timestamp", std::to_string(posix_s) + zeros), noon);
+    EXPECT_EQ(read_rows("time," + names + "2.5" + place).points.at(0).time, Nanoseconds(2'500'000'000));
+    EXPECT_THAT(refused("time," + names + "noon" + place),
+                HasSubstr("no column says the time, for that of time is in no form or unit that is known; expected"));
+}
+
+TEST(TrackCsv, LengthsSpeedsAndCoursesWithoutAUnitAreInMetresAndDegrees) {
+    const Track track = read_rows("t_s,lat,lon,height above ellipsoid,bearing,speed,roll\n0,47,8,500,90,2,1\n");
+    const auto& point = track.points.at(0);
+    EXPECT_NEAR(to_geodetic(point.position).height.above_ellipsoid.value(), 500, 1e-6);
+    ASSERT_TRUE(point.velocity.has_value());
+    EXPECT_NEAR(point.velocity->vector().norm(), 2, 1e-9);
+    EXPECT_THAT(track.notes, testing::Contains("speed tells no unit, and is taken in m/s"));
+    EXPECT_THAT(track.notes, testing::Contains("bearing tells no unit, and is taken in degrees"));
+    EXPECT_THAT(track.notes, testing::Contains("columns without a meaning here: roll"));
+}
+
+TEST(TrackCsv, ReadsTheReceiverOfBetaflightsRecorder) {
+    for (const std::string names :
+         {"GPS_altitude, GPS_speed, GPS_ground_course", "GPS_altitude (m), GPS_speed (m/s), GPS_ground_course (deg)"}) {
+        const auto geoid = test::flat_geoid(10);
+        const auto track = read_track_csv(
+            "time (us), GPS_numSat, GPS_coord[0], GPS_coord[1], " + names + "\n31000000, 12, 47.5, 8.25, 500, 2, 90\n",
+            "bf.gps.csv", &*geoid);
+        ASSERT_TRUE(track.has_value()) << track.error().message;
+        EXPECT_EQ(track->points.at(0).time, std::chrono::seconds(31));
+        const Geodetic place = to_geodetic(track->points[0].position);
+        EXPECT_NEAR(place.latitude.deg(), 47.5, 1e-9);
+        EXPECT_NEAR(place.longitude.deg(), 8.25, 1e-9);
+        EXPECT_NEAR(place.height.above_ellipsoid.value(), 510, 1e-4);
+        EXPECT_TRUE(track->points[0].velocity.has_value());
+    }
 }
 
 TEST(TrackCsv, TakesItsNamesInCapitals) {
