@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
@@ -177,6 +178,74 @@ Result<CityObjects> CityJsonReader::read() {
     return std::move(found_);
 }
 
+// CityJSON text sequences (CityJSONSeq): a line that is a CityJSON with what all share, and one for each feature, with
+// corners of its own.
+class CityJsonSequence {
+public:
+    CityJsonSequence(std::string_view text, std::string_view name) : text_(text), name_(name) {}
+    Result<CityObjects> read();
+
+private:
+    Result<void> take_line(std::string_view line, const std::string& where);
+    void add(CityObjects part);
+
+    std::string_view text_, name_;
+    json transform_, metadata_;
+    bool begun_ = false;
+    CityObjects found_;
+};
+
+void CityJsonSequence::add(CityObjects part) {
+    const std::size_t before = found_.objects.size();
+    for (CityObject& object : part.objects) {
+        if (object.parent) *object.parent += before;
+        found_.objects.push_back(std::move(object));
+    }
+    found_.dropped += part.dropped;
+    for (std::string& warning : part.warnings)
+        if (std::find(found_.warnings.begin(), found_.warnings.end(), warning) == found_.warnings.end())
+            found_.warnings.push_back(std::move(warning));
+    if (!begun_) found_.system = std::move(part.system);
+}
+
+Result<void> CityJsonSequence::take_line(std::string_view line, const std::string& where) {
+    auto root = parse_json(line, where);
+    if (!root) return fail(root.error());
+    const std::string_view expected = begun_ ? "CityJSONFeature" : "CityJSON", type = text_member(*root, "type");
+    if (type != expected)
+        return fail(ErrorCode::input,
+                    fmt::format("{}: \"type\" is \"{}\", expected \"{}\"", where, shown(type), expected));
+    if (begun_) {
+        (*root)["transform"] = transform_;
+        (*root)["metadata"] = metadata_;
+    } else {
+        transform_ = member(*root, "transform");
+        metadata_ = member(*root, "metadata");
+    }
+    auto part = CityJsonReader(*root, where).read();
+    if (!part) return fail(part.error());
+    add(std::move(*part));
+    begun_ = true;
+    return {};
+}
+
+Result<CityObjects> CityJsonSequence::read() {
+    std::size_t number = 0;
+    for (std::string_view rest = text_; !rest.empty();) {
+        const std::size_t end = std::min(rest.find('\n'), rest.size());
+        const std::string_view line = rest.substr(0, end);
+        ++number;
+        if (line.find_first_not_of(" \t\r\x1E") != std::string_view::npos)
+            if (auto taken =
+                    take_line(line.substr(line.find_first_not_of('\x1E')), fmt::format("{}:{}", name_, number));
+                !taken)
+                return fail(std::move(taken.error()));
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    if (!begun_) return fail(ErrorCode::input, fmt::format("{}: no line; expected a CityJSON and its features", name_));
+    return std::move(found_);
+}
+
 }  // namespace
 
 Result<CityFile> parse_cityjson(std::string_view text, std::string_view name, const CityFileSettings& settings) {
@@ -186,6 +255,13 @@ Result<CityFile> parse_cityjson(std::string_view text, std::string_view name, co
         return fail(ErrorCode::input, fmt::format("{}: \"type\" is \"{}\", expected \"CityJSON\"", name,
                                                   shown(text_member(*root, "type"))));
     auto objects = CityJsonReader(*root, name).read();
+    if (!objects) return fail(objects.error());
+    return city_of_objects(std::move(*objects), "cityjson", name, settings);
+}
+
+Result<CityFile> parse_cityjson_sequence(std::string_view text, std::string_view name,
+                                         const CityFileSettings& settings) {
+    auto objects = CityJsonSequence(text, name).read();
     if (!objects) return fail(objects.error());
     return city_of_objects(std::move(*objects), "cityjson", name, settings);
 }

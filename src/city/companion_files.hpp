@@ -1,6 +1,8 @@
 /// Files that another file names.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -9,6 +11,13 @@
 #include "skyloop/city/city_file.hpp"
 
 namespace skyloop {
+
+/// Bytes, after decompression, of which a city may hold so many in one file: 4 GiB, 50 million triangles as text, or as
+/// many as its scene may take.
+inline std::size_t most_city_bytes(const CityFileSettings& settings) {
+    constexpr std::size_t most = std::size_t{4} << 30;
+    return settings.memory_limit == 0 ? most : std::min(most, settings.memory_limit);
+}
 
 /// Gives the content of a file by its name inside the folder of the one that names it (name_inside() has been asked).
 /// Fails when there is none.

@@ -13,9 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-// Of all buffers together: one file may be named many times.
-constexpr std::size_t most_buffer_bytes = std::size_t{4} << 30;
-
 std::uint32_t little_word(std::string_view bytes, std::size_t at) {
     std::uint32_t value = 0;
     for (std::size_t i = 4; i-- > 0;)
@@ -148,8 +145,9 @@ tl::unexpected<Error> GltfDocument::wrong(std::string_view what) const {
 }
 
 Result<GltfDocument> GltfDocument::parse(std::string_view bytes, std::string_view name,
-                                         const CompanionFiles& companions) {
+                                         const CompanionFiles& companions, std::size_t most_bytes) {
     GltfDocument document;
+    document.most_bytes_ = most_bytes;
     document.name_ = name;
     document.companions_ = companions;
     if (auto done = document.take_chunks(bytes); !done) return fail(std::move(done.error()));
@@ -246,8 +244,8 @@ Result<std::string_view> GltfDocument::buffer(std::uint64_t index) {
             auto loaded = load(told);
             if (!loaded) return fail(std::move(loaded.error()));
             loaded_bytes_ += loaded->size();
-            if (loaded_bytes_ > most_buffer_bytes)
-                return wrong(fmt::format("has more than {} bytes of buffers", most_buffer_bytes));
+            if (loaded_bytes_ > most_bytes_)
+                return wrong(fmt::format("has more than {} bytes of buffers, the most that is read", most_bytes_));
             loaded_[index] = std::move(*loaded);
         }
         bytes = *loaded_[index];

@@ -28,7 +28,9 @@ class GltfDocument {
 public:
     /// Parses .gltf or .glb. `bytes` must outlive it. Fails with `input`: no JSON, another version, an extension that
     /// changes shapes.
-    static Result<GltfDocument> parse(std::string_view bytes, std::string_view name, const CompanionFiles& companions);
+    /// @param most_bytes of all buffers together, for one file may be named many times
+    static Result<GltfDocument> parse(std::string_view bytes, std::string_view name, const CompanionFiles& companions,
+                                      std::size_t most_bytes);
 
     [[nodiscard]] const nlohmann::json& root() const { return root_; }
     /// An array of the document's root; an empty one where there is none.
@@ -48,7 +50,7 @@ private:
     nlohmann::json root_;
     std::optional<std::string_view> binary_;
     std::vector<std::optional<std::string>> loaded_;
-    std::size_t loaded_bytes_ = 0;
+    std::size_t loaded_bytes_ = 0, most_bytes_ = 0;
 };
 
 /// A whole number that is not negative; nothing when there is none of that name.

@@ -167,7 +167,7 @@ private:
 
 Result<CityFile> parse_gltf_with(std::string_view bytes, std::string_view name, const CityFileSettings& settings,
                                  const CompanionFiles& companions) {
-    auto document = GltfDocument::parse(bytes, name, companions);
+    auto document = GltfDocument::parse(bytes, name, companions, most_city_bytes(settings));
     if (!document) return fail(std::move(document.error()));
     return GltfReader(std::move(*document), name, settings).read();
 }

@@ -17,19 +17,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Bytes after decompression: 50 million triangles as text.
-constexpr std::size_t max_city_file_size = std::size_t{4} << 30;
+// A small file may unpack to more than its scene may take.
+Result<std::string> read_bounded(const fs::path& path, const CityFileSettings& settings) {
+    const std::size_t most = most_city_bytes(settings);
+    auto text = read_text_file(path, most);
+    if (!text && text.error().code == ErrorCode::input && most == settings.memory_limit)
+        return fail(ErrorCode::input,
+                    fmt::format("{} (memory_limit_mb is {})", text.error().message, settings.memory_limit >> 20));
+    return text;
+}
 
 using CompanionDigests = std::map<std::string, std::uint64_t>;
 
 // The files of a folder, those that links lead out of it excepted. What was opened is noted.
-CompanionFiles files_of_folder(const fs::path& folder, CompanionDigests& opened) {
-    return [folder, &opened](const std::string& inside) -> Result<std::string> {
+CompanionFiles files_of_folder(const fs::path& folder, CompanionDigests& opened, const CityFileSettings& settings) {
+    return [folder, &opened, settings](const std::string& inside) -> Result<std::string> {
         std::error_code error;
         const fs::path root = fs::weakly_canonical(folder, error), path = fs::weakly_canonical(folder / inside, error);
         if (std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first != root.end())
             return fail(ErrorCode::input, fmt::format("{}: leads out of its folder", (folder / inside).string()));
-        auto content = read_text_file(path, max_city_file_size);
+        auto content = read_bounded(path, settings);
         if (!content) return content;
         const auto digest = digest_of_file(path);
         if (!digest) return fail(digest.error());
@@ -68,8 +75,8 @@ Result<CityFile> parse_xml(std::string_view text, const fs::path& path, const Ci
     const std::string_view root = root_element(text);
     CompanionDigests opened;
     if (root == "scene")
-        return with_companions(parse_mitsuba(text, name, settings, files_of_folder(path.parent_path(), opened)),
-                               opened);
+        return with_companions(
+            parse_mitsuba(text, name, settings, files_of_folder(path.parent_path(), opened, settings)), opened);
     if (root == "osm") return parse_osm(text, "osm", name, settings);
     if (root == "CityModel") return parse_citygml(text, name, settings);
     return fail(ErrorCode::input,
@@ -104,8 +111,8 @@ Result<CityFile> parse_named(std::string_view bytes, const fs::path& path, const
 }
 Result<CityFile> parse_gltf_file(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
     CompanionDigests opened;
-    return with_companions(parse_gltf_with(bytes, path.string(), settings, files_of_folder(path.parent_path(), opened)),
-                           opened);
+    return with_companions(
+        parse_gltf_with(bytes, path.string(), settings, files_of_folder(path.parent_path(), opened, settings)), opened);
 }
 Result<CityFile> parse_any_json(std::string_view text, const fs::path& path, const CityFileSettings& settings) {
     return (is_cityjson(text) ? parse_cityjson : parse_geojson)(text, path.string(), settings);
@@ -117,13 +124,14 @@ Result<CityFile> parse_osm_pbf(std::string_view bytes, const fs::path& path, con
     return parse_osm(bytes, "osm.pbf", path.string(), settings);
 }
 
-constexpr std::array<CityEnding, 15> city_endings{{{".obj", parse_named<parse_obj>},
+constexpr std::array<CityEnding, 16> city_endings{{{".obj", parse_named<parse_obj>},
                                                    {".ply", parse_named<parse_ply>},
                                                    {".gltf", parse_gltf_file},
                                                    {".glb", parse_gltf_file},
                                                    {".geojson", parse_named<parse_geojson>},
                                                    {".city.json", parse_named<parse_cityjson>},
                                                    {".json", parse_any_json},
+                                                   {".jsonl", parse_named<parse_cityjson_sequence>},
                                                    {".osm", parse_osm_xml},
                                                    {".pbf", parse_osm_pbf},
                                                    {".gml", parse_named<parse_citygml>},
@@ -138,7 +146,7 @@ Result<CityFile> read_by_ending(const fs::path& path, const CityFileSettings& se
     if (name.ends_with(".gz")) name.resize(name.size() - 3);
     for (const CityEnding& known : city_endings) {
         if (!name.ends_with(known.ending)) continue;
-        const auto bytes = read_text_file(path, max_city_file_size);
+        const auto bytes = read_bounded(path, settings);
         if (!bytes) return fail(bytes.error());
         if (bytes->empty()) return fail(ErrorCode::input, fmt::format("{}: is empty", path.string()));
         return known.parse(*bytes, path, settings);

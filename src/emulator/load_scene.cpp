@@ -79,6 +79,7 @@ Result<CityReading> read_terrain(const std::filesystem::path& path, const CityFi
     settings.geoid = reading.geoid;
     settings.material = terrain_material;
     settings.most_triangles = reading.most_triangles;
+    settings.memory_limit = reading.memory_limit;
     auto grid = read_city(path, settings, cache);
     if (grid && grid->file.format != "height grid")
         return fail(ErrorCode::input, fmt::format("{}: is of format {}; expected terrain as a height grid (.asc)",
@@ -165,6 +166,7 @@ Result<JoinedCity> read_scene_files(const SceneEntry& entry, const std::optional
                                     const CityCache& cache, const Geoid* geoid) {
     CityFileSettings reading = entry.reading;
     reading.geoid = geoid;
+    reading.memory_limit = entry.memory_limit_mb << 20;
     reading.origin_is_guess = !reading.origin;
     if (!reading.origin && start) reading.origin = below_antenna(*start);
     const CityCache kept = entry.cache ? cache : CityCache{};

@@ -56,6 +56,7 @@ struct CityFileSettings {
     double default_height = 9;                ///< of footprints without height or levels, m
     double metres_per_level = 3;              ///< OpenStreetMap
     std::size_t most_triangles = 50'000'000;  ///< a file with more is refused with an estimate of its memory
+    std::size_t memory_limit = 0;             ///< of the scene, bytes: no file may hold more; 0: none
 };
 
 /// A file that a city names and that was read with it.
@@ -75,10 +76,10 @@ struct CityFile {
     std::optional<MapAnchor> anchor;        ///< of files in a map projection
 };
 
-/// Reads a city by the ending of its name: .obj .ply .gltf .glb .geojson .json (CityJSON or GeoJSON) .osm .pbf .gml
-/// (CityGML) .xml (Mitsuba scene, with the .ply it names; CityGML; OpenStreetMap) .asc (height grid), each also as .gz;
-/// a folder, .tar or .tar.gz with one Mitsuba scene. Files that a scene or a .gltf names are read from its own folder
-/// alone. What doubts_about() says is among the warnings.
+/// Reads a city by the ending of its name: .obj .ply .gltf .glb .geojson .json (CityJSON or GeoJSON) .jsonl
+/// (CityJSONSeq) .osm .pbf .gml (CityGML) .xml (Mitsuba scene, with the .ply it names; CityGML; OpenStreetMap) .asc
+/// (height grid), each also as .gz; a folder, .tar or .tar.gz with one Mitsuba scene. Files that a scene or a .gltf
+/// names are read from its own folder alone. What doubts_about() says is among the warnings.
 ///
 /// Fails with `outside` when it cannot be opened, with `input` and FILE:LINE or the place when it is damaged, cut or
 /// empty.
@@ -95,6 +96,9 @@ Result<CityFile> parse_ply(std::string_view bytes, std::string_view name, const 
 Result<CityFile> parse_gltf(std::string_view bytes, std::string_view name, const CityFileSettings& settings);
 Result<CityFile> parse_geojson(std::string_view text, std::string_view name, const CityFileSettings& settings);
 Result<CityFile> parse_cityjson(std::string_view text, std::string_view name, const CityFileSettings& settings);
+/// CityJSONSeq: a CityJSON and a CityJSONFeature a line.
+Result<CityFile> parse_cityjson_sequence(std::string_view text, std::string_view name,
+                                         const CityFileSettings& settings);
 Result<CityFile> parse_citygml(std::string_view text, std::string_view name, const CityFileSettings& settings);
 /// OpenStreetMap, XML or PBF as `format` says ("osm", "osm.pbf").
 Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std::string_view name,

@@ -153,6 +153,34 @@ TEST(CityJson, DropsWrongCornersAndSaysSo) {
     EXPECT_THAT(file->warnings, ::testing::Contains(HasSubstr("6 surfaces")));
 }
 
+// A line each: what all share, and two buildings with corners of their own.
+TEST(CityJson, ReadsTextSequences) {
+    const std::string head =
+        R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],"translate":[1000,2000,5]},)"
+        R"("metadata":{"referenceSystem":"https://www.opengis.net/def/crs/EPSG/0/25832"},"CityObjects":{},"vertices":[]})"
+        "\n";
+    const auto feature = [](int east) {
+        return fmt::format(R"({{"type":"CityJSONFeature","id":"b{0}","CityObjects":{{"b{0}":{{"type":"Building",)"
+                           R"("geometry":[{1}]}}}},"vertices":[[{0},0,0],[{2},0,0],[{2},10,0],[{0},10,0],)"
+                           R"([{0},0,10],[{2},0,10],[{2},10,10],[{0},10,10]]}})"
+                           "\r\n",
+                           east, solid("\"1\""), east + 10);
+    };
+    const auto file = parse_cityjson_sequence(head + feature(0) + "\n" + feature(30), "town.city.jsonl", {});
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->buildings, 2u);
+    EXPECT_EQ(file->format, "cityjson");
+    EXPECT_NEAR(area_of(file->model), 1000, 10) << "but for the scale of the map";
+    for (const auto& [text, why] :
+         {std::pair(head + "{\"type\":\"CityJSON\"}", ":2: \"type\" is \"CityJSON\", expected \"CityJSONFeature\""),
+          std::pair(feature(0), ":1: \"type\" is \"CityJSONFeature\", expected \"CityJSON\""),
+          std::pair(head + "{", ":2:"), std::pair(std::string(), ": no line")}) {
+        const auto refused = parse_cityjson_sequence(text, "town.city.jsonl", {});
+        ASSERT_FALSE(refused);
+        EXPECT_THAT(refused.error().message, StartsWith(std::string("town.city.jsonl") + why));
+    }
+}
+
 TEST(CityJson, RefusesWithOneClearLine) {
     EXPECT_THAT(cityjson_refusal("{"), HasSubstr("town.json:1:2"));
     EXPECT_THAT(cityjson_refusal("{}"), HasSubstr("expected \"CityJSON\""));

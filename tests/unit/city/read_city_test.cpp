@@ -51,6 +51,16 @@ TEST_F(ReadCity, SaysWhatCannotBeOpened) {
     EXPECT_THAT(refusal(read_city(put("cut.obj.gz", "\x1f\x8b\x08"), {})), HasSubstr("cut.obj.gz"));
 }
 
+TEST_F(ReadCity, NoFileMayHoldMoreThanTheSceneMayTake) {
+    CityFileSettings small;
+    small.memory_limit = std::size_t{1} << 20;
+    EXPECT_TRUE(read_city(put("a.obj", small_obj), small));
+    const auto file = put("b.obj", small_obj + std::string(std::size_t{1} << 20, ' '));
+    EXPECT_TRUE(read_city(file, {}));
+    EXPECT_THAT(refusal(read_city(file, small)),
+                HasSubstr("b.obj: has more than 1048576 bytes of text, the most that is read (memory_limit_mb is 1)"));
+}
+
 TEST_F(ReadCity, TellsOfDoubtfulUnits) {
     const auto small = read_city(put("a.obj", "v 0 0 0\nv 20 0 0\nv 0 0 3\nf 1 2 3\n"), {});
     ASSERT_TRUE(small);
