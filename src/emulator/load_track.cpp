@@ -228,8 +228,13 @@ LoadedTrack told_route(const FileSettings& file) {
             loaded.warnings.push_back(fmt::format("{}: {}", name, note));
     loaded.details.push_back(fmt::format("format: {}", file.track->format));
     if (std::isfinite(seconds))
-        loaded.details.push_back(fmt::format("route: {} of {} points are flown to, as a {}", route.waypoints.size(),
-                                             route.places, traits_of(route.vehicle).name));
+        loaded.details.push_back(fmt::format("route: {} of {} points are flown to{}, as a {}",
+                                             route.waypoints.size() - route.corners + route.circles, route.places,
+                                             route.circles > 0 ? fmt::format(", {} of them by circles of {} corners in "
+                                                                             "all",
+                                                                             route.circles, route.corners)
+                                                               : "",
+                                             traits_of(route.vehicle).name));
     return loaded;
 }
 

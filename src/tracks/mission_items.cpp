@@ -111,7 +111,7 @@ private:
     std::optional<Place> home_, now_;
     std::optional<double> ground_m_, next_speed_mps_;
     std::map<int, std::size_t> not_followed_;
-    std::size_t without_radius_ = 0, never_reached_ = 0;
+    std::size_t item_ = 0, without_radius_ = 0, never_reached_ = 0;
     bool for_ever_ = false;
 };
 
@@ -195,6 +195,7 @@ void MissionTrack::add(const Place& place, const RouteStop& stop) {
         to_ecef(Geodetic::degrees(place.latitude_deg, std::remainder(place.longitude_deg, 360), place.height_m));
     track_.points.push_back(row);
     route_.stops.push_back(stop);
+    route_.stops.back().item = item_;
     if (next_speed_mps_) route_.stops.back().speed = std::exchange(next_speed_mps_, std::nullopt);
     now_ = place;
 }
@@ -286,6 +287,7 @@ Result<void> MissionTrack::move(MissionMove how, const MissionItem& item) {
 }
 
 Result<void> MissionTrack::follow(const MissionItem& item) {
+    item_ = item.number;
     if (for_ever_) return ++never_reached_, Result<void>();
     const auto* const known = std::find_if(mission_commands.begin(), mission_commands.end(),
                                            [&](const MissionCommand& c) { return c.number == item.command; });

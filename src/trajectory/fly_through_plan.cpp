@@ -209,14 +209,15 @@ PathPlanResult FlyThroughPlanner::plan() {
         const double asked = wish_.waypoints[i].speed;
         if (legs_[i].limits.speed < asked * (1 - 1e-9))
             notes_.add(
-                fmt::format("from waypoint {} to {} it goes at {:.3g} m/s instead of {:g}: limits of climb and "
+                fmt::format("{} it goes at {:.3g} m/s instead of {:g}: limits of climb and "
                             "sink",
-                            i + 1, i + 2, legs_[i].limits.speed, asked));
+                            leg_called(wish_.waypoints, i), legs_[i].limits.speed, asked));
         if (i > 0 && corners_[i].speed < told_when_below * std::min(legs_[i - 1].limits.speed, legs_[i].limits.speed))
             notes_.add(corners_[i].speed > 0
-                           ? fmt::format("waypoint {}, a turn of {:.0f}°: slowed to {:.3g} m/s", i + 1,
+                           ? fmt::format("{}, a turn of {:.0f}°: slowed to {:.3g} m/s",
+                                         waypoint_called(wish_.waypoints, i),
                                          corners_[i].angle * 180 / std::numbers::pi, corners_[i].speed)
-                           : fmt::format("waypoint {}: stops there", i + 1));
+                           : fmt::format("{}: stops there", waypoint_called(wish_.waypoints, i)));
     }
     make_speeds_reachable(sections, speeds);
     return PathPlan{lay_out(speeds), notes_.take(), {}};

@@ -127,7 +127,10 @@ void RoutePlanner::add_circles(const RouteStop& stop, const Eigen::Vector3d& cen
         const double at = bearing + sign * whole_turn * static_cast<double>(i) / corners_of_turn;
         const Eigen::Vector3d corner(std::sin(at), std::cos(at), 0);
         route_.waypoints.push_back({centre + to_corner * corner, speed, 0});
+        route_.waypoints.back().item = stop.item;
     }
+    ++route_.circles;
+    route_.corners += corners + 1;
 }
 
 void RoutePlanner::add_stop(const RouteStop& stop, const Eigen::Vector3d& place, double speed) {
@@ -135,6 +138,7 @@ void RoutePlanner::add_stop(const RouteStop& stop, const Eigen::Vector3d& place,
     if (stop.radius != 0 && (stop.turns > 0 || (stop.hold > 0 && !stands))) return add_circles(stop, place, speed);
     not_held_ += stop.hold > 0 && !stands;
     route_.waypoints.push_back({place, speed, stands ? stop.hold : 0});
+    route_.waypoints.back().item = stop.item;
 }
 
 void RoutePlanner::follow_plan() {

@@ -74,15 +74,16 @@ SteeredPlanner::Mistake SteeredPlanner::measure_legs() {
         const double length = way.head<2>().norm();
         if (length < shortest_leg_m)
             return fmt::format(
-                "from waypoint {} to {} it goes straight up or down, which a {} cannot; expected places "
+                "{} it goes straight up or down, which a {} cannot; expected places "
                 "that are apart on the ground",
-                i + 1, i + 2, vehicle_name(wish_.vehicle.kind));
+                leg_called(wish_.waypoints, i), vehicle_name(wish_.vehicle.kind));
         if (wish_.vehicle.slowest > waypoint.speed)
-            return fmt::format("waypoint {}: the speed is {:g} m/s; expected at least {:g}, the slowest of a {}", i + 1,
-                               waypoint.speed, wish_.vehicle.slowest, vehicle_name(wish_.vehicle.kind));
+            return fmt::format("{}: the speed is {:g} m/s; expected at least {:g}, the slowest of a {}",
+                               waypoint_called(wish_.waypoints, i), waypoint.speed, wish_.vehicle.slowest,
+                               vehicle_name(wish_.vehicle.kind));
         if (i > 0 && waypoint.hold > 0 && wish_.vehicle.slowest > 0)
-            return fmt::format("waypoint {}: holds for {:g} s, and a {} cannot stop on its way; expected no hold_s",
-                               i + 1, waypoint.hold, vehicle_name(wish_.vehicle.kind));
+            return fmt::format("{}: holds for {:g} s, and a {} cannot stop on its way; expected no hold_s",
+                               waypoint_called(wish_.waypoints, i), waypoint.hold, vehicle_name(wish_.vehicle.kind));
         legs_.push_back({length, std::atan2(way.x(), way.y()), waypoint.speed});
     }
     return std::nullopt;
@@ -181,17 +182,17 @@ SteeredPlanner::Mistake SteeredPlanner::fit_corner(std::size_t i) {
         const double slowest = slowest_turn(wish_.vehicle);
         const TurnShape turn = turn_at_speed(wish_.vehicle, corner.angle, slowest);
         return fmt::format(
-            "waypoint {}, a turn of {:.0f}°: a {}'s turn there has a radius of {:.1f} m at its slowest, "
+            "{}, a turn of {:.0f}°: a {}'s turn there has a radius of {:.1f} m at its slowest, "
             "{:.3g} m/s, and begins {:.1f} m before the waypoint, where {:.1f} m are free; expected "
             "waypoints further apart, a flatter corner or a smaller radius",
-            i + 1, std::abs(corner.angle) * radian_degrees, vehicle_name(wish_.vehicle.kind), turn.radius, slowest,
-            tangent_length(turn), free);
+            waypoint_called(wish_.waypoints, i), std::abs(corner.angle) * radian_degrees,
+            vehicle_name(wish_.vehicle.kind), turn.radius, slowest, tangent_length(turn), free);
     }
     corner.speed = *speed;
     corner.turn = turn_at_speed(wish_.vehicle, corner.angle, corner.speed);
     corner.reach = tangent_length(corner.turn);
     if (corner.speed < asked * 0.5)
-        notes_.add(fmt::format("waypoint {}, a turn of {:.0f}°: slowed to {:.3g} m/s", i + 1,
+        notes_.add(fmt::format("{}, a turn of {:.0f}°: slowed to {:.3g} m/s", waypoint_called(wish_.waypoints, i),
                                std::abs(corner.angle) * radian_degrees, corner.speed));
     return std::nullopt;
 }
@@ -283,14 +284,14 @@ SteeredPlanner::Mistake SteeredPlanner::limit_climbs() {
                                                                        (sharpest_of_smooth_step * std::abs(rise))));
         if (steepest > std::tan(v.steepest) || allowed < v.slowest)
             return fmt::format(
-                "from waypoint {} to {} the height changes by {:.1f} m over {:.1f} m of way, up to {:.1f}° "
+                "{} the height changes by {:.1f} m over {:.1f} m of way, up to {:.1f}° "
                 "steep, {:.2g} m/s at its slowest; a {} is limited to {:g}° and {:g} m/s; expected a "
                 "longer leg or a smaller change of height",
-                i + 1, i + 2, rise, length, std::atan(steepest) * radian_degrees, steepest * std::max(v.slowest, 0.0),
-                vehicle_name(v.kind), v.steepest * radian_degrees, vertical);
+                leg_called(wish_.waypoints, i), rise, length, std::atan(steepest) * radian_degrees,
+                steepest * std::max(v.slowest, 0.0), vehicle_name(v.kind), v.steepest * radian_degrees, vertical);
         if (allowed >= legs_[i].speed) continue;
-        notes_.add(fmt::format("from waypoint {} to {} it goes at {:.3g} m/s instead of {:g}: limits of climb and sink",
-                               i + 1, i + 2, allowed, legs_[i].speed));
+        notes_.add(fmt::format("{} it goes at {:.3g} m/s instead of {:g}: limits of climb and sink",
+                               leg_called(wish_.waypoints, i), allowed, legs_[i].speed));
         legs_[i].speed = allowed;
     }
     return std::nullopt;

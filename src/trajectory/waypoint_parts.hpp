@@ -44,6 +44,11 @@ double room_for_turn(double wanted, const LegOfTurn& before, const LegOfTurn& af
 // Of a place from the straight way between two others, m.
 double distance_from_leg(const Eigen::Vector3d& place, const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
+// How notes call a waypoint, "item 5" of a plan or "waypoint 6", and the way from it to the next: "from waypoint 6 to
+// 7".
+std::string waypoint_called(const std::vector<PlannedWaypoint>& waypoints, std::size_t i);
+std::string leg_called(const std::vector<PlannedWaypoint>& waypoints, std::size_t i);
+
 PathPlanResult plan_fly_through(const WaypointWish& wish);
 PathPlanResult plan_steered(const WaypointWish& wish);
 

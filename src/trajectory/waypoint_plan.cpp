@@ -32,6 +32,17 @@ std::vector<std::string> PlanNotes::take() const {
     return all;
 }
 
+std::string waypoint_called(const std::vector<PlannedWaypoint>& waypoints, std::size_t i) {
+    const std::size_t item = waypoints.at(i).item;
+    return item > 0 ? fmt::format("item {}", item) : fmt::format("waypoint {}", i + 1);
+}
+
+std::string leg_called(const std::vector<PlannedWaypoint>& waypoints, std::size_t i) {
+    const std::size_t from = waypoints.at(i).item, to = waypoints.at(i + 1).item;
+    if (from == 0 || to == 0) return fmt::format("from waypoint {} to {}", i + 1, i + 2);
+    return from == to ? fmt::format("within item {}", from) : fmt::format("from item {} to {}", from, to);
+}
+
 void make_speeds_reachable(const std::vector<SpeedSection>& sections, std::vector<double>& stations) {
     for (std::size_t i = 0; i < sections.size(); ++i)
         stations[i + 1] = std::min(stations[i + 1], fastest_after(stations[i], sections[i].length, sections[i].limits));

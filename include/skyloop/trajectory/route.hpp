@@ -39,6 +39,7 @@ struct FlownRoute {
     VehicleClass vehicle = VehicleClass::multirotor;
     std::vector<PlannedWaypoint> waypoints{};  ///< the places kept; m on the plane
     std::size_t places = 0;                    ///< that the file has
+    std::size_t circles = 0, corners = 0;      ///< places that are circled, and the waypoints that stand for them
     std::vector<std::string> notes{};          ///< what its user should be told
 };
 

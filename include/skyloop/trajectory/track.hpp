@@ -31,6 +31,7 @@ struct RouteStop {
     double hold = 0;                ///< stands here for so long, s; with a radius what cannot stand circles for it
     double turns = 0;               ///< circles round the place before it goes on
     double radius = 0;              ///< of these, m; negative: anticlockwise; 0: it does not circle
+    std::size_t item = 0;           ///< of the plan, as notes call it; 0: the file has none
 };
 
 /// How places without times are flown: one after the other, with the limits of a vehicle.

@@ -16,6 +16,7 @@ struct PlannedWaypoint {
     double hold = 0;                                  ///< stop here for so long, s
     /// How far off what goes straight in space may pass, m; the vehicle's own corner may ask for less.
     double near = std::numeric_limits<double>::infinity();
+    std::size_t item = 0;  ///< of a plan, as notes call it; 0: by its number among the waypoints
 };
 
 /// What is to be planned.

@@ -132,6 +132,24 @@ TEST(WplMission, IsARouteThatBeginsAtHome) {
         test::expect_flown_route(track, {vehicle, {}, 30, 0});
 }
 
+// The corners of a circle are none of the plan's places, and notes call its places by their items.
+TEST(WplMission, ItsNotesCountPlacesAndCallThemByTheirItems) {
+    const Track track = track_of(
+        "QGC WPL 110\n0 1 0 16 0 0 0 0 47 8 500 1\n5 0 3 22 0 0 0 0 0 0 20 1\n7 0 3 18 2 0 25 0 47.001 8 "
+        "60 1\n9 0 3 16 0 0 0 0 47.001 8.001 60 1\n11 0 3 16 0 0 0 0 47.0015 8.0003 60 1\n");
+    const auto route = fly_route(track, {VehicleClass::multirotor, {}, 2, 0});
+    ASSERT_TRUE(route.has_value()) << route.error().message;
+    EXPECT_EQ(route->circles, 1u);
+    EXPECT_EQ(route->corners, 33u);
+    EXPECT_EQ(route->waypoints.size() - route->corners + route->circles, track.points.size());
+    bool called = false;
+    for (const std::string& note : route->notes) {
+        called = called || note.find("item ") != std::string::npos;
+        EXPECT_EQ(note.find("waypoint "), std::string::npos) << note;
+    }
+    EXPECT_TRUE(called);
+}
+
 // A take-off without a place, and one at another place than home.
 TEST(WplMission, APlaneBeginsOnTheGroundAndClimbsOnItsWay) {
     const std::string home = "QGC WPL 110\n0 1 0 16 0 0 0 0 47 8 500 1\n";
