@@ -8,44 +8,6 @@
 namespace skyloop::firmware {
 namespace {
 
-using enum Constellation;
-
-// An item of CFG-SIGNAL and what it lets a receiver measure.
-struct SignalKey {
-    SystemSignal signal;
-    std::uint32_t enable;
-};
-// B1C is measured as B1I is, and E5a and B2a as the signals of their carrier.
-constexpr std::array<SignalKey, 19> signal_keys{{{{gps, Signal::l1}, 0x10310001},
-                                                 {{gps, Signal::l2}, 0x10310003},
-                                                 {{gps, Signal::l5}, 0x10310004},
-                                                 {{sbas, Signal::l1}, 0x10310005},
-                                                 {{galileo, Signal::l1}, 0x10310007},
-                                                 {{galileo, Signal::l5}, 0x10310009},
-                                                 {{galileo, Signal::e5b}, 0x1031000A},
-                                                 {{galileo, Signal::e6}, 0x1031000B},
-                                                 {{beidou, Signal::b1i}, 0x1031000D},
-                                                 {{beidou, Signal::e5b}, 0x1031000E},
-                                                 {{beidou, Signal::b1i}, 0x1031000F},
-                                                 {{beidou, Signal::b3i}, 0x10310010},
-                                                 {{qzss, Signal::l1}, 0x10310012},
-                                                 {{qzss, Signal::l2}, 0x10310015},
-                                                 {{qzss, Signal::l5}, 0x10310017},
-                                                 {{glonass, Signal::g1}, 0x10310018},
-                                                 {{glonass, Signal::g2}, 0x1031001A},
-                                                 {{navic, Signal::l5}, 0x1031001D},
-                                                 {{beidou, Signal::l5}, 0x10310028}}};
-
-std::set<SystemSignal> enabled_signals(const ConfigStore& store) {
-    std::set<SystemSignal> enabled;
-    for (const SystemKeys& system : system_keys_of_signals) {
-        if (!store.flag(system.enable)) continue;
-        for (const SignalKey& s : signal_keys)
-            if (s.signal.constellation == system.constellation && store.flag(s.enable)) enabled.insert(s.signal);
-    }
-    return enabled;
-}
-
 bool signals_changed(const ConfigStore& store) {
     const auto changed = [&](std::uint32_t id) {
         return store.has(id) && store.stored(ConfigLayer::factory, id) != store.value(id);
@@ -150,13 +112,17 @@ ConfigValues initial_config(const BoardProfile& board, const ReceiverOptions& op
     const double hold = std::round(s.static_hold_below.value() * 100);
     put(key::mot_speed_threshold, static_cast<std::uint64_t>(std::clamp(hold, 0.0, 255.0)));
     if (s.signals.empty()) return values;
+    const auto on = [&](Constellation system) {
+        return std::any_of(s.signals.begin(), s.signals.end(),
+                           [&](const SystemSignal& t) { return t.constellation == system; });
+    };
+    for (const SystemKeys& system : system_keys_of_signals)
+        put(system.enable, on(system.constellation));
+    // A system that is off keeps the signals of the factory, with which clients find it when they switch it on.
     for (const SignalKey& signal : signal_keys)
-        put(signal.enable, s.signals.contains(signal.signal) ? 1 : 0);
+        if (on(signal.signal.constellation)) put(signal.enable, s.signals.contains(signal.signal) ? 1 : 0);
     // Of the two names of one measured signal a receiver has the older on at the factory.
     put(0x1031000F, 0);
-    for (const SystemKeys& system : system_keys_of_signals)
-        put(system.enable, std::any_of(s.signals.begin(), s.signals.end(),
-                                       [&](const auto& t) { return t.constellation == system.constellation; }));
     return values;
 }
 

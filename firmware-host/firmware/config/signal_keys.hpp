@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <set>
 #include <vector>
 
 #include "firmware/config/config_store.hpp"
+#include "skyloop/flow/receiver_settings.hpp"
 #include "skyloop/gnss/satellite.hpp"
 
 namespace skyloop::firmware {
@@ -32,7 +34,37 @@ inline constexpr std::array<SystemKeys, 7> system_keys_of_signals{{
     {Constellation::navic, 0x10310026, {0x1031001D, 0}, 0, false},
 }};
 
-/// Systems that are switched on (CFG-SIGNAL-…_ENA).
+/// An item of CFG-SIGNAL and what it lets a receiver measure.
+struct SignalKey {
+    SystemSignal signal;
+    std::uint32_t enable;
+};
+/// B1C is measured as B1I is, and E5a and B2a as the signals of their carrier.
+inline constexpr std::array<SignalKey, 19> signal_keys{{{{Constellation::gps, Signal::l1}, 0x10310001},
+                                                        {{Constellation::gps, Signal::l2}, 0x10310003},
+                                                        {{Constellation::gps, Signal::l5}, 0x10310004},
+                                                        {{Constellation::sbas, Signal::l1}, 0x10310005},
+                                                        {{Constellation::galileo, Signal::l1}, 0x10310007},
+                                                        {{Constellation::galileo, Signal::l5}, 0x10310009},
+                                                        {{Constellation::galileo, Signal::e5b}, 0x1031000A},
+                                                        {{Constellation::galileo, Signal::e6}, 0x1031000B},
+                                                        {{Constellation::beidou, Signal::b1i}, 0x1031000D},
+                                                        {{Constellation::beidou, Signal::e5b}, 0x1031000E},
+                                                        {{Constellation::beidou, Signal::b1i}, 0x1031000F},
+                                                        {{Constellation::beidou, Signal::b3i}, 0x10310010},
+                                                        {{Constellation::qzss, Signal::l1}, 0x10310012},
+                                                        {{Constellation::qzss, Signal::l2}, 0x10310015},
+                                                        {{Constellation::qzss, Signal::l5}, 0x10310017},
+                                                        {{Constellation::glonass, Signal::g1}, 0x10310018},
+                                                        {{Constellation::glonass, Signal::g2}, 0x1031001A},
+                                                        {{Constellation::navic, Signal::l5}, 0x1031001D},
+                                                        {{Constellation::beidou, Signal::l5}, 0x10310028}}};
+
+/// What can be measured: signals that are on, of systems that are on.
+std::set<SystemSignal> enabled_signals(const ConfigStore& config);
+/// Systems that can be heard: switched on (CFG-SIGNAL-…_ENA), and with a signal of theirs that is on too.
 std::vector<Constellation> enabled_systems(const ConfigStore& config);
+/// Whether that one is among them.
+bool is_enabled(const ConfigStore& config, Constellation system);
 
 }  // namespace skyloop::firmware

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/config/signal_keys.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/monitor_parts.hpp"
@@ -44,7 +45,8 @@ MonGnss systems(const ReportContext& context) {
     for (const SystemBit& system : system_bits) {
         const bool from_factory = std::find(board.constellations.begin(), board.constellations.end(),
                                             system.constellation) != board.constellations.end();
-        const bool enabled = context.config.has(system.key) ? context.config.flag(system.key) : from_factory;
+        const bool enabled =
+            context.config.has(system.key) ? is_enabled(context.config, system.constellation) : from_factory;
         if (from_factory) m.default_gnss |= system.bit;
         if (enabled) m.enabled |= system.bit;
     }

@@ -183,7 +183,7 @@ std::string nmea_talker(const BoardProfile& board, const ConfigStore& config) {
     if (version == NmeaVersion::v2_1 || config.flag(key::nmea_out_onlygps)) return "GP";
     std::string talker;
     for (const SystemKeys& system : system_keys_of_signals) {
-        if (!system.is_major || !config.flag(system.enable)) continue;
+        if (!system.is_major || !is_enabled(config, system.constellation)) continue;
         if (!talker.empty()) return "GN";
         talker = own_talker(nmea_system(system.constellation, version), board, config);
     }

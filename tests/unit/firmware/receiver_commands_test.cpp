@@ -445,6 +445,26 @@ TEST(ReceiverCommands, BeginsAsItsUserHasSavedIt) {
     EXPECT_THAT(refused(none), HasSubstr("do not go together")) << "no system is left";
 }
 
+// Clients such as SparkFun's library switch systems alone and leave their signals as they are.
+TEST(ReceiverCommands, HearsASystemThatIsSwitchedOnAlone) {
+    constexpr std::uint32_t glonass_alone = 0x10310025, galileo_e1 = 0x10310007;
+    constexpr UbxMessageId mon_gnss{0x0A, 0x28};
+    BoardProfile board = sample_ublox();
+    board.gnss_supported = 15;
+    board.polled.insert(mon_gnss);
+    ReceiverOptions options;
+    options.settings.signals = {{gps, Signal::l1}, {galileo, Signal::l1}};
+    Bench bench(board, options);
+    EXPECT_EQ(bench.receiver().settings().signals, options.settings.signals);
+    bench.send(valset({{glonass_alone, 1}})).wait(1s);
+    EXPECT_TRUE(bench.receiver().settings().signals.contains({glonass, Signal::g1}));
+    bench.send(valset({{galileo_e1, 0}})).wait(1s);
+    EXPECT_FALSE(bench.receiver().settings().signals.contains({galileo, Signal::l1}));
+    bench.write(encode_frame(mon_gnss, {})).wait(100ms);
+    ASSERT_EQ(bench.frames(mon_gnss).size(), 1U);
+    EXPECT_EQ(bench.frames(mon_gnss)[0].payload[3], 3) << "Galileo without a signal is not heard, and not announced";
+}
+
 TEST(ReceiverCommands, TellsOfACorrectionThatArrivesDamaged) {
     constexpr UbxMessageId rxm_rtcm{0x02, 0x32};
     constexpr std::uint32_t rxm_rtcm_on_uart1 = 0x20910269, rtcm3_into_uart1 = 0x10730004;
