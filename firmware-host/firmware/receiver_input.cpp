@@ -8,6 +8,7 @@
 #include "skyloop/protocol/ubx_cfg.hpp"
 #include "skyloop/protocol/ubx_cfg_hardware.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
+#include "skyloop/protocol/ubx_nav.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -151,19 +152,22 @@ ConfigOutcome Receiver::Core::configured(const UbxFrameView& frame, PortId from)
 
 // Everything but configuration: polls, and the few commands of other classes.
 void Receiver::Core::command(PortUnit& unit, const UbxFrameView& frame, GpsTime now) {
-    if (frame.id == nav_resetodo && frame.payload.empty()) {
+    const auto sends = [&](UbxMessageId id) {
+        return std::find(board_.messages.begin(), board_.messages.end(), id) != board_.messages.end();
+    };
+    // A command, though not of class CFG, that is acknowledged (F9 interface description, UBX-NAV-RESETODO).
+    if (frame.id == nav_resetodo && frame.payload.empty() && sends(NavOdo::message_id)) {
         reset_odometer();
-        return;
+        return reply(unit, {{}, verdict_frame(Verdict::acknowledge, frame.id), Seconds(0), frame.id}, now);
     }
     if (frame.id.message_class == class_mga) return assist(unit, frame, now);
     // There is no log to work on.
     if (frame.id.message_class == class_log)
         return reply(unit, {{}, verdict_frame(Verdict::refuse, frame.id), Seconds(0), frame.id}, now);
-    const bool known = board_.polled.contains(frame.id) ||
-                       std::find(board_.messages.begin(), board_.messages.end(), frame.id) != board_.messages.end();
-    if (!known) return;
+    if (!board_.polled.contains(frame.id) && !sends(frame.id)) return;
     if (frame.id == UpdSos::message_id) return save_on_shutdown(unit, frame, now);
-    if (frame.payload.size() > 1) return;
+    // Of the messages that are answered none has a poll that selects a part of it.
+    if (!frame.payload.empty()) return;
     std::vector<Bytes> answers = answers_of(frame.id, unit.id);
     if (answers.empty()) return;
     reply(unit, {std::move(answers), std::nullopt, Seconds(0), frame.id}, now);

@@ -126,6 +126,27 @@ TEST(ReceiverCommands, SaysNothingToWhatItDoesNotKnowOutsideOfConfiguration) {
     EXPECT_EQ(bench.frames(nak_id).size(), 1U);
 }
 
+TEST(ReceiverCommands, AcknowledgesTheResetOfItsOdometer) {
+    constexpr UbxMessageId nav_resetodo{0x01, 0x10};
+    BoardProfile board = sample_ublox();
+    board.messages.push_back(NavOdo::message_id);
+    Bench bench(board);
+    bench.wait(1100ms).write(encode_frame(nav_resetodo, {})).wait(200ms);
+    ASSERT_EQ(bench.frames(ack_id).size(), 1U);
+    EXPECT_EQ(payload_of(bench.frames(ack_id)[0]), (Bytes{0x01, 0x10}));
+    Bench without;
+    without.wait(1100ms).forget();
+    without.write(encode_frame(nav_resetodo, {})).wait(200ms);
+    EXPECT_TRUE(without.sent().empty()) << "a receiver without an odometer does not know the command";
+}
+
+TEST(ReceiverCommands, TakesNoPollWithAPayload) {
+    Bench bench;
+    bench.wait(1100ms).write(encode_frame(nav_pvt_id, Bytes{0})).write(encode_frame(mon_ver_id, Bytes{1})).wait(500ms);
+    EXPECT_TRUE(bench.frames(nav_pvt_id).empty());
+    EXPECT_TRUE(bench.frames(mon_ver_id).empty());
+}
+
 TEST(ReceiverCommands, TellsThatThereIsNoBackup) {
     constexpr UbxMessageId sos = UpdSosStatus::message_id;
     BoardProfile board = sample_ublox();
