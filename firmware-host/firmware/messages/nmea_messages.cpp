@@ -48,8 +48,11 @@ std::vector<NmeaMode> modes_of_systems(const NmeaReport& r) {
     for (std::size_t i = 0; i < std::size(in_order); ++i) {
         const bool used = std::any_of(r.used.begin(), r.used.end(),
                                       [&](const SatelliteStatus& s) { return s.id.constellation == in_order[i]; });
-        modes.push_back(used ? r.mode : NmeaMode::none);
-        if (std::find(enabled.begin(), enabled.end(), in_order[i]) != enabled.end()) shown = std::max(shown, i + 1);
+        const bool on = std::find(enabled.begin(), enabled.end(), in_order[i]) != enabled.end();
+        // Dead reckoning uses none of them, and is told of all that are on (RECEIVER.md 5.4).
+        const bool reckoned = on && r.mode == NmeaMode::estimated;
+        modes.push_back(used || reckoned ? r.mode : NmeaMode::none);
+        if (on) shown = std::max(shown, i + 1);
     }
     modes.resize(shown);
     return modes;

@@ -69,6 +69,19 @@ TEST(NmeaFixFlags, FollowTable5_4) {
     EXPECT_EQ(flags_of(FixType::rtk_fixed, true), "A43RD");
 }
 
+TEST(NmeaFixFlags, SayOfEachSystemThatIsOnThatItIsReckoned) {
+    const auto reckoned = [](NmeaVersion version, std::vector<Constellation> systems) {
+        SampleReceiver receiver(sample_board(version, std::move(systems)));
+        Fix fix = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500);
+        fix.type = FixType::dead_reckoning;
+        receiver.set(fix);
+        return receiver.line(gns_id);
+    };
+    EXPECT_THAT(reckoned(NmeaVersion::v4_10, {gps, sbas, galileo, beidou, glonass}), HasSubstr(",EEEE,00,"));
+    EXPECT_THAT(reckoned(NmeaVersion::v4_10, {gps, galileo}), HasSubstr(",ENEN,00,"));
+    EXPECT_THAT(reckoned(NmeaVersion::v4_0, {gps, glonass}), HasSubstr(",EE,00,"));
+}
+
 // RECEIVER.md 5.5, byte for byte.
 TEST(NmeaWithoutAFix, SaysWhatReceiversSay) {
     const SampleReceiver m9 = without_fix(NmeaVersion::v4_10, {gps, sbas, galileo, beidou, glonass});
