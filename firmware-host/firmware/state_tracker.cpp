@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "firmware/base_place.hpp"
 #include "firmware/config/config_keys.hpp"
@@ -73,11 +74,15 @@ StartKind Forgotten::kind() const {
 }
 
 void StateTracker::start(GpsTime now, const Forgotten& forgotten, bool running) {
-    const double odometer_total = state_.odometer_total_m;
     const bool keeps_place = !forgotten.position;
     const NavigationState before = std::move(state_);
     state_ = {};
-    state_.odometer_total_m = odometer_total;
+    // The odometer goes on over all starts but a cold one (M8 interface description, UBX-NAV-ODO).
+    if (forgotten.kind() != StartKind::cold) {
+        state_.odometer_m = before.odometer_m;
+        state_.odometer_total_m = before.odometer_total_m;
+        state_.odometer_deviation_m = before.odometer_deviation_m;
+    }
     if (keeps_place) {
         state_.ever_had_fix = before.ever_had_fix;
         state_.position_known = before.position_known;
@@ -173,6 +178,8 @@ void StateTracker::keep_level(const ConfigStore& config) {
     fix.position.height.above_ellipsoid = told + fix.geoid_undulation;
     fix.vertical_accuracy = Metres(std::sqrt(static_cast<double>(config.value(key::navspg_constr_altvar)) * 1e-4));
     fix.velocity.down = 0;
+    // Nothing is solved of the height, so that there is no DOP of it, nor one of all three.
+    fix.dop.gdop = fix.dop.pdop = fix.dop.vdop = std::numeric_limits<double>::quiet_NaN();
 }
 
 // Fewer satellites than the user wants for a fix at all, or too few that are strong enough (CFG-NAVSPG-INFIL_MINSVS,
