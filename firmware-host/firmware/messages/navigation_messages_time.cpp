@@ -47,7 +47,7 @@ NavTimegps time_gps(const ReportContext& context) {
     const EpochTime now = epoch_time(reported.time);
     const NavigationState& state = context.state;
     NavTimegps m{now.i_tow, now.f_tow, 0, 0, gnss_time_valid(state), time_accuracy_ns(state)};
-    m.week = state.time.date ? field<std::int16_t>(reported_week(context.state, now.week)) : std::int16_t{0};
+    m.week = field<std::int16_t>(reported_week(state, now.week));
     m.leap_s = field<std::int8_t>(state.epoch.fix.leap_seconds);
     return m;
 }
@@ -184,17 +184,28 @@ NavClock receiver_clock(const ReportContext& context) {
     return m;
 }
 
-// Pulses lie on a grid of UTC or GPS time. The receiver's own clock is a bit before or after the epoch that it means.
+// Pulses lie on a grid of UTC or GPS time, and are counted in GPS time, which goes on evenly over leap seconds. The
+// receiver's own clock is a bit before or after the epoch that it means.
 struct PulseGrid {
     GpsTime epoch;
-    Nanoseconds offset{0}, period{0};
-    std::uint64_t base = 0;  ///< 0 UTC, 1 GPS, 2 GLONASS, 3 BeiDou, 4 Galileo
+    Nanoseconds period{0};
+    std::uint64_t base = 0;              ///< 0 UTC, 1 GPS, 2 GLONASS, 3 BeiDou, 4 Galileo
+    std::optional<LeapSeconds> leaps{};  ///< of a grid of UTC: those that the receiver counts by
 
-    // From the origin of the grid until the epoch.
-    [[nodiscard]] std::int64_t pulses() const {
-        const Nanoseconds since = (epoch - offset).time_since_epoch();
+    // By how much the grid's time is behind GPS time.
+    [[nodiscard]] Nanoseconds behind(GpsTime time) const {
+        return leaps ? std::chrono::seconds(leaps->offset(time)) : Nanoseconds(0);
+    }
+    // Until the epoch, by the grid as it lies at `time`.
+    [[nodiscard]] std::int64_t pulses(GpsTime time) const {
+        const Nanoseconds since = epoch.time_since_epoch() - behind(time) % period;
         return since / period - (since % period < Nanoseconds(0) ? 1 : 0);
     }
+    [[nodiscard]] GpsTime next(GpsTime time) const {
+        return GpsTime((pulses(time) + 1) * period + behind(time) % period);
+    }
+    // A leap second in between moves the grid.
+    [[nodiscard]] GpsTime next() const { return next(next(epoch)); }
 };
 
 std::uint64_t item_or(const ConfigStore& config, std::uint32_t item, std::uint64_t standard) {
@@ -219,10 +230,10 @@ std::optional<PulseGrid> pulse_grid(const ReportContext& context) {
     const Nanoseconds period = pulse_period(context);
     if (period <= Nanoseconds(0)) return std::nullopt;
     const std::uint64_t base = context.config.value(tp_time_grid);
+    PulseGrid grid{std::chrono::round<std::chrono::milliseconds>(reported.time), period, base};
     // GLONASS counts UTC, by hours ahead.
-    const bool leaps = base == utc || base == glonass;
-    return PulseGrid{std::chrono::round<std::chrono::milliseconds>(reported.time),
-                     leaps ? std::chrono::seconds(reported.leap_seconds) : Nanoseconds(0), period, base};
+    if (base == utc || base == glonass) grid.leaps = counted_leap_seconds(reported);
+    return grid;
 }
 
 // timeRefGnss: 0 GPS, 1 GLONASS, 2 BeiDou, 3 Galileo; captured receivers say 15 of UTC.
@@ -233,8 +244,8 @@ std::uint8_t reference_of(std::uint64_t base) {
 // The pulse after the epoch. Flags: 0 UTC base, 1 UTC available, 2-3 RAIM active, 4 quantisation unknown.
 TimTp next_pulse(const ReportContext& context, const PulseGrid& grid) {
     const NavigationState& state = context.state;
-    const GpsTime pulse((grid.pulses() + 1) * grid.period);
-    const WeekAndTow value = week_and_tow(pulse);
+    const GpsTime pulse = grid.next();
+    const WeekAndTow value = week_and_tow(pulse - grid.behind(pulse));
     const Nanoseconds sub_ms = value.tow % 1ms;
     TimTp m;
     m.tow_ms = static_cast<std::uint32_t>(value.tow / 1ms);
@@ -254,7 +265,7 @@ TimTp next_pulse(const ReportContext& context, const PulseGrid& grid) {
 
 std::optional<std::int64_t> pulses_until_epoch(const ReportContext& context) {
     const auto grid = pulse_grid(context);
-    return grid ? std::optional(grid->pulses()) : std::nullopt;
+    return grid ? std::optional(grid->pulses(grid->epoch)) : std::nullopt;
 }
 
 std::vector<Bytes> make_time_message(UbxMessageId message, const ReportContext& context) {

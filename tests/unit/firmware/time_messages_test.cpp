@@ -84,15 +84,24 @@ TEST(NavTimegpsMessage, GoesFromThreeToSeven) {
     EXPECT_EQ(m9.report<NavTimegps>().valid, 3);
     m9.state.time.date = false;
     EXPECT_EQ(m9.report<NavTimegps>().valid, 1) << "before the week is known";
-    EXPECT_EQ(m9.report<NavTimegps>().week, 0);
     EXPECT_EQ(m9.report<NavTimegal>().valid, 1);
     EXPECT_EQ(m9.report<NavTimebds>().valid, 1);
     EXPECT_EQ(m9.report<NavTimeutc>().valid & 3, 1);
     EXPECT_EQ(m9.report<NavStatus>().flags & 0x0C, 8);
     m9.start_cold(5);
     EXPECT_EQ(m9.report<NavTimegps>().valid, 0);
-    EXPECT_EQ(m9.report<NavTimegps>().week, 0);
     EXPECT_EQ(m9.report<NavTimegps>().t_acc, 4294967295u);
+}
+
+TEST(NavTimegpsMessage, CountsFromTheDateThatAllOthersShowBeforeTimeIsKnown) {
+    UbxReport m9(9);
+    m9.config.set(in_ram, key::navspg_wknrollover, 1867);
+    m9.start_cold(5);
+    EXPECT_EQ(m9.report<NavTimegps>().week, 1867);
+    EXPECT_EQ(m9.report<NavTimegps>().i_tow, m9.report<NavTimeutc>().i_tow);
+    EXPECT_EQ(m9.report<NavTimeutc>().year, 2015);
+    EXPECT_EQ(m9.report<NavTimeutc>().month, 10);
+    EXPECT_EQ(m9.report<NavTimeutc>().day, 18);
 }
 
 // One instant of the captured ZED-F9P (2025-04-25 06:38:04 UTC): NAV-TIMEGLO, BDS, GAL and QZSS beside each other.
@@ -167,6 +176,25 @@ TEST(TimTpMessage, NamesTheNextPulse) {
     m8.lose_fix();
     EXPECT_EQ(m8.report<TimTp>().flags, 0x13);
     EXPECT_EQ(m8.report<TimTp>().q_err, 0);
+}
+
+TEST(TimTpMessage, CountsAndNamesEachPulseOfALeapSecond) {
+    UbxReport m8(8, "2016-12-31T23:59:58Z");
+    const GpsTime first = m8.state.epoch.fix.time;
+    constexpr std::uint32_t midnight = 0;  // between Saturday and Sunday
+    const std::uint32_t of_next[] = {604'799'000, midnight, midnight, 1000, 2000};
+    const std::int64_t count = *pulses_until_epoch(m8.context());
+    for (int i = 0; i < 5; ++i) {
+        m8.state.epoch.fix.time = first + std::chrono::seconds(i);
+        m8.state.epoch.fix.leap_seconds = i < 3 ? 17 : 18;
+        EXPECT_EQ(m8.report<TimTp>().tow_ms, of_next[i]) << i << " s after 23:59:58";
+        EXPECT_EQ(*pulses_until_epoch(m8.context()), count + i) << i << " s after 23:59:58";
+    }
+    constexpr std::uint32_t period_lock = 0x40050003;
+    m8.config.set(in_ram, period_lock, 4'000'000);
+    m8.state.epoch.fix.time = first + 2500ms;
+    m8.state.epoch.fix.leap_seconds = 17;
+    EXPECT_EQ(m8.report<TimTp>().tow_ms, midnight) << "half a second later the grid begins there anew";
 }
 
 TEST(TimTpMessage, FollowsThePulseThatIsConfigured) {
