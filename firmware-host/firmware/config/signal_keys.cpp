@@ -6,9 +6,8 @@ namespace skyloop::firmware {
 namespace {
 
 bool has_signal_on(const ConfigStore& config, Constellation system) {
-    return std::any_of(signal_keys.begin(), signal_keys.end(), [&](const SignalKey& s) {
-        return s.signal.constellation == system && config.flag(s.enable);
-    });
+    return std::any_of(signal_keys.begin(), signal_keys.end(),
+                       [&](const SignalKey& s) { return s.signal.constellation == system && config.flag(s.enable); });
 }
 
 }  // namespace
