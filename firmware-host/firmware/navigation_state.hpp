@@ -96,8 +96,13 @@ struct PortStatus {
     std::array<std::uint16_t, 4> messages_in{};     ///< UBX, NMEA, RTCM3, SPARTN
     std::uint32_t skipped = 0;                      ///< bytes of no message
     std::uint16_t overruns = 0;
+    bool transmit_full = false;  ///< a message did not fit since the last report
+};
+
+/// What is counted of one port from outside: unlike PortStatus it outlives the receiver's restarts.
+struct PortTotals {
     std::uint64_t messages_out = 0, messages_dropped = 0;  ///< queued to leave; that found the buffer full
-    bool transmit_full = false;                            ///< a message did not fit since the last report
+    std::uint32_t dropped_at_baud = 0;                     ///< the speed when the last one was dropped; 0: none was
 };
 
 /// What a message is made from.

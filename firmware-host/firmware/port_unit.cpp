@@ -37,11 +37,12 @@ std::size_t Outbox::queue(PortId port, std::span<const ByteSpan> messages, GpsTi
     for (const ByteSpan message : messages) {
         if (!unit->transmit.queue(message, now, patience)) {
             unit->status.transmit_full = unit->overflow_untold = true;
-            ++unit->status.messages_dropped;
+            ++unit->totals.messages_dropped;
+            unit->totals.dropped_at_baud = unit->transmit.baud();
             continue;
         }
         ++queued;
-        ++unit->status.messages_out;
+        ++unit->totals.messages_out;
         unit->status.usage_percent =
             static_cast<int>(100 * buffered_bytes(unit->transmit) / unit->transmit.buffer_bytes());
         unit->status.peak_usage_percent = std::max(unit->status.peak_usage_percent, unit->status.usage_percent);

@@ -45,6 +45,7 @@ struct PortUnit {
     StreamSplitter splitter = command_splitter();
     CommandLineReader command_line{};
     PortStatus status;
+    PortTotals totals{};
     GpsTime last_input{};
     std::uint32_t configured_baud = 0;  ///< to which it has been told to go
     ConfiguredMessages configured;

@@ -28,6 +28,10 @@ PortStatus Receiver::port_status(PortId port) const {
     const PortUnit* unit = core_->unit(port);
     return unit == nullptr ? PortStatus{port} : unit->status;
 }
+PortTotals Receiver::port_totals(PortId port) const {
+    const PortUnit* unit = core_->unit(port);
+    return unit == nullptr ? PortTotals{} : unit->totals;
+}
 const ReceiverSettings& Receiver::settings() const { return core_->settings(); }
 const ReceiverCounters& Receiver::counters() const { return core_->counters(); }
 const BoardProfile& Receiver::board() const { return core_->board(); }

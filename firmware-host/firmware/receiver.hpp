@@ -78,8 +78,10 @@ public:
     [[nodiscard]] bool has(PortId port) const;
     /// A port's speed, bit/s; of USB, I2C and SPI that of their bus. 0 for a port that the board does not have.
     [[nodiscard]] std::uint32_t baud(PortId port) const;
-    /// What a port has done; nothing for one that the board does not have.
+    /// What a port has done since the last restart; nothing for one that the board does not have.
     [[nodiscard]] PortStatus port_status(PortId port) const;
+    /// What was counted of it over all restarts; nothing for one that the board does not have.
+    [[nodiscard]] PortTotals port_totals(PortId port) const;
     [[nodiscard]] const ReceiverSettings& settings() const;
     [[nodiscard]] const ReceiverCounters& counters() const;
     [[nodiscard]] const BoardProfile& board() const;

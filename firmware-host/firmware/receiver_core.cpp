@@ -174,8 +174,10 @@ void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now, bool banner
     settings_.navigating = true;
     for (PortUnit& unit : units_) {
         const PortId id = unit.id;
+        const PortTotals totals = unit.totals;
         unit = PortUnit(id, line_baud(store_, id), board_.transmit_buffer_bytes);
         unit.configured_baud = unit.transmit.baud();
+        unit.totals = totals;
     }
     values_.cancel();
     busy_until_ = last_answer_ = now;

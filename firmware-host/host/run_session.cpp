@@ -238,13 +238,14 @@ void RunSession::tell_overload(const Station& station) const {
         names.emplace(port, fmt::format("{}port {}", prefix(station), firmware::port_names[std::size_t(port)]));
     }
     for (const auto& [port, name] : names) {
-        const std::uint64_t dropped = station.receiver().port_status(port).messages_dropped;
-        const PortSpeed speed = station.speed(port);
-        const std::string line = speed ? fmt::format("{} baud", *speed) : "the line";
-        if (dropped > 0)
+        const firmware::PortTotals totals = station.receiver().port_totals(port);
+        // The speed then: by now a client may have changed it.
+        const std::string line =
+            firmware::is_uart(port) ? fmt::format("{} baud", totals.dropped_at_baud) : std::string("the line");
+        if (totals.messages_dropped > 0)
             messages_.warning(fmt::format(
                 "{}: {} messages did not fit the receiver's transmit buffer: {} is too slow for this output", name,
-                dropped, line));
+                totals.messages_dropped, line));
     }
 }
 

@@ -220,14 +220,14 @@ std::set<PortId> Station::wired_ports() const {
 std::uint64_t Station::messages_sent() const {
     std::uint64_t count = 0;
     for (const PortId port : wired_ports())
-        count += parts_.receiver.port_status(port).messages_out;
+        count += parts_.receiver.port_totals(port).messages_out;
     return count;
 }
 
 std::uint64_t Station::messages_dropped() const {
     std::uint64_t count = 0;
     for (const PortId port : wired_ports())
-        count += parts_.receiver.port_status(port).messages_dropped;
+        count += parts_.receiver.port_totals(port).messages_dropped;
     return count;
 }
 

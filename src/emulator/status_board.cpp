@@ -76,7 +76,7 @@ void StatusBoard::take_wires(std::size_t station, ReceiverStatus& status) const 
     for (const Wire& wire : source.wires()) {
         WireStatus shown;
         const LinkCounters& counts = wire.link.counters();
-        const firmware::PortStatus port = source.receiver().port_status(wire.port);
+        const firmware::PortTotals port = source.receiver().port_totals(wire.port);
         shown.port = firmware::port_names[static_cast<std::size_t>(wire.port)];
         shown.description = wire.link.transport().description();
         shown.other_end = wire.link.transport().other_end();

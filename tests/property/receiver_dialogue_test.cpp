@@ -215,7 +215,7 @@ TEST_P(Endurance, MissesNoEpochAndNoPollInAnHourAtTenHertz) {
         if (second == 300) heap_early = heap_in_use();
     }
     EXPECT_GE(epochs, 35990U);
-    EXPECT_EQ(rig.receiver().port_status(firmware::PortId::uart1).messages_dropped, 0U);
+    EXPECT_EQ(rig.receiver().port_totals(firmware::PortId::uart1).messages_dropped, 0U);
     std::sort(latencies.begin(), latencies.end());
     RecordProperty("p99_latency_us", static_cast<int>(latencies[latencies.size() * 99 / 100] * 1e6));
     EXPECT_LT(latencies[latencies.size() * 99 / 100], 0.050);

@@ -6,6 +6,8 @@
 #include "sample_epochs.hpp"
 #include "skyloop/protocol/nmea_sentence.hpp"
 #include "skyloop/protocol/stream_splitter.hpp"
+#include "skyloop/protocol/ubx_cfg.hpp"
+#include "skyloop/protocol/ubx_cfg_values.hpp"
 #include "skyloop/protocol/ubx_ports.hpp"
 
 namespace skyloop::firmware {
@@ -45,6 +47,10 @@ public:
         look(fix_.time + 999ms);
         return *this;
     }
+    Overflow& write(ByteSpan bytes) {
+        receiver_.input(port_, bytes, fix_.time + 999ms);
+        return *this;
+    }
     // The answer to MON-TXBUF, asked in the middle of an epoch's second.
     MonTxbuf buffers() {
         fix_.time += 1s;
@@ -59,8 +65,9 @@ public:
                 answer = *decode_payload<MonTxbuf>(frame->payload);
         return answer;
     }
+    [[nodiscard]] const Receiver& receiver() const { return receiver_; }
     [[nodiscard]] std::string text() const { return to_string(bytes_); }
-    [[nodiscard]] std::uint64_t dropped() const { return receiver_.port_status(port_).messages_dropped; }
+    [[nodiscard]] std::uint64_t dropped() const { return receiver_.port_totals(port_).messages_dropped; }
 
 private:
     void look(GpsTime now) {
@@ -108,6 +115,25 @@ TEST(ReceiverOverflow, IsToldByMonTxbufAndInATextOncePerEpoch) {
     EXPECT_EQ(count("$GNRMC,"), epochs + 1);
     EXPECT_LT(count("$GNZDA,"), epochs);
     EXPECT_EQ(count("$GNTXT,01,01,00,txbuf alloc*61\r\n"), overflows);
+}
+
+TEST(ReceiverOverflow, IsCountedOverRestartsWithTheSpeedThatWasTooSlow) {
+    constexpr std::uint32_t uart1_baudrate = 0x40520001;
+    Overflow slow(small_buffer(4800), PortId::uart1);
+    slow.epoch().epoch().epoch();
+    const PortTotals before = slow.receiver().port_totals(PortId::uart1);
+    EXPECT_GT(before.messages_dropped, 0U);
+    EXPECT_EQ(before.dropped_at_baud, 4800U);
+    CfgValset faster;
+    faster.layers = 0x06;
+    faster.pairs = {{uart1_baudrate, 921600}};
+    slow.write(encode_frame(faster)).write(encode_frame(CfgRst{.nav_bbr_mask = 0, .reset_mode = 1, .reserved = 0}));
+    slow.epoch().epoch().epoch().epoch();
+    const PortTotals after = slow.receiver().port_totals(PortId::uart1);
+    EXPECT_EQ(slow.receiver().baud(PortId::uart1), 921600U);
+    EXPECT_EQ(after.messages_dropped, before.messages_dropped);
+    EXPECT_EQ(after.dropped_at_baud, 4800U);
+    EXPECT_GT(after.messages_out, before.messages_out);
 }
 
 TEST(ReceiverOverflow, EndsWithItsCause) {
