@@ -275,6 +275,9 @@ constexpr auto ubx_listing_table = std::to_array<UbxListing>({
            "version -reserved flags profile -reserved course_max_speed_mps*1e-1 course_max_acc_m -reserved "
            "velocity_gain course_gain -reserved">,
     listed<CfgDgnss, "mode -reserved">,
+    listed<CfgGeofence,
+           "version confidence -reserved pin_on pin_polarity pin -reserved fences[lat_deg*1e-7 lon_deg*1e-7 "
+           "radius_m*1e-2]">,
     listed<CfgTmode3,
            "version -reserved flags position position_hp -reserved position_acc_m*1e-4 survey_duration_s "
            "survey_acc_m*1e-4 -reserved">,

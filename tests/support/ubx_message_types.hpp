@@ -59,9 +59,10 @@ using UbxOutputTypes =
              EsfStatus, HnrPvt, HnrAtt, HnrIns>;
 
 /// Every UBX message of settings that has a layout, questions among them.
-using UbxSettingTypes = UbxTypes<CfgPrtPoll, CfgPrt, CfgMsgPoll, CfgMsgCurrentPort, CfgMsg, CfgRate, CfgNav5, CfgGnss,
-                                 CfgCfg, CfgRst, CfgTp5, CfgItfm, CfgPms, CfgRxm, CfgAnt, CfgLogfilter, UpdSos,
-                                 UpdSosStatus, CfgNavx5, CfgSbas, CfgOdo, CfgDgnss, CfgTmode3, CfgInf, CfgNmeaShort,
-                                 CfgNmeaV0, CfgNmea, CfgUsb, CfgValset, CfgValgetPoll, CfgValget, CfgValdel>;
+using UbxSettingTypes =
+    UbxTypes<CfgPrtPoll, CfgPrt, CfgMsgPoll, CfgMsgCurrentPort, CfgMsg, CfgRate, CfgNav5, CfgGnss, CfgCfg, CfgRst,
+             CfgTp5, CfgItfm, CfgPms, CfgRxm, CfgAnt, CfgLogfilter, UpdSos, UpdSosStatus, CfgNavx5, CfgSbas, CfgOdo,
+             CfgDgnss, CfgTmode3, CfgGeofence, CfgInf, CfgNmeaShort, CfgNmeaV0, CfgNmea, CfgUsb, CfgValset,
+             CfgValgetPoll, CfgValget, CfgValdel>;
 
 }  // namespace skyloop

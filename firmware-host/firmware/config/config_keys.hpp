@@ -65,6 +65,8 @@ inline constexpr std::uint32_t rate_meas = 0x30210001, rate_nav = 0x30210002, ra
 inline constexpr std::uint32_t mot_speed_threshold = 0x20250038, mot_distance_threshold = 0x3025003B;
 inline constexpr std::uint32_t odo_use_odo = 0x10220001, sbas_scan_mask = 0x50360006;
 inline constexpr std::uint32_t itfm_enable = 0x1041000D;
+inline constexpr std::uint32_t geofence_confidence = 0x20240011, geofence_use_pio = 0x10240012,
+                               geofence_polarity = 0x20240013, geofence_pin = 0x20240014;
 inline constexpr std::uint32_t uart1_baudrate = 0x40520001, uart2_baudrate = 0x40530001;
 inline constexpr std::uint32_t i2c_enabled = 0x10510003, uart1_enabled = 0x10520005, uart2_enabled = 0x10530005,
                                usb_enabled = 0x10650001;

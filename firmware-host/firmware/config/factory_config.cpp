@@ -158,33 +158,43 @@ constexpr AllowedRange allowed_ranges[] = {
     {0x2005000C, 15, 15},                                             // local
     {0x20050017, 0, 5},                                               // CFG-TP-TIMEGRID_TP2
     {0x20050017, 15, 15},
-    {0x20050023, 0, 1},               // CFG-TP-PULSE_DEF: period, frequency
-    {0x20050030, 0, 1},               // CFG-TP-PULSE_LENGTH_DEF: ratio, length
-    {0x20090009, 0, 2},               // CFG-RTCM-DF003_IN_FILTER: disabled, relaxed, strict
-    {key::navspg_fixmode, 1, 3},      // 2D, 3D, auto
-    {key::navspg_utcstandard, 0, 0},  // auto
-    {key::navspg_utcstandard, 3, 3},  // USNO
-    {key::navspg_utcstandard, 5, 8},  // EU, SU, NTSC, NPLI
-    {key::navspg_dynmodel, 0, 0},     // portable
-    {key::navspg_dynmodel, 2, 9},     // stationary … wrist
-    {key::navspg_min_elev, -90, 90},  // degrees
-    {0x201100D6, 0, 63},              // CFG-NAVSPG-SIGATTCOMP: off, fixed level
-    {0x201100D6, 255, 255},           // automatic
-    {key::navhpg_dgnssmode, 2, 3},    // float, fixed
-    {key::rate_timeref, 0, 5},        // UTC and five systems
-    {0x20220005, 0, 4},               // CFG-ODO-PROFILE: running … custom
-    {0x20340009, 0, 2},               // CFG-BDS-D1D2_NAVDATA
-    {0x20410010, 0, 2},               // CFG-ITFM-ANTSETTING: unknown, passive, active
-    {0x20520002, 0, 3},               // CFG-UART1-STOPBITS: half, one, one and a half, two
-    {0x20520003, 0, 1},               // CFG-UART1-DATABITS: eight, seven
-    {0x20520004, 0, 2},               // CFG-UART1-PARITY: none, odd, even
-    {0x20530002, 0, 3},               // CFG-UART2-STOPBITS
-    {0x20530003, 0, 1},               // CFG-UART2-DATABITS
-    {0x20530004, 0, 2},               // CFG-UART2-PARITY
-    {key::nmea_protver, 21, 21},      // 2.1
-    {key::nmea_protver, 23, 23},      // 2.3
-    {key::nmea_protver, 40, 42},      // 4.0, 4.10, 4.11
-    {key::nmea_maxsvs, 0, 0},         // as many as there are
+    {0x20050023, 0, 1},                       // CFG-TP-PULSE_DEF: period, frequency
+    {0x20050030, 0, 1},                       // CFG-TP-PULSE_LENGTH_DEF: ratio, length
+    {0x20090009, 0, 2},                       // CFG-RTCM-DF003_IN_FILTER: disabled, relaxed, strict
+    {key::navspg_fixmode, 1, 3},              // 2D, 3D, auto
+    {key::navspg_utcstandard, 0, 0},          // auto
+    {key::navspg_utcstandard, 3, 3},          // USNO
+    {key::navspg_utcstandard, 5, 8},          // EU, SU, NTSC, NPLI
+    {key::navspg_dynmodel, 0, 0},             // portable
+    {key::navspg_dynmodel, 2, 9},             // stationary … wrist
+    {key::navspg_min_elev, -90, 90},          // degrees
+    {0x201100D6, 0, 63},                      // CFG-NAVSPG-SIGATTCOMP: off, fixed level
+    {0x201100D6, 255, 255},                   // automatic
+    {key::navhpg_dgnssmode, 2, 3},            // float, fixed
+    {key::rate_timeref, 0, 5},                // UTC and five systems
+    {0x20220005, 0, 4},                       // CFG-ODO-PROFILE: running … custom
+    {0x20240011, 0, 5},                       // CFG-GEOFENCE-CONFLVL: standard deviations
+    {0x20240013, 0, 1},                       // CFG-GEOFENCE-PINPOL
+    {0x40240021, -900'000'000, 900'000'000},  // CFG-GEOFENCE-FENCE1_LAT, 1e-7°
+    {0x40240022, -1'800'000'000, 1'800'000'000},
+    {0x40240031, -900'000'000, 900'000'000},  // CFG-GEOFENCE-FENCE2_LAT, 1e-7°
+    {0x40240032, -1'800'000'000, 1'800'000'000},
+    {0x40240041, -900'000'000, 900'000'000},  // CFG-GEOFENCE-FENCE3_LAT, 1e-7°
+    {0x40240042, -1'800'000'000, 1'800'000'000},
+    {0x40240051, -900'000'000, 900'000'000},  // CFG-GEOFENCE-FENCE4_LAT, 1e-7°
+    {0x40240052, -1'800'000'000, 1'800'000'000},
+    {0x20340009, 0, 2},           // CFG-BDS-D1D2_NAVDATA
+    {0x20410010, 0, 2},           // CFG-ITFM-ANTSETTING: unknown, passive, active
+    {0x20520002, 0, 3},           // CFG-UART1-STOPBITS: half, one, one and a half, two
+    {0x20520003, 0, 1},           // CFG-UART1-DATABITS: eight, seven
+    {0x20520004, 0, 2},           // CFG-UART1-PARITY: none, odd, even
+    {0x20530002, 0, 3},           // CFG-UART2-STOPBITS
+    {0x20530003, 0, 1},           // CFG-UART2-DATABITS
+    {0x20530004, 0, 2},           // CFG-UART2-PARITY
+    {key::nmea_protver, 21, 21},  // 2.1
+    {key::nmea_protver, 23, 23},  // 2.3
+    {key::nmea_protver, 40, 42},  // 4.0, 4.10, 4.11
+    {key::nmea_maxsvs, 0, 0},     // as many as there are
     {key::nmea_maxsvs, 8, 8},
     {key::nmea_maxsvs, 12, 12},
     {key::nmea_maxsvs, 16, 16},

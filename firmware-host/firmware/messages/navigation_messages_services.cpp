@@ -6,6 +6,7 @@
 
 #include "firmware/base_place.hpp"
 #include "firmware/error_ellipse.hpp"
+#include "firmware/geofence.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/navigation_parts.hpp"
@@ -220,6 +221,17 @@ Message service_message(const ReportContext& context) {
     return m;
 }
 
+NavGeofence fences(const ReportContext& context) {
+    NavGeofence m = service_message<NavGeofence>(context);
+    const std::vector<Fence> fences = fences_of(context.config, context.state);
+    const bool reliable = context.state.epoch.fix.has_position() && context.state.fix_ok;
+    m.status = !fences.empty() && reliable ? 1 : 0;
+    m.comb_state = static_cast<std::uint8_t>(combined_state(fences));
+    for (const Fence& fence : fences)
+        m.fences.push_back({static_cast<std::uint8_t>(fence.state), fence.number});
+    return m;
+}
+
 NavAopstatus autonomous_orbits(const ReportContext& context) {
     NavAopstatus m = service_message<NavAopstatus>(context);
     m.aop_cfg = context.config.flag(use_ana) ? 1 : 0;
@@ -289,7 +301,7 @@ std::vector<Bytes> make_service_message(UbxMessageId message, const ReportContex
         case NavDgps::message_id.id:
             return ubx_frames_of(differential(context));
         case NavGeofence::message_id.id:
-            return ubx_frames_of(service_message<NavGeofence>(context));
+            return ubx_frames_of(fences(context));
         case NavSlas::message_id.id:
             return ubx_frames_of(service_message<NavSlas>(context));
         case NavAopstatus::message_id.id:

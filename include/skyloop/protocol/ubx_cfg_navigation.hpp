@@ -1,4 +1,4 @@
-/// UBX messages of class CFG about navigation: NAVX5, SBAS, ODO, DGNSS, TMODE3.
+/// UBX messages of class CFG about navigation: NAVX5, SBAS, ODO, DGNSS, GEOFENCE, TMODE3.
 ///
 /// Numbers are as on the wire; a member's comment gives unit and scale. Layouts: u-blox M8 interface description
 /// (UBX-13003221), section 32.11; those of high-precision receivers: F9 interface description (HPG 1.32).
@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "skyloop/protocol/ubx_fields.hpp"
 
@@ -90,6 +91,39 @@ struct CfgDgnss {
     template <class M, class V>
     static void fields(M& m, V& v) {
         v(m.dgnss_mode, m.reserved0);
+    }
+};
+
+/// One circle of CFG-GEOFENCE.
+struct CfgGeofenceItem {
+    std::int32_t lat = 0;      ///< 1e-7 deg, of the centre
+    std::int32_t lon = 0;      ///< 1e-7 deg
+    std::uint32_t radius = 0;  ///< cm
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.lat, m.lon, m.radius);
+    }
+};
+
+/// CFG-GEOFENCE: circles whose inside and outside NAV-GEOFENCE tells.
+struct CfgGeofence {
+    static constexpr UbxMessageId message_id{0x06, 0x69};
+    std::uint8_t version = 0;   ///< 0
+    std::uint8_t conf_lvl = 0;  ///< how many standard deviations the position must be off the line
+    std::uint8_t reserved0 = 0;
+    std::uint8_t pio_enabled = 0;
+    std::uint8_t pin_polarity = 0;  ///< 0: low is inside, 1: low is outside
+    std::uint8_t pin = 0;
+    std::uint8_t reserved1 = 0;
+    std::vector<CfgGeofenceItem> fences;
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.version);
+        v.count(m.fences);
+        v(m.conf_lvl, m.reserved0, m.pio_enabled, m.pin_polarity, m.pin, m.reserved1);
+        v.items(m.fences);
     }
 };
 
