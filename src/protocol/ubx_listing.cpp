@@ -275,6 +275,11 @@ constexpr auto ubx_listing_table = std::to_array<UbxListing>({
            "version -reserved flags profile -reserved course_max_speed_mps*1e-1 course_max_acc_m -reserved "
            "velocity_gain course_gain -reserved">,
     listed<CfgDgnss, "mode -reserved">,
+    listed<CfgDat, "datum name semi_major_m inverse_flattening shift_m rotation scale_ppm">,
+    listed<CfgDatSet, "semi_major_m inverse_flattening shift_m rotation scale_ppm">,
+    listed<CfgPm2,
+           "version -reserved startup_s -reserved flags update_s*1e-3 search_s*1e-3 grid_offset_s*1e-3 on_time_s "
+           "acquisition_s -reserved inactivity_s*1e-3">,
     listed<CfgGeofence,
            "version confidence -reserved pin_on pin_polarity pin -reserved fences[lat_deg*1e-7 lon_deg*1e-7 "
            "radius_m*1e-2]">,

@@ -203,11 +203,16 @@ constexpr AllowedRange allowed_ranges[] = {
     {key::nmea_gsv_talker, 0, 1},   // by the systems, the main one
     {0x20A20005, 0, 4},             // CFG-TXREADY-INTERFACE
     {0x20A70001, 0, 1},             // CFG-SPARTN-USE_SOURCE: IP, L-band
+    {0x20C70003, 0, 30},            // CFG-RINV-DATA_SIZE
     {0x20D00001, 0, 2},             // CFG-PM-OPERATEMODE: full, on and off, cyclic
     {0x20D0000B, 0, 1},             // CFG-PM-EXTINTSEL
 };
 
-bool is_duty(std::uint32_t key) { return find_config_key(key)->type == ConfigType::r8; }
+// Per cent, CFG-TP-DUTY_…; CFG-NAVSPG has numbers of that type too.
+bool is_duty(std::uint32_t key) {
+    constexpr std::uint32_t time_pulse_group = 0x05;
+    return (key >> 16 & 0xFF) == time_pulse_group && find_config_key(key)->type == ConfigType::r8;
+}
 
 std::int64_t as_number(const ConfigKey& key, std::uint64_t value) {
     using enum ConfigType;

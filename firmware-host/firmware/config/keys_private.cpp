@@ -73,13 +73,11 @@ constexpr ConfigKey private_items[] = {
     {0x20FD0435, "CFG-TP-PULSE_LENGTH_DEF_TP2", e1, 1, false},
     // CFG-PMS.
     {0x20FD0440, "CFG-PM-SETUP", e1, 0, false},
-    // CFG-LOGFILTER.
-    {0x10FD0B01, "CFG-LOGFILTER-ONCE_PER_WAKE_UP_ENA", l, 0, false},
-    {0x10FD0B02, "CFG-LOGFILTER-APPLY_ALL_FILTERS", l, 0, false},
-    {0x30FD0B03, "CFG-LOGFILTER-MIN_INTERVAL", u2, 0, false},
-    {0x30FD0B04, "CFG-LOGFILTER-TIME_THRS", u2, 0, false},
-    {0x30FD0B05, "CFG-LOGFILTER-SPEED_THRS", u2, 0, false},
-    {0x40FD0B06, "CFG-LOGFILTER-POSITION_THRS", u4, 0, false},
+    // CFG-PM2: its flags without an item, and of its periods what is beyond whole seconds, ms.
+    {0x40FD0441, "CFG-PM-FLAGS", x4, 0x0142800E, false},
+    {0x30FD0442, "CFG-PM-UPDATE_REST", u2, 0, false},
+    {0x30FD0443, "CFG-PM-SEARCH_REST", u2, 0, false},
+    {0x30FD0444, "CFG-PM-GRID_REST", u2, 0, false},
 };
 
 }  // namespace

@@ -201,6 +201,7 @@ ConfigOutcome legacy_pms(const LegacyContext& context, ByteSpan payload) {
         constexpr std::uint16_t least_period = 6;  // more than 5 s (M8 interface description 32.11.22)
         if (set->period < least_period || set->on_time >= set->period) return legacy_refused();
         changes.put(legacy_key::pm_update_period, std::uint32_t{set->period});
+        changes.put(legacy_key::pm_update_rest, std::uint16_t{0});
         changes.put(legacy_key::pm_on_time, set->on_time);
     }
     changes.put(legacy_key::pms_setup, set->power_setup_value);

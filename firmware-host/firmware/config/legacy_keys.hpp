@@ -65,13 +65,15 @@ constexpr std::uint32_t tp_sync_mode(unsigned index) { return 0x20FD'0432u + ind
 inline constexpr std::uint32_t tp2_pulse_def = 0x20FD0434, tp2_pulse_length_def = 0x20FD0435;
 inline constexpr std::uint32_t pms_setup = 0x20FD0440, pm_operate_mode = 0x20D00001, pm_update_period = 0x40D00002,
                                pm_on_time = 0x30D00005;
+inline constexpr std::uint32_t pm_flags = 0x40FD0441, pm_update_rest = 0x30FD0442, pm_search_rest = 0x30FD0443,
+                               pm_grid_rest = 0x30FD0444;
 inline constexpr std::uint32_t itfm_bb_threshold = 0x20410001, itfm_cw_threshold = 0x20410002,
                                itfm_antenna = 0x20410010, itfm_enable_aux = 0x10410013;
 
 // Section 10, antConf; section 11, logConf.
 inline constexpr std::uint32_t ant_switch_pin = 0x20A30036, ant_short_pin = 0x20A30037, ant_open_pin = 0x20A30038;
-inline constexpr std::uint32_t log_record = 0x10DE0002, log_once_per_wake_up = 0x10FD0B01, log_all_filters = 0x10FD0B02,
-                               log_min_interval = 0x30FD0B03, log_time = 0x30FD0B04, log_speed = 0x30FD0B05,
-                               log_position = 0x40FD0B06;
+inline constexpr std::uint32_t log_record = 0x10DE0002, log_once_per_wake_up = 0x10DE0003, log_all_filters = 0x10DE0004,
+                               log_min_interval = 0x30DE0005, log_time = 0x30DE0006, log_speed = 0x30DE0007,
+                               log_position = 0x40DE0008;
 
 }  // namespace skyloop::firmware::legacy_key

@@ -8,8 +8,8 @@
 namespace skyloop::firmware {
 namespace {
 
-constexpr unsigned io_port = 0, msg_conf = 1, inf_msg = 2, nav_conf = 3, rxm_conf = 4, sen_conf = 8, ant_conf = 10,
-                   log_conf = 11;
+constexpr unsigned io_port = 0, msg_conf = 1, inf_msg = 2, nav_conf = 3, rxm_conf = 4, sen_conf = 8, rinv_conf = 9,
+                   ant_conf = 10, log_conf = 11;
 
 /// The bit of CFG-CFG's masks that an item belongs to (M8 interface description 32.11.3.1); what no bit names belongs
 /// to the navigation.
@@ -40,6 +40,8 @@ unsigned section_of(std::uint32_t key) {
         case 0x06:  // CFG-SFIMU, -SFODO
         case 0x07:
             return sen_conf;
+        case 0xC7:
+            return rinv_conf;
         case 0xA3:
             return ant_conf;
         case 0xDE:

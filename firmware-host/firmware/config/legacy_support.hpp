@@ -101,6 +101,9 @@ ConfigOutcome legacy_itfm(const LegacyContext& context, ByteSpan payload);
 ConfigOutcome legacy_pms(const LegacyContext& context, ByteSpan payload);
 ConfigOutcome legacy_rxm(const LegacyContext& context, ByteSpan payload);
 ConfigOutcome legacy_ant(const LegacyContext& context, ByteSpan payload);
+ConfigOutcome legacy_dat(const LegacyContext& context, ByteSpan payload);
+ConfigOutcome legacy_pm2(const LegacyContext& context, ByteSpan payload);
+ConfigOutcome legacy_rinv(const LegacyContext& context, ByteSpan payload);
 ConfigOutcome legacy_geofence(const LegacyContext& context, ByteSpan payload);
 ConfigOutcome legacy_logfilter(const LegacyContext& context, ByteSpan payload);
 

@@ -103,6 +103,31 @@ struct CfgLogfilter {
     }
 };
 
+/// CFG-PM2: how power is saved (protocol versions 18 to 22).
+struct CfgPm2 {
+    static constexpr UbxMessageId message_id{0x06, 0x3B};
+    std::uint8_t version = 2;  ///< 2
+    std::uint8_t reserved0 = 0;
+    std::uint8_t max_startup_state_dur = 0;  ///< s
+    std::uint8_t reserved1 = 0;
+    /// Bits: 4 EXTINT1, 5 wake, 6 backup, 7 inactivity, 8 peak current, 10 time fix, 12 ephemerides, 16 never off, 17
+    /// cyclic
+    std::uint32_t flags = 0;
+    std::uint32_t update_period = 0;  ///< ms
+    std::uint32_t search_period = 0;  ///< ms
+    std::uint32_t grid_offset = 0;    ///< ms
+    std::uint16_t on_time = 0;        ///< s
+    std::uint16_t min_acq_time = 0;   ///< s
+    std::array<std::uint8_t, 20> reserved2{};
+    std::uint32_t extint_inactivity = 0;  ///< ms
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.version, m.reserved0, m.max_startup_state_dur, m.reserved1, m.flags, m.update_period, m.search_period,
+          m.grid_offset, m.on_time, m.min_acq_time, m.reserved2, m.extint_inactivity);
+    }
+};
+
 /// UPD-SOS, a command: battery-backed memory to flash.
 struct UpdSos {
     static constexpr UbxMessageId message_id{0x09, 0x14};

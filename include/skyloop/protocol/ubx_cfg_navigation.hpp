@@ -94,6 +94,38 @@ struct CfgDgnss {
     }
 };
 
+/// CFG-DAT as it is set: a datum of the user's.
+struct CfgDatSet {
+    static constexpr UbxMessageId message_id{0x06, 0x06};
+    double maj_a = 0;                 ///< m, semi-major axis
+    double flat = 0;                  ///< 1 / flattening
+    std::array<float, 3> shift{};     ///< m, X, Y, Z
+    std::array<float, 3> rotation{};  ///< arc seconds
+    float scale = 0;                  ///< ppm
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.maj_a, m.flat, m.shift, m.rotation, m.scale);
+    }
+};
+
+/// CFG-DAT as it is told.
+struct CfgDat {
+    static constexpr UbxMessageId message_id{0x06, 0x06};
+    std::uint16_t datum_num = 0;               ///< 0 WGS 84, 0xFFFF of the user
+    std::array<std::uint8_t, 6> datum_name{};  ///< "WGS84" or "USER"
+    double maj_a = 0;
+    double flat = 0;
+    std::array<float, 3> shift{};
+    std::array<float, 3> rotation{};
+    float scale = 0;
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.datum_num, m.datum_name, m.maj_a, m.flat, m.shift, m.rotation, m.scale);
+    }
+};
+
 /// One circle of CFG-GEOFENCE.
 struct CfgGeofenceItem {
     std::int32_t lat = 0;      ///< 1e-7 deg, of the centre

@@ -32,8 +32,8 @@ inline constexpr UbxMessageId nav(int id) { return {0x01, static_cast<std::uint8
 /// What the three boards have in common: every legacy message, speeds, ports, the messages that clients name.
 inline BoardProfile legacy_board() {
     BoardProfile board;
-    for (const int id : {0x00, 0x01, 0x02, 0x08, 0x09, 0x11, 0x13, 0x16, 0x17, 0x1B, 0x1E, 0x23, 0x24, 0x31, 0x39, 0x3E,
-                         0x47, 0x69, 0x86})
+    for (const int id : {0x00, 0x01, 0x02, 0x08, 0x09, 0x11, 0x13, 0x16, 0x17, 0x1B, 0x1E,
+                         0x23, 0x24, 0x31, 0x39, 0x3E, 0x47, 0x69, 0x86, 0x06, 0x34, 0x3B})
         board.legacy[cfg(id)] = LegacyAnswer::apply;
     board.bauds = {4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600};
     board.ports = {PortId::i2c, PortId::uart1, PortId::uart2, PortId::usb, PortId::spi};

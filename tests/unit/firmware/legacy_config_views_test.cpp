@@ -119,12 +119,13 @@ TEST(LegacyViews, PollsCarryEveryItemToAnotherReceiver) {
     }
 }
 
-// A poll answer can always be written back, and changes nothing.
+// A poll answer can be written back, and changes nothing; that of CFG-DAT alone has a name and number besides.
 TEST(LegacyViews, AnswersCanBeWrittenBack) {
     for (const BoardProfile& board : {legacy_m8(), legacy_m9(), legacy_f9p()}) {
         LegacyBench bench(board);
         for (const auto& [message, answer] : board.legacy) {
             if (message == cfg(0x01) || message == cfg(0x09)) continue;  // need a selector; cannot be polled
+            if (message == cfg(0x06)) continue;
             const Bytes selector = message == cfg(0x02) ? Bytes{1} : Bytes{};
             const Bytes told = bench.poll(message, selector);
             ASSERT_FALSE(told.empty()) << int{message.id};

@@ -30,6 +30,9 @@ TEST(UbxCfgLayouts, HaveTheirSizesAndNoOther) {
     expect_only_size<CfgRxm>(2);
     expect_only_size<CfgAnt>(4);
     expect_only_size<CfgLogfilter>(12);
+    expect_only_size<CfgDat>(52);
+    expect_only_size<CfgDatSet>(44);
+    expect_only_size<CfgPm2>(48);
     expect_only_size<UpdSos>(4);
     expect_only_size<UpdSosStatus>(8);
     for (std::size_t size = 0; size < 80; ++size)

@@ -1,0 +1,154 @@
+// CFG-DAT, CFG-PM2 and CFG-RINV: stored and read back alone (M8 interface description).
+#include <algorithm>
+#include <bit>
+#include <string_view>
+
+#include "firmware/config/legacy_keys.hpp"
+#include "firmware/config/legacy_support.hpp"
+#include "skyloop/protocol/ubx_cfg_hardware.hpp"
+#include "skyloop/protocol/ubx_cfg_navigation.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+// CFG-NAVSPG-USE_USRDAT, and USRDAT_…; shifts, rotations and scale follow each other.
+constexpr std::uint32_t use_user_datum = 0x10110061, datum_axis = 0x50110062, datum_flattening = 0x50110063,
+                        datum_shift = 0x40110064, datum_rotation = 0x40110067, datum_scale = 0x4011006A;
+constexpr std::uint16_t datum_of_user = 0xFFFF;
+constexpr double wgs84_axis_m = 6378137, wgs84_inverse_flattening = 298.257223563;
+
+float float_item(const LegacyContext& context, std::uint32_t item) {
+    return std::bit_cast<float>(in_force<std::uint32_t>(context, item));
+}
+
+CfgDat describe_datum(const LegacyContext& context) {
+    CfgDat message;
+    const bool of_user = context.store.flag(use_user_datum);
+    const std::string_view name = of_user ? "USER" : "WGS84";
+    std::copy(name.begin(), name.end(), message.datum_name.begin());
+    message.maj_a = wgs84_axis_m;
+    message.flat = wgs84_inverse_flattening;
+    if (!of_user) return message;
+    message.datum_num = datum_of_user;
+    message.maj_a = std::bit_cast<double>(context.store.value(datum_axis));
+    message.flat = std::bit_cast<double>(context.store.value(datum_flattening));
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        message.shift[i] = float_item(context, datum_shift + i);
+        message.rotation[i] = float_item(context, datum_rotation + i);
+    }
+    message.scale = float_item(context, datum_scale);
+    return message;
+}
+
+// The ranges that the interface description accepts. What is no number is in none.
+bool is_datum(const CfgDatSet& set) {
+    constexpr float farthest_m = 5000, widest_turn = 20, largest_scale = 50;
+    const auto within = [](const auto& values, float most) {
+        return std::all_of(values.begin(), values.end(), [&](float v) { return v >= -most && v <= most; });
+    };
+    return set.maj_a >= 6.3e6 && set.maj_a <= 6.5e6 && set.flat >= 0 && set.flat <= 500 &&
+           within(set.shift, farthest_m) && within(set.rotation, widest_turn) && set.scale >= 0 &&
+           set.scale <= largest_scale;
+}
+
+constexpr BitKey power_flags[] = {{4, 0x20D0000B}, {5, 0x10D0000C},  {6, 0x10D0000D},  {7, 0x10D0000E},
+                                  {8, 0x10D00010}, {10, 0x10D00009}, {12, 0x10D0000A}, {16, 0x10D00008}};
+constexpr std::uint32_t pm_search_period = 0x40D00003, pm_grid_offset = 0x40D00004, pm_least_acquisition = 0x20D00006,
+                        pm_longest_acquisition = 0x20D00007, pm_inactivity = 0x40D0000F;
+// Bits 17 and 18: 0 on and off, 1 cyclic; of CFG-PM-OPERATEMODE one more, where 0 is full power.
+constexpr unsigned power_mode_shift = 17;
+constexpr std::uint32_t power_mode_mask = 3u << power_mode_shift;
+constexpr std::uint32_t ms = 1000;
+
+CfgPm2 describe_power_management(const LegacyContext& context) {
+    const auto item = [&](std::uint32_t id) { return in_force<std::uint32_t>(context, id); };
+    CfgPm2 message;
+    message.max_startup_state_dur = in_force<std::uint8_t>(context, pm_longest_acquisition);
+    message.flags = item(legacy_key::pm_flags) | bits_in_force(context, power_flags);
+    if (const std::uint32_t mode = item(legacy_key::pm_operate_mode); mode != 0)
+        message.flags = (message.flags & ~power_mode_mask) | (mode - 1) << power_mode_shift;
+    message.update_period = item(legacy_key::pm_update_period) * ms + item(legacy_key::pm_update_rest);
+    message.search_period = item(pm_search_period) * ms + item(legacy_key::pm_search_rest);
+    message.grid_offset = item(pm_grid_offset) * ms + item(legacy_key::pm_grid_rest);
+    message.on_time = in_force<std::uint16_t>(context, legacy_key::pm_on_time);
+    message.min_acq_time = in_force<std::uint16_t>(context, pm_least_acquisition);
+    message.extint_inactivity = item(pm_inactivity);
+    return message;
+}
+
+void put_period(LegacyChanges& changes, std::uint32_t whole, std::uint32_t rest, std::uint32_t period_ms) {
+    changes.put(whole, period_ms / ms);
+    changes.put(rest, static_cast<std::uint16_t>(period_ms % ms));
+}
+
+// CFG-RINV-DUMP, BINARY, DATA_SIZE, and CHUNK0 to 3 of eight bytes each, the first one lowest.
+constexpr BitKey inventory_flags[] = {{0, 0x10C70001}, {1, 0x10C70002}};
+constexpr std::uint32_t inventory_size = 0x20C70003, inventory_chunk = 0x50C70004;
+constexpr std::size_t most_inventory = 30, chunk_bytes = 8;
+constexpr UbxMessageId cfg_rinv{0x06, 0x34};
+
+}  // namespace
+
+ConfigOutcome legacy_dat(const LegacyContext& context, ByteSpan payload) {
+    if (payload.empty()) return legacy_answered(describe_datum(context));
+    const auto set = decode_payload<CfgDatSet>(payload);
+    if (!set || !is_datum(*set)) return legacy_refused();
+    LegacyChanges changes(context);
+    changes.put(use_user_datum, true);
+    changes.put(datum_axis, std::bit_cast<std::uint64_t>(set->maj_a));
+    changes.put(datum_flattening, std::bit_cast<std::uint64_t>(set->flat));
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        changes.put(datum_shift + i, std::bit_cast<std::uint32_t>(set->shift[i]));
+        changes.put(datum_rotation + i, std::bit_cast<std::uint32_t>(set->rotation[i]));
+    }
+    changes.put(datum_scale, std::bit_cast<std::uint32_t>(set->scale));
+    return changes.apply();
+}
+
+ConfigOutcome legacy_pm2(const LegacyContext& context, ByteSpan payload) {
+    if (payload.empty()) return legacy_answered(describe_power_management(context));
+    const auto set = decode_payload<CfgPm2>(payload);
+    const std::uint32_t mode = set ? (set->flags & power_mode_mask) >> power_mode_shift : 0;
+    if (!set || set->version != 2 || mode > 1 || set->min_acq_time > 0xFF) return legacy_refused();
+    std::uint32_t without_item = set->flags;
+    for (const BitKey& flag : power_flags)
+        without_item &= ~(1u << flag.bit);
+    LegacyChanges changes(context);
+    changes.put_bits(power_flags, set->flags);
+    changes.put(legacy_key::pm_flags, without_item);
+    if (context.store.value(legacy_key::pm_operate_mode) != 0)
+        changes.put(legacy_key::pm_operate_mode, static_cast<std::uint8_t>(mode + 1));
+    put_period(changes, legacy_key::pm_update_period, legacy_key::pm_update_rest, set->update_period);
+    put_period(changes, pm_search_period, legacy_key::pm_search_rest, set->search_period);
+    put_period(changes, pm_grid_offset, legacy_key::pm_grid_rest, set->grid_offset);
+    changes.put(legacy_key::pm_on_time, set->on_time);
+    changes.put(pm_least_acquisition, static_cast<std::uint8_t>(set->min_acq_time));
+    changes.put(pm_longest_acquisition, set->max_startup_state_dur);
+    changes.put(pm_inactivity, set->extint_inactivity);
+    return changes.apply();
+}
+
+ConfigOutcome legacy_rinv(const LegacyContext& context, ByteSpan payload) {
+    if (payload.empty()) {
+        Bytes answer{static_cast<std::uint8_t>(bits_in_force(context, inventory_flags))};
+        const std::size_t size = std::min(most_inventory, in_force<std::size_t>(context, inventory_size));
+        for (std::size_t i = 0; i < size; ++i) {
+            const auto chunk = inventory_chunk + static_cast<std::uint32_t>(i / chunk_bytes);
+            answer.push_back(static_cast<std::uint8_t>(context.store.value(chunk) >> (8 * (i % chunk_bytes))));
+        }
+        return {.answers = {encode_frame(cfg_rinv, answer)}, .verdict = Verdict::acknowledge};
+    }
+    if (payload.size() > 1 + most_inventory) return legacy_refused();
+    LegacyChanges changes(context);
+    changes.put_bits(inventory_flags, payload[0]);
+    changes.put(inventory_size, static_cast<std::uint8_t>(payload.size() - 1));
+    for (std::size_t first = 0; first < most_inventory; first += chunk_bytes) {
+        std::uint64_t chunk = 0;
+        for (std::size_t i = 0; i < chunk_bytes && 1 + first + i < payload.size(); ++i)
+            chunk |= std::uint64_t{payload[1 + first + i]} << (8 * i);
+        changes.put(inventory_chunk + static_cast<std::uint32_t>(first / chunk_bytes), chunk);
+    }
+    return changes.apply();
+}
+
+}  // namespace skyloop::firmware
