@@ -33,8 +33,10 @@ MetresPerSecond added_rate(const Arrival& arrival) {
 }
 
 DbHz reported_cn0(DbHz cn0, Decibels resolution) {
-    constexpr double highest = 63;  // of RTCM's six bits (10403.3, DF403), where receivers' own estimates end, too
-    const double value = std::min(cn0.value(), highest);
+    // Of RTCM's six bits (10403.3, DF403), where receivers' own estimates end, too; what has gone all of a sudden is
+    // tracked for a moment yet.
+    constexpr double lowest = 0, highest = 63;
+    const double value = std::clamp(cn0.value(), lowest, highest);
     if (!(resolution.value() > 0)) return DbHz(value);
     return DbHz(std::round(value / resolution.value()) * resolution.value());
 }

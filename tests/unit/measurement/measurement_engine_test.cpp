@@ -266,6 +266,11 @@ TEST(MeasurementEngine, ReportedStrengthIsInWholeSteps) {
     EXPECT_EQ(MeasuredRun(parameters).epoch(arrivals).observations.signals.at(0).cn0, DbHz(43.5));
     EXPECT_EQ(MeasuredRun(parameters).epoch(plain_arrivals({g07}, 120)).observations.signals.at(0).cn0, DbHz(63))
         << "a receiver's estimate ends somewhere";
+    MeasuredRun falling(parameters);
+    falling.epoch(arrivals);
+    const Measurement gone = falling.epoch(plain_arrivals({g07}, -900));
+    ASSERT_EQ(gone.observations.signals.size(), 1U);
+    EXPECT_EQ(gone.observations.signals[0].cn0, DbHz(0)) << "at both ends";
 }
 
 TEST(MeasurementEngine, ASecondSignalHasItsOwnStrength) {
