@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "firmware/config/legacy_support.hpp"
+
 namespace skyloop::firmware {
 namespace {
 
