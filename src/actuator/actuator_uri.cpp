@@ -154,10 +154,9 @@ bool may_be_one_board(const UsbAddress& a, const UsbAddress& b) {
     return anywhere(a) || anywhere(b) || (a.serial == b.serial && a.port_path == b.port_path);
 }
 
-bool one_switch(const RelayAddress& a, const RelayAddress& b) {
-    return a.number == b.number && may_be_one_board(a.board, b.board);
-}
-bool one_switch(const GpioAddress& a, const GpioAddress& b) {
+// A relay or a pin, one of several on its board.
+template <class OnBoard>
+bool one_switch(const OnBoard& a, const OnBoard& b) {
     return a.number == b.number && may_be_one_board(a.board, b.board);
 }
 bool one_switch(const HubPortAddress& a, const HubPortAddress& b) { return a.port_path == b.port_path; }
