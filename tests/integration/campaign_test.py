@@ -1,6 +1,7 @@
 """skyloop campaign: exactly one result a run, whatever is killed, and the same database from any way of running it."""
 import csv
 import hashlib
+import json
 import os
 import pathlib
 import random
@@ -240,8 +241,8 @@ def test_mistakes(folder):
     assert "other columns" in other, other
 
 
-def test_a_killed_worker_takes_its_vehicle_along(folder):
-    path = folder / "left.toml"
+def write_vehicle_scenario(path, seeds, command):
+    """Runs of 20 s, each with a program of its own."""
     path.write_text(f"""
 [run]
 start = 2024-03-05T12:00:00Z
@@ -249,10 +250,15 @@ duration_s = 20
 [model]
 name = "ideal"
 [campaign]
-seeds = 1
+seeds = {seeds}
 [campaign.vehicle]
-command = "touch '{folder}/begun.'$$; sleep 4; touch '{folder}/late.'$$"
+command = {json.dumps(command)}
 """)
+    return path
+
+
+def test_a_killed_worker_takes_its_vehicle_along(folder):
+    path = write_vehicle_scenario(folder / "left.toml", 1, f"touch '{folder}/begun.'$$; sleep 4; touch '{folder}/late.'$$")
     process = subprocess.Popen([SKYLOOP, "campaign", path, "--out", folder / "left", "--jobs", "1"],
                                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     end = time.monotonic() + 30
@@ -268,18 +274,9 @@ command = "touch '{folder}/begun.'$$; sleep 4; touch '{folder}/late.'$$"
 
 def test_vehicle(folder):
     """A program with a pty of its own, in real time: its exit code is a verdict."""
-    path = folder / "vehicle.toml"
-    path.write_text("""
-[run]
-start = 2024-03-05T12:00:00Z
-duration_s = 20
-[model]
-name = "ideal"
-[campaign]
-seeds = 2
-[campaign.vehicle]
-command = 'timeout 10 head -c 200 "$SKYLOOP_PTY" | grep -q GGA && test {pty} = "$SKYLOOP_PTY" && exit $(({seed} - 1))'
-""")
+    path = write_vehicle_scenario(
+        folder / "vehicle.toml", 2,
+        'timeout 10 head -c 200 "$SKYLOOP_PTY" | grep -q GGA && test {pty} = "$SKYLOOP_PTY" && exit $(({seed} - 1))')
     began = time.monotonic()
     said = campaign(path, "--out", folder / "vehicle", "--jobs", 2, expected=(3,)).stdout
     assert time.monotonic() - began < 15, "a run ends with its vehicle"
