@@ -3,7 +3,6 @@
 #include <chrono>
 
 #include "firmware/messages/reported_fix.hpp"
-#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -25,9 +24,7 @@ void put_msp_position(const Fix& fix, MspSensorGps& to) {
 }
 
 void put_msp_clock(const NavigationState& state, MspSensorGps& to) {
-    const Fix& fix = state.epoch.fix;
-    const UtcTime utc =
-        to_utc(to_gps_time(gps_stamp(fix.time)), counted_leap_seconds({fix.time, fix.leap_seconds, state.leap_event}));
+    const UtcTime utc = reported_utc(state);
     to.year = static_cast<std::uint16_t>(utc.year);
     to.month = static_cast<std::uint8_t>(utc.month);
     to.day = static_cast<std::uint8_t>(utc.day);

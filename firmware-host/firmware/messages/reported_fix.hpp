@@ -9,6 +9,7 @@
 
 #include "firmware/messages/field_values.hpp"
 #include "firmware/navigation_state.hpp"
+#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::firmware {
 
@@ -52,6 +53,15 @@ inline WeekAndTow gps_stamp(const NavigationState& state) {
 }
 inline std::uint32_t whole_milliseconds(const WeekAndTow& stamp) {
     return static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::milliseconds>(stamp.tow).count());
+}
+
+/// What the receiver counts UTC by at the epoch, and that time, rounded to milliseconds.
+inline LeapSeconds reported_leap_seconds(const NavigationState& state) {
+    const Fix& fix = state.epoch.fix;
+    return counted_leap_seconds({fix.time, fix.leap_seconds, state.leap_event});
+}
+inline UtcTime reported_utc(const NavigationState& state) {
+    return to_utc(to_gps_time(gps_stamp(state.epoch.fix.time)), reported_leap_seconds(state));
 }
 
 /// Where the vector between the antennas of a pair points.

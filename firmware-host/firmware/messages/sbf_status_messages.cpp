@@ -5,8 +5,6 @@
 
 #include "firmware/messages/sbf_parts.hpp"
 #include "skyloop/geo/local_frame.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -152,17 +150,15 @@ SbfReceiverTime sbf_receiver_time(const NavigationState& state) {
     block.sync_level = static_cast<std::uint8_t>((state.time.date ? 1 : 0) | (state.time.time ? 2 : 0) |
                                                  (has_solution(state) ? 4 : 0));
     if (!state.time.date || !state.time.time) return block;
-    const Fix& fix = state.epoch.fix;
-    const GpsTime stamp = to_gps_time(gps_stamp(fix.time));
-    const LeapSeconds leap = counted_leap_seconds({fix.time, fix.leap_seconds, state.leap_event});
-    const UtcTime utc = to_utc(stamp, leap);
+    const UtcTime utc = reported_utc(state);
     block.year = static_cast<std::int8_t>(utc.year % 100);
     block.month = static_cast<std::int8_t>(utc.month);
     block.day = static_cast<std::int8_t>(utc.day);
     block.hour = static_cast<std::int8_t>(utc.hour);
     block.minute = static_cast<std::int8_t>(utc.minute);
     block.second = static_cast<std::int8_t>(utc.second);
-    block.leap_seconds = static_cast<std::int8_t>(leap.offset(stamp));
+    block.leap_seconds =
+        static_cast<std::int8_t>(reported_leap_seconds(state).offset(to_gps_time(gps_stamp(state.epoch.fix.time))));
     return block;
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/signal_keys.hpp"
@@ -231,22 +230,18 @@ void SeptentrioConsole::apply(ConfigStore& store) const {
     const SeptentrioSettings& settings = state_.settings;
     const auto period = std::max(wanted_period_ms(settings, own_period_ms_).value_or(own_period_ms_),
                                  static_cast<std::uint64_t>(1000 / board_.max_rate_hz));
-    if (store.value(key::rate_meas) != period) store.set(in_ram, key::rate_meas, period);
-    const std::string mask = settings.values("ElevationMask", "PVT").front();
-    int degrees = 0;
-    std::from_chars(mask.data(), mask.data() + mask.size(), degrees);
-    if (store.signed_value(key::navspg_min_elev) != degrees)
-        store.set(in_ram, key::navspg_min_elev, static_cast<std::uint8_t>(degrees));
+    store.set(in_ram, key::rate_meas, period);
+    if (const auto degrees = whole_number(settings.values("ElevationMask", "PVT").front()))
+        store.set(in_ram, key::navspg_min_elev, static_cast<std::uint8_t>(*degrees));
     apply_systems(store);
 }
 
 void SeptentrioConsole::apply_speeds(ConfigStore& store) const {
     const auto apply_speed = [&](std::string_view port, std::uint32_t item) {
         constexpr std::string_view prefix = "baud";
-        const std::string word = state_.settings.values("COMSettings", port).front().substr(prefix.size());
-        std::uint32_t baud = 0;
-        std::from_chars(word.data(), word.data() + word.size(), baud);
-        if (store.has(item) && store.value(item) != baud) store.set(in_ram, item, baud);
+        const std::string& word = state_.settings.values("COMSettings", port).front();
+        if (const auto baud = whole_number(std::string_view(word).substr(prefix.size())))
+            store.set(in_ram, item, static_cast<std::uint32_t>(*baud));
     };
     apply_speed("COM1", key::uart1_baudrate);
     apply_speed("COM2", key::uart2_baudrate);

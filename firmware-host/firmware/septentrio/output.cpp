@@ -62,10 +62,22 @@ constexpr std::array made_blocks{
               [](const ReportContext& c, const SeptentrioState&) { return encode_sbf(sbf_authentication(c.state)); }},
 };
 
-bool is_due(const std::string& interval, const NavigationState& state) {
-    const auto period = interval_ms(interval);
-    if (!period) return false;
-    return *period == 0 || whole_milliseconds(gps_stamp(state.epoch.fix.time)) % *period == 0;
+// A stream that sends something.
+struct ActiveStream {
+    const std::string& port;
+    const std::string& words;  // by +
+    std::uint64_t period_ms;   // 0: at every epoch
+};
+
+std::vector<ActiveStream> active_streams(const SeptentrioSettings& settings, std::string_view kind) {
+    constexpr int streams = 10;
+    std::vector<ActiveStream> active;
+    for (int i = 1; i <= streams; ++i) {
+        const auto& values = settings.values(kind, "Stream" + std::to_string(i));
+        const auto period = interval_ms(values[2]);
+        if (values[0] != "none" && values[1] != "none" && period) active.push_back({values[0], values[1], *period});
+    }
+    return active;
 }
 
 // Words of all streams of a kind that go to a port and are due.
@@ -73,10 +85,10 @@ std::set<std::string> due_words(const SeptentrioSettings& settings, std::string_
                                 const ReportContext& context) {
     std::set<std::string> due;
     const std::string_view port = descriptor_of(context.port);
-    for (int i = 1; i <= 10; ++i) {
-        const auto& stream = settings.values(kind, "Stream" + std::to_string(i));
-        if (stream.size() < 3 || stream[0] != port || !is_due(stream[2], context.state)) continue;
-        for (const std::string& word : split_words(stream[1], '+')) {
+    const std::uint32_t tow_ms = whole_milliseconds(gps_stamp(context.state.epoch.fix.time));
+    for (const ActiveStream& stream : active_streams(settings, kind)) {
+        if (stream.port != port || (stream.period_ms != 0 && tow_ms % stream.period_ms != 0)) continue;
+        for (const std::string& word : split_words(stream.words, '+')) {
             due.insert(word);
             for (const std::string& member : split_words(blocks_of_group(word), '+'))
                 due.insert(member);
@@ -90,18 +102,6 @@ bool lets_through(const SeptentrioSettings& settings, PortId port, std::string_v
     if (directions.size() < 2) return true;
     const auto outputs = split_words(directions[1], '+');
     return std::any_of(outputs.begin(), outputs.end(), [&](const auto& word) { return same_word(word, protocol); });
-}
-
-// Each active stream's period, ms; 0 for OnChange.
-std::vector<std::uint64_t> stream_periods(const SeptentrioSettings& settings) {
-    std::vector<std::uint64_t> periods;
-    for (const std::string_view kind : {"SBFOutput", "NMEAOutput"})
-        for (int i = 1; i <= 10; ++i) {
-            const auto& stream = settings.values(kind, "Stream" + std::to_string(i));
-            if (stream[0] == "none" || stream[1] == "none") continue;
-            if (const auto period = interval_ms(stream[2])) periods.push_back(*period);
-        }
-    return periods;
 }
 
 }  // namespace
@@ -126,19 +126,17 @@ std::optional<std::uint64_t> wanted_period_ms(const SeptentrioSettings& settings
     constexpr std::uint64_t longest = 1000;
     std::uint64_t common = 0;
     bool certain = false;
-    for (const std::uint64_t period : stream_periods(settings)) {
-        certain = certain || period > 0;
-        common = std::gcd(common, period == 0 ? own : period);
-    }
+    for (const std::string_view kind : {"SBFOutput", "NMEAOutput"})
+        for (const ActiveStream& stream : active_streams(settings, kind)) {
+            certain = certain || stream.period_ms > 0;
+            common = std::gcd(common, stream.period_ms == 0 ? own : stream.period_ms);
+        }
     return certain ? std::optional(std::gcd(common, longest)) : std::nullopt;
 }
 
 bool logs_to_disk(const SeptentrioSettings& settings) {
-    for (int i = 1; i <= 10; ++i) {
-        const auto& stream = settings.values("SBFOutput", "Stream" + std::to_string(i));
-        if (stream[0] == "DSK1" && stream[1] != "none" && stream[2] != "off") return true;
-    }
-    return false;
+    const auto streams = active_streams(settings, "SBFOutput");
+    return std::any_of(streams.begin(), streams.end(), [](const auto& stream) { return stream.port == "DSK1"; });
 }
 
 }  // namespace skyloop::firmware

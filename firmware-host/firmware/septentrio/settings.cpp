@@ -4,8 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
+
+#include "firmware/nmea_commands.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -15,9 +16,8 @@ std::string key_of(std::string_view name, std::string_view index) {
 }
 
 bool is_angle(std::string_view text) {
-    int degrees = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), degrees);
-    return error == std::errc() && end == text.data() + text.size() && degrees >= -90 && degrees <= 90;
+    const auto degrees = whole_number(text);
+    return degrees && *degrees >= -90 && *degrees <= 90;
 }
 
 std::optional<std::string> spelled(WordKind kind, std::string_view word) {
@@ -70,7 +70,7 @@ std::vector<std::string> split_words(std::string_view text, char separator) {
         const std::size_t end = std::min(text.find(separator, at), text.size());
         std::string_view word = text.substr(at, end - at);
         word.remove_prefix(std::min(word.find_first_not_of(" \t"), word.size()));
-        words.emplace_back(word.substr(0, word.find_last_not_of(" \t") + 1));
+        words.emplace_back(word.substr(0, word.find_last_not_of(" \t") + 1));  // quotation marks stay
         at = end + 1;
     }
     return words;

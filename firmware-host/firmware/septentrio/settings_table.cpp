@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
+
+#include "firmware/nmea_commands.hpp"
+#include "skyloop/base/lowered_text.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -131,10 +132,7 @@ std::string_view words_of(WordKind kind) {
 
 std::span<const SettingGroup> setting_groups() { return groups; }
 
-bool same_word(std::string_view a, std::string_view b) {
-    const auto low = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return low(x) == low(y); });
-}
+bool same_word(std::string_view a, std::string_view b) { return lowered_text(a) == lowered_text(b); }
 
 std::optional<std::string_view> known_word(WordKind kind, std::string_view word) {
     for (std::string_view rest = words_of(kind); !rest.empty();) {
@@ -157,10 +155,8 @@ std::optional<std::uint64_t> interval_ms(std::string_view interval) {
         {{"msec", 1}, {"sec", 1000}, {"min", 60'000}}};
     for (const auto& [unit, milliseconds] : units) {
         if (!interval.starts_with(unit)) continue;
-        const std::string_view digits = interval.substr(unit.size());
-        std::uint64_t count = 0;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
-        if (error == std::errc() && end == digits.data() + digits.size() && count > 0) return count * milliseconds;
+        const auto count = whole_number(interval.substr(unit.size()));
+        if (count && *count > 0) return static_cast<std::uint64_t>(*count) * milliseconds;
     }
     return std::nullopt;
 }
