@@ -1,8 +1,8 @@
 #include <fmt/format.h>
-#include <signal.h>
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <iostream>
 #include <numeric>
 
@@ -100,7 +100,7 @@ int serve_as_worker() {
     // Before any thread is. Without it a vehicle would go on behind a worker that is killed, as its leader's end does.
     const auto watchdog = OrphanWatchdog::start();
     const auto served =
-        serve_runs(std::cin, std::cout, data_folders(), worker_stopped, watchdog ? (*watchdog)->listener() : nullptr);
+        serve_runs(std::cin, std::cout, data_folders(), worker_stopped, watchdog ? watchdog->get() : nullptr);
     return served ? 0 : messages.error(served.error());
 }
 

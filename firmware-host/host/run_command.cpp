@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -7,6 +8,7 @@
 #include "data_folders.hpp"
 #include "run_session.hpp"
 #include "run_watch.hpp"
+#include "skyloop/base/watchdog_process.hpp"
 #include "skyloop/emulator/deadline_grants.hpp"
 #include "skyloop/time/utc_time.hpp"
 
@@ -36,6 +38,27 @@ Result<std::unique_ptr<PowerWatchdog>> watch_power(const Scenario& scenario, con
     return PowerWatchdog::start(wards);
 }
 
+// Over the programs that expectations ask; null where there are none, or no process is to be had for it.
+std::unique_ptr<OrphanWatchdog> watch_probes(const Scenario& scenario, const RunMode& mode) {
+    const auto& expectations = scenario.expectations;
+    const auto asks = [](const Expectation& expectation) { return expectation.probe.has_value(); };
+    if (mode.virtual_time || std::none_of(expectations.begin(), expectations.end(), asks)) return nullptr;
+    auto watchdog = OrphanWatchdog::start();
+    return watchdog ? std::move(*watchdog) : nullptr;
+}
+
+// Scripts wait for these lines to know the tty: they are said even when quiet.
+void say_where(const RunSession& session, const std::vector<Station>& stations, const RunWatch& watch) {
+    for (const Station& station : stations)
+        for (std::size_t i = 0; i < station.wires().size(); ++i)
+            fmt::print(stderr, "{}: {}\n", session.port_name(station, i),
+                       station.wires()[i].link.transport().description());
+    if (!watch.url().empty()) fmt::print(stderr, "control: {}\n", watch.url());
+    for (std::size_t i = 0; i < watch.outputs().size(); ++i)
+        fmt::print(stderr, "output {}: {}\n", i, watch.outputs()[i]->description());
+    if (!watch.mavlink().empty()) fmt::print(stderr, "mavlink: {}\n", watch.mavlink());
+}
+
 int run_live(const RunOptions& options) {
     const Messages messages(options.verbosity);
     const auto scenario = scenario_from(options);
@@ -52,6 +75,7 @@ int run_live(const RunOptions& options) {
     const auto watchdog = watch_power(*scenario, mode);
     if (!watchdog) return messages.error(watchdog.error());
     mode.power_watchdog = watchdog->get();
+    const auto orphans = watch_probes(*scenario, mode);
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(assembly.error());
 
@@ -60,19 +84,12 @@ int run_live(const RunOptions& options) {
     const bool alone = !mode.virtual_time && options.control.empty();
     if (const auto warning = alone ? pause_warning(*scenario) : std::nullopt) assembly->warnings.push_back(*warning);
     if (!mode.virtual_time && options.priority == "auto") assembly->deadlines = keep_deadlines(messages);
-    const auto watch = RunWatch::start(*scenario, *assembly,
-                                       {options.control, options.token, options.mavlink, !mode.virtual_time}, commands);
+    const auto watch =
+        RunWatch::start(*scenario, *assembly,
+                        {options.control, options.token, options.mavlink, !mode.virtual_time, orphans.get()}, commands);
     if (!watch) return messages.error(watch.error());
     RunSession session(messages, *assembly);
-    // Scripts wait for these lines to know the tty: they are said even when quiet.
-    for (const Station& station : assembly->emulator->stations())
-        for (std::size_t i = 0; i < station.wires().size(); ++i)
-            fmt::print(stderr, "{}: {}\n", session.port_name(station, i),
-                       station.wires()[i].link.transport().description());
-    if (!(*watch)->url().empty()) fmt::print(stderr, "control: {}\n", (*watch)->url());
-    for (std::size_t i = 0; i < (*watch)->outputs().size(); ++i)
-        fmt::print(stderr, "output {}: {}\n", i, (*watch)->outputs()[i]->description());
-    if (!(*watch)->mavlink().empty()) fmt::print(stderr, "mavlink: {}\n", (*watch)->mavlink());
+    say_where(session, assembly->emulator->stations(), **watch);
     session.await_feeds();
     if (options.wait_for_client) session.await_clients();
     return session.run(*scenario, **watch);

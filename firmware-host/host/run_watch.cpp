@@ -64,7 +64,7 @@ Result<void> write_report(const std::filesystem::path& path, const std::string& 
 Result<std::unique_ptr<RunWatch>> RunWatch::start(const Scenario& scenario, Assembly& assembly,
                                                   const WatchOptions& options, CommandQueue& commands) {
     std::unique_ptr<RunWatch> watch(new RunWatch(scenario, assembly));
-    watch->appoint_judge(options.live);
+    watch->appoint_judge(options);
     if (const auto opened = watch->open_control(options, commands); !opened) return fail(opened.error());
     if (const auto opened = watch->open_mavlink(options.mavlink, commands); !opened) return fail(opened.error());
     if (const auto opened = watch->open_outputs(options.live); !opened) return fail(opened.error());
@@ -88,11 +88,12 @@ Result<void> RunWatch::begin() {
     return {};
 }
 
-void RunWatch::appoint_judge(bool live) {
+void RunWatch::appoint_judge(const WatchOptions& options) {
     if (scenario_.expectations.empty()) return;
     Emulator& emulator = *assembly_.emulator;
-    judge_ = std::make_unique<Judge>(scenario_.expectations, JudgedRun{assembly_.start, receiver_names(emulator), live,
-                                                                       probe_environment(emulator)});
+    judge_ = std::make_unique<Judge>(scenario_.expectations,
+                                     JudgedRun{assembly_.start, receiver_names(emulator), options.live,
+                                               probe_environment(emulator), options.orphans});
     emulator.add_observer(judge_.get());
 }
 

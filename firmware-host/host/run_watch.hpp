@@ -8,6 +8,7 @@
 
 #include "messages.hpp"
 #include "run_log.hpp"
+#include "skyloop/base/watchdog_process.hpp"
 #include "skyloop/control/control_server.hpp"
 #include "skyloop/emulator/assembly.hpp"
 #include "skyloop/emulator/command_queue.hpp"
@@ -20,10 +21,11 @@ namespace skyloop::host {
 
 /// What is asked of a watch.
 struct WatchOptions {
-    std::string control;  ///< "[HOST:]PORT"; empty: nobody from outside
-    std::string token;    ///< for them; empty: by the rules of ControlOptions
-    std::string mavlink;  ///< "udp:14550"; empty: none
-    bool live = false;    ///< against the clock
+    std::string control;                ///< "[HOST:]PORT"; empty: nobody from outside
+    std::string token;                  ///< for them; empty: by the rules of ControlOptions
+    std::string mavlink;                ///< "udp:14550"; empty: none
+    bool live = false;                  ///< against the clock
+    OrphanWatchdog* orphans = nullptr;  ///< ends the probes of a program that is killed; null: nobody does
 };
 
 /// Watches the emulator of an assembly. It must end before the assembly does.
@@ -52,7 +54,7 @@ public:
 private:
     RunWatch(const Scenario& scenario, Assembly& assembly) : scenario_(scenario), assembly_(assembly) {}
     Result<void> begin();
-    void appoint_judge(bool live);
+    void appoint_judge(const WatchOptions& options);
     Result<void> open_control(const WatchOptions& options, CommandQueue& commands);
     Result<void> open_mavlink(const std::string& address, CommandQueue& commands);
     Result<void> open_outputs(bool live);

@@ -13,12 +13,18 @@
 #include <csignal>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <thread>
 
 namespace skyloop {
 namespace {
 
 constexpr int watchdog_socket = 3;
+
+// What one of an OrphanWatchdog's listeners heard; no group: what it had has been ended.
+struct GroupRecord {
+    std::int32_t listener = 0, group = 0;
+};
 
 void leave_the_program(int socket, const char* name) {
     ::setsid();
@@ -90,18 +96,23 @@ void end_process_group(int group) {
 
 Result<std::unique_ptr<OrphanWatchdog>> OrphanWatchdog::start() {
     auto process = WatchdogProcess::start("skyloop-orphans", [](int socket) {
-        std::int32_t group = 0, next = 0;
-        while (hear_record(socket, &next, sizeof next))
-            group = next;
-        if (group > 0) end_process_group(group);
+        std::map<std::int32_t, std::int32_t> groups;
+        GroupRecord heard;
+        while (hear_record(socket, &heard, sizeof heard))
+            if (heard.group > 0)
+                groups[heard.listener] = heard.group;
+            else
+                groups.erase(heard.listener);
+        for (const auto& [listener, group] : groups)
+            end_process_group(group);
     });
     if (!process) return fail(process.error());
     return std::unique_ptr<OrphanWatchdog>(new OrphanWatchdog(std::move(*process)));
 }
 
 ProcessGroupListener OrphanWatchdog::listener() {
-    return [this](std::optional<int> group) {
-        const std::int32_t record = group.value_or(0);
+    return [this, listener = ++listeners_](std::optional<int> group) {
+        const GroupRecord record{listener, group.value_or(0)};
         process_->tell(&record, sizeof record);
     };
 }

@@ -147,14 +147,15 @@ Result<RunResult> run_of_campaign(const CampaignRunSetup& setup, const PlannedRu
     auto assembly = assemble(*scenario, setup.data, campaign_mode(*scenario));
     if (!assembly) return failed_result(std::move(result), assembly.error());
     Emulator& emulator = *assembly->emulator;
-    Judge judge(scenario->expectations,
-                {assembly->start, names_of_receivers(emulator), !campaign_mode(*scenario).virtual_time});
+    const bool live = !campaign_mode(*scenario).virtual_time;
+    Judge judge(scenario->expectations, {assembly->start, names_of_receivers(emulator), live, {}, setup.orphans});
     RunMetrics metrics(assembly->start);
     emulator.add_observer(&judge);
     emulator.add_observer(&metrics);
     std::vector<Verdict> verdicts;
     if (scenario->campaign && scenario->campaign->vehicle) {
-        auto vehicle = run_with_vehicle(*assembly, *scenario->campaign->vehicle, run, {stop, setup.vehicle_group});
+        auto vehicle = run_with_vehicle(*assembly, *scenario->campaign->vehicle, run,
+                                        {stop, setup.orphans != nullptr ? setup.orphans->listener() : nullptr});
         if (!vehicle) return fail(vehicle.error());
         verdicts.push_back(std::move(*vehicle));
     } else {

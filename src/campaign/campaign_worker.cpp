@@ -91,13 +91,13 @@ Result<RunResult> worker_answer(std::string_view line, const ResultColumns& colu
 }
 
 Result<void> serve_runs(std::istream& questions, std::ostream& answers, const DataFolders& data,
-                        const std::atomic<bool>& stop, const ProcessGroupListener& vehicle_group) {
+                        const std::atomic<bool>& stop, OrphanWatchdog* orphans) {
     std::string line;
     if (!std::getline(questions, line)) return {};
     auto setup = setup_from(line);
     if (!setup) return fail(setup.error());
     setup->data = data;
-    setup->vehicle_group = vehicle_group;
+    setup->orphans = orphans;
     while (!stop && std::getline(questions, line)) {
         const auto question = question_from(line);
         if (!question) return fail(question.error());

@@ -99,7 +99,8 @@ void Judge::State::start_probes(GpsTime now) {
     for (Case& one : cases_) {
         if (!one.expectation.probe) continue;
         if (!one.probe && now >= advanced(run_.start, one.expectation.probe->at))
-            one.probe = std::make_unique<ProbeRun>(*one.expectation.probe, run_.probe_environment);
+            one.probe = std::make_unique<ProbeRun>(*one.expectation.probe, run_.probe_environment,
+                                                   run_.orphans != nullptr ? run_.orphans->listener() : nullptr);
         if (one.probe && !one.probe_over_at && one.probe->is_over()) one.probe_over_at = now;
     }
 }

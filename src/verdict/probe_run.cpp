@@ -49,8 +49,11 @@ std::string probe_text(const Probe& probe) {
     return text;
 }
 
-ProbeRun::ProbeRun(Probe probe, std::vector<std::string> environment)
-    : probe_(std::move(probe)), environment_(std::move(environment)), thread_([this] { work(); }) {}
+ProbeRun::ProbeRun(Probe probe, std::vector<std::string> environment, ProcessGroupListener group)
+    : probe_(std::move(probe)),
+      environment_(std::move(environment)),
+      group_(std::move(group)),
+      thread_([this] { work(); }) {}
 
 ProbeRun::~ProbeRun() { finish(); }
 
@@ -81,6 +84,7 @@ bool ProbeRun::try_once() {
     request.environment = environment_;
     request.timeout = probe_.timeout;
     request.cancelled = [this] { return cancelled_.load(); };
+    request.group = group_;
     if (probe_.condition)
         request.line = [&](std::string_view line) {
             if (!fulfilled && fulfils(*probe_.condition, line)) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "expectation_tracker.hpp"
+#include "skyloop/base/process.hpp"
 #include "skyloop/verdict/expectation.hpp"
 
 namespace skyloop {
@@ -18,7 +19,8 @@ std::string probe_text(const Probe& probe);
 /// Runs the probe's command, anew until it succeeds where the probe says so, and keeps what came of it.
 class ProbeRun {
 public:
-    ProbeRun(Probe probe, std::vector<std::string> environment);
+    /// @param group hears of the command's processes; may be empty
+    ProbeRun(Probe probe, std::vector<std::string> environment, ProcessGroupListener group);
     /// Kills what still runs.
     ~ProbeRun();
     ProbeRun(const ProbeRun&) = delete;
@@ -37,6 +39,7 @@ private:
 
     const Probe probe_;
     const std::vector<std::string> environment_;
+    const ProcessGroupListener group_;
     std::atomic<bool> cancelled_ = false, over_ = false;
     std::mutex mutex_;
     Finding finding_;  // guarded by mutex_

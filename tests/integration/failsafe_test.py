@@ -2,7 +2,9 @@
 import json
 import os
 import pathlib
+import signal
 import socket
+import time
 import unittest
 import xml.etree.ElementTree
 
@@ -30,6 +32,14 @@ POLL_MON_VER = bytes.fromhex("b5620a0400000e34")
 
 def skyloop(*arguments):
     return run_to_end(*arguments, check=False)
+
+
+def is_running(process):
+    try:
+        state = pathlib.Path("/proc", str(process), "stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+    return state not in "ZX"
 
 
 class VerdictsTest(unittest.TestCase):
@@ -199,6 +209,12 @@ class LiveTest(unittest.TestCase):
     def tearDown(self):
         self.folder.cleanup()
 
+    def await_truth(self, asked, patience=20):
+        end = time.monotonic() + patience
+        while not asked() and time.monotonic() < end:
+            time.sleep(0.02)
+        self.assertTrue(asked())
+
     def ctl(self, port, *arguments):
         done = skyloop("ctl", port, *arguments)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -294,6 +310,20 @@ class LiveTest(unittest.TestCase):
         for name in ("port0.out", "port0.in", "fixes.csv"):
             self.assertEqual((again / name).read_bytes(), (first / name).read_bytes(), name)
         self.assertIn(b"\xb5\x62\x0a\x04", (again / "port0.out").read_bytes())
+
+    def test_what_expectations_ask_does_not_outlive_a_run_that_is_killed(self):
+        begun = [pathlib.Path(self.folder.name, name) for name in ("begun", "beside")]
+        probes = "".join(f"""[[expect]]
+command = ["sh", "-c", "echo $$ >'{path}'; sleep 100"]
+timeout_s = 100
+""" for path in begun)
+        self.scenario.write_text(SCENARIO + probes)
+        with Emulator(self.scenario) as emulator:
+            self.await_truth(lambda: all(path.exists() and path.read_text().strip() for path in begun))
+            programs = [int(path.read_text()) for path in begun]
+            self.assertTrue(all(map(is_running, programs)))
+            self.assertEqual(emulator.stop(signal.SIGKILL), -signal.SIGKILL)
+            self.await_truth(lambda: not any(map(is_running, programs)))
 
     def test_a_scripted_client_is_heard_once_in_a_repeat(self):
         first, again = self.path / "first", self.path / "again"

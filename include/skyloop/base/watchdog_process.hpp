@@ -1,7 +1,9 @@
 /// A process beside the program that sees to what is left when the program is killed.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -40,18 +42,19 @@ bool hear_record(int socket, void* record, std::size_t size);
 /// Kills what is left of a process group, and waits until nothing is, for a second at most.
 void end_process_group(int group);
 
-/// Ends the programs that its own program leaves behind when it is killed with SIGKILL or crashes. Knows one process
-/// group at a time.
+/// Ends the programs that its own program leaves behind when it is killed with SIGKILL or crashes.
 class OrphanWatchdog {
 public:
     /// As WatchdogProcess::start().
     static Result<std::unique_ptr<OrphanWatchdog>> start();
-    /// For ProcessRequest::group; not beyond the life of this object.
+    /// For ProcessRequest::group of one program after the other; each that runs beside others has its own. Not beyond
+    /// the life of this object. Thread-safe.
     [[nodiscard]] ProcessGroupListener listener();
 
 private:
     explicit OrphanWatchdog(std::unique_ptr<WatchdogProcess> process) : process_(std::move(process)) {}
     std::unique_ptr<WatchdogProcess> process_;
+    std::atomic<std::int32_t> listeners_ = 0;
 };
 
 }  // namespace skyloop

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "skyloop/base/process.hpp"
 #include "skyloop/base/result.hpp"
+#include "skyloop/base/watchdog_process.hpp"
 #include "skyloop/campaign/campaign_plan.hpp"
 #include "skyloop/campaign/run_result.hpp"
 #include "skyloop/emulator/assembly.hpp"
@@ -33,7 +33,7 @@ struct CampaignRunSetup {
     std::filesystem::path file;  ///< its name
     DataFolders data{};
     ResultColumns columns{};
-    ProcessGroupListener vehicle_group{};  ///< who ends a vehicle that this program leaves behind
+    OrphanWatchdog* orphans = nullptr;  ///< ends vehicles and probes that this program leaves behind; null: nobody
 };
 
 /// Runs it to its end. A scenario that cannot be run with these values is a result too, "error", since it would be the

@@ -21,8 +21,8 @@ Result<RunResult> worker_answer(std::string_view line, const ResultColumns& colu
 /// Does the runs that are asked for, until the input ends or `stop` is true. Fails with `outside` for a line that is
 /// not understood.
 /// @param data where the program's own data lies
-/// @param vehicle_group hears of the processes of vehicles; may be empty
+/// @param orphans ends the programs of runs whose worker is killed; null: nobody does
 Result<void> serve_runs(std::istream& questions, std::ostream& answers, const DataFolders& data,
-                        const std::atomic<bool>& stop, const ProcessGroupListener& vehicle_group = {});
+                        const std::atomic<bool>& stop, OrphanWatchdog* orphans = nullptr);
 
 }  // namespace skyloop

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "skyloop/base/watchdog_process.hpp"
 #include "skyloop/fault/run_observer.hpp"
 #include "skyloop/verdict/expectation.hpp"
 #include "skyloop/verdict/verdict.hpp"
@@ -17,6 +18,7 @@ struct JudgedRun {
     std::vector<std::string> receivers;            ///< names, by station
     bool live = false;                             ///< against the clock: probes may run
     std::vector<std::string> probe_environment{};  ///< "SKYLOOP_PORT=/dev/pts/3": added to the environment of probes
+    OrphanWatchdog* orphans = nullptr;             ///< ends the probes of a program that is killed; null: nobody does
 };
 
 /// Follows every expectation at every receiver that it is about.

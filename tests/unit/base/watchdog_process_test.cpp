@@ -2,15 +2,16 @@
 #include "skyloop/base/watchdog_process.hpp"
 
 #include <gtest/gtest.h>
-#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <fstream>
 #include <sstream>
 #include <thread>
+#include <vector>
 
 #include "unit/transport/temporary_folder.hpp"
 
@@ -25,21 +26,27 @@ std::string told_in(const std::filesystem::path& file) {
     return text.str();
 }
 
-// Its own program says "begun", and two seconds later "late", unless somebody ends it; the run of it ends as `how`
-// says.
-int leave_a_program(const std::filesystem::path& file, const std::function<void()>& how) {
+// Each program says "begun", and two seconds later "late", unless somebody ends it; the run of them ends as `how` says.
+int leave_programs(const std::vector<std::filesystem::path>& files, const std::function<void()>& how) {
     const pid_t child = ::fork();
     if (child == 0) {
         const auto watchdog = OrphanWatchdog::start();
-        ProcessRequest request;
-        // In the background, so that it is no child of whoever is killed first.
-        request.command = {"/bin/sh", "-c", "(sleep 2; echo late >>\"$0\") & echo begun >>\"$0\"; wait", file.string()};
-        request.group = (*watchdog)->listener();
-        std::thread running([&] { static_cast<void>(run_process(request)); });
-        while (told_in(file).empty())
-            std::this_thread::sleep_for(5ms);
+        std::vector<std::thread> running;
+        for (const auto& file : files)
+            running.emplace_back([&] {
+                ProcessRequest request;
+                // In the background, so that it is no child of whoever is killed first.
+                request.command = {"/bin/sh", "-c", "(sleep 2; echo late >>\"$0\") & echo begun >>\"$0\"; wait",
+                                   file.string()};
+                request.group = (*watchdog)->listener();
+                static_cast<void>(run_process(request));
+            });
+        for (const auto& file : files)
+            while (told_in(file).empty())
+                std::this_thread::sleep_for(5ms);
         how();
-        running.join();
+        for (std::thread& one : running)
+            one.join();
         ::_exit(0);
     }
     int status = 0;
@@ -50,14 +57,16 @@ int leave_a_program(const std::filesystem::path& file, const std::function<void(
 
 TEST(OrphanWatchdog, EndsTheProgramsOfOneThatIsKilled) {
     const test::TemporaryFolder folder;
-    EXPECT_EQ(leave_a_program(folder / "told", [] { ::kill(::getpid(), SIGKILL); }), SIGKILL);
+    const std::vector<std::filesystem::path> files{folder / "told", folder / "beside"};
+    EXPECT_EQ(leave_programs(files, [] { ::kill(::getpid(), SIGKILL); }), SIGKILL);
     std::this_thread::sleep_for(2500ms);
-    EXPECT_EQ(told_in(folder / "told"), "begun\n");
+    for (const auto& file : files)
+        EXPECT_EQ(told_in(file), "begun\n");
 }
 
 TEST(OrphanWatchdog, LeavesAloneWhatEndsByItself) {
     const test::TemporaryFolder folder;
-    EXPECT_EQ(leave_a_program(folder / "told", [] {}), 0);
+    EXPECT_EQ(leave_programs({folder / "told"}, [] {}), 0);
     EXPECT_EQ(told_in(folder / "told"), "begun\nlate\n");
 }
 
