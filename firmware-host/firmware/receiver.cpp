@@ -4,7 +4,7 @@
 
 namespace skyloop::firmware {
 
-Receiver::Receiver(BoardProfile board, ReceiverOptions options)
+Receiver::Receiver(BoardProfile board, const ReceiverOptions& options)
     : core_(std::make_unique<Core>(std::move(board), options)) {}
 Receiver::~Receiver() = default;
 Receiver::Receiver(Receiver&&) noexcept = default;

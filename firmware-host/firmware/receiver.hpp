@@ -42,7 +42,7 @@ struct ReceiverOptions {
 class Receiver {
 public:
     /// @param options rates are limited to the board's maximum, and stored in whole milliseconds as real receivers do
-    explicit Receiver(BoardProfile board, ReceiverOptions options = {});
+    explicit Receiver(BoardProfile board, const ReceiverOptions& options = {});
     ~Receiver();
     Receiver(Receiver&&) noexcept;
     Receiver& operator=(Receiver&&) noexcept;

@@ -1,11 +1,11 @@
 #include "campaign_engines.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <numeric>
 #include <system_error>

@@ -1,10 +1,10 @@
 #include "run_session.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
 
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <map>
 
 #include "progress.hpp"

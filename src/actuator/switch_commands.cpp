@@ -48,8 +48,8 @@ public:
         return fail(ErrorCode::outside,
                     fmt::format("'{}' printed '{}'; expected on or cut", commands_.state.front(), said));
     }
-    void ask_while_cutting(std::function<bool()> wanted) override { cut_wanted_ = std::move(wanted); }
-    void tell_process_groups(ProcessGroupListener listener) override { group_listener_ = std::move(listener); }
+    void ask_while_cutting(const std::function<bool()>& wanted) override { cut_wanted_ = wanted; }
+    void tell_process_groups(const ProcessGroupListener& listener) override { group_listener_ = listener; }
     [[nodiscard]] std::string description() const override { return fmt::format("command {}", commands_.cut.front()); }
 
 private:

@@ -90,7 +90,7 @@ void add_comparison_warnings(Comparison& comparison, const ComparisonOptions& op
     add_outlier_warnings(comparison);
     const auto uses_point = [](const SeriesStatistics& s) { return s.reference == ReferenceKind::given_point; };
     if (options.reference && !uses_point(comparison.a) && !uses_point(comparison.b))
-        comparison.warnings.push_back("the reference point is not used: both files hold their own truth");
+        comparison.warnings.emplace_back("the reference point is not used: both files hold their own truth");
     const auto own_mean = [](const SeriesStatistics& s) { return s.reference == ReferenceKind::own_mean; };
     if (own_mean(comparison.a) != own_mean(comparison.b))
         comparison.warnings.push_back(

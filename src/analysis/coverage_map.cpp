@@ -107,8 +107,10 @@ CoverageTask make_task(const std::shared_ptr<const UrbanScene>& scene, const Cov
 // The antenna in the middle of a cell: above the ground there, or above the foot of the scene where no ground is known.
 CoverageCell cell_at(const CoverageTask& task, const CoverageGrid& grid, std::size_t index) {
     const auto columns = static_cast<std::size_t>(grid.columns);
-    const double across = (static_cast<double>(index % columns) + 0.5) / grid.columns;
-    const double along = (static_cast<double>(index / columns) + 0.5) / grid.rows;
+    const std::size_t column = index % columns;
+    const std::size_t row = index / columns;
+    const double across = (static_cast<double>(column) + 0.5) / grid.columns;
+    const double along = (static_cast<double>(row) + 0.5) / grid.rows;
     const Geodetic place{grid.south + (grid.north - grid.south) * along, grid.west + (grid.east - grid.west) * across,
                          task.frame.origin().height};
     Eigen::Vector3d position = task.frame.to_enu(to_ecef(place)).vector();

@@ -67,8 +67,8 @@ std::vector<std::optional<double>> RunMetrics::values() const {
     const auto fixes = static_cast<double>(horizontal_.size());
     values.push_back(epochs_ > 0 ? std::optional(fixes / static_cast<double>(epochs_)) : std::nullopt);
     values.push_back(first_fix_ ? std::optional(difference(*first_fix_, start_).value()) : std::nullopt);
-    values.push_back(static_cast<double>(outages_));
-    values.push_back(longest_outage_.value());
+    values.emplace_back(static_cast<double>(outages_));
+    values.emplace_back(longest_outage_.value());
     append_errors(values, horizontal_);
     append_errors(values, vertical_);
     for (const Sum* sum : {&used_, &visible_, &hdop_, &cn0_})

@@ -50,11 +50,11 @@ OutlineTags tags_of(const json& properties) {
     OutlineTags tags;
     if (!properties.is_object()) return tags;
     for (const auto& [key, value] : properties.items()) {
-        std::string lower = lowered_text(key);
+        const std::string lower = lowered_text(key);
         if (value.is_string() && !value.get_ref<const std::string&>().empty())
-            tags.emplace(std::move(lower), value.get<std::string>());
-        if (value.is_number()) tags.emplace(std::move(lower), fmt::format("{}", value.get<double>()));
-        if (value.is_boolean()) tags.emplace(std::move(lower), value.get<bool>() ? "yes" : "no");
+            tags.emplace(lower, value.get<std::string>());
+        if (value.is_number()) tags.emplace(lower, fmt::format("{}", value.get<double>()));
+        if (value.is_boolean()) tags.emplace(lower, value.get<bool>() ? "yes" : "no");
     }
     return tags;
 }

@@ -96,7 +96,8 @@ private:
             const auto told = number(*property.count_type);
             if (!told) return no_number(element, index);
             const std::uint64_t least = encoding_ == PlyEncoding::ascii ? 2 : property.type.size;
-            const auto most = static_cast<double>((bytes_.size() - at_ + 1) / least);
+            const std::uint64_t fitting = (bytes_.size() - at_ + 1) / least;
+            const auto most = static_cast<double>(fitting);
             if (!(*told >= 0 && *told <= most && *told == std::floor(*told)))
                 return fail(ErrorCode::input,
                             fmt::format("{}: a list of {} items in {} {}, but {} bytes are left", here(), *told,

@@ -20,7 +20,7 @@ constexpr std::uint64_t loose_bytes_of_damage = 16;
 
 CarefulClient::CarefulClient(std::string name) : ScriptedClient(std::move(name)), hunt_(usual_speeds(), dwell_time) {}
 
-void CarefulClient::begin() { hunt(); }
+void CarefulClient::start() { hunt(); }
 
 void CarefulClient::hunt() {
     hunt_.start(now());

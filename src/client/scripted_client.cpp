@@ -12,7 +12,7 @@ void ScriptedClient::tell_time(GpsTime now) {
     now_ = now;
     if (!std::exchange(begun_, true)) {
         news_ = belief_;
-        begin();
+        start();
     }
     pass_time();
 }

@@ -92,7 +92,7 @@ tl::unexpected<Error> refused_stream(const boost::beast::websocket::response_typ
 
 }  // namespace
 
-Result<ControlResponse> ControlClient::ask(ControlRequest request) const {
+Result<ControlResponse> ControlClient::ask(const ControlRequest& request) const {
     ClientConnection connection(options_, patience_);
     if (auto connected = connection.connect(); !connected) return fail(connected.error());
     const ClientRequest message = client_request(options_, request);

@@ -96,12 +96,12 @@ std::vector<std::string> device_doubts(const DeviceEntry& device, const SystemFo
     std::vector<std::string> doubts;
     if (device.usb && !device.known) return doubts;
     if (device.known && device.known->bootloader) {
-        doubts.push_back("its bootloader runs: its serial line takes firmware, not data");
+        doubts.emplace_back("its bootloader runs: its serial line takes firmware, not data");
         return doubts;
     }
     const std::vector<const DeviceNode*> nodes = nodes_in_use(device);
     if (device.known && nodes.empty() && device.known->profile->transport == DeviceTransport::serial)
-        doubts.push_back(
+        doubts.emplace_back(
             "the kernel has made no serial line of it: its driver is not there or another program holds it");
     for (const DeviceNode* node : nodes) {
         if (!node->exists)

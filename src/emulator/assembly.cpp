@@ -255,7 +255,7 @@ std::vector<std::string> scenario_warnings(const Scenario& scenario, const Geoid
         warnings.insert(warnings.end(), scenario.model.modern.idle_keys.begin(), scenario.model.modern.idle_keys.end());
     warn_of_weather_below(scenario, geoid, warnings);
     if (scenario.scene.given() && !city_acts(scenario))
-        warnings.push_back("scene: errors = \"none\" leaves the buildings out, whose echoes are errors");
+        warnings.emplace_back("scene: errors = \"none\" leaves the buildings out, whose echoes are errors");
     return warnings;
 }
 

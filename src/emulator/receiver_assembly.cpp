@@ -159,11 +159,11 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
         if (!opened) return fail(opened.error());
         state = std::move(*opened);
     }
-    firmware::ReceiverOptions options{entry.rate_hz.value_or(0), receiver_settings(scenario, *board, index),
-                                      receiver_seed(scenario.run.seed, index), entry.power_up};
+    const firmware::ReceiverOptions options{entry.rate_hz.value_or(0), receiver_settings(scenario, *board, index),
+                                            receiver_seed(scenario.run.seed, index), entry.power_up};
     warn_of_missing_usb(*wires, *board, warnings);
     warn_of_untracked(scenario, *board, options.settings, warnings);
-    firmware::Receiver receiver(std::move(*board), std::move(options));
+    firmware::Receiver receiver(std::move(*board), options);
     if (entry.rate_hz) warn_of_rate(*entry.rate_hz, receiver, warnings);
     if (const auto configured = receiver.configure(entry.config); !configured)
         return fail(configured.error().code, "receiver.config: " + configured.error().message);

@@ -1,9 +1,9 @@
 #include "skyloop/emulator/thread_priority.hpp"
 
 #include <sched.h>
-#include <signal.h>
 #include <sys/resource.h>
 
+#include <csignal>
 #include <utility>
 
 namespace skyloop {

@@ -187,8 +187,8 @@ Result<Fault> make_satellites_misreported(const Parameters& parameters, const Fa
 }
 
 Edit<NavigationState> at_random_epochs(double probability, RandomStream random,
-                                       std::function<void(NavigationState&)> change) {
-    return [=, drawn = std::move(random)](NavigationState& state, const FaultMoment& moment) mutable {
+                                       const std::function<void(NavigationState&)>& change) {
+    return [probability, drawn = random, change](NavigationState& state, const FaultMoment& moment) mutable {
         if (drawn.uniform() < probability * moment.strength) change(state);
     };
 }

@@ -22,7 +22,7 @@ struct LineColumn {
 constexpr std::size_t line_columns = 10;
 using LineNumbers = std::array<double, line_columns>;
 
-SourcePose pose_of_line(const LineNumbers& numbers, std::optional<Attitude> attitude) {
+SourcePose pose_of_line(const LineNumbers& numbers, const std::optional<Attitude>& attitude) {
     SourcePose pose;
     pose.latitude_deg = numbers[LineColumn::latitude];
     pose.longitude_deg = numbers[LineColumn::longitude];
@@ -65,8 +65,8 @@ public:
 
 protected:
     // @param coarse the places have a grid of metres, the velocities are better
-    void report(const LineNumbers& numbers, std::optional<Attitude> attitude, bool coarse, std::int64_t received_ns,
-                FeedNews& news) {
+    void report(const LineNumbers& numbers, const std::optional<Attitude>& attitude, bool coarse,
+                std::int64_t received_ns, FeedNews& news) {
         const auto time = source_nanoseconds(numbers[LineColumn::time_s]);
         if (!time) return report_refusal(news, fmt::format("a time of {} s", numbers[LineColumn::time_s]));
         if (!watch_.look(*time, news)) return;

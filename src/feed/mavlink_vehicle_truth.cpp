@@ -197,7 +197,7 @@ SampleOr MavlinkVehicleTruth::of_odometry(const MavlinkOdometry& message) {
     return sample;
 }
 
-void MavlinkVehicleTruth::take_attitude(std::optional<Attitude> attitude, const Eigen::Vector3d& rates,
+void MavlinkVehicleTruth::take_attitude(const std::optional<Attitude>& attitude, const Eigen::Vector3d& rates,
                                         std::int64_t received_ns) {
     attitude_ = attitude;
     turn_rate_.reset();

@@ -38,7 +38,7 @@ private:
     SampleOr of_local(const MavlinkLocalPositionNed& message, std::int64_t received_ns) const;
     SampleOr of_odometry(const MavlinkOdometry& message);
     void take_supplement(const MavlinkFrameView& frame, std::int64_t received_ns);
-    void take_attitude(std::optional<Attitude> attitude, const Eigen::Vector3d& rates, std::int64_t received_ns);
+    void take_attitude(const std::optional<Attitude>& attitude, const Eigen::Vector3d& rates, std::int64_t received_ns);
     void take_origin(const MavlinkGpsGlobalOrigin& message);
     template <class Pose>
     void add_attitude(Pose& pose, std::int64_t received_ns) const;

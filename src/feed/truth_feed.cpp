@@ -85,7 +85,7 @@ const SourceClock& TruthFeed::clock() const { return impl_->paths_.clock(); }
 std::vector<std::string> TruthFeed::take_news() {
     std::vector<std::string> news = impl_->desk_.news.take();
     for (std::string& sentence : news)
-        sentence = description() + ": " + sentence;
+        sentence.insert(0, description() + ": ");
     return news;
 }
 

@@ -44,7 +44,9 @@ public:
 
 private:
     static constexpr int degree = 9;
-    static std::size_t index(int n, int m) { return static_cast<std::size_t>(n * (degree + 1) + m); }
+    static std::size_t index(int n, int m) {
+        return static_cast<std::size_t>(n) * (degree + 1) + static_cast<std::size_t>(m);
+    }
     HarmonicPair& at(int n, int m) { return values_[index(n, m)]; }
     static HarmonicPair scaled(const HarmonicPair& pair, double factor) {
         return {pair.cosine * factor, pair.sine * factor};

@@ -147,8 +147,10 @@ void draw_samples(SvgDocument& svg, const HeightSamples& samples, const PlanView
     std::array<SvgPath, height_levels> paths;
     for (int row = 0; row < samples.rows; ++row) {
         const auto level_at = [&](int column) {
-            return height_level(samples.heights[static_cast<std::size_t>(row * samples.columns + column)],
-                                samples.highest);
+            return height_level(
+                samples.heights[static_cast<std::size_t>(row) * static_cast<std::size_t>(samples.columns) +
+                                static_cast<std::size_t>(column)],
+                samples.highest);
         };
         for (int begin = 0, end = 0; begin < samples.columns; begin = end) {
             const int level = level_at(begin);

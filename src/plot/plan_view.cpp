@@ -30,7 +30,7 @@ std::vector<Eigen::Vector2d> clipped_polygon(std::vector<Eigen::Vector2d> polygo
             const Eigen::Vector2d& b = polygon[(i + 1) % polygon.size()];
             if (beyond(a) <= 0) kept.push_back(a);
             if ((beyond(a) < 0 && beyond(b) > 0) || (beyond(a) > 0 && beyond(b) < 0))
-                kept.push_back(a + (b - a) * (beyond(a) / (beyond(a) - beyond(b))));
+                kept.emplace_back(a + (b - a) * (beyond(a) / (beyond(a) - beyond(b))));
         }
         polygon = std::move(kept);
     }

@@ -88,8 +88,8 @@ Vector3d PositionFilter::way(double dt, const PositionInput& input, double& unsu
     const auto integral = [&](int order) {
         const auto& weights = path_weights[static_cast<std::size_t>(order - 1)];
         Vector3d sum = weights[0] * input.velocity->vector();
-        for (int i = 0; i < order; ++i)
-            sum += weights[static_cast<std::size_t>(i + 1)] * velocities_[static_cast<std::size_t>(i)];
+        for (std::size_t i = 0; i < static_cast<std::size_t>(order); ++i)
+            sum += weights[i + 1] * velocities_[i];
         return Vector3d(dt * sum);
     };
     const Vector3d best = integral(known);

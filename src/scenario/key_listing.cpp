@@ -23,7 +23,7 @@ std::string limits_of(const KeyEntry& key) {
     return most ? fmt::format("at most {:.10g}", key.most) : std::string();
 }
 
-std::string with_limits(std::string words, const KeyEntry& key) {
+std::string with_limits(const std::string& words, const KeyEntry& key) {
     const std::string limits = limits_of(key);
     return limits.empty() ? words : words + ", " + limits;
 }

@@ -227,10 +227,11 @@ std::optional<std::int64_t> UlogTrack::gps_offset() {
             if (const auto offset = offset_of(topic, least_fix)) return offset;
     // A simulator in lock-step may count UTC itself.
     const std::int64_t first_ns = flight_.places.starts.front().front().ns;
-    const auto gps_ns = gps_ns_of_posix_us(static_cast<double>(first_ns / 1000));
+    const std::int64_t first_us = first_ns / 1000;
+    const auto gps_ns = gps_ns_of_posix_us(static_cast<double>(first_us));
     if (!gps_ns) return std::nullopt;
     flight_.notes.emplace_back("no receiver tells UTC; the log's own clock counts it");
-    return *gps_ns - first_ns / 1000 * 1000;
+    return *gps_ns - first_us * 1000;
 }
 
 // The receivers' geoid, for where the grid is not there.

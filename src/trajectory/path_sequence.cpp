@@ -65,7 +65,10 @@ public:
         ends_ += seconds;
     }
     void repeat() { repeats_ = true; }
-    [[nodiscard]] double duration() const override { return repeats_ ? endless : ends_; }
+    [[nodiscard]] double duration() const override {
+        if (repeats_) return endless;
+        return ends_;
+    }
     [[nodiscard]] LocalMotion at(double t) const override {
         if (repeats_ && t > ends_) t = std::fmod(t, ends_);
         t = std::clamp(t, 0.0, ends_);

@@ -372,7 +372,7 @@ void TrackTable::add_notes() {
                         track_.points.size()));
     const auto any = [&](TrackQuantity a, TrackQuantity b) { return columns_.has(a) || columns_.has(b); };
     if (with_velocity == 0 && (any(north, east) || any(speed, course)))
-        track_.notes.push_back(
+        track_.notes.emplace_back(
             "no row has a whole velocity (north and east, or speed and course); velocities are "
             "taken from the places");
     for (const std::string& what : columns_.understood())

@@ -9,7 +9,6 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
-#include <signal.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <termios.h>
@@ -17,6 +16,7 @@
 
 #include <array>
 #include <atomic>
+#include <csignal>
 #include <thread>
 
 #include "real_time.hpp"

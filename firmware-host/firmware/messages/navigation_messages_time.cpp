@@ -123,7 +123,8 @@ NavTimeglo time_glonass(const ReportContext& context) {
     m.tod = static_cast<std::uint32_t>((count % seconds_of_day + seconds_of_day) % seconds_of_day);
     m.f_tod = static_cast<std::int32_t>((reported.time - rounded).count());
     m.n_t = static_cast<std::uint16_t>(days % days_of_cycle + 1);
-    m.n_4 = field<std::uint8_t>(static_cast<double>(days / days_of_cycle + 1));
+    const auto cycles = days / days_of_cycle;
+    m.n_4 = field<std::uint8_t>(static_cast<double>(cycles + 1));
     m.valid = static_cast<std::uint8_t>((context.state.time.time ? 1 : 0) | (context.state.time.date ? 2 : 0));
     m.t_acc = time_accuracy_ns(context.state);
     return m;

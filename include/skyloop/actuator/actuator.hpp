@@ -26,10 +26,10 @@ public:
     virtual Result<std::optional<PowerState>> state() = 0;
     /// Whether an order to cut is still wanted may be asked while it is being carried out: one that takes long then
     /// ends early, and fails. Called before any order.
-    virtual void ask_while_cutting(std::function<bool()> wanted) { static_cast<void>(wanted); }
+    virtual void ask_while_cutting(const std::function<bool()>& /*wanted*/) {}
     /// Where orders are carried out by other programs: whom to tell their process group when one begins, and nothing
     /// when it has been ended. Called before any order.
-    virtual void tell_process_groups(ProcessGroupListener listener) { static_cast<void>(listener); }
+    virtual void tell_process_groups(const ProcessGroupListener& /*listener*/) {}
     /// For people: "relay 1 of USBRelay2 (16c0:05df at 1-1.2)".
     [[nodiscard]] virtual std::string description() const = 0;
     /// What is the same for all that open this switch, and for no other switch of the machine. Empty: nothing tells, or

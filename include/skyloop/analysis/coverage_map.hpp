@@ -80,7 +80,8 @@ struct CoverageMap {
     std::size_t epochs = 0;
     std::vector<CoverageCell> cells;
     [[nodiscard]] const CoverageCell& at(int column, int row) const {
-        return cells[static_cast<std::size_t>(row * grid.columns + column)];
+        return cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.columns) +
+                     static_cast<std::size_t>(column)];
     }
 };
 

@@ -54,7 +54,7 @@ struct SkyMask {
 
     /// The cell from `azimuth` to `azimuth` + 1° and from `elevation` to `elevation` + 1°; decided at its middle.
     [[nodiscard]] bool at(int azimuth, int elevation) const {
-        return blocked[static_cast<std::size_t>(azimuth * elevations + elevation)] != 0;
+        return blocked[static_cast<std::size_t>(azimuth) * elevations + static_cast<std::size_t>(elevation)] != 0;
     }
     /// The upper edge of the highest blocked cell of an azimuth, degrees; 0 when none is. There may be gaps below.
     [[nodiscard]] int highest(int azimuth) const;

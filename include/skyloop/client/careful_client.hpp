@@ -17,7 +17,7 @@ class CarefulClient : public ScriptedClient {
 protected:
     explicit CarefulClient(std::string name);
 
-    void begin() override;
+    void start() override;
     void hear(const StreamPiece& piece) final;
     void pass_time() final;
 

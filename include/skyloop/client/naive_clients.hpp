@@ -12,7 +12,7 @@ public:
     NaiveUbxClient() : ScriptedClient("naive-ubx") {}
 
 protected:
-    void begin() override { begun_at_ = now(); }
+    void start() override { begun_at_ = now(); }
     void hear(const StreamPiece& piece) override;
     void pass_time() override;
 

@@ -30,7 +30,8 @@ public:
 protected:
     explicit ScriptedClient(std::string name) : name_(std::move(name)) {}
 
-    virtual void begin() {}
+    /// It is switched on: the time is known for the first time.
+    virtual void start() {}
     virtual void hear(const StreamPiece& piece) = 0;
     virtual void pass_time() = 0;
 

@@ -20,7 +20,7 @@ public:
         : options_(std::move(options)), patience_(patience) {}
 
     /// Host and, when there is one, the token are added to the headers; a body is sent as JSON.
-    [[nodiscard]] Result<ControlResponse> ask(ControlRequest request) const;
+    [[nodiscard]] Result<ControlResponse> ask(const ControlRequest& request) const;
     /// Reads the stream of snapshots until `each` gives false or the server hangs up. @param rate a second
     [[nodiscard]] Result<void> watch(double rate, const std::function<bool(std::string_view json)>& each) const;
 

@@ -21,7 +21,7 @@ std::optional<int> number_in(const std::filesystem::path& file);
 /// Counts the results in OUT/shards as they come, reading only what is new since the last look.
 class ResultCounter {
 public:
-    explicit ResultCounter(std::filesystem::path out) : shards_(std::move(out) / "shards") {}
+    explicit ResultCounter(const std::filesystem::path& out) : shards_(out / "shards") {}
     /// Whole lines below the headers of all *-of-N.csv; a file that became smaller is read again.
     std::size_t look();
 

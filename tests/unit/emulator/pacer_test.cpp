@@ -4,6 +4,8 @@
 #include <signal.h>
 #include <sys/time.h>
 
+#include <csignal>
+
 #include "skyloop/emulator/lateness.hpp"
 
 namespace skyloop {
