@@ -26,8 +26,9 @@ std::string wrong_with(const std::array<std::int64_t, 4>& line, const RecordedPo
         return fmt::format("the time {} ns is before the {} ns of the line before", at, last.at.count());
     if (offset != expected) return fmt::format("found offset {}; expected {}, the next byte", offset, expected);
     if (length <= 0) return fmt::format("found length {}; expected more than 0", length);
-    if (static_cast<std::uint64_t>(length) > port.bytes.size() - static_cast<std::size_t>(expected))
-        return fmt::format("tells of bytes up to {}, but only {} were recorded", expected + length, port.bytes.size());
+    const std::uint64_t end = static_cast<std::uint64_t>(offset) + static_cast<std::uint64_t>(length);
+    if (end > port.bytes.size())
+        return fmt::format("tells of bytes up to {}, but only {} were recorded", end, port.bytes.size());
     return {};
 }
 
