@@ -36,6 +36,12 @@ bool odometer_is_on(const BoardProfile& board, const ConfigStore& config) {
     return board.personality != Personality::ublox || config.flag(key::odo_use_odo);
 }
 
+// MSP and GPS_INPUT have no word for it, and a Septentrio without inertial sensors does not reckon.
+bool tells_dead_reckoning(Personality personality) {
+    return personality != Personality::msp && personality != Personality::msp_v1 &&
+           personality != Personality::mavlink && personality != Personality::sbf;
+}
+
 std::uint64_t sbas_mask(const BoardProfile& board, const ConfigStore& config) {
     return board.personality == Personality::ublox ? config.value(key::sbas_scan_mask) : 0;
 }
@@ -206,7 +212,8 @@ void StateTracker::keep_within_limits(const ConfigStore& config) {
     const bool two_d = fix.type == FixType::fix_2d;
     const std::uint64_t mode = config.value(key::navspg_fixmode);
     const bool mode_forbids = two_d && mode == 2;
-    if (epochs_beyond_limits_ >= epochs_until_no_fix || mode_forbids || hears_too_little(config)) {
+    const bool untold = fix.type == FixType::dead_reckoning && !tells_dead_reckoning(board_.personality);
+    if (epochs_beyond_limits_ >= epochs_until_no_fix || mode_forbids || untold || hears_too_little(config)) {
         fix.type = FixType::none;
         return;
     }

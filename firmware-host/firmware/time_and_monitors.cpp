@@ -49,6 +49,12 @@ constexpr double interference_ok_db = 3, interference_warning_db = 10;
 // In captures of undisturbed receivers the indicator is 13 to 27, the gain counter 2457 to 4914, the noise 65 to 99.
 constexpr double quiet_indicator = 14, indicator_per_db = 9, quiet_gain = 4200, gain_per_db = 140, quiet_noise = 69;
 
+// u-blox from the M8 on (NAV-STATUS flags2, spoofDetState), and what Septentrio tells in RFStatus.
+bool detects_spoofing(const BoardProfile& board) {
+    if (board.personality == Personality::ublox) return board.identity.generation >= 8;
+    return board.personality == Personality::sbf;
+}
+
 }  // namespace
 
 void StateTracker::learn_time(const ConfigStore&) {
@@ -91,7 +97,7 @@ void StateTracker::monitor(const ConfigStore& config) {
         config.has(key::itfm_enable) ? config.flag(key::itfm_enable) : board_.quirks.default_interference_monitor;
     m.upper = monitor_band(front.interference, watched);
     if (board_.dual_frequency) m.lower = monitor_band(front.lower_interference, watched);
-    m.spoofing = front.spoofing;
+    m.spoofing = detects_spoofing(board_) ? front.spoofing : SpoofingIndication::unknown;
 
     const bool voltage =
         config.has(key::ant_voltage_control) ? config.flag(key::ant_voltage_control) : board_.quirks.voltage_control;
