@@ -164,6 +164,10 @@ Result<Fault> make_meaconing(const Parameters& parameters, const FaultContext&) 
             story.antenna = {truth.position + way * moment.strength,
                              Velocity<Ecef>((1 - moment.strength) * truth.velocity.vector())};
             story.clock.range += way.length() * moment.strength;
+            // It grows as the receiver goes away from the repeater.
+            const double growth =
+                way.length() > Metres(0) ? -truth.velocity.vector().dot(way.vector().normalized()) : 0;
+            story.clock.rate += MetresPerSecond(growth * moment.strength);
         }
         tell(arrivals, moment, selector, story, advantage * moment.strength);
     };

@@ -4,6 +4,7 @@
 
 #include "../../../src/fault/false_place.hpp"
 #include "signal_fault_run.hpp"
+#include "skyloop/trajectory/geometric_paths.hpp"
 
 namespace skyloop {
 namespace {
@@ -138,6 +139,24 @@ TEST(SpoofingFaults, MeaconingShowsThePlaceOfTheOtherAntennaAndALateClock) {
     const double way = (to_ecef(Geodetic::degrees(46.4900, 30.7326, 80)) - trace.truth.position).length().value();
     EXPECT_NEAR((trace.epoch.fix.clock_bias - sound.epoch.fix.clock_bias).value(), 599.6 + way, 2);
     EXPECT_LT(test::fix_error_enu(run.until(61 + 60)).norm(), 1);
+}
+
+// What moves away from the repeater hears its clock run late, in the Doppler as in the ranges.
+TEST(SpoofingFaults, MeaconingShiftsTheDopplerOfAMovingReceiverAsItsRangesGrow) {
+    const Circle::Shape shape{test::fault_test_place(), Metres(300), MetresPerSecond(30), Angle::degrees(0)};
+    FaultyRun run(std::make_unique<Circle>(test::signal_fault_start, shape), false);
+    run.add(test::signal_fault("meaconing", {{"rebroadcast_at", Numbers{46.4900, 30.7326, 80.}}}), 10, 60);
+    const auto fix_at = [&run](double t) { return run.until(t).epoch.fix; };
+    Fix before = fix_at(19);
+    double fastest = 0;
+    for (int t = 20; t < 40; ++t) {
+        const Fix fix = fix_at(t);
+        const double grown = (fix.clock_bias - before.clock_bias).value();
+        EXPECT_NEAR(grown, (fix.clock_drift + before.clock_drift).value() / 2, 0.3) << t;
+        fastest = std::max(fastest, std::abs(grown));
+        before = fix;
+    }
+    EXPECT_GT(fastest, 15);
 }
 
 TEST(SpoofingFaults, AJumpBreaksTheCountOfCyclesOnce) {
