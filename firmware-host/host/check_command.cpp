@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "run_session.hpp"
+#include "skyloop/fault/planned_events.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::host {
@@ -26,7 +27,8 @@ void print_timeline(const Scenario& scenario, const Assembly& assembly) {
     const std::vector<TimelineEntry> entries = timeline_of(scenario);
     const Seconds span = scenario.run.duration.value_or(Seconds(3600));
     if (!entries.empty()) fmt::print("timeline\n");
-    for (const std::string& line : timeline_text(entries, assembly.start, scenario.run.seed, span))
+    const TimelineSpan run{assembly.start, advanced(assembly.start, span), scenario.run.seed};
+    for (const std::string& line : timeline_text(entries, run))
         fmt::print("  {}\n", line);
     for (const Expectation& expectation : scenario.expectations)
         fmt::print("expect      {}\n", expectation.title());

@@ -7,13 +7,14 @@
 #include "skyloop/control/status_json.hpp"
 #include "skyloop/emulator/run_summary.hpp"
 #include "skyloop/emulator/thread_priority.hpp"
+#include "skyloop/fault/planned_events.hpp"
 #include "skyloop/verdict/reports.hpp"
 
 namespace skyloop::host {
 namespace {
 
 constexpr int expectations_not_met = 3;
-constexpr int most_planned_events = 10'000;  // that are looked at: what comes every millisecond comes for ever
+constexpr std::size_t most_planned_events = 10'000;  // that are looked at: what comes every millisecond comes for ever
 
 std::vector<std::string> receiver_names(const Emulator& emulator) {
     std::vector<std::string> names;
@@ -113,13 +114,11 @@ std::vector<TimelineBar> RunWatch::planned_bars() const {
         bars.push_back(std::move(bar));
     }
     // What is known of their times before the run.
-    Timeline timeline(timeline_of(scenario_), assembly_.start, scenario_.run.seed);
     const GpsTime end = assembly_.end.value_or(advanced(assembly_.start, Seconds(3600)));
-    for (int i = 0; i < most_planned_events && timeline.next_event() && *timeline.next_event() <= end; ++i)
-        for (const TimelineEvent& event : timeline.advance(*timeline.next_event())) {
-            if (event.entry >= bars.size() || event.occurrence != 1) continue;
-            (event.begins ? bars[event.entry].begins : bars[event.entry].ends) = event.time;
-        }
+    const std::vector<TimelineEvent> events =
+        planned_events(timeline_of(scenario_), {assembly_.start, end, scenario_.run.seed}, most_planned_events);
+    for (const TimelineEvent& event : events)
+        if (event.occurrence == 1) (event.begins ? bars[event.entry].begins : bars[event.entry].ends) = event.time;
     return bars;
 }
 

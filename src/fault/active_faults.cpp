@@ -92,10 +92,21 @@ FaultMoment ActiveFaults::moment(const Running& running, GpsTime now) {
     return moment;
 }
 
+// An occurrence that fades works no more where the next of the same entry is as strong, nor that one before: twice the
+// same step would be another one.
+bool ActiveFaults::yields(const Running& running, GpsTime now) const {
+    const double own = moment(running, now).strength;
+    return std::any_of(running_.begin(), running_.end(), [&](const Running& other) {
+        if (other.span.entry != running.span.entry || other.span.occurrence == running.span.occurrence) return false;
+        const double strength = moment(other, now).strength;
+        return strength > own || (strength == own && other.span.occurrence > running.span.occurrence);
+    });
+}
+
 template <class Value>
 void ActiveFaults::apply(Edit<Value> Fault::*edit, Value& value, const Trace& trace) {
     for (Running& running : running_) {
-        if (!(running.fault.*edit)) continue;
+        if (!(running.fault.*edit) || yields(running, trace.truth.time)) continue;
         FaultMoment now = moment(running, trace.truth.time);
         now.truth = &trace.truth;
         now.sky = &trace.sky;
@@ -108,7 +119,7 @@ template <class Value>
 Value ActiveFaults::collected(Edit<Value> Fault::*edit, GpsTime now) const {
     Value value;
     for (const Running& running : running_)
-        if (running.fault.*edit) (running.fault.*edit)(value, moment(running, now));
+        if (running.fault.*edit && !yields(running, now)) (running.fault.*edit)(value, moment(running, now));
     return value;
 }
 

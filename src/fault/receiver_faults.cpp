@@ -210,7 +210,7 @@ std::vector<FaultKind> refusal_kinds() {
           make_wrong_version},
          {"jamming_flag_hidden",
           receiver,
-          "MON-HW and MON-RF say that interference is unknown; SEC-SIG alone tells it.",
+          "MON-HW and MON-RF say that interference is unknown; SEC-SIG alone tells it, on boards that have it.",
           "F9 HPG 1.50 and later, on which drivers that read MON-RF see no jamming (PX4-GPSDrivers #231).",
           {},
           make_jamming_flag_hidden}});

@@ -120,7 +120,7 @@ void Timeline::follow(const TimelineEvent& event) {
             states_[event.entry].under_way.insert(event.occurrence);
             plan_end(event);
         }
-        if (entry.every && !event.by_hand && (!entry.times || event.occurrence < *entry.times))
+        if (entry.every && !event.by_hand && (!entry.times || states_[event.entry].begun_by_itself < *entry.times))
             plan(event.entry, advanced(event.time, std::max(*entry.every, shortest_period)));
     } else {
         states_[event.entry].under_way.erase(event.occurrence);
@@ -144,6 +144,7 @@ std::vector<TimelineEvent> Timeline::advance(GpsTime now) {
             continue;
         }
         if (event.begins) event.occurrence = ++states_[event.entry].begun;
+        if (event.begins && !event.by_hand) ++states_[event.entry].begun_by_itself;
         due.push_back(event);
         follow(event);
     }

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 
-#include "skyloop/fault/timeline.hpp"
+#include "skyloop/fault/planned_events.hpp"
 
 namespace skyloop {
 namespace {
 
 // A list for people; who wants thousands of periods reads how often they come.
 constexpr std::size_t most_lines = 200;
+constexpr std::size_t most_events = 100'000;
 
 std::string seconds_text(double seconds) { return fmt::format("{:.3f} s", seconds); }
 
@@ -27,17 +28,6 @@ std::string conditions(const Trigger& trigger) {
     return text;
 }
 
-// Whether it begins, and when, is known where a condition has come true.
-bool hangs_on_a_condition(const TimelineEntry* entry, const std::vector<TimelineEntry>& entries) {
-    for (std::size_t steps = 0; steps <= entries.size() && entry != nullptr && !entry->after.empty(); ++steps) {
-        const auto before = std::find_if(entries.begin(), entries.end(),
-                                         [&](const TimelineEntry& other) { return other.name == entry->after; });
-        entry = before == entries.end() ? nullptr : &*before;
-        if (entry != nullptr && entry->when) return true;
-    }
-    return false;
-}
-
 std::string consequence(const TimelineEntry& entry) {
     std::string begins = fmt::format("{:g} s", entry.at.value_or(Seconds(0)).value());
     if (entry.between) begins = fmt::format("{:g} to {:g} s", (*entry.between)[0], (*entry.between)[1]);
@@ -54,24 +44,17 @@ std::string line(const TimelineEvent& event, const TimelineEntry& entry, GpsTime
 
 }  // namespace
 
-std::vector<std::string> timeline_text(const std::vector<TimelineEntry>& entries, GpsTime start, std::uint64_t seed,
-                                       Seconds span) {
+std::vector<std::string> timeline_text(const std::vector<TimelineEntry>& entries, const TimelineSpan& run) {
+    const std::vector<TimelineEvent> events = planned_events(entries, run, most_events);
     std::vector<std::string> lines;
-    Timeline timeline(entries, start, seed);
-    const GpsTime end = advanced(start, span);
-    std::size_t left_out = 0;
-    while (timeline.next_event() && *timeline.next_event() <= end && left_out < 100'000)
-        for (const TimelineEvent& event : timeline.advance(*timeline.next_event())) {
-            if (lines.size() < most_lines)
-                lines.push_back(line(event, entries[event.entry], start));
-            else
-                ++left_out;
-        }
-    if (left_out > 0) lines.push_back(fmt::format("{:>14}  and {} more", "", left_out));
+    for (std::size_t i = 0; i < std::min(events.size(), most_lines); ++i)
+        lines.push_back(line(events[i], entries[events[i].entry], run.start));
+    if (events.size() > most_lines) lines.push_back(fmt::format("{:>14}  and {} more", "", events.size() - most_lines));
     for (const TimelineEntry& entry : entries)
         if (entry.when) lines.push_back(fmt::format("{:>14}  {}: {}", "when", entry.name, conditions(*entry.when)));
-    for (const TimelineEntry& entry : entries)
-        if (hangs_on_a_condition(&entry, entries)) lines.push_back(consequence(entry));
+    const std::vector<bool> hanging = hang_on_the_run(entries);
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        if (hanging[i] && !entries[i].after.empty()) lines.push_back(consequence(entries[i]));
     return lines;
 }
 

@@ -4,59 +4,39 @@
 #include <map>
 
 #include "skyloop/fault/command.hpp"
+#include "skyloop/fault/planned_events.hpp"
 #include "skyloop/scenario/timeline_check.hpp"
 
 namespace skyloop {
 namespace {
 
-constexpr int most_events_looked_at = 10'000;  // what comes every millisecond comes for ever
+constexpr std::size_t most_events_looked_at = 10'000;  // what comes every millisecond comes for ever
 
 // What is known of an entry before the run.
 struct KnownEntry {
     std::string name, kind;
-    bool open = false;                        // it depends on what the run will bring, or on a command
+    bool open = false;                        // it depends on what the run will bring
     int begun = 0;                            // by the end of the run
     std::optional<GpsTime> begins{}, ends{};  // the first time
 };
 
-bool starts_faults(const Scenario& scenario, const std::string& fault) {
-    return std::any_of(scenario.commands.begin(), scenario.commands.end(), [&](const CommandEntry& entry) {
-        const std::string wanted = entry.command.parameters.text("fault");
-        return entry.command.verb == CommandVerb::start_fault && (wanted.empty() || wanted == fault);
-    });
-}
-
-// Of itself, or of what it comes after.
-bool depends_on_the_run(const std::vector<TimelineEntry>& entries, std::size_t index, const Scenario& scenario) {
-    for (std::size_t steps = 0; steps <= entries.size(); ++steps) {
-        const TimelineEntry& entry = entries[index];
-        if (entry.when || (index < scenario.faults.size() && starts_faults(scenario, entry.name))) return true;
-        const auto before = std::find_if(entries.begin(), entries.end(),
-                                         [&](const TimelineEntry& other) { return other.name == entry.after; });
-        if (entry.after.empty() || before == entries.end()) return false;
-        index = static_cast<std::size_t>(before - entries.begin());
-    }
-    return false;
-}
-
 std::vector<KnownEntry> known_entries(const Scenario& scenario, GpsTime start, GpsTime end) {
     const std::vector<TimelineEntry> entries = timeline_of(scenario);
+    const std::vector<bool> open = hang_on_the_run(entries);
     std::vector<KnownEntry> known(entries.size());
     for (std::size_t i = 0; i < entries.size(); ++i) {
         known[i].name = entries[i].name;
         known[i].kind = i < scenario.faults.size()
                             ? scenario.faults[i].kind
                             : command_name(scenario.commands[i - scenario.faults.size()].command.verb);
-        known[i].open = depends_on_the_run(entries, i, scenario);
+        known[i].open = open[i];
     }
-    Timeline timeline(entries, start, scenario.run.seed);
-    for (int i = 0; i < most_events_looked_at && timeline.next_event() && *timeline.next_event() <= end; ++i)
-        for (const TimelineEvent& event : timeline.advance(*timeline.next_event())) {
-            KnownEntry& entry = known[event.entry];
-            auto& first = event.begins ? entry.begins : entry.ends;
-            if (!first) first = event.time;
-            entry.begun += event.begins ? 1 : 0;
-        }
+    for (const TimelineEvent& event : planned_events(entries, {start, end, scenario.run.seed}, most_events_looked_at)) {
+        KnownEntry& entry = known[event.entry];
+        auto& first = event.begins ? entry.begins : entry.ends;
+        if (!first) first = event.time;
+        entry.begun += event.begins ? 1 : 0;
+    }
     return known;
 }
 

@@ -172,6 +172,14 @@ void read_command(TableReader& table, Scenario& scenario) {
     scenario.commands.push_back(std::move(entry));
 }
 
+std::optional<TimelineOrder> order_of(const Command& command) {
+    const bool begins = command.verb == CommandVerb::start_fault;
+    if (!begins && command.verb != CommandVerb::stop_fault) return std::nullopt;
+    TimelineOrder order{command.parameters.text("fault"), begins};
+    if (const auto length = command.parameters.optional_number("for_s")) order.length = Seconds(*length);
+    return order;
+}
+
 // A command that names a fault must find it.
 void check_fault_names(const Scenario& scenario, const EntryMistakes& mistakes) {
     std::vector<std::string_view> names;
@@ -195,8 +203,10 @@ std::vector<TimelineEntry> timeline_of(const Scenario& scenario) {
     std::vector<TimelineEntry> entries;
     for (const FaultEntry& fault : scenario.faults)
         entries.push_back(fault.when);
-    for (const CommandEntry& command : scenario.commands)
+    for (const CommandEntry& command : scenario.commands) {
         entries.push_back(command.when);
+        entries.back().order = order_of(command.command);
+    }
     return entries;
 }
 

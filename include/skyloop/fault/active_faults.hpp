@@ -20,7 +20,7 @@ struct FaultSpan {
 /// Applies what is under way, in the order in which it began.
 ///
 /// State: the occurrences with theirs, and the cycles that they have cost. An occurrence that has ended works on while
-/// its ramp out lasts.
+/// its ramp out lasts; of two of the same entry the stronger works alone.
 class ActiveFaults {
 public:
     void begin(Fault fault, const FaultSpan& span);
@@ -53,6 +53,7 @@ private:
         std::optional<GpsTime> end;
     };
     void give_speed_back(const Fault& over, std::size_t place);
+    [[nodiscard]] bool yields(const Running& running, GpsTime now) const;
     [[nodiscard]] static FaultMoment moment(const Running& running, GpsTime now);
     template <class Value>
     void apply(Edit<Value> Fault::*edit, Value& value, const Trace& trace);

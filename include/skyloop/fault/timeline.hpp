@@ -40,6 +40,13 @@ struct VehicleState {
     bool operator==(const VehicleState&) const = default;
 };
 
+/// What a command does to other entries when it comes, as start_fault and stop_fault do.
+struct TimelineOrder {
+    std::string fault{};              ///< the name of those that it is about; empty: all
+    bool begins = true;               ///< or ends
+    std::optional<Seconds> length{};  ///< of what begins; nothing: the entry's own
+};
+
 /// One entry of the timeline, a fault or a command, by its times.
 struct TimelineEntry {
     std::string name;
@@ -51,12 +58,13 @@ struct TimelineEntry {
     std::optional<Trigger> when{};                          ///< times count from when this holds
     bool again = false;                                     ///< a trigger acts each time it comes true, not once
     std::optional<Seconds> every{};                         ///< begins anew after this
-    std::optional<int> times{};                             ///< in all; nothing: for ever
+    std::optional<int> times{};                             ///< by itself, in all; nothing: for ever
     std::optional<Seconds> length{};                        ///< nothing: to the end of the run; of a command zero
     std::optional<std::array<double, 2>> length_between{};  ///< s
     Seconds ramp_in{0}, ramp_out{0};                        ///< within its length at the beginning; after it at the end
     bool once = false;                                      ///< a command: begins and does not last
     bool by_hand = false;                                   ///< begins only by begin()
+    std::optional<TimelineOrder> order{};                   ///< of a command; whoever leads the timeline obeys it
 };
 
 /// What triggers look at, at an epoch of the first receiver.
@@ -119,6 +127,7 @@ private:
     struct EntryState {
         int drawn = 0;  // beginnings that were planned, by which their times are drawn
         int begun = 0;  // occurrences that have begun, whoever asked for them
+        int begun_by_itself = 0;
         std::set<int> under_way{};
         bool triggered = false;  // its trigger has acted
         bool held = false;       // … held at the last look
@@ -142,9 +151,5 @@ private:
     VehicleState vehicle_;
     std::optional<GpsTime> fix_since_;
 };
-
-/// Lines for people: what is known of each entry before the run, in the order of time.
-std::vector<std::string> timeline_text(const std::vector<TimelineEntry>& entries, GpsTime start, std::uint64_t seed,
-                                       Seconds span);
 
 }  // namespace skyloop

@@ -58,6 +58,38 @@ TEST(ActiveFaults, LeaveTheLineAtTheSpeedOfTheYoungest) {
     EXPECT_THAT(last_ends_first.settled(40), ElementsAre("0"));
 }
 
+// How high faults of 1000 m at full strength lift a receiver.
+double lifted_by(ActiveFaults& faults, double s) {
+    Trace trace;
+    trace.truth.time = second_of_faults(s);
+    trace.epoch.fix.type = FixType::fix_3d;
+    static_cast<void>(faults.settle(trace.truth.time));
+    faults.edit_epoch(trace);
+    return trace.epoch.fix.position.height.above_ellipsoid.value();
+}
+
+TEST(ActiveFaults, WorkOnceWhileTheLastOccurrenceFades) {
+    ActiveFaults faults;
+    const auto begin = [&](int occurrence, double s, double ramp_in) {
+        faults.begin(*make_fault("height_bias", {{"height_m", 1000.}}),
+                     {0, occurrence, second_of_faults(s), Seconds(ramp_in), Seconds(4)});
+    };
+    begin(1, 0, 0);
+    EXPECT_NEAR(lifted_by(faults, 9), 1000, 1e-6);
+    faults.end(0, 1, second_of_faults(10));
+    EXPECT_NEAR(lifted_by(faults, 11), 750, 1e-6);
+    begin(2, 11, 0);
+    for (const double s : {11., 12., 13.9, 14., 15.})
+        EXPECT_NEAR(lifted_by(faults, s), 1000, 1e-6) << s;
+    faults.end(0, 2, second_of_faults(20));
+    begin(3, 20, 4);
+    EXPECT_NEAR(lifted_by(faults, 20), 1000, 1e-6) << "what comes has not grown yet";
+    EXPECT_NEAR(lifted_by(faults, 22), 500, 1e-6);
+    EXPECT_NEAR(lifted_by(faults, 23), 750, 1e-6);
+    faults.begin(*make_fault("height_bias", {{"height_m", 1000.}}), {1, 1, second_of_faults(24), {}, {}});
+    EXPECT_NEAR(lifted_by(faults, 24), 2000, 1e-6) << "two entries are two faults";
+}
+
 // A fault that is there or is not would stay at full strength until its ramp is over, beyond the end that is told.
 TEST(RampMistakes, AreThoseOfFaultsWithoutAStrength) {
     const auto mistakes = [](std::string_view kind, const std::string& key) {
