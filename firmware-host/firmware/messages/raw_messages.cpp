@@ -29,10 +29,17 @@ std::uint8_t phase_deviation_code(const Observation& o) {
     return std::clamp(field<std::uint8_t>(o.carrier_phase_deviation / 0.004), std::uint8_t{1}, std::uint8_t{14});
 }
 
+// Cycles. Those of geostationary BeiDou satellites lie half a cycle below the phase that RINEX means, as decoders of
+// u-blox logs take for granted (RTKLIB 2.4.3, ublox.c, decode_rxmrawx).
+double raw_phase(const Observation& o) {
+    if (!o.carrier_phase) return 0;
+    return is_beidou_geo(o.satellite) ? *o.carrier_phase - 0.5 : *o.carrier_phase;
+}
+
 RxmRawxItem raw_measurement(const Observation& o, const ReportContext& context) {
     RxmRawxItem item;
     item.pr_mes = o.pseudorange->value();
-    item.cp_mes = o.carrier_phase.value_or(0);
+    item.cp_mes = raw_phase(o);
     item.do_mes = static_cast<float>(o.doppler ? o.doppler->value() : 0);
     item.gnss_id = gnss_id(o.satellite.constellation);
     item.sv_id = sv_id(o.satellite);

@@ -79,6 +79,20 @@ TEST(RxmRawxMessage, CodesDeviationsAndTracking) {
     EXPECT_EQ(m.measurements[3].freq_id, 3);
 }
 
+TEST(RxmRawxMessage, HasPhasesOfGeostationaryBeidouHalfACycleLower) {
+    UbxReport f9 = measured();
+    auto& signals = f9.state.epoch.observations.signals;
+    signals.clear();
+    for (const int number : {1, 5, 6, 58, 59})
+        signals.push_back(raw_signal({Constellation::beidou, number}, Signal::b1i, 3.8e7));
+    const auto m = f9.report<RxmRawx>();
+    ASSERT_EQ(m.measurements.size(), 5u);
+    for (const std::size_t geostationary : {0U, 1U, 4U})
+        EXPECT_DOUBLE_EQ(m.measurements[geostationary].cp_mes, 117'426'580.75);
+    for (const std::size_t other : {2U, 3U})
+        EXPECT_DOUBLE_EQ(m.measurements[other].cp_mes, 117'426'581.25);
+}
+
 TEST(RxmRawxMessage, IsEmptyForAModelThatMeasuresNothing) {
     const UbxReport m8(8);
     EXPECT_TRUE(m8.report<RxmRawx>().measurements.empty());
