@@ -63,16 +63,22 @@ GpsTime measurement_time(const ReportContext& context) {
     return observations.signals.empty() ? reported_time(context).time : observations.receive_time;
 }
 
+// Pseudoranges need the time and the date: until both are known a captured ZED-F9P tells what it
+// has counted since its start, week 0, and no measurement.
 RxmRawx raw_measurements(const ReportContext& context) {
     const NavigationState& state = context.state;
-    const WeekAndTow now = week_and_tow(measurement_time(context));
     RxmRawx m;
+    m.leap_s = field<std::int8_t>(state.epoch.fix.leap_seconds);
+    m.rec_stat = state.time.leap_seconds ? 1 : 0;
+    m.version = 1;
+    if (!state.time.time || !state.time.date) {
+        m.rcv_tow = state.since_start.value();
+        return m;
+    }
+    const WeekAndTow now = week_and_tow(measurement_time(context));
     m.rcv_tow = now.tow_seconds();
     m.week = field<std::uint16_t>(static_cast<double>(now.week));
-    m.leap_s = field<std::int8_t>(state.epoch.fix.leap_seconds);
-    m.rec_stat =
-        static_cast<std::uint8_t>((state.time.leap_seconds ? 1 : 0) | (state.epoch.observations.clock_was_set ? 2 : 0));
-    m.version = 1;
+    if (state.epoch.observations.clock_was_set) m.rec_stat |= 2;
     for (const Observation& o : state.epoch.observations.signals)
         if (o.pseudorange) m.measurements.push_back(raw_measurement(o, context));
     return m;

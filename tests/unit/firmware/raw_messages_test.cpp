@@ -47,6 +47,26 @@ TEST(RxmRawxMessage, IsInTheTimeOfTheReceiver) {
     EXPECT_EQ(f9.report<RxmRawx>().rec_stat, 2);
 }
 
+// As a ZED-F9P at a cold start: its own count, no week and no measurement until the time and the date are known.
+TEST(RxmRawxMessage, CountsAndMeasuresNothingUntilTheDateIsKnown) {
+    UbxReport f9 = measured();
+    f9.state.since_start = Seconds(19);
+    f9.state.epoch.observations.clock_was_set = true;
+    const TimeKnowledge known = f9.state.time;
+    for (const bool time : {false, true}) {
+        f9.state.time = {.time = time};
+        const auto m = f9.report<RxmRawx>();
+        EXPECT_DOUBLE_EQ(m.rcv_tow, 19) << time;
+        EXPECT_EQ(m.week, 0) << time;
+        EXPECT_EQ(m.leap_s, 18) << time;
+        EXPECT_EQ(m.rec_stat, 0) << time;
+        EXPECT_TRUE(m.measurements.empty()) << time;
+    }
+    f9.state.time = known;
+    EXPECT_EQ(f9.report<RxmRawx>().week, 2304);
+    EXPECT_EQ(f9.report<RxmRawx>().measurements.size(), 3u);
+}
+
 TEST(RxmRawxMessage, CodesDeviationsAndTracking) {
     UbxReport f9 = measured();
     auto& signals = f9.state.epoch.observations.signals;
