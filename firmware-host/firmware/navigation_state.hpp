@@ -82,9 +82,9 @@ struct NavigationState {
     std::optional<BaseSurvey> survey{};  ///< with CFG-TMODE-MODE 1
     std::optional<LeapEvent> leap_event{};
     bool old_position_shown = false;  ///< sentences show it without a valid fix too, whatever is configured
-    int week_offset = 0;              ///< on week numbers alone: dates and times of week stay
-    int reports = 1;                  ///< how many times its messages are sent
-    Seconds report_delay{0};          ///< more until they are; those of later epochs may overtake them
+    Seconds week_lag{0};      ///< week numbers change so much after their times of week begin anew; below 0 before
+    int reports = 1;          ///< how many times its messages are sent
+    Seconds report_delay{0};  ///< more until they are; those of later epochs may overtake them
 };
 
 /// What one port has done, for MON-COMMS, MON-TXBUF, MON-RXBUF and MON-IO.

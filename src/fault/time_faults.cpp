@@ -62,12 +62,9 @@ Result<Fault> make_week_rollover(const Parameters& parameters, const FaultContex
     });
 }
 
-// The week number alone is late, or early, at the end of the week.
 Result<Fault> make_week_order(const Parameters& parameters, const FaultContext&) {
-    return fault_of_report([lag = parameters.number("lag_s")](NavigationState& state, const FaultMoment&) {
-        const double tow = week_and_tow(state.epoch.fix.time).tow_seconds();
-        if (tow < lag) state.week_offset = -1;
-        if (tow >= static_cast<double>(seconds_per_week) + lag) state.week_offset = 1;
+    return fault_of_report([lag = Seconds(parameters.number("lag_s"))](NavigationState& state, const FaultMoment&) {
+        state.week_lag = lag;
     });
 }
 
@@ -136,7 +133,8 @@ std::vector<FaultKind> calendar_kinds() {
           make_week_rollover},
          {"week_order",
           solution,
-          "At the end of the GPS week the week number changes after the time of week has begun anew, or before.",
+          "At the end of the week the week number changes after the time of week has begun anew, or before: of each "
+          "time scale (GPS, Galileo, BeiDou, UTC) where its own week ends.",
           "Week and time of week come in messages of different rates (ArduPilot #31914).",
           {number_parameter("lag_s", 2, -3600, 3600, "week number after time of week, s; below 0 before")},
           make_week_order}});

@@ -67,6 +67,13 @@ EpochTime epoch_time(GpsTime time) {
             static_cast<std::int32_t>((time - rounded).count())};
 }
 
+std::int64_t reported_week(const NavigationState& state, const WeekAndTow& now) {
+    // Before there is a time there is no week to change.
+    if (!state.time.time || state.week_lag.value() == 0) return now.week;
+    const double tow = now.tow_seconds(), lag = state.week_lag.value();
+    return now.week - (tow < lag ? 1 : 0) + (tow >= static_cast<double>(seconds_per_week) + lag ? 1 : 0);
+}
+
 bool has_dops(const Fix& fix) {
     if (fix.type != FixType::dead_reckoning) return fix.has_position();
     return std::any_of(fix.satellites.begin(), fix.satellites.end(), [](const SatelliteStatus& s) { return s.used; });

@@ -1,6 +1,7 @@
 /// What the fields of several UBX messages have in common: numbers that stay in their range, time, satellites.
 #pragma once
 
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -45,13 +46,17 @@ struct EpochTime {
     std::int64_t week = 0;
     std::uint32_t i_tow = 0;  ///< ms, 0 … 604 799 999
     std::int32_t f_tow = 0;   ///< ns, −500 000 … 500 000
+    [[nodiscard]] WeekAndTow stamp() const { return {week, std::chrono::milliseconds(i_tow)}; }
 };
 EpochTime epoch_time(GpsTime time);
 /// Whether satellites stand behind the position, so that it has DOPs: dead reckoning goes on without.
 bool has_dops(const Fix& fix);
-/// A week number as the receiver counts it.
-inline double reported_week(const NavigationState& state, std::int64_t week) {
-    return static_cast<double>(week + state.week_offset);
+/// A week number as the receiver counts it. @param now week and time of week, both of the message's own time scale
+std::int64_t reported_week(const NavigationState& state, const WeekAndTow& now);
+/// The same for a field.
+template <class Integer>
+Integer week_field(const NavigationState& state, const WeekAndTow& now) {
+    return field<Integer>(static_cast<double>(reported_week(state, now)));
 }
 
 /// The instant of the epoch as the receiver believes it, and how far GPS time is ahead of UTC.

@@ -236,7 +236,7 @@ NavSol navigation_sol(const ReportContext& context) {
     NavSol m;
     m.i_tow = now.i_tow;
     m.f_tow = now.f_tow;
-    m.week = field<std::int16_t>(reported_week(state, now.week));
+    m.week = week_field<std::int16_t>(state, now.stamp());
     m.gps_fix = fix_type_code(state.epoch.fix);
     m.flags = static_cast<std::uint8_t>(0xD0 | solution_flags(state));
     m.ecef = centimetres(earth_fixed(state));

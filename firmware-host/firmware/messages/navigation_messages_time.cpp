@@ -34,6 +34,7 @@ struct WholeSeconds {
     std::int64_t week = 0;
     std::uint32_t seconds = 0;
     std::int32_t rest = 0;
+    [[nodiscard]] WeekAndTow stamp() const { return {week, std::chrono::seconds(seconds) + Nanoseconds(rest)}; }
 };
 WholeSeconds whole_seconds(GpsTime time, WeekAndTow (*system)(GpsTime)) {
     const GpsTime rounded = std::chrono::floor<std::chrono::seconds>(time + 500ms);
@@ -47,7 +48,7 @@ NavTimegps time_gps(const ReportContext& context) {
     const EpochTime now = epoch_time(reported.time);
     const NavigationState& state = context.state;
     NavTimegps m{now.i_tow, now.f_tow, 0, 0, gnss_time_valid(state), time_accuracy_ns(state)};
-    m.week = field<std::int16_t>(reported_week(state, now.week));
+    m.week = week_field<std::int16_t>(state, now.stamp());
     m.leap_s = field<std::int8_t>(state.epoch.fix.leap_seconds);
     return m;
 }
@@ -77,7 +78,7 @@ NavTimegal time_galileo(const ReportContext& context) {
     return {epoch_time(time).i_tow,
             now.seconds,
             now.rest,
-            field<std::int16_t>(reported_week(context.state, now.week)),
+            week_field<std::int16_t>(context.state, now.stamp()),
             field<std::int8_t>(context.state.epoch.fix.leap_seconds),
             gnss_time_valid(context.state),
             time_accuracy_ns(context.state)};
@@ -90,7 +91,7 @@ NavTimeqzss time_qzss(const ReportContext& context) {
     return {epoch_time(time).i_tow,
             now.seconds,
             now.rest,
-            field<std::int16_t>(reported_week(context.state, now.week)),
+            week_field<std::int16_t>(context.state, now.stamp()),
             field<std::int8_t>(context.state.epoch.fix.leap_seconds),
             gnss_time_valid(context.state),
             time_accuracy_ns(context.state)};
@@ -103,7 +104,7 @@ NavTimebds time_beidou(const ReportContext& context) {
     return {epoch_time(time).i_tow,
             now.seconds,
             now.rest,
-            field<std::int16_t>(reported_week(context.state, now.week)),
+            week_field<std::int16_t>(context.state, now.stamp()),
             field<std::int8_t>(context.state.epoch.fix.leap_seconds - ahead_of_gps_leaps),
             gnss_time_valid(context.state),
             time_accuracy_ns(context.state)};
@@ -251,7 +252,7 @@ TimTp next_pulse(const ReportContext& context, const PulseGrid& grid) {
     TimTp m;
     m.tow_ms = static_cast<std::uint32_t>(value.tow / 1ms);
     m.tow_sub_ms = field<std::uint32_t>(static_cast<double>(sub_ms.count()) * 1e-6 * 4294967296.0);
-    m.week = field<std::uint16_t>(static_cast<double>(value.week));
+    m.week = week_field<std::uint16_t>(state, value);
     const bool known = state.epoch.fix.type != FixType::none;
     m.flags =
         static_cast<std::uint8_t>((grid.base == 0 ? 1 : 0) | (state.time.leap_seconds ? 2 : 0) | (known ? 8 : 0x10));

@@ -94,7 +94,7 @@ PubxTime pubx_time(const NmeaReport& r) {
     m.date = r.date;
     if (r.context.state.time.time && r.context.state.time.date) {
         const WeekAndTow utc = week_and_tow(to_gps_time(reported_utc(r.context), LeapSeconds::constant(0)));
-        m.utc_week = static_cast<int>(utc.week);
+        m.utc_week = static_cast<int>(reported_week(r.context.state, utc));
         m.utc_tow_s = utc.tow_seconds();
     }
     m.leap_seconds = fix.leap_seconds;

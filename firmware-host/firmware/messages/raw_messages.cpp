@@ -77,7 +77,8 @@ RxmRawx raw_measurements(const ReportContext& context) {
     }
     const WeekAndTow now = week_and_tow(measurement_time(context));
     m.rcv_tow = now.tow_seconds();
-    m.week = field<std::uint16_t>(static_cast<double>(now.week));
+    // The receiver's clock is up to half a millisecond beside the epoch, whose week the other messages tell.
+    m.week = week_field<std::uint16_t>(state, {now.week, now.tow + 500us});
     if (state.epoch.observations.clock_was_set) m.rec_stat |= 2;
     for (const Observation& o : state.epoch.observations.signals)
         if (o.pseudorange) m.measurements.push_back(raw_measurement(o, context));
@@ -215,7 +216,7 @@ RxmSvsi satellites_known(const ReportContext& context) {
     const EpochTime now = epoch_time(reported_time(context).time);
     RxmSvsi m;
     m.i_tow = now.i_tow;
-    m.week = field<std::int16_t>(static_cast<double>(now.week));
+    m.week = week_field<std::int16_t>(context.state, now.stamp());
     for (const SatelliteStatus& s : sorted_satellites(context.state.epoch.fix)) {
         const auto number = ubx_single_number(s.id);
         if (!number) continue;

@@ -47,9 +47,8 @@ inline double msl_height(const Fix& fix) {
 inline WeekAndTow gps_stamp(GpsTime time) { return week_and_tow(std::chrono::round<std::chrono::milliseconds>(time)); }
 /// The same of what is reported, its week as the receiver counts it.
 inline WeekAndTow gps_stamp(const NavigationState& state) {
-    WeekAndTow stamp = gps_stamp(state.epoch.fix.time);
-    stamp.week += state.week_offset;
-    return stamp;
+    const WeekAndTow stamp = gps_stamp(state.epoch.fix.time);
+    return {reported_week(state, stamp), stamp.tow};
 }
 inline std::uint32_t whole_milliseconds(const WeekAndTow& stamp) {
     return static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::milliseconds>(stamp.tow).count());

@@ -8,6 +8,8 @@
 #include "skyloop/protocol/stream_splitter.hpp"
 #include "skyloop/protocol/ubx_cfg_values.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
+#include "skyloop/protocol/ubx_raw.hpp"
+#include "skyloop/protocol/ubx_satellites.hpp"
 #include "skyloop/protocol/ubx_time.hpp"
 #include "ubx_reports.hpp"
 
@@ -188,19 +190,59 @@ TEST(FirmwareFaults, LeavesSentencesThatItRefusesAlone) {
 
 // Dates and times of week stay.
 TEST(FirmwareFaults, CountsWeeksApartInEveryMessageThatHasThem) {
-    UbxReport r(9);
+    UbxReport r(9, "2024-03-10T00:00:00Z");  // time of week 18 s in GPS time, 4 s in BeiDou time
     const auto told = [&] {
-        return std::vector<int>{r.report<NavTimegps>().week, r.report<NavTimegal>().gal_wno, r.report<NavSol>().week,
+        return std::vector<int>{r.report<NavTimegps>().week,      r.report<NavTimegal>().gal_wno,
+                                r.report<NavSol>().week,          r.report<NavTimebds>().week,
+                                r.report<NavTimeqzss>().qzss_wno, r.report<RxmRawx>().week,
+                                r.report<RxmSvsi>().week,         r.report<TimTp>().week,
                                 msp_sensor_gps(r.state).gps_week, mavlink_gps_input(r.state).time_week};
     };
     const std::vector<int> before = told();
     const auto pvt = r.report<NavPvt>();
-    r.state.week_offset = -1;
+    r.state.week_lag = Seconds(20);
     const std::vector<int> after = told();
     for (std::size_t i = 0; i < before.size(); ++i)
         EXPECT_EQ(after[i], before[i] - 1) << i;
     EXPECT_EQ(r.report<NavPvt>().day, pvt.day);
     EXPECT_EQ(r.report<NavPvt>().i_tow, pvt.i_tow);
+}
+
+// Between the ends of the GPS week and of BeiDou's, 14 s later, they differ.
+TEST(FirmwareFaults, CountsTheWeekOfEachTimeScaleApartWhereThatEnds) {
+    UbxReport r(9, "2024-03-09T23:59:43Z");  // 1 s of the GPS week, 13 s before BeiDou's ends
+    r.state.week_lag = Seconds(2);
+    const int gps = 2304, beidou = 948;  // of before
+    EXPECT_EQ(r.report<NavTimegps>().week, gps);
+    EXPECT_EQ(r.report<NavTimebds>().week, beidou);
+    r.state.epoch.fix.time += 13s;  // BeiDou's first second
+    EXPECT_EQ(r.report<NavTimegps>().week, gps + 1);
+    EXPECT_EQ(r.report<NavTimebds>().sow, 0u);
+    EXPECT_EQ(r.report<NavTimebds>().week, beidou);
+    r.state.epoch.fix.time += 2s;
+    EXPECT_EQ(r.report<NavTimebds>().week, beidou + 1);
+    r.state.week_lag = Seconds(-2);
+    r.state.epoch.fix.time -= 18s;  // 2 s before the end of the GPS week
+    EXPECT_EQ(r.report<NavTimegps>().week, gps + 1);
+    EXPECT_EQ(r.report<NavTimebds>().week, beidou);
+}
+
+// The receiver's clock may be in the week before, or a bit behind the instant at which the week number changes.
+TEST(FirmwareFaults, CountsTheWeekOfRawMeasurementsApartAsThatOfTheEpoch) {
+    UbxReport r(9, "2024-03-09T23:59:42Z");  // the GPS week begins
+    const GpsTime begin = r.state.epoch.fix.time;
+    r.state.epoch.observations.signals.emplace_back();
+    const auto weeks = [&](Nanoseconds epoch, Nanoseconds bias, double lag) {
+        r.state.epoch.fix.time = begin + epoch;
+        r.state.epoch.observations.receive_time = begin + epoch + bias;
+        r.state.week_lag = Seconds(lag);
+        return std::pair(static_cast<int>(r.report<NavTimegps>().week), static_cast<int>(r.report<RxmRawx>().week));
+    };
+    EXPECT_EQ(weeks(1s, 200us, 2), std::pair(2304, 2304));
+    EXPECT_EQ(weeks(2s, -200us, 2), std::pair(2305, 2305));
+    EXPECT_EQ(weeks(-2s, -200us, -2), std::pair(2305, 2305));
+    EXPECT_EQ(weeks(0s, -200us, 2), std::pair(2304, 2304));  // its own week has not ended
+    EXPECT_EQ(weeks(0s, -200us, 0), std::pair(2305, 2304));
 }
 
 }  // namespace
