@@ -27,6 +27,10 @@ struct TimeKnowledge {
     Seconds accuracy{0};        ///< 1 σ; meaningless without `time`
 };
 
+/// What captured receivers tell of a solution that they never had (RECEIVER.md 4.10): no estimate is worse. 1 σ.
+inline constexpr Metres unknown_horizontal_accuracy{4294967.295}, unknown_vertical_accuracy{3750000.128};
+inline constexpr MetresPerSecond unknown_speed_accuracy{20};
+
 /// What came in by RTCM.
 struct CorrectionStatus {
     CorrectionState state = CorrectionState::none;
@@ -64,9 +68,11 @@ struct LeapEvent {
 
 /// The receiver at one epoch, as it reports itself. Free of the truth.
 struct NavigationState {
-    Epoch epoch;                  ///< its fix is the one to report: after limits, static hold and coasting
-    bool fix_ok = false;          ///< within the user's limits (gnssFixOK)
-    bool ever_had_fix = false;    ///< since the last cold start: `epoch.fix` has a position, if an old one
+    Epoch epoch;                ///< its fix is the one to report: after limits, static hold and coasting
+    bool fix_ok = false;        ///< within the user's limits (gnssFixOK)
+    bool ever_had_fix = false;  ///< since the last cold start: `epoch.fix` has a position, if an old one
+    bool only_place_known =
+        false;                    ///< that of before a start: no accuracies, velocity and clock have been solved since
     bool position_known = false;  ///< the position is of now, or was of a fix before
     TimeKnowledge time;
     CorrectionStatus corrections;
@@ -86,6 +92,9 @@ struct NavigationState {
     int reports = 1;          ///< how many times its messages are sent
     Seconds report_delay{0};  ///< more until they are; those of later epochs may overtake them
 };
+
+/// Whether accuracies, velocity and clock in the fix are of a solution, if an old one.
+inline bool estimates_known(const NavigationState& state) { return state.ever_had_fix && !state.only_place_known; }
 
 /// What one port has done, for MON-COMMS, MON-TXBUF, MON-RXBUF and MON-IO.
 struct PortStatus {

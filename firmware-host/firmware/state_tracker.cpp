@@ -31,6 +31,25 @@ double horizontal_distance(const Geodetic& a, const Geodetic& b) {
     return std::hypot(to.vector().x(), to.vector().y());
 }
 
+// What a start leaves of a solution: where it was.
+Fix place_of(const Fix& solved) {
+    Fix place;
+    place.position = solved.position;
+    place.geoid_undulation = solved.geoid_undulation;
+    place.horizontal_accuracy = unknown_horizontal_accuracy;
+    place.vertical_accuracy = unknown_vertical_accuracy;
+    place.speed_accuracy = unknown_speed_accuracy;
+    return place;
+}
+
+// The accuracies of a solution so many seconds later. None is worse than those without any solution.
+void grow_accuracies(const Fix& before, double seconds, Fix& fix) {
+    const double metres = accuracy_growth_mps * seconds, speed = speed_accuracy_growth * seconds;
+    fix.horizontal_accuracy = std::min(unknown_horizontal_accuracy, before.horizontal_accuracy + Metres(metres));
+    fix.vertical_accuracy = std::min(unknown_vertical_accuracy, before.vertical_accuracy + Metres(metres));
+    fix.speed_accuracy = std::min(unknown_speed_accuracy, before.speed_accuracy + MetresPerSecond(speed));
+}
+
 // A u-blox receiver counts while CFG-ODO has its odometer on, from the factory it is off; others have no such switch.
 bool odometer_is_on(const BoardProfile& board, const ConfigStore& config) {
     return board.personality != Personality::ublox || config.flag(key::odo_use_odo);
@@ -91,10 +110,9 @@ void StateTracker::start(GpsTime now, const Forgotten& forgotten, bool running) 
     }
     if (keeps_place) {
         state_.ever_had_fix = before.ever_had_fix;
-        state_.position_known = before.position_known;
-    } else {
-        last_fix_ = {};
+        state_.position_known = state_.only_place_known = before.position_known;
     }
+    last_fix_ = place_of(keeps_place ? last_fix_ : Fix());
     started_ = running ? std::nullopt : std::optional(now);
     start_kind_ = forgotten.kind();
     state_.time.time = state_.time.date = running || !forgotten.rtc;
@@ -135,6 +153,7 @@ const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStor
         if (!first_fix_) first_fix_ = fix.time;
         if (!state_.time_to_first_fix) state_.time_to_first_fix = state_.since_start;
         state_.ever_had_fix = state_.position_known = true;
+        state_.only_place_known = false;
     }
     learn_time(config);
     freeze_course();
@@ -254,7 +273,10 @@ void StateTracker::coast(const Fix& before) {
     }
     if (!state_.position_known) return;
     const Fix now = fix;
-    const double step = std::max(0.0, difference(now.time, before.time).value());
+    // The first epoch after a start has none before it.
+    const bool first = before.time == GpsTime{};
+    const Fix& known = first ? last_fix_ : before;
+    const double step = first ? 0 : std::max(0.0, difference(now.time, before.time).value());
     fix = last_fix_;
     fix.time = now.time;
     fix.leap_seconds = now.leap_seconds;
@@ -268,9 +290,7 @@ void StateTracker::coast(const Fix& before) {
         fix.position = moved(last_fix_.position, last_fix_.velocity, step);
         state_.fix_ok = true;
     }
-    fix.horizontal_accuracy = before.horizontal_accuracy + Metres(accuracy_growth_mps * step);
-    fix.vertical_accuracy = before.vertical_accuracy + Metres(accuracy_growth_mps * step);
-    fix.speed_accuracy = before.speed_accuracy + MetresPerSecond(speed_accuracy_growth * step);
+    grow_accuracies(known, step, fix);
 }
 
 // Position and speed stand still below the threshold until the antenna has left the place (RECEIVER.md 4.8).
@@ -317,6 +337,7 @@ void StateTracker::stand_still(const ConfigStore& config) {
     fix.type = solved ? FixType::time_only : FixType::none;
     state_.fix_ok = state_.fix_ok && solved;
     state_.ever_had_fix = state_.position_known = true;
+    state_.only_place_known = false;
     fix.position = to_geodetic(place->position);
     fix.horizontal_accuracy = fix.vertical_accuracy = place->accuracy;
     fix.velocity = {};

@@ -50,6 +50,7 @@ void put_old_solution(NavigationState& state, const NavigationState& old) {
     fix.satellites = now.satellites;
     state.fix_ok = old.fix_ok;
     state.ever_had_fix = old.ever_had_fix;
+    state.only_place_known = old.only_place_known;
     state.position_known = old.position_known;
     state.course = old.course;
     state.course_is_frozen = old.course_is_frozen;

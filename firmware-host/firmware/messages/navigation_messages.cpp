@@ -37,12 +37,13 @@ PlaceFields place_fields(const NavigationState& state) {
     if (!state.ever_had_fix) return {};
     const Fix& fix = state.epoch.fix;
     const double height = fix.position.height.above_ellipsoid.value();
-    return {field<std::int32_t>(fix.position.longitude.deg() * 1e7),
-            field<std::int32_t>(fix.position.latitude.deg() * 1e7),
-            field<std::int32_t>(height * 1e3),
-            field<std::int32_t>((height - fix.geoid_undulation.value()) * 1e3),
-            field<std::uint32_t>(fix.horizontal_accuracy.value() * 1e3),
-            field<std::uint32_t>(fix.vertical_accuracy.value() * 1e3)};
+    PlaceFields place{field<std::int32_t>(fix.position.longitude.deg() * 1e7),
+                      field<std::int32_t>(fix.position.latitude.deg() * 1e7), field<std::int32_t>(height * 1e3),
+                      field<std::int32_t>((height - fix.geoid_undulation.value()) * 1e3)};
+    if (!estimates_known(state)) return place;
+    place.h_acc = field<std::uint32_t>(fix.horizontal_accuracy.value() * 1e3);
+    place.v_acc = field<std::uint32_t>(fix.vertical_accuracy.value() * 1e3);
+    return place;
 }
 
 std::uint8_t pvt_valid(const ReportContext& context) {
@@ -76,7 +77,7 @@ void put_motion(const NavigationState& state, NavPvt& pvt) {
     const Fix& fix = state.epoch.fix;
     pvt.s_acc = unknown_s_acc;
     pvt.head_acc = unknown_heading;
-    if (!state.ever_had_fix) return;
+    if (!estimates_known(state)) return;
     pvt.vel_n = field<std::int32_t>(fix.velocity.north * 1e3);
     pvt.vel_e = field<std::int32_t>(fix.velocity.east * 1e3);
     pvt.vel_d = field<std::int32_t>(fix.velocity.down * 1e3);
@@ -149,6 +150,7 @@ NavHpposllh navigation_hpposllh(const ReportContext& context) {
     put(split_value(fix.position.latitude.deg() * 1e9, 100), m.lat, m.lat_hp);
     put(split_value(height * 1e4, 10), m.height, m.height_hp);
     put(split_value((height - fix.geoid_undulation.value()) * 1e4, 10), m.h_msl, m.h_msl_hp);
+    if (!estimates_known(state)) return m;
     m.h_acc = field<std::uint32_t>(fix.horizontal_accuracy.value() * 1e4);
     m.v_acc = field<std::uint32_t>(fix.vertical_accuracy.value() * 1e4);
     return m;
@@ -160,7 +162,7 @@ Eigen::Vector3d earth_fixed(const NavigationState& state) {
 }
 
 Eigen::Vector3d earth_fixed_velocity(const NavigationState& state) {
-    if (!state.ever_had_fix) return Eigen::Vector3d::Zero();
+    if (!estimates_known(state)) return Eigen::Vector3d::Zero();
     const Fix& fix = state.epoch.fix;
     const Velocity<Enu> local(fix.velocity.east, fix.velocity.north, -fix.velocity.down);
     return LocalFrame(fix.position).to_ecef(local).vector();
@@ -168,13 +170,14 @@ Eigen::Vector3d earth_fixed_velocity(const NavigationState& state) {
 
 // 1 σ in three dimensions, in units of 1/`per_metre` m.
 std::uint32_t place_accuracy(const NavigationState& state, double per_metre) {
-    if (!state.ever_had_fix) return unknown_accuracy;
+    if (!estimates_known(state)) return unknown_accuracy;
     const Fix& fix = state.epoch.fix;
     return field<std::uint32_t>(std::hypot(fix.horizontal_accuracy.value(), fix.vertical_accuracy.value()) * per_metre);
 }
 
 std::uint32_t speed_accuracy_cm(const NavigationState& state) {
-    return state.ever_had_fix ? field<std::uint32_t>(state.epoch.fix.speed_accuracy.value() * 1e2) : unknown_s_acc / 10;
+    return estimates_known(state) ? field<std::uint32_t>(state.epoch.fix.speed_accuracy.value() * 1e2)
+                                  : unknown_s_acc / 10;
 }
 
 std::array<std::int32_t, 3> centimetres(const Eigen::Vector3d& metres) {
@@ -212,7 +215,7 @@ NavVelned navigation_velned(const ReportContext& context) {
     m.i_tow = epoch_time(reported_time(context).time).i_tow;
     m.s_acc = speed_accuracy_cm(state);
     m.c_acc = unknown_heading;
-    if (!state.ever_had_fix) return m;
+    if (!estimates_known(state)) return m;
     const Fix& fix = state.epoch.fix;
     m.vel_n = field<std::int32_t>(fix.velocity.north * 1e2);
     m.vel_e = field<std::int32_t>(fix.velocity.east * 1e2);

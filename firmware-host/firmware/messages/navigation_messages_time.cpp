@@ -178,7 +178,7 @@ NavClock receiver_clock(const ReportContext& context) {
     m.i_tow = epoch_time(reported_time(context).time).i_tow;
     m.t_acc = time_accuracy_ns(state);
     m.f_acc = 3749500;  // ps/s, of captured receivers without a fix
-    if (!state.ever_had_fix) return m;
+    if (!estimates_known(state)) return m;
     const Fix& fix = state.epoch.fix;
     m.clk_b = field<std::int32_t>(std::remainder(fix.clock_bias.value() / speed_of_light * 1e9, clock_step_ns));
     m.clk_d = field<std::int32_t>(fix.clock_drift.value() / speed_of_light * 1e9);

@@ -38,8 +38,10 @@ PubxPosition pubx_position(const NmeaReport& r) {
     if (!state.position_known && !r.solved) return m;
     m.position = {fix.position.latitude, fix.position.longitude};
     m.altitude = fix.position.height.above_ellipsoid;
-    m.horizontal_accuracy = fix.horizontal_accuracy;
-    m.vertical_accuracy = fix.vertical_accuracy;
+    if (!state.only_place_known) {
+        m.horizontal_accuracy = fix.horizontal_accuracy;
+        m.vertical_accuracy = fix.vertical_accuracy;
+    }
     m.speed = fix.speed;
     m.course = state.course.value_or(fix.course);
     m.down = MetresPerSecond(fix.velocity.down);

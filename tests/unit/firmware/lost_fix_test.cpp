@@ -1,0 +1,87 @@
+// What a receiver tells after its fix is lost, and after a start without one.
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+#include "firmware/state_tracker.hpp"
+#include "skyloop/gnss/constants.hpp"
+#include "skyloop/protocol/ubx_nav.hpp"
+#include "skyloop/protocol/ubx_services.hpp"
+#include "skyloop/protocol/ubx_time.hpp"
+#include "ubx_reports.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A receiver with one epoch a second, which has been on for long.
+struct LosingReceiver {
+    LosingReceiver() : fix(told.state.epoch.fix) {
+        told.board.timing.coasting = Seconds(2);
+        tracker.start(fix.time, {}, true);
+    }
+    void step(int epochs = 1) {
+        for (int i = 0; i < epochs; ++i) {
+            fix.time += 1s;
+            told.state = tracker.update(Epoch{fix}, told.config, {});
+        }
+    }
+    void lose() { fix.type = FixType::none; }
+    [[nodiscard]] double clock_ns() const { return told.report<NavClock>().clk_b; }
+
+    UbxReport told{9};
+    StateTracker tracker{told.board};
+    Fix fix;
+};
+
+// As at the cold start of a captured ZED-F9P, but for the place, which is that of before.
+void expect_only_a_place(const UbxReport& told, std::int32_t latitude) {
+    const auto pvt = told.report<NavPvt>();
+    EXPECT_EQ(pvt.fix_type, 0);
+    EXPECT_EQ(pvt.lat, latitude);
+    EXPECT_EQ(pvt.h_acc, 4294967295u);
+    EXPECT_EQ(pvt.v_acc, 3750000128u);
+    EXPECT_EQ(pvt.s_acc, 20000u);
+    EXPECT_EQ(pvt.head_acc, 18000000u);
+    EXPECT_EQ(std::tuple(pvt.vel_n, pvt.vel_e, pvt.vel_d, pvt.g_speed), std::tuple(0, 0, 0, 0));
+    EXPECT_EQ(told.report<NavVelned>().s_acc, 2000u);
+    EXPECT_EQ(told.report<NavPosecef>().p_acc, 4294967295u);
+    EXPECT_EQ(told.report<NavHpposllh>().v_acc, 4294967295u);
+    const auto clock = told.report<NavClock>();
+    EXPECT_EQ(std::tuple(clock.clk_b, clock.clk_d, clock.f_acc), std::tuple(0, 0, 3749500u));
+    EXPECT_FLOAT_EQ(told.report<NavCov>().pos_cov[0], 1.40625e13f);
+    EXPECT_FLOAT_EQ(told.report<NavCov>().vel_cov[5], 400);
+}
+
+TEST(LostFix, LeavesOnlyThePlaceOverAStartWithoutAFix) {
+    for (const StartKind kind : {StartKind::hot, StartKind::warm}) {
+        LosingReceiver r;
+        r.step(2);
+        r.lose();
+        r.step(4);
+        const std::int32_t latitude = r.told.report<NavPvt>().lat;
+        r.tracker.start(r.fix.time, Forgotten::of(kind));
+        for (int epoch = 0; epoch < 3; ++epoch) {
+            r.step();
+            expect_only_a_place(r.told, latitude);
+        }
+        r.fix.type = FixType::fix_3d;
+        r.step(60);
+        EXPECT_EQ(r.told.report<NavPvt>().h_acc, 3300u);
+        EXPECT_EQ(r.told.report<NavPvt>().g_speed, 5001);
+        EXPECT_LT(r.told.report<NavClock>().f_acc, 1000u);
+    }
+}
+
+TEST(LostFix, HasNoEstimateThatIsWorseThanThatOfNoSolution) {
+    LosingReceiver r;
+    r.step();
+    r.lose();
+    r.step(60);
+    EXPECT_EQ(r.told.report<NavPvt>().s_acc, 20000u);
+    EXPECT_NEAR(r.told.report<NavPvt>().h_acc, 3300 + 60 * 7200, 1);
+}
+
+}  // namespace
+}  // namespace skyloop::firmware
