@@ -290,6 +290,8 @@ void StateTracker::coast(const Fix& before) {
         fix.position = moved(last_fix_.position, last_fix_.velocity, step);
         state_.fix_ok = true;
     }
+    // The clock runs on by the drift that was solved last.
+    fix.clock_bias = known.clock_bias + Metres(fix.clock_drift.value() * step);
     grow_accuracies(known, step, fix);
 }
 

@@ -74,6 +74,26 @@ TEST(LostFix, LeavesOnlyThePlaceOverAStartWithoutAFix) {
     }
 }
 
+// What its drift is unsure by is 10 ns/s (StateTracker), of which tAcc tells.
+TEST(LostFix, LetsTheClockRunOnByItsDrift) {
+    LosingReceiver r;
+    r.fix.clock_bias = Metres(498'200e-9 * speed_of_light);
+    r.fix.clock_drift = MetresPerSecond(500e-9 * speed_of_light);
+    r.step();
+    r.lose();
+    r.fix.clock_bias = Metres(0);  // nothing is solved
+    r.fix.clock_drift = MetresPerSecond(0);
+    const double accuracy = r.told.report<NavClock>().t_acc;
+    for (int epoch = 1; epoch <= 8; ++epoch) {
+        r.step();
+        // It is set by a millisecond where it is half of one ahead.
+        EXPECT_NEAR(r.clock_ns(), 498'200 + 500 * epoch - (epoch > 3 ? 1'000'000 : 0), 1) << epoch;
+        EXPECT_EQ(r.told.report<NavClock>().clk_d, 500) << epoch;
+        EXPECT_NEAR(r.told.report<NavClock>().t_acc, accuracy + 10 * epoch, 1.1) << epoch;
+    }
+    EXPECT_EQ(r.told.report<NavPvt>().fix_type, 0);
+}
+
 TEST(LostFix, HasNoEstimateThatIsWorseThanThatOfNoSolution) {
     LosingReceiver r;
     r.step();
