@@ -38,7 +38,15 @@ std::array<float, 6> covariance(double north, double east, double north_east, do
             static_cast<float>(down)};
 }
 
-// Without a fix captured receivers give 3750 km and 20 m/s, and call it valid.
+// The accuracies alone, alike in all directions: there is no geometry where satellites are not in the solution.
+void put_round_covariance(const Fix& fix, NavCov& m) {
+    const double level = std::pow(fix.horizontal_accuracy.value(), 2) / 2;
+    const double speed = std::pow(fix.speed_accuracy.value(), 2) / 3;
+    m.pos_cov = covariance(level, level, 0, std::pow(fix.vertical_accuracy.value(), 2));
+    m.vel_cov = covariance(speed, speed, 0, speed);
+}
+
+// Before the first fix captured receivers give 3750 km and 20 m/s, and call it valid.
 NavCov solution_covariance(const ReportContext& context) {
     constexpr double unknown_m = 3750e3, unknown_mps = 20;
     const Fix& fix = context.state.epoch.fix;
@@ -47,9 +55,9 @@ NavCov solution_covariance(const ReportContext& context) {
     m.pos_cov_valid = m.vel_cov_valid = 1;
     m.pos_cov = covariance(unknown_m * unknown_m, unknown_m * unknown_m, 0, unknown_m * unknown_m);
     m.vel_cov = covariance(unknown_mps * unknown_mps, unknown_mps * unknown_mps, 0, unknown_mps * unknown_mps);
+    if (!estimates_known(context.state)) return m;
+    put_round_covariance(fix, m);
     if (fix.type == FixType::time_only && base_place(context.config, context.state.survey)) {
-        const double level = std::pow(fix.horizontal_accuracy.value(), 2) / 2;
-        m.pos_cov = covariance(level, level, 0, std::pow(fix.vertical_accuracy.value(), 2));
         m.vel_cov = {};
         return m;
     }

@@ -1,6 +1,7 @@
 // What a receiver tells after its fix is lost, and after a start without one.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <tuple>
 
 #include "firmware/state_tracker.hpp"
@@ -92,6 +93,22 @@ TEST(LostFix, LetsTheClockRunOnByItsDrift) {
         EXPECT_NEAR(r.told.report<NavClock>().t_acc, accuracy + 10 * epoch, 1.1) << epoch;
     }
     EXPECT_EQ(r.told.report<NavPvt>().fix_type, 0);
+}
+
+// Coasting, as dead reckoning and then without a fix.
+TEST(LostFix, HasTheCovariancesOfTheAccuraciesThatItTells) {
+    LosingReceiver r;
+    r.step();
+    r.lose();
+    for (int epoch = 1; epoch <= 5; ++epoch) {
+        r.step();
+        const auto pvt = r.told.report<NavPvt>();
+        const auto m = r.told.report<NavCov>();
+        EXPECT_EQ(pvt.fix_type, epoch <= 2 ? 1 : 0);
+        EXPECT_NEAR(std::sqrt(m.pos_cov[0] + m.pos_cov[3]), pvt.h_acc * 1e-3, 1e-2) << epoch;
+        EXPECT_NEAR(std::sqrt(m.pos_cov[5]), pvt.v_acc * 1e-3, 1e-2) << epoch;
+        EXPECT_NEAR(std::sqrt(m.vel_cov[0] + m.vel_cov[3] + m.vel_cov[5]), pvt.s_acc * 1e-3, 1e-2) << epoch;
+    }
 }
 
 TEST(LostFix, HasNoEstimateThatIsWorseThanThatOfNoSolution) {
