@@ -148,12 +148,14 @@ void copy_bits(const BitWriter& from, std::size_t first, std::size_t count, BitW
 }  // namespace
 
 std::optional<int> inav_word_ending(Signal signal, GpsTime end) {
-    const Nanoseconds tow = gst_week_and_tow(end - pair_length).tow;
+    const bool e5b = signal == Signal::e5b;
+    const std::chrono::seconds late{e5b ? 0 : 1};
+    const Nanoseconds tow = gst_week_and_tow(end - pair_length - late).tow;
     if (tow % pair_length != Nanoseconds(0)) return std::nullopt;
     constexpr std::array<int, 15> of_e1{2, 4, 6, 0, 0, 0, 0, 0, 0, 0, 1, 3, 5, 0, 0};
     constexpr std::array<int, 15> of_e5b{1, 3, 5, 0, 0, 0, 0, 0, 0, 0, 2, 4, 6, 0, 0};
     const auto place = static_cast<std::size_t>(tow / pair_length % 15);
-    return signal == Signal::e5b ? of_e5b[place] : of_e1[place];
+    return e5b ? of_e5b[place] : of_e1[place];
 }
 
 InavWords inav_pages(const InavData& data, int word, GpsTime end) {

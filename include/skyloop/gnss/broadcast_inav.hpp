@@ -24,7 +24,9 @@ struct InavData {
 /// The word that a signal sends in the pair of pages that ends with an instant, in the order of a nominal subframe of
 /// 30 s (tables 37 and 38). Almanacs (words 7 to 10) and what the ICD reserves are sent as spare words.
 /// @param signal Signal::l1 or Signal::e5b
-/// @return 0 … 6; nothing when no pair ends then: they are of 2 s from the start of the week on
+/// @return 0 … 6; nothing when no pair ends then: they are of 2 s from the start of the week on with E5b-I, from a
+/// second
+///     later on with E1-B, as in captures (word 5 tells 25 s of each 30, word 6 tells 5 s)
 std::optional<int> inav_word_ending(Signal signal, GpsTime end);
 
 /// The pair of pages with the words 1 to 6 (tables 39 to 45) or the spare word 0 with its time. Values that do not fit

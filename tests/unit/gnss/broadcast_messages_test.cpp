@@ -161,16 +161,52 @@ TEST(BroadcastMessages, TakeWhateverARecordHolds) {
     }
 }
 
+// E1-B has its words a second later than E5b-I, in another order (OS SIS ICD, tables 37 and 38).
 TEST(BroadcastInav, WordsFollowTheSubframe) {
     const GpsTime start = to_gps_time(2300, 3000.0);
+    const auto second = [start](int count) { return start + std::chrono::seconds(count); };
     std::vector<int> e1, e5b;
     for (int pair = 1; pair <= 15; ++pair) {
-        e1.push_back(inav_word_ending(Signal::l1, start + std::chrono::seconds(2 * pair)).value());
-        e5b.push_back(inav_word_ending(Signal::e5b, start + std::chrono::seconds(2 * pair)).value());
+        e1.push_back(inav_word_ending(Signal::l1, second(2 * pair + 1)).value());
+        e5b.push_back(inav_word_ending(Signal::e5b, second(2 * pair)).value());
     }
     EXPECT_EQ(e1, (std::vector{2, 4, 6, 0, 0, 0, 0, 0, 0, 0, 1, 3, 5, 0, 0}));
     EXPECT_EQ(e5b, (std::vector{1, 3, 5, 0, 0, 0, 0, 0, 0, 0, 2, 4, 6, 0, 0}));
-    EXPECT_FALSE(inav_word_ending(Signal::l1, start + std::chrono::seconds(1)));
+    EXPECT_FALSE(inav_word_ending(Signal::l1, second(2)));
+    EXPECT_FALSE(inav_word_ending(Signal::e5b, second(1)));
+    EXPECT_FALSE(inav_word_ending(Signal::l1, second(1) + std::chrono::milliseconds(500)));
+}
+
+// The last word of E1-B of a week ends a second into the next.
+TEST(BroadcastInav, WordsOverTheTurnOfAWeek) {
+    EXPECT_EQ(inav_word_ending(Signal::l1, to_gps_time(2300, 1.0)), 0);
+    EXPECT_EQ(inav_word_ending(Signal::l1, to_gps_time(2300, 3.0)), 2);
+    EXPECT_EQ(inav_word_ending(Signal::e5b, to_gps_time(2300, 2.0)), 1);
+}
+
+// As a ZED-F9P in Besançon received them: the times of the words on E1-B are odd, word 5 at 25 s of 30, word 6 at 5 s.
+TEST(BroadcastInav, TimesOfE1AreOdd) {
+    const BroadcastIonosphere none;
+    const KeplerEphemeris record;
+    int told = 0;
+    for (int second = 1; second <= 60; ++second) {
+        const GpsTime end = to_gps_time(2300, 3000.0 + second);
+        const std::optional<int> word = inav_word_ending(Signal::l1, end);
+        if (word != 5 && word != 6) continue;
+        const InavWords pages = inav_pages({record, none, LeapSeconds::announced()}, *word, end);
+        // Both have their time across the border of the pages: even bits 2 … 113, then odd ones from 2 on.
+        const auto bit = [&pages](int place) {
+            const int at = place < 112 ? place + 2 : place - 112 + 128 + 2;
+            return pages[static_cast<std::size_t>(at / 32)] >> (31 - at % 32) & 1;
+        };
+        const int first = *word == 5 ? 85 : 105;
+        std::uint32_t tow = 0;
+        for (int i = 0; i < 20; ++i)
+            tow = tow << 1 | bit(first + i);
+        EXPECT_EQ(tow % 30, *word == 5 ? 25u : 5u);
+        ++told;
+    }
+    EXPECT_EQ(told, 4);
 }
 
 }  // namespace
