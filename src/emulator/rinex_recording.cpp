@@ -19,7 +19,8 @@ KeplerEphemeris ephemeris_of_almanac(const KeplerEphemeris& almanac, GpsTime tim
     record.iode = record.iodc = static_cast<int>(number % issues);
     // In the run the almanac is the truth.
     record.accuracy_m = usual_accuracy_m;
-    record.fit_interval_h = usual_fit_h;
+    // Of QZSS a flag, whose 0 is its usual two hours.
+    record.fit_interval_h = record.satellite.constellation == Constellation::qzss ? 0 : usual_fit_h;
     return record;
 }
 

@@ -57,16 +57,27 @@ double tow_of(GpsTime time) { return week_and_tow(time).tow_seconds(); }
 
 std::uint64_t week_bits(GpsTime time) { return static_cast<std::uint64_t>(week_and_tow(time).week); }
 
+bool of_qzss(const KeplerEphemeris& r) { return r.satellite.constellation == Constellation::qzss; }
+
+// The curve was fitted to more than the usual four hours, of QZSS two. Of QZSS records hold the flag itself
+// (RINEX 3.05, table A12), some the hours.
+bool long_fit(const KeplerEphemeris& r) {
+    if (!of_qzss(r)) return r.fit_interval_h > 4;
+    return r.fit_interval_h == 1 || r.fit_interval_h > 2;
+}
+
 BitWriter clock_fields(const KeplerEphemeris& r, GpsTime end) {
-    constexpr std::uint64_t p_code_on_l2 = 1;
+    // QZSS has L2C alone there, always (IS-QZSS-PNT, LNAV, subframe 1).
+    const std::uint64_t code_on_l2 = of_qzss(r) ? 2 : 1, no_data_on_p = of_qzss(r) ? 1 : 0;
     const auto issue = static_cast<std::uint64_t>(r.iodc);
     BitWriter bits;
     bits.put(week_bits(end - std::chrono::seconds(6)), 10);
-    bits.put(p_code_on_l2, 2);
+    bits.put(code_on_l2, 2);
     bits.put_signed(broadcast::accuracy_index(r.accuracy_m), 4);
     bits.put_signed(r.health, 6);
     bits.put(issue >> 8, 2);
-    bits.put(0, 24 + 24 + 24);
+    bits.put(no_data_on_p, 1);
+    bits.put(0, 23 + 24 + 24);
     bits.put(0, 16);
     put_scaled(bits, r.tgd, 8, power_of_two(-31));
     bits.put(issue, 8);
@@ -88,8 +99,7 @@ BitWriter first_orbit_fields(const KeplerEphemeris& r) {
     put_scaled(bits, r.cus, 16, power_of_two(-29));
     put_scaled_unsigned(bits, r.sqrt_a, 32, power_of_two(-19));
     put_scaled_unsigned(bits, tow_of(r.toe), 16, 16);
-    // A flag: longer than the usual four hours, two of QZSS.
-    bits.put(r.fit_interval_h > 4 ? 1 : 0, 1);
+    bits.put(long_fit(r) ? 1 : 0, 1);
     constexpr std::uint64_t no_offset_age = 31;
     bits.put(no_offset_age, 5);
     return bits;
@@ -147,7 +157,7 @@ LnavWords lnav_ephemeris_subframe(const KeplerEphemeris& record, int subframe, G
 namespace {
 
 constexpr int page_count = 25;
-constexpr std::uint64_t data_id = 1;
+constexpr int qzss_satellites = 10;
 constexpr double almanac_step_s = 4096;
 
 struct LnavPage {
@@ -160,7 +170,7 @@ struct LnavPage {
     }
     [[nodiscard]] std::optional<KeplerEphemeris> record(int number) const {
         if (system.source == nullptr) return std::nullopt;
-        const auto found = system.source->ephemeris({Constellation::gps, number}, time);
+        const auto found = system.source->ephemeris({system.of, number}, time);
         if (!found || !std::holds_alternative<KeplerEphemeris>(*found)) return std::nullopt;
         return std::get<KeplerEphemeris>(*found);
     }
@@ -168,33 +178,49 @@ struct LnavPage {
         const auto found = record(number);
         return found && found->healthy() ? 0 : 0b111111;
     }
+    [[nodiscard]] bool of_qzss() const { return system.of == Constellation::qzss; }
+    void put_head(BitWriter& bits, std::uint64_t page_id) const {
+        bits.put(of_qzss() ? 3 : 1, 2);  // the data id
+        bits.put(page_id, 6);
+    }
 };
 
-void put_page_head(BitWriter& bits, std::uint64_t page_id) {
-    bits.put(data_id, 2);
-    bits.put(page_id, 6);
-}
-
-BitWriter empty_page() {
+BitWriter empty_page(const LnavPage& page) {
     BitWriter bits;
-    put_page_head(bits, 0);
+    page.put_head(bits, 0);
     bits.put(0xAAAA, 16);
     for (int word = 4; word <= 10; ++word)
         bits.put(0xAAAAAA, data_bits);
     return bits;
 }
 
+// What eccentricity and inclination of an almanac are told from.
+struct AlmanacReference {
+    double e = 0, inclination = 0.3 * std::numbers::pi;
+};
+
+// Of QZSS two orbits: quasi-zenith ones, and from satellite 7 on geostationary ones (IS-QZSS-PNT, LNAV, almanac).
+AlmanacReference almanac_reference(const LnavPage& page, int number) {
+    if (!page.of_qzss()) return {};
+    return number < 7 ? AlmanacReference{0.06, 0.25 * std::numbers::pi} : AlmanacReference{0, 0};
+}
+
 BitWriter almanac_page(const LnavPage& page, int number) {
     const std::optional<KeplerEphemeris> found = page.record(number);
-    if (!found) return empty_page();
+    if (!found) return empty_page(page);
+    const AlmanacReference base = almanac_reference(page, number);
     const GpsTime reference = page.reference();
     const KeplerEphemeris r = carried_almanac(*found, reference);
 
     BitWriter bits;
-    put_page_head(bits, static_cast<std::uint64_t>(number));
-    put_scaled_unsigned(bits, r.e, 16, power_of_two(-21));
+    page.put_head(bits, static_cast<std::uint64_t>(number));
+    if (base.e > 0) {
+        put_scaled(bits, r.e - base.e, 16, power_of_two(-21));
+    } else {
+        put_scaled_unsigned(bits, r.e, 16, power_of_two(-21));
+    }
     put_scaled_unsigned(bits, tow_of(reference), 8, almanac_step_s);
-    put_semicircles(bits, r.i0 - 0.3 * std::numbers::pi, 16, -19);
+    put_semicircles(bits, r.i0 - base.inclination, 16, -19);
     put_semicircles(bits, r.omega_dot, 16, -38);
     bits.put(r.healthy() ? 0 : 0xFF, 8);
     put_scaled_unsigned(bits, r.sqrt_a, 24, power_of_two(-11));
@@ -212,11 +238,13 @@ BitWriter almanac_page(const LnavPage& page, int number) {
 // Page 25 of subframe 5.
 BitWriter first_health_page(const LnavPage& page) {
     BitWriter bits;
-    put_page_head(bits, 51);
+    page.put_head(bits, 51);
     put_scaled_unsigned(bits, tow_of(page.reference()), 8, almanac_step_s);
     bits.put(week_bits(page.reference()), 8);
-    for (int number = 1; number <= 24; ++number)
+    const int told = page.of_qzss() ? qzss_satellites : 24;
+    for (int number = 1; number <= told; ++number)
         bits.put(page.health(number), 6);
+    bits.put(0, 6 * (24 - told));
     return bits;
 }
 
@@ -224,7 +252,7 @@ BitWriter first_health_page(const LnavPage& page) {
 BitWriter second_health_page(const LnavPage& page) {
     constexpr std::uint64_t encrypted_and_new = 0b1001;  // block II and later, anti-spoofing on
     BitWriter bits;
-    put_page_head(bits, 63);
+    page.put_head(bits, 63);
     for (int number = 1; number <= 32; ++number)
         bits.put(page.record(number) ? encrypted_and_new : 0, 4);
     bits.put(0, 2);
@@ -256,10 +284,13 @@ LeapChange leap_change(const LeapSeconds& leap_seconds, GpsTime time) {
 // Page 18 of subframe 4; without coefficients zeros, as satellites of old sent.
 BitWriter ionosphere_page(const LnavPage& page) {
     KlobucharCoefficients c{};
-    if (page.system.source != nullptr) c = page.system.source->klobuchar().value_or(c);
+    if (page.system.source != nullptr) {
+        const BroadcastIonosphere& known = page.system.source->ionosphere();
+        c = (page.of_qzss() ? known.qzss : known.gps).value_or(c);
+    }
     const LeapChange change = leap_change(page.system.leap_seconds, page.time);
     BitWriter bits;
-    put_page_head(bits, 56);
+    page.put_head(bits, 56);
     constexpr std::array<int, 4> alpha_exponents{-30, -27, -24, -24}, beta_exponents{11, 14, 16, 16};
     for (std::size_t i = 0; i < 4; ++i)
         put_scaled(bits, c.alpha[i], 8, power_of_two(alpha_exponents[i]));
@@ -276,23 +307,29 @@ BitWriter ionosphere_page(const LnavPage& page) {
     return bits;
 }
 
+BitWriter gps_page(const LnavPage& page, int subframe, int number) {
+    if (subframe == 5) return number < page_count ? almanac_page(page, number) : first_health_page(page);
+    if (number == page_count) return second_health_page(page);
+    if (number == 18) return ionosphere_page(page);
+    if (number >= 2 && number <= 10 && number != 6) return almanac_page(page, number <= 5 ? number + 23 : number + 22);
+    return empty_page(page);
+}
+
+// QZSS may send any page in either subframe at any time; here it has its own where GPS has those.
+BitWriter page_of(const LnavPage& page, int subframe, int number) {
+    if (!page.of_qzss()) return gps_page(page, subframe, number);
+    if (subframe == 5 && number <= qzss_satellites) return almanac_page(page, number);
+    if (subframe == 5 && number == page_count) return first_health_page(page);
+    return subframe == 4 && number == 18 ? ionosphere_page(page) : empty_page(page);
+}
+
 }  // namespace
 
 LnavWords lnav_system_subframe(const LnavSystemData& system, int subframe, GpsTime end) {
     const LnavPage page{system, end};
     const auto frame = week_and_tow(end - std::chrono::seconds(6)).tow / std::chrono::seconds(30);
     const int number = static_cast<int>(frame % page_count) + 1;
-    BitWriter bits = empty_page();
-    if (subframe == 5) {
-        bits = number < page_count ? almanac_page(page, number) : first_health_page(page);
-    } else if (number == page_count) {
-        bits = second_health_page(page);
-    } else if (number == 18) {
-        bits = ionosphere_page(page);
-    } else if (number >= 2 && number <= 10 && number != 6) {
-        bits = almanac_page(page, number <= 5 ? number + 23 : number + 22);
-    }
-    return lnav_words(with_header(subframe, end, bits));
+    return lnav_words(with_header(subframe, end, page_of(page, subframe, number)));
 }
 
 }  // namespace skyloop

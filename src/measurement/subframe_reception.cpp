@@ -42,7 +42,7 @@ struct Sender {
         const auto subframe = subframe_ending(week_and_tow(end).tow);
         if (!subframe) return {};
         if (*subframe <= 3) return as_vector(lnav_ephemeris_subframe(record, *subframe, end));
-        return as_vector(lnav_system_subframe({&sent, leap_seconds}, *subframe, end));
+        return as_vector(lnav_system_subframe({&sent, leap_seconds, record.satellite.constellation}, *subframe, end));
     }
     [[nodiscard]] std::vector<std::uint32_t> d1(const KeplerEphemeris& record) const {
         const auto subframe = subframe_ending(bdt_week_and_tow(end).tow);

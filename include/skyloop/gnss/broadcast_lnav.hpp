@@ -32,12 +32,14 @@ LnavWords lnav_ephemeris_subframe(const KeplerEphemeris& record, int subframe, G
 struct LnavSystemData {
     const NavigationSource* source = nullptr;  ///< of almanacs and health
     LeapSeconds leap_seconds = LeapSeconds::announced();
+    Constellation of = Constellation::gps;  ///< gps or qzss
 };
 
 /// Subframes 4 and 5 with the page that belongs to their time, 25 pages in 12.5 minutes from the start of the week:
 /// almanacs (20.3.3.5.1.2), health (20.3.3.5.1.3), ionosphere and UTC on page 18 of subframe 4 (20.3.3.5.1.6 and .7);
 /// alternating bits on all others and for satellites that the source does not have. An almanac is made from the
-/// satellite's record.
+/// satellite's record. QZSS tells of its own: data id 3, almanacs of ten satellites and their health in subframe 5, its
+/// own ionosphere, and nothing else (IS-QZSS-PNT, LNAV).
 /// @param subframe 4 or 5
 LnavWords lnav_system_subframe(const LnavSystemData& system, int subframe, GpsTime end);
 

@@ -44,11 +44,11 @@ struct KeplerEphemeris {
     double tgd = 0;                    ///< s; TGD, of NavIC that of S band, of Galileo BGD(E1,E5a), of BeiDou TGD1
     double tgd2 = 0;                   ///< s; of Galileo BGD(E1,E5b), of BeiDou TGD2
 
-    int iode = 0;           ///< of Galileo IODnav, of BeiDou AODE
-    int iodc = 0;           ///< of BeiDou AODC
-    int health = 0;         ///< the system's own bits; see healthy()
-    double accuracy_m = 0;  ///< user range or signal-in-space accuracy, m; negative: unknown
-    double fit_interval_h = 0;
+    int iode = 0;               ///< of Galileo IODnav, of BeiDou AODE
+    int iodc = 0;               ///< of BeiDou AODC
+    int health = 0;             ///< the system's own bits; see healthy()
+    double accuracy_m = 0;      ///< user range or signal-in-space accuracy, m; negative: unknown
+    double fit_interval_h = 0;  ///< of QZSS a flag: 1 is more than two hours (RINEX 3.05, table A12)
     /// No bit is set; of Galileo, of the signal that carries the message: E1-B (I/NAV) or E5a (F/NAV), RINEX 3.05,
     /// table A8. The last bit of QZSS is about L1C/B, which nobody here tracks and the satellites send unhealthy for
     /// years (IS-QZSS-PNT-004, SV health).

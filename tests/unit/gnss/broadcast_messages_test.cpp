@@ -96,6 +96,95 @@ TEST(BroadcastLnav, HealthPagesTellWhoIsThere) {
     EXPECT_EQ(page_data(second, 3) >> 16, 0x40u + 63);
 }
 
+// Two quasi-zenith satellites and a geostationary one beside GPS.
+class WithQzss : public NominalConstellation {
+public:
+    [[nodiscard]] const BroadcastIonosphere& ionosphere() const override { return ionosphere_; }
+    [[nodiscard]] std::optional<Ephemeris> ephemeris(SatelliteId satellite, GpsTime time) const override {
+        if (satellite.constellation != Constellation::qzss) return NominalConstellation::ephemeris(satellite, time);
+        if (satellite.number != 2 && satellite.number != 4 && satellite.number != 7) return std::nullopt;
+        KeplerEphemeris r;
+        r.satellite = satellite;
+        r.toe = r.toc = to_gps_time(2023, 750.0 * 100);
+        r.sqrt_a = 6493;
+        r.e = satellite.number == 7 ? 0.0002 : 0.075;
+        r.i0 = satellite.number == 7 ? 0.0014 : 0.713;
+        r.health = satellite.number == 4 ? 0b100000 : 1;  // L1C/B alone does not count
+        return r;
+    }
+
+private:
+    BroadcastIonosphere ionosphere_ = [] {
+        BroadcastIonosphere both{KlobucharCoefficients{{std::ldexp(12, -30)}, {}}};
+        both.qzss = KlobucharCoefficients{{std::ldexp(11, -30), std::ldexp(-2, -27)}, {std::ldexp(50, 11)}};
+        return both;
+    }();
+};
+
+LnavWords qzss_page(int subframe, int page) {
+    static const WithQzss source;
+    const GpsTime end = to_gps_time(2023, 750.0 * 100 + (page - 1) * 30 + (subframe == 4 ? 24 : 30));
+    return lnav_system_subframe({&source, LeapSeconds::announced(), Constellation::qzss}, subframe, end);
+}
+
+TEST(BroadcastLnav, QzssTellsItsOwnIonosphere) {
+    const LnavWords words = qzss_page(4, 18);
+    EXPECT_EQ(page_data(words, 3), 0xC0u << 16 | 56u << 16 | 11u << 8 | 0xFE);  // data 11, page 56
+    EXPECT_EQ(page_data(words, 4) & 0xFF, 50u);
+    EXPECT_EQ(page_data(words, 10) >> 16, 18u);
+}
+
+TEST(BroadcastLnav, QzssTellsItsOwnAlmanacs) {
+    const LnavWords zenith = qzss_page(5, 2), stationary = qzss_page(5, 7);
+    EXPECT_EQ(page_data(zenith, 3) >> 16, 0xC0u + 2);
+    EXPECT_NEAR(std::ldexp(page_data(zenith, 3) & 0xFFFF, -21), 0.075 - 0.06, 1e-6);
+    EXPECT_NEAR(std::ldexp(static_cast<double>(complement(page_data(zenith, 4) & 0xFFFF, 16)), -19),
+                0.713 / std::numbers::pi - 0.25, 2e-6);
+    EXPECT_EQ(page_data(stationary, 3) >> 16, 0xC0u + 7);
+    EXPECT_NEAR(std::ldexp(page_data(stationary, 3) & 0xFFFF, -21), 0.0002, 1e-6);
+    EXPECT_NEAR(std::ldexp(page_data(stationary, 4) & 0xFFFF, -19), 0.0014 / std::numbers::pi, 2e-6);
+    // Of GPS's pages none: dummies of QZSS are there.
+    for (const auto& [subframe, page] : {std::pair{5, 1}, {5, 12}, {4, 2}, {4, 25}})
+        EXPECT_EQ(page_data(qzss_page(subframe, page), 3), 0xC0AAAAu) << subframe << ' ' << page;
+}
+
+TEST(BroadcastLnav, QzssTellsItsOwnHealth) {
+    const LnavWords words = qzss_page(5, 25);
+    EXPECT_EQ(page_data(words, 3) >> 16, 0xC0u + 51);
+    EXPECT_EQ(page_data(words, 4), 0xFC0FFFu);  // 1 … 4: not there, well, not there, ill
+    EXPECT_EQ(page_data(words, 5), 0xFFF03Fu);
+}
+
+// Of QZSS a flag, as RINEX has it, or hours beyond two; of GPS hours beyond four.
+TEST(BroadcastLnav, FitIntervalIsAFlag) {
+    const auto flag = [](Constellation of, double fit) {
+        KeplerEphemeris r;
+        r.satellite = {of, 2};
+        r.fit_interval_h = fit;
+        return page_data(lnav_ephemeris_subframe(r, 2, to_gps_time(2300, 12.0)), 10) >> 7 & 1;
+    };
+    EXPECT_EQ(flag(Constellation::gps, 0), 0u);
+    EXPECT_EQ(flag(Constellation::gps, 1), 0u);
+    EXPECT_EQ(flag(Constellation::gps, 4), 0u);
+    EXPECT_EQ(flag(Constellation::gps, 6), 1u);
+    EXPECT_EQ(flag(Constellation::qzss, 0), 0u);
+    EXPECT_EQ(flag(Constellation::qzss, 1), 1u);
+    EXPECT_EQ(flag(Constellation::qzss, 2), 0u);
+    EXPECT_EQ(flag(Constellation::qzss, 4), 1u);
+}
+
+TEST(BroadcastLnav, QzssHasL2cAlone) {
+    KeplerEphemeris r;
+    r.satellite = {Constellation::qzss, 2};
+    LnavWords words = lnav_ephemeris_subframe(r, 1, to_gps_time(2300, 6.0));
+    EXPECT_EQ(page_data(words, 3) >> 12 & 3, 2u);
+    EXPECT_EQ(page_data(words, 4) >> 23, 1u);
+    r.satellite.constellation = Constellation::gps;
+    words = lnav_ephemeris_subframe(r, 1, to_gps_time(2300, 6.0));
+    EXPECT_EQ(page_data(words, 3) >> 12 & 3, 1u);
+    EXPECT_EQ(page_data(words, 4) >> 23, 0u);
+}
+
 TEST(BroadcastGlonass, CheckBitsAreAHammingCode) {
     const GlonassWords ours = glonass_string({}, 5, to_gps_time(2023, 150000.0 + 18), LeapSeconds::announced());
     unsigned places = 0, ones = 0, place = 2;

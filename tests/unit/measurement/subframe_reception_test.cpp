@@ -102,6 +102,23 @@ TEST(SubframeReception, AGapBeginsAnew) {
     EXPECT_TRUE(reception.receive(of_all(later), sent, later).empty());
 }
 
+TEST(SubframeReception, QzssSendsItsOwnPages) {
+    const test::FourSystems sent({Constellation::gps, Constellation::qzss});
+    const SatelliteId qzss_sent{Constellation::qzss, 2};
+    SubframeReception reception;
+    int pages = 0;
+    for (int i = 0; i <= 31; ++i) {
+        const GpsTime now = frame_start + std::chrono::milliseconds(1000 * i + 100);
+        const Observations o{now, false, {locked_signal(gps_sent, Signal::l1), locked_signal(qzss_sent, Signal::l1)}};
+        for (const Subframe& s : reception.receive(o, sent, now)) {
+            if ((s.words[1] >> 8 & 7) < 4) continue;
+            EXPECT_EQ(s.words[2] >> 28 & 3, s.satellite == qzss_sent ? 3u : 1u);
+            ++pages;
+        }
+    }
+    EXPECT_EQ(pages, 4);
+}
+
 TEST(SubframeReception, SendsNothingOfSignalsWithOtherMessages) {
     const test::FourSystems sent;
     SubframeReception reception;
