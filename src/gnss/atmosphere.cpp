@@ -113,6 +113,33 @@ double niell_height_correction(MslHeight height, Angle elevation) {
     return (1 / std::sin(elevation.rad()) - marini(niell_height, elevation)) * height_km;
 }
 
+namespace {
+
+// Marini's fraction and its slope over sin e.
+struct MariniTangent {
+    double value = 0, slope = 0;
+};
+
+MariniTangent marini_tangent(const MappingCoefficients& m, Angle elevation) {
+    const double s = std::sin(elevation.rad());
+    const double inner = s + m.c, middle = s + m.b / inner, outer = s + m.a / middle;
+    const double middle_slope = 1 - m.b / (inner * inner);
+    const double outer_slope = 1 - m.a / (middle * middle) * middle_slope;
+    const double value = marini(m, elevation);
+    return {value, -value / outer * outer_slope};
+}
+
+}  // namespace
+
+double height_correction_to_horizon(MslHeight height, Angle elevation) {
+    constexpr Angle lowest_fitted = Angle::degrees(3);
+    if (elevation >= lowest_fitted) return niell_height_correction(height, elevation);
+    const double from = std::sin(lowest_fitted.rad());
+    const double slope = -1 / (from * from) - marini_tangent(niell_height, lowest_fitted).slope;
+    const double height_km = height.above_sea_level.value() / 1000;
+    return niell_height_correction(height, lowest_fitted) + slope * (std::sin(elevation.rad()) - from) * height_km;
+}
+
 double niell_hydrostatic_mapping(const MappingSite& site, Angle elevation) {
     return marini(niell_hydrostatic(site.latitude, site.day_of_year), elevation) +
            niell_height_correction(site.height, elevation);

@@ -28,7 +28,7 @@ struct EpochMapping {
 
     [[nodiscard]] TroposphereMapping at(Angle elevation) const {
         TroposphereMapping mapping{marini(hydrostatic, elevation), marini(wet, elevation)};
-        if (height) mapping.hydrostatic += niell_height_correction(*height, elevation);
+        if (height) mapping.hydrostatic += height_correction_to_horizon(*height, elevation);
         return mapping;
     }
 };
@@ -122,11 +122,11 @@ void TroposphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const Truth
         zenith.wet += Metres(residual_factor_ * vapour_above(height) * (wander_.at(truth.time) + walk_.at(truth.time)));
     const EpochMapping mapping = epoch_mapping(parameters_, truth.geodetic, height, utc);
     for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
-        const SkyDirection direction{sky.satellites[i].azimuth, above_horizon(sky.satellites[i].elevation)};
+        const SkyDirection direction{sky.satellites[i].azimuth, std::max(sky.satellites[i].elevation, Angle())};
         Metres& delay = arrivals.satellites[i].tropo_delay;
         if (parameters_.mapping == TroposphereMappingModel::cosecant) {
             // The very numbers of saastamoinen_delay(), bit by bit.
-            delay = zenith.total() / std::sin(direction.elevation.rad());
+            delay = zenith.total() / std::sin(above_horizon(direction.elevation).rad());
         } else {
             const TroposphereMapping m = mapping.at(direction.elevation);
             delay = zenith.hydrostatic * m.hydrostatic + zenith.wet * m.wet;

@@ -9,7 +9,7 @@
 namespace skyloop {
 namespace {
 
-constexpr Angle lowest_mapped_elevation = Angle::degrees(0.1);
+constexpr Angle lowest_divisor = Angle::degrees(0.1);  // of 1/sin e
 
 MslHeight sea_level_height(const Geodetic& place, const Geoid* geoid) {
     return above_sea_level(place.height, geoid ? geoid->undulation(place.latitude, place.longitude) : Metres(0));
@@ -91,14 +91,14 @@ Metres SiteCorrections::ionosphere(Constellation constellation, const SkyDirecti
 }
 
 Metres SiteCorrections::troposphere(Angle elevation) const {
-    const Angle e = std::max(elevation, lowest_mapped_elevation);
+    const Angle e = std::max(elevation, Angle());
     switch (parameters_.troposphere) {
         case TroposphereCorrection::none:
             return Metres(0);
         case TroposphereCorrection::saastamoinen:
-            return zenith_.total() / std::sin(e.rad());
+            return zenith_.total() / std::sin(std::max(e, lowest_divisor).rad());
         case TroposphereCorrection::niell:
-            return zenith_.hydrostatic * (marini(hydrostatic_, e) + niell_height_correction(height_, e)) +
+            return zenith_.hydrostatic * (marini(hydrostatic_, e) + height_correction_to_horizon(height_, e)) +
                    zenith_.wet * marini(wet_, e);
     }
     return Metres(0);

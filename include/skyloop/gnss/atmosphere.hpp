@@ -44,6 +44,10 @@ MappingCoefficients niell_wet(Angle latitude);
 /// What a height adds to the hydrostatic mapping: [1/sin e − m(e; a_ht, b_ht, c_ht)]·H with H in kilometres
 /// (Niell 1996, equations 6 and 7).
 double niell_height_correction(MslHeight height, Angle elevation);
+/// The same from 3° on. Below, where nothing was fitted and 1/sin e grows without bound, it goes on along its tangent
+/// over sin e, up to 0.16 for each kilometre at the horizon (our decision).
+/// @param elevation from 0° on
+double height_correction_to_horizon(MslHeight height, Angle elevation);
 
 /// Where and when a mapping function is taken.
 struct MappingSite {

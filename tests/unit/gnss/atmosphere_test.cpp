@@ -87,6 +87,25 @@ TEST(Niell, MapsOneAtTheZenith) {
     EXPECT_NEAR(niell_wet_mapping(site.latitude, Angle::degrees(90)), 1, 1e-12);
 }
 
+TEST(Niell, HeightCorrectionIsHisFromThreeDegreesOn) {
+    for (const double degrees : {3.0, 3.001, 5.0, 20.0, 90.0})
+        EXPECT_EQ(height_correction_to_horizon({Metres(4000)}, Angle::degrees(degrees)),
+                  niell_height_correction({Metres(4000)}, Angle::degrees(degrees)));
+}
+
+TEST(Niell, HeightCorrectionGoesOnSmoothlyToTheHorizon) {
+    const auto at = [](double sine) {
+        return height_correction_to_horizon({Metres(1000)}, Angle::radians(std::asin(sine)));
+    };
+    const double fitted = std::sin(Angle::degrees(3).rad()), step = 1e-6;
+    EXPECT_NEAR(at(fitted - 1e-12), at(fitted), 1e-10);
+    const double above = (at(fitted + step) - at(fitted)) / step, below = (at(fitted) - at(fitted - step)) / step;
+    EXPECT_NEAR(below, above, 1e-3);
+    EXPECT_NEAR(at(0), 0.16, 0.005);
+    for (double sine = 0; sine < 0.2; sine += 0.001)
+        EXPECT_GT(at(sine), at(sine + 0.001));
+}
+
 TEST(CofactorMatrix, AgreesWithDilutionOfPrecision) {
     const std::vector<SkyDirection> sky{{Angle::degrees(10), Angle::degrees(70)},
                                         {Angle::degrees(100), Angle::degrees(20)},

@@ -57,6 +57,27 @@ TEST(TroposphereDelay, MapsEachPartByTheModelThatItNames) {
     }
 }
 
+// Niell's 1/sin e made 1200 m of it at 0.01° from a mountain, and a kink where the floor of 0.01° was.
+TEST(TroposphereDelay, IsThatOfAnAtmosphereDownToTheHorizon) {
+    for (const TroposphereMappingModel model : {TroposphereMappingModel::niell, TroposphereMappingModel::gmf}) {
+        const auto delay = [model](double elevation, double height) {
+            return tropo_delay({.mapping = model}, 10, elevation, Geodetic::degrees(35.7, 139.7, height));
+        };
+        for (double height = 0; height <= 9000; height += 1000) {
+            double last = delay(0, height);
+            EXPECT_LT(last, 105) << height;
+            EXPECT_GT(last, 20) << height;
+            EXPECT_LT(delay(0, height + 1000), last) << height;
+            for (double elevation = 0.005; elevation < 4; elevation += 0.005) {
+                const double now = delay(elevation, height);
+                EXPECT_LT(now, last) << elevation;
+                EXPECT_LT(last - now, 0.4) << elevation;
+                last = now;
+            }
+        }
+    }
+}
+
 TEST(TroposphereWeather, ComesFromEachSource) {
     const Geodetic place = test::odessa_place;
     const MslHeight height{place.height.above_ellipsoid};

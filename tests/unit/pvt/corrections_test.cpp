@@ -128,6 +128,8 @@ TEST(RangeCorrections, MapsTheZenithTroposphere) {
     EXPECT_NEAR(niell.at(odessa, noon).troposphere(slanting.elevation).value(), expected, 0.05);
     EXPECT_NEAR(niell.at(odessa, noon).troposphere(Angle::degrees(90)).value(),
                 simple.at(odessa, noon).troposphere(Angle::degrees(90)).value(), 1e-9);
+    EXPECT_LT(niell.at(odessa, noon).troposphere(Angle()).value(), 110);
+    EXPECT_EQ(niell.at(odessa, noon).troposphere(Angle::degrees(-10)), niell.at(odessa, noon).troposphere(Angle()));
     EXPECT_TRUE(std::isfinite(simple.at(odessa, noon).troposphere(Angle::degrees(-10)).value()));
     parameters.troposphere = TroposphereCorrection::none;
     const RangeCorrections off(parameters, {});
