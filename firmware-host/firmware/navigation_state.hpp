@@ -120,7 +120,8 @@ struct ReportContext {
     const ConfigStore& config;
     const NavigationState& state;
     std::span<const PortStatus> ports{};
-    PortId port = PortId::uart1;  ///< by which it leaves
+    PortId port = PortId::uart1;                ///< by which it leaves
+    std::span<const UbxMessageId> following{};  ///< what is due by the port in the same epoch, after it
 };
 
 }  // namespace skyloop::firmware

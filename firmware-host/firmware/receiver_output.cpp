@@ -219,13 +219,15 @@ bool Receiver::Core::is_due(PortUnit& unit, UbxMessageId message, std::uint64_t 
 std::vector<ByteSpan> Receiver::Core::due_messages(PortUnit& unit, const NavigationState& state,
                                                    EpochMessages& made) const {
     read_configured_messages(unit);
-    std::vector<ByteSpan> due;
-    for (const auto& [message, every] : unit.configured.messages) {
-        if (faults_.withheld.contains(message) || !is_due(unit, message, every, state)) continue;
-        const std::vector<Bytes>& messages = made.of(message, unit.id);
-        due.insert(due.end(), messages.begin(), messages.end());
+    std::vector<UbxMessageId> due;
+    for (const auto& [message, every] : unit.configured.messages)
+        if (!faults_.withheld.contains(message) && is_due(unit, message, every, state)) due.push_back(message);
+    std::vector<ByteSpan> frames;
+    for (std::size_t i = 0; i < due.size(); ++i) {
+        const std::vector<Bytes>& messages = made.of(due[i], unit.id, std::span(due).subspan(i + 1));
+        frames.insert(frames.end(), messages.begin(), messages.end());
     }
-    return due;
+    return frames;
 }
 
 void Receiver::Core::tell_antenna_status(const NavigationState& state, GpsTime now) {

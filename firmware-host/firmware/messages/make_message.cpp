@@ -27,10 +27,12 @@ std::vector<Bytes> make_message(UbxMessageId message, const ReportContext& conte
     }
 }
 
-const std::vector<Bytes>& EpochMessages::of(UbxMessageId message, PortId port) {
+const std::vector<Bytes>& EpochMessages::of(UbxMessageId message, PortId port,
+                                            std::span<const UbxMessageId> following) {
     const auto [entry, is_new] = made_.try_emplace(message);
     if (!is_new && message.message_class != class_rtcm) return entry->second;
     context_.port = port;
+    context_.following = following;
     if (message.message_class != class_nmea && message.message_class != class_pubx)
         return entry->second = make_message(message, context_);
     if (!report_) report_.emplace(nmea_report(context_));

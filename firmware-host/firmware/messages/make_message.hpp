@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,8 @@ public:
     /// @param context its parts must outlive this
     explicit EpochMessages(const ReportContext& context) : context_(context) {}
     /// What the port sends. RTCM alone differs by port: a frame tells whether more of the epoch follow.
-    const std::vector<Bytes>& of(UbxMessageId message, PortId port);
+    /// @param following as ReportContext::following; has to outlive this call alone
+    const std::vector<Bytes>& of(UbxMessageId message, PortId port, std::span<const UbxMessageId> following);
 
 private:
     ReportContext context_;

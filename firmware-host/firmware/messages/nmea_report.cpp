@@ -153,7 +153,7 @@ void add_time_and_date(NmeaReport& r) {
 }
 
 void add_position_and_motion(NmeaReport& r) {
-    const auto& [board, config, state, ports, port] = r.context;
+    const auto& [board, config, state, ports, port, following] = r.context;
     const bool any = (config.flag(key::nmea_out_invfix) || state.old_position_shown) && state.position_known;
     const bool beyond_limits = r.solved && config.flag(key::nmea_out_mskfix);
     if (!r.valid && !any && !beyond_limits) {
@@ -224,7 +224,7 @@ UtcTime reported_utc(const ReportContext& context) {
 }
 
 NmeaReport nmea_report(const ReportContext& context) {
-    const auto& [board, config, state, ports, port] = context;
+    const auto& [board, config, state, ports, port, following] = context;
     NmeaReport r{.context = context,
                  .format = nmea_format(board, config),
                  .numbering = board.satellite_numbering,

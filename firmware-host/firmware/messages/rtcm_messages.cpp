@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "firmware/base_place.hpp"
-#include "firmware/config/config_keys.hpp"
+#include "firmware/message_class.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "skyloop/gnss/constants.hpp"
@@ -95,12 +95,18 @@ std::vector<Rtcm3MsmCell> msm_cells(Constellation constellation, const ReportCon
     return cells;
 }
 
-// Whether the port sends a message of observations after this one.
-bool more_follow(std::uint8_t id, const ReportContext& context) {
-    return std::any_of(msm_outputs.begin(), msm_outputs.end(), [&](const MsmOutput& other) {
-        const auto rate = rate_key(UbxMessageId{0xF5, other.id}, context.port);
-        return other.id > id && rate && context.config.has(*rate) && context.config.value(*rate) > 0 &&
-               !msm_cells(other.constellation, context).empty();
+const MsmOutput* msm_output(UbxMessageId message) {
+    if (message.message_class != class_rtcm) return nullptr;
+    const auto found = std::find_if(msm_outputs.begin(), msm_outputs.end(),
+                                    [&](const MsmOutput& candidate) { return candidate.id == message.id; });
+    return found == msm_outputs.end() ? nullptr : &*found;
+}
+
+// Whether another message of observations leaves in this epoch: whoever collects them waits for the last one.
+bool more_follow(const ReportContext& context) {
+    return std::any_of(context.following.begin(), context.following.end(), [&](UbxMessageId other) {
+        const MsmOutput* output = msm_output(other);
+        return output != nullptr && !msm_cells(output->constellation, context).empty();
     });
 }
 
@@ -109,7 +115,7 @@ Bytes observations_message(const MsmOutput& output, const ReportContext& context
     message.number = 1000 + output.id;
     message.station = rtcm_station_of(context);
     message.epoch = msm_epoch(output.constellation, context);
-    message.more = more_follow(output.id, context);
+    message.more = more_follow(context);
     message.cells = msm_cells(output.constellation, context);
     return encode(message);
 }
@@ -139,9 +145,8 @@ std::vector<Bytes> make_rtcm_message(UbxMessageId message, const ReportContext& 
         biases.aligned = true;
         return {encode(biases)};
     }
-    const auto output = std::find_if(msm_outputs.begin(), msm_outputs.end(),
-                                     [&](const MsmOutput& candidate) { return candidate.id == message.id; });
-    if (output == msm_outputs.end()) return {};
+    const MsmOutput* output = msm_output(message);
+    if (output == nullptr) return {};
     Bytes frame = observations_message(*output, context);
     if (frame.empty()) return {};
     return {std::move(frame)};

@@ -34,7 +34,7 @@ bool is_own_sentence(const std::string& text) { return text.starts_with('$'); }
 }  // namespace
 
 std::vector<Bytes> make_text_message(int level, const std::string& text, const ReportContext& context) {
-    const auto& [board, config, state, ports, port] = context;
+    const auto& [board, config, state, ports, port, following] = context;
     std::vector<Bytes> out;
     if (level < 0 || (level > text_debug && level != text_user) || !port_is_on(config, port)) return out;
     const bool nmea = config.flag(key::out_protocol(port, nmea_protocol));

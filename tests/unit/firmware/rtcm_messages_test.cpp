@@ -1,7 +1,12 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
+#include "firmware/receiver.hpp"
 #include "skyloop/geo/geodetic.hpp"
 #include "skyloop/protocol/rtcm3.hpp"
+#include "skyloop/protocol/stream_splitter.hpp"
 #include "ubx_reports.hpp"
 
 namespace skyloop::firmware {
@@ -56,12 +61,58 @@ TEST(RtcmMessages, ObservationsAreInTheTimeOfTheirSystem) {
     EXPECT_TRUE(make_rtcm_message(rtcm_1097, f9.context()).empty());
 }
 
-TEST(RtcmMessages, AllButTheLastOfThePortSayThatMoreFollow) {
-    UbxReport f9 = reference();
-    EXPECT_FALSE(head_of(f9, rtcm_1077).more);
-    f9.config.set(in_ram, *rate_key(rtcm_1127, PortId::uart1), 1);
-    EXPECT_TRUE(head_of(f9, rtcm_1077).more);
-    EXPECT_FALSE(head_of(f9, rtcm_1127).more);
+TEST(RtcmMessages, AllButTheLastOfTheEpochSayThatMoreFollow) {
+    const UbxReport f9 = reference();
+    const auto more = [&](std::vector<UbxMessageId> following) {
+        ReportContext context = f9.context();
+        context.following = following;
+        return decode_msm_header(*parse_rtcm3(make_rtcm_message(rtcm_1077, context).at(0))).value().more;
+    };
+    EXPECT_FALSE(more({}));
+    EXPECT_TRUE(more({rtcm_1127}));
+    EXPECT_FALSE(more({{0x01, 0x07}, rtcm_1230}));
+    // Nothing is heard of Galileo.
+    EXPECT_FALSE(more({rtcm_1097}));
+    EXPECT_TRUE(more({rtcm_1097, rtcm_1127}));
+}
+
+// Messages of the observations in what left a receiver, with their "more follow", by epochs.
+std::vector<std::map<int, bool>> msm_by_epoch(Receiver& receiver, int epochs) {
+    std::vector<std::map<int, bool>> heard;
+    StreamSplitter splitter;
+    for (int i = 0; i < epochs; ++i) {
+        UbxReport report = reference();
+        Epoch& epoch = report.state.epoch;
+        epoch.fix.time += i * 1s;
+        epoch.observations.receive_time += i * 1s;
+        receiver.on_epoch(epoch);
+        heard.emplace_back();
+        for (const Receiver::Sent& sent : receiver.output(epoch.fix.time + 999ms))
+            for (const StreamPiece& piece : splitter.feed(sent.bytes))
+                if (const auto head = decode_msm_header(*parse_rtcm3(piece.bytes)))
+                    heard.back()[head->number] = head->more;
+    }
+    return heard;
+}
+
+// At other rates than the others' and withheld a message does not follow.
+TEST(RtcmMessages, TheLastOfEachEpochIsToldAsSuch) {
+    BoardProfile board = sample_ublox();
+    board.messages = {rtcm_1077, rtcm_1087, rtcm_1097, rtcm_1127};
+    board.config[*rate_key(rtcm_1077, PortId::uart1)] = 1;
+    board.config[*rate_key(rtcm_1087, PortId::uart1)] = 1;
+    board.config[*rate_key(rtcm_1097, PortId::uart1)] = 1;
+    board.config[*rate_key(rtcm_1127, PortId::uart1)] = 3;
+    board.config[key::out_protocol(PortId::uart1, 4)] = 1;
+    Receiver receiver(board, {1});
+    using Heard = std::map<int, bool>;
+    const Heard two{{1077, true}, {1087, false}}, three{{1077, true}, {1087, true}, {1127, false}};
+    EXPECT_THAT(msm_by_epoch(receiver, 5), testing::ElementsAre(three, two, two, three, two));
+    FirmwareFaults faults;
+    faults.withheld = {rtcm_1127};
+    Receiver withholding(board, {1});
+    withholding.set_faults(faults);
+    EXPECT_THAT(msm_by_epoch(withholding, 1), testing::ElementsAre(two));
 }
 
 TEST(RtcmMessages, NothingIsTrueBeforeTimeIsKnown) {
