@@ -68,15 +68,22 @@ std::uint32_t msm_epoch(Constellation constellation, const ReportContext& contex
     return moscow / day_ms << 27 | moscow % day_ms;
 }
 
-// Ranges are told for a whole millisecond of the receiver's clock.
-Rtcm3MsmCell msm_cell(const Observation& o, double past_millisecond_m) {
+// What the receiver's clock is past a whole millisecond, and how fast that grows.
+struct PastMillisecond {
+    double m = 0;
+    MetresPerSecond drift{0};
+};
+
+// Ranges are told for a whole millisecond, and with the clock's error its drift leaves them: the rate has to go with
+// the phase that it is of.
+Rtcm3MsmCell msm_cell(const Observation& o, const PastMillisecond& past) {
     Rtcm3MsmCell cell;
     cell.satellite = o.satellite.number;
     cell.signal = msm_signal(o.satellite.constellation, o.signal);
     cell.wavelength_m = speed_of_light / o.carrier.value();
-    cell.range_m = o.pseudorange->value() - past_millisecond_m;
-    if (o.carrier_phase) cell.phase_range_m = *o.carrier_phase * cell.wavelength_m - past_millisecond_m;
-    if (o.doppler) cell.phase_range_rate = -o.doppler->value() * cell.wavelength_m;
+    cell.range_m = o.pseudorange->value() - past.m;
+    if (o.carrier_phase) cell.phase_range_m = *o.carrier_phase * cell.wavelength_m - past.m;
+    if (o.doppler) cell.phase_range_rate = -o.doppler->value() * cell.wavelength_m - past.drift.value();
     cell.lock_s = o.carrier_phase ? o.lock_time.value() : 0;
     cell.half_cycle_unknown = !o.half_cycle_resolved;
     cell.cno_dbhz = o.cn0.value();
@@ -87,11 +94,12 @@ Rtcm3MsmCell msm_cell(const Observation& o, double past_millisecond_m) {
 
 std::vector<Rtcm3MsmCell> msm_cells(Constellation constellation, const ReportContext& context) {
     const Observations& observations = context.state.epoch.observations;
-    const double past_s = difference(observations.receive_time, msm_time(context)).value();
+    const PastMillisecond past{difference(observations.receive_time, msm_time(context)).value() * speed_of_light,
+                               context.state.epoch.fix.clock_drift};
     std::vector<Rtcm3MsmCell> cells;
     for (const Observation& o : observations.signals)
         if (o.satellite.constellation == constellation && o.pseudorange && msm_signal(constellation, o.signal) != 0)
-            cells.push_back(msm_cell(o, past_s * speed_of_light));
+            cells.push_back(msm_cell(o, past));
     return cells;
 }
 

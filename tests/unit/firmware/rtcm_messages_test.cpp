@@ -5,7 +5,9 @@
 
 #include "firmware/receiver.hpp"
 #include "skyloop/geo/geodetic.hpp"
+#include "skyloop/gnss/constants.hpp"
 #include "skyloop/protocol/rtcm3.hpp"
+#include "skyloop/protocol/rtcm3_msm.hpp"
 #include "skyloop/protocol/stream_splitter.hpp"
 #include "ubx_reports.hpp"
 
@@ -113,6 +115,23 @@ TEST(RtcmMessages, TheLastOfEachEpochIsToldAsSuch) {
     Receiver withholding(board, {1});
     withholding.set_faults(faults);
     EXPECT_THAT(msm_by_epoch(withholding, 1), testing::ElementsAre(two));
+}
+
+// With the clock's error its drift, 149.896 m/s here, leaves the ranges.
+TEST(RtcmMessages, RatesAreThoseOfThePhases) {
+    UbxReport f9 = reference();
+    f9.state.epoch.observations.signals = {rtcm_signal({Constellation::gps, 1}, Signal::l1)};
+    Rtcm3MsmCell cell;
+    cell.wavelength_m = speed_of_light / carrier_frequency(Signal::l1).value();
+    cell.range_m = 2.2e7 - 200e-6 * speed_of_light;
+    cell.phase_range_m = 1.15e8 * cell.wavelength_m - 200e-6 * speed_of_light;
+    cell.phase_range_rate = 1000 * cell.wavelength_m - 149.896229;
+    cell.lock_s = 5;
+    cell.cno_dbhz = 41;
+    Rtcm3MsmObservations expected;
+    expected.epoch = head_of(f9, rtcm_1077).epoch;
+    expected.cells = {cell};
+    EXPECT_EQ(make_rtcm_message(rtcm_1077, f9.context()), std::vector<Bytes>{encode(expected)});
 }
 
 TEST(RtcmMessages, NothingIsTrueBeforeTimeIsKnown) {
