@@ -33,10 +33,11 @@ inline constexpr MetresPerSecond unknown_speed_accuracy{20};
 
 /// What came in by RTCM.
 struct CorrectionStatus {
-    CorrectionState state = CorrectionState::none;
-    std::optional<Seconds> age;          ///< of the last observations; nothing before the first
-    std::optional<int> station;          ///< DF003
-    std::optional<Position<Ecef>> base;  ///< where that station says it stands
+    CorrectionState state = CorrectionState::none;  ///< of what can be solved; as reported, of what was
+    std::optional<Seconds> age;                     ///< of the last observations; nothing before the first
+    std::optional<int> station;                     ///< DF003
+    std::optional<Position<Ecef>> base;             ///< where that station says it stands
+    bool come = false;                              ///< they do, whatever the reported solution has of them
 };
 
 /// What a receiver's monitor tells of one of its bands.

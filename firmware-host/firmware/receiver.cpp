@@ -33,6 +33,7 @@ PortTotals Receiver::port_totals(PortId port) const {
     return unit == nullptr ? PortTotals{} : unit->totals;
 }
 const ReceiverSettings& Receiver::settings() const { return core_->settings(); }
+const ReceiverSettings& Receiver::settings_at(GpsTime epoch) { return core_->settings_at(epoch); }
 const ReceiverCounters& Receiver::counters() const { return core_->counters(); }
 const BoardProfile& Receiver::board() const { return core_->board(); }
 const NavigationState& Receiver::state() const { return core_->state(); }

@@ -83,6 +83,8 @@ public:
     /// What was counted of it over all restarts; nothing for one that the board does not have.
     [[nodiscard]] PortTotals port_totals(PortId port) const;
     [[nodiscard]] const ReceiverSettings& settings() const;
+    /// Those that the solution of an epoch is made with: with the corrections that there are by then.
+    const ReceiverSettings& settings_at(GpsTime epoch);
     [[nodiscard]] const ReceiverCounters& counters() const;
     [[nodiscard]] const BoardProfile& board() const;
     /// What it reported last, as edited.

@@ -135,6 +135,7 @@ void Receiver::Core::restart_navigation(const Forgotten& forgotten, GpsTime now,
     settings_.start = forgotten.kind();
     ++settings_.restarts;
     corrections_.reset();
+    settings_.corrections = CorrectionState::none;
     tracker_.start(now, forgotten);
     report(tracker_.state());
     silent_until_ = std::max(silent_until_, advanced(now, silence));

@@ -31,6 +31,7 @@ public:
     void start(GpsTime now);
     void input(PortId port, ByteSpan bytes, GpsTime now);
     void on_epoch(const Epoch& epoch, const ReportEdit& edit);
+    const ReceiverSettings& settings_at(GpsTime epoch);
     void set_faults(const FirmwareFaults& faults) { faults_ = faults; }
     void happen(const ReceiverEvent& event, GpsTime now);
     std::vector<Sent> output(GpsTime now);

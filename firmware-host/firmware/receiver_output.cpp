@@ -37,6 +37,26 @@ std::string_view antenna_text(AntennaStatus status) {
     return "";
 }
 
+// What measures was handed its corrections before; of models that measure nothing the fix has got those of now.
+CorrectionState solved_with(const Epoch& epoch, CorrectionState handed, CorrectionState now) {
+    return epoch.observations.signals.empty() ? now : handed;
+}
+
+// What of the corrections is in the solution: with few satellites, or none, it is less than there could be.
+CorrectionState in_solution(const Fix& fix, CorrectionState at_most) {
+    if (at_most == CorrectionState::none) return CorrectionState::none;
+    switch (fix.type) {
+        case FixType::dgnss:
+            return CorrectionState::differential;
+        case FixType::rtk_float:
+            return CorrectionState::rtk_float;
+        case FixType::rtk_fixed:
+            return CorrectionState::rtk_fixed;
+        default:
+            return CorrectionState::none;
+    }
+}
+
 }  // namespace
 
 void Receiver::Core::look_at_ports() {
@@ -152,13 +172,21 @@ GpsTime Receiver::Core::burst_time(GpsTime epoch) {
     return last_burst_;
 }
 
+const ReceiverSettings& Receiver::Core::settings_at(GpsTime epoch) {
+    settings_.corrections = corrections_.status(epoch, store_).state;
+    return settings_;
+}
+
 void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     const GpsTime time = epoch.fix.time;
     report_time_.reset();
     if (time < silent_until_) return;
-    const CorrectionStatus corrections = corrections_.status(time, store_);
+    CorrectionStatus corrections = corrections_.status(time, store_);
+    corrections.come = corrections.state != CorrectionState::none;
+    const CorrectionState used = solved_with(epoch, settings_.corrections, corrections.state);
     settings_.corrections = corrections.state;
     const auto state = std::make_shared<NavigationState>(tracker_.update(epoch, store_, corrections));
+    state->corrections.state = in_solution(state->epoch.fix, used);
     state->monitors.jamming_hidden = faults_.jamming_hidden;
     if (edit) edit(*state);
     reported_ = state;

@@ -183,7 +183,7 @@ void Station::follow_settings(GpsTime now) { grid_.follow(now, parts_.receiver.s
 Trace Station::observe() {
     const GpsTime now = grid_.next();
     grid_.pass();
-    return parts_.simulation.run(now, parts_.receiver.settings(), faults_.empty() ? nullptr : &faults_);
+    return parts_.simulation.run(now, parts_.receiver.settings_at(now), faults_.empty() ? nullptr : &faults_);
 }
 
 void Station::relate(Trace& trace, const Trace* base) {

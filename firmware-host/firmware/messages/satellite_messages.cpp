@@ -186,8 +186,11 @@ std::vector<SatelliteStatus> sorted_satellites(const Fix& fix) {
 }
 
 CorrectionOrigin corrections_in_use(const NavigationState& state) {
-    if (!is_differential(state.epoch.fix)) return CorrectionOrigin::none;
-    return state.corrections.state == CorrectionState::none ? CorrectionOrigin::sbas : CorrectionOrigin::rtcm3;
+    const Fix& fix = state.epoch.fix;
+    if (!is_differential(fix)) return CorrectionOrigin::none;
+    // SBAS tells nothing of carrier phases.
+    const bool of_base = state.corrections.state != CorrectionState::none || carrier_solution(fix) != 0;
+    return of_base ? CorrectionOrigin::rtcm3 : CorrectionOrigin::sbas;
 }
 
 std::uint32_t satellite_health(const SatelliteStatus& s, const NavigationState& state) {

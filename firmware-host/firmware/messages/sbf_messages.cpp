@@ -216,7 +216,7 @@ SbfReceiverStatus sbf_receiver_status(const NavigationState& state) {
     block.up_time = field<std::uint32_t>(std::floor(state.since_start.value()));
     block.rx_state = (state.monitors.antenna_power == 1 ? antenna_active : 0) | (state.time.date ? week_set : 0) |
                      (state.time.time ? tow_set : 0) | (has_solution(state) ? fine_time : 0) |
-                     (state.corrections.state != CorrectionState::none ? corrections_come : 0);
+                     (state.corrections.come ? corrections_come : 0);
     block.rx_error = state.monitors.antenna == AntennaStatus::short_circuit ? antenna_error : 0;
     return block;
 }

@@ -168,6 +168,8 @@ TEST(SbfStatus, CorrectionsHaveTheBaseLineOfTheirStation) {
     EXPECT_EQ(block.bases[0].mode, 4);
     EXPECT_EQ(block.bases[0].reference_id, 12);
     EXPECT_EQ(block.bases[0].corr_age, 80);
+    EXPECT_EQ(sbf_receiver_status(state).rx_state >> 17 & 1, 0U);
+    state.corrections.come = true;
     EXPECT_EQ(sbf_receiver_status(state).rx_state >> 17 & 1, 1U);
 }
 

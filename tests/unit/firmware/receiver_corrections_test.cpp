@@ -1,0 +1,121 @@
+// What a receiver makes of corrections, and what it tells of them.
+#include <gtest/gtest.h>
+
+#include "firmware/messages/satellite_parts.hpp"
+#include "firmware/receiver.hpp"
+#include "sample_epochs.hpp"
+#include "skyloop/geo/geodetic.hpp"
+#include "skyloop/protocol/rtcm3.hpp"
+#include "skyloop/protocol/stream_splitter.hpp"
+#include "skyloop/protocol/ubx_frame.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A rover with RTK that measures, and the base that its client brings.
+class Rover {
+public:
+    Rover() : receiver_(board(), {1}) {
+        fix_ = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500);
+        add_satellites(fix_, Constellation::gps, 1, 12);
+        receiver_.start(fix_.time);
+    }
+    static BoardProfile board() {
+        BoardProfile board = sample_ublox();
+        board.corrections.rtk = true;
+        board.config[key::in_protocol(PortId::uart1, 4)] = 1;
+        return board;
+    }
+    Receiver& receiver() { return receiver_; }
+    void hear_base() {
+        const Eigen::Vector3d place = to_ecef(Geodetic::degrees(47, 8, 400)).vector() * 1e4;
+        const Rtcm3Station station{7, {std::llround(place.x()), std::llround(place.y()), std::llround(place.z())}, {}};
+        receiver_.input(PortId::uart1, encode(station), fix_.time);
+        receiver_.input(PortId::uart1, encode(Rtcm3MsmHeader{1077, 7, 1000, false, 0, 1, 1u << 30, {true}}), fix_.time);
+    }
+    // The next second. What it solves follows from the settings, but for `fewer`: satellites that have no correction.
+    const NavigationState& go_on(bool fewer = false) {
+        fix_.time += 1s;
+        constexpr FixType types[] = {FixType::fix_3d, FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
+        fix_.type = types[fewer ? 0 : static_cast<std::size_t>(receiver_.settings_at(fix_.time).corrections)];
+        Epoch epoch{fix_};
+        epoch.observations.receive_time = fix_.time;
+        epoch.observations.signals.emplace_back();
+        receiver_.on_epoch(epoch);
+        return receiver_.state();
+    }
+
+private:
+    Receiver receiver_;
+    Fix fix_;
+};
+
+// What is told of corrections is that of the solution in the same epoch.
+bool agrees(const NavigationState& state) {
+    const bool corrected = state.corrections.state != CorrectionState::none;
+    return corrected == (state.epoch.fix.type >= FixType::dgnss) &&
+           corrections_in_use(state) == (corrected ? CorrectionOrigin::rtcm3 : CorrectionOrigin::none);
+}
+
+TEST(ReceiverCorrections, AreThoseOfTheSolutionFromTheFirstEpochToTheLast) {
+    Rover rover;
+    EXPECT_EQ(rover.go_on().corrections.state, CorrectionState::none);
+    CorrectionState last = CorrectionState::none;
+    for (int i = 0; i < 20; ++i) {
+        rover.hear_base();
+        const NavigationState& state = rover.go_on();
+        EXPECT_TRUE(agrees(state)) << i;
+        EXPECT_TRUE(state.corrections.come);
+        if (i == 0) {
+            EXPECT_EQ(state.corrections.state, CorrectionState::differential);
+        }
+        last = state.corrections.state;
+    }
+    EXPECT_EQ(last, CorrectionState::rtk_fixed);
+    for (int i = 0; i < 70; ++i) {
+        const NavigationState& state = rover.go_on();
+        EXPECT_TRUE(agrees(state)) << "silent for " << i + 1 << " s";
+        last = state.corrections.state;
+    }
+    EXPECT_EQ(last, CorrectionState::none);
+    EXPECT_FALSE(rover.receiver().state().corrections.come);
+}
+
+TEST(ReceiverCorrections, AreNotToldOfASolutionThatHasNone) {
+    Rover rover;
+    for (int i = 0; i < 3; ++i) {
+        rover.hear_base();
+        const NavigationState& state = rover.go_on(true);
+        EXPECT_EQ(state.corrections.state, CorrectionState::none);
+        EXPECT_TRUE(state.corrections.come);
+        EXPECT_EQ(corrections_in_use(state), CorrectionOrigin::none);
+    }
+}
+
+// A solution that was made before they came has none of them, though it was handed in after.
+TEST(ReceiverCorrections, DoNotActBackwards) {
+    Rover rover;
+    rover.go_on();
+    rover.hear_base();
+    Fix fix = sample_fix("2024-03-05T12:00:02Z", 47, 8, 500);
+    fix.type = FixType::dgnss;  // by SBAS
+    Epoch epoch{fix};
+    epoch.observations.signals.emplace_back();
+    rover.receiver().on_epoch(epoch);
+    EXPECT_EQ(rover.receiver().state().corrections.state, CorrectionState::none);
+    EXPECT_EQ(corrections_in_use(rover.receiver().state()), CorrectionOrigin::sbas);
+    EXPECT_EQ(rover.receiver().settings().corrections, CorrectionState::differential);
+}
+
+TEST(ReceiverCorrections, OfCarrierPhasesAreNeverThoseOfSbas) {
+    NavigationState state;
+    state.epoch.fix.type = FixType::rtk_fixed;
+    EXPECT_EQ(corrections_in_use(state), CorrectionOrigin::rtcm3);
+    state.epoch.fix.type = FixType::dgnss;
+    EXPECT_EQ(corrections_in_use(state), CorrectionOrigin::sbas);
+}
+
+}  // namespace
+}  // namespace skyloop::firmware
