@@ -55,13 +55,21 @@ bool CorrectionInput::follow(int station, GpsTime now) {
     return true;
 }
 
-void CorrectionInput::take_observations(GpsTime now) {
+// Fixed ambiguities outlive a short silence, floating ones a longer one. After one that was too long even for
+// differential corrections everything begins anew.
+void CorrectionInput::take_observations(GpsTime now, const CorrectionLimits& limits) {
     Station& s = *station_;
-    if (s.observations && difference(now, *s.observations) > ability_.fixed_held) s.resumed = now;
+    const Seconds silence = s.observations ? difference(now, *s.observations) : Seconds(0);
     s.observations = now;
+    if (silence > limits.timeout) {
+        s.complete_since.reset();
+        s.resumed.reset();
+    } else if (silence > ability_.fixed_held) {
+        s.resumed = now;
+    }
 }
 
-Bytes CorrectionInput::take(ByteSpan frame, GpsTime now) {
+Bytes CorrectionInput::take(ByteSpan frame, GpsTime now, const CorrectionLimits& limits) {
     const auto message = parse_rtcm3(frame);
     if (!message) return rtcm_answer({}, not_used);
     const auto position = decode_station(*message);
@@ -69,7 +77,7 @@ Bytes CorrectionInput::take(ByteSpan frame, GpsTime now) {
     if (!position && !observations) return rtcm_answer(*message, is_description(message->number) ? used : not_used);
     if (!message->station || !follow(*message->station, now)) return rtcm_answer(*message, not_used);
     if (position) station_->position = place_of(*position);
-    if (observations) take_observations(now);
+    if (observations) take_observations(now, limits);
     if (station_->position && station_->observations && !station_->complete_since) station_->complete_since = now;
     return rtcm_answer(*message, used);
 }
@@ -88,7 +96,6 @@ CorrectionStatus CorrectionInput::status(GpsTime now, const CorrectionLimits& li
 
     status.state = CorrectionState::differential;
     if (!ability_.rtk) return status;
-    // After a silence that was too long even for differential corrections everything begins anew.
     const GpsTime begun = s.resumed && *s.resumed > *s.complete_since ? *s.resumed : *s.complete_since;
     const bool resumed = begun != *s.complete_since;
     const Seconds converged = difference(now, begun);

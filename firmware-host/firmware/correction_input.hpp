@@ -30,7 +30,7 @@ struct CorrectionLimits {
 
 /// From RTCM frames to the state of the corrected solution: differential at the first epoch after the first complete
 /// set (observations and a station's position, same station), float and fixed after times of their own, back again with
-/// age (RECEIVER.md 4.12). One station is followed; another one takes its place when it has been silent for ten seconds
+/// age (RECEIVER.md 4.12). After a silence beyond the time-out it begins anew, with the position that is known. One station is followed; another one takes its place when it has been silent for ten seconds
 /// or was never complete. State: what came when.
 class CorrectionInput {
 public:
@@ -38,7 +38,7 @@ public:
 
     /// One frame whose CRC held. Gives the RXM-RTCM frame that answers it: used are observations and positions of the
     /// station that is followed, GLONASS biases and descriptions.
-    Bytes take(ByteSpan frame, GpsTime now);
+    Bytes take(ByteSpan frame, GpsTime now, const CorrectionLimits& limits = {});
     /// The RXM-RTCM frame that answers a frame whose CRC did not hold: what it was is not known.
     [[nodiscard]] static Bytes answer_to_damaged();
     /// What a solution at `now` can be.
@@ -56,7 +56,7 @@ private:
         std::optional<GpsTime> resumed;  // after a silence in which fixed ambiguities were lost
     };
     bool follow(int station, GpsTime now);
-    void take_observations(GpsTime now);
+    void take_observations(GpsTime now, const CorrectionLimits& limits);
 
     CorrectionAbility ability_;
     std::optional<Station> station_;

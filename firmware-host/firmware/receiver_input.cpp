@@ -110,7 +110,7 @@ void Receiver::Core::dispatch(PortUnit& unit, const StreamPiece& piece, GpsTime 
     if (piece.kind == StreamKind::nmea) return dispatch_sentence(unit, piece.bytes, now);
     if (board_.personality != Personality::ublox) return;
     if (piece.kind == StreamKind::ubx) return dispatch_ubx(unit, piece.bytes, now);
-    answer_corrections(corrections_.take(piece.bytes, now), now);
+    answer_corrections(corrections_.take(piece.bytes, now, CorrectionLimits::of(store_)), now);
 }
 
 void Receiver::Core::dispatch_ubx(PortUnit& unit, ByteSpan bytes, GpsTime now) {
@@ -215,7 +215,7 @@ void Receiver::Core::read_command_lines(PortUnit& unit, ByteSpan bytes, GpsTime 
     if (!port_is_on(store_, unit.id)) return;
     for (const StreamPiece& piece : unit.splitter.feed(bytes)) {
         count_input(unit.status, piece);
-        if (piece.kind == StreamKind::rtcm3) corrections_.take(piece.bytes, now);
+        if (piece.kind == StreamKind::rtcm3) corrections_.take(piece.bytes, now, CorrectionLimits::of(store_));
     }
     const std::uint32_t baud = unit.configured_baud;
     for (const std::string& line : unit.command_line.feed(bytes)) {

@@ -113,6 +113,29 @@ TEST(CorrectionInput, FixesAnewAfterASilence) {
     EXPECT_EQ(state_at(input, 60), CorrectionState::rtk_fixed);
 }
 
+TEST(CorrectionInput, BeginsAnewAfterASilenceBeyondTheTimeOut) {
+    CorrectionInput input(rtk_ability());
+    hear(input, 0, 30);
+    hear(input, 121, 140);
+    EXPECT_EQ(state_at(input, 121), CorrectionState::differential);
+    EXPECT_EQ(state_at(input, 125.9), CorrectionState::differential);
+    EXPECT_EQ(state_at(input, 126), CorrectionState::rtk_float);
+    EXPECT_EQ(state_at(input, 135.9), CorrectionState::rtk_float);
+    EXPECT_EQ(state_at(input, 136), CorrectionState::rtk_fixed);
+}
+
+TEST(CorrectionInput, TheConfiguredTimeOutDecidesWhatIsTooLong) {
+    const auto after_a_silence = [](Seconds timeout) {
+        const CorrectionLimits limits{timeout, false};
+        CorrectionInput input(rtk_ability());
+        hear(input, 0, 30);
+        input.take(observations_of(7), second(51), limits);
+        return state_at(input, 51, limits);
+    };
+    EXPECT_EQ(after_a_silence(Seconds(21)), CorrectionState::rtk_float);
+    EXPECT_EQ(after_a_silence(Seconds(20)), CorrectionState::differential);
+}
+
 TEST(CorrectionInput, AShortSilenceCostsNothing) {
     CorrectionInput input(rtk_ability());
     hear(input, 0, 30);
