@@ -3,12 +3,11 @@
 #include <algorithm>
 
 #include "skyloop/protocol/rtcm3.hpp"
-#include "skyloop/protocol/ubx_frame.hpp"
+#include "skyloop/protocol/ubx_raw.hpp"
 
 namespace skyloop::firmware {
 namespace {
 
-constexpr UbxMessageId rxm_rtcm{0x02, 0x32};
 constexpr Seconds silence_before_another{10};
 
 // Observations that a high-precision receiver takes (ZED-F9P interface description HPG 1.32, section 4.2.1).
@@ -21,19 +20,38 @@ bool is_observation(int number) {
 // What is taken and changes nothing here: antenna and receiver descriptions, GLONASS biases, u-blox's own.
 bool is_description(int number) { return number == 1007 || number == 1033 || number == 1230 || number == 4072; }
 
-// Flags of RXM-RTCM version 2: bit 0, bits 1 and 2 (RECEIVER.md 3.2).
-enum RtcmUse : std::uint8_t { crc_failed = 1, not_used = 1 << 1, used = 2 << 1 };
+// What has become of a frame.
+enum class Use { damaged, not_used, used };
 
-Bytes rtcm_answer(const Rtcm3Message& message, RtcmUse flags) {
-    const auto subtype = static_cast<std::uint16_t>(message.subtype);
-    const auto station = static_cast<std::uint16_t>(message.station.value_or(0));
-    const auto number = static_cast<std::uint16_t>(message.number);
-    constexpr std::uint8_t version = 2;
-    const auto low = [](std::uint16_t v) { return static_cast<std::uint8_t>(v & 0xFF); };
-    const auto high = [](std::uint16_t v) { return static_cast<std::uint8_t>(v >> 8); };
-    const Bytes payload{version,      flags,         low(subtype), high(subtype),
-                        low(station), high(station), low(number),  high(number)};
-    return encode_frame(rxm_rtcm, payload);
+// Flags: bit 0 CRC failed, bits 1 and 2 (RECEIVER.md 3.2).
+RxmRtcm rtcm_report(const Rtcm3Message& message, Use use) {
+    RxmRtcm m;
+    m.flags = use == Use::damaged ? 1 : use == Use::used ? 2 << 1 : 1 << 1;
+    m.sub_type = static_cast<std::uint16_t>(message.subtype);
+    m.ref_station = static_cast<std::uint16_t>(message.station.value_or(0));
+    m.msg_type = static_cast<std::uint16_t>(message.number);
+    return m;
+}
+
+// RTCM 3 is never encrypted; of a damaged frame nothing more is known than what it began like.
+RxmCor correction_report(const Rtcm3Message& message, Use use, bool known) {
+    constexpr std::uint32_t rtcm3 = 1, error_free = 1, erroneous = 2, unused = 1, in_use = 2, not_encrypted = 1;
+    constexpr std::uint32_t no_stream = 0xFFFF;
+    constexpr int with_subtype = 4072;
+    RxmCor m;
+    m.status_info = rtcm3 | (use == Use::damaged ? erroneous : error_free) << 5 |
+                    (use == Use::used ? in_use : unused) << 7 |
+                    (message.station ? static_cast<std::uint32_t>(*message.station) : no_stream) << 9;
+    if (use == Use::damaged) return m;
+    m.status_info |=
+        1u << 25 | (message.number == with_subtype ? 1u << 26 : 0u) | (known ? 1u << 27 : 0u) | not_encrypted << 28;
+    m.msg_type = static_cast<std::uint16_t>(message.number);
+    m.msg_sub_type = static_cast<std::uint16_t>(message.subtype);
+    return m;
+}
+
+CorrectionAnswer answer_of(const Rtcm3Message& message, Use use, bool known = true) {
+    return {encode_frame(rtcm_report(message, use)), encode_frame(correction_report(message, use, known))};
 }
 
 Position<Ecef> place_of(const Rtcm3Station& station) {
@@ -69,20 +87,23 @@ void CorrectionInput::take_observations(GpsTime now, const CorrectionLimits& lim
     }
 }
 
-Bytes CorrectionInput::take(ByteSpan frame, GpsTime now, const CorrectionLimits& limits) {
+CorrectionAnswer CorrectionInput::take(ByteSpan frame, GpsTime now, const CorrectionLimits& limits) {
     const auto message = parse_rtcm3(frame);
-    if (!message) return rtcm_answer({}, not_used);
+    if (!message) return answer_of({}, Use::not_used, false);
     const auto position = decode_station(*message);
     const bool observations = is_observation(message->number);
-    if (!position && !observations) return rtcm_answer(*message, is_description(message->number) ? used : not_used);
-    if (!message->station || !follow(*message->station, now)) return rtcm_answer(*message, not_used);
+    if (!position && !observations) {
+        const bool known = is_description(message->number);
+        return answer_of(*message, known ? Use::used : Use::not_used, known);
+    }
+    if (!message->station || !follow(*message->station, now)) return answer_of(*message, Use::not_used);
     if (position) station_->position = place_of(*position);
     if (observations) take_observations(now, limits);
     if (station_->position && station_->observations && !station_->complete_since) station_->complete_since = now;
-    return rtcm_answer(*message, used);
+    return answer_of(*message, Use::used);
 }
 
-Bytes CorrectionInput::answer_to_damaged() { return rtcm_answer({}, crc_failed); }
+CorrectionAnswer CorrectionInput::answer_to_damaged() { return answer_of({}, Use::damaged, false); }
 
 CorrectionStatus CorrectionInput::status(GpsTime now, const CorrectionLimits& limits) const {
     CorrectionStatus status;

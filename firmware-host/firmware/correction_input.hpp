@@ -28,19 +28,26 @@ struct CorrectionLimits {
     }
 };
 
+/// What is told of one frame of corrections.
+struct CorrectionAnswer {
+    Bytes rtcm;  ///< RXM-RTCM
+    Bytes cor;   ///< RXM-COR
+};
+
 /// From RTCM frames to the state of the corrected solution: differential at the first epoch after the first complete
 /// set (observations and a station's position, same station), float and fixed after times of their own, back again with
-/// age (RECEIVER.md 4.12). After a silence beyond the time-out it begins anew, with the position that is known. One station is followed; another one takes its place when it has been silent for ten seconds
-/// or was never complete. State: what came when.
+/// age (RECEIVER.md 4.12). After a silence beyond the time-out it begins anew, with the position that is known. One
+/// station is followed; another one takes its place when it has been silent for ten seconds or was never complete.
+/// State: what came when.
 class CorrectionInput {
 public:
     explicit CorrectionInput(const CorrectionAbility& ability = {}) : ability_(ability) {}
 
-    /// One frame whose CRC held. Gives the RXM-RTCM frame that answers it: used are observations and positions of the
-    /// station that is followed, GLONASS biases and descriptions.
-    Bytes take(ByteSpan frame, GpsTime now, const CorrectionLimits& limits = {});
-    /// The RXM-RTCM frame that answers a frame whose CRC did not hold: what it was is not known.
-    [[nodiscard]] static Bytes answer_to_damaged();
+    /// One frame whose CRC held. Used are observations and positions of the station that is followed, GLONASS biases
+    /// and descriptions.
+    CorrectionAnswer take(ByteSpan frame, GpsTime now, const CorrectionLimits& limits = {});
+    /// What is told of a frame whose CRC did not hold: what it was is not known.
+    [[nodiscard]] static CorrectionAnswer answer_to_damaged();
     /// What a solution at `now` can be.
     [[nodiscard]] CorrectionStatus status(GpsTime now, const CorrectionLimits& limits) const;
     [[nodiscard]] CorrectionStatus status(GpsTime now, const ConfigStore& store) const {

@@ -64,7 +64,7 @@ private:
     void dispatch_sentence(PortUnit& unit, ByteSpan line, GpsTime now);
     void carry_out(PortUnit& unit, CommandOutcome outcome, UbxMessageId id, GpsTime now);
     void read_command_lines(PortUnit& unit, ByteSpan bytes, GpsTime now);
-    void answer_corrections(const Bytes& answer, GpsTime now);
+    void answer_corrections(const CorrectionAnswer& answer, GpsTime now);
     [[nodiscard]] bool accepts(const PortUnit& unit, StreamKind kind) const;
     void configure(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
     [[nodiscard]] ConfigOutcome configured(const UbxFrameView& frame, PortId from);

@@ -9,6 +9,7 @@
 #include "skyloop/protocol/ubx_cfg_hardware.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
+#include "skyloop/protocol/ubx_raw.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -246,12 +247,16 @@ void Receiver::Core::carry_out(PortUnit& unit, CommandOutcome outcome, UbxMessag
     });
 }
 
-void Receiver::Core::answer_corrections(const Bytes& answer, GpsTime now) {
-    constexpr UbxMessageId rxm_rtcm{0x02, 0x32};
+void Receiver::Core::answer_corrections(const CorrectionAnswer& answer, GpsTime now) {
     const GpsTime at = answer_time(now, Seconds(0));
-    for (const PortId port : board_.ports)
-        if (store_.rate(rxm_rtcm, port) > 0 && lets_out(port, rxm_rtcm) && !faults_.withheld.contains(rxm_rtcm))
-            outbox_.plan(at, [this, port, answer](GpsTime t) { send(port, {answer}, t); });
+    const auto tell = [&](PortId port, UbxMessageId message, const Bytes& frame) {
+        if (store_.rate(message, port) > 0 && lets_out(port, message) && !faults_.withheld.contains(message))
+            outbox_.plan(at, [this, port, frame](GpsTime t) { send(port, {frame}, t); });
+    };
+    for (const PortId port : board_.ports) {
+        tell(port, RxmRtcm::message_id, answer.rtcm);
+        tell(port, RxmCor::message_id, answer.cor);
+    }
 }
 
 }  // namespace skyloop::firmware

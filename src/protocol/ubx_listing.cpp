@@ -187,6 +187,7 @@ constexpr auto ubx_listing_table = std::to_array<UbxListing>({
            "-reserved relative_ned_hp_m*1e-4 length_hp_m*1e-4 acc_ned_m*1e-4 acc_length_m*1e-4 "
            "acc_heading_deg*1e-5 -reserved flags">,
     listed<RxmRtcm, "version flags subtype station message">,
+    listed<RxmCor, "version ebno_db*0.125 -reserved status message subtype">,
     listed<TimTm2,
            "channel flags count week_rising week_falling tow_rising_s*1e-3 tow_rising_ns tow_falling_s*1e-3 "
            "tow_falling_ns acc_ns">,

@@ -80,6 +80,25 @@ struct RxmRtcm {
     }
 };
 
+/// RXM-COR: a message of corrections came in, of whatever protocol (F9 interface description).
+struct RxmCor {
+    static constexpr UbxMessageId message_id{0x02, 0x34};
+    std::uint8_t version = 1;  ///< 1
+    std::uint8_t ebno = 0;     ///< 2^-3 dB, of what came from a satellite; 0 unknown
+    std::array<std::uint8_t, 2> reserved0{};
+    /// Bits: 0-4 protocol (1 RTCM 3, 2 SPARTN), 5-6: 1 free of errors, 2 erroneous, 7-8: 1 not used, 2 used, 9-24 DF003
+    /// of RTCM 3 or 0xFFFF, 25 msg_type is valid, 26 msg_sub_type is, 27 the receiver knows such messages,
+    /// 28-29: 1 not encrypted, 2 encrypted, 30-31: 1 not decrypted, 2 decrypted; 0 unknown.
+    std::uint32_t status_info = 0;
+    std::uint16_t msg_type = 0;      ///< 1077
+    std::uint16_t msg_sub_type = 0;  ///< of 4072
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.version, m.ebno, m.reserved0, m.status_info, m.msg_type, m.msg_sub_type);
+    }
+};
+
 /// One satellite of RXM-SVSI.
 struct RxmSvsiItem {
     std::uint8_t sv_id = 0;    ///< one numbering for all systems

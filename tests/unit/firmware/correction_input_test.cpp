@@ -37,19 +37,42 @@ CorrectionState state_at(const CorrectionInput& input, double s, const Correctio
 TEST(CorrectionInput, AnswersEveryMessage) {
     CorrectionInput input(rtk_ability());
     // version 2, message used, subtype 0, station 7, 1077
-    EXPECT_EQ(input.take(observations_of(7), power_on),
+    EXPECT_EQ(input.take(observations_of(7), power_on).rtcm,
               encode_frame({0x02, 0x32}, Bytes{2, 4, 0, 0, 7, 0, 0x35, 0x04}));
     // A kind of observations that is not taken: MSM 1 of GPS.
-    EXPECT_EQ(input.take(observations_of(7, 1071), power_on),
+    EXPECT_EQ(input.take(observations_of(7, 1071), power_on).rtcm,
               encode_frame({0x02, 0x32}, Bytes{2, 2, 0, 0, 7, 0, 0x2F, 0x04}));
     // 4072.1: the subtype stands where the station does.
-    EXPECT_EQ(input.take(encode_rtcm3(Bytes{0xFE, 0x80, 0x01}), power_on),
+    EXPECT_EQ(input.take(encode_rtcm3(Bytes{0xFE, 0x80, 0x01}), power_on).rtcm,
               encode_frame({0x02, 0x32}, Bytes{2, 4, 1, 0, 0, 0, 0xE8, 0x0F}));
-    EXPECT_EQ(input.take(encode_rtcm3({}), power_on), encode_frame({0x02, 0x32}, Bytes{2, 2, 0, 0, 0, 0, 0, 0}));
+    EXPECT_EQ(input.take(encode_rtcm3({}), power_on).rtcm, encode_frame({0x02, 0x32}, Bytes{2, 2, 0, 0, 0, 0, 0, 0}));
+}
+
+// RXM-COR: version 1, no Eb/N0, and of the status: protocol, errors, use, station, and what of the rest is valid.
+TEST(CorrectionInput, TellsTheStatusOfEveryMessage) {
+    CorrectionInput input(rtk_ability());
+    const auto frame = [](std::uint32_t status, std::uint16_t type, std::uint8_t subtype) {
+        const auto byte = [](std::uint32_t v, int shift) { return static_cast<std::uint8_t>(v >> shift & 0xFF); };
+        return encode_frame({0x02, 0x34}, Bytes{1, 0, 0, 0, byte(status, 0), byte(status, 8), byte(status, 16),
+                                                byte(status, 24), byte(type, 0), byte(type, 8), subtype, 0});
+    };
+    constexpr std::uint32_t plain = 1u << 28, known = 1u << 27, subtype = 1u << 26, type = 1u << 25,
+                            none = 0xFFFFu << 9;
+    constexpr std::uint32_t used = 2u << 7, not_used = 1u << 7, error_free = 1u << 5, erroneous = 2u << 5, rtcm3 = 1;
+    EXPECT_EQ(input.take(observations_of(7), power_on).cor,
+              frame(plain | known | type | 7u << 9 | used | error_free | rtcm3, 1077, 0));
+    EXPECT_EQ(input.take(observations_of(7, 1071), power_on).cor,
+              frame(plain | type | 7u << 9 | not_used | error_free | rtcm3, 1071, 0));
+    input.take(position_of(7), power_on);
+    EXPECT_EQ(input.take(observations_of(8), power_on).cor,
+              frame(plain | known | type | 8u << 9 | not_used | error_free | rtcm3, 1077, 0));
+    EXPECT_EQ(input.take(encode_rtcm3(Bytes{0xFE, 0x80, 0x01}), power_on).cor,
+              frame(plain | known | subtype | type | none | used | error_free | rtcm3, 4072, 1));
+    EXPECT_EQ(CorrectionInput::answer_to_damaged().cor, frame(none | not_used | erroneous | rtcm3, 0, 0));
 }
 
 TEST(CorrectionInput, TellsOfADamagedFrame) {
-    EXPECT_EQ(CorrectionInput::answer_to_damaged(), encode_frame({0x02, 0x32}, Bytes{2, 1, 0, 0, 0, 0, 0, 0}));
+    EXPECT_EQ(CorrectionInput::answer_to_damaged().rtcm, encode_frame({0x02, 0x32}, Bytes{2, 1, 0, 0, 0, 0, 0, 0}));
 }
 
 TEST(CorrectionInput, NeedsObservationsAndPositionOfOneStation) {
@@ -147,7 +170,7 @@ TEST(CorrectionInput, FollowsOneStation) {
     CorrectionInput input(rtk_ability());
     hear(input, 0, 20, 7);
     // Another one beside it is not used …
-    EXPECT_EQ(input.take(observations_of(8), second(21))[7], 2);
+    EXPECT_EQ(input.take(observations_of(8), second(21)).rtcm[7], 2);
     EXPECT_EQ(input.status(second(21), CorrectionLimits{}).station, 7);
     EXPECT_EQ(state_at(input, 21), CorrectionState::rtk_fixed);
     // … but takes its place when it is silent.

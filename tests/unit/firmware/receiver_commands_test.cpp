@@ -487,12 +487,13 @@ TEST(ReceiverCommands, HearsASystemThatIsSwitchedOnAlone) {
 }
 
 TEST(ReceiverCommands, TellsOfACorrectionThatArrivesDamaged) {
-    constexpr UbxMessageId rxm_rtcm{0x02, 0x32};
-    constexpr std::uint32_t rxm_rtcm_on_uart1 = 0x20910269, rtcm3_into_uart1 = 0x10730004;
+    constexpr UbxMessageId rxm_rtcm{0x02, 0x32}, rxm_cor{0x02, 0x34};
+    constexpr std::uint32_t rxm_rtcm_on_uart1 = 0x20910269, rxm_cor_on_uart1 = 0x209106B7,
+                            rtcm3_into_uart1 = 0x10730004;
     BoardProfile board = sample_ublox();
     board.messages.push_back(rxm_rtcm);
     Bench bench(board);
-    bench.send(valset({{rxm_rtcm_on_uart1, 1}, {rtcm3_into_uart1, 1}})).wait(1s).forget();
+    bench.send(valset({{rxm_rtcm_on_uart1, 1}, {rxm_cor_on_uart1, 1}, {rtcm3_into_uart1, 1}})).wait(1s).forget();
     Bytes frame = encode_rtcm3(Bytes{0x43, 0x50, 0x07, 0x01, 0x02, 0x03});
     frame[5] ^= 0x10;
     bench.write(frame).wait(100ms);
@@ -502,6 +503,8 @@ TEST(ReceiverCommands, TellsOfACorrectionThatArrivesDamaged) {
     bench.write(frame).wait(100ms);
     ASSERT_EQ(bench.frames(rxm_rtcm).size(), 2u);
     EXPECT_EQ(bench.frames(rxm_rtcm)[1].payload[1] & 1, 0);
+    ASSERT_EQ(bench.frames(rxm_cor).size(), 2u);
+    EXPECT_EQ(bench.frames(rxm_cor)[1].payload[4] >> 5 & 3, 1) << "free of errors";
     bench.forget();
     bench.send(valset({{rtcm3_into_uart1, 0}})).wait(1s);
     frame[5] ^= 0x10;

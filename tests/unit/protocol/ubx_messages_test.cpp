@@ -39,6 +39,7 @@ TEST(UbxMessages, HaveTheSizesOfTheSpecification) {
     EXPECT_EQ(wire_size(MonGnss{}), 8u);
     EXPECT_EQ(wire_size(MonSys{}), 24u);
     EXPECT_EQ(wire_size(RxmRtcm{}), 8u);
+    EXPECT_EQ(wire_size(RxmCor{}), 12u);
     EXPECT_EQ(wire_size(RxmRlm{}), 16u);
     EXPECT_EQ(wire_size(TimTm2{}), 28u);
     EXPECT_EQ(wire_size(TimVrfy{}), 20u);
