@@ -26,10 +26,11 @@ std::optional<DbHz> arriving_cn0(const ChannelInput& input, Decibels by_echoes) 
 
 // What may jump of a range, and how fast it changes when it does not.
 Metres added_path(const Arrival& arrival) {
-    return arrival.excess_path + arrival.signal_in_space_error + arrival.false_range;
+    return arrival.excess_path + arrival.signal_in_space_error - arrival.earlier_records.range + arrival.false_range;
 }
 MetresPerSecond added_rate(const Arrival& arrival) {
-    return arrival.excess_rate + arrival.range_rate_error + arrival.false_range_rate;
+    return arrival.excess_rate + arrival.range_rate_error - arrival.earlier_records.range_rate +
+           arrival.false_range_rate;
 }
 
 DbHz reported_cn0(DbHz cn0, Decibels resolution) {
@@ -135,10 +136,12 @@ void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& e
 }
 
 // The count of cycles does not survive when another ray is tracked, nor when echoes that outdo it turn the phase over,
-// nor when the satellite's clock or a false signal jumps.
+// nor when the satellite's orbit, its clock or a false signal jumps.
 bool SignalChannel::path_changed(const ChannelInput& input, const ChannelEpoch& epoch) const {
     const Arrival& arrival = input.arrival;
     if (arrival.line_of_sight != line_of_sight_) return true;
+    const std::optional<GpsTime>& jumped = arrival.earlier_records.jumped;
+    if (jumped && difference(epoch.now, *jumped) < epoch.since_last) return true;
     const double steady = added_rate(arrival).value() * epoch.since_last.value();
     const double jump = (added_path(arrival) - added_path_).value() - steady;
     constexpr double beyond_any_motion = 0.5;  // m: what the rate leaves of a ray's change in an epoch

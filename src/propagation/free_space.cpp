@@ -21,6 +21,7 @@ Arrival arrival_of(const SatelliteInView& satellite) {
     arrival.range_rate = satellite.range_rate;
     arrival.clock_bias = satellite.clock_bias;
     arrival.clock_drift = satellite.clock_drift;
+    arrival.earlier_records.jumped = satellite.earlier_records.jumped;
     for (const TransmittedSignal& s : satellite.signals)
         arrival.signals.push_back({s.signal, s.carrier, s.group_delay, Decibels(0)});
     arrival.free_space_loss = free_space_loss(satellite.range, first_carrier(arrival));

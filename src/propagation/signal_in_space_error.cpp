@@ -123,9 +123,12 @@ void SignalInSpaceError::apply(Arrivals& arrivals, const SkyView& sky, const Tru
         const double clock = parts.clock.at(truth.time);
         const auto [share, share_rate] = line_of_sight_shares(sky.satellites[i], truth);
         Arrival& arrival = arrivals.satellites[i];
-        arrival.signal_in_space_error = Metres(factor * (share.dot(orbit) - clock));
+        // Not scaled: it is what joins the records.
+        arrival.earlier_records = sky.satellites[i].earlier_records;
+        arrival.signal_in_space_error = Metres(factor * (share.dot(orbit) - clock)) + arrival.earlier_records.range;
         arrival.range_rate_error =
-            MetresPerSecond(factor * (share.dot(orbit_rate) + share_rate.dot(orbit) - parts.clock.rate()));
+            MetresPerSecond(factor * (share.dot(orbit_rate) + share_rate.dot(orbit) - parts.clock.rate())) +
+            arrival.earlier_records.range_rate;
     }
 }
 

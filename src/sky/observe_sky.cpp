@@ -6,6 +6,7 @@
 
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/gnss/constants.hpp"
+#include "skyloop/gnss/earth_turn.hpp"
 #include "skyloop/gnss/orbit.hpp"
 #include "skyloop/gnss/signal.hpp"
 #include "skyloop/sky/light_time.hpp"
@@ -58,6 +59,12 @@ SignalPath signal_path(const Ephemeris& ephemeris, const SatelliteState& usually
         path.travel_time += error / (1 - slope.value() / speed_of_light);
     }
     return path;
+}
+
+RecordRay ray_of(const SignalPath& path, const TruthState& truth) {
+    return {path.seen_at.vector() - truth.position.vector(),
+            turned_by(path.transmitter.velocity.vector(), path.travel_time.value()) - truth.velocity.vector(),
+            path.travel_time};
 }
 
 SatelliteInView in_view(const Ephemeris& record, const SignalPath& path, const LookAngles& look,
@@ -120,7 +127,9 @@ SkyView SkyObserver::observe(const TruthState& truth, const NavigationSource& so
         // The usual convention, and that of the reference scenes: directions leave out the Earth's rotation during the
         // light time. It would turn them by less than 0.0004°.
         const LookAngles look = local.look_angles(path.transmitter.position);
-        if (look.elevation.rad() >= 0) sky.satellites.push_back(in_view(*record, path, look, truth));
+        if (look.elevation.rad() < 0) continue;
+        sky.satellites.push_back(in_view(*record, path, look, truth));
+        sky.satellites.back().earlier_records = changes_.at(*record, source, truth.time, ray_of(path, truth));
     }
     return sky;
 }

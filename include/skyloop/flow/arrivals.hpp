@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "skyloop/base/units.hpp"
+#include "skyloop/flow/earlier_records.hpp"
 #include "skyloop/gnss/dop.hpp"
 #include "skyloop/gnss/satellite.hpp"
 #include "skyloop/gnss/signal.hpp"
@@ -50,6 +51,9 @@ struct Arrival {
     std::vector<Echo> echoes;          ///< strongest first
     Metres signal_in_space_error;      ///< of orbit and clock against the broadcast, in the range
     MetresPerSecond range_rate_error;  ///< its derivative
+    /// What of that makes up for a change of the broadcast record, with its rate and with changes that it leaves alone:
+    /// range and clock step by the opposite, and the signal goes on.
+    EarlierRecords earlier_records;
     Metres false_range;                ///< what false signals add to the range, and a base station does not see
     MetresPerSecond false_range_rate;  ///< its derivative
     bool called_unhealthy = false;     ///< the satellite sends that it is not to be used, whatever its record says

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "skyloop/flow/earlier_records.hpp"
 #include "skyloop/geo/frames.hpp"
 #include "skyloop/gnss/satellite.hpp"
 #include "skyloop/gnss/signal.hpp"
@@ -26,6 +27,7 @@ struct SatelliteInView {
     GpsTime toe;
     int iode = 0;
     bool healthy = true;
+    EarlierRecords earlier_records;  ///< for models whose orbits are not quite those of the broadcast
     /// Of the first signal; 0 for a satellite without signals.
     [[nodiscard]] Seconds group_delay() const { return signals.empty() ? Seconds(0) : signals.front().group_delay; }
 };

@@ -7,6 +7,7 @@
 #include "skyloop/flow/truth_state.hpp"
 #include "skyloop/gnss/carried_records.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
+#include "skyloop/sky/record_changes.hpp"
 
 namespace skyloop {
 
@@ -18,8 +19,8 @@ SkyView observe_sky(const TruthState& truth, const NavigationSource& source);
 /// looked at before it could have risen, and a GLONASS orbit is integrated from minute to minute, not from its record
 /// each time.
 ///
-/// State: when to look again at each satellite, and GLONASS orbits at the last whole minute. A jump in time or place
-/// makes it look at everything.
+/// State: when to look again at each satellite, GLONASS orbits at the last whole minute, and changes of records. A jump
+/// in time or place makes it look at everything.
 class SkyObserver {
 public:
     /// @param source the same at every call
@@ -33,6 +34,7 @@ private:
     void begin(const TruthState& truth, const NavigationSource& source);
 
     CarriedRecords carried_;
+    RecordChanges changes_;
     std::vector<Satellite> satellites_;
     GpsTime last_time_;
     Position<Ecef> looked_from_;

@@ -140,6 +140,35 @@ TEST(MeasurementEngine, PhaseIsTheIntegralOfDoppler) {
     }
 }
 
+// Range and error step by opposite amounts where the broadcast record changes.
+TEST(MeasurementEngine, AChangeOfTheRecordBreaksNoCount) {
+    MeasuredRun run(without_errors());
+    Arrivals arrivals = plain_arrivals({g07});
+    const Observation before = *observation_of(run.epochs(arrivals, 40), g07, Signal::l1);
+    Arrival& arrival = arrivals.satellites[0];
+    arrival.range += Metres(4);
+    arrival.signal_in_space_error = arrival.earlier_records.range = Metres(-4);
+    arrival.range_rate_error = arrival.earlier_records.range_rate = MetresPerSecond(0.02);
+    const Observation after = *observation_of(run.epoch(arrivals), g07, Signal::l1);
+    EXPECT_FALSE(after.slipped);
+    EXPECT_EQ(after.lock_time, before.lock_time + Seconds(1));
+    EXPECT_NEAR(*after.carrier_phase, *before.carrier_phase, 1e-5);
+    // The same without a change: the signal itself has jumped.
+    arrival.signal_in_space_error = Metres(0);
+    EXPECT_TRUE(observation_of(run.epoch(arrivals), g07, Signal::l1)->slipped);
+}
+
+TEST(MeasurementEngine, ARecordOfAnotherOrbitBreaksTheCount) {
+    MeasuredRun run(without_errors());
+    Arrivals arrivals = plain_arrivals({g07});
+    EXPECT_FALSE(observation_of(run.epochs(arrivals, 40), g07, Signal::l1)->slipped);
+    arrivals.satellites[0].earlier_records.jumped = run.next_time() - std::chrono::milliseconds(200);
+    const Observation there = *observation_of(run.epoch(arrivals), g07, Signal::l1);
+    EXPECT_TRUE(there.slipped);
+    EXPECT_EQ(there.lock_time, Seconds(0));
+    EXPECT_FALSE(observation_of(run.epoch(arrivals), g07, Signal::l1)->slipped);
+}
+
 TEST(MeasurementEngine, MillisecondJumpsKeepTagAndRangesTogether) {
     MeasurementParameters parameters = without_errors();
     parameters.receiver_clock.enabled = true;

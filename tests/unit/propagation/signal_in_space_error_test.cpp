@@ -37,6 +37,26 @@ TEST(OrbitClockSigmas, OfGpsAreTheTypicalOnes) {
     EXPECT_NEAR(s.cross, 0.5, 0.03);
 }
 
+// Whatever the scale; where the term is off the broadcast is the truth, steps and all.
+TEST(SignalInSpaceError, JoinsTheRecords) {
+    SkyView sky = test::gps_ring(4);
+    const TruthState truth = test::truth_of(test::odessa_place, test::april_noon);
+    ErrorTerm tenth, off;
+    tenth.scale = 0.1;
+    off.enabled = false;
+    for (const ErrorTerm& term : {ErrorTerm{}, tenth, off}) {
+        SignalInSpaceError effect({}, term, 5);
+        sky.satellites[2].earlier_records = {};
+        const Arrival plain = after(effect, sky, truth).satellites[2];
+        sky.satellites[2].earlier_records = {Metres(2.5), MetresPerSecond(-0.01), std::nullopt};
+        const Arrival joined = after(effect, sky, truth).satellites[2];
+        const double share = term.enabled ? 1 : 0;
+        EXPECT_NEAR((joined.signal_in_space_error - plain.signal_in_space_error).value(), 2.5 * share, 1e-12);
+        EXPECT_NEAR((joined.range_rate_error - plain.range_rate_error).value(), -0.01 * share, 1e-12);
+        EXPECT_EQ(joined.earlier_records.range, Metres(2.5 * share));
+    }
+}
+
 TEST(SignalInSpaceError, HasTheSizeAndMemoryOfItsSystem) {
     double square = 0, lagged = 0;
     int count = 0;
