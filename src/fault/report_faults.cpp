@@ -33,9 +33,20 @@ FixType fix_type_of(std::string_view word) {
     return found == all_fix_types.end() ? FixType::none : *found;
 }
 
+// With the type goes what follows from it: satellites in use, and the vector of a pair with its ambiguities, which
+// there is with an RTK solution alone.
 void claim_type(NavigationState& state, FixType type) {
-    state.epoch.fix.type = type;
-    state.fix_ok = state.epoch.fix.has_position();
+    Fix& fix = state.epoch.fix;
+    fix.type = type;
+    state.fix_ok = fix.has_position();
+    if (type == FixType::none)
+        for (SatelliteStatus& s : fix.satellites) {
+            s.used = false;
+            s.residual.reset();
+        }
+    std::optional<RelativePosition>& pair = state.epoch.relative;
+    if (type != FixType::rtk_fixed && type != FixType::rtk_float) pair.reset();
+    if (pair) pair->fixed = type == FixType::rtk_fixed;
 }
 
 // A place from before: all of the solution but the time and what the sky looks like.
@@ -81,8 +92,6 @@ Result<Fault> make_stale_position(const Parameters&, const FaultContext&) {
         put_old_solution(state, first.of(state));
         claim_type(state, FixType::none);
         state.old_position_shown = true;
-        for (SatelliteStatus& s : state.epoch.fix.satellites)
-            s.used = false;
     });
 }
 
@@ -119,9 +128,7 @@ Result<Fault> make_rtk_transition(const Parameters& parameters, const FaultConte
         fix.horizontal_accuracy = Metres(accuracy);
         fix.vertical_accuracy = Metres(1.5 * accuracy);
         std::optional<RelativePosition>& pair = state.epoch.relative;
-        if (type != FixType::rtk_fixed && type != FixType::rtk_float) pair.reset();
         if (!pair) return;
-        pair->fixed = type == FixType::rtk_fixed;
         pair->north_m += north * s;
         pair->east_m += east * s;
         pair->down_m -= up * s;
@@ -245,7 +252,8 @@ std::vector<FaultKind> untrue_report_kinds() {
           make_zero_position},
          {"wrong_fix_type",
           solution,
-          "The type of fix is told wrong; the solution stays.",
+          "The type of fix is told wrong, and with it what follows from it: satellites in use, the vector of a pair. "
+          "Position, velocity and accuracies stay.",
           "Firmware that reckons on without satellites and says 3D, or drivers' mistakes with it.",
           {word_parameter("type", "2d", fix_type_words(false), "type of fix that is told")},
           make_wrong_fix_type}});

@@ -108,10 +108,11 @@ struct Baseline {
 
 // The vector of a pair of receivers, or that from the station of the corrections, where it has said where it stands.
 std::optional<Baseline> baseline_of(const NavigationState& state) {
-    if (const auto& pair = state.epoch.relative) return Baseline{*pair, pair->fixed ? 2u : 1u};
     const Fix& fix = state.epoch.fix;
+    if (!fix.has_position()) return std::nullopt;
+    if (const auto& pair = state.epoch.relative) return Baseline{*pair, pair->fixed ? 2u : 1u};
     const CorrectionStatus& corrections = state.corrections;
-    if (corrections.state == CorrectionState::none || !corrections.base || !fix.has_position()) return std::nullopt;
+    if (corrections.state == CorrectionState::none || !corrections.base) return std::nullopt;
     const LocalFrame base(to_geodetic(*corrections.base));
     const Eigen::Vector3d to_rover = base.to_enu(to_ecef(fix.position)).vector();
     Baseline baseline;

@@ -79,7 +79,8 @@ std::uint8_t sbf_frequency_number(SatelliteId satellite, const Observations& obs
     return 0;
 }
 
-SbfChannel sbf_channel(const SatelliteStatus& satellite, std::uint8_t svid) {
+// @param solved there is a solution that uses satellites
+SbfChannel sbf_channel(const SatelliteStatus& satellite, std::uint8_t svid, bool solved) {
     const int shift = sbf_status_shift(satellite.id.constellation);
     const auto status = [shift](unsigned value) { return static_cast<std::uint16_t>(value << shift); };
     SbfChannel channel;
@@ -90,7 +91,7 @@ SbfChannel sbf_channel(const SatelliteStatus& satellite, std::uint8_t svid) {
     channel.elevation = field<std::int8_t>(satellite.elevation.deg());
     channel.health_status = status(!satellite.has_ephemeris ? 0 : satellite.healthy ? 1 : 3);
     channel.tracking_status = status(3);
-    channel.pvt_status = status(satellite.used ? 2 : satellite.has_ephemeris ? 0 : 1);
+    channel.pvt_status = status(solved && satellite.used ? 2 : satellite.has_ephemeris ? 0 : 1);
     return channel;
 }
 
@@ -203,7 +204,7 @@ SbfChannelStatus sbf_channel_status(const NavigationState& state) {
     for (const SatelliteStatus& satellite : state.epoch.fix.satellites) {
         const auto svid = sbf_svid(satellite.id);
         if (!satellite.cn0 || !svid || block.channels.size() == most_items) continue;
-        block.channels.push_back(sbf_channel(satellite, *svid));
+        block.channels.push_back(sbf_channel(satellite, *svid, has_solution(state)));
         block.channels.back().freq_nr = sbf_frequency_number(satellite.id, state.epoch.observations);
         block.channels.back().rx_channel = static_cast<std::uint8_t>(block.channels.size());
     }

@@ -269,8 +269,45 @@ TEST(PositionFaults, TheVectorBetweenTheAntennasFallsWithTheFix) {
     EXPECT_EQ(bench.last<NavRelposned>().flags >> 3 & 3U, 2U);
 }
 
+// Of what follows from the type nothing contradicts it.
+TEST(PositionFaults, TheVectorBetweenTheAntennasIsThatOfTheClaimedType) {
+    ReceiverBench bench;
+    bench.fix().type = FixType::rtk_fixed;
+    bench.relative() = RelativePosition{0, 1, 0, Metres(0.01), true, true, 5};
+    const auto relative_flags = [&](const std::string& kind, const Given& given) {
+        bench.begin(kind, given);
+        bench.wait(1);
+        bench.end();
+        return bench.last<NavRelposned>().flags & 0x13FU;
+    };
+    const auto claimed = [&](const char* type) {
+        return relative_flags("wrong_fix_type", {{"type", std::string(type)}});
+    };
+    EXPECT_EQ(claimed("rtk_fixed"), 0x137U);
+    EXPECT_EQ(claimed("rtk_float"), 0x2FU) << "floating, and no heading";
+    EXPECT_EQ(claimed("3d"), 0x01U);
+    EXPECT_EQ(claimed("none"), 0U);
+    EXPECT_EQ(relative_flags("stale_position", {}), 0U);
+    bench.wait(1);
+    EXPECT_EQ(bench.last<NavRelposned>().flags & 0x13FU, 0x137U);
+}
+
+TEST(PositionFaults, UsesNoSatellitesWhereItClaimsNoFix) {
+    ReceiverBench bench;
+    bench.wait(1);
+    const auto used = [&] { return bench.receiver().state().epoch.fix.satellites_used(); };
+    EXPECT_EQ(used(), 12);
+    bench.begin("wrong_fix_type", {{"type", std::string("none")}});
+    bench.wait(1);
+    EXPECT_EQ(used(), 0);
+    bench.end();
+    bench.wait(1);
+    EXPECT_EQ(used(), 12);
+}
+
 TEST(PositionFaults, LosesAndFlipsTheHeading) {
     ReceiverBench bench;
+    bench.fix().type = FixType::rtk_fixed;
     bench.relative() = RelativePosition{0, 1, 0, Metres(0.01), true, true, 5};
     bench.wait(1);
     EXPECT_EQ(bench.last<NavRelposned>().rel_pos_heading, 9000000);

@@ -265,6 +265,15 @@ TEST_F(OtherProtocols, ChannelsAreTheTrackedSatellites) {
     EXPECT_EQ(m.channels[6].rx_channel, 7);
 }
 
+TEST_F(OtherProtocols, ChannelsAreUsedInASolutionAlone) {
+    NavigationState state = navigating();
+    for (const FixType type : {FixType::none, FixType::dead_reckoning, FixType::time_only}) {
+        state.epoch.fix.type = type;
+        for (const SbfChannel& channel : sbf_channel_status(state).channels)
+            EXPECT_EQ(channel.pvt_status, 0) << fix_type_name(type);
+    }
+}
+
 TEST_F(OtherProtocols, EveryPersonalityHasItsMessages) {
     const NavigationState state = navigating();
     EXPECT_TRUE(messages(Personality::sbf, state).empty()) << "its streams say what it sends";
