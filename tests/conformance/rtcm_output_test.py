@@ -61,7 +61,7 @@ class RtcmOutput(unittest.TestCase):
             sent, measured = read_rinex(folder / "sent.obs"), read_rinex(folder / "observations.rnx")
         self.assertGreaterEqual(len({key[0] for key in sent}), 4)
         self.assertGreater(len(sent), 100)
-        cycles = {}
+        cycles, drifts = {}, {}
         for key, (value, _) in sent.items():
             second, satellite, kind = key
             expected, beyond = measured[key]
@@ -69,13 +69,24 @@ class RtcmOutput(unittest.TestCase):
             if kind[0] == "C":
                 self.assertAlmostEqual(value, expected - LIGHT * beyond, delta=16, msg=key)
             elif kind[0] == "D":
-                self.assertAlmostEqual(value, expected, delta=0.003, msg=key)
+                drifts.setdefault((second, beyond), []).append((value - expected) * wavelength)
             elif kind[0] == "S":
                 self.assertAlmostEqual(value, expected, delta=0.51, msg=key)
             else:
                 cycles.setdefault((satellite, kind), []).append(
                     (second, value - expected + LIGHT * beyond / wavelength))
         self.check_ranges_and_phases(sent, measured, cycles)
+        self.check_rates(drifts)
+
+    def check_rates(self, drifts):
+        """Without the drift of the receiver's clock, as the phases are: one for all of an epoch, and that of the stamps."""
+        for stamp, of_signals in drifts.items():
+            self.assertLess(max(of_signals) - min(of_signals), 0.002, stamp)
+        (first, early), (last, late) = min(drifts), max(drifts)
+        passed = (last - first).total_seconds()
+        self.assertGreater(passed, 2)
+        for stamp, of_signals in drifts.items():
+            self.assertAlmostEqual(of_signals[0], LIGHT * (late - early) / passed, delta=1 + LIGHT * 1e-7 / passed, msg=stamp)
 
     def check_ranges_and_phases(self, sent, measured, cycles):
         """RINEX tells the receiver's time to 0.1 us, 30 m: what is left over is one for all of an epoch."""
