@@ -13,6 +13,8 @@ void read_board_keys(TableReader& top, firmware::BoardProfile& board);
 void read_board_nmea(TableReader& nmea, firmware::BoardProfile& board);
 /// [ubx]
 void read_board_ubx(TableReader& ubx, firmware::BoardProfile& board);
+/// Makes the items of CFG-MSGOUT absent whose message the board does not send: the rate of nothing.
+void leave_out_rates_of_others(firmware::BoardProfile& board);
 /// [config]; reads it after everything that decides what a value may be.
 void read_board_config(TableReader& config, firmware::BoardProfile& board);
 /// `signal_conflicts` of [navigation].

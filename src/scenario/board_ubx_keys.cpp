@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "board_keys.hpp"
@@ -118,6 +119,14 @@ void read_board_ubx(TableReader& ubx, BoardProfile& board) {
     ubx.integer("gnss_supported", board.gnss_supported, {0, 15});
     ubx.integer("gnss_simultaneous", board.gnss_simultaneous, {0, 4});
     ubx.integer("galileo_words", board.galileo_words, {8, 9});
+}
+
+void leave_out_rates_of_others(BoardProfile& board) {
+    for (const firmware::OutputMessage& message : firmware::output_messages()) {
+        if (std::find(board.messages.begin(), board.messages.end(), message.id) != board.messages.end()) continue;
+        for (std::uint32_t port = 0; port < firmware::port_count; ++port)
+            board.absent_keys.insert(message.i2c_key + port);
+    }
 }
 
 void read_board_config(TableReader& config, BoardProfile& board) {

@@ -203,6 +203,31 @@ TEST(BoardFileUblox, ReadsMessagesAndConfiguration) {
     EXPECT_FALSE(absent("CFG-UART1INPROT-UBX"));
 }
 
+// A rate for what a board cannot send would be taken, and nothing would come.
+TEST(BoardFileUblox, EveryRateThatABoardTakesHasAMessage) {
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::string(SKYLOOP_SOURCE_DIR) + "/boards/receivers")) {
+        const BoardProfile board = shipped_board(entry.path().stem().string());
+        if (board.personality != firmware::Personality::ublox) continue;
+        const firmware::ConfigValues items = firmware::factory_config(board);
+        for (const firmware::OutputMessage& message : firmware::output_messages())
+            for (const PortId port : board.ports)
+                EXPECT_EQ(items.contains(*firmware::rate_key(message.id, port)), sends(board, message.name))
+                    << board.name << ": " << message.name;
+    }
+}
+
+TEST(BoardFileUblox, RefusesTheRateOfAMessageThatItDoesNotSend) {
+    EXPECT_THAT(ublox_refusal("personality = \"ublox\"\n[ubx]\nmessages = [\"GGA\"]\n"
+                              "[config]\nCFG-MSGOUT-UBX_NAV_PVT_UART1 = 1"),
+                HasSubstr("is set, and is among the items that the board does not have"));
+    constexpr std::uint32_t rawx_on_uart1 = 0x209102A5, relposned_on_uart1 = 0x2091008E;
+    for (const std::uint32_t key : {rawx_on_uart1, relposned_on_uart1}) {
+        EXPECT_FALSE(firmware::factory_config(shipped_board("ublox-m8")).contains(key));
+        EXPECT_TRUE(firmware::factory_config(shipped_board("ublox-f9p")).contains(key));
+    }
+}
+
 TEST(BoardFileUblox, RefusesUnknownNamesWithTheNearest) {
     EXPECT_EQ(
         ublox_refusal("[ubx]\nmessages = [\"GGA\", \"NAV-PTV\"]"),
