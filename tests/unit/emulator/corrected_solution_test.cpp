@@ -28,7 +28,8 @@ CorrectedErrors errors_with(CorrectionState state, FixType expected, std::uint64
     ReceiverSettings settings = test::all_systems();
     test::ErrorSeries errors;
     CorrectedErrors result;
-    // Between two changes of the GLONASS records, whose orbits lie tens of metres apart in this sky: there counts break.
+    // Between two changes of the GLONASS records, whose orbits lie tens of metres apart in this sky: there counts
+    // break.
     const GpsTime start = to_gps_time(2300, 200700.0);
     for (int i = 0; i < 900; ++i) {
         settings.corrections = i < 20 ? CorrectionState::none : state;
