@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::chrono::minutes change_length{5};
 constexpr std::chrono::seconds search_step{30};  // no satellite changes its record twice in it
-constexpr double longest_step_m = 30;
+constexpr double longest_step_m = 10;
 
 bool is_same_record(const Ephemeris& a, const Ephemeris& b) {
     return toe_of(a) == toe_of(b) && iode_of(a) == iode_of(b) && message_of(a) == message_of(b);

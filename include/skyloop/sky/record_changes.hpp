@@ -21,7 +21,7 @@ struct RecordRay {
 /// Makes a smooth path of the records of a satellite, for models whose orbits are not quite those of the broadcast. A
 /// record is the prediction of one upload and the next differs by decimetres to metres; the satellite itself knows
 /// nothing of it. So the present record's range goes on from the one before, whose share falls to nothing in five
-/// minutes by a cubic without a kink. Of steps above 30 m, as after a manoeuvre or of SBAS satellites that tell their
+/// minutes by a cubic without a kink. Of steps above 10 m, as after a manoeuvre or of SBAS satellites that tell their
 /// orbit by coarse parabolas, nothing is smoothed (our decisions).
 ///
 /// State: the last changes of each satellite. They hang on the records alone: whoever looks first after a change sees
