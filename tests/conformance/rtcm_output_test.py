@@ -79,14 +79,15 @@ class RtcmOutput(unittest.TestCase):
         self.check_rates(drifts)
 
     def check_rates(self, drifts):
-        """Without the drift of the receiver's clock, as the phases are: one for all of an epoch, and that of the stamps."""
+        """Rates are without the drift of the clock, as phases are: one for all of an epoch, and that of the stamps."""
         for stamp, of_signals in drifts.items():
             self.assertLess(max(of_signals) - min(of_signals), 0.002, stamp)
         (first, early), (last, late) = min(drifts), max(drifts)
         passed = (last - first).total_seconds()
         self.assertGreater(passed, 2)
+        drift, rounding = LIGHT * (late - early) / passed, LIGHT * 1e-7 / passed
         for stamp, of_signals in drifts.items():
-            self.assertAlmostEqual(of_signals[0], LIGHT * (late - early) / passed, delta=1 + LIGHT * 1e-7 / passed, msg=stamp)
+            self.assertAlmostEqual(of_signals[0], drift, delta=1 + rounding, msg=stamp)
 
     def check_ranges_and_phases(self, sent, measured, cycles):
         """RINEX tells the receiver's time to 0.1 us, 30 m: what is left over is one for all of an epoch."""
