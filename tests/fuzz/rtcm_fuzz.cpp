@@ -31,6 +31,12 @@ void read(skyloop::ByteSpan frame) {
     }
 }
 
+void require_frames(const skyloop::firmware::CorrectionAnswer& answer) {
+    using namespace skyloop;
+    require(parse_frame(answer.rtcm).has_value());
+    require(parse_frame(answer.cor).has_value());
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -43,7 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const StreamPiece& piece : splitter.feed({data, size})) {
         if (piece.kind != StreamKind::rtcm3) continue;
         read(piece.bytes);
-        require(parse_frame(input.take(piece.bytes, now)).has_value());
+        require_frames(input.take(piece.bytes, now));
         now += std::chrono::milliseconds(700);
         const auto status = input.status(now, firmware::CorrectionLimits{});
         require(status.state == CorrectionState::none || (status.age && status.station));
@@ -52,6 +58,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Bytes frame = encode_rtcm3({data, size});
     if (frame.empty()) return 0;
     read(frame);
-    require(parse_frame(input.take(frame, now)).has_value());
+    require_frames(input.take(frame, now));
     return 0;
 }
