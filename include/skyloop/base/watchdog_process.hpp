@@ -42,7 +42,8 @@ bool hear_record(int socket, void* record, std::size_t size);
 /// Kills what is left of a process group, and waits until nothing is, for a second at most.
 void end_process_group(int group);
 
-/// Ends the programs that its own program leaves behind when it is killed with SIGKILL or crashes.
+/// Ends the programs that its own program leaves behind when it is killed with SIGKILL or crashes; a program that has
+/// been started in that very moment, so that its listener has not heard of it yet, stays.
 class OrphanWatchdog {
 public:
     /// As WatchdogProcess::start().

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -31,6 +32,7 @@ int leave_programs(const std::vector<std::filesystem::path>& files, const std::f
     const pid_t child = ::fork();
     if (child == 0) {
         const auto watchdog = OrphanWatchdog::start();
+        std::atomic<std::size_t> heard_of = 0;
         std::vector<std::thread> running;
         for (const auto& file : files)
             running.emplace_back([&] {
@@ -38,11 +40,15 @@ int leave_programs(const std::vector<std::filesystem::path>& files, const std::f
                 // In the background, so that it is no child of whoever is killed first.
                 request.command = {"/bin/sh", "-c", "(sleep 2; echo late >>\"$0\") & echo begun >>\"$0\"; wait",
                                    file.string()};
-                request.group = (*watchdog)->listener();
+                // A program may well have begun before the watchdog hears of it, and is nobody's until then.
+                request.group = [&, tell = (*watchdog)->listener()](std::optional<int> group) {
+                    tell(group);
+                    if (group) ++heard_of;
+                };
                 static_cast<void>(run_process(request));
             });
         for (const auto& file : files)
-            while (told_in(file).empty())
+            while (told_in(file).empty() || heard_of < files.size())
                 std::this_thread::sleep_for(5ms);
         how();
         for (std::thread& one : running)
