@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "firmware/clock_instant.hpp"
 #include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/other_protocols.hpp"
@@ -188,6 +189,7 @@ void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     const auto state = std::make_shared<NavigationState>(tracker_.update(epoch, store_, corrections));
     state->corrections.state = in_solution(state->epoch.fix, used);
     state->monitors.jamming_hidden = faults_.jamming_hidden;
+    carry_to_clock_instant(*state);
     if (edit) edit(*state);
     reported_ = state;
     ++counters_.epochs;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "firmware/base_place.hpp"
+#include "firmware/clock_instant.hpp"
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/signal_keys.hpp"
 #include "skyloop/geo/local_frame.hpp"
@@ -20,11 +21,6 @@ constexpr double between_satellites = 1.2;
 
 // Growth of the accuracies while there is no solution, per second: 27 to 63 m in 5 s was captured (RECEIVER.md 4.10).
 constexpr double accuracy_growth_mps = 7.2, speed_accuracy_growth = 0.5;
-
-Geodetic moved(const Geodetic& from, const VelocityNed& velocity, double seconds) {
-    const Position<Enu> to{velocity.east * seconds, velocity.north * seconds, -velocity.down * seconds};
-    return to_geodetic(LocalFrame(from).to_ecef(to));
-}
 
 double horizontal_distance(const Geodetic& a, const Geodetic& b) {
     const Position<Enu> to = LocalFrame(a).to_enu(to_ecef(b));
@@ -287,7 +283,7 @@ void StateTracker::coast(const Fix& before) {
     const bool coasting = last_good_ && difference(now.time, *last_good_).value() <= board_.timing.coasting.value();
     if (coasting) {
         fix.type = FixType::dead_reckoning;
-        fix.position = moved(last_fix_.position, last_fix_.velocity, step);
+        fix.position = carried(last_fix_.position, last_fix_.velocity, Seconds(step));
         state_.fix_ok = true;
     }
     // The clock runs on by the drift that was solved last.

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cstdlib>
 
+#include "firmware/clock_instant.hpp"
+
 namespace skyloop::firmware {
 namespace {
 
@@ -81,7 +83,8 @@ bool has_dops(const Fix& fix) {
 
 ReportedTime reported_time(const ReportContext& context) {
     const NavigationState& state = context.state;
-    if (state.time.time) return {state.epoch.fix.time, state.epoch.fix.leap_seconds, state.leap_event};
+    if (state.time.time)
+        return {state.epoch.fix.time - clock_ahead(state), state.epoch.fix.leap_seconds, state.leap_event};
     const auto week = static_cast<std::int64_t>(context.config.value(key::navspg_wknrollover) & 0xFFFFu);
     const std::chrono::milliseconds running(field<std::uint32_t>(state.since_start.value() * 1e3));
     return {to_gps_time({week, Nanoseconds(0)}) + running, 0, std::nullopt};

@@ -59,7 +59,9 @@ Integer week_field(const NavigationState& state, const WeekAndTow& now) {
     return field<Integer>(static_cast<double>(reported_week(state, now)));
 }
 
-/// The instant of the epoch as the receiver believes it, and how far GPS time is ahead of UTC.
+/// The instant of the epoch as the receiver believes it, and how far GPS time is ahead of UTC. The receiver's own clock
+/// shows a whole millisecond then, the satellites' the rest that fTOW and nano tell: minus clkB (captures of ZED-F9T
+/// and M8T, 881 epochs: within 5 ns).
 struct ReportedTime {
     GpsTime time;
     int leap_seconds = 18;

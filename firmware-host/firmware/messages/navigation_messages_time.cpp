@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "firmware/clock_instant.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/navigation_parts.hpp"
@@ -20,8 +21,6 @@ constexpr std::uint32_t tp_period = 0x40050002, tp_period_lock = 0x40050003, tp_
                         tp_use_locked = 0x10050009, tp_time_grid = 0x2005000C;
 // Step of the oscillator by which a pulse can be moved: RECEIVER.md 4.9 has errors of ±15 ns.
 constexpr double pulse_step_ns = 30;
-// The clock is set by whole milliseconds (NAV-CLOCK clkB).
-constexpr double clock_step_ns = 1e6;
 
 // Time of week, week and leap seconds.
 std::uint8_t gnss_time_valid(const NavigationState& state) {
@@ -158,7 +157,8 @@ NavTimels time_leap_seconds(const ReportContext& context) {
     constexpr std::uint8_t from_firmware = 0, from_gps = 2;
     const ReportedTime reported = reported_time(context);
     NavTimels m;
-    m.i_tow = epoch_time(reported.time).i_tow;
+    const GpsTime now = std::chrono::round<std::chrono::milliseconds>(reported.time);
+    m.i_tow = epoch_time(now).i_tow;
     m.curr_ls = field<std::int8_t>(context.state.epoch.fix.leap_seconds);
     m.src_of_curr_ls = from_firmware;
     if (!context.state.time.leap_seconds) return m;
@@ -166,9 +166,9 @@ NavTimels time_leap_seconds(const ReportContext& context) {
     m.valid = 3;
     const auto& own = reported.leap_event;
     if (own)
-        put_leap_event(reported.time, {own->at, own->after}, own->after - own->before, m);
+        put_leap_event(now, {own->at, own->after}, own->after - own->before, m);
     else
-        put_announced_leap_event(reported.time, m);
+        put_announced_leap_event(now, m);
     return m;
 }
 
@@ -180,7 +180,7 @@ NavClock receiver_clock(const ReportContext& context) {
     m.f_acc = 3749500;  // ps/s, of captured receivers without a fix
     if (!estimates_known(state)) return m;
     const Fix& fix = state.epoch.fix;
-    m.clk_b = field<std::int32_t>(std::remainder(fix.clock_bias.value() / speed_of_light * 1e9, clock_step_ns));
+    m.clk_b = static_cast<std::int32_t>(clock_ahead(state).count());
     m.clk_d = field<std::int32_t>(fix.clock_drift.value() / speed_of_light * 1e9);
     m.f_acc = field<std::uint32_t>(fix.speed_accuracy.value() / speed_of_light * 1e12);
     return m;

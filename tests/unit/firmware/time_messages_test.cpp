@@ -32,6 +32,40 @@ TEST(TimeOfMessages, RoundsToTenMilliseconds) {
     EXPECT_EQ(pvt.nano, 994999999);
 }
 
+// Its clock is ahead: the whole second that it shows is not there yet. A ZED-F9T had clkB 92265, nano -92265.
+TEST(TimeOfMessages, TellsTheInstantThatTheReceiversClockCallsWhole) {
+    UbxReport f9(9, "2012-01-01T00:00:00Z");
+    f9.state.epoch.fix.clock_bias = Metres(299792458.0 * 92265e-9);
+    const auto pvt = f9.report<NavPvt>();
+    EXPECT_EQ(std::tuple(pvt.year, pvt.second, pvt.nano), std::tuple(2012, 0, -92265));
+    EXPECT_EQ(f9.report<NavTimeutc>().nano, -92265);
+    EXPECT_EQ(f9.report<NavTimegps>().f_tow, -92265);
+    EXPECT_EQ(f9.report<NavTimegps>().i_tow, pvt.i_tow);
+    EXPECT_EQ(pvt.i_tow % 1000, 0u);
+    EXPECT_EQ(f9.report<NavClock>().clk_b, 92265);
+    EXPECT_EQ(f9.report<NavTimels>().time_to_ls_event % 86400, 0);
+}
+
+TEST(TimeOfMessages, CallsTheWholeMillisecondThatIsNearest) {
+    UbxReport m8(8, "2024-03-05T12:49:23Z");
+    for (const auto& [bias_ns, told] :
+         {std::pair(-300e3, 300000), {12.7e6, 300000}, {0.5e6, -499999}, {-0.5e6, 499999}}) {
+        m8.state.epoch.fix.clock_bias = Metres(299792458e-9 * bias_ns);
+        EXPECT_EQ(m8.report<NavPvt>().nano, told);
+        EXPECT_EQ(m8.report<NavPvt>().second, 23);
+        EXPECT_EQ(m8.report<NavClock>().clk_b, -told);
+        EXPECT_EQ(m8.report<NavPvt>().i_tow % 1000, 0u);
+    }
+}
+
+TEST(TimeOfMessages, HasNoRemainderBeforeTheClockWasSolved) {
+    UbxReport m8(8, "2024-03-05T12:49:23Z");
+    m8.state.epoch.fix.clock_bias = Metres(60'000);
+    m8.state.ever_had_fix = false;
+    EXPECT_EQ(m8.report<NavPvt>().nano, 0);
+    EXPECT_EQ(m8.report<NavTimegps>().f_tow, 0);
+}
+
 TEST(TimeOfMessages, KeepsTheFlooredSecondInsideIt) {
     UbxReport m8(8, "2017-07-19T08:50:01.8Z");
     m8.state.epoch.fix.time -= 100313ns;
@@ -151,6 +185,7 @@ TEST(NavTimelsMessage, AnnouncesTheNextOne) {
 
 TEST(NavClockMessage, StaysWithinHalfAMillisecond) {
     UbxReport m9(9);
+    m9.state.epoch.fix.clock_bias = Metres(299792458.0 * 0.0002);
     EXPECT_EQ(m9.report<NavClock>().clk_b, 200000);
     EXPECT_EQ(m9.report<NavClock>().clk_d, 500);
     EXPECT_EQ(m9.report<NavClock>().f_acc, 834u);

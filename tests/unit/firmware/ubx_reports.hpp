@@ -24,7 +24,6 @@ struct UbxReport {
         fix.speed = MetresPerSecond(5.001);
         fix.speed_accuracy = MetresPerSecond(0.25);
         fix.course_accuracy = Angle::degrees(1.5);
-        fix.clock_bias = Metres(59958.4916);  // 200 µs
         fix.clock_drift = MetresPerSecond(149.896229);
         add_satellites(fix, Constellation::gps, 1, 8);
         add_satellites(fix, Constellation::galileo, 1, 4);
