@@ -12,6 +12,7 @@
 
 #include "feed_hearer.hpp"
 #include "feed_socket.hpp"
+#include "skyloop/base/send_buffer.hpp"
 #include "skyloop/feed/truth_feed.hpp"
 
 namespace skyloop {
@@ -56,7 +57,7 @@ public:
     /// Sends, and keeps what the socket does not take.
     void send(ByteSpan bytes);
     void send_waiting();
-    [[nodiscard]] std::size_t waiting() const { return waiting_.size() - sent_; }
+    [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
     [[nodiscard]] bool gone() const { return gone_; }
     /// The other end has closed, and nothing of it waits to be read.
     [[nodiscard]] bool hung_up() const;
@@ -65,8 +66,8 @@ public:
 
 private:
     FileDescriptor socket_;
-    Bytes read_, waiting_;
-    std::size_t sent_ = 0;  // of waiting_
+    Bytes read_;
+    SendBuffer waiting_;
     bool gone_ = false, finished_ = false;
 };
 

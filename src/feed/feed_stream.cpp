@@ -30,19 +30,19 @@ bool FeedStream::hung_up() const {
 }
 
 void FeedStream::send(ByteSpan bytes) {
-    waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
+    waiting_.add(bytes);
     send_waiting();
 }
 
 void FeedStream::send_waiting() {
-    while (waiting() > 0 && !gone_) {
-        const auto count = ::send(socket_.value(), waiting_.data() + sent_, waiting(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    while (!waiting_.empty() && !gone_) {
+        const ByteSpan bytes = waiting_.waiting();
+        const auto count = ::send(socket_.value(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR)) return;
         if (count < 0) gone_ = true;
-        if (count > 0) sent_ += static_cast<std::size_t>(count);
+        if (count > 0) waiting_.sent(static_cast<std::size_t>(count));
     }
-    waiting_.clear();
-    sent_ = 0;
+    if (gone_) waiting_.clear();
 }
 
 void ConnectBackoff::failed(std::int64_t now_ns) {

@@ -33,14 +33,7 @@ void UsbipSession::run(std::int64_t now_ns) {
     follow_listening(now_ns);
 }
 
-void UsbipSession::sent(std::size_t count) {
-    sent_ += count;
-    if (sent_ < output_.size()) return;
-    output_.clear();
-    sent_ = 0;
-}
-
-bool UsbipSession::overwhelmed() const { return output().size() >= most_output || out_bytes_ >= usbip_most_data; }
+bool UsbipSession::overwhelmed() const { return output_.size() >= most_output || out_bytes_ >= usbip_most_data; }
 
 void UsbipSession::follow_commands() {
     for (int i = 0; i < most_commands && mistake_.empty() && !overwhelmed(); ++i) {
@@ -60,8 +53,7 @@ void UsbipSession::follow_commands() {
 }
 
 void UsbipSession::answer(const UsbipSubmit& submit, UsbipStatus status, std::uint32_t moved, ByteSpan data) {
-    const Bytes reply = usbip_submit_reply(submit, status, moved, data);
-    output_.insert(output_.end(), reply.begin(), reply.end());
+    output_.add(usbip_submit_reply(submit, status, moved, data));
 }
 
 void UsbipSession::act(UsbipSubmit submit) {
@@ -110,8 +102,7 @@ void UsbipSession::act(const UsbipUnlink& unlink) {
         if (queue == &in_ && in_.empty()) idle_since_ = last_run_ns_;
         break;
     }
-    const Bytes reply = usbip_unlink_reply(unlink, status);
-    output_.insert(output_.end(), reply.begin(), reply.end());
+    output_.add(usbip_unlink_reply(unlink, status));
 }
 
 void UsbipSession::refill(std::int64_t now_ns) {
@@ -144,7 +135,7 @@ void UsbipSession::finish_out() {
 
 void UsbipSession::finish_in() {
     if (finish_stalled(in_, CdcAcmDevice::data_in)) return;
-    while (!in_.empty() && !backlog_.empty() && budget_ > 0 && output().size() < most_output) {
+    while (!in_.empty() && !backlog_.empty() && budget_ > 0 && output_.size() < most_output) {
         const std::size_t count = std::min(
             {backlog_.size(), static_cast<std::size_t>(in_.front().length), static_cast<std::size_t>(budget_)});
         const auto end = backlog_.begin() + static_cast<std::ptrdiff_t>(count);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "skyloop/base/bytes.hpp"
+#include "skyloop/base/send_buffer.hpp"
 #include "skyloop/transport/usbip_messages.hpp"
 
 namespace skyloop {
@@ -36,11 +37,11 @@ public:
     /// Acts on what was heard. Steady time, ns, never less than before.
     void run(std::int64_t now_ns);
     /// Sends the client bytes of the server's own, before the answers to come.
-    void reply(ByteSpan bytes) { output_.insert(output_.end(), bytes.begin(), bytes.end()); }
+    void reply(ByteSpan bytes) { output_.add(bytes); }
     /// Bytes that the client is to be sent.
-    [[nodiscard]] ByteSpan output() const { return ByteSpan(output_).subspan(sent_); }
+    [[nodiscard]] ByteSpan output() const { return output_.waiting(); }
     /// So many of them have been sent.
-    void sent(std::size_t count);
+    void sent(std::size_t count) { output_.sent(count); }
 
     /// Offers serial bytes to the host; gives how many were taken. While it does not listen they are taken and lost;
     /// between the reads of one that reads now and then all are taken, and the oldest lost that do not fit.
@@ -80,8 +81,7 @@ private:
     UsbipDevice listed_;
     Bytes heard_;
     std::size_t parsed_ = 0;  // of heard_
-    Bytes output_;
-    std::size_t sent_ = 0;  // of output_
+    SendBuffer output_;
     Queue out_, in_, notify_;
     std::size_t out_bytes_ = 0;  // in out_
     Bytes received_;
