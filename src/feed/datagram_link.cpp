@@ -152,16 +152,16 @@ private:
 
 Result<std::unique_ptr<FeedLink>> open_datagram_link(const FeedAddress& address, FeedHearer& hearer) {
     const bool connected = address.wire == FeedWire::udp_connect;
-    auto socket = connected ? connected_datagrams(address.host, address.port)
-                            : listening_socket(address.host, address.port, SOCK_DGRAM);
+    auto socket = connected ? connected_datagrams({address.host, address.port})
+                            : listening_socket({address.host, address.port}, SOCK_DGRAM);
     if (!socket) return fail(socket.error());
     return std::make_unique<DatagramLink>(std::move(*socket), connected, hearer);
 }
 
 Result<std::unique_ptr<FeedLink>> open_datagram_relay(const FeedAddress& address, FeedHearer& hearer) {
-    auto near = listening_socket(address.host, address.port, SOCK_DGRAM);
+    auto near = listening_socket({address.host, address.port}, SOCK_DGRAM);
     if (!near) return fail(near.error());
-    auto far = connected_datagrams(address.to_host, address.to_port);
+    auto far = connected_datagrams({address.to_host, address.to_port});
     if (!far) return fail(far.error());
     return std::make_unique<DatagramRelay>(std::move(*near), std::move(*far), address.hears_target, hearer);
 }

@@ -47,7 +47,7 @@ Result<std::unique_ptr<FeedLink>> open_stream_relay(const FeedAddress& address, 
 class FeedStream {
 public:
     FeedStream() = default;
-    explicit FeedStream(FileDescriptor socket) : socket_(std::move(socket)) { prepare_stream(socket_.value()); }
+    explicit FeedStream(FileDescriptor socket) : socket_(std::move(socket)) { prepare_connection(socket_.value()); }
 
     [[nodiscard]] bool open() const { return socket_.open(); }
     void close() { *this = FeedStream(); }
@@ -93,7 +93,6 @@ public:
     [[nodiscard]] int descriptor() const { return socket_.value(); }
     /// The connection was lost. @param lasted it had been of use
     void lost(std::int64_t now_ns, bool lasted);
-    void give_up() { socket_ = FileDescriptor(); }
 
 private:
     std::vector<FeedPeer> peers_;

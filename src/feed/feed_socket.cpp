@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <netdb.h>
 #include <netinet/in.h>
-#include <netinet/tcp.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -18,13 +17,8 @@ namespace {
 constexpr int feed_receive_buffer = 4 << 20;  // FEEDS.md 3.1: at least 1 MiB; some thousand datagrams
 constexpr int feed_backlog = 8;
 
-// A system that does not know an option goes without it.
-void set_feed_option(int socket, int level, int name, int value) {
-    (void)::setsockopt(socket, level, name, &value, sizeof value);
-}
-
-tl::unexpected<Error> socket_failure(const std::string& host, std::uint16_t port, std::string_view why) {
-    return fail(ErrorCode::outside, fmt::format("{}: {}", shown_host_port(host, port), why));
+tl::unexpected<Error> socket_failure(const TcpAddress& address, std::string_view why) {
+    return fail(ErrorCode::outside, fmt::format("{}: {}", shown_address(address), why));
 }
 
 FileDescriptor open_socket(const FeedPeer& where, int type) {
@@ -44,10 +38,6 @@ bool FeedPeer::operator==(const FeedPeer& other) const {
     return length == other.length && std::memcmp(&storage, &other.storage, length) == 0;
 }
 
-std::string shown_host_port(const std::string& host, std::uint16_t port) {
-    return host.find(':') == std::string::npos ? fmt::format("{}:{}", host, port) : fmt::format("[{}]:{}", host, port);
-}
-
 std::string shown_peer(const FeedPeer& peer) {
     std::array<char, NI_MAXHOST> host{};
     std::array<char, NI_MAXSERV> service{};
@@ -58,13 +48,13 @@ std::string shown_peer(const FeedPeer& peer) {
     return (name.find(':') == std::string::npos ? name : "[" + name + "]") + ":" + service.data();
 }
 
-Result<std::vector<FeedPeer>> resolve_host(const std::string& host, std::uint16_t port, int type) {
+Result<std::vector<FeedPeer>> resolve_host(const TcpAddress& address, int type) {
     addrinfo hints{};
     hints.ai_socktype = type;
     hints.ai_flags = AI_NUMERICSERV;
     addrinfo* found = nullptr;
-    const int code = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found);
-    if (code != 0) return socket_failure(host, port, ::gai_strerror(code));
+    const int code = ::getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &hints, &found);
+    if (code != 0) return socket_failure(address, ::gai_strerror(code));
     std::vector<FeedPeer> peers;
     for (const addrinfo* each = found; each != nullptr; each = each->ai_next) {
         FeedPeer peer;
@@ -76,32 +66,32 @@ Result<std::vector<FeedPeer>> resolve_host(const std::string& host, std::uint16_
     return peers;
 }
 
-Result<FileDescriptor> listening_socket(const std::string& host, std::uint16_t port, int type) {
-    const auto where = resolve_host(host, port, type);
+Result<FileDescriptor> listening_socket(const TcpAddress& address, int type) {
+    const auto where = resolve_host(address, type);
     if (!where) return fail(where.error());
     FileDescriptor socket = open_socket(where->front(), type);
-    if (!socket.open()) return socket_failure(host, port, std::strerror(errno));
-    if (type == SOCK_STREAM) set_feed_option(socket.value(), SOL_SOCKET, SO_REUSEADDR, 1);
+    if (!socket.open()) return socket_failure(address, std::strerror(errno));
+    if (type == SOCK_STREAM) set_socket_option(socket.value(), SOL_SOCKET, SO_REUSEADDR, 1);
     if (::bind(socket.value(), where->front().get(), where->front().length) != 0 ||
         (type == SOCK_STREAM && ::listen(socket.value(), feed_backlog) != 0))
-        return socket_failure(host, port, std::strerror(errno));
+        return socket_failure(address, std::strerror(errno));
     return socket;
 }
 
-Result<FileDescriptor> connected_datagrams(const std::string& host, std::uint16_t port) {
-    const auto where = resolve_host(host, port, SOCK_DGRAM);
+Result<FileDescriptor> connected_datagrams(const TcpAddress& address) {
+    const auto where = resolve_host(address, SOCK_DGRAM);
     if (!where) return fail(where.error());
     FileDescriptor socket = open_socket(where->front(), SOCK_DGRAM);
     if (!socket.open() || ::connect(socket.value(), where->front().get(), where->front().length) != 0)
-        return socket_failure(host, port, std::strerror(errno));
+        return socket_failure(address, std::strerror(errno));
     return socket;
 }
 
-FileDescriptor begin_connecting(const FeedPeer& to) {
+FileDescriptor begin_connecting(const FeedPeer& to, std::string& why) {
     FileDescriptor socket = open_socket(to, SOCK_STREAM);
-    if (!socket.open()) return socket;
-    if (::connect(socket.value(), to.get(), to.length) != 0 && errno != EINPROGRESS) return {};
-    return socket;
+    if (socket.open() && (::connect(socket.value(), to.get(), to.length) == 0 || errno == EINPROGRESS)) return socket;
+    why = std::strerror(errno);
+    return {};
 }
 
 ConnectState finish_connecting(int socket, std::string& why) {
@@ -110,18 +100,10 @@ ConnectState finish_connecting(int socket, std::string& why) {
     int error = 0;
     socklen_t size = sizeof error;
     if (::getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) != 0) error = errno;
+    if (error == 0 && calls_itself(socket)) error = ECONNREFUSED;
     if (error == 0) return ConnectState::open;
     why = std::strerror(error);
     return ConnectState::failed;
-}
-
-void prepare_stream(int socket) {
-    constexpr int idle_s = 30, every_s = 10, tries = 3;
-    set_feed_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
-    set_feed_option(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
-    set_feed_option(socket, IPPROTO_TCP, TCP_KEEPIDLE, idle_s);
-    set_feed_option(socket, IPPROTO_TCP, TCP_KEEPINTVL, every_s);
-    set_feed_option(socket, IPPROTO_TCP, TCP_KEEPCNT, tries);
 }
 
 std::uint16_t own_port(int socket) {
@@ -135,10 +117,10 @@ std::uint16_t own_port(int socket) {
 
 DatagramReader::DatagramReader(int socket)
     : socket_(socket), bytes_(std::make_unique_for_overwrite<std::uint8_t[]>(batch * longest)) {
-    set_feed_option(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1);
-    set_feed_option(socket, SOL_SOCKET, SO_RXQ_OVFL, 1);
-    set_feed_option(socket, SOL_SOCKET, SO_RCVBUF, feed_receive_buffer);
-    set_feed_option(socket, SOL_SOCKET, SO_RCVBUFFORCE, feed_receive_buffer);  // above the limit, where allowed
+    set_socket_option(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1);
+    set_socket_option(socket, SOL_SOCKET, SO_RXQ_OVFL, 1);
+    set_socket_option(socket, SOL_SOCKET, SO_RCVBUF, feed_receive_buffer);
+    set_socket_option(socket, SOL_SOCKET, SO_RCVBUFFORCE, feed_receive_buffer);  // above the limit, where allowed
     for (std::size_t i = 0; i < batch; ++i) {
         parts_[i] = {bytes_.get() + i * longest, longest};
         messages_[i].msg_hdr.msg_iov = &parts_[i];

@@ -13,6 +13,7 @@
 #include "skyloop/base/bytes.hpp"
 #include "skyloop/base/result.hpp"
 #include "skyloop/transport/file_descriptor.hpp"
+#include "skyloop/transport/tcp_connection.hpp"
 
 namespace skyloop {
 
@@ -24,24 +25,21 @@ struct FeedPeer {
     bool operator==(const FeedPeer& other) const;
 };
 
-/// "127.0.0.1:5000", "[::1]:5000".
-std::string shown_host_port(const std::string& host, std::uint16_t port);
 std::string shown_peer(const FeedPeer& peer);
 
 /// All addresses of a host, at least one. May wait for a name server. Fails with `outside`.
 /// @param type SOCK_DGRAM or SOCK_STREAM
-Result<std::vector<FeedPeer>> resolve_host(const std::string& host, std::uint16_t port, int type);
+Result<std::vector<FeedPeer>> resolve_host(const TcpAddress& address, int type);
 
 /// Sockets that do not wait. They fail with `outside`; the sentence names the address.
-Result<FileDescriptor> listening_socket(const std::string& host, std::uint16_t port, int type);
+Result<FileDescriptor> listening_socket(const TcpAddress& address, int type);
 /// Of datagrams: connected, so that the kernel lets nobody else in.
-Result<FileDescriptor> connected_datagrams(const std::string& host, std::uint16_t port);
-/// Of a stream: the connection has begun; whether it came about, finish_connecting() tells.
-FileDescriptor begin_connecting(const FeedPeer& to);
+Result<FileDescriptor> connected_datagrams(const TcpAddress& address);
+/// Of a stream: the connection has begun; whether it came about, finish_connecting() tells. None, and `why`, where it
+/// cannot even begin.
+FileDescriptor begin_connecting(const FeedPeer& to, std::string& why);
 enum class ConnectState { pending, open, failed };
 ConnectState finish_connecting(int socket, std::string& why);
-/// Small writes leave at once, and an end that has vanished is noticed.
-void prepare_stream(int socket);
 /// The port of its own end; 0 when it has none.
 std::uint16_t own_port(int socket);
 

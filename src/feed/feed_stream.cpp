@@ -54,12 +54,10 @@ FileDescriptor StreamConnector::look(std::int64_t now_ns, std::string& why) {
     constexpr std::int64_t patience_ns = 5'000'000'000;
     if (!socket_.open()) {
         if (!backoff_.due(now_ns)) return {};
-        socket_ = begin_connecting(peers_[next_++ % peers_.size()]);
+        socket_ = begin_connecting(peers_[next_++ % peers_.size()], why);
         begun_ns_ = now_ns;
-        if (!socket_.open()) backoff_.failed(now_ns);
     }
-    if (!socket_.open()) return {};
-    switch (finish_connecting(socket_.value(), why)) {
+    switch (socket_.open() ? finish_connecting(socket_.value(), why) : ConnectState::failed) {
         case ConnectState::open:
             return std::move(socket_);
         case ConnectState::pending:

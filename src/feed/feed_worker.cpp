@@ -114,9 +114,9 @@ void FeedWorker::answer_steps() {
 std::string FeedWorker::description() const {
     if (address_.wire == FeedWire::serial) return address_.text;
     const std::string scheme = address_.text.substr(0, address_.text.find(':'));
-    const std::string here = shown_host_port(address_.host, port_ != 0 ? port_ : address_.port);
+    const std::string here = shown_address({address_.host, port_ != 0 ? port_ : address_.port});
     if (address_.to_host.empty()) return scheme + ":" + here;
-    return scheme + ":" + here + "," + shown_host_port(address_.to_host, address_.to_port);
+    return scheme + ":" + here + "," + shown_address({address_.to_host, address_.to_port});
 }
 
 }  // namespace skyloop

@@ -274,11 +274,11 @@ private:
 
 Result<std::unique_ptr<FeedLink>> open_stream_link(const FeedAddress& address, FeedHearer& hearer) {
     if (address.wire == FeedWire::tcp_listen) {
-        auto socket = listening_socket(address.host, address.port, SOCK_STREAM);
+        auto socket = listening_socket({address.host, address.port}, SOCK_STREAM);
         if (!socket) return fail(socket.error());
         return std::make_unique<StreamListenLink>(std::move(*socket), hearer);
     }
-    auto peers = resolve_host(address.host, address.port, SOCK_STREAM);
+    auto peers = resolve_host({address.host, address.port}, SOCK_STREAM);
     if (!peers) return fail(peers.error());
     return std::make_unique<StreamConnectLink>(std::move(*peers), hearer);
 }
@@ -290,9 +290,9 @@ Result<std::unique_ptr<FeedLink>> open_serial_link(const FeedAddress& address, F
 }
 
 Result<std::unique_ptr<FeedLink>> open_stream_relay(const FeedAddress& address, FeedHearer& hearer) {
-    auto socket = listening_socket(address.host, address.port, SOCK_STREAM);
+    auto socket = listening_socket({address.host, address.port}, SOCK_STREAM);
     if (!socket) return fail(socket.error());
-    auto peers = resolve_host(address.to_host, address.to_port, SOCK_STREAM);
+    auto peers = resolve_host({address.to_host, address.to_port}, SOCK_STREAM);
     if (!peers) return fail(peers.error());
     return std::make_unique<StreamRelay>(std::move(*socket), std::move(*peers), address.hears_target, hearer);
 }

@@ -18,17 +18,6 @@ constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::int64_t try_every_ns = second_ns / 2;
 constexpr std::int64_t answer_patience_ns = 5 * second_ns;
 
-// A free port of the system's own choice may be called from the very same port: then the two ends are one (RFC 9293,
-// section 3.5, simultaneous open), and no server could ever have the port.
-bool calls_itself(int socket) {
-    sockaddr_storage own{}, other{};
-    socklen_t own_size = sizeof own, other_size = sizeof other;
-    if (::getsockname(socket, reinterpret_cast<sockaddr*>(&own), &own_size) != 0 ||
-        ::getpeername(socket, reinterpret_cast<sockaddr*>(&other), &other_size) != 0)
-        return false;
-    return own_size == other_size && std::memcmp(&own, &other, own_size) == 0;
-}
-
 }  // namespace
 
 struct TcpClientTransport::Route {

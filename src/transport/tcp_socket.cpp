@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -16,15 +15,8 @@ namespace {
 // kB until it is acknowledged, which clients may put off for 40 ms and more: much less would lose bytes of a client
 // that reads.
 constexpr int send_buffer_bytes = 262144;
-constexpr unsigned patience_ms = 60000;  // with an other end that acknowledges nothing
-constexpr int keep_alive_idle_s = 30, keep_alive_every_s = 10, keep_alive_tries = 3;
 
 }  // namespace
-
-// A system that does not know an option goes without it.
-void set_socket_option(int socket, int level, int name, int value) {
-    (void)::setsockopt(socket, level, name, &value, sizeof value);
-}
 
 Result<AddressList> look_up(const TcpAddress& address, const std::string& scheme, bool to_listen) {
     addrinfo wanted{};
@@ -36,11 +28,6 @@ Result<AddressList> look_up(const TcpAddress& address, const std::string& scheme
         return fail(ErrorCode::outside,
                     fmt::format("{} {}: {}", scheme, shown_address(address), ::gai_strerror(error)));
     return AddressList(first);
-}
-
-std::string shown_address(const TcpAddress& address) {
-    const bool v6 = address.host.find(':') != std::string::npos;
-    return v6 ? fmt::format("[{}]:{}", address.host, address.port) : fmt::format("{}:{}", address.host, address.port);
 }
 
 bool is_loopback(const sockaddr& address) {
@@ -56,15 +43,6 @@ FileDescriptor make_socket(const addrinfo& where) {
     FileDescriptor socket(::socket(where.ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, where.ai_protocol));
     if (socket.open()) set_socket_option(socket.value(), SOL_SOCKET, SO_SNDBUF, send_buffer_bytes);
     return socket;
-}
-
-void prepare_connection(int socket) {
-    set_socket_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
-    set_socket_option(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
-    set_socket_option(socket, IPPROTO_TCP, TCP_KEEPIDLE, keep_alive_idle_s);
-    set_socket_option(socket, IPPROTO_TCP, TCP_KEEPINTVL, keep_alive_every_s);
-    set_socket_option(socket, IPPROTO_TCP, TCP_KEEPCNT, keep_alive_tries);
-    set_socket_option(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, static_cast<int>(patience_ms));
 }
 
 StreamState receive_available(int socket, Bytes& bytes, std::size_t most) {

@@ -9,7 +9,7 @@
 #include "skyloop/base/bytes.hpp"
 #include "skyloop/base/result.hpp"
 #include "skyloop/transport/file_descriptor.hpp"
-#include "skyloop/transport/tcp.hpp"
+#include "skyloop/transport/tcp_connection.hpp"
 
 namespace skyloop {
 
@@ -26,20 +26,12 @@ using AddressList = std::unique_ptr<addrinfo, AddressListDeleter>;
 /// @param to_listen addresses of this machine
 Result<AddressList> look_up(const TcpAddress& address, const std::string& scheme, bool to_listen);
 
-/// "127.0.0.1:2000", "[::1]:2000".
-std::string shown_address(const TcpAddress& address);
-
 /// True when only programs of this machine reach what listens there.
 bool is_loopback(const sockaddr& address);
 
 /// A socket that neither waits nor outlives exec, with the send buffer of this program's wires; none, and errno, when
 /// the system refuses.
 FileDescriptor make_socket(const addrinfo& where);
-
-/// Options of a connection: small writes leave at once, and an other end that has vanished is given up after a minute.
-void prepare_connection(int socket);
-
-void set_socket_option(int socket, int level, int name, int value);
 
 /// How a connection stands after a look.
 enum class StreamState { open, finished, gone };
