@@ -28,7 +28,8 @@ bool hangs(const std::vector<TimelineEntry>& entries, const std::vector<bool>& k
     if (entry.when) return true;
     for (std::size_t i = 0; i < entries.size(); ++i) {
         if (!known[i]) continue;
-        if (entries[i].name == entry.after || (entries[i].order && concerns(*entries[i].order, entry))) return true;
+        const bool follows = !entry.after.empty() && entries[i].name == entry.after;
+        if (follows || (entries[i].order && concerns(*entries[i].order, entry))) return true;
     }
     return false;
 }
@@ -50,9 +51,11 @@ std::vector<TimelineEvent> planned_events(const std::vector<TimelineEntry>& entr
 std::vector<bool> hang_on_the_run(const std::vector<TimelineEntry>& entries) {
     std::vector<bool> found(entries.size());
     // Each round finds what hangs on those of the round before.
-    for (std::size_t round = 0; round < entries.size(); ++round)
+    for (bool more = true; more;) {
+        more = false;
         for (std::size_t i = 0; i < entries.size(); ++i)
-            found[i] = found[i] || hangs(entries, found, i);
+            if (!found[i] && hangs(entries, found, i)) found[i] = more = true;
+    }
     return found;
 }
 

@@ -72,6 +72,13 @@ TEST(PlannedEvents, HangOnTriggersAlongWhatTheyComeAfterAndByCommands) {
                                              behind(commanded(0, {"third", false}), "second"), planned("third", 1, 9),
                                              planned("sound", 2, 3)};
     EXPECT_THAT(hang_on_the_run(entries), ElementsAre(true, true, true, true, false));
+    EXPECT_THAT(hang_on_the_run({planned("sound", 2, 3), behind(planned("last", 1, 1), "second"),
+                                 behind(planned("second", 1, 1), "triggered"), triggered}),
+                ElementsAre(false, true, true, true))
+        << "in whichever order they stand";
+    triggered.name.clear();
+    EXPECT_THAT(hang_on_the_run({triggered, planned("sound", 2, 3)}), ElementsAre(true, false))
+        << "who comes after nothing does not come after what has no name";
 }
 
 TEST(TimelineText, ListsWhatHangsOnACondition) {
