@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "fix_table.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "skyloop/time/week_of_date.hpp"
 #include "ubx_frames.hpp"
 
 namespace skyloop {
@@ -166,15 +166,6 @@ void UbxLogReader::take_epoch_message(const UbxFrame& frame) {
     }
 }
 
-// The week whose time of week lies nearest to a UTC instant.
-std::int64_t week_of(const UtcTime& utc, std::int64_t itow_ms) {
-    const GpsTime time = to_gps_time(utc, LeapSeconds::announced());
-    const WeekAndTow split = week_and_tow(time);
-    const double late = split.tow_seconds() - static_cast<double>(itow_ms) / 1000;
-    constexpr double half = static_cast<double>(seconds_per_week) / 2;
-    return split.week + (late > half ? 1 : late < -half ? -1 : 0);
-}
-
 void UbxLogReader::take_pvt(const UbxFrame& frame) {
     epoch_->has_position = true;
     epoch_->of_pvt = ubx_fix(frame.u1(20), frame.u1(21));
@@ -186,9 +177,8 @@ void UbxLogReader::take_pvt(const UbxFrame& frame) {
                       .hour = frame.u1(8),
                       .minute = frame.u1(9),
                       .second = frame.u1(10)};
-    if ((frame.u1(11) & date_and_time) == date_and_time && !epoch_->week && utc.year >= 1980 && utc.year <= 2199 &&
-        parse_utc(format_utc(utc, 0)))
-        epoch_->week = week_of(utc, epoch_->itow_ms);
+    if ((frame.u1(11) & date_and_time) == date_and_time && !epoch_->week)
+        epoch_->week = week_of_date(utc, std::chrono::milliseconds(epoch_->itow_ms));
     constexpr std::size_t flags3_at = 78;
     if ((frame.u1(flags3_at) & 1u) == 0)  // invalidLlh
         epoch_->pvt = checked(frame.i4(28) * 1e-7, frame.i4(24) * 1e-7, frame.i4(32) * 1e-3);

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
 
 #include "dialects.hpp"
 #include "epoch_gate.hpp"
@@ -10,7 +9,7 @@
 #include "motion_filter.hpp"
 #include "skyloop/protocol/ubx_frame.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "skyloop/time/week_of_date.hpp"
 
 namespace skyloop {
 namespace {
@@ -96,14 +95,11 @@ private:
         epoch_ = {};
     }
 
-    // The week in which the date has this time of week.
     void take_week(const NavPvt& pvt) {
         constexpr unsigned date_and_time = 3;
+        if ((pvt.valid & date_and_time) != date_and_time) return;
         const UtcTime utc{pvt.year, pvt.month, pvt.day, pvt.hour, pvt.minute, pvt.second, 0};
-        if ((pvt.valid & date_and_time) != date_and_time || !is_calendar_time(utc)) return;
-        const GpsTime begin = to_gps_time(utc, LeapSeconds::announced()) - std::chrono::milliseconds(pvt.i_tow);
-        const double weeks = to_seconds(begin.time_since_epoch()).value() / static_cast<double>(seconds_per_week);
-        week_ = static_cast<std::int64_t>(std::llround(weeks));
+        week_ = week_of_date(utc, std::chrono::milliseconds(pvt.i_tow)).value_or(week_);
     }
 
     // Without a week it counts from the first one.

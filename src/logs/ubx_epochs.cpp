@@ -8,7 +8,7 @@
 #include "skyloop/protocol/ubx_nav.hpp"
 #include "skyloop/protocol/ubx_satellites.hpp"
 #include "skyloop/protocol/ubx_time.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "skyloop/time/week_of_date.hpp"
 
 namespace skyloop {
 namespace {
@@ -58,16 +58,12 @@ FixType ubx_fix_type(unsigned type, unsigned flags, unsigned carrier) {
     return (flags & 2u) != 0 ? FixType::dgnss : FixType::fix_3d;
 }
 
-// The week in which a date has this time of week; nothing for a date that is none.
+// Of NAV-PVT and NAV-PVAT.
 template <class Message>
-std::optional<std::int64_t> week_of_date(const Message& pvt) {
+std::optional<std::int64_t> told_week(const Message& m) {
     constexpr unsigned date_and_time = 3;
-    const UtcTime utc{pvt.year, pvt.month, pvt.day, pvt.hour, pvt.minute, pvt.second, 0};
-    if ((pvt.valid & date_and_time) != date_and_time || !is_calendar_time(utc)) return std::nullopt;
-    const WeekAndTow split = week_and_tow(to_gps_time(utc, LeapSeconds::announced()));
-    const double late = split.tow_seconds() - pvt.i_tow / 1000.0;
-    constexpr double half = static_cast<double>(seconds_per_week) / 2;
-    return split.week + (late > half ? 1 : late < -half ? -1 : 0);
+    if ((m.valid & date_and_time) != date_and_time) return std::nullopt;
+    return week_of_date({m.year, m.month, m.day, m.hour, m.minute, m.second, 0}, std::chrono::milliseconds(m.i_tow));
 }
 
 // Roll, pitch and heading in 1e-5 degrees; nothing for what are no such angles.
@@ -123,7 +119,7 @@ void UbxEpochs::take(const UbxFrameView& frame) {
                      [](const NavPvt& m, Epoch& e) {
                          e.solution = true;
                          e.of_pvt = ubx_fix_type(m.fix_type, m.flags, m.flags >> 6 & 3u);
-                         if (const auto week = week_of_date(m)) e.week = week;
+                         if (const auto week = told_week(m)) e.week = week;
                          if ((m.flags3 & 1u) == 0) e.pvt = logged_place(m.lat * 1e-7, m.lon * 1e-7, m.height * 1e-3);
                          e.velocity = VelocityNed{m.vel_n * 1e-3, m.vel_e * 1e-3, m.vel_d * 1e-3};
                          e.used = m.num_sv;
@@ -176,7 +172,7 @@ void UbxEpochs::take_attitudes(const UbxFrameView& frame) {
         constexpr unsigned whole_attitude = 0x1C;
         e.solution = true;
         e.of_pvt = ubx_fix_type(m.fix_type, m.flags, m.flags >> 6 & 3u);
-        if (const auto week = week_of_date(m)) e.week = week;
+        if (const auto week = told_week(m)) e.week = week;
         e.pvt = logged_place(m.lat * 1e-7, m.lon * 1e-7, m.height * 1e-3);
         e.velocity = VelocityNed{m.vel_ned[0] * 1e-3, m.vel_ned[1] * 1e-3, m.vel_ned[2] * 1e-3};
         e.used = m.num_sv;
