@@ -7,6 +7,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "skyloop/transport/serial.hpp"
 #include "switch_parts.hpp"
 
 namespace skyloop {
@@ -162,8 +163,7 @@ bool one_switch(const OnBoard& a, const OnBoard& b) {
 bool one_switch(const HubPortAddress& a, const HubPortAddress& b) { return a.port_path == b.port_path; }
 // Both lines of a device are one: who has it open has it alone.
 bool one_switch(const ModemLineAddress& a, const ModemLineAddress& b) {
-    std::error_code unknown;
-    return std::filesystem::weakly_canonical(a.device, unknown) == std::filesystem::weakly_canonical(b.device, unknown);
+    return place_of_device(a.device) == place_of_device(b.device);
 }
 bool one_switch(const SwitchCommands& a, const SwitchCommands& b) { return a.cut == b.cut && a.restore == b.restore; }
 

@@ -44,13 +44,6 @@ std::string place_of_file(const std::string& path) {
     return path == "-" ? path : std::filesystem::absolute(path).lexically_normal().string();
 }
 
-// By whatever link it is named.
-std::string place_of_device(const std::filesystem::path& device) {
-    std::error_code unknown;
-    const auto place = std::filesystem::weakly_canonical(device, unknown);
-    return unknown ? device.string() : place.string();
-}
-
 std::string place_of_server(const TcpAddress& address) {
     return address.port == 0 ? std::string() : fmt::format("{}:{}", address.host, address.port);
 }
@@ -70,7 +63,7 @@ WireEnd end_of_wire(const std::string& owner, const std::string& uri) {
             end.place = "-";
             break;
         case WireKind::serial:
-            end.place = place_of_device(parsed->serial.device);
+            end.place = place_of_device(parsed->serial.device).string();
             break;
         case WireKind::tcp:
         case WireKind::rfc2217:
@@ -89,7 +82,7 @@ WireEnd end_of_power(const std::string& owner, const std::string& uri) {
     WireEnd end{owner, uri, {}};
     const auto parsed = parse_actuator_uri(uri);
     if (!parsed) return end;
-    if (const auto* line = std::get_if<ModemLineAddress>(&*parsed)) end.place = place_of_device(line->device);
+    if (const auto* line = std::get_if<ModemLineAddress>(&*parsed)) end.place = place_of_device(line->device).string();
     return end;
 }
 

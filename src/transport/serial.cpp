@@ -60,6 +60,12 @@ Result<SerialAddress> parse_serial_address(std::string_view text) {
     return address;
 }
 
+std::filesystem::path place_of_device(const std::filesystem::path& device) {
+    std::error_code unknown;
+    std::filesystem::path place = std::filesystem::weakly_canonical(device, unknown);
+    return unknown ? device : place;
+}
+
 SerialTransport::SerialTransport(SerialAddress address, std::shared_ptr<SerialSystem> system)
     : address_(std::move(address)), system_(std::move(system)), baud_(address_.baud.value_or(speed_of_no_speed)) {}
 

@@ -29,6 +29,9 @@ struct SerialAddress {
 /// `usage` and a sentence that quotes the text.
 Result<SerialAddress> parse_serial_address(std::string_view text);
 
+/// The same for all names of a device, whatever links lead to it; where these cannot be followed, the name itself.
+std::filesystem::path place_of_device(const std::filesystem::path& device);
+
 /// What the other end and the adapter put on the modem lines (TIOCMGET).
 struct ModemLines {
     bool cts = false, dsr = false, dcd = false, ring = false;
