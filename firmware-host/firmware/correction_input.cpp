@@ -43,8 +43,9 @@ RxmCor correction_report(const Rtcm3Message& message, Use use, bool known) {
                     (use == Use::used ? in_use : unused) << 7 |
                     (message.station ? static_cast<std::uint32_t>(*message.station) : no_stream) << 9;
     if (use == Use::damaged) return m;
-    m.status_info |=
-        1u << 25 | (message.number == with_subtype ? 1u << 26 : 0u) | (known ? 1u << 27 : 0u) | not_encrypted << 28;
+    m.status_info |= not_encrypted << 28;
+    if (message.number == 0) return m;  // too short to have a kind
+    m.status_info |= 1u << 25 | (message.number == with_subtype ? 1u << 26 : 0u) | (known ? 1u << 27 : 0u);
     m.msg_type = static_cast<std::uint16_t>(message.number);
     m.msg_sub_type = static_cast<std::uint16_t>(message.subtype);
     return m;

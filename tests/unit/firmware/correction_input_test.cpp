@@ -68,6 +68,8 @@ TEST(CorrectionInput, TellsTheStatusOfEveryMessage) {
               frame(plain | known | type | 8u << 9 | not_used | error_free | rtcm3, 1077, 0));
     EXPECT_EQ(input.take(encode_rtcm3(Bytes{0xFE, 0x80, 0x01}), power_on).cor,
               frame(plain | known | subtype | type | none | used | error_free | rtcm3, 4072, 1));
+    EXPECT_EQ(input.take(encode_rtcm3({}), power_on).cor, frame(plain | none | not_used | error_free | rtcm3, 0, 0))
+        << "a frame without a kind";
     EXPECT_EQ(CorrectionInput::answer_to_damaged().cor, frame(none | not_used | erroneous | rtcm3, 0, 0));
 }
 
