@@ -82,6 +82,14 @@ inline constexpr std::uint32_t nmea_protver = 0x20930001, nmea_maxsvs = 0x209300
 inline constexpr std::uint32_t ant_voltage_control = 0x10A3002E, ant_short_detect = 0x10A3002F,
                                ant_open_detect = 0x10A30031, ant_power_down = 0x10A30033, ant_recover = 0x10A30035;
 inline constexpr std::uint32_t tmode_mode = 0x20030001;
+inline constexpr std::uint32_t pm_operate_mode = 0x20D00001, pm_update_period = 0x40D00002,
+                               pm_search_period = 0x40D00003, pm_grid_offset = 0x40D00004, pm_on_time = 0x30D00005,
+                               pm_least_acquisition = 0x20D00006, pm_longest_acquisition = 0x20D00007,
+                               pm_never_off = 0x10D00008, pm_wait_for_time = 0x10D00009,
+                               pm_update_ephemerides = 0x10D0000A, pm_extint_select = 0x20D0000B,
+                               pm_extint_wake = 0x10D0000C, pm_extint_backup = 0x10D0000D,
+                               pm_extint_inactive = 0x10D0000E, pm_extint_inactivity = 0x40D0000F,
+                               pm_limit_peak = 0x10D00010;
 /// Groups in which the item is 1 UBX, 2 NMEA, 4 RTCM3, and the size one bit.
 constexpr std::uint32_t in_protocol(PortId port, std::uint32_t item) {
     constexpr std::uint32_t groups[] = {0x71, 0x73, 0x75, 0x77, 0x79};

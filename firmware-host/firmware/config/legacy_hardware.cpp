@@ -131,7 +131,7 @@ std::uint8_t operate_mode_of(std::uint8_t setup) {
 
 CfgPms describe_power(const LegacyContext& context) {
     CfgPms message;
-    const auto mode = in_force<std::uint8_t>(context, legacy_key::pm_operate_mode);
+    const auto mode = in_force<std::uint8_t>(context, key::pm_operate_mode);
     const auto setup = in_force<std::uint8_t>(context, legacy_key::pms_setup);
     // Another message may have changed the mode since the setup was chosen.
     message.power_setup_value = setup;
@@ -141,8 +141,8 @@ CfgPms describe_power(const LegacyContext& context) {
         if (mode == mode_on_off) message.power_setup_value = setup_interval;
     }
     if (message.power_setup_value == setup_interval) {
-        message.period = in_force<std::uint16_t>(context, legacy_key::pm_update_period);
-        message.on_time = in_force<std::uint16_t>(context, legacy_key::pm_on_time);
+        message.period = in_force<std::uint16_t>(context, key::pm_update_period);
+        message.on_time = in_force<std::uint16_t>(context, key::pm_on_time);
     }
     return message;
 }
@@ -200,25 +200,30 @@ ConfigOutcome legacy_pms(const LegacyContext& context, ByteSpan payload) {
     if (set->power_setup_value == setup_interval) {
         constexpr std::uint16_t least_period = 6;  // more than 5 s (M8 interface description 32.11.22)
         if (set->period < least_period || set->on_time >= set->period) return legacy_refused();
-        changes.put(legacy_key::pm_update_period, std::uint32_t{set->period});
+        changes.put(key::pm_update_period, std::uint32_t{set->period});
         changes.put(legacy_key::pm_update_rest, std::uint16_t{0});
-        changes.put(legacy_key::pm_on_time, set->on_time);
+        changes.put(key::pm_search_period, std::uint32_t{set->period});
+        changes.put(legacy_key::pm_search_rest, std::uint16_t{0});
+        changes.put(key::pm_on_time, set->on_time);
     }
     changes.put(legacy_key::pms_setup, set->power_setup_value);
-    changes.put(legacy_key::pm_operate_mode, operate_mode_of(set->power_setup_value));
+    changes.put(key::pm_operate_mode, operate_mode_of(set->power_setup_value));
     return changes.apply();
 }
 
 ConfigOutcome legacy_rxm(const LegacyContext& context, ByteSpan payload) {
-    const auto mode = in_force<std::uint8_t>(context, legacy_key::pm_operate_mode);
+    const auto mode = in_force<std::uint8_t>(context, key::pm_operate_mode);
     if (payload.empty()) return legacy_answered(CfgRxm{8, static_cast<std::uint8_t>(mode == mode_full ? 0 : 1)});
     const auto set = decode_payload<CfgRxm>(payload);
     constexpr std::uint8_t continuous = 0, power_save = 1, continuous_too = 4;
     if (!set || (set->lp_mode != continuous && set->lp_mode != power_save && set->lp_mode != continuous_too))
         return legacy_refused();
     LegacyChanges changes(context);
-    const std::uint8_t saving = mode == mode_full ? mode_on_off : mode;
-    changes.put(legacy_key::pm_operate_mode, set->lp_mode == power_save ? saving : mode_full);
+    // Which of the two modes it is, CFG-PM2 says.
+    const auto flags = in_force<std::uint32_t>(context, legacy_key::pm_flags);
+    const bool cyclic = (flags & legacy_key::power_mode_mask) >> legacy_key::power_mode_shift == 1;
+    const std::uint8_t saving = mode != mode_full ? mode : cyclic ? mode_cyclic : mode_on_off;
+    changes.put(key::pm_operate_mode, set->lp_mode == power_save ? saving : mode_full);
     return changes.apply();
 }
 

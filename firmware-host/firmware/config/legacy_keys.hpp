@@ -63,10 +63,11 @@ constexpr std::uint32_t tp_rf_group_delay(unsigned index) { return 0x30FD'0430u 
 constexpr std::uint32_t tp_sync_mode(unsigned index) { return 0x20FD'0432u + index; }
 /// How the second pulse of an M8 is given; later receivers have one definition for both.
 inline constexpr std::uint32_t tp2_pulse_def = 0x20FD0434, tp2_pulse_length_def = 0x20FD0435;
-inline constexpr std::uint32_t pms_setup = 0x20FD0440, pm_operate_mode = 0x20D00001, pm_update_period = 0x40D00002,
-                               pm_on_time = 0x30D00005;
-inline constexpr std::uint32_t pm_flags = 0x40FD0441, pm_update_rest = 0x30FD0442, pm_search_rest = 0x30FD0443,
-                               pm_grid_rest = 0x30FD0444;
+inline constexpr std::uint32_t pms_setup = 0x20FD0440, pm_flags = 0x40FD0441, pm_update_rest = 0x30FD0442,
+                               pm_search_rest = 0x30FD0443, pm_grid_rest = 0x30FD0444;
+/// Of pm_flags, as of CFG-PM2: 0 on and off, 1 cyclic; of CFG-PM-OPERATEMODE one more, where 0 is full power.
+inline constexpr unsigned power_mode_shift = 17;
+inline constexpr std::uint32_t power_mode_mask = 3u << power_mode_shift;
 inline constexpr std::uint32_t itfm_bb_threshold = 0x20410001, itfm_cw_threshold = 0x20410002,
                                itfm_antenna = 0x20410010, itfm_enable_aux = 0x10410013;
 

@@ -1,4 +1,4 @@
-// CFG-DAT, CFG-PM2 and CFG-RINV: stored and read back alone (M8 interface description).
+// CFG-DAT, CFG-PM2 and CFG-RINV, as the M8 has them (M8 interface description). DAT and RINV are stored alone.
 #include <algorithm>
 #include <bit>
 #include <string_view>
@@ -51,28 +51,26 @@ bool is_datum(const CfgDatSet& set) {
            set.scale <= largest_scale;
 }
 
-constexpr BitKey power_flags[] = {{4, 0x20D0000B}, {5, 0x10D0000C},  {6, 0x10D0000D},  {7, 0x10D0000E},
-                                  {8, 0x10D00010}, {10, 0x10D00009}, {12, 0x10D0000A}, {16, 0x10D00008}};
-constexpr std::uint32_t pm_search_period = 0x40D00003, pm_grid_offset = 0x40D00004, pm_least_acquisition = 0x20D00006,
-                        pm_longest_acquisition = 0x20D00007, pm_inactivity = 0x40D0000F;
-// Bits 17 and 18: 0 on and off, 1 cyclic; of CFG-PM-OPERATEMODE one more, where 0 is full power.
-constexpr unsigned power_mode_shift = 17;
-constexpr std::uint32_t power_mode_mask = 3u << power_mode_shift;
+constexpr BitKey power_flags[] = {{4, key::pm_extint_select},       {5, key::pm_extint_wake},
+                                  {6, key::pm_extint_backup},       {7, key::pm_extint_inactive},
+                                  {8, key::pm_limit_peak},          {10, key::pm_wait_for_time},
+                                  {12, key::pm_update_ephemerides}, {16, key::pm_never_off}};
+using legacy_key::power_mode_mask, legacy_key::power_mode_shift;
 constexpr std::uint32_t ms = 1000;
 
 CfgPm2 describe_power_management(const LegacyContext& context) {
     const auto item = [&](std::uint32_t id) { return in_force<std::uint32_t>(context, id); };
     CfgPm2 message;
-    message.max_startup_state_dur = in_force<std::uint8_t>(context, pm_longest_acquisition);
+    message.max_startup_state_dur = in_force<std::uint8_t>(context, key::pm_longest_acquisition);
     message.flags = item(legacy_key::pm_flags) | bits_in_force(context, power_flags);
-    if (const std::uint32_t mode = item(legacy_key::pm_operate_mode); mode != 0)
+    if (const std::uint32_t mode = item(key::pm_operate_mode); mode != 0)
         message.flags = (message.flags & ~power_mode_mask) | (mode - 1) << power_mode_shift;
-    message.update_period = item(legacy_key::pm_update_period) * ms + item(legacy_key::pm_update_rest);
-    message.search_period = item(pm_search_period) * ms + item(legacy_key::pm_search_rest);
-    message.grid_offset = item(pm_grid_offset) * ms + item(legacy_key::pm_grid_rest);
-    message.on_time = in_force<std::uint16_t>(context, legacy_key::pm_on_time);
-    message.min_acq_time = in_force<std::uint16_t>(context, pm_least_acquisition);
-    message.extint_inactivity = item(pm_inactivity);
+    message.update_period = item(key::pm_update_period) * ms + item(legacy_key::pm_update_rest);
+    message.search_period = item(key::pm_search_period) * ms + item(legacy_key::pm_search_rest);
+    message.grid_offset = item(key::pm_grid_offset) * ms + item(legacy_key::pm_grid_rest);
+    message.on_time = in_force<std::uint16_t>(context, key::pm_on_time);
+    message.min_acq_time = in_force<std::uint16_t>(context, key::pm_least_acquisition);
+    message.extint_inactivity = item(key::pm_extint_inactivity);
     return message;
 }
 
@@ -116,15 +114,16 @@ ConfigOutcome legacy_pm2(const LegacyContext& context, ByteSpan payload) {
     LegacyChanges changes(context);
     changes.put_bits(power_flags, set->flags);
     changes.put(legacy_key::pm_flags, without_item);
-    if (context.store.value(legacy_key::pm_operate_mode) != 0)
-        changes.put(legacy_key::pm_operate_mode, static_cast<std::uint8_t>(mode + 1));
-    put_period(changes, legacy_key::pm_update_period, legacy_key::pm_update_rest, set->update_period);
-    put_period(changes, pm_search_period, legacy_key::pm_search_rest, set->search_period);
-    put_period(changes, pm_grid_offset, legacy_key::pm_grid_rest, set->grid_offset);
-    changes.put(legacy_key::pm_on_time, set->on_time);
-    changes.put(pm_least_acquisition, static_cast<std::uint8_t>(set->min_acq_time));
-    changes.put(pm_longest_acquisition, set->max_startup_state_dur);
-    changes.put(pm_inactivity, set->extint_inactivity);
+    changes.put(legacy_key::pms_setup, std::uint8_t{0});  // these periods count, not those of a setup
+    if (context.store.value(key::pm_operate_mode) != 0)
+        changes.put(key::pm_operate_mode, static_cast<std::uint8_t>(mode + 1));
+    put_period(changes, key::pm_update_period, legacy_key::pm_update_rest, set->update_period);
+    put_period(changes, key::pm_search_period, legacy_key::pm_search_rest, set->search_period);
+    put_period(changes, key::pm_grid_offset, legacy_key::pm_grid_rest, set->grid_offset);
+    changes.put(key::pm_on_time, set->on_time);
+    changes.put(key::pm_least_acquisition, static_cast<std::uint8_t>(set->min_acq_time));
+    changes.put(key::pm_longest_acquisition, set->max_startup_state_dur);
+    changes.put(key::pm_extint_inactivity, set->extint_inactivity);
     return changes.apply();
 }
 

@@ -97,9 +97,11 @@ TEST(LegacyPower, SetupsAreOperateModes) {
 TEST(LegacyPower, SetupFollowsTheModeThatOthersChose) {
     LegacyBench m8(legacy_m8());
     EXPECT_EQ(m8.set(cfg(0x11), hex("08 01")), Verdict::acknowledge);
+    EXPECT_EQ(m8.store.value(0x20D00001), 2u) << "CFG-PM2 says so at the factory";
+    EXPECT_EQ(m8.poll(cfg(0x86))[1], 0xFF);  // no setup says so
+    m8.store.set(in_ram, 0x20D00001, 1);
     EXPECT_EQ(m8.poll(cfg(0x86))[1], 2);
     m8.store.set(in_ram, 0x20D00001, 2);
-    EXPECT_EQ(m8.poll(cfg(0x86))[1], 0xFF);  // no setup says so
     EXPECT_EQ(m8.set(cfg(0x11), hex("08 01")), Verdict::acknowledge);
     EXPECT_EQ(m8.store.value(0x20D00001), 2u);
     EXPECT_EQ(m8.set(cfg(0x11), hex("08 04")), Verdict::acknowledge);

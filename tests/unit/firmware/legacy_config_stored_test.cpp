@@ -44,7 +44,10 @@ TEST(LegacyPowerManagement, IsKeptToTheMillisecondAndTheBit) {
     EXPECT_EQ(m8.store.value(0x40D00002), 1u) << "CFG-PM-POSUPDATEPERIOD, s";
     EXPECT_TRUE(m8.store.flag(0x10D0000D)) << "CFG-PM-EXTINTBACKUP";
     EXPECT_EQ(m8.store.value(0x20D00001), 0u) << "at full power still";
+    EXPECT_EQ(m8.set(cfg(0x11), hex("08 01")), Verdict::acknowledge);
+    EXPECT_EQ(m8.store.value(0x20D00001), 1u) << "on and off, as CFG-PM2 says";
     EXPECT_EQ(m8.set(cfg(0x86), hex("00 02 0A00 0500 0000")), Verdict::acknowledge);
+    EXPECT_EQ(decode_payload<CfgPm2>(m8.poll(cfg(0x3B)))->search_period, 10000u) << "of both";
     EXPECT_EQ(decode_payload<CfgPm2>(m8.poll(cfg(0x3B)))->update_period, 10000u) << "that of CFG-PMS";
     set.version = 1;
     EXPECT_EQ(m8.set(cfg(0x3B), encode_payload(set)), Verdict::refuse);
