@@ -90,6 +90,20 @@ struct Timing {
     Seconds cold_start{26}, warm_start{22}, hot_start{1.5};  ///< to the first fix, for models that do not acquire
 };
 
+/// How a receiver saves power, as it is built (every value in boards/README.md).
+struct PowerAbility {
+    bool save_modes = false;          ///< CFG-PM: on and off, and cyclic tracking
+    bool backup = false;              ///< RXM-PMREQ, and CFG-PWR where the board takes it
+    bool backup_needs_force = false;  ///< RXM-PMREQ without the flag `force` does nothing
+    bool keeps_ram = false;           ///< what is configured in RAM outlives being off
+    bool banner = true;               ///< the texts of a start come after being off, too
+    Seconds wake{0.4};                ///< from an edge, or from its time, until it hears
+    Seconds acquisition{120};         ///< without a fix, where the user leaves that to the receiver
+    Seconds blind_acquisition{15};    ///< the same while it hears no satellite; 0: as long as otherwise
+    Seconds search_margin{1};         ///< so much ahead of the search grid it wakes
+    Seconds download{30};             ///< of ephemerides, every half hour
+};
+
 /// What becomes of the corrections of a base station (RECEIVER.md 4.12).
 struct CorrectionAbility {
     bool rtk = false;         ///< resolves carrier phases; without, corrections make a differential solution
@@ -148,6 +162,7 @@ struct BoardProfile {
     Timing timing;
     Quirks quirks;
     CorrectionAbility corrections;
+    PowerAbility power;
 
     std::uint32_t baud = 9600;  ///< of UART1 at the factory
     std::uint32_t transmit_buffer_bytes = 4096;

@@ -61,6 +61,16 @@ struct MonitorStatus {
     bool jamming_hidden = false;
 };
 
+/// How far a receiver that saves power has come; the numbers are those of NAV-PVT psmState.
+enum class PowerSaveState {
+    full_power,   ///< it does not save
+    enabled,      ///< before it begins
+    acquisition,  ///< it searches
+    tracking,     ///< it tracks and downloads
+    optimized,    ///< it tracks in turns with rests, and downloads nothing
+    inactive      ///< it is off
+};
+
 /// A leap second by which the receiver counts, though nobody has announced it. Offsets are GPST − UTC, s.
 struct LeapEvent {
     GpsTime at;  ///< first instant at which `after` holds
@@ -87,6 +97,8 @@ struct NavigationState {
     double odometer_m = 0, odometer_total_m = 0, odometer_deviation_m = 0;
     std::uint64_t epoch_index = 0;       ///< since the last start
     std::optional<BaseSurvey> survey{};  ///< with CFG-TMODE-MODE 1
+    PowerSaveState power_save = PowerSaveState::full_power;
+    bool woken_from_backup = false;  ///< by its last start
     std::optional<LeapEvent> leap_event{};
     bool old_position_shown = false;  ///< sentences show it without a valid fix too, whatever is configured
     Seconds week_lag{0};      ///< week numbers change so much after their times of week begin anew; below 0 before

@@ -18,6 +18,7 @@ void Receiver::happen(const ReceiverEvent& event, GpsTime now) { core_->happen(e
 std::vector<Receiver::Sent> Receiver::output(GpsTime now) { return core_->output(now); }
 std::optional<GpsTime> Receiver::drained_at() const { return core_->outbox().drained_at(); }
 std::optional<GpsTime> Receiver::next_output(PortId port) const { return core_->outbox().next_at(port); }
+std::optional<GpsTime> Receiver::next_change() const { return core_->next_change(); }
 
 bool Receiver::has(PortId port) const { return core_->unit(port) != nullptr; }
 std::uint32_t Receiver::baud(PortId port) const {

@@ -74,6 +74,9 @@ public:
     /// is queued or planned.
     [[nodiscard]] std::optional<GpsTime> next_output(PortId port) const;
 
+    /// When it goes on or off by itself, so that it is looked at then; nothing when it does not.
+    [[nodiscard]] std::optional<GpsTime> next_change() const;
+
     /// Whether the board has the port.
     [[nodiscard]] bool has(PortId port) const;
     /// A port's speed, bit/s; of USB, I2C and SPI that of their bus. 0 for a port that the board does not have.

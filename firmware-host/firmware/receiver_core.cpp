@@ -48,6 +48,7 @@ Receiver::Core::Core(BoardProfile board, const ReceiverOptions& options)
       values_(board_, store_),
       legacy_(board_, store_),
       tracker_(board_),
+      power_(board_.power),
       corrections_(board_.corrections),
       units_(make_units(board_, store_)),
       outbox_(units_),
@@ -56,6 +57,7 @@ Receiver::Core::Core(BoardProfile board, const ReceiverOptions& options)
       revision_(store_.revision()) {
     tracker_.start({}, {}, true);
     report(tracker_.state());
+    adopt_settings();
     if (board_.personality == Personality::sbf) console_.emplace(board_, store_);
     if (!board_.messages.empty()) return;
     for (const std::string_view name : nmea_sentence_names)
@@ -71,7 +73,7 @@ void Receiver::Core::start(GpsTime now) {
     const GpsTime awake = advanced(now, board_.timing.boot);
     deaf_until_ = awake;
     silent_until_ = advanced(awake, board_.timing.first_epoch);
-    outbox_.plan(awake, [this](GpsTime t) { send_banner(t); });
+    outbox_.plan(awake, [this](GpsTime t) { send_banner(t, true); });
 }
 
 Result<void> Receiver::Core::configure(const std::map<std::uint32_t, std::uint64_t>& items) {
@@ -120,6 +122,10 @@ void Receiver::Core::adopt_settings() {
     settings_.start = before.start;
     settings_.navigating = before.navigating;
     settings_.corrections = before.corrections;
+    configured_period_ = settings_.navigation_period;
+    power_.adopt(PowerSaveSettings::of(store_, board_));
+    if (falling_asleep_ && falling_asleep_->saves_power && !power_.saves()) falling_asleep_.reset();
+    follow_power();
 }
 
 // What a client has configured comes in force; other signals mean that tracking begins anew (RECEIVER.md 4.4).
@@ -137,6 +143,8 @@ void Receiver::Core::restart_navigation(const Forgotten& forgotten, GpsTime now,
     corrections_.reset();
     settings_.corrections = CorrectionState::none;
     tracker_.start(now, forgotten);
+    power_.restart(!forgotten.ephemerides);
+    follow_power();
     report(tracker_.state());
     silent_until_ = std::max(silent_until_, advanced(now, silence));
 }
@@ -157,21 +165,35 @@ void Receiver::Core::reset(std::uint16_t nav_bbr_mask, std::uint8_t mode, GpsTim
             settings_.navigating = true;
             return restart_navigation(forgotten, now, board_.timing.signal_restart);
         case stop_navigation:
-            settings_.navigating = false;
-            return send_text(notice, "Stopping GNSS", now);
+            return stop_navigating(now);
         case start_navigation:
-            settings_.navigating = true;
-            send_text(notice, "Starting GNSS", now);
-            return restart_navigation({}, now, Seconds(0));
+            return start_navigating(now);
         default:
             return;  // other modes are not defined: nothing happens, and nothing is answered
     }
 }
 
-// RAM and transmit queue are lost, the configuration is built from its layers, the banner comes at the stored speed.
+void Receiver::Core::stop_navigating(GpsTime now) {
+    settings_.navigating = false;
+    send_text(notice, "Stopping GNSS", now);
+}
+
+void Receiver::Core::start_navigating(GpsTime now) {
+    settings_.navigating = true;
+    send_text(notice, "Starting GNSS", now);
+    restart_navigation({}, now, Seconds(0));
+}
+
 void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now, bool banner) {
+    boot(forgotten, now, {.takes = board_.timing.boot, .banner = banner});
+}
+
+// RAM and transmit queue are lost, the configuration is built from its layers, the banner comes at the stored speed.
+void Receiver::Core::boot(const Forgotten& forgotten, GpsTime now, const Boot& how) {
     outbox_.clear();
-    store_.reload();
+    sleep_.reset();
+    falling_asleep_.reset();
+    if (!how.keeps_ram) store_.reload();
     if (console_) console_->restart(store_);
     adopt_settings();
     settings_.navigating = true;
@@ -186,11 +208,12 @@ void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now, bool banner
     busy_until_ = last_answer_ = now;
     forced_speed_.reset();
     told_antenna_.reset();
-    const GpsTime awake = advanced(now, board_.timing.boot);
+    const GpsTime awake = advanced(now, how.takes);
     deaf_until_ = awake;
-    tracker_.boot(now);
-    restart_navigation(forgotten, now, board_.timing.boot + board_.timing.first_epoch);
-    if (banner) outbox_.plan(awake, [this](GpsTime t) { send_banner(t); });
+    tracker_.boot(now, how.from_backup);
+    restart_navigation(forgotten, now, how.takes + board_.timing.first_epoch);
+    // Half a second after it was woken a client may speak to it.
+    if (how.banner) outbox_.plan(awake, [this, deaf = !how.from_backup](GpsTime t) { send_banner(t, deaf); });
 }
 
 }  // namespace skyloop::firmware

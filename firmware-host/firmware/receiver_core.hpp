@@ -14,6 +14,7 @@
 #include "firmware/messages/make_message.hpp"
 #include "firmware/nmea_commands.hpp"
 #include "firmware/port_unit.hpp"
+#include "firmware/power_save.hpp"
 #include "firmware/receiver.hpp"
 #include "firmware/septentrio/console.hpp"
 #include "firmware/state_tracker.hpp"
@@ -46,6 +47,7 @@ public:
     [[nodiscard]] const ReceiverCounters& counters() const { return counters_; }
     [[nodiscard]] const NavigationState& state() const { return *reported_; }
     [[nodiscard]] std::optional<GpsTime> report_time() const { return report_time_; }
+    [[nodiscard]] std::optional<GpsTime> next_change() const;
 
 private:
     // What a client's message has led to, on its way out.
@@ -72,6 +74,27 @@ private:
     void assist(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
     void save_on_shutdown(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
     void reset_odometer();
+
+    // Power.
+    // A time of being off, planned or under way.
+    struct Sleep {
+        std::optional<GpsTime> until;  ///< nothing: until it is woken
+        std::uint32_t wakes = 0;       ///< what does, by bits
+        bool saves_power = false;      ///< by itself; otherwise a client has asked for it
+        GpsTime since{};               ///< once under way
+    };
+    void request_backup(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
+    void change_power_state(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
+    void rest(const PowerSave::Rest& rest, GpsTime from);
+    void fall_asleep(const Sleep& sleep, GpsTime from);
+    void plan_lying_down(GpsTime at);
+    void lie_down(GpsTime now);
+    void tell_being_off();
+    [[nodiscard]] bool wakes_by(GpsTime now) const;
+    void look_at_clock(GpsTime now);
+    void feel(PortId port, GpsTime now);
+    void wake(GpsTime now);
+    void follow_power();
 
     // Faults.
     [[nodiscard]] bool refuses_items(const UbxFrameView& frame) const;
@@ -110,9 +133,20 @@ private:
     void adopt_settings();
     void apply_changes(GpsTime now);
     void reset(std::uint16_t nav_bbr_mask, std::uint8_t mode, GpsTime now);
+    void stop_navigating(GpsTime now);
+    void start_navigating(GpsTime now);
+    /// How it starts anew.
+    struct Boot {
+        Seconds takes;  ///< until it hears
+        bool banner = true;
+        bool keeps_ram = false;
+        bool from_backup = false;
+    };
+    void boot(const Forgotten& forgotten, GpsTime now, const Boot& how);
     void reboot(const Forgotten& forgotten, GpsTime now, bool banner = true);
     void restart_navigation(const Forgotten& forgotten, GpsTime now, Seconds silence);
-    void send_banner(GpsTime now);
+    // @param deaf until it has left
+    void send_banner(GpsTime now, bool deaf);
     void look_at_ports();
 
     BoardProfile board_;
@@ -121,12 +155,14 @@ private:
     ValueConfig values_;
     LegacyConfig legacy_;
     StateTracker tracker_;
+    PowerSave power_;
     std::shared_ptr<const NavigationState> reported_;  ///< of the last epoch, edited; what polls are answered from
     CorrectionInput corrections_;
     std::vector<PortUnit> units_;
     std::vector<PortStatus> statuses_;
     Outbox outbox_;
     ReceiverSettings settings_;
+    Nanoseconds configured_period_{0};  ///< of navigation; saving power has its own
     ReceiverCounters counters_;
     RandomStream latency_noise_;
     std::uint64_t revision_ = 0;  ///< of the store, as adopted
@@ -137,6 +173,9 @@ private:
     std::optional<GpsTime> report_time_;  ///< of the last epoch; nothing: it is not reported
     GpsTime last_answer_{};               ///< planned; later ones do not overtake it
     std::optional<AntennaStatus> told_antenna_;
+    std::optional<Sleep> sleep_;           ///< it is off
+    std::optional<Sleep> falling_asleep_;  ///< it will be, when all has left that is to be sent
+    GpsTime lies_down_at_{};               ///< when that is looked at next
     FirmwareFaults faults_;
     /// The speed that ForceBaud gave, and the one before.
     struct ForcedSpeed {

@@ -1,5 +1,6 @@
 // What a client's bytes do (RECEIVER.md 1.3, 1.4, 4.1, 4.2).
 #include <algorithm>
+#include <iterator>
 
 #include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
@@ -37,6 +38,11 @@ std::optional<Bytes> verdict_frame(Verdict verdict, UbxMessageId to) {
     return std::nullopt;
 }
 
+bool takes(const BoardProfile& board, UbxMessageId legacy) {
+    const auto known = board.legacy.find(legacy);
+    return known != board.legacy.end() && known->second == LegacyAnswer::apply;
+}
+
 void count_input(PortStatus& status, const StreamPiece& piece) {
     switch (piece.kind) {
         case StreamKind::ubx:
@@ -59,7 +65,10 @@ void count_input(PortStatus& status, const StreamPiece& piece) {
 void Receiver::Core::input(PortId port, ByteSpan bytes, GpsTime now) {
     counters_.bytes_received += bytes.size();
     PortUnit* unit = find_unit(units_, port);
-    if (unit == nullptr || faults_.deaf || now < deaf_until_ || bytes.empty()) return;
+    look_at_clock(now);
+    if (unit == nullptr || faults_.deaf || bytes.empty()) return;
+    if (sleep_) return feel(port, now);
+    if (now < deaf_until_) return;
     unit->status.bytes_in += bytes.size();
     if (console_) return read_command_lines(*unit, bytes, now);
     give_up_unfinished(*unit, now);
@@ -82,7 +91,13 @@ void Receiver::Core::give_up_unfinished(PortUnit& unit, GpsTime now) {
 std::vector<Receiver::Sent> Receiver::Core::output(GpsTime now) {
     for (PortUnit& unit : units_)
         give_up_unfinished(unit, now);
-    return outbox_.run(now);
+    std::vector<Sent> sent = outbox_.run(now);
+    while (wakes_by(now)) {
+        look_at_clock(now);
+        std::vector<Sent> after = outbox_.run(now);
+        std::move(after.begin(), after.end(), std::back_inserter(sent));
+    }
+    return sent;
 }
 
 void Receiver::Core::work_off(PortUnit& unit, const std::vector<StreamPiece>& pieces, GpsTime now) {
@@ -130,6 +145,7 @@ void Receiver::Core::configure(PortUnit& unit, const UbxFrameView& frame, GpsTim
         if (!rst) return reply(unit, {{}, verdict_frame(Verdict::refuse, frame.id), Seconds(0), frame.id}, now);
         return reset(rst->nav_bbr_mask, rst->reset_mode, now);
     }
+    if (frame.id == CfgPwr::message_id && takes(board_, frame.id)) return change_power_state(unit, frame, now);
     const ConfigOutcome outcome = configured(frame, unit.id);
     apply_changes(now);
     reply(unit, {outcome.answers, verdict_frame(outcome.verdict, frame.id), outcome.work, frame.id}, now);
@@ -161,6 +177,7 @@ void Receiver::Core::command(PortUnit& unit, const UbxFrameView& frame, GpsTime 
         reset_odometer();
         return reply(unit, {{}, verdict_frame(Verdict::acknowledge, frame.id), Seconds(0), frame.id}, now);
     }
+    if (frame.id == RxmPmreq::message_id && board_.power.backup) return request_backup(unit, frame, now);
     if (frame.id.message_class == class_mga) return assist(unit, frame, now);
     // There is no log to work on.
     if (frame.id.message_class == class_log)

@@ -181,7 +181,8 @@ const ReceiverSettings& Receiver::Core::settings_at(GpsTime epoch) {
 void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     const GpsTime time = epoch.fix.time;
     report_time_.reset();
-    if (time < silent_until_) return;
+    look_at_clock(time);
+    if (sleep_ || falling_asleep_ || time < silent_until_) return;
     CorrectionStatus corrections = corrections_.status(time, store_);
     corrections.come = corrections.state != CorrectionState::none;
     const CorrectionState used = solved_with(epoch, settings_.corrections, corrections.state);
@@ -190,6 +191,9 @@ void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     state->corrections.state = in_solution(state->epoch.fix, used);
     state->monitors.jamming_hidden = faults_.jamming_hidden;
     carry_to_clock_instant(*state);
+    const std::optional<PowerSave::Rest> off = settings_.navigating ? power_.update(*state) : std::nullopt;
+    state->power_save = power_.state();
+    follow_power();
     if (edit) edit(*state);
     reported_ = state;
     ++counters_.epochs;
@@ -198,6 +202,7 @@ void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     for (int i = 0; i < state->reports; ++i)
         outbox_.plan(burst, [this, state](GpsTime t) { send_epoch(*state, t); });
     if (state->reports > 0 && !faults_.mute) report_time_ = burst;
+    if (off) rest(*off, burst);
 }
 
 void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {
@@ -266,9 +271,10 @@ void Receiver::Core::tell_antenna_status(const NavigationState& state, GpsTime n
     told_antenna_ = status;
 }
 
-void Receiver::Core::send_banner(GpsTime now) {
+void Receiver::Core::send_banner(GpsTime now, bool deaf) {
     for (const std::string& line : board_.identity.banner)
         send_text(level_notice, line, now);
+    if (!deaf) return;
     for (const PortUnit& unit : units_)
         deaf_until_ = std::max(deaf_until_, is_uart(unit.id) ? unit.transmit.drained_at().value_or(now) : now);
 }

@@ -122,6 +122,7 @@ void StateTracker::start(GpsTime now, const Forgotten& forgotten, bool running) 
     held_.reset();
     epochs_beyond_limits_ = 0;
     measured_ = false;
+    state_.woken_from_backup = from_backup_;
     if (running) state_.time_to_first_fix = board_.timing.cold_start;
 }
 

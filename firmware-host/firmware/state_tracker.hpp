@@ -30,7 +30,11 @@ public:
     /// The receiver starts, with what it has not forgotten. @param running it has been on for long, and knows all
     void start(GpsTime now, const Forgotten& forgotten, bool running = false);
     /// The whole receiver starts, navigation with it: to be followed by start().
-    void boot(GpsTime now) { booted_ = now; }
+    /// @param from_backup it has been off by its own doing
+    void boot(GpsTime now, bool from_backup = false) {
+        booted_ = now;
+        from_backup_ = from_backup;
+    }
     /// The next epoch, in the receiver's own words. @param corrections of CorrectionInput at that instant
     const NavigationState& update(const Epoch& epoch, const ConfigStore& config, const CorrectionStatus& corrections);
     [[nodiscard]] const NavigationState& state() const { return state_; }
@@ -58,6 +62,7 @@ private:
     NavigationState state_;
     std::optional<GpsTime> started_;  ///< nothing: long ago
     std::optional<GpsTime> booted_;   ///< nothing: long ago, and there was no epoch yet
+    bool from_backup_ = false;
     StartKind start_kind_ = StartKind::hot;
     bool measured_ = false;                  ///< the model acquires satellites itself
     std::optional<GpsTime> first_tracking_;  ///< since the start

@@ -163,6 +163,7 @@ void Station::move_to(const Geodetic& place, GpsTime now) {
 
 std::optional<GpsTime> Station::next_change(GpsTime now) const {
     std::optional<GpsTime> next = faults_.next_faded();
+    if (const auto at = parts_.receiver.next_change(); at && (!next || *at < *next)) next = at;
     if (heard_again_ < parts_.repeated.size() && (!next || parts_.repeated[heard_again_].at < *next))
         next = parts_.repeated[heard_again_].at;
     for (const FaultyWire& wire : faulty_wires_)

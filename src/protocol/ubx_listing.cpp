@@ -231,6 +231,8 @@ constexpr auto ubx_listing_table = std::to_array<UbxListing>({
            "fraction_chips*2^-10 code_phase_ms*2^-21 whole_code_phase_ms range_deviation_code -reserved]">,
     listed<RxmSvsi, "tow_s*1e-3 week visible satellites[sv_id flags azimuth_deg elevation_deg age]">,
     listed<RxmRlm, "version type sv_id -reserved beacon message parameters -reserved">,
+    listed<RxmPmreqShort, "duration_s*1e-3 flags">,
+    listed<RxmPmreq, "version -reserved duration_s*1e-3 flags wakeup_sources">,
     listed<MonMsgpp, "messages skipped_bytes">,
     listed<MonHw, mon_hw_names>,
     listed<MonHwLong, mon_hw_names>,
@@ -281,6 +283,7 @@ constexpr auto ubx_listing_table = std::to_array<UbxListing>({
     listed<CfgPm2,
            "version -reserved startup_s -reserved flags update_s*1e-3 search_s*1e-3 grid_offset_s*1e-3 on_time_s "
            "acquisition_s -reserved inactivity_s*1e-3">,
+    listed<CfgPwr, "version -reserved state">,
     listed<CfgGeofence,
            "version confidence -reserved pin_on pin_polarity pin -reserved fences[lat_deg*1e-7 lon_deg*1e-7 "
            "radius_m*1e-2]">,

@@ -76,6 +76,19 @@ void read_board_corrections(TableReader& table, firmware::CorrectionAbility& abi
     table.quantity("fixed_held_s", ability.fixed_held, {0, 3600});
 }
 
+void read_board_power(TableReader& table, firmware::PowerAbility& power) {
+    table.boolean("save_modes", power.save_modes);
+    table.boolean("backup", power.backup);
+    table.boolean("backup_needs_force", power.backup_needs_force);
+    table.boolean("keeps_ram", power.keeps_ram);
+    table.boolean("banner", power.banner);
+    table.quantity("wake_s", power.wake, {0, 60});
+    table.quantity("acquisition_s", power.acquisition, {1, 3600});
+    table.quantity("blind_acquisition_s", power.blind_acquisition, {0, 3600});
+    table.quantity("search_margin_s", power.search_margin, {0, 60});
+    table.quantity("download_s", power.download, {0, 600});
+}
+
 void read_board_quirks(TableReader& table, firmware::Quirks& quirks) {
     table.word("value_config", value_config_words, quirks.value_config);
     table.boolean("single_key_valget", quirks.single_key_valget);
@@ -188,6 +201,7 @@ void read_board_keys(TableReader& top, BoardProfile& board) {
     top.table("identity", [&](TableReader& t) { read_board_identity(t, board.identity); });
     top.table("timing", [&](TableReader& t) { read_board_timing(t, board.timing); });
     top.table("corrections", [&](TableReader& t) { read_board_corrections(t, board.corrections); });
+    top.table("power", [&](TableReader& t) { read_board_power(t, board.power); });
     top.table("quirks", [&](TableReader& t) { read_board_quirks(t, board.quirks); });
     top.table("uart", [&](TableReader& t) { read_board_uart(t, board); });
     top.table("usb", [&](TableReader& t) { read_board_usb(t, board); });

@@ -7,6 +7,7 @@ import kumar_ros
 import px4
 import septentrio
 import sparkfun
+import tracker
 import u_center
 import ubloxcfg
 
@@ -24,6 +25,7 @@ CLIENTS = {
     "px4_nmea": px4.Px4Nmea,
     "px4_septentrio": septentrio.Px4Septentrio,
     "sparkfun": sparkfun.SparkFun,
+    "tracker": tracker.Tracker,
     "u_center": u_center.UCenter,
     "ubloxcfg": ubloxcfg.UbloxCfg,
 }

@@ -21,6 +21,9 @@ BoardProfile fuzzed_board(std::uint8_t choice) {
                                              Personality::airoha};
     board.personality = personalities[choice % 4];
     board.identity.generation = 6 + choice / 4 % 5;
+    board.power.save_modes = board.power.backup = true;
+    for (const std::uint8_t id : std::initializer_list<std::uint8_t>{0x11, 0x3B, 0x57, 0x86})  // CFG-RXM, PM2, PWR, PMS
+        board.legacy[{0x06, id}] = LegacyAnswer::apply;
     board.quirks.speed_change = static_cast<SpeedChangeAnswer>(choice / 32 % 3);
     return board;
 }
@@ -51,7 +54,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         left = left.subspan(portion);
         now += 200ms;
         epoch.fix.time = now;
-        if (receiver.settings().navigating) receiver.on_epoch(epoch);
+        receiver.on_epoch(epoch);
         check_output(receiver, splitter, now);
         const auto period = receiver.settings().navigation_period;
         require(period >= 1ms && period <= 3h);

@@ -62,7 +62,7 @@ using UbxOutputTypes =
 using UbxSettingTypes =
     UbxTypes<CfgPrtPoll, CfgPrt, CfgMsgPoll, CfgMsgCurrentPort, CfgMsg, CfgRate, CfgNav5, CfgGnss, CfgCfg, CfgRst,
              CfgTp5, CfgItfm, CfgPms, CfgRxm, CfgAnt, CfgLogfilter, UpdSos, UpdSosStatus, CfgNavx5, CfgSbas, CfgOdo,
-             CfgDgnss, CfgTmode3, CfgGeofence, CfgDat, CfgDatSet, CfgPm2, CfgInf, CfgNmeaShort, CfgNmeaV0, CfgNmea,
-             CfgUsb, CfgValset, CfgValgetPoll, CfgValget, CfgValdel>;
+             CfgDgnss, CfgTmode3, CfgGeofence, CfgDat, CfgDatSet, CfgPm2, CfgPwr, RxmPmreqShort, RxmPmreq, CfgInf,
+             CfgNmeaShort, CfgNmeaV0, CfgNmea, CfgUsb, CfgValset, CfgValgetPoll, CfgValget, CfgValdel>;
 
 }  // namespace skyloop

@@ -60,7 +60,8 @@ MonSys system_load(const ReportContext& context) {
     const auto tracked =
         std::count_if(satellites.begin(), satellites.end(), [](const SatelliteStatus& s) { return s.cn0.has_value(); });
     MonSys m;
-    m.boot_type = 1;
+    constexpr std::uint8_t cold = 1, software_backup = 5;
+    m.boot_type = context.state.woken_from_backup ? software_backup : cold;
     m.cpu_load = m.cpu_load_max =
         field<std::uint8_t>(std::min(100.0, idle_percent + percent_per_satellite * static_cast<double>(tracked)));
     m.mem_usage = 8;

@@ -94,8 +94,8 @@ NavPvt navigation_pvt(const ReportContext& context) {
     pvt.i_tow = epoch_time(reported_time(context).time).i_tow;
     put_time(context, pvt);
     pvt.fix_type = fix_type_code(fix);
-    pvt.flags =
-        static_cast<std::uint8_t>((state.fix_ok ? 1 : 0) | (is_differential(fix) ? 2 : 0) | carrier_solution(fix) << 6);
+    pvt.flags = static_cast<std::uint8_t>((state.fix_ok ? 1 : 0) | (is_differential(fix) ? 2 : 0) |
+                                          static_cast<int>(state.power_save) << 2 | carrier_solution(fix) << 6);
     pvt.flags2 = pvt_flags2(context);
     pvt.num_sv = used_satellites(fix);
     const PlaceFields place = place_fields(state);
@@ -262,7 +262,10 @@ NavStatus navigation_status(const ReportContext& context) {
     m.gps_fix = fix_type_code(fix);
     m.flags = static_cast<std::uint8_t>((solved ? 0xD0 : 0x40) | solution_flags(state));
     m.fix_stat = static_cast<std::uint8_t>((is_differential(fix) ? 1 : 0) | (carrier_solution(fix) != 0 ? 2 : 0));
-    m.flags2 = static_cast<std::uint8_t>(static_cast<int>(state.monitors.spoofing) << 3 | carrier_solution(fix) << 6);
+    // psmState counts from acquisition on here, and full power looks like that.
+    const int power_save = std::max(0, static_cast<int>(state.power_save) - 2);
+    m.flags2 = static_cast<std::uint8_t>(power_save | static_cast<int>(state.monitors.spoofing) << 3 |
+                                         carrier_solution(fix) << 6);
     if (state.time_to_first_fix) m.ttff = field<std::uint32_t>(state.time_to_first_fix->value() * 1e3);
     m.msss = field<std::uint32_t>(state.since_start.value() * 1e3);
     return m;

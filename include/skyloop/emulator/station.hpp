@@ -89,7 +89,7 @@ public:
     void finish(GpsTime now);
 
     [[nodiscard]] GpsTime next_epoch() const { return grid_.next(); }
-    /// When a fault or a held byte wants to be looked at next.
+    /// When a fault, a held byte, or a receiver that goes on or off by itself, wants to be looked at next.
     /// @param now of the last look
     [[nodiscard]] std::optional<GpsTime> next_change(GpsTime now) const;
     /// When the next message will have left by a wire, or is made.

@@ -128,6 +128,22 @@ struct CfgPm2 {
     }
 };
 
+/// CFG-PWR: the state that the receiver is to be in (F9 interface description, HPG 1.10).
+struct CfgPwr {
+    static constexpr UbxMessageId message_id{0x06, 0x57};
+    std::uint8_t version = 1;  ///< 1
+    std::array<std::uint8_t, 3> reserved0{};
+    std::uint32_t state = 0;  ///< of PowerStateWord
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.version, m.reserved0, m.state);
+    }
+};
+
+/// The states of CFG-PWR: four letters each.
+enum PowerStateWord : std::uint32_t { power_run = 0x52554E20, power_stop = 0x53544F50, power_backup = 0x42434B50 };
+
 /// UPD-SOS, a command: battery-backed memory to flash.
 struct UpdSos {
     static constexpr UbxMessageId message_id{0x09, 0x14};

@@ -129,6 +129,33 @@ struct RxmSvsi {
     }
 };
 
+/// RXM-PMREQ, a command: how long the receiver is to be off (M8 and F9 interface descriptions).
+struct RxmPmreqShort {
+    static constexpr UbxMessageId message_id{0x02, 0x41};
+    std::uint32_t duration = 0;  ///< ms; 0: until it is woken
+    std::uint32_t flags = 0;     ///< bits: 1 backup, without which it means nothing
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.duration, m.flags);
+    }
+};
+
+/// RXM-PMREQ in its longer form.
+struct RxmPmreq {
+    static constexpr UbxMessageId message_id{0x02, 0x41};
+    std::uint8_t version = 0;  ///< 0
+    std::array<std::uint8_t, 3> reserved0{};
+    std::uint32_t duration = 0;        ///< ms; 0: until it is woken
+    std::uint32_t flags = 0;           ///< bits: 1 backup, 2 even while USB is connected
+    std::uint32_t wakeup_sources = 0;  ///< bits: 3 UART RX, 5 EXTINT0, 6 EXTINT1, 7 SPI CS
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.version, m.reserved0, m.duration, m.flags, m.wakeup_sources);
+    }
+};
+
 /// RXM-RLM: an answer to a distress call, short form (M8 interface description).
 struct RxmRlm {
     static constexpr UbxMessageId message_id{0x02, 0x59};
