@@ -79,6 +79,24 @@ TEST(WorkerPool, RunsThatKillTheirWorkersDoNotHoldUpTheOthers) {
     EXPECT_EQ(given_up, 20);
 }
 
+TEST(WorkerPool, NoNumberOfDeathsEndsItOnceAWorkerHasAnswered) {
+    const std::string script =
+        "read greeting; while read word number; do test $number -gt 0 && kill -9 $$; echo $number; done";
+    int given_up = 0, answered = 0;
+    const std::atomic<bool> go_on = false;
+    PoolWork work = shell_work(script, 121);
+    work.processes = 1;
+    const auto done = run_jobs(
+        work,
+        [&](const JobOutcome& outcome) -> Result<JobFate> {
+            return outcome.answer.empty() ? (++given_up, JobFate::given_up) : (++answered, JobFate::done);
+        },
+        [] {}, go_on);
+    ASSERT_TRUE(done) << done.error().message;
+    EXPECT_EQ(answered, 1);
+    EXPECT_EQ(given_up, 120);
+}
+
 TEST(WorkerPool, WorkersThatNeverAnswerEndIt) {
     const std::atomic<bool> go_on = false;
     const auto again = [](const JobOutcome&) -> Result<JobFate> { return JobFate::again; };

@@ -63,6 +63,19 @@ TEST(IgcTrack, ADateThatIsSaidAgainBehindMidnightIsThatOfTheFirstDay) {
     EXPECT_EQ(utc_of(next, 1), "2024-03-06T00:00:00.000Z");
 }
 
+TEST(IgcTrack, ATimeThatFallsALittleIsOfTheSameDay) {
+    const std::string place = "4730000N00815000EA0048000500\n";
+    const Track track = track_of(igc_head + "B140005" + place + "B140003" + place + "B020003" + place);
+    EXPECT_EQ(utc_of(track, 1), "2024-03-05T14:00:03.000Z");
+    EXPECT_EQ(utc_of(track, 2), "2024-03-05T02:00:03.000Z") << "twelve hours are no midnight yet";
+}
+
+TEST(IgcTrack, YearsFrom80OnAreOfTheCenturyBefore) {
+    const std::string fix = "B1400004730000N00815000EA0048000500\n";
+    EXPECT_EQ(utc_of(track_of("HFDTE050379\nHFALG:GEO\n" + fix), 0), "2079-03-05T14:00:00.000Z");
+    EXPECT_EQ(utc_of(track_of("HFDTE050380\nHFALG:GEO\n" + fix), 0), "1980-03-05T14:00:00.000Z");
+}
+
 TEST(IgcTrack, TakesHeightsByTheHeader) {
     const std::string fixes = "B1200004730000N00815000EA0048000500\n";
     EXPECT_NEAR(height_of(track_of("HFDTE050324\nHFALGALTGPS:ELL\n" + fixes), 0), 500, 1e-4);

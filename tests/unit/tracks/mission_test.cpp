@@ -57,6 +57,15 @@ TEST(QgcPlan, IsARouteOfItsItems) {
     test::expect_flown_route(track, {{}, {}, 30, 0});
 }
 
+TEST(QgcPlan, AnItemWithoutAHeightStaysAtThatOfTheOneBefore) {
+    const Track track =
+        track_of(plan(simple(22, 3, "0,0,0,null,47.0,8.0,30") + "," + simple(16, 3, "0,0,0,null,47.001,8.0,40") + "," +
+                      simple(16, 3, "0,0,0,null,47.002,8.0,null")),
+                 "t.plan");
+    ASSERT_EQ(track.points.size(), 5u);
+    EXPECT_NEAR(height_of(track, 4), 550, 1e-4);
+}
+
 TEST(QgcPlan, HoldsTheItemsOfSurveysAndLandings) {
     const std::string survey =
         "{\"type\":\"ComplexItem\",\"complexItemType\":\"survey\",\"TransectStyleComplexItem\":{\"Items\":[" +
