@@ -235,13 +235,13 @@ Bytes ubx(std::uint8_t id, const HandBytes& payload) {
 // 2026-11-20 is a Friday: GPS week 2445, five days into it.
 constexpr std::uint32_t itow = (5 * 86400 + 45296 + 18) * 1000;
 
-Bytes nav_pvt(std::uint32_t itow_ms, int fix_type = 3, int flags = 1) {
+Bytes nav_pvt(std::uint32_t itow_ms, int fix_type = 3, int flags = 1, std::uint64_t flags3 = 0) {
     HandBytes payload;
     const std::uint32_t second = 45296 + (itow_ms - itow) / 1000;
     payload.i32(itow_ms).i16(2026).u8(11).u8(20).u8(second / 3600).u8(second / 60 % 60).u8(second % 60).u8(7).i32(30);
     payload.i32(-5000).u8(static_cast<std::uint64_t>(fix_type)).u8(static_cast<std::uint64_t>(flags)).u8(0).u8(12);
     payload.i32(85456000).i32(473977000).i32(510000).i32(463000).i32(900).i32(900);
-    payload.i32(3000).i32(4000).i32(-2000).zeros_to(92);
+    payload.i32(3000).i32(4000).i32(-2000).zeros_to(78).u8(flags3).zeros_to(92);
     return ubx(7, payload);
 }
 const PoseTolerance ubx_tolerance{1e-9, 1e-6, 1e-9, 0, 0, false, false};
@@ -288,10 +288,24 @@ TEST(UbxDialect, JoinsTheMessagesOfOlderReceivers) {
     EXPECT_EQ(news.samples[1].source_time, Nanoseconds(gps_s * 1'000'000'000 + 250'000'000));
 }
 
+TEST(UbxDialect, CountsWeeksOnThatNoMessageTells) {
+    const auto dialect = dialect_named("ubx");
+    const auto place = [](std::uint32_t itow_ms) {
+        HandBytes posllh;
+        posllh.i32(itow_ms).i32(85456000).i32(473977000).i32(510000).i32(463000).i32(900).i32(900);
+        return ubx(2, posllh);
+    };
+    dialect->hear(place(604'799'000), 0);
+    const FeedNews news = dialect->hear(place(0), 0);
+    ASSERT_EQ(news.samples.size(), 2u) << news.refusal;
+    EXPECT_EQ(*news.samples[1].source_time - *news.samples[0].source_time, std::chrono::seconds(1));
+}
+
 TEST(UbxDialect, RefusesLostFixesAndWrongChecksums) {
     const auto dialect = dialect_named("ubx");
     dialect->hear(nav_pvt(itow, 0, 0), 0);
     EXPECT_THAT(dialect->hear(nav_pvt(itow + 1000, 3, 0), 0).refusal, HasSubstr("no fix"));
+    EXPECT_THAT(dialect->hear(nav_pvt(itow + 1500, 3, 1, 1), 0).refusal, HasSubstr("no fix")) << "invalidLlh";
     Bytes wrong = nav_pvt(itow + 2000);
     wrong[30] ^= 1;
     EXPECT_THAT(dialect->hear(wrong, 0).refusal, HasSubstr("checksum"));

@@ -206,6 +206,9 @@ TEST(Valset, ObeysTheLock) {
     EXPECT_EQ(c.set(1, {{lock, 0}}), Verdict::refuse);
     EXPECT_EQ(c.erase(2, {pvt_item}), Verdict::refuse);
     EXPECT_EQ(c.set(1, {{pvt_item, 1}}, 1, 1), Verdict::refuse);
+    EXPECT_EQ(c.set(1, {{period_item, 150}}, 1, 1), Verdict::acknowledge);
+    EXPECT_EQ(c.set(1, {{pvt_item, 1}}, 1, 2), Verdict::refuse) << "at once, not at the end of the transaction";
+    EXPECT_EQ(c.set(1, {}, 1, 3), Verdict::refuse) << "which is over";
     EXPECT_EQ(c.set(1, {{period_item, 200}}), Verdict::acknowledge);  // of the group that is left open
     EXPECT_EQ(c.store.value(pvt_item), 0U);
     EXPECT_EQ(c.store.value(period_item), 200U);
