@@ -66,6 +66,7 @@ void Receiver::Core::request_backup(PortUnit& unit, const UbxFrameView& frame, G
 
 // CFG-PWR: on, GNSS stopped, or backup without USB.
 void Receiver::Core::change_power_state(PortUnit& unit, const UbxFrameView& frame, GpsTime now) {
+    values_.cancel();
     const auto asked = decode_payload<CfgPwr>(frame.payload);
     const bool known = asked && asked->version == 1 &&
                        (asked->state == power_run || asked->state == power_stop || asked->state == power_backup);

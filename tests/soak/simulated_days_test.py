@@ -19,6 +19,17 @@ CLIENTS = ("careful-ubx", "naive-ubx", "careful-nmea", "naive-nmea")
 # Of these `decode` knows the bytes.
 DECODED = ("ublox", "nmea", "mtk", "airoha")
 BETWEEN_LOOKS_S = 0.02
+SAVER = """[run]
+start = 2026-03-01T00:00:00Z
+duration_s = {duration}
+[[receiver]]
+board = "{board}"
+[receiver.config]
+CFG-PM-OPERATEMODE = 1
+CFG-PM-POSUPDATEPERIOD = 30
+CFG-PM-ONTIME = 2
+CFG-PM-UPDATEEPH = false
+"""
 
 
 def boards():
@@ -77,7 +88,29 @@ def day(board, client):
         return wrong, f"{epochs} epochs, {run['ports'][0]['bytes_out']} bytes out; {growth}"
 
 
+def saving_day(board):
+    """What is wrong with a day of a receiver that goes on and off twice a minute, and a line of what was seen."""
+    with open_folder() as name:
+        path = pathlib.Path(name, "saver.toml")
+        path.write_text(SAVER.format(board=board, duration=HOURS * 3600))
+        code, said, growth = watched([SKYLOOP, "simulate", str(path), "--out", f"{name}/out"])
+        wrong = [] if code == 0 else [f"ended {code}: {said}"]
+        if growth.fault():
+            wrong.append(growth.fault())
+        starts = pathlib.Path(name, "out/port0.out").read_bytes().count(b"PROTVER")
+        if code == 0 and starts < HOURS * 3600 / 30 - 2:
+            wrong.append(f"it came on {starts} times")
+        return wrong, f"{starts} starts; {growth}"
+
+
 class SimulatedDays(unittest.TestCase):
+    def test_a_receiver_that_saves_power(self):
+        for board in ("ublox-m8", "ublox-m10"):
+            with self.subTest(board):
+                wrong, seen = saving_day(board)
+                print(f"{board:18} {'saves power':13} {seen}", flush=True)
+                self.assertEqual(wrong, [])
+
     def test_each_board_with_each_client(self):
         pairs = [(board, client) for board in boards() for client in CLIENTS]
         self.assertGreaterEqual(len(pairs), 44)

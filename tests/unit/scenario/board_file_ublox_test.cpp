@@ -120,6 +120,39 @@ CFG-NAVSPG-INFIL_MINELEV = -5
 CFG-TP-DUTY_TP1 = 12.5
 )";
 
+TEST(BoardFileUblox, ReadsHowItSavesPower) {
+    const auto board = read_board(R"(
+personality = "ublox"
+[power]
+save_modes = true
+backup = true
+backup_needs_force = true
+keeps_ram = true
+banner = false
+wake_s = 0.1
+acquisition_s = 60
+blind_acquisition_s = 9
+search_margin_s = 2
+download_s = 18
+)",
+                                  "mine.toml");
+    ASSERT_TRUE(board) << board.error().message;
+    const firmware::PowerAbility& p = board->power;
+    EXPECT_TRUE(p.save_modes && p.backup && p.backup_needs_force && p.keeps_ram && !p.banner);
+    const std::vector<Seconds> times{p.wake, p.acquisition, p.blind_acquisition, p.search_margin, p.download};
+    EXPECT_EQ(times, (std::vector<Seconds>{Seconds(0.1), Seconds(60), Seconds(9), Seconds(2), Seconds(18)}));
+    EXPECT_THAT(ublox_refusal("personality = \"ublox\"\n[power]\nwake_s = -1\n"), HasSubstr("test.toml:3"));
+}
+
+TEST(BoardFileUblox, ShippedBoardsSavePowerAsTheirMakersSay) {
+    for (const std::string_view name : {"ublox-6", "ublox-m8", "ublox-m9", "ublox-m10"})
+        EXPECT_TRUE(shipped_board(name).power.save_modes && shipped_board(name).power.backup) << name;
+    const firmware::PowerAbility f9p = shipped_board("ublox-f9p").power;
+    EXPECT_TRUE(f9p.backup && !f9p.save_modes);
+    EXPECT_TRUE(shipped_board("ublox-m10").power.backup_needs_force);
+    EXPECT_FALSE(shipped_board("nmea-generic").power.backup);
+}
+
 TEST(BoardFileUblox, ReadsWhoTheReceiverIsAndItsTimes) {
     const auto board = read_board(every_ublox_key, "mine.toml");
     ASSERT_TRUE(board) << board.error().message;
