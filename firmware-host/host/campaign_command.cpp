@@ -118,10 +118,10 @@ using SharedCampaignOptions = std::shared_ptr<CampaignOptions>;
 // Those that need the plan alone.
 void add_plan_commands(CLI::App& command, const SharedCampaignOptions& options) {
     CLI::App* plan = command.add_subcommand("plan", "Print the runs: number, key, seed and parameters, as CSV");
-    plan->add_option("scenario", options->scenario, "Scenario file (TOML)")->required();
+    plan->add_option("SCENARIO", options->scenario, "Scenario file (TOML)")->required();
     add_plan_options(*plan, *options);
     CLI::App* replay = command.add_subcommand("replay", "Do one of the runs again, and record it");
-    replay->add_option("scenario", options->scenario, "Scenario file (TOML)")->required();
+    replay->add_option("SCENARIO", options->scenario, "Scenario file (TOML)")->required();
     replay->add_option("--number", options->number, "Of the run, from 0 on");
     replay->add_option("--key", options->key, "Of the run, instead of its number");
     replay->add_option("--out", options->out, "Folder for the recording")->required();
@@ -134,7 +134,7 @@ Action add_campaign_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("campaign", "Many runs of a scenario over seeds and parameters");
     auto options = std::make_shared<CampaignOptions>();
     command->require_subcommand(0, 1);
-    command->add_option("scenario", options->scenario, "Scenario file (TOML) with a [campaign]");
+    command->add_option("SCENARIO", options->scenario, "Scenario file (TOML) with a [campaign]");
     command->add_option("--out", options->out, "Folder of the results; what is there already is not run again");
     command->add_option("--shard", options->shard, "I/N: only this part of the runs, I from 0 to N - 1");
     add_engine_options(*command, options->engine);
@@ -146,7 +146,7 @@ Action add_campaign_command(CLI::App& app) {
     add_plan_options(*command, *options);
     add_plan_commands(*command, options);
     CLI::App* gather = command->add_subcommand("gather", "Merge the parts' results into DIR/campaign.sqlite");
-    gather->add_option("folder", options->out, "The campaign's folder")->required();
+    gather->add_option("DIR", options->out, "The campaign's folder")->required();
     add_verbosity_options(*gather, options->verbosity);
     add_campaign_report_command(*command, *options);
     command->add_subcommand("worker", "")->group("");

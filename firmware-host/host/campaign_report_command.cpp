@@ -9,7 +9,7 @@ namespace skyloop::host {
 void add_campaign_report_command(CLI::App& campaign, CampaignOptions& options) {
     CLI::App* report =
         campaign.add_subcommand("report", "Tell what came of a gathered campaign: a page, JSON and text");
-    report->add_option("folder", options.out, "The campaign's folder")->required();
+    report->add_option("DIR", options.out, "The campaign's folder")->required();
     report->add_option("--out", options.page, "The page; default: report.html in that folder");
     report->add_option("--worst", options.worst, "Runs that each metric names")->check(CLI::Range(0, 10000));
     add_verbosity_options(*report, options.verbosity);

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <nlohmann/json.hpp>
+
 #include "commands.hpp"
 #include "messages.hpp"
 #include "run_options.hpp"
@@ -17,11 +19,20 @@ struct FaultsOptions {
     Verbosity verbosity;
 };
 
+std::string one_of_all_json(std::string_view name) {
+    for (const auto& kind : nlohmann::ordered_json::parse(fault_kinds_json()))
+        if (kind.at("name") == name) return kind.dump();
+    return "null";
+}
+
 int show_faults(const FaultsOptions& options) {
     const Messages messages(options.verbosity);
     if (!options.name.empty()) {
+        if (options.format == "markdown")
+            return messages.error(
+                {ErrorCode::usage, "faults: --format markdown lists all of them; expected text or json beside a NAME"});
         if (const FaultKind* kind = find_fault_kind(options.name)) {
-            fmt::print("{}", fault_text(*kind));
+            fmt::print("{}", options.format == "json" ? one_of_all_json(kind->name) + "\n" : fault_text(*kind));
             return 0;
         }
         std::vector<std::string_view> names;

@@ -8,14 +8,19 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <new>
+#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "commands.hpp"
+#include "help_text.hpp"
+#include "misuse.hpp"
 #include "number_options.hpp"
 #include "skyloop/base/spelling.hpp"
+#include "word_options.hpp"
 
 namespace {
 
@@ -33,10 +38,7 @@ int refuse_command(std::string_view word) {
     return 2;
 }
 
-int run_program(int argc, char** argv) {
-    CLI::App app("A GNSS receiver emulator: real orbits in, NMEA out, over a pty that any client may open.", "skyloop");
-    app.set_version_flag("--version", "skyloop " SKYLOOP_VERSION);
-    app.require_subcommand(1);
+std::vector<Action> add_commands(CLI::App& app) {
     const std::array<Action (*)(CLI::App&), commands.size()> add{
         skyloop::host::add_run_command,        skyloop::host::add_simulate_command,
         skyloop::host::add_sky_command,        skyloop::host::add_check_command,
@@ -52,21 +54,44 @@ int run_program(int argc, char** argv) {
     for (const auto add_command : add)
         actions.push_back(add_command(app));
     skyloop::host::check_numbers(app);
+    skyloop::host::check_words(app);
+    return actions;
+}
 
+// `skyloop help COMMAND` is `skyloop COMMAND --help`.
+std::vector<std::string> words_of(int argc, char** argv) {
+    std::vector<std::string> words(argv + 1, argv + argc);
+    if (words.front() != "help") return words;
+    words.erase(words.begin());
+    words.emplace_back("--help");
+    return words;
+}
+
+int run_program(int argc, char** argv) {
+    CLI::App app("A GNSS receiver emulator: real orbits in, NMEA out, over a pty that any client may open.", "skyloop");
+    app.formatter(std::make_shared<skyloop::host::HelpText>());
+    app.set_version_flag("--version", "skyloop " SKYLOOP_VERSION);
+    app.require_subcommand(1);
+    const std::vector<Action> actions = add_commands(app);
     if (argc < 2) {
         fmt::print("{}", app.help());
         return 2;
     }
-    const std::string_view word = argv[1];
+    std::vector<std::string> words = words_of(argc, argv);
+    const std::string word = words.front();
     if (!word.starts_with('-') && std::find(commands.begin(), commands.end(), word) == commands.end())
         return refuse_command(word);
     try {
-        app.parse(argc, argv);
+        if (const auto misuse = skyloop::host::value_left_out(words)) {
+            fmt::print(stderr, "skyloop: {}\n", *misuse);
+            return 2;
+        }
+        std::reverse(words.begin(), words.end());  // as CLI11 takes them
+        app.parse(std::move(words));
     } catch (const CLI::Success& wanted) {
         return app.exit(wanted);  // --help and --version
     } catch (const CLI::ParseError& error) {
-        fmt::print(stderr, "skyloop: {}; see skyloop {}--help\n", error.what(),
-                   word.starts_with('-') ? "" : std::string(word) + " ");
+        fmt::print(stderr, "skyloop: {}\n", skyloop::host::misuse_text(app, error));
         return 2;
     }
     for (std::size_t i = 0; i < commands.size(); ++i)

@@ -47,18 +47,6 @@ std::string roff_line(std::string_view text) {
     return (request ? "\\&" : "") + roff_text(text) + "\n";
 }
 
-std::string sentence(const OptionRow& option) {
-    std::string text = option.meaning;
-    const bool words_told = std::all_of(option.words.begin(), option.words.end(),
-                                        [&](const std::string& word) { return text.find(word) != std::string::npos; });
-    if (option.kind == ValueKind::words && !words_told)
-        text += fmt::format("; one of {}", fmt::join(option.words, " "));
-    if (!option.range.empty()) text += fmt::format("; {}", option.range);
-    if (option.repeatable && text.find("repeatable") == std::string::npos) text += "; repeatable";
-    if (option.required && !option.positional()) text += "; needed";
-    return text;
-}
-
 std::string synopsis_of(const OptionRow& option) {
     if (option.positional()) {
         const std::string value = fmt::format("\\fI{}\\fR", roff_text(option.value));
@@ -87,7 +75,7 @@ std::string entry(const OptionRow& option) {
         head = fmt::format("{}", fmt::join(names, ", "));
         if (!option.value.empty()) head += fmt::format(" \\fI{}\\fR", roff_text(option.value));
     }
-    return ".TP\n" + head + "\n" + roff_line(sentence(option) + ".");
+    return ".TP\n" + head + "\n" + roff_line(option_sentence(option) + ".");
 }
 
 std::string entries(const CommandRow& command, bool positional) {
@@ -116,10 +104,10 @@ std::string cell(std::string_view text) {
 }
 
 std::string markdown_row(const OptionRow& option) {
-    if (option.positional()) return fmt::format("| `{}` | {} |\n", cell(option.value), cell(sentence(option)));
+    if (option.positional()) return fmt::format("| `{}` | {} |\n", cell(option.value), cell(option_sentence(option)));
     std::string names = fmt::format("{}", fmt::join(option.names, ", "));
     if (!option.value.empty()) names += " " + option.value;
-    return fmt::format("| `{}` | {} |\n", cell(names), cell(sentence(option)));
+    return fmt::format("| `{}` | {} |\n", cell(names), cell(option_sentence(option)));
 }
 
 std::string subcommands(const CommandRow& command) {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "option_table.hpp"
 
@@ -48,11 +48,21 @@ CLI::Validator whole_number(WholeRange range) {
     return {read, "", "whole_number"};
 }
 
+// "0 to 90"; all numbers where nothing is declared.
+std::pair<double, double> number_range(const std::string& declared) {
+    std::pair<double, double> range{std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()};
+    const std::size_t middle = declared.find(" to ");
+    if (middle == std::string::npos) return range;
+    reads_as(std::string_view(declared).substr(0, middle), range.first);
+    reads_as(std::string_view(declared).substr(middle + 4), range.second);
+    return range;
+}
+
 // No comparison with a range refuses nan.
 CLI::Validator finite_number(const std::string& declared) {
-    const auto read = [declared](const std::string& text) {
+    const auto read = [declared, range = number_range(declared)](const std::string& text) {
         double value = 0;
-        if (reads_as(text, value) && std::isfinite(value)) return std::string();
+        if (reads_as(text, value) && value >= range.first && value <= range.second) return std::string();
         return fmt::format("'{}'; expected a number{}", text, declared.empty() ? "" : " from " + declared);
     };
     return {read, "", "finite_number"};

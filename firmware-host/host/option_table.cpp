@@ -1,5 +1,8 @@
 #include "option_table.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <string_view>
 #include <utility>
@@ -65,12 +68,12 @@ std::vector<ValueRule> word_rules() {
         {"NAME", "faults", "NAME", fault},
         {"OBSERVATIONS", "solve", "OBSERVATIONS", file},
         {"RECORDING", "replay", "RECORDING", file},
-        {"file", "trajectory", "FILE", file},
-        {"folder", "campaign gather", "DIR", folder},
-        {"folder", "campaign report", "DIR", folder},
-        {"log", "scenario-from", "LOG", file},
-        {"scenario", "", "SCENARIO", file},
-        {"uri", "power", "URI", uri},
+        {"FILE", "trajectory", "FILE", file},
+        {"DIR", "campaign gather", "DIR", folder},
+        {"DIR", "campaign report", "DIR", folder},
+        {"LOG", "scenario-from", "LOG", file},
+        {"SCENARIO", "", "SCENARIO", file},
+        {"URI", "power", "URI", uri},
     };
 }
 
@@ -155,6 +158,8 @@ void add_value(const CLI::Option& option, std::string_view declared, std::string
     }
 }
 
+}  // namespace
+
 OptionRow option_row(const CLI::Option& option, std::string_view command) {
     OptionRow row;
     for (const std::string& name : option.get_lnames())
@@ -168,6 +173,8 @@ OptionRow option_row(const CLI::Option& option, std::string_view command) {
     if (option.get_expected_max() > 0) add_value(option, declared, command, row);
     return row;
 }
+
+namespace {
 
 CommandRow command_row(const CLI::App& command, const std::string& before) {
     CommandRow row;
@@ -206,6 +213,18 @@ std::string declared_range(const std::string& type) {
     std::string range = type.substr(open + 5, close - open - 5);
     if (const std::size_t dash = range.find(" - "); dash != std::string::npos) range.replace(dash, 3, " to ");
     return range;
+}
+
+std::string option_sentence(const OptionRow& option) {
+    std::string text = option.meaning;
+    const bool words_told = std::all_of(option.words.begin(), option.words.end(),
+                                        [&](const std::string& word) { return text.find(word) != std::string::npos; });
+    if (option.kind == ValueKind::words && !words_told)
+        text += fmt::format("; one of {}", fmt::join(option.words, " "));
+    if (!option.range.empty()) text += fmt::format("; {}", option.range);
+    if (option.repeatable && text.find("repeatable") == std::string::npos) text += "; repeatable";
+    if (option.required && !option.positional()) text += "; needed";
+    return text;
 }
 
 std::vector<CommandRow> option_table(const CLI::App& program) {

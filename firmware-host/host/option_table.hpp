@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace skyloop::host {
@@ -46,6 +47,12 @@ struct CommandRow {
 
 /// "0 to 90" of an option whose type CLI11 tells as "FLOAT:FLOAT in [0 - 90]"; empty where it tells no range.
 std::string declared_range(const std::string& type);
+
+/// One option of `command`, whose name is with that of its command before it: "campaign plan".
+OptionRow option_row(const CLI::Option& option, std::string_view command);
+
+/// Its meaning with what else is declared of it, without a full stop: words, range, whether it is needed.
+std::string option_sentence(const OptionRow& option);
 
 /// All commands of `program` in the order of its help, hidden ones too.
 std::vector<CommandRow> option_table(const CLI::App& program);

@@ -67,11 +67,11 @@ Action add_power_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("power", "Switch an actuator by hand, to check how it is wired");
     auto options = std::make_shared<PowerOptions>();
     command
-        ->add_option("uri", options->uri,
+        ->add_option("URI", options->uri,
                      "relay:VID:PID/N gpio:VID:PID/N hub:PORT_PATH line:DEVICE/rts line:DEVICE/dtr command:CUT|RESTORE")
         ->required();
     command
-        ->add_option("what", options->what,
+        ->add_option("WORD", options->what,
                      "on, off (it stays cut) or state (not of a modem line, which asking would switch)")
         ->required()
         ->check(CLI::IsMember({"on", "off", "state"}));

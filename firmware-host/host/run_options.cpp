@@ -200,7 +200,7 @@ void add_scene_option(CLI::App& command, RunOptions& options) {
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {
-    command.add_option("scenario", options.scenario, "Scenario file (TOML); without it embedded defaults");
+    command.add_option("SCENARIO", options.scenario, "Scenario file (TOML); without it embedded defaults");
     add_place_options(command, options);
     command.add_option("--trajectory", options.trajectory,
                        "A .toml file with a [trajectory], or a track: .csv, .gpx, …");

@@ -210,7 +210,7 @@ Action add_trajectory_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "trajectory", "Say what a track or another path asks for: extent, speeds, accelerations, limits; or draw it");
     auto options = std::make_shared<TrajectoryOptions>();
-    command->add_option("file", options->file, "A track, or a .toml with a [trajectory], alone or in a scenario")
+    command->add_option("FILE", options->file, "A track, or a .toml with a [trajectory], alone or in a scenario")
         ->required();
     command->add_option("--vehicle", options->vehicle,
                         "Whose limits count, and how a track without attitudes stands: fixed pedestrian car rover boat "

@@ -52,8 +52,8 @@ public:
     }
 
     [[nodiscard]] tl::unexpected<Error> failure(const ErrorCode& error) const {
-        return fail(skyloop::ErrorCode::outside,
-                    fmt::format("nobody answers at {} as expected: {}", address_text(options_), error.message()));
+        return fail(skyloop::ErrorCode::outside, fmt::format("{}: no run with --control answers there: {}",
+                                                             address_text(options_), error.message()));
     }
 
 private:

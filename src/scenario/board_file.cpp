@@ -49,8 +49,8 @@ Result<firmware::BoardProfile> find_board(std::string_view name, std::span<const
         return fail(ErrorCode::usage, fmt::format("board '{}': no board files are found; searched:{}", name, searched));
     }
     const std::vector<std::string_view> words(known.begin(), known.end());
-    return fail(ErrorCode::usage, fmt::format("board '{}' is not known{}; known are {}", name,
-                                              did_you_mean(name, words), fmt::join(known, ", ")));
+    return fail(ErrorCode::usage, fmt::format("board '{}' is not known; expected one of {}{}", name,
+                                              fmt::join(known, ", "), did_you_mean(name, words)));
 }
 
 std::vector<std::string> list_boards(std::span<const fs::path> directories) {

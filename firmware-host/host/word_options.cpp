@@ -1,0 +1,55 @@
+#include "word_options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "option_table.hpp"
+#include "skyloop/base/spelling.hpp"
+
+namespace skyloop::host {
+namespace {
+
+CLI::Validator some_text(const std::string& expected, bool options_too) {
+    const auto read = [expected, options_too](const std::string& text) {
+        if (text.empty()) return fmt::format("''; expected {}", expected);
+        if (text.starts_with("--") && !options_too)
+            return fmt::format("'{}' is an option; expected {}", text, expected);
+        return std::string();
+    };
+    return {read, "", "some_text"};
+}
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+    const auto read = [words](const std::string& text) {
+        if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
+        const std::vector<std::string_view> candidates(words.begin(), words.end());
+        return fmt::format("'{}'; expected one of {}{}", text, fmt::join(words, " "), did_you_mean(text, candidates));
+    };
+    return {read, "", "one_of"};
+}
+
+void check_words_of(CLI::App& command, const std::string& name) {
+    for (CLI::Option* option : command.get_options()) {
+        const std::string type = option->get_type_name();
+        if (!type.starts_with("TEXT") || option->get_expected_max() == 0) continue;
+        const OptionRow row = option_row(*option, name);
+        // Before what the option declares itself.
+        if (row.kind == ValueKind::words && type.find('{') != std::string::npos)
+            option->transform(one_of(row.words));
+        else
+            option->transform(some_text(row.value, option->check_lname("sbatch-option")));
+    }
+    for (CLI::App* below : command.get_subcommands(nullptr))
+        check_words_of(*below, name.empty() ? below->get_name() : name + " " + below->get_name());
+}
+
+}  // namespace
+
+void check_words(CLI::App& program) { check_words_of(program, ""); }
+
+}  // namespace skyloop::host

@@ -1,0 +1,110 @@
+"""The words of a command line: values that are missing, empty or out of range, options at the wrong place, and help."""
+import fcntl
+import json
+import os
+import pathlib
+import pty
+import re
+import signal
+import struct
+import subprocess
+import termios
+import unittest
+
+from session import SKYLOOP, open_folder, skyloop
+
+# Arguments, and what the one line says.
+MISUSES = [
+    # A variable of a script that is not set leaves nothing behind; nobody means the default by it.
+    (["check", "--at", ""], "skyloop: --at: ''; expected LAT,LON[,HEIGHT]; see skyloop check --help"),
+    (["check", "--start", ""], "skyloop: --start: ''; expected TIME; see skyloop check --help"),
+    (["check", "--nav", ""], "skyloop: --nav: ''; expected FILE; see skyloop check --help"),
+    (["check", "--model", ""], "skyloop: --model: ''; expected NAME; see skyloop check --help"),
+    (["check", "--state", ""], "skyloop: --state: ''; expected FILE; see skyloop check --help"),
+    (["check", ""], "skyloop: SCENARIO: ''; expected SCENARIO; see skyloop check --help"),
+    (["simulate", "--duration", "1", "--out", ""], "skyloop: --out: ''; expected DIR; see skyloop simulate --help"),
+    (["run", "--scene=", "s.toml"], "skyloop: --scene: a value is missing behind '='"),
+    (["run", "--seed=", "--quiet"], "skyloop: --seed: a value is missing behind '='"),
+    # What follows an option without its value is no value.
+    (["simulate", "s.toml", "--out", "--quiet"],
+     "skyloop: --out: '--quiet' is an option; expected DIR; see skyloop simulate --help"),
+    (["simulate", "s.toml", "--out"], "skyloop: --out: a value is missing; expected DIR; see skyloop simulate --help"),
+    (["campaign", "report", "c", "--out"],
+     "skyloop: --out: a value is missing; expected FILE; see skyloop campaign report --help"),
+    (["check", "--seed", "1", "--seed", "2", "--seed", "3"],
+     "skyloop: --seed: is there 3 times; expected it once; see skyloop check --help"),
+    (["sky", "--mask", "95"], "skyloop: --mask: '95'; expected a number from 0 to 90; see skyloop sky --help"),
+    (["replay", "r", "--speed", "0"], "skyloop: --speed: '0'; expected a number from 0.001 to 1000; see skyloop replay --help"),
+    (["sky", "--format", "jsn"],
+     "skyloop: --format: 'jsn'; expected one of text json csv svg; did you mean 'json'?; see skyloop sky --help"),
+    (["solve", "o", "--systems", "gsp"],
+     "skyloop: --systems: 'gsp'; expected one of gps sbas galileo beidou qzss glonass navic; did you mean 'gps'?; "
+     "see skyloop solve --help"),
+    # Options that the command does not have.
+    (["run", "--durration", "5"], "skyloop: run has no option --durration; did you mean '--duration'?; see skyloop run --help"),
+    (["run", "--out", "x"], "skyloop: run has no option --out; did you mean '--record'?; see skyloop run --help"),
+    (["simulate", "--record=x", "--out", "y"],
+     "skyloop: simulate has no option --record; did you mean '--out'?; see skyloop simulate --help"),
+    (["check", "--speed", "3"],
+     "skyloop: check has no option --speed, which is one of run, replay, trajectory; see skyloop check --help"),
+    (["--seed", "3", "run"],
+     "skyloop: '--seed' stands before the command; expected skyloop COMMAND, then its options; see skyloop --help"),
+    (["check", "--start", "2026-03-01", "s.toml", "12:00:00"],
+     "skyloop: '12:00:00' is one word too many; see skyloop check --help"),
+    (["replay"], "skyloop: RECORDING is required; see skyloop replay --help"),
+    (["power"], "skyloop: URI is required; see skyloop power --help"),
+    (["faults", "jamming", "--format", "markdown"],
+     "skyloop: faults: --format markdown lists all of them; expected text or json beside a NAME"),
+    (["boards", "ublox-m88"],
+     "skyloop: board 'ublox-m88' is not known; expected one of airoha-ag33xx, mavlink-gps-input, msp-gps, mtk3339, "
+     "nmea-generic, septentrio-sbf, ublox-6, ublox-f9p, ublox-m10, ublox-m8, ublox-m9; did you mean 'ublox-m8'?"),
+]
+
+
+class WordsTest(unittest.TestCase):
+    def test_misuses_are_told_in_one_line(self):
+        with open_folder() as folder:
+            before = os.getcwd()
+            os.chdir(folder)
+            try:
+                for arguments, line in MISUSES:
+                    with self.subTest(" ".join(arguments)):
+                        done = skyloop(*arguments, check=False)
+                        self.assertEqual((done.returncode, done.stderr), (2, line + "\n"))
+                self.assertEqual(os.listdir("."), [])
+            finally:
+                os.chdir(before)
+
+    def test_an_option_for_another_program_may_look_like_one(self):
+        done = skyloop("campaign", "/no/such.toml", "--out", "x", "--engine", "slurm", "--sbatch-option=--account=lab", check=False)
+        self.assertEqual((done.returncode, done.stderr), (1, "skyloop: /no/such.toml: No such file or directory\n"))
+
+    def test_help_is_a_command_too(self):
+        self.assertEqual(skyloop("help").stdout, skyloop("--help").stdout)
+        self.assertEqual(skyloop("help", "sky").stdout, skyloop("sky", "--help").stdout)
+        self.assertEqual(skyloop("help", "campaign", "plan").stdout, skyloop("campaign", "plan", "--help").stdout)
+        done = skyloop("help", "siumlate", check=False)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("did you mean 'simulate'?", done.stderr)
+
+    def test_help_names_values_and_fits(self):
+        for command in re.findall(r"^  ([a-z-]+) ", skyloop("--help").stdout.split("Subcommands:")[1], re.MULTILINE):
+            shown = skyloop(command, "--help").stdout
+            self.assertNotRegex(shown, "TEXT:|FLOAT|UINT|INT in", command)
+            for line in shown.split("Options:")[1].split("\n\n")[0].splitlines():
+                self.assertTrue(len(line) <= 100 or " " not in line.strip(), line)
+        shown = skyloop("sky", "--help").stdout
+        self.assertIn("Usage: skyloop sky [OPTIONS] [SCENARIO]\n", shown)
+        self.assertIn("\n  --mask N                    Elevation mask, degrees;", shown)
+        self.assertIn("\n  --at LAT,LON[,HEIGHT]       Stand still there:", shown)
+        self.assertRegex(shown, r"; 0\s+to 90\n")
+        self.assertRegex(shown, r"--height N +Of the map's .*\n.*; with --grid\n")
+
+    def test_one_fault_as_json(self):
+        one = json.loads(skyloop("faults", "jamming", "--format", "json").stdout)
+        self.assertEqual(one, next(kind for kind in json.loads(skyloop("faults", "--format", "json").stdout)
+                                   if kind["name"] == "jamming"))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
