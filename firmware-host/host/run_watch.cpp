@@ -9,6 +9,7 @@
 #include "skyloop/emulator/thread_priority.hpp"
 #include "skyloop/fault/planned_events.hpp"
 #include "skyloop/verdict/reports.hpp"
+#include "whole_file.hpp"
 
 namespace skyloop::host {
 namespace {
@@ -49,15 +50,6 @@ bool fills_standard_output(const Scenario& scenario, const Emulator& emulator) {
     return std::any_of(scenario.outputs.begin(), scenario.outputs.end(), [](const OutputSettings& output) {
         return output.way == OutputWay::file && output.path == "-";
     });
-}
-
-Result<void> write_report(const std::filesystem::path& path, const std::string& text) {
-    auto file = OutputFile::create(path);
-    if (!file) return fail(file.error());
-    file->write(text);
-    file->flush();
-    if (file->failure()) return fail(*file->failure());
-    return {};
 }
 
 }  // namespace
@@ -221,7 +213,7 @@ int RunWatch::report(const Messages& messages, const std::vector<Verdict>& verdi
     if (recorder == nullptr) return code;
     for (const auto& [name, text] :
          {std::pair{"verdicts.json", verdict_json(verdicts, run)}, {"junit.xml", junit_xml(verdicts, run)}})
-        if (const auto written = write_report(recorder->folder() / name, text); !written)
+        if (const auto written = write_whole_file(recorder->folder() / name, text); !written)
             code = messages.error(written.error());
     return code;
 }

@@ -10,9 +10,9 @@
 #include "run_options.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/emulator/assembly.hpp"
-#include "skyloop/emulator/output_file.hpp"
 #include "skyloop/logs/log_events.hpp"
 #include "skyloop/time/utc_time.hpp"
+#include "whole_file.hpp"
 
 namespace skyloop::host {
 namespace {
@@ -23,14 +23,6 @@ struct ScenarioFromOptions {
     double drop_db = 6, satellite_drop_db = 10, least_s = 3, satellite_least_s = 5;
     Verbosity verbosity;
 };
-
-Result<void> write_text(const std::filesystem::path& file, const std::string& text) {
-    auto out = OutputFile::create(file.string());
-    if (!out) return fail(out.error());
-    out->write(text);
-    out->flush();
-    return {};
-}
 
 void print_summary(const ReceiverLog& log, const LogEvents& events, const LogScenario& made) {
     static constexpr std::string_view names[] = {"outages",    "silences",        "changes of the type of fix",
@@ -51,6 +43,20 @@ void print_summary(const ReceiverLog& log, const LogEvents& events, const LogSce
         if (count > 0) fmt::print("faults      {} {}, {:g} s together\n", count, names[kind], seconds);
     }
     if (events.events.empty()) fmt::print("faults      none: nothing went wrong in it\n");
+}
+
+// What somebody has written by hand is not replaced; what this command made before is.
+Result<void> find_room(const std::filesystem::path& folder, bool with_track) {
+    const auto is_there = [&folder](const char* name) {
+        std::error_code absent;
+        return std::filesystem::is_regular_file(folder / name, absent);
+    };
+    const bool scenario = is_there("scenario.toml");
+    if (scenario && first_line_of(folder / "scenario.toml").starts_with("# Made by skyloop scenario-from")) return {};
+    if (!scenario && !(with_track && is_there("track.csv"))) return {};
+    return fail(ErrorCode::usage,
+                fmt::format("{}: is there already, and not by scenario-from; expected --out with another folder",
+                            (folder / (scenario ? "scenario.toml" : "track.csv")).string()));
 }
 
 int make_scenario(const ScenarioFromOptions& options) {
@@ -75,14 +81,16 @@ int make_scenario(const ScenarioFromOptions& options) {
         for (const std::string& note : *notes)
             messages.warning(log->name + ": " + note);
     const std::filesystem::path folder = options.out;
+    if (const auto room = find_room(folder, !made->track.empty()); !room) return messages.error(room.error());
     std::error_code refused;
     std::filesystem::create_directories(folder, refused);
     if (refused)
         return messages.error(
             {ErrorCode::outside, fmt::format("{}: cannot be made: {}", options.out, refused.message())});
     if (!made->track.empty())
-        if (const auto done = write_text(folder / "track.csv", made->track); !done) return messages.error(done.error());
-    if (const auto done = write_text(folder / "scenario.toml", made->scenario); !done)
+        if (const auto done = write_whole_file(folder / "track.csv", made->track); !done)
+            return messages.error(done.error());
+    if (const auto done = write_whole_file(folder / "scenario.toml", made->scenario); !done)
         return messages.error(done.error());
     if (!options.verbosity.quiet) print_summary(*log, events, *made);
     if (!options.verbosity.quiet) fmt::print("written     {}\n", (folder / "scenario.toml").string());

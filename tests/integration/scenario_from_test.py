@@ -88,6 +88,21 @@ class ScenarioFromTest(unittest.TestCase):
             worst = max(worst, abs(north), abs(east))
         self.assertLess(worst, 0.05)  # 1e-5 minutes are 1.9 cm
 
+    def test_what_others_wrote_is_left(self):
+        scenario = self.folder / "first.toml"
+        scenario.write_text(SCENARIO)
+        log = self.simulate(scenario, "first") / "port0.out"
+        for name in ("scenario.toml", "track.csv"):
+            out = self.folder / name.split(".")[0]
+            out.mkdir()
+            (out / name).write_text("mine\n")
+            done = skyloop("scenario-from", log, "--out", out)
+            self.assertEqual((done.returncode, done.stderr), (
+                2, f"skyloop: {out / name}: is there already, and not by scenario-from; expected --out with another folder\n"))
+            self.assertEqual([(path.name, path.read_text()) for path in out.iterdir()], [(name, "mine\n")])
+        for _ in range(2):  # its own files are made anew
+            self.assertEqual(skyloop("scenario-from", log, "--out", self.folder / "made").returncode, 0)
+
     def test_what_is_no_log_is_refused_in_one_line(self):
         cases = {"empty": (b"", "is empty"), "text": (b"hello\n", "expected a UBX, NMEA, ULog or DataFlash log"),
                  "ulog": (b"ULog\x01\x12\x35", "header of 7 bytes"),

@@ -105,6 +105,25 @@ class WordsTest(unittest.TestCase):
         self.assertEqual(one, next(kind for kind in json.loads(skyloop("faults", "--format", "json").stdout)
                                    if kind["name"] == "jamming"))
 
+    def test_files_that_do_not_fit_are_told(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("no /dev/full here")
+        full = "/dev/full: cannot be written: No space left on device; what was written before is kept\n"
+        done = skyloop("scene", "demo", "--at", "46,30", "--svg", "/dev/full", check=False)
+        self.assertEqual((done.returncode, done.stderr), (1, f"skyloop: {full}"))
+        done = skyloop("scene", "demo", "--at", "46,30", "--svg", "/no/such/x.svg", check=False)
+        self.assertEqual((done.returncode, done.stderr),
+                         (1, "skyloop: /no/such/x.svg: cannot be written: No such file or directory\n"))
+        with open_folder() as folder:
+            skyloop("simulate", "--start", "2026-01-01T00:00:00Z", "--duration", 60, "--out", folder)
+            for name in ("scenario.toml", "track.csv"):
+                out = pathlib.Path(folder, name.split(".")[0])
+                out.mkdir()
+                os.symlink("/dev/full", out / name)
+                done = skyloop("scenario-from", f"{folder}/port0.out", "--out", out, check=False)
+                self.assertEqual(done.returncode, 1, done.stderr)
+                self.assertIn(f"{out / name}: cannot be written: No space left on device", done.stderr)
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)
