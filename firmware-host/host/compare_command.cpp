@@ -82,11 +82,15 @@ int compare_files(const CompareOptions& options) {
             messages.warning(warning);
     const auto result = compare(*a, *b, wanted);
     if (!result) return messages.error(result.error());
-    if (options.format == "svg")
+    if (options.format == "svg") {
+        // Text and JSON hold them, a picture cannot.
+        for (const std::string& warning : result->warnings)
+            messages.warning(warning);
         fmt::print("{}", scatter_plot_svg({a->name, position_errors(*a, wanted.reference)},
                                           {b->name, position_errors(*b, wanted.reference)}, wanted.quantity));
-    else
+    } else {
         fmt::print("{}", options.format == "json" ? comparison_json(*result) : comparison_text(*result));
+    }
     return 0;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -11,12 +10,12 @@
 #include "data_folders.hpp"
 #include "messages.hpp"
 #include "run_options.hpp"
-#include "run_session.hpp"
 #include "skyloop/analysis/scene_sky.hpp"
 #include "skyloop/emulator/assembly.hpp"
 #include "skyloop/emulator/load_scene.hpp"
 #include "skyloop/plot/scene_plot.hpp"
 #include "skyloop/plot/sky_plot.hpp"
+#include "whole_file.hpp"
 
 namespace skyloop::host {
 namespace {
@@ -213,29 +212,20 @@ void print_json(const SceneReport& report) {
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-Result<void> write_picture(const std::string& path, const std::string& svg) {
-    std::ofstream stream(path, std::ios::binary);
-    stream << svg;
-    stream.close();
-    if (!stream) return fail(ErrorCode::outside, fmt::format("{}: cannot be written", path));
-    return {};
-}
-
 Result<void> write_pictures(const SceneOptions& options, const SceneReport& report) {
     if (!options.svg.empty()) {
         ScenePlot plot;
         plot.title = fmt::format("{}", fmt::join(report.city.names, " + "));
         if (report.viewpoint) plot.observer = report.viewpoint->antenna;
-        if (const auto written = write_picture(options.svg, scene_plot_svg(*report.scene, plot)); !written)
+        if (const auto written = write_whole_file(options.svg, scene_plot_svg(*report.scene, plot)); !written)
             return written;
     }
     if (options.sky_svg.empty()) return {};
     SkyPlot plot;
     plot.place = report.viewpoint->place;
-    plot.time = wall_clock();
-    plot.title = fmt::format("{}: open sky at {}", report.city.names.front(), place_text(report.viewpoint->place));
+    plot.title = fmt::format("{}: the sky at {}", report.city.names.front(), place_text(report.viewpoint->place));
     plot.obstruction = report.viewpoint->mask;
-    return write_picture(options.sky_svg, sky_plot_svg(plot));
+    return write_whole_file(options.sky_svg, sky_plot_svg(plot));
 }
 
 int show_scene(const SceneOptions& options) {

@@ -64,7 +64,7 @@ int show_city_run(const SkyOptions& options, const Scenario& scenario, const Mes
     if (!loaded) return messages.error(loaded.error());
     for (const std::string& warning : loaded->warnings)
         messages.warning(warning);
-    fmt::print("{}", city_run_plot_svg(*run, loaded->scene.get(), "A run through the city"));
+    fmt::print("{}", city_run_plot_svg(*run, loaded->scene.get(), loaded->scene ? "A run through the city" : "A run"));
     return 0;
 }
 

@@ -43,7 +43,12 @@ std::string sky_title(const SkyPlot& plot) {
                        coordinate_text(plot.place.longitude, 'E', 'W'), plot.place.height.above_ellipsoid.value());
 }
 
+// A picture of buildings alone: no satellite was asked for, at no time.
+bool shows_buildings_alone(const SkyPlot& plot) { return plot.obstruction && plot.satellites.empty(); }
+
 std::string sky_subtitle(const SkyPlot& plot, std::size_t seen) {
+    if (shows_buildings_alone(plot))
+        return fmt::format("{:.0f} % of the sky is open", 100 * plot.obstruction->open_share());
     const auto used =
         std::count_if(plot.satellites.begin(), plot.satellites.end(), [](const SkyPlotSatellite& s) { return s.used; });
     std::string time = format_utc(to_utc(plot.time, LeapSeconds::announced()), 0);
@@ -236,6 +241,7 @@ void draw_state_legend(SvgDocument& svg, bool with_cn0) {
 }
 
 void draw_legend(SvgDocument& svg, const SkyPlot& plot, const std::vector<SkyPlotSatellite>& satellites) {
+    if (shows_buildings_alone(plot)) return;
     svg.begin_group("legend");
     draw_system_legend(svg, plot, satellites);
     draw_state_legend(svg, std::any_of(satellites.begin(), satellites.end(),

@@ -2,6 +2,7 @@
 import csv
 import json
 import pathlib
+import time
 import unittest
 
 from session import open_folder, skyloop
@@ -47,6 +48,10 @@ class SceneTest(unittest.TestCase):
             self.assertTrue(0 < told["at"]["open_sky"] < 1)
             for picture in (top, sky):
                 self.assertIn("<svg", picture.read_text(encoding="utf-8"))
+            first = sky.read_bytes()
+            time.sleep(1)
+            skyloop("scene", "demo", "--at", "46.4774,30.7326", "--sky-svg", sky)
+            self.assertEqual(sky.read_bytes(), first)
 
     def test_without_ground_a_place_is_above_the_foot_of_the_buildings(self):
         with open_folder() as folder:

@@ -131,6 +131,8 @@ class Runs(unittest.TestCase):
             svg = skyloop("sky", "--scene", "demo", "--run", folder, "--format", "svg").stdout
             xml.fromstring(svg)
             self.assertIn("Horizontal error", svg)
+            self.assertIn("A run through the city", svg)
+            self.assertIn("<title>A run</title>", skyloop("sky", "--run", folder, "--format", "svg").stdout)
             pathlib.Path(folder, "satellites.csv").write_text("nothing\n", encoding="utf-8")
             broken = skyloop("sky", "--scene", "demo", "--run", folder, "--format", "svg", check=False)
             self.assertEqual(broken.returncode, 2)

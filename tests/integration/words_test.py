@@ -124,6 +124,13 @@ class WordsTest(unittest.TestCase):
                 self.assertEqual(done.returncode, 1, done.stderr)
                 self.assertIn(f"{out / name}: cannot be written: No space left on device", done.stderr)
 
+    def test_a_figure_of_errors_about_different_places_says_so(self):
+        with open_folder() as folder:
+            skyloop("simulate", "--start", "2026-01-01T00:00:00Z", "--duration", 60, "--out", folder)
+            told = skyloop("compare", f"{folder}/fixes.csv", f"{folder}/port0.out", "--format", "svg")
+            self.assertIn("warning: ", told.stderr)
+            self.assertIn("errors are about the mean of the file itself", told.stderr)
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

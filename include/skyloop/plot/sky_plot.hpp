@@ -45,7 +45,8 @@ inline constexpr double sky_plot_centre_y = 358;
 inline constexpr double sky_plot_radius = 248;
 
 /// The picture as an SVG document. Satellites below the horizon are left out. In a city buildings stand around the
-/// zenith as they block the sky, and the satellites' colours tell line of sight, reflected and blocked.
+/// zenith as they block the sky, and the satellites' colours tell line of sight, reflected and blocked. Without any
+/// satellite the buildings are all that it tells of.
 std::string sky_plot_svg(const SkyPlot& plot);
 
 }  // namespace skyloop
