@@ -44,6 +44,16 @@ void plug_in_clients_alone(const RunOptions& options, Scenario& scenario) {
         keep_scripted_clients(scenario);
 }
 
+// A recording that is cut short has not come of the scenario: a script that goes by exit codes must not take it for
+// one.
+int stopped_early(const Messages& messages, const Assembly& assembly, int code) {
+    constexpr int stopped = 75;  // as of a campaign
+    const Seconds done = difference(assembly.emulator->now(), assembly.start);
+    messages.warning(
+        fmt::format("stopped by a signal after {:.3f} s of the run: what is recorded ends there", done.value()));
+    return code == 0 ? stopped : code;
+}
+
 int simulate(const RunOptions& options) {
     const Messages messages(options.verbosity);
     auto scenario = scenario_from(options);
@@ -74,7 +84,8 @@ int simulate(const RunOptions& options) {
     const auto watch = RunWatch::start(*scenario, *assembly, {}, nobody);
     if (!watch) return messages.error(watch.error());
     RunSession session(messages, *assembly);
-    return session.run(*scenario, **watch);
+    const int code = session.run(*scenario, **watch);
+    return stop_was_asked() ? stopped_early(messages, *assembly, code) : code;
 }
 
 }  // namespace

@@ -131,6 +131,20 @@ class WordsTest(unittest.TestCase):
             self.assertIn("warning: ", told.stderr)
             self.assertIn("errors are about the mean of the file itself", told.stderr)
 
+    def test_a_simulation_that_is_stopped_is_no_success(self):
+        with open_folder() as folder:
+            command = [SKYLOOP, "simulate", "--start", "2026-01-01T00:00:00Z", "--duration", "1e7", "--out", folder]
+            with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+                fixes = pathlib.Path(folder, "fixes.csv")
+                while process.poll() is None and not (fixes.exists() and fixes.stat().st_size > 0):
+                    pass
+                process.send_signal(signal.SIGINT)
+                told = process.communicate(timeout=60)[1]
+            self.assertEqual(process.returncode, 75, told)
+            self.assertRegex(told, r"skyloop: warning: stopped by a signal after \d+\.\d{3} s of the run: what is recorded ends there")
+            summary = json.loads(pathlib.Path(folder, "run.json").read_text(encoding="utf-8"))
+            self.assertEqual(summary["epochs"], len(fixes.read_text(encoding="ascii").splitlines()) - 1)
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)
