@@ -1,6 +1,7 @@
 #include "progress.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -52,8 +53,24 @@ std::string bytes_text(const std::vector<Station>& stations) {
     return wired ? "  " + count_text(bytes) : "";
 }
 
+// A line that wraps cannot be rewritten: each would leave its beginning behind.
+std::string fitted(std::string line) {
+    winsize size{};
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col < 2) return line;
+    std::size_t columns = 0, end = 0;
+    while (end < line.size() && columns + 1 < size.ws_col) {
+        ++columns;
+        // A letter of several bytes, as in a receiver's name, stays whole.
+        do
+            ++end;
+        while (end < line.size() && (static_cast<unsigned char>(line[end]) & 0xC0) == 0x80);
+    }
+    line.resize(end);
+    return line;
+}
+
 void rewrite_line(const std::string& line) {
-    std::fprintf(stderr, "\r\033[K%s", line.c_str());
+    std::fprintf(stderr, "\r\033[K%s", fitted(line).c_str());
     std::fflush(stderr);
 }
 

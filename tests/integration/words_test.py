@@ -131,6 +131,27 @@ class WordsTest(unittest.TestCase):
             self.assertIn("warning: ", told.stderr)
             self.assertIn("errors are about the mean of the file itself", told.stderr)
 
+    def test_progress_stays_on_its_line(self):
+        for columns in (80, 40):
+            leader, terminal = pty.openpty()
+            fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+            with open_folder() as folder:
+                command = [SKYLOOP, "run", "--start", "2026-01-01T00:00:00Z", "--duration", "2", "--port", f"pty:{folder}/gps0"]
+                with subprocess.Popen(command, stderr=terminal, stdin=subprocess.DEVNULL) as process:
+                    os.close(terminal)
+                    shown = b""
+                    try:
+                        while piece := os.read(leader, 4096):
+                            shown += piece
+                    except OSError:  # as a terminal ends
+                        pass
+                self.assertEqual(process.returncode, 0, shown)
+            os.close(leader)
+            lines = [line.split(b"\r")[0] for line in shown.split(b"\r\x1b[K")[1:]]
+            self.assertIn(b"fix 3d", lines[0])
+            for line in lines[:-1]:
+                self.assertLess(len(line), columns, line)
+
     def test_a_simulation_that_is_stopped_is_no_success(self):
         with open_folder() as folder:
             command = [SKYLOOP, "simulate", "--start", "2026-01-01T00:00:00Z", "--duration", "1e7", "--out", folder]
