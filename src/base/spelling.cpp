@@ -32,9 +32,12 @@ std::string nearest_word(std::string_view word, std::span<const std::string_view
     std::size_t best_distance = (word.size() <= 3 ? 1 : std::max<std::size_t>(2, word.size() / 3)) + 1;
     if (word.size() > longest_word) return {};
     for (const std::string_view candidate : candidates) {
-        // A word that is the start of a known one, or the other way round, is a likely slip of memory.
-        const bool prefix = std::min(word.size(), candidate.size()) >= 3 &&
-                            (candidate.starts_with(word) || word.starts_with(candidate));
+        // A word that is the start of a known one, or the other way round, is a likely slip of memory, and one without
+        // its unit, as at of at_s, even where it is short.
+        const bool without_unit =
+            word.size() >= 2 && candidate.starts_with(word) && candidate.substr(word.size()).starts_with('_');
+        const bool prefix = without_unit || (std::min(word.size(), candidate.size()) >= 3 &&
+                                             (candidate.starts_with(word) || word.starts_with(candidate)));
         // Each letter too many is an edit of its own: most candidates need no table.
         const std::size_t difference =
             std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size());

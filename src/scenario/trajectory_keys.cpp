@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <string>
 #include <string_view>
 
 namespace skyloop {
@@ -42,7 +43,12 @@ void read_kind(const KindReading& reading) {
     const auto kind = reading.table.choice("kind", names);
     reading.table.needs_one_of({"kind"},
                                fmt::format("has no kind; expected kind = \"{}\"", fmt::join(names, "\", \"")));
-    if (!kind) return;
+    if (!kind) {
+        // What other keys there may be is the kind's to say.
+        for (const std::string& key : reading.table.keys())
+            reading.table.has_been_read(key);
+        return;
+    }
     if (*kind < others) return kinds[*kind].read(reading);
     if (*kind + 1 == names.size()) return read_sequence(reading.table, reading.places, reading.trajectory);
     read_generated(reading.table, reading.places, *kind - others + 1, reading.trajectory);

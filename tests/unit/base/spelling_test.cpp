@@ -19,6 +19,13 @@ TEST(NearestWord, FindsSlipsOfTheFinger) {
     EXPECT_EQ(nearest_word("durationseconds", keys), "duration");
 }
 
+TEST(NearestWord, FindsAShortKeyThatLacksItsUnit) {
+    constexpr std::array<std::string_view, 4> timed{"atlas", "at_s", "at_utc", "for_s"};
+    EXPECT_EQ(nearest_word("at", timed), "at_s");
+    EXPECT_EQ(nearest_word("for", timed), "for_s");
+    EXPECT_EQ(nearest_word("a", timed), "");
+}
+
 TEST(NearestWord, SaysNothingWhereNothingIsNear) {
     EXPECT_EQ(nearest_word("elephant", keys), "");
     EXPECT_EQ(nearest_word("", keys), "");

@@ -135,7 +135,10 @@ TEST(ScenarioTrajectory, RefusesLevelPointsOutOfTheWorld) {
 }
 
 TEST(ScenarioTrajectory, RefusesIncompletePaths) {
-    EXPECT_THAT(mistakes_of("[trajectory]\nat = [46, 30]"), HasSubstr("has no kind"));
+    for (const char* keys : {"at = [46, 30]", "kind = \"fxed\"\nat = [46, 30]"})
+        EXPECT_THAT(mistakes_of(std::string("[trajectory]\n") + keys),
+                    testing::AllOf(testing::AnyOf(HasSubstr("has no kind"), HasSubstr("did you mean 'fixed'?")),
+                                   testing::Not(HasSubstr("unknown key"))));
     EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"\"\nat = [46, 30]"),
                 HasSubstr("test.toml:2:8: trajectory.kind: is ''"));
     EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"fixed\""), HasSubstr("[trajectory] kind \"fixed\" has no place"));
