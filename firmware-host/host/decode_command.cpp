@@ -3,6 +3,7 @@
 
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -184,7 +185,11 @@ int decode(const DecodeOptions& options) {
             {ErrorCode::usage, fmt::format("--protocol {}: auto looks for all protocols; expected auto alone, or names "
                                            "of protocols",
                                            fmt::join(options.protocols, ","))});
+    struct sigaction inherited {};
+    sigaction(SIGPIPE, nullptr, &inherited);
     catch_stop_signals();
+    // Who reads a listing through head has seen enough of it.
+    sigaction(SIGPIPE, &inherited, nullptr);
     auto input = InputStream::open(options.input);
     if (!input) return messages.error(input.error());
     Decoder decoder(options, wanted_of(options.protocols));

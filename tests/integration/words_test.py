@@ -152,6 +152,15 @@ class WordsTest(unittest.TestCase):
             for line in lines[:-1]:
                 self.assertLess(len(line), columns, line)
 
+    def test_a_listing_that_nobody_reads_on_ends_quietly(self):
+        with open_folder() as folder:
+            skyloop("simulate", "--start", "2026-01-01T00:00:00Z", "--duration", 600, "--out", folder)
+            for arguments in (["decode", f"{folder}/port0.out"], ["schema"]):
+                with subprocess.Popen([SKYLOOP, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+                    process.stdout.read(10)
+                    process.stdout.close()
+                    self.assertEqual((process.stderr.read(), process.wait(timeout=60)), (b"", -signal.SIGPIPE))
+
     def test_a_simulation_that_is_stopped_is_no_success(self):
         with open_folder() as folder:
             command = [SKYLOOP, "simulate", "--start", "2026-01-01T00:00:00Z", "--duration", "1e7", "--out", folder]
