@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "commands.hpp"
@@ -48,10 +49,13 @@ int show_boards(const BoardOptions& options) {
         return messages.error(
             {ErrorCode::outside, fmt::format("no boards in {}; SKYLOOP_DATA_DIR may name the folder that holds boards/",
                                              folders.front().string())});
+    std::size_t longest = 0;
+    for (const std::string& name : names)
+        longest = std::max(longest, name.size());
     for (const std::string& name : names) {
         const auto board = find_board(name, folders);
         if (!board) return messages.error(board.error());
-        fmt::print("{:<16} {}\n", board->name, board->description);
+        fmt::print("{:<{}}  {}\n", board->name, longest, board->description);
     }
     return 0;
 }

@@ -109,7 +109,8 @@ Action add_run_command(CLI::App& app) {
     command->add_flag("--wait-for-client", options->wait_for_client, "Time begins when each port has a client");
     command->add_option("--control", options->control,
                         "HTTP control and the live page: [HOST:]PORT, on 127.0.0.1 unless a host is given");
-    command->add_option("--token", options->token, "That clients of --control must show; made at random off loopback");
+    command->add_option("--token", options->token, "That clients of --control must show; made at random off loopback")
+        ->needs("--control");
     command->add_option("--mavlink", options->mavlink,
                         "Speak MAVLink with the vehicle and its ground stations: udp:[HOST:]PORT listens, on 127.0.0.1 "
                         "unless a host is given, udpout:HOST:PORT speaks first");

@@ -166,7 +166,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     firmware::Receiver receiver(std::move(*board), options);
     if (entry.rate_hz) warn_of_rate(*entry.rate_hz, receiver, warnings);
     if (const auto configured = receiver.configure(entry.config); !configured)
-        return fail(configured.error().code, "receiver.config: " + configured.error().message);
+        return fail(at_key("config", configured.error(), entry));
     if (state && !state->text().empty())
         if (auto restored = receiver.restore(state->text(), state->path().string()); !restored)
             return fail(restored.error());

@@ -38,6 +38,7 @@ Result<NumberTable> read_number_table(std::string_view text, std::string_view na
     NumberTable table;
     std::optional<std::size_t> columns;
     int number = 0;
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // as spreadsheets put it before UTF-8
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find('\n', at), text.size());
         const std::string_view line = table_trimmed(text.substr(at, end - at));

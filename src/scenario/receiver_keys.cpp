@@ -21,7 +21,7 @@ void read_output_keys(TableReader& receiver, ReceiverEntry& entry) {
     receiver.text("board", entry.board);
     receiver.text_or_texts("port", entry.ports);
     receiver.text("power", entry.power);
-    for (const char* key : {"board", "port", "power"})
+    for (const char* key : {"board", "port", "power", "config"})
         entry.told_at[key] = receiver.told_at(key);
     if (receiver.has("rate_hz")) {
         double rate = 1;

@@ -96,6 +96,8 @@ SCENARIO_MISTAKES = [
     ("[run]\nduration_s = 1e300\n", ["run.duration_s"]),
     ("[frame]\norigin = [46, 30, 0]\n[trajectory]\nkind = \"fixed\"\nat_level = [0, 0, 1e300]\n", ["s.toml:5", "at_level"]),
     ("[[receiver]]\nname = \"a\"\n[[receiver]]\nname = \"a\"\n", ["s.toml:3:1", "second receiver called 'a'"]),
+    ("[[receiver]]\nboard = \"nmea-generic\"\n[receiver.config]\nCFG-RATE-MEAS = 200\n",
+     ["s.toml:3:1: receiver.config: nmea-generic is no u-blox receiver"]),
     ("[[receiver]]\nbase = \"nobody\"\n", ["s.toml:2:8", "receiver.base", "'nobody'"]),
 ]
 

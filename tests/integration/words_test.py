@@ -52,6 +52,7 @@ MISUSES = [
     (["check", "--start", "2026-03-01", "s.toml", "12:00:00"],
      "skyloop: '12:00:00' is one word too many; see skyloop check --help"),
     (["replay"], "skyloop: RECORDING is required; see skyloop replay --help"),
+    (["run", "--token", "x"], "skyloop: --token requires --control; see skyloop run --help"),
     (["power"], "skyloop: URI is required; see skyloop power --help"),
     (["faults", "jamming", "--format", "markdown"],
      "skyloop: faults: --format markdown lists all of them; expected text or json beside a NAME"),
@@ -99,6 +100,11 @@ class WordsTest(unittest.TestCase):
         self.assertIn("\n  --at LAT,LON[,HEIGHT]       Stand still there:", shown)
         self.assertRegex(shown, r"; 0\s+to 90\n")
         self.assertRegex(shown, r"--height N +Of the map's .*\n.*; with --grid\n")
+
+    def test_boards_are_a_table(self):
+        lines = skyloop("boards").stdout.splitlines()
+        self.assertGreater(len(lines), 10)
+        self.assertEqual(len({re.match(r"\S+ +", line).end() for line in lines}), 1, lines)
 
     def test_one_fault_as_json(self):
         one = json.loads(skyloop("faults", "jamming", "--format", "json").stdout)

@@ -29,6 +29,12 @@ TEST(AntennaPattern, ReadsATableByElevation) {
     EXPECT_NEAR(gain_at(*pattern, 200, 60), 3, 1e-12);
     EXPECT_NEAR(gain_at(*pattern, 10, 10), -6 + 7. / 3, 1e-12);
     EXPECT_EQ(gain_at(*pattern, 10, -30), -6);
+    const auto marked = AntennaPattern::parse(
+        "\xEF\xBB\xBF"
+        "elevation_deg,gain_dbic\r\n90,5\r\n0,-6\r\n",
+        "patch.csv");
+    ASSERT_TRUE(marked) << marked.error().message;
+    EXPECT_EQ(gain_at(*marked, 0, 90), 5);
 }
 
 TEST(AntennaPattern, ReadsATableAroundTheCompass) {
