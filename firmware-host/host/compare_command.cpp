@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
+#include <filesystem>
+#include <system_error>
 
 #include "commands.hpp"
 #include "messages.hpp"
@@ -28,11 +29,17 @@ struct CompareOptions {
 
 // What to take of a file and how to see it.
 struct FileView {
-    const std::string& path;
+    std::string path;
     Slice part;
     double interval = 0;  // s; 0: as the file says
     bool own_mean = false;
 };
+
+// Of a recording its fixes.
+std::string fixes_at(const std::string& path) {
+    std::error_code absent;
+    return std::filesystem::is_directory(path, absent) ? (std::filesystem::path(path) / "fixes.csv").string() : path;
+}
 
 Result<FixSeries> read_view(const FileView& view) {
     auto series = read_fix_series(view.path);
@@ -71,11 +78,11 @@ int compare_files(const CompareOptions& options) {
         if (!place) return messages.error(place.error());
         wanted.reference = *place;
     }
-    const auto a =
-        read_view({options.a, {options.skip_a, options.every_a, options.count_a}, options.interval_a, own_mean});
+    const auto a = read_view(
+        {fixes_at(options.a), {options.skip_a, options.every_a, options.count_a}, options.interval_a, own_mean});
     if (!a) return messages.error(a.error());
-    const auto b =
-        read_view({options.b, {options.skip_b, options.every_b, options.count_b}, options.interval_b, own_mean});
+    const auto b = read_view(
+        {fixes_at(options.b), {options.skip_b, options.every_b, options.count_b}, options.interval_b, own_mean});
     if (!b) return messages.error(b.error());
     for (const FixSeries* series : {&*a, &*b})
         for (const std::string& warning : series->warnings)
@@ -100,7 +107,8 @@ Action add_compare_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "compare", "Statistics of two fix files (CSV, NMEA, UBX or RTKLIB .pos) and their difference in percent");
     auto options = std::make_shared<CompareOptions>();
-    command->add_option("A", options->a, "The candidate, e.g. a simulated fixes.csv")->required();
+    command->add_option("A", options->a, "The candidate, e.g. a simulated fixes.csv, or the folder that holds it")
+        ->required();
     command->add_option("B", options->b, "The reference, e.g. a real receiver's log")->required();
     command->add_option("--reference", options->reference,
                         "The true place LAT,LON,HEIGHT for a file that does not know it; default: its own mean. "

@@ -137,6 +137,15 @@ class WordsTest(unittest.TestCase):
             self.assertIn("warning: ", told.stderr)
             self.assertIn("errors are about the mean of the file itself", told.stderr)
 
+    def test_the_folder_of_a_run_stands_for_its_fixes(self):
+        with open_folder() as folder:
+            skyloop("simulate", "--start", "2026-01-01T00:00:00Z", "--duration", 60, "--out", folder)
+            self.assertEqual(skyloop("compare", folder, f"{folder}/port0.out").stdout,
+                             skyloop("compare", f"{folder}/fixes.csv", f"{folder}/port0.out").stdout)
+        with open_folder() as empty:
+            done = skyloop("compare", empty, empty, check=False)
+            self.assertEqual((done.returncode, done.stderr), (1, f"skyloop: {empty}/fixes.csv: No such file or directory\n"))
+
     def test_progress_stays_on_its_line(self):
         for columns in (80, 40):
             leader, terminal = pty.openpty()
