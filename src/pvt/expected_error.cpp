@@ -42,15 +42,28 @@ ExpectedError expected_error(const SinglePoint& solution, const AccuracyParamete
     return expected;
 }
 
+bool leaves_delays(const NavigationParameters& parameters) {
+    return parameters.differential.kind == DifferentialKind::sbas || parameters.accuracy.whole_ionosphere ||
+           parameters.accuracy.whole_troposphere;
+}
+
 ExpectedError expected_error_left(SinglePoint solution, const NavigationParameters& parameters,
                                   const SiteCorrections& air) {
-    const double left = parameters.differential.sbas_left;
-    for (RangeOutcome& r : solution.ranges)
-        r.ionosphere = left * air.ionosphere(Constellation::gps, r.direction, Hertz(carrier_frequency_l1));
     AccuracyParameters accuracy = parameters.accuracy;
-    accuracy.ionosphere_share = 1;
+    const bool augmented = parameters.differential.kind == DifferentialKind::sbas;
+    const double left = augmented ? parameters.differential.sbas_left : 1;
+    if (augmented || accuracy.whole_ionosphere) {
+        accuracy.ionosphere_share = 1;
+        for (RangeOutcome& r : solution.ranges)
+            if (r.carrier > Hertz(0)) r.ionosphere = left * air.ionosphere(Constellation::gps, r.direction, r.carrier);
+    }
+    if (accuracy.whole_troposphere) {
+        accuracy.troposphere_share = 1;
+        for (RangeOutcome& r : solution.ranges)
+            r.troposphere = air.troposphere(r.direction.elevation);
+    }
     // Better orbits and clocks are less noise; what the satellites share is as large as it is.
-    solution.covariance *= parameters.differential.sbas_scale * parameters.differential.sbas_scale;
+    if (augmented) solution.covariance *= parameters.differential.sbas_scale * parameters.differential.sbas_scale;
     return expected_error(solution, accuracy);
 }
 

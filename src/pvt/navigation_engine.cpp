@@ -48,8 +48,8 @@ public:
           transmitters_(received_),
           corrections_(parameters.corrections,
                        {knowledge.broadcast->ionosphere(), knowledge.geoid, knowledge.leap_seconds}),
-          air_({IonosphereCorrection::klobuchar, TroposphereCorrection::none, 0, true, false},
-               {knowledge.broadcast->ionosphere(), nullptr, knowledge.leap_seconds}),
+          air_({IonosphereCorrection::klobuchar, TroposphereCorrection::niell, 0.5, true, false},
+               {knowledge.broadcast->ionosphere(), knowledge.geoid, knowledge.leap_seconds}),
           monitor_(parameters.integrity),
           smoother_(parameters.filter.code_smoothing),
           filter_(parameters.filter),
@@ -265,11 +265,12 @@ Metres NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& f
     // Residuals that noise does not explain make the formal covariance a lie.
     if (!epoch.consistent && point.redundancy > 0)
         scale *= std::sqrt(std::max(1.0, point.statistic / point.redundancy));
-    const bool augmented = corrected_ == CorrectionState::none && differential_kind() == DifferentialKind::sbas;
+    const bool left = corrected_ == CorrectionState::none && leaves_delays(parameters_);
+    const bool augmented = left && differential_kind() == DifferentialKind::sbas;
     const DifferentialKind kind = augmented ? DifferentialKind::none : differential_kind();
     const ExpectedError expected =
-        augmented ? expected_error_left(point, parameters_, air_.at(to_geodetic(point.position), time_))
-                  : expected_error(point, parameters_.accuracy);
+        left ? expected_error_left(point, parameters_, air_.at(to_geodetic(point.position), time_))
+             : expected_error(point, parameters_.accuracy);
     fix.time_accuracy = Metres(scale * std::sqrt(expected.clock));
     if (epoch.time_only) return Metres(0);
     const Eigen::Matrix3d q = in_enu(LocalFrame(fix.position), expected.position);

@@ -308,6 +308,7 @@ void Adjustment::tell_ranges(const ClockMeans& clocks, SinglePoint& solution) co
         r.satellite_velocity = Velocity<Ecef>(turned_by(velocity.vector(), w.travel_s));
         r.used = w.weight > 0 && solution.clocks[w.clock].has_value();
         if (solution.clocks[w.clock]) r.residual = Metres(w.misfit - c.misfit);
+        r.carrier = equations_[solution.ranges.size()].carrier;
         r.ionosphere = w.ionosphere;
         r.troposphere = w.troposphere;
         if (r.used) {

@@ -148,6 +148,10 @@ ModernSettings effective(ModernSettings settings) {
     const bool plasma = settings.propagation.ionosphere.factor() != 0;
     c.ionosphere = settings.ionosphere_correction.value_or(plasma ? c.ionosphere : IonosphereCorrection::none);
     c.troposphere = settings.troposphere_correction.value_or(air ? c.troposphere : TroposphereCorrection::none);
+    // A receiver that is told to leave the air alone knows that it is there.
+    AccuracyParameters& a = settings.navigation.accuracy;
+    a.whole_ionosphere = plasma && c.ionosphere == IonosphereCorrection::none;
+    a.whole_troposphere = air && c.troposphere == TroposphereCorrection::none;
     return settings;
 }
 

@@ -20,9 +20,13 @@ struct ExpectedError {
 /// many satellites there are.
 ExpectedError expected_error(const SinglePoint& solution, const AccuracyParameters& parameters);
 
-/// The same where a service of corrections has taken most of the ionosphere before it was measured: what it leaves is
-/// of one sign, so that all satellites share it, and 1 σ of it is `differential.sbas_left` of what `air` tells. The
-/// noise of the position is scaled by `differential.sbas_scale`.
+/// Whether delays are in the pseudoranges that no model of the receiver's own has taken off.
+bool leaves_delays(const NavigationParameters& parameters);
+
+/// The same with those delays, which are of one sign, so that all satellites share them. Of the ionosphere 1 σ is what
+/// `air` tells, or of it `differential.sbas_left` where a service of corrections has taken most of it before it was
+/// measured; the noise of the position is scaled by `differential.sbas_scale` there. Of the troposphere it is what
+/// `air` tells.
 ExpectedError expected_error_left(SinglePoint solution, const NavigationParameters& parameters,
                                   const SiteCorrections& air);
 

@@ -51,6 +51,7 @@ struct RangeOutcome {
     double variance = 0;             ///< m², as weighted
     double cofactor = 0;             ///< m², variance of the residual's estimate
     Metres ionosphere, troposphere;  ///< that were taken off
+    Hertz carrier;                   ///< 0 for a combination that the ionosphere does not touch
     Eigen::Vector3d line;            ///< unit vector receiver to satellite, ECEF of reception
     /// What one metre more of this pseudorange does to the position, ECEF, and to the reference clock; 0 if not used.
     Eigen::Vector3d position_gain = Eigen::Vector3d::Zero();

@@ -123,16 +123,68 @@ TEST(ExpectedError, HoldsWhatAnAugmentationLeaves) {
     const SiteCorrections site = air.at(to_geodetic(before.position), test::sample_time);
     for (std::size_t i = 0; i < epoch.equations.size(); ++i)
         epoch.equations[i].pseudorange +=
-            0.1 * site.ionosphere(Constellation::gps, before.ranges[i].direction, Hertz(carrier_frequency_l1));
+            0.1 * site.ionosphere(Constellation::gps, before.ranges[i].direction, epoch.equations[i].carrier);
     const SinglePoint after = epoch.solved();
     NavigationParameters parameters;
     parameters.accuracy = nothing_shared;
+    parameters.differential.kind = DifferentialKind::sbas;
+    EXPECT_TRUE(leaves_delays(parameters));
     const ExpectedError expected = expected_error_left(before, parameters, site);
     const Vector3d d = moved(before, after);
     EXPECT_GT(d.norm(), 0.1);
     EXPECT_LT((expected.position - 0.25 * before.covariance - d * d.transpose()).norm(), 0.02 * d.squaredNorm());
     EXPECT_NEAR(std::sqrt(expected.clock - before.clock_variance), std::abs((after.clock() - before.clock()).value()),
                 0.01);
+}
+
+// A receiver that is told to correct nothing expects the delays as its models tell them.
+TEST(ExpectedError, HoldsTheWholeOfWhatIsNotCorrected) {
+    CorrectedEpoch epoch;
+    const RangeCorrections air({.default_ionosphere = true}, {});
+    epoch.leave_uncorrected();
+    const SinglePoint before = epoch.solved();
+    const SiteCorrections site = air.at(to_geodetic(before.position), test::sample_time);
+    const auto moved_by = [&](const auto& delay_of) {
+        CorrectedEpoch delayed;
+        delayed.leave_uncorrected();
+        for (std::size_t i = 0; i < delayed.equations.size(); ++i)
+            delayed.equations[i].pseudorange += delay_of(before.ranges[i], delayed.equations[i].carrier);
+        return moved(before, delayed.solved());
+    };
+    NavigationParameters parameters;
+    EXPECT_FALSE(leaves_delays(parameters));
+    const auto shared = [&](bool ionosphere, bool troposphere) {
+        parameters.accuracy = nothing_shared;
+        parameters.accuracy.whole_ionosphere = ionosphere;
+        parameters.accuracy.whole_troposphere = troposphere;
+        EXPECT_TRUE(leaves_delays(parameters));
+        return Matrix3d(expected_error_left(before, parameters, site).position - before.covariance);
+    };
+    const Vector3d by_ionosphere = moved_by([&](const RangeOutcome& r, Hertz carrier) {
+        return site.ionosphere(Constellation::gps, r.direction, carrier);
+    });
+    const Vector3d by_troposphere =
+        moved_by([&](const RangeOutcome& r, Hertz) { return site.troposphere(r.direction.elevation); });
+    EXPECT_GT(by_ionosphere.norm(), 1);
+    EXPECT_GT(by_troposphere.norm(), 3);
+    EXPECT_LT((shared(true, false) - by_ionosphere * by_ionosphere.transpose()).norm(),
+              0.02 * by_ionosphere.squaredNorm());
+    EXPECT_LT((shared(false, true) - by_troposphere * by_troposphere.transpose()).norm(),
+              0.02 * by_troposphere.squaredNorm());
+}
+
+TEST(ExpectedError, ACombinationWithoutIonosphereIsNotDelayedByIt) {
+    CorrectedEpoch epoch;
+    const RangeCorrections air({.default_ionosphere = true}, {});
+    epoch.leave_uncorrected();
+    for (RangeEquation& e : epoch.equations)
+        e.carrier = Hertz(0);
+    const SinglePoint point = epoch.solved();
+    NavigationParameters parameters;
+    parameters.accuracy = nothing_shared;
+    parameters.accuracy.whole_ionosphere = true;
+    const SiteCorrections site = air.at(to_geodetic(point.position), test::sample_time);
+    EXPECT_EQ(expected_error_left(point, parameters, site).position, point.covariance);
 }
 
 TEST(ToldAccuracy, GrowsWithThePoorGeometryOfCarrierPhases) {

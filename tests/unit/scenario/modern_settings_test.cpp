@@ -101,6 +101,19 @@ TEST(EffectiveSettings, WhatIsNamedGoesBeforeIt) {
     EXPECT_EQ(effective(settings).navigation.corrections.ionosphere, IonosphereCorrection::none);
 }
 
+TEST(ModernSettings, AReceiverThatCorrectsNothingExpectsWhatIsThere) {
+    ModernSettings settings;
+    EXPECT_FALSE(effective(settings).navigation.accuracy.whole_ionosphere);
+    EXPECT_FALSE(effective(settings).navigation.accuracy.whole_troposphere);
+    settings.ionosphere_correction = IonosphereCorrection::none;
+    settings.troposphere_correction = TroposphereCorrection::none;
+    EXPECT_TRUE(effective(settings).navigation.accuracy.whole_ionosphere);
+    EXPECT_TRUE(effective(settings).navigation.accuracy.whole_troposphere);
+    settings.errors = false;
+    EXPECT_FALSE(effective(settings).navigation.accuracy.whole_ionosphere) << "there is none";
+    EXPECT_FALSE(effective(settings).navigation.accuracy.whole_troposphere);
+}
+
 TEST(ModernSettings, PresetsDiffer) {
     const ModernSettings survey = ModernSettings::of(ModernPreset::survey);
     const ModernSettings consumer = ModernSettings::of(ModernPreset::consumer);
