@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <optional>
 
 #include "recorded_files.hpp"
 #include "rinex_recording.hpp"
@@ -58,6 +60,17 @@ void warn_of_missing_usb(const std::vector<WireRequest>& wires, const firmware::
     }
 }
 
+// Of a slot that has no record yet, as of satellites that rise later in the file of a single station, the channel of
+// the first one in the day ahead.
+std::optional<int> glonass_channel(const NavigationSource& navigation, SatelliteId slot, GpsTime start) {
+    constexpr std::chrono::minutes spacing{15};  // half the validity of a record
+    for (GpsTime time = start; time <= start + std::chrono::days(1); time += spacing) {
+        const auto record = navigation.ephemeris(slot, time);
+        if (record) return std::get<GlonassEphemeris>(*record).frequency_channel;
+    }
+    return std::nullopt;
+}
+
 RinexRecordingSetup rinex_setup(const Station::Parts& parts, GpsTime start) {
     const ReceiverSettings& settings = parts.receiver.settings();
     const NavigationSource& navigation = parts.simulation.navigation();
@@ -71,9 +84,9 @@ RinexRecordingSetup rinex_setup(const Station::Parts& parts, GpsTime start) {
         if (!setup.observations.signals.contains(c))
             for (const Signal signal : emulated_signals(c))
                 if (settings.tracks(c, signal)) setup.observations.signals[c].push_back(signal);
-        const auto record = navigation.ephemeris(satellite, start);
-        if (const auto* glonass = record ? std::get_if<GlonassEphemeris>(&*record) : nullptr)
-            setup.observations.glonass_channels[satellite.number] = glonass->frequency_channel;
+        if (c != Constellation::glonass) continue;
+        if (const auto channel = glonass_channel(navigation, satellite, start))
+            setup.observations.glonass_channels[satellite.number] = *channel;
     }
     setup.navigation.ionosphere = navigation.ionosphere();
     setup.navigation.leap_seconds = LeapSeconds::announced().offset(start);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "run_parts.hpp"
@@ -122,6 +123,27 @@ TEST_F(ModernRecording, ObservationsReadBackAreThoseOfTheReceiver) {
         }
     }
     EXPECT_EQ(seen.size(), 8U) << "two signals of each of four systems";
+}
+
+// In the file of a single station the first record of a satellite comes when it rises.
+TEST_F(ModernRecording, TheHeaderHasTheChannelsOfSlotsThatComeLater) {
+    const auto whole = read_navigation(content_of(folder_ / "four.rnx"), "four.rnx");
+    ASSERT_TRUE(whole);
+    const GpsTime later = to_gps_time({2024, 3, 5, 13, 0, 0, 0}, LeapSeconds::announced());
+    std::vector<Ephemeris> records;
+    std::map<int, int> channels;
+    for (const Ephemeris& record : whole->records) {
+        const auto* glonass = std::get_if<GlonassEphemeris>(&record);
+        if (glonass && toe_of(record) < later) continue;
+        if (glonass) channels[glonass->satellite.number] = glonass->frequency_channel;
+        records.push_back(record);
+    }
+    ASSERT_GT(channels.size(), 5U);
+    std::ofstream(folder_ / "four.rnx") << navigation_text(records, {});
+    run(text(receiver_of_four, 3));
+    const auto file = read_observations(recorded("observations.rnx"), "observations.rnx");
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->glonass_channels, channels);
 }
 
 TEST_F(ModernRecording, NavigationReadBackIsWhatTheSatellitesSent) {
