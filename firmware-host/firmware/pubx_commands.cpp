@@ -1,8 +1,8 @@
 // PUBX 00, 03, 04, 40 and 41 and the standard polls (RECEIVER.md 5.7).
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <string>
+#include <vector>
 
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/legacy_keys.hpp"
@@ -23,16 +23,20 @@ bool sends_message(const BoardProfile& board, UbxMessageId message) {
            std::find(board.messages.begin(), board.messages.end(), message) != board.messages.end();
 }
 
-// PUBX,40,XXX,i2c,uart1,uart2,usb,spi,0: every how many epochs a sentence is sent on each port.
+// PUBX,40,XXX,i2c,uart1,uart2,usb,spi,0: every how many epochs a sentence is sent on each port. Many programs for
+// microcontrollers and balloons end after USB, as in "$PUBX,40,GLL,0,0,0,0*5C", and a receiver obeys; ports that are
+// not named stay as they are.
 void set_pubx_rates(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store) {
     constexpr int most = 255;
+    constexpr std::size_t first = 2, fewest_ports = 4;
     const OutputMessage* message = find_output_message(sentence.field(1));
     if (message == nullptr || message->id.message_class != class_nmea || !sends_message(board, message->id)) return;
-    std::array<int, port_count> rates{};
-    for (std::size_t i = 0; i < rates.size(); ++i) {
-        const auto rate = whole_number(sentence.field(2 + i));
+    if (sentence.fields.size() < first + fewest_ports) return;
+    std::vector<int> rates;
+    for (std::size_t at = first; at < std::min(first + port_count, sentence.fields.size()); ++at) {
+        const auto rate = whole_number(sentence.field(at));
         if (!rate || *rate < 0 || *rate > most) return;
-        rates[i] = *rate;
+        rates.push_back(*rate);
     }
     for (std::size_t i = 0; i < rates.size(); ++i)
         if (const auto item = rate_key(message->id, static_cast<PortId>(i)))

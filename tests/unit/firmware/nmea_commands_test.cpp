@@ -74,6 +74,25 @@ TEST(PubxCommands, SetRatesOfEachPort) {
     EXPECT_EQ(receiver.config.revision(), before);
 }
 
+// The four rates that sketches for Arduino and trackers of balloons send; those of the ports after USB stay.
+TEST(PubxCommands, SetRatesWithoutThePortsAfterUsb) {
+    BoardProfile board = receiver_of(Personality::ublox).board;
+    board.ports = {PortId::i2c, PortId::uart1, PortId::uart2, PortId::usb, PortId::spi};
+    SampleReceiver receiver(board);
+    receiver.execute("PUBX,40,GLL,0,0,0,0");
+    for (const PortId port : {PortId::i2c, PortId::uart1, PortId::uart2, PortId::usb})
+        EXPECT_EQ(receiver.rate("GLL", port), 0);
+    EXPECT_EQ(receiver.rate("GLL", PortId::spi), 1);
+    receiver.execute("PUBX,40,ZDA,0,1,0,0");
+    EXPECT_EQ(receiver.rate("ZDA"), 1);
+    receiver.execute("PUBX,40,RMC,0,0,0,0,0");
+    EXPECT_EQ(receiver.rate("RMC", PortId::spi), 0);
+    const std::uint64_t before = receiver.config.revision();
+    receiver.execute("PUBX,40,GGA,0,0,0");
+    receiver.execute("PUBX,40,GGA,0,0,0,");
+    EXPECT_EQ(receiver.config.revision(), before);
+}
+
 // The strings of RECEIVER.md 5.7.
 TEST(PubxCommands, SetPortsAsDriversDo) {
     SampleReceiver receiver = receiver_of(Personality::ublox);
