@@ -63,6 +63,10 @@ std::uint32_t ratio_of(std::uint64_t item) {
 }
 std::uint64_t duty_of(std::uint32_t ratio) { return std::bit_cast<std::uint64_t>(ratio / ratio_scale); }
 
+/// u-blox 6 has a byte without meaning in the place of the version, and sends one that is not 0 (configuration files of
+/// u-center).
+bool has_pulse_version(const BoardProfile& board) { return board.identity.generation >= 8; }
+
 CfgTp5 describe_pulse(const LegacyContext& context, unsigned index) {
     const PulseItems items = pulse_items(context.board, index);
     const bool is_frequency = context.store.flag(items.is_frequency), is_length = context.store.flag(items.is_length);
@@ -72,7 +76,7 @@ CfgTp5 describe_pulse(const LegacyContext& context, unsigned index) {
     CfgTp5 message;
     message.tp_idx = static_cast<std::uint8_t>(index);
     const int protocol = protocol_version(context.board);
-    message.version = protocol != 0 && protocol < 1800 ? 0 : 1;
+    message.version = !has_pulse_version(context.board) || (protocol != 0 && protocol < 1800) ? 0 : 1;
     message.ant_cable_delay = in_force<std::int16_t>(context, legacy_key::tp_ant_cable_delay);
     message.rf_group_delay = in_force<std::int16_t>(context, legacy_key::tp_rf_group_delay(index));
     message.freq_period = in_force<std::uint32_t>(context, is_frequency ? items.frequency : items.period);
@@ -165,7 +169,8 @@ ConfigOutcome legacy_tp5(const LegacyContext& context, ByteSpan payload) {
         return has_pulse(context, index) ? legacy_answered(describe_pulse(context, index)) : legacy_refused();
     }
     const auto set = decode_payload<CfgTp5>(payload);
-    if (!set || set->version > 1 || !has_pulse(context, set->tp_idx)) return legacy_refused();
+    if (!set || !has_pulse(context, set->tp_idx)) return legacy_refused();
+    if (has_pulse_version(context.board) && set->version > 1) return legacy_refused();
     LegacyChanges changes(context);
     put_pulse(changes, pulse_items(context.board, set->tp_idx), *set);
     return changes.apply();

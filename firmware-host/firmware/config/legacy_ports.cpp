@@ -145,6 +145,18 @@ std::uint32_t inf_key(std::uint8_t protocol, PortId port) {
     return protocol == 0 ? key::inf_ubx(port) : key::inf_nmea(port);
 }
 
+/// UBX and NMEA have texts. What others have is zeros, in the configuration files that u-center wrote of a NEO-6 (3,
+/// raw data) and of a ZED-F9P (3, and 12 to 15).
+enum class Texts : std::uint8_t { none, empty, told };
+Texts texts_of(const BoardProfile& board, std::uint8_t protocol) {
+    if (protocol <= 1) return Texts::told;
+    const bool high_precision = std::ranges::any_of(
+        board.identity.extensions, [](const std::string& text) { return text.starts_with("FWVER=HPG"); });
+    const bool old = board.identity.generation <= 6;
+    if (protocol == 3) return old || high_precision ? Texts::empty : Texts::none;
+    return high_precision && protocol >= 12 && protocol <= 15 ? Texts::empty : Texts::none;
+}
+
 /// Texts of CFG-USB lie in four items of eight characters, the first character lowest.
 std::array<std::uint8_t, 32> usb_text(const LegacyContext& context, std::uint32_t first_key) {
     std::array<std::uint8_t, 32> text{};
@@ -201,10 +213,11 @@ ConfigOutcome legacy_msg(const LegacyContext& context, ByteSpan payload) {
 
 ConfigOutcome legacy_inf(const LegacyContext& context, ByteSpan payload) {
     if (payload.size() == 1) {
-        if (payload[0] > 1) return legacy_refused();
+        const Texts texts = texts_of(context.board, payload[0]);
+        if (texts == Texts::none) return legacy_refused();
         CfgInfItem item;
         item.protocol_id = payload[0];
-        for (std::size_t port = 0; port < port_count; ++port)
+        for (std::size_t port = 0; port < port_count && texts == Texts::told; ++port)
             item.masks[port] = in_force<std::uint8_t>(context, inf_key(payload[0], static_cast<PortId>(port)));
         return legacy_answered(CfgInf{{item}});
     }
@@ -212,8 +225,9 @@ ConfigOutcome legacy_inf(const LegacyContext& context, ByteSpan payload) {
     if (!set) return legacy_refused();
     LegacyChanges changes(context);
     for (const CfgInfItem& item : set->protocols) {
-        if (item.protocol_id > 1) return legacy_refused();
-        for (std::size_t port = 0; port < port_count; ++port)
+        const Texts texts = texts_of(context.board, item.protocol_id);
+        if (texts == Texts::none) return legacy_refused();
+        for (std::size_t port = 0; port < port_count && texts == Texts::told; ++port)
             changes.put(inf_key(item.protocol_id, static_cast<PortId>(port)), item.masks[port]);
     }
     return changes.apply();

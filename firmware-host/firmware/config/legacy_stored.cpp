@@ -89,9 +89,15 @@ constexpr UbxMessageId cfg_rinv{0x06, 0x34};
 
 ConfigOutcome legacy_dat(const LegacyContext& context, ByteSpan payload) {
     if (payload.empty()) return legacy_answered(describe_datum(context));
+    LegacyChanges changes(context);
+    // A standard datum by its number (u-blox 6 receiver description, CFG-DAT), with which every configuration file of
+    // u-center begins. WGS 84 is the only one.
+    if (payload.size() == sizeof(std::uint16_t)) {
+        changes.put(use_user_datum, false);
+        return payload[0] == 0 && payload[1] == 0 ? changes.apply() : legacy_refused();
+    }
     const auto set = decode_payload<CfgDatSet>(payload);
     if (!set || !is_datum(*set)) return legacy_refused();
-    LegacyChanges changes(context);
     changes.put(use_user_datum, true);
     changes.put(datum_axis, std::bit_cast<std::uint64_t>(set->maj_a));
     changes.put(datum_flattening, std::bit_cast<std::uint64_t>(set->flat));

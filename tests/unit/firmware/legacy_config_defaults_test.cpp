@@ -92,7 +92,7 @@ TEST(LegacyDefaults, OfCfgUsbAndTheOthers) {
     EXPECT_EQ(to_string(ByteSpan(usb).subspan(12, 27)), "u-blox AG - www.u-blox.com" + std::string(1, '\0'));
     EXPECT_EQ(to_string(ByteSpan(usb).subspan(44, 21)), "u-blox GNSS receiver" + std::string(1, '\0'));
     EXPECT_EQ(m9.poll(cfg(0x13)), hex("0000 F0A1"));
-    EXPECT_EQ(m9.poll(cfg(0x1E)), Bytes(20));
+    EXPECT_EQ(m9.poll(cfg(0x1E)), hex("00 000000 00 00 000000000000 0A 32 0000 99 4C 0000"));
     EXPECT_EQ(m9.poll(cfg(0x47)), hex("01 00 0000 0000 0000 00000000"));
 }
 

@@ -43,6 +43,22 @@ TEST(LegacyTp5, OfM8HasTwoPulsesOfTheirOwn) {
     EXPECT_EQ(m8.poll(cfg(0x31), {0}), first);
 }
 
+// The configuration file of a NEO-6: 233 stands where later receivers have the version.
+TEST(LegacyTp5, HasNoVersionOnUblox6) {
+    BoardProfile board = legacy_m8();
+    board.identity.generation = 6;
+    board.identity.extensions.clear();
+    LegacyBench old(board);
+    const Bytes told = old.poll(cfg(0x31));
+    EXPECT_EQ(told[1], 0);
+    Bytes pulse = told;
+    pulse[1] = 0xE9;
+    pulse[2] = 0x03;
+    pulse[28] = 0xF7;  // by GPS time
+    EXPECT_EQ(old.set(cfg(0x31), pulse), Verdict::acknowledge);
+    EXPECT_EQ(old.poll(cfg(0x31))[28], 0xF7);
+}
+
 TEST(LegacyTp5, RefusesPulsesThatDoNotExist) {
     LegacyBench m9(legacy_m9());
     EXPECT_EQ(m9.send(cfg(0x31), {2}).verdict, Verdict::refuse);

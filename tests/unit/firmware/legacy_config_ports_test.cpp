@@ -130,6 +130,25 @@ TEST(LegacyTexts, MasksPerProtocolAndPort) {
     EXPECT_EQ(m8.store.value(key::inf_ubx(PortId::usb)), 4u);
 }
 
+// Blocks of the configuration files that u-center wrote of a NEO-6 and of a ZED-F9P.
+TEST(LegacyTexts, HaveEmptyMasksOfOtherProtocols) {
+    LegacyBench f9p(legacy_f9p());
+    const std::uint64_t before = f9p.store.revision();
+    for (const std::uint8_t protocol : Bytes{3, 12, 13, 14, 15}) {
+        Bytes block(10);
+        block[0] = protocol;
+        EXPECT_EQ(f9p.poll(cfg(0x02), {protocol}), block);
+        EXPECT_EQ(f9p.set(cfg(0x02), block), Verdict::acknowledge) << int{protocol};
+    }
+    EXPECT_EQ(f9p.store.revision(), before);
+    for (const std::uint8_t protocol : Bytes{2, 4, 11, 16})
+        EXPECT_EQ(f9p.send(cfg(0x02), {protocol}).verdict, Verdict::refuse) << int{protocol};
+    EXPECT_EQ(LegacyBench(legacy_m8()).send(cfg(0x02), {3}).verdict, Verdict::refuse);
+    BoardProfile old = legacy_m8();
+    old.identity.generation = 6;
+    EXPECT_EQ(LegacyBench(old).send(cfg(0x02), {3}).verdict, Verdict::acknowledge);
+}
+
 TEST(LegacyUsb, KeepsItsTexts) {
     LegacyBench m9(legacy_m9());
     Bytes usb = m9.poll(cfg(0x1B));

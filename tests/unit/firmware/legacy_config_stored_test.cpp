@@ -27,6 +27,18 @@ TEST(LegacyDatum, IsWgs84UntilTheUserHasOneOfHisOwn) {
     EXPECT_EQ(m8.set(cfg(0x06), Bytes(43)), Verdict::refuse);
 }
 
+// The first lines of what u-center writes of a receiver's configuration.
+TEST(LegacyDatum, IsGivenByItsNumberToo) {
+    LegacyBench m8(legacy_m8());
+    const CfgDatSet bessel{6377397.155, 299.1528128, {598.1F, 73.7F, 418.2F}, {0.202F, 0.045F, -2.455F}, 6.7F};
+    EXPECT_EQ(m8.set(cfg(0x06), encode_payload(bessel)), Verdict::acknowledge);
+    EXPECT_EQ(m8.set(cfg(0x06), hex("0100")), Verdict::refuse) << "there is none but WGS 84";
+    EXPECT_EQ(decode_payload<CfgDat>(m8.poll(cfg(0x06)))->datum_num, 0xFFFF);
+    EXPECT_EQ(m8.set(cfg(0x06), hex("0000")), Verdict::acknowledge);
+    EXPECT_EQ(decode_payload<CfgDat>(m8.poll(cfg(0x06)))->datum_num, 0);
+    EXPECT_EQ(m8.set(cfg(0x06), hex("00")), Verdict::refuse);
+}
+
 TEST(LegacyPowerManagement, IsKeptToTheMillisecondAndTheBit) {
     LegacyBench m8(legacy_m8());
     EXPECT_EQ(decode_payload<CfgPm2>(m8.poll(cfg(0x3B)))->flags, 0x0142900Eu);

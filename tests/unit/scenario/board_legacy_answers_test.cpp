@@ -25,6 +25,15 @@ Bytes factory_answer(std::string_view name, std::uint8_t id, const Bytes& select
     return frame ? Bytes(frame->payload.begin(), frame->payload.end()) : Bytes{};
 }
 
+/// What a receiver from the factory says to a setting.
+Verdict verdict_on(std::string_view name, std::uint8_t id, const Bytes& payload) {
+    const std::vector<std::filesystem::path> folders{std::filesystem::path(SKYLOOP_SOURCE_DIR) / "boards"};
+    const auto board = find_board(name, folders);
+    if (!board) return Verdict::silence;
+    firmware::ConfigStore store(firmware::factory_config(*board));
+    return firmware::LegacyConfig(*board, store).handle({0x06, id}, payload, firmware::PortId::usb).verdict;
+}
+
 TEST(BoardLegacyAnswers, OfM8) {
     EXPECT_EQ(factory_answer("ublox-m8", 0x3E),
               (Bytes{0,  32, 32, 7, 0, 8, 16, 0, 1, 0, 1, 1, 1, 1, 3, 0, 1, 0, 1, 1, 2, 4, 8, 0, 0,  0, 1, 1, 3, 8,
@@ -67,6 +76,40 @@ TEST(BoardLegacyAnswers, OfM10) {
 
 TEST(BoardLegacyAnswers, OfUblox6HaveTheShortFormOfCfgNmea) {
     EXPECT_EQ(factory_answer("ublox-6", 0x17), (Bytes{0, 0x23, 0, 2}));
+}
+
+// Configuration files that u-center wrote: of two NEO-6 with 7.03 (ArduPilot's 3DR-Ublox.txt is one), of a NEO-M8T with
+// TIM 1.10 and of a ZED-F9P with HPG 1.11 (rtkbase, receiver_cfg).
+TEST(BoardLegacyAnswers, AreThoseInConfigurationFilesOfUCenter) {
+    EXPECT_EQ(factory_answer("ublox-6", 0x13), (Bytes{0x1B, 0, 0x8B, 0xA9}));
+    EXPECT_EQ(factory_answer("ublox-6", 0x16), (Bytes{1, 3, 3, 0, 0x51, 0x62, 6, 0}));
+    EXPECT_EQ(factory_answer("ublox-6", 0x02, {1}), (Bytes{1, 0, 0, 0, 0x87, 0x87, 0x87, 0x87, 0x87, 0}));
+    EXPECT_EQ(factory_answer("ublox-6", 0x31, {1}),
+              (Bytes{1,    0,    0, 0, 0x32, 0,    0, 0, 4, 0, 0, 0, 1,    0, 0, 0,
+                     0x48, 0xE8, 1, 0, 0xA0, 0x86, 1, 0, 0, 0, 0, 0, 0xFE, 0, 0, 0}));
+    EXPECT_EQ(factory_answer("ublox-m8", 0x13), (Bytes{0x1B, 0, 0xF0, 0xB9}));
+    const Bytes odometer{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 50, 0, 0, 153, 76, 0, 0};
+    EXPECT_EQ(factory_answer("ublox-m8", 0x1E), odometer);
+    EXPECT_EQ(factory_answer("ublox-f9p", 0x1E), odometer);
+    EXPECT_EQ(factory_answer("ublox-f9p", 0x34).size(), 23U);
+}
+
+TEST(BoardLegacyAnswers, AcceptConfigurationFilesOfUCenter) {
+    constexpr std::uint8_t cfg_msg = 0x01, cfg_inf = 0x02, cfg_dat = 0x06, cfg_tp = 0x07, cfg_fxn = 0x0E, cfg_pm = 0x32,
+                           cfg_rinv = 0x34, cfg_pm2 = 0x3B;
+    const Bytes label{0, 'N', 'o', 't', 'i', 'c', 'e'};
+    for (const char* board : {"ublox-6", "ublox-m8", "ublox-m9", "ublox-f9p"}) {
+        EXPECT_EQ(verdict_on(board, cfg_dat, {0, 0}), Verdict::acknowledge) << board;
+        EXPECT_EQ(verdict_on(board, cfg_rinv, label), Verdict::acknowledge) << board;
+    }
+    EXPECT_EQ(verdict_on("ublox-f9p", cfg_inf, {15, 0, 0, 0, 0, 0, 0, 0, 0, 0}), Verdict::acknowledge);
+    EXPECT_EQ(verdict_on("ublox-6", cfg_inf, {3, 0, 0, 0, 0, 0, 0, 0, 0, 0}), Verdict::acknowledge);
+    EXPECT_EQ(verdict_on("ublox-6", cfg_fxn, Bytes(36)), Verdict::acknowledge);
+    EXPECT_EQ(verdict_on("ublox-6", cfg_pm, Bytes(24)), Verdict::acknowledge);
+    EXPECT_EQ(verdict_on("ublox-6", cfg_pm2, Bytes(44)), Verdict::acknowledge);
+    EXPECT_EQ(verdict_on("ublox-6", cfg_tp, Bytes(20)), Verdict::acknowledge);
+    EXPECT_EQ(verdict_on("ublox-6", cfg_msg, {0x0B, 0x32, 0, 0, 0, 0, 0, 0}), Verdict::acknowledge);
+    EXPECT_EQ(verdict_on("ublox-6", cfg_msg, {0x0A, 0x21, 0, 0, 0, 0, 0, 0}), Verdict::acknowledge);
 }
 
 }  // namespace
