@@ -149,7 +149,7 @@ std::string manual_page(const CommandRow& command, std::string_view version) {
     page += ".SH OPTIONS\n" + entries(command, false) + subcommands(command);
     page +=
         ".SH EXIT STATUS\n0 success; 1 the outside world refused; 2 a misuse or a bad file; 3 something that a "
-        "scenario\nexpects was not met; 75 simulate or campaign was stopped by a signal before its end.\n";
+        "scenario\nexpects was not met; 75 a campaign was stopped by a signal before its end.\n";
     page += ".SH SEE ALSO\n.BR skyloop (1)\n";
     return page;
 }

@@ -44,14 +44,11 @@ void plug_in_clients_alone(const RunOptions& options, Scenario& scenario) {
         keep_scripted_clients(scenario);
 }
 
-// A recording that is cut short has not come of the scenario: a script that goes by exit codes must not take it for
-// one.
-int stopped_early(const Messages& messages, const Assembly& assembly, int code) {
-    constexpr int stopped = 75;  // as of a campaign
+// A stopped simulation ends in order, with 0 as a stopped run does; what it leaves must not be taken for the whole.
+void tell_that_it_stopped(const Messages& messages, const Assembly& assembly) {
     const Seconds done = difference(assembly.emulator->now(), assembly.start);
     messages.warning(
         fmt::format("stopped by a signal after {:.3f} s of the run: what is recorded ends there", done.value()));
-    return code == 0 ? stopped : code;
 }
 
 int simulate(const RunOptions& options) {
@@ -85,7 +82,8 @@ int simulate(const RunOptions& options) {
     if (!watch) return messages.error(watch.error());
     RunSession session(messages, *assembly);
     const int code = session.run(*scenario, **watch);
-    return stop_was_asked() ? stopped_early(messages, *assembly, code) : code;
+    if (stop_was_asked()) tell_that_it_stopped(messages, *assembly);
+    return code;
 }
 
 }  // namespace
