@@ -6,10 +6,9 @@
 #include <utility>
 
 #include "known_mavlink.hpp"
+#include "skyloop/protocol/known_sbf.hpp"
 #include "skyloop/protocol/message_listing.hpp"
 #include "skyloop/protocol/msp.hpp"
-#include "skyloop/protocol/sbf_blocks.hpp"
-#include "skyloop/protocol/sbf_status_blocks.hpp"
 
 namespace skyloop {
 namespace {
@@ -107,14 +106,7 @@ bool list_sbf_as(const SbfBlockView& block, DecodedMessage& message) {
 
 void list_sbf(const SbfBlockView& block, DecodedMessage& message) {
     message.id = fmt::format("{}", block.number);
-    const bool known = list_sbf_as<SbfPvtGeodetic>(block, message) || list_sbf_as<SbfPosCovGeodetic>(block, message) ||
-                       list_sbf_as<SbfVelCovGeodetic>(block, message) || list_sbf_as<SbfDop>(block, message) ||
-                       list_sbf_as<SbfAttEuler>(block, message) || list_sbf_as<SbfChannelStatus>(block, message) ||
-                       list_sbf_as<SbfReceiverStatus>(block, message) || list_sbf_as<SbfEndOfPvt>(block, message) ||
-                       list_sbf_as<SbfAuxAntPositions>(block, message) || list_sbf_as<SbfAttCovEuler>(block, message) ||
-                       list_sbf_as<SbfBaseVectorGeod>(block, message) || list_sbf_as<SbfEndOfAtt>(block, message) ||
-                       list_sbf_as<SbfQualityInd>(block, message) || list_sbf_as<SbfRfStatus>(block, message) ||
-                       list_sbf_as<SbfGalAuthStatus>(block, message) || list_sbf_as<SbfReceiverTime>(block, message);
+    const bool known = KnownSbfBlocks::any([&]<class Message>() { return list_sbf_as<Message>(block, message); });
     if (!known) keep_payload(block.body, message);
 }
 

@@ -1,5 +1,5 @@
 // Any byte stream, cut in two anywhere: the pieces are the stream, and the same as those of the stream in one; every
-// piece can be listed.
+// piece can be listed, and SBF blocks that are read are written as they were read.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "skyloop/protocol/decoded_message.hpp"
+#include "skyloop/protocol/known_sbf.hpp"
 
 namespace {
 
@@ -21,6 +22,20 @@ std::vector<skyloop::StreamPiece> pieces_of(skyloop::ByteSpan stream, std::size_
     return pieces;
 }
 
+void write_again(const skyloop::StreamPiece& piece) {
+    const auto block = skyloop::parse_sbf(piece.bytes);
+    if (!block) return;
+    skyloop::KnownSbfBlocks::any([&]<class Message>() {
+        if (block->number != Message::block_number) return false;
+        const auto read = skyloop::decode_sbf<Message>(block->body);
+        if (!read) return true;
+        const skyloop::Bytes written = skyloop::encode_payload(*read);
+        const auto again = skyloop::decode_sbf<Message>(written);
+        if (!again || skyloop::encode_payload(*again) != written) std::abort();
+        return true;
+    });
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -30,6 +45,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     skyloop::Bytes joined;
     for (const skyloop::StreamPiece& piece : pieces) {
         joined.insert(joined.end(), piece.bytes.begin(), piece.bytes.end());
+        if (piece.kind == skyloop::StreamKind::sbf) write_again(piece);
         const skyloop::DecodedMessage message = skyloop::decode_piece(piece);
         if (skyloop::json_line(message, 0).empty() || skyloop::text_line(message).empty()) std::abort();
     }

@@ -107,7 +107,7 @@ TEST(DecodedMessage, WhatIsNotKnownKeepsItsPayload) {
     EXPECT_EQ(text_of(StreamKind::ubx, encode_frame(UbxMessageId{0x01, 0x61}, Bytes{1})), "UBX NAV-EOE 1 bytes 01");
     EXPECT_EQ(json_of(StreamKind::msp, encode_msp_v2(0x1F04, Bytes{9})),
               "{\"protocol\":\"msp\",\"offset\":7,\"bytes\":10,\"id\":\"0x1F04\",\"payload\":\"09\"}");
-    EXPECT_EQ(text_of(StreamKind::sbf, encode_sbf_block(5922, 0, Bytes(4))), "SBF 5922 4 bytes 00000000");
+    EXPECT_EQ(text_of(StreamKind::sbf, encode_sbf_block(5936, 0, Bytes(4))), "SBF 5936 4 bytes 00000000");
 }
 
 TEST(DecodedMessage, SentencesAreListedByTheirFields) {
