@@ -158,6 +158,8 @@ std::optional<int> inav_word_ending(Signal signal, GpsTime end) {
     return e5b ? of_e5b[place] : of_e1[place];
 }
 
+int inav_accuracy_index(double metres) { return static_cast<int>(sisa_index(metres)); }
+
 InavWords inav_pages(const InavData& data, int word, GpsTime end) {
     InavFields fields{data, end - pair_length};
     fields.put(word);

@@ -147,6 +147,8 @@ LnavWords lnav_words(const LnavData& data) {
     return words;
 }
 
+int lnav_accuracy_index(double metres) { return broadcast::accuracy_index(metres); }
+
 LnavWords lnav_ephemeris_subframe(const KeplerEphemeris& record, int subframe, GpsTime end) {
     const BitWriter fields = subframe == 1   ? clock_fields(record, end)
                              : subframe == 2 ? first_orbit_fields(record)

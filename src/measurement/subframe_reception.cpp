@@ -78,6 +78,28 @@ struct Sender {
     [[nodiscard]] static std::vector<std::uint32_t> words(const SbasEphemeris&, Signal) { return {}; }
 };
 
+// How long a receiver listens until a message ends by which it has a whole record; nothing for other messages. LNAV and
+// D1: subframes 1 to 3; I/NAV: words 1 to 5, of E1-B from word 2 to word 5, of E5b-I from word 1 to word 4 (OS SIS ICD
+// 2.0, tables 37 and 38); GLONASS: strings 1 to 5.
+std::optional<std::chrono::seconds> record_length(Constellation constellation, Signal signal, GpsTime end,
+                                                  const LeapSeconds& leap_seconds) {
+    using std::chrono::seconds;
+    switch (constellation) {
+        case Constellation::gps:
+        case Constellation::qzss:
+            return subframe_ending(week_and_tow(end).tow) == 3 ? std::optional(seconds(18)) : std::nullopt;
+        case Constellation::beidou:
+            return subframe_ending(bdt_week_and_tow(end).tow) == 3 ? std::optional(seconds(18)) : std::nullopt;
+        case Constellation::galileo:
+            return inav_word_ending(signal, end) == (signal == Signal::l1 ? 5 : 4) ? std::optional(seconds(30))
+                                                                                   : std::nullopt;
+        case Constellation::glonass:
+            return glonass_string_ending(end, leap_seconds) == 5 ? std::optional(seconds(10)) : std::nullopt;
+        default:
+            return std::nullopt;
+    }
+}
+
 }  // namespace
 
 std::optional<Subframe> SubframeReception::message(const Tracked& tracked, const NavigationSource& sent,
@@ -120,7 +142,12 @@ std::vector<Subframe> SubframeReception::receive(const Observations& observation
             if (end + travel_time <= *last_) continue;
             for (const auto& [tracked, since] : tracked_since_) {
                 if (end - length_of(tracked.first.constellation) + travel_time < since) continue;
-                if (auto received = message(tracked, sent, end)) result.push_back(std::move(*received));
+                auto received = message(tracked, sent, end);
+                if (!received) continue;
+                const auto length = record_length(tracked.first.constellation, tracked.second, end, leap_seconds_);
+                if (length && end - *length + travel_time >= since)
+                    received->record = sent.ephemeris(tracked.first, end);
+                result.push_back(std::move(*received));
             }
         }
     }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "skyloop/gnss/ephemeris.hpp"
 #include "skyloop/gnss/satellite.hpp"
 #include "skyloop/gnss/signal.hpp"
 #include "skyloop/time/gps_time.hpp"
@@ -17,6 +19,7 @@ struct Subframe {
     GpsTime end;                ///< when its last bit was sent
     int frequency_channel = 0;  ///< of GLONASS
     std::vector<std::uint32_t> words;
+    std::optional<Ephemeris> record{};  ///< that is whole with this part: the others were received before it
 };
 
 }  // namespace skyloop

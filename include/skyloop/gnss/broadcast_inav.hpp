@@ -29,6 +29,9 @@ struct InavData {
 ///     later on with E1-B, as in captures (word 5 tells 25 s of each 30, word 6 tells 5 s)
 std::optional<int> inav_word_ending(Signal signal, GpsTime end);
 
+/// SISA as word 3 tells it: 0 … 125, 255 for none (table 82).
+int inav_accuracy_index(double metres);
+
 /// The pair of pages with the words 1 to 6 (tables 39 to 45) or the spare word 0 with its time. Values that do not fit
 /// become the nearest that do.
 InavWords inav_pages(const InavData& data, int word, GpsTime end);

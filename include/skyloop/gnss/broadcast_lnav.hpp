@@ -28,6 +28,9 @@ LnavWords lnav_words(const LnavData& data);
 /// @param end when the subframe ends, which is what its hand-over word tells
 LnavWords lnav_ephemeris_subframe(const KeplerEphemeris& record, int subframe, GpsTime end);
 
+/// URA as these subframes tell it, 0 … 15 (IS-GPS-200, 20.3.3.3.1.3); of BeiDou URAI.
+int lnav_accuracy_index(double metres);
+
 /// What pages of subframes 4 and 5 tell of the whole system.
 struct LnavSystemData {
     const NavigationSource* source = nullptr;  ///< of almanacs and health

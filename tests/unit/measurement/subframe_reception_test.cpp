@@ -60,6 +60,26 @@ TEST(SubframeReception, EverySubframeOfHalfAMinuteOnce) {
         EXPECT_EQ(gps_subframes[subframe], 1) << subframe;
 }
 
+TEST(SubframeReception, ARecordIsWholeWithItsLastPart) {
+    const test::FourSystems sent;
+    SubframeReception reception;
+    std::map<std::pair<SatelliteId, Signal>, std::vector<double>> whole;
+    // From 3 s after the frame on, when subframe 1 is under way, to the end of the second one.
+    for (int i = 30; i <= 605; ++i) {
+        const GpsTime now = frame_start + std::chrono::milliseconds(100 * i + 75);
+        for (const Subframe& s : reception.receive(of_all(now), sent, now)) {
+            if (!s.record) continue;
+            EXPECT_EQ(satellite_of(*s.record), s.satellite);
+            whole[{s.satellite, s.signal}].push_back(difference(s.end, frame_start).value());
+        }
+    }
+    EXPECT_EQ((whole[{gps_sent, Signal::l1}]), std::vector<double>{48});
+    EXPECT_EQ((whole[{beidou_sent, Signal::b1i}]), (std::vector<double>{32})) << "its frame is 14 s later";
+    ASSERT_EQ((whole[{galileo_sent, Signal::l1}].size()), 1U);
+    EXPECT_GE((whole[{galileo_sent, Signal::l1}][0]), 33) << "half a minute of words";
+    EXPECT_FALSE((whole[{glonass_sent, Signal::g1}].empty()));
+}
+
 TEST(SubframeReception, DoesNotDependOnTheRate) {
     const test::FourSystems sent;
     SubframeReception slow, fast;
