@@ -79,9 +79,10 @@ struct LeapEvent {
 
 /// The receiver at one epoch, as it reports itself. Free of the truth.
 struct NavigationState {
-    Epoch epoch;                ///< its fix is the one to report: after limits, static hold and coasting
-    bool fix_ok = false;        ///< within the user's limits (gnssFixOK)
-    bool ever_had_fix = false;  ///< since the last cold start: `epoch.fix` has a position, if an old one
+    Epoch epoch;                  ///< its fix is the one to report: after limits, static hold and coasting
+    bool fix_ok = false;          ///< within the user's limits (gnssFixOK)
+    bool kind_forbidden = false;  ///< the user wants no solution of this kind, which is why fix_ok is false
+    bool ever_had_fix = false;    ///< since the last cold start: `epoch.fix` has a position, if an old one
     bool only_place_known =
         false;                    ///< that of before a start: no accuracies, velocity and clock have been solved since
     bool position_known = false;  ///< the position is of now, or was of a fix before

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "firmware/config/legacy_support.hpp"
+#include "firmware/septentrio/modes.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -126,6 +127,11 @@ void Receiver::Core::adopt_settings() {
     power_.adopt(PowerSaveSettings::of(store_, board_));
     if (falling_asleep_ && falling_asleep_->saves_power && !power_.saves()) falling_asleep_.reset();
     follow_power();
+    if (console_) settings_.subframes = wants_messages(console_->state().settings);
+}
+
+CorrectionState Receiver::Core::allowed(CorrectionState at_hand) const {
+    return console_ ? allowed_corrections(console_->state().settings, at_hand) : at_hand;
 }
 
 // What a client has configured comes in force; other signals mean that tracking begins anew (RECEIVER.md 4.4).

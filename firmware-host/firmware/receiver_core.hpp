@@ -131,6 +131,7 @@ private:
     // Settings and restarts.
     void begin_as_stored();
     void adopt_settings();
+    [[nodiscard]] CorrectionState allowed(CorrectionState at_hand) const;
     void apply_changes(GpsTime now);
     void reset(std::uint16_t nav_bbr_mask, std::uint8_t mode, GpsTime now);
     void stop_navigating(GpsTime now);

@@ -8,6 +8,7 @@
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/other_protocols.hpp"
 #include "firmware/receiver_core.hpp"
+#include "firmware/septentrio/modes.hpp"
 #include "skyloop/protocol/ubx_time.hpp"
 
 namespace skyloop::firmware {
@@ -174,7 +175,8 @@ GpsTime Receiver::Core::burst_time(GpsTime epoch) {
 }
 
 const ReceiverSettings& Receiver::Core::settings_at(GpsTime epoch) {
-    settings_.corrections = corrections_.status(epoch, store_).state;
+    settings_.corrections = allowed(corrections_.status(epoch, store_).state);
+    if (console_) settings_.subframes = wants_messages(console_->state().settings);
     return settings_;
 }
 
@@ -185,6 +187,7 @@ void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     if (sleep_ || falling_asleep_ || time < silent_until_) return;
     CorrectionStatus corrections = corrections_.status(time, store_);
     corrections.come = corrections.state != CorrectionState::none;
+    corrections.state = allowed(corrections.state);
     const CorrectionState used = solved_with(epoch, settings_.corrections, corrections.state);
     settings_.corrections = corrections.state;
     const auto state = std::make_shared<NavigationState>(tracker_.update(epoch, store_, corrections));
@@ -194,6 +197,7 @@ void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     const std::optional<PowerSave::Rest> off = settings_.navigating ? power_.update(*state) : std::nullopt;
     state->power_save = power_.state();
     follow_power();
+    if (console_) withhold_forbidden(console_->state().settings, *state);
     if (edit) edit(*state);
     reported_ = state;
     ++counters_.epochs;
@@ -206,6 +210,7 @@ void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
 }
 
 void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {
+    if (console_) console_->follow(state);
     look_at_ports();
     EpochMessages made(context(PortId::uart1, state));
     for (PortUnit& unit : units_) {

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "firmware/config/config_handler.hpp"
+#include "firmware/septentrio/settings_table.hpp"
 #include "scenario_keys.hpp"
 
 namespace skyloop {
@@ -164,6 +165,17 @@ void read_board_navigation(TableReader& navigation, BoardProfile& board) {
     navigation.quantity("solution_latency_s", board.solution_latency, {0, 2});
 }
 
+// Blocks and groups, in the maker's spelling.
+void read_board_sbf(TableReader& sbf, BoardProfile& board) {
+    sbf.texts("blocks", board.sbf_blocks);
+    for (std::string& name : board.sbf_blocks) {
+        auto known = firmware::known_word(firmware::WordKind::block, name);
+        if (!known) known = firmware::known_word(firmware::WordKind::block_group, name);
+        if (!known) return sbf.mistake("blocks", fmt::format("has '{}', which is no SBF block or group", name));
+        name = *known;
+    }
+}
+
 // A u-blox receiver whose factory settings it would refuse itself could never be configured.
 void check_factory_config(TableReader& top, const BoardProfile& board) {
     if (board.personality != Personality::ublox) return;
@@ -208,6 +220,7 @@ void read_board_keys(TableReader& top, BoardProfile& board) {
     top.table("navigation", [&](TableReader& t) { read_board_navigation(t, board); });
     top.table("nmea", [&](TableReader& t) { read_board_nmea(t, board); });
     top.table("ubx", [&](TableReader& t) { read_board_ubx(t, board); });
+    top.table("sbf", [&](TableReader& t) { read_board_sbf(t, board); });
     if (board.messages.empty())
         for (const std::string_view name : firmware::nmea_sentence_names)
             board.messages.push_back(firmware::find_output_message(name)->id);

@@ -16,27 +16,6 @@ constexpr std::uint32_t antenna_active = 1u << 1, week_set = 1u << 4, tow_set = 
                         corrections_come = 1u << 17;
 constexpr std::uint32_t antenna_error = 1u << 5;
 
-// Numbers of the open signals on L1 (NavIC: L5) in SignalInfo (section 4.1.10).
-int sbf_signal_number(Constellation constellation) {
-    switch (constellation) {
-        case Constellation::gps:
-            return 0;
-        case Constellation::qzss:
-            return 6;
-        case Constellation::glonass:
-            return 8;
-        case Constellation::navic:
-            return 15;
-        case Constellation::galileo:
-            return 17;
-        case Constellation::sbas:
-            return 24;
-        case Constellation::beidou:
-            return 28;
-    }
-    return 0;
-}
-
 // The first bit of that signal in the statuses of ChannelStatus.
 int sbf_status_shift(Constellation constellation) { return constellation == Constellation::galileo ? 2 : 0; }
 
@@ -55,7 +34,7 @@ void put_sbf_solution(const NavigationState& state, SbfPvtGeodetic& to) {
     to.time_system = 0;
     to.datum = 0;
     to.num_sv = reported_satellites(fix);
-    to.signal_info = sbf_signal_info(fix);
+    to.signal_info = sbf_signal_info(state);
     if (state.corrections.age) to.mean_corr_age = sbf_u2(state.corrections.age->value() * 100);
     if (state.corrections.station) to.reference_id = sbf_u2(*state.corrections.station);
     to.num_bases = state.corrections.state == CorrectionState::none ? 0 : 1;
@@ -69,15 +48,6 @@ std::vector<SatelliteStatus> sbf_used(const Fix& fix) {
 }
 
 float sbf_square(double value) { return static_cast<float>(value * value); }
-
-// Of GLONASS, channel + 8, by what was measured of the satellite; of other systems, and where nothing was, 0.
-std::uint8_t sbf_frequency_number(SatelliteId satellite, const Observations& observations) {
-    if (satellite.constellation != Constellation::glonass) return 0;
-    for (const Observation& o : observations.signals)
-        if (o.satellite == satellite)
-            return static_cast<std::uint8_t>(frequency_id(o.satellite, o.signal, o.carrier) + 1);
-    return 0;
-}
 
 // @param solved there is a solution that uses satellites
 SbfChannel sbf_channel(const SatelliteStatus& satellite, std::uint8_t svid, bool solved) {
@@ -96,13 +66,6 @@ SbfChannel sbf_channel(const SatelliteStatus& satellite, std::uint8_t svid, bool
 }
 
 }  // namespace
-
-std::uint32_t sbf_signal_info(const Fix& fix) {
-    std::uint32_t bits = 0;
-    for (const SatelliteStatus& satellite : fix.satellites)
-        if (satellite.used) bits |= 1u << sbf_signal_number(satellite.id.constellation);
-    return bits;
-}
 
 SbfPvtGeodetic sbf_pvt_geodetic(const ReportContext& context) {
     const NavigationState& state = context.state;
@@ -203,10 +166,11 @@ SbfChannelStatus sbf_channel_status(const NavigationState& state) {
     block.time = sbf_time(state);
     for (const SatelliteStatus& satellite : state.epoch.fix.satellites) {
         const auto svid = sbf_svid(satellite.id);
-        if (!satellite.cn0 || !svid || block.channels.size() == most_items) continue;
+        const std::uint8_t number = sbf_channel_number(state, satellite.id);
+        if (number == 0) continue;
         block.channels.push_back(sbf_channel(satellite, *svid, has_solution(state)));
         block.channels.back().freq_nr = sbf_frequency_number(satellite.id, state.epoch.observations);
-        block.channels.back().rx_channel = static_cast<std::uint8_t>(block.channels.size());
+        block.channels.back().rx_channel = number;
     }
     return block;
 }

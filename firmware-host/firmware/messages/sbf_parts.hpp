@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/reported_fix.hpp"
@@ -36,12 +37,24 @@ inline std::uint8_t sbf_mode(const NavigationState& state) {
     }
 }
 
-inline std::uint8_t sbf_error(const NavigationState& state) { return has_solution(state) ? 0 : 1; }
+/// 1 too few measurements; of a solution that its user does not want: 8 too few corrections, 10 ambiguities not fixed.
+inline std::uint8_t sbf_error(const NavigationState& state) {
+    constexpr std::uint8_t measurements = 1, corrections = 8, not_fixed = 10;
+    if (has_solution(state)) return 0;
+    if (!state.kind_forbidden) return measurements;
+    return state.epoch.fix.type == FixType::rtk_float ? not_fixed : corrections;
+}
 
 /// Clipped to the largest number that still means something.
 inline std::uint16_t sbf_u2(double value) { return std::min(field<std::uint16_t>(value), std::uint16_t{65534}); }
 
-/// Bits of the signal types of the satellites used (section 4.1.10).
-std::uint32_t sbf_signal_info(const Fix& fix);
+/// The number of a signal (section 4.1.10); nothing for one that has none below 31.
+std::optional<std::uint8_t> sbf_signal_number(Constellation constellation, Signal signal);
+/// Bits of the signals of the satellites used: those measured, or the first one of a model that measures nothing.
+std::uint32_t sbf_signal_info(const NavigationState& state);
+/// The channel by which a satellite is tracked, as ChannelStatus numbers them, from 1 on; 0 where it is not.
+std::uint8_t sbf_channel_number(const NavigationState& state, SatelliteId satellite);
+/// Of GLONASS, channel + 8, by what was measured of the satellite; of other systems, and where nothing was, 0.
+std::uint8_t sbf_frequency_number(SatelliteId satellite, const Observations& observations);
 
 }  // namespace skyloop::firmware

@@ -105,7 +105,7 @@ SbfBaseVectorGeod sbf_base_vector(const NavigationState& state) {
     base.elevation = field<std::int16_t>(std::atan2(-line->up, horizontal) * sbf_degrees * 100);
     if (state.corrections.station) base.reference_id = sbf_u2(*state.corrections.station);
     if (state.corrections.age) base.corr_age = sbf_u2(state.corrections.age->value() * 100);
-    base.signal_info = sbf_signal_info(state.epoch.fix);
+    base.signal_info = sbf_signal_info(state);
     block.bases.push_back(base);
     return block;
 }

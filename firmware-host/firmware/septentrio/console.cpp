@@ -8,6 +8,7 @@
 
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/signal_keys.hpp"
+#include "firmware/septentrio/modes.hpp"
 
 namespace skyloop::firmware {
 
@@ -29,17 +30,14 @@ namespace {
 
 struct SystemName {
     Constellation constellation;
-    std::string_view name, first_signal;
+    std::string_view name;
     char letter;
 };
 constexpr std::array system_names{
-    SystemName{Constellation::gps, "GPS", "GPSL1CA", 'G'},
-    SystemName{Constellation::glonass, "GLONASS", "GLOL1CA", 'R'},
-    SystemName{Constellation::galileo, "GALILEO", "GALL1BC", 'E'},
-    SystemName{Constellation::sbas, "SBAS", "GEOL1", 'S'},
-    SystemName{Constellation::beidou, "BEIDOU", "BDSB1I", 'C'},
-    SystemName{Constellation::qzss, "QZSS", "QZSL1CA", 'J'},
-    SystemName{Constellation::navic, "NAVIC", "NAVICL5", 'I'},
+    SystemName{Constellation::gps, "GPS", 'G'},         SystemName{Constellation::glonass, "GLONASS", 'R'},
+    SystemName{Constellation::galileo, "GALILEO", 'E'}, SystemName{Constellation::sbas, "SBAS", 'S'},
+    SystemName{Constellation::beidou, "BEIDOU", 'C'},   SystemName{Constellation::qzss, "QZSS", 'J'},
+    SystemName{Constellation::navic, "NAVIC", 'I'},
 };
 
 // The item that switches a system on; nothing for one that this receiver does not have.
@@ -60,6 +58,16 @@ bool names_system(const std::vector<std::string>& words, const SystemName& syste
         return satellite || same_word(word, system.name) || same_word(word, "all");
     });
 }
+
+bool names_signal(std::string_view signals, Constellation system) {
+    return std::any_of(signal_keys.begin(), signal_keys.end(), [&](const SignalKey& key) {
+        const std::string_view name = signal_name(key.signal);
+        return key.signal.constellation == system && !name.empty() && lists(signals, name);
+    });
+}
+
+// Of the two items that stand for BeiDou's measured signal on L1 this receiver uses the other.
+constexpr std::uint32_t b1c_for_b1i = 0x1031000F;
 
 // The guide's "exact copy of the command" in the form of each kind of answer.
 std::string told(char kind, const std::string& line, const std::vector<std::string>& states) {
@@ -95,19 +103,25 @@ SeptentrioConsole::SeptentrioConsole(const BoardProfile& board, const ConfigStor
 // The board or a scenario may have it begin in another way than the factory's settings say.
 void SeptentrioConsole::adopt(const ConfigStore& store) {
     SeptentrioSettings& settings = state_.settings;
+    if (!board_.sbf_blocks.empty())
+        settings.set(group_of("SBFOutput"), {"Stream1", "COM1", fmt::format("{}", fmt::join(board_.sbf_blocks, "+"))});
     const auto speed = [&](const char* port, std::uint32_t item) {
         settings.set(group_of("COMSettings"), {port, fmt::format("baud{}", store.value(item))});
     };
     speed("COM1", key::uart1_baudrate);
     speed("COM2", key::uart2_baudrate);
-    settings.set(group_of("ElevationMask"), {"all", fmt::format("{}", store.signed_value(key::navspg_min_elev))});
+    settings.set(group_of("ElevationMask"), {"PVT", fmt::format("{}", store.signed_value(key::navspg_min_elev))});
     std::string systems, signals;
     for (const SystemName& system : system_names)
-        if (const auto item = switch_of(system, store); item && store.flag(*item)) {
+        if (const auto item = switch_of(system, store); item && store.flag(*item))
             systems += fmt::format("{}{}", systems.empty() ? "" : "+", system.name);
-            signals += fmt::format("{}{}", signals.empty() ? "" : "+", system.first_signal);
-        }
-    if (systems.empty()) return;
+    for (const SignalKey& signal : signal_keys) {
+        const std::string_view name = signal_name(signal.signal);
+        if (name.empty() || signal.enable == b1c_for_b1i || !store.has(signal.enable) || !store.flag(signal.enable))
+            continue;
+        signals += fmt::format("{}{}", signals.empty() ? "" : "+", name);
+    }
+    if (systems.empty() || signals.empty()) return;
     settings.set(group_of("SatelliteTracking"), {systems});
     settings.set(group_of("SatelliteUsage"), {systems});
     settings.set(group_of("SignalTracking"), {signals});
@@ -146,8 +160,13 @@ std::string SeptentrioConsole::answer(const Command& command, ConfigStore& store
             return setting_told(command.line, state_.settings.get(group, command.arguments));
         if (!command.is(group.set, fmt::format("set{}", group.name))) continue;
         const SettingAnswer answer = state_.settings.set(group, command.arguments);
-        if (answer.error.empty()) apply(store);
-        if (answer.error.empty() && group.name == "COMSettings") apply_speeds(store);
+        if (!answer.error.empty()) return setting_told(command.line, answer);
+        apply(store);
+        if (group.name == "COMSettings") apply_speeds(store);
+        if (group.name == "ReceiverDynamics") apply_motion(store);
+        if (group.name == "NMEATalkerID") apply_talker(store);
+        if (group.name == "SBFOutput") state_.told_records.clear();
+        if (group.name == "SBFOutput") state_.told_setup.reset();
         return setting_told(command.line, answer);
     }
     return act(command, store, outcome);
@@ -200,8 +219,10 @@ std::string SeptentrioConsole::act_on_receiver(const Command& command, CommandOu
 // Antennas, signals, ports, abilities, and the shortest periods of measurements and solutions, ms.
 std::string SeptentrioConsole::capabilities(const ConfigStore& store) const {
     std::vector<std::string_view> signals, ports;
-    for (const SystemName& system : system_names)
-        if (switch_of(system, store)) signals.push_back(system.first_signal);
+    for (const SignalKey& key : signal_keys)
+        if (const auto name = signal_name(key.signal);
+            !name.empty() && key.enable != b1c_for_b1i && store.has(key.enable))
+            signals.push_back(name);
     for (const PortId port : board_.ports)
         if (const auto name = descriptor_of(port); !name.empty()) ports.push_back(name);
     const auto shortest = static_cast<int>(1000 / board_.max_rate_hz);
@@ -219,10 +240,14 @@ std::string SeptentrioConsole::identification() const {
 }
 
 void SeptentrioConsole::restart(ConfigStore& store) {
-    state_.settings = at_start_;
-    state_.disk_mounted = true;
+    state_ = {at_start_, true, state_.commands};
     apply(store);
     if (speeds_saved_) apply_speeds(store);
+    const auto is_changed = [&](const char* name) {
+        return at_start_.values(name) != SeptentrioSettings().values(name);
+    };
+    if (is_changed("ReceiverDynamics")) apply_motion(store);
+    if (is_changed("NMEATalkerID")) apply_talker(store);
 }
 
 // What measurement and solution must know.
@@ -231,9 +256,42 @@ void SeptentrioConsole::apply(ConfigStore& store) const {
     const auto period = std::max(wanted_period_ms(settings, own_period_ms_).value_or(own_period_ms_),
                                  static_cast<std::uint64_t>(1000 / board_.max_rate_hz));
     store.set(in_ram, key::rate_meas, period);
-    if (const auto degrees = whole_number(settings.values("ElevationMask", "PVT").front()))
-        store.set(in_ram, key::navspg_min_elev, static_cast<std::uint8_t>(*degrees));
+    const auto mask = [&](const char* engine) {
+        return whole_number(settings.values("ElevationMask", engine).front()).value_or(-90);
+    };
+    store.set(in_ram, key::navspg_min_elev, static_cast<std::uint8_t>(std::max(mask("Tracking"), mask("PVT"))));
     apply_systems(store);
+    apply_signals(store);
+}
+
+// Until it is told how it moves, the receiver goes by what the run says.
+void SeptentrioConsole::apply_motion(ConfigStore& store) const {
+    if (const auto model = model_of_motion(state_.settings.values("ReceiverDynamics")[1]))
+        store.set(in_ram, key::navspg_dynmodel, *model);
+}
+
+// CFG-NMEA-MAINTALKERID.
+void SeptentrioConsole::apply_talker(ConfigStore& store) const {
+    constexpr std::array<std::string_view, 4> talkers{"auto", "GP", "GL", "GN"};
+    const std::string& wanted = state_.settings.values("NMEATalkerID").front();
+    const auto found = std::find_if(talkers.begin(), talkers.end(), [&](auto word) { return same_word(word, wanted); });
+    if (found != talkers.end())
+        store.set(in_ram, key::nmea_main_talker, static_cast<std::uint64_t>(found - talkers.begin()));
+}
+
+// Of a system that is tracked one signal at least stays.
+void SeptentrioConsole::apply_signals(ConfigStore& store) const {
+    const std::string& wanted = state_.settings.values("SignalTracking").front();
+    for (const SystemKeys& system : system_keys_of_signals) {
+        std::vector<std::pair<std::uint32_t, bool>> items;
+        for (const SignalKey& signal : signal_keys)
+            if (const auto name = signal_name(signal.signal);
+                signal.signal.constellation == system.constellation && !name.empty() && store.has(signal.enable))
+                items.emplace_back(signal.enable, lists(wanted, name) && signal.enable != b1c_for_b1i);
+        if (std::none_of(items.begin(), items.end(), [](const auto& item) { return item.second; })) continue;
+        for (const auto& [item, on] : items)
+            store.set(in_ram, item, on ? 1 : 0);
+    }
 }
 
 void SeptentrioConsole::apply_speeds(ConfigStore& store) const {
@@ -250,12 +308,14 @@ void SeptentrioConsole::apply_speeds(ConfigStore& store) const {
 void SeptentrioConsole::apply_systems(ConfigStore& store) const {
     const auto tracked = split_words(state_.settings.values("SatelliteTracking").front(), '+');
     const auto used = split_words(state_.settings.values("SatelliteUsage").front(), '+');
+    const std::string& signals = state_.settings.values("SignalTracking").front();
     std::vector<std::pair<Constellation, bool>> wanted;
     bool changed = false;
     for (const SystemName& system : system_names) {
         const auto item = switch_of(system, store);
         if (!item) continue;
-        wanted.emplace_back(system.constellation, names_system(tracked, system) && names_system(used, system));
+        wanted.emplace_back(system.constellation, names_system(tracked, system) && names_system(used, system) &&
+                                                      names_signal(signals, system.constellation));
         changed = changed || store.flag(*item) != wanted.back().second;
     }
     // None that gives a position leaves no receiver to speak of: then nothing changes.

@@ -23,6 +23,8 @@ public:
     CommandOutcome execute(const std::string& line, ConfigStore& store, PortId from);
     /// After a restart the saved settings hold.
     void restart(ConfigStore& store);
+    /// Takes an epoch in before what is due is made from it.
+    void follow(const NavigationState& state) { follow_epoch(state_, board_, state); }
     [[nodiscard]] const SeptentrioState& state() const { return state_; }
 
 private:
@@ -37,6 +39,9 @@ private:
     void apply(ConfigStore& store) const;
     void apply_speeds(ConfigStore& store) const;
     void apply_systems(ConfigStore& store) const;
+    void apply_signals(ConfigStore& store) const;
+    void apply_motion(ConfigStore& store) const;
+    void apply_talker(ConfigStore& store) const;
 
     const BoardProfile& board_;
     std::uint64_t own_period_ms_;

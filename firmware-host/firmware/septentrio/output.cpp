@@ -2,65 +2,113 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <numeric>
 #include <set>
 #include <string>
 
 #include "firmware/config/config_keys.hpp"
 #include "firmware/messages/make_message.hpp"
-#include "firmware/messages/reported_fix.hpp"
+#include "firmware/messages/sbf_cartesian_messages.hpp"
+#include "firmware/messages/sbf_parts.hpp"
 #include "firmware/messages/sbf_status_messages.hpp"
+#include "firmware/nmea_commands.hpp"
+#include "skyloop/protocol/sbf_navigation_blocks.hpp"
 
 namespace skyloop::firmware {
 namespace {
 
-using BlockMaker = Bytes (*)(const ReportContext&, const SeptentrioState&);
+using BlockMaker = std::vector<Bytes> (*)(const ReportContext&, const SeptentrioState&);
+enum class Pace { by_interval, on_change };
 struct MadeBlock {
     std::string_view name;
     BlockMaker make;
+    Pace pace = Pace::by_interval;
 };
 
-Bytes receiver_status(const ReportContext& context, const SeptentrioState& receiver) {
+template <auto Make>
+std::vector<Bytes> of_state(const ReportContext& context, const SeptentrioState&) {
+    return {encode_sbf(Make(context.state))};
+}
+template <auto Make>
+std::vector<Bytes> of_context(const ReportContext& context, const SeptentrioState&) {
+    return {encode_sbf(Make(context))};
+}
+template <auto Make>
+std::vector<Bytes> of_counts(const ReportContext& context, const SeptentrioState& receiver) {
+    return {encode_sbf(Make(context.state, receiver.counts))};
+}
+template <class Page>
+std::vector<Bytes> pages(const ReportContext& context, const SeptentrioState&) {
+    return sbf_raw_pages(Page::block_number, context.state);
+}
+
+template <class Block>
+std::vector<Bytes> records(const ReportContext&, const SeptentrioState& receiver) {
+    std::vector<Bytes> blocks;
+    for (const Bytes& block : receiver.new_records)
+        if (const auto view = parse_sbf(block); view && view->number == Block::block_number) blocks.push_back(block);
+    return blocks;
+}
+
+std::vector<Bytes> receiver_status(const ReportContext& context, const SeptentrioState& receiver) {
     constexpr std::uint32_t disk_activity = 1u << 7, disk_mounted = 1u << 9;
     SbfReceiverStatus block = sbf_receiver_status(context.state);
     if (receiver.disk_mounted) block.rx_state |= disk_mounted | (logs_to_disk(receiver.settings) ? disk_activity : 0);
     block.command_count = receiver.commands;
-    return encode_sbf(block);
+    return {encode_sbf(block)};
+}
+
+std::vector<Bytes> receiver_setup(const ReportContext& context, const SeptentrioState& receiver) {
+    SbfReceiverSetup block = sbf_receiver_setup(receiver.settings, context.board);
+    block.time = sbf_time(context.state);
+    return {encode_sbf(block)};
 }
 
 // Those that this receiver makes, in the order in which they leave.
 constexpr std::array made_blocks{
-    MadeBlock{"PVTGeodetic",
-              [](const ReportContext& c, const SeptentrioState&) { return encode_sbf(sbf_pvt_geodetic(c)); }},
-    MadeBlock{"PosCovGeodetic", [](const ReportContext& c,
-                                   const SeptentrioState&) { return encode_sbf(sbf_position_covariance(c.state)); }},
-    MadeBlock{"VelCovGeodetic", [](const ReportContext& c,
-                                   const SeptentrioState&) { return encode_sbf(sbf_velocity_covariance(c.state)); }},
-    MadeBlock{"DOP", [](const ReportContext& c, const SeptentrioState&) { return encode_sbf(sbf_dop(c.state)); }},
-    MadeBlock{"BaseVectorGeod",
-              [](const ReportContext& c, const SeptentrioState&) { return encode_sbf(sbf_base_vector(c.state)); }},
-    MadeBlock{"AttEuler",
-              [](const ReportContext& c, const SeptentrioState&) { return encode_sbf(sbf_attitude(c.state)); }},
-    MadeBlock{"AttCovEuler", [](const ReportContext& c,
-                                const SeptentrioState&) { return encode_sbf(sbf_attitude_covariance(c.state)); }},
-    MadeBlock{"AuxAntPositions",
-              [](const ReportContext& c, const SeptentrioState&) { return encode_sbf(sbf_other_antenna(c.state)); }},
-    MadeBlock{"EndOfAtt",
-              [](const ReportContext& c, const SeptentrioState&) { return encode_sbf(sbf_end_of_attitude(c.state)); }},
-    MadeBlock{"EndOfPVT",
-              [](const ReportContext& c, const SeptentrioState&) { return encode_sbf(sbf_end_of_pvt(c.state)); }},
-    MadeBlock{"ReceiverTime",
-              [](const ReportContext& c, const SeptentrioState&) { return encode_sbf(sbf_receiver_time(c.state)); }},
-    MadeBlock{"ChannelStatus",
-              [](const ReportContext& c, const SeptentrioState&) { return encode_sbf(sbf_channel_status(c.state)); }},
+    MadeBlock{"MeasEpoch", of_counts<sbf_measurements>},
+    MadeBlock{"MeasExtra", of_counts<sbf_measurement_extra>},
+    MadeBlock{"EndOfMeas", of_state<sbf_end_of_measurements>},
+    MadeBlock{"PVTCartesian", of_context<sbf_pvt_cartesian>},
+    MadeBlock{"PVTGeodetic", of_context<sbf_pvt_geodetic>},
+    MadeBlock{"PosCovCartesian", of_state<sbf_position_covariance_cartesian>},
+    MadeBlock{"PosCovGeodetic", of_state<sbf_position_covariance>},
+    MadeBlock{"VelCovCartesian", of_state<sbf_velocity_covariance_cartesian>},
+    MadeBlock{"VelCovGeodetic", of_state<sbf_velocity_covariance>},
+    MadeBlock{"DOP", of_state<sbf_dop>},
+    MadeBlock{"BaseVectorCart", of_state<sbf_base_vector_cartesian>},
+    MadeBlock{"BaseVectorGeod", of_state<sbf_base_vector>},
+    MadeBlock{"AttEuler", of_state<sbf_attitude>},
+    MadeBlock{"AttCovEuler", of_state<sbf_attitude_covariance>},
+    MadeBlock{"AuxAntPositions", of_state<sbf_other_antenna>},
+    MadeBlock{"EndOfAtt", of_state<sbf_end_of_attitude>},
+    MadeBlock{"EndOfPVT", of_state<sbf_end_of_pvt>},
+    MadeBlock{"ReceiverTime", of_state<sbf_receiver_time>},
+    MadeBlock{"ChannelStatus", of_state<sbf_channel_status>},
     MadeBlock{"ReceiverStatus", receiver_status},
-    MadeBlock{"QualityInd",
-              [](const ReportContext& c, const SeptentrioState&) { return encode_sbf(sbf_quality(c.state)); }},
-    MadeBlock{"RFStatus",
-              [](const ReportContext& c, const SeptentrioState&) { return encode_sbf(sbf_radio_status(c.state)); }},
-    MadeBlock{"GALAuthStatus",
-              [](const ReportContext& c, const SeptentrioState&) { return encode_sbf(sbf_authentication(c.state)); }},
+    MadeBlock{"SatVisibility", of_state<sbf_visible_satellites>},
+    MadeBlock{"QualityInd", of_state<sbf_quality>},
+    MadeBlock{"RFStatus", of_state<sbf_radio_status>},
+    MadeBlock{"GALAuthStatus", of_state<sbf_authentication>},
+    MadeBlock{"ReceiverSetup", receiver_setup},
+    MadeBlock{"GPSRawCA", pages<SbfGpsRawCa>, Pace::on_change},
+    MadeBlock{"GLORawCA", pages<SbfGloRawCa>, Pace::on_change},
+    MadeBlock{"GALRawINAV", pages<SbfGalRawInav>, Pace::on_change},
+    MadeBlock{"BDSRaw", pages<SbfBdsRaw>, Pace::on_change},
+    MadeBlock{"QZSRawL1CA", pages<SbfQzsRawL1Ca>, Pace::on_change},
+    MadeBlock{"GPSNav", records<SbfGpsNav>, Pace::on_change},
+    MadeBlock{"GLONav", records<SbfGloNav>, Pace::on_change},
+    MadeBlock{"GALNav", records<SbfGalNav>, Pace::on_change},
+    MadeBlock{"BDSNav", records<SbfBdsNav>, Pace::on_change},
+    MadeBlock{"QZSNav", records<SbfQzsNav>, Pace::on_change},
 };
+
+const MadeBlock* made_block(std::string_view name) {
+    const auto found =
+        std::find_if(made_blocks.begin(), made_blocks.end(), [&](const MadeBlock& b) { return b.name == name; });
+    return found == made_blocks.end() ? nullptr : &*found;
+}
 
 // A stream that sends something.
 struct ActiveStream {
@@ -80,19 +128,35 @@ std::vector<ActiveStream> active_streams(const SeptentrioSettings& settings, std
     return active;
 }
 
+// The words of a stream, those of groups among them.
+std::set<std::string> words_of(const ActiveStream& stream) {
+    std::set<std::string> words;
+    for (const std::string& word : split_words(stream.words, '+')) {
+        words.insert(word);
+        for (const std::string& member : split_words(blocks_of_group(word), '+'))
+            words.insert(member);
+    }
+    return words;
+}
+
+// What comes when it changes has no other interval, and the setup none but those that are asked for.
+bool is_due(const std::string& word, const ActiveStream& stream, std::uint32_t tow_ms,
+            const SeptentrioState& receiver) {
+    const MadeBlock* block = made_block(word);
+    if (block != nullptr && block->pace == Pace::on_change) return true;
+    if (word == "ReceiverSetup" && stream.period_ms == 0) return receiver.setup_changed;
+    return stream.period_ms == 0 || tow_ms % stream.period_ms == 0;
+}
+
 // Words of all streams of a kind that go to a port and are due.
-std::set<std::string> due_words(const SeptentrioSettings& settings, std::string_view kind,
-                                const ReportContext& context) {
+std::set<std::string> due_words(const SeptentrioState& receiver, std::string_view kind, const ReportContext& context) {
     std::set<std::string> due;
     const std::string_view port = descriptor_of(context.port);
     const std::uint32_t tow_ms = whole_milliseconds(gps_stamp(context.state.epoch.fix.time));
-    for (const ActiveStream& stream : active_streams(settings, kind)) {
-        if (stream.port != port || (stream.period_ms != 0 && tow_ms % stream.period_ms != 0)) continue;
-        for (const std::string& word : split_words(stream.words, '+')) {
-            due.insert(word);
-            for (const std::string& member : split_words(blocks_of_group(word), '+'))
-                due.insert(member);
-        }
+    for (const ActiveStream& stream : active_streams(receiver.settings, kind)) {
+        if (stream.port != port) continue;
+        for (const std::string& word : words_of(stream))
+            if (is_due(word, stream, tow_ms, receiver)) due.insert(word);
     }
     return due;
 }
@@ -104,22 +168,81 @@ bool lets_through(const SeptentrioSettings& settings, PortId port, std::string_v
     return std::any_of(outputs.begin(), outputs.end(), [&](const auto& word) { return same_word(word, protocol); });
 }
 
+// Satellites below the mask of tracking are not tracked; of SBAS they are (setElevationMask).
+std::set<SatelliteId> satellites_below(Angle mask, const NavigationState& state) {
+    std::set<SatelliteId> below;
+    for (const SatelliteStatus& s : state.epoch.fix.satellites)
+        if (s.cn0 && s.id.constellation != Constellation::sbas && s.elevation < mask && direction_known(s, state))
+            below.insert(s.id);
+    return below;
+}
+
+NavigationState without(const std::set<SatelliteId>& satellites, NavigationState state) {
+    const auto left_out = [&](const auto& item) { return satellites.contains(item.satellite); };
+    for (SatelliteStatus& s : state.epoch.fix.satellites)
+        if (satellites.contains(s.id)) s.cn0.reset();
+    std::erase_if(state.epoch.observations.signals, left_out);
+    std::erase_if(state.epoch.subframes, left_out);
+    return state;
+}
+
+RecordIssue issue_of(const Ephemeris& record) {
+    const auto* kepler = std::get_if<KeplerEphemeris>(&record);
+    return {toe_of(record), iode_of(record), kepler == nullptr ? 0 : kepler->iodc};
+}
+
+std::vector<Bytes> due_messages(const SeptentrioState& receiver, const ReportContext& context) {
+    std::vector<Bytes> messages;
+    const auto append = [&messages](std::vector<Bytes> made) {
+        std::move(made.begin(), made.end(), std::back_inserter(messages));
+    };
+    if (lets_through(receiver.settings, context.port, "SBF")) {
+        const std::set<std::string> due = due_words(receiver, "SBFOutput", context);
+        for (const MadeBlock& block : made_blocks)
+            if (due.contains(std::string(block.name))) append(block.make(context, receiver));
+    }
+    if (!lets_through(receiver.settings, context.port, "NMEA")) return messages;
+    for (const std::string& word : due_words(receiver, "NMEAOutput", context))
+        if (const OutputMessage* sentence = find_output_message(word); sentence != nullptr)
+            append(make_message(sentence->id, context));
+    return messages;
+}
+
 }  // namespace
 
-std::vector<Bytes> septentrio_output(const SeptentrioState& receiver, const ReportContext& context) {
-    const SeptentrioSettings& settings = receiver.settings;
-    std::vector<Bytes> messages;
-    if (lets_through(settings, context.port, "SBF")) {
-        const std::set<std::string> due = due_words(settings, "SBFOutput", context);
-        for (const MadeBlock& block : made_blocks)
-            if (due.contains(std::string(block.name))) messages.push_back(block.make(context, receiver));
+void follow_epoch(SeptentrioState& receiver, const BoardProfile& board, const NavigationState& state) {
+    const GpsTime epoch = state.epoch.fix.time;
+    if (receiver.last_epoch && *receiver.last_epoch == epoch) return;
+    receiver.last_epoch = epoch;
+    receiver.counts.follow(state);
+    receiver.new_records.clear();
+    for (const Subframe& message : state.epoch.subframes) {
+        if (!message.record) continue;
+        const RecordIssue issue = issue_of(*message.record);
+        const auto [known, is_first] = receiver.told_records.emplace(message.satellite, issue);
+        if (!is_first && known->second == issue) continue;
+        known->second = issue;
+        if (Bytes block = sbf_record_block(message, state); !block.empty()) receiver.new_records.push_back(block);
     }
-    if (!lets_through(settings, context.port, "NMEA")) return messages;
-    for (const std::string& word : due_words(settings, "NMEAOutput", context))
-        if (const OutputMessage* sentence = find_output_message(word); sentence != nullptr)
-            for (Bytes& line : make_message(sentence->id, context))
-                messages.push_back(std::move(line));
-    return messages;
+    Bytes setup = encode_sbf(sbf_receiver_setup(receiver.settings, board));
+    receiver.setup_changed = receiver.told_setup != setup;
+    receiver.told_setup = std::move(setup);
+}
+
+std::vector<Bytes> septentrio_output(const SeptentrioState& receiver, const ReportContext& context) {
+    const auto mask = whole_number(receiver.settings.values("ElevationMask", "Tracking").front());
+    const auto below = satellites_below(Angle::degrees(static_cast<double>(mask.value_or(-90))), context.state);
+    if (below.empty()) return due_messages(receiver, context);
+    const NavigationState above = without(below, context.state);
+    return due_messages(receiver, {context.board, context.config, above, context.ports, context.port});
+}
+
+bool wants_messages(const SeptentrioSettings& settings) {
+    for (const ActiveStream& stream : active_streams(settings, "SBFOutput"))
+        for (const std::string& word : words_of(stream))
+            if (const MadeBlock* block = made_block(word); block != nullptr && block->pace == Pace::on_change)
+                return true;
+    return false;
 }
 
 std::optional<std::uint64_t> wanted_period_ms(const SeptentrioSettings& settings, std::uint64_t own) {

@@ -2,21 +2,47 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
+#include "firmware/messages/sbf_measurement_messages.hpp"
 #include "firmware/navigation_state.hpp"
 #include "firmware/septentrio/settings.hpp"
 #include "skyloop/base/bytes.hpp"
+#include "skyloop/protocol/sbf_cartesian_blocks.hpp"
 
 namespace skyloop::firmware {
+
+/// A record as its satellite numbers it: which one it is.
+struct RecordIssue {
+    GpsTime toe;
+    int iode = 0, iodc = 0;
+    bool operator==(const RecordIssue&) const = default;
+};
 
 /// The receiver behind its command line.
 struct SeptentrioState {
     SeptentrioSettings settings;
     bool disk_mounted = true;
     std::uint8_t commands = 0;  ///< so many, from 255 on to 1: 0 is none yet
+    // Of the measurements and messages of the epochs so far.
+    SbfMeasurementCounts counts{};
+    std::optional<GpsTime> last_epoch{};
+    std::map<SatelliteId, RecordIssue> told_records{};  ///< since the streams were last changed
+    std::vector<Bytes> new_records{};                   ///< blocks of the last epoch
+    std::optional<Bytes> told_setup{};                  ///< since the streams were last changed
+    bool setup_changed = false;                         ///< at the last epoch
 };
+
+/// Takes an epoch in before its blocks are made; the same one again changes nothing.
+void follow_epoch(SeptentrioState& receiver, const BoardProfile& board, const NavigationState& state);
+
+/// ReceiverSetup as the settings have it.
+SbfReceiverSetup sbf_receiver_setup(const SeptentrioSettings& settings, const BoardProfile& board);
+
+/// Whether a stream asks for what comes by navigation messages.
+bool wants_messages(const SeptentrioSettings& settings);
 
 /// Blocks and sentences that are due at an epoch on the port of `context`, blocks first. Blocks that this receiver does
 /// not make are left out. What several streams ask for leaves once.

@@ -25,6 +25,16 @@ std::optional<std::string> spelled(WordKind kind, std::string_view word) {
     return known ? std::optional(std::string(*known)) : std::nullopt;
 }
 
+// The words that a value can have, where they are known here.
+std::optional<WordKind> kind_of(std::string_view group, std::string_view argument) {
+    if (group == "COMSettings" && argument == "Rate") return WordKind::line_speed;
+    if (group == "PVTMode" && argument == "Mode") return WordKind::pvt_mode;
+    if (group == "PVTMode" && argument == "RoverMode") return WordKind::rover_mode;
+    if (group == "ReceiverDynamics") return argument == "Level" ? WordKind::level : WordKind::motion;
+    if (group == "SignalTracking" || group == "SignalUsage") return WordKind::signal;
+    return std::nullopt;
+}
+
 // One word of a value in the maker's spelling; nothing when it cannot be. What is not known here is taken as it is.
 std::optional<std::string> checked_word(std::string_view group, std::string_view argument, const std::string& word) {
     const bool outputs = group == "SBFOutput" || group == "NMEAOutput";
@@ -36,9 +46,9 @@ std::optional<std::string> checked_word(std::string_view group, std::string_view
         const auto block = spelled(WordKind::block, word);
         return block ? block : spelled(WordKind::block_group, word);
     }
-    if (group == "COMSettings" && argument == "Rate") return spelled(WordKind::line_speed, word);
     if (group == "ElevationMask" && !is_angle(word)) return std::nullopt;
-    return word;
+    const auto kind = kind_of(group, argument);
+    return kind ? spelled(*kind, word) : std::optional(word);
 }
 
 // The list with what a + or - before its words adds or takes away. Without a sign before the first it is a new one.

@@ -25,7 +25,7 @@ constexpr SettingGroup groups[] = {
     {"spm", "gpm", "PVTMode", "", "Mode RoverMode+ StaticPosition",
      "Rover,StandAlone+SBAS+DGNSS+RTKFloat+RTKFixed,auto"},
     {"srd", "grd", "ReceiverDynamics", "", "Level Motion", "Moderate,Automotive"},
-    {"sem", "gem", "ElevationMask", "Tracking PVT", "Mask", "5"},
+    {"sem", "gem", "ElevationMask", "Tracking PVT", "Mask", "0"},
     {"sst", "gst", "SatelliteTracking", "", "Satellite+", every_system},
     {"ssu", "gsu", "SatelliteUsage", "", "Satellite+", every_system},
     {"snt", "gnt", "SignalTracking", "", "Signal+", "GPSL1CA+GLOL1CA+GALL1BC+GEOL1+BDSB1I"},
@@ -42,6 +42,7 @@ constexpr SettingGroup groups[] = {
     {"smp", "gmp", "MarkerParameters", "",
      "MarkerName MarkerNumber MarkerType StationCode MonumentIdx ReceiverIdx CountryCode",
      "SEPT,Unknown,Unknown,,0,0,"},
+    {"sop", "gop", "ObserverParameters", "", "Observer Agency", "Unknown,Unknown"},
     {"sgd", "ggd", "GeodeticDatum", "", "TargetDatum", "Default"},
     {"sgu", "ggu", "GeoidUndulation", "", "Mode Undulation", "auto,0.0"},
     {"shm", "ghm", "HealthMask", "Tracking PVT", "Mask", "on"},
@@ -80,19 +81,30 @@ constexpr std::string_view blocks =
     "NAVICLNav GEOMT00 GEOPRNMask GEOFastCorr GEOIntegrity GEOFastCorrDegr GEONav GEODegrFactors GEONetworkTime GEOAlm "
     "GEOIGPMask GEOLongTermCorr GEOIonoDelay GEOServiceLevel GEOClockEphCovMatrix";
 // Groups, and of their blocks those that this receiver has.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 12> block_groups{{
-    {"Measurements", ""},
-    {"Meas3", ""},
-    {"PVTCart", ""},
+constexpr std::string_view support_blocks =
+    "MeasEpoch+MeasExtra+EndOfMeas+GPSRawCA+GLORawCA+GALRawINAV+BDSRaw+QZSRawL1CA+GPSNav+GLONav+GALNav+BDSNav+QZSNav+"
+    "PVTGeodetic+PosCovGeodetic+BaseVectorGeod+DOP+EndOfPVT+ChannelStatus+ReceiverStatus+ReceiverSetup+QualityInd+"
+    "RFStatus+GALAuthStatus";
+constexpr std::array<std::pair<std::string_view, std::string_view>, 18> block_groups{{
+    {"Measurements", "MeasEpoch+MeasExtra+EndOfMeas"},
+    {"RawNavBits", "GPSRawCA+GLORawCA+GALRawINAV+BDSRaw+QZSRawL1CA"},
+    {"GPS", "GPSNav"},
+    {"GLO", "GLONav"},
+    {"GAL", "GALNav"},
+    {"BDS", "BDSNav"},
+    {"QZS", "QZSNav"},
+    {"PVTCart", "PVTCartesian+PosCovCartesian+VelCovCartesian+BaseVectorCart+EndOfPVT"},
     {"PVTGeod", "PVTGeodetic+PosCovGeodetic+VelCovGeodetic+DOP+BaseVectorGeod+EndOfPVT"},
     {"PVTExtra", "DOP+EndOfPVT"},
     {"Attitude", "AttEuler+AttCovEuler+EndOfAtt"},
     {"Time", "ReceiverTime"},
-    {"Event", ""},
-    {"DiffCorr", ""},
-    {"Status", "ChannelStatus+ReceiverStatus+QualityInd+RFStatus+GALAuthStatus"},
-    {"PostProcess", ""},
-    {"Support", "ChannelStatus+ReceiverStatus"},
+    {"Status", "ChannelStatus+ReceiverStatus+SatVisibility+QualityInd+RFStatus+GALAuthStatus"},
+    {"PostProcess",
+     "MeasEpoch+MeasExtra+EndOfMeas+GPSRawCA+GLORawCA+GALRawINAV+BDSRaw+QZSRawL1CA+GPSNav+GLONav+GALNav+BDSNav+QZSNav+"
+     "BaseVectorGeod+ReceiverSetup"},
+    {"Rinex", "MeasEpoch+GPSNav+GLONav+GALNav+BDSNav+QZSNav+ReceiverSetup"},
+    {"Rinex3", "MeasEpoch+GPSNav+GLONav+GALNav+BDSNav+QZSNav+ReceiverSetup"},
+    {"Support", support_blocks},
 }};
 constexpr std::string_view group_names =
     "Measurements Meas3 RawNavBits GPS GLO GAL GEO BDS QZS NAVIC PVTCart PVTGeod PVTExtra Attitude Time Event DiffCorr "
@@ -110,6 +122,11 @@ constexpr std::string_view line_speeds =
     "baud1200 baud2400 baud4800 baud9600 baud19200 baud38400 baud57600 baud115200 baud230400 baud460800 baud500000 "
     "baud576000 baud921600 baud1000000 baud1500000 baud2000000 baud2500000 baud3000000 baud3500000 baud4000000";
 
+constexpr std::string_view signal_words =
+    "GPSL1CA GPSL1PY GPSL2PY GPSL2C GPSL5 GPSL1C GLOL1CA GLOL1P GLOL2P GLOL2CA GLOL3 GALL1BC GALE6BC GALE5a GALE5b "
+    "GALE5 GEOL1 GEOL5 BDSB1I BDSB2I BDSB3I BDSB1C BDSB2a BDSB2b QZSL1CA QZSL2C QZSL5 QZSL6 QZSL1C QZSL1S QZSL5S "
+    "QZSL1CB NAVICL5 all";
+
 std::string_view words_of(WordKind kind) {
     switch (kind) {
         case WordKind::block:
@@ -124,6 +141,16 @@ std::string_view words_of(WordKind kind) {
             return output_ports;
         case WordKind::line_speed:
             return line_speeds;
+        case WordKind::pvt_mode:
+            return "Rover Static";
+        case WordKind::rover_mode:
+            return "StandAlone SBAS DGNSS DGPS RTKFloat RTKFixed RTK PPP all";
+        case WordKind::level:
+            return "Max High Moderate Low";
+        case WordKind::motion:
+            return "Static Quasistatic Pedestrian Automotive RaceCar HeavyMachinery UAV Unlimited EarthquakeMon";
+        case WordKind::signal:
+            return signal_words;
     }
     return {};
 }

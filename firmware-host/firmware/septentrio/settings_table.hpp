@@ -23,7 +23,19 @@ struct SettingGroup {
 std::span<const SettingGroup> setting_groups();
 
 /// Words of one kind, in the maker's spelling.
-enum class WordKind { block, block_group, sentence, interval, port, line_speed };
+enum class WordKind {
+    block,
+    block_group,
+    sentence,
+    interval,
+    port,
+    line_speed,
+    pvt_mode,
+    rover_mode,
+    level,
+    motion,
+    signal
+};
 /// The maker's spelling of a word, whatever case the user wrote it in; nothing when there is no such word.
 std::optional<std::string_view> known_word(WordKind kind, std::string_view word);
 /// The blocks of a group such as Attitude, by +; empty for one of which this receiver has none.

@@ -113,6 +113,32 @@ TEST_F(Console, SolvesAsOftenAsItsStreamsNeed) {
     EXPECT_EQ(period(), 20U) << "no faster than the board";
 }
 
+TEST_F(Console, SaysWhatIsTrackedAndHowItMoves) {
+    const auto l2c = 0x10310003u, gps = 0x1031001Fu, qzss = 0x10310024u;
+    EXPECT_FALSE(store_.flag(l2c));
+    say("snt,+GPSL2C");
+    EXPECT_TRUE(store_.flag(l2c));
+    say("snt,-GPSL1CA-GPSL2C");
+    EXPECT_FALSE(store_.flag(gps)) << "a system without a signal";
+    say("snt,+GPSL1CA");
+    EXPECT_TRUE(store_.flag(gps));
+    EXPECT_FALSE(store_.flag(l2c));
+    say("sst,+QZSS");
+    say("ssu,+QZSS");
+    EXPECT_TRUE(store_.flag(qzss)) << "its signal is among those of the factory";
+    EXPECT_EQ(say("snt,GPSL7"), "$R? SignalTracking: Argument 'Signal' is invalid!\r\nCOM1>");
+    const std::uint64_t own = store_.value(key::navspg_dynmodel);
+    say("gso");
+    EXPECT_EQ(store_.value(key::navspg_dynmodel), own) << "until it is told";
+    say("srd,Moderate,UAV");
+    EXPECT_EQ(store_.value(key::navspg_dynmodel), 8U);
+    say("sem,PVT,10");
+    say("sem,Tracking,15");
+    EXPECT_EQ(store_.signed_value(key::navspg_min_elev), 15) << "what is not tracked is not used";
+    say("snti, GP");
+    EXPECT_EQ(store_.value(key::nmea_main_talker), 1U);
+}
+
 TEST_F(Console, StartsAgainAsSaved) {
     say("sem,PVT,20");
     say("sso,Stream1,COM1,DOP,sec1");
@@ -257,6 +283,42 @@ TEST_F(SeptentrioReceiver, SendsFromTheFactoryOnAndWhatItIsToldAfterwards) {
     EXPECT_EQ(std::count(later.begin(), later.end(), 5943), 20);
     EXPECT_EQ(std::count(later.begin(), later.end(), 4092), 2);
     EXPECT_EQ(std::count(later.begin(), later.end(), 4082), 2);
+}
+
+TEST_F(SeptentrioReceiver, SendsItsSetupAtAnIntervalOrWhenItChanges) {
+    say("sso,Stream1,COM1,ReceiverSetup,OnChange");
+    wait(100ms);
+    wait(500ms);
+    EXPECT_TRUE(blocks_in(wait(2s)).empty());
+    say("smp,ODESSA");
+    wait(50ms);
+    EXPECT_EQ(blocks_in(wait(2s)), std::vector<int>{5902});
+    say("sso,Stream1,COM1,,sec1");
+    wait(100ms);
+    EXPECT_EQ(blocks_in(wait(3s)), (std::vector<int>{5902, 5902, 5902}));
+    EXPECT_FALSE(receiver_.settings_at(now_).subframes);
+    say("sso,Stream2,COM1,RawNavBits,OnChange");
+    wait(100ms);
+    EXPECT_TRUE(receiver_.settings_at(now_).subframes) << "asked of whoever receives them";
+}
+
+TEST_F(SeptentrioReceiver, TellsNothingOfSatellitesBelowTheMaskOfTracking) {
+    const auto lowest = [&] {
+        int elevation = 90;
+        for (const StreamPiece& piece : wait(1s)) {
+            const auto block = parse_sbf(piece.bytes);
+            if (!block || block->number != SbfChannelStatus::block_number) continue;
+            for (const SbfChannel& channel : decode_sbf<SbfChannelStatus>(block->body)->channels)
+                elevation = std::min<int>(elevation, channel.elevation);
+        }
+        return elevation;
+    };
+    say("sso,Stream1,COM1,ChannelStatus,sec1");
+    wait(100ms);
+    EXPECT_EQ(lowest(), 8);
+    say("sem,Tracking,20");
+    wait(300ms);
+    EXPECT_EQ(lowest(), 25);
 }
 
 TEST_F(SeptentrioReceiver, SendsSentencesToo) {

@@ -1,0 +1,153 @@
+#include "firmware/messages/sbf_cartesian_messages.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/messages/other_protocols.hpp"
+#include "firmware/messages/sbf_parts.hpp"
+#include "firmware/messages/sbf_status_messages.hpp"
+#include "skyloop/geo/local_frame.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+Eigen::Vector3d along_axes(const NavigationState& state, double east, double north, double up) {
+    return LocalFrame(state.epoch.fix.position).to_ecef(Displacement<Enu>(east, north, up)).vector();
+}
+
+// Where in a covariance of SBF an element of three rows stands, and what lies in the fourth.
+constexpr int element_at[3][3] = {{0, 4, 5}, {4, 1, 7}, {5, 7, 2}};
+constexpr int clock_at = 3, with_clock_at[3] = {6, 8, 9};
+
+// North, east, up as x, y, z; nothing where one of them is unknown. The clock is taken to be independent.
+SbfCovariance turned(const SbfCovariance& geodetic, const NavigationState& state) {
+    const auto nothing = static_cast<float>(sbf_nothing);
+    Eigen::Matrix3d local, axes;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) {
+            const float element = geodetic[static_cast<std::size_t>(element_at[row][column])];
+            if (element == nothing) return no_sbf_covariance;
+            local(row, column) = element;
+        }
+    axes.col(0) = along_axes(state, 0, 1, 0);
+    axes.col(1) = along_axes(state, 1, 0, 0);
+    axes.col(2) = along_axes(state, 0, 0, 1);
+    const Eigen::Matrix3d result = axes * local * axes.transpose();
+    SbfCovariance cartesian = no_sbf_covariance;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column)
+            cartesian[static_cast<std::size_t>(element_at[row][column])] = static_cast<float>(result(row, column));
+        const auto index = static_cast<std::size_t>(with_clock_at[row]);
+        cartesian[index] = geodetic[clock_at] == nothing ? nothing : 0;
+    }
+    cartesian[clock_at] = geodetic[clock_at];
+    return cartesian;
+}
+
+// East, north and up of a far base are its own.
+Eigen::Vector3d base_to_rover(const NavigationState& state, const SbfBaseVector& line) {
+    if (state.epoch.relative || !state.corrections.base)
+        return along_axes(state, line.delta_east, line.delta_north, line.delta_up);
+    return to_ecef(state.epoch.fix.position).vector() - state.corrections.base->vector();
+}
+
+}  // namespace
+
+SbfPvtCartesian sbf_pvt_cartesian(const ReportContext& context) {
+    const SbfPvtGeodetic from = sbf_pvt_geodetic(context);
+    SbfPvtCartesian to;
+    to.time = from.time;
+    to.mode = from.mode;
+    to.error = from.error;
+    if (from.error == 0) {
+        const NavigationState& state = context.state;
+        const Eigen::Vector3d place = to_ecef(state.epoch.fix.position).vector();
+        const VelocityNed& v = state.epoch.fix.velocity;
+        const Eigen::Vector3d speed = along_axes(state, v.east, v.north, -v.down);
+        to.x = place.x();
+        to.y = place.y();
+        to.z = place.z();
+        to.vx = static_cast<float>(speed.x());
+        to.vy = static_cast<float>(speed.y());
+        to.vz = static_cast<float>(speed.z());
+    }
+    to.undulation = from.undulation;
+    to.course = from.course;
+    to.clock_bias = from.clock_bias;
+    to.clock_drift = from.clock_drift;
+    to.time_system = from.time_system;
+    to.datum = from.datum;
+    to.num_sv = from.num_sv;
+    to.wa_corr_info = from.wa_corr_info;
+    to.reference_id = from.reference_id;
+    to.mean_corr_age = from.mean_corr_age;
+    to.signal_info = from.signal_info;
+    to.alert_flag = from.alert_flag;
+    to.num_bases = from.num_bases;
+    to.ppp_info = from.ppp_info;
+    to.accuracy = *from.accuracy;
+    return to;
+}
+
+SbfPosCovCartesian sbf_position_covariance_cartesian(const NavigationState& state) {
+    const SbfPosCovGeodetic from = sbf_position_covariance(state);
+    return {from.time, from.mode, from.error, turned(from.covariance, state)};
+}
+
+SbfVelCovCartesian sbf_velocity_covariance_cartesian(const NavigationState& state) {
+    const SbfVelCovGeodetic from = sbf_velocity_covariance(state);
+    return {from.time, from.mode, from.error, turned(from.covariance, state)};
+}
+
+SbfBaseVectorCart sbf_base_vector_cartesian(const NavigationState& state) {
+    const SbfBaseVectorGeod from = sbf_base_vector(state);
+    SbfBaseVectorCart block;
+    block.time = from.time;
+    for (const SbfBaseVector& line : from.bases) {
+        const Eigen::Vector3d delta = base_to_rover(state, line);
+        SbfBaseVectorXyz base;
+        base.num_sv = line.num_sv;
+        base.error = line.error;
+        base.mode = line.mode;
+        base.misc = line.misc;
+        base.delta_x = delta.x();
+        base.delta_y = delta.y();
+        base.delta_z = delta.z();
+        if (line.vel_east != static_cast<float>(sbf_nothing)) {
+            const Eigen::Vector3d speed =
+                along_axes(state, static_cast<double>(line.vel_east), static_cast<double>(line.vel_north),
+                           static_cast<double>(line.vel_up));
+            base.vel_x = static_cast<float>(speed.x());
+            base.vel_y = static_cast<float>(speed.y());
+            base.vel_z = static_cast<float>(speed.z());
+        }
+        base.azimuth = line.azimuth;
+        base.elevation = line.elevation;
+        base.reference_id = line.reference_id;
+        base.corr_age = line.corr_age;
+        base.signal_info = line.signal_info;
+        block.bases.push_back(base);
+    }
+    return block;
+}
+
+SbfSatVisibility sbf_visible_satellites(const NavigationState& state) {
+    constexpr std::uint8_t by_almanac = 1, by_ephemeris = 2;
+    SbfSatVisibility block;
+    block.time = sbf_time(state);
+    for (const SatelliteStatus& satellite : state.epoch.fix.satellites) {
+        const auto svid = sbf_svid(satellite.id);
+        if (!svid || satellite.elevation.deg() < 0 || !direction_known(satellite, state)) continue;
+        SbfVisibleSatellite visible;
+        visible.svid = *svid;
+        visible.freq_nr = sbf_frequency_number(satellite.id, state.epoch.observations);
+        visible.azimuth = static_cast<std::uint16_t>(std::lround((satellite.azimuth.deg() + 360) * 100) % 36000);
+        visible.elevation = field<std::int16_t>(satellite.elevation.deg() * 100);
+        visible.known_by = satellite.has_ephemeris ? by_ephemeris : by_almanac;
+        block.satellites.push_back(visible);
+    }
+    return block;
+}
+
+}  // namespace skyloop::firmware
