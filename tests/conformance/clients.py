@@ -24,6 +24,7 @@ CLIENTS = {
     "px4_ublox6": px4.Px4Ublox6,
     "px4_nmea": px4.Px4Nmea,
     "px4_septentrio": septentrio.Px4Septentrio,
+    "ros_septentrio": septentrio.RosSeptentrio,
     "sparkfun": sparkfun.SparkFun,
     "tracker": tracker.Tracker,
     "u_center": u_center.UCenter,

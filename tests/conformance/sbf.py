@@ -1,5 +1,7 @@
 """Septentrio's stream: blocks and the answers of the command line."""
 import dataclasses
+import functools
+import operator
 import re
 import struct
 
@@ -44,8 +46,18 @@ class Answer:
         return f"{self.text!r} {self.prompt}"
 
 
+@dataclasses.dataclass(frozen=True)
+class Sentence:
+    """A line of NMEA with a right checksum."""
+    text: str
+    at: float
+
+    def __str__(self):
+        return self.text
+
+
 class Parser:
-    """Everything must be a block or an answer: other bytes are noise."""
+    """Everything must be a block, an answer or a sentence: other bytes are noise."""
 
     def __init__(self):
         self.clear()
@@ -81,6 +93,13 @@ class Parser:
                 return None, 0
             if end:
                 return Answer(data[:end.start()].decode("ascii"), data[end.end() - 5:end.end() - 1].decode(), at), end.end()
+        elif data.startswith(b"$G"):
+            end = data.find(b"\r\n")
+            if end < 0 and len(data) < 90:
+                return None, 0
+            body, _, checksum = data[1:end].partition(b"*")
+            if checksum == b"%02X" % functools.reduce(operator.xor, body, 0):
+                return Sentence(data[:end].decode("ascii"), at), end + 2
         elif PROMPT.match(data):
             return Answer("", data[:4].decode(), at), 5
         elif len(data) < 5 and re.match(rb"[A-Z][A-Z0-9]*$", data):

@@ -1,7 +1,9 @@
-"""The drivers of Septentrio receivers: ArduPilot's AP_GPS_SBF and PX4's septentrio.
+"""The drivers of Septentrio receivers: ArduPilot's AP_GPS_SBF, PX4's septentrio and ROS's septentrio_gnss_driver.
 
 ArduPilot waits for the prompt before each command, and for the first line of its answer; while nothing goes on it asks
-for the port every 2 s. PX4 wants the same line, to the letter, within 200 ms, after it has hunted for the speed.
+for the port every 2 s. PX4 wants the same line, to the letter, within 200 ms, after it has hunted for the speed. ROS's
+driver ends its commands with CR alone, waits for the prompt at first and then for an answer to each of them, as long as it
+takes (communication_core.cpp, async_manager.hpp and telegram_handler.cpp): it gets 1 s here.
 """
 import math
 import struct
@@ -142,3 +144,69 @@ class Px4Septentrio(Septentrio):
             if self.wait(lambda item: isinstance(item, sbf.Answer) and item.text.startswith("$R: gecm"), self.fast):
                 return
         self.fail("$R: gecm at one of the speeds")
+
+
+class RosSeptentrio(Septentrio):
+    """ROS's septentrio_gnss_driver with a GNSS receiver: what it configures when it publishes all that such one has."""
+
+    name = "ROS septentrio_gnss_driver"
+    cartesian, covariances, measurements = 4006, (5905, 5906, 5907, 5908), 4027
+    setup = 5902
+    each_half = (5914, 4006, 4007, 4043, 4028, 5905, 5906, 5907, 5908, 5938, 5939, 4027, 4013, 4001)
+    blocks = ("+ReceiverTime +PVTCartesian +PVTGeodetic +BaseVectorCart +BaseVectorGeod +PosCovCartesian +PosCovGeodetic "
+              "+VelCovCartesian +VelCovGeodetic +AttEuler +AttCovEuler +MeasEpoch +ChannelStatus +DOP")
+    lines = ("sso, all, none, none, off ", "sno, all, none, none, off ", "grc ", "sgd, Default",
+             'sao, Main, 0, 0, 0, "Unknown", Unknown', 'sao, Aux1, 0, 0, 0, "Unknown", Unknown', "sga, none ",
+             "sto, 0, 0 ", "sso, Stream1, COM1, +ReceiverStatus +QualityInd +ReceiverSetup, sec1", "snti, GP",
+             "sno, Stream2, COM1, +GGA +RMC +GSA +GSV, msec500", f"sso, Stream3, COM1, {blocks}, msec500")
+
+    def run(self):
+        self.speed(115200)
+        self.step("the connection's name")
+        self.send(b"\rSSSSSSSSSS\r\r")
+        descriptor = self.need(lambda item: isinstance(item, sbf.Answer), 2000, "a prompt")
+        self.check(descriptor.prompt == "COM1", "COM1>", descriptor)
+        for line in self.lines:
+            answer = self.said(line)
+            if line == "grc ":
+                self.check("ReceiverCapabilities" in answer.text and "Heading" not in answer.text,
+                           "abilities, by which it knows that there is one antenna", answer)
+        self.pump(2)
+        self.follow()
+        for line in ("sdio, COM1, auto, none", "logout "):
+            self.said(line)
+
+    def said(self, line):
+        self.step(line)
+        self.forget()
+        self.send(line.encode() + b"\r")
+        answer = self.need(lambda item: isinstance(item, sbf.Answer) and item.text, 1000, "$R:")
+        self.check(answer.text.startswith(("$R:", "$R!")), "$R: or $R!", answer)
+        return answer
+
+    def follow(self):
+        self.step("blocks and sentences that were asked for")
+        items = self.collect(HEALTHY)
+        self.check(not self.parser.noise, "blocks, answers and sentences alone", bytes(self.parser.noise[:60]))
+        blocks = [item for item in items if isinstance(item, sbf.Block)]
+        wanted = set(self.each_half) | {STATUS, QUALITY, self.setup}
+        self.check({b.number for b in blocks} == wanted, sorted(wanted), sorted({b.number for b in blocks}))
+        for number in wanted:
+            times = [b.tow_ms for b in blocks if b.number == number]
+            period = 500 if number in self.each_half else 1000
+            self.check(all(b - a == period for a, b in zip(times, times[1:])), f"{number} every {period} ms", times)
+        sentences = {item.text[:6] for item in items if isinstance(item, sbf.Sentence)}
+        self.check({"$GPGGA", "$GPRMC", "$GPGSA", "$GPGSV"} <= sentences, "sentences of talker GP", sentences)
+        self.check_solution(blocks)
+        self.check_fields({b.number: b.body for b in blocks})
+
+    def check_fields(self, last):
+        x, y, z = struct.unpack_from("<ddd", last[self.cartesian], 8)
+        self.check(abs(math.hypot(x, y, z) - 6367e3) < 5e3, "a place on the Earth", (x, y, z))
+        for number in self.covariances:
+            variances = struct.unpack_from("<fff", last[number], 8)
+            self.check(all(0 < v < 100 for v in variances), f"variances in {number}", variances)
+        count, first, other = struct.unpack_from("<BBB", last[self.measurements], 6)
+        self.check(count >= 6 and (first, other) == (20, 12), "six satellites measured", (count, first, other))
+        version = last[self.setup][8 + 60 + 20 + 20 + 40 + 20 + 20:][:20].rstrip(b"\0").decode("ascii")
+        self.check(tuple(map(int, version.split("."))) >= (4, 10, 0), "firmware 4.10.0 or later, as it demands", version)
