@@ -33,6 +33,15 @@ std::vector<std::string> sentence_names(const BoardProfile& board) {
     return names;
 }
 
+TEST(BoardFile, NamesTheBlocksOfASeptentrio) {
+    const auto board = read_board("personality = \"sbf\"\n[sbf]\nblocks = [\"measepoch\", \"RawNavBits\"]\n", "a.toml");
+    ASSERT_TRUE(board) << board.error().message;
+    EXPECT_THAT(board->sbf_blocks, ElementsAre("MeasEpoch", "RawNavBits"));
+    const auto wrong = read_board("personality = \"sbf\"\n[sbf]\nblocks = [\"MeasEpoch\", \"Tea\"]\n", "a.toml");
+    ASSERT_FALSE(wrong);
+    EXPECT_THAT(wrong.error().message, HasSubstr("has 'Tea', which is no SBF block or group"));
+}
+
 TEST(BoardFile, TellsTheUsbPort) {
     const auto m8 = find_board("ublox-m8", shipped_boards);
     ASSERT_TRUE(m8 && m8->usb);
