@@ -125,6 +125,8 @@ class Px4Septentrio(Septentrio):
                      "sso,Stream1,COM1,PVTGeodetic+VelCovGeodetic+DOP+AttEuler+AttCovEuler+EndOfPVT+ReceiverStatus+"
                      "GALAuthStatus+RFStatus+QualityInd,msec200", "sga,MultiAntenna"):
             self.command(line, 1000 if line.startswith("ssu") else self.fast)
+            if line == "gecm":
+                self.parser.noise.clear()  # the rest of a block that the change of speed has cut
         self.pump(3)
         blocks = self.watch(self.blocks, 200)
         self.check_solution(blocks)
