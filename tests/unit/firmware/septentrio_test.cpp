@@ -308,7 +308,8 @@ TEST_F(SeptentrioReceiver, TellsNothingOfSatellitesBelowTheMaskOfTracking) {
         for (const StreamPiece& piece : wait(1s)) {
             const auto block = parse_sbf(piece.bytes);
             if (!block || block->number != SbfChannelStatus::block_number) continue;
-            for (const SbfChannel& channel : decode_sbf<SbfChannelStatus>(block->body)->channels)
+            const auto status = decode_sbf<SbfChannelStatus>(block->body);
+            for (const SbfChannel& channel : status->channels)
                 elevation = std::min<int>(elevation, channel.elevation);
         }
         return elevation;
