@@ -26,6 +26,16 @@ void carry_to_clock_instant(NavigationState& state) {
         carried(fix.position, fix.velocity, Seconds(std::chrono::duration<double>(-clock_ahead(state)).count()));
 }
 
+// A range that shrinks was longer before.
+Observation carried(const Observation& measured, Seconds past) {
+    Observation then = measured;
+    if (!measured.doppler) return then;
+    const double cycles = past.value() * measured.doppler->value();
+    if (then.pseudorange) *then.pseudorange += Metres(cycles * speed_of_light / measured.carrier.value());
+    if (then.carrier_phase) *then.carrier_phase += cycles;
+    return then;
+}
+
 Geodetic carried(const Geodetic& from, const VelocityNed& velocity, Seconds time) {
     const double t = time.value();
     return to_geodetic(

@@ -13,6 +13,11 @@ Nanoseconds clock_ahead(const NavigationState& state);
 /// which it is reported.
 void carry_to_clock_instant(NavigationState& state);
 
+/// Carries what was measured `past` a whole millisecond of the receiver's clock back to that, by the Doppler: ranges by
+/// centimetres, to better than a millimetre. Receivers measure at whole milliseconds of their clocks (rcvTow of 4568
+/// epochs of ZED-F9T, M8P and M8T).
+Observation carried(const Observation& measured, Seconds past);
+
 /// Where one comes from there with that velocity.
 Geodetic carried(const Geodetic& from, const VelocityNed& velocity, Seconds time);
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "firmware/clock_instant.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/satellite_parts.hpp"
 #include "skyloop/gnss/constants.hpp"
@@ -75,13 +76,13 @@ RxmRawx raw_measurements(const ReportContext& context) {
         m.rcv_tow = state.since_start.value();
         return m;
     }
-    const WeekAndTow now = week_and_tow(measurement_time(context));
+    const GpsTime measured = measurement_time(context), told = std::chrono::round<std::chrono::milliseconds>(measured);
+    const WeekAndTow now = week_and_tow(told);
     m.rcv_tow = now.tow_seconds();
-    // The receiver's clock is up to half a millisecond beside the epoch, whose week the other messages tell.
-    m.week = week_field<std::uint16_t>(state, {now.week, now.tow + 500us});
+    m.week = week_field<std::uint16_t>(state, now);
     if (state.epoch.observations.clock_was_set) m.rec_stat |= 2;
     for (const Observation& o : state.epoch.observations.signals)
-        if (o.pseudorange) m.measurements.push_back(raw_measurement(o, context));
+        if (o.pseudorange) m.measurements.push_back(raw_measurement(carried(o, difference(measured, told)), context));
     return m;
 }
 

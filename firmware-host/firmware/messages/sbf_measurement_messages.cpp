@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/clock_instant.hpp"
 #include "firmware/messages/sbf_parts.hpp"
 #include "skyloop/gnss/constants.hpp"
 
@@ -28,14 +29,11 @@ double past_millisecond(const NavigationState& state) {
     return difference(state.epoch.observations.receive_time, whole).value();
 }
 
-// Measured `past` after the clock showed the whole millisecond: the range was then longer by what it has shrunk since.
 std::optional<SbfMeasured> measured_then(const Observation& o, double past) {
     const auto number = sbf_signal_number(o.satellite.constellation, o.signal);
     if (!number || !o.pseudorange || !o.doppler || !sbf_svid(o.satellite)) return std::nullopt;
-    const double wavelength = speed_of_light / o.carrier.value(), doppler = o.doppler->value();
-    SbfMeasured then{&o, *number, o.pseudorange->value() + past * wavelength * doppler, {}};
-    if (o.carrier_phase) then.phase = *o.carrier_phase + past * doppler;
-    return then;
+    const Observation then = carried(o, Seconds(past));
+    return SbfMeasured{&o, *number, then.pseudorange->value(), then.carrier_phase};
 }
 
 // By satellite, each with its first signal in front: signals come ascending by satellite.

@@ -27,7 +27,7 @@ Observation raw_signal(SatelliteId satellite, Signal signal, double pseudorange_
 
 UbxReport measured() {
     UbxReport f9(9);
-    f9.state.epoch.observations.receive_time = to_gps_time({2304, 218981521ms + 200us});
+    f9.state.epoch.observations.receive_time = to_gps_time({2304, 218981521ms});
     f9.state.epoch.observations.signals = {raw_signal({Constellation::gps, 1}, Signal::l1, 22'345'678.9),
                                            raw_signal({Constellation::gps, 1}, Signal::l2, 22'345'680.1),
                                            raw_signal({Constellation::galileo, 2}, Signal::e5b, 25e6)};
@@ -37,7 +37,7 @@ UbxReport measured() {
 TEST(RxmRawxMessage, IsInTheTimeOfTheReceiver) {
     UbxReport f9 = measured();
     auto m = f9.report<RxmRawx>();
-    EXPECT_DOUBLE_EQ(m.rcv_tow, 218981.5212);
+    EXPECT_DOUBLE_EQ(m.rcv_tow, 218981.521);
     EXPECT_EQ(m.week, 2304);
     EXPECT_EQ(m.leap_s, 18);
     EXPECT_EQ(m.rec_stat, 1);
@@ -45,6 +45,23 @@ TEST(RxmRawxMessage, IsInTheTimeOfTheReceiver) {
     f9.state.time.leap_seconds = false;
     f9.state.epoch.observations.clock_was_set = true;
     EXPECT_EQ(f9.report<RxmRawx>().rec_stat, 2);
+}
+
+// Ranges and phases are those of the whole millisecond that the receiver's clock has just passed: the satellite comes
+// nearer or goes, 200 µs long.
+TEST(RxmRawxMessage, MeasuresAtWholeMillisecondsOfTheReceiversClock) {
+    UbxReport f9 = measured();
+    f9.state.epoch.observations.receive_time += 200us;
+    const auto m = f9.report<RxmRawx>();
+    EXPECT_DOUBLE_EQ(m.rcv_tow, 218981.521);
+    const Observation& l1 = f9.state.epoch.observations.signals.front();
+    const double cycles = -1234.5 * 200e-6;
+    EXPECT_NEAR(m.measurements[0].cp_mes, *l1.carrier_phase + cycles, 1e-6);
+    EXPECT_NEAR(m.measurements[0].pr_mes, l1.pseudorange->value() + cycles * 299792458.0 / l1.carrier.value(), 1e-6);
+    f9.state.epoch.observations.receive_time -= 400us;
+    const auto before = f9.report<RxmRawx>();
+    EXPECT_DOUBLE_EQ(before.rcv_tow, m.rcv_tow);
+    EXPECT_NEAR(before.measurements[0].cp_mes, *l1.carrier_phase - cycles, 1e-6);
 }
 
 // As a ZED-F9P at a cold start: its own count, no week and no measurement until the time and the date are known.
