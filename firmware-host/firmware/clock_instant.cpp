@@ -21,9 +21,9 @@ Nanoseconds clock_ahead(const NavigationState& state) {
 
 void carry_to_clock_instant(NavigationState& state) {
     Fix& fix = state.epoch.fix;
-    if (!fix.has_position()) return;
-    fix.position =
-        carried(fix.position, fix.velocity, Seconds(std::chrono::duration<double>(-clock_ahead(state)).count()));
+    const Nanoseconds ahead = clock_ahead(state);
+    if (!fix.has_position() || ahead == Nanoseconds(0)) return;
+    fix.position = carried(fix.position, fix.velocity, Seconds(std::chrono::duration<double>(-ahead).count()));
 }
 
 // A range that shrinks was longer before.
