@@ -27,10 +27,11 @@ void send_load(std::uint16_t port, std::uint64_t& sent, const std::atomic<std::u
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     to.sin_port = htons(port);
     ASSERT_EQ(::connect(socket.value(), reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
-    auto next = std::chrono::steady_clock::now();
+    const auto begun = std::chrono::steady_clock::now();
+    auto next = begun;
+    double t = 0;
     constexpr int total = load_vehicles * load_rate_hz * load_seconds;
     for (int i = 0; i < total; ++i) {
-        const double t = static_cast<double>(i) / (load_vehicles * load_rate_hz);
         if (i % 8 == 0) {
             // A sender that was held up goes on at its rate: a burst of all that is due is another test.
             next = std::max(next + std::chrono::microseconds(1250), std::chrono::steady_clock::now());
@@ -38,6 +39,8 @@ void send_load(std::uint16_t port, std::uint64_t& sent, const std::atomic<std::u
             // So is a machine that gives the feed no time at all.
             for (int waited = 0; sent > taken + most_under_way && waited < 30'000; ++waited)
                 std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            // So is a source whose clock stands still while it is held up.
+            t = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
         }
         char text[400];
         const int size = std::snprintf(text, sizeof text,
