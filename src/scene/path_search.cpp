@@ -20,7 +20,7 @@ constexpr int everywhere_divisor = 16;
 // Rays traced together: enough to keep packets full after many reflections, few enough to stay in a core's cache.
 constexpr std::size_t chunk_rays = 2048;
 // Neighbours of the lattice mostly meet the same wall at first.
-constexpr int coherent_rounds = 1;
+constexpr int rounds_together = 1;
 
 int rays_of(const PathSearchSettings& settings) {
     return settings.rays > 0 ? std::min(settings.rays, most_rays) : usual_rays;
@@ -142,7 +142,7 @@ void PathSearch::trace_chunk(std::size_t chunk, std::size_t worker) {
     scratch.front.clear();
     for (std::size_t i = chunk * chunk_rays; i < last; ++i)
         scratch.front.add(request_.antenna, directions_[i]);
-    result.segments = scratch.front.trace(scene_, rules_, coherent_rounds);
+    result.segments = scratch.front.trace(scene_, rules_, rounds_together);
     result.proposals.clear();
     scratch.proposed.clear();
     for (const EscapedRay& ray : scratch.front.escaped()) {

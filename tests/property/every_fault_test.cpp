@@ -7,8 +7,8 @@
 #include <random>
 #include <set>
 
-#include "fault_rows.hpp"
 #include "skyloop/fault/fault_kind.hpp"
+#include "support/fault_rows.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "firmware/config/config_keys.hpp"
-#include "run_parts.hpp"
 #include "skyloop/protocol/stream_splitter.hpp"
 #include "skyloop/protocol/ubx_cfg_values.hpp"
 #include "skyloop/protocol/ubx_names.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
+#include "support/run_parts.hpp"
 
 namespace skyloop::test {
 

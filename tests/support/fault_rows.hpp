@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "fault_bench.hpp"
+#include "support/fault_bench.hpp"
 
 namespace skyloop::test {
 

@@ -279,9 +279,10 @@ TEST(ControlRequest, DescribesEveryAnswer) {
         for (const auto& [method, operation] : methods) {
             if (!operations.contains(operation)) continue;
             const std::string target = path == "/api/faults/{name}" ? "/api/faults/wet%20plug" : path;
-            const auto expect_described = [&](const ControlRequest& request) {
+            const auto expect_described = [&desk, responses = operations[operation]["responses"],
+                                           what = method + " " + path](const ControlRequest& request) {
                 const std::string status = std::to_string(desk.ask(request).status);
-                EXPECT_TRUE(operations[operation]["responses"].contains(status)) << method << " " << path << status;
+                EXPECT_TRUE(responses.contains(status)) << what << status;
             };
             desk.rules.token.clear();
             expect_described({method, target, {{"Host", "localhost"}, json}, "{}"});

@@ -23,7 +23,7 @@ double rms_of(const std::vector<double>& values) {
 
 CorrectedErrors errors_with(CorrectionState state, FixType expected, std::uint64_t seed = 3) {
     const ModernSettings modern = effective(ModernSettings::of(ModernPreset::consumer));
-    const Geodetic place{Angle::degrees(47.4), Angle::degrees(8.5), EllipsoidalHeight(Metres(450))};
+    const Geodetic place{Angle::degrees(47.4), Angle::degrees(8.5), EllipsoidalHeight{Metres(450)}};
     Simulation run = test::modern_run(modern, std::make_unique<FixedPoint>(place), seed);
     ReceiverSettings settings = test::all_systems();
     test::ErrorSeries errors;
@@ -74,7 +74,7 @@ TEST(CorrectedSolution, FixedIsGoodToCentimetres) {
 // A receiver that was corrected begins anew without: nothing of the corrections stays.
 TEST(CorrectedSolution, EndsWithTheCorrections) {
     const ModernSettings modern = effective(ModernSettings::of(ModernPreset::consumer));
-    const Geodetic place{Angle::degrees(47.4), Angle::degrees(8.5), EllipsoidalHeight(Metres(450))};
+    const Geodetic place{Angle::degrees(47.4), Angle::degrees(8.5), EllipsoidalHeight{Metres(450)}};
     Simulation run = test::modern_run(modern, std::make_unique<FixedPoint>(place), 5);
     ReceiverSettings settings = test::all_systems();
     for (int i = 0; i < 60; ++i) {

@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "run_parts.hpp"
 #include "skyloop/protocol/nmea_sentence.hpp"
+#include "support/run_parts.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -8,8 +8,8 @@
 #include <csignal>
 #include <set>
 
-#include "run_parts.hpp"
 #include "skyloop/protocol/nmea_decode.hpp"
+#include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
 namespace skyloop {

@@ -1,7 +1,7 @@
 // Flights beyond the limits of receivers: who keeps its fix, and who loses it where.
 #include <gtest/gtest.h>
 
-#include "run_parts.hpp"
+#include "support/run_parts.hpp"
 
 namespace skyloop {
 namespace {

@@ -6,9 +6,9 @@
 #include <random>
 #include <set>
 
-#include "fault_rows.hpp"
 #include "skyloop/fault/fault_kind.hpp"
 #include "skyloop/protocol/ubx_satellites.hpp"
+#include "support/fault_rows.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -9,9 +9,9 @@
 #include <cstdio>
 #include <thread>
 
-#include "run_parts.hpp"
 #include "skyloop/base/steady_clock.hpp"
 #include "skyloop/transport/file_descriptor.hpp"
+#include "support/run_parts.hpp"
 
 namespace skyloop {
 namespace {

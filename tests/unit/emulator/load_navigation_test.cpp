@@ -4,9 +4,9 @@
 
 #include <numeric>
 
-#include "run_parts.hpp"
 #include "skyloop/emulator/navigation_files.hpp"
 #include "skyloop/time/utc_time.hpp"
+#include "support/run_parts.hpp"
 #include "unit/rinex/navigation_text.hpp"
 #include "unit/transport/temporary_folder.hpp"
 

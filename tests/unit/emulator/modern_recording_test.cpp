@@ -6,13 +6,13 @@
 #include <map>
 #include <set>
 
-#include "run_parts.hpp"
 #include "skyloop/gnss/orbit.hpp"
 #include "skyloop/rinex/navigation_file.hpp"
 #include "skyloop/rinex/navigation_writer.hpp"
 #include "skyloop/rinex/observation_reader.hpp"
 #include "skyloop/time/utc_time.hpp"
 #include "support/four_systems.hpp"
+#include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
 namespace skyloop {

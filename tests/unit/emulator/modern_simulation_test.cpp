@@ -1,8 +1,8 @@
 // The modern profile as a scenario asks for it, on the nominal constellation.
 #include <gtest/gtest.h>
 
-#include "run_parts.hpp"
 #include "skyloop/geo/local_frame.hpp"
+#include "support/run_parts.hpp"
 
 namespace skyloop {
 namespace {

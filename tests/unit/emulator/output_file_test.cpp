@@ -9,7 +9,7 @@
 #include <csignal>
 #include <cstdio>
 
-#include "run_parts.hpp"
+#include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
 namespace skyloop {

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "run_parts.hpp"
 #include "skyloop/emulator/run_summary.hpp"
+#include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
 namespace skyloop {

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "run_parts.hpp"
 #include "skyloop/transport/file.hpp"
+#include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
 namespace skyloop {

@@ -6,7 +6,7 @@
 
 #include <fstream>
 
-#include "run_parts.hpp"
+#include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
 namespace skyloop {

@@ -8,10 +8,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "run_parts.hpp"
 #include "skyloop/emulator/run_summary.hpp"
 #include "skyloop/emulator/wires.hpp"
 #include "skyloop/geo/local_frame.hpp"
+#include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
 namespace skyloop {

@@ -1,7 +1,7 @@
 // What a simulation gives a receiver that its user has stopped, and what its monitors see.
 #include <gtest/gtest.h>
 
-#include "run_parts.hpp"
+#include "support/run_parts.hpp"
 
 namespace skyloop {
 namespace {

@@ -10,10 +10,10 @@
 #include <cmath>
 #include <functional>
 
-#include "run_parts.hpp"
 #include "skyloop/transport/pty.hpp"
 #include "skyloop/transport/rfc2217.hpp"
 #include "skyloop/transport/serial.hpp"
+#include "support/run_parts.hpp"
 #include "unit/transport/tcp_peer.hpp"
 #include "unit/transport/temporary_folder.hpp"
 

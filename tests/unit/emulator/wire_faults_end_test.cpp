@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "run_parts.hpp"
 #include "skyloop/client/open_client.hpp"
 #include "skyloop/fault/fault_kind.hpp"
+#include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
 namespace skyloop::test {
