@@ -18,7 +18,8 @@ constexpr std::size_t setup_size = 8;
 constexpr std::uint8_t to_host = 0x80;
 
 struct Urb {
-    UMockdevIoctlData* data = nullptr;  // of the struct, and by it the address in the caller
+    UMockdevIoctlClient* client = nullptr;  // whose it is: a forked process has its own at the same address
+    UMockdevIoctlData* data = nullptr;      // of the struct, and by it the address in the caller
     UMockdevIoctlData* buffer = nullptr;
 
     [[nodiscard]] usbdevfs_urb& head() const { return *reinterpret_cast<usbdevfs_urb*>(data->data); }
@@ -46,6 +47,7 @@ private:
     static void release(Urb& urb) {
         umockdev_ioctl_data_unref(urb.buffer);
         umockdev_ioctl_data_unref(urb.data);
+        g_object_unref(urb.client);
     }
     static void answer(UMockdevIoctlClient* client, int error) {
         umockdev_ioctl_client_complete(client, error == 0 ? 0 : -1, error);
@@ -53,6 +55,7 @@ private:
     void submit(UMockdevIoctlClient* client);
     void discard(UMockdevIoctlClient* client);
     void reap(UMockdevIoctlClient* client);
+    void forget_the_gone();
     void finish_what_can();
     bool finish(Urb& urb);
     MockDevice::Answer control_answer(const Setup& setup, ByteSpan sent);
@@ -153,6 +156,7 @@ int UsbfsNode::driver_name(UMockdevIoctlData* argument) {
 void UsbfsNode::submit(UMockdevIoctlClient* client) {
     UMockdevIoctlData* const argument = umockdev_ioctl_client_get_arg(client);
     Urb urb;
+    urb.client = UMOCKDEV_IOCTL_CLIENT(g_object_ref(client));
     urb.data = umockdev_ioctl_data_ref(resolve(argument, 0, sizeof(usbdevfs_urb)));
     urb.buffer = umockdev_ioctl_data_ref(
         resolve(urb.data, offsetof(usbdevfs_urb, buffer), static_cast<std::size_t>(urb.head().buffer_length)));
@@ -167,8 +171,9 @@ void UsbfsNode::discard(UMockdevIoctlClient* client) {
     const UMockdevIoctlData* const argument = umockdev_ioctl_client_get_arg(client);
     unsigned long address = 0;
     std::memcpy(&address, argument->data, sizeof address);
-    const auto urb = std::find_if(waiting_.begin(), waiting_.end(),
-                                  [&](const Urb& one) { return one.data->client_addr == address; });
+    const auto urb = std::find_if(waiting_.begin(), waiting_.end(), [&](const Urb& one) {
+        return one.client == client && one.data->client_addr == address;
+    });
     if (urb == waiting_.end()) return answer(client, EINVAL);
     urb->head().status = -ENOENT;
     done_.splice(done_.end(), waiting_, urb);
@@ -213,6 +218,16 @@ bool UsbfsNode::finish(Urb& urb) {
     return true;
 }
 
+// As the kernel does at close(2), also of a process that has been killed.
+void UsbfsNode::forget_the_gone() {
+    for (std::list<Urb>* const list : {&waiting_, &done_})
+        list->remove_if([](Urb& urb) {
+            const bool gone = umockdev_ioctl_client_get_connected(urb.client) == FALSE;
+            if (gone) release(urb);
+            return gone;
+        });
+}
+
 // The transfers of an endpoint are dealt with in their order: one that waits holds up the others.
 void UsbfsNode::finish_what_can() {
     std::list<unsigned char> held;
@@ -230,14 +245,16 @@ void UsbfsNode::finish_what_can() {
 }
 
 void UsbfsNode::reap(UMockdevIoctlClient* client) {
+    forget_the_gone();
     finish_what_can();
-    if (done_.empty()) {
+    const auto own = std::find_if(done_.begin(), done_.end(), [&](const Urb& one) { return one.client == client; });
+    if (own == done_.end()) {
         // umockdev's nodes are always ready to poll(2): libusb would ask without pause.
         std::this_thread::sleep_for(std::chrono::microseconds(300));
         return answer(client, device_->present ? EAGAIN : ENODEV);
     }
-    Urb urb = done_.front();
-    done_.pop_front();
+    Urb urb = *own;
+    done_.erase(own);
     UMockdevIoctlData* const place = resolve(umockdev_ioctl_client_get_arg(client), 0, sizeof(void*));
     umockdev_ioctl_data_set_ptr(place, 0, urb.data);
     answer(client, 0);
