@@ -1,6 +1,5 @@
 /// What paths in a city cost, and against what. All times are of the calling thread's processor.
 #include <benchmark/benchmark.h>
-#include <time.h>
 
 #include <algorithm>
 #include <chrono>
@@ -12,6 +11,7 @@
 #include <thread>
 
 #include "bench/prefix_finder.hpp"
+#include "bench/thread_time.hpp"
 #include "skyloop/city/city_file.hpp"
 #include "skyloop/scene/generated_city.hpp"
 #include "support/random_sky.hpp"
@@ -19,14 +19,9 @@
 namespace {
 
 using namespace skyloop;
+using bench::thread_seconds;
 using Scene = std::shared_ptr<const UrbanScene>;
 using Answers = std::vector<std::vector<SatellitePaths>>;
-
-double thread_seconds() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 double quantile(std::vector<double> values, double share) {
     if (values.empty()) return 0;
@@ -43,17 +38,17 @@ double mean(const std::vector<double>& values) {
 }
 
 /// A place with its sky.
-struct Station {
+struct Viewpoint {
     Eigen::Vector3d place;
     std::vector<SceneSatellite> sky;
 };
 
 struct BenchCity {
     Scene scene;
-    std::vector<Station> stations;
+    std::vector<Viewpoint> viewpoints;
 };
 
-constexpr int stations_of_city = 12, satellites_of_station = 40;
+constexpr int viewpoints_of_city = 12, satellites_of_viewpoint = 40;
 
 BenchCity made_city(std::size_t triangles, bool windows = false) {
     GeneratedCitySettings settings;
@@ -61,9 +56,9 @@ BenchCity made_city(std::size_t triangles, bool windows = false) {
     settings.windows = windows;
     const GeneratedCity made = generated_city(settings, Geodetic{});
     BenchCity city{*UrbanScene::build(made.city), {}};
-    for (std::size_t i = 0; i < stations_of_city; ++i) {
+    for (std::size_t i = 0; i < viewpoints_of_city; ++i) {
         const Eigen::Vector3d& place = made.street_places[i];
-        city.stations.push_back({place, test::random_sky(satellites_of_station, place, 5000 + i)});
+        city.viewpoints.push_back({place, test::random_sky(satellites_of_viewpoint, place, 5000 + i)});
     }
     return city;
 }
@@ -74,7 +69,7 @@ BenchCity munich() {
     if (!file) return {};
     BenchCity city{*UrbanScene::build(file->model), {}};
     RandomStream random(5, "open places");
-    while (city.stations.size() < stations_of_city) {
+    while (city.viewpoints.size() < viewpoints_of_city) {
         const double east = 800 * random.uniform() - 400, north = 800 * random.uniform() - 400;
         const auto ground = city.scene->ground_at(east, north), top = city.scene->top_at(east, north);
         if (!ground || !top || *top > *ground + 0.01) continue;
@@ -83,7 +78,8 @@ BenchCity munich() {
         for (int k = 0; k < 16; ++k)
             walls += city.scene->blocked({place, {std::sin(k * 0.3927), std::cos(k * 0.3927), 0}}, 60) ? 1 : 0;
         if (walls >= 8)
-            city.stations.push_back({place, test::random_sky(satellites_of_station, place, city.stations.size())});
+            city.viewpoints.push_back(
+                {place, test::random_sky(satellites_of_viewpoint, place, city.viewpoints.size())});
     }
     return city;
 }
@@ -95,7 +91,7 @@ PathSearchSettings at_once(int rays) {
     return settings;
 }
 
-/// Every station by itself, none knowing of another: paths, seconds of each, stretches of rays.
+/// Every viewpoint by itself, none knowing of another: paths, seconds of each, stretches of rays.
 struct Measured {
     Answers paths;
     std::vector<double> seconds;
@@ -107,12 +103,12 @@ Measured measured(const BenchCity& city, const PathSearchSettings& settings, int
     Measured result;
     GpsTime now = to_gps_time(2300, 0.0);
     for (int pass = 0; pass < passes; ++pass)
-        for (const Station& station : city.stations) {
+        for (const Viewpoint& viewpoint : city.viewpoints) {
             SceneObserver observer;
             observer.now = now = now + std::chrono::seconds(100);
-            observer.position = station.place;
+            observer.position = viewpoint.place;
             const double begin = thread_seconds();
-            result.paths.push_back(finder.epoch(observer, station.sky));
+            result.paths.push_back(finder.epoch(observer, viewpoint.sky));
             result.seconds.push_back(thread_seconds() - begin);
         }
     result.segments = finder.counters().segments;
@@ -130,10 +126,10 @@ Answers reference_paths(const BenchCity& city) {
     thorough.tolerance_deg = 15;
     thorough.most_hops = 12;
     const Answers passes = measured(city, thorough, 4).paths;
-    Answers all(passes.begin(), passes.begin() + static_cast<std::ptrdiff_t>(city.stations.size()));
-    for (std::size_t i = city.stations.size(); i < passes.size(); ++i)
+    Answers all(passes.begin(), passes.begin() + static_cast<std::ptrdiff_t>(city.viewpoints.size()));
+    for (std::size_t i = city.viewpoints.size(); i < passes.size(); ++i)
         for (std::size_t s = 0; s < passes[i].size(); ++s) {
-            std::vector<ScenePath>& known = all[i % city.stations.size()][s].paths;
+            std::vector<ScenePath>& known = all[i % city.viewpoints.size()][s].paths;
             for (const ScenePath& path : passes[i][s].paths)
                 if (std::none_of(known.begin(), known.end(), [&](const ScenePath& k) { return same_path(k, path); }))
                     known.push_back(path);
@@ -166,14 +162,14 @@ std::string text_of(const char* format, Parts... parts) {
     return text.data();
 }
 
-/// The rays that one search of a station sends, followed one at a time.
-void record_rays(const BenchCity& city, const Station& station, int rays, std::vector<SceneRay>& recorded) {
+/// The rays that one search of a viewpoint sends, followed one at a time.
+void record_rays(const BenchCity& city, const Viewpoint& viewpoint, int rays, std::vector<SceneRay>& recorded) {
     const RayLattice lattice(rays);
     std::vector<ElevationBand> bands;
-    for (const SceneSatellite& satellite : station.sky) {
-        const Eigen::Vector3d u = (satellite.position - station.place).normalized();
+    for (const SceneSatellite& satellite : viewpoint.sky) {
+        const Eigen::Vector3d u = (satellite.position - viewpoint.place).normalized();
         const double elevation = std::asin(u.z()), most = std::numbers::pi / 2;
-        if (city.scene->blocked({station.place, u}))
+        if (city.scene->blocked({viewpoint.place, u}))
             bands.push_back({std::sin(std::max(elevation - lattice.spacing(), -most)),
                              std::sin(std::min(elevation + lattice.spacing(), most))});
     }
@@ -182,7 +178,7 @@ void record_rays(const BenchCity& city, const Station& station, int rays, std::v
     lattice.select(bands, 0, directions);
     std::vector<SceneRay> front;
     for (const Eigen::Vector3d& direction : directions)
-        front.push_back({station.place, direction});
+        front.push_back({viewpoint.place, direction});
     for (int round = 0; round <= most_reflections && !front.empty(); ++round) {
         recorded.insert(recorded.end(), front.begin(), front.end());
         std::size_t left = 0;
@@ -202,12 +198,12 @@ void record_rays(const BenchCity& city, const Station& station, int rays, std::v
 void segments_against_raw(const BenchCity& city, const char* name, const char* target) {
     constexpr int rays = 32768;
     std::vector<SceneRay> recorded;
-    for (const Station& station : city.stations)
-        record_rays(city, station, rays, recorded);
+    for (const Viewpoint& viewpoint : city.viewpoints)
+        record_rays(city, viewpoint, rays, recorded);
     std::vector<double> ours, raw;
     for (int repetition = 0; repetition < 5; ++repetition) {
         const Measured search = measured(city, at_once(rays), 1);
-        ours.push_back(static_cast<double>(search.segments) / (mean(search.seconds) * stations_of_city));
+        ours.push_back(static_cast<double>(search.segments) / (mean(search.seconds) * viewpoints_of_city));
         int hits = 0;
         const double begin = thread_seconds();
         for (const SceneRay& ray : recorded)
@@ -224,9 +220,9 @@ void against_prefix_tests(const BenchCity& city, const Answers& reference) {
     const PathSearchSettings settings = at_once(8192);
     bench::PrefixFinder prefix(*city.scene, settings);
     Measured usual;
-    for (const Station& station : city.stations) {
+    for (const Viewpoint& viewpoint : city.viewpoints) {
         const double begin = thread_seconds();
-        usual.paths.push_back(prefix.epoch(station.place, station.sky));
+        usual.paths.push_back(prefix.epoch(viewpoint.place, viewpoint.sky));
         usual.seconds.push_back(thread_seconds() - begin);
     }
     const Measured ours = measured(city, settings);
@@ -253,15 +249,15 @@ std::vector<double> revalidation_seconds(const BenchCity& city, int rays) {
     settings.rays = rays;
     settings.threads = 1;
     std::vector<double> seconds;
-    for (const Station& station : city.stations) {
+    for (const Viewpoint& viewpoint : city.viewpoints) {
         PathFinder finder(city.scene, settings);
         SceneObserver observer;
-        observer.position = station.place;
+        observer.position = viewpoint.place;
         std::vector<double> here;
         for (int epoch = 0; epoch < 12; ++epoch) {
             observer.now = to_gps_time(2300, 0.1 * epoch);
             const double begin = thread_seconds();
-            finder.epoch(observer, station.sky);
+            finder.epoch(observer, viewpoint.sky);
             if (epoch >= 2) here.push_back(thread_seconds() - begin);
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
@@ -295,14 +291,14 @@ void static_memory(const BenchCity& city, const Answers& reference) {
     PathSearchSettings settings;
     settings.rays = 65536;
     Measured memory;
-    for (const Station& station : city.stations) {
+    for (const Viewpoint& viewpoint : city.viewpoints) {
         PathFinder finder(city.scene, settings);
         SceneObserver observer;
-        observer.position = station.place;
+        observer.position = viewpoint.place;
         for (int epoch = 0; epoch < 40; ++epoch) {
             observer.now = to_gps_time(2300, 0.1 * epoch);
             const double begin = thread_seconds();
-            auto paths = finder.epoch(observer, station.sky);
+            auto paths = finder.epoch(observer, viewpoint.sky);
             if (epoch < 20) continue;
             memory.seconds.push_back(thread_seconds() - begin);
             if (epoch == 39) memory.paths.push_back(std::move(paths));
@@ -324,8 +320,8 @@ void closed_form_error(const BenchCity& city) {
     for (std::size_t i = 0; i < found.paths.size(); ++i)
         for (std::size_t s = 0; s < found.paths[i].size(); ++s)
             for (const ScenePath& path : found.paths[i][s].paths) {
-                const LongVector antenna = city.stations[i].place.cast<long double>();
-                const LongVector satellite = city.stations[i].sky[s].position.cast<long double>();
+                const LongVector antenna = city.viewpoints[i].place.cast<long double>();
+                const LongVector satellite = city.viewpoints[i].sky[s].position.cast<long double>();
                 LongVector image = satellite;
                 for (std::size_t k = path.planes.size(); k-- > 0;) {
                     const ScenePlane& plane = city.scene->planes()[path.planes[k]];
@@ -356,22 +352,22 @@ void city_ratios(benchmark::State& state) {
 }
 BENCHMARK(city_ratios)->Name("City/ratios")->Iterations(1)->Unit(benchmark::kSecond);
 
-/// A straight drive from a station in the direction that is free the longest.
+/// A straight drive from a viewpoint in the direction that is free the longest.
 struct Drive {
     Eigen::Vector3d from, velocity;
 };
 
 Drive free_drive(const BenchCity& city, double seconds, double speed) {
-    Drive best{city.stations[0].place, Eigen::Vector3d::Zero()};
+    Drive best{city.viewpoints[0].place, Eigen::Vector3d::Zero()};
     double furthest = 0;
-    for (const Station& station : city.stations)
+    for (const Viewpoint& viewpoint : city.viewpoints)
         for (int k = 0; k < 72; ++k) {
             const Eigen::Vector3d way(std::sin(k * 0.0872665), std::cos(k * 0.0872665), 0);
-            const SceneHit hit = city.scene->first_hit({station.place, way});
+            const SceneHit hit = city.scene->first_hit({viewpoint.place, way});
             const double free = hit.any() ? hit.distance : 1e4;
             if (free > furthest) {
                 furthest = free;
-                best = {station.place, way * std::min(speed, (free - 2) / seconds)};
+                best = {viewpoint.place, way * std::min(speed, (free - 2) / seconds)};
             }
             if (furthest > speed * seconds + 2) return best;
         }
@@ -381,7 +377,7 @@ Drive free_drive(const BenchCity& city, double seconds, double speed) {
 void drive(benchmark::State& state, const BenchCity& city, double hz) {
     constexpr double seconds = 20;
     const Drive way = free_drive(city, seconds, 12);
-    const auto sky = test::random_sky(satellites_of_station, way.from, 99);
+    const auto sky = test::random_sky(satellites_of_viewpoint, way.from, 99);
     for (auto _ : state)
         for (const int threads : {0, 1}) {
             PathSearchSettings settings;

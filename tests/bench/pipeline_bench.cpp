@@ -1,11 +1,11 @@
 /// What one epoch costs, and its parts.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
-#include <time.h>
 
 #include <array>
 #include <atomic>
 
+#include "bench/thread_time.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "skyloop/emulator/assembly.hpp"
@@ -21,6 +21,7 @@
 namespace {
 
 using namespace skyloop;
+using bench::thread_seconds;
 using enum Constellation;
 
 const GpsTime bench_start = to_gps_time({2026, 3, 1, 12, 0, 0, 0}, LeapSeconds::announced());
@@ -43,13 +44,6 @@ double peak_megabytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<double>(usage.ru_maxrss) / 1024;
-}
-
-// Of this thread on the processor: other programs do not count.
-double thread_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 void satellite_position(benchmark::State& state) {
