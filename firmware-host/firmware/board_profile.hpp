@@ -153,6 +153,9 @@ struct NmeaStyle {
 /// some makers read as one rule and others as two (FEEDS.md 2.5).
 enum class ExportLimits { off, both_exceeded, either_exceeded };
 
+/// Speeds of a UART that a board may have, bit/s.
+inline constexpr std::uint32_t slowest_baud = 1200, fastest_baud = 8'000'000;
+
 /// One receiver model (boards/receivers/*.toml; every key in boards/README.md).
 struct BoardProfile {
     std::string name;
@@ -168,7 +171,8 @@ struct BoardProfile {
     std::uint32_t transmit_buffer_bytes = 4096;
     std::vector<PortId> ports{PortId::uart1};
     std::optional<UsbDescription> usb;  ///< nothing: it has no USB of its own
-    std::vector<std::uint32_t> bauds;   ///< that it can be set to, ascending; empty: any
+    std::vector<std::uint32_t>
+        bauds;  ///< that it can be set to, ascending; empty: all from slowest_baud to fastest_baud
 
     std::vector<Constellation> constellations;  ///< enabled at the factory
     bool dual_frequency = false;                ///< tracks the second signal of each system from the factory on

@@ -12,11 +12,14 @@ constexpr std::uint32_t usb_full_speed = 12'000'000, i2c_fast_mode = 400'000;
 }  // namespace
 
 std::uint32_t configured_baud(const ConfigStore& store, PortId port) {
+    const auto of_uart = [&store](std::uint32_t item) {
+        return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(store.value(item), slowest_baud, fastest_baud));
+    };
     switch (port) {
         case PortId::uart1:
-            return static_cast<std::uint32_t>(store.value(key::uart1_baudrate));
+            return of_uart(key::uart1_baudrate);
         case PortId::uart2:
-            return static_cast<std::uint32_t>(store.value(key::uart2_baudrate));
+            return of_uart(key::uart2_baudrate);
         case PortId::usb:
             return usb_full_speed;
         case PortId::i2c:

@@ -66,6 +66,7 @@ auto find_unit(Units& units, PortId port) -> decltype(units.data()) {
 }
 
 /// The speed of a port by the configuration; of USB, I2C and SPI that of their bus (USB full speed; I2C fast mode).
+/// Commands cannot ask for one that no UART has, stored text may: the nearest that one has.
 std::uint32_t configured_baud(const ConfigStore& store, PortId port);
 
 /// What leaves the receiver, and what is going to happen to its ports, in the order of time.

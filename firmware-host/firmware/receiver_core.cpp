@@ -27,7 +27,7 @@ enum ResetMode : std::uint8_t {
 std::vector<PortUnit> make_units(const BoardProfile& board, const ConfigStore& store) {
     std::vector<PortUnit> units;
     for (const PortId port : board.ports) {
-        const std::uint32_t baud = line_baud(store, port);
+        const std::uint32_t baud = configured_baud(store, port);
         units.emplace_back(port, baud, board.transmit_buffer_bytes);
         units.back().configured_baud = baud;
     }
@@ -35,12 +35,6 @@ std::vector<PortUnit> make_units(const BoardProfile& board, const ConfigStore& s
 }
 
 }  // namespace
-
-std::uint32_t line_baud(const ConfigStore& store, PortId port) {
-    // A speed that a line cannot have would divide by zero; the board's tables do not let one in, stored text may.
-    constexpr std::uint32_t slowest_baud = 300;
-    return std::max(slowest_baud, configured_baud(store, port));
-}
 
 Receiver::Core::Core(BoardProfile board, const ReceiverOptions& options)
     : board_(std::move(board)),
@@ -109,7 +103,7 @@ void Receiver::Core::begin_as_stored() {
     store_.reload();
     if (console_) console_.emplace(board_, store_);
     for (PortUnit& unit : units_) {
-        unit.configured_baud = line_baud(store_, unit.id);
+        unit.configured_baud = configured_baud(store_, unit.id);
         unit.transmit = Port(unit.configured_baud, board_.transmit_buffer_bytes);
     }
     adopt_settings();
@@ -206,7 +200,7 @@ void Receiver::Core::boot(const Forgotten& forgotten, GpsTime now, const Boot& h
     for (PortUnit& unit : units_) {
         const PortId id = unit.id;
         const PortTotals totals = unit.totals;
-        unit = PortUnit(id, line_baud(store_, id), board_.transmit_buffer_bytes);
+        unit = PortUnit(id, configured_baud(store_, id), board_.transmit_buffer_bytes);
         unit.configured_baud = unit.transmit.baud();
         unit.totals = totals;
     }

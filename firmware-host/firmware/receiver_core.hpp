@@ -186,9 +186,6 @@ private:
     std::optional<SeptentrioConsole> console_;  ///< of a receiver that has a command line
 };
 
-/// The speed of a port's line by the configuration; never so slow that it stands still.
-std::uint32_t line_baud(const ConfigStore& store, PortId port);
-
 /// The id of a client's sentence, for PUBX and the standard polls; 00-00 of others.
 UbxMessageId sentence_id(const SentenceView& sentence);
 

@@ -64,7 +64,7 @@ void Receiver::Core::force_baud(const ForceBaud& wanted, GpsTime now) {
 
 void Receiver::Core::change_speeds_at_once(GpsTime now) {
     for (PortUnit& unit : units_) {
-        const std::uint32_t baud = line_baud(store_, unit.id);
+        const std::uint32_t baud = configured_baud(store_, unit.id);
         if (baud == unit.configured_baud) continue;
         unit.configured_baud = baud;
         const PortId port = unit.id;

@@ -32,7 +32,7 @@ constexpr std::array<Word<ValueConfigSupport>, 3> value_config_words{{{"full", V
 constexpr std::array<Word<SpeedChangeAnswer>, 3> speed_change_words{{{"at_new_speed", SpeedChangeAnswer::at_new_speed},
                                                                      {"at_old_speed", SpeedChangeAnswer::at_old_speed},
                                                                      {"lost", SpeedChangeAnswer::lost}}};
-constexpr NumberRange speed_range{1200, 8'000'000};
+constexpr NumberRange speed_range{firmware::slowest_baud, firmware::fastest_baud};
 
 void read_board_identity(TableReader& table, firmware::Identity& identity) {
     table.integer("generation", identity.generation, {5, 20});

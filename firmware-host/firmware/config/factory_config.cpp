@@ -233,7 +233,7 @@ std::optional<bool> is_in_range_of_board(const BoardProfile& board, std::uint32_
             return value >= 1 && value <= most_cycles;
         case key::uart1_baudrate:
         case key::uart2_baudrate:
-            return board.bauds.empty() ? value > 0
+            return board.bauds.empty() ? value >= slowest_baud && value <= fastest_baud
                                        : std::find(board.bauds.begin(), board.bauds.end(), value) != board.bauds.end();
         default:
             return std::nullopt;

@@ -114,8 +114,10 @@ TEST(ConfigRange, IsThatOfTheBoard) {
     EXPECT_TRUE(is_in_range(board, key::uart1_baudrate, 115200));
     EXPECT_FALSE(is_in_range(board, key::uart1_baudrate, 57600));
     board.bauds.clear();
-    EXPECT_TRUE(is_in_range(board, key::uart2_baudrate, 57600));
-    EXPECT_FALSE(is_in_range(board, key::uart2_baudrate, 0));
+    for (const std::uint64_t some : {1200U, 57600U, 8'000'000U})
+        EXPECT_TRUE(is_in_range(board, key::uart2_baudrate, some)) << some;
+    for (const std::uint64_t no_line_has : {0U, 6U, 1199U, 8'000'001U})
+        EXPECT_FALSE(is_in_range(board, key::uart2_baudrate, no_line_has)) << no_line_has;
     EXPECT_TRUE(is_in_range(board, key::rate_meas, 25));
     EXPECT_FALSE(is_in_range(board, key::rate_meas, 24));
     board.least_measurement_period_ms = 50;
