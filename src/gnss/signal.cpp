@@ -58,6 +58,33 @@ std::optional<double> state_vector_delay(const GlonassEphemeris& record, Signal 
     return std::nullopt;
 }
 
+// What the combination of two signals without ionosphere is late against the record's clock, s.
+double pair_delay(const Ephemeris& record, Signal first, Signal second) {
+    const auto d1 = group_delay(record, first), d2 = group_delay(record, second);
+    if (!d1 || !d2) return 0;
+    const double ratio = carrier_frequency(first).value() / carrier_frequency(second).value();
+    const double square = ratio * ratio;
+    return (square * d1->value() - d2->value()) / (square - 1);
+}
+
+// The same of the pair that tables of clocks belong to.
+double table_clock_delay(const Ephemeris& record) {
+    switch (satellite_of(record).constellation) {
+        case Constellation::beidou:
+            return pair_delay(record, Signal::b1i, Signal::b3i);
+        case Constellation::glonass:
+            return pair_delay(record, Signal::g1, Signal::g2);
+        case Constellation::galileo: {
+            // Of E1 and E5a a record has what E1 alone differs from the pair, whichever pair its clock belongs to.
+            const auto* kepler = std::get_if<KeplerEphemeris>(&record);
+            if (kepler == nullptr || kepler->message == NavigationMessage::almanac) return 0;
+            return kepler_delay(*kepler, Signal::l1).value_or(0) - kepler->tgd;
+        }
+        default:
+            return 0;
+    }
+}
+
 // B2I is BeiDou-2's alone. BeiDou-3, the numbers from 19 on, sends B2b on that carrier, another signal.
 bool sends_signal(SatelliteId satellite, Signal signal) {
     constexpr int first_of_beidou_3 = 19;
@@ -177,6 +204,12 @@ std::optional<Seconds> group_delay(const Ephemeris& record, Signal signal) {
     if (std::holds_alternative<SbasEphemeris>(record) && (signal == Signal::l1 || signal == Signal::l5)) delay = 0.0;
     if (!delay) return std::nullopt;
     return Seconds(*delay);
+}
+
+std::optional<Seconds> table_group_delay(const Ephemeris& record, Signal signal) {
+    const auto delay = group_delay(record, signal);
+    if (!delay) return std::nullopt;
+    return Seconds(delay->value() - table_clock_delay(record));
 }
 
 }  // namespace skyloop

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "differential.hpp"
 #include "local_motion.hpp"
@@ -135,26 +136,20 @@ void NavigationEngine::State::add_equations(const Observations& observations, co
                                             EpochSolution& epoch) {
     const std::vector<Observation>& all = observations.signals;
     for (std::size_t i = 0; i < all.size();) {
-        // The signals of one satellite: its first one, or what there is, and one on another carrier.
+        // The signals of one satellite: its first one, or what there is, and the others.
         const Observation* first = nullptr;
-        const Observation* second = nullptr;
+        InplaceVector<const Observation*, most_signals> others;
         const SatelliteId id = all[i].satellite;
         for (; i < all.size() && all[i].satellite == id; ++i) {
             if (!all[i].pseudorange || all[i].cn0 < settings.minimum_cn0) continue;
-            if (first == nullptr) {
-                first = &all[i];
-            } else if (all[i].signal == first_signal(id.constellation)) {
-                second = first;
-                first = &all[i];
-            } else if (second == nullptr) {
-                second = &all[i];
-            }
+            const Observation* other = &all[i];
+            if (first == nullptr || other->signal == first_signal(id.constellation)) std::swap(first, other);
+            if (other != nullptr && others.size() < most_signals) others.push_back(other);
         }
         if (first == nullptr) continue;
-        if (!parameters_.corrections.ionosphere_free || corrected_ != CorrectionState::none ||
-            (second != nullptr && second->carrier == first->carrier))
-            second = nullptr;
-        const auto made = range_equation(transmitters(), *first, second, observations.receive_time);
+        const bool combined = parameters_.corrections.ionosphere_free && corrected_ == CorrectionState::none;
+        if (!combined) others = {};
+        const auto made = range_equation(transmitters(), *first, others, observations.receive_time);
         if (!made) continue;
         epoch.equations.push_back(*made);
         epoch.primaries.push_back(first);

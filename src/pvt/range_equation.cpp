@@ -7,13 +7,18 @@
 namespace skyloop {
 
 std::optional<RangeEquation> range_equation(TransmitterSource& transmitters, const Observation& first,
-                                            const Observation* second, GpsTime receive_time) {
+                                            std::span<const Observation* const> others, GpsTime receive_time) {
     std::optional<Transmitter> t1 = transmitters.at(first.satellite, first.signal, receive_time, *first.pseudorange);
     if (!t1) return std::nullopt;
     t1->healthy = t1->healthy && !first.called_unhealthy;
     RangeEquation e{first.satellite, *t1, *first.pseudorange, first.carrier, first.pseudorange_deviation, false};
-    if (second == nullptr) return e;
-    const auto t2 = transmitters.at(second->satellite, second->signal, receive_time, *second->pseudorange);
+    const Observation* second = nullptr;
+    std::optional<Transmitter> t2;
+    for (std::size_t i = 0; i < others.size() && !t2; ++i) {
+        second = others[i];
+        if (second->carrier == first.carrier) continue;
+        t2 = transmitters.at(second->satellite, second->signal, receive_time, *second->pseudorange);
+    }
     if (!t2) return e;
     const double ratio = first.carrier.value() / second->carrier.value();
     const double b = -1 / (ratio * ratio - 1);

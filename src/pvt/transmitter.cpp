@@ -81,7 +81,7 @@ std::optional<Transmitter> PreciseTransmitters::at(SatelliteId satellite, Signal
     if (group_delays_ != nullptr) {
         const std::optional<Ephemeris> record = group_delays_->ephemeris(satellite, reading.time);
         if (!record) return std::nullopt;
-        const std::optional<Seconds> told = group_delay(*record, signal);
+        const std::optional<Seconds> told = table_group_delay(*record, signal);
         if (!told) return std::nullopt;
         delay = *told;
         healthy = is_healthy(*record);

@@ -57,4 +57,10 @@ TransmittedSignals transmitted_signals(const Ephemeris& record);
 /// 5.2.4.10). GLONASS: 0 for G1, −Δτ_n for G2. SBAS: 0. Almanacs: 0.
 std::optional<Seconds> group_delay(const Ephemeris& record, Signal signal);
 
+/// The same of clocks in tables, as those of SP3 files. They belong to the combination without ionosphere of L1 and L2,
+/// E1 and E5a, B1I and B3I, G1 and G2: of BeiDou, and of Galileo's I/NAV, another clock than the broadcast's. (Over 36
+/// satellites of 2023-01-01 BeiDou's clocks of CODE differ from the broadcast ones by 3.06 TGD1; the pair B1I and B3I
+/// gives 2.94.)
+std::optional<Seconds> table_group_delay(const Ephemeris& record, Signal signal);
+
 }  // namespace skyloop

@@ -53,8 +53,8 @@ private:
 /// By tables of positions and clocks; their clocks get the eccentricity term −2 r·v/c² (IS-GPS-200, 20.3.3.3.3.1).
 class PreciseTransmitters : public TransmitterSource {
 public:
-    /// Tables of clocks refer to the ionosphere-free combination of the two first carriers, as broadcast clocks of GPS
-    /// do. @param group_delays of single signals and health; may be absent: then 0 and healthy
+    /// @param group_delays of single signals (table_group_delay()) and health; may be absent: then 0, which is wrong by
+    /// tens of metres for BeiDou, and healthy
     PreciseTransmitters(const PreciseOrbits& orbits, const NavigationSource* group_delays)
         : orbits_(orbits), group_delays_(group_delays) {}
     std::optional<Transmitter> at(SatelliteId satellite, Signal signal, GpsTime receive_time,

@@ -70,6 +70,30 @@ TEST(Signal, TakesTheGroupDelayOfEachSystemAndSignal) {
     EXPECT_EQ(delay_of(SbasEphemeris{}, Signal::l1), 0);
 }
 
+TEST(TableGroupDelay, IsThatAgainstThePairOfTheTable) {
+    const auto of = [](const Ephemeris& record, Signal signal) { return table_group_delay(record, signal)->value(); };
+    const auto combined = [&](const Ephemeris& record, Signal first, Signal second) {
+        const double f1 = carrier_frequency(first).value(), f2 = carrier_frequency(second).value();
+        return (f1 * f1 * of(record, first) - f2 * f2 * of(record, second)) / (f1 * f1 - f2 * f2);
+    };
+    const KeplerEphemeris gps = delayed(Constellation::gps, NavigationMessage::lnav);
+    EXPECT_EQ(of(gps, Signal::l1), group_delay(gps, Signal::l1)->value()) << "GPS broadcasts the clock of L1 and L2";
+    EXPECT_NEAR(combined(gps, Signal::l1, Signal::l2), 0, 1e-20);
+    const KeplerEphemeris beidou = delayed(Constellation::beidou, NavigationMessage::d1);
+    EXPECT_NEAR(of(beidou, Signal::b1i), -1.9437 * 3e-9, 1e-12);
+    EXPECT_NEAR(combined(beidou, Signal::b1i, Signal::b3i), 0, 1e-20);
+    const KeplerEphemeris fnav = delayed(Constellation::galileo, NavigationMessage::fnav);
+    EXPECT_NEAR(combined(fnav, Signal::l1, Signal::l5), 0, 1e-20);
+    const KeplerEphemeris inav = delayed(Constellation::galileo, NavigationMessage::inav);
+    EXPECT_NEAR(of(inav, Signal::l1), of(fnav, Signal::l1), 1e-20) << "E1 is late by the same against E1 and E5a";
+    EXPECT_FALSE(table_group_delay(inav, Signal::l5));
+    GlonassEphemeris glonass;
+    glonass.group_delay_l2 = 2e-9;
+    EXPECT_NEAR(combined(glonass, Signal::g1, Signal::g2), 0, 1e-20);
+    EXPECT_EQ(of(SbasEphemeris{}, Signal::l1), 0);
+    EXPECT_EQ(of(delayed(Constellation::galileo, NavigationMessage::almanac), Signal::l1), 0);
+}
+
 TEST(Signal, TellsHealthByTheSignalThatCarriesTheMessage) {
     KeplerEphemeris inav = delayed(Constellation::galileo, NavigationMessage::inav);
     KeplerEphemeris fnav = delayed(Constellation::galileo, NavigationMessage::fnav);

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "skyloop/base/random.hpp"
 #include "skyloop/pvt/corrections.hpp"
@@ -121,6 +123,28 @@ TEST(NavigationEngine, TakesTheIonosphereOutWithTwoCarriers) {
     EXPECT_LT(error_of(fix, receiver), 1e-5);
     NavigationEngine single(plain(FilterKind::none), {&sky});
     EXPECT_GT(error_of(single.solve(observations, settings), receiver), 0.5);
+}
+
+// E5a comes before E5b, and I/NAV tells no delay of it.
+TEST(NavigationEngine, CombinesTheFirstCarrierWhoseDelayIsTold) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, {Constellation::galileo});
+    NavigationParameters parameters = plain(FilterKind::none);
+    parameters.corrections.ionosphere_free = true;
+    const TrueReceiver receiver = receiver_at(antenna, sample_time);
+    test::MeasureOptions options;
+    options.all_signals = true;
+    Observations observations =
+        measure(sky, receiver, options, [](const SatelliteId&, const SkyDirection& d, Hertz carrier) {
+            return ionosphere_delay_at(Metres(20 / std::sin(d.elevation.rad())), carrier).value();
+        });
+    std::sort(observations.signals.begin(), observations.signals.end(), [](const Observation& a, const Observation& b) {
+        return std::tie(a.satellite, a.signal) < std::tie(b.satellite, b.signal);
+    });
+    ASSERT_EQ(observations.signals[1].signal, Signal::l5);
+    ASSERT_EQ(observations.signals[2].signal, Signal::e5b);
+    const Fix fix = NavigationEngine(parameters, {&sky}).solve(observations, {});
+    EXPECT_LT(error_of(fix, receiver), 1e-4);
+    EXPECT_EQ(static_cast<std::size_t>(fix.satellites_used()), observations.signals.size() / 3);
 }
 
 // The model knows a tenth of what there is, and some satellites have one signal.
