@@ -61,6 +61,7 @@ SignalTraits signal_traits(Constellation constellation, Signal signal) {
     const bool navic = constellation == Constellation::navic;
     traits.pilot = galileo || signal == Signal::l2 || (signal == Signal::l5 && !navic);
     if (navic) traits.chip_rate_ratio = 1;  // SPS: BPSK(1) on L5 (IRNSS SIS ICD 1.1)
+    if (constellation == Constellation::beidou && signal == Signal::e5b) traits.chip_rate_ratio = 2;  // B2I
     return traits;
 }
 

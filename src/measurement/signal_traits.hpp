@@ -18,8 +18,8 @@ struct SignalTraits {
     bool pilot = false;          ///< tracked without data bits: the component named by rinex_signal_code()
 };
 
-/// Chip rates: IS-GPS-200 and 705, Galileo OS SIS ICD, BeiDou B1I and B3I ICDs, GLONASS ICD L1, L2 (0.511 Mchip/s);
-/// BeiDou's second signal is taken as B2b. BOC of Galileo E1: 0.6 (MODELS.md 7.9).
+/// Chip rates: IS-GPS-200 and 705, Galileo OS SIS ICD, BDS-SIS-ICD-2.1 (B1I and B2I), BeiDou B3I ICD, GLONASS ICD L1,
+/// L2 (0.511 Mchip/s). BOC of Galileo E1: 0.6 (MODELS.md 7.9).
 SignalTraits signal_traits(Constellation constellation, Signal signal);
 
 /// The receiver's code loop on such a signal: its chip rate in proportion, and a front end that passes at least the
