@@ -54,9 +54,11 @@ struct StringFields {
 
     void first(BitWriter& bits) const {
         const std::int64_t of_day = start % seconds_per_day;
-        constexpr std::uint64_t half_hour = 1;  // between two t_b
+        constexpr std::int64_t half_hour_s = 1800;
+        constexpr std::uint64_t half_hour = 1, as_before = 0;
         bits.put(0, 2);
-        bits.put(half_hour, 2);
+        // P1: by how much t_b is another one than in the frame before; the nearest record changes on the half hour.
+        bits.put(of_day % half_hour_s == 0 ? half_hour : as_before, 2);
         bits.put_signed(of_day / 3600, 5);
         bits.put_signed(of_day / 60 % 60, 6);
         bits.put_signed(of_day / frame_s % 2, 1);
@@ -75,7 +77,9 @@ struct StringFields {
     }
     void third(BitWriter& bits) const {
         constexpr std::uint64_t modern = 0b11;  // P: both corrections from the satellite itself
-        bits.put(1, 1);
+        constexpr std::int64_t last_frame = 4;
+        bits.put(start % superframe_s / frame_s == last_frame ? 0 : 1,
+                 1);  // P3: almanacs of five satellites, or of four
         put_sign_magnitude(bits, r.clock_drift, 11, power_of_two(-40));
         bits.put(0, 1);
         bits.put(modern, 2);

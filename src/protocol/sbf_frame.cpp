@@ -11,7 +11,7 @@ struct SvidRange {
     int first, last;
     int svid;
 };
-constexpr std::array<SvidRange, 10> svid_ranges{{{Constellation::gps, 1, 37, 1},
+constexpr std::array<SvidRange, 11> svid_ranges{{{Constellation::gps, 1, 37, 1},
                                                  {Constellation::glonass, 1, 24, 38},
                                                  {Constellation::glonass, 25, 30, 63},
                                                  {Constellation::galileo, 1, 36, 71},
@@ -20,6 +20,7 @@ constexpr std::array<SvidRange, 10> svid_ranges{{{Constellation::gps, 1, 37, 1},
                                                  {Constellation::qzss, 1, 10, 181},
                                                  {Constellation::navic, 1, 7, 191},
                                                  {Constellation::sbas, 41, 58, 198},
+                                                 {Constellation::navic, 8, 14, 216},
                                                  {Constellation::beidou, 41, 63, 223}}};
 
 }  // namespace

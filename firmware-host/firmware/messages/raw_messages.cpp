@@ -98,6 +98,8 @@ CodeShape code_shape(const Observation& o) {
             return {2046, 1};
         case Constellation::galileo:
             return o.signal == Signal::l1 ? CodeShape{1023, 4} : CodeShape{10230, 1};
+        case Constellation::navic:
+            return {1023, 1};
         default:
             return o.signal == Signal::l5 ? CodeShape{10230, 1} : CodeShape{1023, 1};
     }

@@ -280,7 +280,7 @@ Bytes glonass_record(const GlonassEphemeris& r, std::uint8_t svid, GpsTime end, 
     block.health = r.healthy() ? std::uint8_t{0} : unhealthy;
     block.l = r.healthy() ? 0 : 1;
     block.tb = static_cast<std::uint16_t>(r.iode * quarter_hour_min);
-    block.p2 = static_cast<std::uint8_t>(r.iode / 2 % 2);
+    block.p2 = static_cast<std::uint8_t>(r.iode % 2);
     block.day = four_year_day(end, leap_seconds);
     block.accuracy = sbf_u2(r.accuracy_m * 100);
     return encode_sbf(block);

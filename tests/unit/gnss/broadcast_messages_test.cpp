@@ -205,6 +205,24 @@ TEST(BroadcastGlonass, CheckBitsAreAHammingCode) {
     EXPECT_EQ(ones % 2, 0u);
 }
 
+// As seven satellites did in the capture of a NEO-M8P (receivers/galway_20181015_m8p_static).
+TEST(BroadcastGlonass, TellsANewTimeOfReferenceOnceAndTheAlmanacsOfAFrame) {
+    const LeapSeconds& leap = LeapSeconds::announced();
+    const auto bit = [](const GlonassWords& string, int number) {
+        const auto at = static_cast<std::size_t>(85 - number);
+        return string[at / 32] >> (31 - at % 32) & 1;
+    };
+    const GpsTime half_hour = to_gps_time(2023, 151200.0 + 18);
+    for (int frame = 0; frame < 10; ++frame) {
+        const GpsTime begin = half_hour + frame * std::chrono::seconds(30);
+        const GlonassWords first = glonass_string({}, 1, begin + std::chrono::seconds(2), leap);
+        EXPECT_EQ(bit(first, 77), frame == 0 ? 1U : 0U) << "P1 of frame " << frame;
+        EXPECT_EQ(bit(first, 78), 0U);
+        const GlonassWords third = glonass_string({}, 3, begin + std::chrono::seconds(6), leap);
+        EXPECT_EQ(bit(third, 80), frame % 5 == 4 ? 0U : 1U) << "P3 of frame " << frame;
+    }
+}
+
 TEST(BroadcastGlonass, StringsFollowTheMoscowDay) {
     const LeapSeconds& leap = LeapSeconds::announced();
     // 18 s after a whole half minute of GPS time one of GLONASS begins.

@@ -125,6 +125,8 @@ TEST(Sbf, SatelliteNumbersOfTheReferenceGuide) {
     EXPECT_EQ(sbf_svid({Constellation::beidou, 41}), 223);
     EXPECT_EQ(sbf_svid({Constellation::qzss, 3}), 183);
     EXPECT_EQ(sbf_svid({Constellation::navic, 7}), 197);
+    EXPECT_EQ(sbf_svid({Constellation::navic, 8}), 216);
+    EXPECT_EQ(sbf_svid({Constellation::navic, 14}), 222);
     EXPECT_FALSE(sbf_svid({Constellation::gps, 38}));
     std::set<SatelliteId> seen;
     for (int svid = 0; svid < 256; ++svid) {
