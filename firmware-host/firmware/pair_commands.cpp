@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/signal_keys.hpp"
@@ -41,9 +42,10 @@ void restart_pair(PairCommand& c) {
     c.store.reload();
 }
 
+// 020 and 021, each with the answers of its own number.
 void tell_pair_version(PairCommand& c) {
     c.acknowledge(PairResult::done);
-    for (Bytes& answer : version_answers(c.board, "PAIR"))
+    for (Bytes& answer : version_answers(c.board, fmt::format("PAIR{:03}", c.number)))
         c.outcome.answers.push_back(std::move(answer));
 }
 
@@ -69,26 +71,36 @@ void tell_fix_interval(PairCommand& c) {
 constexpr std::array<std::string_view, 10> sentence_types{"GGA", "GLL", "GSA", "GSV", "RMC",
                                                           "VTG", "ZDA", "GRS", "GST", "GNS"};
 
-std::optional<std::uint32_t> type_key(std::optional<int> type, PortId port) {
-    if (!type || *type < 0 || *type >= static_cast<int>(sentence_types.size())) return std::nullopt;
-    const OutputMessage* message = find_output_message(sentence_types[static_cast<std::size_t>(*type)]);
-    return message == nullptr ? std::nullopt : rate_key(message->id, port);
+// The type asked for and its item; all of them for −1. Nothing of what is no type.
+std::map<int, std::uint32_t> asked_types(const PairCommand& c) {
+    constexpr int all = -1;
+    std::map<int, std::uint32_t> items;
+    const auto asked = c.argument(0);
+    for (int type = 0; asked && type < static_cast<int>(sentence_types.size()); ++type) {
+        if (*asked != all && *asked != type) continue;
+        const OutputMessage* message = find_output_message(sentence_types[static_cast<std::size_t>(type)]);
+        const auto item = message == nullptr ? std::nullopt : rate_key(message->id, c.from);
+        if (item) items[type] = *item;
+    }
+    return items;
 }
 
 void set_sentence_rate(PairCommand& c) {
     constexpr int most = 20;
-    const auto item = type_key(c.argument(0), c.from);
+    const auto items = asked_types(c);
     const auto rate = c.argument(1);
-    if (!item || !rate || *rate < 0 || *rate > most) return c.acknowledge(PairResult::failed);
-    c.store.set(pair_layers, *item, static_cast<std::uint64_t>(*rate));
+    if (items.empty() || !rate || *rate < 0 || *rate > most) return c.acknowledge(PairResult::failed);
+    for (const auto& [type, item] : items)
+        c.store.set(pair_layers, item, static_cast<std::uint64_t>(*rate));
     c.acknowledge(PairResult::done);
 }
 
 void tell_sentence_rate(PairCommand& c) {
-    const auto item = type_key(c.argument(0), c.from);
-    if (!item) return c.acknowledge(PairResult::failed);
+    const auto items = asked_types(c);
+    if (items.empty()) return c.acknowledge(PairResult::failed);
     c.acknowledge(PairResult::done);
-    c.answer(fmt::format("PAIR063,{},{}", *c.argument(0), c.store.value(*item)));
+    for (const auto& [type, item] : items)
+        c.answer(fmt::format("PAIR063,{},{}", type, c.store.value(item)));
 }
 
 // 066,gps,glonass,galileo,beidou,qzss,navic: in force after the next start.
@@ -164,15 +176,11 @@ struct PairRow {
 };
 // 002 and 003 switch the positioning on and off: taken, without effect.
 constexpr PairRow pair_rows[] = {
-    {2, accept_pair},          {3, accept_pair},
-    {4, restart_pair},         {5, restart_pair},
-    {6, restart_pair},         {7, restart_pair},
-    {20, tell_pair_version},   {50, set_fix_interval},
-    {51, tell_fix_interval},   {62, set_sentence_rate},
-    {63, tell_sentence_rate},  {66, set_pair_systems},
-    {80, set_navigation_mode}, {400, set_pair_corrections},
-    {410, set_pair_sbas},      {513, save_pair},
-    {864, set_pair_speed},
+    {2, accept_pair},       {3, accept_pair},          {4, restart_pair},           {5, restart_pair},
+    {6, restart_pair},      {7, restart_pair},         {20, tell_pair_version},     {21, tell_pair_version},
+    {50, set_fix_interval}, {51, tell_fix_interval},   {62, set_sentence_rate},     {63, tell_sentence_rate},
+    {66, set_pair_systems}, {80, set_navigation_mode}, {400, set_pair_corrections}, {410, set_pair_sbas},
+    {513, save_pair},       {864, set_pair_speed},
 };
 
 }  // namespace

@@ -226,6 +226,10 @@ std::int64_t as_number(const ConfigKey& key, std::uint64_t value) {
 std::optional<bool> is_in_range_of_board(const BoardProfile& board, std::uint32_t key, std::uint64_t value) {
     // navRate: 1 … 127, on receivers before generation 9 up to 128 (RECEIVER.md 2.6).
     const std::uint64_t most_cycles = board.identity.generation >= 9 ? 127 : 128;
+    // NMEA 4 came with M8 (ROS's ublox_msgs, CfgNMEA6: firmware 6.00 to 7.03 knows 2.1 and 2.3), the model of a wrist
+    // with protocol 18.
+    const bool before_m8 = board.identity.generation < 8;
+    constexpr std::uint64_t wrist = 9;
     switch (key) {
         case key::rate_meas:
             return value >= static_cast<std::uint64_t>(board.least_measurement_period_ms);
@@ -235,6 +239,12 @@ std::optional<bool> is_in_range_of_board(const BoardProfile& board, std::uint32_
         case key::uart2_baudrate:
             return board.bauds.empty() ? value >= slowest_baud && value <= fastest_baud
                                        : std::find(board.bauds.begin(), board.bauds.end(), value) != board.bauds.end();
+        case key::nmea_protver:
+            if (!before_m8) return std::nullopt;
+            return value == 21 || value == 23;
+        case key::navspg_dynmodel:
+            if (!before_m8 || value != wrist) return std::nullopt;
+            return false;
         default:
             return std::nullopt;
     }

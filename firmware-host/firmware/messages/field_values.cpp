@@ -57,9 +57,9 @@ std::uint8_t beidou_signal(SatelliteId satellite, Signal signal, bool b1c_for_b1
 SplitValue split_value(double value, int parts) {
     if (std::isnan(value)) return {};
     const double limit = static_cast<double>(std::numeric_limits<std::int32_t>::max()) * parts;
-    const double whole_parts = std::round(std::clamp(value, -limit, limit));
-    const auto number = static_cast<std::int64_t>(whole_parts);
-    return {static_cast<std::int32_t>(number / parts), static_cast<std::int8_t>(number % parts)};
+    const double within = std::clamp(value, -limit, limit);
+    const std::int64_t whole = std::llround(within / parts);
+    return {static_cast<std::int32_t>(whole), static_cast<std::int8_t>(std::llround(within) - whole * parts)};
 }
 
 EpochTime epoch_time(GpsTime time) {

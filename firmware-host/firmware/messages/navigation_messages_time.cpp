@@ -66,8 +66,11 @@ NavTimeutc time_utc(const ReportContext& context) {
     m.hour = static_cast<std::uint8_t>(now.utc.hour);
     m.minute = static_cast<std::uint8_t>(now.utc.minute);
     m.second = static_cast<std::uint8_t>(now.utc.second);
+    // Which UTC it is stands there from M8 on: LEA-4T and AEK-4T say 07.
+    constexpr int first_with_standard = 8;
+    const int standard = context.board.identity.generation >= first_with_standard ? utc_standard(context) : 0;
     m.valid = static_cast<std::uint8_t>((time.time ? 1 : 0) | (time.date ? 2 : 0) | (time.leap_seconds ? 4 : 0) |
-                                        utc_standard(context) << 4);
+                                        standard << 4);
     return m;
 }
 

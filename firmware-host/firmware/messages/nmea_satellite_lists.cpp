@@ -24,10 +24,7 @@ GsvSatellite gsv_satellite(const NmeaReport& r, const ListedSatellite& listed) {
     line.number = nmea_satellite_number(listed.id, r.format.version, r.numbering);
     const auto status = std::find_if(r.satellites.begin(), r.satellites.end(),
                                      [&](const SatelliteStatus& s) { return s.id == listed.id; });
-    // Without record and almanac nobody knows where the satellite is; both angles are exactly 0 then.
-    const bool placed = status != r.satellites.end() &&
-                        (status->has_ephemeris || status->azimuth != Angle() || status->elevation != Angle());
-    if (placed) {
+    if (status != r.satellites.end() && direction_known(*status, r.context.state)) {
         line.elevation_deg = to_whole_degrees(status->elevation);
         line.azimuth_deg = (to_whole_degrees(status->azimuth) % 360 + 360) % 360;
     }

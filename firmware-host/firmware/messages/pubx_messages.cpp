@@ -76,7 +76,7 @@ PubxSatellites pubx_satellites(const NmeaReport& r) {
         PubxSatellite line;
         line.number = *number;
         line.status = s.used && r.solved ? 'U' : s.has_ephemeris ? 'e' : '-';
-        if (s.has_ephemeris || s.azimuth != Angle() || s.elevation != Angle()) {
+        if (direction_known(s, r.context.state)) {
             line.azimuth_deg = (static_cast<int>(std::lround(s.azimuth.deg())) % 360 + 360) % 360;
             line.elevation_deg = std::clamp(static_cast<int>(std::lround(s.elevation.deg())), 0, 90);
         }

@@ -21,7 +21,8 @@ SampleReceiver receiver_of(Personality personality, std::vector<Constellation> s
     board.baud = 9600;
     board.max_rate_hz = 10;
     board.identity.version_answers = {"$PMTK705,AXN_2.51_3339_19071200,0002,QUECTEL-L70,1.0",
-                                      "$PQVERNO,R,L70BGR03A05S,2019/10/09,21:12", "$PAIR020,AG3352,1.2"};
+                                      "$PQVERNO,R,L70BGR03A05S,2019/10/09,21:12", "$PAIR020,AG3352,1.2",
+                                      "$PAIR021,AG3352,3.4"};
     return SampleReceiver(board);
 }
 
@@ -243,6 +244,8 @@ TEST(PairCommands, AnswerAndSet) {
     EXPECT_THAT(receiver.answers("PAIR002"), ElementsAre(Sentence("PAIR001,002,0").finish()));
     EXPECT_THAT(receiver.answers("PAIR020"),
                 ElementsAre(Sentence("PAIR001,020,0").finish(), Sentence("PAIR020,AG3352,1.2").finish()));
+    EXPECT_THAT(receiver.answers("PAIR021"),
+                ElementsAre(Sentence("PAIR001,021,0").finish(), Sentence("PAIR021,AG3352,3.4").finish()));
     EXPECT_THAT(receiver.answers("PAIR050,100"), ElementsAre(Sentence("PAIR001,050,0").finish()));
     EXPECT_EQ(receiver.config.value(key::rate_meas), 100U);
     EXPECT_EQ(receiver.answers("PAIR051").at(1), Sentence("PAIR051,100").finish());
@@ -254,6 +257,15 @@ TEST(PairCommands, AnswerAndSet) {
     EXPECT_EQ(receiver.answers("PAIR063,9").at(1), Sentence("PAIR063,9,3").finish());
     EXPECT_THAT(receiver.answers("PAIR062,10,1"), ElementsAre(Sentence("PAIR001,062,2").finish()));
     EXPECT_THAT(receiver.answers("PAIR063"), ElementsAre(Sentence("PAIR001,063,2").finish()));
+    EXPECT_THAT(receiver.answers("PAIR062,-2,1"), ElementsAre(Sentence("PAIR001,062,2").finish()));
+    EXPECT_THAT(receiver.answers("PAIR062,-1,0"), ElementsAre(Sentence("PAIR001,062,0").finish()));
+    for (const char* sentence : {"GGA", "GLL", "GSV", "RMC", "GNS"})
+        EXPECT_EQ(receiver.rate(sentence), 0) << sentence;
+    receiver.execute("PAIR062,0,1");
+    const auto told = receiver.answers("PAIR063,-1");
+    ASSERT_EQ(told.size(), 11U);
+    EXPECT_EQ(told.at(1), Sentence("PAIR063,0,1").finish());
+    EXPECT_EQ(told.at(10), Sentence("PAIR063,9,0").finish());
     receiver.execute("PAIR080,5");
     EXPECT_EQ(receiver.config.value(key::navspg_dynmodel), 8U);
     EXPECT_THAT(receiver.answers("PAIR080,2"), ElementsAre(Sentence("PAIR001,080,2").finish()));
