@@ -114,7 +114,9 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         std::fputs("skyloop: out of memory\n", stderr);
     } catch (const std::system_error& refused) {
-        fmt::print(stderr, "skyloop: {}\n", refused.what());
+        const bool output = std::ferror(stdout) != 0;
+        fmt::print(stderr, "skyloop: {}\n",
+                   output ? "standard output: cannot be written: " + refused.code().message() : refused.what());
     } catch (const std::exception& broken) {
         fmt::print(stderr, "skyloop: broken promise inside the program: {}\n", broken.what());
     }

@@ -7,6 +7,7 @@
 #include "messages.hpp"
 #include "run_options.hpp"
 #include "run_session.hpp"
+#include "skyloop/base/spared_file.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/emulator/replay.hpp"
 #include "skyloop/emulator/thread_priority.hpp"
@@ -38,7 +39,20 @@ Result<std::vector<RecordedPort>> recorded_ports(const ReplayOptions& options) {
     return std::vector<RecordedPort>{paced_output(to_bytes(*bytes), options.baud)};
 }
 
+// A port that writes into what is played would end it.
+Result<void> check_ports(const ReplayOptions& options) {
+    std::vector<std::filesystem::path> played{options.recording};
+    std::error_code none;
+    for (const auto& there : std::filesystem::directory_iterator(options.recording, none))
+        played.push_back(there.path());
+    for (const std::string& uri : options.ports)
+        if (const auto parsed = parse_port_uri(uri); parsed && parsed->kind == WireKind::file)
+            if (const auto spared = check_spares("--port", parsed->path, played); !spared) return spared;
+    return {};
+}
+
 Result<Replay::Parts> replay_parts(const ReplayOptions& options, const Messages& messages) {
+    if (const auto fine = check_ports(options); !fine) return fail(fine.error());
     auto ports = recorded_ports(options);
     if (!ports) return fail(ports.error());
     if (options.ports.size() > ports->size())

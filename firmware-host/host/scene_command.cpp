@@ -3,14 +3,17 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "messages.hpp"
 #include "run_options.hpp"
 #include "skyloop/analysis/scene_sky.hpp"
+#include "skyloop/base/spared_file.hpp"
 #include "skyloop/emulator/assembly.hpp"
 #include "skyloop/emulator/load_scene.hpp"
 #include "skyloop/plot/scene_plot.hpp"
@@ -228,8 +231,19 @@ Result<void> write_pictures(const SceneOptions& options, const SceneReport& repo
     return write_whole_file(options.sky_svg, sky_plot_svg(plot));
 }
 
+Result<void> check_pictures(const SceneOptions& options) {
+    for (const auto& [option, file] : {std::pair{"--svg", &options.svg}, {"--sky-svg", &options.sky_svg}})
+        if (const auto spared = check_spares(option, *file, {options.file}); !spared) return spared;
+    const auto place = [](const std::string& file) { return std::filesystem::absolute(file).lexically_normal(); };
+    if (!options.svg.empty() && !options.sky_svg.empty() && place(options.svg) == place(options.sky_svg))
+        return fail(ErrorCode::usage,
+                    fmt::format("--sky-svg {}: is where --svg goes; expected another file", options.sky_svg));
+    return {};
+}
+
 int show_scene(const SceneOptions& options) {
     const Messages messages(options.verbosity);
+    if (const auto fine = check_pictures(options); !fine) return messages.error(fine.error());
     const auto report = report_of(options);
     if (!report) return messages.error(report.error());
     for (const std::string& warning : report->city.warnings)

@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <set>
 
 #include "commands.hpp"
 #include "run_session.hpp"
+#include "skyloop/base/spared_file.hpp"
 #include "skyloop/emulator/navigation_files.hpp"
 #include "skyloop/emulator/output_file.hpp"
 #include "skyloop/gnss/navigation_data.hpp"
@@ -202,6 +204,9 @@ int solve_file(const SolveOptions& options) {
         return messages.error({ErrorCode::usage,
                                "solve needs orbits; give navigation data with --nav or an SP3 file "
                                "with --sp3"});
+    std::vector<std::filesystem::path> inputs(options.nav.begin(), options.nav.end());
+    inputs.insert(inputs.end(), {options.observations, options.sp3});
+    if (const auto spared = check_spares("--out", options.out, inputs); !spared) return messages.error(spared.error());
     auto file = read_observation_file(options.observations);
     if (!file) return messages.error(file.error());
     for (const std::string& warning : file->warnings)

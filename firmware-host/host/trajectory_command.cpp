@@ -27,7 +27,7 @@ struct TrajectoryOptions {
     std::string file, vehicle, format = "text";
     std::string smooth;  // empty: as the file says
     std::optional<double> rate_hz, duration_s, gap_s, speed_mps;
-    std::vector<double> origin;  // latitude, longitude, height; or empty
+    std::string origin;  // empty: as the file says
     Verbosity verbosity;
 };
 
@@ -76,8 +76,8 @@ Result<void> apply_track_options(const TrajectoryOptions& options, std::optional
     if (options.gap_s) file->gap = Seconds(*options.gap_s);
     if (options.speed_mps) file->route_speed = MetresPerSecond(*options.speed_mps);
     if (!options.origin.empty()) {
-        const auto place = place_from_degrees(options.origin[0], options.origin[1], options.origin[2]);
-        if (!place) return fail(ErrorCode::usage, "--origin: " + place.error());
+        const auto place = parse_place(options.origin, "--origin");
+        if (!place) return fail(place.error());
         file->origin = *place;
     }
     if (options.smooth == "none") file->smoothing = Smoothing::none;
@@ -227,9 +227,7 @@ Action add_trajectory_command(CLI::App& app) {
         ->check(CLI::Range(1e-3, 1e7));
     command->add_option("--speed", options->speed_mps, "m/s of a file without times; default its own or the vehicle's")
         ->check(CLI::Range(1e-2, 12000.0));
-    command->add_option("--origin", options->origin, "LATITUDE,LONGITUDE,HEIGHT of local metres: degrees, m")
-        ->delimiter(',')
-        ->expected(3);
+    command->add_option("--origin", options->origin, "LATITUDE,LONGITUDE[,HEIGHT] of local metres: degrees, m");
     add_verbosity_options(*command, options->verbosity);
     return [options] { return trajectory(*options); };
 }

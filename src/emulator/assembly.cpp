@@ -154,7 +154,13 @@ Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& 
             assembly.warnings.push_back(std::move(*warning));
         plans.push_back(std::move(*plan));
     }
-    if (const auto apart = check_ends(ends_of(plans, shared.scenario)); !apart) return fail(apart.error());
+    std::vector<WireEnd> ends = ends_of(plans, shared.scenario);
+    if (const auto spared = spare_inputs_and_recording(ends, shared.scenario, shared.mode.record); !spared)
+        return fail(spared.error());
+    for (std::size_t i = 0; i < plans.size(); ++i)
+        ends.push_back(end_of_state(fmt::format("state_file of '{}'", receiver_name(shared.scenario, i)),
+                                    shared.scenario.receivers[i].state_file));
+    if (const auto apart = check_ends(ends); !apart) return fail(apart.error());
     if (shared.mode.record)
         if (const auto spared = spare_inputs(shared.scenario, *shared.mode.record); !spared)
             return fail(spared.error());

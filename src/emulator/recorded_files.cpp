@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "skyloop/base/spared_file.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/emulator/claimed_folder.hpp"
 
@@ -71,6 +72,26 @@ void remove_recordings_from(const fs::path& folder, std::size_t receiver) {
             fs::remove(file, reason);
         fs::remove(claimed->path(), reason);  // refused by the system where there is anything else
     }
+}
+
+Result<void> spare_inputs_and_recording(const std::vector<WireEnd>& ends, const Scenario& scenario,
+                                        const std::optional<fs::path>& folder) {
+    std::vector<fs::path> inputs = inputs_of(scenario);
+    inputs.emplace_back(scenario.name);
+    const auto recorded = [&](const fs::path& place) {
+        for (std::size_t i = 0; folder && i < scenario.receivers.size(); ++i)
+            if (fs::absolute(recording_of(*folder, i)).lexically_normal() / place.filename() == place) return true;
+        return false;
+    };
+    for (const WireEnd& end : ends) {
+        if (end.place.empty() || end.place == "-") continue;
+        const std::string writer = fmt::format("{} '{}'", end.owner, end.uri);
+        if (const auto spared = check_spares(writer, end.place, inputs); !spared) return spared;
+        if (is_recorded_name(fs::path(end.place).filename().string()) && recorded(end.place))
+            return fail(ErrorCode::usage,
+                        fmt::format("{}: this file belongs to the recording; expected another place", writer));
+    }
+    return {};
 }
 
 Result<void> spare_inputs(const Scenario& scenario, const fs::path& folder) {

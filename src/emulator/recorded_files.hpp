@@ -2,9 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
+#include <vector>
 
 #include "skyloop/base/result.hpp"
+#include "skyloop/emulator/wires.hpp"
 #include "skyloop/scenario/scenario.hpp"
 
 namespace skyloop {
@@ -24,5 +27,10 @@ void remove_recordings_from(const std::filesystem::path& folder, std::size_t rec
 
 /// Fails with `usage` when a recording in this folder would take the place of a file that the run reads.
 Result<void> spare_inputs(const Scenario& scenario, const std::filesystem::path& folder);
+
+/// Fails with `usage` where bytes would go into a file that the run reads, its scenario among them, or into one that
+/// belongs to its recording. @param folder of the recording; nothing without one
+Result<void> spare_inputs_and_recording(const std::vector<WireEnd>& ends, const Scenario& scenario,
+                                        const std::optional<std::filesystem::path>& folder);
 
 }  // namespace skyloop

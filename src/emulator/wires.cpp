@@ -93,6 +93,10 @@ WireEnd end_of_output(const OutputSettings& output) {
     return end;
 }
 
+WireEnd end_of_state(const std::string& owner, const std::filesystem::path& file) {
+    return {owner, file.string(), place_of_file(file.string())};
+}
+
 Result<void> check_ends(const std::vector<WireEnd>& ends) {
     for (std::size_t i = 0; i < ends.size(); ++i)
         for (std::size_t k = 0; k < i; ++k)

@@ -77,7 +77,7 @@ MISUSES = [
     (["campaign", "replay", "x.toml", "--number", "-1"], 2, ["--number: '-1'; expected a whole number from 0 to"]),
     (["campaign", "report", "x", "--worst", "-1"], 2, ["--worst: '-1'; expected a whole number from 0 to 10000"]),
     (["replay", "/dev/null", "--baud", "-1"], 2, ["--baud: '-1'; expected a whole number from 110 to"]),
-    (["trajectory", "x.csv", "--origin", "46,nan,3"], 2, ["--origin: 'nan'; expected a number"]),
+    (["trajectory", "x.csv", "--origin", "46,nan,3"], 2, ["--origin 46,nan,3: expected LAT,LON"]),
     (["ctl", "1", "step", "nan"], 2, ["step: 'nan' is no number"]),
     (["power", "line:/dev/no-such-tty/rts", "state"], 2, ["the state of a modem line cannot be asked", "expected on or off"]),
 ]

@@ -91,7 +91,7 @@ class TrajectoryTest(unittest.TestCase):
 
     def test_options_of_which_nothing_comes_are_refused(self):
         self.refused("trajectory", self.track, "--speed", "10", says="--speed: ")
-        self.refused("trajectory", self.track, "--origin", "46,30,5", says="--origin: ")
+        self.refused("trajectory", self.track, "--origin", "46,30,5", says="--origin")
         route = self.folder / "route.csv"
         route.write_text("".join(",".join(line.split(",")[1:]) + "\n" for line in track_text(20).splitlines()))
         self.assertAlmostEqual(self.listing(route, "--speed", "5")["speed_over_ground_mps"]["value"], 5, delta=0.5)

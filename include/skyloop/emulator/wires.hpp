@@ -1,6 +1,7 @@
 /// The ports of a receiver and the wires that a scenario plugs into them.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,6 +43,8 @@ WireEnd end_of_wire(const std::string& owner, const std::string& uri);
 /// An actuator: a modem line has its device for itself.
 WireEnd end_of_power(const std::string& owner, const std::string& uri);
 WireEnd end_of_output(const OutputSettings& output);
+/// What a receiver saves.
+WireEnd end_of_state(const std::string& owner, const std::filesystem::path& file);
 
 /// What is wrong where two of them are one place: the second would take it from the first. Fails with `usage`.
 Result<void> check_ends(const std::vector<WireEnd>& ends);
