@@ -226,9 +226,9 @@ std::int64_t as_number(const ConfigKey& key, std::uint64_t value) {
 std::optional<bool> is_in_range_of_board(const BoardProfile& board, std::uint32_t key, std::uint64_t value) {
     // navRate: 1 … 127, on receivers before generation 9 up to 128 (RECEIVER.md 2.6).
     const std::uint64_t most_cycles = board.identity.generation >= 9 ? 127 : 128;
-    // NMEA 4 came with M8 (ROS's ublox_msgs, CfgNMEA6: firmware 6.00 to 7.03 knows 2.1 and 2.3), the model of a wrist
-    // with protocol 18.
-    const bool before_m8 = board.identity.generation < 8;
+    // u-blox 6 knows NMEA 2.1 and 2.3 (ROS's ublox_msgs, CfgNMEA6) and what its board has at the factory; the model of
+    // a wrist came with protocol 18.
+    constexpr int newest_with_nmea_2 = 6, first_with_wrist = 8;
     constexpr std::uint64_t wrist = 9;
     switch (key) {
         case key::rate_meas:
@@ -240,11 +240,11 @@ std::optional<bool> is_in_range_of_board(const BoardProfile& board, std::uint32_
             return board.bauds.empty() ? value >= slowest_baud && value <= fastest_baud
                                        : std::find(board.bauds.begin(), board.bauds.end(), value) != board.bauds.end();
         case key::nmea_protver:
-            if (!before_m8) return std::nullopt;
-            return value == 21 || value == 23;
+            if (board.identity.generation > newest_with_nmea_2) return std::nullopt;
+            return value == 21 || value == 23 || value == number_of(board.nmea_version);
         case key::navspg_dynmodel:
-            if (!before_m8 || value != wrist) return std::nullopt;
-            return false;
+            if (value == wrist && board.identity.generation < first_with_wrist) return false;
+            return std::nullopt;
         default:
             return std::nullopt;
     }

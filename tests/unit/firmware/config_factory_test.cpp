@@ -118,13 +118,18 @@ TEST(ConfigRange, IsThatOfTheBoard) {
         EXPECT_TRUE(is_in_range(board, key::uart2_baudrate, some)) << some;
     for (const std::uint64_t no_line_has : {0U, 6U, 1199U, 8'000'001U})
         EXPECT_FALSE(is_in_range(board, key::uart2_baudrate, no_line_has)) << no_line_has;
+    BoardProfile other = board;
+    other.nmea_version = NmeaVersion::v2_3;
     for (const int generation : {6, 8}) {
-        board.identity.generation = generation;
-        EXPECT_TRUE(is_in_range(board, key::nmea_protver, 23));
-        EXPECT_EQ(is_in_range(board, key::nmea_protver, 40), generation == 8);
-        EXPECT_TRUE(is_in_range(board, key::navspg_dynmodel, 8));
-        EXPECT_EQ(is_in_range(board, key::navspg_dynmodel, 9), generation == 8) << "a wrist";
+        other.identity.generation = generation;
+        EXPECT_TRUE(is_in_range(other, key::nmea_protver, 21));
+        EXPECT_EQ(is_in_range(other, key::nmea_protver, 40), generation == 8);
+        EXPECT_TRUE(is_in_range(other, key::navspg_dynmodel, 8));
+        EXPECT_EQ(is_in_range(other, key::navspg_dynmodel, 9), generation == 8) << "a wrist";
     }
+    other.identity.generation = 6;
+    other.nmea_version = NmeaVersion::v4_0;
+    EXPECT_TRUE(is_in_range(other, key::nmea_protver, 40)) << "as its factory has it";
     EXPECT_TRUE(is_in_range(board, key::rate_meas, 25));
     EXPECT_FALSE(is_in_range(board, key::rate_meas, 24));
     board.least_measurement_period_ms = 50;

@@ -223,16 +223,16 @@ TEST(NavSolutionMessages, AgreeOnThePlace) {
     EXPECT_EQ(fine_earth.p_acc, 60243u);
 }
 
-TEST(NavSolutionMessages, SplitNegativeNumbersToOneSide) {
+TEST(NavSolutionMessages, RoundNegativeNumbersAsPvtDoes) {
     UbxReport f9(9);
     f9.state.epoch.fix.position = Geodetic::degrees(-33.1234567891, -70.00000000051, -0.0005);
     const auto fine = f9.report<NavHpposllh>();
-    EXPECT_EQ(fine.lat, -331234567);
-    EXPECT_EQ(fine.lat_hp, -89);
+    EXPECT_EQ(fine.lat, f9.report<NavPvt>().lat);
+    EXPECT_EQ(fine.lat, -331234568);
+    EXPECT_EQ(fine.lat_hp, 11);
     EXPECT_EQ(fine.lon, -700000000);
     EXPECT_EQ(fine.lon_hp, -1);
-    EXPECT_EQ(fine.height, 0);
-    EXPECT_EQ(fine.height_hp, -5);
+    EXPECT_EQ(fine.height * 10 + fine.height_hp, -5);
 }
 
 TEST(NavSolutionMessages, AgreeOnTheVelocity) {

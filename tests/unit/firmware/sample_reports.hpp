@@ -25,7 +25,8 @@ struct SampleReceiver {
     /// Takes a fix as the state tracker would that limits and holds nothing.
     void set(const Fix& fix) {
         state.epoch.fix = fix;
-        state.fix_ok = state.position_known = fix.has_position();
+        state.fix_ok = fix.has_position();
+        state.position_known = state.position_known || fix.has_position();
         if (fix.type != FixType::none) state.time.time = state.time.date = true;
         state.course = fix.has_position() ? std::optional(fix.course) : std::nullopt;
         state.course_is_frozen = fix.speed < board.course_min_speed;

@@ -88,6 +88,7 @@ TEST(TableGroupDelay, IsThatAgainstThePairOfTheTable) {
     EXPECT_NEAR(of(inav, Signal::l1), of(fnav, Signal::l1), 1e-20) << "E1 is late by the same against E1 and E5a";
     EXPECT_FALSE(table_group_delay(inav, Signal::l5));
     GlonassEphemeris glonass;
+    glonass.satellite = {Constellation::glonass, 1};
     glonass.group_delay_l2 = 2e-9;
     EXPECT_NEAR(combined(glonass, Signal::g1, Signal::g2), 0, 1e-20);
     EXPECT_EQ(of(SbasEphemeris{}, Signal::l1), 0);
