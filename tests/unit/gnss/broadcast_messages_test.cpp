@@ -185,13 +185,16 @@ TEST(BroadcastLnav, QzssHasL2cAlone) {
     EXPECT_EQ(page_data(words, 4) >> 23, 0u);
 }
 
+// Bits of a string are numbered from 85 down to 1.
+std::uint32_t bit_of(const GlonassWords& string, int number) {
+    const auto at = static_cast<std::size_t>(85 - number);
+    return string[at / 32] >> (31 - at % 32) & 1;
+}
+
 TEST(BroadcastGlonass, CheckBitsAreAHammingCode) {
     const GlonassWords ours = glonass_string({}, 5, to_gps_time(2023, 150000.0 + 18), LeapSeconds::announced());
     unsigned places = 0, ones = 0, place = 2;
-    const auto bit = [&ours](int number) {
-        const auto at = static_cast<std::size_t>(85 - number);
-        return ours[at / 32] >> (31 - at % 32) & 1;
-    };
+    const auto bit = [&ours](int number) { return bit_of(ours, number); };
     for (int number = 9; number <= 85; ++number) {
         do
             ++place;
@@ -208,18 +211,14 @@ TEST(BroadcastGlonass, CheckBitsAreAHammingCode) {
 // As seven satellites did in the capture of a NEO-M8P (receivers/galway_20181015_m8p_static).
 TEST(BroadcastGlonass, TellsANewTimeOfReferenceOnceAndTheAlmanacsOfAFrame) {
     const LeapSeconds& leap = LeapSeconds::announced();
-    const auto bit = [](const GlonassWords& string, int number) {
-        const auto at = static_cast<std::size_t>(85 - number);
-        return string[at / 32] >> (31 - at % 32) & 1;
-    };
     const GpsTime half_hour = to_gps_time(2023, 151200.0 + 18);
     for (int frame = 0; frame < 10; ++frame) {
         const GpsTime begin = half_hour + frame * std::chrono::seconds(30);
         const GlonassWords first = glonass_string({}, 1, begin + std::chrono::seconds(2), leap);
-        EXPECT_EQ(bit(first, 77), frame == 0 ? 1U : 0U) << "P1 of frame " << frame;
-        EXPECT_EQ(bit(first, 78), 0U);
+        EXPECT_EQ(bit_of(first, 77), frame == 0 ? 1U : 0U) << "P1 of frame " << frame;
+        EXPECT_EQ(bit_of(first, 78), 0U);
         const GlonassWords third = glonass_string({}, 3, begin + std::chrono::seconds(6), leap);
-        EXPECT_EQ(bit(third, 80), frame % 5 == 4 ? 0U : 1U) << "P3 of frame " << frame;
+        EXPECT_EQ(bit_of(third, 80), frame % 5 == 4 ? 0U : 1U) << "P3 of frame " << frame;
     }
 }
 

@@ -125,18 +125,22 @@ TEST(NavigationEngine, TakesTheIonosphereOutWithTwoCarriers) {
     EXPECT_GT(error_of(single.solve(observations, settings), receiver), 0.5);
 }
 
+// All signals, behind an ionosphere that delays L1 by 20 m at the zenith.
+Observations measured_behind_20_m(const SyntheticSky& sky, const TrueReceiver& receiver) {
+    test::MeasureOptions options;
+    options.all_signals = true;
+    return measure(sky, receiver, options, [](const SatelliteId&, const SkyDirection& d, Hertz carrier) {
+        return ionosphere_delay_at(Metres(20 / std::sin(d.elevation.rad())), carrier).value();
+    });
+}
+
 // E5a comes before E5b, and I/NAV tells no delay of it.
 TEST(NavigationEngine, CombinesTheFirstCarrierWhoseDelayIsTold) {
     const SyntheticSky sky = test::synthetic_sky(sample_time, {Constellation::galileo});
     NavigationParameters parameters = plain(FilterKind::none);
     parameters.corrections.ionosphere_free = true;
     const TrueReceiver receiver = receiver_at(antenna, sample_time);
-    test::MeasureOptions options;
-    options.all_signals = true;
-    Observations observations =
-        measure(sky, receiver, options, [](const SatelliteId&, const SkyDirection& d, Hertz carrier) {
-            return ionosphere_delay_at(Metres(20 / std::sin(d.elevation.rad())), carrier).value();
-        });
+    Observations observations = measured_behind_20_m(sky, receiver);
     std::sort(observations.signals.begin(), observations.signals.end(), [](const Observation& a, const Observation& b) {
         return std::tie(a.satellite, a.signal) < std::tie(b.satellite, b.signal);
     });
@@ -153,12 +157,7 @@ TEST(NavigationEngine, LeavesOutWhatTheIonosphereTouchesWhereEnoughIsFreeOfIt) {
     NavigationParameters parameters = plain(FilterKind::none);
     parameters.corrections.ionosphere_free = true;
     const TrueReceiver receiver = receiver_at(antenna, sample_time);
-    test::MeasureOptions options;
-    options.all_signals = true;
-    Observations observations =
-        measure(sky, receiver, options, [](const SatelliteId&, const SkyDirection& d, Hertz carrier) {
-            return ionosphere_delay_at(Metres(20 / std::sin(d.elevation.rad())), carrier).value();
-        });
+    Observations observations = measured_behind_20_m(sky, receiver);
     const auto keep_second_signals_of = [&](Constellation system) {
         std::erase_if(observations.signals, [&](const Observation& o) {
             return o.satellite.constellation != system && o.signal != first_signal(o.satellite.constellation);
