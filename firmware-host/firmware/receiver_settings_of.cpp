@@ -121,8 +121,9 @@ ConfigValues initial_config(const BoardProfile& board, const ReceiverOptions& op
     // A system that is off keeps the signals of the factory, with which clients find it when they switch it on.
     for (const SignalKey& signal : signal_keys)
         if (on(signal.signal.constellation)) put(signal.enable, s.signals.contains(signal.signal) ? 1 : 0);
-    // Of the two names of one measured signal a receiver has the older on at the factory.
-    put(0x1031000F, 0);
+    // Of the two names of one measured signal a receiver that has both has the older on at the factory.
+    constexpr std::uint32_t beidou_b1i = 0x1031000D, beidou_b1c = 0x1031000F;
+    if (values.contains(beidou_b1i)) put(beidou_b1c, 0);
     return values;
 }
 

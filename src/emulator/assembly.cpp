@@ -273,10 +273,9 @@ ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::Boa
     settings.dynamic_model = entry.dynamic_model;
     settings.static_hold_below = entry.static_hold_below;
     for (const Constellation c : entry.constellations.empty() ? board.constellations : entry.constellations) {
-        const auto signals = emulated_signals(c);
-        settings.signals.insert({c, signals[0]});
-        if ((entry.dual_frequency || board.dual_frequency) && signals.size() > 1)
-            settings.signals.insert({c, signals[1]});
+        settings.signals.insert({c, first_signal(c)});
+        if (!entry.dual_frequency && !board.dual_frequency) continue;
+        if (const auto second = second_signal(c, board.second_band)) settings.signals.insert({c, *second});
     }
     return settings;
 }

@@ -85,11 +85,15 @@ double table_clock_delay(const Ephemeris& record) {
     }
 }
 
-// B2I is BeiDou-2's alone. BeiDou-3, the numbers from 19 on, sends B2b on that carrier, another signal.
+// B2I is BeiDou-2's alone. BeiDou-3, the numbers from 19 on, sends B2b on that carrier, another signal, and B2a from
+// its MEO and IGSO satellites (BDS-SIS-ICD-B2a-1.0, 1).
 bool sends_signal(SatelliteId satellite, Signal signal) {
+    if (satellite.constellation != Constellation::beidou) return true;
     constexpr int first_of_beidou_3 = 19;
-    return satellite.constellation != Constellation::beidou || signal != Signal::e5b ||
-           satellite.number < first_of_beidou_3;
+    const bool is_beidou_3 = satellite.number >= first_of_beidou_3;
+    if (signal == Signal::e5b) return !is_beidou_3;
+    if (signal == Signal::l5) return is_beidou_3 && !is_beidou_geo(satellite);
+    return true;
 }
 
 }  // namespace
@@ -134,7 +138,7 @@ Hertz carrier_frequency(Signal signal, int frequency_channel) {
 std::span<const Signal> emulated_signals(Constellation constellation) {
     static constexpr std::array gps{Signal::l1, Signal::l2, Signal::l5};
     static constexpr std::array galileo{Signal::l1, Signal::e5b, Signal::l5};
-    static constexpr std::array beidou{Signal::b1i, Signal::e5b, Signal::b3i};
+    static constexpr std::array beidou{Signal::b1i, Signal::e5b, Signal::b3i, Signal::l5};
     static constexpr std::array glonass{Signal::g1, Signal::g2};
     static constexpr std::array sbas{Signal::l1};
     static constexpr std::array navic{Signal::l5};
@@ -156,6 +160,24 @@ std::span<const Signal> emulated_signals(Constellation constellation) {
     return gps;
 }
 
+std::optional<Signal> second_signal(Constellation constellation, SecondBand band) {
+    const bool l5 = band == SecondBand::l5;
+    switch (constellation) {
+        case Constellation::gps:
+        case Constellation::qzss:
+            return l5 ? Signal::l5 : Signal::l2;
+        case Constellation::galileo:
+        case Constellation::beidou:
+            return l5 ? Signal::l5 : Signal::e5b;
+        case Constellation::glonass:
+            return l5 ? std::nullopt : std::optional(Signal::g2);
+        case Constellation::sbas:
+        case Constellation::navic:
+            break;
+    }
+    return std::nullopt;
+}
+
 std::optional<std::string_view> rinex_signal_code(Constellation constellation, Signal signal) {
     struct Code {
         Constellation constellation;
@@ -163,8 +185,8 @@ std::optional<std::string_view> rinex_signal_code(Constellation constellation, S
         std::string_view code;
     };
     using enum Constellation;
-    // Of several codes of a signal the one that u-blox receivers track: L2C long, E1-C, E5a-Q, E5b-Q.
-    static constexpr std::array<Code, 16> codes{{{gps, Signal::l1, "1C"},
+    // Of several codes of a signal the one that u-blox receivers track: L2C long, E1-C, E5a-Q, E5b-Q, B2a's pilot.
+    static constexpr std::array<Code, 17> codes{{{gps, Signal::l1, "1C"},
                                                  {gps, Signal::l2, "2L"},
                                                  {gps, Signal::l5, "5Q"},
                                                  {qzss, Signal::l1, "1C"},
@@ -176,6 +198,7 @@ std::optional<std::string_view> rinex_signal_code(Constellation constellation, S
                                                  {beidou, Signal::b1i, "2I"},
                                                  {beidou, Signal::e5b, "7I"},
                                                  {beidou, Signal::b3i, "6I"},
+                                                 {beidou, Signal::l5, "5P"},
                                                  {glonass, Signal::g1, "1C"},
                                                  {glonass, Signal::g2, "2C"},
                                                  {sbas, Signal::l1, "1C"},

@@ -84,7 +84,7 @@ std::string text_of(const std::array<char, N>& characters) {
 std::string board_of_version(const std::string& hardware, const std::string& texts) {
     if (texts.find("MOD=ZED-F9") != std::string::npos) return "ublox-f9p";
     if (texts.find("MOD=NEO-M9") != std::string::npos) return "ublox-m9";
-    if (hardware == "000A0000") return "ublox-m10";
+    if (hardware == "000A0000") return texts.find("SPGL1L5") != std::string::npos ? "ublox-f10" : "ublox-m10";
     if (hardware == "00190000") return texts.find("HPG") != std::string::npos ? "ublox-f9p" : "ublox-m9";
     if (hardware == "00080000") return "ublox-m8";
     if (hardware == "00040007" || hardware == "00070000") return "ublox-6";

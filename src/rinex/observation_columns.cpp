@@ -23,8 +23,9 @@ constexpr std::array signal_bands{
     SignalBand{galileo, Signal::l1, '1', "CXBZA"}, SignalBand{galileo, Signal::e5b, '7', "QXI"},
     SignalBand{galileo, Signal::l5, '5', "QXI"},   SignalBand{beidou, Signal::b1i, '2', "IXQ"},
     SignalBand{beidou, Signal::e5b, '7', "IXQ"},   SignalBand{beidou, Signal::b3i, '6', "IXQA"},
-    SignalBand{glonass, Signal::g1, '1', "CP"},    SignalBand{glonass, Signal::g2, '2', "CP"},
-    SignalBand{sbas, Signal::l1, '1', "C"},        SignalBand{navic, Signal::l5, '5', "AXCB"},
+    SignalBand{beidou, Signal::l5, '5', "PXD"},    SignalBand{glonass, Signal::g1, '1', "CP"},
+    SignalBand{glonass, Signal::g2, '2', "CP"},    SignalBand{sbas, Signal::l1, '1', "C"},
+    SignalBand{navic, Signal::l5, '5', "AXCB"},
 };
 
 int column_of(std::span<const std::string> types, const std::string& type) {

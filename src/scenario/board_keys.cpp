@@ -26,6 +26,7 @@ constexpr std::array<Word<Personality>, 8> board_personalities{{{"mute", Persona
                                                                 {"msp-v1", Personality::msp_v1},
                                                                 {"mavlink", Personality::mavlink},
                                                                 {"sbf", Personality::sbf}}};
+constexpr std::array<Word<SecondBand>, 2> second_band_words{{{"l2", SecondBand::l2}, {"l5", SecondBand::l5}}};
 constexpr std::array<Word<ValueConfigSupport>, 3> value_config_words{{{"full", ValueConfigSupport::full},
                                                                       {"refuse", ValueConfigSupport::refuse},
                                                                       {"silence", ValueConfigSupport::silence}}};
@@ -147,6 +148,7 @@ void read_board_usb(TableReader& usb, BoardProfile& board) {
 void read_board_navigation(TableReader& navigation, BoardProfile& board) {
     read_constellation_list(navigation, board.constellations);
     navigation.boolean("dual_frequency", board.dual_frequency);
+    navigation.word("second_band", second_band_words, board.second_band);
     navigation.integer("most_systems", board.most_systems, {1, 4});
     read_signal_conflicts(navigation, board);
     navigation.number("max_rate_hz", board.max_rate_hz, {0.1, 100});

@@ -206,7 +206,7 @@ class ArduPilot(Client):
         """The driver tells the generations apart by these texts."""
         self.step("MON-VER")
         wanted = {"ublox-m8": ("00080000", ""), "ublox-m9": ("00190000", "EXT CORE 4"),
-                  "ublox-m10": ("000A0000", ""), "ublox-f9p": ("00190000", "EXT CORE 1")}[self.board.name]
+                  "ublox-m10": ("000A0000", ""), "ublox-f10": ("000A0000", ""), "ublox-f9p": ("00190000", "EXT CORE 1")}[self.board.name]
         self.check(version.hardware == wanted[0] and version.software.startswith(wanted[1]),
                    f"hardware {wanted[0]}, software {wanted[1]}…", f"{version.hardware}, {version.software}")
 

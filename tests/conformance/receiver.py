@@ -30,7 +30,7 @@ class Board:
     @property
     def has_flash(self):
         """M10 is the bare chip, with its firmware in ROM."""
-        return self.generation != 10
+        return self.name != "ublox-m10"
 
     @property
     def is_f9p(self):
@@ -41,6 +41,7 @@ BOARDS = {board.name: board for board in (
     Board("ublox-m8", 9600, 8, (18, 0)),
     Board("ublox-m9", 38400, 9, (32, 1)),
     Board("ublox-m10", 38400, 10, (34, 10)),
+    Board("ublox-f10", 38400, 10, (40, 0)),
     Board("ublox-f9p", 38400, 9, (27, 31)),
     Board("nmea-generic", 9600),
     Board("mtk3339", 9600),

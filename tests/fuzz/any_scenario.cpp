@@ -38,9 +38,9 @@ constexpr double run_s = 8;
 constexpr std::array<std::string_view, 8> favourites{"fault", "fault",  "receiver", "trajectory",
                                                      "model", "expect", "command",  "sky"};
 
-constexpr std::string_view boards[] = {"ublox-m8",       "ublox-6",      "ublox-m9",         "ublox-m10",
-                                       "ublox-f9p",      "nmea-generic", "mtk3339",          "airoha-ag33xx",
-                                       "septentrio-sbf", "msp-gps",      "mavlink-gps-input"};
+constexpr std::string_view boards[] = {"ublox-m8",       "ublox-6",      "ublox-m9",          "ublox-m10",
+                                       "ublox-f9p",      "nmea-generic", "mtk3339",           "airoha-ag33xx",
+                                       "septentrio-sbf", "msp-gps",      "mavlink-gps-input", "ublox-f10"};
 constexpr std::string_view instants[] = {"2026-03-01T12:00:03Z", "2024-03-09T23:59:41Z", "2016-12-31T23:59:58Z",
                                          "2019-04-06T23:59:41Z", "2024-02-28T23:59:58Z", "2038-11-20T23:59:43Z"};
 constexpr std::string_view receivers[] = {"receiver0", "receiver1"};

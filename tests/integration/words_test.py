@@ -58,7 +58,7 @@ MISUSES = [
      "skyloop: faults: --format markdown lists all of them; expected text or json beside a NAME"),
     (["boards", "ublox-m88"],
      "skyloop: board 'ublox-m88' is not known; expected one of airoha-ag33xx, mavlink-gps-input, msp-gps, mtk3339, "
-     "nmea-generic, septentrio-sbf, ublox-6, ublox-f9p, ublox-m10, ublox-m8, ublox-m9; did you mean 'ublox-m8'?"),
+     "nmea-generic, septentrio-sbf, ublox-6, ublox-f10, ublox-f9p, ublox-m10, ublox-m8, ublox-m9; did you mean 'ublox-m8'?"),
 ]
 
 

@@ -102,7 +102,10 @@ void write_signals(const BoardProfile& board, FactoryWriter& writer) {
     for (const SystemKeys& system : system_keys_of_signals) {
         const bool on = std::find(enabled.begin(), enabled.end(), system.constellation) != enabled.end();
         writer.set(system.enable, on);
-        writer.set(system.second, board.dual_frequency);
+        const auto second = second_signal(system.constellation, board.second_band);
+        for (const SignalKey& s : signal_keys)
+            if (second && s.signal == SystemSignal{system.constellation, *second})
+                writer.set(s.enable, board.dual_frequency);
         if (system.constellation == Constellation::navic) writer.set(system.first[0], on);
     }
 }

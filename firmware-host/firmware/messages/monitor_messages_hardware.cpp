@@ -133,7 +133,8 @@ MonSpanItem spectrum(double centre_hz, const BandMonitor& monitor) {
 }
 
 MonSpan spectra(const ReportContext& context) {
-    constexpr double centres_hz[] = {1575420000, 1227600000};
+    const double lower_hz = context.board.second_band == SecondBand::l5 ? 1176450000 : 1227600000;
+    const double centres_hz[] = {1575420000, lower_hz};
     MonSpan m;
     const std::vector<BandMonitor> bands = bands_of(context);
     for (std::size_t block = 0; block < bands.size(); ++block)

@@ -30,10 +30,19 @@ Signal first_signal(Constellation constellation);
 /// @param frequency_channel of GLONASS: 1602 + 0.5625 k and 1246 + 0.4375 k MHz (ICD L1, L2 GLONASS, table 3.1)
 Hertz carrier_frequency(Signal signal, int frequency_channel = 0);
 
-/// The signals that are emulated for a system, the first one first: L1, L2, L5; E1, E5b, E5a; B1I, B2I, B3I; G1, G2; of
-/// SBAS L1, of NavIC L5.
+/// The signals that are emulated for a system, the first one first: L1, L2, L5; E1, E5b, E5a; B1I, B2I, B3I, B2a; G1,
+/// G2; of SBAS L1, of NavIC L5.
 std::span<const Signal> emulated_signals(Constellation constellation);
-inline constexpr std::size_t most_signals = 3;
+inline constexpr std::size_t most_signals = 4;
+
+/// The band of what a receiver of two frequencies tracks besides the first signals.
+enum class SecondBand {
+    l2,  ///< L2C, E5b, B2I, G2
+    l5,  ///< L5, E5a, B2a
+};
+
+/// Nothing for a system that sends none in that band, or none besides its first.
+std::optional<Signal> second_signal(Constellation constellation, SecondBand band);
 
 /// Band and attribute of a signal in RINEX 3 observation codes (RINEX 3.04, tables 4 to 10): "1C" of GPS L1.
 /// Nothing for a signal that the system does not send.
@@ -47,8 +56,8 @@ struct TransmittedSignal {
 };
 using TransmittedSignals = InplaceVector<TransmittedSignal, most_signals>;
 
-/// The emulated signals of the satellite of a record; no B2I of BeiDou-3. @param record tells the GLONASS channel and
-/// the group delays
+/// The emulated signals of the satellite of a record; no B2I of BeiDou-3, and B2a of its MEO and IGSO satellites alone.
+/// @param record tells the GLONASS channel and the group delays
 TransmittedSignals transmitted_signals(const Ephemeris& record);
 
 /// What a user of one signal subtracts from the broadcast clock, s, or nothing where the record does not tell.

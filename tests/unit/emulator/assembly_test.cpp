@@ -206,6 +206,18 @@ TEST(ReceiverSettingsOfAScenario, DualFrequencyAddsTheSecondSignals) {
             EXPECT_TRUE(both.tracks(c, signal)) << constellation_name(c);
 }
 
+TEST(ReceiverSettingsOfAScenario, TheBoardSaysInWhichBandTheSecondSignalsAre) {
+    for (const char* board : {"ublox-f10", "airoha-ag33xx"}) {
+        const ReceiverSettings l5 = receiver_settings(emulator_scenario("[[receiver]]"), board_of(board));
+        for (const Constellation c :
+             {Constellation::gps, Constellation::galileo, Constellation::beidou, Constellation::qzss}) {
+            EXPECT_TRUE(l5.tracks(c, first_signal(c)) && l5.tracks(c, Signal::l5)) << constellation_name(c);
+            EXPECT_FALSE(l5.tracks(c, Signal::l2) || l5.tracks(c, Signal::e5b)) << constellation_name(c);
+        }
+        EXPECT_FALSE(l5.tracks(Constellation::glonass, Signal::g2));
+    }
+}
+
 TEST(ReceiverSettingsOfAScenario, TakesStartMotionAndMaskOver) {
     const ReceiverSettings s =
         receiver_settings(emulator_scenario("[sky]\nelevation_mask_deg = 12.5\n[[receiver]]\nstart = \"cold\"\n"

@@ -53,6 +53,16 @@ TEST(FactoryConfig, EnablesSecondSignalsOfADualFrequencyBoard) {
         EXPECT_EQ(factory_value(board, std::string("CFG-SIGNAL-") + name + "_ENA"), 1U) << name;
 }
 
+TEST(FactoryConfig, EnablesThemInTheBandOfTheBoard) {
+    BoardProfile board = whole_board();
+    board.dual_frequency = true;
+    board.second_band = SecondBand::l5;
+    for (const char* name : {"GPS_L5", "GAL_E5A", "BDS_B2A", "QZSS_L5"})
+        EXPECT_EQ(factory_value(board, std::string("CFG-SIGNAL-") + name + "_ENA"), 1U) << name;
+    for (const char* name : {"GPS_L2C", "GAL_E5B", "BDS_B2", "QZSS_L2C", "GLO_L2"})
+        EXPECT_EQ(factory_value(board, std::string("CFG-SIGNAL-") + name + "_ENA"), 0U) << name;
+}
+
 TEST(FactoryConfig, SendsTheBoardsSentencesOnEveryPort) {
     const BoardProfile board = whole_board();
     for (const char* port : {"I2C", "UART1", "UART2", "USB", "SPI"}) {

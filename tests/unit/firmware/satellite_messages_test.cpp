@@ -195,6 +195,24 @@ TEST(NavSigMessage, ListsEverySignal) {
     EXPECT_EQ(m.signals[2].flags, 0x01);
 }
 
+TEST(NavSigMessage, TakesL5OfGpsForUnhealthyUntilThatIsOverridden) {
+    UbxReport f10(10);
+    constexpr std::uint32_t l5_as_healthy_as_l1 = 0x10320001;
+    f10.state.epoch.observations.signals = {tracked_signal({Constellation::gps, 1}, Signal::l1),
+                                            tracked_signal({Constellation::gps, 1}, Signal::l5)};
+    f10.config.set(in_ram, l5_as_healthy_as_l1, 0);
+    auto m = f10.report<NavSig>();
+    EXPECT_EQ(m.signals[0].flags, 0x29);
+    EXPECT_EQ(m.signals[0].iono_model, 1);
+    EXPECT_EQ(m.signals[1].sig_id, 7);
+    EXPECT_EQ(m.signals[1].flags, 0x02);
+    EXPECT_EQ(m.signals[1].quality, 7);
+    f10.config.set(in_ram, l5_as_healthy_as_l1, 1);
+    m = f10.report<NavSig>();
+    EXPECT_EQ(m.signals[0].iono_model, 8);
+    EXPECT_EQ(m.signals[1].flags, 0x29);
+}
+
 TEST(NavSigMessage, CallsB1iB1cWhereThatIsConfigured) {
     UbxReport m10(10);
     m10.state.epoch.fix.satellites.clear();

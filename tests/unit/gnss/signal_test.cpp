@@ -125,7 +125,20 @@ TEST(Signal, TellsHealthByTheSignalThatCarriesTheMessage) {
     EXPECT_FALSE(is_beidou_geo({Constellation::gps, 5}));
 }
 
-TEST(Signal, B2iComesFromBeidou2Alone) {
+TEST(Signal, TheSecondOneIsInTheBandThatIsAskedFor) {
+    using enum Constellation;
+    for (const Constellation c : {gps, qzss, galileo, beidou})
+        EXPECT_EQ(second_signal(c, SecondBand::l5), Signal::l5) << constellation_name(c);
+    EXPECT_EQ(second_signal(gps, SecondBand::l2), Signal::l2);
+    EXPECT_EQ(second_signal(galileo, SecondBand::l2), Signal::e5b);
+    EXPECT_EQ(second_signal(beidou, SecondBand::l2), Signal::e5b);
+    EXPECT_EQ(second_signal(glonass, SecondBand::l2), Signal::g2);
+    EXPECT_EQ(second_signal(glonass, SecondBand::l5), std::nullopt);
+    EXPECT_EQ(second_signal(sbas, SecondBand::l2), std::nullopt);
+    EXPECT_EQ(second_signal(navic, SecondBand::l5), std::nullopt);
+}
+
+TEST(Signal, B2iComesFromBeidou2AndB2aFromBeidou3Alone) {
     const auto sent = [](int number) {
         KeplerEphemeris record = delayed(Constellation::beidou, NavigationMessage::d1);
         record.satellite.number = number;
@@ -135,8 +148,9 @@ TEST(Signal, B2iComesFromBeidou2Alone) {
         return signals;
     };
     EXPECT_EQ(sent(16), (std::vector{Signal::b1i, Signal::e5b, Signal::b3i}));
-    EXPECT_EQ(sent(19), (std::vector{Signal::b1i, Signal::b3i}));
-    EXPECT_EQ(sent(46), (std::vector{Signal::b1i, Signal::b3i}));
+    EXPECT_EQ(sent(19), (std::vector{Signal::b1i, Signal::b3i, Signal::l5}));
+    EXPECT_EQ(sent(46), (std::vector{Signal::b1i, Signal::b3i, Signal::l5}));
+    EXPECT_EQ(sent(59), (std::vector{Signal::b1i, Signal::b3i}));
     KeplerEphemeris galileo = delayed(Constellation::galileo, NavigationMessage::inav);
     galileo.satellite.number = 24;
     EXPECT_EQ(transmitted_signals(galileo).size(), 3U);

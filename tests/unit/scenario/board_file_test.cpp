@@ -60,8 +60,9 @@ TEST(BoardFile, TellsTheUsbPort) {
 
 TEST(BoardFile, EveryShippedBoardIsRead) {
     const auto names = list_boards(shipped_boards);
-    EXPECT_THAT(names, ElementsAre("airoha-ag33xx", "mavlink-gps-input", "msp-gps", "mtk3339", "nmea-generic",
-                                   "septentrio-sbf", "ublox-6", "ublox-f9p", "ublox-m10", "ublox-m8", "ublox-m9"));
+    EXPECT_THAT(
+        names, ElementsAre("airoha-ag33xx", "mavlink-gps-input", "msp-gps", "mtk3339", "nmea-generic", "septentrio-sbf",
+                           "ublox-6", "ublox-f10", "ublox-f9p", "ublox-m10", "ublox-m8", "ublox-m9"));
     for (const std::string& name : names) {
         const auto board = find_board(name, shipped_boards);
         ASSERT_TRUE(board) << board.error().message;
@@ -220,10 +221,10 @@ TEST(FindBoard, RefusesUnknownNames) {
     const auto board = find_board("ublox-m88", shipped_boards);
     ASSERT_FALSE(board);
     EXPECT_EQ(board.error().code, ErrorCode::usage);
-    EXPECT_EQ(
-        board.error().message,
-        "board 'ublox-m88' is not known; expected one of airoha-ag33xx, mavlink-gps-input, msp-gps, mtk3339, "
-        "nmea-generic, septentrio-sbf, ublox-6, ublox-f9p, ublox-m10, ublox-m8, ublox-m9; did you mean 'ublox-m8'?");
+    EXPECT_EQ(board.error().message,
+              "board 'ublox-m88' is not known; expected one of airoha-ag33xx, mavlink-gps-input, msp-gps, mtk3339, "
+              "nmea-generic, septentrio-sbf, ublox-6, ublox-f10, ublox-f9p, ublox-m10, ublox-m8, ublox-m9; did you "
+              "mean 'ublox-m8'?");
     EXPECT_FALSE(find_board("../receivers/ublox-m8", shipped_boards));
     const std::vector<fs::path> nowhere{"/no/such/folder"};
     EXPECT_THAT(find_board("ublox-m8", nowhere).error().message, HasSubstr("searched: /no/such/folder"));

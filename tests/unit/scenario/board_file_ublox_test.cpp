@@ -345,7 +345,7 @@ TEST(ShippedBoards, EndAnEpochWithItsMark) {
         const auto& all = board.messages;
         return std::find(all.begin(), all.end(), firmware::find_output_message(name)->id) - all.begin();
     };
-    for (const char* name : {"ublox-m8", "ublox-m9", "ublox-m10", "ublox-f9p"}) {
+    for (const char* name : {"ublox-m8", "ublox-m9", "ublox-m10", "ublox-f10", "ublox-f9p"}) {
         const BoardProfile board = shipped_board(name);
         for (const UbxMessageId message : board.messages) {
             const bool navigation = message.message_class == 0x01 || message.message_class >= 0xF0;
@@ -388,11 +388,25 @@ TEST(ShippedBoards, HaveTheFactoryConfigurationOfTheirFirmware) {
     EXPECT_EQ(shipped_board("ublox-6").legacy.count({0x06, 0x3E}), 0U);
 }
 
+// SPG L1L5 6.00: GPS, Galileo and BeiDou, whose L1 is B1C alone; no legacy configuration (RECEIVER.md 4.1).
+TEST(ShippedBoards, TheF10IsAnM10WithL5AndWithoutGlonass) {
+    const BoardProfile f10 = shipped_board("ublox-f10");
+    for (const char* name : {"CFG-SIGNAL-GPS_L5_ENA", "CFG-SIGNAL-GAL_E5A_ENA", "CFG-SIGNAL-BDS_B2A_ENA",
+                             "CFG-SIGNAL-QZSS_L5_ENA", "CFG-SIGNAL-BDS_B1C_ENA"})
+        EXPECT_EQ(factory_of(f10, name), 1U) << name;
+    EXPECT_EQ(factory_of(f10, "CFG-SIGNAL-HEALTH_L5"), 0U);
+    EXPECT_EQ(factory_of(f10, "CFG-SIGNAL-NAVIC_ENA"), 0U);
+    // PX4's and a user's way to override the health of L5, and a question for GLONASS (satpulse #71).
+    EXPECT_EQ(set_in_ram(f10, {{0x10320001, 1}}), Verdict::acknowledge);
+    EXPECT_EQ(set_in_ram(f10, {{0x10310025, 0}}), Verdict::refuse);
+    EXPECT_EQ(f10.legacy.size(), 1U);
+}
+
 // The batches of PX4, INAV, ArduPilot and Betaflight (RECEIVER.md 6.1 to 6.4).
 TEST(ShippedBoards, TakeWhatTheirClientsSet) {
     const BoardProfile m8 = shipped_board("ublox-m8"), m9 = shipped_board("ublox-m9"), m10 = shipped_board("ublox-m10"),
-                       f9p = shipped_board("ublox-f9p");
-    for (const BoardProfile& board : {m9, m10, f9p}) {
+                       f10 = shipped_board("ublox-f10"), f9p = shipped_board("ublox-f9p");
+    for (const BoardProfile& board : {m9, m10, f10, f9p}) {
         EXPECT_EQ(set_in_ram(board, {{0x20520002, 1},
                                      {0x20520003, 0},
                                      {0x20520004, 0},
