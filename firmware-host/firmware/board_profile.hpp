@@ -199,8 +199,9 @@ struct BoardProfile {
     MetresPerSecond course_min_speed{0.1};  ///< slower than this, the course is left empty
     NmeaStyle style;
     std::vector<SentenceRate> sentences;  ///< factory output
-    std::vector<std::string> sbf_blocks;  ///< and of a Septentrio, blocks and groups of them; empty: the usual ones
-    Seconds solution_latency{0.05};       ///< from the epoch instant to the first byte of its output
+    /// And of a Septentrio, blocks and groups of them; nothing: the usual ones; an empty list: it is silent.
+    std::optional<std::vector<std::string>> sbf_blocks;
+    Seconds solution_latency{0.05};  ///< from the epoch instant to the first byte of its output
 
     /// What it can send, in the order in which it leaves within an epoch; sentences among it.
     std::vector<UbxMessageId> messages;

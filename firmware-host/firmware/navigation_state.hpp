@@ -81,6 +81,7 @@ struct LeapEvent {
 struct NavigationState {
     Epoch epoch;                  ///< its fix is the one to report: after limits, static hold and coasting
     bool fix_ok = false;          ///< within the user's limits (gnssFixOK)
+    bool place_given = false;     ///< the position is the user's own: only the time was solved
     bool kind_forbidden = false;  ///< the user wants no solution of this kind, which is why fix_ok is false
     bool ever_had_fix = false;    ///< since the last cold start: `epoch.fix` has a position, if an old one
     bool only_place_known =

@@ -197,7 +197,10 @@ void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     const std::optional<PowerSave::Rest> off = settings_.navigating ? power_.update(*state) : std::nullopt;
     state->power_save = power_.state();
     follow_power();
-    if (console_) withhold_forbidden(console_->state().settings, *state);
+    if (console_) {
+        withhold_forbidden(console_->state().settings, *state);
+        tell_given_place(*state);
+    }
     if (edit) edit(*state);
     reported_ = state;
     ++counters_.epochs;

@@ -167,15 +167,17 @@ void read_board_navigation(TableReader& navigation, BoardProfile& board) {
     navigation.quantity("solution_latency_s", board.solution_latency, {0, 2});
 }
 
-// Blocks and groups, in the maker's spelling.
+// Blocks and groups, in the maker's spelling. An empty list is not the same as none.
 void read_board_sbf(TableReader& sbf, BoardProfile& board) {
-    sbf.texts("blocks", board.sbf_blocks);
-    for (std::string& name : board.sbf_blocks) {
+    std::vector<std::string> blocks;
+    sbf.texts("blocks", blocks, 0);
+    for (std::string& name : blocks) {
         auto known = firmware::known_word(firmware::WordKind::block, name);
         if (!known) known = firmware::known_word(firmware::WordKind::block_group, name);
         if (!known) return sbf.mistake("blocks", fmt::format("has '{}', which is no SBF block or group", name));
         name = *known;
     }
+    if (sbf.has("blocks")) board.sbf_blocks = std::move(blocks);
 }
 
 // A u-blox receiver whose factory settings it would refuse itself could never be configured.

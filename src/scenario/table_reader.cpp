@@ -135,8 +135,8 @@ std::optional<std::string> TableReader::utc(std::string_view key) {
         minutes == 0 ? "Z" : fmt::format("{}{:02}:{:02}", minutes < 0 ? '-' : '+', size / 60, size % 60));
 }
 
-void TableReader::texts(std::string_view key, std::vector<std::string>& values) {
-    if (recording()) note(key, {.type = KeyType::texts, .count_least = 1});
+void TableReader::texts(std::string_view key, std::vector<std::string>& values, std::size_t least) {
+    if (recording()) note(key, {.type = KeyType::texts, .count_least = least});
     const toml::node* node = find(key);
     if (!node) return;
     const auto* list = node->as_array();
@@ -147,7 +147,7 @@ void TableReader::texts(std::string_view key, std::vector<std::string>& values) 
         if (!word) return mistake_at(item, key, fmt::format("holds {}; expected a list of texts", type_words(item)));
         found.push_back(word->get());
     }
-    if (found.empty()) return mistake(key, "is an empty list; expected at least one text");
+    if (found.size() < least) return mistake(key, "is an empty list; expected at least one text");
     values = std::move(found);
 }
 

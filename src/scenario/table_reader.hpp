@@ -86,7 +86,8 @@ public:
     void number(std::string_view key, double& value, NumberRange range = {});
     void boolean(std::string_view key, bool& value);
     void text(std::string_view key, std::string& value);
-    void texts(std::string_view key, std::vector<std::string>& values);
+    /// @param least how many there are at least, 0 or 1
+    void texts(std::string_view key, std::vector<std::string>& values, std::size_t least = 1);
     /// A text or a list of texts.
     void text_or_texts(std::string_view key, std::vector<std::string>& values);
     /// A whole number. `range` lies within what Integer holds.

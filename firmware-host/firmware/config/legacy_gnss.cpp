@@ -91,19 +91,43 @@ bool merge_systems(CfgGnss& now, const std::vector<CfgGnssItem>& set) {
     return true;
 }
 
-/// Whether the channels suffice, and a system is left (RECEIVER.md 3.3). A system that is off reserves nothing.
+/// Channels can be shared out up to protocol 23. Later ones have them read only (u-blox ZED-F9P interface description,
+/// UBX-18010854, CFG-GNSS): whatever a client writes there is left unread.
+bool shares_channels(const BoardProfile& board) {
+    constexpr int last_generation = 8;
+    return board.identity.generation <= last_generation;
+}
+
+void keep_channels(const CfgGnss& now, CfgGnss& set) {
+    set.num_trk_ch_use = now.num_trk_ch_use;
+    for (CfgGnssItem& item : set.systems) {
+        const auto own = std::ranges::find(now.systems, item.gnss_id, &CfgGnssItem::gnss_id);
+        if (own == now.systems.end()) continue;
+        item.res_trk_ch = own->res_trk_ch;
+        item.max_trk_ch = own->max_trk_ch;
+    }
+}
+
+bool is_major(const CfgGnssItem& item) {
+    const LegacySystem* const system = find_system(item.gnss_id);
+    return system != nullptr && system->is_major;
+}
+
+bool leaves_major(const CfgGnss& message) {
+    return std::ranges::any_of(message.systems,
+                               [](const auto& item) { return (item.flags & 1) != 0 && is_major(item); });
+}
+
+/// Whether the channels suffice (RECEIVER.md 3.3). A system that is off reserves nothing.
 bool channels_suffice(const CfgGnss& message) {
-    unsigned reserved = 0, major = 0;
+    unsigned reserved = 0;
     for (const CfgGnssItem& item : message.systems) {
         if (item.res_trk_ch > item.max_trk_ch) return false;
         if ((item.flags & 1) == 0) continue;
         reserved += item.res_trk_ch;
-        const LegacySystem* const system = find_system(item.gnss_id);
-        if (system == nullptr || !system->is_major) continue;
-        if (item.max_trk_ch < least_major_channels) return false;
-        ++major;
+        if (is_major(item) && item.max_trk_ch < least_major_channels) return false;
     }
-    return major > 0 && reserved <= message.num_trk_ch_use;
+    return reserved <= message.num_trk_ch_use;
 }
 
 /// An empty mask leaves the signals as they are: clients from before sigCfMask send none. False when the board has none
@@ -126,6 +150,7 @@ bool put_systems(const LegacyContext& context, LegacyChanges& changes, const std
         const LegacySystem* const system = find_system(item.gnss_id);
         if (system == nullptr || !put_signals(context, changes, item)) return false;
         changes.put(system->enabled, (item.flags & 1) != 0);
+        if (!shares_channels(context.board)) continue;
         changes.put(legacy_key::gnss_channels(item.gnss_id),
                     channels_were_set | std::uint32_t{item.max_trk_ch} << 8 | item.res_trk_ch);
     }
@@ -159,17 +184,19 @@ CfgSbas describe_sbas(const LegacyContext& context) {
 
 ConfigOutcome legacy_gnss(const LegacyContext& context, ByteSpan payload) {
     if (payload.empty() && !context.board.gnss_blocks.empty()) return legacy_answered(describe_gnss(context));
-    const auto set = decode_payload<CfgGnss>(payload);
+    auto set = decode_payload<CfgGnss>(payload);
     if (!set || set->version != 0) return legacy_refused();
     CfgGnss wanted = describe_gnss(context);
+    const bool shares = shares_channels(context.board);
+    if (!shares) keep_channels(wanted, *set);
     if (!merge_systems(wanted, set->systems)) return legacy_refused();
     // 255 stands for all, and more than there are cannot be used.
     const std::uint8_t available = context.board.gnss_channels_used;
     wanted.num_trk_ch_use = set->num_trk_ch_use == all_channels ? available : std::min(set->num_trk_ch_use, available);
-    if (!channels_suffice(wanted)) return legacy_refused();
+    if (!leaves_major(wanted) || (shares && !channels_suffice(wanted))) return legacy_refused();
     LegacyChanges changes(context);
     if (!put_systems(context, changes, set->systems)) return legacy_refused();
-    changes.put(legacy_key::gnss_channels_used, wanted.num_trk_ch_use);
+    if (shares) changes.put(legacy_key::gnss_channels_used, wanted.num_trk_ch_use);
     return changes.apply(signal_work(context.board));
 }
 

@@ -22,7 +22,9 @@ inline SbfTime sbf_time(const NavigationState& state) {
 
 /// PVT mode, bits 0-3 and 7 (PolaRx5TR reference guide, PVTGeodetic).
 inline std::uint8_t sbf_mode(const NavigationState& state) {
+    constexpr std::uint8_t fixed_location = 3;
     if (!has_solution(state)) return 0;
+    if (state.place_given) return fixed_location;
     switch (state.epoch.fix.type) {
         case FixType::fix_2d:
             return 0x81;

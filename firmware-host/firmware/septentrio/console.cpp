@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "firmware/config/config_keys.hpp"
+#include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/signal_keys.hpp"
 #include "firmware/septentrio/modes.hpp"
+#include "firmware/septentrio/station_output.hpp"
 
 namespace skyloop::firmware {
 
@@ -97,14 +100,16 @@ StartKind start_after(const std::string& erased) {
 SeptentrioConsole::SeptentrioConsole(const BoardProfile& board, const ConfigStore& store)
     : board_(board), own_period_ms_(store.value(key::rate_meas)) {
     adopt(store);
-    at_start_ = state_.settings;
+    factory_ = at_start_ = state_.settings;
 }
 
 // The board or a scenario may have it begin in another way than the factory's settings say.
 void SeptentrioConsole::adopt(const ConfigStore& store) {
     SeptentrioSettings& settings = state_.settings;
-    if (!board_.sbf_blocks.empty())
-        settings.set(group_of("SBFOutput"), {"Stream1", "COM1", fmt::format("{}", fmt::join(board_.sbf_blocks, "+"))});
+    if (board_.sbf_blocks && board_.sbf_blocks->empty())
+        settings.set(group_of("SBFOutput"), {"Stream1", "none", "none", "off"});
+    else if (board_.sbf_blocks)
+        settings.set(group_of("SBFOutput"), {"Stream1", "COM1", fmt::format("{}", fmt::join(*board_.sbf_blocks, "+"))});
     const auto speed = [&](const char* port, std::uint32_t item) {
         settings.set(group_of("COMSettings"), {port, fmt::format("baud{}", store.value(item))});
     };
@@ -201,7 +206,7 @@ std::string SeptentrioConsole::act_on_receiver(const Command& command, CommandOu
     if (command.is("eccf", "exeCopyConfigFile")) {
         if (!same_word(second, "Boot")) return done("CopyConfigFile");
         speeds_saved_ = same_word(first, "Current");
-        at_start_ = speeds_saved_ ? state_.settings : SeptentrioSettings();
+        at_start_ = speeds_saved_ ? state_.settings : factory_;
         return done("CopyConfigFile");
     }
     if (command.is("emd", "exeManageDisk")) {
@@ -226,8 +231,9 @@ std::string SeptentrioConsole::capabilities(const ConfigStore& store) const {
     for (const PortId port : board_.ports)
         if (const auto name = descriptor_of(port); !name.empty()) ports.push_back(name);
     const auto shortest = static_cast<int>(1000 / board_.max_rate_hz);
-    return fmt::format("ReceiverCapabilities, Main, {}, {}, SBAS+DGNSSRover+RTKRover+RTCMv3x+APME+RAIM, {}, {}, {}",
-                       fmt::join(signals, "+"), fmt::join(ports, "+"), shortest, shortest, shortest);
+    return fmt::format(
+        "ReceiverCapabilities, Main, {}, {}, SBAS+DGNSSRover+DGNSSBase+RTKRover+RTKBase+RTCMv3x+APME+RAIM, {}, {}, {}",
+        fmt::join(signals, "+"), fmt::join(ports, "+"), shortest, shortest, shortest);
 }
 
 std::string SeptentrioConsole::identification() const {
@@ -262,6 +268,7 @@ void SeptentrioConsole::apply(ConfigStore& store) const {
     store.set(in_ram, key::navspg_min_elev, static_cast<std::uint8_t>(std::max(mask("Tracking"), mask("PVT"))));
     apply_systems(store);
     apply_signals(store);
+    apply_station(store);
 }
 
 // Until it is told how it moves, the receiver goes by what the run says.
@@ -303,6 +310,23 @@ void SeptentrioConsole::apply_speeds(ConfigStore& store) const {
     };
     apply_speed("COM1", key::uart1_baudrate);
     apply_speed("COM2", key::uart2_baudrate);
+}
+
+// A place that it was told makes it a base in fixed mode, as CFG-TMODE does others.
+void SeptentrioConsole::apply_station(ConfigStore& store) const {
+    constexpr std::uint32_t station_item = 0x30090001;  // CFG-RTCM-DF003_OUT
+    constexpr std::uint64_t moving = 0, fixed = 2;
+    const int station = whole_number(state_.settings.values("RTCMv3Formatting").front()).value_or(0);
+    store.set(in_ram, station_item, static_cast<std::uint64_t>(station));
+    const auto place = told_place(state_.settings);
+    store.set(in_ram, key::tmode_mode, place ? fixed : moving);
+    if (!place) return;
+    store.set(in_ram, legacy_key::tmode_pos_type, 0);
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        const auto tenths_of_mm = std::llround(place->vector()[static_cast<Eigen::Index>(i)] * 1e4);
+        store.set(in_ram, legacy_key::tmode_ecef + i, static_cast<std::uint64_t>(tenths_of_mm / 100));
+        store.set(in_ram, legacy_key::tmode_ecef_hp + i, static_cast<std::uint64_t>(tenths_of_mm % 100));
+    }
 }
 
 void SeptentrioConsole::apply_systems(ConfigStore& store) const {

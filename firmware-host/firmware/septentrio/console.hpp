@@ -40,13 +40,14 @@ private:
     void apply_speeds(ConfigStore& store) const;
     void apply_systems(ConfigStore& store) const;
     void apply_signals(ConfigStore& store) const;
+    void apply_station(ConfigStore& store) const;
     void apply_motion(ConfigStore& store) const;
     void apply_talker(ConfigStore& store) const;
 
     const BoardProfile& board_;
     std::uint64_t own_period_ms_;
     SeptentrioState state_;
-    SeptentrioSettings at_start_;
+    SeptentrioSettings factory_, at_start_;
     bool speeds_saved_ = false;
 };
 

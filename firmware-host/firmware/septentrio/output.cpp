@@ -13,6 +13,7 @@
 #include "firmware/messages/sbf_parts.hpp"
 #include "firmware/messages/sbf_status_messages.hpp"
 #include "firmware/nmea_commands.hpp"
+#include "firmware/septentrio/station_output.hpp"
 #include "skyloop/protocol/sbf_navigation_blocks.hpp"
 
 namespace skyloop::firmware {
@@ -161,13 +162,6 @@ std::set<std::string> due_words(const SeptentrioState& receiver, std::string_vie
     return due;
 }
 
-bool lets_through(const SeptentrioSettings& settings, PortId port, std::string_view protocol) {
-    const auto& directions = settings.values("DataInOut", descriptor_of(port));
-    if (directions.size() < 2) return true;
-    const auto outputs = split_words(directions[1], '+');
-    return std::any_of(outputs.begin(), outputs.end(), [&](const auto& word) { return same_word(word, protocol); });
-}
-
 // Satellites below the mask of tracking are not tracked; of SBAS they are (setElevationMask).
 std::set<SatelliteId> satellites_below(Angle mask, const NavigationState& state) {
     std::set<SatelliteId> below;
@@ -196,15 +190,17 @@ std::vector<Bytes> due_messages(const SeptentrioState& receiver, const ReportCon
     const auto append = [&messages](std::vector<Bytes> made) {
         std::move(made.begin(), made.end(), std::back_inserter(messages));
     };
-    if (lets_through(receiver.settings, context.port, "SBF")) {
+    const std::string_view port = descriptor_of(context.port);
+    if (lets_through(receiver.settings, port, "SBF")) {
         const std::set<std::string> due = due_words(receiver, "SBFOutput", context);
         for (const MadeBlock& block : made_blocks)
             if (due.contains(std::string(block.name))) append(block.make(context, receiver));
     }
-    if (!lets_through(receiver.settings, context.port, "NMEA")) return messages;
-    for (const std::string& word : due_words(receiver, "NMEAOutput", context))
-        if (const OutputMessage* sentence = find_output_message(word); sentence != nullptr)
-            append(make_message(sentence->id, context));
+    if (lets_through(receiver.settings, port, "NMEA"))
+        for (const std::string& word : due_words(receiver, "NMEAOutput", context))
+            if (const OutputMessage* sentence = find_output_message(word); sentence != nullptr)
+                append(make_message(sentence->id, context));
+    append(station_output(receiver.settings, context));
     return messages;
 }
 
@@ -254,6 +250,9 @@ std::optional<std::uint64_t> wanted_period_ms(const SeptentrioSettings& settings
             certain = certain || stream.period_ms > 0;
             common = std::gcd(common, stream.period_ms == 0 ? own : stream.period_ms);
         }
+    const std::uint64_t station = station_period_ms(settings);
+    certain = certain || station > 0;
+    common = std::gcd(common, station);
     return certain ? std::optional(std::gcd(common, longest)) : std::nullopt;
 }
 

@@ -44,8 +44,8 @@ SbfReceiverSetup sbf_receiver_setup(const SeptentrioSettings& settings, const Bo
 /// Whether a stream asks for what comes by navigation messages.
 bool wants_messages(const SeptentrioSettings& settings);
 
-/// Blocks and sentences that are due at an epoch on the port of `context`, blocks first. Blocks that this receiver does
-/// not make are left out. What several streams ask for leaves once.
+/// Blocks, sentences and RTCM 3 that are due at an epoch on the port of `context`, in this order. Blocks that this
+/// receiver does not make are left out. What several streams ask for leaves once.
 std::vector<Bytes> septentrio_output(const SeptentrioState& receiver, const ReportContext& context);
 
 /// Period at which solutions are needed, ms, so that each stream finds its epochs; nothing when none asks for a certain

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <optional>
 
 #include "firmware/nmea_commands.hpp"
@@ -20,6 +21,35 @@ bool is_angle(std::string_view text) {
     return degrees && *degrees >= -90 && *degrees <= 90;
 }
 
+// What a number can be, and with how many decimals it is told.
+struct NumberRule {
+    std::string_view group, argument;
+    double least, most;
+    int decimals;  // -1: as many as it needs
+};
+constexpr NumberRule number_rules[] = {
+    {"StaticPosGeodetic", "Latitude", -90, 90, 9},   {"StaticPosGeodetic", "Longitude", -180, 180, 9},
+    {"StaticPosGeodetic", "Altitude", -1e3, 3e4, 4}, {"StaticPosCartesian", "X", -8e6, 8e6, 4},
+    {"StaticPosCartesian", "Y", -8e6, 8e6, 4},       {"StaticPosCartesian", "Z", -8e6, 8e6, 4},
+    {"RTCMv3Interval", "Interval", 0.1, 600, -1},    {"RTCMv3Formatting", "ReferenceID", 0, 4095, 0},
+};
+
+const NumberRule* rule_of(std::string_view group, std::string_view argument) {
+    const auto* const found = std::find_if(std::begin(number_rules), std::end(number_rules), [&](const auto& rule) {
+        return rule.group == group && rule.argument == argument;
+    });
+    return found == std::end(number_rules) ? nullptr : found;
+}
+
+// As it is told; nothing when it cannot be.
+std::optional<std::string> checked_number(const NumberRule& rule, std::string_view text) {
+    const auto value = decimal_number(text);
+    if (!value || !(*value >= rule.least && *value <= rule.most)) return std::nullopt;
+    if (rule.decimals == 0 && !whole_number(text)) return std::nullopt;
+    const double told = *value + 0.0;  // no zero with a minus
+    return rule.decimals < 0 ? fmt::format("{}", told) : fmt::format("{:.{}f}", told, rule.decimals);
+}
+
 std::optional<std::string> spelled(WordKind kind, std::string_view word) {
     const auto known = known_word(kind, word);
     return known ? std::optional(std::string(*known)) : std::nullopt;
@@ -30,6 +60,11 @@ std::optional<WordKind> kind_of(std::string_view group, std::string_view argumen
     if (group == "COMSettings" && argument == "Rate") return WordKind::line_speed;
     if (group == "PVTMode" && argument == "Mode") return WordKind::pvt_mode;
     if (group == "PVTMode" && argument == "RoverMode") return WordKind::rover_mode;
+    if (group == "PVTMode") return WordKind::place;
+    if (argument == "Datum") return WordKind::datum;
+    if (group == "RTCMv3Output") return WordKind::correction;
+    if (group == "RTCMv3Formatting" && argument == "Signals") return WordKind::signal;
+    if (group == "NtpClient" && argument == "Mode") return WordKind::on_off;
     if (group == "ReceiverDynamics") return argument == "Level" ? WordKind::level : WordKind::motion;
     if (group == "SignalTracking" || group == "SignalUsage") return WordKind::signal;
     return std::nullopt;
@@ -47,8 +82,16 @@ std::optional<std::string> checked_word(std::string_view group, std::string_view
         return block ? block : spelled(WordKind::block_group, word);
     }
     if (group == "ElevationMask" && !is_angle(word)) return std::nullopt;
+    if (const NumberRule* rule = rule_of(group, argument)) return checked_number(*rule, word);
     const auto kind = kind_of(group, argument);
     return kind ? spelled(*kind, word) : std::optional(word);
+}
+
+// MSM4 and its like stand for the messages of all systems, and are told as these.
+std::string members_of(std::string_view group, const std::string& word) {
+    if (group != "RTCMv3Output" || !word.starts_with("MSM")) return word;
+    const char type = word.back();
+    return fmt::format("RTCM107{0}+RTCM108{0}+RTCM109{0}+RTCM110{0}+RTCM111{0}+RTCM112{0}+RTCM113{0}", type);
 }
 
 // The list with what a + or - before its words adds or takes away. Without a sign before the first it is a new one.
@@ -65,14 +108,23 @@ std::optional<std::string> merged_list(std::string_view group, std::string_view 
         const std::size_t end = std::min(text.find_first_of("+-", at + 1), text.size());
         const auto word = checked_word(group, argument, split_words(text.substr(at + 1, end - at - 1), ',').front());
         if (!word || word->empty()) return std::nullopt;
-        std::erase(list, *word);
-        if (sign == '+' && *word != "none") list.push_back(*word);
+        for (const std::string& member : split_words(members_of(group, *word), '+')) {
+            std::erase(list, member);
+            if (sign == '+' && member != "none") list.push_back(member);
+        }
         at = end;
     }
     return list.empty() ? "none" : fmt::format("{}", fmt::join(list, "+"));
 }
 
 }  // namespace
+
+std::optional<double> decimal_number(std::string_view text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
 
 std::vector<std::string> split_words(std::string_view text, char separator) {
     std::vector<std::string> words;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,9 @@ private:
 
     Values values_;  ///< by "SBFOutput, Stream1"
 };
+
+/// A number with or without decimals; nothing for what is none.
+std::optional<double> decimal_number(std::string_view text);
 
 /// Parts between separators, without spaces around them.
 std::vector<std::string> split_words(std::string_view text, char separator);

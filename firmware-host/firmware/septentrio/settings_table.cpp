@@ -14,16 +14,28 @@ constexpr std::string_view connections =
     "COM1 COM2 USB1 USB2 IPS1 IPS2 IPS3 IP10 IP11 IP12 IP13 IP14 IP15 IP16 IP17 NTR1";
 constexpr std::string_view streams = "Stream1 Stream2 Stream3 Stream4 Stream5 Stream6 Stream7 Stream8 Stream9 Stream10";
 constexpr std::string_view every_system = "GPS+GLONASS+GALILEO+SBAS+BEIDOU+QZSS+NAVIC";
+constexpr std::string_view correction_paces =
+    "RTCM1001|2 RTCM1003|4 RTCM1005|6 RTCM1007|8 RTCM1009|10 RTCM1011|12 RTCM1013 RTCM1019 RTCM1020 RTCM1029 RTCM1033 "
+    "RTCM1042 RTCM1044 RTCM1045 RTCM1046 RTCM1230 MSM1 MSM2 MSM3 MSM4 MSM5 MSM6 MSM7";
 
 constexpr SettingGroup groups[] = {
     {"scs", "gcs", "COMSettings", serial_ports, "Rate DataBits Parity StopBits FlowControl",
      "baud115200,bits8,No,bit1,none"},
-    {"sdio", "gdio", "DataInOut", connections, "Input Output+ Show", "auto,SBF+NMEA+RTCMv3,(on)"},
+    {"sdio", "gdio", "DataInOut", connections, "Input Output+ Show", "auto,SBF+NMEA,(on)"},
     {"sso", "gso", "SBFOutput", streams, "Cd Messages+ Interval", "none,none,off"},
     {"sno", "gno", "NMEAOutput", streams, "Cd Messages+ Interval", "none,none,off"},
     {"snti", "gnti", "NMEATalkerID", "", "TalkerID", "auto"},
     {"spm", "gpm", "PVTMode", "", "Mode RoverMode+ StaticPosition",
      "Rover,StandAlone+SBAS+DGNSS+RTKFloat+RTKFixed,auto"},
+    {"sspg", "gspg", "StaticPosGeodetic", "Geodetic1 Geodetic2 Geodetic3 Geodetic4 Geodetic5",
+     "Latitude Longitude Altitude Datum", "0.000000000,0.000000000,0.0000,WGS84"},
+    {"sspc", "gspc", "StaticPosCartesian", "Cartesian1 Cartesian2 Cartesian3 Cartesian4 Cartesian5", "X Y Z Datum",
+     "0.0000,0.0000,0.0000,WGS84"},
+    // Real ones send all that a rover needs, once the port lets it out; which messages these are was not to be read.
+    {"sr3o", "gr3o", "RTCMv3Output", connections, "Messages+",
+     "RTCM1006+RTCM1033+RTCM1074+RTCM1084+RTCM1094+RTCM1124+RTCM1230"},
+    {"sr3i", "gr3i", "RTCMv3Interval", correction_paces, "Interval", "1"},
+    {"sr3f", "gr3f", "RTCMv3Formatting", "", "ReferenceID Signals+", "0,all"},
     {"srd", "grd", "ReceiverDynamics", "", "Level Motion", "Moderate,Automotive"},
     {"sem", "gem", "ElevationMask", "Tracking PVT", "Mask", "0"},
     {"sst", "gst", "SatelliteTracking", "", "Satellite+", every_system},
@@ -50,6 +62,7 @@ constexpr SettingGroup groups[] = {
     {"srl", "grl", "RAIMLevels", "", "Mode Pfa Pmd Reliability", "on,-4,-4,-3"},
     {"stsy", "gtsy", "TimingSystem", "", "System", "auto"},
     {"sntp", "gntp", "NTPServer", "", "Enable", "off"},
+    {"snc", "gnc", "NtpClient", "", "Mode Server", "off,"},
     {"spps", "gpps", "PPSParameters", "", "Interval Polarity Delay TimeScale MaxSyncAge PulseWidth",
      "sec1,Low2High,0.00,GPS,60,5.000000"},
     {"sep", "gep", "EventParameters", "EventA EventB", "Polarity Delay", "Low2High,0.000"},
@@ -127,6 +140,17 @@ constexpr std::string_view signal_words =
     "GALE5 GEOL1 GEOL5 BDSB1I BDSB2I BDSB3I BDSB1C BDSB2a BDSB2b QZSL1CA QZSL2C QZSL5 QZSL6 QZSL1C QZSL1S QZSL5S "
     "QZSL1CB NAVICL5 all";
 
+constexpr std::string_view reference_places =
+    "auto Geodetic1 Geodetic2 Geodetic3 Geodetic4 Geodetic5 Cartesian1 Cartesian2 Cartesian3 Cartesian4 Cartesian5";
+constexpr std::string_view correction_messages =
+    "none RTCM1001 RTCM1002 RTCM1003 RTCM1004 RTCM1005 RTCM1006 RTCM1007 RTCM1008 RTCM1009 RTCM1010 RTCM1011 RTCM1012 "
+    "RTCM1013 RTCM1019 RTCM1020 RTCM1029 RTCM1033 RTCM1042 RTCM1044 RTCM1045 RTCM1046 RTCM1071 RTCM1072 RTCM1073 "
+    "RTCM1074 RTCM1075 RTCM1076 RTCM1077 RTCM1081 RTCM1082 RTCM1083 RTCM1084 RTCM1085 RTCM1086 RTCM1087 RTCM1091 "
+    "RTCM1092 RTCM1093 RTCM1094 RTCM1095 RTCM1096 RTCM1097 RTCM1101 RTCM1102 RTCM1103 RTCM1104 RTCM1105 RTCM1106 "
+    "RTCM1107 RTCM1111 RTCM1112 RTCM1113 RTCM1114 RTCM1115 RTCM1116 RTCM1117 RTCM1121 RTCM1122 RTCM1123 RTCM1124 "
+    "RTCM1125 RTCM1126 RTCM1127 RTCM1131 RTCM1132 RTCM1133 RTCM1134 RTCM1135 RTCM1136 RTCM1137 RTCM1230 MSM1 MSM2 MSM3 "
+    "MSM4 MSM5 MSM6 MSM7 all";
+
 std::string_view words_of(WordKind kind) {
     switch (kind) {
         case WordKind::block:
@@ -151,6 +175,14 @@ std::string_view words_of(WordKind kind) {
             return "Static Quasistatic Pedestrian Automotive RaceCar HeavyMachinery UAV Unlimited EarthquakeMon";
         case WordKind::signal:
             return signal_words;
+        case WordKind::place:
+            return reference_places;
+        case WordKind::datum:
+            return "WGS84 ETRS89 NAD83 NAD83_PA NAD83_MA GDA94 GDA2020 User1 User2 Other";
+        case WordKind::correction:
+            return correction_messages;
+        case WordKind::on_off:
+            return "on off";
     }
     return {};
 }

@@ -34,7 +34,11 @@ enum class WordKind {
     rover_mode,
     level,
     motion,
-    signal
+    signal,
+    place,  ///< of PVTMode's reference position
+    datum,
+    correction,  ///< message of RTCM 3, and groups of them
+    on_off
 };
 /// The maker's spelling of a word, whatever case the user wrote it in; nothing when there is no such word.
 std::optional<std::string_view> known_word(WordKind kind, std::string_view word);

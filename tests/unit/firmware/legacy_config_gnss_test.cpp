@@ -77,6 +77,29 @@ TEST(LegacyGnss, TakesFewerChannelsAndAllOfThem) {
     EXPECT_EQ(answer[2], 32);
 }
 
+TEST(LegacyGnss, LeavesReadOnlyChannelsUnreadFromGeneration9On) {
+    LegacyBench f9p(legacy_f9p());
+    const Bytes before = f9p.poll(cfg(0x3E));
+    for (const std::string_view taken : {
+             "00 3C 3C 02  00 0E 3C 00 01001101  06 0E 3C 00 01001101",  // reserved for two, more than there are for
+                                                                         // one
+             "00 00 14 01  00 3C 3C 00 01001101",                        // more reserved than are to be used
+             "00 00 3C 01  00 10 00 00 01001101",                        // more reserved than at most
+             "00 00 00 01  02 00 00 00 01002101",                        // none at all
+         }) {
+        EXPECT_EQ(f9p.set(cfg(0x3E), hex(taken)), Verdict::acknowledge) << taken;
+        EXPECT_EQ(f9p.poll(cfg(0x3E)), before) << taken;
+    }
+    // What has to do with systems is still refused.
+    EXPECT_EQ(f9p.set(cfg(0x3E), hex("00 00 3C 01  07 02 04 00 01000101")), Verdict::refuse);
+    EXPECT_EQ(f9p.set(cfg(0x3E), hex("00 00 3C 04  00 08 10 00 00001101  02 0A 12 00 00002101"
+                                     "03 02 05 00 00001101  06 08 0C 00 00000101")),
+              Verdict::refuse);
+    LegacyBench m9(legacy_m9());
+    EXPECT_EQ(m9.set(cfg(0x3E), hex("00 2A 2A 01  00 2B 2A 00 01000101")), Verdict::acknowledge);
+    EXPECT_EQ(m9.poll(cfg(0x3E))[5], 8);
+}
+
 TEST(LegacyGnss, ABoardWithoutBlocksRefuses) {
     BoardProfile board = legacy_m9();
     board.gnss_blocks.clear();

@@ -2,12 +2,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "firmware/base_place.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/messages/sbf_status_messages.hpp"
 #include "firmware/receiver.hpp"
 #include "firmware/septentrio/command_line_reader.hpp"
 #include "firmware/septentrio/console.hpp"
 #include "sample_epochs.hpp"
+#include "skyloop/gnss/constants.hpp"
+#include "skyloop/protocol/rtcm3.hpp"
 #include "skyloop/protocol/sbf_blocks.hpp"
 #include "skyloop/protocol/stream_splitter.hpp"
 
@@ -85,6 +90,66 @@ TEST_F(Console, RefusesWhatItDoesNotHaveAndChangesNothing) {
     EXPECT_THAT(say("gso,Stream1"), HasSubstr(std::string(default_blocks) + ", OnChange"));
 }
 
+TEST_F(Console, KeepsPlacesOfReferenceStations) {
+    EXPECT_EQ(say("setStaticPosGeodetic, Geodetic1, 47.000000, 8.000000, 400.000000"),
+              "$R: setStaticPosGeodetic, Geodetic1, 47.000000, 8.000000, 400.000000\r\n"
+              "  StaticPosGeodetic, Geodetic1, 47.000000000, 8.000000000, 400.0000, WGS84\r\nCOM1>");
+    EXPECT_THAT(say("sspg, Geodetic2, -0.000000, -180, -1000, etrs89"),
+                HasSubstr("Geodetic2, 0.000000000, -180.000000000, -1000.0000, ETRS89\r\n"));
+    EXPECT_THAT(say("gspg, Geodetic1"), HasSubstr("  StaticPosGeodetic, Geodetic1, 47.000000000, 8.000000000"));
+    EXPECT_THAT(say("sspc, Cartesian1, 4019952.028, 331452.954, 4924307.458"),
+                HasSubstr("  StaticPosCartesian, Cartesian1, 4019952.0280, 331452.9540, 4924307.4580, WGS84\r\n"));
+    EXPECT_THAT(say("getStaticPosCartesian"), HasSubstr("Cartesian5, 0.0000, 0.0000, 0.0000, WGS84\r\n"));
+    EXPECT_EQ(say("sspg, Geodetic1, 90.1"), "$R? StaticPosGeodetic: Argument 'Latitude' is invalid!\r\nCOM1>");
+    EXPECT_EQ(say("sspg, Geodetic1, 9, east"), "$R? StaticPosGeodetic: Argument 'Longitude' is invalid!\r\nCOM1>");
+    EXPECT_EQ(say("sspg, Geodetic1, 9, 9, nan"), "$R? StaticPosGeodetic: Argument 'Altitude' is invalid!\r\nCOM1>");
+    EXPECT_EQ(say("sspg, Geodetic1, , , , Moon"), "$R? StaticPosGeodetic: Argument 'Datum' is invalid!\r\nCOM1>");
+    EXPECT_EQ(say("sspc, Cartesian1, 8000001"), "$R? StaticPosCartesian: Argument 'X' is invalid!\r\nCOM1>");
+    EXPECT_EQ(say("sspc, Geodetic1, 1"), "$R? StaticPosCartesian: Argument 'Index' is invalid!\r\nCOM1>");
+    EXPECT_EQ(say("spm, Static, , Geodetic6"), "$R? PVTMode: Argument 'StaticPosition' is invalid!\r\nCOM1>");
+}
+
+TEST_F(Console, StandsWhereItWasTold) {
+    const auto place = [&] { return base_place(store_, std::nullopt).value_or(BasePlace{}).position.vector(); };
+    say("spm, Static, , Geodetic1");
+    EXPECT_FALSE(base_place(store_, std::nullopt)) << "a position that was not set is none";
+    say("sspg, Geodetic1, 47, 8, 400");
+    EXPECT_LT((place() - to_ecef(Geodetic::degrees(47, 8, 400)).vector()).norm(), 1e-4);
+    say("sspc, Cartesian3, -4019952.0287, 331452.9541, 4924307.458");
+    say("setPVTMode, Static, All, cartesian3");
+    EXPECT_LT((place() - Eigen::Vector3d(-4019952.0287, 331452.9541, 4924307.458)).norm(), 1e-4);
+    say("spm, , , auto");
+    EXPECT_FALSE(base_place(store_, std::nullopt));
+    say("spm, Static, , Cartesian3");
+    say("spm, Rover");
+    EXPECT_FALSE(base_place(store_, std::nullopt));
+}
+
+TEST_F(Console, IsToldOfTheMessagesOfAReferenceStation) {
+    EXPECT_THAT(
+        say("sr3o, COM1, RTCM1005+msm4"),
+        HasSubstr("  RTCMv3Output, COM1, RTCM1005+RTCM1074+RTCM1084+RTCM1094+RTCM1104+RTCM1114+RTCM1124+RTCM1134"
+                  "\r\n"));
+    EXPECT_THAT(say("sr3o, COM1, -MSM4+RTCM1230"), HasSubstr("  RTCMv3Output, COM1, RTCM1005+RTCM1230\r\n"));
+    EXPECT_THAT(say("setRTCMv3Output, COM1+COM3+USB1, none"),
+                HasSubstr("  RTCMv3Output, COM1, none\r\n  RTCMv3Output, USB1, none\r\n"));
+    EXPECT_EQ(say("sr3o, COM1, RTCM999"), "$R? RTCMv3Output: Argument 'Messages' is invalid!\r\nCOM1>");
+    EXPECT_THAT(say("sr3i, RTCM1005|6+MSM7, 0.5"),
+                HasSubstr("  RTCMv3Interval, RTCM1005|6, 0.5\r\n  RTCMv3Interval, MSM7, 0.5\r\n"));
+    EXPECT_THAT(say("gr3i, MSM4"), HasSubstr("  RTCMv3Interval, MSM4, 1\r\n"));
+    EXPECT_EQ(say("sr3i, MSM4, 601"), "$R? RTCMv3Interval: Argument 'Interval' is invalid!\r\nCOM1>");
+    EXPECT_THAT(say("setRTCMv3Formatting, 123"), HasSubstr("  RTCMv3Formatting, 123, all\r\n"));
+    EXPECT_EQ(say("sr3f, 4096"), "$R? RTCMv3Formatting: Argument 'ReferenceID' is invalid!\r\nCOM1>");
+    EXPECT_EQ(say("sr3f, 1.5"), "$R? RTCMv3Formatting: Argument 'ReferenceID' is invalid!\r\nCOM1>");
+    EXPECT_THAT(say("gdio, COM1"), HasSubstr("  DataInOut, COM1, auto, SBF+NMEA, (on)\r\n"));
+}
+
+TEST_F(Console, KeepsWhereItGetsTheTimeFrom) {
+    EXPECT_THAT(say("snc, on, pool.ntp.org"), HasSubstr("  NtpClient, on, pool.ntp.org\r\n"));
+    EXPECT_THAT(say("getNtpClient"), HasSubstr("  NtpClient, on, pool.ntp.org\r\n"));
+    EXPECT_EQ(say("snc, perhaps"), "$R? NtpClient: Argument 'Mode' is invalid!\r\nCOM1>");
+}
+
 TEST_F(Console, PromptsWhoAsksForIt) {
     EXPECT_EQ(say(""), "COM1>");
     EXPECT_EQ(say("# nothing"), "COM1>");
@@ -155,6 +220,25 @@ TEST_F(Console, StartsAgainAsSaved) {
     EXPECT_EQ(outcome_.restart, StartKind::warm);
     say("exeResetReceiver, hard, SatData+PVTData");
     EXPECT_EQ(outcome_.restart, StartKind::cold);
+}
+
+// As a real one does.
+TEST(SilentConsole, SendsNothingUntilItIsToldAndAfterItsFactorySettings) {
+    BoardProfile board = septentrio_board();
+    board.sbf_blocks.emplace();
+    ConfigStore store(factory_config(board));
+    SeptentrioConsole console(board, store);
+    const auto say = [&](const char* line) {
+        return to_string(console.execute(line, store, PortId::uart1).answers.at(0));
+    };
+    EXPECT_THAT(say("gso,Stream1"), HasSubstr("  SBFOutput, Stream1, none, none, off\r\n"));
+    say("sso,Stream1,COM1,DOP,sec1");
+    say("eccf,Current,Boot");
+    console.restart(store);
+    EXPECT_THAT(say("gso,Stream1"), HasSubstr("COM1, DOP, sec1"));
+    say("eccf,RxDefault,Boot");
+    console.restart(store);
+    EXPECT_THAT(say("gso,Stream1"), HasSubstr("  SBFOutput, Stream1, none, none, off\r\n"));
 }
 
 NavigationState solved_state() {
@@ -253,7 +337,10 @@ protected:
                     pieces.push_back(std::move(piece));
             if (now_.time_since_epoch() % receiver_.settings().navigation_period != 0ns) continue;
             fix_.time = now_;
-            receiver_.on_epoch({fix_});
+            Epoch epoch{fix_};
+            epoch.observations = observations_;
+            if (!observations_.signals.empty()) epoch.observations.receive_time = now_;
+            receiver_.on_epoch(epoch);
         }
         for (StreamPiece& piece : splitter.finish())
             pieces.push_back(std::move(piece));
@@ -263,6 +350,7 @@ protected:
 
     Receiver receiver_{septentrio_board(), ReceiverOptions{}};
     Fix fix_;
+    Observations observations_;
     GpsTime now_ = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500).time;
 };
 
@@ -335,6 +423,54 @@ TEST_F(SeptentrioReceiver, SendsSentencesToo) {
     wait(100ms);
     for (const StreamPiece& piece : wait(2s))
         EXPECT_NE(piece.kind, StreamKind::nmea);
+}
+
+std::vector<int> corrections_in(const std::vector<StreamPiece>& pieces) {
+    std::vector<int> numbers;
+    for (const StreamPiece& piece : pieces)
+        if (piece.kind == StreamKind::rtcm3) numbers.push_back(parse_rtcm3(piece.bytes)->number);
+    return numbers;
+}
+
+TEST_F(SeptentrioReceiver, IsAReferenceStationAtThePlaceThatItWasTold) {
+    Observation signal;
+    signal.satellite = {Constellation::gps, 1};
+    signal.signal = Signal::l1;
+    signal.carrier = carrier_frequency(Signal::l1);
+    signal.cn0 = DbHz(41);
+    signal.pseudorange = Metres(2.2e7);
+    observations_.signals = {signal};
+    say("sso,Stream1,COM1,PVTGeodetic,sec1");
+    say("sdio,COM1,auto,SBF");
+    say("sr3f,123");
+    say("sr3i,MSM4,0.5");
+    wait(1s);
+    EXPECT_THAT(corrections_in(wait(2s)), ElementsAre()) << "it is not let out";
+    say("sdio,COM1,,+RTCMv3");
+    wait(1s);
+    EXPECT_THAT(corrections_in(wait(1s)), ElementsAre(1074, 1230, 1074)) << "it moves";
+    say("sao,Main,0,0,1.5");
+    say("sspg,Geodetic1,47.5,8.25,400");
+    say("spm,Static,,Geodetic1");
+    wait(1s);
+    const std::vector<StreamPiece> pieces = wait(1s);
+    EXPECT_THAT(corrections_in(pieces), ElementsAre(1006, 1074, 1230, 1074));
+    for (const StreamPiece& piece : pieces) {
+        if (piece.kind == StreamKind::sbf) {
+            const auto pvt = decode_sbf<SbfPvtGeodetic>(parse_sbf(piece.bytes)->body);
+            EXPECT_EQ(pvt->mode, 3) << "fixed location";
+            EXPECT_EQ(pvt->error, 0);
+            EXPECT_NEAR(pvt->latitude, Angle::degrees(47.5).rad(), 1e-10);
+            EXPECT_EQ(pvt->vel_north, 0);
+        } else if (piece.kind != StreamKind::rtcm3) {
+            continue;
+        } else if (const auto station = decode_station(*parse_rtcm3(piece.bytes))) {
+            EXPECT_EQ(station->station, 123);
+            EXPECT_EQ(station->antenna_height, 15000);
+            EXPECT_EQ(station->position[0],
+                      std::llround(to_ecef(Geodetic::degrees(47.5, 8.25, 400)).vector().x() * 1e4));
+        }
+    }
 }
 
 TEST_F(SeptentrioReceiver, AnswersAtItsNewSpeedAndOnePieceAtATime) {

@@ -15,6 +15,8 @@ using firmware::BoardProfile;
 using firmware::NmeaSentence;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Optional;
 
 const std::vector<fs::path> shipped_boards{fs::path(SKYLOOP_SOURCE_DIR) / "boards"};
 
@@ -36,7 +38,11 @@ std::vector<std::string> sentence_names(const BoardProfile& board) {
 TEST(BoardFile, NamesTheBlocksOfASeptentrio) {
     const auto board = read_board("personality = \"sbf\"\n[sbf]\nblocks = [\"measepoch\", \"RawNavBits\"]\n", "a.toml");
     ASSERT_TRUE(board) << board.error().message;
-    EXPECT_THAT(board->sbf_blocks, ElementsAre("MeasEpoch", "RawNavBits"));
+    EXPECT_THAT(board->sbf_blocks, Optional(ElementsAre("MeasEpoch", "RawNavBits")));
+    const auto silent = read_board("personality = \"sbf\"\n[sbf]\nblocks = []\n", "a.toml");
+    ASSERT_TRUE(silent) << silent.error().message;
+    EXPECT_THAT(silent->sbf_blocks, Optional(IsEmpty()));
+    EXPECT_FALSE(read_board("personality = \"sbf\"\n", "a.toml")->sbf_blocks) << "the usual ones";
     const auto wrong = read_board("personality = \"sbf\"\n[sbf]\nblocks = [\"MeasEpoch\", \"Tea\"]\n", "a.toml");
     ASSERT_FALSE(wrong);
     EXPECT_THAT(wrong.error().message, HasSubstr("has 'Tea', which is no SBF block or group"));
