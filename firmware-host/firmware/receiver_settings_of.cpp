@@ -77,7 +77,7 @@ ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board
     const double rate = 1e9 / static_cast<double>(settings.navigation_period.count());
     const bool is_fast = board.all_satellites_rate_hz > 0 && rate > board.all_satellites_rate_hz;
     settings.most_satellites = is_fast ? static_cast<std::size_t>(board.fast_satellites) : 0;
-    if (is_changed(store, key::navspg_max_svs)) {
+    if (board.personality == Personality::ublox) {
         const auto most = static_cast<std::size_t>(std::max<std::uint64_t>(1, store.value(key::navspg_max_svs)));
         settings.most_satellites = is_fast ? std::min(settings.most_satellites, most) : most;
     }

@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "data_folders.hpp"
+#include "firmware/receiver.hpp"
 #include "run_session.hpp"
 #include "sky_parts.hpp"
 #include "skyloop/analysis/sky_listing.hpp"
@@ -138,7 +139,9 @@ Result<ReceiverSettings> looking_receiver(const SkyOptions& options, const Scena
     if (options.run.scenario.empty()) return everything;
     const auto board = find_board(scenario.receivers.front().board, board_folders(data_folders()));
     if (!board) return fail(board.error());
-    ReceiverSettings settings = receiver_settings(scenario, *board);
+    // Its configuration has a say, too: in the rate, and in how many satellites a solution takes.
+    const double rate_hz = scenario.receivers.front().rate_hz.value_or(0);
+    ReceiverSettings settings = firmware::Receiver(*board, {rate_hz, receiver_settings(scenario, *board)}).settings();
     settings.start = StartKind::hot;  // one instant has no time to acquire
     return settings;
 }

@@ -220,6 +220,11 @@ EpochSolution NavigationEngine::State::solve_epoch(const Observations& observati
         add_equations(observations, settings, epoch);
         solve_position(settings, epoch);
         if (!epoch.point) return epoch;
+        if (keep_strongest(*epoch.point, settings.most_satellites, epoch.equations, epoch.primaries)) {
+            epoch.point.reset();
+            solve_position(settings, epoch);
+            if (!epoch.point) return epoch;
+        }
         const GpsTime solved = whole_millisecond(
             advanced(observations.receive_time, Seconds(-epoch.point->clock().value() / speed_of_light)));
         if (solved == time_) break;
@@ -342,7 +347,6 @@ void NavigationEngine::State::begin_regime(CorrectionState state) {
 Observations NavigationEngine::State::prepared(const Observations& observations, const ReceiverSettings& settings) {
     Observations result = observations;
     if (parameters_.filter.code_smoothing > Seconds(0)) smoother_.smooth(result);
-    if (settings.most_satellites > 0) keep_strongest(result, settings);
     begin_regime(correct(result, settings.corrections));
     return result;
 }
@@ -354,8 +358,8 @@ DifferentialKind NavigationEngine::State::differential_kind() const {
 
 Fix NavigationEngine::State::solve(const Observations& observations, const ReceiverSettings& settings) {
     begin(settings, observations.receive_time);
-    const bool changed = parameters_.filter.code_smoothing > Seconds(0) || settings.most_satellites > 0 ||
-                         settings.corrections != CorrectionState::none;
+    const bool changed =
+        parameters_.filter.code_smoothing > Seconds(0) || settings.corrections != CorrectionState::none;
     const Observations own = changed ? prepared(observations, settings) : Observations();
     if (!changed) begin_regime(CorrectionState::none);
     const EpochSolution epoch = solve_epoch(changed ? own : observations, settings);

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
-#include <utility>
-#include <vector>
 
 namespace skyloop {
 namespace {
@@ -15,19 +12,23 @@ bool touched_by_ionosphere(const RangeEquation& e) { return e.carrier > Hertz(0)
 
 }  // namespace
 
-void keep_strongest(Observations& observations, const ReceiverSettings& settings) {
-    std::map<SatelliteId, DbHz> strengths;
-    for (const Observation& o : observations.signals) {
-        if (!o.pseudorange || o.cn0 < settings.minimum_cn0) continue;
-        const auto [place, is_new] = strengths.try_emplace(o.satellite, o.cn0);
-        if (!is_new) place->second = std::max(place->second, o.cn0);
+bool keep_strongest(const SinglePoint& point, std::size_t most, std::vector<RangeEquation>& equations,
+                    std::vector<const Observation*>& observations) {
+    std::vector<std::size_t> used;
+    for (std::size_t i = 0; i < point.ranges.size(); ++i)
+        if (point.ranges[i].used) used.push_back(i);
+    if (most == 0 || used.size() <= most) return false;
+    std::stable_sort(used.begin(), used.end(),
+                     [&](std::size_t a, std::size_t b) { return observations[a]->cn0 > observations[b]->cn0; });
+    used.resize(most);
+    std::sort(used.begin(), used.end());
+    for (std::size_t i = 0; i < most; ++i) {
+        equations[i] = equations[used[i]];
+        observations[i] = observations[used[i]];
     }
-    if (strengths.size() <= settings.most_satellites) return;
-    std::vector<std::pair<SatelliteId, DbHz>> ranking(strengths.begin(), strengths.end());
-    std::stable_sort(ranking.begin(), ranking.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
-    for (std::size_t i = settings.most_satellites; i < ranking.size(); ++i)
-        for (Observation& o : observations.signals)
-            if (o.satellite == ranking[i].first) o.pseudorange.reset();
+    equations.resize(most);
+    observations.resize(most);
+    return true;
 }
 
 std::optional<CheckedSolution> solve_free_of_ionosphere(IntegrityMonitor& monitor, std::span<RangeEquation> equations,

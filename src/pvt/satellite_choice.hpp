@@ -1,18 +1,21 @@
 /// Which satellites a receiver solves with that has no time for all of them, or better ones.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "skyloop/flow/observations.hpp"
-#include "skyloop/flow/receiver_settings.hpp"
 #include "skyloop/pvt/integrity.hpp"
 
 namespace skyloop {
 
-/// Leaves `settings.most_satellites` satellites with pseudoranges, those whose strongest signal is; the others stay
-/// tracked. Of equally strong ones those that come first.
-void keep_strongest(Observations& observations, const ReceiverSettings& settings);
+/// Of the ranges that a solution has used, which alone tells what can be used, leaves those of the `most` strongest
+/// signals for another solution; of equally strong ones those that come first. False where there are not more of them,
+/// or `most` is 0. @param observations behind the equations
+bool keep_strongest(const SinglePoint& point, std::size_t most, std::vector<RangeEquation>& equations,
+                    std::vector<const Observation*>& observations);
 
 /// Solves with the ranges alone that the ionosphere does not touch, where they make a position of a sound geometry and
 /// one of them is left to check it; with all ranges otherwise, and where all are of one kind. The mixture would have of

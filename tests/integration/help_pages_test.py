@@ -167,7 +167,7 @@ class Bash(unittest.TestCase):
         self.assertEqual(self.complete("skyloop power relay:1:2/1 o"), ["on", "off"])
 
     def test_boards_and_faults(self):
-        self.assertEqual(self.complete("skyloop run --board ublox-f"), ["ublox-f9p"])
+        self.assertEqual(self.complete("skyloop run --board ublox-f9"), ["ublox-f9p"])
         self.assertIn("jamming", self.complete("skyloop faults ja"))
         self.assertEqual(self.complete("skyloop boards sept"), ["septentrio-sbf"])
 
@@ -260,7 +260,7 @@ class Zsh(unittest.TestCase):
         self.becomes("skyloop schema --format mark", "skyloop schema --format markdown\n")
         self.becomes("skyloop run --model whole", "skyloop run --model whole-path\n")
         self.becomes("skyloop run --model=whole", "skyloop run --model=whole-path\n")
-        self.becomes("skyloop run --board=ublox-f", "skyloop run --board=ublox-f9p\n")
+        self.becomes("skyloop run --board=ublox-f9", "skyloop run --board=ublox-f9p\n")
 
     def test_subcommands(self):
         self.becomes("skyloop campaign gath", "skyloop campaign gather\n")
@@ -269,7 +269,7 @@ class Zsh(unittest.TestCase):
         self.becomes("skyloop campaign report --wor", "skyloop campaign report --worst\n")
 
     def test_boards_faults_files_and_ports(self):
-        self.becomes("skyloop run --board ublox-f", "skyloop run --board ublox-f9p\n")
+        self.becomes("skyloop run --board ublox-f9", "skyloop run --board ublox-f9p\n")
         self.becomes("skyloop faults jammi", "skyloop faults jamming\n")
         self.becomes("skyloop check fli", "skyloop check flight.toml\n")
         self.becomes("skyloop run --port ser", "skyloop run --port serial:\n")

@@ -97,31 +97,48 @@ class Maps(unittest.TestCase):
 class TheReceiverOfAScenario(unittest.TestCase):
     """What `sky` says is used is what its receiver uses."""
 
-    RECEIVERS = {'board = "ublox-f9p"': None, 'constellations = ["gps"]\nstart = "cold"': {"G"}}
-
-    def test_says_what_is_used(self):
+    def scenario(self, folder, receiver):
         navigation = SHARED / "nav/BRDC00IGS_R_20240010000_01D_MN.rnx.gz"
         if not navigation.exists():
             self.skipTest(f"shared data absent: {navigation}")
+        path = pathlib.Path(folder, "s.toml")
+        path.write_text(f'[run]\nstart = 2024-01-01T12:00:00Z\n[sky]\nnavigation = "{navigation}"\n'
+                        f'[[receiver]]\n{receiver}\n', encoding="utf-8")
+        return path
+
+    def used(self, path, *options):
+        """Rows of the satellites that are used, of more that are there."""
+        satellites = json.loads(skyloop("sky", path, *options, "--format", "json").stdout)["satellites"]
+        used = [s for s in satellites if s["used"]]
+        self.assertLess(len(used), len(satellites))
+        return used
+
+    def check_against_run(self, path, used):
+        skyloop("simulate", path, "--duration", 1, "--out", path.parent)
+        with open(path.parent / "satellites.csv", encoding="ascii") as table:
+            simulated = {row["satellite"] for row in csv.DictReader(table) if row["used"] == "1"}
+        self.assertEqual({s["satellite"] for s in used}, simulated)
+
+    def test_says_what_is_used(self):
         with open_folder() as folder:
-            for receiver, systems in self.RECEIVERS.items():
-                path = pathlib.Path(folder, "s.toml")
-                path.write_text(f'[run]\nstart = 2024-01-01T12:00:00Z\n[sky]\nnavigation = "{navigation}"\n'
-                                f'[[receiver]]\n{receiver}\n', encoding="utf-8")
-                satellites = json.loads(skyloop("sky", path, "--format", "json").stdout)["satellites"]
-                used = {s["satellite"] for s in satellites if s["used"]}
-                self.assertLess(len(used), len(satellites))
-                if systems:
-                    self.assertEqual({satellite[0] for satellite in used}, systems)
-                    continue
-                # The mask of the board: ublox-f9p, 10 degrees.
-                self.assertTrue(all(s["elevation_deg"] >= 10 for s in satellites if s["used"]))
-                skyloop("simulate", path, "--duration", 1, "--out", folder)
-                with open(pathlib.Path(folder, "satellites.csv"), encoding="ascii") as table:
-                    simulated = {row["satellite"] for row in csv.DictReader(table) if row["used"] == "1"}
-                self.assertEqual(used, simulated)
-                lower = json.loads(skyloop("sky", path, "--mask", 5, "--format", "json").stdout)["satellites"]
-                self.assertGreater(sum(s["used"] for s in lower), len(used))
+            path = self.scenario(folder, 'board = "ublox-f9p"\nconstellations = ["gps", "galileo"]')
+            used = self.used(path)
+            # The mask of the board: ublox-f9p, 10 degrees.
+            self.assertTrue(all(s["elevation_deg"] >= 10 for s in used))
+            self.check_against_run(path, used)
+            self.assertGreater(len(self.used(path, "--mask", 5)), len(used))
+
+    def test_has_no_time_to_acquire(self):
+        with open_folder() as folder:
+            used = self.used(self.scenario(folder, 'constellations = ["gps"]\nstart = "cold"'))
+            self.assertEqual({s["satellite"][0] for s in used}, {"G"})
+
+    def test_takes_as_many_as_its_configuration_says(self):
+        with open_folder() as folder:
+            path = self.scenario(folder, 'board = "ublox-f9p"')
+            used = self.used(path)
+            self.assertEqual(len(used), 32)
+            self.check_against_run(path, used)
 
 
 class Runs(unittest.TestCase):

@@ -20,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 using test::ReceiverRig;
 
-constexpr const char* u_blox_boards[] = {"ublox-m8", "ublox-m9", "ublox-m10", "ublox-f10", "ublox-f9p"};
+constexpr const char* u_blox_boards[] = {"ublox-m8", "ublox-m9", "ublox-m10", "ublox-f9p"};
 constexpr UbxMessageId mon_ver{0x0A, 0x04}, nav_pvt{0x01, 0x07}, nav_dop{0x01, 0x04}, cfg_rate{0x06, 0x08},
     cfg_msg{0x06, 0x01}, cfg_nav5{0x06, 0x24}, cfg_valget{0x06, 0x8B}, cfg_valset{0x06, 0x8A};
 

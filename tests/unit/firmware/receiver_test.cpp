@@ -56,6 +56,15 @@ TEST(Receiver, SolvesWithFewerSatellitesAboveARate) {
     EXPECT_EQ(Receiver(board, {10}).settings().most_satellites, 16U);
 }
 
+// RECEIVER.md 2.4: 32 from the factory on.
+TEST(Receiver, OfUBloxSolvesWithAsManySatellitesAsItsConfigurationSays) {
+    BoardProfile board = sample_board(NmeaVersion::v4_0, {gps});
+    board.personality = Personality::ublox;
+    EXPECT_EQ(Receiver(board, {5}).settings().most_satellites, 32U);
+    board.config[0x201100A2] = 20;
+    EXPECT_EQ(Receiver(board, {5}).settings().most_satellites, 20U);
+}
+
 // RECEIVER.md 4.8, table of dynamic models.
 TEST(Receiver, HasTheCeilingOfItsGeneration) {
     BoardProfile board = sample_board(NmeaVersion::v4_0, {gps});

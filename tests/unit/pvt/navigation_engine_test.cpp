@@ -216,6 +216,23 @@ TEST(NavigationEngine, TakesTheStrongestWhereItHasNoTimeForAll) {
               observations.signals.size());
 }
 
+TEST(NavigationEngine, TakesTheStrongestOfThoseThatItCanUse) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    Observations observations = measure(sky, receiver_at(antenna, sample_time));
+    ReceiverSettings settings;
+    settings.elevation_mask = Angle::degrees(30);
+    NavigationEngine engine(plain(FilterKind::none), {&sky});
+    const Fix all = engine.solve(observations, settings);
+    constexpr int most = 8;  // so that of no system one alone is taken, which gives nothing
+    ASSERT_GT(all.satellites_used(), most);
+    ASSERT_GT(std::ssize(observations.signals), all.satellites_used());
+    for (Observation& o : observations.signals)
+        for (const SatelliteStatus& s : all.satellites)
+            if (s.id == o.satellite) o.cn0 = DbHz(s.used ? 40 : 50);
+    settings.most_satellites = most;
+    EXPECT_EQ(engine.solve(observations, settings).satellites_used(), most);
+}
+
 TEST(NavigationEngine, ReportsSatellitesUsedAndUnusedAscending) {
     SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
     const TrueReceiver receiver = receiver_at(antenna, sample_time);
