@@ -10,6 +10,9 @@ namespace skyloop {
 // begins. Kinds are bits.
 class EpochGate {
 public:
+    EpochGate() = default;
+    // @param expected of the first epoch, which then is whole by it
+    explicit EpochGate(unsigned expected) : expected_(expected) {}
     // Another message of the epoch. @return the epoch has become whole by it
     bool take(unsigned kind) {
         seen_ |= kind;

@@ -81,7 +81,7 @@ bool FailureInjector::start(std::size_t receiver, const FailureFault& fault) {
     members["name"] = name;
     auto command = checked_live_fault(std::move(members), "mavlink");
     if (!command) return false;
-    command->receiver = receivers_[receiver];
+    command->receivers = {receivers_[receiver]};
     if (!push_(std::move(*command))) return false;
     ++started_;
     injected_[receiver] = {fault.type, name};

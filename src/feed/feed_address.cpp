@@ -164,6 +164,35 @@ bool read_rest(const FeedScheme& scheme, std::string_view text, FeedAddress& add
     return true;
 }
 
+// The addresses of a host, as far as no name server is needed.
+std::vector<std::string> known_addresses(std::string host) {
+    std::transform(host.begin(), host.end(), host.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    if (host == "localhost" || host == "localhost.localdomain" || host.ends_with(".localhost"))
+        return {"127.0.0.1", "::1"};
+    if (host == "ip6-localhost" || host == "ip6-loopback") return {"::1"};
+    return {host};
+}
+
+// Whether a listener at one address hears who calls the other, at the same port. A call to no address in particular
+// goes to loopback; listeners at none in particular hear all, those of IPv6 both families.
+bool hears_calls_to(const std::string& own, const std::string& called) {
+    const bool four = called.starts_with("127.") || called == "0.0.0.0", six = called == "::1" || called == "::";
+    if (own == called) return true;
+    if (own == "0.0.0.0") return four;
+    if (own == "::") return four || six;
+    return (own == "127.0.0.1" && called == "0.0.0.0") || (own == "::1" && called == "::");
+}
+
+bool relays_to_itself(const FeedAddress& address) {
+    if (address.to_host.empty() || address.to_port != address.port) return false;
+    const std::vector<std::string> own = known_addresses(address.host), called = known_addresses(address.to_host);
+    return std::any_of(own.begin(), own.end(), [&](const std::string& mine) {
+        return std::any_of(called.begin(), called.end(),
+                           [&](const std::string& theirs) { return hears_calls_to(mine, theirs); });
+    });
+}
+
 // One line, whatever was written.
 std::string quotable(std::string_view text) {
     constexpr std::size_t longest = 80;
@@ -188,7 +217,13 @@ Result<FeedAddress> parse_feed_address(std::string_view text) {
         address.wire = scheme.wire;
         address.hears_target = scheme.from_target;
         const std::string_view rest = colon == std::string_view::npos ? std::string_view() : text.substr(colon + 1);
-        if (read_rest(scheme, rest, address)) return address;
+        const bool read = read_rest(scheme, rest, address);
+        if (read && relays_to_itself(address))
+            return fail(ErrorCode::usage,
+                        fmt::format("'{}' relays to itself: it listens at port {}, to which it sends; "
+                                    "expected another port or host behind the comma",
+                                    quotable(text), address.port));
+        if (read) return address;
         return fail(ErrorCode::usage, fmt::format("'{}' is no address of a live source; expected {}", quotable(text),
                                                   expected_form(scheme)));
     }

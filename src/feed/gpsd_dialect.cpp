@@ -1,12 +1,14 @@
 // gpsd's JSON (gpsd_json(5); FEEDS.md 3.13).
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
 #include <utility>
 
 #include "dialects.hpp"
+#include "epoch_gate.hpp"
 #include "heard_pieces.hpp"
 #include "json_source.hpp"
 #include "motion_filter.hpp"
@@ -36,9 +38,15 @@ private:
         double metres;
         bool above_ellipsoid;
     };
+    // What the reports of an epoch may have beside the place.
+    enum Part : unsigned { has_place = 1, has_height = 2, has_speed = 4, has_climb = 8 };
     // What one of gpsd's devices has said.
     struct Device {
-        std::optional<Nanoseconds> told;
+        std::string vehicle;
+        std::optional<Nanoseconds> time;  // of the epoch
+        nlohmann::json epoch;             // all of its reports, merged
+        std::int64_t epoch_at_ns = 0;     // when the last of them came
+        EpochGate gate{has_place | has_height};
         std::optional<Height> height;
         std::optional<Attitude> attitude;
         std::int64_t attitude_at_ns = 0;
@@ -57,15 +65,9 @@ private:
         if (devices_.size() >= most_devices && !devices_.contains(name))
             return report_refusal(news, "more than 64 devices of gpsd");
         Device& device = devices_[name];
+        device.vehicle = name.empty() ? "0" : name;
         if (kind == "ATT") return take_attitude(report, device, received_ns);
-        if (SampleOr sample = take_position(report, device, received_ns); !sample) {
-            report_refusal(news, std::move(sample.error()));
-        } else if (!sample->source_time || device.told != sample->source_time) {
-            // Several reports of one epoch may come: the first that is whole counts.
-            device.told = sample->source_time;
-            sample->vehicle = name.empty() ? "0" : name;
-            news.samples.push_back(std::move(*sample));
-        }
+        take_position(report, device, received_ns, news);
     }
 
     static void take_attitude(const nlohmann::json& report, Device& device, std::int64_t received_ns) {
@@ -76,29 +78,72 @@ private:
         device.attitude_at_ns = received_ns;
     }
 
-    SampleOr take_position(const nlohmann::json& report, Device& device, std::int64_t received_ns) const {
+    // Several reports of one epoch may come, the first of them without a height or a velocity (FEEDS.md 3.13).
+    void take_position(const nlohmann::json& report, Device& device, std::int64_t received_ns, FeedNews& news) const {
         constexpr double least_mode = 2;
         const double mode = source_json_number(report, "mode").value_or(0);
-        const auto latitude = source_json_number(report, "lat"), longitude = source_json_number(report, "lon");
-        if (mode < least_mode || !latitude || !longitude) return tl::make_unexpected("gpsd has no fix");
-        take_height(report, device);
+        if (mode < least_mode || !source_json_number(report, "lat") || !source_json_number(report, "lon"))
+            return report_refusal(news, "gpsd has no fix");
+        const auto time = time_of(report);
+        if (!time || time != device.time) {
+            if (device.gate.next()) tell(device, news);
+            device.time = time;
+            device.epoch = nlohmann::json::object();
+        }
+        const bool whole = device.gate.take(merge(report, device.epoch));
+        device.epoch_at_ns = received_ns;
+        if (whole) return tell(device, news);
+        // Nothing else can belong to it.
+        if (!time && device.gate.next()) tell(device, news);
+    }
+
+    // @return the parts that the report has
+    static unsigned merge(const nlohmann::json& report, nlohmann::json& epoch) {
+        struct Key {
+            const char* name;
+            unsigned part;
+        };
+        constexpr std::array<Key, 11> keys{{{"lat", has_place},
+                                            {"lon", has_place},
+                                            {"altHAE", has_height},
+                                            {"altMSL", has_height},
+                                            {"alt", has_height},
+                                            {"speed", has_speed},
+                                            {"track", 0},
+                                            {"climb", has_climb},
+                                            {"velN", has_speed},
+                                            {"velE", has_speed},
+                                            {"velD", has_climb}}};
+        unsigned parts = 0;
+        for (const Key& key : keys) {
+            const auto value = source_json_number(report, key.name);
+            if (!value) continue;
+            epoch[key.name] = *value;
+            parts |= key.part;
+        }
+        return parts;
+    }
+
+    void tell(Device& device, FeedNews& news) const {
+        SampleOr sample = sample_of_epoch(device);
+        if (sample && context().smooth)
+            device.filter.smooth(*sample, device.time ? device.time->count() : device.epoch_at_ns);
+        if (sample) sample->vehicle = device.vehicle;
+        report_sample(news, std::move(sample), device.time, device.epoch_at_ns);
+    }
+
+    SampleOr sample_of_epoch(Device& device) const {
+        take_height(device.epoch, device);
         if (!device.height) return tl::make_unexpected("gpsd's fix has no height");
         SourcePose pose;
-        pose.latitude_deg = *latitude;
-        pose.longitude_deg = *longitude;
+        pose.latitude_deg = *source_json_number(device.epoch, "lat");
+        pose.longitude_deg = *source_json_number(device.epoch, "lon");
         pose.height_m = device.height->metres;
         pose.above_ellipsoid = device.height->above_ellipsoid;
-        put_velocity(report, pose);
+        put_velocity(device.epoch, pose);
         constexpr std::int64_t attitude_patience = 1'000'000'000;
-        if (received_ns - device.attitude_at_ns <= attitude_patience) pose.attitude = device.attitude;
-        SampleOr sample = sample_of(pose, context());
-        if (!sample) return sample;
-        sample->source_time = time_of(report);
-        sample->received_ns = received_ns;
-        const bool again = sample->source_time && sample->source_time == device.told;
-        if (context().smooth && !again)
-            device.filter.smooth(*sample, sample->source_time ? sample->source_time->count() : received_ns);
-        return sample;
+        if (device.epoch_at_ns - device.attitude_at_ns <= attitude_patience) pose.attitude = device.attitude;
+        return sample_of(pose, context());
     }
 
     // gpsd's own separation of the geoid is coarse: the height above the ellipsoid first (FEEDS.md 1.15). A fix in two

@@ -24,37 +24,48 @@ void report_broken_frames(MavlinkStream& stream, FeedNews& news) {
         report_refusal(news, "a MAVLink frame with a wrong checksum or unknown flags");
 }
 
-// Vehicles count from their own starts, the run has one clock for all of a source: the later ones are moved, by when
-// their first message came, onto the clock of the first. Times of 1970 are the same for all.
+// Vehicles count from their own starts or from 1970, the run has one clock for all of a source: the later ones are
+// moved, by when their first message came, onto the clock of the first. Those that count from 1970, as it does, are on
+// it.
 class FleetClock {
 public:
     std::optional<Nanoseconds> common(std::uint8_t system, std::optional<Nanoseconds> time, std::int64_t received_ns) {
-        constexpr std::int64_t since_1970_ns = 1'000'000'000'000'000'000;
-        if (!time || time->count() > since_1970_ns) return time;
-        if (!leader_) leader_ = system;
+        constexpr std::int64_t longest_ns = 4'000'000'000'000'000'000;  // beyond it times are taken as none
+        if (!time || time->count() > longest_ns) return time;
+        const std::int64_t time_ns = time->count();
+        if (!leader_) {
+            leader_ = system;
+            lead_ns_ = time_ns;
+        }
         if (*leader_ == system) {
-            if (time->count() + restart_ns < lead_ns_) offsets_.clear();
-            lead_ns_ = time->count();
+            if (begins_anew(lead_ns_, time_ns)) followers_.clear();
+            lead_ns_ = time_ns;
             lead_received_ns_ = received_ns;
             return time;
         }
-        Follower& follower = offsets_[system];
-        if (!follower.known || time->count() + restart_ns < follower.last_ns)
-            follower.offset_ns = lead_ns_ + (received_ns - lead_received_ns_) - time->count();
+        if (of_1970(time_ns) && of_1970(lead_ns_)) return time;
+        Follower& follower = followers_[system];
+        if (!follower.known || begins_anew(follower.last_ns, time_ns))
+            follower.offset_ns = lead_ns_ + (received_ns - lead_received_ns_) - time_ns;
         follower.known = true;
-        follower.last_ns = time->count();
-        return Nanoseconds(time->count() + follower.offset_ns);
+        follower.last_ns = time_ns;
+        return Nanoseconds(time_ns + follower.offset_ns);
     }
 
 private:
-    static constexpr std::int64_t restart_ns = 1'000'000'000;
+    static bool of_1970(std::int64_t time_ns) { return time_ns > 1'000'000'000'000'000'000; }
+    // As SourceClock has it for runs that follow; from a boot's time to one of 1970, too.
+    static bool begins_anew(std::int64_t last_ns, std::int64_t time_ns) {
+        constexpr std::int64_t back_ns = 1'000'000'000, ahead_ns = 60'000'000'000;
+        return time_ns + back_ns < last_ns || time_ns > last_ns + ahead_ns;
+    }
     struct Follower {
         bool known = false;
         std::int64_t offset_ns = 0, last_ns = 0;
     };
     std::optional<std::uint8_t> leader_;
     std::int64_t lead_ns_ = 0, lead_received_ns_ = 0;
-    std::map<std::uint8_t, Follower> offsets_;
+    std::map<std::uint8_t, Follower> followers_;
 };
 
 class MavlinkDialect : public FeedDialect {

@@ -57,7 +57,7 @@ Motion carried_on(const Motion& from, const Patience& patience, double after) {
     return slowed;
 }
 
-Motion between(const Motion& from, const Motion& to, double h, double t) {
+Motion between(const Motion& from, const Motion& to, double h, double t, Velocities velocities) {
     const double u = t / h, u2 = u * u, u3 = u2 * u, u4 = u3 * u, u5 = u4 * u;
     const Eigen::Vector3d way = to.position - from.position;
     const Eigen::Vector3d v0 = h * from.velocity, v1 = h * to.velocity;
@@ -69,6 +69,12 @@ Motion between(const Motion& from, const Motion& to, double h, double t) {
     motion.position = from.position + v0 * u + a0 * (u2 / 2) + c3 * u3 + c4 * u4 + c5 * u5;
     motion.velocity = (v0 + a0 * u + 3 * c3 * u2 + 4 * c4 * u3 + 5 * c5 * u4) / h;
     motion.acceleration = (a0 + 6 * c3 * u + 12 * c4 * u2 + 20 * c5 * u3) / (h * h);
+    if (velocities == Velocities::told) {
+        // What the curve's way differs from the way of the velocities by, taken smoothly (10 u³ − 15 u⁴ + 6 u⁵).
+        const Eigen::Vector3d left = way - (v0 + v1) / 2 - (a0 - a1) / 12;
+        motion.velocity -= left * (30 * u2 - 60 * u3 + 30 * u4) / h;
+        motion.acceleration -= left * (60 * u - 180 * u2 + 120 * u3) / (h * h);
+    }
     motion.turn_rate = from.turn_rate + u * (to.turn_rate - from.turn_rate);
     if (from.body_to_ned && to.body_to_ned)
         motion.body_to_ned = from.body_to_ned->slerp(u, *to.body_to_ned);

@@ -217,7 +217,9 @@ Motion LivePath::through_samples(GpsTime time) const {
     const Knot& from = *std::prev(after);
     const double t = seconds_between(from.time, time);
     if (after == knots_.end() || after->begins) return carried_on(from.motion, patience(), t);
-    return between(from.motion, after->motion, seconds_between(from.time, after->time), t);
+    const bool told = from.own_velocity && after->own_velocity;
+    return between(from.motion, after->motion, seconds_between(from.time, after->time), t,
+                   told ? Velocities::told : Velocities::of_the_curve);
 }
 
 Motion LivePath::shown_at(GpsTime time) const {

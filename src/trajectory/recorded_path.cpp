@@ -26,6 +26,19 @@ bool swings_out(const PieceCoefficients& c, const TrackKnot& from, const TrackKn
     return false;
 }
 
+// What the way between two rows differs by from that of their velocities, where that shakes the curve's velocity by a
+// centimetre per second, in steps that are short. Nothing where it is more than degrees with seven decimals are rounded
+// by.
+Eigen::Vector3d rounding_of(const TrackKnot& from, const TrackKnot& to, double h, bool cubic) {
+    constexpr double most_m = 0.03, longest_s = 0.5, least_mps = 0.01, steepest = 1.875;
+    if (h > longest_s) return Eigen::Vector3d::Zero();
+    Eigen::Vector3d way = (from.velocity + to.velocity) * (h / 2);
+    if (!cubic) way += (from.acceleration - to.acceleration) * (h * h / 12);
+    const Eigen::Vector3d left = to.position - from.position - way;
+    const bool shakes = left.norm() * steepest > least_mps * h;
+    return shakes && left.norm() <= most_m ? left : Eigen::Vector3d::Zero();
+}
+
 // Of the rows that tell one. Rows of a stretch that follows a jump do not turn out of those before.
 std::vector<AttitudeKnot> attitudes_of(const Track& track) {
     std::vector<AttitudeKnot> knots;
@@ -51,10 +64,12 @@ struct RecordedPath::Builder {
     void add(const TrackKnot& from, const TrackKnot& to) {
         const double h = to.time - from.time;
         Piece piece{from.time, h, from.position, quintic_hermite(from, to, h)};
-        if (swings_out(piece.coefficients, from, to, h)) {
+        piece.cubic = swings_out(piece.coefficients, from, to, h);
+        if (piece.cubic) {
             piece.coefficients = cubic_hermite(from, to, h);
             ++path.report_.cubic_pieces;
         }
+        if (from.has_velocity && to.has_velocity) piece.rounding = rounding_of(from, to, h, piece.cubic);
         path.pieces_.push_back(piece);
     }
     void add_bridge(const TrackKnot& from, const TrackKnot& to) {
@@ -115,6 +130,13 @@ struct RecordedPath::Builder {
     }
 };
 
+Eigen::Vector3d RecordedPath::Piece::derivative(double u, int order) const {
+    static const PiecePowers third{0, 0, 3, -2, 0, 0}, fifth{0, 0, 0, 10, -15, 6};  // from 0 to 1, level at both ends
+    const PiecePowers powers = piece_powers(u, order);
+    const double taken = (cubic ? third : fifth).dot(powers);
+    return (coefficients * powers - rounding * taken) / std::pow(length, order);
+}
+
 std::string_view attitude_source_name(AttitudeSource source) {
     return std::array<std::string_view, 3>{"not told", "of the rows",
                                            "from the motion"}[static_cast<std::size_t>(source)];
@@ -161,9 +183,8 @@ void RecordedPath::stand_by_motion(std::span<const double> stretch_begins, const
             const Geodetic geodetic =
                 to_geodetic(Position<Ecef>(piece.anchor + piece.coefficients * piece_powers(place.u, 0)));
             const Eigen::Quaterniond to_ned = ned_to_ecef(geodetic).conjugate();
-            samples.push_back({t, geodetic, to_ned * (piece.coefficients * piece_powers(place.u, 1) / piece.length),
-                               to_ned * (piece.coefficients * piece_powers(place.u, 2) / (piece.length * piece.length)),
-                               i == 0});
+            samples.push_back(
+                {t, geodetic, to_ned * piece.derivative(place.u, 1), to_ned * piece.derivative(place.u, 2), i == 0});
         }
     }
     attitude_ = AttitudeCurve(attitude_from_motion(samples, *settings.vehicle, settings.heading));
@@ -182,7 +203,7 @@ RecordedPath::Place RecordedPath::place_at(double t) const {
 Eigen::Vector3d RecordedPath::acceleration(GpsTime time) const {
     const Place place = place_at(difference(time, start_).value());
     if (!place.inside) return Eigen::Vector3d::Zero();
-    return place.piece->coefficients * piece_powers(place.u, 2) / (place.piece->length * place.piece->length);
+    return place.piece->derivative(place.u, 2);
 }
 
 TruthState RecordedPath::at(GpsTime time) const {
@@ -193,7 +214,7 @@ TruthState RecordedPath::at(GpsTime time) const {
     state.time = time;
     state.position = Position<Ecef>(piece.anchor + piece.coefficients * piece_powers(place.u, 0));
     state.geodetic = to_geodetic(state.position);
-    if (place.inside) state.velocity = Velocity<Ecef>(piece.coefficients * piece_powers(place.u, 1) / piece.length);
+    if (place.inside) state.velocity = Velocity<Ecef>(piece.derivative(place.u, 1));
     if (attitude_.empty()) return state;
     const BodyTurn turn = attitude_.at(std::clamp(t, 0.0, duration().value()));
     state.orientation.emplace();

@@ -64,6 +64,8 @@ SourceClock::Stamp SourceClock::stamp(std::optional<Nanoseconds> source_time, st
     const std::int64_t source_ns = source_time->count();
     Stamp stamp;
     stamp.restarted = restarts(source_ns, received_ns);
+    const bool leapt = leaps_ahead({source_ns, received_ns});
+    if (leapt) forget_way(received_ns);
     if (!first_source_ns_) begin_source(source_ns, received_ns);
     if (!base_ns_) base_ns_ = received_ns - source_ns;
     if (!newest_source_ns_ || source_ns > *newest_source_ns_) {
@@ -71,7 +73,7 @@ SourceClock::Stamp SourceClock::stamp(std::optional<Nanoseconds> source_time, st
         newest_received_ns_ = received_ns;
     }
     remember({source_ns, received_ns});
-    stamp.stepped = follow_edge({source_ns, received_ns}) && !stamp.restarted;
+    stamp.stepped = (follow_edge({source_ns, received_ns}) || leapt) && !stamp.restarted;
     stamp.time = *run_time(Nanoseconds(source_ns));
     return stamp;
 }
@@ -95,16 +97,51 @@ bool SourceClock::restarts(std::int64_t source_ns, std::int64_t received_ns) {
     first_time_ = *run_time(Nanoseconds(*newest_source_ns_));
     first_source_ns_ = source_ns;
     newest_source_ns_.reset();
+    forget_way(received_ns);
+    return true;
+}
+
+// Delays are never negative: what is earlier than the way in use by more than a step is of a clock that has leapt
+// ahead, and nothing in the window is of it. While no rate is known, a source that hurries is early, too, by as much as
+// has passed at most.
+bool SourceClock::leaps_ahead(Seen seen) const {
+    if (mode_ != ClockMode::realtime || !used_) return false;
+    const std::int64_t hurried_ns = rate_known_ ? 0 : std::max<std::int64_t>(0, seen.received_ns - used_received_ns_);
+    return used_->offset(seen.source_ns) - offset_of(seen) > clock_step_ns + static_cast<double>(hurried_ns);
+}
+
+// What is said next is the first that is known of the way.
+void SourceClock::forget_way(std::int64_t received_ns) {
     window_.clear();
     base_ns_.reset();
     edge_.reset();
     used_.reset();
+    rate_known_ = false;
+    held_slope_ = 0;
     first_received_ns_ = received_ns;
-    return true;
+}
+
+// A step ahead that is slewed to. A line through what was before and after it would take it for a rate. Farther below
+// the edge than the others scatter above it lies nothing else; of a few, though, nobody knows the scatter.
+bool SourceClock::slips_ahead(Seen seen) const {
+    constexpr std::size_t enough = 8;
+    constexpr double least_ns = 50e6, scatters = 3;
+    if (mode_ != ClockMode::realtime || !rate_known_ || window_.size() < enough) return false;
+    const double below_ns = edge_->offset(seen.source_ns) - offset_of(seen);
+    if (below_ns < least_ns) return false;
+    double above_ns = 0;
+    for (const Seen& other : window_)
+        above_ns += offset_of(other) - edge_->offset(other.source_ns);
+    return below_ns * static_cast<double>(window_.size()) > scatters * above_ns;
 }
 
 // A bucket is finished when the next one begins; then the edge is found anew.
 void SourceClock::remember(Seen seen) {
+    if (slips_ahead(seen)) {
+        held_slope_ = edge_->slope;
+        rate_known_ = false;
+        window_.clear();
+    }
     const bool same =
         !window_.empty() && window_.back().received_ns / clock_bucket_ns == seen.received_ns / clock_bucket_ns;
     if (same) {
@@ -117,6 +154,7 @@ void SourceClock::remember(Seen seen) {
     if (has_stepped(seen.received_ns)) {
         while (window_.front().received_ns < seen.received_ns - clock_recent_ns)
             window_.pop_front();
+        held_slope_ = 0;
         fit();
         first_received_ns_ = seen.received_ns;  // young again
     }
@@ -133,11 +171,13 @@ void SourceClock::fit() {
     Line line;
     line.at_source_ns = origin.source_ns + std::llround(right.x);
     line.offset_ns = right.y;
-    if (long_enough && right.x > left.x)
-        line.slope = std::clamp((right.y - left.y) / (right.x - left.x), least_slope, most_slope);
-    if (!long_enough)  // no rate yet: the shortest way counts
+    line.slope = held_slope_;
+    rate_known_ = long_enough && right.x > left.x;
+    if (rate_known_) line.slope = std::clamp((right.y - left.y) / (right.x - left.x), least_slope, most_slope);
+    if (!long_enough)  // no rate of its own yet: the shortest way counts
         for (const Seen& seen : window_)
-            line.offset_ns = std::min(line.offset_ns, offset_of(seen));
+            line.offset_ns = std::min(
+                line.offset_ns, offset_of(seen) - line.slope * static_cast<double>(seen.source_ns - line.at_source_ns));
     edge_ = line;
 }
 

@@ -46,7 +46,8 @@ struct LivePathCounts {
 std::optional<std::string> implausible(const TruthSample& sample);
 
 /// Samples of the last seconds and the way through them: between two samples a quintic curve that keeps their
-/// positions, velocities and accelerations; beyond the newest as LivePathSettings says, where a source whose samples
+/// positions, velocities and accelerations, and of samples that tell their velocity the velocities between those, which
+/// places rounded to centimetres do not bend; beyond the newest as LivePathSettings says, where a source whose samples
 /// are far apart is given one and a half of its steps. What a sample does not tell of its velocity and acceleration is
 /// estimated from the ones before it; an attitude that it does not tell is the one before it, turned on by the turn
 /// rate, which fades. A sample that is far from where the path was expected (FEEDS.md 3.1: more than 2 m and than half

@@ -71,6 +71,12 @@ private:
         double begins = 0, length = 0;             // s after the start
         Eigen::Vector3d anchor;                    // position at its beginning, ECEF
         Eigen::Matrix<double, 3, 6> coefficients;  // of powers of u = (t − begins) / length, m
+        // Of its way, what the velocities that the rows tell do not make: their places are rounded. The place takes it
+        // smoothly, and velocity and acceleration know nothing of it.
+        Eigen::Vector3d rounding = Eigen::Vector3d::Zero();
+        bool cubic = false;  // a curve of the third degree, else of the fifth
+        // After the time; order 1 or 2.
+        [[nodiscard]] Eigen::Vector3d derivative(double u, int order) const;
     };
     // Where a piece is asked, and u there.
     struct Place {

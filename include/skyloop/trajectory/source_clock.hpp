@@ -22,9 +22,9 @@ enum class ClockMode {
 ///
 /// Real time (FEEDS.md 3.2): delays are never negative, so the lower edge of the differences between arrival and
 /// source's time over five seconds is the way between the clocks; its slope is the source's rate. The way in use
-/// follows it by at most 2 ms a second, and steps to it beyond 250 ms. Follow and lock-step: the first statement is the
-/// start of the run, and the time since then is the source's own. A source without a clock has its arrivals, evened out
-/// by their rhythm.
+/// follows it by at most 2 ms a second, and steps to it beyond 250 ms: at once where the source has leapt ahead. Follow
+/// and lock-step: the first statement is the start of the run, and the time since then is the source's own. A source
+/// without a clock has its arrivals, evened out by their rhythm.
 ///
 /// Times of the source outside ±127 years are taken as none. State: the differences seen, and the first time of the
 /// source.
@@ -70,6 +70,9 @@ private:
 
     Stamp stamp_arrival(std::int64_t received_ns, std::optional<Nanoseconds> own_step);
     void begin_source(std::int64_t source_ns, std::int64_t received_ns);
+    void forget_way(std::int64_t received_ns);
+    [[nodiscard]] bool leaps_ahead(Seen seen) const;
+    [[nodiscard]] bool slips_ahead(Seen seen) const;
     bool restarts(std::int64_t source_ns, std::int64_t received_ns);
     void remember(Seen seen);
     void fit();
@@ -88,6 +91,8 @@ private:
     std::optional<std::int64_t> newest_source_ns_;
     std::optional<std::int64_t> base_ns_;  // received less source, of the first; keeps doubles small
     std::optional<Line> edge_;             // the lower one of the window
+    bool rate_known_ = false;              // by the edge, from the window alone
+    double held_slope_ = 0;                // of the edge, until the window tells one
     std::optional<Line> used_;
     std::int64_t used_received_ns_ = 0;    // when used_ last moved
     std::int64_t newest_received_ns_ = 0;  // when newest_source_ns_ came

@@ -32,7 +32,8 @@ struct TakenCommands {
         for (const Command& c : all)
             lines.push_back(c.verb == CommandVerb::stop_fault
                                 ? "stop " + c.parameters.text("fault")
-                                : c.parameters.text("name") + ": " + c.parameters.text("kind") + " " + c.receiver);
+                                : c.parameters.text("name") + ": " + c.parameters.text("kind") + " " +
+                                      c.receivers.at(0));
         return lines;
     }
 };

@@ -88,6 +88,23 @@ TEST(FeedAddress, RefusesWhatIsNoneInOneLine) {
     }
 }
 
+TEST(FeedAddress, RefusesRelaysToThemselves) {
+    for (const char* text :
+         {"px4:4560,127.0.0.1:4560", "betaflight:9003,localhost:9003", "ardupilot-json:9002,127.0.0.1:9002",
+          "px4:0.0.0.0:4560,127.0.0.1:4560", "px4:0.0.0.0:4560,127.0.1.1:4560", "px4:4560,0.0.0.0:4560",
+          "px4:localhost:4560,[::1]:4560", "px4:[::1]:4560,[::1]:4560", "px4:[::]:4560,LocalHost:4560",
+          "px4:[::1]:4560,[::]:4560", "px4:sim.example:4560,SIM.example:4560", "px4:10.0.0.2:4560,10.0.0.2:4560"}) {
+        const auto address = parse_feed_address(text);
+        ASSERT_FALSE(address) << text;
+        EXPECT_EQ(address.error().code, ErrorCode::usage);
+        EXPECT_NE(address.error().message.find("relays to itself"), std::string::npos) << address.error().message;
+        EXPECT_NE(address.error().message.find("expected another port"), std::string::npos) << address.error().message;
+    }
+    for (const char* text : {"px4:4560,127.0.0.1:4561", "px4:4560,10.0.0.2:4560", "px4:4560,127.0.0.2:4560",
+                             "px4:4560,[::1]:4560", "px4:0.0.0.0:4560,sim:4560", "px4:10.0.0.2:4560,localhost:4560"})
+        good_address(text);
+}
+
 TEST(FeedAddress, SuggestsWhatWasMeant) {
     EXPECT_NE(parse_feed_address("udp_json:5000").error().message.find("did you mean 'udp-json'"), std::string::npos);
     EXPECT_NE(parse_feed_address("flightgaer:5503").error().message.find("did you mean 'flightgear'"),

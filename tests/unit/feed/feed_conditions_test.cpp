@@ -93,7 +93,7 @@ TEST(FeedConditions, DelaysThatScatterAreNotSeen) {
     const Outcome seen = watch_source(
         20, [&](int i) { return own_time(i) + 0.001 + delay(random); }, own_time);
     EXPECT_EQ(seen.counts.jumps, 0u);
-    EXPECT_LT(seen.largest_step_m, 0.05);
+    EXPECT_LT(seen.largest_step_m, 0.1);   // beside the velocity, which is the source's: what the clock learns
     EXPECT_LT(seen.largest_error_m, 1.5);  // the age of the newest sample: at most 50 ms or so
     EXPECT_EQ(seen.states[static_cast<int>(LiveState::holding)], 0);
 }

@@ -264,6 +264,28 @@ TEST(MavlinkDialect, SeveralVehiclesShareOneClock) {
     EXPECT_EQ(time(2, 100, 1500), 50'500);  // begun anew
 }
 
+TEST(MavlinkDialect, MovesVehiclesOfOtherClocksOntoThatOfTheFirst) {
+    constexpr std::int64_t since_1970_ms = 1'772'366'400'000;
+    const auto time_ms = [](FeedDialect& dialect, std::uint8_t system, std::int64_t said_ms, std::int64_t received_ms) {
+        return dialect.hear(hil_state(static_cast<std::uint64_t>(said_ms) * 1000, system), received_ms * 1'000'000)
+                   .samples.at(0)
+                   .source_time->count() /
+               1'000'000;
+    };
+    const auto boot_first = dialect_named("mavlink");
+    EXPECT_EQ(time_ms(*boot_first, 1, 30'000, 1000), 30'000);
+    EXPECT_EQ(time_ms(*boot_first, 2, since_1970_ms, 1010), 30'010);
+    EXPECT_EQ(time_ms(*boot_first, 1, 30'100, 1100), 30'100);
+    EXPECT_EQ(time_ms(*boot_first, 2, since_1970_ms + 100, 1130), 30'110);  // its own clock from here on
+    EXPECT_EQ(time_ms(*boot_first, 1, since_1970_ms + 9, 1200), since_1970_ms + 9);
+    EXPECT_EQ(time_ms(*boot_first, 2, since_1970_ms + 200, 1210), since_1970_ms + 200);  // the first is there now, too
+    const auto unix_first = dialect_named("mavlink");
+    EXPECT_EQ(time_ms(*unix_first, 2, since_1970_ms, 1000), since_1970_ms);
+    EXPECT_EQ(time_ms(*unix_first, 1, 30'000, 1010), since_1970_ms + 10);
+    EXPECT_EQ(time_ms(*unix_first, 3, since_1970_ms + 50, 1020), since_1970_ms + 50);  // the same for all
+    EXPECT_EQ(time_ms(*unix_first, 1, since_1970_ms + 90, 1100), since_1970_ms + 90);
+}
+
 TEST(MavlinkDialect, TellsVehiclesApartInOneDatagram) {
     const auto dialect = dialect_named("mavlink");
     Bytes both = global_position(1, 1);

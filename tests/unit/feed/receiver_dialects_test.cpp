@@ -34,16 +34,43 @@ TEST(GpsdDialect, ReadsPositionsWithTheAttitudeThatCameBefore) {
     EXPECT_EQ(news.samples[0].source_time, Nanoseconds(gps_s * 1'000'000'000));
 }
 
-TEST(GpsdDialect, TakesTheFirstReportOfAnEpochAndTheLastHeight) {
+TEST(GpsdDialect, TakesTheFirstWholeReportOfAnEpochAndTheLastHeight) {
     const auto dialect = dialect_named("gpsd");
     const std::string velocity = ",\"velN\":3,\"velE\":4,\"velD\":-2";
-    EXPECT_THAT(hear_text(*dialect, tpv("2026-11-20T12:34:55.800Z", "", 2)).refusal, HasSubstr("no height"));
     EXPECT_EQ(hear_text(*dialect, tpv("2026-11-20T12:34:56.000Z", ",\"altHAE\":510" + velocity)).samples.size(), 1u);
     const FeedNews again = hear_text(*dialect, tpv("2026-11-20T12:34:56.000Z", ",\"altHAE\":510"));
     EXPECT_TRUE(again.samples.empty());
     EXPECT_EQ(again.refused, 0u);
-    expect_pose(hear_text(*dialect, tpv("2026-11-20T12:34:56.200Z", velocity, 2)).samples.at(0),
-                {1e-9, 1e-6, 1e-9, 0, 0, false, false});
+    // A fix in two dimensions is told when no height has come with it; those behind it at once.
+    EXPECT_TRUE(hear_text(*dialect, tpv("2026-11-20T12:34:56.200Z", velocity, 2)).samples.empty());
+    const FeedNews two = hear_text(*dialect, tpv("2026-11-20T12:34:56.400Z", velocity, 2));
+    ASSERT_EQ(two.samples.size(), 2u);
+    expect_pose(two.samples[0], {1e-9, 1e-6, 1e-9, 0, 0, false, false});
+    EXPECT_EQ(two.samples[0].source_time, Nanoseconds(gps_s * 1'000'000'000 + 200'000'000));
+    EXPECT_EQ(two.samples[1].source_time, Nanoseconds(gps_s * 1'000'000'000 + 400'000'000));
+    EXPECT_EQ(hear_text(*dialect, tpv("2026-11-20T12:34:56.600Z", velocity, 2)).samples.size(), 1u);
+}
+
+TEST(GpsdDialect, MergesTheReportsOfAnEpoch) {
+    const auto dialect = dialect_named("gpsd");
+    const std::string speed = ",\"speed\":5,\"track\":53.130102", rest = ",\"altHAE\":510,\"climb\":2";
+    for (const char* time : {"2026-11-20T12:34:56.000Z", "2026-11-20T12:34:57.000Z", "2026-11-20T12:34:58.000Z"}) {
+        EXPECT_TRUE(hear_text(*dialect, tpv(time, speed, 2)).samples.empty()) << time;
+        const FeedNews whole = hear_text(*dialect, tpv(time, rest));
+        ASSERT_EQ(whole.samples.size(), 1u) << time;
+        expect_pose(whole.samples[0], {1e-9, 1e-6, 1e-6, 0, 0, false, false});
+        EXPECT_EQ(hear_text(*dialect, tpv(time, speed + rest)).samples.size(), 0u) << time;
+    }
+    // Without a time nothing tells what belongs together.
+    EXPECT_EQ(hear_text(*dialect, tpv("", speed + rest)).samples.size(), 1u);
+    EXPECT_EQ(hear_text(*dialect, tpv("", speed, 2)).samples.size(), 1u);
+}
+
+TEST(GpsdDialect, RefusesPlacesWithoutAHeightWhenNoneComes) {
+    const auto dialect = dialect_named("gpsd");
+    EXPECT_EQ(hear_text(*dialect, tpv("2026-11-20T12:34:56.000Z", "", 2)).refused, 0u);
+    EXPECT_EQ(hear_text(*dialect, tpv("2026-11-20T12:34:57.000Z", "", 2)).refused, 2u);
+    EXPECT_THAT(hear_text(*dialect, tpv("2026-11-20T12:34:58.000Z", "", 2)).refusal, HasSubstr("no height"));
 }
 
 TEST(GpsdDialect, WatchesUntilItIsWatched) {
@@ -69,7 +96,7 @@ TEST(GpsdDialect, DevicesAreVehicles) {
     const auto dialect = dialect_named("gpsd");
     const std::string time = "2026-11-20T12:34:56.000Z";
     EXPECT_EQ(hear_text(*dialect, tpv(time, ",\"altHAE\":510")).samples.at(0).vehicle, "/dev/pts/3");
-    std::string other = tpv(time, "");
+    std::string other = tpv("", "");
     other.replace(other.find("/dev/pts/3"), 10, "/dev/pts/4");
     EXPECT_THAT(hear_text(*dialect, other).refusal, HasSubstr("no height"));  // the height is the other's
     std::string flood;

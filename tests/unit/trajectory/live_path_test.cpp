@@ -98,6 +98,26 @@ TEST(LivePath, KeepsItsSamplesAndIsSmoothBetweenThem) {
     EXPECT_EQ(path.counts().jumps, 0u);
 }
 
+// As of a source that tells degrees in steps of 1e-7.
+TruthSample rounded(TruthSample sample) {
+    Geodetic place = to_geodetic(sample.position);
+    place.latitude = Angle::degrees(std::round(place.latitude.deg() * 1e7) / 1e7);
+    place.longitude = Angle::degrees(std::round(place.longitude.deg() * 1e7) / 1e7);
+    sample.position = to_ecef(place);
+    return sample;
+}
+
+TEST(LivePath, TakesVelocitiesOfTheSourceAndNotOfItsRoundedPlaces) {
+    const RoundFlight circle;
+    LivePath path = live_path();
+    for (int i = 0; i <= 800; ++i)
+        path.add(live_time(0.005 * i), rounded(circle.at(0.005 * i)));
+    for (double t = 2; t < 4; t += 0.0013) {
+        EXPECT_LT(circle.error(path.at(live_time(t)), t), 0.012) << t;
+        EXPECT_LT(circle.velocity_error(path.at(live_time(t)), t), 0.02) << t;
+    }
+}
+
 TEST(LivePath, FindsVelocitiesThatTheSourceDoesNotTell) {
     const RoundFlight circle;
     LivePath path = live_path();

@@ -83,6 +83,27 @@ TEST(RecordedPath, PassesThroughEveryRowSmoothly) {
     }
 }
 
+TEST(RecordedPath, TakesVelocitiesOfTheRowsAndNotOfTheirRoundedPlaces) {
+    const PathLaw law = circle_of(60, 20);
+    Track track = track_of(law, evenly(0, 20, 0.01), true);
+    for (TrackRow& row : track.points) {
+        Geodetic place = to_geodetic(row.position);
+        place.latitude = Angle::degrees(std::round(place.latitude.deg() * 1e7) / 1e7);
+        place.longitude = Angle::degrees(std::round(place.longitude.deg() * 1e7) / 1e7);
+        row.position = to_ecef(place);
+    }
+    const RecordedPath path = path_of(track);
+    EXPECT_LT(worst_error(law, path, 1, 19), 0.012);
+    constexpr double step = 1e-3;
+    for (double t = 1; t < 19; t += 0.0037) {
+        const Eigen::Vector3d wanted = (law(t + step) - law(t - step)) / (2 * step);
+        const Eigen::Vector3d found =
+            recorded_frame.to_enu(path.at(advanced(recorded_start, Seconds(t))).velocity).vector();
+        EXPECT_LT((found - wanted).norm(), 0.01) << t;
+        EXPECT_LT(path.acceleration(advanced(recorded_start, Seconds(t))).norm(), 8) << t;
+    }
+}
+
 TEST(RecordedPath, StandsBeforeAndAfter) {
     const PathLaw law = circle_of(60, 20);
     Track track = track_of(law, evenly(0, 10, 1), true);

@@ -120,6 +120,65 @@ TEST(SourceClock, StepsAfterAPauseOfTheSource) {
         ASSERT_NEAR(errors[i], 3001, 1) << i;  // within a second
 }
 
+// A source that starts at `first` and runs with ours for 6 s, then leaps ahead by `leap`. @return what its statements
+// are late by, every 20 ms; all of them are under way for up to 5 ms.
+std::vector<double> errors_around_leap(SourceClock& clock, Nanoseconds first, Nanoseconds leap, int& steps) {
+    std::mt19937 random(12);
+    std::uniform_int_distribution<std::int64_t> delay(0, 5 * ms);
+    std::vector<double> errors;
+    for (int i = 0; i < 900; ++i) {
+        const std::int64_t said = i * 20 * ms;
+        const Nanoseconds source = first + Nanoseconds(said) + (i >= 300 ? leap : 0ns);
+        const auto stamp = clock.stamp(source, clock_start_ns + said + delay(random));
+        EXPECT_FALSE(stamp.restarted) << i;
+        EXPECT_TRUE(!stamp.stepped || i == 300) << i;
+        steps += stamp.stepped ? 1 : 0;
+        errors.push_back(static_cast<double>(since_start_ns(stamp.time) - said) / static_cast<double>(ms));
+    }
+    return errors;
+}
+
+TEST(SourceClock, StepsAtOnceWhenTheSourceLeapsAhead) {
+    constexpr std::chrono::seconds since_1970{1'772'366'400};
+    for (const Nanoseconds first : {Nanoseconds(60s), Nanoseconds(since_1970)})
+        for (const Nanoseconds leap : {Nanoseconds(300ms), Nanoseconds(500ms), Nanoseconds(2s), Nanoseconds(10s),
+                                       Nanoseconds(3600s), Nanoseconds(since_1970)}) {
+            SourceClock clock = clock_of(ClockMode::realtime);
+            int steps = 0;
+            const auto errors = errors_around_leap(clock, first, leap, steps);
+            EXPECT_EQ(steps, 1);
+            for (std::size_t i = 0; i < errors.size(); ++i)
+                ASSERT_NEAR(errors[i], 2.5, 3) << leap.count() << " " << i;
+            EXPECT_NEAR(clock.rate().value_or(0), 1, 0.005);
+        }
+}
+
+TEST(SourceClock, SlewsToASmallLeapAheadAndTakesItForNoRate) {
+    SourceClock clock = clock_of(ClockMode::realtime);
+    int steps = 0;
+    const auto errors = errors_around_leap(clock, 60s, 200ms, steps);
+    EXPECT_EQ(steps, 0);
+    for (std::size_t i = 300; i < errors.size(); ++i) {
+        const double since_s = 0.02 * static_cast<double>(i - 300);
+        ASSERT_NEAR(errors[i], 202 - 2 * since_s, 10) << i;
+    }
+}
+
+TEST(SourceClock, StaysWithASparseSourceWhoseRateChanges) {
+    for (const double rate : {1.5, 2.0}) {
+        SourceClock clock = clock_of(ClockMode::realtime);
+        double received_ms = 0, error = 0;
+        for (int i = 0; i < 60; ++i) {
+            received_ms += i < 20 ? 1000 : 1000 / rate;
+            const auto received = clock_start_ns + static_cast<std::int64_t>(received_ms * static_cast<double>(ms));
+            const auto stamp = clock.stamp(100s + i * 1s, received);
+            error = static_cast<double>(since_start_ns(stamp.time)) / static_cast<double>(ms) - received_ms;
+            ASSERT_TRUE(i <= 30 || std::abs(error) < 10) << rate << " " << i << " " << error;
+        }
+        EXPECT_NEAR(clock.rate().value_or(0), rate, 0.02 * rate);
+    }
+}
+
 TEST(SourceClock, IsNotMovedByAStallOfTheNetwork) {
     SourceClock clock = clock_of(ClockMode::realtime);
     // Nothing comes for a second, then all of it at once.
