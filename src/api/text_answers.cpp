@@ -34,9 +34,10 @@ Answer<void> Session::check_target(const Command& command) const {
     std::vector<std::string> names;
     for (const Station& station : stations)
         names.push_back(station.name());
-    if (!command.receiver.empty() && std::find(names.begin(), names.end(), command.receiver) == names.end())
-        return refuse(SKY_E_ARG, fmt::format("receiver '{}': no such; expected one of {}", command.receiver,
-                                             fmt::join(names, ", ")));
+    for (const std::string& name : command.receivers)
+        if (std::find(names.begin(), names.end(), name) == names.end())
+            return refuse(SKY_E_ARG,
+                          fmt::format("receiver '{}': no such; expected one of {}", name, fmt::join(names, ", ")));
     const bool of_fault = command.verb == CommandVerb::start_fault || command.verb == CommandVerb::stop_fault;
     const std::string fault = of_fault ? command.parameters.text("fault") : std::string();
     if (fault.empty() || started_.contains(fault) || watcher_->has_seen(fault)) return {};

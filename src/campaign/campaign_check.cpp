@@ -95,14 +95,14 @@ private:
                 fmt::format("{}{} = {}", i == 0 ? "; with " : ", ", campaign_.plan.varied()[i].key, run.values[i].toml);
         warnings_.push_back(warning + words);
     }
-    // It names the place itself; a parameter that an option gives has none in the file.
+    // It names the place itself; where an option gives the values, the file has no place for them, or another's.
     [[nodiscard]] Error at_option(Error error) const {
-        const std::string top = campaign_.setup.file.string() + ":1:1: ";
-        if (!error.message.starts_with(top)) return error;
-        const std::string_view sentence = std::string_view(error.message).substr(top.size());
+        const CampaignSource source{campaign_.setup.text, campaign_.setup.file, campaign_.options};
         for (const CampaignParameter& parameter : campaign_.plan.varied()) {
+            const std::string told = place_of_parameter(source.text, source.file, parameter.key) + ": ";
+            if (!error.message.starts_with(told)) continue;
+            const std::string sentence = error.message.substr(told.size());
             if (!sentence.starts_with(parameter.key) && !sentence.starts_with("'" + parameter.key)) continue;
-            const CampaignSource source{campaign_.setup.text, campaign_.setup.file, campaign_.options};
             error.message = fmt::format("{}: {}", place_of_varied(source, parameter.key), sentence);
             return error;
         }

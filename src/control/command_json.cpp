@@ -35,7 +35,8 @@ Result<Command> command_from_json(std::string_view text, std::string_view source
 std::string command_json(const Command& command) {
     Json json;
     json["command"] = command_name(command.verb);
-    if (!command.receiver.empty()) json["receiver"] = command.receiver;
+    const std::vector<std::string>& receivers = command.receivers;
+    if (!receivers.empty()) json["receiver"] = receivers.size() == 1 ? Json(receivers.front()) : Json(receivers);
     for (const auto& [name, value] : command.parameters.values())
         json[name] = to_json(value);
     return json_text(json);

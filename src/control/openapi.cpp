@@ -82,7 +82,7 @@ Json faults_schema() {
     Json list = Json::array();
     for (const FaultKind& kind : fault_kinds()) {
         std::vector<ParameterSpec> specs = live_fault_parameters();
-        specs.push_back(receiver_parameter());
+        specs.push_back(texts_parameter("receiver", "names of the receivers that it is for; none given: all"));
         specs.insert(specs.end(), kind.parameters.begin(), kind.parameters.end());
         list.push_back(kind_schema({"kind", kind.name}, kind.effect + " " + kind.cause, specs));
     }

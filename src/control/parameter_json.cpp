@@ -146,7 +146,7 @@ Json schema_of(const ParameterSpec& spec) {
         if (spec.count_most < std::numeric_limits<std::size_t>::max()) schema["maxItems"] = spec.count_most;
     }
     if (spec.type == ParameterType::texts || spec.type == ParameterType::words)
-        schema = {{"oneOf", Json::array({item, {{"type", "array"}, {"items", item}}})}};
+        schema = {{"oneOf", Json::array({item, {{"type", "array"}, {"items", item}, {"minItems", spec.count_least}}})}};
     schema["description"] = spec.meaning;
     if (spec.standard) schema["default"] = to_json(*spec.standard);
     return schema;

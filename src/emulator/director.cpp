@@ -157,8 +157,7 @@ void Director::carry_out(const Command& command, std::string_view name, const Sc
         case CommandVerb::forget_configuration:
         case CommandVerb::set_baud:
             for (Station& station : scene.stations)
-                if (command.receiver.empty() || command.receiver == station.name())
-                    station.happen(receiver_event(command), scene.now);
+                if (command.is_for(station.name())) station.happen(receiver_event(command), scene.now);
     }
 }
 
@@ -231,7 +230,7 @@ void Director::begin_new_fault(const Command& command, const Scene& scene) {
         return std::any_of(entries.begin(), entries.end(), [&](const TimelineEntry& e) { return e.name == name; });
     });
     for (std::size_t i = 0; i < scene.stations.size(); ++i)
-        if (command.receiver.empty() || command.receiver == scene.stations[i].name()) entry.receivers.push_back(i);
+        if (command.is_for(scene.stations[i].name())) entry.receivers.push_back(i);
     const std::size_t index = timeline_.add(entry.when);
     acts_.push_back({std::move(entry), std::nullopt, asked});
     timeline_.begin(index, scene.now);

@@ -87,7 +87,10 @@ FaultMoment ActiveFaults::moment(const Running& running, GpsTime now) {
     if (running.end && now > *running.end) {
         const double ramp = running.span.ramp_out.value();
         const double left = ramp <= 0 ? 0.0 : std::clamp(1 - difference(now, *running.end).value() / ramp, 0.0, 1.0);
+        moment.strength_rate = left > 0 ? -moment.strength / ramp : 0;
         moment.strength *= left;
+    } else if (moment.strength < 1) {
+        moment.strength_rate = 1 / running.span.ramp_in.value();
     }
     return moment;
 }
@@ -104,13 +107,14 @@ bool ActiveFaults::yields(const Running& running, GpsTime now) const {
 }
 
 template <class Value>
-void ActiveFaults::apply(Edit<Value> Fault::*edit, Value& value, const Trace& trace) {
+void ActiveFaults::apply(Edit<Value> Fault::*edit, Value& value, const Trace& trace, MeasurementTerms* terms) {
     for (Running& running : running_) {
         if (!(running.fault.*edit) || yields(running, trace.truth.time)) continue;
         FaultMoment now = moment(running, trace.truth.time);
         now.truth = &trace.truth;
         now.sky = &trace.sky;
         now.lost_cycles = &lost_cycles_;
+        now.terms = terms;
         (running.fault.*edit)(value, now);
     }
 }
@@ -127,7 +131,7 @@ void ActiveFaults::edit_arrivals(Trace& trace) { apply(&Fault::arrivals, trace.a
 void ActiveFaults::edit_observations(Trace& trace) {
     Observations& observations = trace.epoch.observations;
     lost_cycles_.follow(observations);
-    apply(&Fault::observations, observations, trace);
+    apply(&Fault::observations, observations, trace, &trace.measurement);
     lost_cycles_.apply(observations, trace.truth.time);
 }
 void ActiveFaults::edit_epoch(Trace& trace) { apply(&Fault::epoch, trace.epoch, trace); }

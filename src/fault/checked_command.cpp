@@ -44,15 +44,32 @@ Result<std::string> taken_text(ParameterMap& members, std::string_view name) {
     return taken;
 }
 
+// Whom it is for: a name, or a list of them; none where it is not there, or empty as forms send what is not chosen.
+Result<std::vector<std::string>> taken_receivers(ParameterMap& members) {
+    const auto found = members.find("receiver");
+    if (found == members.end()) return std::vector<std::string>();
+    const auto* text = std::get_if<std::string>(&found->second);
+    const auto* texts = std::get_if<std::vector<std::string>>(&found->second);
+    if (text == nullptr && (texts == nullptr || texts->empty()))
+        return fail(ErrorCode::input, "'receiver' is no text; expected a name, or a list of names");
+    std::vector<std::string> taken;
+    if (texts != nullptr)
+        taken = *texts;
+    else if (!text->empty())
+        taken = {*text};
+    members.erase(found);
+    return taken;
+}
+
 }  // namespace
 
 Result<Command> checked_live_fault(ParameterMap members, std::string_view source) {
     Command command;
     command.verb = CommandVerb::start_fault;
     command.source = source;
-    auto receiver = taken_text(members, "receiver");
-    if (!receiver) return fail(receiver.error());
-    command.receiver = *receiver;
+    auto receivers = taken_receivers(members);
+    if (!receivers) return fail(receivers.error());
+    command.receivers = std::move(*receivers);
     auto name = taken_text(members, "kind");
     if (!name) return fail(name.error());
     if (name->empty()) return fail(ErrorCode::input, "'kind' is missing; expected the name of a kind of fault");
@@ -99,12 +116,16 @@ Result<Command> checked_command(ParameterMap members, std::string_view source) {
     Command command;
     command.verb = kind->verb;
     command.source = source;
-    auto receiver = taken_text(members, "receiver");
-    if (!receiver) return fail(receiver.error());
-    if (!receiver->empty() && !kind->of_receiver)
+    auto receivers = taken_receivers(members);
+    if (!receivers) return fail(receivers.error());
+    if (!receivers->empty() && !kind->of_receiver)
         return fail(ErrorCode::input, fmt::format("'receiver' is '{}'; expected none: {} is for the whole run",
-                                                  receiver->substr(0, 60), kind->name));
-    command.receiver = *receiver;
+                                                  shown_name(receivers->front()), kind->name));
+    if (receivers->size() > 1)
+        return fail(
+            ErrorCode::input,
+            fmt::format("'receiver' names {} receivers; expected one, or none for all of them", receivers->size()));
+    command.receivers = std::move(*receivers);
     CheckedParameters checked = check_parameters(kind->parameters, members);
     if (!checked.mistakes.empty()) return fail(mistakes_error(checked.mistakes));
     if (kind->verb == CommandVerb::start_fault && checked.parameters.text("fault").empty())
@@ -115,10 +136,11 @@ Result<Command> checked_command(ParameterMap members, std::string_view source) {
 }
 
 std::optional<std::string> receiver_mistake(const Command& command, std::span<const std::string> receivers) {
-    if (command.receiver.empty() || std::find(receivers.begin(), receivers.end(), command.receiver) != receivers.end())
-        return std::nullopt;
-    return fmt::format("'receiver' is '{}'; expected {}{}, or none for all of them", shown_name(command.receiver),
-                       receivers.size() == 1 ? "" : "one of ", fmt::join(receivers, ", "));
+    for (const std::string& name : command.receivers)
+        if (std::find(receivers.begin(), receivers.end(), name) == receivers.end())
+            return fmt::format("'receiver' is '{}'; expected {}{}, or none for all of them", shown_name(name),
+                               receivers.size() == 1 ? "" : "one of ", fmt::join(receivers, ", "));
+    return std::nullopt;
 }
 
 Error mistakes_error(const std::vector<ParameterMistake>& mistakes) {

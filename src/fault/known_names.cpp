@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "large_letters.hpp"
 #include "skyloop/base/spelling.hpp"
 #include "skyloop/protocol/ubx_names.hpp"
 
@@ -22,13 +23,8 @@ constexpr std::array<SatelliteNumbers, constellation_names.size()> satellite_num
     {{1, 63}, {20, 58}, {1, 50}, {1, 63}, {1, 10}, {1, 32}, {1, 14}}};
 
 constexpr std::string_view whole_protocols[] = {"UBX", "NMEA", "RTCM", "MSP", "MAVLINK", "SBF"};
-
-std::string large_letters(std::string_view text) {
-    std::string large(text);
-    std::transform(large.begin(), large.end(), large.begin(),
-                   [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
-    return large;
-}
+// Sentences for which u-blox has no number.
+constexpr std::string_view more_sentences[] = {"HDT"};
 
 bool all_of(std::string_view text, bool (*is_right)(char)) {
     return !text.empty() && std::all_of(text.begin(), text.end(), is_right);
@@ -38,13 +34,13 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter_or_digit(char c) { return is_digit(c) || (c >= 'A' && c <= 'Z'); }
 bool is_hexadecimal(char c) { return is_digit(c) || (c >= 'A' && c <= 'F'); }
 
-// A sentence without its talker, or a proprietary one with what follows its address.
-bool may_be_sentence(std::string_view name) {
-    constexpr std::size_t longest_formatter = 5;
-    const std::string_view address = name.substr(0, name.find(','));
-    if (!all_of(address, is_letter_or_digit)) return false;
-    if (address.front() == 'P') return true;
-    return address == name && name.size() <= longest_formatter;
+// A proprietary sentence by its address, which is P and its maker's three letters with what he likes behind them; of
+// PUBX with the number that follows: "PUBX,41".
+bool may_be_proprietary(std::string_view name) {
+    constexpr std::string_view of_ublox = "PUBX,";
+    if (name.starts_with(of_ublox))
+        return name.size() == of_ublox.size() + 2 && all_of(name.substr(of_ublox.size()), is_digit);
+    return name.starts_with('P') && name.size() >= 4 && name != "PUBX" && all_of(name, is_letter_or_digit);
 }
 
 bool may_be_numbered(std::string_view name) {
@@ -53,25 +49,31 @@ bool may_be_numbered(std::string_view name) {
            all_of(name.substr(4, 2), is_hexadecimal) && all_of(name.substr(7), is_hexadecimal);
 }
 
-// Sentences of other classes are told by their addresses: PUBX,00 and not PUBX-00.
-bool is_frame(const UbxMessageName& message) { return message.id.message_class < 0xF0; }
+// What a dialogue calls by a name of its own: sentences by their formatters. Those of other classes are told by their
+// addresses: PUBX,00 and not PUBX-00.
+bool is_called_so(const UbxMessageName& message) { return message.id.message_class <= 0xF0; }
+
+std::vector<std::string_view> called_messages() {
+    std::vector<std::string_view> names(std::begin(more_sentences), std::end(more_sentences));
+    for (const UbxMessageName& message : ubx_message_names())
+        if (is_called_so(message)) names.push_back(message.name);
+    return names;
+}
 
 bool begins_some(std::string_view prefix) {
-    if (all_of(prefix, is_letter_or_digit) || prefix.starts_with("UBX-") || prefix.starts_with("RTCM-")) return true;
-    if (prefix.starts_with("P") && prefix.find('-') == std::string_view::npos) return true;
-    const auto names = ubx_message_names();
-    return prefix.empty() || std::any_of(names.begin(), names.end(), [&](const UbxMessageName& message) {
-               return is_frame(message) && message.name.starts_with(prefix);
-           });
+    if (prefix.empty() || prefix.starts_with("UBX-") || prefix.starts_with("RTCM-")) return true;
+    if (prefix.starts_with('P') && all_of(prefix.substr(0, prefix.find(',')), is_letter_or_digit)) return true;
+    const auto begins = [&](std::string_view name) { return name.starts_with(prefix); };
+    const std::vector<std::string_view> names = called_messages();
+    return std::any_of(names.begin(), names.end(), begins) ||
+           std::any_of(std::begin(whole_protocols), std::end(whole_protocols), begins);
 }
 
 bool may_be_message(std::string_view name) {
-    if (name == "ANYTHING" || may_be_sentence(name) || may_be_numbered(name)) return true;
-    if (std::find(std::begin(whole_protocols), std::end(whole_protocols), name) != std::end(whole_protocols))
-        return true;
-    const auto names = ubx_message_names();
-    return std::any_of(names.begin(), names.end(),
-                       [&](const UbxMessageName& message) { return is_frame(message) && message.name == name; });
+    if (name == "ANYTHING" || may_be_proprietary(name) || may_be_numbered(name)) return true;
+    const std::vector<std::string_view> names = called_messages();
+    return std::find(names.begin(), names.end(), name) != names.end() ||
+           std::find(std::begin(whole_protocols), std::end(whole_protocols), name) != std::end(whole_protocols);
 }
 
 }  // namespace
@@ -88,11 +90,8 @@ std::optional<std::string> message_name_mistake(std::string_view wanted) {
     const bool possible =
         name.ends_with('*') ? begins_some(std::string_view(name).substr(0, name.size() - 1)) : may_be_message(name);
     if (possible) return std::nullopt;
-    std::vector<std::string_view> known;
-    for (const UbxMessageName& message : ubx_message_names())
-        if (is_frame(message)) known.push_back(message.name);
     return fmt::format("'{}' is no message{}; expected a name like MON-VER, CFG-*, GGA, \"PUBX,41\" or UBX-0A-04",
-                       wanted, did_you_mean(name, known));
+                       wanted, did_you_mean(name, called_messages()));
 }
 
 std::optional<std::string> satellite_mistake(SatelliteId satellite) {

@@ -9,6 +9,7 @@
 
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/message_names.hpp"
+#include "large_letters.hpp"
 #include "skyloop/base/spelling.hpp"
 #include "skyloop/protocol/ubx_names.hpp"
 
@@ -57,8 +58,8 @@ Error nothing_named(std::string_view parameter, std::string_view expected) {
 }  // namespace
 
 Result<UbxMessageId> find_message(std::string_view name) {
-    if (const auto id = message_by_number(name)) return *id;
-    std::string wanted(name);
+    std::string wanted = large_letters(name);
+    if (const auto id = message_by_number(wanted)) return *id;
     if (wanted.starts_with("PUBX,")) wanted[4] = '-';
     std::vector<std::string_view> known;
     for (const NamedMessage& message : named_messages()) {
@@ -84,14 +85,15 @@ Result<std::set<UbxMessageId>> read_messages(const Parameters& parameters, std::
 Result<std::set<std::uint32_t>> read_items(const Parameters& parameters, std::string_view parameter) {
     std::set<std::uint32_t> items;
     for (const std::string& name : parameters.texts(parameter)) {
-        const firmware::ConfigKey* key = firmware::find_config_key(name);
+        const std::string wanted = large_letters(name);
+        const firmware::ConfigKey* key = firmware::find_config_key(wanted);
         if (key == nullptr) {
             std::vector<std::string_view> known;
             for (const firmware::ConfigKey& each : firmware::config_keys())
                 known.push_back(each.name);
             return fail(ErrorCode::usage, fmt::format("{}: '{}' is no configuration item{}; expected a name like "
                                                       "CFG-RATE-MEAS",
-                                                      parameter, name, did_you_mean(name, known)));
+                                                      parameter, name, did_you_mean(wanted, known)));
         }
         items.insert(key->id);
     }

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "skyloop/base/spelling.hpp"
@@ -13,13 +14,22 @@ namespace {
 
 using Accepted = tl::expected<ParameterValue, ParameterMistake>;
 
+// With as many digits as it takes to tell it from its neighbours: 1.0000001 is not 1.
+std::string number_text(double number) {
+    const std::string text = fmt::format("{:g}", number);
+    double read = 0;
+    std::from_chars(text.data(), text.data() + text.size(), read);
+    return std::isfinite(number) && read != number ? fmt::format("{}", number) : text;
+}
+
 std::string found(const ParameterValue& value) {
-    if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:g}", *number);
+    if (const auto* number = std::get_if<double>(&value)) return number_text(*number);
     if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
     if (const auto* text = std::get_if<std::string>(&value)) return fmt::format("'{}'", *text);
-    if (const auto* numbers = std::get_if<std::vector<double>>(&value))
-        return fmt::format("a list of {} numbers", numbers->size());
-    return "a list of texts";
+    const auto* numbers = std::get_if<std::vector<double>>(&value);
+    const auto* texts = std::get_if<std::vector<std::string>>(&value);
+    if (numbers != nullptr ? numbers->empty() : texts->empty()) return "an empty list";
+    return numbers != nullptr ? fmt::format("a list of {} numbers", numbers->size()) : "a list of texts";
 }
 
 Accepted refused(const ParameterSpec& spec, const ParameterValue& value, const std::string& expected) {
@@ -69,6 +79,7 @@ Accepted accept_texts(const ParameterSpec& spec, const ParameterValue& value) {
         texts = *list;
     else if (const auto* numbers = std::get_if<std::vector<double>>(&value); numbers == nullptr || !numbers->empty())
         return refused(spec, value, expected);
+    if (texts.size() < spec.count_least) return refused(spec, value, expected);
     for (const std::string& text : texts)
         if (words && !chosen(spec, text)) return refused(spec, text, expected);
     return texts;
@@ -82,10 +93,13 @@ std::string count_text(const ParameterSpec& spec) {
 
 Accepted accept_numbers(const ParameterSpec& spec, const ParameterValue& value) {
     const auto* numbers = std::get_if<std::vector<double>>(&value);
-    const bool right = numbers != nullptr && numbers->size() >= spec.count_least &&
-                       numbers->size() <= spec.count_most &&
-                       std::all_of(numbers->begin(), numbers->end(), [&](double n) { return within(spec, n); });
-    if (!right) return refused(spec, value, fmt::format("a list of {} numbers{}", count_text(spec), range_text(spec)));
+    const std::string expected = fmt::format("a list of {} numbers{}", count_text(spec), range_text(spec));
+    if (numbers == nullptr || numbers->size() < spec.count_least || numbers->size() > spec.count_most)
+        return refused(spec, value, expected);
+    for (const double number : *numbers)
+        if (!within(spec, number))
+            return tl::make_unexpected(
+                ParameterMistake{spec.name, fmt::format("holds {}; expected {}", number_text(number), expected)});
     return *numbers;
 }
 
@@ -145,6 +159,7 @@ ParameterSpec word_parameter(std::string name, std::string standard, std::vector
 
 ParameterSpec words_parameter(std::string name, std::vector<std::string> choices, std::string meaning) {
     ParameterSpec spec{std::move(name), ParameterType::words, std::move(meaning)};
+    spec.count_least = 1;
     spec.choices = std::move(choices);
     return spec;
 }
@@ -154,7 +169,9 @@ ParameterSpec text_parameter(std::string name, std::string standard, std::string
 }
 
 ParameterSpec texts_parameter(std::string name, std::string meaning) {
-    return {std::move(name), ParameterType::texts, std::move(meaning)};
+    ParameterSpec spec{std::move(name), ParameterType::texts, std::move(meaning)};
+    spec.count_least = 1;
+    return spec;
 }
 
 ParameterSpec place_parameter(std::string name, bool needed, std::string meaning) {

@@ -76,8 +76,9 @@ Result<Fault> make_position_ramp(const Parameters& parameters, const FaultContex
         const double wanted = moment.since_start.value();
         const double seconds = speed > 0 ? std::min(wanted, most / speed) : 0;
         shift_place(epoch.fix, rate * (seconds * moment.strength));
-        if (!velocity_too || !epoch.fix.has_position() || seconds < wanted) return;
-        const Offset more = rate * moment.strength;
+        if (!velocity_too || !epoch.fix.has_position()) return;
+        // How fast that offset changes: by itself up to its limit, and along the ramps.
+        const Offset more = rate * ((seconds < wanted ? 0 : moment.strength) + seconds * moment.strength_rate);
         const VelocityNed& v = epoch.fix.velocity;
         put_velocity(epoch.fix, {v.north + more.north, v.east + more.east, v.down - more.up});
     });

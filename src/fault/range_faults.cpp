@@ -9,6 +9,13 @@
 namespace skyloop {
 namespace {
 
+void lengthen(Observation& o, Metres by, MeasurementTerms* terms) {
+    *o.pseudorange += by;
+    if (terms == nullptr) return;
+    for (SignalTerms& t : terms->signals)
+        if (t.satellite == o.satellite && t.signal == o.signal) t.false_code += by;
+}
+
 // @param offset m at full strength, by the time since the start
 template <class Offset>
 Result<Fault> offset_pseudoranges(const Parameters& parameters, Offset offset) {
@@ -20,7 +27,7 @@ Result<Fault> offset_pseudoranges(const Parameters& parameters, Offset offset) {
         chosen.choose(observations, moment.sky);
         for (Observation& o : observations.signals)
             if (o.pseudorange && chosen.has(o.satellite))
-                *o.pseudorange += Metres(moment.strength * offset(moment.since_start.value()));
+                lengthen(o, Metres(moment.strength * offset(moment.since_start.value())), moment.terms);
     };
     return fault;
 }

@@ -33,13 +33,13 @@ FixType fix_type_of(std::string_view word) {
     return found == all_fix_types.end() ? FixType::none : *found;
 }
 
-// With the type goes what follows from it: satellites in use, and the vector of a pair with its ambiguities, which
-// there is with an RTK solution alone.
+// With the type goes what follows from it: satellites in use, which nobody has without a fix or reckons on with, and
+// the vector of a pair with its ambiguities, which there is with an RTK solution alone.
 void claim_type(NavigationState& state, FixType type) {
     Fix& fix = state.epoch.fix;
     fix.type = type;
     state.fix_ok = fix.has_position();
-    if (type == FixType::none)
+    if (type == FixType::none || type == FixType::dead_reckoning)
         for (SatelliteStatus& s : fix.satellites) {
             s.used = false;
             s.residual.reset();

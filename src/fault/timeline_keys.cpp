@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "skyloop/base/spelling.hpp"
 #include "skyloop/fault/known_names.hpp"
@@ -24,15 +25,29 @@ ParameterSpec armed_parameter() {
     return spec;
 }
 
+// Without a standard, so that an empty text can be told from none.
+ParameterSpec given_text(std::string name, std::string meaning) {
+    ParameterSpec spec = text_parameter(std::move(name), "", std::move(meaning));
+    spec.standard.reset();
+    return spec;
+}
+
+// What each of those texts names.
+constexpr std::pair<std::string_view, std::string_view> texts_that_name[] = {{"at_utc", "a time"},
+                                                                             {"after", "the name of an entry"},
+                                                                             {"after_end_of", "the name of a fault"},
+                                                                             {"when_client_sends", "a message"},
+                                                                             {"when_mavlink_mode", "a mode"}};
+
 std::vector<ParameterSpec> beginning_keys() {
     const ListLimits bounds{2, 0, longest_s};
     return {
         text_parameter("name", "", "what messages and other entries call it; else its kind, with a number"),
         number_parameter("at_s", std::nullopt, 0, longest_s, "when it begins, seconds after the start of the run"),
-        text_parameter("at_utc", "", "when it begins, ISO 8601, in UTC where no zone stands behind"),
+        given_text("at_utc", "when it begins, ISO 8601, in UTC where no zone stands behind"),
         numbers_parameter("between_s", std::nullopt, bounds, "it begins at a random time within these, by the seed"),
-        text_parameter("after", "", "the name of an entry from whose beginning its times count"),
-        text_parameter("after_end_of", "", "the name of a fault from whose end its times count"),
+        given_text("after", "the name of an entry from whose beginning its times count"),
+        given_text("after_end_of", "the name of a fault from whose end its times count"),
         number_parameter("every_s", std::nullopt, 1e-3, longest_s, "it begins again after this"),
         whole_number_parameter("times", std::nullopt, 1, most_occurrences,
                                "how often by itself, in all; else without end"),
@@ -42,9 +57,9 @@ std::vector<ParameterSpec> beginning_keys() {
         number_parameter("when_faster_mps", std::nullopt, 0, 1e5, "… faster than this over the ground"),
         polygon_parameter("when_inside", "… inside this polygon, [[latitude, longitude], …]"),
         number_parameter("when_fix_for_s", std::nullopt, 0, longest_s, "… when there has been a fix for so long"),
-        text_parameter("when_client_sends", "",
-                       "… when the client sends this message: \"CFG-VALSET\", \"CFG-*\" or \"anything\""),
-        text_parameter("when_mavlink_mode", "", "… when the vehicle's mode is this, by its name: \"AUTO\", \"RTL\""),
+        given_text("when_client_sends",
+                   "… when the client sends this message: \"CFG-VALSET\", \"CFG-*\" or \"anything\""),
+        given_text("when_mavlink_mode", "… when the vehicle's mode is this, by its name: \"AUTO\", \"RTL\""),
         whole_number_parameter("when_custom_mode", std::nullopt, 0, largest_custom_mode,
                                "… when it is this, by the number custom_mode of HEARTBEAT"),
         armed_parameter(),
@@ -138,14 +153,18 @@ std::optional<GpsTime> utc(const Parameters& keys, std::vector<ParameterMistake>
     return std::nullopt;
 }
 
+void refuse_empty_texts(const Parameters& keys, std::vector<ParameterMistake>& mistakes) {
+    for (const auto& [name, what] : texts_that_name)
+        if (keys.has(name) && keys.text(name).empty())
+            mistakes.push_back({std::string(name), fmt::format("is empty; expected {}, or no such key", what)});
+}
+
 // Of several ways to say one thing only one may be used.
 void refuse_both(const Parameters& keys, std::initializer_list<std::string_view> names,
                  std::vector<ParameterMistake>& mistakes) {
     std::string_view first;
     for (const std::string_view name : names) {
         if (!keys.has(name)) continue;
-        const auto value = keys.values().find(name);
-        if (const auto* text = std::get_if<std::string>(&value->second); text != nullptr && text->empty()) continue;
         if (!first.empty())
             mistakes.push_back({std::string(name), fmt::format("stands beside '{}'; expected one of them", first)});
         else
@@ -186,6 +205,7 @@ TimelineReading read_timeline_entry(const Parameters& keys) {
     TimelineReading reading;
     TimelineEntry& entry = reading.entry;
     entry.name = keys.text("name");
+    refuse_empty_texts(keys, reading.mistakes);
     entry.at = quantity<Seconds>(keys, "at_s");
     entry.at_time = utc(keys, reading.mistakes);
     entry.between = bounds(keys, "between_s", reading.mistakes);

@@ -87,6 +87,18 @@ std::string why_too_late(const TimeClause& time, const std::vector<KnownEntry>& 
     return {};
 }
 
+// The same of a command, whose own times are the host's. @param speed simulated seconds of each of them
+std::string why_no_time(const Probe& probe, double speed, double length) {
+    const double at = probe.at.value();
+    if (at >= length)
+        return fmt::format("cannot be met: it is asked {:g} s after the start of the run, which ends after {:g} s", at,
+                           length);
+    const double until = at + probe.within.value_or(probe.timeout).value() * speed;
+    if (until <= length) return {};
+    return fmt::format("may stay undecided: it has until {:g} s after the start of the run, which ends after {:g} s",
+                       until, length);
+}
+
 }  // namespace
 
 std::vector<std::string> expectation_warnings(const Scenario& scenario, GpsTime start, GpsTime end) {
@@ -95,9 +107,8 @@ std::vector<std::string> expectation_warnings(const Scenario& scenario, GpsTime 
     for (const Expectation& expectation : scenario.expectations) {
         std::string why;
         if (expectation.sentence) why = why_too_late(expectation.sentence->time, known, start, end);
-        if (expectation.probe && advanced(start, expectation.probe->at) > end)
-            why = fmt::format("cannot be met: it is asked {:g} s after the start of the run, which ends after {:g} s",
-                              expectation.probe->at.value(), difference(end, start).value());
+        if (expectation.probe)
+            why = why_no_time(*expectation.probe, scenario.run.speed, difference(end, start).value());
         if (!why.empty()) warnings.push_back(fmt::format("[[expect]] '{}' {}", expectation.title(), why));
     }
     return warnings;

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <utility>
 
 #include "skyloop/fault/fault_kind.hpp"
+#include "skyloop/fault/planned_events.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
@@ -43,15 +43,22 @@ std::optional<std::string> too_early_to_roll_over(const FaultEntry& fault, GpsTi
                fault.when.name, rollovers, rollovers > 1 ? "fewer, or " : "", check_utc_text(first));
 }
 
-template <class Entry>
-void warn_of_late(std::string_view table, const std::vector<Entry>& entries, const Scenario& scenario,
-                  std::array<GpsTime, 2> run, std::vector<std::string>& warnings) {
-    for (const Entry& entry : entries)
-        if (const auto begins = first_beginning(entry.when, run[0], scenario.run.seed); begins && *begins > run[1])
-            warnings.push_back(fmt::format(
-                "[[{}]] '{}' will not begin: it is due {:g} s after the start of the run, "
-                "which ends after {:g} s",
-                table, entry.when.name, difference(*begins, run[0]).value(), difference(run[1], run[0]).value()));
+// Which entries begin before the end, or may: those that a command starts among them.
+std::vector<bool> may_begin(const std::vector<TimelineEntry>& entries, const TimelineSpan& run) {
+    constexpr std::size_t most_looked_at = 10'000;  // what comes every millisecond comes for ever
+    std::vector<bool> may = hang_on_the_run(entries);
+    for (const TimelineEvent& event : planned_events(entries, run, most_looked_at))
+        may[event.entry] = true;
+    return may;
+}
+
+void warn_of_late(std::string_view table, const TimelineEntry& entry, const TimelineSpan& run,
+                  std::vector<std::string>& warnings) {
+    const auto begins = first_beginning(entry, run.start, run.seed);
+    if (begins && *begins > run.end)
+        warnings.push_back(fmt::format(
+            "[[{}]] '{}' will not begin: it is due {:g} s after the start of the run, which ends after {:g} s", table,
+            entry.name, difference(*begins, run.start).value(), difference(run.end, run.start).value()));
 }
 
 }  // namespace
@@ -76,8 +83,11 @@ Result<void> check_timeline(const Scenario& scenario, GpsTime start) {
 
 std::vector<std::string> timeline_warnings(const Scenario& scenario, GpsTime start, GpsTime end) {
     std::vector<std::string> warnings;
-    warn_of_late("fault", scenario.faults, scenario, {start, end}, warnings);
-    warn_of_late("command", scenario.commands, scenario, {start, end}, warnings);
+    const TimelineSpan run{start, end, scenario.run.seed};
+    const std::vector<TimelineEntry> entries = timeline_of(scenario);
+    const std::vector<bool> may = may_begin(entries, run);
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        if (!may[i]) warn_of_late(i < scenario.faults.size() ? "fault" : "command", entries[i], run, warnings);
     for (std::string& warning : expectation_warnings(scenario, start, end))
         warnings.push_back(std::move(warning));
     return warnings;

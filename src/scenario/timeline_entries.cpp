@@ -161,7 +161,7 @@ void read_command(TableReader& table, Scenario& scenario) {
         } else if (table.has("receiver")) {
             const auto chosen = read_receiver_choice(table, scenario);
             if (chosen.size() == 1)
-                entry.command.receiver = receiver_name(scenario, chosen.front());
+                entry.command.receivers = {receiver_name(scenario, chosen.front())};
             else if (chosen.size() < scenario.receivers.size())
                 table.mistake("receiver",
                               fmt::format("names {} receivers; expected one, or none for all of them", chosen.size()));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "sentence_words.hpp"
 #include "skyloop/verdict/expectation_sentence.hpp"
@@ -120,7 +121,10 @@ void ExpectationTracker::open(const Stretch& stretch) {
     ++stretches_;
     if (stretch_) {
         // Whatever fulfils the older one fulfils this too, and the older deadline comes first.
-        if (once()) return;
+        if (once()) {
+            ++waiting_;
+            return;
+        }
         stretch_->closes = stretch_->closes && stretch.closes
                                ? std::optional(std::max(*stretch_->closes, *stretch.closes))
                                : std::nullopt;
@@ -212,7 +216,7 @@ void ExpectationTracker::come_true(GpsTime now) {
         slowest_ = delay;
         slowest_moment_ = moment(now, *stretch_) + last_seen();
     }
-    ++came_true_;
+    came_true_ += 1 + std::exchange(waiting_, 0);
     came_true_at_ = now;
     if (sentence_.time.rule == TimeRule::some_time) finding_ = summary();
     stretch_.reset();

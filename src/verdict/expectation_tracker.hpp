@@ -91,6 +91,7 @@ private:
     int under_way_ = 0;               // occurrences of the event
     bool event_came_ = false, looked_at_ = false, ever_seen_ = false;
     std::uint64_t stretches_ = 0, seen_ = 0, came_true_ = 0;
+    std::uint64_t waiting_ = 0;  // stretches that have opened since the open one, and are fulfilled with it
     Seconds slowest_{0};
     std::string slowest_moment_;
     std::optional<GpsTime> came_true_at_;

@@ -107,11 +107,12 @@ void Judge::State::start_probes(GpsTime now) {
 
 Finding Judge::State::probe_finding(Case& one, GpsTime now) {
     if (!run_.live) return {Outcome::not_run, "a probe needs a run against the clock, and this one was not", {}};
-    if (!one.probe)
-        return {
-            Outcome::undecided,
-            fmt::format("the run ended after {}, before the command was due", span_text(difference(now, run_.start))),
-            {}};
+    // One that is due at the very end has no time, whether or not it was started.
+    if (!one.probe || now <= advanced(run_.start, one.expectation.probe->at))
+        return {Outcome::undecided,
+                fmt::format("the run ended after {}, before the command {}", span_text(difference(now, run_.start)),
+                            now <= advanced(run_.start, one.expectation.probe->at) ? "was due" : "was started"),
+                {}};
     Finding finding = one.probe->finish();
     finding.decided_at = one.probe_over_at;
     return finding;
@@ -180,7 +181,8 @@ std::vector<Verdict> Judge::State::so_far() const {
 
 std::vector<Verdict> Judge::State::finish(GpsTime now) {
     now_ = std::max(now_, now);
-    if (has_probes_ && run_.live) start_probes(now_);
+    for (Case& one : cases_)
+        if (one.probe && !one.probe_over_at && one.probe->is_over()) one.probe_over_at = now_;
     std::vector<Verdict> verdicts;
     for (Case& one : cases_)
         verdicts.push_back(verdict_of(one, now_));

@@ -26,9 +26,12 @@ std::string shown(const ProcessOutcome& outcome) {
     return text.empty() ? "; it printed nothing" : "; it printed: " + text;
 }
 
+// One that ended by itself between the last look and the kill has an exit code.
+bool was_cut_short(const ProcessOutcome& outcome) { return outcome.cancelled && !outcome.enough && !outcome.exit_code; }
+
 std::string ending(const ProcessOutcome& outcome, Seconds timeout) {
     if (outcome.timed_out) return "was killed after " + span_text(timeout);
-    if (outcome.cancelled) return "was killed as the run ended first";
+    if (was_cut_short(outcome)) return "was killed as the run ended first";
     if (outcome.exit_code) return fmt::format("ended with exit code {}", *outcome.exit_code);
     return fmt::format("was ended by signal {}", outcome.signal.value_or(0));
 }
@@ -68,15 +71,19 @@ void ProbeRun::work() {
     const auto end = HostClock::now() + std::chrono::duration<double>(probe_.within.value_or(Seconds(0)).value());
     constexpr auto pause = std::chrono::milliseconds(20);
     constexpr int pauses_between = 10;
-    while (!try_once() && probe_.within && !cancelled_) {
+    // A failure is final when no time is left to try again.
+    while (try_once() == false && HostClock::now() < end) {
         for (int i = 0; i < pauses_between && !cancelled_; ++i)
             std::this_thread::sleep_for(pause);
         if (HostClock::now() >= end) break;
+        if (!cancelled_) continue;
+        keep_undecided();
+        break;
     }
     over_ = true;
 }
 
-bool ProbeRun::try_once() {
+std::optional<bool> ProbeRun::try_once() {
     bool fulfilled = false;
     std::string line_seen;
     ProcessRequest request;
@@ -94,7 +101,7 @@ bool ProbeRun::try_once() {
             return fulfilled && !probe_.expect_exit;
         };
     const auto outcome = run_process(request);
-    if (!outcome) return keep(false, outcome.error().message), false;
+    if (!outcome) return keep(Outcome::failed, outcome.error().message), false;
     const bool exit_right = outcome->exit_code == probe_.expect_exit.value_or(0);
     const bool success = probe_.condition ? fulfilled && (!probe_.expect_exit || exit_right) : exit_right;
     std::string evidence = "the command " + ending(*outcome, probe_.timeout);
@@ -104,13 +111,21 @@ bool ProbeRun::try_once() {
         evidence += "; no line of it fulfilled the condition" + shown(*outcome);
     else if (!success)
         evidence += shown(*outcome);
-    keep(success, std::move(evidence));
+    if (was_cut_short(*outcome)) return keep(Outcome::undecided, std::move(evidence)), std::nullopt;
+    keep(success ? Outcome::passed : Outcome::failed, std::move(evidence));
     return success;
 }
 
-void ProbeRun::keep(bool success, std::string evidence) {
+void ProbeRun::keep(Outcome outcome, std::string evidence) {
     const std::scoped_lock lock(mutex_);
-    finding_ = {success ? Outcome::passed : Outcome::failed, std::move(evidence), std::nullopt};
+    finding_ = {outcome, std::move(evidence), std::nullopt};
+}
+
+// What the last try showed stays the evidence.
+void ProbeRun::keep_undecided() {
+    const std::scoped_lock lock(mutex_);
+    finding_.outcome = Outcome::undecided;
+    finding_.evidence = "the run ended before the time to try again was over; " + finding_.evidence;
 }
 
 }  // namespace skyloop

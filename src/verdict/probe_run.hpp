@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -29,13 +30,15 @@ public:
     [[nodiscard]] bool is_over() const { return over_; }
     /// What came of it, once it is over; until then undecided.
     [[nodiscard]] Finding found() const { return over_ ? finding_ : Finding{}; }
-    /// Kills what still runs and gives what came of it.
+    /// Kills what still runs and gives what came of it: undecided where the command had time left.
     Finding finish();
 
 private:
     void work();
-    bool try_once();
-    void keep(bool success, std::string evidence);
+    // Nothing: the end of the run came before it had decided.
+    std::optional<bool> try_once();
+    void keep(Outcome outcome, std::string evidence);
+    void keep_undecided();
 
     const Probe probe_;
     const std::vector<std::string> environment_;

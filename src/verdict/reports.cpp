@@ -22,6 +22,24 @@ std::string capitals(std::string_view text) {
     return large;
 }
 
+// What would lead a terminal elsewhere, or break the line, as JSON writes it: \u001b.
+std::string on_a_terminal(std::string_view text) {
+    std::string shown;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const unsigned next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0U;
+        if (byte == 0xC2 && next >= 0x80 && next < 0xA0) {  // a control character of Latin-1, in UTF-8
+            shown += fmt::format("\\u{:04x}", next);
+            ++i;
+        } else if (byte < 0x20 || byte == 0x7F) {
+            shown += byte == '\n' ? "\\n" : byte == '\t' ? "\\t" : fmt::format("\\u{:04x}", byte);
+        } else {
+            shown += text[i];
+        }
+    }
+    return shown;
+}
+
 std::string utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced())); }
 
 std::size_t count_of(std::span<const Verdict> verdicts, Outcome outcome) {
@@ -114,10 +132,10 @@ nlohmann::ordered_json verdict_object(const Verdict& verdict) {
 std::string verdict_text(std::span<const Verdict> verdicts, const ReportedRun& run) {
     std::string text;
     for (const Verdict& verdict : verdicts)
-        text += fmt::format("{:9}  {}: {} (at {:.3f} s)\n", capitals(outcome_name(verdict.outcome)), verdict.name,
-                            verdict.evidence, verdict.run_time.value());
+        text += fmt::format("{:9}  {}: {} (at {:.3f} s)\n", capitals(outcome_name(verdict.outcome)),
+                            on_a_terminal(verdict.name), on_a_terminal(verdict.evidence), verdict.run_time.value());
     text += fmt::format("{} of {} expectations met in {} (seed {}, {:.3f} s)", count_of(verdicts, Outcome::passed),
-                        verdicts.size(), run.scenario, run.seed, run.length.value());
+                        verdicts.size(), on_a_terminal(run.scenario), run.seed, run.length.value());
     for (const Outcome outcome : {Outcome::failed, Outcome::undecided, Outcome::not_run})
         if (const std::size_t count = count_of(verdicts, outcome); count > 0)
             text += fmt::format(", {} {}", count, outcome_name(outcome));

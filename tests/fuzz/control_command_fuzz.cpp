@@ -21,7 +21,7 @@ void check_command(const Result<Command>& command) {
     require(nlohmann::json::accept(text));
     const auto again = command_from_json(text, "fuzz");
     require(again.has_value());
-    require(again->verb == command->verb && again->receiver == command->receiver);
+    require(again->verb == command->verb && again->receivers == command->receivers);
     require(again->parameters.values().size() == command->parameters.values().size());
 }
 

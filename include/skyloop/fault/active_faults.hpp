@@ -56,7 +56,7 @@ private:
     [[nodiscard]] bool yields(const Running& running, GpsTime now) const;
     [[nodiscard]] static FaultMoment moment(const Running& running, GpsTime now);
     template <class Value>
-    void apply(Edit<Value> Fault::*edit, Value& value, const Trace& trace);
+    void apply(Edit<Value> Fault::*edit, Value& value, const Trace& trace, MeasurementTerms* terms = nullptr);
     template <class Value>
     [[nodiscard]] Value collected(Edit<Value> Fault::*edit, GpsTime now) const;
 

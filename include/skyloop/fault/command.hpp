@@ -1,6 +1,7 @@
 /// What happens once in a run, whoever asks for it.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,8 +35,12 @@ enum class CommandVerb {
 struct Command {
     CommandVerb verb = CommandVerb::note;
     Parameters parameters{};
-    std::string receiver{};  ///< empty: all
-    std::string source{};    ///< "scenario", "http", "mavlink": for the record
+    std::vector<std::string> receivers{};  ///< names; of a live fault there may be several; none: all
+    std::string source{};                  ///< "scenario", "http", "mavlink": for the record
+
+    [[nodiscard]] bool is_for(std::string_view receiver) const {
+        return receivers.empty() || std::find(receivers.begin(), receivers.end(), receiver) != receivers.end();
+    }
 };
 
 /// A command that can be asked for.

@@ -35,6 +35,8 @@ struct FaultMoment {
     const TruthState* truth = nullptr;  ///< of the epoch; null for edits of the receiver, the wire and the pace
     const SkyView* sky = nullptr;       ///< as `truth`; its satellites stand as those of the arrivals
     LostCycles* lost_cycles = nullptr;  ///< of the receiver, for edits of observations; else null
+    MeasurementTerms* terms = nullptr;  ///< what the observations are made of, for edits of them; else null
+    double strength_rate = 0;           ///< 1/s, by which `strength` changes along its ramps
 };
 
 /// How simulated time passes against the clocks of the device under test.

@@ -37,7 +37,7 @@ struct ParameterSpec {
     std::optional<ParameterValue> standard{};  ///< what it is when it is not given; nothing: it is then absent
     bool needed = false;                       ///< it must be given
     double least = -std::numeric_limits<double>::max(), most = std::numeric_limits<double>::max();  ///< of numbers
-    std::size_t count_least = 0, count_most = std::numeric_limits<std::size_t>::max();              ///< of `numbers`
+    std::size_t count_least = 0, count_most = std::numeric_limits<std::size_t>::max();              ///< of lists
     std::vector<std::string> choices{};  ///< of `word` and `words`
 };
 

@@ -15,6 +15,7 @@ struct SignalTerms {
     Signal signal = Signal::l1;
     Metres code_noise;
     Metres multipath;        ///< of the code
+    Metres false_code;       ///< that faults of the receiver add to the pseudorange
     Metres phase_multipath;  ///< of the carrier
     Metres phase_noise;      ///< of the carrier
     Hertz doppler_noise;     ///< of the carrier

@@ -49,8 +49,9 @@ public:
     /// still fail; undecided, without evidence, while it cannot be told. Never waits; for the thread that observes.
     [[nodiscard]] std::vector<Verdict> so_far() const;
 
-    /// The run is over: one verdict per expectation, in their order. Probes that still run are killed and fail. Called
-    /// once; nothing may be observed afterwards. Waits for the ends of killed probes, at most some tenths of a second.
+    /// The run is over: one verdict per expectation, in their order. Probes that still run are killed, and undecided.
+    /// Called once; nothing may be observed afterwards. Waits for the ends of killed probes, at most some tenths of a
+    /// second.
     std::vector<Verdict> finish(GpsTime now);
 
 private:

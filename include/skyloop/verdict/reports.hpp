@@ -20,6 +20,7 @@ struct ReportedRun {
 };
 
 /// A line per verdict and one that counts them: `FAILED  client reconfigures …: client sent nothing (at 12.000 s)`.
+/// Control characters of names and evidence are written as JSON writes them.
 std::string verdict_text(std::span<const Verdict> verdicts, const ReportedRun& run);
 
 /// A JSON object: scenario, seed, start_utc, length_s, met (true, false, or null: all_met() says nothing), evidence,

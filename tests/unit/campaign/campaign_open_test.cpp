@@ -189,6 +189,14 @@ TEST_F(CampaignOpen, EachListedValueIsTriedBeforeAnythingIsRun) {
                 testing::MatchesRegex("--vary sky.rebase_navigation: .*; with sky.rebase_navigation = true"));
 }
 
+TEST_F(CampaignOpen, AnOptionIsBlamedForItsValuesWhereTheFileHasOthers) {
+    write_scenario(
+        "[[fault]]\nname = \"gap\"\nkind = \"outage\"\nat_s = 1\nfor_s = 1\n[campaign]\n"
+        "[[campaign.parameter]]\nkey = \"fault.gap.for_s\"\nvalues = [2]\n");
+    EXPECT_THAT(check_mistake(open({"fault.gap.for_s=-1"})),
+                testing::StartsWith("--vary fault.gap.for_s: fault.gap.for_s: is -1; expected a number"));
+}
+
 TEST_F(CampaignOpen, TwoNamesOfOneKeyAreRefused) {
     const std::string faults =
         "[[fault]]\nname = \"gap\"\nkind = \"outage\"\nat_s = 1\nfor_s = 1\n[campaign]\n"

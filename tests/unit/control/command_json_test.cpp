@@ -1,5 +1,6 @@
 #include "skyloop/control/command_json.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +22,7 @@ TEST(CommandJson, ReadsACommandWithItsParametersAndStandards) {
     ASSERT_TRUE(command) << command.error().message;
     EXPECT_EQ(command->verb, CommandVerb::set_baud);
     EXPECT_EQ(command->parameters.number("baud"), 9600);
-    EXPECT_EQ(command->receiver, "front");
+    EXPECT_THAT(command->receivers, testing::ElementsAre("front"));
     EXPECT_EQ(command->source, "http");
     const auto step = command_from_json(R"({"command":"step"})", "http");
     ASSERT_TRUE(step);
@@ -47,10 +48,28 @@ TEST(CommandJson, RefusesWithOneLineThatSaysWhatWasExpected) {
     EXPECT_THAT(command_refusal(std::string(60000, '[')), HasSubstr("no JSON"));
 }
 
+TEST(CommandJson, ALiveFaultIsForOneReceiverOrForSeveral) {
+    const auto taken = [](std::string_view receiver) {
+        const auto fault = live_fault_from_json(fmt::format(R"({{"kind":"outage","receiver":{}}})", receiver), "http");
+        return fault ? fault->receivers : std::vector<std::string>{fault.error().message};
+    };
+    EXPECT_THAT(taken(R"("front")"), testing::ElementsAre("front"));
+    EXPECT_THAT(taken(R"(["front","rear"])"), testing::ElementsAre("front", "rear"));
+    EXPECT_THAT(taken(R"("")"), testing::IsEmpty());
+    for (const char* wrong : {"[]", "1", "[1,2]"})
+        EXPECT_THAT(taken(wrong), testing::ElementsAre("'receiver' is no text; expected a name, or a list of names"));
+    EXPECT_THAT(command_refusal(R"({"command":"restart","receiver":["front","rear"]})"),
+                HasSubstr("'receiver' names 2 receivers; expected one, or none for all of them"));
+    EXPECT_EQ(command_refusal(R"({"command":"restart","receiver":["front"]})"), "taken");
+}
+
 TEST(CommandJson, WritesWhatItReads) {
     for (const std::string_view text :
          {R"({"command":"move_to","at":[48.5,11,500]})", R"({"command":"note","text":"quote \" and ü"})",
-          R"({"command":"restart","receiver":"front","start":"cold"})", R"({"command":"stop_fault","fault":"a"})"}) {
+          R"({"command":"restart","receiver":"front","start":"cold"})",
+          R"({"command":"start_fault","kind":"freeze","name":"a","receiver":["front","rear"],"ramp_in_s":0,)"
+          R"("ramp_out_s":0,"velocity":"kept"})",
+          R"({"command":"stop_fault","fault":"a"})"}) {
         const auto command = command_from_json(text, "http");
         ASSERT_TRUE(command) << text << command.error().message;
         EXPECT_EQ(nlohmann::json::parse(command_json(*command)), nlohmann::json::parse(text));

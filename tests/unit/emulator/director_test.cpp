@@ -152,11 +152,11 @@ TEST(Director, AWrongSpeedOfTheLineGarbles) {
 TEST(Director, CarriesOutLiveCommands) {
     const auto run = directed("[[fault]]\nkind = \"receiver_silent\"\nname = \"quiet\"\nat_s = 1000\nfor_s = 5\n");
     run_for(*run, 3s);
-    Command start{CommandVerb::start_fault, Parameters({{"fault", std::string("quiet")}}), "", "http"};
+    Command start{CommandVerb::start_fault, Parameters({{"fault", std::string("quiet")}}), {}, "http"};
     ASSERT_TRUE(run->live.push(start));
     run_for(*run, 2s);
     EXPECT_THAT(run->witness.happened, ElementsAre("command start_fault", "quiet begins"));
-    ASSERT_TRUE(run->live.push({CommandVerb::stop_fault, Parameters({{"fault", std::string("quiet")}}), "", "http"}));
+    ASSERT_TRUE(run->live.push({CommandVerb::stop_fault, Parameters({{"fault", std::string("quiet")}}), {}, "http"}));
     run_for(*run, 2s);
     EXPECT_THAT(run->witness.happened,
                 ElementsAre("command start_fault", "quiet begins", "command stop_fault", "quiet ends"));
@@ -170,7 +170,7 @@ TEST(Director, BeginsFaultsThatNoScenarioNames) {
     values.emplace("kind", std::string("receiver_silent"));
     values.emplace("name", std::string("live"));
     values.emplace("for_s", 2.0);
-    ASSERT_TRUE(run->live.push({CommandVerb::start_fault, Parameters(values), "", "http"}));
+    ASSERT_TRUE(run->live.push({CommandVerb::start_fault, Parameters(values), {}, "http"}));
     run_for(*run, 10s);
     EXPECT_THAT(run->witness.happened, ElementsAre("command start_fault", "live begins", "live ends"));
 }
@@ -180,11 +180,11 @@ void begin_live(DirectedRun& run, const std::string& name) {
     auto values = check_parameters(find_fault_kind("receiver_silent")->parameters, {}).parameters.values();
     values.emplace("kind", std::string("receiver_silent"));
     values.emplace("name", name);
-    ASSERT_TRUE(run.live.push({CommandVerb::start_fault, Parameters(values), "", "http"}));
+    ASSERT_TRUE(run.live.push({CommandVerb::start_fault, Parameters(values), {}, "http"}));
 }
 
 void stop_live(DirectedRun& run, const std::string& name) {
-    ASSERT_TRUE(run.live.push({CommandVerb::stop_fault, Parameters({{"fault", name}}), "", "http"}));
+    ASSERT_TRUE(run.live.push({CommandVerb::stop_fault, Parameters({{"fault", name}}), {}, "http"}));
 }
 
 TEST(Director, StopsALiveFaultByTheNameItWasAskedForBy) {
@@ -223,7 +223,7 @@ TEST(Director, SaysThatNothingIsThereToStop) {
 TEST(Director, SaysThatAFaultThatIsToBeginIsNotThere) {
     const auto run = directed("[[fault]]\nkind = \"receiver_silent\"\nname = \"quiet\"\nat_s = 1000\n");
     for (const std::string name : {"zz", "quiet"})
-        ASSERT_TRUE(run->live.push({CommandVerb::start_fault, Parameters({{"fault", name}}), "", "feed"}));
+        ASSERT_TRUE(run->live.push({CommandVerb::start_fault, Parameters({{"fault", name}}), {}, "feed"}));
     run_for(*run, 3s);
     EXPECT_THAT(run->witness.ignored, ElementsAre("no fault is called zz"));
     EXPECT_THAT(run->witness.happened, ElementsAre("command start_fault", "command start_fault", "quiet begins"));

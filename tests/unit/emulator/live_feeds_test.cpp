@@ -133,7 +133,7 @@ delay_s = 2
 TEST_F(LiveFeedsTest, WhatASourceAsksForInVainIsTold) {
     open("realtime");
     const auto told_of = [&](const std::string& asks, const std::string& ignored) {
-        const Command command{CommandVerb::start_fault, Parameters({{"fault", std::string("zz")}}), "", asks};
+        const Command command{CommandVerb::start_fault, Parameters({{"fault", std::string("zz")}}), {}, asks};
         feeds_->on_command({start_, "start_fault", command, ignored});
         return feeds_->take_news();
     };

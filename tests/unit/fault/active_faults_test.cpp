@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "receiver_bench.hpp"
 #include "skyloop/fault/checked_command.hpp"
+#include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop::fault_test {
 namespace {
@@ -88,6 +90,38 @@ TEST(ActiveFaults, WorkOnceWhileTheLastOccurrenceFades) {
     EXPECT_NEAR(lifted_by(faults, 23), 750, 1e-6);
     faults.begin(*make_fault("height_bias", {{"height_m", 1000.}}), {1, 1, second_of_faults(24), {}, {}});
     EXPECT_NEAR(lifted_by(faults, 24), 2000, 1e-6) << "two entries are two faults";
+}
+
+// Where position_ramp of 2 m/s north, at most 30 m, has a receiver, and what it tells of its velocity.
+std::array<double, 2> ramped_by(ActiveFaults& faults, double s) {
+    Trace trace;
+    trace.truth.time = second_of_faults(s);
+    trace.epoch.fix.type = FixType::fix_3d;
+    trace.epoch.fix.position = Geodetic::degrees(47, 8, 500);
+    static_cast<void>(faults.settle(trace.truth.time));
+    const Geodetic before = trace.epoch.fix.position;
+    faults.edit_epoch(trace);
+    const auto moved = LocalFrame(before).to_enu(to_ecef(trace.epoch.fix.position)).vector();
+    return {moved.y(), trace.epoch.fix.velocity.north};
+}
+
+TEST(ActiveFaults, AVelocityIsTheChangeOfThePositionAlongRampsToo) {
+    ActiveFaults faults;
+    faults.begin(*make_fault("position_ramp", {{"north_mps", 2.0}, {"most_m", 30.0}, {"velocity_too", true}}),
+                 {0, 1, second_of_faults(0), Seconds(10), Seconds(8)});
+    const auto agree = [&](double s) {
+        constexpr double step = 0.01;
+        const double slope = (ramped_by(faults, s + step)[0] - ramped_by(faults, s - step)[0]) / (2 * step);
+        EXPECT_NEAR(ramped_by(faults, s)[1], slope, 1e-3) << s;
+    };
+    for (const double s : {2., 5., 9., 11., 14., 16., 19.})
+        agree(s);
+    EXPECT_NEAR(ramped_by(faults, 5)[1], 2, 1e-9) << "twice as fast as its strength tells";
+    EXPECT_EQ(ramped_by(faults, 19)[1], 0) << "at its limit";
+    faults.end(0, 1, second_of_faults(20));
+    for (const double s : {21., 24., 27.})
+        agree(s);
+    EXPECT_NEAR(ramped_by(faults, 24)[1], -30.0 / 8, 1e-9) << "back to the true place";
 }
 
 // A fault that is there or is not would stay at full strength until its ramp is over, beyond the end that is told.

@@ -292,17 +292,20 @@ TEST(PositionFaults, TheVectorBetweenTheAntennasIsThatOfTheClaimedType) {
     EXPECT_EQ(bench.last<NavRelposned>().flags & 0x13FU, 0x137U);
 }
 
-TEST(PositionFaults, UsesNoSatellitesWhereItClaimsNoFix) {
+TEST(PositionFaults, UsesNoSatellitesWhereItClaimsNoFixOrReckonsOn) {
     ReceiverBench bench;
     bench.wait(1);
     const auto used = [&] { return bench.receiver().state().epoch.fix.satellites_used(); };
     EXPECT_EQ(used(), 12);
-    bench.begin("wrong_fix_type", {{"type", std::string("none")}});
-    bench.wait(1);
-    EXPECT_EQ(used(), 0);
-    bench.end();
-    bench.wait(1);
-    EXPECT_EQ(used(), 12);
+    for (const char* type : {"none", "dead_reckoning"}) {
+        bench.begin("wrong_fix_type", {{"type", std::string(type)}});
+        bench.wait(1);
+        EXPECT_EQ(used(), 0) << type;
+        EXPECT_EQ(bench.last<NavPvt>().num_sv, 0) << type;
+        bench.end();
+        bench.wait(1);
+        EXPECT_EQ(used(), 12);
+    }
 }
 
 TEST(PositionFaults, LosesAndFlipsTheHeading) {

@@ -146,10 +146,21 @@ TEST(ReceiverFaults, SaysWhichNamesItKnows) {
     EXPECT_THAT(said("refuses_keys", {{"keys", Texts{"CFG-NAVSPG-DYNMODL"}}}),
                 HasSubstr("did you mean 'CFG-NAVSPG-DYNMODEL'?"));
     EXPECT_THAT(said("answers_selectively", {{"messages", Texts{"MON-VR"}}}), HasSubstr("did you mean 'MON-VER'?"));
-    EXPECT_THAT(said("withheld_messages", {{"messages", Texts{}}}), HasSubstr("messages names nothing"));
     EXPECT_THAT(said("refuses_messages", {{"messages", Texts{"UBX-0A-4"}}}), HasSubstr("'UBX-0A-4'"));
     EXPECT_THAT(said("wrong_version", {}), HasSubstr("neither software nor extensions"));
     EXPECT_THAT(said("wrong_version", {{"software", std::string(31, 'x')}}), HasSubstr("31 characters"));
+}
+
+TEST(ReceiverFaults, TakesNamesInLettersOfAnyCase) {
+    for (const char* message : {"nav-pvt", "gga", "pubx,41", "ubx-0a-04", "rtcm-1005"})
+        EXPECT_TRUE(make_fault("withheld_messages", {{"messages", Texts{message}}})) << message;
+    EXPECT_TRUE(make_fault("refuses_messages", {{"messages", Texts{"cfg-valset"}}}));
+    EXPECT_TRUE(make_fault("refuses_keys", {{"keys", Texts{"cfg-itfm-enable"}}}));
+    ReceiverBench bench;
+    bench.begin("withheld_messages", {{"messages", Texts{"nav-pvt"}}});
+    bench.forget();
+    bench.wait(2);
+    EXPECT_EQ(bench.count(told_pvt), 0U);
 }
 
 TEST(ReceiverFaults, WithholdsMessages) {

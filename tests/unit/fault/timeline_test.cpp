@@ -351,10 +351,11 @@ TEST(TimelineKeys, AreRead) {
 }
 
 TEST(TimelineKeys, MessagesAreThoseThatThereAre) {
-    for (const char* name :
-         {"MON-VER", "mon-ver", "CFG-*", "anything", "GGA", "PUBX,41", "PMTK314", "UBX-0A-04", "RTCM-1005", "GPRT"})
+    for (const char* name : {"MON-VER", "mon-ver", "CFG-*", "anything", "GGA", "gga", "GPQ", "HDT", "PUBX,41", "pubx,*",
+                             "PMTK314", "PAIR*", "UBX-0A-04", "ubx-0a-04", "RTCM-1005", "SBF", "mavlink", "G*", "*"})
         EXPECT_FALSE(message_name_mistake(name)) << name;
-    for (const char* name : {"NONSENSE", "MON-VRE", "CGF-*", "UBX-0A", "PUBX-41", "", "two words"})
+    for (const char* name : {"NONSENSE", "FOO", "FOO*", "GPRT", "PUBX", "PUBX,ab", "PX", "MON-VRE", "CGF-*", "UBX-0A",
+                             "PUBX-41", "", "two words"})
         EXPECT_TRUE(message_name_mistake(name)) << name;
     EXPECT_THAT(message_name_mistake("mon-vre").value_or(""),
                 HasSubstr("'mon-vre' is no message; did you mean 'MON-VER'?; expected a name like"));
@@ -431,6 +432,43 @@ TEST(Parameters, AreWholeWhereHalvesMeanNothing) {
                     testing::Le(1U))
             << kind;
     }
+}
+
+TEST(Parameters, SayWhatIsWrongWithALongNumberOrAList) {
+    const auto said = [](const std::vector<ParameterSpec>& specs, const std::string& name,
+                         const ParameterValue& value) {
+        const auto mistakes = check_parameters(specs, {{name, value}}).mistakes;
+        return mistakes.empty() ? std::string() : mistakes[0].sentence;
+    };
+    const std::vector<ParameterSpec>& loss = find_fault_kind("byte_loss")->parameters;
+    EXPECT_EQ(said(loss, "probability", 1.0000001), "is 1.0000001; expected a number from 0 to 1");
+    EXPECT_EQ(said(loss, "probability", 2.5), "is 2.5; expected a number from 0 to 1");
+    EXPECT_THAT(said(timeline_keys(), "between_s", std::vector<double>{5, NAN}),
+                testing::StartsWith("holds nan; expected a list of 2 numbers from 0 to"));
+    EXPECT_THAT(said(timeline_keys(), "between_s", std::vector<double>{-1, 5}), HasSubstr("holds -1;"));
+    EXPECT_THAT(said(timeline_keys(), "between_s", std::vector<double>{5}), HasSubstr("is a list of 1 numbers;"));
+}
+
+TEST(Parameters, AListNamesSomething) {
+    const std::vector<ParameterSpec>& outage = find_fault_kind("outage")->parameters;
+    for (const ParameterValue& empty :
+         {ParameterValue(std::vector<double>{}), ParameterValue(std::vector<std::string>{})})
+        for (const char* name : {"satellites", "constellations", "signals"}) {
+            const auto mistakes = check_parameters(outage, {{name, empty}}).mistakes;
+            ASSERT_THAT(mistakes, SizeIs(1)) << name;
+            EXPECT_EQ(mistakes[0].name, name);
+            EXPECT_THAT(mistakes[0].sentence, testing::StartsWith("is an empty list; expected "));
+        }
+}
+
+TEST(TimelineKeys, AnEmptyTextIsNotTakenForNone) {
+    for (const char* name : {"at_utc", "after", "after_end_of", "when_client_sends", "when_mavlink_mode"}) {
+        const auto mistakes = reading_of({{name, std::string()}}).mistakes;
+        ASSERT_THAT(mistakes, SizeIs(1)) << name;
+        EXPECT_EQ(mistakes[0].name, name);
+        EXPECT_THAT(mistakes[0].sentence, testing::StartsWith("is empty; expected "));
+    }
+    EXPECT_THAT(reading_of({}).mistakes, SizeIs(0));
 }
 
 TEST(TimelineKeys, EntriesThatDoNotFitTogetherAreTold) {

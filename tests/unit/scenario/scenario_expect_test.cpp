@@ -88,6 +88,8 @@ TEST(ScenarioExpect, MistakesAreToldWithTheirPlace) {
                 HasSubstr("test.toml:2:8: expect.what: 'G99' is no satellite; expected G01 to G63 of GPS"));
     EXPECT_THAT(mistakes_of("[[expect]]\nwhat = \"receiver sends NAV-PTV every 1 s always\""),
                 HasSubstr("expect.what: 'NAV-PTV' is no message; did you mean 'NAV-PVT'"));
+    EXPECT_THAT(mistakes_of("[[expect]]\nwhat = \"receiver sends FOO every 1 s always\""),
+                HasSubstr("test.toml:2:8: expect.what: 'FOO' is no message; expected a name like"));
     EXPECT_THAT(mistakes_of("expect = 3"), HasSubstr("a list of tables, each headed [[expect]]"));
 }
 

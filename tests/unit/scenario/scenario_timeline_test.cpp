@@ -62,7 +62,7 @@ receiver = "receiver0"
     const CommandEntry& entry = scenario.commands[0];
     EXPECT_EQ(entry.command.verb, CommandVerb::set_baud);
     EXPECT_EQ(entry.command.parameters.number("baud"), 9600);
-    EXPECT_EQ(entry.command.receiver, "receiver0");
+    EXPECT_THAT(entry.command.receivers, ElementsAre("receiver0"));
     EXPECT_EQ(entry.command.source, "scenario");
     EXPECT_TRUE(entry.when.once);
     ASSERT_TRUE(entry.when.at_time);
@@ -102,6 +102,10 @@ TEST(ScenarioTimeline, MistakesAreToldWhereTheyStand) {
                 HasSubstr("test.toml:6:12: fault.receiver: stands beside kind = \"clock_drift\""));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nname = \"\"\n"),
                 HasSubstr("test.toml:3:8: fault.name: is empty"));
+    EXPECT_EQ(mistakes("[[fault]]\nkind = \"outage\"\nafter = \"\"\n"),
+              "test.toml:3:9: fault.after: is empty; expected the name of an entry, or no such key");
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nsatellites = []\n"),
+                HasSubstr("test.toml:3:14: fault.satellites: is an empty list; expected a text or a list of texts"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"receiver_silent\"\nramp_out_s = 10\n"),
                 HasSubstr(":3:14: fault.ramp_out_s: is 10, and receiver_silent is there or is not"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"saturated_uart\"\nbytes_per_s = 10\nbaud = 9600\n"),
@@ -181,6 +185,20 @@ between_s = [70, 80]
     EXPECT_THAT(warnings[1], HasSubstr("[[command]] 'note' will not begin"));
 }
 
+TEST(ScenarioTimeline, WhatACommandBeginsIsNotWarnedOf) {
+    const GpsTime start = to_gps_time(*parse_utc("2024-03-05T12:00:00Z"), LeapSeconds::announced());
+    const auto warnings_of = [&](const std::string& command) {
+        const Scenario scenario = scenario_of(
+            "[[fault]]\nkind = \"outage\"\nname = \"later\"\nat_s = 100\n[[command]]\nkind = \"start_fault\"\n"
+            "fault = \"later\"\n" +
+            command);
+        return timeline_warnings(scenario, start, advanced(start, Seconds(60)));
+    };
+    EXPECT_THAT(warnings_of("at_s = 20\n"), IsEmpty());
+    EXPECT_THAT(warnings_of("when_client_sends = \"MON-VER\"\n"), IsEmpty()) << "it may come";
+    EXPECT_THAT(warnings_of("at_s = 70\n"), ElementsAre(HasSubstr("'later' will not"), HasSubstr("[[command]]")));
+}
+
 TEST(ScenarioTimeline, WhatCannotBeMetBeforeTheEndIsWarnedOf) {
     const GpsTime start = to_gps_time(*parse_utc("2024-03-05T12:00:00Z"), LeapSeconds::announced());
     const auto warnings_of = [&](const std::string& expectation) {
@@ -217,6 +235,12 @@ after = "stall"
                 ElementsAre(HasSubstr("'outage' does not end before the run does")));
     EXPECT_THAT(warnings_of("what = \"fix 50 s after outage\""), ElementsAre(HasSubstr("it is due 70 s after")));
     EXPECT_THAT(warnings_of("command = \"true\"\nat_s = 70"), ElementsAre(HasSubstr("it is asked 70 s after")));
+    EXPECT_THAT(warnings_of("command = \"true\"\nat_s = 60"), ElementsAre(HasSubstr("it is asked 60 s after")));
+    EXPECT_THAT(warnings_of("command = \"true\"\nat_s = 50\ntimeout_s = 20"),
+                ElementsAre("[[expect]] 'command 'true' exits 0' may stay undecided: it has until 70 s after the start "
+                            "of the run, which ends after 60 s"));
+    EXPECT_THAT(warnings_of("command = \"true\"\nat_s = 1\nwithin_s = 60"), ElementsAre(HasSubstr("until 61 s")));
+    EXPECT_THAT(warnings_of("command = \"true\"\nat_s = 50\ntimeout_s = 20\nwithin_s = 10"), IsEmpty());
     EXPECT_THAT(warnings_of("what = \"fix within 300 s of outage\""),
                 ElementsAre("[[expect]] 'fix within 300 s of outage' may stay undecided: it has until 320 s after the "
                             "start of the run, which ends after 60 s"));

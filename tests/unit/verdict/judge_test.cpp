@@ -419,6 +419,15 @@ Verdict probe_verdict(const Probe& probe, bool live, double patience_s) {
     return judge.finish(test::at_second(60)).front();
 }
 
+TEST(JudgeTimes, CountEachOccurrenceThatIsAnsweredTogetherWithAnother) {
+    SeenRun run("no fix within 8 s of outage");
+    run.epochs(1, 5).begins(5.5, "outage").epochs(6, 9).begins(9.5, "outage", 2).epoch(10, no_fix).epochs(11, 13);
+    run.begins(13.5, "outage", 3).epoch(14).epoch(15, no_fix);
+    const Verdict verdict = run.end(30);
+    EXPECT_EQ(verdict.outcome, passed);
+    EXPECT_THAT(verdict.evidence, HasSubstr("came true 3 times, at the latest 4.5 s after outage began"));
+}
+
 TEST(JudgeProbes, AreJudgedByExitCodeAndOutput) {
     EXPECT_EQ(probe_verdict({{"true"}}, true, 0.5).outcome, passed);
     const Verdict wrong = probe_verdict({{"echo so >&2; exit 3"}}, true, 0.5);
@@ -442,7 +451,7 @@ TEST(JudgeProbes, AConditionEndsAnEndlessCommand) {
 
 TEST(JudgeProbes, AreKilledWithTheRunAndRefusedInVirtualTime) {
     const Verdict killed = probe_verdict({{"sleep 100"}}, true, 0.2);
-    EXPECT_EQ(killed.outcome, failed);
+    EXPECT_EQ(killed.outcome, undecided);
     EXPECT_THAT(killed.evidence, HasSubstr("killed as the run ended first"));
     const Verdict refused = probe_verdict({{"true"}}, false, 0);
     EXPECT_EQ(refused.outcome, Outcome::not_run);
@@ -450,6 +459,38 @@ TEST(JudgeProbes, AreKilledWithTheRunAndRefusedInVirtualTime) {
     Probe late{{"true"}};
     late.at = Seconds(1000);
     EXPECT_EQ(probe_verdict(late, true, 0.1).outcome, undecided);
+}
+
+TEST(JudgeProbes, ThatMayBeTriedAgainAreUndecidedAtTheEnd) {
+    Probe probe{{"false"}};
+    probe.within = Seconds(60);
+    const Verdict verdict = probe_verdict(probe, true, 0.5);
+    EXPECT_EQ(verdict.outcome, undecided);
+    EXPECT_THAT(verdict.evidence, HasSubstr("run ended"));
+    probe.command = {"sleep 100"};
+    EXPECT_EQ(probe_verdict(probe, true, 0.2).outcome, undecided);
+    probe.command = {"false"};
+    probe.within = Seconds(0.1);
+    EXPECT_EQ(probe_verdict(probe, true, 1.5).outcome, failed) << "its time was over";
+    probe.within.reset();
+    EXPECT_EQ(probe_verdict(probe, true, 0.5).outcome, failed);
+}
+
+TEST(JudgeProbes, ThatAreDueAtTheVeryEndAreUndecidedWhateverTheyDid) {
+    for (const char* command : {"true", "false"}) {
+        Expectation expectation;
+        expectation.probe = Probe{{command}};
+        expectation.probe->at = Seconds(60);
+        Judge judge({expectation}, {test::run_start, {"receiver0"}, true});
+        judge.advance(test::at_second(60));
+        struct timespec pause {
+            0, 300'000'000
+        };
+        ::nanosleep(&pause, nullptr);
+        const Verdict verdict = judge.finish(test::at_second(60)).front();
+        EXPECT_EQ(verdict.outcome, undecided) << command;
+        EXPECT_EQ(verdict.evidence, "the run ended after 60 s, before the command was due");
+    }
 }
 
 TEST(JudgeSoFar, KnowsWhatNothingCanChangeAnyMore) {

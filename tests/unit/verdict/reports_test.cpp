@@ -50,6 +50,16 @@ TEST(Verdicts, OfProbesAloneThatWereNotRunAreToldPlainly) {
     EXPECT_THAT(junit_xml(probe, run), HasSubstr("tests=\"1\" failures=\"0\" errors=\"0\" skipped=\"1\""));
 }
 
+TEST(VerdictText, SendsNoControlCharactersToATerminal) {
+    const std::vector<Verdict> verdicts{
+        {"red \x1b[31m\nline", "fix", Outcome::failed, "tab\t\xC2\x9B!", std::nullopt, {}},
+        {"grün", "fix", Outcome::passed, "came true …", std::nullopt, {}}};
+    const std::string text = verdict_text(verdicts, run);
+    EXPECT_THAT(text, HasSubstr("FAILED     red \\u001b[31m\\nline: tab\\t\\u009b! (at 0.000 s)\n"));
+    EXPECT_THAT(text, HasSubstr("PASSED     grün: came true … (at 0.000 s)\n"));
+    EXPECT_EQ(text.find('\x1b'), text.npos);
+}
+
 TEST(VerdictText, HasALineForEachAndOneForAll) {
     const std::string text = verdict_text(one_of_each(), run);
     EXPECT_THAT(text, HasSubstr("PASSED     lost: came true (at 12.250 s)\n"));
