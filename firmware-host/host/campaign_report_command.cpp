@@ -25,7 +25,8 @@ int report_campaign(const CampaignOptions& options) {
                         "them in",
                         options.out));
     fmt::print("{}", written->text);
-    messages.info(fmt::format("page: {}; numbers: {}", written->html.string(), written->json.string()));
+    messages.info(fmt::format("page: {}{}", written->html.string(),
+                              written->json.empty() ? "" : "; numbers: " + written->json.string()));
     return 0;
 }
 

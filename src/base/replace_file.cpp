@@ -23,8 +23,8 @@ std::error_code write_whole(int descriptor, std::string_view content) {
     return {};
 }
 
-std::error_code write_new_file(const std::filesystem::path& path, std::string_view content) {
-    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+std::error_code write_file(const std::filesystem::path& path, int flags, std::string_view content) {
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666);
     if (descriptor < 0) return last_error();
     std::error_code reason = write_whole(descriptor, content);
     // Some file systems tell only now that there is no room.
@@ -32,16 +32,38 @@ std::error_code write_new_file(const std::filesystem::path& path, std::string_vi
     return reason;
 }
 
+// What a link leads to, whether it is there or not.
+std::filesystem::path end_of_links(std::filesystem::path path) {
+    constexpr int most_links = 40;  // as Linux follows
+    std::error_code none;
+    for (int i = 0; i < most_links && std::filesystem::is_symlink(path, none); ++i)
+        path = path.parent_path() / std::filesystem::read_symlink(path, none);
+    return path;
+}
+
+// Devices and pipes are written to, not replaced; nor are links that lead nowhere.
+bool is_replaceable(const std::filesystem::path& path) {
+    std::error_code none;
+    if (std::filesystem::is_symlink(path, none)) return false;
+    return !std::filesystem::exists(path, none) || std::filesystem::is_regular_file(path, none);
+}
+
+std::error_code put_in_place(const std::filesystem::path& path, std::string_view content) {
+    // A name of its own for each who writes.
+    const std::filesystem::path fresh = fmt::format("{}.{}-{:x}.new", path.string(), ::getpid(), steady_clock_ns());
+    std::error_code reason = write_file(fresh, O_CREAT | O_EXCL, content);
+    if (!reason) std::filesystem::rename(fresh, path, reason);
+    std::error_code ignored;
+    if (reason) std::filesystem::remove(fresh, ignored);
+    return reason;
+}
+
 }  // namespace
 
 Result<void> replace_file(const std::filesystem::path& path, std::string_view content) {
-    // A name of its own for each who writes.
-    const std::filesystem::path fresh = fmt::format("{}.{}-{:x}.new", path.string(), ::getpid(), steady_clock_ns());
-    std::error_code reason = write_new_file(fresh, content);
-    if (!reason) std::filesystem::rename(fresh, path, reason);
+    const std::filesystem::path file = end_of_links(path);
+    const std::error_code reason = is_replaceable(file) ? put_in_place(file, content) : write_file(file, 0, content);
     if (!reason) return {};
-    std::error_code ignored;
-    std::filesystem::remove(fresh, ignored);
     return fail(ErrorCode::outside, fmt::format("{}: cannot be written: {}", path.string(), reason.message()));
 }
 

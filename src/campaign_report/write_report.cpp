@@ -53,9 +53,13 @@ Result<WrittenCampaignReport> write_campaign_report(const std::filesystem::path&
     const CampaignSummary summary = summarise(*results, options.worst);
     if (const auto kept = replace_file(written.html, campaign_report_html(*results, summary)); !kept)
         return fail(kept.error());
-    if (const auto kept = replace_file(written.json, campaign_report_json(*results, summary)); !kept)
-        return fail(kept.error());
     written.text = campaign_report_text(*results, summary);
+    // Beside a device or a pipe there is no place for a second file.
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(written.html, none))
+        written.json.clear();
+    else if (const auto kept = replace_file(written.json, campaign_report_json(*results, summary)); !kept)
+        return fail(kept.error());
     return written;
 }
 

@@ -26,14 +26,16 @@ std::optional<double> LeverArm::course(GpsTime time) const {
     return std::atan2(enu.x(), enu.y());
 }
 
-// rad/s. A path that turns at a corner does so in no time, which is no rate.
-double LeverArm::yaw_rate(GpsTime time) const {
-    constexpr Nanoseconds half_step = std::chrono::milliseconds(5);
+// rad/s. A path that turns at a corner does so in no time, which is no rate. Before its beginning and behind its end it
+// stands, or goes on as it is there: then the other side alone tells.
+double LeverArm::yaw_rate(GpsTime time, double here) const {
+    constexpr Nanoseconds step = std::chrono::milliseconds(5);
     constexpr double fastest_rad_per_s = 4 * pi;
-    const auto before = course(time - half_step), after = course(time + half_step);
-    if (!before || !after) return 0;
-    const double turned = std::remainder(*after - *before, 2 * pi);
-    const double rate = turned / to_seconds(2 * half_step).value();
+    const auto before = course(time - step), after = course(time + step);
+    const double came = before ? std::remainder(here - *before, 2 * pi) : 0;
+    const double goes = after ? std::remainder(*after - here, 2 * pi) : 0;
+    const double sides = came == 0 || goes == 0 ? 1 : 2;
+    const double rate = (came + goes) / (sides * to_seconds(step).value());
     return std::abs(rate) > fastest_rad_per_s ? 0 : rate;
 }
 
@@ -55,7 +57,7 @@ TruthState LeverArm::at(GpsTime time) const {
     const double s = std::sin(heading_), c = std::cos(heading_);
     const double east = offset_.forward * s + offset_.right * c;
     const double north = offset_.forward * c - offset_.right * s;
-    const double rate = moving ? yaw_rate(time) : 0;
+    const double rate = moving ? yaw_rate(time, *moving) : 0;
     const LocalFrame frame(state.geodetic);
     // Clockwise from north: what lies ahead moves to the right.
     const Velocity<Ecef> swing = frame.to_ecef(Velocity<Enu>(rate * north, -rate * east, 0));

@@ -1,5 +1,6 @@
 #include "rinex_recording.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "skyloop/gnss/carried_almanac.hpp"
@@ -54,7 +55,8 @@ void RinexRecording::record(const Trace& trace, const NavigationSource& broadcas
             record = ephemeris_of_almanac(std::get<KeplerEphemeris>(*record), now);
             written.until = toe_of(*record) + ephemeris_spacing / 2;
         }
-        navigation_.write(navigation_record_text(*record));
+        // Nobody is served by what has not been sent.
+        navigation_.write(navigation_record_text(*record, std::min(now, toe_of(*record))));
     }
     if (!trace.epoch.observations.signals.empty()) observations_.write(writer_.epoch(trace.epoch.observations));
 }

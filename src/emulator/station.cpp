@@ -184,7 +184,10 @@ void Station::follow_settings(GpsTime now) { grid_.follow(now, parts_.receiver.s
 Trace Station::observe() {
     const GpsTime now = grid_.next();
     grid_.pass();
-    return parts_.simulation.run(now, parts_.receiver.settings_at(now), faults_.empty() ? nullptr : &faults_);
+    if (faults_.empty()) return parts_.simulation.run(now, parts_.receiver.settings_at(now), nullptr);
+    ReceiverSettings settings = parts_.receiver.settings_at(now);
+    if (faults_.wire(now).power_cut) settings.navigating = false;
+    return parts_.simulation.run(now, settings, &faults_);
 }
 
 void Station::relate(Trace& trace, const Trace* base) {

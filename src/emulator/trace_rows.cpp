@@ -155,9 +155,10 @@ std::string satellite_rows(const Trace& trace) {
         append_arrival(rows, sky, arrival);
         rows.number(trace.measures ? measured_pseudorange(trace, sky.id) : ideal_pseudorange(sky, arrival), 4);
         rows.text(status && status->used ? "1" : "0");
-        append_errors(rows, arrival, find_first_signal(trace.measurement.signals, sky.id));
+        const SignalTerms* terms = find_first_signal(trace.measurement.signals, sky.id);
+        append_errors(rows, arrival, terms);
         status && status->residual ? rows.number(status->residual->value(), 4) : rows.nothing();
-        rows.number(arrival.false_range.value(), 4).end_row();
+        rows.number((arrival.false_range + (terms ? terms->false_code : Metres(0))).value(), 4).end_row();
     }
     return rows.take();
 }

@@ -18,10 +18,18 @@ constexpr std::chrono::days one_day{1};
 
 bool time_before_toe(GpsTime time, const Ephemeris& record) { return time < toe_of(record); }
 
+// Of SBAS t_0 counts 16 s of the day (DO-229, message 9). Merged files hold a state a second time, by a receiver that
+// told when it had come, some seconds beside it, and knew nothing of its health.
+bool tells_when_it_came(const Ephemeris& record) {
+    constexpr std::chrono::seconds unit{16};
+    return message_of(record) == NavigationMessage::sbas && toe_of(record).time_since_epoch() % unit != Nanoseconds(0);
+}
+
 // Which records serve: messages of one satellite are not mixed.
 std::vector<std::size_t> serving_records(const std::vector<Ephemeris>& records) {
-    std::set<SatelliteId> with_inav, with_ephemeris;
+    std::set<SatelliteId> with_inav, with_ephemeris, with_t0;
     for (const Ephemeris& r : records) {
+        if (message_of(r) == NavigationMessage::sbas && !tells_when_it_came(r)) with_t0.insert(satellite_of(r));
         if (message_of(r) == NavigationMessage::inav) with_inav.insert(satellite_of(r));
         if (message_of(r) != NavigationMessage::almanac) with_ephemeris.insert(satellite_of(r));
     }
@@ -30,6 +38,7 @@ std::vector<std::size_t> serving_records(const std::vector<Ephemeris>& records) 
         const NavigationMessage message = message_of(records[i]);
         if (message == NavigationMessage::fnav && with_inav.contains(satellite_of(records[i]))) continue;
         if (message == NavigationMessage::almanac && with_ephemeris.contains(satellite_of(records[i]))) continue;
+        if (tells_when_it_came(records[i]) && with_t0.contains(satellite_of(records[i]))) continue;
         serving.push_back(i);
     }
     return serving;

@@ -18,7 +18,7 @@ struct CampaignReportOptions {
 
 struct WrittenCampaignReport {
     std::filesystem::path html;
-    std::filesystem::path json;  ///< beside the page, with the ending .json
+    std::filesystem::path json;  ///< beside the page, with the ending .json; empty: the page is a device or a pipe
     std::string text;            ///< the same in words, for standard output
     bool outdated = false;       ///< results have come since they were gathered
 };

@@ -29,7 +29,7 @@ public:
 
 private:
     [[nodiscard]] std::optional<double> course(GpsTime time) const;
-    [[nodiscard]] double yaw_rate(GpsTime time) const;
+    [[nodiscard]] double yaw_rate(GpsTime time, double here) const;
     [[nodiscard]] TruthState turned_with(TruthState state) const;
 
     std::unique_ptr<Trajectory> vehicle_;

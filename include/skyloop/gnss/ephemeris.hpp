@@ -88,9 +88,10 @@ struct SbasEphemeris {
     double clock_bias = 0;   ///< a_Gf0, s
     double clock_drift = 0;  ///< a_Gf1, s/s
     int iode = 0;            ///< IODN
-    int health = 0;          ///< bit 0: ranging off (RINEX 3.05, 5.4.4)
+    int health = 0;  ///< bits 0-3: of message 17, 0: ranging off; 4: that is not known; 5: URA 15 (RINEX 3.05, 5.4.4)
     double accuracy_m = 0;
-    [[nodiscard]] bool healthy() const { return (health & 1) == 0; }
+    /// A URA of 15 says that it is not for ranging.
+    [[nodiscard]] bool healthy() const { return (health & 0b10'0000) == 0 && (health & 0b1'0001) != 1; }
 };
 
 /// A record of any system.

@@ -1,8 +1,12 @@
 #include "skyloop/base/replace_file.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <thread>
 #include <vector>
 
@@ -39,6 +43,36 @@ TEST(ReplaceFile, WhereItCannotTheOldFileStands) {
     EXPECT_FALSE(replace_file(folder / "a", "text")) << "a folder with something in it";
     EXPECT_TRUE(std::filesystem::exists(folder / "a/b"));
     EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("a"));
+}
+
+TEST(ReplaceFile, FollowsLinksAndLeavesThem) {
+    const test::TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "there");
+    std::filesystem::create_symlink("there/b", folder / "a");
+    for (const std::string content : {"made", "made anew"}) {
+        ASSERT_TRUE(replace_file(folder / "a", content));
+        EXPECT_TRUE(std::filesystem::is_symlink(folder / "a"));
+        EXPECT_EQ(read_text_file(folder / "there/b").value(), content);
+    }
+    std::filesystem::create_symlink("c", folder / "c");
+    EXPECT_FALSE(replace_file(folder / "c", "text")) << "a link to itself";
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "c"));
+}
+
+TEST(ReplaceFile, WritesToDevicesAndPipes) {
+    const test::TemporaryFolder folder;
+    const auto full = replace_file("/dev/full", "text");
+    ASSERT_FALSE(full);
+    EXPECT_EQ(full.error().message, "/dev/full: cannot be written: No space left on device");
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    const int reader = ::open((folder / "pipe").c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    ASSERT_TRUE(replace_file(folder / "pipe", "text"));
+    std::string heard(16, '\0');
+    heard.resize(static_cast<std::size_t>(std::max<ssize_t>(0, ::read(reader, heard.data(), heard.size()))));
+    ::close(reader);
+    EXPECT_EQ(heard, "text");
+    EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("pipe"));
 }
 
 TEST(ReplaceFile, OfManyWhoWriteAtOnceOneWins) {

@@ -52,6 +52,7 @@ TEST(LeverArm, TheInsideOfATurnIsSlower) {
     const auto step = std::chrono::milliseconds(10);
     const Eigen::Vector3d passed = (antenna.at(time + step).position - antenna.at(time - step).position).vector();
     EXPECT_NEAR((passed / 0.02 - antenna.at(time).velocity.vector()).norm(), 0, 1e-3) << "the derivative of the place";
+    EXPECT_NEAR(antenna.at(arm_start).velocity.length().value(), 4, 1e-2) << "from the first instant on";
 }
 
 TEST(LeverArm, AfterAStopItLooksWhereItWent) {

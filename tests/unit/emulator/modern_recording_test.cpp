@@ -274,6 +274,29 @@ s4 = 0.3
 sigma_phi_rad = 0.2
 )toml";
 
+TEST_F(ModernRecording, WithoutPowerNothingIsMeasured) {
+    const auto traces = run(text("[[fault]]\nkind = \"power_cut\"\nat_s = 8.5\nfor_s = 10\nstart = \"hot\"\n", 40));
+    ASSERT_EQ(traces.size(), 40U);
+    for (std::size_t i = 0; i < traces.size(); ++i) {
+        const bool off = i > 8 && i < 19;
+        if (off || i == 7 || i > 30) {
+            EXPECT_EQ(traces[i].epoch.fix.has_position(), !off) << i;
+            EXPECT_EQ(traces[i].epoch.observations.signals.empty(), off) << i;
+        }
+    }
+}
+
+TEST_F(ModernRecording, AFaultOfAPseudorangeStandsInItsColumn) {
+    run(text("[[fault]]\nkind = \"pseudorange_step\"\nat_s = 5.5\nstep_m = 60\n"));
+    std::map<std::string, int> with_step;  // by the second
+    for (const Row& row : rows_of(recorded("satellites.csv")))
+        with_step[row.at("time_utc")] += row.at("false_range_m") == "60.0000" ? 1 : 0;
+    int epoch = 0;
+    for (const auto& [time, count] : with_step)
+        EXPECT_EQ(count, epoch++ > 5 ? 1 : 0) << time;
+    EXPECT_EQ(epoch, 20);
+}
+
 TEST_F(ModernRecording, EveryTermStandsInItsColumn) {
     const auto traces = run(text("[[receiver]]\nconstellations = [\"gps\", \"glonass\"]\n" + std::string(rough_world)));
     const auto rows = rows_of(recorded("satellites.csv"));

@@ -117,8 +117,12 @@ TEST(Signal, TellsHealthByTheSignalThatCarriesTheMessage) {
     SbasEphemeris sbas;
     sbas.health = 0b10;  // corrections off, ranging on
     EXPECT_TRUE(sbas.healthy());
-    sbas.health = 31;
-    EXPECT_FALSE(sbas.healthy());
+    sbas.health = 31;  // message 17 has not come
+    EXPECT_TRUE(sbas.healthy());
+    for (const int health : {1, 15, 32, 63}) {
+        sbas.health = health;
+        EXPECT_FALSE(sbas.healthy()) << health;
+    }
     EXPECT_TRUE(is_beidou_geo({Constellation::beidou, 5}));
     EXPECT_FALSE(is_beidou_geo({Constellation::beidou, 6}));
     EXPECT_TRUE(is_beidou_geo({Constellation::beidou, 59}));
