@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "firmware/config/signal_keys.hpp"
+#include "firmware/messages/field_values.hpp"
 #include "firmware/receiver_core.hpp"
 
 namespace skyloop::firmware {
@@ -83,6 +84,7 @@ ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board
     }
     if (signals_changed(store) || base.signals.empty()) settings.signals = enabled_signals(store);
     if (board.personality == Personality::ublox) settings.sbas_scan_mask = store.value(key::sbas_scan_mask);
+    settings.beidou_b1c = takes_b1c(store);
     if (is_changed(store, key::navspg_min_elev))
         settings.elevation_mask = Angle::degrees(static_cast<double>(store.signed_value(key::navspg_min_elev)));
     settings.minimum_cn0 = DbHz(static_cast<double>(store.value(key::navspg_min_cno)));

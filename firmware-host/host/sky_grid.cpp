@@ -57,10 +57,10 @@ CoverageSettings map_settings(const SkyOptions& options, const Scenario& scenari
 
 bool stands_in(const UrbanScene& scene, const CoverageMap& map) {
     const SceneStatistics& s = scene.statistics();
-    return std::any_of(map.cells.begin(), map.cells.end(), [&](const CoverageCell& cell) {
-        return cell.position.x() >= s.lowest.x() && cell.position.x() <= s.highest.x() &&
-               cell.position.y() >= s.lowest.y() && cell.position.y() <= s.highest.y();
-    });
+    Eigen::AlignedBox2d grid;
+    for (const CoverageCell& cell : map.cells)
+        grid.extend(cell.position.head<2>());
+    return grid.intersects(Eigen::AlignedBox2d(s.lowest.head<2>(), s.highest.head<2>()));
 }
 
 CoverageQuantity shown_quantity(const std::string& name) {

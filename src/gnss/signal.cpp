@@ -85,18 +85,18 @@ double table_clock_delay(const Ephemeris& record) {
     }
 }
 
-// B2I is BeiDou-2's alone. BeiDou-3, the numbers from 19 on, sends B2b on that carrier, another signal, and B2a from
-// its MEO and IGSO satellites (BDS-SIS-ICD-B2a-1.0, 1).
+constexpr int first_of_beidou_3 = 19;
+
+// B2I is BeiDou-2's alone: on that carrier BeiDou-3 sends B2b, another signal.
 bool sends_signal(SatelliteId satellite, Signal signal) {
     if (satellite.constellation != Constellation::beidou) return true;
-    constexpr int first_of_beidou_3 = 19;
-    const bool is_beidou_3 = satellite.number >= first_of_beidou_3;
-    if (signal == Signal::e5b) return !is_beidou_3;
-    if (signal == Signal::l5) return is_beidou_3 && !is_beidou_geo(satellite);
-    return true;
+    if (signal == Signal::e5b) return satellite.number < first_of_beidou_3;
+    return signal != Signal::l5 || sends_modern_signals(satellite);
 }
 
 }  // namespace
+
+bool sends_modern_signals(SatelliteId beidou) { return beidou.number >= first_of_beidou_3 && !is_beidou_geo(beidou); }
 
 Signal first_signal(Constellation constellation) {
     switch (constellation) {

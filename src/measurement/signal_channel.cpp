@@ -124,7 +124,9 @@ void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& e
     terms_.phase_noise = Metres(metres_per_radian * (thermal + scintillating));
     terms_.doppler_noise = deviations_.frequency * (parameters.doppler_noise.factor() * processes_.frequency.value());
     if (input.arrival.echoes_known) {
-        terms_.multipath = echoes_.code;
+        // Without the line of sight the detour of the ray that is tracked is the error (MODELS.md 7.10): echoes that
+        // equal it make what the formulas of a dominant ray do not hold for.
+        terms_.multipath = input.arrival.line_of_sight ? echoes_.code : Metres(0);
         terms_.phase_multipath = echoes_.phase;
         return;
     }

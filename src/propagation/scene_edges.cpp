@@ -60,7 +60,7 @@ void bisect(const UrbanScene& scene, const SightFan& fan, const Eigen::Vector3d&
 // Where a turned ray grazes the obstacle, and the straight edge there.
 struct GrazedEdge {
     Eigen::Vector3d point, along;  // `along` is a unit vector
-    Eigen::Vector3d side;          // to which the line to the satellite was turned
+    Eigen::Vector3d side;          // to which the line to the satellite was turned: away from what blocks it, or to it
     std::uint32_t plane;
     bool line_blocked;
 };
@@ -96,7 +96,7 @@ bool bends_there(const UrbanScene& scene, const SceneRay& to_satellite, const Gr
     constexpr double same_face = 0.5;  // m
     const Eigen::Vector3d way = edge.point + along * edge.along - to_satellite.origin;
     Eigen::Vector3d outwards = edge.along.cross(way).normalized();
-    if (outwards.dot(edge.side) < 0) outwards = -outwards;
+    if ((outwards.dot(edge.side) > 0) != edge.line_blocked) outwards = -outwards;
     const Eigen::Vector3d inner = way - off_edge * outwards, outer = way + off_edge * outwards;
     const SceneHit hit = scene.first_hit({to_satellite.origin, inner.normalized()});
     if (!hit.any() || (hit.plane != edge.plane && std::abs(hit.distance - inner.norm()) > same_face)) return false;

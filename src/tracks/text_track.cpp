@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "skyloop/base/middle.hpp"
+#include "skyloop/trajectory/track_doubts.hpp"
 
 namespace skyloop {
 namespace {
@@ -270,22 +270,6 @@ double TextTrack::climb_at(std::size_t i) const {
     return before ? slope(i - 1, i) : after ? slope(i, i + 1) : 0;
 }
 
-// The middle ratio of the speeds that the file tells to those of its places, where the vehicle moves.
-std::optional<double> TextTrack::speed_ratio() const {
-    constexpr double moving_mps = 2;
-    constexpr std::size_t fewest = 5;
-    std::vector<double> ratios;
-    for (std::size_t i = 1; i + 1 < track_.points.size(); ++i) {
-        const TrackRow &before = track_.points[i - 1], &point = track_.points[i], &after = track_.points[i + 1];
-        const Nanoseconds span = after.time - before.time;
-        if (!point.velocity || point.jump || after.jump || span.count() <= 0 || span > near_rows) continue;
-        const double moved = (after.position - before.position).length().value() / text_seconds(span);
-        if (moved > moving_mps) ratios.push_back(point.velocity->length().value() / moved);
-    }
-    if (ratios.size() < fewest) return std::nullopt;
-    return middle_of(ratios);
-}
-
 void TextTrack::add_velocities() {
     constexpr double standing_mps = 0.1;  // below which receivers leave the course out
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -299,11 +283,7 @@ void TextTrack::add_velocities() {
         }
         if (velocity) track_.points[i].velocity = LocalFrame(to_geodetic(track_.points[i].position)).to_ecef(*velocity);
     }
-    const auto ratio = speed_ratio();
-    if (!ratio || (*ratio > 0.7 && *ratio < 1.4)) return;
-    for (TrackRow& point : track_.points)
-        point.velocity.reset();
-    note(fmt::format("the speeds are {:.3g} times those of the places and are not used: another unit?", *ratio));
+    if (const std::string told = leave_out_foreign_speeds(track_); !told.empty()) note(told);
 }
 
 void TextTrack::tell_velocities() {

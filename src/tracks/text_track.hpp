@@ -122,7 +122,6 @@ private:
     void place_rows();
     void add_velocities();
     [[nodiscard]] double climb_at(std::size_t i) const;
-    [[nodiscard]] std::optional<double> speed_ratio() const;
     [[nodiscard]] std::string told_left_out(const LeftOut& out) const;
     void tell_velocities();
 

@@ -7,10 +7,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "skyloop/base/table_line.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/time/utc_time.hpp"
+#include "skyloop/trajectory/track_doubts.hpp"
 #include "track_cells.hpp"
 #include "track_columns.hpp"
 #include "track_dates.hpp"
@@ -53,6 +56,9 @@ private:
     Result<void> add_turn(TrackRow& point);
     Result<void> add_reset(TrackRow& point);
     void add_climbs();
+    void doubt(std::string note) {
+        if (!note.empty()) track_.notes.push_back(std::move(note));
+    }
     void add_notes();
     [[nodiscard]] tl::unexpected<Error> refusal(const std::string& what) const {
         return fail(ErrorCode::input, fmt::format("{}:{}: {}", track_.name, line_, what));
@@ -76,7 +82,7 @@ private:
     bool has_header_ = false;
     TrackColumns columns_;
     TrackDates dates_;
-    std::vector<std::size_t> level_;  // rows of track_ whose velocity has no climb yet
+    std::set<std::size_t> level_;  // lines of rows whose velocity has no climb yet
     LineCells cells_;
 };
 
@@ -95,7 +101,9 @@ Result<Track> TrackTable::read(std::string_view text) {
                     fmt::format("{}: no line with the names of the columns; expected one such as t_s,lat_deg,lon_deg,"
                                 "h_ell_m and rows of numbers",
                                 track_.name));
+    doubt(leave_out_zero_places(track_, rows_));
     add_climbs();
+    if (columns_.has(speed) && columns_.has(course)) doubt(leave_out_foreign_speeds(track_));
     if (columns_.has(since_start) && columns_.date())
         dates_.date(track_, columns_[since_start]->name, columns_.date()->name);
     add_notes();
@@ -304,20 +312,21 @@ Result<void> TrackTable::add_velocity(TrackRow& point) {
     if (told && !vertical) return {};
     if (there[0] && there[1]) {
         point.velocity = frame.to_ecef(Velocity<Enu>(values[1], values[0], rises));
-        if (!vertical) level_.push_back(track_.points.size());
+        if (!vertical) level_.insert(line_);
     } else if (there[4] && there[5]) {
         const double azimuth = Angle::degrees(values[5]).rad();
         point.velocity =
             frame.to_ecef(Velocity<Enu>(values[4] * std::sin(azimuth), values[4] * std::cos(azimuth), rises));
-        if (!vertical) level_.push_back(track_.points.size());
+        if (!vertical) level_.insert(line_);
     }
     return {};
 }
 
 // Their climb is the slope of the heights.
 void TrackTable::add_climbs() {
-    for (const std::size_t row : level_) {
+    for (std::size_t row = 0; row < track_.points.size(); ++row) {
         TrackRow& point = track_.points[row];
+        if (!level_.contains(point.line)) continue;
         const LocalFrame frame(to_geodetic(point.position));
         const Eigen::Vector3d level = frame.to_enu(*point.velocity).vector();
         point.velocity = frame.to_ecef(Velocity<Enu>(level.x(), level.y(), climb_by_heights(track_.points, row)));

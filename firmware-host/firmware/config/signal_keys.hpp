@@ -38,7 +38,7 @@ struct SignalKey {
     SystemSignal signal;
     std::uint32_t enable;
 };
-/// B1C is measured as B1I is, and E5a and B2a as the signals of their carrier.
+/// B1C is measured as B1I is, of the satellites that send it, and E5a and B2a as the signals of their carrier.
 inline constexpr std::array<SignalKey, 19> signal_keys{{{{Constellation::gps, Signal::l1}, 0x10310001},
                                                         {{Constellation::gps, Signal::l2}, 0x10310003},
                                                         {{Constellation::gps, Signal::l5}, 0x10310004},

@@ -104,7 +104,8 @@ void add_groups(NmeaReport& r, const std::vector<Constellation>& listed) {
         const NmeaSystem system = nmea_system(constellation, r.format.version);
         const auto same = [&](const NmeaGroup& group) { return group.system == system; };
         if (std::any_of(r.groups.begin(), r.groups.end(), same)) continue;
-        r.groups.push_back({system, main_talker_everywhere ? r.talker : own_talker(system, c.board, c.config)});
+        r.groups.push_back({system, main_talker_everywhere ? r.talker : own_talker(system, c.board, c.config),
+                            tracked_signal_id(r, constellation, first_signal(constellation))});
     }
     std::sort(r.groups.begin(), r.groups.end(),
               [](const NmeaGroup& a, const NmeaGroup& b) { return a.system.system_id < b.system.system_id; });
@@ -188,6 +189,11 @@ std::string nmea_talker(const BoardProfile& board, const ConfigStore& config) {
         talker = own_talker(nmea_system(system.constellation, version), board, config);
     }
     return talker.empty() ? "GP" : talker;
+}
+
+int tracked_signal_id(const NmeaReport& report, Constellation constellation, Signal signal) {
+    const bool b1c = signal == Signal::b1i && takes_b1c(report.context.config);
+    return nmea_signal_id(constellation, b1c ? Signal::l1 : signal, report.format.version);
 }
 
 std::optional<Dop> shown_dops(const NmeaReport& report) {

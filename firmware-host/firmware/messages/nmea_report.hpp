@@ -14,7 +14,8 @@ namespace skyloop::firmware {
 /// Satellites that GSA, GSV and GRS report together.
 struct NmeaGroup {
     NmeaSystem system;
-    std::string talker;  ///< of GSV
+    std::string talker;   ///< of GSV
+    int first_signal_id;  ///< that it tracks of the system: of BeiDou B1I or B1C
 };
 
 /// The receiver's state as its configuration lets sentences tell it.
@@ -51,6 +52,8 @@ struct NmeaReport {
 };
 
 NmeaReport nmea_report(const ReportContext& context);
+/// nmea_signal_id() of what the receiver measures: where it takes B1C, that is what it calls BeiDou's first signal.
+int tracked_signal_id(const NmeaReport& report, Constellation constellation, Signal signal);
 /// DOPs of position as sentences show them: 99.99 where none was computed; nothing where the board leaves them out
 /// then.
 std::optional<Dop> shown_dops(const NmeaReport& report);

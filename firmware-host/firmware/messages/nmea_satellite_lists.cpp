@@ -44,13 +44,10 @@ SignalGroups tracked_signals(const NmeaReport& r, const NmeaGroup& group) {
     const auto& observed = r.context.state.epoch.observations.signals;
     for (const Observation& o : observed)
         if (listed(o.satellite))
-            signals[nmea_signal_id(o.satellite.constellation, o.signal, r.format.version)].push_back(
-                {o.satellite, o.cn0});
+            signals[tracked_signal_id(r, o.satellite.constellation, o.signal)].push_back({o.satellite, o.cn0});
     if (!observed.empty()) return signals;
     for (const SatelliteStatus& s : r.satellites)
-        if (s.cn0 && r.belongs(s.id, group))
-            signals[nmea_signal_id(s.id.constellation, first_signal(s.id.constellation), r.format.version)].push_back(
-                {s.id, s.cn0});
+        if (s.cn0 && r.belongs(s.id, group)) signals[group.first_signal_id].push_back({s.id, s.cn0});
     return signals;
 }
 
@@ -95,7 +92,7 @@ SignalGroups lists_of(const NmeaReport& r, const NmeaGroup& group) {
         if (last.empty()) signals.erase(0);
         return signals;
     }
-    if (signals.empty() && !all_in_view(r, group, {}).empty()) signals[group.system.l1_signal_id];
+    if (signals.empty() && !all_in_view(r, group, {}).empty()) signals[group.first_signal_id];
     for (auto& [id, list] : signals)
         list = all_in_view(r, group, list);
     return signals;
@@ -106,7 +103,7 @@ int signal_of_stub(const NmeaReport& r, const NmeaGroup& group) {
     constexpr int m10 = 10;
     const BoardProfile& board = r.context.board;
     const bool by_number = board.personality == Personality::ublox && board.identity.generation >= m10;
-    return by_number && group.system.talker == "GP" ? group.system.l1_signal_id : 0;
+    return by_number && group.system.talker == "GP" ? group.first_signal_id : 0;
 }
 
 void append_pages(std::vector<Gsv>& out, const NmeaReport& r, const NmeaGroup& group, const SignalGroups& lists) {
@@ -172,7 +169,7 @@ std::vector<Grs> grs_messages(const NmeaReport& r) {
     for (const NmeaGroup& group : r.groups) {
         m.residuals.clear();
         m.system_id = group.system.system_id;
-        m.signal_id = group.system.l1_signal_id;
+        m.signal_id = group.first_signal_id;
         for (const SatelliteStatus& s : r.used) {
             const bool has_number = nmea_satellite_number(s.id, r.format.version, r.numbering).has_value();
             if (has_number && r.belongs(s.id, group) && m.residuals.size() < used_slots)

@@ -46,6 +46,7 @@ struct ReceiverSettings {
     Nanoseconds navigation_period{1'000'000'000};
     std::set<SystemSignal> signals{};  ///< that are tracked; empty: the first signal of every system
     std::uint64_t sbas_scan_mask = 0;  ///< of in_sbas_scan_mask()
+    bool beidou_b1c = false;           ///< BeiDou's first signal is B1C, of BeiDou-3's MEO and IGSO satellites alone
     std::size_t most_satellites = 0;   ///< that a solution takes, the strongest; 0: all
     Angle elevation_mask = Angle::degrees(5);
     DbHz minimum_cn0{6};  ///< of a satellite that is used
@@ -64,6 +65,7 @@ struct ReceiverSettings {
         return signals.empty() ? signal == first_signal(constellation) : signals.contains({constellation, signal});
     }
     [[nodiscard]] bool tracks(SatelliteId satellite, Signal signal) const {
+        if (beidou_b1c && signal == Signal::b1i && !sends_modern_signals(satellite)) return false;
         return tracks(satellite.constellation, signal) && in_sbas_scan_mask(satellite, sbas_scan_mask);
     }
 };

@@ -27,6 +27,10 @@ enum class Signal {
 /// The signal that a single-frequency receiver takes: L1, E1, B1I, G1; of NavIC L5.
 Signal first_signal(Constellation constellation);
 
+/// Whether a satellite of BeiDou sends B1C and B2a: BeiDou-3 does, from C19 on, without its geostationary ones
+/// (BDS-SIS-ICD-B1C-1.0 and B2a-1.0, 1).
+bool sends_modern_signals(SatelliteId beidou);
+
 /// @param frequency_channel of GLONASS: 1602 + 0.5625 k and 1246 + 0.4375 k MHz (ICD L1, L2 GLONASS, table 3.1)
 Hertz carrier_frequency(Signal signal, int frequency_channel = 0);
 

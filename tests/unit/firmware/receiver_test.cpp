@@ -65,6 +65,20 @@ TEST(Receiver, OfUBloxSolvesWithAsManySatellitesAsItsConfigurationSays) {
     EXPECT_EQ(Receiver(board, {5}).settings().most_satellites, 20U);
 }
 
+TEST(Receiver, HearsB1cOfBeidou3Alone) {
+    BoardProfile board = sample_board(NmeaVersion::v4_11, {Constellation::beidou});
+    const SatelliteId beidou_2{Constellation::beidou, 7}, meo{Constellation::beidou, 21},
+        geo{Constellation::beidou, 59};
+    for (const bool b1c : {false, true}) {
+        board.config[0x1031000D] = b1c ? 0 : 1;
+        board.config[0x1031000F] = b1c ? 1 : 0;
+        const ReceiverSettings settings = Receiver(board, {1}).settings();
+        EXPECT_TRUE(settings.tracks(meo, Signal::b1i)) << b1c;
+        EXPECT_EQ(settings.tracks(beidou_2, Signal::b1i), !b1c);
+        EXPECT_EQ(settings.tracks(geo, Signal::b1i), !b1c);
+    }
+}
+
 // RECEIVER.md 4.8, table of dynamic models.
 TEST(Receiver, HasTheCeilingOfItsGeneration) {
     BoardProfile board = sample_board(NmeaVersion::v4_0, {gps});

@@ -327,6 +327,24 @@ TEST(SceneEdges, BendWhereTheWayOverAnObliqueEdgeIsShortest) {
     }
 }
 
+TEST(SceneEdges, AnObliqueEdgeBesideTheLineCountsOnce) {
+    CityModel city;
+    city.origin = odessa_place;
+    city.add_quad({Eigen::Vector3d(20, -3000, -5), {20, 3000, -5}, {20, 3000, 28.5}, {20, -3000, 28.5}},
+                  SurfaceKind::wall);
+    const auto scene = UrbanScene::build(city);
+    ASSERT_TRUE(scene);
+    const double azimuth = 0.5, elevation = 0.65;  // the wall ends 0.6 up there
+    const SceneRay line{
+        {0, 0, 0},
+        {std::cos(elevation) * std::sin(azimuth), std::cos(elevation) * std::cos(azimuth), std::sin(elevation)}};
+    const std::vector<SceneEdge> edges = edges_near_sight(**scene, line);
+    ASSERT_EQ(edges.size(), 1U);
+    const double slant = line.direction.y();
+    const Eigen::Vector3d bend(20, std::hypot(20, 28.5) * slant / std::sqrt(1 - slant * slant), 28.5);
+    EXPECT_LT((edges[0].distance.value() * edges[0].direction - bend).norm(), 1e-6);
+}
+
 TEST(SceneEdges, NoRayBendsTwice) {
     CityModel city = walls({{20, 15}, {60, 40}});
     const auto scene = UrbanScene::build(city);

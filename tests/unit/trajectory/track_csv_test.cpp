@@ -1,6 +1,7 @@
 // Tables of rows: every column that means something, and every table that is none.
 #include "skyloop/trajectory/track_csv.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,6 +26,30 @@ std::string refused(std::string_view text) {
     if (track) return {};
     EXPECT_EQ(track.error().message.find('\n'), std::string::npos);
     return track.error().message;
+}
+
+TEST(TrackCsv, LeavesOutPlacesThatTheRecorderDidNotKnow) {
+    const Track track = read_rows(
+        "t_s,lat_deg,lon_deg,h_ell_m,speed_mps,course_deg\n"
+        "0,0,0,0,0,0\n1,0,0,0,0,0\n2,48,11,500,10,0\n3,48.00009,11,500,10,0\n");
+    ASSERT_EQ(track.points.size(), 2U);
+    EXPECT_EQ(track.points[0].line, 4U);
+    EXPECT_NEAR(track.points[0].velocity->length().value(), 10, 1e-6) << "no climb out of the sea";
+    EXPECT_THAT(track.notes, testing::Contains("2 of 4 rows are at latitude 0, longitude 0 (first in line 2) and were "
+                                               "left out"));
+    EXPECT_EQ(read_rows("t_s,lat_deg,lon_deg,h_ell_m\n0,0,0,5\n1,0,0,5\n").points.size(), 2U) << "all are there";
+}
+
+TEST(TrackCsv, DoesNotUseSpeedsInAnotherUnit) {
+    std::string kmh = "time,lat,lon,h_ell_m,speed,course\n", mps = kmh;
+    for (int i = 0; i < 12; ++i) {
+        const double latitude = 48 + i * 10 / 111'200.0;  // 10 m in each second
+        kmh += fmt::format("{},{:.7f},11,500,36,0\n", i, latitude);
+        mps += fmt::format("{},{:.7f},11,500,10,0\n", i, latitude);
+    }
+    EXPECT_FALSE(read_rows(kmh).points[5].velocity);
+    EXPECT_THAT(read_rows(kmh).notes, testing::Contains(HasSubstr("the speeds are 3.6 times those of the places")));
+    EXPECT_TRUE(read_rows(mps).points[5].velocity);
 }
 
 TEST(TrackCsv, ReadsTimesOfEveryKind) {
