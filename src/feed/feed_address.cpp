@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "skyloop/base/lowered_text.hpp"
 #include "skyloop/base/spelling.hpp"
 #include "skyloop/feed/truth_feed.hpp"
 
@@ -165,9 +166,8 @@ bool read_rest(const FeedScheme& scheme, std::string_view text, FeedAddress& add
 }
 
 // The addresses of a host, as far as no name server is needed.
-std::vector<std::string> known_addresses(std::string host) {
-    std::transform(host.begin(), host.end(), host.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+std::vector<std::string> known_addresses(std::string_view called) {
+    const std::string host = lowered_text(called);
     if (host == "localhost" || host == "localhost.localdomain" || host.ends_with(".localhost"))
         return {"127.0.0.1", "::1"};
     if (host == "ip6-localhost" || host == "ip6-loopback") return {"::1"};

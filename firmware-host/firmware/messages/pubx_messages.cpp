@@ -48,11 +48,11 @@ PubxPosition pubx_position(const NmeaReport& r) {
     if (!r.solved) return m;
     if (state.corrections.state != CorrectionState::none && state.corrections.age)
         m.correction_age_s = static_cast<int>(std::lround(state.corrections.age->value()));
-    constexpr double not_computed = 99.99;
-    const bool known = has_dops(fix);
-    m.hdop = known ? fix.dop.hdop : not_computed;
-    m.vdop = known ? fix.dop.vdop : not_computed;
-    m.tdop = known ? fix.dop.tdop : not_computed;
+    if (has_dops(fix)) {
+        m.hdop = fix.dop.hdop;
+        m.vdop = fix.dop.vdop;
+        m.tdop = fix.dop.tdop;
+    }
     m.satellites_used = r.satellites_counted;
     m.dead_reckoning = fix.type == FixType::dead_reckoning;
     return m;
