@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -20,11 +21,23 @@ void send_datagram(int socket, const Bytes& bytes, const FeedPeer* to) {
         std::ignore = ::sendto(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT, to->get(), to->length);
 }
 
+// A socket, and whom it speaks to first: nobody, the one that it is connected to, or `asked`, who may answer from
+// another port than the one where it hears.
+struct DatagramEnd {
+    FileDescriptor socket;
+    bool connected = false;
+    std::optional<FeedPeer> asked{};
+};
+
 // Listens to everybody, or speaks first and hears that one alone.
 class DatagramLink : public FeedLink {
 public:
-    DatagramLink(FileDescriptor socket, bool connected, FeedHearer& hearer)
-        : socket_(std::move(socket)), reader_(socket_.value()), connected_(connected), hearer_(hearer) {}
+    DatagramLink(DatagramEnd end, FeedHearer& hearer)
+        : socket_(std::move(end.socket)),
+          reader_(socket_.value()),
+          connected_(end.connected),
+          asked_(end.asked),
+          hearer_(hearer) {}
 
     void add_waits(std::vector<pollfd>& waits) const override { waits.push_back({socket_.value(), POLLIN, 0}); }
 
@@ -34,10 +47,14 @@ public:
             const auto& datagrams = reader_.take();
             any = any || !datagrams.empty();
             for (const FeedDatagram& datagram : datagrams) {
+                if (asked_ && !same_host(*datagram.from, *asked_)) {
+                    leave_out(*datagram.from);
+                    continue;
+                }
                 const FeedHearer::Heard heard = hearer_.hear(0, datagram.bytes, datagram.received_ns);
-                if (heard.understood && !connected_) remember(*datagram.from, now_ns);
+                if (heard.understood && !speaks_first()) remember(*datagram.from, now_ns);
                 for (const Bytes& answer : heard.answers)
-                    send_datagram(socket_.value(), answer, connected_ ? nullptr : datagram.from);
+                    send_datagram(socket_.value(), answer, connected_ ? nullptr : asked_ ? &*asked_ : datagram.from);
             }
             if (datagrams.size() < DatagramReader::batch) break;
         }
@@ -52,13 +69,13 @@ public:
 
     void speak(std::int64_t now_ns) override {
         std::erase_if(peers_, [&](const auto& peer) { return now_ns > peer.second + datagram_peer_memory_ns; });
-        if (!connected_ && peers_.empty()) return;
+        if (!speaks_first() && peers_.empty()) return;
         answer(0, hearer_.say(0));
     }
 
     void answer(std::uint64_t, const std::vector<Bytes>& answers) override {
         for (const Bytes& bytes : answers) {
-            if (connected_) send_datagram(socket_.value(), bytes, nullptr);
+            if (speaks_first()) send_datagram(socket_.value(), bytes, asked_ ? &*asked_ : nullptr);
             for (const auto& peer : peers_)
                 send_datagram(socket_.value(), bytes, &peer.first);
         }
@@ -68,6 +85,14 @@ public:
     [[nodiscard]] std::uint16_t port() const override { return connected_ ? 0 : own_port(socket_.value()); }
 
 private:
+    [[nodiscard]] bool speaks_first() const { return connected_ || asked_; }
+
+    void leave_out(const FeedPeer& stranger) {
+        hearer_.tallies().strangers += 1;
+        hearer_.tell(FeedNewsDesk::Kind::connection,
+                     "datagrams of " + shown_peer(stranger) + " left out: it is another host");
+    }
+
     void remember(const FeedPeer& from, std::int64_t now_ns) {
         const auto known =
             std::find_if(peers_.begin(), peers_.end(), [&](const auto& peer) { return peer.first == from; });
@@ -80,6 +105,7 @@ private:
     FileDescriptor socket_;
     DatagramReader reader_;
     bool connected_;
+    std::optional<FeedPeer> asked_;
     FeedHearer& hearer_;
     std::vector<std::pair<FeedPeer, std::int64_t>> peers_;  // and when they were heard
 };
@@ -148,14 +174,27 @@ private:
     std::int64_t heard_ns_ = 0;
 };
 
+Result<DatagramEnd> open_end(const FeedAddress& address) {
+    const TcpAddress where{address.host, address.port};
+    if (address.wire == FeedWire::udp_request) {
+        const auto asked = resolve_host(where, SOCK_DGRAM);
+        if (!asked) return fail(asked.error());
+        auto socket = bound_datagrams(asked->front(), address.own_port);
+        if (!socket) return fail(socket.error());
+        return DatagramEnd{std::move(*socket), false, asked->front()};
+    }
+    const bool connected = address.wire == FeedWire::udp_connect;
+    auto socket = connected ? connected_datagrams(where) : listening_socket(where, SOCK_DGRAM);
+    if (!socket) return fail(socket.error());
+    return DatagramEnd{std::move(*socket), connected};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<FeedLink>> open_datagram_link(const FeedAddress& address, FeedHearer& hearer) {
-    const bool connected = address.wire == FeedWire::udp_connect;
-    auto socket = connected ? connected_datagrams({address.host, address.port})
-                            : listening_socket({address.host, address.port}, SOCK_DGRAM);
-    if (!socket) return fail(socket.error());
-    return std::make_unique<DatagramLink>(std::move(*socket), connected, hearer);
+    auto end = open_end(address);
+    if (!end) return fail(end.error());
+    return std::make_unique<DatagramLink>(std::move(*end), hearer);
 }
 
 Result<std::unique_ptr<FeedLink>> open_datagram_relay(const FeedAddress& address, FeedHearer& hearer) {

@@ -24,6 +24,7 @@ struct FeedScheme {
     std::uint16_t port = 0;  // where none is given; zero: one must be
     std::uint32_t baud = 0;  // likewise
     bool from_target = false;
+    std::uint16_t own_port = 0;
 };
 
 // Ports: FEEDS.md 3.3 to 3.13.
@@ -33,7 +34,8 @@ constexpr FeedScheme feed_schemes[] = {
     {"json-to", "json", FeedWire::tcp_connect, AddressForm::connect},
     {"flightgear", "flightgear", FeedWire::udp_listen, AddressForm::listen, 5503},
     {"flightgear-generic", "flightgear-generic", FeedWire::udp_listen, AddressForm::listen, 5561},
-    {"xplane", "xplane", FeedWire::udp_connect, AddressForm::connect, 49000},
+    // X-Plane answers from another port than it hears at ("port we send from", 49001).
+    {"xplane", "xplane", FeedWire::udp_request, AddressForm::connect, 49000, 0, false, 49005},
     {"mavlink-udp", "mavlink", FeedWire::udp_listen, AddressForm::listen, 14550},
     {"mavlink-udpout", "mavlink", FeedWire::udp_connect, AddressForm::connect},
     {"mavlink-tcp", "mavlink", FeedWire::tcp_connect, AddressForm::connect, 5760},
@@ -215,6 +217,7 @@ Result<FeedAddress> parse_feed_address(std::string_view text) {
         address.text = text;
         address.dialect = scheme.dialect;
         address.wire = scheme.wire;
+        address.own_port = scheme.own_port;
         address.hears_target = scheme.from_target;
         const std::string_view rest = colon == std::string_view::npos ? std::string_view() : text.substr(colon + 1);
         const bool read = read_rest(scheme, rest, address);

@@ -38,6 +38,15 @@ bool FeedPeer::operator==(const FeedPeer& other) const {
     return length == other.length && std::memcmp(&storage, &other.storage, length) == 0;
 }
 
+bool same_host(const FeedPeer& a, const FeedPeer& b) {
+    if (a.storage.ss_family != b.storage.ss_family) return false;
+    if (a.storage.ss_family == AF_INET)
+        return reinterpret_cast<const sockaddr_in&>(a.storage).sin_addr.s_addr ==
+               reinterpret_cast<const sockaddr_in&>(b.storage).sin_addr.s_addr;
+    const in6_addr& one = reinterpret_cast<const sockaddr_in6&>(a.storage).sin6_addr;
+    return std::memcmp(&one, &reinterpret_cast<const sockaddr_in6&>(b.storage).sin6_addr, sizeof one) == 0;
+}
+
 std::string shown_peer(const FeedPeer& peer) {
     std::array<char, NI_MAXHOST> host{};
     std::array<char, NI_MAXSERV> service{};
@@ -84,6 +93,23 @@ Result<FileDescriptor> connected_datagrams(const TcpAddress& address) {
     FileDescriptor socket = open_socket(where->front(), SOCK_DGRAM);
     if (!socket.open() || ::connect(socket.value(), where->front().get(), where->front().length) != 0)
         return socket_failure(address, std::strerror(errno));
+    return socket;
+}
+
+Result<FileDescriptor> bound_datagrams(const FeedPeer& to, std::uint16_t wanted) {
+    FileDescriptor socket = open_socket(to, SOCK_DGRAM);
+    const auto bind_to = [&](std::uint16_t port) {
+        FeedPeer own;  // any address of this machine: by which one the other end is reached, routes say
+        own.length = to.length;
+        own.storage.ss_family = to.storage.ss_family;
+        if (to.storage.ss_family == AF_INET)
+            reinterpret_cast<sockaddr_in&>(own.storage).sin_port = htons(port);
+        else
+            reinterpret_cast<sockaddr_in6&>(own.storage).sin6_port = htons(port);
+        return ::bind(socket.value(), own.get(), own.length) == 0;
+    };
+    if (!socket.open() || (!bind_to(wanted) && (errno != EADDRINUSE || !bind_to(0))))
+        return fail(ErrorCode::outside, fmt::format("port {} of our own: {}", wanted, std::strerror(errno)));
     return socket;
 }
 

@@ -25,6 +25,9 @@ struct FeedPeer {
     bool operator==(const FeedPeer& other) const;
 };
 
+/// Whether both are addresses of one host, whatever the ports.
+bool same_host(const FeedPeer& a, const FeedPeer& b);
+
 std::string shown_peer(const FeedPeer& peer);
 
 /// All addresses of a host, at least one. May wait for a name server. Fails with `outside`.
@@ -35,6 +38,9 @@ Result<std::vector<FeedPeer>> resolve_host(const TcpAddress& address, int type);
 Result<FileDescriptor> listening_socket(const TcpAddress& address, int type);
 /// Of datagrams: connected, so that the kernel lets nobody else in.
 Result<FileDescriptor> connected_datagrams(const TcpAddress& address);
+/// Of datagrams: bound to this port, or to a free one where it is taken, in the family of the other end, from whom it
+/// may hear at any port.
+Result<FileDescriptor> bound_datagrams(const FeedPeer& to, std::uint16_t wanted);
 /// Of a stream: the connection has begun; whether it came about, finish_connecting() tells. None, and `why`, where it
 /// cannot even begin.
 FileDescriptor begin_connecting(const FeedPeer& to, std::string& why);

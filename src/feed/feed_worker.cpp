@@ -15,7 +15,8 @@ namespace skyloop {
 namespace {
 
 FeedContext told_of_wire(FeedContext context, FeedWire wire) {
-    context.datagrams = wire == FeedWire::udp_listen || wire == FeedWire::udp_connect || wire == FeedWire::udp_relay;
+    context.datagrams = wire == FeedWire::udp_listen || wire == FeedWire::udp_connect ||
+                        wire == FeedWire::udp_request || wire == FeedWire::udp_relay;
     return context;
 }
 
@@ -38,6 +39,7 @@ Result<void> FeedWorker::open() {
         switch (address_.wire) {
             case FeedWire::udp_listen:
             case FeedWire::udp_connect:
+            case FeedWire::udp_request:
                 return open_datagram_link(address_, hearer_);
             case FeedWire::tcp_listen:
             case FeedWire::tcp_connect:
@@ -114,6 +116,9 @@ void FeedWorker::answer_steps() {
 std::string FeedWorker::description() const {
     if (address_.wire == FeedWire::serial) return address_.text;
     const std::string scheme = address_.text.substr(0, address_.text.find(':'));
+    if (address_.wire == FeedWire::udp_request)
+        return scheme + ":" + shown_address({address_.host, address_.port}) + " (own port " + std::to_string(port_) +
+               ")";
     const std::string here = shown_address({address_.host, port_ != 0 ? port_ : address_.port});
     if (address_.to_host.empty()) return scheme + ":" + here;
     return scheme + ":" + here + "," + shown_address({address_.to_host, address_.to_port});

@@ -161,6 +161,8 @@ def serve(what, port, seconds, rate=50):
             own.settimeout(seconds)
             own = own.accept()[0]
         xplane, peer = FakeXplane(), ("127.0.0.1", port)
+        # X-Plane hears at one port and sends from another.
+        sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM) if what == "xplane" else own
         while time.monotonic() - start < seconds:
             flight = Flight(time.monotonic() - start)
             if what == "ardupilot":
@@ -180,7 +182,7 @@ def serve(what, port, seconds, rate=50):
                 except BlockingIOError:
                     pass
                 for packet in xplane.frame(flight):
-                    own.sendto(packet, peer)
+                    sender.sendto(packet, peer)
             elif what == "px4":
                 own.sendall(FakePx4Simulator.step(flight))
             else:

@@ -19,8 +19,9 @@
 
 namespace skyloop {
 
-/// How a source is reached.
-enum class FeedWire { udp_listen, udp_connect, tcp_listen, tcp_connect, serial, udp_relay, tcp_relay };
+/// How a source is reached. By udp_request we speak first, from a port that others know, and hear the host at whichever
+/// port it answers from.
+enum class FeedWire { udp_listen, udp_connect, udp_request, tcp_listen, tcp_connect, serial, udp_relay, tcp_relay };
 
 /// A source as users write it: "udp-json:5000", "flightgear:5503", "gpsd:localhost", … Of IPv6 "udp-json:[::1]:5000".
 struct FeedAddress {
@@ -29,8 +30,9 @@ struct FeedAddress {
     FeedWire wire = FeedWire::udp_listen;
     std::string host = "127.0.0.1";  ///< or the serial device
     std::uint16_t port = 0;
-    std::uint32_t baud = 0;  ///< serial
-    std::string to_host;     ///< relays: where the other end is
+    std::uint16_t own_port = 0;  ///< udp_request: ours, or any free one where it is taken
+    std::uint32_t baud = 0;      ///< serial
+    std::string to_host;         ///< relays: where the other end is
     std::uint16_t to_port = 0;
     bool hears_target = false;  ///< relays: truth comes from the other end; else from who connects to us
 };
@@ -53,7 +55,7 @@ struct FeedCounts {
     std::uint64_t bytes = 0;
     std::uint64_t samples = 0;
     std::uint64_t refused = 0;            ///< whole, and of no use
-    std::uint64_t strangers = 0;          ///< datagrams of others than the one that is listened to (relays)
+    std::uint64_t strangers = 0;          ///< datagrams of others than the one that is listened to
     std::uint64_t overflowed = 0;         ///< samples dropped because the loop did not take them
     std::uint64_t dropped_by_kernel = 0;  ///< SO_RXQ_OVFL
     std::uint64_t restarts = 0;           ///< of the source's clock
@@ -102,9 +104,9 @@ public:
     [[nodiscard]] const SourceClock& clock() const;
     /// What happened since the last call, a sentence each: connected, lost, refused statements, silent, jumped.
     std::vector<std::string> take_news();
-    /// "udp-json:127.0.0.1:5000"
+    /// "udp-json:127.0.0.1:5000"; "xplane:127.0.0.1:49000 (own port 49005)"
     [[nodiscard]] std::string description() const;
-    /// As the system gave it, for listeners.
+    /// As the system gave it, for listeners and udp_request.
     [[nodiscard]] std::uint16_t port() const;
 
 private:

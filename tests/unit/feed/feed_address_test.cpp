@@ -33,7 +33,9 @@ TEST(FeedAddress, ConnectsWhereItIsTold) {
     EXPECT_EQ(good_address("gpsd:localhost").port, 2947);
     EXPECT_EQ(good_address("gpsd:[fe80::1%eth0]").host, "fe80::1%eth0");
     EXPECT_EQ(good_address("xplane:10.0.0.2").port, 49000);
-    EXPECT_EQ(good_address("xplane:10.0.0.2").wire, FeedWire::udp_connect);
+    EXPECT_EQ(good_address("xplane:10.0.0.2").wire, FeedWire::udp_request);
+    EXPECT_EQ(good_address("xplane:10.0.0.2").own_port, 49005);
+    EXPECT_EQ(good_address("mavlink-udpout:10.0.0.2:14550").wire, FeedWire::udp_connect);
     EXPECT_EQ(good_address("json-to:sim.example:99").wire, FeedWire::tcp_connect);
     EXPECT_EQ(good_address("mavlink-udpout:h:14540").port, 14540);
 }

@@ -14,6 +14,7 @@
 #include <string>
 #include <thread>
 
+#include "dialect_bytes.hpp"
 #include "skyloop/base/steady_clock.hpp"
 #include "skyloop/transport/file_descriptor.hpp"
 
@@ -119,8 +120,41 @@ TEST(TruthFeed, HearsDatagramsAndPutsThemOnThePathOfTheFirstVehicle) {
 }
 
 TEST(TruthFeed, IsCalledByTheAddressThatPeopleKnow) {
-    for (const char* text : {"xplane:127.0.0.1:49123", "mavlink-udpout:127.0.0.1:14551"})
-        EXPECT_EQ(open_feed(text)->description(), text) << "not by the port that the system gave us";
+    const std::string out = "mavlink-udpout:127.0.0.1:14551", asked = "xplane:127.0.0.1:49123";
+    EXPECT_EQ(open_feed(out)->description(), out) << "not by the port that the system gave us";
+    const auto feed = open_feed(asked);
+    EXPECT_EQ(feed->description(), asked + " (own port " + std::to_string(feed->port()) + ")");
+}
+
+// X-Plane hears at 49000 and sends from 49001.
+TEST(TruthFeed, HearsXPlaneAtWhicheverPortItAnswersFrom) {
+    Peer hearing(SOCK_DGRAM), sending(SOCK_DGRAM), neighbour(SOCK_DGRAM);
+    const auto feed = open_feed("xplane:127.0.0.1:" + std::to_string(hearing.bind()));
+    const auto any = feed->path("");
+    feed->begin(feed_start, steady_clock_ns());
+    EXPECT_THAT(hearing.hear_until("RPOS"), HasSubstr("RREF"));
+    sockaddr_in other = loopback(0);
+    other.sin_addr.s_addr = htonl(INADDR_LOOPBACK + 1);
+    ASSERT_EQ(::bind(neighbour.socket.value(), reinterpret_cast<const sockaddr*>(&other), sizeof other), 0);
+    ASSERT_TRUE(sending.connect(feed->port()) && neighbour.connect(feed->port()));
+    HandBytes pose;
+    pose.text("RPOS4").f64s({11, 48, 500}).f32s({33, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+    const std::string packet(pose.bytes().begin(), pose.bytes().end());
+    neighbour.say(packet);
+    sending.say(packet);
+    ASSERT_TRUE(pump_until(*feed, [&] { return any->counts().samples == 1 && feed->counts().strangers == 1; }));
+    EXPECT_EQ(feed->counts().refused, 0u);
+}
+
+TEST(TruthFeed, AsksXPlaneFromAnotherPortWhereItsOwnIsTaken) {
+    FeedAddress address = *parse_feed_address("xplane:127.0.0.1:49123");
+    const auto one = TruthFeed::open(address, FeedSettings());
+    ASSERT_TRUE(one) << one.error().message;
+    address.own_port = (*one)->port();
+    const auto other = TruthFeed::open(address, FeedSettings());
+    ASSERT_TRUE(other) << other.error().message;
+    EXPECT_NE((*other)->port(), 0);
+    EXPECT_NE((*other)->port(), (*one)->port());
 }
 
 TEST(TruthFeed, TellsOnceOfManyStrangersAndBinary) {
