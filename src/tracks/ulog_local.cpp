@@ -9,7 +9,9 @@ namespace skyloop {
 namespace {
 
 bool differs(const UlogRecord& a, const UlogRecord& b, std::string_view field) {
-    return a.value(field) != b.value(field);
+    const std::optional<double> one = a.value(field), other = b.value(field);
+    const bool both_unknown = one && other && std::isnan(*one) && std::isnan(*other);
+    return one != other && !both_unknown;
 }
 
 }  // namespace
@@ -29,7 +31,8 @@ std::vector<FlightRow> UlogLocalPlaces::read() {
     return std::move(rows_);
 }
 
-// Where the reference itself is another one, or the step is beyond any drift, the path begins anew behind.
+// Where the reference itself is another one, or the step is beyond any drift, the path begins anew behind. Metres from
+// an origin that the user tells have no reference in the log: EKF2 publishes NaN, older versions left zeros.
 void UlogLocalPlaces::undo_resets(const UlogRecord& record) {
     if (!after_) return;
     constexpr double longest_m = 10'000;
@@ -38,8 +41,8 @@ void UlogLocalPlaces::undo_resets(const UlogRecord& record) {
     Eigen::Vector3d change = Eigen::Vector3d::Zero();
     if (differs(record, after, "xy_reset_counter")) change = {delta("delta_xy[0]"), delta("delta_xy[1]"), 0};
     if (differs(record, after, "z_reset_counter")) change.z() = delta("delta_z");
-    const bool new_reference =
-        differs(record, after, "ref_lat") || differs(record, after, "ref_lon") || differs(record, after, "ref_alt");
+    const bool new_reference = !origin_ && (differs(record, after, "ref_lat") || differs(record, after, "ref_lon") ||
+                                            differs(record, after, "ref_alt"));
     if (new_reference || !(change.norm() <= longest_m)) {
         rows_.back().jump = true;
         moved_.setZero();

@@ -85,8 +85,10 @@ NEW_GPS = ("uint64_t timestamp;uint64_t time_utc_usec;double latitude_deg;double
            "bool vel_ned_valid;", "QQ4d3fB?")
 
 
-def ulog_local():
-    """The filter is 2 m north, 1 m east and 3 m low until its reset after 4 s."""
+def ulog_local(indoors=False):
+    """The filter is 2 m north, 1 m east and 3 m low until its reset after 4 s. Indoors it knows no place on the Earth."""
+    nan = float("nan")
+    reference = (nan, nan, nan) if indoors else (LAT0, LON0, 500 - UNDULATION)
     records = [("vehicle_attitude", (BOOT_US - 50000, *quaternion(truth(-0.05))))]
     for t in TIMES:
         s, us = truth(t), BOOT_US + round(t * 1e6)
@@ -94,17 +96,22 @@ def ulog_local():
         x, y = on_sphere(s["lat"], s["lon"])
         z = 500 - s["h"]
         records.append(("vehicle_local_position",
-                        (us, LAT0, LON0, x + drift[0], y + drift[1], z + drift[2], -2, -1, -3, s["vn"], s["ve"],
-                         s["vd"], 500 - UNDULATION, True, True, True, True, counter, counter, True, True)))
+                        (us, *reference[:2], x + drift[0], y + drift[1], z + drift[2], -2, -1, -3, s["vn"], s["ve"],
+                         s["vd"], reference[2], True, True, True, True, counter, counter, not indoors,
+                         not indoors)))
         q = quaternion(truth(t + 0.05))
         records.append(("vehicle_attitude", (us + 50000, *q)))
-        if round(t * 10) % 10 == 0:
+        if round(t * 10) % 10 == 0 and not indoors:
             records.append(("vehicle_gps_position",
                             (us, POSIX * 10**6 + round(t * 1e6), e7(s["lat"]), e7(s["lon"]),
                              round((s["h"] - UNDULATION) * 1e3), round(s["h"] * 1e3), s["vn"], s["ve"], s["vd"], 3,
                              True)))
     return ulog({"vehicle_local_position": LOCAL, "vehicle_attitude": ATTITUDE, "vehicle_gps_position": OLD_GPS},
                 records)
+
+
+def ulog_indoors():
+    return ulog_local(indoors=True)
 
 
 def ulog_receiver():
@@ -330,8 +337,8 @@ def ubx_log():
     return out
 
 
-FLIGHTS = {"local.ulg": ulog_local, "receiver.ulg": ulog_receiver, "new.bin": dataflash_new, "old.bin": dataflash_old,
-           "simulated.bin": dataflash_simulated, "global.tlog": tlog_global, "local.tlog": tlog_local,
+FLIGHTS = {"local.ulg": ulog_local, "indoors.ulg": ulog_indoors, "receiver.ulg": ulog_receiver, "new.bin": dataflash_new,
+           "old.bin": dataflash_old, "simulated.bin": dataflash_simulated, "global.tlog": tlog_global, "local.tlog": tlog_local,
            "simulated.tlog": tlog_simulated, "log.ubx": ubx_log}
 
 

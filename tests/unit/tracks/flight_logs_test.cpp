@@ -131,6 +131,23 @@ TEST(FlightLogs, UlogTakesTheFilterAndUndoesItsReset) {
     expect_rows(track, {0.002, 1e-5, 0.01});
 }
 
+// EKF2 without a place on the Earth tells NaN as its reference, in every record.
+TEST(FlightLogs, UlogFromIndoorsFliesFromTheOriginThatIsTold) {
+    const Geodetic origin = Geodetic::degrees(47, 8.5, 500);
+    const auto track = read_track(flight_bytes(flights_folder() / "indoors.ulg"), "indoors.ulg", {nullptr, origin});
+    ASSERT_TRUE(track.has_value()) << track.error().message;
+    EXPECT_EQ(jumps_of(*track), 0u);
+    EXPECT_THAT(track->notes, Contains(HasSubstr("1 resets of vehicle_local_position by up to 3.74 m")));
+    const FlightTruths truths = read_truths();
+    ASSERT_EQ(track->points.size(), truths.size());
+    auto truth = truths.begin();
+    for (const TrackRow& row : track->points) {
+        EXPECT_LE((row.position - to_ecef(truth->second.place)).length().value(), 0.002) << row.time.count();
+        EXPECT_TRUE(row.velocity.has_value()) << row.time.count();
+        ++truth;
+    }
+}
+
 TEST(FlightLogs, UlogOfTodayTellsTheReceiverInDegrees) {
     const Track track = read_flight("receiver.ulg");
     EXPECT_EQ(track.format, "ULog, sensor_gps");
