@@ -198,6 +198,30 @@ Result<void> take_euroc_row(TextTrack& track, const TableCells& table) {
     return track.add(row);
 }
 
+// Whether the second column of EuRoC's names is that of a place: "p_RS_R_x [m]", or "x" in copies. Its inertial sensors
+// have turn rates there.
+bool euroc_names_tell_places(std::string_view names) {
+    std::vector<std::string_view> cells;
+    split_table_line(names, ',', cells);
+    const std::string second = cells.size() > 1 ? lowered_text(trimmed_cell(cells[1])) : std::string();
+    return second.starts_with("p_rs_r_x") || second == "x" || second.starts_with("x [");
+}
+
+// The line with the names of EuRoC's columns; empty: none. The ground truth says "#timestamp" alone, which others may
+// say, too; all else in EuRoC's folders "#timestamp [ns]".
+std::string_view euroc_names(std::string_view text) {
+    constexpr std::size_t looked_at = 65536;
+    TextLines lines(text.substr(0, looked_at));
+    while (lines.next()) {
+        const std::string_view line = trimmed_cell(lines.line());
+        const std::string lowered = lowered_text(line.substr(0, 20));
+        if (lowered.starts_with("#timestamp [ns],") ||
+            (lowered.starts_with("#timestamp,") && euroc_names_tell_places(line)))
+            return line;
+    }
+    return {};
+}
+
 // A table whose line of names is the first that begins so.
 Result<Track> read_rows(const TrackFile& file, TextTrack& track, const RowTaker& take, std::string_view names_begin) {
     TableCells table(file, names_begin.empty() ? ',' : separator_in(names_begin), "");
@@ -233,7 +257,11 @@ Result<Track> read_euroc(const TrackFile& file) {
     track.note(
         "local metres are taken as east, north, up; attitude is not read: it is that of a sensor with axes of its "
         "own");
-    return read_rows(file, track, take_euroc_row, "#timestamp [ns],");
+    const std::string_view names = euroc_names(file.text);
+    if (!euroc_names_tell_places(names))
+        return track.refusal(fmt::format(
+            "no places (EuRoC, '{:.40}'); expected p_RS_R_x, p_RS_R_y and p_RS_R_z behind the time", names));
+    return read_rows(file, track, take_euroc_row, names);
 }
 
 // The line with the names of unicsv's columns; empty: none of the first ones is.
@@ -298,7 +326,7 @@ constexpr std::array named_dialects{
                  read_gnss_logger},
     NamedDialect{[](std::string_view head) { return has_line(head, "Lcl Date,"); }, read_g1000},
     NamedDialect{[](std::string_view head) { return has_line(head, "NAM, NUM, FIX,"); }, read_yodel},
-    NamedDialect{[](std::string_view head) { return has_line(head, "#timestamp [ns],"); }, read_euroc},
+    NamedDialect{[](std::string_view head) { return !euroc_names(head).empty(); }, read_euroc},
     NamedDialect{[](std::string_view head) { return !unicsv_names(head).empty(); }, read_unicsv}};
 
 }  // namespace

@@ -123,6 +123,26 @@ TEST(TableDialects, ReadEurocToTheNanosecond) {
     EXPECT_THAT(refusal_of_track(rows), HasSubstr("local metres (EuRoC)"));
 }
 
+TEST(TableDialects, TellEurocsGroundTruthFromItsSensors) {
+    const Geodetic origin = Geodetic::degrees(47.5, 8.25, 500);
+    // state_groundtruth_estimate0/data.csv
+    const Track truth = track_of(
+        "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []\n"
+        "1709640000123456789,1,2,3,1,0,0,0\n",
+        "data.csv", origin);
+    EXPECT_EQ(truth.format, "EuRoC");
+    EXPECT_EQ(utc_of(truth, 0), "2024-03-05T12:00:00.123Z");
+    const Eigen::Vector3d enu = LocalFrame(origin).to_enu(truth.points.at(0).position).vector();
+    EXPECT_LT((enu - Eigen::Vector3d(1, 2, 3)).norm(), 1e-6);
+    // imu0/data.csv
+    const auto sensor =
+        read_track(test::bytes_of("#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1]"
+                                  "\n1709640000123456789,0.1,0.2,0.3\n"),
+                   "data.csv", {nullptr, origin});
+    ASSERT_FALSE(sensor.has_value());
+    EXPECT_THAT(sensor.error().message, HasSubstr("no places (EuRoC, '#timestamp [ns],w_RS_S_x"));
+}
+
 TEST(TableDialects, ReadOxtsOfKitti) {
     std::string row = "47.5 8.25 500 0.1 0.2 1.5707963267948966 3 4 5 0 -1";
     for (int i = 11; i < 30; ++i)
