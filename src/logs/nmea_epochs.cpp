@@ -16,6 +16,23 @@
 namespace skyloop {
 namespace {
 
+constexpr double same_time_s = 1e-3;  // sentences of one epoch may show different numbers of digits
+
+// Seconds of the day of the number hhmmss.ss.
+std::optional<double> seconds_of_clock(std::optional<double> clock) {
+    if (!clock || *clock < 0 || *clock >= 240000) return std::nullopt;
+    const double hours = std::floor(*clock / 10000), minutes = std::floor(*clock / 100) - hours * 100;
+    return hours * 3600 + minutes * 60 + (*clock - hours * 10000 - minutes * 100);
+}
+
+// The climb and attitude of another sentence.
+void add_words(LogMotion& motion, const LogMotion& told) {
+    if (told.climb) motion.climb = told.climb;
+    if (told.heading) motion.heading = told.heading;
+    if (told.roll) motion.roll = told.roll;
+    if (told.pitch) motion.pitch = told.pitch;
+}
+
 double nmea_seconds(const NmeaTime& time) {
     return time.hour * 3600.0 + time.minute * 60.0 + time.second + time.nanosecond * 1e-9;
 }
@@ -101,11 +118,30 @@ void NmeaEpochs::take(std::string_view sentence) {
 void NmeaEpochs::take_time(const std::optional<NmeaTime>& time) {
     if (!time) return;
     const double seconds = nmea_seconds(*time);
-    // 1 ms: sentences of one epoch may show different numbers of digits.
-    if (row_ && std::abs(row_->seconds - seconds) < 1e-3) return;
+    if (row_ && std::abs(row_->seconds - seconds) < same_time_s) return;
+    share_words(seconds);
+}
+
+// The next row begins, or none. Words of a time without a row, as of a faster sensor, are of the row before them, the
+// first ones first, where it has none of its own.
+void NmeaEpochs::share_words(std::optional<double> next_seconds) {
+    LogMotion of_next, left;
+    for (auto word = words_.rbegin(); word != words_.rend(); ++word) {
+        const bool is_of_next = next_seconds && std::abs(word->seconds - *next_seconds) < same_time_s;
+        add_words(is_of_next ? of_next : left, word->motion);
+    }
+    words_.clear();
+    if (row_) {
+        LogMotion& own = row_->epoch.motion;
+        if (own.climb) left.climb.reset();
+        if (own.roll) left.heading.reset(), left.roll.reset(), left.pitch.reset();
+        add_words(own, left);
+    }
     finish_row();
+    if (!next_seconds) return;
     row_ = Row{};
-    row_->seconds = seconds;
+    row_->seconds = *next_seconds;
+    row_->epoch.motion = of_next;
 }
 
 void NmeaEpochs::take_rmc(const Rmc& rmc) {
@@ -180,12 +216,12 @@ void NmeaEpochs::take_motion(const NmeaMessage& message) {
         motion.heading = ths->heading;
 }
 
-// PUBX,00 (u-blox M8 interface description, 31.3.2): field 12 is the velocity downwards, m/s. PASHR (Trimble and
-// others, "attitude data"): time, true heading, T, roll and pitch, degrees, the right side down and the bow up
-// positive.
+// PUBX,00 (u-blox M8 interface description, 31.3.2): field 1 is the time, field 12 the velocity downwards, m/s. PASHR
+// (Trimble and others, "attitude data"): time, true heading, T, roll and pitch, degrees, the right side down and the
+// bow up positive.
 void NmeaEpochs::take_maker(std::string_view sentence) {
     const auto parts = parse_sentence(sentence);
-    if (!parts || !row_) return;
+    if (!parts) return;
     const auto number = [&](std::size_t field) -> std::optional<double> {
         if (field >= parts->fields.size()) return std::nullopt;
         const std::string_view text = parts->fields[field];
@@ -195,16 +231,26 @@ void NmeaEpochs::take_maker(std::string_view sentence) {
         const bool whole = status == std::errc() && end == text.data() + text.size() && std::isfinite(value);
         return whole ? std::optional(value) : std::nullopt;
     };
-    LogMotion& motion = row_->epoch.motion;
+    LogMotion motion;
     if (parts->address == "PUBX" && !parts->fields.empty() && parts->fields[0] == "00") {
         if (const auto down = number(12); down && std::abs(*down) < 12000) motion.climb = MetresPerSecond(-*down);
+        keep(seconds_of_clock(number(1)), motion);
     } else if (parts->address == "PASHR" && parts->fields.size() > 4 && parts->fields[2] == "T") {
         const auto heading = number(1), roll = number(3), pitch = number(4);
         if (!heading || !roll || !pitch) return;
         motion.heading = Angle::degrees(*heading);
         motion.roll = Angle::degrees(*roll);
         motion.pitch = Angle::degrees(*pitch);
+        keep(seconds_of_clock(number(0)), motion);
     }
+}
+
+// Receivers differ in the order of their sentences: it may be of the epoch that begins behind it. Without a time it is
+// of the one before.
+void NmeaEpochs::keep(std::optional<double> seconds, const LogMotion& told) {
+    const bool of_row = row_ && (!seconds || std::abs(row_->seconds - *seconds) < same_time_s);
+    if (of_row) return add_words(row_->epoch.motion, told);
+    if (seconds) words_.push_back({*seconds, told});
 }
 
 void NmeaEpochs::finish_row() {
@@ -275,7 +321,7 @@ bool NmeaEpochs::date_rows() {
 }
 
 Result<ReceiverLog> NmeaEpochs::finish(const std::string& name) {
-    finish_row();
+    share_words(std::nullopt);
     if (!rows_.empty() && !date_rows())
         return fail(ErrorCode::input,
                     fmt::format("{}: {} epochs and no date in them; expected RMC or ZDA sentences with one", name,

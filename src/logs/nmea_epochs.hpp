@@ -7,7 +7,8 @@
 namespace skyloop {
 
 /// Takes sentences one after the other. Those of one time of day are one epoch, with the sentences without a time that
-/// follow them. The date is that of RMC or ZDA, counted on over midnight; epochs before the first date are dated by it.
+/// follow them, and what makers' sentences tell of that time, which may come first. The date is that of RMC or ZDA,
+/// counted on over midnight; epochs before the first date are dated by it.
 class NmeaEpochs {
 public:
     explicit NmeaEpochs(const LogReading& reading) : geoid_(reading.geoid), for_track_(reading.for_track) {}
@@ -27,6 +28,11 @@ private:
         std::optional<Metres> altitude, separation;
         int listed_used = 0;
     };
+    // What a maker's sentence tells of the motion at a time of day.
+    struct MakersWord {
+        double seconds = 0;
+        LogMotion motion;
+    };
     void take_time(const std::optional<NmeaTime>& time);
     void take_rmc(const Rmc& rmc);
     void take_gga(const Gga& gga);
@@ -34,6 +40,8 @@ private:
     void take_gsv(const Gsv& gsv);
     void take_motion(const NmeaMessage& message);
     void take_maker(std::string_view sentence);
+    void keep(std::optional<double> seconds, const LogMotion& told);
+    void share_words(std::optional<double> next_seconds);
     void take_ground(const std::optional<NmeaPosition>& position);
     void finish_row();
     void place(Row& row);
@@ -45,6 +53,7 @@ private:
     ReceiverLog log_;
     std::optional<Row> row_;
     std::vector<Row> rows_;
+    std::vector<MakersWord> words_;  // of times other than the row's, whose epochs may begin behind them
     std::vector<std::string> talkers_;
     std::size_t senseless_ = 0, without_separation_ = 0, without_height_ = 0;
 };

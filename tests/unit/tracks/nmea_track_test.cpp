@@ -61,6 +61,44 @@ TEST(NmeaTrack, TakesClimbAndAttitudeWhereTheyAreTold) {
     EXPECT_THAT(track.notes, ElementsAre(HasSubstr("come without roll and pitch")));
 }
 
+std::string pubx_00(std::string_view time, double down) {
+    return nmea(fmt::format("PUBX,00,{},4730.0000,N,00815.0000,E,548.0,G3,1.0,1.0,36.0,90.0,{:.3f},,0.8,1,1,10,0,0",
+                            time, down));
+}
+
+std::string pashr(std::string_view time, double heading) {
+    return nmea(fmt::format("PASHR,{},{:.1f},T,-4.0,2.5,0.0,0.1,0.1,0.2,1,1", time, heading));
+}
+
+TEST(NmeaTrack, MakersSentencesAreOfTheirTimeWhereTheyComeFirst) {
+    const Track track =
+        track_of(pubx_00("120000.00", -3.5) + pashr("120000.000", 120.5) + rmc("120000.00") + gga("120000.00") +
+                 pubx_00("120001.00", -1.5) + pashr("120001.000", 90) + rmc("120001.00") + gga("120001.00"));
+    ASSERT_EQ(track.points.size(), 2u);
+    const double climbs[] = {3.5, 1.5}, headings[] = {120.5, 90};
+    for (std::size_t i = 0; i < 2; ++i) {
+        ASSERT_TRUE(track.points[i].velocity && track.points[i].attitude) << i;
+        const Eigen::Vector3d enu = LocalFrame(place_of(track, i)).to_enu(*track.points[i].velocity).vector();
+        EXPECT_NEAR(enu.z(), climbs[i], 1e-6) << i;
+        EXPECT_NEAR(track.points[i].attitude->yaw().deg(), headings[i], 1e-9) << i;
+    }
+}
+
+TEST(NmeaTrack, AttitudesOfAFasterSensorMakeNoEpochs) {
+    std::string log;
+    for (const char* second : {"120000", "120001"}) {
+        log += rmc(fmt::format("{}.00", second)) + gga(fmt::format("{}.00", second));
+        for (int tenth = 1; tenth < 10; ++tenth)
+            log += pashr(fmt::format("{}.{}00", second, tenth), 100 + tenth);
+    }
+    const Track track = track_of(log);
+    ASSERT_EQ(track.points.size(), 2u);
+    for (const TrackRow& row : track.points) {
+        ASSERT_TRUE(row.attitude);
+        EXPECT_NEAR(row.attitude->yaw().deg(), 101, 1e-9) << "the nearest";
+    }
+}
+
 TEST(NmeaTrack, ReadsRmcAlone) {
     const Track track = track_of(rmc("120000.00") + rmc("120001.00"));
     ASSERT_EQ(track.points.size(), 2u);
