@@ -77,8 +77,9 @@ std::optional<double> multiplier_of(char id) {
         case '-':
         case '?':
         case '0':
-        case '1':
             return 1;
+        case '1':
+            return 1e1;
         case 'A':
             return 1e-1;
         case 'B':

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "skyloop/base/text_file.hpp"
+#include "skyloop/logs/dataflash.hpp"
 #include "skyloop/protocol/ubx_mon.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
 #include "skyloop/protocol/ubx_satellites.hpp"
@@ -394,6 +395,26 @@ TEST(Dataflash, CountsThatAreNoneAreNought) {
         EXPECT_EQ(read.epochs[0].type, FixType::none);
         EXPECT_EQ(*read.epochs[0].satellites_used, 0);
     }
+}
+
+// LogStructure.h, log_Multipliers: letters from 'A' on are tenths, hundredths, …, digits are powers of ten.
+TEST(Dataflash, ScalesByMultipliersOfFmtu) {
+    ByteWriter log;
+    dataflash_format(log, 140, "TEST", "HHHH", "Plain,Tens,Hundreds,Tenths");
+    log.put(std::uint8_t{0xA3}).put(std::uint8_t{0x95}).put(std::uint8_t{128}).put(std::uint8_t{129});
+    log.put(std::uint8_t{44}).text("FMTU", 4).text("QBNN", 16).text("TimeUS,FmtType,UnitIds,MultIds", 64);
+    log.put(std::uint8_t{0xA3}).put(std::uint8_t{0x95}).put(std::uint8_t{129}).put(std::uint64_t{0});
+    log.put(std::uint8_t{140}).text("----", 16).text("012A", 16);
+    log.put(std::uint8_t{0xA3}).put(std::uint8_t{0x95}).put(std::uint8_t{140});
+    for (int i = 0; i < 4; ++i)
+        log.put(std::uint16_t{7});
+    DataflashReader reader(log.bytes);
+    const auto record = reader.next();
+    ASSERT_TRUE(record.has_value());
+    EXPECT_DOUBLE_EQ(record->value("Plain").value_or(0), 7);
+    EXPECT_DOUBLE_EQ(record->value("Tens").value_or(0), 70);
+    EXPECT_DOUBLE_EQ(record->value("Hundreds").value_or(0), 700);
+    EXPECT_DOUBLE_EQ(record->value("Tenths").value_or(0), 0.7);
 }
 
 TEST(Dataflash, RefusesWhatItCannotPlace) {
