@@ -10,6 +10,7 @@
 #include "skyloop/emulator/pacer.hpp"
 #include "skyloop/emulator/station.hpp"
 #include "skyloop/fault/timeline_keys.hpp"
+#include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop {
 namespace {
@@ -23,6 +24,12 @@ bool waits_for_client(const TimelineEntry& entry) { return entry.when && !entry.
 bool leads_time(const Command& command, const Pacer& pacer) {
     const CommandKind* kind = find_command_kind(command_name(command.verb));
     return kind != nullptr && kind->live_only && pacer.is_virtual();
+}
+
+// What a climb or a fall adds is none of it.
+MetresPerSecond ground_speed(const TruthState& truth) {
+    const Eigen::Vector3d enu = LocalFrame(truth.geodetic).to_enu(truth.velocity).vector();
+    return MetresPerSecond(std::hypot(enu.x(), enu.y()));
 }
 
 // All receivers have one clock: a fault of several must not act on it several times.
@@ -266,7 +273,7 @@ double Director::strength(std::string_view fault, int occurrence, GpsTime now,
 void Director::show(const EpochSeen& seen) {
     if (seen.station == 0) {
         const TruthState& truth = seen.trace.truth;
-        timeline_.look(seen.now, {truth.geodetic, truth.velocity.length(), seen.trace.epoch.fix.has_position()});
+        timeline_.look(seen.now, {truth.geodetic, ground_speed(truth), seen.trace.epoch.fix.has_position()});
     }
     for (RunObserver* observer : observers_)
         observer->on_epoch(seen);

@@ -293,6 +293,19 @@ TEST(Director, TriggersHearTheClient) {
     EXPECT_THAT(run->witness.happened, ElementsAre("receiver_silent begins", "receiver_silent ends"));
 }
 
+TEST(Director, TriggersTakeTheSpeedOverTheGround) {
+    const auto happened = [](const std::string& goal) {
+        const auto run = directed(
+            "[trajectory]\nkind = \"waypoints\"\n[[trajectory.waypoint]]\nat = [46, 30, 0]\nspeed_mps = 20\n"
+            "[[trajectory.waypoint]]\nat = " +
+            goal + "\n[[fault]]\nkind = \"receiver_silent\"\nwhen_faster_mps = 4\n");
+        run_for(*run, 5s);
+        return run->witness.happened;
+    };
+    EXPECT_THAT(happened("[46, 30, 1000]"), IsEmpty()) << "it climbs on the spot";
+    EXPECT_THAT(happened("[46.01, 30, 0]"), ElementsAre("receiver_silent begins"));
+}
+
 TEST(Director, TriggersFollowTheVehicle) {
     const auto run = directed(
         "[[fault]]\nkind = \"receiver_silent\"\nwhen_mavlink_mode = \"AUTO\"\nwhen_armed = true\nfor_s = 2\n"
