@@ -65,16 +65,30 @@ Result<void> apply_playback(const RunOptions& options, Scenario& scenario) {
     return {};
 }
 
-Result<void> apply_time(const RunOptions& options, Scenario& scenario) {
-    if (options.start == "now") {
-        scenario.run.start.reset();
-        scenario.run.start_now = true;
-    } else if (!options.start.empty()) {
+// A repeated run begins when the recorded one did: what it heard and was told has its instants from then on. The option
+// may be there, as all that changed that run.
+Result<void> apply_start(const RunOptions& options, RunSettings& run) {
+    if (options.start.empty()) return {};
+    std::optional<GpsTime> start;
+    if (options.start != "now") {
         const auto utc = parse_instant(options.start);
         if (!utc) return fail(ErrorCode::usage, "--start: " + utc.error().message + ", or now");
-        scenario.run.start = to_gps_time(*utc, LeapSeconds::announced());
-        scenario.run.start_now = false;
+        start = to_gps_time(*utc, LeapSeconds::announced());
     }
+    if (options.repeat.empty()) {
+        run.start = start;
+        run.start_now = !start;
+    } else if (start && start != run.start) {
+        return fail(
+            ErrorCode::usage,
+            fmt::format("--start {}: the run of --repeat {} began at another time; expected that, or no --start",
+                        options.start, options.repeat));
+    }
+    return {};
+}
+
+Result<void> apply_time(const RunOptions& options, Scenario& scenario) {
+    if (const auto applied = apply_start(options, scenario.run); !applied) return applied;
     if (options.duration) {
         if (!(*options.duration > 0 && *options.duration < 3.2e9))
             return fail(ErrorCode::usage,

@@ -346,6 +346,19 @@ timeout_s = 100
         for name in ("port0.out", "port1.out", "port1.in", "port1.in_times", "fixes.csv"):
             self.assertEqual((again / name).read_bytes(), (first / name).read_bytes(), name)
 
+    def test_a_repeat_begins_when_the_run_did_whatever_now_is(self):
+        first, again = self.path / "first", self.path / "again"
+        skyloop("simulate", self.scenario, "--start", "now", "--duration", 3, "--out", first)
+        time.sleep(0.01)
+        done = skyloop("simulate", self.scenario, "--start", "now", "--duration", 3, "--repeat", first, "--out", again)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for name in ("port0.out", "fixes.csv"):
+            self.assertEqual((again / name).read_bytes(), (first / name).read_bytes(), name)
+        done = skyloop("simulate", self.scenario, "--start", "2024-03-05T13:00:00Z", "--duration", 3, "--repeat", first,
+                       "--out", again)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("began at another time", done.stderr)
+
     def test_a_repeat_does_not_write_over_what_it_repeats(self):
         first, link = self.path / "first", self.path / "link"
         skyloop("simulate", self.scenario, "--duration", 3, "--out", first)
