@@ -24,13 +24,6 @@ std::vector<std::string> receiver_names(const Emulator& emulator) {
     return names;
 }
 
-// The first wire's tty, for probes.
-std::vector<std::string> probe_environment(const Emulator& emulator) {
-    if (emulator.wires().empty()) return {};
-    const std::string description = emulator.wires().front().link.transport().description();
-    return {"SKYLOOP_PORT=" + description.substr(0, description.rfind(" ("))};
-}
-
 // What displays show of them. @param going_on the run: what is undecided is pending
 std::vector<VerdictStatus> verdict_states(const std::vector<Verdict>& verdicts, bool going_on) {
     std::vector<VerdictStatus> states;

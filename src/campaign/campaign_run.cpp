@@ -148,7 +148,8 @@ Result<RunResult> run_of_campaign(const CampaignRunSetup& setup, const PlannedRu
     if (!assembly) return failed_result(std::move(result), assembly.error());
     Emulator& emulator = *assembly->emulator;
     const bool live = !campaign_mode(*scenario).virtual_time;
-    Judge judge(scenario->expectations, {assembly->start, names_of_receivers(emulator), live, {}, setup.orphans});
+    Judge judge(scenario->expectations,
+                {assembly->start, names_of_receivers(emulator), live, probe_environment(emulator), setup.orphans});
     RunMetrics metrics(assembly->start);
     emulator.add_observer(&judge);
     emulator.add_observer(&metrics);

@@ -225,4 +225,10 @@ void Emulator::run_epochs(Nanoseconds lateness) {
     }
 }
 
+std::vector<std::string> probe_environment(const Emulator& emulator) {
+    if (emulator.wires().empty()) return {};
+    const std::string description = emulator.wires().front().link.transport().description();
+    return {"SKYLOOP_PORT=" + description.substr(0, description.rfind(" ("))};
+}
+
 }  // namespace skyloop

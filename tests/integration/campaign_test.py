@@ -283,11 +283,19 @@ def test_vehicle(folder):
     assert "1 passed, 1 failed" in said and "not met      1 of 2 runs: vehicle" in said, said
 
 
+def test_a_probe_beside_a_vehicle_finds_the_port(folder):
+    path = write_vehicle_scenario(folder / "probe.toml", 1, "sleep 4")
+    probe = json.dumps(["sh", "-c", 'test -c "$SKYLOOP_PORT"'])
+    path.write_text(path.read_text() + f"[[expect]]\ncommand = {probe}\nat_s = 1\n")
+    assert "1 passed" in campaign(path, "--out", folder / "probe").stdout
+
+
 def main():
     with open_folder() as name:
         folder = pathlib.Path(name)
         for test in (test_plan, test_same_bytes, test_database, test_replay, test_shards, test_kills, test_stop,
-                     test_mistakes, test_vehicle, test_a_killed_worker_takes_its_vehicle_along):
+                     test_mistakes, test_vehicle, test_a_probe_beside_a_vehicle_finds_the_port,
+                     test_a_killed_worker_takes_its_vehicle_along):
             began = time.monotonic()
             test(folder)
             print(f"{test.__name__}: {time.monotonic() - began:.1f} s")

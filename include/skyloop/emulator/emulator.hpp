@@ -102,4 +102,8 @@ private:
     std::function<void(GpsTime)> rest_;
 };
 
+/// What programs find in their environment that expectations ask: SKYLOOP_PORT, the path of the first wire or its
+/// address. Empty: there is none.
+std::vector<std::string> probe_environment(const Emulator& emulator);
+
 }  // namespace skyloop
