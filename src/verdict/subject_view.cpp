@@ -148,8 +148,8 @@ bool is_reconfiguration(const MessageSeen& seen) {
     if (seen.kind == StreamKind::ubx)
         return seen.name.starts_with("CFG-") && seen.bytes.size() >= 8 && !is_poll(seen.name, seen.bytes.size() - 8);
     if (seen.kind != StreamKind::nmea) return false;
-    static constexpr std::string_view setting[] = {"PUBX,40", "PUBX,41", "PMTK2",   "PMTK3",
-                                                   "PAIR050", "PAIR062", "PAIR066", "PAIR864"};
+    static constexpr std::string_view setting[] = {"PUBX,40", "PUBX,41", "PMTK2",   "PMTK3",   "PAIR050", "PAIR062",
+                                                   "PAIR066", "PAIR080", "PAIR400", "PAIR410", "PAIR513", "PAIR864"};
     return std::any_of(std::begin(setting), std::end(setting),
                        [&seen](std::string_view prefix) { return seen.name.starts_with(prefix); });
 }

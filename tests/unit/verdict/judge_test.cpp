@@ -119,6 +119,9 @@ TEST(JudgeSubjects, APollIsNoReconfiguration) {
     EXPECT_EQ(after("PUBX,00", 0), failed);
     EXPECT_EQ(after("PMTK220", 0), passed);
     EXPECT_EQ(after("PMTK605", 0), failed);
+    for (const char* setting : {"PAIR050", "PAIR080", "PAIR400", "PAIR410", "PAIR513"})
+        EXPECT_EQ(after(setting, 0), passed) << setting;
+    EXPECT_EQ(after("PAIR051", 0), failed);
 }
 
 TEST(JudgeSubjects, BeliefsLastUntilTheyChange) {
