@@ -28,8 +28,6 @@ public:
         if (!seen.leaves) return [] { return std::vector<Bytes>{}; };
         MspSensorGps message = firmware::msp_sensor_gps(seen.reported);
         message.instance = instance_;
-        // Betaflight takes any other number for a fix, ArduPilot and iNav take 0 for none, too.
-        if (message.fix_type == 1) message.fix_type = 0;
         return [message] { return std::vector<Bytes>{encode_msp(message)}; };
     }
 

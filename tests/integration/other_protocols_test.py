@@ -290,7 +290,7 @@ class OtherProtocolsTest(unittest.TestCase):
     def check_no_fix(self, m):
         if isinstance(m, Msp):
             self.assertEqual((m.fix_type, m.satellites, m.lat, m.lon, m.north, m.h_acc, m.dop),
-                             (1, 0, 0, 0, 0, 0xFFFF, 9999))
+                             (0, 0, 0, 0, 0, 0xFFFF, 9999))
         elif isinstance(m, GpsInput):
             self.assertEqual((m.fix_type, m.satellites, m.lat, m.lon, m.north, m.ignore, m.hdop), (1, 0, 0, 0, 0, 0xFF, 65535))
         else:

@@ -76,7 +76,8 @@ std::vector<Bytes> mavlink_messages(const NavigationState& state) {
 MspSensorGps msp_sensor_gps(const NavigationState& state) {
     const Fix& fix = state.epoch.fix;
     MspSensorGps message;
-    message.fix_type = autopilot_fix_type(state);
+    // Betaflight takes any number but 0 for a fix; to ArduPilot and iNav 0 is none, too.
+    if (has_solution(state)) message.fix_type = autopilot_fix_type(state);
     message.satellites = reported_satellites(fix);
     const WeekAndTow stamp = gps_stamp(state);
     if (state.time.date) message.gps_week = field<std::uint16_t>(static_cast<double>(stamp.week));

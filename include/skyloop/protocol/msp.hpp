@@ -49,9 +49,10 @@ struct MspSensorGps {
         "speed_acc_mps*1e-2!65535 dop*1e-2 lon_deg*1e-7 lat_deg*1e-7 msl_m*1e-2 vel_north_mps*1e-2 "
         "vel_east_mps*1e-2 vel_down_mps*1e-2 course_deg*1e-2 yaw_deg*1e-2!65535 year month day hour minute second";
     std::uint8_t instance = 0;
-    std::uint16_t gps_week = 0xFFFF;   ///< not wrapped; 65535 unknown
-    std::uint32_t ms_tow = 0;          ///< ms
-    std::uint8_t fix_type = 0;         ///< 0 no receiver, 1 none, 2 2D, 3 3D, 4 differential, 5 RTK float, 6 RTK fixed
+    std::uint16_t gps_week = 0xFFFF;  ///< not wrapped; 65535 unknown
+    std::uint32_t ms_tow = 0;         ///< ms
+    std::uint8_t fix_type =
+        0;  ///< 0 no receiver or no fix, 1 none, 2 2D, 3 3D, 4 differential, 5 RTK float, 6 RTK fixed
     std::uint8_t satellites = 0;       ///< used
     std::uint16_t h_acc = 0xFFFF;      ///< cm
     std::uint16_t v_acc = 0xFFFF;      ///< cm

@@ -67,7 +67,7 @@ TEST_F(OtherProtocols, MspTellsTheSolution) {
 TEST_F(OtherProtocols, MspWithoutAFixHasNoPosition) {
     const MspSensorGps m = msp_sensor_gps(without_fix());
     EXPECT_EQ(m.gps_week, 0xFFFF);
-    EXPECT_EQ(m.fix_type, 1);
+    EXPECT_EQ(m.fix_type, 0) << "any other number is a fix to Betaflight";
     EXPECT_EQ(m.latitude, 0);
     EXPECT_EQ(m.h_acc, 0xFFFF);
     EXPECT_EQ(m.dop, 9999);
@@ -93,7 +93,7 @@ TEST_F(OtherProtocols, AnUnknownWeekLeavesTheTimeOfWeek) {
 TEST_F(OtherProtocols, AFixBeyondTheUsersLimitsIsNone) {
     NavigationState state = navigating();
     state.fix_ok = false;
-    EXPECT_EQ(msp_sensor_gps(state).fix_type, 1);
+    EXPECT_EQ(msp_sensor_gps(state).fix_type, 0);
     EXPECT_EQ(mavlink_gps_input(state).ignore_flags, 0xFF);
     EXPECT_EQ(pvt(state).mode, 0);
 }
@@ -105,7 +105,7 @@ TEST_F(OtherProtocols, FixTypesAreThoseOfTheAutopilots) {
         {FixType::dgnss, 4}, {FixType::rtk_float, 5},      {FixType::rtk_fixed, 6}, {FixType::time_only, 1}};
     for (const auto& [type, code] : kinds) {
         state.epoch.fix.type = type;
-        EXPECT_EQ(msp_sensor_gps(state).fix_type, code);
+        EXPECT_EQ(msp_sensor_gps(state).fix_type, code == 1 ? 0 : code);
         EXPECT_EQ(mavlink_gps_input(state).fix_type, code);
     }
 }
