@@ -221,6 +221,8 @@ bool StateTracker::hears_too_little(const ConfigStore& config) const {
 void StateTracker::keep_within_limits(const ConfigStore& config) {
     Fix& fix = state_.epoch.fix;
     state_.fix_ok = false;
+    // A solution beyond the limits is not lost, so that nothing goes on in its place.
+    if (fix.withheld) last_good_.reset();
     if (!fix.has_position()) return;
     constexpr int epochs_until_no_fix = 3;
     const bool moves_as_expected = within_limits(board_, config.value(key::navspg_dynmodel), fix);
@@ -229,7 +231,9 @@ void StateTracker::keep_within_limits(const ConfigStore& config) {
     const std::uint64_t mode = config.value(key::navspg_fixmode);
     const bool mode_forbids = two_d && mode == 2;
     const bool untold = fix.type == FixType::dead_reckoning && !tells_dead_reckoning(board_.personality);
-    if (epochs_beyond_limits_ >= epochs_until_no_fix || mode_forbids || untold || hears_too_little(config)) {
+    const bool beyond = epochs_beyond_limits_ >= epochs_until_no_fix;
+    if (beyond) last_good_.reset();
+    if (beyond || mode_forbids || untold || hears_too_little(config)) {
         fix.type = FixType::none;
         return;
     }
@@ -266,6 +270,7 @@ void StateTracker::coast(const Fix& before) {
     Fix& fix = state_.epoch.fix;
     if (fix.has_position()) {
         last_good_ = fix.time;
+        last_good_was_ok_ = state_.fix_ok;
         return;
     }
     if (!state_.position_known) return;
@@ -285,7 +290,7 @@ void StateTracker::coast(const Fix& before) {
     if (coasting) {
         fix.type = FixType::dead_reckoning;
         fix.position = carried(last_fix_.position, last_fix_.velocity, Seconds(step));
-        state_.fix_ok = true;
+        state_.fix_ok = last_good_was_ok_;
     }
     // The clock runs on by the drift that was solved last.
     fix.clock_bias = known.clock_bias + Metres(fix.clock_drift.value() * step);

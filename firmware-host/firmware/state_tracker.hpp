@@ -68,6 +68,7 @@ private:
     std::optional<GpsTime> first_tracking_;  ///< since the start
     std::optional<GpsTime> first_fix_;
     std::optional<GpsTime> last_good_;  ///< epoch of the last solution that was not coasted
+    bool last_good_was_ok_ = false;     ///< within limits, DOP and accuracy masks
     Fix last_fix_;
     std::optional<Fix> held_;  ///< the fix of static hold
     int epochs_beyond_limits_ = 0;

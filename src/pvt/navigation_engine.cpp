@@ -308,6 +308,7 @@ void NavigationEngine::State::fill_solved(const EpochSolution& epoch, const Rece
     }
     if (!plausible(filtered, settings)) {
         filter_.reset();
+        fix.withheld = true;
         return;
     }
     fill_motion(filtered, settings, fix);

@@ -74,6 +74,7 @@ struct Fix {
     Metres clock_bias;                        ///< receiver clock − GPST as solved
     MetresPerSecond clock_drift;              ///< of it
     std::vector<SatelliteStatus> satellites;  ///< all that the receiver knows of, ascending
+    bool withheld = false;                    ///< no fix, as what was solved lies beyond the dynamic model's limits
 
     [[nodiscard]] bool has_position() const { return type != FixType::none && type != FixType::time_only; }
     [[nodiscard]] int satellites_used() const {

@@ -83,5 +83,29 @@ TEST(ExportLimits, ARocketAtMachThreeLosesIt) {
     EXPECT_FALSE(low.lost);
 }
 
+// The board reckons for 3 s where a fix is lost; one that limits withhold is not lost. A balloon that leaves 12 km.
+TEST(ExportLimits, NothingIsReckonedBeyondThem) {
+    for (const std::string model : {"ideal", "modern"}) {
+        const Scenario scenario =
+            test::emulator_scenario("[run]\nstart = 2024-03-05T12:00:00Z\n[model]\nname = \"" + model +
+                                    "\"\n[trajectory]\nat = [28.5, -80.6, 11800]\n" + std::string(balloon) +
+                                    "\n[[receiver]]\nboard = \"ublox-f9p\"\n");
+        auto run = test::memory_run(scenario);
+        const std::atomic<bool> stop = false;
+        bool was_ok = false, was_beyond = false;
+        for (int t = 1; t <= 120; ++t) {
+            run.emulator->run_until(advanced(run.start, Seconds(t)), stop);
+            const firmware::NavigationState& state = run.emulator->receiver().state();
+            const TruthState truth = run.emulator->simulation().truth_at(state.epoch.fix.time);
+            const bool beyond = truth.geodetic.height.above_ellipsoid > Metres(12'060);
+            was_ok |= state.fix_ok;
+            was_beyond |= beyond;
+            EXPECT_FALSE(beyond && state.fix_ok) << model << " " << t;
+            EXPECT_NE(state.epoch.fix.type, FixType::dead_reckoning) << model << " " << t;
+        }
+        EXPECT_TRUE(was_ok && was_beyond) << model;
+    }
+}
+
 }  // namespace
 }  // namespace skyloop

@@ -120,5 +120,44 @@ TEST(LostFix, HasNoEstimateThatIsWorseThanThatOfNoSolution) {
     EXPECT_NEAR(r.told.report<NavPvt>().h_acc, 3300 + 60 * 7200, 1);
 }
 
+// Beyond the limits of a pedestrian: told as not OK, then withheld, never as dead reckoning that is OK.
+TEST(LostFix, IsNotCoastedBeyondTheLimits) {
+    LosingReceiver r;
+    r.told.config.set(in_ram, key::navspg_dynmodel, 3);
+    r.step(2);
+    r.fix.speed = MetresPerSecond(31);
+    for (int epoch = 1; epoch <= 6; ++epoch) {
+        r.step();
+        EXPECT_EQ(r.told.state.epoch.fix.type, epoch < 3 ? FixType::fix_3d : FixType::none) << epoch;
+        EXPECT_FALSE(r.told.state.fix_ok) << epoch;
+    }
+}
+
+TEST(LostFix, IsNotCoastedWhereTheSolutionItselfKeepsToTheLimits) {
+    LosingReceiver r;
+    r.step(2);
+    r.lose();
+    r.fix.withheld = true;
+    for (int epoch = 0; epoch < 3; ++epoch) {
+        r.step();
+        EXPECT_EQ(r.told.state.epoch.fix.type, FixType::none) << epoch;
+        EXPECT_FALSE(r.told.state.fix_ok) << epoch;
+    }
+    r.fix.withheld = false;
+    r.step();
+    EXPECT_EQ(r.told.state.epoch.fix.type, FixType::none) << "nor after it";
+}
+
+TEST(LostFix, CoastsNoBetterThanItWas) {
+    LosingReceiver r;
+    r.told.config.set(in_ram, key::navspg_pacc, 1);
+    r.step(2);
+    EXPECT_FALSE(r.told.state.fix_ok);
+    r.lose();
+    r.step();
+    EXPECT_EQ(r.told.state.epoch.fix.type, FixType::dead_reckoning);
+    EXPECT_FALSE(r.told.state.fix_ok);
+}
+
 }  // namespace
 }  // namespace skyloop::firmware

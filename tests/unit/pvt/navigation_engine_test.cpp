@@ -488,9 +488,13 @@ TEST(NavigationEngine, KeepsToTheLimitsOfItsDynamicModel) {
     const TrueReceiver balloon = receiver_at(Geodetic::degrees(46, 30, 30000), sample_time);
     NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
     ReceiverSettings settings;
-    EXPECT_EQ(engine.solve(measure(sky, balloon), settings).type, FixType::none);
+    const Fix high = engine.solve(measure(sky, balloon), settings);
+    EXPECT_EQ(high.type, FixType::none);
+    EXPECT_TRUE(high.withheld);
     settings.dynamic_model = DynamicModel::airborne_1g;
-    EXPECT_EQ(engine.solve(measure(sky, later(balloon, 1)), settings).type, FixType::fix_3d);
+    const Fix allowed = engine.solve(measure(sky, later(balloon, 1)), settings);
+    EXPECT_EQ(allowed.type, FixType::fix_3d);
+    EXPECT_FALSE(allowed.withheld);
     settings.airborne_ceiling = Metres(29'000);
     EXPECT_EQ(engine.solve(measure(sky, later(balloon, 2)), settings).type, FixType::none);
 
