@@ -233,7 +233,8 @@ void Receiver::Core::read_command_lines(PortUnit& unit, ByteSpan bytes, GpsTime 
     if (!port_is_on(store_, unit.id)) return;
     for (const StreamPiece& piece : unit.splitter.feed(bytes)) {
         count_input(unit.status, piece);
-        if (piece.kind == StreamKind::rtcm3) corrections_.take(piece.bytes, now, CorrectionLimits::of(store_));
+        if (piece.kind == StreamKind::rtcm3 && console_->hears_corrections(unit.id))
+            corrections_.take(piece.bytes, now, CorrectionLimits::of(store_));
     }
     const std::uint32_t baud = unit.configured_baud;
     for (const std::string& line : unit.command_line.feed(bytes)) {

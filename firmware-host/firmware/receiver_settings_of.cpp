@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/signal_keys.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/receiver_core.hpp"
@@ -83,7 +84,10 @@ ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board
         settings.most_satellites = is_fast ? std::min(settings.most_satellites, most) : most;
     }
     if (signals_changed(store) || base.signals.empty()) settings.signals = enabled_signals(store);
-    if (board.personality == Personality::ublox) settings.sbas_scan_mask = store.value(key::sbas_scan_mask);
+    if (board.personality == Personality::ublox) {
+        settings.sbas_scan_mask = store.value(key::sbas_scan_mask);
+        settings.sbas_ranging = store.flag(legacy_key::sbas_ranging);
+    }
     settings.beidou_b1c = takes_b1c(store);
     if (is_changed(store, key::navspg_min_elev))
         settings.elevation_mask = Angle::degrees(static_cast<double>(store.signed_value(key::navspg_min_elev)));

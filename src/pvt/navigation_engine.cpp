@@ -146,7 +146,7 @@ void NavigationEngine::State::add_equations(const Observations& observations, co
             if (first == nullptr || other->signal == first_signal(id.constellation)) std::swap(first, other);
             if (other != nullptr && others.size() < most_signals) others.push_back(other);
         }
-        if (first == nullptr) continue;
+        if (first == nullptr || (id.constellation == Constellation::sbas && !settings.sbas_ranging)) continue;
         const bool combined = parameters_.corrections.ionosphere_free && corrected_ == CorrectionState::none;
         if (!combined) others = {};
         const auto made = range_equation(transmitters(), *first, others, observations.receive_time);

@@ -246,7 +246,8 @@ std::uint8_t reference_of(std::uint64_t base) {
     return base >= 1 && base <= 4 ? static_cast<std::uint8_t>(base - 1) : std::uint8_t{0x0F};
 }
 
-// The pulse after the epoch. Flags: 0 UTC base, 1 UTC available, 2-3 RAIM active, 4 quantisation unknown.
+// The pulse after the epoch. Flags: 0 UTC base, 1 UTC available, 2-3 RAIM active, 4 quantisation unknown,
+// 5 not locked to the time (from generation 9 on).
 TimTp next_pulse(const ReportContext& context, const PulseGrid& grid) {
     const NavigationState& state = context.state;
     const GpsTime pulse = grid.next();
@@ -257,8 +258,9 @@ TimTp next_pulse(const ReportContext& context, const PulseGrid& grid) {
     m.tow_sub_ms = field<std::uint32_t>(static_cast<double>(sub_ms.count()) * 1e-6 * 4294967296.0);
     m.week = week_field<std::uint16_t>(state, value);
     const bool known = state.epoch.fix.type != FixType::none;
+    const int unknown = context.board.identity.generation > 8 ? 0x30 : 0x10;
     m.flags =
-        static_cast<std::uint8_t>((grid.base == 0 ? 1 : 0) | (state.time.leap_seconds ? 2 : 0) | (known ? 8 : 0x10));
+        static_cast<std::uint8_t>((grid.base == 0 ? 1 : 0) | (state.time.leap_seconds ? 2 : 0) | (known ? 8 : unknown));
     if (known)
         m.q_err = field<std::int32_t>(
             std::remainder(state.epoch.fix.clock_bias.value() / speed_of_light * 1e9, pulse_step_ns) * 1e3);

@@ -90,12 +90,13 @@ RxmRawx raw_measurements(const ReportContext& context) {
 struct CodeShape {
     int chips_per_ms = 1023, milliseconds = 1;
 };
-CodeShape code_shape(const Observation& o) {
+CodeShape code_shape(const Observation& o, bool b1c) {
     switch (o.satellite.constellation) {
         case Constellation::glonass:
             return {511, 1};
         case Constellation::beidou:
-            return {2046, 1};
+            if (o.signal == Signal::b1i && b1c) return {1023, 10};
+            return o.signal == Signal::l5 || o.signal == Signal::b3i ? CodeShape{10230, 1} : CodeShape{2046, 1};
         case Constellation::galileo:
             return o.signal == Signal::l1 ? CodeShape{1023, 4} : CodeShape{10230, 1};
         case Constellation::navic:
@@ -120,8 +121,8 @@ std::uint8_t multipath_indicator(const Observation& o) {
 }
 
 // The code phase grows with the range, as the log of a ZED-F9P with MEASX and RAWX side by side shows.
-RxmMeasxItem code_measurement(const Observation& o) {
-    const CodeShape shape = code_shape(o);
+RxmMeasxItem code_measurement(const Observation& o, bool b1c) {
+    const CodeShape shape = code_shape(o, b1c);
     const double travel_ms = o.pseudorange->value() / speed_of_light * 1e3;
     const double in_code = travel_ms - std::floor(travel_ms / shape.milliseconds) * shape.milliseconds;
     const double whole_ms = std::floor(in_code), phase = in_code - whole_ms;
@@ -157,8 +158,9 @@ RxmMeasx code_measurements(const ReportContext& context) {
         m.gps_tow_acc = m.glo_tow_acc = m.bds_tow_acc = m.qzss_tow_acc = accuracy;
         m.flags = 2;
     }
+    const bool b1c = takes_b1c(context.config);
     for (const Observation& o : state.epoch.observations.signals)
-        if (o.pseudorange) m.satellites.push_back(code_measurement(o));
+        if (o.pseudorange) m.satellites.push_back(code_measurement(o, b1c));
     return m;
 }
 
@@ -180,7 +182,10 @@ std::uint8_t data_signal_id(const Subframe& subframe, const ReportContext& conte
 
 std::vector<Bytes> received_subframes(const ReportContext& context) {
     std::vector<Bytes> frames;
+    const bool b1c = takes_b1c(context.config);
     for (const Subframe& subframe : context.state.epoch.subframes) {
+        // D1 and D2 come by B1I: on B1C there is B-CNAV1, which is not made.
+        if (b1c && subframe.signal == Signal::b1i) continue;
         RxmSfrbx m;
         m.gnss_id = gnss_id(subframe.satellite.constellation);
         m.sv_id = sv_id(subframe.satellite);

@@ -138,6 +138,13 @@ bool SeptentrioConsole::hears_commands(PortId port) const {
     return directions.empty() || same_word(directions[0], "auto") || same_word(directions[0], "CMD");
 }
 
+bool SeptentrioConsole::hears_corrections(PortId port) const {
+    const std::string_view descriptor = descriptor_of(port);
+    if (descriptor.empty()) return true;
+    const auto& directions = state_.settings.values("DataInOut", descriptor);
+    return directions.empty() || same_word(directions[0], "auto") || same_word(directions[0], "RTCMv3");
+}
+
 CommandOutcome SeptentrioConsole::execute(const std::string& line, ConfigStore& store, PortId from) {
     CommandOutcome outcome;
     const std::string_view descriptor = descriptor_of(from);

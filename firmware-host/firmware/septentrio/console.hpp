@@ -21,6 +21,8 @@ public:
 
     /// Answers end with the prompt; a wrong command is answered, a line of ten S takes the port back for commands.
     CommandOutcome execute(const std::string& line, ConfigStore& store, PortId from);
+    /// Whether the input of a port lets RTCM 3 in (DataInOut).
+    [[nodiscard]] bool hears_corrections(PortId port) const;
     /// After a restart the saved settings hold.
     void restart(ConfigStore& store);
     /// Takes an epoch in before what is due is made from it.

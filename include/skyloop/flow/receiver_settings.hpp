@@ -46,6 +46,7 @@ struct ReceiverSettings {
     Nanoseconds navigation_period{1'000'000'000};
     std::set<SystemSignal> signals{};  ///< that are tracked; empty: the first signal of every system
     std::uint64_t sbas_scan_mask = 0;  ///< of in_sbas_scan_mask()
+    bool sbas_ranging = true;          ///< SBAS satellites are used as those of other systems
     bool beidou_b1c = false;           ///< BeiDou's first signal is B1C, of BeiDou-3's MEO and IGSO satellites alone
     std::size_t most_satellites = 0;   ///< that a solution takes, the strongest; 0: all
     Angle elevation_mask = Angle::degrees(5);

@@ -207,6 +207,29 @@ TEST(RxmSfrbxMessage, NamesTheSignalThatCarriesTheData) {
     EXPECT_EQ(signals, (std::vector<int>{1, 5, 0, 0})) << "E1-B, E5b-I, L1 C/A and B1I D1: no pilots";
 }
 
+// B1C lasts 10 ms (BDS-SIS-ICD-B1C-1.0), B2a has 10.23 Mchip/s, and neither carries D1.
+TEST(RxmMeasxMessage, CountsTheChipsOfB1cAndB2a) {
+    UbxReport f10(10);
+    f10.config = ConfigStore([&] {
+        ConfigValues values = factory_config(f10.board);
+        values[0x1031000D] = 0;
+        values[0x1031000F] = 1;
+        values[0x10310022] = 1;
+        return values;
+    }());
+    f10.state.epoch.observations.signals = {
+        raw_signal({Constellation::beidou, 20}, Signal::b1i, 87.5 * 299792.458 + 0.05),
+        raw_signal({Constellation::beidou, 20}, Signal::l5, 87.5 * 299792.458 + 0.05)};
+    const auto m = f10.report<RxmMeasx>();
+    ASSERT_EQ(m.satellites.size(), 2u);
+    EXPECT_EQ(m.satellites[0].int_code_phase, 7);
+    EXPECT_EQ(m.satellites[0].whole_chips, 511);
+    EXPECT_EQ(m.satellites[1].int_code_phase, 0);
+    EXPECT_EQ(m.satellites[1].whole_chips, 5115);
+    f10.state.epoch.subframes = {{{Constellation::beidou, 20}, Signal::b1i, {}, 0, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}}};
+    EXPECT_TRUE(f10.frames(RxmSfrbx::message_id).empty());
+}
+
 TEST(RxmSfrbxMessage, HasTheNinthWordOfOlderFirmwareForGalileoAlone) {
     UbxReport f9(9);
     f9.state.epoch.subframes = {{{Constellation::galileo, 3}, Signal::l1, {}, 0, {1, 2, 3, 4, 5, 6, 7, 8}},

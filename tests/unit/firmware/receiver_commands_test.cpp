@@ -213,6 +213,9 @@ TEST(ReceiverCommands, LooksForTheSbasSatellitesOfTheScanMaskAlone) {
     EXPECT_TRUE(settings.tracks({sbas, 23}, Signal::l1));
     EXPECT_FALSE(settings.tracks({sbas, 24}, Signal::l1));
     EXPECT_TRUE(settings.tracks({gps, 24}, Signal::l1));
+    EXPECT_TRUE(settings.sbas_ranging);
+    bench.send(valset({{0x10360003, 0}})).wait(300ms);
+    EXPECT_FALSE(settings.sbas_ranging);
 }
 
 TEST(ReceiverCommands, SkipsMeasurementsWhenAskedForMoreThanItCanDo) {

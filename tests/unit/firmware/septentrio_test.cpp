@@ -154,7 +154,10 @@ TEST_F(Console, PromptsWhoAsksForIt) {
     EXPECT_EQ(say(""), "COM1>");
     EXPECT_EQ(say("# nothing"), "COM1>");
     EXPECT_EQ(say("SSSSSSSSSS"), "COM1>");
+    EXPECT_TRUE(console_.hears_corrections(PortId::uart1));
     say("sdio,COM1,none");
+    EXPECT_FALSE(console_.hears_corrections(PortId::uart1));
+    EXPECT_TRUE(console_.hears_corrections(PortId::usb));
     EXPECT_EQ(say("gecm"), "");
     EXPECT_THAT(say("gecm", PortId::usb), StartsWith("$R: gecm\r\n"));
     EXPECT_EQ(say("SSSSSSSSSS"), "COM1>");

@@ -210,6 +210,9 @@ TEST(TimTpMessage, NamesTheNextPulse) {
     EXPECT_EQ(m8.report<TimTp>().tow_ms, 218965000u);
     m8.lose_fix();
     EXPECT_EQ(m8.report<TimTp>().flags, 0x13);
+    UbxReport m9(9);
+    m9.lose_fix();
+    EXPECT_EQ(m9.report<TimTp>().flags & 0x38, 0x30) << "TpNotLocked";
     EXPECT_EQ(m8.report<TimTp>().q_err, 0);
 }
 

@@ -216,6 +216,21 @@ TEST(NavigationEngine, TakesTheStrongestWhereItHasNoTimeForAll) {
               observations.signals.size());
 }
 
+TEST(NavigationEngine, LeavesSbasOutWhereItsRangesAreNotWanted) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, {Constellation::gps, Constellation::sbas});
+    const Observations observations = measure(sky, receiver_at(antenna, sample_time));
+    for (const bool ranging : {true, false}) {
+        ReceiverSettings settings;
+        settings.sbas_ranging = ranging;
+        NavigationEngine engine(plain(FilterKind::none), {&sky});
+        const Fix fix = engine.solve(observations, settings);
+        EXPECT_EQ(fix.type, FixType::fix_3d);
+        EXPECT_EQ(std::any_of(fix.satellites.begin(), fix.satellites.end(),
+                              [](const auto& s) { return s.id.constellation == Constellation::sbas && s.used; }),
+                  ranging);
+    }
+}
+
 TEST(NavigationEngine, TakesTheStrongestOfThoseThatItCanUse) {
     const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
     Observations observations = measure(sky, receiver_at(antenna, sample_time));
