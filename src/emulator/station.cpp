@@ -158,7 +158,7 @@ void Station::lead_along(std::unique_ptr<Trajectory> path) {
 
 void Station::move_to(const Geodetic& place, GpsTime now) {
     parts_.simulation.replace_trajectory(
-        [&](std::unique_ptr<Trajectory> path) { return std::make_unique<MovedPath>(std::move(path), place, now); });
+        [&](std::unique_ptr<Trajectory> path) { return MovedPath::moved(std::move(path), place, now); });
 }
 
 std::optional<GpsTime> Station::next_change(GpsTime now) const {
