@@ -3,6 +3,7 @@
 #include <array>
 
 #include "skyloop/gnss/constants.hpp"
+#include "skyloop/gnss/gps_blocks.hpp"
 
 namespace skyloop {
 namespace {
@@ -88,7 +89,8 @@ double table_clock_delay(const Ephemeris& record) {
 constexpr int first_of_beidou_3 = 19;
 
 // B2I is BeiDou-2's alone: on that carrier BeiDou-3 sends B2b, another signal.
-bool sends_signal(SatelliteId satellite, Signal signal) {
+bool sends_signal(SatelliteId satellite, Signal signal, GpsTime when) {
+    if (satellite.constellation == Constellation::gps) return gps_sends(satellite.number, signal, when);
     if (satellite.constellation != Constellation::beidou) return true;
     if (signal == Signal::e5b) return satellite.number < first_of_beidou_3;
     return signal != Signal::l5 || sends_modern_signals(satellite);
@@ -214,7 +216,7 @@ TransmittedSignals transmitted_signals(const Ephemeris& record) {
     TransmittedSignals signals;
     const SatelliteId satellite = satellite_of(record);
     for (const Signal signal : emulated_signals(satellite.constellation))
-        if (sends_signal(satellite, signal))
+        if (sends_signal(satellite, signal, toe_of(record)))
             signals.push_back(
                 {signal, carrier_frequency(signal, channel), group_delay(record, signal).value_or(Seconds(0))});
     return signals;

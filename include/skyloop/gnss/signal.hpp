@@ -60,8 +60,9 @@ struct TransmittedSignal {
 };
 using TransmittedSignals = InplaceVector<TransmittedSignal, most_signals>;
 
-/// The emulated signals of the satellite of a record; no B2I of BeiDou-3, and B2a of its MEO and IGSO satellites alone.
-/// @param record tells the GLONASS channel and the group delays
+/// The emulated signals of the satellite of a record: of GPS what its block sends (gps_sends()); no B2I of BeiDou-3,
+/// and B2a of its MEO and IGSO satellites alone.
+/// @param record tells the GLONASS channel, the group delays and the time
 TransmittedSignals transmitted_signals(const Ephemeris& record);
 
 /// What a user of one signal subtracts from the broadcast clock, s, or nothing where the record does not tell.

@@ -160,5 +160,18 @@ TEST(Signal, B2iComesFromBeidou2AndB2aFromBeidou3Alone) {
     EXPECT_EQ(transmitted_signals(galileo).size(), 3U);
 }
 
+TEST(Signal, OfGpsAreWhatTheBlockOfTheDaySends) {
+    KeplerEphemeris record = delayed(Constellation::gps, NavigationMessage::lnav);
+    const auto sent = [&](int number, std::int64_t week) {
+        record.satellite.number = number;
+        record.toe = to_gps_time(week, 0.0);
+        return transmitted_signals(record).size();
+    };
+    EXPECT_EQ(sent(13, 2300), 1U);
+    EXPECT_EQ(sent(12, 2300), 2U);
+    EXPECT_EQ(sent(11, 2300), 3U);
+    EXPECT_EQ(sent(11, 2100), 1U);
+}
+
 }  // namespace
 }  // namespace skyloop::test

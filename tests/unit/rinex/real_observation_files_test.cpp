@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "skyloop/gnss/gps_blocks.hpp"
 #include "skyloop/rinex/observation_reader.hpp"
 #include "skyloop/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
@@ -75,6 +76,40 @@ TEST(RealObservationFiles, HoldTheValuesOfVersion2) {
     ASSERT_TRUE(l2);
     EXPECT_EQ(l2->pseudorange->value(), 24599076.429);
     EXPECT_EQ(l2->carrier_phase, 100729070.381);
+}
+
+// How many epochs of each GPS satellite have a signal.
+std::map<int, std::size_t> epochs_of_gps(const ObservationFile& file, Signal signal) {
+    std::map<int, std::size_t> epochs;
+    for (const Observations& epoch : file.epochs)
+        for (const Observation& o : epoch.signals)
+            if (o.satellite.constellation == Constellation::gps && o.signal == signal) ++epochs[o.satellite.number];
+    return epochs;
+}
+
+TEST(RealObservationFiles, HaveL2cAndL5OfTheBlocksThatSendThem) {
+    SKYLOOP_REQUIRE_SHARED(root, "receivers");
+    // An F9P takes L2C alone; in a street canyon it lost some.
+    const auto canyon = read_observation_file(root / "hk_tst_static_20200603/2020_06_03_TST_03.obs.gz");
+    ASSERT_TRUE(canyon) << canyon.error().message;
+    const GpsTime in_2020 = canyon->epochs[0].receive_time;
+    const auto l2c = epochs_of_gps(*canyon, Signal::l2);
+    EXPECT_EQ(l2c.size(), 7U);
+    for (const auto& [prn, epochs] : l2c)
+        EXPECT_TRUE(gps_sends(prn, Signal::l2, in_2020)) << prn;
+    std::size_t without = 0;
+    for (const auto& [prn, epochs] : epochs_of_gps(*canyon, Signal::l1)) {
+        if (epochs < 900 || l2c.contains(prn)) continue;
+        EXPECT_FALSE(gps_sends(prn, Signal::l2, in_2020)) << prn;
+        ++without;
+    }
+    EXPECT_EQ(without, 2U);
+    const auto roof = read_observation_file(root / "tlse_20240101/TLSE00FRA_R_20240011200_15M_01S_MO.rnx.gz");
+    ASSERT_TRUE(roof) << roof.error().message;
+    const auto l5 = epochs_of_gps(*roof, Signal::l5);
+    EXPECT_EQ(l5.size(), 6U);
+    for (const auto& [prn, epochs] : epochs_of_gps(*roof, Signal::l1))
+        EXPECT_EQ(gps_sends(prn, Signal::l5, roof->epochs[0].receive_time), l5.contains(prn)) << prn;
 }
 
 TEST(RealObservationFiles, HoldTheValuesOfVersion3) {
