@@ -79,7 +79,8 @@ std::string_view SentenceView::field(std::size_t index) const {
 
 Result<SentenceView> parse_sentence(std::string_view line) {
     if (line.ends_with('\n')) line.remove_suffix(1);
-    if (line.ends_with('\r')) line.remove_suffix(1);
+    while (line.ends_with('\r'))
+        line.remove_suffix(1);
     if (!line.starts_with('$') && !line.starts_with('!'))
         return fail(ErrorCode::input, fmt::format("{} does not start with '$'", quoted(line)));
     if (!std::all_of(line.begin(), line.end(), printable))
@@ -124,7 +125,7 @@ void SentenceSplitter::take(char c, std::vector<std::string>& lines) {
         carriage_return_ = false;
         return;
     }
-    if (c == '\r' && !carriage_return_ && !line_.empty()) {
+    if (c == '\r' && !line_.empty()) {
         carriage_return_ = true;
         return;
     }

@@ -66,12 +66,11 @@ Candidate sentence_at(ByteSpan bytes) {
     for (std::size_t i = 1; i < seen; ++i) {
         const std::uint8_t byte = bytes[i];
         if (byte == '\n') {
-            const std::size_t length = bytes[i - 1] == '\r' ? i - 1 : i;
-            const std::string_view line(reinterpret_cast<const char*>(bytes.data()), length);
+            const std::string_view line(reinterpret_cast<const char*>(bytes.data()), i);
             if (!parse_sentence(line)) return bad_piece(StreamKind::nmea);
             return {Candidate::Verdict::whole, StreamKind::nmea, i + 1};
         }
-        if (bytes[i - 1] == '\r' || byte == '$') return no_piece;
+        if ((bytes[i - 1] == '\r' && byte != '\r') || byte == '$') return no_piece;
         if (byte != '\r' && (byte < 0x20 || byte > 0x7E)) return no_piece;
     }
     return bytes.size() < splitter_line_limit ? unfinished_piece : no_piece;

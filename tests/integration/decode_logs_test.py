@@ -16,9 +16,9 @@ LOGS = SHARED / "serial"
 if not LOGS.is_dir():
     skip(f"{LOGS} is absent")
 
-SENTENCE = re.compile(rb"[$!]([\x20-\x23\x25-\x29\x2b-\x7e]*)\*([0-9A-Fa-f]{2})\r?\n")
+SENTENCE = re.compile(rb"[$!]([\x20-\x23\x25-\x29\x2b-\x7e]*)\*([0-9A-Fa-f]{2})\r{0,2}\n")
 # Whatever looks like a line of NMEA: from the mark to the end of the line, without another mark of a sentence's start.
-LINE = re.compile(rb"[$!][\x20-\x23\x25-\x7e]*\r?\n")
+LINE = re.compile(rb"[$!][\x20-\x23\x25-\x7e]*\r{0,2}\n")
 LONGEST_LINE = 256
 
 

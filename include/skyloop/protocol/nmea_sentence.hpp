@@ -56,8 +56,9 @@ Result<SentenceView> parse_sentence(std::string_view line);
 
 /// Finds sentences in a byte stream with whatever else it carries (RECEIVER.md 1.4).
 ///
-/// A line runs from `$` or `!` to LF or CR LF. A line that grows beyond 256 characters or meets a byte that is not
-/// printable is dropped, and the search goes on at that byte; a `$` starts a line anew. State: the line so far.
+/// A line runs from `$` or `!` to LF, before which carriage returns may stand. A line that grows beyond 256 characters
+/// or meets a byte that is not printable is dropped, and the search goes on at that byte; a `$` starts a line anew.
+/// State: the line so far.
 class SentenceSplitter {
 public:
     /// The lines that `bytes` completes, without line ends, checksums not yet verified.

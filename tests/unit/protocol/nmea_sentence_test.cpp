@@ -90,8 +90,11 @@ TEST(SentenceSplitter, DropsLongLinesAndResumes) {
 
 TEST(SentenceSplitter, StartsAnewAtADollarAndAfterALoneCarriageReturn) {
     SentenceSplitter splitter;
-    EXPECT_THAT(splitter.feed(to_bytes("$GNGGA,12$GNRMC,1*00\r\n$cut\rx\n$cut\r\r\n$a\r$b\r\n")),
+    EXPECT_THAT(splitter.feed(to_bytes("$GNGGA,12$GNRMC,1*00\r\n$cut\rx\n$cut\r\rx\n$a\r$b\r\n")),
                 ElementsAre("$GNRMC,1*00", "$b"));
+    EXPECT_EQ(splitter.dropped(), 4U);
+    // A line that some program ended once more.
+    EXPECT_THAT(splitter.feed(to_bytes("$ok*00\r\r\n")), ElementsAre("$ok*00"));
     EXPECT_EQ(splitter.dropped(), 4U);
 }
 
