@@ -55,15 +55,23 @@ CtlJson ctl_scalar(std::string_view text) {
 }
 
 // "1,2" is a list, "a,b" too; the program at the other end knows what it wanted.
-CtlJson ctl_value(std::string_view text) {
-    if (text.find(',') == std::string_view::npos) return ctl_scalar(text);
+template <class OneValue>
+CtlJson ctl_value(std::string_view text, OneValue one) {
+    if (text.find(',') == std::string_view::npos) return one(text);
     CtlJson list = CtlJson::array();
     while (true) {
         const std::size_t comma = text.find(',');
-        list.push_back(ctl_scalar(text.substr(0, comma)));
+        list.push_back(one(text.substr(0, comma)));
         if (comma == std::string_view::npos) return list;
         text.remove_prefix(comma + 1);
     }
+}
+
+// Names are texts, whatever they look like.
+CtlJson ctl_pair_value(std::string_view key, std::string_view text) {
+    const auto name = [](std::string_view one) { return CtlJson(one); };
+    if (key == "name" || key == "fault" || key == "text") return name(text);
+    return key == "receiver" ? ctl_value(text, name) : ctl_value(text, ctl_scalar);
 }
 
 Result<CtlJson> with_pairs(CtlJson body, std::span<const std::string> pairs) {
@@ -71,11 +79,9 @@ Result<CtlJson> with_pairs(CtlJson body, std::span<const std::string> pairs) {
         const std::size_t equals = pair.find('=');
         if (equals == std::string::npos || equals == 0)
             return fail(ErrorCode::usage, fmt::format("'{}' is no parameter; expected KEY=VALUE", pair));
-        const std::string key = pair.substr(0, equals), value = pair.substr(equals + 1);
+        const std::string key = pair.substr(0, equals);
         if (body.contains(key)) return fail(ErrorCode::usage, fmt::format("'{}' stands there twice", key));
-        // Names are texts, whatever they look like.
-        body[key] =
-            key == "name" || key == "receiver" || key == "fault" || key == "text" ? CtlJson(value) : ctl_value(value);
+        body[key] = ctl_pair_value(key, std::string_view(pair).substr(equals + 1));
     }
     return body;
 }
@@ -151,7 +157,7 @@ Result<ControlRequest> ctl_request(std::span<const std::string> words) {
     if (word == "speed" && wants(1, 1) && rest[0].find('=') == std::string::npos)
         return number_post("speed", "factor", rest[0]);
     if (word == "move" && wants(1, 1))
-        return ctl_post("/api/commands", {{"command", "move_to"}, {"at", ctl_value(rest[0])}});
+        return ctl_post("/api/commands", {{"command", "move_to"}, {"at", ctl_value(rest[0], ctl_scalar)}});
     if (word != "stop" && find_command_kind(word) != nullptr) return command_post({{"command", word}}, rest);
     return misused_ctl_command(word, rest.size());
 }
