@@ -169,6 +169,13 @@ Result<FixColumns> columns_of(const TableRow& first) {
     return FixColumns::of_numbers();
 }
 
+std::size_t rows_back_in_time(const std::vector<FixSample>& samples) {
+    std::size_t count = 0;
+    for (std::size_t i = 1; i < samples.size(); ++i)
+        if (samples[i].time && samples[i - 1].time && *samples[i].time < *samples[i - 1].time) ++count;
+    return count;
+}
+
 // What was left out or taken for something, a sentence each.
 void add_table_warnings(FixSeries& series, const FixColumns& columns, const TableCounts& counts) {
     const auto warn = [&](const std::string& what) {
@@ -180,6 +187,8 @@ void add_table_warnings(FixSeries& series, const FixColumns& columns, const Tabl
     if (counts.partial > 0)
         warn(fmt::format("{} rows without one of latitude, longitude and height are not counted as fixes",
                          counts.partial));
+    if (const std::size_t back = rows_back_in_time(series.samples); back > 0)
+        warn(fmt::format("{} rows tell an earlier time than the row before them", back));
     if (!columns.above_sea.empty())
         warn(fmt::format("the heights of {} are above sea level, not above the ellipsoid", columns.above_sea));
 }

@@ -145,6 +145,14 @@ TEST(FixSeries, rows_without_a_place_are_no_fixes) {
                                               HasSubstr("1 rows without one of latitude, longitude and height")));
 }
 
+TEST(FixSeries, rows_that_go_back_in_time_are_told) {
+    const auto series =
+        parse_fix_series("time,lat,lon,alt\n10,1,2,3\n11,1,2,3\n11,1,2,3\n9,1,2,3\n10,1,2,3\n", "d.csv");
+    ASSERT_TRUE(series) << series.error().message;
+    EXPECT_EQ(series->fixes(), 5u);
+    EXPECT_THAT(series->warnings, ElementsAre("d.csv: 1 rows tell an earlier time than the row before them"));
+}
+
 TEST(FixSeries, a_last_line_that_is_cut_is_left_out) {
     const auto series = parse_fix_series(fixes_header + fix_row + fix_row.substr(0, 60), "f.csv");
     ASSERT_TRUE(series) << series.error().message;
