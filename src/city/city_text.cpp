@@ -102,7 +102,7 @@ std::optional<std::string> name_inside(std::string_view name) {
     std::string plain(name);
     std::replace(plain.begin(), plain.end(), '\\', '/');
     if (plain.empty() || plain.front() == '/' || plain.find(':') != std::string::npos ||
-        plain.find('\0') != std::string::npos)
+        std::any_of(plain.begin(), plain.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }))
         return std::nullopt;
     std::string inside;
     for (std::size_t at = 0; at <= plain.size();) {

@@ -169,6 +169,9 @@ TEST(GltfFile, SaysWhatIsWrong) {
 
 TEST(GltfFile, OpensNoOtherFile) {
     EXPECT_THAT(refusal(read_gltf(document(",\"uri\":\"wall.bin\""))), HasSubstr("'wall.bin' beside it"));
+    // Names are quoted in messages, and those are one line.
+    EXPECT_THAT(refusal(read_gltf(document(",\"uri\":\"a\\nb.bin\""))), HasSubstr("'a?b.bin'; expected one inside"));
+    EXPECT_THAT(refusal(read_gltf(document(",\"uri\":\"a%0Ab.bin\""))), HasSubstr("'a%0Ab.bin'; expected one inside"));
     for (const char* outside :
          {"/etc/passwd", "../wall.bin", "a/%2e%2e/%2E%2E/wall.bin", "file:///etc/passwd", "C:\\\\wall.bin"})
         EXPECT_THAT(refusal(read_gltf(document(fmt::format(",\"uri\":\"{}\"", outside)))),

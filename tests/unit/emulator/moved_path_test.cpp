@@ -9,23 +9,22 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const Geodetic home = Geodetic::degrees(46, 30, 100);
-const GpsTime start = GpsTime{} + 24h;
-
-// 20 m/s to the east of home, in a straight line. Counts who asks it.
+// 20 m/s to the east of its home, in a straight line. Counts who asks it.
 class Eastward : public Trajectory {
 public:
+    static constexpr GpsTime start = GpsTime{} + 24h;
     explicit Eastward(int& asked) : asked_(asked) {}
     [[nodiscard]] TruthState at(GpsTime time) const override {
         ++asked_;
         TruthState state;
-        state.velocity = LocalFrame(home).to_ecef(Velocity<Enu>(Eigen::Vector3d(20, 0, 0)));
-        state.position = to_ecef(home) + Displacement<Ecef>(state.velocity.vector() * difference(time, start).value());
+        state.velocity = LocalFrame(home_).to_ecef(Velocity<Enu>(Eigen::Vector3d(20, 0, 0)));
+        state.position = to_ecef(home_) + Displacement<Ecef>(state.velocity.vector() * difference(time, start).value());
         state.geodetic = to_geodetic(state.position);
         return state;
     }
 
 private:
+    Geodetic home_ = Geodetic::degrees(46, 30, 100);
     int& asked_;
 };
 
@@ -36,8 +35,8 @@ Eigen::Vector3d velocity_at(const TruthState& state) {
 TEST(MovedPath, GoesOnInItsOwnDirectionOverTheGround) {
     int asked = 0;
     const Geodetic place = Geodetic::degrees(-33, 151, 20);
-    const auto path = MovedPath::moved(std::make_unique<Eastward>(asked), place, start);
-    const TruthState there = path->at(start), later = path->at(start + 10s);
+    const auto path = MovedPath::moved(std::make_unique<Eastward>(asked), place, Eastward::start);
+    const TruthState there = path->at(Eastward::start), later = path->at(Eastward::start + 10s);
     EXPECT_NEAR((there.position - to_ecef(place)).vector().norm(), 0, 1e-6);
     EXPECT_NEAR((velocity_at(there) - Eigen::Vector3d(20, 0, 0)).norm(), 0, 1e-9);
     const Eigen::Vector3d way = LocalFrame(place).to_enu(later.position - to_ecef(place)).vector();
@@ -47,7 +46,7 @@ TEST(MovedPath, GoesOnInItsOwnDirectionOverTheGround) {
 TEST(MovedPath, CostsAsMuchAfterManyMovesAsAfterOne) {
     int asked = 0;
     std::unique_ptr<Trajectory> path = std::make_unique<Eastward>(asked);
-    GpsTime now = start;
+    GpsTime now = Eastward::start;
     for (int i = 0; i < 1000; ++i, now += 100ms) {
         const Geodetic place = Geodetic::degrees(-60 + 0.12 * i, 0.3 * i - 150, i % 50);
         path = MovedPath::moved(std::move(path), place, now);
