@@ -1,5 +1,6 @@
 #include "skyloop/gnss/signal.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "skyloop/gnss/constants.hpp"
@@ -218,7 +219,7 @@ TransmittedSignals transmitted_signals(const Ephemeris& record) {
     for (const Signal signal : emulated_signals(satellite.constellation))
         if (sends_signal(satellite, signal, toe_of(record)))
             signals.push_back(
-                {signal, carrier_frequency(signal, channel), group_delay(record, signal).value_or(Seconds(0))});
+                {signal, carrier_frequency(signal, channel), sent_group_delay(record, signal).value_or(Seconds(0))});
     return signals;
 }
 
@@ -229,6 +230,14 @@ std::optional<Seconds> group_delay(const Ephemeris& record, Signal signal) {
     if (std::holds_alternative<SbasEphemeris>(record) && (signal == Signal::l1 || signal == Signal::l5)) delay = 0.0;
     if (!delay) return std::nullopt;
     return Seconds(*delay);
+}
+
+std::optional<Seconds> sent_group_delay(const Ephemeris& record, Signal signal) {
+    const auto told = group_delay(record, signal);
+    if (told) return told;
+    const auto emulated = emulated_signals(satellite_of(record).constellation);
+    if (std::find(emulated.begin(), emulated.end(), signal) == emulated.end()) return std::nullopt;
+    return Seconds(0);
 }
 
 std::optional<Seconds> table_group_delay(const Ephemeris& record, Signal signal) {

@@ -46,7 +46,7 @@ public:
         : parameters_(parameters),
           knowledge_(knowledge),
           received_(*knowledge.broadcast, parameters),
-          transmitters_(received_),
+          transmitters_(received_, parameters.corrections.ionosphere_free ? UntoldDelay::none : UntoldDelay::unknown),
           corrections_(parameters.corrections,
                        {knowledge.broadcast->ionosphere(), knowledge.geoid, knowledge.leap_seconds}),
           air_({IonosphereCorrection::klobuchar, TroposphereCorrection::niell, 0.5, true, false},

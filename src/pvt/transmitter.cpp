@@ -53,7 +53,8 @@ std::optional<Transmitter> BroadcastTransmitters::at(SatelliteId satellite, Sign
     const SplitTime reading = reading_at_transmission(receive_time, pseudorange);
     const std::optional<Ephemeris> record = source_.ephemeris(satellite, choice_.value_or(reading.time));
     if (!record) return std::nullopt;
-    const std::optional<Seconds> delay = group_delay(*record, signal);
+    const std::optional<Seconds> delay =
+        untold_ == UntoldDelay::none ? sent_group_delay(*record, signal) : group_delay(*record, signal);
     if (!delay) return std::nullopt;
 
     const auto* glonass = std::get_if<GlonassEphemeris>(&*record);

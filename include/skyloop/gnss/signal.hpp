@@ -56,7 +56,7 @@ std::optional<std::string_view> rinex_signal_code(Constellation constellation, S
 struct TransmittedSignal {
     Signal signal = Signal::l1;
     Hertz carrier;
-    Seconds group_delay;  ///< of the satellite's hardware against its clock; 0 where the broadcast does not tell
+    Seconds group_delay;  ///< sent_group_delay()
 };
 using TransmittedSignals = InplaceVector<TransmittedSignal, most_signals>;
 
@@ -71,10 +71,15 @@ TransmittedSignals transmitted_signals(const Ephemeris& record);
 /// 5.2.4.10). GLONASS: 0 for G1, −Δτ_n for G2. SBAS: 0. Almanacs: 0.
 std::optional<Seconds> group_delay(const Ephemeris& record, Signal signal);
 
-/// The same of clocks in tables, as those of SP3 files. They belong to the combination without ionosphere of L1 and L2,
-/// E1 and E5a, B1I and B3I, G1 and G2: of BeiDou, and of Galileo's I/NAV, another clock than the broadcast's. (Over 36
-/// satellites of 2023-01-01 BeiDou's clocks of CODE differ from the broadcast ones by 3.06 TGD1; the pair B1I and B3I
-/// gives 2.94.)
+/// What the emulated satellite's hardware delays a signal by against its clock: group_delay(), and 0 where the record
+/// does not tell, as of GPS L5. Who sends and who solves take both this, so that they agree. Nothing for a signal that
+/// is not emulated.
+std::optional<Seconds> sent_group_delay(const Ephemeris& record, Signal signal);
+
+/// The same as group_delay() of clocks in tables, as those of SP3 files. They belong to the combination without
+/// ionosphere of L1 and L2, E1 and E5a, B1I and B3I, G1 and G2: of BeiDou, and of Galileo's I/NAV, another clock than
+/// the broadcast's. (Over 36 satellites of 2023-01-01 BeiDou's clocks of CODE differ from the broadcast ones by 3.06
+/// TGD1; the pair B1I and B3I gives 2.94.)
 std::optional<Seconds> table_group_delay(const Ephemeris& record, Signal signal);
 
 }  // namespace skyloop

@@ -27,7 +27,9 @@ struct CorrectionParameters {
     TroposphereCorrection troposphere = TroposphereCorrection::niell;
     double relative_humidity = 0.5;   ///< that the receiver assumes
     bool default_ionosphere = false;  ///< where nothing is broadcast, default_klobuchar_coefficients()
-    bool ionosphere_free = false;     ///< of two carriers, where both are tracked, instead of a model
+    /// Of two carriers, where both are tracked, instead of a model. A signal whose group delay is not broadcast counts
+    /// as one without, as emulated satellites send it: else no satellite of a receiver of L1 and L5 could be combined.
+    bool ionosphere_free = false;
 };
 
 /// Variance of a pseudorange: s0² + s1²/sin² e + the code loop's own variance (MODELS.md 7.13), and what the receiver

@@ -32,13 +32,20 @@ public:
                                           Metres pseudorange) = 0;
 };
 
+/// What a group delay is that the broadcast does not tell, as that of GPS L5.
+enum class UntoldDelay {
+    unknown,  ///< as of real satellites
+    none,     ///< 0, as of emulated ones (sent_group_delay())
+};
+
 /// By broadcast records.
 ///
 /// State: GLONASS records near the present.
 class BroadcastTransmitters : public TransmitterSource {
 public:
     /// @param source outlives this
-    explicit BroadcastTransmitters(const NavigationSource& source) : source_(source) {}
+    explicit BroadcastTransmitters(const NavigationSource& source, UntoldDelay untold = UntoldDelay::unknown)
+        : source_(source), untold_(untold) {}
     /// The instant at which records are chosen from the source; else it is that of transmission.
     void choose_records_at(GpsTime time) { choice_ = time; }
     std::optional<Transmitter> at(SatelliteId satellite, Signal signal, GpsTime receive_time,
@@ -46,6 +53,7 @@ public:
 
 private:
     const NavigationSource& source_;
+    UntoldDelay untold_;
     std::optional<GpsTime> choice_;
     CarriedRecords carried_;
 };

@@ -70,6 +70,19 @@ TEST(Signal, TakesTheGroupDelayOfEachSystemAndSignal) {
     EXPECT_EQ(delay_of(SbasEphemeris{}, Signal::l1), 0);
 }
 
+TEST(SentGroupDelay, Is0WhereTheRecordDoesNotTellAndTheSatelliteSends) {
+    const KeplerEphemeris gps = delayed(Constellation::gps, NavigationMessage::lnav);
+    EXPECT_EQ(sent_group_delay(gps, Signal::l1), group_delay(gps, Signal::l1));
+    EXPECT_EQ(sent_group_delay(gps, Signal::l5), Seconds(0));
+    EXPECT_EQ(sent_group_delay(delayed(Constellation::galileo, NavigationMessage::inav), Signal::l5), Seconds(0));
+    EXPECT_EQ(sent_group_delay(delayed(Constellation::beidou, NavigationMessage::d1), Signal::l5), Seconds(0));
+    EXPECT_FALSE(sent_group_delay(gps, Signal::b1i));
+    EXPECT_FALSE(sent_group_delay(gps, Signal::e5b));
+    for (const Constellation c : {Constellation::gps, Constellation::galileo, Constellation::beidou})
+        for (const TransmittedSignal& s : transmitted_signals(delayed(c, NavigationMessage::inav)))
+            EXPECT_EQ(sent_group_delay(delayed(c, NavigationMessage::inav), s.signal), s.group_delay);
+}
+
 TEST(TableGroupDelay, IsThatAgainstThePairOfTheTable) {
     const auto of = [](const Ephemeris& record, Signal signal) { return table_group_delay(record, signal)->value(); };
     const auto combined = [&](const Ephemeris& record, Signal first, Signal second) {

@@ -134,8 +134,8 @@ Observations measured_behind_20_m(const SyntheticSky& sky, const TrueReceiver& r
     });
 }
 
-// E5a comes before E5b, and I/NAV tells no delay of it.
-TEST(NavigationEngine, CombinesTheFirstCarrierWhoseDelayIsTold) {
+// E5a comes before E5b. I/NAV tells no delay of it, and so it was sent without one.
+TEST(NavigationEngine, CombinesTheFirstOtherCarrier) {
     const SyntheticSky sky = test::synthetic_sky(sample_time, {Constellation::galileo});
     NavigationParameters parameters = plain(FilterKind::none);
     parameters.corrections.ionosphere_free = true;
@@ -149,6 +149,27 @@ TEST(NavigationEngine, CombinesTheFirstCarrierWhoseDelayIsTold) {
     const Fix fix = NavigationEngine(parameters, {&sky}).solve(observations, {});
     EXPECT_LT(error_of(fix, receiver), 1e-4);
     EXPECT_EQ(static_cast<std::size_t>(fix.satellites_used()), observations.signals.size() / 3);
+}
+
+// As a board of L1 and L5 measures. No record tells a delay of L5 and, in I/NAV, E5a.
+TEST(NavigationEngine, TakesTheIonosphereOutWithL5) {
+    using enum Constellation;
+    const SyntheticSky sky = test::synthetic_sky(sample_time, {gps, galileo});
+    const TrueReceiver receiver = receiver_at(antenna, sample_time);
+    Observations observations = measured_behind_20_m(sky, receiver);
+    std::erase_if(observations.signals, [](const Observation& o) {
+        return o.signal != Signal::l5 && o.signal != first_signal(o.satellite.constellation);
+    });
+    NavigationParameters parameters = plain(FilterKind::none);
+    parameters.corrections.ionosphere_free = true;
+    const Fix fix = NavigationEngine(parameters, {&sky}).solve(observations, {});
+    EXPECT_LT(error_of(fix, receiver), 1e-4);
+    for (const Constellation system : {gps, galileo})
+        EXPECT_TRUE(std::any_of(fix.satellites.begin(), fix.satellites.end(), [&](const SatelliteStatus& s) {
+            return s.used && s.id.constellation == system;
+        })) << constellation_name(system);
+    parameters.corrections.ionosphere_free = false;
+    EXPECT_GT(error_of(NavigationEngine(parameters, {&sky}).solve(observations, {}), receiver), 0.5);
 }
 
 // The model knows a tenth of what there is, and some satellites have one signal.
