@@ -250,8 +250,8 @@ RayTracedSceneSettings scene_effect_settings(const Scenario& scenario, double ep
     const ModernPropagationParameters& propagation = scenario.model.modern.propagation;
     settings.crowns = {propagation.loss_model.canopy_db_per_m, propagation.loss_model.most_foliage,
                        entry.foliage ? propagation.foliage.factor() : 0};
-    settings.antenna =
-        propagation.antenna.enabled ? propagation.link.antenna : AntennaPattern(Decibels(0), Decibels(0), 1);
+    // As ModernLinkBudget scales it for the direct ray: one antenna hears them all.
+    settings.antenna = propagation.link.antenna.scaled(propagation.antenna.factor());
     settings.opposite_hand_rejection = hand_rejection(scenario.model.modern.preset);
     return settings;
 }

@@ -101,6 +101,15 @@ Decibels AntennaPattern::gain(const SkyDirection& direction) const {
     return Decibels(at(around.below) * (1 - around.fraction) + at(around.above) * around.fraction);
 }
 
+AntennaPattern AntennaPattern::scaled(double factor) const {
+    AntennaPattern pattern = *this;
+    pattern.peak_ = peak_ * factor;
+    pattern.drop_ = drop_ * factor;
+    for (double& gain : pattern.gains_)
+        gain *= factor;
+    return pattern;
+}
+
 Result<std::vector<SatellitePowerPoint>> read_satellite_pattern(std::string_view text, std::string_view name) {
     static constexpr std::array<std::string_view, 1> headers{"off_boresight_deg,eirp_dbw"};
     const auto table = read_number_table(text, name, headers);

@@ -28,6 +28,9 @@ public:
     /// Linear between the rows of a table, around the compass too; constant beyond its elevations.
     [[nodiscard]] Decibels gain(const SkyDirection& direction) const;
 
+    /// The same antenna with all gains, dB, times a factor: 0 is isotropic.
+    [[nodiscard]] AntennaPattern scaled(double factor) const;
+
     /// G0, d and p of the formula.
     [[nodiscard]] Decibels peak() const { return peak_; }
     [[nodiscard]] Decibels drop() const { return drop_; }

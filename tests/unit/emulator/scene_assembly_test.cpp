@@ -95,6 +95,19 @@ TEST(SceneAssembly, CrownsOfTheSceneFollowTheKeysOfTrees) {
     EXPECT_EQ(scene_effect_settings(scenario, 1).crowns.factor, 0);
 }
 
+TEST(SceneAssembly, TheAntennaHearsAllRaysByTheScaleOfItsTerm) {
+    const auto gain_with = [](const std::string& term) {
+        const Scenario scenario =
+            emulator_scenario(std::string(demo_text) + "[model.modern.terms.antenna]\n" + term + "\n");
+        return scene_effect_settings(scenario, 1).antenna.gain({Angle::degrees(10), Angle::degrees(5)}).value();
+    };
+    const double whole = gain_with("scale = 1");
+    EXPECT_LT(whole, -5);
+    EXPECT_NEAR(gain_with("scale = 0.5"), whole / 2, 1e-12);
+    EXPECT_EQ(gain_with("scale = 0"), 0);
+    EXPECT_EQ(gain_with("enabled = false"), 0);
+}
+
 TEST(SceneAssembly, MissingAndDamagedFilesAreNamed) {
     const test::TemporaryFolder folder;
     const auto missing = with_scene("[scene]\nbuildings = \"/no/such/city.obj\"");

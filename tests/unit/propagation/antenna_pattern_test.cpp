@@ -37,6 +37,17 @@ TEST(AntennaPattern, ReadsATableByElevation) {
     EXPECT_EQ(gain_at(*marked, 0, 90), 5);
 }
 
+TEST(AntennaPattern, IsScaled) {
+    const AntennaPattern patch;
+    const auto table = AntennaPattern::parse("elevation_deg,gain_dbic\n0,-6\n90,5\n", "patch.csv");
+    ASSERT_TRUE(table);
+    for (const double elevation : {-20.0, 0.0, 17.0, 90.0})
+        for (const double factor : {0.0, 0.5, 1.0, 2.0}) {
+            EXPECT_NEAR(gain_at(patch.scaled(factor), 0, elevation), factor * gain_at(patch, 0, elevation), 1e-12);
+            EXPECT_NEAR(gain_at(table->scaled(factor), 0, elevation), factor * gain_at(*table, 0, elevation), 1e-12);
+        }
+}
+
 TEST(AntennaPattern, ReadsATableAroundTheCompass) {
     const auto pattern = AntennaPattern::parse(
         "azimuth_deg,elevation_deg,gain_dbic\n0,0,-4\n0,90,4\n90,0,-8\n90,90,4\n270,0,-6\n270,90,4\n360,0,-4\n",
