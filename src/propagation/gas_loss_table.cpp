@@ -6,6 +6,7 @@
 #include "sea_level.hpp"
 #include "skyloop/propagation/atmosphere_losses.hpp"
 #include "skyloop/propagation/gas_attenuation_p676.hpp"
+#include "skyloop/propagation/refraction_delay.hpp"
 
 namespace skyloop {
 namespace {
@@ -34,6 +35,11 @@ CubicStencil cubic_stencil(double x, std::size_t count, std::size_t below, Node&
         }
     }
     return stencil;
+}
+
+// Where the bent ray of a satellite arrives. The fit has a pole at −4.7°: below the horizon its bend holds.
+Angle apparent_elevation(Angle free_space_elevation, MslHeight antenna) {
+    return free_space_elevation + refraction_bending(std::max(free_space_elevation, Angle()), antenna);
 }
 
 // Elevation on a scale on which slant factors are nearly straight lines: the level path through a thin atmosphere.
@@ -79,9 +85,11 @@ Decibels GasLossTable::loss(Angle elevation, Metres antenna_height) {
 void GasLoss::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
     assert(arrivals.satellites.size() == sky.satellites.size());
     if (factor_ == 0) return;
-    const Metres height = sea_level_height(truth.geodetic, geoid_).above_sea_level;
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i)
-        arrivals.satellites[i].gas_loss = table_->loss(sky.satellites[i].elevation, height) * factor_;
+    const MslHeight height = sea_level_height(truth.geodetic, geoid_);
+    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
+        const Angle apparent = apparent_elevation(sky.satellites[i].elevation, height);
+        arrivals.satellites[i].gas_loss = table_->loss(apparent, height.above_sea_level) * factor_;
+    }
 }
 
 }  // namespace skyloop

@@ -21,7 +21,7 @@ namespace skyloop {
 class GasLossTable {
 public:
     explicit GasLossTable(Hertz carrier = Hertz(carrier_frequency_l1));
-    /// @param elevation apparent, taken as that of the straight line  @param antenna_height above sea level
+    /// @param elevation apparent: of the bent ray at the antenna  @param antenna_height above sea level
     Decibels loss(Angle elevation, Metres antenna_height);
 
 private:
@@ -33,7 +33,8 @@ private:
     std::array<std::vector<double>, heights> rows_;  // logarithm of the loss, by elevation
 };
 
-/// Writes the gas loss of each arrival: ITU-R P.676-13 through the reference atmosphere (MODELS.md 7.4).
+/// Writes the gas loss of each arrival: ITU-R P.676-13 through the reference atmosphere (MODELS.md 7.4), along the ray
+/// that arrives at the satellite's elevation and refraction_bending().
 class GasLoss : public PropagationEffect {
 public:
     /// @param geoid must outlive this; without one, the ellipsoidal height stands in

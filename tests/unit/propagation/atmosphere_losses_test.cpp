@@ -46,9 +46,25 @@ TEST(GasLossTable, HoldsBeyondItsEnds) {
 
 TEST(GasLoss, IsScaledAndSwitchedOff) {
     GasLoss normal({}, nullptr), half({true, 0.5, {}}, nullptr), off({false, 1, {}}, nullptr);
-    EXPECT_NEAR(after_loss(normal, 10).gas_loss.value(), 0.193, 0.001);
+    EXPECT_NEAR(after_loss(normal, 10).gas_loss.value(), 0.191, 0.001);
     EXPECT_NEAR(after_loss(half, 10).gas_loss.value(), after_loss(normal, 10).gas_loss.value() / 2, 1e-12);
     EXPECT_EQ(after_loss(off, 10).gas_loss.value(), 0);
+}
+
+// Through less air than at the elevation of the straight line.
+TEST(GasLoss, IsThatOfTheBentRay) {
+    GasLoss effect({}, nullptr);
+    GasLossTable table;
+    const auto at = [&](double apparent) { return table.loss(Angle::degrees(apparent), Metres(0)).value(); };
+    const auto loss = [&](double elevation) { return after_loss(effect, elevation).gas_loss.value(); };
+    EXPECT_NEAR(loss(1), at(1.4336), 1e-4);
+    EXPECT_NEAR(loss(5), at(5.1864), 1e-5);
+    EXPECT_LT(loss(5), at(5) * 0.98);
+    EXPECT_NEAR(loss(90), at(90), 1e-9);
+    // Whoever flies high sees satellites below the horizon.
+    EXPECT_NEAR(loss(0), at(0.5787), 1e-4);
+    for (const double below : {-1.0, -4.74, -4.8, -9.8, -30.0})
+        EXPECT_NEAR(loss(below), at(0.5), 1e-9) << below;
 }
 
 // Cloud and rain of one kind of weather.
