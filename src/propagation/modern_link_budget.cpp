@@ -38,6 +38,9 @@ DecibelWatts nominal_received_power(Constellation constellation, const ModernLin
     return p.gps;
 }
 
+// Whether a satellite of BeiDou is one of the high ones.
+bool is_geosynchronous(Metres range) { return range.value() > 30000e3; }
+
 // Semi-major axes of the constellations, m; BeiDou has two kinds, told by the distance.
 double nominal_orbit_radius(Constellation constellation, Metres range) {
     switch (constellation) {
@@ -48,7 +51,7 @@ double nominal_orbit_radius(Constellation constellation, Metres range) {
         case Constellation::glonass:
             return 25510e3;
         case Constellation::beidou:
-            return range.value() > 30000e3 ? geosynchronous_radius : 27906e3;
+            return is_geosynchronous(range) ? geosynchronous_radius : 27906e3;
         default:
             return geosynchronous_radius;
     }
@@ -75,11 +78,13 @@ SphericalRay ray_from_antenna(const Arrival& arrival, const TruthState& truth) {
 
 }  // namespace
 
-Decibels relative_signal_power(Constellation constellation, Signal signal) {
+Decibels relative_signal_power(Constellation constellation, Signal signal, Metres range) {
     // Of minimum received powers, dBW. GPS and QZSS: L1 C/A −158.5, L2C −160.0, L5 −157.9 (IS-GPS-200, table 3-Va;
     // IS-GPS-705, table 3-III; IS-QZSS-PNT). Galileo: E1 −157.25, E5a and E5b −155.25 (OS SIS ICD 2.0, table 12).
     // BeiDou: B1I, B2I and B3I −163 (B1I ICD 3.0, 4.2.5; B3I ICD 1.0). GLONASS: L1 −161, L2 −167 (ICD L1, L2 5.1,
-    // 3.3.1.6).
+    // 3.3.1.6). B2a: −156 of MEO, −158 of IGSO satellites (B2a ICD 1.0). B1I's −163 is no measure for it: satellites
+    // exceed that by far, and so does their nominal power here. That is the one of GPS, whose document has −158.5, and
+    // B2a is taken against those: 7 dB over B1I were 6 dB over GPS L5, of which the documents tell 1.9.
     switch (constellation) {
         case Constellation::gps:
         case Constellation::qzss:
@@ -88,6 +93,9 @@ Decibels relative_signal_power(Constellation constellation, Signal signal) {
             return Decibels(signal == Signal::l5 || signal == Signal::e5b ? 2 : 0);
         case Constellation::glonass:
             return Decibels(signal == Signal::g2 ? -6 : 0);
+        case Constellation::beidou:
+            if (signal != Signal::l5) return Decibels(0);
+            return Decibels(is_geosynchronous(range) ? 0.5 : 2.5);
         default:
             return Decibels(0);
     }
@@ -153,7 +161,7 @@ void ModernLinkBudget::apply(Arrivals& arrivals, const SkyView& sky, const Truth
     for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
         Arrival& arrival = arrivals.satellites[i];
         for (SignalArrival& signal : arrival.signals)
-            signal.relative_power = relative_signal_power(arrival.id.constellation, signal.signal);
+            signal.relative_power = relative_signal_power(arrival.id.constellation, signal.signal, arrival.range);
         if (antenna_factor_ != 0)
             arrival.antenna_gain = (link_.antenna.gain(arrival.direction) - film_) * antenna_factor_;
         if (power_factor != 0) {

@@ -11,7 +11,8 @@
 namespace skyloop {
 
 /// Power of a signal over the satellite's first one, by the minimum powers of the interface documents.
-Decibels relative_signal_power(Constellation constellation, Signal signal);
+/// @param range tells BeiDou's satellites in geosynchronous orbits from the others
+Decibels relative_signal_power(Constellation constellation, Signal signal, Metres range);
 
 /// C/N0 = P_iso + G − L_impl − N0 less all losses, and what a jammer leaves of it (MODELS.md 7.7). Writes antenna gain,
 /// power offset, interference loss, the signals' relative power and C/N0; a hidden satellite gets none. It comes last:

@@ -230,9 +230,14 @@ TEST(ModernLinkBudget, GivesTheSignalsTheirPowers) {
     EXPECT_EQ(gps.signals[0].relative_power.value(), 0);
     EXPECT_EQ(gps.signals[1].relative_power.value(), -1.5);
     EXPECT_EQ(gps.signals[2].relative_power.value(), 0.6);
-    EXPECT_EQ(relative_signal_power(Constellation::galileo, Signal::l5).value(), 2);
-    EXPECT_EQ(relative_signal_power(Constellation::beidou, Signal::b3i).value(), 0);
-    EXPECT_EQ(relative_signal_power(Constellation::glonass, Signal::g2).value(), -6);
+    const auto power = [](Constellation constellation, Signal signal, double range_m) {
+        return relative_signal_power(constellation, signal, Metres(range_m)).value();
+    };
+    EXPECT_EQ(power(Constellation::galileo, Signal::l5, 25e6), 2);
+    EXPECT_EQ(power(Constellation::beidou, Signal::b3i, 23e6), 0);
+    EXPECT_EQ(power(Constellation::beidou, Signal::l5, 23e6), 2.5);
+    EXPECT_EQ(power(Constellation::beidou, Signal::l5, 37e6), 0.5) << "in an inclined geosynchronous orbit";
+    EXPECT_EQ(power(Constellation::glonass, Signal::g2, 22e6), -6);
 }
 
 }  // namespace
