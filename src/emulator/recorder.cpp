@@ -36,6 +36,7 @@ Result<void> Recorder::begin(const Beginning& beginning) {
         if (beginning.former) std::filesystem::remove(folder() / name, reason);
     if (const auto tables = create_tables(); !tables) return tables;
     if (const auto ports = create_ports(beginning.wires); !ports) return ports;
+    if (beginning.former) remove_ports_from(beginning.wires);
     if (!rinex_setup_) return {};
     auto rinex = RinexRecording::create(folder(), *rinex_setup_);
     if (!rinex) return fail(rinex.error());
@@ -55,27 +56,30 @@ Result<void> Recorder::create_tables() {
     return {};
 }
 
+std::filesystem::path Recorder::port_file(std::size_t wire, std::string_view extension) const {
+    return folder() / fmt::format("port{}.{}", wire, extension);
+}
+
 Result<void> Recorder::create_ports(std::size_t wires) {
-    const auto name = [&](std::size_t wire, const char* extension) {
-        return folder() / fmt::format("port{}.{}", wire, extension);
-    };
     for (std::size_t wire = 0; wire < wires; ++wire) {
         PortFiles port;
         const std::pair<OutputFile*, const char*> files[] = {
             {&port.out, "out"}, {&port.in, "in"}, {&port.times, "times"}, {&port.in_times, "in_times"}};
         for (const auto& [file, extension] : files) {
-            auto created = OutputFile::create(name(wire, extension));
+            auto created = OutputFile::create(port_file(wire, extension));
             if (!created) return fail(created.error());
             *file = std::move(*created);
         }
         ports_.push_back(std::move(port));
     }
-    // Of a former run with more wires.
-    std::error_code reason;
-    for (std::size_t wire = wires; std::filesystem::remove(name(wire, "out"), reason); ++wire)
-        for (const char* extension : {"in", "times", "in_times"})
-            std::filesystem::remove(name(wire, extension), reason);
     return {};
+}
+
+void Recorder::remove_ports_from(std::size_t wire) {
+    std::error_code reason;
+    for (; std::filesystem::remove(port_file(wire, "out"), reason); ++wire)
+        for (const char* extension : {"in", "times", "in_times"})
+            std::filesystem::remove(port_file(wire, extension), reason);
 }
 
 void Recorder::record(const Trace& trace, const NavigationSource& broadcast) {

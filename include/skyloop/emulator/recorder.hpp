@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "skyloop/base/result.hpp"
@@ -60,7 +61,9 @@ private:
     };
     Recorder();
     Result<void> create_tables();
+    [[nodiscard]] std::filesystem::path port_file(std::size_t wire, std::string_view extension) const;
     Result<void> create_ports(std::size_t wires);
+    void remove_ports_from(std::size_t wire);  // of a former run with more wires
     [[nodiscard]] std::vector<const OutputFile*> files() const;
 
     ClaimedFolder folder_;

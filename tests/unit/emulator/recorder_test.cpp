@@ -243,7 +243,8 @@ TEST(Recorder, WhatNoRunHasLeftIsTheUsers) {
     const TemporaryFolder folder;
     for (const bool former : {false, true}) {
         auto recorder = Recorder::claim(folder / "run");
-        const std::string others[] = {"navigation.rnx", "observations.rnx", "junit.xml", "verdicts.json"};
+        const std::string others[] = {"navigation.rnx", "observations.rnx", "junit.xml",   "verdicts.json",
+                                      "port1.out",      "port1.in",         "port1.times", "port1.in_times"};
         for (const std::string& name : others)
             std::ofstream(folder / "run" / name) << "downloaded";
         ASSERT_TRUE(recorder->begin({1, former}));
