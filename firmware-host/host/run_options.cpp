@@ -35,7 +35,7 @@ Result<void> apply_place(const RunOptions& options, Scenario& scenario) {
         scenario.trajectory = track;
         return {};
     }
-    auto trajectory = read_trajectory_file(file);
+    auto trajectory = read_trajectory_file(file, scenario.warnings);
     if (!trajectory) return fail(trajectory.error());
     scenario.trajectory = std::move(*trajectory);
     // For the digest: the file's name alone does not say what it holds.

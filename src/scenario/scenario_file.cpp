@@ -148,11 +148,10 @@ Result<Scenario> read_scenario_file(const std::filesystem::path& file) {
     return read_scenario(*text, file);
 }
 
-Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& file) {
+Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& file, std::vector<std::string>& warnings) {
     const auto text = read_text_file(file);
     if (!text) return fail(text.error());
     std::optional<TrajectorySettings> trajectory;
-    std::vector<std::string> warnings;
     const auto read = read_toml(*text, file.string(), [&](TableReader& top) {
         if (!top.has("trajectory")) top.mistake_here("no [trajectory] table in this file");
         trajectory = read_trajectory_keys(top, {read_frame(top), file.parent_path()}, warnings);

@@ -198,6 +198,14 @@ class TrajectoryTest(unittest.TestCase):
         for found in ("201 rows in 100.000 s", "steps of 0.5 s", "velocity: by the places", "attitude: upright"):
             self.assertIn(found, text)
 
+    def test_a_file_of_a_trajectory_warns_as_a_scenario_does(self):
+        way = '[frame]\norigin = [47, 8, 500]\n[trajectory]\nkind = "fixed"\nat_level = [10000, 0, 0]\n'
+        file = self.folder / "far.toml"
+        file.write_text(way)
+        for arguments in (("--trajectory", file), (file,)):
+            done = skyloop("check", *arguments)
+            self.assertIn("anchor the frame nearer", done.stdout + done.stderr, arguments)
+
     def test_there_and_back(self):
         """Track, ideal receiver, bytes, log, track: each format within the steps of its numbers."""
         way = '[trajectory]\nkind = "file"\npath = "circle.csv"\nend = "stop"\n[[receiver]]\nboard = "ublox-m10"\n'

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "skyloop/base/result.hpp"
 #include "skyloop/scenario/scenario.hpp"
@@ -17,6 +19,7 @@ Result<Scenario> read_scenario(std::string_view text, const std::filesystem::pat
 Result<Scenario> read_scenario_file(const std::filesystem::path& file);
 
 /// Reads the [trajectory] (and [frame]) of a file that holds nothing else, as `--trajectory FILE.toml` names it.
-Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& file);
+/// @param warnings what a reader should be told of it is added here
+Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 }  // namespace skyloop

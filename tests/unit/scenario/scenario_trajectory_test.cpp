@@ -13,6 +13,7 @@ namespace {
 
 using test::mistakes_of;
 using test::scenario_of;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
@@ -166,19 +167,23 @@ TEST(ScenarioTrajectory, RefusesTwoPlacesAndALevelWithoutAFrame) {
 
 TEST(TrajectoryFile, IsReadByItself) {
     const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "skyloop-trajectory-file.toml";
+    std::vector<std::string> warnings;
     const auto read = [&](const std::string& text) {
         std::ofstream(file) << text;
-        return read_trajectory_file(file);
+        return read_trajectory_file(file, warnings);
     };
     const auto path = read(std::string(level_at_odessa) + "[trajectory]\nkind = \"fixed\"\nat_level = [10, 0, 0]");
     ASSERT_TRUE(path) << path.error().message;
     expect_near(from_odessa(std::get<FixedSettings>(*path).at), {0, 10, 0});
+    EXPECT_THAT(warnings, IsEmpty());
+    ASSERT_TRUE(read(std::string(level_at_odessa) + "[trajectory]\nkind = \"fixed\"\nat_level = [100000, 0, 0]"));
+    EXPECT_THAT(warnings, ElementsAre(HasSubstr("anchor the frame nearer")));
     EXPECT_THAT(read("[frame]\norigin = [1, 2, 3]").error().message, HasSubstr("no [trajectory] table in this file"));
     EXPECT_THAT(read("[trajectory]\nkind = \"fixed\"\nat = [1, 2]\n[run]\nseed = 1").error().message,
                 HasSubstr(":4:2: run: unknown key"));
     EXPECT_THAT(read("[trajectory").error().message, HasSubstr("skyloop-trajectory-file.toml:1:"));
     std::filesystem::remove(file);
-    EXPECT_EQ(read_trajectory_file(file).error().code, ErrorCode::outside);
+    EXPECT_EQ(read_trajectory_file(file, warnings).error().code, ErrorCode::outside);
 }
 
 }  // namespace
