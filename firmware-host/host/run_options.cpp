@@ -38,6 +38,7 @@ Result<void> apply_place(const RunOptions& options, Scenario& scenario) {
     auto trajectory = read_trajectory_file(file, scenario.warnings);
     if (!trajectory) return fail(trajectory.error());
     scenario.trajectory = std::move(*trajectory);
+    scenario.trajectory_file = file;
     // For the digest: the file's name alone does not say what it holds.
     if (const auto text = read_text_file(file)) scenario.source += "\n" + *text;
     return {};

@@ -1,6 +1,7 @@
 #include "skyloop/emulator/assembly.hpp"
 
 #include "fault_warnings.hpp"
+#include "input_files.hpp"
 #include "limit_warnings.hpp"
 #include "modern_assembly.hpp"
 #include "receiver_assembly.hpp"
@@ -141,6 +142,13 @@ std::vector<WireEnd> ends_of(const std::vector<PlannedStation>& plans, const Sce
     return ends;
 }
 
+SparedFiles spared_files_of(const SharedParts& shared) {
+    SparedFiles spared{{}, shared.scenario.receivers.size()};
+    for (InputFile& file : input_files(shared.scenario, shared.data, shared.mode.repeat))
+        spared.inputs.push_back(std::move(file.path));
+    return spared;
+}
+
 // All receivers, with their wires and recordings.
 Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& assembly) {
     std::vector<PlannedStation> plans;
@@ -155,15 +163,15 @@ Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& 
         plans.push_back(std::move(*plan));
     }
     std::vector<WireEnd> ends = ends_of(plans, shared.scenario);
-    if (const auto spared = spare_inputs_and_recording(ends, shared.scenario, shared.mode.record); !spared)
+    const SparedFiles spared_files = spared_files_of(shared);
+    if (const auto spared = spare_inputs_and_recording(ends, spared_files, shared.mode.record); !spared)
         return fail(spared.error());
     for (std::size_t i = 0; i < plans.size(); ++i)
         ends.push_back(end_of_state(fmt::format("state_file of '{}'", receiver_name(shared.scenario, i)),
                                     shared.scenario.receivers[i].state_file));
     if (const auto apart = check_ends(ends); !apart) return fail(apart.error());
     if (shared.mode.record)
-        if (const auto spared = spare_inputs(shared.scenario, *shared.mode.record); !spared)
-            return fail(spared.error());
+        if (const auto spared = spare_inputs(spared_files, *shared.mode.record); !spared) return fail(spared.error());
     // Before anything is opened that another run may be using, too.
     for (std::size_t i = 0; i < plans.size() && shared.mode.record; ++i)
         if (const auto added = add_recorder(plans[i].parts, shared, i); !added) return fail(added.error());
@@ -221,20 +229,12 @@ void warn_of_weather_below(const Scenario& scenario, const Geoid* geoid, std::ve
 
 }  // namespace
 
-std::string scenario_digest(const Scenario& scenario, GpsTime start, std::uint64_t scene) {
+std::string scenario_digest(const Scenario& scenario, const DataFolders& data, GpsTime start, std::uint64_t scene) {
     std::uint64_t digest = fnv1a_64(scenario.source);
     digest = fnv1a_64(fmt::format("start {} seed {}", start.time_since_epoch().count(), scenario.run.seed), digest);
-    for (const auto& file : scenario.sky.navigation)
-        if (const auto text = read_text_file(file)) digest = fnv1a_64(*text, digest);
-    for (const ReceiverEntry& receiver : scenario.receivers)
-        if (!receiver.state_file.empty() && std::filesystem::exists(receiver.state_file))
-            if (const auto text = read_text_file(receiver.state_file)) digest = fnv1a_64(*text, digest);
-    std::vector<const TrajectorySettings*> ways{&scenario.trajectory};
-    for (const ReceiverEntry& receiver : scenario.receivers)
-        if (receiver.trajectory) ways.push_back(&*receiver.trajectory);
-    for (const TrajectorySettings* way : ways)
-        if (const auto* file = std::get_if<FileSettings>(way))
-            if (const auto text = read_text_file(file->path)) digest = fnv1a_64(*text, digest);
+    for (const InputFile& file : input_files(scenario, data))
+        if (file.in_digest)
+            if (const auto text = read_text_file(file.path)) digest = fnv1a_64(*text, digest);
     if (scene != 0) digest = fnv1a_64(fmt::format("scene {:016x}", scene), digest);
     return fmt::format("{:016x}", digest);
 }
@@ -329,7 +329,7 @@ Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const 
     if (!feeds) return fail(feeds.error());
     assembly.place = make_trajectory(trajectory_of(scenario, 0), assembly.start)->at(assembly.start).geodetic;
     if (const auto added = add_scene(scenario, data, assembly); !added) return fail(added.error());
-    assembly.digest = scenario_digest(scenario, assembly.start, assembly.scene.digest);
+    assembly.digest = scenario_digest(scenario, data, assembly.start, assembly.scene.digest);
     for (std::string& detail : world_details(*navigation->source, assembly))
         assembly.details.push_back(std::move(detail));
 

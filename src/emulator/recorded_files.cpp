@@ -22,21 +22,6 @@ constexpr std::string_view once_a_recording[] = {"fixes.csv",      "satellites.c
                                                  "junit.xml",      "run.json"};
 constexpr std::string_view once_a_port[] = {".out", ".in", ".times", ".in_times"};
 
-// All files whose content decides what the run does, but for those that no recording is mistaken for.
-std::vector<fs::path> inputs_of(const Scenario& scenario) {
-    std::vector<fs::path> inputs(scenario.sky.navigation.begin(), scenario.sky.navigation.end());
-    inputs.insert(inputs.end(), scenario.scene.buildings.begin(), scenario.scene.buildings.end());
-    const auto add_track = [&](const TrajectorySettings& way) {
-        if (const auto* file = std::get_if<FileSettings>(&way)) inputs.push_back(file->path);
-    };
-    add_track(scenario.trajectory);
-    for (const ReceiverEntry& receiver : scenario.receivers) {
-        if (receiver.trajectory) add_track(*receiver.trajectory);
-        if (!receiver.state_file.empty()) inputs.push_back(receiver.state_file);
-    }
-    return inputs;
-}
-
 }  // namespace
 
 fs::path recording_of(const fs::path& folder, std::size_t receiver) {
@@ -74,19 +59,17 @@ void remove_recordings_from(const fs::path& folder, std::size_t receiver) {
     }
 }
 
-Result<void> spare_inputs_and_recording(const std::vector<WireEnd>& ends, const Scenario& scenario,
+Result<void> spare_inputs_and_recording(const std::vector<WireEnd>& ends, const SparedFiles& spared_files,
                                         const std::optional<fs::path>& folder) {
-    std::vector<fs::path> inputs = inputs_of(scenario);
-    inputs.emplace_back(scenario.name);
     const auto recorded = [&](const fs::path& place) {
-        for (std::size_t i = 0; folder && i < scenario.receivers.size(); ++i)
+        for (std::size_t i = 0; folder && i < spared_files.receivers; ++i)
             if (fs::absolute(recording_of(*folder, i)).lexically_normal() / place.filename() == place) return true;
         return false;
     };
     for (const WireEnd& end : ends) {
         if (end.place.empty() || end.place == "-") continue;
         const std::string writer = fmt::format("{} '{}'", end.owner, end.uri);
-        if (const auto spared = check_spares(writer, end.place, inputs); !spared) return spared;
+        if (const auto spared = check_spares(writer, end.place, spared_files.inputs); !spared) return spared;
         if (is_recorded_name(fs::path(end.place).filename().string()) && recorded(end.place))
             return fail(ErrorCode::usage,
                         fmt::format("{}: this file belongs to the recording; expected another place", writer));
@@ -94,13 +77,12 @@ Result<void> spare_inputs_and_recording(const std::vector<WireEnd>& ends, const 
     return {};
 }
 
-Result<void> spare_inputs(const Scenario& scenario, const fs::path& folder) {
-    const std::vector<fs::path> inputs = inputs_of(scenario);
+Result<void> spare_inputs(const SparedFiles& spared_files, const fs::path& folder) {
     std::error_code absent;
-    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
+    for (std::size_t i = 0; i < spared_files.receivers; ++i)
         for (const fs::directory_entry& there : fs::directory_iterator(recording_of(folder, i), absent)) {
             if (!is_recorded_name(there.path().filename().string())) continue;
-            for (const fs::path& input : inputs)
+            for (const fs::path& input : spared_files.inputs)
                 if (fs::equivalent(there.path(), input, absent))
                     return fail(
                         ErrorCode::usage,

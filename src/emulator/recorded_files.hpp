@@ -8,7 +8,6 @@
 
 #include "skyloop/base/result.hpp"
 #include "skyloop/emulator/wires.hpp"
-#include "skyloop/scenario/scenario.hpp"
 
 namespace skyloop {
 
@@ -25,12 +24,18 @@ bool holds_recording(const std::filesystem::path& folder);
 /// lies in their folders stays.
 void remove_recordings_from(const std::filesystem::path& folder, std::size_t receiver);
 
+/// What a run must not write over.
+struct SparedFiles {
+    std::vector<std::filesystem::path> inputs;  ///< that it reads
+    std::size_t receivers = 1;                  ///< that it records
+};
+
 /// Fails with `usage` when a recording in this folder would take the place of a file that the run reads.
-Result<void> spare_inputs(const Scenario& scenario, const std::filesystem::path& folder);
+Result<void> spare_inputs(const SparedFiles& spared_files, const std::filesystem::path& folder);
 
 /// Fails with `usage` where bytes would go into a file that the run reads, its scenario among them, or into one that
 /// belongs to its recording. @param folder of the recording; nothing without one
-Result<void> spare_inputs_and_recording(const std::vector<WireEnd>& ends, const Scenario& scenario,
+Result<void> spare_inputs_and_recording(const std::vector<WireEnd>& ends, const SparedFiles& spared_files,
                                         const std::optional<std::filesystem::path>& folder);
 
 }  // namespace skyloop

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "board_keys.hpp"
 #include "skyloop/base/spelling.hpp"
@@ -29,14 +28,17 @@ Result<firmware::BoardProfile> read_board(std::string_view toml_text, std::strin
     return board;
 }
 
-Result<firmware::BoardProfile> find_board(std::string_view name, std::span<const fs::path> directories) {
-    std::optional<fs::path> path;
-    std::error_code error;
-    if (name.ends_with(".toml")) path = name;
+std::optional<fs::path> find_board_file(std::string_view name, std::span<const fs::path> directories) {
+    if (name.ends_with(".toml")) return name;
+    if (name.find('/') != std::string_view::npos) return std::nullopt;
+    std::error_code absent;
     for (const fs::path& directory : directories)
-        if (!path && name.find('/') == std::string_view::npos && fs::exists(board_path(directory, name), error))
-            path = board_path(directory, name);
-    if (path) {
+        if (fs::exists(board_path(directory, name), absent)) return board_path(directory, name);
+    return std::nullopt;
+}
+
+Result<firmware::BoardProfile> find_board(std::string_view name, std::span<const fs::path> directories) {
+    if (const auto path = find_board_file(name, directories)) {
         const auto text = read_text_file(*path);
         if (!text) return fail(text.error());
         return read_board(*text, path->string());

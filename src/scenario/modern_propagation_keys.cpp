@@ -121,7 +121,8 @@ void read_losses(TableReader& table, LossParameters& p) {
     table.quantity("antenna_film_db", p.antenna_film, {0, 100});
 }
 
-void read_antenna(TableReader& table, ModernLinkParameters& p, const std::filesystem::path& folder) {
+void read_antenna(TableReader& table, ModernSettings& settings, const std::filesystem::path& folder) {
+    ModernLinkParameters& p = settings.propagation.link;
     Decibels peak = p.antenna.peak(), drop = p.antenna.drop();
     double exponent = p.antenna.exponent();
     table.quantity("antenna_peak_dbic", peak, {-100, 100});
@@ -131,6 +132,7 @@ void read_antenna(TableReader& table, ModernLinkParameters& p, const std::filesy
     std::string file;
     table.text("antenna_table", file);
     if (file.empty()) return;
+    settings.tables.push_back(folder / file);
     auto pattern = AntennaPattern::read(folder / file);
     if (pattern)
         p.antenna = std::move(*pattern);
@@ -138,13 +140,14 @@ void read_antenna(TableReader& table, ModernLinkParameters& p, const std::filesy
         table.mistake("antenna_table", pattern.error().message);
 }
 
-void read_satellite_table(TableReader& table, ModernLinkParameters& p, const std::filesystem::path& folder) {
+void read_satellite_table(TableReader& table, ModernSettings& settings, const std::filesystem::path& folder) {
     std::string file;
     table.text("satellite_table", file);
     if (file.empty()) return;
+    settings.tables.push_back(folder / file);
     auto pattern = read_satellite_pattern_file(folder / file);
     if (pattern)
-        p.satellite_pattern = std::move(*pattern);
+        settings.propagation.link.satellite_pattern = std::move(*pattern);
     else
         table.mistake("satellite_table", pattern.error().message);
 }
@@ -159,10 +162,11 @@ void read_received_power(TableReader& table, ModernLinkParameters::ReceivedPower
     table.quantity("navic_dbw", p.navic, {-250, 0});
 }
 
-void read_link(TableReader& table, ModernLinkParameters& p, const std::filesystem::path& folder) {
+void read_link(TableReader& table, ModernSettings& settings, const std::filesystem::path& folder) {
+    ModernLinkParameters& p = settings.propagation.link;
     read_received_power(table, p.received);
-    read_satellite_table(table, p, folder);
-    read_antenna(table, p, folder);
+    read_satellite_table(table, settings, folder);
+    read_antenna(table, settings, folder);
     table.quantity("antenna_temperature_k", p.noise.antenna_temperature, {0, 1e5});
     table.quantity("line_loss_db", p.noise.line_loss, {0, 100});
     table.quantity("noise_figure_db", p.noise.noise_figure, {0, 100});
@@ -219,7 +223,7 @@ void read_modern_propagation_keys(TableReader& modern, ModernSettings& settings,
     modern.table("ionosphere", [&](TableReader& t) { read_ionosphere_truth(t, settings, folder); });
     modern.table("troposphere", [&](TableReader& t) { read_troposphere_truth(t, settings); });
     modern.table("losses", [&](TableReader& t) { read_losses(t, p.loss_model); });
-    modern.table("link", [&](TableReader& t) { read_link(t, p.link, folder); });
+    modern.table("link", [&](TableReader& t) { read_link(t, settings, folder); });
     modern.table("interference", [&](TableReader& t) { read_interference(t, settings); });
     modern.table("scintillation", [&](TableReader& t) { read_scintillation(t, settings); });
 }

@@ -76,9 +76,10 @@ struct Assembly {
 Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, const RunMode& mode);
 
 /// What a user gives that decides the bytes of a run, as 16 hexadecimal digits: the scenario's text with the options
-/// and trajectory file laid over it, seed, start, navigation files and scene. The board file counts by its name only.
+/// and trajectory file laid over it, seed, start, scene, and the files of navigation, tracks, states, boards,
+/// ionosphere maps and antennas. What clients say is in none.
 /// @param scene digest of the files of the scene; 0: there are none
-std::string scenario_digest(const Scenario& scenario, GpsTime start, std::uint64_t scene = 0);
+std::string scenario_digest(const Scenario& scenario, const DataFolders& data, GpsTime start, std::uint64_t scene = 0);
 
 /// Broadcast orbits for a scenario: its files, or the nominal constellation, and when its run begins. Fails with
 /// `input` for files that hold nothing to use, with `usage` for settings that contradict each other.

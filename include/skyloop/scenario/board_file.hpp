@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,8 +18,13 @@ namespace skyloop {
 /// Fails with `input`: the sentence names file, line, column and key, what was found and what was expected.
 Result<firmware::BoardProfile> read_board(std::string_view toml_text, std::string_view name);
 
-/// The profile of this name: `receivers/<name>.toml` in the first of `directories` that has one. A name that ends in
-/// ".toml" is the path of a file. Fails with `usage` for an unknown name, listing the nearest and the known ones.
+/// Where the profile of this name lies: `receivers/<name>.toml` in the first of `directories` that has one. A name that
+/// ends in ".toml" is the path of a file. Nothing for an unknown name.
+std::optional<std::filesystem::path> find_board_file(std::string_view name,
+                                                     std::span<const std::filesystem::path> directories);
+
+/// The profile of this name, from that file. Fails with `usage` for an unknown name, listing the nearest and the known
+/// ones.
 Result<firmware::BoardProfile> find_board(std::string_view name, std::span<const std::filesystem::path> directories);
 
 /// The names of all profiles in `directories`, sorted, each once.

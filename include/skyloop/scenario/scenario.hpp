@@ -197,6 +197,7 @@ struct Scenario {
     RunSettings run;
     SkySettings sky;
     TrajectorySettings trajectory = FixedSettings{};
+    std::filesystem::path trajectory_file{};  ///< TOML that an option took it from; empty: none
     ModelSettings model;
     AtmosphereParameters atmosphere;
     SceneEntry scene;

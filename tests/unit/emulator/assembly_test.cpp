@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
@@ -125,6 +127,61 @@ TEST(Assembly, TheDigestIsOfEverythingThatDecidesTheBytes) {
     RunMode later = virtual_mode();
     later.now += std::chrono::seconds(1);
     EXPECT_NE(assembled("", later).digest, assembled("").digest) << "a run from now starts elsewhere each time";
+}
+
+TEST(Assembly, TheDigestKnowsWhatTheFilesHoldThatARunReads) {
+    const test::TemporaryFolder folder;
+    const auto file = folder / "read.toml";
+    const auto digest_of = [&](const Scenario& scenario, const char* content) {
+        std::ofstream(file) << content;
+        return scenario_digest(scenario, emulator_data(), virtual_mode().now);
+    };
+    const std::pair<const char*, std::function<void(Scenario&)>> readers[] = {
+        {"navigation", [&](Scenario& s) { s.sky.navigation = {file}; }},
+        {"track", [&](Scenario& s) { s.trajectory = FileSettings{file}; }},
+        {"board", [&](Scenario& s) { s.receivers[0].board = file.string(); }},
+        {"state", [&](Scenario& s) { s.receivers[0].state_file = file; }},
+        {"IONEX", [&](Scenario& s) { s.model.modern.ionosphere_maps = file; }},
+        {"tables", [&](Scenario& s) { s.model.modern.tables = {file}; }}};
+    for (const auto& [name, read] : readers) {
+        Scenario scenario = emulator_scenario("");
+        read(scenario);
+        const std::string digest = digest_of(scenario, "a");
+        EXPECT_EQ(digest_of(scenario, "a"), digest) << name;
+        EXPECT_NE(digest_of(scenario, "b"), digest) << name;
+    }
+}
+
+TEST(Assembly, AWireDoesNotTakeThePlaceOfWhatTheRunReads) {
+    const test::TemporaryFolder folder;
+    const auto file = folder / "read.toml";
+    std::filesystem::copy_file(emulator_data().folders.at(0) / "boards/receivers/ublox-m8.toml", file);
+    const std::pair<const char*, std::function<void(Scenario&)>> readers[] = {
+        {"scenario", [&](Scenario& s) { s.name = file.string(); }},
+        {"trajectory", [&](Scenario& s) { s.trajectory_file = file; }},
+        {"board", [&](Scenario& s) { s.receivers[0].board = file.string(); }},
+        {"IONEX", [&](Scenario& s) { s.model.modern.ionosphere_maps = file; }},
+        {"tables", [&](Scenario& s) { s.model.modern.tables = {file}; }}};
+    for (const auto& [name, read] : readers) {
+        Scenario scenario = emulator_scenario("[model]\nname = \"ideal\"");
+        scenario.receivers[0].ports = {"file:" + file.string()};
+        read(scenario);
+        const auto refused = assemble(scenario, emulator_data(), virtual_mode());
+        ASSERT_FALSE(refused) << name;
+        EXPECT_EQ(refused.error().code, ErrorCode::usage) << name;
+        EXPECT_THAT(refused.error().message, HasSubstr("this file is read, too, and would be lost")) << name;
+    }
+}
+
+TEST(Assembly, AWireDoesNotTakeThePlaceOfWhatIsRepeated) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "port0.in");
+    std::ofstream(folder / "port0.in_times");
+    RunMode mode = virtual_mode();
+    mode.repeat = folder / ".";
+    for (const char* name : {"port0.in", "port0.in_times"})
+        EXPECT_THAT(refusal("[[receiver]]\nport = \"file:" + (folder / name).string() + "\"", mode).message,
+                    HasSubstr("this file is read, too, and would be lost"));
 }
 
 TEST(Assembly, PortsAreOpenedOnlyWhenAskedFor) {

@@ -147,15 +147,19 @@ TEST(SceneAssembly, OutlinesStandOnTheTerrain) {
     std::ofstream(folder / "town.geojson") << house_on_a_hill;
     std::ofstream(folder / "hill.asc")
         << "ncols 2\nnrows 2\nxllcorner 10.99\nyllcorner 47.99\ncellsize 0.01\n542 542\n542 542\n";
-    const auto assembly =
-        with_scene(fmt::format("[scene]\nbuildings = \"{}\"\nterrain = \"{}\"\norigin = [48, 11, 510]\n"
-                               "[trajectory]\nkind = \"fixed\"\nat = [48, 11, 543.5]\n",
-                               (folder / "town.geojson").string(), (folder / "hill.asc").string()));
+    const std::string town = fmt::format(
+        "[scene]\nbuildings = \"{}\"\nterrain = \"{}\"\norigin = [48, 11, 510]\n"
+        "[trajectory]\nkind = \"fixed\"\nat = [48, 11, 543.5]\n",
+        (folder / "town.geojson").string(), (folder / "hill.asc").string());
+    const auto assembly = with_scene(town);
     ASSERT_TRUE(assembly) << assembly.error().message;
     const UrbanScene& scene = *assembly->scene.scene;
     EXPECT_NEAR(scene.top_at(22, 10).value(), 44, 0.05);
     EXPECT_NEAR(scene.ground_at(0, 0).value(), 32, 0.05);
     EXPECT_NEAR(scene.statistics().lowest.z(), 32, 0.2) << "no wall begins at the origin's height";
+    const auto written_over = with_scene(town + "[[receiver]]\nport = \"file:" + (folder / "hill.asc").string() + "\"");
+    ASSERT_FALSE(written_over);
+    EXPECT_THAT(written_over.error().message, HasSubstr("this file is read, too, and would be lost"));
 }
 
 TEST(SceneAssembly, TheDigestCoversTheFiles) {

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <functional>
 
 #include "scenario_text.hpp"
@@ -158,6 +160,19 @@ TEST(ModernKeys, OfTheLinkAndItsDisturbances) {
     EXPECT_FALSE(modern_of("[model.modern.link]\nman_made_noise = \"none\"").propagation.link.man_made);
     EXPECT_THAT(mistakes_of("[model.modern.link]\nantenna_table = \"none.csv\""),
                 testing::AllOf(HasSubstr("test.toml:2:17: model.modern.link.antenna_table: "), HasSubstr("none.csv")));
+}
+
+TEST(ModernKeys, TheFilesOfTablesAreKnown) {
+    const auto folder = std::filesystem::path(testing::TempDir());
+    std::ofstream(folder / "skyloop-antenna.csv") << "elevation_deg,gain_dbic\n0,-3\n90,4\n";
+    std::ofstream(folder / "skyloop-satellite.csv") << "off_boresight_deg,eirp_dbw\n0,27\n14,27\n";
+    const auto settings =
+        modern_of("[model.modern.link]\nantenna_table = \"" + (folder / "skyloop-antenna.csv").string() +
+                  "\"\nsatellite_table = \"" + (folder / "skyloop-satellite.csv").string() + "\"");
+    EXPECT_THAT(settings.tables,
+                testing::UnorderedElementsAre(folder / "skyloop-antenna.csv", folder / "skyloop-satellite.csv"));
+    std::filesystem::remove(folder / "skyloop-antenna.csv");
+    std::filesystem::remove(folder / "skyloop-satellite.csv");
 }
 
 TEST(ModernKeys, OfTheMeasurement) {
