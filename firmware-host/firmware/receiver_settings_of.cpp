@@ -23,6 +23,19 @@ bool is_changed(const ConfigStore& store, std::uint32_t id) {
     return store.has(id) && store.stored(ConfigLayer::factory, id) != store.value(id);
 }
 
+// What a client has chosen. Signals of the scenario (`dual_frequency`) that the board has no item for, so that no
+// client can speak of them, stay for as long as their system is on.
+std::set<SystemSignal> chosen_signals(const ConfigStore& store, const std::set<SystemSignal>& scenario) {
+    std::set<SystemSignal> chosen = enabled_signals(store);
+    const auto has_item = [&](const SystemSignal& signal) {
+        return std::any_of(signal_keys.begin(), signal_keys.end(),
+                           [&](const SignalKey& s) { return s.signal == signal && store.has(s.enable); });
+    };
+    for (const SystemSignal& signal : scenario)
+        if (!has_item(signal) && is_enabled(store, signal.constellation)) chosen.insert(signal);
+    return chosen;
+}
+
 // CFG-NAVSPG-DYNMODEL: 9 wrist, 10 bike, 11 mower and 12 e-scooter move about as the nearest of the others.
 DynamicModel dynamic_model_of(std::uint64_t number) {
     using enum DynamicModel;
@@ -83,7 +96,7 @@ ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board
         const auto most = static_cast<std::size_t>(std::max<std::uint64_t>(1, store.value(key::navspg_max_svs)));
         settings.most_satellites = is_fast ? std::min(settings.most_satellites, most) : most;
     }
-    if (signals_changed(store) || base.signals.empty()) settings.signals = enabled_signals(store);
+    if (signals_changed(store) || base.signals.empty()) settings.signals = chosen_signals(store, base.signals);
     if (board.personality == Personality::ublox) {
         settings.sbas_scan_mask = store.value(key::sbas_scan_mask);
         settings.sbas_ranging = store.flag(legacy_key::sbas_ranging);

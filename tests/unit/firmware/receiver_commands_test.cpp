@@ -489,6 +489,24 @@ TEST(ReceiverCommands, HearsASystemThatIsSwitchedOnAlone) {
     EXPECT_EQ(bench.frames(mon_gnss)[0].payload[3], 3) << "Galileo without a signal is not heard, and not announced";
 }
 
+// Of signals that a board has no items for (`dual_frequency` of the scenario) its client cannot speak.
+TEST(ReceiverCommands, KeepsTheScenariosSecondSignalsWhenSystemsAreSwitched) {
+    constexpr std::uint32_t glonass_alone = 0x10310025, galileo_alone = 0x10310021, gps_l2c = 0x10310003,
+                            galileo_e5b = 0x1031000A;
+    BoardProfile board = sample_ublox();
+    board.absent_keys = {gps_l2c, galileo_e5b};
+    ReceiverOptions options;
+    options.settings.signals = {{gps, Signal::l1}, {gps, Signal::l2}, {galileo, Signal::l1}, {galileo, Signal::e5b}};
+    Bench bench(board, options);
+    bench.send(valset({{glonass_alone, 1}})).wait(1s);
+    std::set<SystemSignal> expected = options.settings.signals;
+    expected.insert({glonass, Signal::g1});
+    EXPECT_EQ(bench.receiver().settings().signals, expected);
+    bench.send(valset({{galileo_alone, 0}})).wait(1s);
+    std::erase_if(expected, [](const SystemSignal& s) { return s.constellation == galileo; });
+    EXPECT_EQ(bench.receiver().settings().signals, expected);
+}
+
 TEST(ReceiverCommands, TellsOfACorrectionThatArrivesDamaged) {
     constexpr UbxMessageId rxm_rtcm{0x02, 0x32}, rxm_cor{0x02, 0x34};
     constexpr std::uint32_t rxm_rtcm_on_uart1 = 0x20910269, rxm_cor_on_uart1 = 0x209106B7,

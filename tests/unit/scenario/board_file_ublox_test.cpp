@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "firmware/config/config_handler.hpp"
+#include "skyloop/protocol/ubx_cfg.hpp"
 #include "skyloop/protocol/ubx_cfg_values.hpp"
 #include "skyloop/scenario/board_file.hpp"
 
@@ -386,6 +387,41 @@ TEST(ShippedBoards, HaveTheFactoryConfigurationOfTheirFirmware) {
     EXPECT_EQ(m8.legacy.at({0x06, 0x3E}), LegacyAnswer::apply);
     EXPECT_EQ(m10.legacy.at({0x06, 0x3E}), LegacyAnswer::refuse);
     EXPECT_EQ(shipped_board("ublox-6").legacy.count({0x06, 0x3E}), 0U);
+}
+
+// RECEIVER.md 2.4; a real one NAKs BeiDou beside GPS and GLONASS (philrandal/gpsctl #5), whose third band it has no
+// room for, and has L1 alone.
+TEST(ShippedBoards, AnM8ReceivesTwoOfItsThreeBandsAndNoSecondSignals) {
+    const BoardProfile m8 = shipped_board("ublox-m8");
+    const auto answer = [&m8](const CfgGnss& message) {
+        ConfigStore store(firmware::factory_config(m8));
+        firmware::LegacyConfig legacy(m8, store);
+        return legacy.handle(CfgGnss::message_id, encode_payload(message), PortId::uart1).verdict;
+    };
+    const auto systems = [](std::vector<CfgGnssItem> items) {
+        CfgGnss message;
+        message.num_trk_ch_use = 32;
+        message.systems = std::move(items);
+        return message;
+    };
+    const CfgGnssItem no_gps{0, 8, 16, 0, 0x01010000}, no_glonass{6, 8, 14, 0, 0x01010000},
+        beidou{3, 8, 16, 0, 0x01010001}, galileo{2, 4, 8, 0, 0x01010001};
+    EXPECT_EQ(answer(systems({beidou})), Verdict::refuse) << "beside GPS and GLONASS";
+    EXPECT_EQ(answer(systems({galileo, no_gps, beidou})), Verdict::refuse) << "beside Galileo and GLONASS";
+    EXPECT_EQ(answer(systems({beidou, no_gps})), Verdict::acknowledge);
+    EXPECT_EQ(answer(systems({beidou, no_glonass})), Verdict::acknowledge);
+    EXPECT_EQ(answer(systems({galileo})), Verdict::acknowledge);
+    EXPECT_EQ(answer(systems({{0, 8, 16, 0, 0x01100001}})), Verdict::refuse) << "L2C alone";
+    ConfigStore store(firmware::factory_config(m8));
+    firmware::LegacyConfig legacy(m8, store);
+    const CfgGnss both = systems({{0, 8, 16, 0, 0x01110001}});
+    EXPECT_EQ(legacy.handle(CfgGnss::message_id, encode_payload(both), PortId::uart1).verdict, Verdict::acknowledge);
+    const auto told = decode_payload<CfgGnss>(
+        parse_frame(legacy.handle(CfgGnss::message_id, {}, PortId::uart1).answers.at(0))->payload);
+    EXPECT_EQ(told->systems.at(0).flags, 0x01010001U) << "L1 with L2C is L1";
+    for (const char* name : {"CFG-SIGNAL-GPS_L2C_ENA", "CFG-SIGNAL-GAL_E5B_ENA", "CFG-SIGNAL-BDS_B2_ENA",
+                             "CFG-SIGNAL-GLO_L2_ENA", "CFG-SIGNAL-QZSS_L5_ENA", "CFG-SIGNAL-NAVIC_ENA"})
+        EXPECT_EQ(factory_of(m8, name), ~std::uint64_t{0}) << name << " is none of its items";
 }
 
 // SPG L1L5 6.00: GPS, Galileo and BeiDou, whose L1 is B1C alone; no legacy configuration (RECEIVER.md 4.1).
