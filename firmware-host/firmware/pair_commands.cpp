@@ -33,13 +33,13 @@ struct PairCommand {
 
 void accept_pair(PairCommand& c) { c.acknowledge(PairResult::done); }
 
-// 004 hot, 005 warm, 006 cold, 007 cold with factory settings.
+// 004 hot, 005 warm, 006 cold, 007 cold with factory settings. What is stored comes in force with the restart itself,
+// so that its acknowledgement still leaves at the old speed.
 void restart_pair(PairCommand& c) {
     constexpr int hot = 4, warm = 5, factory = 7;
     c.acknowledge(PairResult::done);
     c.outcome.restart = c.number == hot ? StartKind::hot : c.number == warm ? StartKind::warm : StartKind::cold;
     if (c.number == factory) c.store.clear(in_battery | in_flash);
-    c.store.reload();
 }
 
 // 020 and 021, each with the answers of its own number.

@@ -287,12 +287,15 @@ TEST(PairCommands, KeepSpeedAndSystemsForTheNextStart) {
     EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 9600U);
     EXPECT_TRUE(receiver.config.flag(glonass_enable));
     EXPECT_EQ(receiver.execute("PAIR004").restart, StartKind::hot);
+    EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 9600U) << "the acknowledgement is still to leave";
+    receiver.config.reload();
     EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 115200U);
     EXPECT_FALSE(receiver.config.flag(glonass_enable));
     EXPECT_TRUE(receiver.config.flag(galileo_enable));
     EXPECT_EQ(receiver.execute("PAIR005").restart, StartKind::warm);
     EXPECT_EQ(receiver.execute("PAIR006").restart, StartKind::cold);
     EXPECT_EQ(receiver.execute("PAIR007").restart, StartKind::cold);
+    receiver.config.reload();
     EXPECT_EQ(receiver.config.value(key::uart1_baudrate), 9600U);
 }
 

@@ -369,6 +369,20 @@ TEST(ReceiverCommands, AcknowledgesARestartBeforeIt) {
     }
 }
 
+TEST(ReceiverCommands, AcknowledgesARestartAtTheOldSpeed) {
+    BoardProfile board = sample_ublox();
+    board.personality = Personality::airoha;
+    Bench bench(board);
+    const auto command = [](const char* body) { return to_bytes(Sentence(body).finish()); };
+    bench.wait(300ms).write(command("PAIR864,0,0,115200")).wait(100ms).forget();
+    bench.write(command("PAIR004")).wait(100ms);
+    ASSERT_EQ(bench.sent().size(), 1U);
+    EXPECT_EQ(bench.sent()[0].baud, 38400U);
+    EXPECT_THAT(bench.text(), HasSubstr("$PAIR001,004,0*"));
+    bench.wait(2s);
+    EXPECT_EQ(bench.receiver().baud(PortId::uart1), 115200U);
+}
+
 TEST(ReceiverCommands, KeepsWhatIsInFlashOverAReset) {
     Bench bench;
     bench.wait(300ms).send(valset({{0x20910007, 1}}, 5)).wait(500ms);
