@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "skyloop/fault/command_names.hpp"
 #include "skyloop/protocol/nmea_sentence.hpp"
 #include "skyloop/protocol/ubx_frame.hpp"
 #include "skyloop/protocol/ubx_names.hpp"
@@ -39,6 +42,12 @@ std::string rtcm_name(ByteSpan frame) {
     return fmt::format("RTCM-{}", frame[3] << 4 | frame[4] >> 4);
 }
 
+bool is_text(const StreamPiece& piece) {
+    return piece.kind == StreamKind::noise &&
+           std::all_of(piece.bytes.begin(), piece.bytes.end(),
+                       [](std::uint8_t byte) { return (byte >= 0x20 && byte < 0x7F) || byte == '\r' || byte == '\n'; });
+}
+
 }  // namespace
 
 std::string message_name(StreamKind kind, ByteSpan message) {
@@ -55,6 +64,8 @@ std::string message_name(StreamKind kind, ByteSpan message) {
             return "MAVLink";
         case StreamKind::sbf:
             return "SBF";
+        case StreamKind::command:
+            return command_line_name(to_string(message)).value_or("command");
         case StreamKind::noise:
             return "noise";
     }
@@ -63,12 +74,24 @@ std::string message_name(StreamKind kind, ByteSpan message) {
 
 Dialogue::Ends& Dialogue::ends(std::size_t wire) {
     while (ends_.size() <= wire)
-        ends_.push_back({watching_splitter(true), watching_splitter(false)});
+        ends_.push_back({watching_splitter(true), watching_splitter(false), {}});
     return ends_[wire];
 }
 
 void Dialogue::client_said(std::size_t wire, ByteSpan bytes, GpsTime now) {
-    if (listening_) show(wire, true, ends(wire).client.feed(bytes), now);
+    if (!listening_) return;
+    std::vector<StreamPiece> pieces = ends(wire).client.feed(bytes);
+    // What a splitter takes for noise are the lines themselves.
+    if (command_line_) std::erase_if(pieces, is_text);
+    show(wire, true, pieces, now);
+    if (command_line_) show_commands(wire, bytes, now);
+}
+
+void Dialogue::show_commands(std::size_t wire, ByteSpan bytes, GpsTime now) {
+    std::vector<StreamPiece> commands;
+    for (const std::string& line : ends(wire).commands.feed(bytes))
+        if (command_line_name(line)) commands.push_back({StreamKind::command, to_bytes(line)});
+    show(wire, true, commands, now);
 }
 
 void Dialogue::receiver_said(std::size_t wire, ByteSpan bytes, GpsTime now) {

@@ -15,8 +15,10 @@ constexpr Nanoseconds no_time{0};
 Emulator::Emulator(Parts parts, GpsTime start)
     : parts_(std::move(parts)), now_(start), traces_(parts_.stations.size()) {
     for (std::size_t i = 0; i < parts_.stations.size(); ++i)
-        dialogues_.emplace_back(i, Dialogue::Listener{[this](const MessageSeen& seen) { parts_.director.show(seen); },
-                                                      [this](const BeliefSeen& seen) { parts_.director.show(seen); }});
+        dialogues_.emplace_back(i,
+                                Dialogue::Listener{[this](const MessageSeen& seen) { parts_.director.show(seen); },
+                                                   [this](const BeliefSeen& seen) { parts_.director.show(seen); }},
+                                parts_.stations[i].receiver().board().personality == firmware::Personality::sbf);
     for (Station& station : parts_.stations)
         station.start(start);
     if (parts_.feeds) parts_.director.add_observer(parts_.feeds.get());

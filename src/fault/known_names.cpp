@@ -8,6 +8,7 @@
 
 #include "large_letters.hpp"
 #include "skyloop/base/spelling.hpp"
+#include "skyloop/fault/command_names.hpp"
 #include "skyloop/protocol/ubx_names.hpp"
 
 namespace skyloop {
@@ -61,7 +62,8 @@ std::vector<std::string_view> called_messages() {
 }
 
 bool begins_some(std::string_view prefix) {
-    if (prefix.empty() || prefix.starts_with("UBX-") || prefix.starts_with("RTCM-")) return true;
+    if (prefix.empty() || prefix.starts_with("UBX-") || prefix.starts_with("RTCM-") || begins_some_command(prefix))
+        return true;
     if (prefix.starts_with('P') && all_of(prefix.substr(0, prefix.find(',')), is_letter_or_digit)) return true;
     const auto begins = [&](std::string_view name) { return name.starts_with(prefix); };
     const std::vector<std::string_view> names = called_messages();
@@ -70,7 +72,7 @@ bool begins_some(std::string_view prefix) {
 }
 
 bool may_be_message(std::string_view name) {
-    if (name == "ANYTHING" || may_be_proprietary(name) || may_be_numbered(name)) return true;
+    if (name == "ANYTHING" || may_be_proprietary(name) || may_be_numbered(name) || command_mnemonic(name)) return true;
     const std::vector<std::string_view> names = called_messages();
     return std::find(names.begin(), names.end(), name) != names.end() ||
            std::find(std::begin(whole_protocols), std::end(whole_protocols), name) != std::end(whole_protocols);
@@ -82,7 +84,7 @@ bool is_message_named(std::string_view name, std::string_view wanted) {
     const std::string large = large_letters(name), pattern = large_letters(wanted);
     if (pattern == "ANYTHING") return true;
     if (pattern.ends_with('*')) return large.starts_with(std::string_view(pattern).substr(0, pattern.size() - 1));
-    return large == pattern;
+    return large == pattern || large == large_letters(command_mnemonic(wanted).value_or(wanted));
 }
 
 std::optional<std::string> message_name_mistake(std::string_view wanted) {

@@ -69,6 +69,7 @@ void spoil_checksum(Bytes& message, StreamKind kind, RandomStream& random) {
         case StreamKind::noise:
         case StreamKind::msp:
         case StreamKind::mavlink:
+        case StreamKind::command:
             return;
     }
 }

@@ -114,7 +114,7 @@ void list_sbf(const SbfBlockView& block, DecodedMessage& message) {
 
 std::string_view stream_kind_name(StreamKind kind) {
     constexpr std::array<std::string_view, stream_kind_count> names{"ubx", "nmea",    "rtcm3", "noise",
-                                                                    "msp", "mavlink", "sbf"};
+                                                                    "msp", "mavlink", "sbf",   "command"};
     return names[static_cast<std::size_t>(kind)];
 }
 
@@ -138,6 +138,8 @@ DecodedMessage decode_piece(const StreamPiece& piece) {
         if (const auto frame = parse_mavlink(bytes)) list_mavlink(*frame, message);
     } else if (piece.kind == StreamKind::sbf) {
         if (const auto block = parse_sbf(bytes)) list_sbf(*block, message);
+    } else if (piece.kind == StreamKind::command) {
+        message.fields.push_back({"line", {to_string(bytes)}});
     } else {
         keep_payload(bytes, message);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "skyloop/fault/command_names.hpp"
 #include "skyloop/fault/known_names.hpp"
 #include "skyloop/geo/local_frame.hpp"
 
@@ -147,6 +148,7 @@ Reading read_silence(const SubjectClause& subject) {
 bool is_reconfiguration(const MessageSeen& seen) {
     if (seen.kind == StreamKind::ubx)
         return seen.name.starts_with("CFG-") && seen.bytes.size() >= 8 && !is_poll(seen.name, seen.bytes.size() - 8);
+    if (seen.kind == StreamKind::command) return is_setting_command(seen.name);
     if (seen.kind != StreamKind::nmea) return false;
     static constexpr std::string_view setting[] = {"PUBX,40", "PUBX,41", "PMTK2",   "PMTK3",   "PAIR050", "PAIR062",
                                                    "PAIR066", "PAIR080", "PAIR400", "PAIR410", "PAIR513", "PAIR864"};

@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "firmware/septentrio/command_line_reader.hpp"
 #include "skyloop/fault/run_observer.hpp"
 #include "skyloop/transport/transport.hpp"
 
 namespace skyloop {
 
-/// What a message is called: "CFG-VALSET", "UBX-0F-01" for one that no document names, "GGA", "PUBX,41", "RTCM-1005".
+/// What a message is called: "CFG-VALSET", "UBX-0F-01" for one that no document names, "GGA", "PUBX,41", "RTCM-1005",
+/// "sso".
 std::string message_name(StreamKind kind, ByteSpan message);
 
 /// Finds messages in the bytes of both ends and shows them.
@@ -24,7 +26,9 @@ public:
         std::function<void(const BeliefSeen&)> belief;
     };
     /// @param station whose wires they are
-    Dialogue(std::size_t station, Listener listener) : station_(station), listener_(std::move(listener)) {}
+    /// @param command_line the receiver takes lines of text as commands: a client's lines are messages
+    Dialogue(std::size_t station, Listener listener, bool command_line = false)
+        : station_(station), listener_(std::move(listener)), command_line_(command_line) {}
 
     /// Without an ear for messages it tells of clients' beliefs alone.
     void listen(bool to_messages) { listening_ = to_messages; }
@@ -36,12 +40,15 @@ public:
 private:
     struct Ends {
         StreamSplitter client, receiver;
+        firmware::CommandLineReader commands{};  // of the client
     };
     Ends& ends(std::size_t wire);
     void show(std::size_t wire, bool from_client, const std::vector<StreamPiece>& pieces, GpsTime now);
+    void show_commands(std::size_t wire, ByteSpan bytes, GpsTime now);
 
     std::size_t station_;
     Listener listener_;
+    bool command_line_;
     bool listening_ = true;
     std::vector<Ends> ends_;
 };

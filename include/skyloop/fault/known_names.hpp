@@ -10,7 +10,7 @@
 namespace skyloop {
 
 /// Whether a message is one that a name means, in letters of any case: "CFG-VALSET", "CFG-*" for all that begin so,
-/// "anything". @param name of the message, as MessageSeen has it
+/// "anything"; "setSBFOutput" for "sso". @param name of the message, as MessageSeen has it
 bool is_message_named(std::string_view name, std::string_view wanted);
 
 /// What is wrong with a name that no message can have, or nothing: "'NONSENSE' is no message; expected …". Sentences

@@ -31,7 +31,7 @@ struct MessageSeen {
     std::size_t station = 0, wire = 0;
     bool from_client = true;
     StreamKind kind = StreamKind::ubx;
-    std::string_view name;  ///< "CFG-VALSET", "UBX-0F-01" for an unknown one, "PUBX,41", "GGA"
+    std::string_view name;  ///< "CFG-VALSET", "UBX-0F-01" for an unknown one, "PUBX,41", "GGA", "sso"
     ByteSpan bytes;
 };
 

@@ -20,8 +20,9 @@ enum class StreamKind : std::uint8_t {
     msp,      ///< a frame of version 1 or 2 whose checksum holds
     mavlink,  ///< a frame of a known message whose checksum holds
     sbf,      ///< a block whose CRC holds
+    command,  ///< a line of a command line, which the splitter does not look for: any text could be one
 };
-inline constexpr std::size_t stream_kind_count = 7;
+inline constexpr std::size_t stream_kind_count = 8;
 
 /// Which protocols are looked for.
 struct StreamProtocols {

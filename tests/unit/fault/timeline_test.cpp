@@ -351,11 +351,13 @@ TEST(TimelineKeys, AreRead) {
 }
 
 TEST(TimelineKeys, MessagesAreThoseThatThereAre) {
-    for (const char* name : {"MON-VER", "mon-ver", "CFG-*", "anything", "GGA", "gga", "GPQ", "HDT", "PUBX,41", "pubx,*",
-                             "PMTK314", "PAIR*", "UBX-0A-04", "ubx-0a-04", "RTCM-1005", "SBF", "mavlink", "G*", "*"})
+    for (const char* name :
+         {"MON-VER", "mon-ver", "CFG-*",   "anything", "GGA",       "gga",          "GPQ",       "HDT",
+          "PUBX,41", "pubx,*",  "PMTK314", "PAIR*",    "UBX-0A-04", "ubx-0a-04",    "RTCM-1005", "SBF",
+          "mavlink", "G*",      "*",       "sso",      "SSO",       "setSBFOutput", "lif",       "ss*"})
         EXPECT_FALSE(message_name_mistake(name)) << name;
     for (const char* name : {"NONSENSE", "FOO", "FOO*", "GPRT", "PUBX", "PUBX,ab", "PX", "MON-VRE", "CGF-*", "UBX-0A",
-                             "PUBX-41", "", "two words"})
+                             "PUBX-41", "", "two words", "sso,", "setNothing"})
         EXPECT_TRUE(message_name_mistake(name)) << name;
     EXPECT_THAT(message_name_mistake("mon-vre").value_or(""),
                 HasSubstr("'mon-vre' is no message; did you mean 'MON-VER'?; expected a name like"));

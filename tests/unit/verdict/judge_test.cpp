@@ -103,6 +103,22 @@ TEST(JudgeSubjects, MessagesGoByDirectionAndName) {
     EXPECT_THAT(SeenRun("client reconfigures").end(2).evidence, HasSubstr("(seen: nothing)"));
 }
 
+TEST(JudgeSubjects, CommandsOfACommandLineAreMessages) {
+    EXPECT_EQ(SeenRun("client sends sso").command_line(1, "sso").end(2).outcome, passed);
+    EXPECT_EQ(SeenRun("client sends setSBFOutput").command_line(1, "sso").end(2).outcome, passed);
+    EXPECT_EQ(SeenRun("client silent throughout outage")
+                  .begins(5, "outage")
+                  .command_line(6, "gri")
+                  .ends(8, "outage")
+                  .end(10)
+                  .outcome,
+              failed);
+    for (const char* setting : {"sso", "scs", "eccf"})
+        EXPECT_EQ(SeenRun("client reconfigures").command_line(1, setting).end(2).outcome, passed) << setting;
+    for (const char* other : {"gso", "lif", "erst", "SSSSSSSSSS", "sfoo"})
+        EXPECT_EQ(SeenRun("client reconfigures").command_line(1, other).end(2).outcome, failed) << other;
+}
+
 TEST(JudgeSubjects, APollIsNoReconfiguration) {
     const auto after = [](std::string_view name, std::size_t payload) {
         return SeenRun("client reconfigures").client(1, name, payload).end(2).outcome;

@@ -80,6 +80,11 @@ public:
         return message(second, name, payload, station, true);
     }
     SeenRun& receiver(double second, std::string_view name) { return message(second, name, 4, 0, false); }
+    SeenRun& command_line(double second, std::string_view name) {
+        const Bytes bytes(3);
+        judge_.on_message({at_second(second), 0, 0, true, StreamKind::command, name, bytes});
+        return *this;
+    }
     SeenRun& noise(double second) {
         const Bytes bytes(3);
         judge_.on_message({at_second(second), 0, 0, true, StreamKind::noise, "noise", bytes});
@@ -111,7 +116,8 @@ public:
 private:
     SeenRun& message(double second, std::string_view name, std::size_t payload, std::size_t station, bool client) {
         const Bytes bytes(payload + 8);
-        const bool nmea = name.find(',') != std::string_view::npos || name.starts_with("PMTK");
+        const bool nmea =
+            name.find(',') != std::string_view::npos || name.starts_with("PMTK") || name.starts_with("PAIR");
         judge_.on_message(
             {at_second(second), station, 0, client, nmea ? StreamKind::nmea : StreamKind::ubx, name, bytes});
         return *this;
