@@ -25,6 +25,8 @@ struct TimeKnowledge {
     bool leap_seconds = false;  ///< decoded, not the firmware's own number: fully resolved
     bool confirmed = false;     ///< by several systems (NAV-PVT flags2)
     Seconds accuracy{0};        ///< 1 σ; meaningless without `time`
+    /// Whose satellites told the leap seconds; nothing of those that were known from before the run.
+    std::optional<Constellation> leap_source{};
 };
 
 /// What captured receivers tell of a solution that they never had (RECEIVER.md 4.10): no estimate is worse. 1 σ.

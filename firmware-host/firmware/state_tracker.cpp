@@ -61,10 +61,6 @@ std::uint64_t sbas_mask(const BoardProfile& board, const ConfigStore& config) {
     return board.personality == Personality::ublox ? config.value(key::sbas_scan_mask) : 0;
 }
 
-bool is_tracking(const Fix& fix) {
-    return std::any_of(fix.satellites.begin(), fix.satellites.end(), [](const auto& s) { return s.cn0.has_value(); });
-}
-
 // A receiver looks for no satellite of a system that it does not have, or that is off, and for no SBAS satellite
 // outside of its scan mask.
 void leave_out_others(Fix& fix, const BoardProfile& board, const ConfigStore& config) {
@@ -113,10 +109,11 @@ void StateTracker::start(GpsTime now, const Forgotten& forgotten, bool running) 
     start_kind_ = forgotten.kind();
     state_.time.time = state_.time.date = running || !forgotten.rtc;
     state_.time.leap_seconds = running || (!forgotten.rtc && !forgotten.utc);
+    if (state_.time.leap_seconds) state_.time.leap_source = before.time.leap_source;
     state_.time.confirmed = running;
     // A clock that ran on a crystal alone since the last fix.
     state_.time.accuracy = Seconds(running ? 20e-9 : 1.0);
-    first_tracking_.reset();
+    first_tracked_.clear();
     first_fix_.reset();
     last_good_.reset();
     held_.reset();
@@ -138,7 +135,8 @@ const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStor
     state_.since_boot = difference(fix.time, *booted_);
     state_.since_start = started_ ? difference(fix.time, *started_) : state_.since_boot;
     measured_ |= !epoch.observations.signals.empty();
-    if (is_tracking(fix) && !first_tracking_) first_tracking_ = fix.time;
+    for (const SatelliteStatus& s : fix.satellites)
+        if (s.cn0) first_tracked_.try_emplace(s.id.constellation, fix.time);
 
     acquire();
     keep_level(config);

@@ -1,6 +1,7 @@
 /// How a receiver's report of itself goes on from epoch to epoch.
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "firmware/navigation_state.hpp"
@@ -44,6 +45,8 @@ public:
 
 private:
     void learn_time(const ConfigStore& config);
+    [[nodiscard]] std::optional<Constellation> told_leap_seconds() const;
+    [[nodiscard]] std::optional<GpsTime> first_tracking() const;
     void keep_level(const ConfigStore& config);
     [[nodiscard]] bool hears_too_little(const ConfigStore& config) const;
     void keep_within_limits(const ConfigStore& config);
@@ -64,8 +67,8 @@ private:
     std::optional<GpsTime> booted_;   ///< nothing: long ago, and there was no epoch yet
     bool from_backup_ = false;
     StartKind start_kind_ = StartKind::hot;
-    bool measured_ = false;                  ///< the model acquires satellites itself
-    std::optional<GpsTime> first_tracking_;  ///< since the start
+    bool measured_ = false;                           ///< the model acquires satellites itself
+    std::map<Constellation, GpsTime> first_tracked_;  ///< since the start
     std::optional<GpsTime> first_fix_;
     std::optional<GpsTime> last_good_;  ///< epoch of the last solution that was not coasted
     bool last_good_was_ok_ = false;     ///< within limits, DOP and accuracy masks

@@ -18,19 +18,32 @@ constexpr double confirmed_after_s = 45;
 constexpr double clock_drift_accuracy = 1e-8;
 // Galileo sends UTC parameters in word type 6, once a nominal sub-frame of 30 s (OS SIS ICD 2.0, 4.3.3).
 constexpr double galileo_utc_period_s = 30;
+// GLONASS counts UTC itself: N_T and N_4, by which the day is known, are in strings 4 and 5 of each frame of 30 s
+// (GLONASS ICD 5.1, 4.4 and 4.5).
+constexpr double glonass_frame_s = 30;
 
-// Whether subframe 4 page 18, the GPS page with the leap seconds, has ended between the two: the 25 frames of 30 s are
-// counted from the start of the week, subframe 4 ends after 24 s of its frame (IS-GPS-200, 20.3.3.5.1).
-bool gps_utc_page_ended(GpsTime from, GpsTime to) {
-    constexpr std::int64_t cycle_s = 750, page_end_s = 17 * 30 + 24;
-    const auto pages_until = [&](GpsTime t) {
+// A page that comes once a cycle. Cycles are counted from the start of the week.
+struct UtcPage {
+    std::int64_t cycle_s, end_s;
+
+    // Whether it has ended between the two.
+    [[nodiscard]] bool ended(GpsTime from, GpsTime to) const { return pages_until(to) > pages_until(from); }
+    [[nodiscard]] std::int64_t pages_until(GpsTime t) const {
+        constexpr std::int64_t week_s = 604'800;
         const double tow = week_and_tow(t).tow_seconds();
-        const auto week = week_and_tow(t).week;
-        // 604 800 s are 806 cycles and a piece: the cycle begins anew with the week.
-        return week * 807 + static_cast<std::int64_t>(std::floor((tow - page_end_s) / cycle_s)) + 1;
-    };
-    return pages_until(to) > pages_until(from);
-}
+        // A cycle that the end of the week cuts begins anew with it.
+        const std::int64_t pages_a_week = (week_s + cycle_s - 1) / cycle_s;
+        return week_and_tow(t).week * pages_a_week +
+               static_cast<std::int64_t>(
+                   std::floor((tow - static_cast<double>(end_s)) / static_cast<double>(cycle_s))) +
+               1;
+    }
+};
+// Page 18 of subframe 4, of 25 frames of 30 s; that subframe ends after 24 s of its frame (IS-GPS-200, 20.3.3.5.1).
+constexpr UtcPage gps_utc_page{750, 17 * 30 + 24};
+// Page 10 of subframe 5, the last of its frame, of 24 frames of D1 (BeiDou ICD B1I 3.0, 5.2). BeiDou's week begins 14 s
+// after GPS's.
+constexpr UtcPage beidou_utc_page{720, 10 * 30 + 14};
 
 bool tracks(const Fix& fix, Constellation constellation) {
     return std::any_of(fix.satellites.begin(), fix.satellites.end(),
@@ -62,12 +75,13 @@ void StateTracker::learn_time(const ConfigStore&) {
     Fix& fix = state_.epoch.fix;
     const auto since = [&](const std::optional<GpsTime>& t) { return t ? difference(fix.time, *t).value() : -1.0; };
     const bool solved = last_good_ == fix.time;
-    const double tracking = since(first_tracking_);
+    const double tracking = since(first_tracking());
     time.time = time.time || tracking >= time_after_s || solved;
     time.date = time.date || tracking >= date_after_s || solved;
-    if (!time.leap_seconds && first_tracking_)
-        time.leap_seconds = (tracks(fix, Constellation::gps) && gps_utc_page_ended(*first_tracking_, fix.time)) ||
-                            (tracks(fix, Constellation::galileo) && tracking >= galileo_utc_period_s);
+    if (const auto source = told_leap_seconds()) {
+        time.leap_seconds = true;
+        time.leap_source = source;
+    }
     if (!time.confirmed) time.confirmed = since(first_fix_) >= confirmed_after_s && systems_used(fix) >= 2;
     if (!time.leap_seconds && board_.quirks.leap_seconds) fix.leap_seconds = *board_.quirks.leap_seconds;
     if (solved) {
@@ -76,6 +90,44 @@ void StateTracker::learn_time(const ConfigStore&) {
         const double away = since(last_good_);
         time.accuracy = Seconds(last_fix_.time_accuracy.value() / speed_of_light + clock_drift_accuracy * away);
     }
+}
+
+// Whose leap seconds were just learnt. What GPS tells takes the place of the others' (NAV-TIMELS); what was known from
+// before stays.
+std::optional<Constellation> StateTracker::told_leap_seconds() const {
+    using enum Constellation;
+    const TimeKnowledge& time = state_.time;
+    if (time.leap_seconds && (!time.leap_source || time.leap_source == gps)) return std::nullopt;
+    const Fix& fix = state_.epoch.fix;
+    const auto told = [&](Constellation system) {
+        const auto first = first_tracked_.find(system);
+        if (first == first_tracked_.end() || !tracks(fix, system)) return false;
+        const double tracking = difference(fix.time, first->second).value();
+        switch (system) {
+            case gps:
+                return gps_utc_page.ended(first->second, fix.time);
+            case galileo:
+                return tracking >= galileo_utc_period_s;
+            case beidou:
+                return beidou_utc_page.ended(first->second, fix.time);
+            case glonass:
+                return tracking >= glonass_frame_s;
+            default:
+                return false;
+        }
+    };
+    if (told(gps)) return gps;
+    if (time.leap_seconds) return std::nullopt;
+    for (const Constellation system : {galileo, beidou, glonass})
+        if (told(system)) return system;
+    return std::nullopt;
+}
+
+std::optional<GpsTime> StateTracker::first_tracking() const {
+    std::optional<GpsTime> first;
+    for (const auto& [system, time] : first_tracked_)
+        first = std::min(first.value_or(time), time);
+    return first;
 }
 
 BandMonitor StateTracker::monitor_band(Decibels interference, bool watched) const {

@@ -116,8 +116,11 @@ inline std::uint8_t cn0_field(const std::optional<DbHz>& cn0) { return cn0 ? fie
 /// Whether the satellite's place in the sky is known: the position is, and so is an orbit. A report leaves both angles
 /// at exactly zero where it does not know them.
 bool direction_known(const SatelliteStatus& satellite, const NavigationState& state);
-/// Whether the almanac is there: it takes the same twelve and a half minutes as the leap seconds, or was stored.
-inline bool almanac_known(const NavigationState& state) { return state.time.leap_seconds; }
+/// Whether the almanac is there: it comes with the leap seconds, or was stored. GLONASS tells those in each frame, and
+/// them alone.
+inline bool almanac_known(const NavigationState& state) {
+    return state.time.leap_seconds && state.time.leap_source != Constellation::glonass;
+}
 
 /// One frame as a list.
 template <class Message>

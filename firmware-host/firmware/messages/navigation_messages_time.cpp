@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "firmware/clock_instant.hpp"
+#include "firmware/config/signal_keys.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/navigation_parts.hpp"
@@ -156,8 +157,20 @@ void put_announced_leap_event(GpsTime now, NavTimels& m) {
     if (event != nullptr) put_leap_event(now, *event, change, m);
 }
 
+// srcOfCurrLs; srcOfLsChange has 6 for GLONASS. What was known from before the run was told by the first of the systems
+// that are on.
+std::uint8_t leap_source_code(const ReportContext& context) {
+    using enum Constellation;
+    constexpr std::pair<Constellation, std::uint8_t> codes[] = {{gps, 2}, {galileo, 5}, {beidou, 4}, {glonass, 1}};
+    for (const auto& [system, code] : codes)
+        if (const auto& source = context.state.time.leap_source;
+            source ? *source == system : is_enabled(context.config, system))
+            return code;
+    return codes[0].second;
+}
+
 NavTimels time_leap_seconds(const ReportContext& context) {
-    constexpr std::uint8_t from_firmware = 0, from_gps = 2;
+    constexpr std::uint8_t from_firmware = 0, glonass_difference = 1, change_from_glonass = 6;
     const ReportedTime reported = reported_time(context);
     NavTimels m;
     const GpsTime now = std::chrono::round<std::chrono::milliseconds>(reported.time);
@@ -165,7 +178,8 @@ NavTimels time_leap_seconds(const ReportContext& context) {
     m.curr_ls = field<std::int8_t>(context.state.epoch.fix.leap_seconds);
     m.src_of_curr_ls = from_firmware;
     if (!context.state.time.leap_seconds) return m;
-    m.src_of_curr_ls = m.src_of_ls_change = from_gps;
+    m.src_of_curr_ls = leap_source_code(context);
+    m.src_of_ls_change = m.src_of_curr_ls == glonass_difference ? change_from_glonass : m.src_of_curr_ls;
     m.valid = 3;
     const auto& own = reported.leap_event;
     if (own)

@@ -66,7 +66,7 @@ std::uint8_t ionosphere_model(const SignalReport& signal, const NavigationState&
             break;
     }
     if (signal.second_frequency) return 8;
-    return state.time.leap_seconds ? 1 : 0;
+    return almanac_known(state) ? 1 : 0;
 }
 
 NavSigItem signal_item(const SignalReport& report, const ReportContext& context) {

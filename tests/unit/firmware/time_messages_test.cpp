@@ -173,6 +173,21 @@ TEST(NavTimelsMessage, TellsWhereTheNumberIsFrom) {
     EXPECT_EQ(m9.report<NavTimels>().valid, 0);
 }
 
+TEST(NavTimelsMessage, TellsWhoseSatellitesToldIt) {
+    using enum Constellation;
+    UbxReport m9(9);
+    for (const auto& [system, now, change] :
+         {std::tuple{galileo, 5, 5}, std::tuple{beidou, 4, 4}, std::tuple{glonass, 1, 6}, std::tuple{gps, 2, 2}}) {
+        m9.state.time.leap_source = system;
+        EXPECT_EQ(m9.report<NavTimels>().src_of_curr_ls, now);
+        EXPECT_EQ(m9.report<NavTimels>().src_of_ls_change, change);
+    }
+    m9.state.time.leap_source.reset();
+    constexpr std::uint32_t gps_on = 0x1031001F;
+    m9.config.set(in_ram, gps_on, 0);
+    EXPECT_EQ(m9.report<NavTimels>().src_of_curr_ls, 5) << "known from before: by what is on";
+}
+
 TEST(NavTimelsMessage, AnnouncesTheNextOne) {
     const UbxReport m8(8, "2016-12-31T23:00:00Z");
     const auto m = m8.report<NavTimels>();
