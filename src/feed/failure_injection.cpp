@@ -55,10 +55,25 @@ MavlinkResult FailureInjector::inject(float unit, float type, float instance) {
     const std::size_t first = number == 0 ? 0 : number - 1, last = number == 0 ? receivers_.size() : number;
     for (std::size_t i = first; i < last; ++i) {
         const FailureType wanted = fault == nullptr ? FailureType::ok : fault->type;
-        if (injected_[i].type == wanted) continue;
+        if (injected_[i].type == wanted) {
+            if (!keep(i)) return MavlinkResult::temporarily_rejected;
+            continue;
+        }
         if (!stop(i) || (fault != nullptr && !start(i, *fault))) return MavlinkResult::temporarily_rejected;
     }
     return MavlinkResult::accepted;
+}
+
+// A command comes twice where its acknowledgement was lost, and must not begin anew what is under way; what ctl or the
+// page has ended meanwhile has to come back. The run knows which of both it is: it ignores the start of what is there.
+bool FailureInjector::keep(std::size_t receiver) {
+    const Injected& injected = injected_[receiver];
+    if (injected.type == FailureType::ok) return true;
+    Command command;
+    command.verb = CommandVerb::start_fault;
+    command.parameters = Parameters({{"fault", injected.name}});
+    command.source = "mavlink";
+    return push_(std::move(command));
 }
 
 bool FailureInjector::stop(std::size_t receiver) {

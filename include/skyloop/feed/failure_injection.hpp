@@ -36,9 +36,10 @@ const std::vector<FailureFault>& failure_faults();
 using CommandSink = std::function<bool(Command)>;
 
 /// Turns failures that are asked for into commands of the run. Each receiver has one failure at a time: a new one takes
-/// the place of the one before, the same again changes nothing.
+/// the place of the one before, the same again changes nothing while it is under way and begins it again where it is
+/// not.
 ///
-/// State: which failure each receiver has.
+/// State: which failure each receiver was given last.
 class FailureInjector {
 public:
     /// @param receivers their names, in the order of their instances
@@ -54,6 +55,7 @@ private:
         FailureType type = FailureType::ok;
         std::string name;  // of the fault
     };
+    bool keep(std::size_t receiver);
     bool stop(std::size_t receiver);
     bool start(std::size_t receiver, const FailureFault& fault);
 

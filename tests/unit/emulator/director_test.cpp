@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "skyloop/feed/failure_injection.hpp"
 #include "skyloop/protocol/nmea_sentence.hpp"
 #include "support/run_parts.hpp"
 
@@ -227,6 +228,28 @@ TEST(Director, SaysThatAFaultThatIsToBeginIsNotThere) {
     run_for(*run, 3s);
     EXPECT_THAT(run->witness.ignored, ElementsAre("no fault is called zz"));
     EXPECT_THAT(run->witness.happened, ElementsAre("command start_fault", "command start_fault", "quiet begins"));
+}
+
+// A command of MAVLink comes again where its acknowledgement was lost, or because somebody else has ended the fault.
+TEST(Director, AFailureThatIsInjectedAgainIsThereOnce) {
+    const auto run = directed("");
+    FailureInjector injector({run->run.emulator->stations().at(0).name()},
+                             [&](Command command) { return run->live.push(std::move(command)); });
+    const auto inject_off = [&] { EXPECT_EQ(injector.inject(failure_unit_gps, 1, 0), MavlinkResult::accepted); };
+    inject_off();
+    inject_off();
+    run_for(*run, 1s);
+    inject_off();
+    run_for(*run, 1s);
+    EXPECT_THAT(run->witness.happened, ElementsAre("command start_fault", "command start_fault", "mavlink off 1 begins",
+                                                   "command start_fault"));
+    EXPECT_THAT(run->witness.ignored, ElementsAre("mavlink off 1 is under way"));
+    stop_live(*run, "mavlink off 1");
+    run_for(*run, 1s);
+    run->witness.happened.clear();
+    inject_off();
+    run_for(*run, 1s);
+    EXPECT_THAT(run->witness.happened, ElementsAre("command start_fault", "mavlink off 1 begins"));
 }
 
 TEST(Director, StopsWhatWasBegunAtTheSameInstant) {

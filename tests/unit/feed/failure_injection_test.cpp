@@ -30,10 +30,10 @@ struct TakenCommands {
     [[nodiscard]] std::vector<std::string> lines() const {
         std::vector<std::string> lines;
         for (const Command& c : all)
-            lines.push_back(c.verb == CommandVerb::stop_fault
-                                ? "stop " + c.parameters.text("fault")
-                                : c.parameters.text("name") + ": " + c.parameters.text("kind") + " " +
-                                      c.receivers.at(0));
+            lines.push_back(c.verb == CommandVerb::stop_fault ? "stop " + c.parameters.text("fault")
+                            : c.parameters.has("fault")       ? "again " + c.parameters.text("fault")
+                                                        : c.parameters.text("name") + ": " + c.parameters.text("kind") +
+                                                              " " + c.receivers.at(0));
         return lines;
     }
 };
@@ -60,7 +60,7 @@ TEST(FailureInjector, StartsAFaultOnEachReceiverAndStopsItAgain) {
     EXPECT_EQ(run.all[0].source, "mavlink");
 }
 
-TEST(FailureInjector, TheSameAgainChangesNothingAndAnotherTakesItsPlace) {
+TEST(FailureInjector, TheSameAgainIsLeftToTheRunAndAnotherTakesItsPlace) {
     TakenCommands run;
     FailureInjector injector({"only"}, run.sink());
     for (int i = 0; i < 3; ++i)
@@ -68,9 +68,10 @@ TEST(FailureInjector, TheSameAgainChangesNothingAndAnotherTakesItsPlace) {
     EXPECT_EQ(injector.inject(gps, 4, 0), MavlinkResult::accepted);
     EXPECT_EQ(injector.inject(gps, 0, 0), MavlinkResult::accepted);
     EXPECT_EQ(injector.inject(gps, 0, 0), MavlinkResult::accepted) << "nothing to stop";
-    EXPECT_THAT(run.lines(), ElementsAre("mavlink stuck 1: freeze only", "stop mavlink stuck 1",
-                                         "mavlink wrong 2: position_step only", "stop mavlink wrong 2"));
-    EXPECT_EQ(run.all[2].parameters.number("north_m"), 100);
+    EXPECT_THAT(run.lines(),
+                ElementsAre("mavlink stuck 1: freeze only", "again mavlink stuck 1", "again mavlink stuck 1",
+                            "stop mavlink stuck 1", "mavlink wrong 2: position_step only", "stop mavlink wrong 2"));
+    EXPECT_EQ(run.all[4].parameters.number("north_m"), 100);
 }
 
 TEST(FailureInjector, RefusesWhatItCannotDo) {
@@ -95,8 +96,8 @@ TEST(FailureInjector, WhatTheRunCannotTakeNowIsDoneAtTheNextAttempt) {
     EXPECT_EQ(injector.inject(gps, 1, 0), MavlinkResult::temporarily_rejected);
     run.room = 100;
     EXPECT_EQ(injector.inject(gps, 1, 0), MavlinkResult::accepted);
-    EXPECT_THAT(run.lines(),
-                ElementsAre("mavlink off 1: receiver_silent front", "mavlink off 2: receiver_silent rear"));
+    EXPECT_THAT(run.lines(), ElementsAre("mavlink off 1: receiver_silent front", "again mavlink off 1",
+                                         "mavlink off 2: receiver_silent rear"));
 }
 
 }  // namespace
