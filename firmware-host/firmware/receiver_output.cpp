@@ -23,6 +23,13 @@ std::uint32_t protocol_item(UbxMessageId message) {
     return message.message_class == class_rtcm ? protocol_rtcm3 : protocol_ubx;
 }
 
+// By what a ready message begins with.
+UbxMessageId protocol_of(const Bytes& message) {
+    constexpr std::uint8_t rtcm3_sync = 0xD3;
+    if (message.front() == ubx_sync_1) return {};
+    return {message.front() == rtcm3_sync ? class_rtcm : class_nmea, 0};
+}
+
 std::string_view antenna_text(AntennaStatus status) {
     switch (status) {
         case AntennaStatus::initialising:
@@ -108,8 +115,7 @@ void Receiver::Core::reply(PortUnit& unit, Reply out, GpsTime now) {
         outbox_.plan(at, [this, port, messages = std::move(out.answers)](GpsTime t) {
             std::vector<Bytes> let_out;
             for (const Bytes& message : messages)
-                if (lets_out(port, message.front() == ubx_sync_1 ? UbxMessageId{} : UbxMessageId{class_nmea, 0}))
-                    let_out.push_back(message);
+                if (lets_out(port, protocol_of(message))) let_out.push_back(message);
             send(port, let_out, t);
         });
     if (old_speed) plan_speed_changes(at);
@@ -279,9 +285,12 @@ void Receiver::Core::tell_antenna_status(const NavigationState& state, GpsTime n
     told_antenna_ = status;
 }
 
+// What the banner says of the antenna has been told: the state that follows is a change from it.
 void Receiver::Core::send_banner(GpsTime now, bool deaf) {
-    for (const std::string& line : board_.identity.banner)
+    for (const std::string& line : board_.identity.banner) {
+        if (line == antenna_text(AntennaStatus::unknown)) told_antenna_ = AntennaStatus::unknown;
         send_text(level_notice, line, now);
+    }
     if (!deaf) return;
     for (const PortUnit& unit : units_)
         deaf_until_ = std::max(deaf_until_, is_uart(unit.id) ? unit.transmit.drained_at().value_or(now) : now);

@@ -564,5 +564,21 @@ TEST(ReceiverCommands, TellsWhenTheAntennaChanges) {
     EXPECT_EQ(text, "$GNTXT,01,01,02,ANTSTATUS=SHORT*73\r\n");
 }
 
+TEST(ReceiverCommands, TellsTheAntennaAfterABannerThatDidNotKnowIt) {
+    ReceiverOptions options;
+    options.power_up = true;
+    BoardProfile board = sample_ublox();
+    board.quirks.voltage_control = true;
+    board.identity.banner = {"HELLO", "ANTSTATUS=DONTKNOW"};
+    Bench supervised(board, options);
+    supervised.wait(5s);
+    EXPECT_THAT(supervised.text(), HasSubstr("ANTSTATUS=OK*"));
+    board.quirks.voltage_control = false;
+    Bench other(board, options);
+    other.wait(5s);
+    EXPECT_THAT(other.text(), HasSubstr("ANTSTATUS=DONTKNOW*"));
+    EXPECT_THAT(other.text(), testing::Not(HasSubstr("ANTSTATUS=OK*")));
+}
+
 }  // namespace
 }  // namespace skyloop::firmware

@@ -167,5 +167,23 @@ TEST(RtcmMessages, OnlyAFixedStationTellsWhereItStands) {
         EXPECT_NEAR(static_cast<double>(station().position[static_cast<std::size_t>(i)]) * 1e-4, place[i], 1e-4);
 }
 
+// A poll is answered by the protocol of its message: a base's port has NMEA off.
+TEST(RtcmMessages, PolledOnesLeaveWhereTheirProtocolMay) {
+    constexpr std::uint32_t out_nmea = 0x10740002, out_rtcm = 0x10740004;
+    for (const bool rtcm : {true, false}) {
+        BoardProfile board = sample_ublox();
+        board.messages.push_back(rtcm_1005);
+        board.config = {{0x20030001, 2}, {0x40030003, 378'000'000}, {out_nmea, !rtcm}, {out_rtcm, rtcm}};
+        Receiver receiver(board, {});
+        const GpsTime now = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500).time;
+        receiver.start(now);
+        receiver.input(PortId::uart1, encode_frame(rtcm_1005, {}), now);
+        std::size_t answers = 0;
+        for (const Receiver::Sent& sent : receiver.output(now + 500ms))
+            if (sent.port == PortId::uart1 && !sent.bytes.empty()) ++answers;
+        EXPECT_EQ(answers > 0, rtcm);
+    }
+}
+
 }  // namespace
 }  // namespace skyloop::firmware
