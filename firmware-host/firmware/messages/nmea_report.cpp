@@ -142,8 +142,10 @@ void add_time_and_date(NmeaReport& r) {
     UtcTime utc = reported_utc(r.context);
     bool time = known.time || config.flag(key::nmea_out_invtime);
     bool date = known.date || config.flag(key::nmea_out_invdate);
-    if (r.context.board.style.unknown_date_is_1980 && !known.time) {
-        // Such receivers count from 23:59:46 of 5 January 1980 on (RECEIVER.md 5.8).
+    const bool before_both = !known.time || (!known.date && !r.solved);
+    if (r.context.board.style.unknown_date_is_1980 && before_both) {
+        // Such receivers count from 23:59:46 of 5 January 1980 on (RECEIVER.md 5.8) until they know both, as with a
+        // fix.
         constexpr auto before_gps_time = std::chrono::seconds(14);
         const Nanoseconds on = to_nanoseconds(r.context.state.since_start);
         utc = to_utc(GpsTime(on - before_gps_time), LeapSeconds::constant(0));

@@ -338,6 +338,10 @@ TEST(NmeaOfMediaTek, CountsFrom1980UntilItKnowsTheTime) {
     EXPECT_THAT(receiver.line(rmc_id), StartsWith("$GPRMC,235947.200,V,,,,,,,050180,,,N*"));
     receiver.state.since_start = Seconds(15);
     EXPECT_THAT(receiver.line(rmc_id), StartsWith("$GPRMC,000001.000,V,,,,,,,060180,,,N*"));
+    receiver.state.time.time = true;
+    EXPECT_THAT(receiver.line(rmc_id), StartsWith("$GPRMC,000001.000,V,,,,,,,060180,,,N*")) << "the date is to come";
+    receiver.state.time.date = true;
+    EXPECT_THAT(receiver.line(rmc_id), testing::Not(HasSubstr("0180")));
 }
 
 TEST(NmeaPubx, TellsPositionSatellitesAndTime) {
