@@ -33,6 +33,14 @@ struct TimeKnowledge {
 inline constexpr Metres unknown_horizontal_accuracy{4294967.295}, unknown_vertical_accuracy{3750000.128};
 inline constexpr MetresPerSecond unknown_speed_accuracy{20};
 
+/// Why the whole receiver has started last.
+enum class BootCause {
+    power,           ///< switched on, or its power was cut
+    hardware_reset,  ///< by CFG-RST
+    software_reset,  ///< by CFG-RST, or another command
+    backup           ///< woken, after it was off by its own doing
+};
+
 /// What came in by RTCM.
 struct CorrectionStatus {
     CorrectionState state = CorrectionState::none;  ///< of what can be solved; as reported, of what was
@@ -102,7 +110,7 @@ struct NavigationState {
     std::uint64_t epoch_index = 0;       ///< since the last start
     std::optional<BaseSurvey> survey{};  ///< with CFG-TMODE-MODE 1
     PowerSaveState power_save = PowerSaveState::full_power;
-    bool woken_from_backup = false;  ///< by its last start
+    BootCause boot_cause = BootCause::power;
     std::optional<LeapEvent> leap_event{};
     bool old_position_shown = false;  ///< sentences show it without a valid fix too, whatever is configured
     Seconds week_lag{0};      ///< week numbers change so much after their times of week begin anew; below 0 before

@@ -158,9 +158,9 @@ void Receiver::Core::reset(std::uint16_t nav_bbr_mask, std::uint8_t mode, GpsTim
                 store_.clear(in_battery);
                 forgotten = Forgotten::of(StartKind::cold);
             }
-            return reboot(forgotten, now);
+            return reboot(forgotten, now, BootCause::hardware_reset);
         case reset_software:
-            return reboot(forgotten, now);
+            return reboot(forgotten, now, BootCause::software_reset);
         case reset_navigation:
             settings_.navigating = true;
             return restart_navigation(forgotten, now, board_.timing.signal_restart);
@@ -184,8 +184,8 @@ void Receiver::Core::start_navigating(GpsTime now) {
     restart_navigation({}, now, Seconds(0));
 }
 
-void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now, bool banner) {
-    boot(forgotten, now, {.takes = board_.timing.boot, .banner = banner});
+void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now, BootCause cause, bool banner) {
+    boot(forgotten, now, {.takes = board_.timing.boot, .banner = banner, .cause = cause});
 }
 
 // RAM and transmit queue are lost, the configuration is built from its layers, the banner comes at the stored speed.
@@ -210,10 +210,11 @@ void Receiver::Core::boot(const Forgotten& forgotten, GpsTime now, const Boot& h
     told_antenna_.reset();
     const GpsTime awake = advanced(now, how.takes);
     deaf_until_ = awake;
-    tracker_.boot(now, how.from_backup);
+    tracker_.boot(now, how.cause);
     restart_navigation(forgotten, now, how.takes + board_.timing.first_epoch);
     // Half a second after it was woken a client may speak to it.
-    if (how.banner) outbox_.plan(awake, [this, deaf = !how.from_backup](GpsTime t) { send_banner(t, deaf); });
+    const bool deaf = how.cause != BootCause::backup;
+    if (how.banner) outbox_.plan(awake, [this, deaf](GpsTime t) { send_banner(t, deaf); });
 }
 
 }  // namespace skyloop::firmware

@@ -141,10 +141,10 @@ private:
         Seconds takes;  ///< until it hears
         bool banner = true;
         bool keeps_ram = false;
-        bool from_backup = false;
+        BootCause cause = BootCause::power;
     };
     void boot(const Forgotten& forgotten, GpsTime now, const Boot& how);
-    void reboot(const Forgotten& forgotten, GpsTime now, bool banner = true);
+    void reboot(const Forgotten& forgotten, GpsTime now, BootCause cause, bool banner = true);
     void restart_navigation(const Forgotten& forgotten, GpsTime now, Seconds silence);
     // @param deaf until it has left
     void send_banner(GpsTime now, bool deaf);

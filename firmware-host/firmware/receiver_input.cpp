@@ -256,12 +256,12 @@ void Receiver::Core::carry_out(PortUnit& unit, CommandOutcome outcome, UbxMessag
     reply(unit, {std::move(outcome.answers), std::nullopt, Seconds(0), id}, now);
     if (!outcome.restart) return;
     const Forgotten forgotten = Forgotten::of(*outcome.restart);
-    if (!answered) return reboot(forgotten, now);
+    if (!answered) return reboot(forgotten, now, BootCause::software_reset);
     // What acknowledges a restart leaves before it.
     const PortId port = unit.id;
     outbox_.plan(last_answer_, [this, port, forgotten](GpsTime t) {
         const GpsTime told = find_unit(units_, port)->transmit.drained_at().value_or(t);
-        outbox_.plan(told, [this, forgotten](GpsTime then) { reboot(forgotten, then); });
+        outbox_.plan(told, [this, forgotten](GpsTime then) { reboot(forgotten, then, BootCause::software_reset); });
     });
 }
 

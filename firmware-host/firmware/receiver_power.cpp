@@ -143,7 +143,7 @@ void Receiver::Core::wake(GpsTime now) {
          {.takes = board_.power.wake,
           .banner = board_.power.banner,
           .keeps_ram = board_.power.keeps_ram,
-          .from_backup = true});
+          .cause = BootCause::backup});
 }
 
 std::optional<GpsTime> Receiver::Core::next_change() const {

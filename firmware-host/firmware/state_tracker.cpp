@@ -119,7 +119,7 @@ void StateTracker::start(GpsTime now, const Forgotten& forgotten, bool running) 
     held_.reset();
     epochs_beyond_limits_ = 0;
     measured_ = false;
-    state_.woken_from_backup = from_backup_;
+    state_.boot_cause = boot_cause_;
     if (running) state_.time_to_first_fix = board_.timing.cold_start;
 }
 

@@ -31,10 +31,9 @@ public:
     /// The receiver starts, with what it has not forgotten. @param running it has been on for long, and knows all
     void start(GpsTime now, const Forgotten& forgotten, bool running = false);
     /// The whole receiver starts, navigation with it: to be followed by start().
-    /// @param from_backup it has been off by its own doing
-    void boot(GpsTime now, bool from_backup = false) {
+    void boot(GpsTime now, BootCause cause = BootCause::power) {
         booted_ = now;
-        from_backup_ = from_backup;
+        boot_cause_ = cause;
     }
     /// The next epoch, in the receiver's own words. @param corrections of CorrectionInput at that instant
     const NavigationState& update(const Epoch& epoch, const ConfigStore& config, const CorrectionStatus& corrections);
@@ -65,7 +64,7 @@ private:
     NavigationState state_;
     std::optional<GpsTime> started_;  ///< nothing: long ago
     std::optional<GpsTime> booted_;   ///< nothing: long ago, and there was no epoch yet
-    bool from_backup_ = false;
+    BootCause boot_cause_ = BootCause::power;
     StartKind start_kind_ = StartKind::hot;
     bool measured_ = false;                           ///< the model acquires satellites itself
     std::map<Constellation, GpsTime> first_tracked_;  ///< since the start

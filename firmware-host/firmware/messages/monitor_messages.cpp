@@ -53,6 +53,21 @@ MonGnss systems(const ReportContext& context) {
     return m;
 }
 
+// MON-SYS bootType (RECEIVER.md 3.2).
+std::uint8_t boot_type_of(BootCause cause) {
+    switch (cause) {
+        case BootCause::power:
+            return 1;  // cold
+        case BootCause::hardware_reset:
+            return 3;
+        case BootCause::software_reset:
+            return 6;
+        case BootCause::backup:
+            return 5;  // of the software's own doing
+    }
+    return 0;
+}
+
 // The load that tracking takes: that of a captured ZED-F9P, 22 % with 20 satellites.
 MonSys system_load(const ReportContext& context) {
     constexpr double idle_percent = 8, percent_per_satellite = 0.7;
@@ -60,8 +75,7 @@ MonSys system_load(const ReportContext& context) {
     const auto tracked =
         std::count_if(satellites.begin(), satellites.end(), [](const SatelliteStatus& s) { return s.cn0.has_value(); });
     MonSys m;
-    constexpr std::uint8_t cold = 1, software_backup = 5;
-    m.boot_type = context.state.woken_from_backup ? software_backup : cold;
+    m.boot_type = boot_type_of(context.state.boot_cause);
     m.cpu_load = m.cpu_load_max =
         field<std::uint8_t>(std::min(100.0, idle_percent + percent_per_satellite * static_cast<double>(tracked)));
     m.mem_usage = 8;

@@ -326,7 +326,7 @@ TEST(ReceiverPower, StartsWarmAfterHours) {
     EXPECT_EQ(bench.receiver().settings().start, StartKind::warm);
 }
 
-TEST(ReceiverPower, TellsThatItWasInBackup) {
+TEST(ReceiverPower, TellsWhyItHasStarted) {
     BoardProfile board = saver_board();
     board.polled.insert(MonSys::message_id);
     PowerBench bench(board);
@@ -334,6 +334,11 @@ TEST(ReceiverPower, TellsThatItWasInBackup) {
     EXPECT_EQ(bench.boot_type, 1);
     bench.send(RxmPmreqShort{1000, pmreq_backup}).wait(4s).write(encode_frame(MonSys::message_id, {})).wait(100ms);
     EXPECT_EQ(bench.boot_type, 5);
+    for (const auto& [mode, boot_type] : {std::pair{0, 3}, std::pair{1, 6}, std::pair{4, 3}, std::pair{2, 3}}) {
+        bench.send(CfgRst{0, static_cast<std::uint8_t>(mode), 0}).wait(4s);
+        bench.write(encode_frame(MonSys::message_id, {})).wait(100ms);
+        EXPECT_EQ(bench.boot_type, boot_type) << "after mode " << mode;
+    }
 }
 
 TEST(ReceiverPower, IsOverruledByARequest) {
