@@ -22,6 +22,7 @@ constexpr std::uint32_t tp_period = 0x40050002, tp_period_lock = 0x40050003, tp_
                         tp_use_locked = 0x10050009, tp_time_grid = 0x2005000C;
 // Step of the oscillator by which a pulse can be moved: RECEIVER.md 4.9 has errors of ±15 ns.
 constexpr double pulse_step_ns = 30;
+constexpr std::int64_t ns_per_second = 1'000'000'000;
 
 // Time of week, week and leap seconds.
 std::uint8_t gnss_time_valid(const NavigationState& state) {
@@ -203,11 +204,18 @@ NavClock receiver_clock(const ReportContext& context) {
     return m;
 }
 
-// Pulses lie on a grid of UTC or GPS time, and are counted in GPS time, which goes on evenly over leap seconds. The
-// receiver's own clock is a bit before or after the epoch that it means.
+// One of them is zero; both: there are no pulses.
+struct PulseRate {
+    Nanoseconds period{0};
+    std::int64_t hertz = 0;
+};
+
+// Pulses lie on a grid of UTC or GPS time, and are counted in GPS time, which goes on evenly over leap seconds. Those
+// of a frequency, whatever their period, begin anew with each second. The receiver's own clock is a bit before or after
+// the epoch that it means.
 struct PulseGrid {
     GpsTime epoch;
-    Nanoseconds period{0};
+    PulseRate rate;
     std::uint64_t base = 0;              ///< 0 UTC, 1 GPS, 2 GLONASS, 3 BeiDou, 4 Galileo
     std::optional<LeapSeconds> leaps{};  ///< of a grid of UTC: those that the receiver counts by
 
@@ -215,13 +223,22 @@ struct PulseGrid {
     [[nodiscard]] Nanoseconds behind(GpsTime time) const {
         return leaps ? std::chrono::seconds(leaps->offset(time)) : Nanoseconds(0);
     }
+    // Where the grid lies at `time`. Leap seconds are whole ones, which leave that of a frequency in its place.
+    [[nodiscard]] Nanoseconds offset(GpsTime time) const {
+        return rate.hertz > 0 ? Nanoseconds(0) : behind(time) % rate.period;
+    }
     // Until the epoch, by the grid as it lies at `time`.
     [[nodiscard]] std::int64_t pulses(GpsTime time) const {
-        const Nanoseconds since = epoch.time_since_epoch() - behind(time) % period;
-        return since / period - (since % period < Nanoseconds(0) ? 1 : 0);
+        const Nanoseconds since = epoch.time_since_epoch() - offset(time);
+        if (rate.hertz > 0) return since / 1s * rate.hertz + (since % 1s).count() * rate.hertz / ns_per_second;
+        return since / rate.period - (since % rate.period < Nanoseconds(0) ? 1 : 0);
     }
     [[nodiscard]] GpsTime next(GpsTime time) const {
-        return GpsTime((pulses(time) + 1) * period + behind(time) % period);
+        const std::int64_t pulse = pulses(time) + 1;
+        if (rate.hertz == 0) return GpsTime(pulse * rate.period + offset(time));
+        // To the nearest nanosecond.
+        const std::int64_t part = (pulse % rate.hertz * ns_per_second + rate.hertz / 2) / rate.hertz;
+        return GpsTime(pulse / rate.hertz * Nanoseconds(1s) + Nanoseconds(part));
     }
     // A leap second in between moves the grid.
     [[nodiscard]] GpsTime next() const { return next(next(epoch)); }
@@ -231,25 +248,23 @@ std::uint64_t item_or(const ConfigStore& config, std::uint32_t item, std::uint64
     return config.has(item) ? config.value(item) : standard;
 }
 
-// Zero: there are no pulses.
-Nanoseconds pulse_period(const ReportContext& context) {
+PulseRate pulse_rate(const ReportContext& context) {
     const ConfigStore& config = context.config;
     if (item_or(config, tp_enabled, 1) == 0) return {};
     const bool locked = item_or(config, tp_use_locked, 1) != 0 && context.state.epoch.fix.type != FixType::none;
     if (item_or(config, tp_pulse_def, 0) == 0)
-        return std::chrono::microseconds(item_or(config, locked ? tp_period_lock : tp_period, 1'000'000));
-    const std::uint64_t hertz = item_or(config, locked ? tp_frequency_lock : tp_frequency, 1);
-    return Nanoseconds(hertz == 0 ? 0 : std::llround(1e9 / static_cast<double>(hertz)));
+        return {.period = std::chrono::microseconds(item_or(config, locked ? tp_period_lock : tp_period, 1'000'000))};
+    return {.hertz = static_cast<std::int64_t>(item_or(config, locked ? tp_frequency_lock : tp_frequency, 1))};
 }
 
 // Nothing: there are no pulses.
 std::optional<PulseGrid> pulse_grid(const ReportContext& context) {
     constexpr std::uint64_t utc = 0, glonass = 2;
     const ReportedTime reported = reported_time(context);
-    const Nanoseconds period = pulse_period(context);
-    if (period <= Nanoseconds(0)) return std::nullopt;
+    const PulseRate rate = pulse_rate(context);
+    if (rate.period <= Nanoseconds(0) && rate.hertz == 0) return std::nullopt;
     const std::uint64_t base = context.config.value(tp_time_grid);
-    PulseGrid grid{std::chrono::round<std::chrono::milliseconds>(reported.time), period, base};
+    PulseGrid grid{std::chrono::round<std::chrono::milliseconds>(reported.time), rate, base};
     // GLONASS counts UTC, by hours ahead.
     if (base == utc || base == glonass) grid.leaps = counted_leap_seconds(reported);
     return grid;

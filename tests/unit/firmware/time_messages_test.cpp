@@ -259,6 +259,17 @@ TEST(TimTpMessage, FollowsThePulseThatIsConfigured) {
     const std::uint32_t first = m8.report<TimTp>().tow_ms;
     m8.state.epoch.fix.time += 200ms;
     EXPECT_EQ(m8.report<TimTp>().tow_ms, first + 200) << "five a second";
+    // 12:49:23.521 of the receiver's clock: pulses of 3 Hz lie at whole seconds and thirds of them.
+    m8.state.epoch.fix.time -= 200ms;
+    m8.config.set(in_ram, frequency_lock, 3);
+    EXPECT_EQ(m8.report<TimTp>().tow_ms, 218'963'666U);
+    EXPECT_NEAR(m8.report<TimTp>().tow_sub_ms / 4294967296.0, 0.666667, 1e-9);
+    const std::int64_t before = *pulses_until_epoch(m8.context());
+    m8.state.epoch.fix.time += 300ms;
+    EXPECT_EQ(m8.report<TimTp>().tow_ms, 218'964'000U);
+    EXPECT_EQ(m8.report<TimTp>().tow_sub_ms, 0U);
+    m8.state.epoch.fix.time += 1s;
+    EXPECT_EQ(*pulses_until_epoch(m8.context()), before + 4);
     m8.config.set(in_ram, frequency_lock, 0);
     EXPECT_TRUE(m8.frames(TimTp::message_id).empty());
     m8.config.set(in_ram, pulse_def, 0);
