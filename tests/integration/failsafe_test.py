@@ -370,7 +370,7 @@ timeout_s = 100
                 self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
                 self.assertIn("--repeat", done.stderr)
         done = skyloop("simulate", self.scenario, "--duration", 1, "--repeat", first, "--out", self.path / "again", "--output",
-                       f"json-file:{first / 'port0.in'}", check=False)
+                       f"json-file:{first / 'port0.in'}")
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("this file is read, too, and would be lost", done.stderr)
         self.assertEqual((first / "port0.out").read_bytes(), kept)

@@ -183,8 +183,8 @@ TEST(NavTimelsMessage, TellsWhoseSatellitesToldIt) {
         EXPECT_EQ(m9.report<NavTimels>().src_of_ls_change, change);
     }
     m9.state.time.leap_source.reset();
-    constexpr std::uint32_t gps_on = 0x1031001F;
-    m9.config.set(in_ram, gps_on, 0);
+    constexpr std::uint32_t gps_signals = 0x1031001F;
+    m9.config.set(in_ram, gps_signals, 0);
     EXPECT_EQ(m9.report<NavTimels>().src_of_curr_ls, 5) << "known from before: by what is on";
 }
 

@@ -58,11 +58,11 @@ TEST(BroadcastTransmitters, KnowsNothingOfUnknownSatellitesSignalsAndRanges) {
     EXPECT_FALSE(transmitters.at({Constellation::gps, 30}, Signal::l1, sample_time, Metres(2.3e7)));
     EXPECT_FALSE(transmitters.at(g3, Signal::l5, sample_time, Metres(2.3e7))) << "no group delay is broadcast";
     BroadcastTransmitters emulated(sky, UntoldDelay::none);
-    const auto l1 = emulated.at(g3, Signal::l1, sample_time, Metres(2.3e7));
-    const auto l5 = emulated.at(g3, Signal::l5, sample_time, Metres(2.3e7));
-    ASSERT_TRUE(l1 && l5);
-    EXPECT_NEAR(l5->clock_bias.value() - l1->clock_bias.value(), group_delay(sky.records()[2], Signal::l1)->value(),
-                1e-16);
+    const auto first = emulated.at(g3, Signal::l1, sample_time, Metres(2.3e7));
+    const auto second = emulated.at(g3, Signal::l5, sample_time, Metres(2.3e7));
+    ASSERT_TRUE(first && second);
+    EXPECT_NEAR(second->clock_bias.value() - first->clock_bias.value(),
+                group_delay(sky.records()[2], Signal::l1)->value(), 1e-16);
     EXPECT_FALSE(emulated.at(g3, Signal::b1i, sample_time, Metres(2.3e7))) << "another system's";
     EXPECT_FALSE(transmitters.at(g3, Signal::l1, sample_time, Metres(std::nan(""))));
     EXPECT_FALSE(transmitters.at(g3, Signal::l1, sample_time, Metres(1e300)));
