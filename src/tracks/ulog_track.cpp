@@ -27,6 +27,7 @@ public:
 private:
     [[nodiscard]] const UlogStream* stream(std::string_view topic) const;
     void offer_local(std::string_view topic, bool is_truth);
+    void tell_resets(std::string_view topic, const UlogLocalPlaces& places);
     void offer_from_origin();
     [[nodiscard]] tl::unexpected<Error> no_place() const;
     void offer_global(std::string_view topic, std::string_view velocities);
@@ -65,6 +66,10 @@ void UlogTrack::offer_local(std::string_view topic, bool is_truth) {
     if (!source) return;
     UlogLocalPlaces places(*source, is_truth);
     offer(std::string(topic), places.read());
+    tell_resets(topic, places);
+}
+
+void UlogTrack::tell_resets(std::string_view topic, const UlogLocalPlaces& places) {
     if (places.resets() > 0)
         flight_.notes.push_back(
             fmt::format("{} resets of {} by up to {:.2f} m are taken for errors of the filter: what "
@@ -80,6 +85,7 @@ void UlogTrack::offer_from_origin() {
     UlogLocalPlaces places(*source, *file_.reading.origin);
     auto rows = places.read();
     flight_.notes.push_back(fmt::format("no place on the Earth in it: {} is laid out from the origin", topic));
+    tell_resets(topic, places);
     if (places.untrusted() > 0)
         flight_.notes.push_back(
             fmt::format("{} of {} records of {} say that they are not valid; they are taken as they "

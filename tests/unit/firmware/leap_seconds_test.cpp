@@ -13,7 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 using enum Constellation;
 
-// A receiver with one epoch a second, which knows nothing; it hears its first satellite after 3 s.
+// A receiver with one epoch a second, which knows nothing; it hears satellites from the first epoch on.
 struct ColdReceiver {
     explicit ColdReceiver(std::vector<Constellation> systems)
         : board(sample_board(NmeaVersion::v4_10, std::move(systems))) {
@@ -42,7 +42,7 @@ struct ColdReceiver {
 // GLONASS counts UTC itself, within a frame of 30 s; page 10 of BeiDou's subframe 5 ends 314 s into each 720 s of GPST,
 // and 12:00:18 lies 18 s into them.
 TEST(LeapSecondsOfAStart, ComeOfGlonassAndBeidouToo) {
-    for (const auto& [system, expected_s] : {std::pair{glonass, 33}, std::pair{beidou, 296}}) {
+    for (const auto& [system, expected_s] : {std::pair{glonass, 31}, std::pair{beidou, 296}}) {
         ColdReceiver r({system});
         EXPECT_FALSE(r.step(expected_s - 1).leap_seconds) << expected_s;
         EXPECT_TRUE(r.step().leap_seconds) << expected_s;

@@ -223,7 +223,7 @@ TEST(RxmMeasxMessage, CountsTheChipsOfB1cAndB2a) {
     const auto m = f10.report<RxmMeasx>();
     ASSERT_EQ(m.satellites.size(), 2u);
     EXPECT_EQ(m.satellites[0].int_code_phase, 7);
-    EXPECT_EQ(m.satellites[0].whole_chips, 511);
+    EXPECT_EQ(m.satellites[0].whole_chips, 7672) << "of a code of 10 ms";
     EXPECT_EQ(m.satellites[1].int_code_phase, 0);
     EXPECT_EQ(m.satellites[1].whole_chips, 5115);
     f10.state.epoch.subframes = {{{Constellation::beidou, 20}, Signal::b1i, {}, 0, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}}};
