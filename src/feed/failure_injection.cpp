@@ -68,24 +68,23 @@ MavlinkResult FailureInjector::inject(float unit, float type, float instance) {
 // page has ended meanwhile has to come back. The run knows which of both it is: it ignores the start of what is there.
 bool FailureInjector::keep(std::size_t receiver) {
     const Injected& injected = injected_[receiver];
-    if (injected.type == FailureType::ok) return true;
-    Command command;
-    command.verb = CommandVerb::start_fault;
-    command.parameters = Parameters({{"fault", injected.name}});
-    command.source = "mavlink";
-    return push_(std::move(command));
+    return injected.type == FailureType::ok || tell(CommandVerb::start_fault, injected.name);
 }
 
 bool FailureInjector::stop(std::size_t receiver) {
     Injected& injected = injected_[receiver];
     if (injected.type == FailureType::ok) return true;
-    Command command;
-    command.verb = CommandVerb::stop_fault;
-    command.parameters = Parameters({{"fault", injected.name}});
-    command.source = "mavlink";
-    if (!push_(std::move(command))) return false;
+    if (!tell(CommandVerb::stop_fault, injected.name)) return false;
     injected = {};
     return true;
+}
+
+bool FailureInjector::tell(CommandVerb verb, const std::string& fault) {
+    Command command;
+    command.verb = verb;
+    command.parameters = Parameters({{"fault", fault}});
+    command.source = "mavlink";
+    return push_(std::move(command));
 }
 
 bool FailureInjector::start(std::size_t receiver, const FailureFault& fault) {

@@ -133,17 +133,14 @@ void SeptentrioConsole::adopt(const ConfigStore& store) {
     settings.set(group_of("SignalUsage"), {signals, signals});
 }
 
-bool SeptentrioConsole::hears_commands(PortId port) const {
-    const auto& directions = state_.settings.values("DataInOut", descriptor_of(port));
-    return directions.empty() || same_word(directions[0], "auto") || same_word(directions[0], "CMD");
-}
-
-bool SeptentrioConsole::hears_corrections(PortId port) const {
+bool SeptentrioConsole::lets_in(PortId port, std::string_view input) const {
     const std::string_view descriptor = descriptor_of(port);
     if (descriptor.empty()) return true;
     const auto& directions = state_.settings.values("DataInOut", descriptor);
-    return directions.empty() || same_word(directions[0], "auto") || same_word(directions[0], "RTCMv3");
+    return directions.empty() || same_word(directions[0], "auto") || same_word(directions[0], input);
 }
+
+bool SeptentrioConsole::hears_corrections(PortId port) const { return lets_in(port, "RTCMv3"); }
 
 CommandOutcome SeptentrioConsole::execute(const std::string& line, ConfigStore& store, PortId from) {
     CommandOutcome outcome;
@@ -154,7 +151,7 @@ CommandOutcome SeptentrioConsole::execute(const std::string& line, ConfigStore& 
     constexpr std::size_t attention = 10;
     const bool forced = words[0].size() >= attention && words[0].find_first_not_of('S') == std::string::npos;
     if (forced) state_.settings.set(group_of("DataInOut"), {std::string(descriptor), "auto"});
-    if (!hears_commands(from)) return outcome;
+    if (!lets_in(from, "CMD")) return outcome;
     if (forced || words[0].empty() || words[0].front() == '#') {
         outcome.answers.push_back(to_bytes(prompt));
         return outcome;

@@ -36,7 +36,7 @@ private:
     std::string act_on_receiver(const Command& command, CommandOutcome& outcome);
     [[nodiscard]] std::string capabilities(const ConfigStore& store) const;
     [[nodiscard]] std::string identification() const;
-    [[nodiscard]] bool hears_commands(PortId port) const;
+    [[nodiscard]] bool lets_in(PortId port, std::string_view input) const;
     void adopt(const ConfigStore& store);
     void apply(ConfigStore& store) const;
     void apply_speeds(ConfigStore& store) const;

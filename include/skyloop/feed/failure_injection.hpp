@@ -57,6 +57,7 @@ private:
     };
     bool keep(std::size_t receiver);
     bool stop(std::size_t receiver);
+    bool tell(CommandVerb verb, const std::string& fault);
     bool start(std::size_t receiver, const FailureFault& fault);
 
     std::vector<std::string> receivers_;
