@@ -37,12 +37,20 @@ SceneRays::SceneRays(const UrbanScene& scene, const RayTracedSceneSettings& sett
         materials_.push_back(surface_material(name).value_or(*surface_material("concrete")));
 }
 
-// What the crowns around leave of the limit.
-Decibels SceneRays::crown_loss(const SceneRay& ray, Decibels around) const {
+// Of the way from the antenna by the places where it turns to the satellite: what the crowns around leave of the limit.
+Decibels SceneRays::crown_loss(const ArrivingSatellite& arriving, std::span<const Eigen::Vector3d> bends) const {
     const CrownLoss& crowns = settings_.crowns;
     if (crowns.factor == 0) return {};
-    const Decibels loss(crowns.db_per_m * scene_.length_in_foliage(ray) * crowns.factor);
-    return std::clamp(crowns.most * crowns.factor - around, Decibels(0), loss);
+    double metres = 0;
+    Eigen::Vector3d place = arriving.observer.position;
+    for (const Eigen::Vector3d& bend : bends) {
+        const Eigen::Vector3d leg = bend - place;
+        metres += scene_.length_in_foliage({place, leg.normalized()}, leg.norm());
+        place = bend;
+    }
+    metres += scene_.length_in_foliage({place, (arriving.satellite.position - place).normalized()});
+    const Decibels loss(crowns.db_per_m * metres * crowns.factor);
+    return std::clamp(crowns.most * crowns.factor - arriving.around, Decibels(0), loss);
 }
 
 double SceneRays::gain_over_direct(const ArrivingSatellite& arriving, const Eigen::Vector3d& from) const {
@@ -60,10 +68,11 @@ ArrivingRay SceneRays::reflected(const ArrivingSatellite& arriving, const SceneP
     }
     const CircularWave wave = reflected_wave(surfaces, path.arrival, arriving.carrier, settings_.wall_roughness);
     const std::complex<double> heard = heard_by_right_hand(wave, settings_.opposite_hand_rejection);
+    const Decibels crowns = crown_loss(arriving, reflection_points(scene_, path, arriving.observer.position));
     return {path.arrival,
             path.excess,
             path.excess_rate,
-            std::abs(heard) * gain_over_direct(arriving, path.arrival),
+            std::abs(heard) * amplitude_of(crowns) * gain_over_direct(arriving, path.arrival),
             Angle::radians(-std::arg(heard)),
             path.reflections()};
 }
@@ -73,9 +82,8 @@ void SceneRays::add_bent(const ArrivingSatellite& arriving, std::vector<Arriving
     const Eigen::Vector3d& antenna = arriving.observer.position;
     for (const SceneEdge& edge : edges_around_obstacle(scene_, line)) {
         const double v = knife_edge_parameter(edge.detour, edge.distance, arriving.carrier);
-        Decibels loss = knife_edge_loss(v);
-        loss += crown_loss({antenna, edge.direction}, arriving.around);
         const Eigen::Vector3d place = antenna + edge.distance.value() * edge.direction;
+        const Decibels loss = knife_edge_loss(v) + crown_loss(arriving, std::span(&place, 1));
         const Eigen::Vector3d onward = (arriving.satellite.position - place).normalized();
         const double detour = (place - antenna).norm() + nearer_by(antenna, place, arriving.satellite.position);
         const double rate = excess_growth({edge.direction, onward, line.direction}, arriving.observer.velocity,
@@ -99,10 +107,10 @@ std::vector<ArrivingRay> SceneRays::beside_direct(const ArrivingSatellite& arriv
 }
 
 DirectLoss SceneRays::direct_loss(const ArrivingSatellite& arriving) const {
-    const SceneRay line = line_to(arriving);
     DirectLoss loss;
-    loss.foliage = crown_loss(line, arriving.around);
+    loss.foliage = crown_loss(arriving, {});
     if (!settings_.diffraction) return loss;
+    const SceneRay line = line_to(arriving);
     for (const SceneEdge& edge : edges_near_sight(scene_, line))
         loss.edges += knife_edge_loss(knife_edge_parameter(-edge.detour, edge.distance, arriving.carrier));
     return loss;

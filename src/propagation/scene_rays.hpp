@@ -1,6 +1,7 @@
 /// The rays of one satellite that a city lets through, bent or mirrored, and how strong they are.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "skyloop/propagation/fresnel.hpp"
@@ -43,7 +44,7 @@ public:
     [[nodiscard]] DirectLoss direct_loss(const ArrivingSatellite& arriving) const;
 
 private:
-    [[nodiscard]] Decibels crown_loss(const SceneRay& ray, Decibels around) const;
+    [[nodiscard]] Decibels crown_loss(const ArrivingSatellite& arriving, std::span<const Eigen::Vector3d> bends) const;
     [[nodiscard]] ArrivingRay reflected(const ArrivingSatellite& arriving, const ScenePath& path) const;
     void add_bent(const ArrivingSatellite& arriving, std::vector<ArrivingRay>& rays) const;
     [[nodiscard]] double gain_over_direct(const ArrivingSatellite& arriving, const Eigen::Vector3d& from) const;

@@ -1,7 +1,6 @@
 #include "foliage_tree.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace skyloop {
@@ -18,8 +17,8 @@ void FoliageTree::Box::extend(const Box& other) {
     highest = highest.cwiseMax(other.highest);
 }
 
-bool FoliageTree::Box::passed_by(const SceneRay& ray) const {
-    double first = 0, last = std::numeric_limits<double>::infinity();
+bool FoliageTree::Box::passed_by(const SceneRay& ray, double within) const {
+    double first = 0, last = within;
     for (int axis = 0; axis < 3; ++axis) {
         const double low = lowest[axis] - crown_margin - ray.origin[axis];
         const double high = highest[axis] + crown_margin - ray.origin[axis];
@@ -82,11 +81,11 @@ void FoliageTree::add_nodes(std::span<std::uint32_t> order, const std::vector<Bo
     nodes_[at].end = static_cast<std::uint32_t>(nodes_.size());
 }
 
-double FoliageTree::length(const SceneRay& ray) const {
+double FoliageTree::length(const SceneRay& ray, double within) const {
     std::vector<std::uint32_t> passed;
     for (std::size_t i = 0; i < nodes_.size();) {
         const Node& node = nodes_[i];
-        if (!node.box.passed_by(ray)) {
+        if (!node.box.passed_by(ray, within)) {
             i = node.end;
             continue;
         }
@@ -98,7 +97,7 @@ double FoliageTree::length(const SceneRay& ray) const {
     std::ranges::sort(passed);
     double sum = 0;
     for (const std::uint32_t i : passed)
-        sum += foliage_length(std::span(&volumes_[i], 1), ray);
+        sum += foliage_length(std::span(&volumes_[i], 1), ray, within);
     return sum;
 }
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "skyloop/scene/urban_scene.hpp"
 
@@ -36,16 +35,16 @@ std::vector<double> crossings(const FoliageVolume& volume, const SceneRay& ray, 
     return found;
 }
 
-/// Metres of a ray inside one prism. Between two neighbouring crossings all points are inside or none; which, the
-/// middle tells, so that a ray through a corner counts as it should.
-double length_inside(const FoliageVolume& volume, const SceneRay& ray) {
+/// Metres of a ray inside one prism, of its first `within`. Between two neighbouring crossings all points are inside or
+/// none; which, the middle tells, so that a ray through a corner counts as it should.
+double length_inside(const FoliageVolume& volume, const SceneRay& ray, double within) {
     if (volume.ring.size() < 3 || !(volume.top > volume.base)) return 0;
-    double first = 0, last = std::numeric_limits<double>::infinity();
+    double first = 0, last = within;
     const double up = ray.direction.z();
     if (up != 0) {
         const double base = (volume.base - ray.origin.z()) / up, top = (volume.top - ray.origin.z()) / up;
         first = std::max(first, std::min(base, top));
-        last = std::max(base, top);
+        last = std::min(last, std::max(base, top));
     } else if (ray.origin.z() < volume.base || ray.origin.z() > volume.top) {
         return 0;
     }
@@ -63,11 +62,11 @@ double length_inside(const FoliageVolume& volume, const SceneRay& ray) {
 
 }  // namespace
 
-double foliage_length(std::span<const FoliageVolume> foliage, const SceneRay& ray) {
-    double length = 0;
+double foliage_length(std::span<const FoliageVolume> foliage, const SceneRay& ray, double length) {
+    double inside = 0;
     for (const FoliageVolume& volume : foliage)
-        length += length_inside(volume, ray);
-    return length;
+        inside += length_inside(volume, ray, length);
+    return inside;
 }
 
 }  // namespace skyloop

@@ -224,7 +224,9 @@ const LocalFrame& UrbanScene::frame() const { return parts_->frame; }
 std::span<const ScenePlane> UrbanScene::planes() const { return parts_->merged.planes; }
 const std::vector<std::string>& UrbanScene::materials() const { return parts_->materials; }
 const std::vector<FoliageVolume>& UrbanScene::foliage() const { return parts_->foliage.volumes(); }
-double UrbanScene::length_in_foliage(const SceneRay& ray) const { return parts_->foliage.length(ray); }
+double UrbanScene::length_in_foliage(const SceneRay& ray, double length) const {
+    return parts_->foliage.length(ray, length);
+}
 const SceneStatistics& UrbanScene::statistics() const { return parts_->statistics; }
 std::array<Eigen::Vector3d, 3> UrbanScene::triangle(std::uint32_t index) const { return parts_->corners(index); }
 std::uint32_t UrbanScene::plane_of(std::uint32_t triangle) const { return parts_->merged.plane_of[triangle]; }

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -78,8 +79,9 @@ public:
     [[nodiscard]] std::span<const ScenePlane> planes() const;
     [[nodiscard]] const std::vector<std::string>& materials() const;
     [[nodiscard]] const std::vector<FoliageVolume>& foliage() const;
-    /// Metres of a half-line that lie in its crowns of trees.
-    [[nodiscard]] double length_in_foliage(const SceneRay& ray) const;
+    /// Metres of a ray, within `length` metres of its origin, that lie in its crowns of trees.
+    [[nodiscard]] double length_in_foliage(const SceneRay& ray,
+                                           double length = std::numeric_limits<double>::infinity()) const;
     [[nodiscard]] const SceneStatistics& statistics() const;
     /// Corners of a triangle as built, m; triangles are numbered as kept.
     [[nodiscard]] std::array<Eigen::Vector3d, 3> triangle(std::uint32_t index) const;
@@ -109,7 +111,8 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
-/// Metres of a half-line that lie in crowns of trees; looks at every one of them.
-double foliage_length(std::span<const FoliageVolume> foliage, const SceneRay& ray);
+/// Metres of a ray, within `length` metres of its origin, that lie in crowns of trees; looks at every one of them.
+double foliage_length(std::span<const FoliageVolume> foliage, const SceneRay& ray,
+                      double length = std::numeric_limits<double>::infinity());
 
 }  // namespace skyloop

@@ -222,6 +222,63 @@ TEST(ModernScene, TheLimitIsOneForCrownsAllAroundAndThoseOfTheScene) {
     EXPECT_NEAR(arrivals.satellites[0].foliage_loss.value(), 12, 1e-12);
 }
 
+/// Crowns 100 m wide across the meridian, between metres north of the antenna and metres above it.
+FoliageVolume grove(double south, double north, double base = -5, double top = 60) {
+    return {{{-50, south}, {50, south}, {50, north}, {-50, north}}, base, top};
+}
+
+double decibels_of(double amplitude) { return 20 * std::log10(amplitude); }
+
+TEST(ModernScene, AnEchoPassesTheTreesBeforeItsWallTwice) {
+    CityModel city = walls({{30, 60}});
+    const double open = by_rays(city, 180, 30).echoes.at(0).amplitude;
+    city.foliage.push_back(grove(10, 20));
+    RayTracedSceneSettings settings = plain_settings(SceneProfile::modern);
+    settings.crowns = {0.1, Decibels(12), 1};
+    const Arrival thin = outcome(city, settings, 180, 30).arrival;
+    EXPECT_EQ(thin.foliage_loss.value(), 0) << "the direct ray comes from the other side";
+    ASSERT_EQ(thin.echoes.size(), 1U);
+    EXPECT_NEAR(decibels_of(thin.echoes[0].amplitude / open), -0.1 * 2 * 10 / std::cos(Angle::degrees(30).rad()), 1e-3);
+    const Arrival thick = by_rays(city, 180, 30);
+    ASSERT_EQ(thick.echoes.size(), 1U);
+    EXPECT_NEAR(decibels_of(thick.echoes[0].amplitude / open), -12, 1e-6);
+}
+
+TEST(ModernScene, AWoodAllAroundWeakensDirectRayAndEchoAlike) {
+    CityModel city = walls({{30, 60}});
+    const double open = by_rays(city, 180, 30).echoes.at(0).amplitude;
+    city.foliage.push_back({{{-900, -900}, {900, -900}, {900, 900}, {-900, 900}}, -5, 60});
+    const Arrival a = by_rays(city, 180, 30);
+    EXPECT_NEAR(a.foliage_loss.value(), 12, 1e-12);
+    ASSERT_EQ(a.echoes.size(), 1U);
+    EXPECT_NEAR(a.echoes[0].amplitude, open, 1e-6);
+}
+
+TEST(ModernScene, TreesWeakenAReflectedRayThatIsTracked) {
+    CityModel city = walls({{20, 15}, {-10, 20}});
+    const double open = by_rays(city, 0, 30).reflection_loss.value();
+    city.foliage.push_back(grove(-6, -3));
+    const Arrival a = by_rays(city, 0, 30);
+    EXPECT_EQ(a.reflections, 1);
+    EXPECT_NEAR(a.reflection_loss.value() - open, 0.8 * 2 * 3 / std::cos(Angle::degrees(30).rad()), 1e-3);
+}
+
+TEST(ModernScene, CrownsBehindAnEdgeCountWhereTheBentRayGoes) {
+    RayTracedSceneSettings settings = plain_settings(SceneProfile::modern);
+    settings.diffraction = true;
+    settings.crowns = {0.1, Decibels(12), 1};
+    // The ray rises to the edge as steeply as 15 m in 20, and behind it as the line to the satellite does: 100 m
+    // further north it is 73 m up, and straight on it would be 90 m.
+    CityModel city = walls({{20, 15}});
+    const double open = outcome(city, settings, 0, 30).arrival.reflection_loss.value();
+    CityModel on_the_way = city, straight_on = city;
+    on_the_way.foliage.push_back(grove(120, 140, 60, 88));
+    straight_on.foliage.push_back(grove(120, 140, 89, 200));
+    EXPECT_NEAR(outcome(on_the_way, settings, 0, 30).arrival.reflection_loss.value() - open,
+                0.1 * 20 / std::cos(Angle::degrees(30).rad()), 1e-3);
+    EXPECT_NEAR(outcome(straight_on, settings, 0, 30).arrival.reflection_loss.value(), open, 1e-9);
+}
+
 /// A house around the antenna.
 CityModel closed_room() {
     CityModel city = walls({{8, 10}, {-8, 10}});

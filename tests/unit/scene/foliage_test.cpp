@@ -44,6 +44,18 @@ TEST(Foliage, RayThatBeginsInsideCountsFromThere) {
     EXPECT_NEAR(metres_in(square_grove(), {15, 0, 5}, {0, 0, 1}), 7, 1e-12);
 }
 
+TEST(Foliage, BeyondTheLengthOfTheRayNothingCounts) {
+    const FoliageVolume grove = square_grove();
+    const auto metres_within = [&grove](double length) {
+        return foliage_length(std::span(&grove, 1), {{0, 0, 5}, {1, 0, 0}}, length);
+    };
+    EXPECT_EQ(metres_within(0), 0);
+    EXPECT_EQ(metres_within(9), 0);
+    EXPECT_NEAR(metres_within(13), 3, 1e-12);
+    EXPECT_NEAR(metres_within(30), 10, 1e-12);
+    EXPECT_NEAR(foliage_length(std::span(&grove, 1), {{15, 0, 0}, {0, 0, 1}}, 7), 5, 1e-12);
+}
+
 TEST(Foliage, WhatIsBehindOrBesideDoesNotCount) {
     EXPECT_EQ(metres_in(square_grove(), {0, 0, 5}, {-1, 0, 0}), 0);
     EXPECT_EQ(metres_in(square_grove(), {0, 0, 13}, {1, 0, 0}), 0);
@@ -149,6 +161,7 @@ TEST(Foliage, TheSceneFindsEveryCrownThatARayPasses) {
         const double metres = foliage_length(city.foliage, ray);
         crossed += metres > 0;
         ASSERT_EQ((*scene)->length_in_foliage(ray), metres) << i;
+        ASSERT_EQ((*scene)->length_in_foliage(ray, 500), foliage_length(city.foliage, ray, 500)) << i;
     }
     EXPECT_GT(crossed, 500);
 }
