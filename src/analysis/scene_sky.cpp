@@ -95,16 +95,4 @@ SkyMask sky_mask(const UrbanScene& scene, const Eigen::Vector3d& antenna) {
     return mask;
 }
 
-bool sees_no_sky(const UrbanScene& scene, const Eigen::Vector3d& place) {
-    if (!scene.blocked({place, Eigen::Vector3d::UnitZ()})) return false;
-    constexpr int ring = 24;
-    std::vector<SceneRay> rays;
-    for (int elevation = 5; elevation < 90; elevation += 10)
-        for (int k = 0; k < ring; ++k)
-            rays.push_back({place, direction_towards(Angle::degrees(360.0 / ring * k), Angle::degrees(elevation))});
-    std::vector<std::uint8_t> answers(rays.size());
-    scene.blocked(rays, answers);
-    return std::all_of(answers.begin(), answers.end(), [](std::uint8_t blocked) { return blocked != 0; });
-}
-
 }  // namespace skyloop

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <utility>
 
@@ -43,20 +41,6 @@ Eigen::Matrix3d turn_to_antenna(const LocalFrame& scene, const LocalFrame& anten
     for (int i = 0; i < 3; ++i)
         turn.col(i) = antenna.to_enu(scene.to_ecef(Displacement<Enu>(Eigen::Vector3d::Unit(i)))).vector();
     return turn;
-}
-
-// Rays spread over the upper hemisphere: where none of them leaves, walls and a roof stand all around.
-bool closed_in(const UrbanScene& scene, const Eigen::Vector3d& place) {
-    constexpr int count = 64;
-    static const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
-    std::array<SceneRay, count> rays;
-    for (int i = 0; i < count; ++i) {
-        const double up = (i + 0.5) / count, level = std::sqrt(1 - up * up), turn = golden_angle * i;
-        rays[static_cast<std::size_t>(i)] = {place, {level * std::cos(turn), level * std::sin(turn), up}};
-    }
-    std::array<std::uint8_t, count> answers{};
-    scene.blocked(rays, answers);
-    return std::all_of(answers.begin(), answers.end(), [](std::uint8_t answer) { return answer != 0; });
 }
 
 // Says where an antenna is that hears nothing.
@@ -132,16 +116,6 @@ void RayTracedScene::apply(Arrivals& arrivals, const SkyView& sky, const TruthSt
         satellites.push_back(in_scene(frame, antenna, seen));
     paths_ = finder_.epoch(observer_, satellites);
 
-    notice_.reset();
-    const auto in_sight = [](const SatellitePaths& found) { return found.line_of_sight; };
-    if (std::none_of(paths_.begin(), paths_.end(), in_sight) && closed_in(scene(), observer_.position)) {
-        notice_ = closed_in_notice(scene(), observer_.position);
-        for (SatellitePaths& found : paths_)
-            found.paths.clear();
-        for (Arrival& arrival : arrivals.satellites)
-            hide(arrival);
-        return;
-    }
     const SceneRays city(scene(), settings_);
     const Eigen::Matrix3d to_antenna = turn_to_antenna(frame, antenna);
     for (std::size_t i = 0; i < arrivals.satellites.size(); ++i) {
@@ -153,6 +127,10 @@ void RayTracedScene::apply(Arrivals& arrivals, const SkyView& sky, const TruthSt
                 arrival, city,
                 {observer_, to_antenna, satellites[i], paths_[i], first_carrier(arrival), arrival.foliage_loss});
     }
+    notice_.reset();
+    const auto arrives = [](const Arrival& arrival) { return arrival.paths > 0; };
+    if (std::ranges::none_of(arrivals.satellites, arrives) && sees_no_sky(scene(), observer_.position))
+        notice_ = closed_in_notice(scene(), observer_.position);
 }
 
 }  // namespace skyloop

@@ -314,4 +314,19 @@ std::optional<double> UrbanScene::ground_at(double east, double north) const {
     return std::nullopt;
 }
 
+bool sees_no_sky(const UrbanScene& scene, const Eigen::Vector3d& place) {
+    if (!scene.blocked({place, Eigen::Vector3d::UnitZ()})) return false;
+    constexpr int around = 24, lowest = 5, step = 10;  // azimuths; elevations in degrees
+    std::vector<SceneRay> rays;
+    for (int degrees = lowest; degrees < 90; degrees += step)
+        for (int k = 0; k < around; ++k) {
+            const double elevation = Angle::degrees(degrees).rad(), azimuth = Angle::degrees(360.0 / around * k).rad();
+            const double level = std::cos(elevation);
+            rays.push_back({place, {level * std::sin(azimuth), level * std::cos(azimuth), std::sin(elevation)}});
+        }
+    std::vector<std::uint8_t> answers(rays.size());
+    scene.blocked(rays, answers);
+    return std::ranges::all_of(answers, [](std::uint8_t blocked) { return blocked != 0; });
+}
+
 }  // namespace skyloop

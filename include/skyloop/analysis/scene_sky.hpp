@@ -63,7 +63,4 @@ struct SkyMask {
 };
 SkyMask sky_mask(const UrbanScene& scene, const Eigen::Vector3d& antenna);
 
-/// True where no part of the sky is seen: inside a building or below the ground. Places under an arch are not.
-bool sees_no_sky(const UrbanScene& scene, const Eigen::Vector3d& place);
-
 }  // namespace skyloop

@@ -61,7 +61,7 @@ public:
     [[nodiscard]] const Eigen::Vector3d& antenna() const { return observer_.position; }
     [[nodiscard]] const UrbanScene& scene() const { return finder_.scene(); }
     [[nodiscard]] const PathSearchCounters& counters() const { return finder_.counters(); }
-    /// One sentence when the antenna is inside a building or below the ground, where nothing arrives; nothing
+    /// One sentence when nothing arrives since the antenna is inside a building or below the ground; nothing
     /// otherwise.
     [[nodiscard]] const std::optional<std::string>& notice() const { return notice_; }
 

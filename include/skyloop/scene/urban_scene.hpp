@@ -111,6 +111,10 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
+/// True where no part of the sky is seen: inside a building or below the ground. Places under an arch and at the foot
+/// of a light well are not.
+bool sees_no_sky(const UrbanScene& scene, const Eigen::Vector3d& place);
+
 /// Metres of a ray, within `length` metres of its origin, that lie in crowns of trees; looks at every one of them.
 double foliage_length(std::span<const FoliageVolume> foliage, const SceneRay& ray,
                       double length = std::numeric_limits<double>::infinity());

@@ -38,29 +38,6 @@ TEST(SkyMask, of_one_wall_is_open_on_the_other_side) {
     EXPECT_NEAR(mask.open_share(), 1 - std::atan(15.0 / 20) / std::numbers::pi, 0.005);
 }
 
-TEST(SceneSky, sees_no_sky_in_a_house_but_under_an_arch) {
-    CityModel city;
-    city.origin = scene_origin();
-    const auto slab = [&](double top) {
-        city.add_quad({Eigen::Vector3d(-5, -5, top), Eigen::Vector3d(5, -5, top), Eigen::Vector3d(5, 5, top),
-                       Eigen::Vector3d(-5, 5, top)},
-                      SurfaceKind::roof);
-    };
-    slab(6);
-    EXPECT_FALSE(sees_no_sky(*UrbanScene::build(city).value(), {0, 0, 1.5}));
-    for (const double sign : {-1.0, 1.0}) {
-        city.add_quad({Eigen::Vector3d(-5, sign * 5, 0), Eigen::Vector3d(5, sign * 5, 0),
-                       Eigen::Vector3d(5, sign * 5, 6), Eigen::Vector3d(-5, sign * 5, 6)},
-                      SurfaceKind::wall);
-        city.add_quad({Eigen::Vector3d(sign * 5, -5, 0), Eigen::Vector3d(sign * 5, 5, 0),
-                       Eigen::Vector3d(sign * 5, 5, 6), Eigen::Vector3d(sign * 5, -5, 6)},
-                      SurfaceKind::wall);
-    }
-    const auto house = UrbanScene::build(city).value();
-    EXPECT_TRUE(sees_no_sky(*house, {0, 0, 1.5}));
-    EXPECT_FALSE(sees_no_sky(*house, {20, 0, 1.5}));
-}
-
 TEST(SceneSky, tells_where_a_wall_reflects_and_by_how_much_the_way_is_longer) {
     // Two walls 40 m apart, the western one high enough to hide a satellite at 30° in the west.
     CityModel city;

@@ -306,6 +306,21 @@ TEST(RayTracedScene, SaysWhenTheAntennaIsInsideOrBelow) {
         << "hidden, but under the sky";
 }
 
+TEST(RayTracedScene, AYardThatIsOpenAboveIsNoRoom) {
+    CityModel yard = walls({{2.5, 30}, {-2.5, 30}});
+    for (const double east : {-2.5, 2.5})
+        yard.add_quad({Eigen::Vector3d(east, -2.5, -5), {east, 2.5, -5}, {east, 2.5, 30}, {east, -2.5, 30}},
+                      SurfaceKind::wall);
+    // South, north and south wall 4, 13 and 22 m up; then out over the north one.
+    for (const SceneProfile profile : {SceneProfile::baseline, SceneProfile::modern}) {
+        const Outcome in_yard = outcome(yard, plain_settings(profile), 0, 60);
+        EXPECT_FALSE(in_yard.notice);
+        EXPECT_FALSE(in_yard.arrival.line_of_sight);
+        EXPECT_EQ(in_yard.arrival.paths, 1);
+        EXPECT_EQ(in_yard.arrival.reflections, 3);
+    }
+}
+
 TEST(RayTracedScene, BelowTheGroundIsNoCellar) {
     CityModel meadow;
     meadow.origin = odessa_place;

@@ -272,6 +272,24 @@ TEST(UrbanScene, TheFootIsThatOfTheNearestHouseWhereNoGroundIs) {
     EXPECT_NEAR(built(city)->foot_at(25, 30), 499, 1e-9);
 }
 
+TEST(UrbanScene, SeesNoSkyInAHouseButUnderAnArchAndInAYard) {
+    const auto slab = [](CityModel& city) {
+        city.add_quad({Vector3d(-5, -5, 60), {5, -5, 60}, {5, 5, 60}, {-5, 5, 60}}, SurfaceKind::roof);
+    };
+    CityModel arch, yard;
+    slab(arch);
+    EXPECT_FALSE(sees_no_sky(*built(arch), {0, 0, 1.5}));
+    for (const double side : {-5.0, 5.0}) {
+        yard.add_quad({Vector3d(-5, side, 0), {5, side, 0}, {5, side, 60}, {-5, side, 60}}, SurfaceKind::wall);
+        yard.add_quad({Vector3d(side, -5, 0), {side, 5, 0}, {side, 5, 60}, {side, -5, 60}}, SurfaceKind::wall);
+    }
+    EXPECT_FALSE(sees_no_sky(*built(yard), {0, 0, 1.5}));
+    CityModel house = yard;
+    slab(house);
+    EXPECT_TRUE(sees_no_sky(*built(house), {0, 0, 1.5}));
+    EXPECT_FALSE(sees_no_sky(*built(house), {20, 0, 1.5}));
+}
+
 TEST(UrbanScene, WoodsAloneAreAScene) {
     CityModel city;
     city.foliage.push_back({{{-700, -30}, {800, -30}, {800, 30}, {-700, 30}}, 8, 17, 5});
