@@ -59,7 +59,7 @@ struct PathFinder::Parts {
     Eigen::Vector3d searched = Eigen::Vector3d::Zero();  ///< place of the last search
     std::optional<Eigen::Vector3d> searched_fully;       ///< place of the last search of all rays
     std::optional<GpsTime> last_epoch;
-    double interval = 0;  ///< since the epoch before, s; 0: too long to look ahead so far
+    double interval = 0;  ///< since the epoch before, s; 0: not known, or too long to look ahead so far
 
     SearchCrew crew;  ///< last: its end waits for the search
 };
@@ -93,7 +93,8 @@ std::vector<SatellitePaths> PathFinder::epoch(const SceneObserver& observer,
     own.memory.update(own.paths, own.targets, observer.now);
 
     std::vector<SatellitePaths> answer = own.results(observer, satellites);
-    if (own.settings.search_ahead) own.search_for_next(observer, satellites);
+    // Without an interval it is not known how far ahead, and the next epoch searches on the spot.
+    if (own.settings.search_ahead && own.interval > 0) own.search_for_next(observer, satellites);
     return answer;
 }
 

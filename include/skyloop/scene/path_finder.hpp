@@ -28,8 +28,8 @@ struct PathSearchSettings {
     int threads = 0;
     /// A search of one epoch serves the next one (a worker has time until then): it is made for where the antenna and
     /// the satellites will be if they go on as they do, and with 2048 rays while the antenna stands still. False: a
-    /// search serves the same epoch, at once. So does the first one in either case, and one after a jump by more than
-    /// 50 m or a gap longer than `cache_seconds`.
+    /// search serves the same epoch, at once. So do in either case those of the first two epochs, of the two after a
+    /// gap longer than `cache_seconds`, and the one after a jump by more than 50 m.
     bool search_ahead = true;
 };
 

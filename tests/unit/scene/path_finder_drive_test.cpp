@@ -114,6 +114,24 @@ TEST(PathFinderDrive, FindsAheadNearlyAllThatASearchOnTheSpotFinds) {
     EXPECT_GT(static_cast<double>(found), 0.99 * static_cast<double>(expected)) << found << " of " << expected;
 }
 
+// How far the antenna goes from one epoch to the next is not known before the second one.
+TEST(PathFinderDrive, SearchesOnTheSpotInTheSecondEpochAndAfterGaps) {
+    const auto scene = built_scene(house_grid_city(6, 3));
+    PathSearchSettings settings = driving_settings(0);
+    settings.search_ahead = false;
+    // 1 s apart, and with gaps that are longer than paths are remembered.
+    for (const std::vector<int>& epochs : {std::vector{0, 10}, std::vector{0, 25, 50, 75}}) {
+        PathFinder finder(scene, driving_settings(1)), at_once(scene, settings);
+        for (const int epoch : epochs) {
+            SCOPED_TRACE(epoch);
+            const std::vector<SceneSatellite> satellites = moved_satellites(epoch * epoch_seconds);
+            EXPECT_EQ(keys_of(finder.epoch(driver_at(epoch), satellites)),
+                      keys_of(at_once.epoch(driver_at(epoch), satellites)));
+            EXPECT_EQ(finder.counters().rays, at_once.counters().rays);
+        }
+    }
+}
+
 TEST(PathFinderDrive, HasPathsInTheFirstEpoch) {
     const auto scene = built_scene(house_grid_city(6, 3));
     PathFinder ahead(scene, driving_settings(1));
@@ -224,9 +242,9 @@ TEST(PathFinderDrive, EndsWhileASearchRuns) {
     const auto scene = built_scene(house_grid_city(6, 3));
     for (const int threads : {1, 3}) {
         PathFinder finder(scene, driving_settings(threads));
-        finder.epoch(driver_at(0), moved_satellites(0));
+        driven(finder, 2);
         PathFinder moved = std::move(finder);
-        EXPECT_THAT(moved.epoch(driver_at(1), moved_satellites(0.1)), testing::SizeIs(40));
+        EXPECT_THAT(moved.epoch(driver_at(2), moved_satellites(0.2)), testing::SizeIs(40));
     }
 }
 
