@@ -8,6 +8,7 @@
 #include <osmium/osm/way.hpp>
 #include <osmium/thread/pool.hpp>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "city_text.hpp"
 #include "osm_text.hpp"
@@ -177,8 +178,12 @@ void OsmReader::add_area(const Area& area) {
 
 Outlines OsmReader::outlines() {
     found_.system = {CoordinateKind::geographic, false, "EPSG:4326", 4326};
+    // The border of a wood that is named a wood, too, would fill its clearings.
+    std::unordered_set<osmium::object_id_type> borders;
+    for (const Area& area : areas_)
+        if (area.use.kind == OutlineUse::Kind::trees) borders.insert(area.outer.begin(), area.outer.end());
     for (const auto& [id, way] : ways_) {
-        if (!way.use) continue;
+        if (!way.use || (way.use->kind == OutlineUse::Kind::trees && borders.contains(id))) continue;
         if (auto ring = ring_of(way.nodes))
             found_.outlines.push_back({{std::move(*ring), {}}, *way.use});
         else

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "crown_stretches.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -17,8 +19,8 @@ void FoliageTree::Box::extend(const Box& other) {
     highest = highest.cwiseMax(other.highest);
 }
 
-bool FoliageTree::Box::passed_by(const SceneRay& ray, double within) const {
-    double first = 0, last = within;
+bool FoliageTree::Box::passed_by(const SceneRay& ray, double reach) const {
+    double first = 0, last = reach;
     for (int axis = 0; axis < 3; ++axis) {
         const double low = lowest[axis] - crown_margin - ray.origin[axis];
         const double high = highest[axis] + crown_margin - ray.origin[axis];
@@ -81,24 +83,19 @@ void FoliageTree::add_nodes(std::span<std::uint32_t> order, const std::vector<Bo
     nodes_[at].end = static_cast<std::uint32_t>(nodes_.size());
 }
 
-double FoliageTree::length(const SceneRay& ray, double within) const {
-    std::vector<std::uint32_t> passed;
+double FoliageTree::length(const SceneRay& ray, double reach) const {
+    CrownStretches crowns(ray, reach);
     for (std::size_t i = 0; i < nodes_.size();) {
         const Node& node = nodes_[i];
-        if (!node.box.passed_by(ray, within)) {
+        if (!node.box.passed_by(ray, reach)) {
             i = node.end;
             continue;
         }
         for (std::uint32_t k = 0; k < node.count; ++k)
-            passed.push_back(order_[node.first + k]);
+            crowns.add(volumes_[order_[node.first + k]]);
         ++i;
     }
-    // In the order of the list, as a sum over all has it.
-    std::ranges::sort(passed);
-    double sum = 0;
-    for (const std::uint32_t i : passed)
-        sum += foliage_length(std::span(&volumes_[i], 1), ray, within);
-    return sum;
+    return crowns.metres();
 }
 
 }  // namespace skyloop

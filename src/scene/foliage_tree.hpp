@@ -17,7 +17,7 @@ public:
 
     [[nodiscard]] const std::vector<FoliageVolume>& volumes() const { return volumes_; }
     /// foliage_length() of all volumes, the same to the last bit.
-    [[nodiscard]] double length(const SceneRay& ray, double within) const;
+    [[nodiscard]] double length(const SceneRay& ray, double reach) const;
     /// Corners of the box around all volumes that have an inside; `lowest` is above `highest` where there are none.
     [[nodiscard]] Eigen::Vector3d lowest() const { return root().lowest; }
     [[nodiscard]] Eigen::Vector3d highest() const { return root().highest; }
@@ -26,7 +26,7 @@ private:
     struct Box {
         Eigen::Vector3d lowest = Eigen::Vector3d::Constant(1e300), highest = Eigen::Vector3d::Constant(-1e300);
         void extend(const Box& other);
-        [[nodiscard]] bool passed_by(const SceneRay& ray, double within) const;
+        [[nodiscard]] bool passed_by(const SceneRay& ray, double reach) const;
     };
     /// In the order of a walk down the tree: behind a node come those within it, up to `end`.
     struct Node {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "skyloop/scene/urban_scene.hpp"
+#include "crown_stretches.hpp"
 
 namespace skyloop {
 
@@ -35,38 +35,46 @@ std::vector<double> crossings(const FoliageVolume& volume, const SceneRay& ray, 
     return found;
 }
 
-/// Metres of a ray inside one prism, of its first `within`. Between two neighbouring crossings all points are inside or
-/// none; which, the middle tells, so that a ray through a corner counts as it should.
-double length_inside(const FoliageVolume& volume, const SceneRay& ray, double within) {
-    if (volume.ring.size() < 3 || !(volume.top > volume.base)) return 0;
-    double first = 0, last = within;
-    const double up = ray.direction.z();
-    if (up != 0) {
-        const double base = (volume.base - ray.origin.z()) / up, top = (volume.top - ray.origin.z()) / up;
-        first = std::max(first, std::min(base, top));
-        last = std::min(last, std::max(base, top));
-    } else if (ray.origin.z() < volume.base || ray.origin.z() > volume.top) {
-        return 0;
-    }
-    if (!(last > first)) return 0;
-    std::vector<double> ends = crossings(volume, ray, first, last);
-    if (std::isfinite(last)) ends.push_back(last);
-    double length = 0;
-    for (double begin = first; const double end : ends) {
-        const Eigen::Vector3d middle = ray.origin + (begin + end) / 2 * ray.direction;
-        if (is_inside(volume.ring, middle.head<2>())) length += end - begin;
-        begin = end;
-    }
-    return length;
-}
-
 }  // namespace
 
+// Between two neighbouring crossings all points are inside the prism or none; which, the middle tells, so that a ray
+// through a corner counts as it should.
+void CrownStretches::add(const FoliageVolume& volume) {
+    if (volume.ring.size() < 3 || !(volume.top > volume.base)) return;
+    double first = 0, last = length_;
+    const double up = ray_.direction.z();
+    if (up != 0) {
+        const double base = (volume.base - ray_.origin.z()) / up, top = (volume.top - ray_.origin.z()) / up;
+        first = std::max(first, std::min(base, top));
+        last = std::min(last, std::max(base, top));
+    } else if (ray_.origin.z() < volume.base || ray_.origin.z() > volume.top) {
+        return;
+    }
+    if (!(last > first)) return;
+    std::vector<double> ends = crossings(volume, ray_, first, last);
+    if (std::isfinite(last)) ends.push_back(last);
+    for (double begin = first; const double end : ends) {
+        const Eigen::Vector3d middle = ray_.origin + (begin + end) / 2 * ray_.direction;
+        if (is_inside(volume.ring, middle.head<2>())) stretches_.push_back({begin, end});
+        begin = end;
+    }
+}
+
+double CrownStretches::metres() {
+    std::ranges::sort(stretches_);
+    double sum = 0, covered = 0;
+    for (const auto& [begin, end] : stretches_) {
+        sum += std::max(0.0, end - std::max(begin, covered));
+        covered = std::max(covered, end);
+    }
+    return sum;
+}
+
 double foliage_length(std::span<const FoliageVolume> foliage, const SceneRay& ray, double length) {
-    double inside = 0;
+    CrownStretches crowns(ray, length);
     for (const FoliageVolume& volume : foliage)
-        inside += length_inside(volume, ray, length);
-    return inside;
+        crowns.add(volume);
+    return crowns.metres();
 }
 
 }  // namespace skyloop

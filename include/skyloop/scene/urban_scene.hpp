@@ -79,7 +79,8 @@ public:
     [[nodiscard]] std::span<const ScenePlane> planes() const;
     [[nodiscard]] const std::vector<std::string>& materials() const;
     [[nodiscard]] const std::vector<FoliageVolume>& foliage() const;
-    /// Metres of a ray, within `length` metres of its origin, that lie in its crowns of trees.
+    /// Metres of a ray, within `length` metres of its origin, that lie in its crowns of trees; in several at once
+    /// counts once.
     [[nodiscard]] double length_in_foliage(const SceneRay& ray,
                                            double length = std::numeric_limits<double>::infinity()) const;
     [[nodiscard]] const SceneStatistics& statistics() const;
@@ -115,7 +116,8 @@ private:
 /// of a light well are not.
 bool sees_no_sky(const UrbanScene& scene, const Eigen::Vector3d& place);
 
-/// Metres of a ray, within `length` metres of its origin, that lie in crowns of trees; looks at every one of them.
+/// Metres of a ray, within `length` metres of its origin, that lie in crowns of trees, in several at once counts
+/// once; looks at every one of them.
 double foliage_length(std::span<const FoliageVolume> foliage, const SceneRay& ray,
                       double length = std::numeric_limits<double>::infinity());
 

@@ -159,6 +159,23 @@ TEST(OpenStreetMap, PlantsWoodsAndKeepsGladesOpen) {
     EXPECT_TRUE(file->model.triangles.empty());
 }
 
+TEST(OpenStreetMap, ABorderThatIsNamedAWoodTooKeepsTheGladesOpen) {
+    const auto wood = osm_tags({{"landuse", "forest"}});
+    const auto relation = [&](std::string_view tags) {
+        return R"(<relation id="1"><member type="way" ref="1" role="outer"/><member type="way" ref="3" role="inner"/>)" +
+               osm_tags({{"type", "multipolygon"}}) + std::string(tags) + "</relation>";
+    };
+    const auto ways = osm_way(1, {1, 2, 3, 4, 1}, wood) + osm_way(3, {5, 6, 7, 8, 5});
+    const auto file = read_osm(osm_file(ways + relation(wood)));
+    ASSERT_TRUE(file) << file.error().message;
+    ASSERT_EQ(file->model.foliage.size(), 1u);
+    EXPECT_EQ(file->model.foliage[0].ring.size(), 10u);
+    const auto lake = read_osm(osm_file(ways + relation(osm_tags({{"natural", "water"}}))));
+    ASSERT_TRUE(lake) << lake.error().message;
+    ASSERT_EQ(lake->model.foliage.size(), 1u);
+    EXPECT_EQ(lake->model.foliage[0].ring.size(), 4u) << "of another thing the border says nothing";
+}
+
 TEST(OpenStreetMap, DropsOpenAndCutOutlinesAndSaysSo) {
     const auto building = osm_tags({{"building", "yes"}, {"height", "10"}});
     const auto file = read_osm(osm_file(osm_way(1, {1, 2, 3, 4, 1}, building) + osm_way(2, {1, 2, 3, 4}, building) +

@@ -96,6 +96,19 @@ TEST(Foliage, LengthsInSeveralGrovesAdd) {
     EXPECT_EQ(foliage_length({}, {{0, 0, 5}, {1, 0, 0}}), 0);
 }
 
+TEST(Foliage, AMetreInSeveralGrovesIsOneMetre) {
+    FoliageVolume shifted = square_grove(), within = square_grove();
+    for (Vector2d& corner : shifted.ring)
+        corner.x() += 5;
+    within.ring = {{12, -1}, {14, -1}, {14, 1}, {12, 1}};
+    const SceneRay ray{{0, 0, 5}, {1, 0, 0}};
+    EXPECT_NEAR(foliage_length(std::vector{square_grove(), square_grove()}, ray), 10, 1e-12);
+    EXPECT_NEAR(foliage_length(std::vector{square_grove(), shifted}, ray), 15, 1e-12);
+    EXPECT_NEAR(foliage_length(std::vector{shifted, square_grove()}, ray), 15, 1e-12);
+    EXPECT_NEAR(foliage_length(std::vector{square_grove(), within, shifted}, ray), 15, 1e-12);
+    EXPECT_NEAR(foliage_length(std::vector{within, square_grove()}, ray), 10, 1e-12);
+}
+
 TEST(Foliage, VolumesWithoutAnInsideLoseNothing) {
     EXPECT_EQ(metres_in({{}, 0, 10}, {0, 0, 5}, {1, 0, 0}), 0);
     EXPECT_EQ(metres_in({{{10, -5}, {10, 5}}, 0, 10}, {0, 0, 5}, {1, 0, 0}), 0);
