@@ -10,6 +10,11 @@ double knife_edge_parameter(Angle detour, Metres distance, Hertz carrier) {
     return detour.rad() * std::sqrt(2 * distance.value() * carrier.value() / speed_of_light);
 }
 
+Metres knife_edge_reach(Angle beside, Hertz carrier) {
+    const double ratio = knife_edge_clear / beside.rad();
+    return Metres(ratio * ratio * speed_of_light / (2 * carrier.value()));
+}
+
 Decibels knife_edge_loss(double v) {
     if (!(v > knife_edge_clear)) return Decibels(0);
     const double x = v - 0.1;

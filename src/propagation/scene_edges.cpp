@@ -9,12 +9,15 @@
 #include <span>
 #include <utility>
 
+#include "skyloop/propagation/knife_edge.hpp"
+
 namespace skyloop {
 namespace {
 
 // Degrees away from the line at which is looked; between two of them the edge is found by bisection.
-constexpr std::array behind_steps{0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0, 15.0, 20.0, 27.0, 36.0, 45.0};
-constexpr std::array beside_steps{0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0};
+constexpr std::array turns_to_edge{0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0, 15.0, 20.0, 27.0, 36.0, 45.0};
+// Beside a free line those up to 8°; farther off it edges weaken a wave that are within some 4 m alone.
+constexpr std::size_t beside_turns = 9;
 constexpr int bisections = 14;     // of 9°: to 0.0006°
 constexpr double off_edge = 0.05;  // m past an edge, where the way on to the satellite is tried
 
@@ -33,9 +36,10 @@ struct SightFan {
     Eigen::Vector3d up, right;
 };
 
-// Turned by `blocked` a ray meets the obstacle, by `free` it does not; radians.
+// Turned by `blocked` a ray meets the obstacle within `reach` metres, by `free` it does not; radians.
 struct EdgeBracket {
     double blocked, free;
+    double reach = 1e9;
 };
 
 std::optional<EdgeBracket> first_change(std::span<const double> degrees, std::span<const std::uint8_t> answers,
@@ -53,7 +57,7 @@ std::optional<EdgeBracket> first_change(std::span<const double> degrees, std::sp
 void bisect(const UrbanScene& scene, const SightFan& fan, const Eigen::Vector3d& side, EdgeBracket& bracket) {
     for (int i = 0; i < bisections; ++i) {
         const double middle = (bracket.blocked + bracket.free) / 2;
-        (scene.blocked(fan.turned(side, middle)) ? bracket.blocked : bracket.free) = middle;
+        (scene.blocked(fan.turned(side, middle), bracket.reach) ? bracket.blocked : bracket.free) = middle;
     }
 }
 
@@ -149,23 +153,44 @@ bool is_among(std::span<const SceneEdge> edges, const SceneEdge& edge) {
                        [&](const SceneEdge& other) { return (place(other) - place(edge)).norm() < same; });
 }
 
-std::vector<SceneEdge> edges_along(const UrbanScene& scene, const SightFan& fan, std::span<const Eigen::Vector3d> sides,
-                                   bool line_blocked) {
-    const std::span<const double> steps =
-        line_blocked ? std::span<const double>(behind_steps) : std::span<const double>(beside_steps);
+// For each side where it changes first whether a ray is blocked.
+using SideChanges = std::vector<std::optional<EdgeBracket>>;
+
+SideChanges changes_along(const UrbanScene& scene, const SightFan& fan, std::span<const Eigen::Vector3d> sides,
+                          std::span<const double> degrees, bool line_blocked) {
     std::vector<SceneRay> rays;
     for (const Eigen::Vector3d& side : sides)
-        for (const double degrees : steps)
-            rays.push_back(fan.turned(side, Angle::degrees(degrees).rad()));
+        for (const double angle : degrees)
+            rays.push_back(fan.turned(side, Angle::degrees(angle).rad()));
     std::vector<std::uint8_t> answers(rays.size());
     scene.blocked(rays, answers);
+    SideChanges changes;
+    for (std::size_t i = 0; i < sides.size(); ++i)
+        changes.push_back(
+            first_change(degrees, std::span(answers).subspan(i * degrees.size(), degrees.size()), line_blocked));
+    return changes;
+}
 
+// Farther off a free line: as far away as an edge still weakens the wave.
+std::optional<EdgeBracket> near_change(const UrbanScene& scene, const SightFan& fan, const Eigen::Vector3d& side,
+                                       Hertz carrier) {
+    double before = Angle::degrees(turns_to_edge[beside_turns - 1]).rad();
+    for (const double degrees : std::span(turns_to_edge).subspan(beside_turns)) {
+        const double here = Angle::degrees(degrees).rad();
+        const double reach = knife_edge_reach(Angle::radians(before), carrier).value();
+        if (scene.blocked(fan.turned(side, here), reach)) return EdgeBracket{here, before, reach};
+        before = here;
+    }
+    return std::nullopt;
+}
+
+std::vector<SceneEdge> edges_at(const UrbanScene& scene, const SightFan& fan, std::span<const Eigen::Vector3d> sides,
+                                SideChanges changes, bool line_blocked) {
     std::vector<SceneEdge> edges;
     for (std::size_t i = 0; i < sides.size(); ++i) {
-        auto bracket = first_change(steps, std::span(answers).subspan(i * steps.size(), steps.size()), line_blocked);
-        if (!bracket) continue;
-        bisect(scene, fan, sides[i], *bracket);
-        const auto edge = edge_met(scene, fan, sides[i], *bracket, line_blocked);
+        if (!changes[i]) continue;
+        bisect(scene, fan, sides[i], *changes[i]);
+        const auto edge = edge_met(scene, fan, sides[i], *changes[i], line_blocked);
         if (edge && !is_among(edges, *edge)) edges.push_back(*edge);
     }
     return edges;
@@ -176,13 +201,16 @@ std::vector<SceneEdge> edges_along(const UrbanScene& scene, const SightFan& fan,
 std::vector<SceneEdge> edges_around_obstacle(const UrbanScene& scene, const SceneRay& to_satellite) {
     const SightFan fan(to_satellite);
     const std::array sides{fan.up, fan.right, Eigen::Vector3d(-fan.right)};
-    return edges_along(scene, fan, sides, true);
+    return edges_at(scene, fan, sides, changes_along(scene, fan, sides, turns_to_edge, true), true);
 }
 
-std::vector<SceneEdge> edges_near_sight(const UrbanScene& scene, const SceneRay& to_satellite) {
+std::vector<SceneEdge> edges_near_sight(const UrbanScene& scene, const SceneRay& to_satellite, Hertz carrier) {
     const SightFan fan(to_satellite);
     const std::array sides{fan.up, fan.right, Eigen::Vector3d(-fan.right), Eigen::Vector3d(-fan.up)};
-    return edges_along(scene, fan, sides, false);
+    SideChanges changes = changes_along(scene, fan, sides, std::span(turns_to_edge).first(beside_turns), false);
+    for (std::size_t i = 0; i < sides.size(); ++i)
+        if (!changes[i]) changes[i] = near_change(scene, fan, sides[i], carrier);
+    return edges_at(scene, fan, sides, std::move(changes), false);
 }
 
 }  // namespace skyloop

@@ -111,7 +111,7 @@ DirectLoss SceneRays::direct_loss(const ArrivingSatellite& arriving) const {
     loss.foliage = crown_loss(arriving, {});
     if (!settings_.diffraction) return loss;
     const SceneRay line = line_to(arriving);
-    for (const SceneEdge& edge : edges_near_sight(scene_, line))
+    for (const SceneEdge& edge : edges_near_sight(scene_, line, arriving.carrier))
         loss.edges += knife_edge_loss(knife_edge_parameter(-edge.detour, edge.distance, arriving.carrier));
     return loss;
 }

@@ -23,8 +23,8 @@ struct SceneEdge {
 /// are not followed.
 std::vector<SceneEdge> edges_around_obstacle(const UrbanScene& scene, const SceneRay& to_satellite);
 
-/// Of a satellite in sight: what ends within 8° of the line, at most one towards each of four sides. The ground is no
-/// edge.
-std::vector<SceneEdge> edges_near_sight(const UrbanScene& scene, const SceneRay& to_satellite);
+/// Of a satellite in sight: what ends within 8° of the line, or farther off it, up to 45°, and so near the antenna that
+/// a wave of this carrier does not pass clear of it; at most one towards each of four sides. The ground is no edge.
+std::vector<SceneEdge> edges_near_sight(const UrbanScene& scene, const SceneRay& to_satellite, Hertz carrier);
 
 }  // namespace skyloop

@@ -39,5 +39,14 @@ TEST(KnifeEdge, ParameterGrowsWithTheRootOfDistance) {
     EXPECT_NEAR(knife_edge_parameter(Angle::degrees(-5), Metres(40), l1), -2 * v, 1e-12);
 }
 
+TEST(KnifeEdge, ReachesAsFarAsTheWaveIsNotClear) {
+    const Hertz l1(carrier_frequency_l1);
+    for (const double degrees : {0.5, 8.0, 27.0}) {
+        const Metres reach = knife_edge_reach(Angle::degrees(degrees), l1);
+        EXPECT_NEAR(knife_edge_parameter(Angle::degrees(-degrees), reach, l1), knife_edge_clear, 1e-12);
+    }
+    EXPECT_NEAR(knife_edge_reach(Angle::degrees(8), l1).value(), 2.97, 0.01);
+}
+
 }  // namespace
 }  // namespace skyloop

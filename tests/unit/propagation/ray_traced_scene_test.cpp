@@ -184,6 +184,20 @@ TEST(ModernScene, StrengthDoesNotJumpAtTheShadow) {
     EXPECT_EQ(outcome(walls({{20, 15}}), settings, 0, edge + 6).arrival.reflection_loss.value(), 0);
 }
 
+// An edge 1.1 m away weakens the wave up to 13° beside it.
+TEST(ModernScene, ANearEdgeWeakensTheDirectRayUntilItPassesClear) {
+    RayTracedSceneSettings settings = plain_settings(SceneProfile::modern);
+    settings.diffraction = true;
+    const double edge = std::atan2(1, 0.5) * to_degrees;
+    for (const double beside : {1.0, 5.0, 7.9, 8.1, 10.0, 12.0, 12.9, 14.0, 20.0}) {
+        const Arrival a = outcome(walls({{0.5, 1}}), settings, 0, edge + beside).arrival;
+        EXPECT_TRUE(a.line_of_sight);
+        const double v =
+            knife_edge_parameter(Angle::degrees(-beside), Metres(std::hypot(1, 0.5)), Hertz(carrier_frequency_l1));
+        EXPECT_NEAR(a.reflection_loss.value(), knife_edge_loss(v).value(), 0.02) << beside;
+    }
+}
+
 TEST(ModernScene, TreesWeakenTheDirectRay) {
     CityModel city = walls({{-150, 1}});
     city.foliage.push_back({{{-50, 10}, {50, 10}, {50, 20}, {-50, 20}}, -5, 60});
@@ -363,7 +377,7 @@ TEST(SceneEdges, LieWhereTheWallEnds) {
     EXPECT_GT(edges[0].direction.x(), 0);
     EXPECT_LT(edges[1].direction.x(), 0);
     const std::vector<SceneEdge> beside =
-        edges_near_sight(**scene, {{0, 0, 0}, Eigen::Vector3d(4, 20, 0).normalized()});
+        edges_near_sight(**scene, {{0, 0, 0}, Eigen::Vector3d(4, 20, 0).normalized()}, Hertz(carrier_frequency_l1));
     ASSERT_EQ(beside.size(), 1U);
     EXPECT_NEAR(beside[0].detour.rad(), std::atan2(4, 20) - std::atan2(3, 20), 1e-4);
 }
@@ -410,7 +424,7 @@ TEST(SceneEdges, AnObliqueEdgeBesideTheLineCountsOnce) {
     const SceneRay line{
         {0, 0, 0},
         {std::cos(elevation) * std::sin(azimuth), std::cos(elevation) * std::cos(azimuth), std::sin(elevation)}};
-    const std::vector<SceneEdge> edges = edges_near_sight(**scene, line);
+    const std::vector<SceneEdge> edges = edges_near_sight(**scene, line, Hertz(carrier_frequency_l1));
     ASSERT_EQ(edges.size(), 1U);
     const double slant = line.direction.y();
     const Eigen::Vector3d bend(20, std::hypot(20, 28.5) * slant / std::sqrt(1 - slant * slant), 28.5);
