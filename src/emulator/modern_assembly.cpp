@@ -14,7 +14,7 @@ std::filesystem::path nequick_folder(const DataFolders& data) {
     return "nequick_g";
 }
 
-// The span for which tables and maps must be there; of a run without an end the first hour.
+// The span for which maps must be there; of a run without an end the first hour.
 TimeSpan span_of(const Scenario& scenario, GpsTime start) {
     return {start, advanced(start, scenario.run.duration.value_or(Seconds(3600)))};
 }

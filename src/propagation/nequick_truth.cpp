@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "skyloop/gnss/constants.hpp"
 #include "skyloop/gnss/nequick_g.hpp"
@@ -14,10 +15,6 @@ namespace skyloop {
 namespace {
 
 constexpr Nanoseconds nequick_spacing = std::chrono::seconds(30);
-// Beyond a year every month is one of the run's.
-constexpr auto nequick_longest_search = std::chrono::hours(24 * 366);
-
-using NequickMonths = std::array<std::optional<NequickTables>, 12>;
 
 Position<Ecef> carried_ahead(const SatelliteInView& satellite, Seconds dt) {
     const Eigen::Vector3d p = satellite.position_at_transmission.vector();
@@ -31,7 +28,7 @@ Position<Ecef> carried_ahead(const SatelliteInView& satellite, Seconds dt) {
 
 class NequickTruth : public IonosphereTruth {
 public:
-    NequickTruth(NequickMonths months, const EffectiveIonisation& ionisation, LeapSeconds leap_seconds)
+    NequickTruth(std::vector<NequickTables> months, const EffectiveIonisation& ionisation, LeapSeconds leap_seconds)
         : months_(std::move(months)), ionisation_(ionisation), leap_seconds_(std::move(leap_seconds)) {}
 
     Metres delay(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) override {
@@ -57,15 +54,12 @@ private:
     [[nodiscard]] Tecu at(std::int64_t knot, const SatelliteInView& satellite, const TruthState& truth) const {
         const GpsTime time(knot * nequick_spacing);
         const UtcTime utc = to_utc(time, leap_seconds_);
-        const auto& tables = months_[utc.month - 1];
-        // The knot after the last epoch may lie in a month that is not the run's.
-        const UtcTime now = to_utc(truth.time, leap_seconds_);
-        const auto& serving = tables ? tables : months_[now.month - 1];
         const Geodetic there = to_geodetic(carried_ahead(satellite, difference(time, truth.time)));
-        return nequick_slant_content(*serving, ionisation_, truth.geodetic, there, utc.seconds_of_day() / 3600);
+        return nequick_slant_content(months_[utc.month - 1], ionisation_, truth.geodetic, there,
+                                     utc.seconds_of_day() / 3600);
     }
 
-    NequickMonths months_;
+    std::vector<NequickTables> months_;  // of the year, January first
     EffectiveIonisation ionisation_;
     LeapSeconds leap_seconds_;
     PerSatellite<Content> contents_;
@@ -79,19 +73,14 @@ constexpr std::array<const char*, 12> month_names{"January",   "February", "Marc
 
 Result<std::unique_ptr<IonosphereTruth>> make_nequick_truth(const EffectiveIonisation& ionisation,
                                                             const ModernContext& context) {
-    NequickMonths months;
-    const GpsTime last = std::min<GpsTime>(context.run.last, context.run.first + nequick_longest_search);
-    for (GpsTime time = context.run.first;; time = std::min<GpsTime>(time + std::chrono::hours(24), last)) {
-        const unsigned month = to_utc(time, context.leap_seconds).month;
-        auto& tables = months[month - 1];
-        if (!tables) {
-            auto read = read_nequick_tables(context.nequick_folder, static_cast<int>(month));
-            if (!read)
-                return fail(read.error().code, fmt::format("NeQuick-G has no tables for {}: {}", month_names[month - 1],
-                                                           read.error().message));
-            tables = std::move(*read);
-        }
-        if (time >= last) break;
+    // All of the year, for a run need not have an end.
+    std::vector<NequickTables> months;
+    for (const char* name : month_names) {
+        auto read = read_nequick_tables(context.nequick_folder, static_cast<int>(months.size()) + 1);
+        if (!read)
+            return fail(read.error().code,
+                        fmt::format("NeQuick-G has no tables for {}: {}", name, read.error().message));
+        months.push_back(std::move(*read));
     }
     return std::make_unique<NequickTruth>(std::move(months), ionisation, context.leap_seconds);
 }

@@ -26,10 +26,10 @@ public:
 Result<std::unique_ptr<IonosphereTruth>> make_ionosphere_truth(const IonosphereParameters& parameters,
                                                                const ModernContext& context);
 
-/// NeQuick-G for the months of a run. It takes a millisecond or so a ray: each satellite's is traced for the whole half
-/// minutes of GPS time alone, from where satellite and antenna then are, and the electron content is linear in between.
-/// The satellite is carried ahead of the epoch by its velocity and the Earth's attraction, to within a metre.
-/// Fails when the folder lacks a table, naming the month.
+/// NeQuick-G, each month by its own tables. It takes a millisecond or so a ray: each satellite's is traced for the
+/// whole half minutes of GPS time alone, from where satellite and antenna then are, and the electron content is linear
+/// in between. The satellite is carried ahead of the epoch by its velocity and the Earth's attraction, to within a
+/// metre. Fails when the folder lacks a table, naming the month.
 Result<std::unique_ptr<IonosphereTruth>> make_nequick_truth(const EffectiveIonisation& ionisation,
                                                             const ModernContext& context);
 

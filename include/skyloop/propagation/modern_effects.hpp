@@ -48,7 +48,7 @@ struct ModernContext {
 /// link budget. Effects of the scene go before the last.
 ///
 /// Fails when the ionosphere is to come from maps that are not there or that do not cover the run and the globe
-/// (`input`, naming the file), or from NeQuick-G without the tables of a month of the run.
+/// (`input`, naming the file), or from NeQuick-G without the tables of a month.
 Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects(const ModernPropagationParameters& parameters,
                                                                        const ModernContext& context);
 

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "modern_sky.hpp"
 #include "skyloop/gnss/atmosphere.hpp"
@@ -161,15 +162,35 @@ TEST(IonosphereTruth, NequickIsTracedEveryHalfMinuteAndLinearBetween) {
     EXPECT_NEAR(at(slow, 10), third, 0.05);
 }
 
+TEST(IonosphereTruth, NequickGoesFromMonthToMonthWhereverTheRunEnds) {
+    ModernContext context = ionosphere_context();
+    const GpsTime start = gps_calendar_time(2025, 3, 30, 0, 0, 0);
+    context.run = {start, start + seconds(3600)};
+    IonosphereDelay effect = ionosphere_effect(IonosphereModel::nequick_g, context);
+    SkyView sky;
+    sky.satellites.push_back(test::satellite_at({Constellation::gps, 9}, 215, 22));
+    const Geodetic there = to_geodetic(sky.satellites.front().position_at_transmission);
+    // The first knot of April in UTC, and a noon of May, 18 s before that of GPS.
+    for (const auto& [month, time, ut_hours] :
+         {std::tuple{4, gps_calendar_time(2025, 4, 1, 0, 0, 30), 12. / 3600},
+          std::tuple{5, gps_calendar_time(2025, 5, 10, 12, 0, 0), 12 - 18. / 3600}}) {
+        const auto tables = read_nequick_tables(context.nequick_folder, month);
+        ASSERT_TRUE(tables) << tables.error().message;
+        const Tecu content = nequick_slant_content(*tables, {90, 0.4, 0.01}, test::odessa_place, there, ut_hours);
+        const auto arrived = test::after(effect, sky, test::truth_of(test::odessa_place, time));
+        EXPECT_NEAR(arrived.satellites.front().iono_delay.value(),
+                    ionosphere_group_delay(content, Hertz(carrier_frequency_l1)).value(), 1e-9)
+            << "month " << month;
+    }
+}
+
 TEST(IonosphereTruth, NequickRefusesAMonthWithoutTablesByName) {
     ModernContext context = ionosphere_context();
-    const auto april_alone = std::filesystem::path(::testing::TempDir()) / "skyloop_nequick_april";
-    std::filesystem::create_directories(april_alone);
-    for (const char* file : {"ccir14.asc", "modipNeQG_wrapped.asc"})
-        std::filesystem::copy_file(context.nequick_folder / file, april_alone / file,
-                                   std::filesystem::copy_options::overwrite_existing);
-    context.nequick_folder = april_alone;
-    context.run.last = gps_calendar_time(2025, 7, 2, 0, 0, 0);
+    const auto all_but_may = std::filesystem::path(::testing::TempDir()) / "skyloop_nequick_without_may";
+    std::filesystem::remove_all(all_but_may);
+    std::filesystem::copy(context.nequick_folder, all_but_may);
+    std::filesystem::remove(all_but_may / "ccir15.asc");
+    context.nequick_folder = all_but_may;
     const auto made = make_ionosphere_truth({.model = IonosphereModel::nequick_g}, context);
     ASSERT_FALSE(made);
     EXPECT_THAT(made.error().message, HasSubstr("NeQuick-G has no tables for May: "));
