@@ -337,6 +337,7 @@ Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const 
                                    assembly.start, assembly.scene.scene},
                                   assembly);
     if (!stations) return fail(stations.error());
+    if (auto warning = warning_of_last_map(scenario)) assembly.warnings.push_back(std::move(*warning));
     assembly.details.push_back(fmt::format("digest: {}", assembly.digest));
     // The pacer comes last, so that the clock starts when everything else is ready.
     assembly.emulator = std::make_unique<Emulator>(

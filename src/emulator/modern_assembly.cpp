@@ -2,6 +2,8 @@
 
 #include "receiver_assembly.hpp"
 
+#include <fmt/format.h>
+
 #include "skyloop/propagation/modern_effects.hpp"
 #include "skyloop/rinex/ionex_file.hpp"
 
@@ -14,9 +16,9 @@ std::filesystem::path nequick_folder(const DataFolders& data) {
     return "nequick_g";
 }
 
-// The span for which maps must be there; of a run without an end the first hour.
+// The span for which maps must be there; of a run without an end its start.
 TimeSpan span_of(const Scenario& scenario, GpsTime start) {
-    return {start, advanced(start, scenario.run.duration.value_or(Seconds(3600)))};
+    return {start, advanced(start, scenario.run.duration.value_or(Seconds(0)))};
 }
 
 }  // namespace
@@ -43,6 +45,20 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
     context.seed = scenario.run.seed;
     context.gas_losses = world.gas_losses;
     return modern_effects(settings.propagation, context);
+}
+
+std::optional<std::string> warning_of_last_map(const Scenario& scenario) {
+    if (scenario.run.duration || scenario.model.sensor_model) return std::nullopt;
+    const ModernPropagationParameters propagation = effective(scenario.model.modern).propagation;
+    if (propagation.ionosphere_model.model != IonosphereModel::ionex || propagation.ionosphere.factor() == 0)
+        return std::nullopt;
+    const auto maps = read_ionex_file(scenario.model.modern.ionosphere_maps);
+    if (!maps) return std::nullopt;  // which modern_effects_of() tells
+    return fmt::format(
+        "{}: its maps reach to {}; the run has no end, and from then on the last of them holds, turned with "
+        "the Sun",
+        scenario.model.modern.ionosphere_maps.string(),
+        format_utc(to_utc(maps->maps.back().time, LeapSeconds::announced()), 0));
 }
 
 MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationSetup& setup) {

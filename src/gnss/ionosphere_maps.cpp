@@ -57,21 +57,23 @@ std::optional<Tecu> map_content(const IonosphereMaps& maps, const IonosphereMap&
     return Tecu(sum);
 }
 
+std::optional<Tecu> turned_content(const IonosphereMaps& maps, const IonosphereMap& map, const PiercePoint& where,
+                                   GpsTime time) {
+    // The pierce point moves with the Sun to the instant of the map.
+    const double seconds = difference(time, map.time).value();
+    return map_content(maps, map,
+                       {where.latitude, where.longitude + Angle::degrees(360 * seconds / double(seconds_per_day))});
+}
+
 std::optional<Tecu> vertical_content(const IonosphereMaps& maps, const PiercePoint& where, GpsTime time) {
     const auto& all = maps.maps;
     if (all.empty() || time < all.front().time || time > all.back().time) return std::nullopt;
-    // The pierce point moves with the Sun to the instant of the map.
-    const auto turned = [&](const IonosphereMap& map) {
-        const double seconds = difference(time, map.time).value();
-        return map_content(maps, map,
-                           {where.latitude, where.longitude + Angle::degrees(360 * seconds / double(seconds_per_day))});
-    };
     const auto after = std::upper_bound(all.begin(), all.end(), time,
                                         [](GpsTime t, const IonosphereMap& map) { return t < map.time; });
     const IonosphereMap& before = *(after - 1);
-    const std::optional<Tecu> first = turned(before);
+    const std::optional<Tecu> first = turned_content(maps, before, where, time);
     if (!first || after == all.end() || time == before.time) return first;
-    const std::optional<Tecu> second = turned(*after);
+    const std::optional<Tecu> second = turned_content(maps, *after, where, time);
     if (!second) return std::nullopt;
     const double fraction = difference(time, before.time).value() / difference(after->time, before.time).value();
     return *first * (1 - fraction) + *second * fraction;

@@ -79,12 +79,17 @@ public:
     Metres delay(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) override {
         if (!stands_below(maps_.shell, truth)) return Metres(0);
         const PiercePoint where = pierce_point(maps_.shell, truth.geodetic, direction_of(satellite));
-        // Within the run and on the globe there is a value everywhere: the maps have been searched for holes.
-        const Tecu vertical = vertical_content(maps_, where, truth.time).value_or(Tecu(0));
-        return shell_delay(maps_.shell, vertical, satellite, truth, carrier);
+        // From the run's start on and on the globe there is a value everywhere: the maps have been searched for holes.
+        return shell_delay(maps_.shell, vertical(where, truth.time).value_or(Tecu(0)), satellite, truth, carrier);
     }
 
 private:
+    // A run without an end outlasts its maps: the last of them holds.
+    [[nodiscard]] std::optional<Tecu> vertical(const PiercePoint& where, GpsTime time) const {
+        const IonosphereMap& last = maps_.maps.back();
+        return time > last.time ? turned_content(maps_, last, where, time) : vertical_content(maps_, where, time);
+    }
+
     IonosphereMaps maps_;
 };
 

@@ -34,8 +34,13 @@ struct IonosphereMaps {
 /// grid once around the globe closes on itself. Nothing where the grid does not reach or a value is missing.
 std::optional<Tecu> map_content(const IonosphereMaps& maps, const IonosphereMap& map, const PiercePoint& where);
 
-/// Vertical content between two maps: linear in time, each map turned with the Sun by 360° a day (IONEX 1.0,
-/// interpolation between consecutive rotated maps). Nothing before the first map, after the last, or where a map has no
+/// Vertical content of one map that is turned with the Sun, 360° a day, from its own instant to another, before or
+/// after it. Nothing where map_content() has nothing.
+std::optional<Tecu> turned_content(const IonosphereMaps& maps, const IonosphereMap& map, const PiercePoint& where,
+                                   GpsTime time);
+
+/// Vertical content between two maps: linear in time, each map turned with the Sun (IONEX 1.0, interpolation between
+/// consecutive rotated maps). Nothing before the first map, after the last, or where a map has no
 /// value.
 std::optional<Tecu> vertical_content(const IonosphereMaps& maps, const PiercePoint& where, GpsTime time);
 

@@ -22,7 +22,7 @@ public:
 
 /// The model that the parameters name: with the coefficients of the broadcast, or the parameters' own where the
 /// broadcast has none. Over a thin shell (ionex, constant) a delay is mapped by single_layer_mapping(); above the shell
-/// there is none. Fails as modern_effects() does.
+/// there is none. Past the last of its maps ionex holds that one, turned with the Sun. Fails as modern_effects() does.
 Result<std::unique_ptr<IonosphereTruth>> make_ionosphere_truth(const IonosphereParameters& parameters,
                                                                const ModernContext& context);
 

@@ -28,7 +28,7 @@ struct NamedIonosphereMaps {
 
 /// What the effects need to know of the run.
 struct ModernContext {
-    TimeSpan run{};                     ///< first and last instant of the run
+    TimeSpan run{};                     ///< first and last instant of the run; of one without an end its first
     AtmosphereParameters atmosphere{};  ///< its clouds and its rain
     BroadcastIonosphere broadcast{};    ///< of the navigation data
     /// The model that the receiver corrects with, where it is one of these.

@@ -1,6 +1,7 @@
 // What a scenario becomes, and what it is refused for.
 #include "skyloop/emulator/assembly.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -393,6 +394,39 @@ TEST(Assembly, TellsOfKeysAndWeatherThatCannotAct) {
                 Contains(HasSubstr("atmosphere.cloud: fog ends")));
     EXPECT_THAT(assembled(mountain + "rain_mm_h = 100\nrain_top_m = 5000").warnings,
                 Not(Contains(HasSubstr("rain falls from"))));
+}
+
+// Two maps of the whole globe, at 22 and 24 o'clock of 1 January 2017.
+std::string ionex_of_an_evening() {
+    const auto headed = [](const std::string& text, const char* label) {
+        return fmt::format("{:<60}{}\n", text, label);
+    };
+    std::string text = headed("     1.0            IONOSPHERE MAPS     GPS", "IONEX VERSION / TYPE") +
+                       headed("    60.0 -60.0 -30.0", "LAT1 / LAT2 / DLAT") +
+                       headed("  -180.0 180.0  60.0", "LON1 / LON2 / DLON") + headed("", "END OF HEADER");
+    for (const int hour : {22, 24}) {
+        text += headed("     1", "START OF TEC MAP") +
+                headed(fmt::format("  2017     1     1{:6}     0     0", hour), "EPOCH OF CURRENT MAP");
+        for (const int latitude : {60, 30, 0, -30, -60})
+            text += headed(fmt::format("  {:6.1f}-180.0 180.0  60.0 450.0", double(latitude)), "LAT/LON1/LON2/DLON/H") +
+                    "  100  100  100  100  100  100  100\n";
+        text += headed("     1", "END OF TEC MAP");
+    }
+    return text + headed("", "END OF FILE");
+}
+
+TEST(Assembly, TellsWhenTheMapsOfARunWithoutAnEndDo) {
+    const test::TemporaryFolder folder;
+    const std::filesystem::path file = folder / "evening.17i";
+    std::ofstream(file) << ionex_of_an_evening();
+    const std::string ionosphere = "[model.modern.ionosphere]\nmaps = \"" + file.string() + "\"\ntruth = ";
+    const std::string evening = "[run]\nstart = 2017-01-01T23:30:00Z\n";
+    const auto told = Contains(HasSubstr("evening.17i: its maps reach to 2017-01-02T00:00:00Z; the run has no end"));
+    EXPECT_THAT(assembled(evening + ionosphere + "\"ionex\"").warnings, told);
+    EXPECT_THAT(assembled(evening + "duration_s = 60\n" + ionosphere + "\"ionex\"").warnings, Not(told));
+    EXPECT_THAT(assembled(evening + ionosphere + "\"constant\"").warnings, Not(told)) << "none of them acts";
+    EXPECT_THAT(refusal("[run]\nstart = 2017-01-02T00:30:00Z\n" + ionosphere + "\"ionex\"").message,
+                HasSubstr("its maps span 2017-01-01T22:00:00Z to 2017-01-02T00:00:00Z"));
 }
 
 TEST(Assembly, TellsOfPathsBeyondTheLimitsOfItsReceiver) {

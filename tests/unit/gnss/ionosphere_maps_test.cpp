@@ -65,6 +65,18 @@ TEST(VerticalContent, TurnsWithTheSun) {
     EXPECT_NEAR(vertical_content(maps, pierced(0, -60), midnight + std::chrono::hours(1))->value(), 22, 1e-9);
 }
 
+TEST(TurnedContent, GoesOnWithTheSunPastItsInstant) {
+    const IonosphereMaps maps = open_globe();
+    const IonosphereMap& last = maps.maps.back();
+    // Four hours, and four days and four hours, are 60° of the Sun: a column of the grid.
+    for (const int hours : {4, 100})
+        EXPECT_NEAR(turned_content(maps, last, pierced(0, -60), last.time + std::chrono::hours(hours))->value(), 23,
+                    1e-6);
+    EXPECT_NEAR(turned_content(maps, last, pierced(0, -60), last.time - std::chrono::hours(4))->value(), 21, 1e-6);
+    EXPECT_EQ(turned_content(maps, last, pierced(0, -60), last.time),
+              vertical_content(maps, pierced(0, -60), last.time));
+}
+
 TEST(VerticalContent, HasNothingOutsideItsTime) {
     const IonosphereMaps maps = open_globe();
     EXPECT_FALSE(vertical_content(maps, pierced(0, 0), midnight - std::chrono::seconds(1)));

@@ -118,6 +118,30 @@ TEST(IonosphereTruth, IonexIsTheContentOfTheMaps) {
     });
 }
 
+TEST(IonosphereTruth, TheLastMapHoldsOnTurnedWithTheSun) {
+    ModernContext context = ionosphere_context();
+    context.run.last = context.run.first;  // a run without an end
+    context.maps = {"codg1000.25i", maps_of_a_day()};
+    IonosphereDelay effect = ionosphere_effect(IonosphereModel::ionex, context);
+    const IonosphereMaps& maps = context.maps->maps;
+    const IonosphereMap& last = maps.maps.back();
+    const SkyView sky = ionosphere_sky();
+    const SatelliteInView& satellite = sky.satellites.front();
+    const auto delay = [&](GpsTime time) {
+        return test::after(effect, sky, test::truth_of(test::odessa_place, time)).satellites.front().iono_delay.value();
+    };
+    const double at_last = delay(last.time);
+    EXPECT_GT(at_last, 0.5);
+    EXPECT_NEAR(delay(last.time + seconds(1)), at_last, 1e-3);
+    // Six hours later the Sun, and the map with it, stands 90° further west.
+    const PiercePoint where = pierce_point(maps.shell, test::odessa_place, direction_to(satellite));
+    const Tecu vertical = *map_content(maps, last, {where.latitude, where.longitude + Angle::degrees(90)});
+    const double mapping =
+        single_layer_mapping(maps.shell, satellite.elevation, test::odessa_place.height.above_ellipsoid);
+    EXPECT_NEAR(delay(last.time + std::chrono::hours(6)),
+                ionosphere_group_delay(vertical * mapping, Hertz(carrier_frequency_l1)).value(), 1e-6);
+}
+
 TEST(IonosphereTruth, MapsMustCoverTheRunAndTheGlobe) {
     const IonosphereParameters parameters{.model = IonosphereModel::ionex};
     ModernContext context = ionosphere_context();
