@@ -73,6 +73,9 @@ double ccir_sum(const std::array<double, Places>& coefficients, const std::array
 constexpr std::array<std::size_t, 9> ccir_f2_degrees{12, 12, 9, 5, 2, 1, 1, 1, 1};
 constexpr std::array<std::size_t, 7> ccir_m3000_degrees{7, 8, 6, 3, 2, 1, 1};
 
+// The least M(3000)F2, as the Commission's own program has it: below 0.88 the F2 peak has no height.
+constexpr double nequick_least_transmission = 1;
+
 // Solar zenith angle at which day turns to night in the E layer, degrees.
 constexpr double nequick_day_night = 86.23292796211615;
 
@@ -127,7 +130,8 @@ double NequickConditions::critical_frequency_e(double latitude, double longitude
 }
 
 NequickProfile::NequickProfile(const NequickConditions& conditions, const NequickPlace& place) {
-    const double transmission = conditions.transmission_factor(place.modip, place.latitude, place.longitude);
+    const double transmission = std::max(conditions.transmission_factor(place.modip, place.latitude, place.longitude),
+                                         nequick_least_transmission);
     Peaks critical{};
     critical.e = conditions.critical_frequency_e(place.latitude, place.longitude);
     critical.f2 = conditions.critical_frequency_f2(place.modip, place.latitude, place.longitude);

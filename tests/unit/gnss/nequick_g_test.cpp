@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -71,6 +72,24 @@ TEST(NequickG, HoldsItsIonisationWithinBounds) {
     EXPECT_TRUE(std::isfinite(
         nequick_slant_content(april(), {-5, 0, 0}, Geodetic::degrees(0, 0, 0), Geodetic::degrees(0, 10, 20200e3), 24)
             .value()));
+}
+
+TEST(NequickG, HasAnF2PeakUnderTheStrongestSun) {
+    // M(3000)F2 of the maps would be 0.85 here. With 1 the peak has 5e12 electrons a cubic metre, 2590 km up.
+    const auto may = read_nequick_tables(std::filesystem::path(SKYLOOP_SOURCE_DIR) / "data/nequick_g", 5);
+    ASSERT_TRUE(may) << may.error().message;
+    const double content =
+        nequick_slant_content(*may, {400, 0, 0}, Geodetic::degrees(7, 18, 0), Geodetic::degrees(7, 18, 20200e3), 18.5)
+            .value();
+    EXPECT_GT(content, 800);
+    EXPECT_LT(content, 1400);
+}
+
+TEST(NequickG, EndsWhereNothingIsANumber) {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(std::isnan(nequick_slant_content(april(), {none, 0, 0}, Geodetic::degrees(46, 30, 50),
+                                                 Geodetic::degrees(46, 30, 20200e3), 12)
+                               .value()));
 }
 
 TEST(ModifiedDipLatitude, HitsItsGridAndClosesAroundTheGlobe) {
