@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 #include "lowest_elevation.hpp"
@@ -95,14 +96,20 @@ private:
 
 std::string gps_day(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); }
 
-// The first place without a value, by steps that are finer than the grids of the analysis centres.
+// A place without a value: a node of the grid, or one of those that a grid of less than the globe does not reach.
 std::optional<PiercePoint> hole_in(const IonosphereMaps& maps, const IonosphereMap& map) {
-    for (double latitude = -90; latitude <= 90; latitude += 1.25) {
-        for (double longitude = -180; longitude < 180; longitude += 2.5) {
-            const PiercePoint where{Angle::degrees(latitude), Angle::degrees(longitude)};
-            if (!map_content(maps, map, where)) return where;
-        }
-    }
+    const GridAxis &latitude = maps.latitude, &longitude = maps.longitude;
+    const auto line = [](const GridAxis& axis, std::size_t i) {
+        return axis.first + axis.step * static_cast<double>(i);
+    };
+    for (std::size_t node = 0; node < map.content_tecu.size(); ++node)
+        if (std::isnan(map.content_tecu[node]))
+            return PiercePoint{line(latitude, node / longitude.count), line(longitude, node % longitude.count)};
+    // Halfway on from the last meridian to the first, and there at the poles.
+    const Angle once_around = Angle::degrees(std::copysign(360, longitude.step.rad()));
+    const Angle between = (line(longitude, longitude.count - 1) + longitude.first + once_around) * 0.5;
+    for (const Angle pole : {Angle::degrees(-90), Angle::degrees(90)})
+        if (const PiercePoint where{pole, between}; !map_content(maps, map, where)) return where;
     return std::nullopt;
 }
 

@@ -158,7 +158,43 @@ TEST(IonosphereTruth, MapsMustCoverTheRunAndTheGlobe) {
               "2025-04-10T11:59:42Z to 2025-04-11T11:59:43Z");
     context.run.last -= seconds(1);
     context.maps->maps.maps[3].content_tecu[1000] = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_THAT(refusal(), HasSubstr("codg1000.25i: the map of 2025-04-10T17:59:42Z has no value at latitude"));
+    EXPECT_THAT(refusal(), HasSubstr("codg1000.25i: the map of 2025-04-10T17:59:42Z has no value at latitude 55.00°, "
+                                     "longitude 75.00°"));
+}
+
+// Two maps of one value, at the ends of the run of ionosphere_context().
+IonosphereMaps even_maps(const GridAxis& latitude, const GridAxis& longitude) {
+    IonosphereMaps maps{{}, latitude, longitude, {}};
+    for (const int hour : {0, 24})
+        maps.maps.push_back(
+            {test::april_noon + std::chrono::hours(hour), std::vector<double>(latitude.count * longitude.count, 20)});
+    return maps;
+}
+
+TEST(IonosphereTruth, MapsHaveNoHoleHoweverSmall) {
+    ModernContext context = ionosphere_context();
+    const auto refusal = [&](IonosphereMaps maps) {
+        context.maps = {"fine.25i", std::move(maps)};
+        const auto made = make_ionosphere_truth({.model = IonosphereModel::ionex}, context);
+        return made ? std::string("none") : made.error().message;
+    };
+    const GridAxis fine{Angle::degrees(90), Angle::degrees(-1), 181};
+    const GridAxis around{Angle::degrees(-180), Angle::degrees(1), 361};
+    EXPECT_EQ(refusal(even_maps(fine, around)), "none");
+    IonosphereMaps holed = even_maps(fine, around);
+    for (std::size_t i = 0; i < 181; ++i)
+        holed.maps[1].content_tecu[361 * i + 1] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THAT(refusal(holed), HasSubstr("has no value at latitude 90.00°, longitude -179.00°"));
+    // The meridian at which the globe closes may be missing, not the one before, and parallels one step short of a
+    // pole.
+    EXPECT_EQ(refusal(even_maps(fine, {Angle::degrees(-180), Angle::degrees(1), 360})), "none");
+    EXPECT_THAT(refusal(even_maps(fine, {Angle::degrees(-180), Angle::degrees(1), 359})),
+                HasSubstr("has no value at latitude -90.00°, longitude 179.00°"));
+    EXPECT_THAT(refusal(even_maps(fine, {Angle::degrees(180), Angle::degrees(-1), 359})),
+                HasSubstr("has no value at latitude -90.00°, longitude -179.00°"));
+    EXPECT_EQ(refusal(even_maps({Angle::degrees(89), Angle::degrees(-1), 179}, around)), "none");
+    EXPECT_THAT(refusal(even_maps({Angle::degrees(88), Angle::degrees(-1), 177}, around)),
+                HasSubstr("has no value at latitude -90.00°, longitude"));
 }
 
 TEST(IonosphereTruth, NequickIsTracedEveryHalfMinuteAndLinearBetween) {
