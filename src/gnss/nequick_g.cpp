@@ -83,7 +83,7 @@ private:
 }  // namespace
 
 double nequick_ionisation(const EffectiveIonisation& b, Angle modified_dip_latitude) {
-    if (b.a0 == 0 && b.a1 == 0 && b.a2 == 0) return 63.7;
+    if (!b.given()) return default_ionisation_level;
     const double mu = modified_dip_latitude.deg();
     return std::clamp(b.a0 + b.a1 * mu + b.a2 * mu * mu, 0.0, 400.0);
 }

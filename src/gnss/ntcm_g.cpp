@@ -49,6 +49,7 @@ IonosphereTime IonosphereTime::of(const UtcTime& utc) {
 }
 
 double ntcm_g_ionisation(const EffectiveIonisation& b) {
+    if (!b.given()) return default_ionisation_level;
     return std::sqrt(b.a0 * b.a0 + 1633.33 * b.a1 * b.a1 + 4802000 * b.a2 * b.a2 + 3266.67 * b.a0 * b.a2);
 }
 

@@ -77,14 +77,14 @@ bool is_read_ionosphere(const BlockHead& head) {
 bool take_ionosphere(const BlockHead& head, std::span<const Line> lines, BroadcastIonosphere& ionosphere) {
     if (head.message == "IFNV") {
         const auto values = block_fields<3>(lines);
-        if (values && !ionosphere.galileo) ionosphere.galileo = *values;
+        if (values && !ionosphere.galileo && *values != std::array<double, 3>{}) ionosphere.galileo = *values;
         return values.has_value();
     }
     const auto v = block_fields<8>(lines);
     if (!v) return false;
     auto& target = klobuchar_of(ionosphere, head.satellite->constellation);
-    if (!target)
-        target = KlobucharCoefficients{{(*v)[0], (*v)[1], (*v)[2], (*v)[3]}, {(*v)[4], (*v)[5], (*v)[6], (*v)[7]}};
+    const KlobucharCoefficients told{{(*v)[0], (*v)[1], (*v)[2], (*v)[3]}, {(*v)[4], (*v)[5], (*v)[6], (*v)[7]}};
+    if (!target && told != KlobucharCoefficients{}) target = told;
     return true;
 }
 

@@ -125,14 +125,18 @@ public:
         const std::array targets{&ionosphere.gps, &ionosphere.qzss, &ionosphere.beidou, &ionosphere.navic};
         for (std::size_t i = 0; i < targets.size(); ++i) {
             if (pairs_[i].alpha && pairs_[i].beta)
-                *targets[i] = KlobucharCoefficients{*pairs_[i].alpha, *pairs_[i].beta};
+                if (const KlobucharCoefficients told{*pairs_[i].alpha, *pairs_[i].beta};
+                    told != KlobucharCoefficients{})
+                    *targets[i] = told;
             if (pairs_[i].alpha.has_value() != pairs_[i].beta.has_value() && warnings_.empty())
                 warnings_.push_back(
                     fmt::format("{}: found only one of the two lines of ionosphere coefficients{}; expected alpha and "
                                 "beta; none used",
                                 name_, i == 0 ? "" : fmt::format(" of {}", klobuchar_letters[i])));
         }
-        if (galileo_) ionosphere.galileo = std::array{(*galileo_)[0], (*galileo_)[1], (*galileo_)[2]};
+        if (galileo_)
+            if (const std::array told{(*galileo_)[0], (*galileo_)[1], (*galileo_)[2]}; told != std::array<double, 3>{})
+                ionosphere.galileo = told;
         header.time_corrections = std::move(time_corrections_);
         if (first_unknown_)
             warnings_.push_back(

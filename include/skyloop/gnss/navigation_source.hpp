@@ -20,9 +20,11 @@ enum class EphemerisRule {
 struct KlobucharCoefficients {
     std::array<double, 4> alpha{};  ///< s, s/semicircle, …
     std::array<double, 4> beta{};   ///< s, s/semicircle, …
+    bool operator==(const KlobucharCoefficients&) const = default;
 };
 
-/// What broadcasts say of the ionosphere, by system.
+/// What broadcasts say of the ionosphere, by system. Coefficients that are noughts throughout say nothing: so do
+/// satellites that have none, and converters that have heard none (NeQuick-G document, 3.1; RTKLIB takes them so, too).
 struct BroadcastIonosphere {
     BroadcastIonosphere() = default;
     /// Of GPS alone.

@@ -8,7 +8,8 @@
 namespace skyloop {
 
 /// The effective ionisation level Az of a receiver, solar flux units: a0 + a1 μ + a2 μ² with its modified dip latitude
-/// μ in degrees, held within 0 … 400; 63.7 when nothing is broadcast (NeQuick-G document, effective ionisation level).
+/// μ in degrees, held within 0 … 400; default_ionisation_level where none is given (NeQuick-G document, effective
+/// ionisation level).
 double nequick_ionisation(const EffectiveIonisation& broadcast, Angle modified_dip_latitude);
 
 /// The slant electron content from a receiver to a satellite above its horizon (European Commission, Ionospheric

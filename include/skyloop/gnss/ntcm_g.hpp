@@ -10,7 +10,12 @@ namespace skyloop {
 /// (Galileo OS SIS ICD, 5.1.6): solar flux units, and those per degree and per degree squared of MODIP.
 struct EffectiveIonisation {
     double a0 = 0, a1 = 0, a2 = 0;
+    /// Satellites that have none send noughts (NeQuick-G document, 3.1).
+    [[nodiscard]] constexpr bool given() const { return a0 != 0 || a1 != 0 || a2 != 0; }
 };
+
+/// The level that serves where none is given, solar flux units (NeQuick-G document, 3.1).
+inline constexpr double default_ionisation_level = 63.7;
 
 /// When an ionosphere model is taken, in UT.
 struct IonosphereTime {
@@ -19,7 +24,8 @@ struct IonosphereTime {
     static IonosphereTime of(const UtcTime& utc);
 };
 
-/// The number that stands for the Sun's activity in NTCM-G, Azpar, solar flux units (MODELS.md A.5).
+/// The number that stands for the Sun's activity in NTCM-G, Azpar, solar flux units (MODELS.md A.5);
+/// default_ionisation_level where none is given, as in NeQuick-G.
 double ntcm_g_ionisation(const EffectiveIonisation& broadcast);
 
 /// Vertical electron content above a pierce point (European Commission, NTCM G Ionospheric Model Description,

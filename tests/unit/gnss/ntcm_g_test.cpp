@@ -35,6 +35,14 @@ TEST(NtcmG, CountsTheDayFromItsCalendar) {
     EXPECT_DOUBLE_EQ(IonosphereTime::of(utc).hours, 6.5);
 }
 
+TEST(NtcmG, TakesNeQuicksLevelWhereNoneIsBroadcast) {
+    EXPECT_EQ(ntcm_g_ionisation({}), 63.7);
+    EXPECT_DOUBLE_EQ(ntcm_g_ionisation({80, 0, 0}), 80);
+    const PiercePoint where{Angle::degrees(46), Angle::degrees(30)};
+    const IonosphereTime noon{100, 10};
+    EXPECT_EQ(ntcm_g_vertical_content({}, where, noon), ntcm_g_vertical_content({63.7, 0, 0}, where, noon));
+}
+
 TEST(NtcmG, GrowsWithTheSun) {
     const PiercePoint where{Angle::degrees(46), Angle::degrees(30)};
     const IonosphereTime noon{100, 10};

@@ -223,6 +223,34 @@ TEST(NavigationSystems, ReadsTheIonosphereAndTimeOfEverySystem) {
     EXPECT_EQ(v2.time_corrections[0].week, 1025);
 }
 
+TEST(NavigationSystems, CoefficientsOfNoughtsAreNone) {
+    const std::string noughts = "  0.0000E+00  0.0000E+00  0.0000E+00  0.0000E+00";
+    const NavigationFile none = systems_of(
+        header_v3("3.04", header_line("GPSA " + noughts, "IONOSPHERIC CORR") +
+                              header_line("GPSB " + noughts, "IONOSPHERIC CORR") +
+                              header_line("BDSA " + noughts, "IONOSPHERIC CORR") +
+                              header_line("BDSB   8.1000E+04  9.0000E+04 -6.0000E+04 -5.0000E+05", "IONOSPHERIC CORR") +
+                              header_line("GAL  " + noughts, "IONOSPHERIC CORR")) +
+        kepler_text("G05"));
+    EXPECT_FALSE(none.ionosphere.gps);
+    EXPECT_TRUE(none.ionosphere.beidou) << "no amplitude, but a period";
+    EXPECT_FALSE(none.ionosphere.galileo);
+    EXPECT_THAT(none.warnings, ElementsAre());
+
+    const auto klobuchar = [](double alpha_0) {
+        return "> ION G05 LNAV\n    2024 03 05 02 00 00" + field(alpha_0) + field(0) + field(0) + "\n    " + field(0) +
+               field(0) + field(0) + field(0) + "\n    " + field(0) + field(0) + "\n";
+    };
+    const auto galileo = [](double a_0) {
+        return "> ION E05 IFNV\n    2024 03 05 02 00 00" + field(a_0) + field(0) + field(0) + "\n    " + field(0) +
+               "\n";
+    };
+    const NavigationFile second = systems_of(header_v3("4.00") + klobuchar(0) + klobuchar(1e-8) + galileo(0) +
+                                             galileo(120.75) + "> EPH G05 LNAV\n" + kepler_text("G05"));
+    EXPECT_EQ(second.ionosphere.gps->alpha[0], 1e-8) << "of the first satellite that has some";
+    EXPECT_EQ((*second.ionosphere.galileo)[0], 120.75);
+}
+
 TEST(NavigationSystems, ReadsTheBlocksOfVersionFour) {
     const auto block = [](const std::string& head, const std::string& record) { return "> " + head + "\n" + record; };
     const std::string epoch = "    2024 03 05 02 00 00";
