@@ -76,13 +76,13 @@ Result<std::unique_ptr<SerialTransport>> SerialTransport::open(const SerialAddre
     std::unique_ptr<SerialTransport> serial(new SerialTransport(address, std::move(system)));
     auto line = SerialLine::open(serial->system_, address.device, address.format, serial->baud_);
     if (!line) return fail(line.error());
-    serial->identity_ = usb_identity(*serial->system_, address.device);
     serial->adopt(std::move(*line));
     return serial;
 }
 
 void SerialTransport::adopt(std::unique_ptr<SerialLine> line) {
     line_ = std::move(line);
+    if (line_->usb()) identity_ = line_->usb();
     if (!line_->remark().empty()) news_.push_back(fmt::format("{}: {}", line_->device().string(), line_->remark()));
 }
 
@@ -98,14 +98,16 @@ void SerialTransport::lose() {
     if (!waiting_.empty()) baud_ = waiting_.back().baud;
     waiting_.clear();
     waiting_bytes_ = 0;
-    search_.begin(std::move(line_), system_->now_ns());
+    search_.begin(std::move(line_), system_->now_ns(), [system = system_, identity = identity_] {
+        return identity ? ports_beside(*system, *identity) : Search::Ports{};
+    });
 }
 
 void SerialTransport::search() {
-    auto found = search_.look(system_->now_ns(), [this] {
-        return [system = system_, address = address_, identity = identity_, baud = baud_] {
+    auto found = search_.look(system_->now_ns(), [this](const Search::Ports& beside) {
+        return [system = system_, address = address_, identity = identity_, beside, baud = baud_] {
             Search::Attempt attempt;
-            for (const std::filesystem::path& place : places_to_look(*system, address.device, identity)) {
+            for (const std::filesystem::path& place : places_to_look(*system, address.device, identity, beside)) {
                 auto line = SerialLine::open(system, place, address.format, baud);
                 if (line) return Search::Attempt{std::move(*line), baud, {}};
                 attempt.trouble = line.error().message;

@@ -40,6 +40,7 @@ Result<std::unique_ptr<SerialLine>> SerialLine::open(std::shared_ptr<SerialSyste
     std::unique_ptr<SerialLine> line(new SerialLine(std::move(system), device, format));
     if (const auto taken = line->take(); !taken) return fail(taken.error());
     if (const auto ready = line->set_up(baud); !ready) return fail(ready.error());
+    line->usb_ = usb_identity(*line->system_, device);
     return line;
 }
 

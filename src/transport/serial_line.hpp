@@ -37,6 +37,8 @@ public:
     /// What is not as asked for, in sentences; empty: nothing.
     [[nodiscard]] const std::string& remark() const { return remark_; }
     [[nodiscard]] const std::filesystem::path& device() const { return device_; }
+    /// As it was when the line was opened; nothing for what is not on USB.
+    [[nodiscard]] const std::optional<UsbIdentity>& usb() const { return usb_; }
 
 private:
     SerialLine(std::shared_ptr<SerialSystem> system, std::filesystem::path device, SerialFormat format)
@@ -52,6 +54,7 @@ private:
 
     std::shared_ptr<SerialSystem> system_;
     std::filesystem::path device_;
+    std::optional<UsbIdentity> usb_;
     SerialFormat format_;
     FileDescriptor file_;
     std::uint32_t baud_ = 0;

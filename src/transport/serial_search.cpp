@@ -64,13 +64,27 @@ std::optional<UsbIdentity> usb_identity(const SerialSystem& system, const fs::pa
     return std::nullopt;
 }
 
+std::vector<std::string> ports_beside(const SerialSystem& system, const UsbIdentity& identity) {
+    std::vector<std::string> ports;
+    for (const fs::path& line : all_lines(system))
+        if (const auto found = usb_identity(system, line);
+            found && same_kind(*found, identity) && found->port_path != identity.port_path)
+            ports.push_back(found->port_path);
+    return ports;
+}
+
 std::vector<fs::path> places_to_look(const SerialSystem& system, const fs::path& device,
-                                     const std::optional<UsbIdentity>& identity) {
+                                     const std::optional<UsbIdentity>& identity,
+                                     const std::vector<std::string>& beside) {
     if (!identity) return there(device) ? std::vector<fs::path>{device} : std::vector<fs::path>{};
+    const auto may_be_it = [&](const std::optional<UsbIdentity>& found) {
+        return found && same_kind(*found, *identity) &&
+               std::find(beside.begin(), beside.end(), found->port_path) == beside.end();
+    };
     std::vector<fs::path> same_port, elsewhere;
     for (const fs::path& line : all_lines(system)) {
         const auto found = usb_identity(system, line);
-        if (!found || !same_kind(*found, *identity) || !there(line)) continue;
+        if (!may_be_it(found) || !there(line)) continue;
         (found->port_path == identity->port_path ? same_port : elsewhere).push_back(line);
     }
     if (!same_port.empty()) return same_port;
@@ -78,7 +92,7 @@ std::vector<fs::path> places_to_look(const SerialSystem& system, const fs::path&
     // The name is the user's own word for the device, unless it is the kernel's number.
     const bool kernels_name = there(class_entry(system, device.filename()));
     const auto named = kernels_name ? std::nullopt : usb_identity(system, device);
-    if (named && same_kind(*named, *identity) && there(device)) return {device};
+    if (may_be_it(named) && there(device)) return {device};
     return {};
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "line_options.hpp"
@@ -14,10 +15,29 @@ namespace {
 
 constexpr std::uint32_t bridge_speed_of_no_speed = 115200;  // for a receiver's port that has none
 
-// Where a lost device may be, the likeliest first. Cheap devices share one serial number: the port tells them apart.
-std::vector<UsbAddress> addresses_to_try(const UsbAddress& asked, const UsbDeviceInfo& known) {
+std::vector<UsbDeviceInfo> listed_by_libusb() {
+    std::vector<UsbDeviceInfo> all;
+    const auto context = open_usb();
+    const auto devices = context ? list_usb_devices(*context) : Result<std::vector<UsbDevice>>{};
+    for (const UsbDevice& device : devices ? *devices : std::vector<UsbDevice>{})
+        all.push_back(describe(device));
+    return all;
+}
+
+bool is_among(const std::vector<std::string>& ports, const std::string& port) {
+    return std::find(ports.begin(), ports.end(), port) != ports.end();
+}
+
+// Where a lost device may be: at its port, or, while none of its kind is there, at the only other `ports` that was free
+// when it was lost. Cheap devices share one serial number: what was `beside` it is another one.
+std::vector<UsbAddress> addresses_to_try(const UsbDeviceInfo& known, const std::vector<std::string>& ports,
+                                         const std::vector<std::string>& beside) {
     std::vector<UsbAddress> all{{known.ids, known.serial, known.port_path}};
-    if (!known.serial.empty() && asked.port_path.empty()) all.push_back({known.ids, known.serial, {}});
+    std::vector<std::string> elsewhere;
+    std::copy_if(ports.begin(), ports.end(), std::back_inserter(elsewhere),
+                 [&](const std::string& port) { return !is_among(beside, port); });
+    if (!is_among(ports, known.port_path) && elsewhere.size() == 1)
+        all.push_back({known.ids, known.serial, elsewhere.front()});
     return all;
 }
 
@@ -50,15 +70,17 @@ Result<UsbBridgeAddress> parse_usb_bridge_address(std::string_view text) {
     return address;
 }
 
-UsbBridgeTransport::UsbBridgeTransport(UsbBridgeAddress address, Opener opener, std::string_view kind)
+UsbBridgeTransport::UsbBridgeTransport(UsbBridgeAddress address, Opener opener, std::string_view kind, Lister lister)
     : address_(std::move(address)),
       opener_(std::move(opener)),
       kind_(kind),
+      lister_(lister ? std::move(lister) : listed_by_libusb),
       baud_(address_.baud.value_or(bridge_speed_of_no_speed)) {}
 
 Result<std::unique_ptr<UsbBridgeTransport>> UsbBridgeTransport::open(const UsbBridgeAddress& address, Opener opener,
-                                                                     std::string_view kind) {
-    std::unique_ptr<UsbBridgeTransport> wire(new UsbBridgeTransport(address, std::move(opener), kind));
+                                                                     std::string_view kind, Lister lister) {
+    std::unique_ptr<UsbBridgeTransport> wire(
+        new UsbBridgeTransport(address, std::move(opener), kind, std::move(lister)));
     auto bridge = wire->opener_(address.device, {wire->baud_, address.format});
     if (!bridge) return fail(std::move(bridge.error()));
     wire->bridge_ = std::move(*bridge);
@@ -76,13 +98,26 @@ void UsbBridgeTransport::lose() {
     for (std::string& news : bridge_->take_news())
         news_.push_back(std::move(news));
     news_.push_back(fmt::format("{} is gone; it is looked for every 0.5 s", description()));
-    search_.begin(std::move(bridge_), steady_clock_ns());
+    search_.begin(std::move(bridge_), steady_clock_ns(), ports_of_its_kind());
+}
+
+// Gives where devices of its ids and serial number are. Without a number, or asked for by its port, it is where it was.
+std::function<UsbBridgeTransport::Search::Ports()> UsbBridgeTransport::ports_of_its_kind() const {
+    if (known_.serial.empty() || !address_.device.port_path.empty()) return [] { return Search::Ports{}; };
+    return [lister = lister_, alike = UsbAddress{known_.ids, known_.serial, {}}] {
+        Search::Ports ports;
+        for (const UsbDeviceInfo& device : lister())
+            if (alike.matches(device)) ports.push_back(device.port_path);
+        return ports;
+    };
 }
 
 void UsbBridgeTransport::search() {
-    auto found = search_.look(steady_clock_ns(), [this] {
-        return [opener = opener_, places = addresses_to_try(address_.device, known_),
-                line = BridgeLine{baud_, address_.format}] { return attempt(opener, places, line); };
+    auto found = search_.look(steady_clock_ns(), [this](const Search::Ports& beside) {
+        return [opener = opener_, known = known_, ports = ports_of_its_kind(), beside,
+                line = BridgeLine{baud_, address_.format}] {
+            return attempt(opener, addresses_to_try(known, ports(), beside), line);
+        };
     });
     if (!found) return;
     if (!found->end) return news_.push_back(std::move(found->trouble));

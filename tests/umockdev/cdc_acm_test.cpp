@@ -216,6 +216,7 @@ TEST_F(UsbWire, UnpluggedAndBackBySerialNumberElsewhere) {
     EXPECT_FALSE(wire->line().connected);
     EXPECT_EQ(wire->write(counting(10)), 10U) << "lost, as on a pulled wire";
     wire->set_receiver_baud(57600);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));  // until what was there beside it has been noted
     auto other = std::make_shared<MockCdcAcm>();
     bed.plug_in(board("B2", "2", 5), other);
     auto back = std::make_shared<MockCdcAcm>();

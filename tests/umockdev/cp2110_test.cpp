@@ -193,6 +193,7 @@ TEST_P(HidWire, UnpluggedAndBackBySerialNumberElsewhere) {
     EXPECT_TRUE(tells("10c4:ea80 (hid) is gone"));
     EXPECT_FALSE(wire->line().connected);
     EXPECT_EQ(wire->write(letters(10)), 10U);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));  // until what was there beside it has been noted
     device = std::make_shared<MockCp2110>();
     plug_in(bridge(8, "6"));
     EXPECT_TRUE(tells("is back, at 1-6"));

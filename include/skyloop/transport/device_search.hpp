@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "skyloop/base/signals_held_back.hpp"
 
@@ -25,19 +26,28 @@ public:
         std::string trouble{};       ///< why a device that is there cannot be had; empty when none is there
     };
 
+    /// Port paths of USB devices, "1-1.2".
+    using Ports = std::vector<std::string>;
+
     /// The device has gone; what is left of it is closed. @param now_ns of a clock that never jumps
-    void begin(std::unique_ptr<End> lost, std::int64_t now_ns) {
+    /// @param list_beside gives, in another thread and before anything else, the ports of devices like the lost one
+    /// that are there: none of them is it
+    template <class ListBeside>
+    void begin(std::unique_ptr<End> lost, std::int64_t now_ns, ListBeside list_beside) {
         trouble_.clear();
         same_trouble_ = 0;
         next_ns_ = now_ns + every_ns;
-        start([old = std::move(lost)]() mutable {
+        beside_ = std::make_shared<Ports>();
+        start([old = std::move(lost), beside = beside_, list_beside = std::move(list_beside)]() mutable {
+            *beside = list_beside();  // to close may take long enough for somebody to plug one in
             old.reset();
             return Attempt{};
         });
     }
 
     /// Gives the device once it is back, or, without it, a trouble that has lasted; else nothing. To be called at each
-    /// look while the device is away. @param make_job makes what looks once, and gives an Attempt in another thread
+    /// look while the device is away. @param make_job is given the ports noted at the loss and makes what looks once,
+    /// and gives an Attempt in another thread
     template <class MakeJob>
     std::optional<Attempt> look(std::int64_t now_ns, const MakeJob& make_job) {
         if (running_.valid()) {
@@ -46,7 +56,7 @@ public:
         }
         if (now_ns < next_ns_) return std::nullopt;
         next_ns_ = now_ns + every_ns;
-        start(make_job());
+        start(make_job(std::as_const(*beside_)));
         return std::nullopt;
     }
 
@@ -68,6 +78,7 @@ private:
     }
 
     std::future<Attempt> running_;
+    std::shared_ptr<Ports> beside_ = std::make_shared<Ports>();  // shared with the thread that fills it
     std::int64_t next_ns_ = 0;
     std::string trouble_;
     int same_trouble_ = 0;  // attempts in a row

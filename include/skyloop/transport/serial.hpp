@@ -93,7 +93,7 @@ private:
     SerialAddress address_;
     std::shared_ptr<SerialSystem> system_;
     std::unique_ptr<SerialLine> line_;          // none while the device is away
-    std::optional<UsbIdentity> identity_;       // of a USB device, remembered for the search
+    std::optional<UsbIdentity> identity_;       // of a USB device, where it was last, remembered for the search
     std::uint32_t baud_;                        // of the line
     std::optional<std::uint32_t> told_baud_{};  // the receiver's
     std::deque<Segment> waiting_;

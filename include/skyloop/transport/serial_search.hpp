@@ -23,12 +23,17 @@ std::string tty_name(const SerialSystem& system, const std::filesystem::path& de
 /// Nothing for what is not on USB.
 std::optional<UsbIdentity> usb_identity(const SerialSystem& system, const std::filesystem::path& device);
 
+/// The port paths of the devices with its ids, interface and serial number that are plugged in elsewhere.
+std::vector<std::string> ports_beside(const SerialSystem& system, const UsbIdentity& identity);
+
 /// Where a lost device may be now, the likeliest first.
 ///
 /// What was no USB device comes back under its name. A USB device is one of the same ids and interface: with a serial
 /// number, one of that number, at the same port, or the only one elsewhere (cheap adapters share one); without, one at
 /// the same port, or the one that a link such as those of /dev/serial/by-id leads to.
+/// @param beside ports_beside() at the loss: what was there while the lost one was is not it, wherever links lead
 std::vector<std::filesystem::path> places_to_look(const SerialSystem& system, const std::filesystem::path& device,
-                                                  const std::optional<UsbIdentity>& identity);
+                                                  const std::optional<UsbIdentity>& identity,
+                                                  const std::vector<std::string>& beside);
 
 }  // namespace skyloop

@@ -28,15 +28,17 @@ Result<UsbBridgeAddress> parse_usb_bridge_address(std::string_view text);
 /// A bridge of either kind as a wire.
 ///
 /// It is connected for as long as its device is there, and has the receiver's speed as a SerialTransport has it. A
-/// device that is unplugged is looked for every 500 ms, in another thread, and taken again: by its serial number, at
-/// its old port first, or without one by its port.
+/// device that is unplugged is looked for every 500 ms, in another thread, and taken again: at its old port, or by its
+/// serial number as the only one that was plugged in elsewhere since (cheap devices share one).
 class UsbBridgeTransport : public Transport {
 public:
     /// Opens a device of this address; called from other threads, too, one call at a time.
     using Opener = std::function<Result<std::unique_ptr<SerialBridge>>(const UsbAddress&, const BridgeLine&)>;
-    /// `kind` is for people: "usb", "hid". Fails as `open` does.
+    /// Gives every USB device that is plugged in; called as an Opener is.
+    using Lister = std::function<std::vector<UsbDeviceInfo>()>;
+    /// `kind` is for people: "usb", "hid". Without a lister libusb lists. Fails as `opener` does.
     static Result<std::unique_ptr<UsbBridgeTransport>> open(const UsbBridgeAddress& address, Opener opener,
-                                                            std::string_view kind);
+                                                            std::string_view kind, Lister lister = {});
 
     std::size_t write(ByteSpan bytes) override;
     Bytes read() override;
@@ -49,15 +51,17 @@ public:
 private:
     using Search = DeviceSearch<SerialBridge>;
 
-    UsbBridgeTransport(UsbBridgeAddress address, Opener opener, std::string_view kind);
+    UsbBridgeTransport(UsbBridgeAddress address, Opener opener, std::string_view kind, Lister lister);
     void follow();
     void lose();
     void search();
+    [[nodiscard]] std::function<Search::Ports()> ports_of_its_kind() const;
     static Search::Attempt attempt(const Opener& opener, const std::vector<UsbAddress>& places, const BridgeLine& line);
 
     UsbBridgeAddress address_;
     Opener opener_;
     std::string kind_;
+    Lister lister_;
     std::unique_ptr<SerialBridge> bridge_{};  // none while the device is away
     UsbDeviceInfo known_{};
     std::uint32_t baud_;                        // of the line

@@ -1,205 +1,22 @@
 #include "skyloop/transport/serial.hpp"
 
-#include <asm/ioctls.h>
-#include <asm/termbits.h>
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <linux/serial.h>
-#include <poll.h>
-#include <stdlib.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
-#include <array>
-#include <atomic>
-#include <cerrno>
-#include <fstream>
-
-#include "skyloop/transport/file_descriptor.hpp"
-#include "temporary_folder.hpp"
+#include "serial_bench.hpp"
 
 namespace skyloop {
 namespace {
 
 namespace fs = std::filesystem;
+using test::Bench;
+using test::FarEnd;
+using test::ms;
+using test::PlayedSystem;
+using test::UsbTree;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-constexpr std::int64_t ms = 1'000'000;
-
-// The other end of a line: the master side of a pseudo-terminal, whose other side is a terminal line like any other.
-class FarEnd {
-public:
-    FarEnd() : master_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
-        std::array<char, 64> name{};
-        EXPECT_EQ(::grantpt(master_.value()) | ::unlockpt(master_.value()), 0);
-        EXPECT_EQ(::ptsname_r(master_.value(), name.data(), name.size()), 0);
-        device_ = name.data();
-    }
-    [[nodiscard]] const fs::path& device() const { return device_; }
-    [[nodiscard]] termios2 settings() const {
-        termios2 settings{};
-        EXPECT_EQ(::ioctl(master_.value(), TCGETS2, &settings), 0);
-        return settings;
-    }
-    [[nodiscard]] std::uint32_t speed() const { return settings().c_ospeed; }
-    void write(std::string_view text) {
-        EXPECT_EQ(::write(master_.value(), text.data(), text.size()), static_cast<ssize_t>(text.size()));
-    }
-    // All that has arrived; waits up to two seconds until it is `least` bytes.
-    std::string read(std::size_t least = 0) {
-        std::string all;
-        std::array<char, 4096> piece{};
-        for (;;) {
-            const ssize_t count = ::read(master_.value(), piece.data(), piece.size());
-            if (count > 0) all.append(piece.data(), static_cast<std::size_t>(count));
-            if (count > 0) continue;
-            pollfd ready{master_.value(), POLLIN, 0};
-            if (all.size() >= least || ::poll(&ready, 1, 2000) <= 0) return all;
-        }
-    }
-
-private:
-    FileDescriptor master_;
-    fs::path device_;
-};
-
-struct Roots {
-    fs::path devices = "/dev", sysfs = "/sys";
-};
-
-// What no pseudo-terminal can play: a UART with a FIFO, modem lines, drivers that refuse, a clock that a test moves.
-class PlayedSystem : public SerialSystem {
-public:
-    explicit PlayedSystem(Roots roots = {}) : roots_(std::move(roots)) {}
-    std::atomic<std::int64_t> now{1'000'000'000};
-    std::atomic<std::int64_t> step{0};  // by which each look at the clock moves it
-    std::atomic<bool> fifo_empty{true};
-    bool tells_fifo = false;
-    std::atomic<int> queued{0};
-    int modem = TIOCM_CTS;
-    bool has_modem_lines = false;
-    int uart_flags = 0;
-    bool full = false;                   // takes no bytes
-    std::uint32_t fastest = 12'000'000;  // what its clock can do
-    bool exclusive = false;              // for another program
-    int flushed = 0;
-    termios2 asked{};  // the first time
-
-    using SerialSystem::control;
-    int control(int descriptor, unsigned long request, void* argument) override {
-        if (request == TIOCOUTQ) return give(argument, queued.load());
-        if (request == TIOCGEXCL) return give(argument, exclusive ? 1 : 0);
-        if (request == TIOCSERGETLSR && tells_fifo) return give(argument, fifo_empty ? TIOCSER_TEMT : 0);
-        if (request == TIOCMGET && has_modem_lines) return give(argument, modem);
-        if (request == TIOCMBIS && has_modem_lines) {
-            modem |= *static_cast<int*>(argument);
-            return 0;
-        }
-        if (request == TIOCGSERIAL) {
-            *static_cast<serial_struct*>(argument) = {};
-            static_cast<serial_struct*>(argument)->flags = uart_flags;
-            return 0;
-        }
-        if (request == TIOCSSERIAL) {
-            uart_flags = static_cast<serial_struct*>(argument)->flags;
-            return 0;
-        }
-        if (request == TCSETS2) {
-            auto& settings = *static_cast<termios2*>(argument);
-            if (asked.c_cflag == 0) asked = settings;
-            if (settings.c_ospeed > fastest)
-                settings.c_cflag = (settings.c_cflag & ~static_cast<tcflag_t>(CBAUD)) | BOTHER;
-            settings.c_ospeed = settings.c_ispeed = std::min(settings.c_ospeed, fastest);
-        }
-        return SerialSystem::control(descriptor, request, argument);
-    }
-    int control(int descriptor, unsigned long request, int argument) override {
-        if (request == TCFLSH && argument == TCOFLUSH) ++flushed, queued = 0;
-        return SerialSystem::control(descriptor, request, argument);
-    }
-    std::ptrdiff_t write(int descriptor, ByteSpan bytes) override {
-        if (!full) return SerialSystem::write(descriptor, bytes);
-        errno = EAGAIN;
-        return -1;
-    }
-    std::int64_t now_ns() override { return now += step; }
-    [[nodiscard]] fs::path devices() const override { return roots_.devices; }
-    [[nodiscard]] fs::path sysfs() const override { return roots_.sysfs; }
-
-private:
-    static int give(void* where, int value) {
-        *static_cast<int*>(where) = value;
-        return 0;
-    }
-    Roots roots_;
-};
-
-// A line over a played system; time runs again at its end, since a close waits for the last bytes.
-class Bench {
-public:
-    explicit Bench(const std::string& options = "", std::shared_ptr<PlayedSystem> played = nullptr,
-                   const fs::path& device = {})
-        : system(played ? std::move(played) : std::make_shared<PlayedSystem>()) {
-        const std::string name = device.empty() ? far.device().string() : device.string();
-        auto opened = SerialTransport::open(parse_serial_address(name + options).value(), system);
-        EXPECT_TRUE(opened) << opened.error().message;
-        if (opened) wire = std::move(*opened);
-    }
-    ~Bench() { system->step = ms; }
-    Bench(const Bench&) = delete;
-    Bench& operator=(const Bench&) = delete;
-    void pass(std::int64_t ns) {
-        system->now += ns;
-        wire->line();
-    }
-    // Looks, as the loop does, until the search in its other thread has come to an end.
-    bool connected_within_looks() {
-        for (int i = 0; i < 2000; ++i) {
-            if (wire->line().connected) return true;
-            system->now += 10 * ms;
-            ::usleep(1000);
-        }
-        return false;
-    }
-
-    FarEnd far;
-    std::shared_ptr<PlayedSystem> system;
-    std::unique_ptr<SerialTransport> wire;
-};
-
-// The folders of devices as the kernel shows them, with USB adapters whose lines are pseudo-terminals.
-class UsbTree {
-public:
-    UsbTree() {
-        fs::create_directories(roots.devices);
-        fs::create_directories(roots.sysfs / "class" / "tty");
-    }
-    void plug_in(const std::string& tty, const std::string& port, const std::string& serial, const FarEnd& far) {
-        const fs::path device = roots.sysfs / "devices" / "usb1" / port;
-        const fs::path line = device / (port + ":1.0") / tty;
-        fs::create_directories(line / "tty" / tty);
-        write(device / "idVendor", "0403");
-        write(device / "idProduct", "6001");
-        if (!serial.empty()) write(device / "serial", serial);
-        fs::create_symlink(line, line / "tty" / tty / "device");
-        fs::create_symlink(line / "tty" / tty, roots.sysfs / "class" / "tty" / tty);
-        fs::create_symlink(far.device(), roots.devices / tty);
-        latency_timer = line / "latency_timer";
-    }
-    void unplug(const std::string& tty, const std::string& port) {
-        fs::remove(roots.devices / tty);
-        fs::remove(roots.sysfs / "class" / "tty" / tty);
-        fs::remove_all(roots.sysfs / "devices" / "usb1" / port);
-    }
-    static void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text << "\n"; }
-
-    test::TemporaryFolder folder;
-    Roots roots{folder / "dev", folder / "sys"};
-    fs::path latency_timer;
-};
 
 Error refused_line(const std::string& text, std::shared_ptr<SerialSystem> system = std::make_shared<SerialSystem>()) {
     const auto wire = SerialTransport::open(parse_serial_address(text).value(), std::move(system));
@@ -531,6 +348,7 @@ TEST(SerialTransport, FindsAnAdapterByItsSerialNumber) {
     mine = std::make_unique<FarEnd>();
     EXPECT_FALSE(bench.wire->line().connected);
     bench.wire->take_news();
+    bench.look_for_a_while();
     usb.plug_in("ttyUSB0", "1-1", "B2", other);
     usb.plug_in("ttyUSB1", "1-2", "A1", *mine);
     ASSERT_TRUE(bench.connected_within_looks());
@@ -539,61 +357,29 @@ TEST(SerialTransport, FindsAnAdapterByItsSerialNumber) {
     EXPECT_EQ(mine->read(4), "here");
 }
 
-TEST(SerialSearch, KnowsAnAdapterThroughLinks) {
+TEST(SerialTransport, LeavesAnAdapterAloneThatSharesItsSerialNumber) {
     UsbTree usb;
-    const FarEnd far;
-    usb.plug_in("ttyUSB7", "1-1.4", "A1", far);
-    const PlayedSystem system(usb.roots);
-    fs::create_directories(usb.roots.devices / "serial" / "by-id");
-    const fs::path link = usb.roots.devices / "serial" / "by-id" / "usb-FTDI-A1";
-    fs::create_symlink("../../ttyUSB7", link);
-    EXPECT_EQ(tty_name(system, link), "ttyUSB7");
-    const auto identity = usb_identity(system, link);
-    ASSERT_TRUE(identity);
-    EXPECT_EQ(identity->vendor + ":" + identity->product, "0403:6001");
-    EXPECT_EQ(identity->serial, "A1");
-    EXPECT_EQ(identity->port_path, "1-1.4");
-    EXPECT_EQ(identity->interface, "1.0");
-    EXPECT_FALSE(usb_identity(system, "/dev/null"));
-}
-
-TEST(SerialSearch, TakesNoOtherAdapterForTheLostOne) {
-    UsbTree usb;
-    const FarEnd far;
-    const PlayedSystem system(usb.roots);
-    const fs::path tty0 = usb.roots.devices / "ttyUSB0", tty1 = usb.roots.devices / "ttyUSB1";
-    usb.plug_in("ttyUSB0", "1-1", "0001", far);
-    const auto numbered = usb_identity(system, tty0);
-    EXPECT_THAT(places_to_look(system, tty0, numbered), ElementsAre(tty0));
-    usb.unplug("ttyUSB0", "1-1");
-    EXPECT_THAT(places_to_look(system, tty0, numbered), IsEmpty());
-    usb.plug_in("ttyUSB0", "1-2", "", far);
-    EXPECT_THAT(places_to_look(system, tty0, numbered), IsEmpty()) << "another serial number";
-    usb.unplug("ttyUSB0", "1-2");
-    usb.plug_in("ttyUSB0", "1-2", "0001", far);
-    EXPECT_THAT(places_to_look(system, tty0, numbered), ElementsAre(tty0)) << "at another port";
-    usb.plug_in("ttyUSB1", "1-3", "0001", far);
-    EXPECT_THAT(places_to_look(system, tty0, numbered), IsEmpty()) << "two of one number: either could be it";
-    UsbIdentity at_three = *numbered;
-    at_three.port_path = "1-3";
-    EXPECT_THAT(places_to_look(system, tty0, at_three), ElementsAre(tty1)) << "the one at its port is it";
-}
-
-TEST(SerialSearch, WithoutASerialNumberThePortOrTheLinkCounts) {
-    UsbTree usb;
-    const FarEnd far;
-    const PlayedSystem system(usb.roots);
-    const fs::path tty0 = usb.roots.devices / "ttyUSB0", link = usb.roots.devices / "link";
-    usb.plug_in("ttyUSB0", "1-1", "", far);
-    const auto nameless = usb_identity(system, tty0);
-    EXPECT_THAT(places_to_look(system, tty0, nameless), ElementsAre(tty0));
-    usb.unplug("ttyUSB0", "1-1");
-    usb.plug_in("ttyUSB3", "1-2", "", far);
-    EXPECT_THAT(places_to_look(system, tty0, nameless), IsEmpty());
-    fs::create_symlink("ttyUSB3", link);
-    EXPECT_THAT(places_to_look(system, link, nameless), ElementsAre(link)) << "udev has renewed the link";
-    usb.plug_in("ttyUSB4", "1-1", "", far);
-    EXPECT_THAT(places_to_look(system, tty0, nameless), ElementsAre(usb.roots.devices / "ttyUSB4"));
+    auto mine = std::make_unique<FarEnd>();
+    FarEnd other;
+    usb.plug_in("ttyUSB0", "1-1", "0001", *mine);
+    usb.plug_in("ttyUSB1", "1-2", "0001", other);
+    Bench bench("@9600", std::make_shared<PlayedSystem>(usb.roots), usb.roots.devices / "ttyUSB0");
+    const auto pull_and_plug_in = [&](const std::string& from, const std::string& to) {
+        usb.unplug("ttyUSB0", from);
+        mine = std::make_unique<FarEnd>();
+        EXPECT_FALSE(bench.wire->line().connected);
+        bench.look_for_a_while();
+        EXPECT_FALSE(bench.wire->line().connected) << "the one at 1-2 was there beside it";
+        usb.plug_in("ttyUSB0", to, "0001", *mine);
+        ASSERT_TRUE(bench.connected_within_looks());
+        bench.wire->write(to_bytes("here"));
+        EXPECT_EQ(mine->read(4), "here");
+    };
+    pull_and_plug_in("1-1", "1-3");
+    FarEnd third;
+    usb.plug_in("ttyUSB2", "1-1", "0001", third);
+    pull_and_plug_in("1-3", "1-3");
+    EXPECT_EQ(other.read() + third.read(), "");
 }
 
 }  // namespace

@@ -11,8 +11,10 @@
 namespace skyloop {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Pair;
 using testing::StartsWith;
 
 TEST(UsbBridgeAddress, TakesDeviceSpeedAndFormat) {
@@ -78,12 +80,56 @@ private:
     UsbDeviceInfo info_;
 };
 
-struct Asked {
-    std::mutex mutex{};
-    std::vector<std::pair<std::string, std::string>> serial_and_port{};
-    std::vector<std::uint32_t> bauds{};
-    std::atomic<bool> there{true};
+// The devices that are plugged in, and what a wire asks of them.
+class Bus {
+public:
+    void plug_in(std::vector<std::string> ports) {
+        const std::lock_guard lock(mutex_);
+        ports_ = std::move(ports);
+    }
+    Result<std::unique_ptr<SerialBridge>> open(const UsbAddress& address, const BridgeLine& line) {
+        const std::lock_guard lock(mutex_);
+        asked_.emplace_back(address.serial, address.port_path);
+        baud_ = line.baud;
+        for (const std::string& port : ports_)
+            if (address.matches(at(port))) return std::make_unique<FakeBridge>(log, at(port));
+        return fail(ErrorCode::outside, "not there");
+    }
+    std::vector<UsbDeviceInfo> list() {
+        const std::lock_guard lock(mutex_);
+        std::vector<UsbDeviceInfo> devices;
+        for (const std::string& port : ports_)
+            devices.push_back(at(port));
+        return devices;
+    }
+    std::vector<std::pair<std::string, std::string>> asked() {
+        const std::lock_guard lock(mutex_);
+        return asked_;
+    }
+    std::uint32_t baud() {
+        const std::lock_guard lock(mutex_);
+        return baud_;
+    }
+
+    std::shared_ptr<BridgeLog> log = std::make_shared<BridgeLog>();
+
+private:
+    static UsbDeviceInfo at(const std::string& port) { return {{0xffff, 0xfffe}, "", "", "A1", port}; }
+
+    std::mutex mutex_;
+    std::vector<std::string> ports_{"1-1"};
+    std::vector<std::pair<std::string, std::string>> asked_;  // serial numbers and ports
+    std::uint32_t baud_ = 0;                                  // of the last opening
 };
+
+std::unique_ptr<UsbBridgeTransport> wire_on(const std::shared_ptr<Bus>& bus, std::string_view address) {
+    auto wire = UsbBridgeTransport::open(
+        *parse_usb_bridge_address(address),
+        [bus](const UsbAddress& device, const BridgeLine& line) { return bus->open(device, line); }, "usb",
+        [bus] { return bus->list(); });
+    EXPECT_TRUE(wire);
+    return wire ? std::move(*wire) : nullptr;
+}
 
 bool soon(const std::function<bool()>& question) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
@@ -92,44 +138,53 @@ bool soon(const std::function<bool()>& question) {
     return question();
 }
 
-TEST(UsbBridgeTransport, LooksForALostDeviceByItsSerialNumberAndOldPortFirst) {
-    auto log = std::make_shared<BridgeLog>();
-    auto asked = std::make_shared<Asked>();
-    const auto opener = [=](const UsbAddress& address,
-                            const BridgeLine& line) -> Result<std::unique_ptr<SerialBridge>> {
-        const std::lock_guard lock(asked->mutex);
-        asked->serial_and_port.emplace_back(address.serial, address.port_path);
-        asked->bauds.push_back(line.baud);
-        if (!asked->there) return fail(ErrorCode::outside, "not there");
-        return std::make_unique<FakeBridge>(log, UsbDeviceInfo{{0xffff, 0xfffe}, "", "", "A1", "1-1"});
-    };
-    auto wire = UsbBridgeTransport::open(*parse_usb_bridge_address("ffff:fffe,4800"), opener, "usb");
+// Until a lost device has been looked for so often.
+bool looked_for(UsbBridgeTransport& wire, Bus& bus, std::size_t times) {
+    const std::size_t before = bus.asked().size();
+    return soon([&] { return !wire.line().connected && bus.asked().size() >= before + times; });
+}
+
+TEST(UsbBridgeTransport, LooksForALostDeviceAtItsOldPortAndThenByItsSerialNumber) {
+    const auto bus = std::make_shared<Bus>();
+    const auto wire = wire_on(bus, "ffff:fffe,4800");
     ASSERT_TRUE(wire);
-    EXPECT_TRUE((*wire)->line().connected);
-    (*wire)->set_receiver_baud(9600);
-    EXPECT_TRUE(log->bauds.empty()) << "the speed that was asked for stands until the receiver's changes";
-    (*wire)->set_receiver_baud(38400);
-    EXPECT_THAT(log->bauds, ElementsAre(38400));
-    asked->there = false;
-    log->gone = true;
-    EXPECT_FALSE((*wire)->line().connected);
-    EXPECT_EQ((*wire)->write(to_bytes("lost")), 4U);
-    EXPECT_TRUE(log->written.empty());
-    EXPECT_THAT((*wire)->take_news(), ElementsAre("ffff:fffe (usb) is gone; it is looked for every 0.5 s"));
-    ASSERT_TRUE(soon([&] {
-        (void)(*wire)->line();
-        const std::lock_guard lock(asked->mutex);
-        return asked->serial_and_port.size() >= 3;
-    }));
-    log->gone = false;
-    asked->there = true;
-    ASSERT_TRUE(soon([&] { return (*wire)->line().connected; }));
-    EXPECT_THAT((*wire)->take_news(), ElementsAre("ffff:fffe (usb) is back, at 1-1"));
-    const std::lock_guard lock(asked->mutex);
-    EXPECT_EQ(asked->serial_and_port[0], (std::pair<std::string, std::string>("", "")));
-    EXPECT_EQ(asked->serial_and_port[1], (std::pair<std::string, std::string>("A1", "1-1")));
-    EXPECT_EQ(asked->serial_and_port[2], (std::pair<std::string, std::string>("A1", "")));
-    EXPECT_EQ(asked->bauds.back(), 38400U);
+    EXPECT_TRUE(wire->line().connected);
+    wire->set_receiver_baud(9600);
+    EXPECT_TRUE(bus->log->bauds.empty()) << "the speed that was asked for stands until the receiver's changes";
+    wire->set_receiver_baud(38400);
+    EXPECT_THAT(bus->log->bauds, ElementsAre(38400));
+    bus->plug_in({});
+    bus->log->gone = true;
+    EXPECT_FALSE(wire->line().connected);
+    EXPECT_EQ(wire->write(to_bytes("lost")), 4U);
+    EXPECT_TRUE(bus->log->written.empty());
+    EXPECT_THAT(wire->take_news(), ElementsAre("ffff:fffe (usb) is gone; it is looked for every 0.5 s"));
+    ASSERT_TRUE(looked_for(*wire, *bus, 2));
+    bus->log->gone = false;
+    bus->plug_in({"1-2"});
+    ASSERT_TRUE(soon([&] { return wire->line().connected; }));
+    EXPECT_THAT(wire->take_news(), ElementsAre("ffff:fffe (usb) is back, at 1-2"));
+    EXPECT_THAT(bus->asked().front(), Pair("", ""));
+    EXPECT_THAT(bus->asked()[1], Pair("A1", "1-1"));
+    EXPECT_THAT(bus->asked().back(), Pair("A1", "1-2"));
+    EXPECT_EQ(bus->baud(), 38400U);
+}
+
+TEST(UsbBridgeTransport, LeavesADeviceAloneThatSharesItsSerialNumber) {
+    const auto bus = std::make_shared<Bus>();
+    bus->plug_in({"1-1", "1-2"});
+    const auto wire = wire_on(bus, "ffff:fffe");
+    ASSERT_TRUE(wire);
+    bus->plug_in({"1-2"});
+    bus->log->gone = true;
+    EXPECT_FALSE(wire->line().connected);
+    EXPECT_TRUE(looked_for(*wire, *bus, 2)) << "the one at 1-2 was there beside it";
+    bus->log->gone = false;
+    bus->plug_in({"1-2", "1-3", "1-4"});
+    EXPECT_TRUE(looked_for(*wire, *bus, 2)) << "either of the two could be it";
+    bus->plug_in({"1-2", "1-3"});
+    ASSERT_TRUE(soon([&] { return wire->line().connected; }));
+    EXPECT_THAT(wire->take_news(), Contains("ffff:fffe (usb) is back, at 1-3"));
 }
 
 TEST(UsbBridgeTransport, FailsAsItsOpenerDoes) {
