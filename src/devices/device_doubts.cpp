@@ -42,6 +42,16 @@ std::string permission_doubt(const DeviceNode& node, const DeviceEntry& device) 
     return fmt::format("{}: a udev rule for {} gives it: {}", what, to_string(device.usb->ids), install_rules);
 }
 
+void add_name_doubt(const DeviceEntry& device, const std::vector<const DeviceNode*>& nodes,
+                    std::vector<std::string>& doubts) {
+    if (!device.serial_is_shared || nodes.empty() || nodes.front()->kind != NodeKind::serial) return;
+    if (const DeviceNode& line = *nodes.front(); line.port_link.empty())
+        doubts.push_back(
+            fmt::format("a device like it is plugged in and no link in /dev/serial/by-path tells the two "
+                        "apart: {} may be the other one when they are plugged in again",
+                        line.path));
+}
+
 bool modem_manager_runs(const SystemFolders& folders) {
     std::error_code error;
     for (fs::directory_iterator entry(folders.processes, error), end; !error && entry != end; entry.increment(error)) {
@@ -110,6 +120,7 @@ std::vector<std::string> device_doubts(const DeviceEntry& device, const SystemFo
             doubts.push_back(permission_doubt(*node, device));
     }
     if (!device.known) return doubts;
+    add_name_doubt(device, nodes, doubts);
     add_modem_doubt(device, folders, doubts);
     add_latency_doubt(device, folders, doubts);
     return doubts;

@@ -37,7 +37,9 @@ const DeviceNode* first_node(const DeviceEntry& device, NodeKind kind) {
 std::string serial_port(const DeviceEntry& device) {
     const DeviceNode* line = first_node(device, NodeKind::serial);
     if (!line) return {};
-    const std::string port = "serial:" + (line->stable_path.empty() ? line->path : line->stable_path);
+    // Devices alike have one link by their serial number between them, which leads to either.
+    const std::string& link = device.usb && !device.has_own_serial() ? line->port_link : line->stable_path;
+    const std::string port = "serial:" + (link.empty() ? line->path : link);
     const std::uint32_t baud = device.known ? device.known->profile->baud : 0;
     return baud == 0 ? port : port + '@' + std::to_string(baud);
 }
@@ -50,6 +52,8 @@ bool DeviceEntry::is_hub() const {
     constexpr std::uint8_t hub_class = 9;
     return usb && usb->device_class == hub_class;
 }
+
+bool DeviceEntry::has_own_serial() const { return usb && !usb->serial.empty() && !serial_is_shared; }
 
 std::string DeviceEntry::title() const {
     if (known && known->bootloader && known->profile->kind != DeviceKind::bootloader)
@@ -76,8 +80,7 @@ std::string DeviceEntry::port() const {
                                profile.kind == DeviceKind::autopilot;
     if (!carries_bytes || profile.transport == DeviceTransport::none) return {};
     // A comma would end the serial number in the URI.
-    const bool serial_names_it =
-        !usb->serial.empty() && !serial_is_shared && usb->serial.find(',') == std::string::npos;
+    const bool serial_names_it = has_own_serial() && usb->serial.find(',') == std::string::npos;
     const UsbAddress address =
         serial_names_it ? UsbAddress{usb->ids, usb->serial, {}} : UsbAddress{usb->ids, {}, usb->port_path};
     return std::string(device_transport_name(profile.transport)) + ':' + to_string(address);

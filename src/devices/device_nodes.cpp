@@ -121,6 +121,7 @@ fs::path sysfs_of_usb(const SystemFolders& folders, const std::string& port_path
 DeviceNode serial_node(const std::string& name, const SystemFolders& folders) {
     DeviceNode node = node_at(NodeKind::serial, folders.devices / name);
     node.stable_path = link_to(folders.devices / "serial" / "by-id", name);
+    node.port_link = link_to(folders.devices / "serial" / "by-path", name);
     return node;
 }
 

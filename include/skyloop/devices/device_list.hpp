@@ -38,6 +38,7 @@ struct DeviceNode {
     std::string interface;    ///< configuration and interface, "1.0"; empty: the whole device, or not on USB
     std::string driver;       ///< of the kernel, "cdc_acm"; empty: not told
     std::string stable_path;  ///< a link that stays when numbers change, in /dev/serial/by-id; empty: none
+    std::string port_link;    ///< a link to what is plugged into its port, in /dev/serial/by-path; empty: none
     bool exists = false;
     bool usable = false;     ///< this process may read and write it
     std::string owner;       ///< user; the number where it has no name
@@ -55,6 +56,8 @@ struct DeviceEntry {
     bool serial_is_shared = false;     ///< another device that is plugged in has its ids and serial number, too
 
     [[nodiscard]] bool is_hub() const;
+    /// It has a serial number, and no other device that is plugged in has the same.
+    [[nodiscard]] bool has_own_serial() const;
     /// Its profile's description, else what it tells of itself.
     [[nodiscard]] std::string title() const;
     /// "autopilot" and so on, "hub", "uart" for a line of the machine itself, or "unknown".
@@ -76,7 +79,7 @@ Result<std::vector<DeviceEntry>> list_devices(std::span<const DeviceProfile> pro
                                               const SystemFolders& folders = {});
 
 /// What stands in the way of using a known device, a sentence each, with what helps: no permission, no node, its
-/// bootloader, ModemManager, a long latency timer.
+/// bootloader, no name that tells it from its like, ModemManager, a long latency timer.
 std::vector<std::string> device_doubts(const DeviceEntry& device, const SystemFolders& folders = {});
 
 /// A known device that was plugged in or taken out.

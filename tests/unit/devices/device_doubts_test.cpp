@@ -45,8 +45,9 @@ protected:
     }
     [[nodiscard]] fs::path device() const { return folders.sysfs / "bus/usb/devices/1-2"; }
     [[nodiscard]] fs::path interface() const { return device() / "1-2:1.0"; }
-    [[nodiscard]] DeviceEntry entry() const {
-        return look_up_device({{0x1546, 0x01a8}, "", "", "", "1-2", "/dev/bus/usb/001/004"}, {&profile, 1}, folders);
+    [[nodiscard]] DeviceEntry entry(const std::string& serial = "") const {
+        return look_up_device({{0x1546, 0x01a8}, "", "", serial, "1-2", "/dev/bus/usb/001/004"}, {&profile, 1},
+                              folders);
     }
     [[nodiscard]] std::vector<std::string> doubts() const { return device_doubts(entry(), folders); }
 
@@ -71,7 +72,7 @@ TEST_F(PlayedSystem, ThePathThatStaysIsTheBetterName) {
     fs::create_directories(folders.devices / "serial/by-id");
     fs::create_symlink("../../ttyACM0", folders.devices / "serial/by-id/usb-fake-if00");
     fs::create_symlink("../../ttyACM7", folders.devices / "serial/by-id/usb-another-if00");
-    EXPECT_EQ(entry().port(), "serial:" + (folders.devices / "serial/by-id/usb-fake-if00").string() + "@57600");
+    EXPECT_EQ(entry("A1").port(), "serial:" + (folders.devices / "serial/by-id/usb-fake-if00").string() + "@57600");
 }
 
 TEST_F(PlayedSystem, ManyInterfacesAreNamedInTheirOrder) {
@@ -182,6 +183,31 @@ TEST_F(PlayedSystem, DevicesOfOneSerialNumberAreNamedByTheirPorts) {
     EXPECT_EQ(devices[0].port(), "hid:10c4:ea80@1-1");
     EXPECT_EQ(devices[1].port(), "hid:10c4:ea80@1-2");
     EXPECT_EQ(devices[2].port(), "hid:10c4:ea80:0002");
+}
+
+TEST_F(PlayedSystem, LinesOfDevicesAlikeAreNamedByTheirPorts) {
+    const auto link = [&](const char* name) {
+        const fs::path path = folders.devices / "serial" / name;
+        fs::create_directories(path.parent_path());
+        fs::create_symlink("../../ttyACM0", path);
+        return "serial:" + path.string();
+    };
+    const std::string by_id = link("by-id/usb-fake_0001-if00");
+    const std::string line = "serial:" + (folders.devices / "ttyACM0").string();
+    std::vector<DeviceEntry> devices{entry("0001"), entry("0001")};
+    EXPECT_EQ(devices[0].port(), by_id) << "as long as it is alone";
+    EXPECT_THAT(device_doubts(devices[0], folders), IsEmpty());
+    mark_shared_serials(devices);
+    EXPECT_EQ(devices[0].port(), line) << "the link may lead to the other one";
+    EXPECT_THAT(device_doubts(devices[0], folders), ElementsAre(HasSubstr("no link in /dev/serial/by-path")));
+    EXPECT_EQ(entry("").port(), line) << "of any number";
+    const std::string by_path = link("by-path/pci-0000:00:14.0-usb-0:2:1.0");
+    devices = {entry("0001"), entry("0001")};
+    mark_shared_serials(devices);
+    EXPECT_EQ(devices[0].port(), by_path);
+    EXPECT_THAT(device_doubts(devices[0], folders), IsEmpty());
+    EXPECT_EQ(entry("").port(), by_path);
+    EXPECT_EQ(entry("A1").port(), by_id);
 }
 
 TEST_F(PlayedSystem, AHidBridgeIsNamedBySerialNumberOrPort) {
