@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "hid_api.hpp"
+#include "skyloop/base/text_file.hpp"
 
 namespace skyloop {
 namespace {
@@ -43,13 +44,26 @@ std::string port_path_of(HidBackend backend, const std::string& path) {
     return backend == HidBackend::hidraw ? port_path_of_node(path) : path.substr(0, path.find(':'));
 }
 
+std::filesystem::path sysfs_of_port(const std::string& port_path) {
+    return std::filesystem::path("/sys/bus/usb/devices") / port_path;
+}
+
 // The node that a device is opened by; empty when sysfs does not tell.
 std::string node_of(HidBackend backend, const std::string& path) {
     if (backend == HidBackend::hidraw) return path;
-    const auto device = std::filesystem::path("/sys/bus/usb/devices") / port_path_of(backend, path);
+    const auto device = sysfs_of_port(port_path_of(backend, path));
     int bus = 0, number = 0;
     if (!(std::ifstream(device / "busnum") >> bus) || !(std::ifstream(device / "devnum") >> number)) return {};
     return fmt::format("/dev/bus/usb/{:03}/{:03}", bus, number);
+}
+
+// hidapi's libusb backend opens a device for its texts, which needs permission. sysfs tells them to everybody.
+void complete_texts(UsbDeviceInfo& info) {
+    if (!info.manufacturer.empty() || !info.product.empty() || !info.serial.empty()) return;
+    const auto device = sysfs_of_port(info.port_path);
+    info.manufacturer = first_line_of(device / "manufacturer");
+    info.product = first_line_of(device / "product");
+    info.serial = first_line_of(device / "serial");
 }
 
 // hidapi opens, closes and lists devices of one backend in one thread at a time only, and keeps the words for its last
@@ -75,10 +89,12 @@ std::vector<Found> enumerate(const HidApi& api, UsbIds ids, const Usage& used) {
     // of it is open.
     if (used.open == 0 && api.finish() == 0) (void)api.initialize();
     hid_device_info* list = api.enumerate(ids.vendor, ids.product);
-    for (const hid_device_info* device = list; device != nullptr; device = device->next)
+    for (const hid_device_info* device = list; device != nullptr; device = device->next) {
         found.push_back({device->path,
                          {ids, narrow(device->manufacturer_string), narrow(device->product_string),
                           narrow(device->serial_number), port_path_of(api.backend, device->path)}});
+        complete_texts(found.back().info);
+    }
     api.free_enumeration(list);
     return found;
 }
@@ -97,6 +113,13 @@ Result<std::vector<UsbDeviceInfo>> HidDevice::list(UsbIds ids, HidBackend backen
 }
 
 Result<HidDevice> HidDevice::open(const UsbAddress& address, HidBackend backend) {
+    auto device = open_if_there(address, backend);
+    if (!device) return fail(std::move(device.error()));
+    if (!*device) return fail(ErrorCode::outside, fmt::format("no HID device {} is plugged in", to_string(address)));
+    return std::move(**device);
+}
+
+Result<std::optional<HidDevice>> HidDevice::open_if_there(const UsbAddress& address, HidBackend backend) {
     const auto api = hid_api(backend);
     if (!api) return fail(api.error());
     Usage& used = usage(backend);
@@ -104,8 +127,7 @@ Result<HidDevice> HidDevice::open(const UsbAddress& address, HidBackend backend)
     const std::vector<Found> devices = enumerate(**api, address.ids, used);
     const auto found =
         std::find_if(devices.begin(), devices.end(), [&](const Found& device) { return address.matches(device.info); });
-    if (found == devices.end())
-        return fail(ErrorCode::outside, fmt::format("no HID device {} is plugged in", to_string(address)));
+    if (found == devices.end()) return std::nullopt;
     hid_device* device = (*api)->open_path(found->path.c_str());
     if (device != nullptr) {
         ++used.open;
@@ -122,11 +144,13 @@ Result<HidDevice> HidDevice::open(const UsbAddress& address, HidBackend backend)
 }
 
 Result<HidDevice> HidDevice::open(const UsbAddress& address) {
-    auto through_kernel = open(address, HidBackend::hidraw);
-    if (through_kernel) return through_kernel;
+    auto through_kernel = open_if_there(address, HidBackend::hidraw);
+    if (through_kernel && *through_kernel) return std::move(**through_kernel);
+    // The kernel has the device: its refusal tells more, since libusb is asked only because of it.
+    const bool kernel_has_it = !through_kernel && hid_api(HidBackend::hidraw);
     auto past_it = open(address, HidBackend::libusb);
-    // The first refusal tells more: the second one is asked only because of it.
-    return past_it ? std::move(past_it) : std::move(through_kernel);
+    if (!past_it && kernel_has_it) return fail(std::move(through_kernel.error()));
+    return past_it;
 }
 
 HidDevice::HidDevice(HidDevice&& other) noexcept

@@ -15,6 +15,7 @@
 #include <thread>
 #include <utility>
 
+#include "as_nobody.hpp"
 #include "skyloop/actuator/actuator_uri.hpp"
 #include "skyloop/actuator/power_watchdog.hpp"
 #include "testbed.hpp"
@@ -22,6 +23,7 @@
 namespace skyloop {
 namespace {
 
+using mock::AsNobody;
 using mock::DeviceSpec;
 using mock::MockDevice;
 using testing::AnyOf;
@@ -166,6 +168,17 @@ TEST_P(Relays, OthersOfTheSameIdsAreRefused) {
     EXPECT_THAT(open_actuator("relay:16c0:0001/1").error().message, HasSubstr("no HID device 16c0:0001 is plugged in"));
 }
 
+TEST_P(Relays, WithoutPermissionTheSentenceNamesTheNode) {
+    mock::Testbed bed;
+    plug_in(bed, board("USBRelay2"), std::make_shared<MockRelays>());
+    bed.forbid(board("USBRelay2"));
+    const AsNobody nobody;
+    const auto relay = open_actuator("relay:16c0:05df/1");
+    ASSERT_FALSE(relay);
+    EXPECT_THAT(relay.error().message,
+                HasSubstr(GetParam() ? "(/dev/hidraw0): no permission" : "(/dev/bus/usb/001/004): no permission"));
+}
+
 TEST_P(Relays, UnpluggedTheyFail) {
     mock::Testbed bed;
     const auto relays = std::make_shared<MockRelays>();
@@ -281,6 +294,17 @@ TEST(Mcp2221, SwitchesAPinThroughLibusb) {
     ASSERT_TRUE((*pin)->restore());
     EXPECT_EQ(chip->setting(2), 0x00);
     EXPECT_EQ(chip->setting(1), 0x01) << "the others keep what they have";
+}
+
+TEST(Mcp2221, WithoutPermissionTheSentenceNamesTheNode) {
+    mock::Testbed bed;
+    EXPECT_EQ(open_actuator("gpio:04d8:00dd/2").error().message, "no HID device 04d8:00dd is plugged in");
+    bed.plug_in(converter(), std::make_shared<MockMcp2221>());
+    bed.forbid(converter());
+    const AsNobody nobody;
+    EXPECT_EQ(open_actuator("gpio:04d8:00dd/2").error().message,
+              "cannot open HID device 04d8:00dd (" + node_of(converter()) +
+                  "): no permission; a udev rule gives it: skyloop devices shows the line");
 }
 
 TEST(Mcp2221, TakesAPinFromItsOtherDuty) {

@@ -1,8 +1,8 @@
 // Devices as libusb and both backends of hidapi find them, and what is said where one may not be opened.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
+#include "as_nobody.hpp"
 #include "mock_cdc_acm.hpp"
 #include "skyloop/hid/hid_device.hpp"
 #include "skyloop/usb/usb_context.hpp"
@@ -12,6 +12,7 @@
 namespace skyloop {
 namespace {
 
+using mock::AsNobody;
 using mock::DeviceSpec;
 using mock::MockDevice;
 using testing::HasSubstr;
@@ -56,17 +57,6 @@ DeviceSpec relay() {
 DeviceSpec hub() {
     return {{0x1d6b, 0x0002}, "", "hub", "", mock::configuration(1, mock::interface(0, 0, {9, 0, 0})), "3", 5};
 }
-
-// The superuser may open everything.
-class AsNobody {
-public:
-    AsNobody() { EXPECT_EQ(setresuid(other_, other_, self_), 0); }
-    ~AsNobody() { EXPECT_EQ(setresuid(self_, self_, self_), 0); }
-
-private:
-    uid_t self_ = geteuid();
-    uid_t other_ = self_ == 0 ? 65534 : self_;
-};
 
 TEST(UsbDevices, AreListedWithTheirTexts) {
     mock::Testbed bed;
@@ -186,11 +176,13 @@ TEST_P(HidDevices, WithoutPermissionTheSentenceNamesTheNode) {
     bed.add_hidraw(relay(), 0, device, eight_bytes_report);
     bed.forbid(relay());
     const AsNobody nobody;
-    const auto hid = HidDevice::open(*parse_usb_address("16c0:05df"), GetParam());
-    ASSERT_FALSE(hid);
     const std::string node = GetParam() == HidBackend::hidraw ? "/dev/hidraw0" : "/dev/bus/usb/001/006";
-    EXPECT_EQ(hid.error().message, "cannot open HID device 16c0:05df (" + node +
-                                       "): no permission; a udev rule gives it: skyloop devices shows the line");
+    for (const std::string address : {"16c0:05df", "16c0:05df:A0001"}) {
+        const auto hid = HidDevice::open(*parse_usb_address(address), GetParam());
+        ASSERT_FALSE(hid);
+        EXPECT_EQ(hid.error().message, "cannot open HID device " + address + " (" + node +
+                                           "): no permission; a udev rule gives it: skyloop devices shows the line");
+    }
 }
 
 TEST_P(HidDevices, AreAbsentInOneSentence) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,11 +25,12 @@ struct HidApi;  // the functions of one backend
 /// overlap in time.
 class HidDevice {
 public:
-    /// What has these ids, as one backend sees it: without permission the texts may be missing. Fails with `outside`:
-    /// no hidapi on this machine.
+    /// What has these ids, as one backend sees it: without permission the texts are those of sysfs. Fails with
+    /// `outside`: no hidapi on this machine.
     static Result<std::vector<UsbDeviceInfo>> list(UsbIds ids, HidBackend backend);
     /// The first device of that address, through hidraw, else through libusb. Fails with `outside`: there is none, no
-    /// permission (the sentence names the node and what gives it), or no hidapi on this machine.
+    /// permission (the sentence names the node and what gives it), or no hidapi on this machine. The sentence is that
+    /// of the backend which has the device.
     static Result<HidDevice> open(const UsbAddress& address);
     /// Through one backend only.
     static Result<HidDevice> open(const UsbAddress& address, HidBackend backend);
@@ -51,6 +53,8 @@ public:
     Result<Bytes> read(std::chrono::milliseconds wait);
 
 private:
+    /// Nothing: no device of that address is there.
+    static Result<std::optional<HidDevice>> open_if_there(const UsbAddress& address, HidBackend backend);
     HidDevice(const HidApi& api, void* device, UsbDeviceInfo info)
         : api_(&api), device_(device), info_(std::move(info)) {}
     Error last_error(const char* what) const;
