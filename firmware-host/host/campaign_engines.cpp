@@ -109,6 +109,8 @@ int to_kubernetes(const EngineTask& task, const EngineOptions& options, const Me
     settings.name_space = options.name_space;
     settings.memory = options.memory;
     settings.parallelism = options.parallelism;
+    settings.user = ::geteuid();
+    settings.group = ::getegid();
     settings.mount = options.mount.empty() ? task.out.parent_path() : options.mount;
     const auto manifests = kubernetes_manifests(task, settings);
     if (!manifests) return messages.error(manifests.error());

@@ -107,8 +107,11 @@ Result<void> show_rows(const std::filesystem::path& file, std::string_view text,
 }  // namespace
 
 Result<TableFile> TableFile::open(const std::filesystem::path& path, std::string_view header) {
-    std::error_code none;
-    std::filesystem::create_directories(path.parent_path(), none);
+    std::error_code reason;
+    std::filesystem::create_directories(path.parent_path(), reason);
+    if (reason)
+        return fail(ErrorCode::outside,
+                    fmt::format("{}: cannot be made: {}", path.parent_path().string(), reason.message()));
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (descriptor < 0) return table_failure(path, "cannot be opened");
     TableFile file(path, descriptor);

@@ -122,6 +122,20 @@ std::string head(const std::string& name, const KubernetesSettings& settings) {
     return text + "  labels:\n    app.kubernetes.io/name: skyloop\n    app.kubernetes.io/component: campaign\nspec:\n";
 }
 
+// The results' folder belongs to who writes the manifest: the image's own user, and a superuser without capabilities,
+// could not write there. Some kinds of volumes are given to fsGroup instead (Kubernetes API v1, PodSecurityContext),
+// file by file unless their root has it already.
+std::string identity(const KubernetesSettings& settings) {
+    if (settings.user == 0) return {};
+    return fmt::format(R"(      securityContext:
+        runAsUser: {}
+        runAsGroup: {}
+        fsGroup: {}
+        fsGroupChangePolicy: OnRootMismatch
+)",
+                       settings.user, settings.group, settings.group);
+}
+
 std::string pod(const KubernetesSettings& settings, const std::string& script,
                 const std::vector<std::string>& command) {
     return fmt::format(R"(  template:
@@ -133,7 +147,7 @@ std::string pod(const KubernetesSettings& settings, const std::string& script,
       restartPolicy: Never
       automountServiceAccountToken: false
       terminationGracePeriodSeconds: {}
-      containers:
+{}      containers:
         - name: skyloop
           image: {}
           command:
@@ -159,9 +173,9 @@ std::string pod(const KubernetesSettings& settings, const std::string& script,
           persistentVolumeClaim:
             claimName: {}
 )",
-                       grace_s, yaml_quoted(settings.image), indented(script, "              "), arguments(command),
-                       yaml_quoted(settings.memory), yaml_quoted(settings.memory), yaml_quoted(settings.mount.string()),
-                       yaml_quoted(settings.claim));
+                       grace_s, identity(settings), yaml_quoted(settings.image), indented(script, "              "),
+                       arguments(command), yaml_quoted(settings.memory), yaml_quoted(settings.memory),
+                       yaml_quoted(settings.mount.string()), yaml_quoted(settings.claim));
 }
 
 // Exit code 3, a failed verdict, is a result.

@@ -32,6 +32,7 @@ for (const rule of job.spec.podFailurePolicy?.rules ?? []) {
         expectFields(condition, "batch/v1/PodFailurePolicyOnPodConditionsPattern");
 }
 expectFields(pod, "v1/PodSpec");
+if (pod.securityContext) expectFields(pod.securityContext, "v1/PodSecurityContext");
 for (const container of pod.containers) {
     expectFields(container, "v1/Container");
     expectFields(container.resources, "v1/ResourceRequirements");

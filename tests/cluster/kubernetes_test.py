@@ -74,6 +74,10 @@ class Manifests(unittest.TestCase):
         self.assertEqual(rules[1]["onExitCodes"],
                          {"containerName": pod["containers"][0]["name"], "operator": "In", "values": [2]})
         self.assertEqual(pod["restartPolicy"], "Never")
+        writer = {"runAsUser": os.geteuid(), "runAsGroup": os.getegid(), "fsGroup": os.getegid(),
+                  "fsGroupChangePolicy": "OnRootMismatch"}
+        for job in (self.shards, self.gather):
+            self.assertEqual(job["spec"]["template"]["spec"].get("securityContext"), writer if os.geteuid() else None)
         self.assertEqual(pod["volumes"][0]["persistentVolumeClaim"]["claimName"], "results")
         self.assertEqual(pod["containers"][0]["volumeMounts"][0]["mountPath"], str(self.root))
         words = command_of(self.shards)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -19,6 +20,8 @@ struct KubernetesSettings {
     std::string memory = "512Mi";   ///< that a container may use, as Kubernetes writes quantities
     std::size_t parallelism = 32;   ///< containers at a time
     std::size_t retries = 3;        ///< of a shard, after a fault of the machine
+    std::uint32_t user = 0;         ///< number of who owns the results, as whom containers run; 0: as the image's user
+    std::uint32_t group = 0;        ///< likewise of their group; counts only with a user
 };
 
 /// Manifests for kubectl.

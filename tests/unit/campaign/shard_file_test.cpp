@@ -128,6 +128,15 @@ TEST(ShardFile, ATornHeaderIsWrittenAnew) {
     EXPECT_EQ(stored_in(folder.path()).size(), 2U);
 }
 
+TEST(ShardFile, AFolderThatCannotBeMadeIsNamed) {
+    const TemporaryFolder folder;
+    write_file(folder / "results", "a file");
+    const auto file = TableFile::open(shard_results(folder / "results", {0, 1}), result_header(example_columns));
+    ASSERT_FALSE(file);
+    EXPECT_EQ(file.error().code, ErrorCode::outside);
+    EXPECT_EQ(file.error().message, (folder / "results").string() + "/shards: cannot be made: Not a directory");
+}
+
 TEST(ShardFile, OtherColumnsAreRefused) {
     const TemporaryFolder folder;
     add_results(folder.path(), {0, 1}, 2);

@@ -10,6 +10,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class KubernetesEngine : public test::EngineRig {
 protected:
@@ -37,6 +38,25 @@ TEST_F(KubernetesEngine, AnIndexIsAShardAndItsExitCodeIsUnderstood) {
     EXPECT_THAT(manifests->shards, HasSubstr("- \"" + root.string() + "/out of 100% \\\"it's\\\" $$HOME #1\"\n"));
     EXPECT_THAT(manifests->gather,
                 AllOf(HasSubstr("- \"gather\"\n"), HasSubstr("job/skyloop-night-of-it-s-100-hard-tests\n")));
+}
+
+TEST_F(KubernetesEngine, ContainersRunAsWhoeverOwnsTheResults) {
+    auto manifests = kubernetes_manifests(task, settings);
+    ASSERT_TRUE(manifests) << manifests.error().message;
+    for (const std::string& text : {manifests->shards, manifests->gather})
+        EXPECT_THAT(text, Not(HasSubstr("runAs"))) << "the superuser's is the image's own affair";
+    settings.user = 1000;
+    settings.group = 100;
+    manifests = kubernetes_manifests(task, settings);
+    ASSERT_TRUE(manifests) << manifests.error().message;
+    for (const std::string& text : {manifests->shards, manifests->gather})
+        EXPECT_THAT(text, HasSubstr("      terminationGracePeriodSeconds: 45\n"
+                                    "      securityContext:\n"
+                                    "        runAsUser: 1000\n"
+                                    "        runAsGroup: 100\n"
+                                    "        fsGroup: 100\n"
+                                    "        fsGroupChangePolicy: OnRootMismatch\n"
+                                    "      containers:\n"));
 }
 
 TEST_F(KubernetesEngine, PathsOutsideTheMountAreRefused) {
