@@ -51,6 +51,9 @@ async function noOverflow(page, width) {
 // What the run shows before anything is done to it.
 async function everythingIsThere(page) {
     assert.match(await fixIs(page, "fix"), /3D|DGNSS|RTK/);
+    const told = (id) => page.locator(id).innerText();
+    assert.match(await told("#error-more"), /^claims [\d.]+ m, HDOP\s[\d.]+$/);
+    assert.match(await told("#height-more"), /^claims [\d.]+ m, VDOP\s[\d.]+$/);
     assert.ok((await page.locator("#sky .sat").count()) >= 6, "satellites in the sky");
     assert.ok((await page.locator("#bars rect").count()) >= 6, "bars of C/N0");
     assert.ok((await page.locator("#sky .sat-blocked, #sky .sat-reflected").count()) >= 1, "a city hides something");

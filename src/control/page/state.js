@@ -19,6 +19,12 @@ function judged(error, claimed) {
     return error < 20 ? "warn" : "bad";
 }
 
+// What the receiver claims of an error, and how the satellites' geometry dilutes it.
+function ownView(claimed, name, dilution) {
+    const claim = claimed ? `claims ${metres(claimed)}` : "no claim";
+    return dilution === undefined ? claim : `${claim}, ${name}\u00a0${figures(dilution, 2)}`;
+}
+
 function card(id, text, state = "") {
     say(byId(`${id}-value`), text);
     mark(byId(id), "state", state);
@@ -43,9 +49,9 @@ export function showState(receiver) {
     const horizontal = error ? Math.hypot(error.east_m, error.north_m) : NaN;
     const claimed = fix.h_acc_m;
     card("error", metres(horizontal), judged(horizontal, claimed));
-    say(byId("error-more"), claimed ? `claims ${metres(claimed)}` : "no claim");
+    say(byId("error-more"), ownView(claimed, "HDOP", fix.dop?.h));
     card("height", error ? metres(error.up_m) : "–");
-    say(byId("height-more"), fix.dop ? `HDOP ${figures(fix.dop.h, 2)}` : "no position");
+    say(byId("height-more"), ownView(fix.v_acc_m, "VDOP", fix.dop?.v));
     card("speed", fix.speed_mps === undefined ? "–" : `${fix.speed_mps.toFixed(1)} m/s`);
     say(byId("speed-more"), `truly ${receiver.true_speed_mps.toFixed(1)} m/s`);
     card("jamming", jammingWords[receiver.jamming_state] ?? "–", ["", "", "warn", "bad"][receiver.jamming_state]);
