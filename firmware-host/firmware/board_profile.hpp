@@ -88,7 +88,7 @@ struct Timing {
     Seconds signal_restart{0.5};                             ///< without output after a change of the tracked signals
     Seconds latency_deviation{0};                            ///< 1 σ of the solution latency
     Seconds coasting{0};                                     ///< for which a lost solution goes on by its velocity
-    Seconds cold_start{26}, warm_start{22}, hot_start{1.5};  ///< to the first fix, for models that do not acquire
+    Seconds cold_start{26}, warm_start{24}, hot_start{1.5};  ///< to the first fix (RECEIVER.md 4.8)
 };
 
 /// How a receiver saves power, as it is built (every value in boards/README.md).

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "skyloop/propagation/modern_effects.hpp"
 #include "skyloop/rinex/ionex_file.hpp"
 
@@ -15,6 +17,10 @@ std::filesystem::path nequick_folder(const DataFolders& data) {
         if (std::filesystem::exists(folder / "nequick_g")) return folder / "nequick_g";
     return "nequick_g";
 }
+
+// What a warm start under an open sky takes until the fourth satellite is tracked, about; the collection of its
+// ephemeris takes the rest.
+constexpr Seconds warm_search{3};
 
 // The span for which maps must be there; of a run without an end its start.
 TimeSpan span_of(const Scenario& scenario, GpsTime start) {
@@ -65,6 +71,8 @@ MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationS
     ModernSettings settings = effective(scenario.model.modern);
     // Satellites broadcast an ionosphere even where the navigation data has lost it or there is none.
     settings.navigation.corrections.default_ionosphere = true;
+    settings.navigation.ephemeris_collection =
+        settings.ephemeris_collection.value_or(std::max(setup.warm_start - warm_search, Seconds(0)));
     return {MeasurementEngine(settings.measurement, receiver_seed(scenario.run.seed, setup.receiver)),
             NavigationEngine(settings.navigation, {setup.navigation.get(), setup.geoid, LeapSeconds::announced()})};
 }

@@ -158,6 +158,14 @@ Result<std::unique_ptr<Transport>> open_wire(const WireRequest& wire, const firm
     return open_transport(wire.uri, usb_face(board, wire.port));
 }
 
+SimulationSetup simulation_setup(const SharedParts& shared, std::size_t index, const firmware::Receiver& receiver) {
+    const double rate = 1e9 / static_cast<double>(receiver.settings().navigation_period.count());
+    return {shared.navigation,     shared.geoid, shared.start,
+            shared.data,           index,        shared.scene,
+            shared.mode.embedding, rate,         receiver.board().timing.warm_start,
+            shared.gas_losses};
+}
+
 Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings) {
     const Scenario& scenario = shared.scenario;
     const ReceiverEntry& entry = scenario.receivers.at(index);
@@ -183,9 +191,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     if (state && !state->text().empty())
         if (auto restored = receiver.restore(state->text(), state->path().string()); !restored)
             return fail(restored.error());
-    const double rate = 1e9 / static_cast<double>(receiver.settings().navigation_period.count());
-    auto simulation = make_simulation(scenario, {shared.navigation, shared.geoid, shared.start, shared.data, index,
-                                                 shared.scene, shared.mode.embedding, rate, shared.gas_losses});
+    auto simulation = make_simulation(scenario, simulation_setup(shared, index, receiver));
     if (!simulation) return fail(simulation.error());
     Station::Parts parts{std::move(*simulation), std::move(receiver), {}, {}};
     parts.name = receiver_name(scenario, index);

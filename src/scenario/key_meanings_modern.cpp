@@ -175,7 +175,8 @@ constexpr KeyMeaning modern_meanings[] = {
     {"model.modern.solution", "accuracy_ionosphere_tilt", "the same, north and east, for a pierce point 9° away"},
     {"model.modern.solution", "accuracy_troposphere_share",
      "σ that the reported accuracy holds for a wrong correction, as a share of it, the same for all satellites"},
-    {"model.modern.solution", "ephemeris_collection_s", "of tracking, until a satellite's record has been received"},
+    {"model.modern.solution", "ephemeris_collection_s", "of tracking, until a satellite's record has been received",
+     "timing.warm_start_s of the board less 3"},
     {"model.modern.solution", "differential", "corrections from outside, as a regime of the errors"},
 };
 

@@ -116,7 +116,11 @@ void read_solution(TableReader& table, ModernSettings& settings) {
     table.number("accuracy_ionosphere_share", p.accuracy.ionosphere_share, {0, 10});
     table.number("accuracy_ionosphere_tilt", p.accuracy.ionosphere_tilt, {0, 10});
     table.number("accuracy_troposphere_share", p.accuracy.troposphere_share, {0, 10});
-    table.quantity("ephemeris_collection_s", p.ephemeris_collection, {0, 1e5});
+    if (table.has("ephemeris_collection_s")) {
+        Seconds collection = p.ephemeris_collection;
+        table.quantity("ephemeris_collection_s", collection, {0, 1e5});
+        settings.ephemeris_collection = collection;
+    }
     static constexpr std::array<Word<DifferentialKind>, 4> kinds{{{"none", DifferentialKind::none},
                                                                   {"sbas", DifferentialKind::sbas},
                                                                   {"rtk-float", DifferentialKind::rtk_float},

@@ -93,10 +93,12 @@ struct MemoryRunParts {
 /// The receiver of a scenario as the assembly makes it, without wires.
 inline Station::Parts station_parts(const Scenario& scenario, std::size_t index, GpsTime start) {
     const ReceiverEntry& entry = scenario.receivers.at(index);
-    auto simulation =
-        make_simulation(scenario, {std::make_shared<NominalConstellation>(), nullptr, start, DataFolders{}, index});
     auto board = find_board(entry.board, board_folders(emulator_data()));
-    EXPECT_TRUE(simulation && board);
+    EXPECT_TRUE(board);
+    SimulationSetup setup{std::make_shared<NominalConstellation>(), nullptr, start, DataFolders{}, index};
+    setup.warm_start = board->timing.warm_start;
+    auto simulation = make_simulation(scenario, setup);
+    EXPECT_TRUE(simulation);
     if (entry.baud) board->baud = *entry.baud;
     if (entry.export_limits) board->export_limits = *entry.export_limits;
     ReceiverSettings settings = receiver_settings(scenario, *board, index);

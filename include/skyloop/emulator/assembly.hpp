@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/board_profile.hpp"
 #include "skyloop/base/result.hpp"
 #include "skyloop/emulator/data_folders.hpp"
 #include "skyloop/emulator/deadline_grants.hpp"
@@ -110,8 +111,9 @@ struct SimulationSetup {
     std::size_t receiver = 0;  ///< whose antenna: its place in the scenario's list
     /// What stands around; null: nothing, whatever the scenario says.
     std::shared_ptr<const UrbanScene> scene{};
-    const Embedding* embedding = nullptr;  ///< null: none
-    double epochs_per_second = 1;          ///< of the receiver, at start
+    const Embedding* embedding = nullptr;                ///< null: none
+    double epochs_per_second = 1;                        ///< of the receiver, at start
+    Seconds warm_start = firmware::Timing().warm_start;  ///< of the receiver's board, to its first fix
     /// Of the modern model; receivers of one run share it.
     std::shared_ptr<GasLossTable> gas_losses = std::make_shared<GasLossTable>();
 };

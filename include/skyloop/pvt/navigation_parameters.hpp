@@ -99,7 +99,10 @@ struct NavigationParameters {
     AccuracyParameters accuracy;
     DifferentialParameters differential;
     DataParameters data;
-    Seconds ephemeris_collection{30};  ///< of tracking, until a satellite's record has been received
+    /// Of tracking, until a satellite's record has been received. GPS sends it in 18 s of each 30 s (subframes 1 to 3,
+    /// IS-GPS-200 20.3.2 and 20.3.3); of what lies between, this has the first fix when receivers have theirs
+    /// (RECEIVER.md 4.8).
+    Seconds ephemeris_collection{21};
     /// Where the antenna stands, when it was surveyed: with the stationary model time alone is solved.
     std::optional<Geodetic> fixed_position;
 };

@@ -38,7 +38,8 @@ struct ModernSettings {
     NavigationParameters navigation;
     std::optional<IonosphereCorrection> ionosphere_correction;    ///< nothing: Klobuchar's when there is an ionosphere
     std::optional<TroposphereCorrection> troposphere_correction;  ///< nothing: Niell's when there is a troposphere
-    std::filesystem::path ionosphere_maps;                        ///< IONEX file; empty: none
+    std::optional<Seconds> ephemeris_collection;  ///< nothing: what the search leaves of the board's warm start
+    std::filesystem::path ionosphere_maps;        ///< IONEX file; empty: none
     std::vector<std::filesystem::path> tables{};  ///< files of antennas and satellites that `propagation` was read from
     std::vector<std::string> idle_keys;  ///< what a reader should be told of keys that were given and cannot act
 

@@ -331,7 +331,7 @@ TEST(NavigationEngine, HearsTheSatellitesBeforeItUsesThem) {
                 EXPECT_FALSE(fix.satellites[0].used);
             }
         }
-        EXPECT_EQ(first_fix, start == StartKind::hot ? 5 : 35);
+        EXPECT_EQ(first_fix, start == StartKind::hot ? 5 : 26);
     }
 }
 
@@ -347,11 +347,11 @@ TEST(NavigationEngine, ForgetsAtARestartAndNotAtAHotOne) {
     EXPECT_EQ(fix_at(1).type, FixType::fix_3d);
     settings.restarts = 2;
     settings.start = StartKind::cold;
-    for (int s = 2; s < 32; ++s)
+    for (int s = 2; s < 23; ++s)
         EXPECT_EQ(fix_at(s).type, FixType::none) << s;
-    EXPECT_EQ(fix_at(32).type, FixType::fix_3d);
+    EXPECT_EQ(fix_at(23).type, FixType::fix_3d);
     // No almanac yet: nothing is known of what is not tracked.
-    for (const SatelliteStatus& s : fix_at(33).satellites)
+    for (const SatelliteStatus& s : fix_at(24).satellites)
         EXPECT_TRUE(s.cn0);
 }
 

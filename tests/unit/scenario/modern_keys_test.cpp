@@ -239,7 +239,8 @@ TEST(ModernKeys, OfTheSolution) {
         {"solution", "accuracy_ionosphere_share", "0.5", SKYLOOP_PLAIN(navigation.accuracy.ionosphere_share), 0.5},
         {"solution", "accuracy_ionosphere_tilt", "0.25", SKYLOOP_PLAIN(navigation.accuracy.ionosphere_tilt), 0.25},
         {"solution", "accuracy_troposphere_share", "1.5", SKYLOOP_PLAIN(navigation.accuracy.troposphere_share), 1.5},
-        {"solution", "ephemeris_collection_s", "18.5", SKYLOOP_FIELD(navigation.ephemeris_collection), 18.5},
+        {"solution", "ephemeris_collection_s", "18.5",
+         [](const ModernSettings& s) { return s.ephemeris_collection ? s.ephemeris_collection->value() : -1; }, 18.5},
     });
 }
 
