@@ -68,11 +68,14 @@ private:
     const Geoid* geoid_;
 };
 
-/// Writes the rain loss: ITU-R P.838-3 over the straight path up to the rain's top, as far as the cell reaches.
+/// Writes the rain loss: ITU-R P.838-3 over the straight path up to the rain's top, as far as the cell reaches. Another
+/// model of the rain is the sensor models' (MODELS.md D-14).
 class RainLoss : public PropagationEffect {
 public:
     RainLoss(const Rain& rain, const ModernPropagationParameters& parameters, const Geoid* geoid)
-        : rain_(rain), cell_(parameters.loss_model.rain_cell), factor_(parameters.rain.factor()), geoid_(geoid) {}
+        : rain_(rain), cell_(parameters.loss_model.rain_cell), factor_(parameters.rain.factor()), geoid_(geoid) {
+        rain_.model = RainModel::p838;
+    }
     void apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) override;
 
 private:

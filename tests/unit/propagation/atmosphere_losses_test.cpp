@@ -115,6 +115,13 @@ TEST(RainLoss, EndsWithItsCell) {
     EXPECT_EQ(after_loss(off, 5).rain_loss.value(), 0);
 }
 
+TEST(RainLoss, IsOfP838WhateverTheSensorModelsAreTold) {
+    RainLoss rain({100}, {}, nullptr);
+    RainLoss vapour({100, Metres(4000), RainModel::as_vapour}, {}, nullptr);
+    EXPECT_GT(after_loss(rain, 5).rain_loss.value(), 0.05);
+    EXPECT_EQ(after_loss(vapour, 5).rain_loss, after_loss(rain, 5).rain_loss);
+}
+
 TEST(FoliageLoss, StandsAroundTheAntennaUpToItsTop) {
     FoliageLoss none({}, {});
     EXPECT_EQ(after_loss(none, 10).foliage_loss.value(), 0);
