@@ -66,39 +66,62 @@ void read_simple_models(TableReader& model, ModelSettings& settings) {
     });
 }
 
-std::optional<ConcentrationMode> read_concentration(TableReader& table) {
+// How k is taken: what is told of it.
+struct Concentration {
+    std::optional<ConcentrationMode> mode;
+    std::optional<double> fixed;
+
+    void give(AtmosphericLayer& layer) const {
+        layer.concentration = mode.value_or(layer.concentration);
+        layer.fixed_concentration = fixed.value_or(layer.fixed_concentration);
+    }
+};
+
+// The keys of one table, over what `told` has already.
+Concentration read_concentration(TableReader& table, Concentration told = {}) {
     static constexpr std::array<Word<std::optional<ConcentrationMode>>, 3> modes{
         {{"mean", ConcentrationMode::mean},
          {"midpoint", ConcentrationMode::midpoint},
          {"fixed", ConcentrationMode::fixed}}};
-    std::optional<ConcentrationMode> mode;
-    table.word("concentration", modes, mode);
-    return mode;
+    table.word("concentration", modes, told.mode);
+    if (table.has("fixed_concentration")) {
+        double fixed = 1;
+        table.number("fixed_concentration", fixed, {0, 10});
+        told.fixed = fixed;
+    }
+    return told;
+}
+
+// Undiluted air up to the last layer's top would be nobody's wish.
+void check_number_of_fixed(TableReader& table, const Concentration& told) {
+    if (told.mode == ConcentrationMode::fixed && !told.fixed)
+        table.mistake("concentration", "is 'fixed' without a number; expected fixed_concentration, too");
 }
 
 void read_layers(TableReader& atmosphere, AtmosphereParameters& p) {
-    // One word for all layers; a layer's own key goes before it.
-    const auto mode_of_all = read_concentration(atmosphere);
+    // For all layers; a layer's own keys go before them.
+    const Concentration of_all = read_concentration(atmosphere);
     if (atmosphere.has("layer")) p.layers.clear();
     atmosphere.tables("layer", [&](TableReader& table) {
         AtmosphericLayer layer;
-        if (mode_of_all) layer.concentration = *mode_of_all;
         table.text("name", layer.name);
         table.quantity("base_m", layer.base, {-1000, 1e7});
         table.quantity("top_m", layer.top, {-1000, 1e7});
         table.number("vapour_g_m3", layer.vapour_g_m3, {0, 100});
         table.boolean("enabled", layer.enabled);
-        if (const auto mode = read_concentration(table)) layer.concentration = *mode;
-        table.number("fixed_concentration", layer.fixed_concentration, {0, 10});
+        const Concentration own = read_concentration(table, of_all);
+        check_number_of_fixed(table, own);
+        own.give(layer);
         if (layer.top <= layer.base)
             table.mistake_here(
                 fmt::format("top_m is {:g}; expected more than base_m, {:g}", layer.top.value(), layer.base.value()));
         p.layers.push_back(layer);
     });
-    if (mode_of_all && !atmosphere.has("layer")) {
+    if (of_all.mode && !atmosphere.has("layer")) {
+        check_number_of_fixed(atmosphere, of_all);
         p.layers = default_layers();
         for (AtmosphericLayer& layer : p.layers)
-            layer.concentration = *mode_of_all;
+            of_all.give(layer);
     }
 }
 

@@ -71,6 +71,7 @@ constexpr std::string_view sensor_model_atmosphere_keys[] = {"total_electron_con
                                                              "sea_level_temperature_k",
                                                              "oxygen_constant_ghz2",
                                                              "concentration",
+                                                             "fixed_concentration",
                                                              "zenith_dry_delay_m",
                                                              "zenith_dry_decay_per_m",
                                                              "zenith_wet_delay_m",

@@ -128,12 +128,16 @@ TEST(ScenarioFile, LayersReplaceTheDefaultOnesAndOneWordServesAll) {
     EXPECT_EQ(a.layers[0].concentration, ConcentrationMode::fixed) << "a layer's own word goes before the common one";
     EXPECT_EQ(a.layers[0].fixed_concentration, 0.375);
     EXPECT_EQ(a.layers[1].concentration, ConcentrationMode::midpoint);
+    EXPECT_EQ(a.layers[1].fixed_concentration, 0.625);
     EXPECT_TRUE(a.layers[1].enabled);
 
-    const AtmosphereParameters defaults = scenario_of("[atmosphere]\nconcentration = \"fixed\"").atmosphere;
+    const AtmosphereParameters defaults =
+        scenario_of("[atmosphere]\nconcentration = \"fixed\"\nfixed_concentration = 0.125").atmosphere;
     ASSERT_EQ(defaults.layers.size(), default_layers().size());
-    for (const AtmosphericLayer& layer : defaults.layers)
+    for (const AtmosphericLayer& layer : defaults.layers) {
         EXPECT_EQ(layer.concentration, ConcentrationMode::fixed) << layer.name;
+        EXPECT_EQ(layer.fixed_concentration, 0.125) << layer.name;
+    }
 }
 
 TEST(ScenarioFile, CloudsComeFromTheCatalogueUnlessTheirNumbersAreGiven) {

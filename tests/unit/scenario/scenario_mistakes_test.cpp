@@ -127,6 +127,18 @@ TEST(ScenarioMistakes, KeysThatExcludeEachOtherAreRefused) {
               "test.toml:3:24: atmosphere.environment_noise_db: stands beside environment; expected one of the two");
 }
 
+TEST(ScenarioMistakes, AFixedConcentrationNeedsItsNumber) {
+    const std::string wanted = "without a number; expected fixed_concentration, too";
+    const std::string all = "[atmosphere]\nconcentration = \"fixed\"\n", number = "fixed_concentration = 0.5\n";
+    const std::string layer = "[[atmosphere.layer]]\ntop_m = 50\n";
+    EXPECT_EQ(mistakes_of(all), "test.toml:2:17: atmosphere.concentration: is 'fixed' " + wanted);
+    EXPECT_EQ(mistakes_of(all + layer), "test.toml:3:1: atmosphere.layer.concentration: is 'fixed' " + wanted);
+    EXPECT_EQ(mistakes_of(layer + "concentration = \"fixed\""),
+              "test.toml:3:17: atmosphere.layer.concentration: is 'fixed' " + wanted);
+    for (const std::string& sound : {all + number, all + number + layer, all + layer + number})
+        EXPECT_TRUE(read_scenario(sound, "test.toml")) << sound;
+}
+
 TEST(ScenarioMistakes, StartsThatAreNoUtcAreRefused) {
     EXPECT_THAT(mistakes_of("[run]\nstart = \"yesterday\""),
                 AllOf(HasSubstr("test.toml:2:9: run.start: 'yesterday' is not a UTC time"), HasSubstr("or \"now\"")));

@@ -104,6 +104,7 @@ environment_noise_db = 17.5
 sea_level_temperature_k = 290.5
 oxygen_constant_ghz2 = 0.227
 concentration = "midpoint"
+fixed_concentration = 0.625
 zenith_dry_delay_m = 2.25
 zenith_dry_decay_per_m = 0.000125
 zenith_wet_delay_m = 0.25
