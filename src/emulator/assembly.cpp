@@ -6,6 +6,7 @@
 #include "modern_assembly.hpp"
 #include "receiver_assembly.hpp"
 #include "recorded_files.hpp"
+#include "weather_warnings.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -195,38 +196,6 @@ Result<void> judge_timeline(const Scenario& scenario, Assembly& assembly) {
     return {};
 }
 
-// The antenna's height as the model of the air takes it, and what it counts from.
-struct WeatherHeight {
-    Metres height;
-    std::string_view above;
-};
-
-// MODELS.md 3.6 has one sphere for the shells and the antenna; only D-03 asks for the geoid.
-WeatherHeight weather_height(const Scenario& scenario, const Geodetic& place, const Geoid* geoid) {
-    if (scenario.model.sensor_model) return {place.height.above_ellipsoid, "above the ellipsoid"};
-    const Metres undulation = geoid != nullptr ? geoid->undulation(place.latitude, place.longitude) : Metres(0);
-    return {above_sea_level(place.height, undulation).above_sea_level, "above the sea"};
-}
-
-// Weather whose upper end is known to lie below the antenna.
-void warn_of_weather_below(const Scenario& scenario, const Geoid* geoid, std::vector<std::string>& warnings) {
-    const auto* fixed = std::get_if<FixedSettings>(&scenario.trajectory);
-    if (fixed == nullptr) return;
-    const auto [height, above] = weather_height(scenario, fixed->at, geoid);
-    const Rain& rain = scenario.atmosphere.rain;
-    if (rain.rate_mm_h > 0 && height >= rain.top)
-        warnings.push_back(
-            fmt::format("atmosphere.rain_top_m: rain falls from {:g} m {}, below the antenna at {:.0f} m, and weakens "
-                        "nothing there",
-                        rain.top.value(), above, height.value()));
-    for (const CloudDeck& deck : scenario.atmosphere.clouds)
-        if (height >= deck.top)
-            warnings.push_back(
-                fmt::format("atmosphere.cloud: {} ends {:g} m {}, below the antenna at {:.0f} m, and weakens nothing "
-                            "there",
-                            deck.kind, deck.top.value(), above, height.value()));
-}
-
 }  // namespace
 
 std::string scenario_digest(const Scenario& scenario, const DataFolders& data, GpsTime start, std::uint64_t scene) {
@@ -252,14 +221,10 @@ std::unique_ptr<Geoid> find_geoid(const DataFolders& data, std::vector<std::stri
 
 std::vector<std::string> scenario_warnings(const Scenario& scenario, const Geoid* geoid) {
     std::vector<std::string> warnings = scenario.warnings;
-    if (!scenario.model.sensor_model && !scenario.sensor_model_keys.empty())
-        warnings.push_back(
-            fmt::format("atmosphere.{}: of the sensor models; the modern model takes clouds and rain from [atmosphere] "
-                        "and the rest from [model.modern]",
-                        fmt::join(scenario.sensor_model_keys, ", atmosphere.")));
     if (!scenario.model.sensor_model)
         warnings.insert(warnings.end(), scenario.model.modern.idle_keys.begin(), scenario.model.modern.idle_keys.end());
-    warn_of_weather_below(scenario, geoid, warnings);
+    for (std::string& warning : weather_warnings(scenario, geoid))
+        warnings.push_back(std::move(warning));
     if (scenario.scene.given() && !city_acts(scenario))
         warnings.emplace_back("scene: errors = \"none\" leaves the buildings out, whose echoes are errors");
     return warnings;

@@ -60,29 +60,6 @@ void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesyste
     }
 }
 
-// The modern model has its own air: of [atmosphere] it takes clouds and rain.
-constexpr std::string_view sensor_model_atmosphere_keys[] = {"total_electron_content_tecu",
-                                                             "tec_source",
-                                                             "ionosphere_loss_db",
-                                                             "riometer_absorption_30mhz_db",
-                                                             "ionosphere_base_m",
-                                                             "environment",
-                                                             "environment_noise_db",
-                                                             "sea_level_temperature_k",
-                                                             "oxygen_constant_ghz2",
-                                                             "concentration",
-                                                             "fixed_concentration",
-                                                             "zenith_dry_delay_m",
-                                                             "zenith_dry_decay_per_m",
-                                                             "zenith_wet_delay_m",
-                                                             "rain_model",
-                                                             "clouds_apply_concentration",
-                                                             "gravity_mps2",
-                                                             "molar_mass_kg_per_mol",
-                                                             "gas_constant_j_per_mol_k",
-                                                             "earth_radius_m",
-                                                             "layer"};
-
 // What only the whole scenario knows of its expectations: its receivers, faults and commands.
 void check_expectations(TableReader& top, const Scenario& scenario) {
     std::vector<std::string> entries, receivers;
@@ -112,8 +89,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     top.table("model", [&](TableReader& t) { read_model_keys(t, scenario.model, folder); });
     top.table("atmosphere", [&](TableReader& t) {
         read_atmosphere_keys(t, scenario.atmosphere);
-        for (const std::string_view key : sensor_model_atmosphere_keys)
-            if (t.has(key)) scenario.sensor_model_keys.emplace_back(key);
+        scenario.atmosphere_keys = t.keys();
     });
     top.table("scene", [&](TableReader& t) { read_scene_keys(t, scenario.scene, folder); });
     read_receivers(top, scenario, context);

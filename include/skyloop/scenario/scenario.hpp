@@ -201,8 +201,7 @@ struct Scenario {
     ModelSettings model;
     AtmosphereParameters atmosphere;
     SceneEntry scene;
-    std::vector<std::string>
-        sensor_model_keys;  ///< keys of [atmosphere] that were given and act in sensor models alone
+    std::vector<std::string> atmosphere_keys;                              ///< those of [atmosphere] that were given
     std::vector<ReceiverEntry> receivers = std::vector<ReceiverEntry>(1);  ///< at least one
     std::vector<OutputSettings> outputs;                                   ///< what is told beside the receivers' wires
     std::vector<FaultEntry> faults;

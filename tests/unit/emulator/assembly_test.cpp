@@ -394,6 +394,22 @@ TEST(Assembly, TellsOfKeysAndWeatherThatCannotAct) {
                 Contains(HasSubstr("atmosphere.cloud: fog ends")));
     EXPECT_THAT(assembled(mountain + "rain_mm_h = 100\nrain_top_m = 5000").warnings,
                 Not(Contains(HasSubstr("rain falls from"))));
+    EXPECT_THAT(assembled("[model]\nname = \"whole-path\"\n" + mountain + "rain_mm_h = 100").warnings,
+                Not(Contains(HasSubstr("rain falls from"))))
+        << "which would weaken nothing below its top, either";
+}
+
+TEST(Assembly, TellsOfTheAirThatItsModelDoesNotTake) {
+    const auto of_model = [](const std::string& name) {
+        const std::string air = "[atmosphere]\nrain_mm_h = 100\nzenith_wet_delay_m = 0.1\nenvironment = \"city\"\n";
+        return assembled("[model]\nname = \"" + name + "\"\n" + air).warnings;
+    };
+    const auto idle = [](const std::string& keys) { return Contains(StartsWith(keys + ": without effect in ")); };
+    EXPECT_THAT(of_model("modern"), idle("atmosphere.environment, atmosphere.zenith_wet_delay_m"));
+    EXPECT_THAT(of_model("whole-path"), idle("atmosphere.rain_mm_h"));
+    for (const char* name : {"refraction", "ideal", "constant-sigma", "satellite-count"})
+        EXPECT_THAT(of_model(name), idle("atmosphere.rain_mm_h, atmosphere.zenith_wet_delay_m")) << name;
+    EXPECT_THAT(of_model("baseline"), Not(Contains(HasSubstr("without effect in"))));
 }
 
 // Two maps of the whole globe, at 22 and 24 o'clock of 1 January 2017.
