@@ -10,6 +10,7 @@
 #include "scenario_keys.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/time/utc_time.hpp"
+#include "skyloop/verdict/expectation_sentence.hpp"
 
 namespace skyloop {
 namespace {
