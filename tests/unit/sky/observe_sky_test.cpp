@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -33,7 +34,7 @@ TruthState moving_from(const Geodetic& place, GpsTime time, const Velocity<Enu>&
 GpsTime gps_text(const std::string& text) { return to_gps_time(parse_utc(text).value(), LeapSeconds::constant(0)); }
 
 // The records of a scene's files, which ';' parts.
-NavigationData scene_data(const std::string& files) {
+NavigationData scene_data(const std::string& files, const EphemerisSelection& selection = {}) {
     std::vector<Ephemeris> records;
     std::istringstream names(files);
     for (std::string name; std::getline(names, name, ';');) {
@@ -41,7 +42,12 @@ NavigationData scene_data(const std::string& files) {
         EXPECT_TRUE(file) << file.error().message;
         records.insert(records.end(), file->records.begin(), file->records.end());
     }
-    return NavigationData(records, std::nullopt, files);
+    return NavigationData(records, std::nullopt, files, selection);
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+    std::istringstream stream(text);
+    return {std::istream_iterator<std::string>(stream), {}};
 }
 
 TruthState scene_truth(const OracleRow& row) {
@@ -60,11 +66,7 @@ TEST(ObserveSky, SeesTheSatellitesOfTheScenes) {
             if (s.id.constellation != Constellation::sbas && s.healthy && s.elevation.deg() >= 5)
                 seen.push_back(to_string(s.id));
         std::sort(seen.begin(), seen.end());
-        std::vector<std::string> expected;
-        std::istringstream words(row.text("satellites"));
-        for (std::string word; words >> word;)
-            expected.push_back(word);
-        EXPECT_EQ(seen, expected);
+        EXPECT_EQ(seen, words_of(row.text("satellites")));
         const auto count = [&](char letter) {
             return std::count_if(seen.begin(), seen.end(), [&](const std::string& s) { return s[0] == letter; });
         };
@@ -72,6 +74,24 @@ TEST(ObserveSky, SeesTheSatellitesOfTheScenes) {
         EXPECT_EQ(count('E'), row.integer("n_gal"));
         EXPECT_EQ(count('C'), row.integer("n_bds"));
         EXPECT_EQ(count('R'), row.integer("n_glo"));
+        ++scenes;
+    }
+    EXPECT_EQ(scenes, 5);
+}
+
+// By the rule of the baseline: of GPS, not before its toe nor 7200 s after it (MODELS.md D-02, D-19).
+TEST(ObserveSky, SeesTheSatellitesOfTheErrorScale) {
+    SKYLOOP_REQUIRE_SHARED(nav, "oracles/nav");
+    int scenes = 0;
+    for (const OracleRow& row : oracle_rows("paper_error_scale.csv")) {
+        SCOPED_TRACE(row.id());
+        const NavigationData data = scene_data(row.text("nav_files"), {EphemerisRule::forward, Seconds(7200)});
+        std::vector<std::string> used;
+        for (const SatelliteInView& s : observe_sky(scene_truth(row), data).satellites)
+            if (s.id.constellation == Constellation::gps && s.healthy && s.elevation.deg() >= 5)
+                used.push_back(to_string(s.id));
+        std::sort(used.begin(), used.end());
+        EXPECT_EQ(used, words_of(row.text("satellites")));
         ++scenes;
     }
     EXPECT_EQ(scenes, 5);
