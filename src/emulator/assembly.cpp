@@ -3,6 +3,7 @@
 #include "fault_warnings.hpp"
 #include "input_files.hpp"
 #include "limit_warnings.hpp"
+#include "load_ionosphere_maps.hpp"
 #include "modern_assembly.hpp"
 #include "receiver_assembly.hpp"
 #include "recorded_files.hpp"
@@ -39,15 +40,22 @@ ErrorModelSettings error_model_settings(const Scenario& scenario, const Simulati
     return settings;
 }
 
-EffectSettings effect_settings(const Scenario& scenario, const NavigationSource& navigation, const Geoid* geoid) {
+Result<std::vector<std::unique_ptr<PropagationEffect>>> sensor_effects_of(const Scenario& scenario,
+                                                                          const SimulationSetup& setup) {
     EffectSettings settings;
     settings.atmosphere = scenario.atmosphere;
     settings.link_budget = scenario.model.link;
     settings.whole_path = scenario.model.whole_path;
     settings.refraction = scenario.model.refraction;
-    settings.klobuchar = navigation.klobuchar();
-    settings.geoid = geoid;
-    return settings;
+    settings.klobuchar = setup.navigation->klobuchar();
+    settings.geoid = setup.geoid;
+    if (scenario.atmosphere.tec_source == TecSource::ionex) {
+        auto maps = load_ionosphere_maps(scenario.tec_maps);
+        if (!maps) return fail(maps.error());
+        settings.maps = std::move(*maps);
+    }
+    settings.run = span_of_tables(scenario, setup.start);
+    return effects_for(*scenario.model.sensor_model, settings);
 }
 
 bool city_acts(const Scenario& scenario) { return scenario.model.sensor_model || scenario.model.modern.errors; }
@@ -246,11 +254,10 @@ ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::Boa
 }
 
 Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSetup& setup) {
-    const NavigationSource& navigation = *setup.navigation;
     auto effects =
         scenario.model.sensor_model
-            ? effects_for(*scenario.model.sensor_model, effect_settings(scenario, navigation, setup.geoid))
-            : modern_effects_of(scenario, navigation, {setup.geoid, setup.start, setup.data, setup.gas_losses});
+            ? sensor_effects_of(scenario, setup)
+            : modern_effects_of(scenario, *setup.navigation, {setup.geoid, setup.start, setup.data, setup.gas_losses});
     if (!effects) return fail(effects.error());
     FixMaker fix_maker = scenario.model.sensor_model ? FixMaker(make_error_model(error_model_settings(scenario, setup)))
                                                      : FixMaker(measuring_receiver(scenario, setup));

@@ -20,6 +20,7 @@ void add_world_files(const Scenario& scenario, std::vector<InputFile>& files) {
     for (const auto& file : scenario.sky.navigation)
         files.push_back({file});
     if (const auto& maps = scenario.model.modern.ionosphere_maps; !maps.empty()) files.push_back({maps});
+    if (!scenario.tec_maps.empty()) files.push_back({scenario.tec_maps});
     for (const auto& table : scenario.model.modern.tables)
         files.push_back({table});
     for (const auto& file : scenario.scene.buildings)

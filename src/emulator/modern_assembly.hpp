@@ -24,10 +24,6 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
                                                                           const NavigationSource& navigation,
                                                                           const WorldData& world);
 
-/// Of a run without an end: until when the maps of its ionosphere reach, of which the last then holds on. Nothing where
-/// the run has an end or no maps act.
-std::optional<std::string> warning_of_last_map(const Scenario& scenario);
-
 /// The receiver's own part. Navigation and geoid outlive it.
 MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationSetup& setup);
 

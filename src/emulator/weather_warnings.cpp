@@ -14,8 +14,9 @@ using AtmosphereKeys = std::span<const std::string_view>;
 
 // Of [atmosphere]: what weakens signals as it passes by, what delays them, and the noise that all C/N0 is over.
 constexpr std::string_view cloud_and_rain_keys[] = {"cloud", "rain_mm_h", "rain_top_m"};
-constexpr std::string_view delay_keys[] = {"tec_source", "total_electron_content_tecu", "zenith_dry_delay_m",
-                                           "zenith_dry_decay_per_m", "zenith_wet_delay_m"};
+constexpr std::string_view delay_keys[] = {
+    "tec_source",        "tec_maps", "total_electron_content_tecu", "zenith_dry_delay_m", "zenith_dry_decay_per_m",
+    "zenith_wet_delay_m"};
 constexpr std::string_view environment_keys[] = {"environment", "environment_noise_db"};
 
 // What a model but the baseline takes of [atmosphere]; that takes all.

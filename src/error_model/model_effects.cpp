@@ -11,6 +11,13 @@ namespace skyloop {
 namespace {
 
 Result<std::unique_ptr<PropagationEffect>> ionosphere_effect(const EffectSettings& s) {
+    if (s.atmosphere.tec_source == TecSource::ionex) {
+        if (!s.maps)
+            return fail(ErrorCode::input,
+                        "the electron content is to come from maps and none are given; expected an IONEX file");
+        if (const auto covered = check_coverage(*s.maps, s.run); !covered) return fail(covered.error());
+        return std::make_unique<TecIonosphereDelay>(s.maps->maps);
+    }
     const bool wants_broadcast = s.atmosphere.tec_source != TecSource::constant;
     if (wants_broadcast && s.klobuchar) return std::make_unique<TecIonosphereDelay>(*s.klobuchar);
     if (s.atmosphere.tec_source == TecSource::header)

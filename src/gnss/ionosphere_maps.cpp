@@ -79,4 +79,10 @@ std::optional<Tecu> vertical_content(const IonosphereMaps& maps, const PiercePoi
     return *first * (1 - fraction) + *second * fraction;
 }
 
+std::optional<Tecu> held_content(const IonosphereMaps& maps, const PiercePoint& where, GpsTime time) {
+    if (maps.maps.empty()) return std::nullopt;
+    const IonosphereMap& last = maps.maps.back();
+    return time > last.time ? turned_content(maps, last, where, time) : vertical_content(maps, where, time);
+}
+
 }  // namespace skyloop

@@ -1,8 +1,5 @@
 #include "skyloop/propagation/ionosphere_truth.hpp"
 
-#include <fmt/format.h>
-
-#include <cmath>
 #include <utility>
 
 #include "lowest_elevation.hpp"
@@ -81,56 +78,19 @@ public:
         if (!stands_below(maps_.shell, truth)) return Metres(0);
         const PiercePoint where = pierce_point(maps_.shell, truth.geodetic, direction_of(satellite));
         // From the run's start on and on the globe there is a value everywhere: the maps have been searched for holes.
-        return shell_delay(maps_.shell, vertical(where, truth.time).value_or(Tecu(0)), satellite, truth, carrier);
+        return shell_delay(maps_.shell, held_content(maps_, where, truth.time).value_or(Tecu(0)), satellite, truth,
+                           carrier);
     }
 
 private:
-    // A run without an end outlasts its maps: the last of them holds.
-    [[nodiscard]] std::optional<Tecu> vertical(const PiercePoint& where, GpsTime time) const {
-        const IonosphereMap& last = maps_.maps.back();
-        return time > last.time ? turned_content(maps_, last, where, time) : vertical_content(maps_, where, time);
-    }
-
     IonosphereMaps maps_;
 };
 
-std::string gps_day(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); }
-
-// A place without a value: a node of the grid, or one of those that a grid of less than the globe does not reach.
-std::optional<PiercePoint> hole_in(const IonosphereMaps& maps, const IonosphereMap& map) {
-    const GridAxis &latitude = maps.latitude, &longitude = maps.longitude;
-    const auto line = [](const GridAxis& axis, std::size_t i) {
-        return axis.first + axis.step * static_cast<double>(i);
-    };
-    for (std::size_t node = 0; node < map.content_tecu.size(); ++node)
-        if (std::isnan(map.content_tecu[node]))
-            return PiercePoint{line(latitude, node / longitude.count), line(longitude, node % longitude.count)};
-    // Halfway on from the last meridian to the first, and there at the poles.
-    const Angle once_around = Angle::degrees(std::copysign(360, longitude.step.rad()));
-    const Angle between = (line(longitude, longitude.count - 1) + longitude.first + once_around) * 0.5;
-    for (const Angle pole : {Angle::degrees(-90), Angle::degrees(90)})
-        if (const PiercePoint where{pole, between}; !map_content(maps, map, where)) return where;
-    return std::nullopt;
-}
-
 Result<std::unique_ptr<IonosphereTruth>> make_map_truth(const ModernContext& context) {
-    if (!context.maps || context.maps->maps.maps.empty())
+    if (!context.maps)
         return fail(ErrorCode::input, "the ionosphere is to come from maps and none are given; expected an IONEX file");
-    const auto& [file, maps] = *context.maps;
-    const GpsTime first = maps.maps.front().time, last = maps.maps.back().time;
-    if (context.run.first < first || context.run.last > last)
-        return fail(ErrorCode::input,
-                    fmt::format("{}: its maps span {} to {}; the run lasts from {} to {}", file, gps_day(first),
-                                gps_day(last), gps_day(context.run.first), gps_day(context.run.last)));
-    for (const IonosphereMap& map : maps.maps) {
-        const auto hole = hole_in(maps, map);
-        if (hole)
-            return fail(ErrorCode::input,
-                        fmt::format("{}: the map of {} has no value at latitude {:.2f}°, longitude {:.2f}°; expected "
-                                    "maps of the whole globe",
-                                    file, gps_day(map.time), hole->latitude.deg(), hole->longitude.deg()));
-    }
-    return std::make_unique<MapTruth>(maps);
+    if (const auto covered = check_coverage(*context.maps, context.run); !covered) return fail(covered.error());
+    return std::make_unique<MapTruth>(context.maps->maps);
 }
 
 EffectiveIonisation ionisation_of(const IonosphereParameters& parameters, const BroadcastIonosphere& broadcast) {

@@ -24,6 +24,8 @@ Tecu tec_of_vertical_delay(Metres vertical_delay) { return Tecu(vertical_delay.v
 Tecu TecIonosphereDelay::vertical_content(const SatelliteInView& satellite, const TruthState& truth) const {
     if (const Tecu* constant = std::get_if<Tecu>(&content_)) return *constant;
     const SkyDirection direction{satellite.azimuth, satellite.elevation};
+    if (const IonosphereMaps* maps = std::get_if<IonosphereMaps>(&content_))
+        return held_content(*maps, pierce_point(maps->shell, truth.geodetic, direction), truth.time).value_or(Tecu(0));
     const auto& broadcast = std::get<KlobucharCoefficients>(content_);
     return tec_of_vertical_delay(klobuchar_delay(broadcast, truth.geodetic, direction, truth.time).vertical);
 }

@@ -164,12 +164,22 @@ void read_environment(TableReader& atmosphere, AtmosphereParameters& p) {
     atmosphere.quantity("environment_noise_db", p.environment_noise, {0, 100});
 }
 
-void read_ionosphere(TableReader& atmosphere, AtmosphereParameters& p) {
-    static constexpr std::array<Word<TecSource>, 3> sources{
-        {{"automatic", TecSource::automatic}, {"header", TecSource::header}, {"constant", TecSource::constant}}};
-    // A number given is a number meant: it switches the broadcast coefficients off unless the source is named as well.
+void read_ionosphere(TableReader& atmosphere, Scenario& scenario, const std::filesystem::path& folder) {
+    AtmosphereParameters& p = scenario.atmosphere;
+    static constexpr std::array<Word<TecSource>, 4> sources{{{"automatic", TecSource::automatic},
+                                                             {"header", TecSource::header},
+                                                             {"constant", TecSource::constant},
+                                                             {"ionex", TecSource::ionex}}};
+    // A number given is a number meant, and so are maps: they switch the broadcast coefficients off unless the source
+    // is named as well.
+    const bool has_maps = atmosphere.has("tec_maps");
     if (atmosphere.has("total_electron_content_tecu")) p.tec_source = TecSource::constant;
+    if (has_maps) p.tec_source = TecSource::ionex;
     atmosphere.word("tec_source", sources, p.tec_source);
+    if (has_maps)
+        atmosphere.file_path("tec_maps", folder, scenario.tec_maps);
+    else if (p.tec_source == TecSource::ionex)
+        atmosphere.mistake("tec_source", "is ionex, but tec_maps names no file; expected an IONEX file");
     atmosphere.quantity("total_electron_content_tecu", p.total_electron_content, {0, 1000});
     atmosphere.quantity("ionosphere_loss_db", p.ionosphere_loss, {0, 100});
     atmosphere.quantity("riometer_absorption_30mhz_db", p.riometer_absorption_30mhz, {0, 100});
@@ -191,7 +201,8 @@ void read_model_keys(TableReader& model, ModelSettings& settings, const std::fil
     read_simple_models(model, settings);
 }
 
-void read_atmosphere_keys(TableReader& atmosphere, AtmosphereParameters& p) {
+void read_atmosphere_keys(TableReader& atmosphere, Scenario& scenario, const std::filesystem::path& folder) {
+    AtmosphereParameters& p = scenario.atmosphere;
     atmosphere.quantity("sea_level_temperature_k", p.sea_level_temperature, {100, 400});
     atmosphere.number("gravity_mps2", p.gravity_mps2, {0.1, 100});
     atmosphere.number("molar_mass_kg_per_mol", p.molar_mass_kg_per_mol, {0.001, 1});
@@ -205,7 +216,7 @@ void read_atmosphere_keys(TableReader& atmosphere, AtmosphereParameters& p) {
     read_clouds(atmosphere, p);
     read_rain(atmosphere, p);
     read_environment(atmosphere, p);
-    read_ionosphere(atmosphere, p);
+    read_ionosphere(atmosphere, scenario, folder);
 }
 
 }  // namespace skyloop

@@ -89,7 +89,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     if (auto path = read_trajectory_keys(top, context, scenario.warnings)) scenario.trajectory = std::move(*path);
     top.table("model", [&](TableReader& t) { read_model_keys(t, scenario.model, folder); });
     top.table("atmosphere", [&](TableReader& t) {
-        read_atmosphere_keys(t, scenario.atmosphere);
+        read_atmosphere_keys(t, scenario, folder);
         scenario.atmosphere_keys = t.keys();
     });
     top.table("scene", [&](TableReader& t) { read_scene_keys(t, scenario.scene, folder); });

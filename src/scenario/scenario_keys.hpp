@@ -20,7 +20,8 @@ void tell_idle(TableReader& table, ModernSettings& settings, std::string_view na
 /// Those of the world: air, antenna, interference.
 void read_modern_propagation_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder);
 void read_model_keys(TableReader& model, ModelSettings& settings, const std::filesystem::path& folder);
-void read_atmosphere_keys(TableReader& atmosphere, AtmosphereParameters& parameters);
+/// Of [atmosphere]: Scenario::atmosphere and tec_maps.
+void read_atmosphere_keys(TableReader& atmosphere, Scenario& scenario, const std::filesystem::path& folder);
 
 /// Reads the list `constellations` of a scenario's [sky] or a board's [navigation].
 void read_constellation_list(TableReader& table, std::vector<Constellation>& constellations);

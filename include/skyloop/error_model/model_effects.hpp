@@ -13,6 +13,7 @@
 #include "skyloop/propagation/atmosphere_parameters.hpp"
 #include "skyloop/propagation/effect.hpp"
 #include "skyloop/propagation/link_budget_parameters.hpp"
+#include "skyloop/propagation/named_ionosphere_maps.hpp"
 #include "skyloop/propagation/whole_path_parameters.hpp"
 #include "skyloop/time/utc_time.hpp"
 
@@ -25,6 +26,8 @@ struct EffectSettings {
     WholePathParameters whole_path;
     RefractionParameters refraction;
     std::optional<KlobucharCoefficients> klobuchar;  ///< of the navigation data
+    std::optional<NamedIonosphereMaps> maps{};       ///< for the source `ionex`
+    TimeSpan run{};                                  ///< first and last instant of the run, which they must span
     const Geoid* geoid = nullptr;                    ///< must outlive the effects; without one heights stay ellipsoidal
     LeapSeconds leap_seconds = LeapSeconds::announced();
 };
@@ -37,7 +40,8 @@ struct EffectSettings {
 ///     whole-path                               one attenuation, TEC and Niell delays, link budget
 ///     baseline                                 layered attenuation, TEC and Niell delays, link budget
 ///
-/// Fails with `input` when the electron content is to come from navigation data that has no coefficients.
+/// Fails with `input` when the electron content is to come from navigation data that has no coefficients, or from maps
+/// that are not there or that do not cover the run and the globe.
 Result<std::vector<std::unique_ptr<PropagationEffect>>> effects_for(ErrorModelKind kind,
                                                                     const EffectSettings& settings);
 

@@ -44,4 +44,7 @@ std::optional<Tecu> turned_content(const IonosphereMaps& maps, const IonosphereM
 /// value.
 std::optional<Tecu> vertical_content(const IonosphereMaps& maps, const PiercePoint& where, GpsTime time);
 
+/// The same, but after the last map that one, turned with the Sun: for runs that outlast their maps.
+std::optional<Tecu> held_content(const IonosphereMaps& maps, const PiercePoint& where, GpsTime time);
+
 }  // namespace skyloop

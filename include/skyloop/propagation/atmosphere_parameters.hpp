@@ -51,6 +51,7 @@ enum class TecSource {
     automatic,  ///< the broadcast coefficients when there are any, else the constant
     header,
     constant,
+    ionex,  ///< maps, of a file
 };
 
 /// The atmosphere of the baseline profile (MODELS.md 3.6–3.8, 3.11).

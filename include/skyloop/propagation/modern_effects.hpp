@@ -16,15 +16,10 @@
 #include "skyloop/propagation/atmosphere_parameters.hpp"
 #include "skyloop/propagation/effect.hpp"
 #include "skyloop/propagation/modern_parameters.hpp"
+#include "skyloop/propagation/named_ionosphere_maps.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
-
-/// Maps of the ionosphere and where they come from.
-struct NamedIonosphereMaps {
-    std::string file;  ///< for messages
-    IonosphereMaps maps;
-};
 
 /// What the effects need to know of the run.
 struct ModernContext {

@@ -1,8 +1,10 @@
 /// The article's ionospheric delay: electron content times a fitted obliquity.
 #pragma once
 
+#include <utility>
 #include <variant>
 
+#include "skyloop/gnss/ionosphere_maps.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
 #include "skyloop/propagation/effect.hpp"
 
@@ -22,13 +24,16 @@ public:
     explicit TecIonosphereDelay(Tecu vertical) : content_(vertical) {}
     /// The electron content of the broadcast model above each satellite's pierce point.
     explicit TecIonosphereDelay(const KlobucharCoefficients& broadcast) : content_(broadcast) {}
+    /// That of the maps there, with the obliquity of the article, not the maps' own mapping. After the last
+    /// of them that one holds. Where and when they have none there is none: check_coverage() looks for that before.
+    explicit TecIonosphereDelay(IonosphereMaps maps) : content_(std::move(maps)) {}
 
     void apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) override;
     /// The vertical electron content that `satellite` is seen through.
     [[nodiscard]] Tecu vertical_content(const SatelliteInView& satellite, const TruthState& truth) const;
 
 private:
-    std::variant<Tecu, KlobucharCoefficients> content_;
+    std::variant<Tecu, KlobucharCoefficients, IonosphereMaps> content_;
 };
 
 }  // namespace skyloop

@@ -200,6 +200,7 @@ struct Scenario {
     std::filesystem::path trajectory_file{};  ///< TOML that an option took it from; empty: none
     ModelSettings model;
     AtmosphereParameters atmosphere;
+    std::filesystem::path tec_maps{};  ///< IONEX file of the atmosphere's electron content; empty: none
     SceneEntry scene;
     std::vector<std::string> atmosphere_keys;                              ///< those of [atmosphere] that were given
     std::vector<ReceiverEntry> receivers = std::vector<ReceiverEntry>(1);  ///< at least one

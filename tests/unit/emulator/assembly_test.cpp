@@ -143,6 +143,7 @@ TEST(Assembly, TheDigestKnowsWhatTheFilesHoldThatARunReads) {
         {"board", [&](Scenario& s) { s.receivers[0].board = file.string(); }},
         {"state", [&](Scenario& s) { s.receivers[0].state_file = file; }},
         {"IONEX", [&](Scenario& s) { s.model.modern.ionosphere_maps = file; }},
+        {"electron content", [&](Scenario& s) { s.tec_maps = file; }},
         {"tables", [&](Scenario& s) { s.model.modern.tables = {file}; }}};
     for (const auto& [name, read] : readers) {
         Scenario scenario = emulator_scenario("");
@@ -162,6 +163,7 @@ TEST(Assembly, AWireDoesNotTakeThePlaceOfWhatTheRunReads) {
         {"trajectory", [&](Scenario& s) { s.trajectory_file = file; }},
         {"board", [&](Scenario& s) { s.receivers[0].board = file.string(); }},
         {"IONEX", [&](Scenario& s) { s.model.modern.ionosphere_maps = file; }},
+        {"electron content", [&](Scenario& s) { s.tec_maps = file; }},
         {"tables", [&](Scenario& s) { s.model.modern.tables = {file}; }}};
     for (const auto& [name, read] : readers) {
         Scenario scenario = emulator_scenario("[model]\nname = \"ideal\"");

@@ -71,5 +71,29 @@ TEST(EffectsFor, AHeaderWithoutCoefficientsIsRefusedWhereItMatters) {
     EXPECT_TRUE(effects_for(ErrorModelKind::ideal, settings));
 }
 
+TEST(EffectsFor, ElectronContentComesFromMapsThatCoverTheRun) {
+    const GpsTime start = to_gps_time(2111, 0.0);
+    EffectSettings settings;
+    settings.atmosphere.tec_source = TecSource::ionex;
+    const auto refusal = [&] {
+        const auto effects = effects_for(ErrorModelKind::baseline, settings);
+        return effects ? std::string("none") : effects.error().message;
+    };
+    EXPECT_EQ(refusal(), "the electron content is to come from maps and none are given; expected an IONEX file");
+    IonosphereMaps maps;
+    maps.latitude = {Angle::degrees(90), Angle::degrees(-90), 3};
+    maps.longitude = {Angle::degrees(-180), Angle::degrees(90), 5};
+    maps.maps = {{start, std::vector<double>(15, 20.0)},
+                 {start + std::chrono::hours(2), std::vector<double>(15, 20.0)}};
+    settings.maps = NamedIonosphereMaps{"day.i", maps};
+    settings.run = {start, start + std::chrono::hours(3)};
+    EXPECT_EQ(refusal().rfind("day.i: its maps span ", 0), 0U) << refusal();
+    settings.run.last = start + std::chrono::hours(1);
+    EXPECT_EQ(refusal(), "none");
+    test::ModelRun run({}, settings);
+    const SkyView sky = test::sky_of({{40, 90}});
+    EXPECT_NEAR(run.epoch(sky, 0).arrivals.satellites.front().iono_delay.value(), 20 * 0.162, 0.01);
+}
+
 }  // namespace
 }  // namespace skyloop

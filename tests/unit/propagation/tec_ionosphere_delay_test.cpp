@@ -44,5 +44,30 @@ TEST(TecIonosphereDelay, BroadcastContentIsTheVerticalDelayAtThePiercePoint) {
     EXPECT_NEAR(scene.after(effect).iono_delay.value(), 2.4447843077 * ionosphere_obliquity(Angle::degrees(20)), 1e-6);
 }
 
+// Of two maps, a day apart, on the same slope from south to north.
+IonosphereMaps sloping_maps(GpsTime first) {
+    IonosphereMaps maps;
+    maps.latitude = {Angle::degrees(90), Angle::degrees(-5), 37};
+    maps.longitude = {Angle::degrees(-180), Angle::degrees(5), 73};
+    IonosphereMap map{first, {}};
+    for (int i = 0; i < 37; ++i)
+        map.content_tecu.insert(map.content_tecu.end(), 73, 10.0 + i);
+    maps.maps = {map, {first + std::chrono::days(1), map.content_tecu}};
+    return maps;
+}
+
+TEST(TecIonosphereDelay, ContentOfMapsIsThatAtThePiercePointWithTheObliquityOfTheArticle) {
+    OneSatellite scene(Angle::degrees(30), Metres(22e6), Geodetic::degrees(40, -100, 0));
+    scene.truth.time = to_gps_time(2111, 593100.0);
+    const IonosphereMaps maps = sloping_maps(scene.truth.time - std::chrono::hours(1));
+    TecIonosphereDelay effect(maps);
+    const SatelliteInView& satellite = scene.sky.satellites.front();
+    const PiercePoint there = pierce_point(maps.shell, scene.truth.geodetic, {satellite.azimuth, satellite.elevation});
+    const double content = 10 + (90 - there.latitude.deg()) / 5;
+    EXPECT_NEAR(effect.vertical_content(satellite, scene.truth).value(), content, 1e-9);
+    EXPECT_NEAR(scene.after(effect).iono_delay.value(), 0.162 * content * ionosphere_obliquity(Angle::degrees(30)),
+                1e-9);
+}
+
 }  // namespace
 }  // namespace skyloop

@@ -179,6 +179,15 @@ TEST(ScenarioFile, AnElectronContentSwitchesTheBroadcastCoefficientsOff) {
         TecSource::automatic);
 }
 
+TEST(ScenarioFile, MapsOfTheElectronContentAreItsSource) {
+    const Scenario maps = scenario_of("[atmosphere]\ntec_maps = \"day.i\"");
+    EXPECT_EQ(maps.atmosphere.tec_source, TecSource::ionex);
+    EXPECT_EQ(maps.tec_maps.filename(), "day.i");
+    const Scenario other = scenario_of(test::every_key_text);
+    EXPECT_EQ(other.atmosphere.tec_source, TecSource::header) << "a source that is named goes before them";
+    EXPECT_EQ(other.tec_maps.filename(), "day.i");
+}
+
 TEST(ScenarioFile, ExplicitKeysGoBeforeThePresetInAnyOrder) {
     const auto fractions = [](std::string_view keys) {
         const BaselineParameters p = scenario_of("[model.baseline]\n" + std::string(keys)).model.baseline;

@@ -139,6 +139,13 @@ TEST(ScenarioMistakes, AFixedConcentrationNeedsItsNumber) {
         EXPECT_TRUE(read_scenario(sound, "test.toml")) << sound;
 }
 
+TEST(ScenarioMistakes, ElectronContentOfMapsNeedsThem) {
+    EXPECT_EQ(mistakes_of("[atmosphere]\ntec_source = \"ionex\""),
+              "test.toml:2:14: atmosphere.tec_source: is ionex, but tec_maps names no file; expected an IONEX file");
+    EXPECT_EQ(mistakes_of("[atmosphere]\ntec_maps = \"\""),
+              "test.toml:2:12: atmosphere.tec_maps: is empty; expected the path of a file");
+}
+
 TEST(ScenarioMistakes, StartsThatAreNoUtcAreRefused) {
     EXPECT_THAT(mistakes_of("[run]\nstart = \"yesterday\""),
                 AllOf(HasSubstr("test.toml:2:9: run.start: 'yesterday' is not a UTC time"), HasSubstr("or \"now\"")));

@@ -97,6 +97,7 @@ residual_fraction = 0.125
 [atmosphere]
 total_electron_content_tecu = 12.5
 tec_source = "header"
+tec_maps = "day.i"
 ionosphere_loss_db = 0.5
 riometer_absorption_30mhz_db = 1.5
 ionosphere_base_m = 70000
