@@ -228,17 +228,23 @@ PlaceOnEarth::Extent extent_of(const std::vector<CityObject>& objects) {
         if (const auto* surfaces = best_surfaces(object))
             for (const ObjectSurface& surface : *surfaces)
                 for (const Eigen::Vector3d& point : surface.rings.front())
-                    extent.include(point.head<2>());
+                    extent.include(surface.reference_point.value_or(point).head<2>());
     return extent;
 }
 
+/// Changes coordinates of the file; shapes go where their reference points go.
 template <class Change>
 void change_points(std::vector<CityObject>& objects, Change change) {
     for (CityObject& object : objects)
         for (auto& [level, surfaces] : object.levels)
-            for (ObjectSurface& surface : surfaces)
+            for (ObjectSurface& surface : surfaces) {
+                if (surface.reference_point) {
+                    change(*surface.reference_point);
+                    continue;
+                }
                 for (auto& ring : surface.rings)
                     std::for_each(ring.begin(), ring.end(), change);
+            }
 }
 
 /// Whether numbers are degrees though their system is none that is known, by themselves. Those of EPSG stand in its
@@ -270,6 +276,29 @@ ReferenceSystem settle_system(CityObjects& read, std::vector<std::string>& warni
         change_points(read.objects, [&](Eigen::Vector3d& point) { point.x() = turn(point.x()); });
     }
     return system;
+}
+
+/// From metres east, north and up of a place to the file's coordinates.
+Eigen::Vector3d place_beside(const Eigen::Vector3d& place, const Eigen::Vector3d& way, CoordinateKind kind) {
+    if (kind != CoordinateKind::geographic) return place + way;
+    const Angle latitude = Angle::degrees(place.y());
+    const CurvatureRadii radii = curvature_radii(latitude);
+    const double parallel = radii.prime_vertical * std::cos(latitude.rad());
+    return place + Eigen::Vector3d(Angle::radians(way.x() / parallel).deg(),
+                                   Angle::radians(way.y() / radii.meridian).deg(), way.z());
+}
+
+/// Lays the shapes of implicit geometries about their reference points.
+void lay_shapes(std::vector<CityObject>& objects, CoordinateKind kind) {
+    for (CityObject& object : objects)
+        for (auto& [level, surfaces] : object.levels)
+            for (ObjectSurface& surface : surfaces) {
+                if (!surface.reference_point) continue;
+                for (auto& ring : surface.rings)
+                    for (Eigen::Vector3d& point : ring)
+                        point = place_beside(*surface.reference_point, point, kind);
+                surface.reference_point.reset();
+            }
 }
 
 }  // namespace
@@ -311,6 +340,7 @@ Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std:
     file.dropped = read.dropped;
     file.warnings = std::move(read.warnings);
     const ReferenceSystem system = settle_system(read, file.warnings);
+    lay_shapes(read.objects, system.kind);
     const auto extent = extent_of(read.objects);
     if (extent.empty()) return fail(ErrorCode::input, fmt::format("{}: no surface that could be used", name));
     const double ground = ground_level(read.objects);

@@ -31,6 +31,8 @@ SurfaceUse surface_use(std::string_view type);
 struct ObjectSurface {
     std::vector<std::vector<Eigen::Vector3d>> rings;
     SurfaceUse use = SurfaceUse::unknown;
+    /// Of an implicit geometry (OGC 12-019, 8.2): the rings are metres east, north and up of it.
+    std::optional<Eigen::Vector3d> reference_point;
 };
 
 /// Surfaces by level of detail, times ten: "2.2" is 22.

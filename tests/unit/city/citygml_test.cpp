@@ -121,6 +121,59 @@ TEST(CityGml, LaysKnownProjectionsOnTheEarth) {
     EXPECT_THAT(seen->warnings, ::testing::ElementsAre(HasSubstr("at 520.000 of the file")));
 }
 
+/// A lamp whose shape is an upright triangle, 1 m wide and 2 m tall, that is doubled and put 10 m east and 1 m up of a
+/// reference point.
+std::string lamp(std::string_view place, std::string_view shape) {
+    return fmt::format(
+        "<frn:CityFurniture><frn:lod1ImplicitRepresentation><ImplicitGeometry>"
+        "<transformationMatrix>2 0 0 10 0 2 0 0 0 0 2 1 0 0 0 1</transformationMatrix>{}"
+        "<referencePoint><gml:Point><gml:pos>{}</gml:pos></gml:Point></referencePoint>"
+        "</ImplicitGeometry></frn:lod1ImplicitRepresentation></frn:CityFurniture>",
+        shape, place);
+}
+
+const std::string lamp_shape = "<relativeGMLGeometry><gml:MultiSurface gml:id='lamp'>" +
+                               gml_polygon("0 0 0 1 0 0 1 0 2 0 0 0") + "</gml:MultiSurface></relativeGMLGeometry>";
+
+TEST(CityGml, StandsImplicitGeometriesAtTheirReferencePoints) {
+    const auto utm = read_citygml(gml_file(
+        square_roof(691553.032, 5334730.031, 520) + lamp("691603.032 5334780.031 520", lamp_shape), "EPSG:25832"));
+    ASSERT_TRUE(utm) << utm.error().message;
+    EXPECT_TRUE(utm->warnings.empty()) << utm->warnings.at(0);
+    EXPECT_NEAR(utm->model.origin.latitude.deg(), 48.1374, 1e-8);
+    // East of the grid is 1.9187° south of east there.
+    const Eigen::Vector3d top(12 * std::cos(Angle::degrees(1.9187).rad()), -12 * std::sin(Angle::degrees(1.9187).rad()),
+                              5);
+    EXPECT_LT((highest_of(utm->model) - top).norm(), 0.02) << highest_of(utm->model).transpose();
+
+    const auto degrees = read_citygml(gml_file(
+        "<Building><lod2MultiSurface>" + gml_polygon("35 139 3 35 139.001 3 35.001 139.001 3 35.001 139 3 35 139 3") +
+            "</lod2MultiSurface></Building>" + lamp("35.0005 139.0005 3", lamp_shape),
+        "EPSG:6667"));
+    ASSERT_TRUE(degrees) << degrees.error().message;
+    EXPECT_LT((highest_of(degrees->model) - Eigen::Vector3d(12, 0, 5)).norm(), 0.02)
+        << highest_of(degrees->model).transpose();
+}
+
+TEST(CityGml, TakesLinkedShapesAndCountsImplicitGeometriesThatItCannotUse) {
+    const std::string town = square_roof(691550, 5334730, 520);
+    const auto file = read_citygml(
+        gml_file(town + lamp("691600 5334780 520", "<relativeGMLGeometry xlink:href='#lamp'/>") +
+                     lamp("691610 5334780 520", lamp_shape) +
+                     lamp("691620 5334780 520", "<libraryObject>lamp.obj</libraryObject>") +
+                     lamp("691630 5334780 520", "<relativeGMLGeometry xlink:href='#none'/>") + lamp("", lamp_shape),
+                 "EPSG:25832"));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(count_of(file->model, SurfaceKind::wall), 2u);
+    EXPECT_THAT(file->warnings, ::testing::ElementsAre(HasSubstr("3 implicit geometries")));
+    const std::string circle = "<relativeGMLGeometry><a gml:id='lamp'>" +
+                               lamp("0 0 0", "<relativeGMLGeometry xlink:href='#lamp'/>") +
+                               "</a></relativeGMLGeometry>";
+    const auto round = read_citygml(gml_file(town + lamp("691600 5334780 520", circle), "EPSG:25832"));
+    ASSERT_TRUE(round) << round.error().message;
+    EXPECT_THAT(round->warnings, ::testing::ElementsAre(HasSubstr("1 implicit geometries")));
+}
+
 TEST(CityGml, FilesOfOneMapLieBesideEachOther) {
     for (const std::string_view system : {"EPSG:28992", "EPSG:25832", "our own"}) {
         const auto first = read_citygml(gml_file(square_roof(691550, 5334730, 20), system));
