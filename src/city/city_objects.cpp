@@ -165,7 +165,7 @@ void ObjectBuilder::add_construction(const std::vector<ObjectSurface>& surfaces)
     for (const ObjectSurface& surface : surfaces) {
         if (surface.use == SurfaceUse::floor || surface.use == SurfaceUse::hidden) continue;
         if (told && surface.use == SurfaceUse::unknown) continue;  // a solid beside its own told surfaces
-        if (surface.use != SurfaceUse::unknown) {
+        if (surface.use != SurfaceUse::unknown && surface.use != SurfaceUse::by_slope) {
             add_surface(surface, surface.use == SurfaceUse::roof ? SurfaceKind::roof : SurfaceKind::wall);
             continue;
         }

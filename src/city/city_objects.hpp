@@ -23,7 +23,15 @@ enum class ObjectClass {
 ObjectClass object_class(std::string_view type);
 
 /// What a surface of a construction is.
-enum class SurfaceUse { unknown, wall, roof, floor, window, hidden };
+enum class SurfaceUse {
+    unknown,
+    wall,
+    roof,
+    floor,
+    window,
+    hidden,
+    by_slope  ///< untold among told ones, of a type of an extension or of none
+};
 /// By the name of its type without prefix; `floor` plates and what is `hidden` inside or not there are left out.
 SurfaceUse surface_use(std::string_view type);
 
@@ -53,7 +61,8 @@ struct CityObjects {
 
 /// Takes the highest level of detail of each object, places it and makes triangles: level 0 alone and floor plates
 /// are left out; parts replace their whole where they tell as much. Surfaces without a use are roofs when they rise by
-/// less than 60°, else walls; lowest level ones of a construction are its floor.
+/// less than 60°, else walls; lowest level ones of a construction are its floor. Beside ones that are told walls or
+/// roofs `unknown` ones are the same once more, as a solid, and are left out.
 Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std::string_view name,
                                  const CityFileSettings& settings);
 

@@ -137,6 +137,8 @@ CityGmlReader::Context CityGmlReader::entered(const pugi::xml_node& node, Contex
         context.level = (name[3] - '0') * 10;
     } else if (const SurfaceUse use = surface_use(name); use != SurfaceUse::unknown) {
         context.use = use;
+    } else if ((name == "boundedBy" || name == "boundary") && context.use == SurfaceUse::unknown) {
+        context.use = SurfaceUse::by_slope;  // unless an element within tells it
     }
     return context;
 }

@@ -112,6 +112,14 @@ const json& element(const json& list, std::size_t index) {
     return list.is_array() && index < list.size() ? list[index] : nothing;
 }
 
+/// Beside told surfaces of the same geometry those of no type that is known belong to it as well.
+void judge_untold(std::vector<ObjectSurface>& surfaces) {
+    const auto untold = [](const ObjectSurface& surface) { return surface.use == SurfaceUse::unknown; };
+    if (std::all_of(surfaces.begin(), surfaces.end(), untold)) return;
+    for (ObjectSurface& surface : surfaces)
+        if (untold(surface)) surface.use = SurfaceUse::by_slope;
+}
+
 void CityJsonReader::read_geometry(CityObject& object, const json& geometry) {
     const std::string_view type = text_member(geometry, "type");
     const int level = level_of_detail(member(geometry, "lod"));
@@ -133,6 +141,7 @@ void CityJsonReader::read_geometry(CityObject& object, const json& geometry) {
     } else {
         return;  // points and lines
     }
+    judge_untold(surfaces);
     auto& of_level = object.levels[std::max(level, 0)];
     of_level.insert(of_level.end(), std::make_move_iterator(surfaces.begin()), std::make_move_iterator(surfaces.end()));
 }

@@ -68,6 +68,17 @@ TEST(CityGml, TakesToldSurfacesOfTheHighestLevel) {
     EXPECT_THAT(file->warnings.at(0), HasSubstr("EPSG:28992"));
 }
 
+TEST(CityGml, JudgesBoundariesOfAnotherTypeBySlope) {
+    const auto file =
+        read_citygml(gml_file("<Building><lod2Solid>" + gml_polygon(wall_places) +
+                              "</lod2Solid><boundedBy><RoofSurface><lod2MultiSurface>" + gml_polygon(roof_places) +
+                              "</lod2MultiSurface></RoofSurface></boundedBy><boundedBy><x:Facade><lod2MultiSurface>" +
+                              gml_polygon(wall_places) + "</lod2MultiSurface></x:Facade></boundedBy></Building>"));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(count_of(file->model, SurfaceKind::roof), 2u);
+    EXPECT_EQ(count_of(file->model, SurfaceKind::wall), 2u) << "the solid says the same once more";
+}
+
 TEST(CityGml, TellsWallsAndRoofsOfASolidBySlope) {
     const auto file =
         read_citygml(gml_file("<bldg:Building><bldg:lod1Solid>" + gml_polygon(roof_places) + gml_polygon(wall_places) +

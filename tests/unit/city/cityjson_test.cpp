@@ -71,6 +71,19 @@ TEST(CityJson, TakesTheHighestLevelAndWhatSemanticsTell) {
     EXPECT_EQ(file->model.materials, (std::vector<std::string>{"concrete", "glass"}));
 }
 
+TEST(CityJson, JudgesSurfacesWithoutAKnownTypeAmongToldOnesBySlope) {
+    const std::string told = solid("\"2.2\"", R"({"surfaces":[{"type":"GroundSurface"},{"type":"RoofSurface"},
+        {"type":"WallSurface"},{"type":"+RoofWall"}],"values":[[0,null,2,2,null,3]]})");
+    const auto file = read_cityjson(cube_file(fmt::format(R"("a":{{"type":"Building","geometry":[{}]}})", told)));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(count_of(file->model, SurfaceKind::roof), 2u);
+    EXPECT_EQ(count_of(file->model, SurfaceKind::wall), 8u);
+    const auto beside = read_cityjson(
+        cube_file(fmt::format(R"("a":{{"type":"Building","geometry":[{},{}]}})", told, solid("\"2.2\""))));
+    ASSERT_TRUE(beside) << beside.error().message;
+    EXPECT_DOUBLE_EQ(area_of(beside->model), 500) << "a solid beside its own told surfaces";
+}
+
 TEST(CityJson, PartsReplaceTheirWhole) {
     const std::string objects = fmt::format(
         R"("a":{{"type":"Building","children":["b"],"geometry":[{}]}},"b":{{"type":"BuildingPart","parents":["a"],"geometry":[{}]}})",
