@@ -163,6 +163,11 @@ Result<Outlines> GeoJsonReader::read(const json& root) {
         read_feature(root);
     } else if (type == "Polygon" || type == "MultiPolygon" || type == "GeometryCollection") {
         read_geometry(root, outline_use({}, settings_, unnamed_));
+    } else if (member(root, "elements").is_array()) {
+        return fail(ErrorCode::input,
+                    fmt::format("{}: this is JSON of Overpass; expected GeoJSON, or ask it for [out:xml] "
+                                "and name the file .osm",
+                                name_));
     } else {
         return fail(ErrorCode::input,
                     fmt::format("{}: \"type\" is \"{}\", expected \"FeatureCollection\", \"Feature\", "

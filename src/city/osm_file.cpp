@@ -67,6 +67,15 @@ bool is_there(const osmium::OSMObject& object, const std::set<std::int64_t>& del
     return object.visible() && !deleted.contains(object.id());
 }
 
+/// A way's corner. PBF files with LocationsOnWays and what Overpass calls "geom" tell its place within the way, may
+/// have no node of it and even no number: it is then known by that place, as a number that is greater than those of
+/// nodes.
+osmium::object_id_type corner_of_way(const osmium::NodeRef& node) {
+    if (!node.location().valid()) return node.ref();
+    constexpr std::int64_t half_turns = std::int64_t{1} << 31U;  // more than 180° in units of 1e-7°
+    return (node.location().x() + half_turns) << 31U | (node.location().y() + half_turns / 2);
+}
+
 void OsmReader::take(const osmium::Way& way) {
     if (!is_there(way, deletions_.ways)) {
         ways_.erase(way.id());
@@ -74,8 +83,10 @@ void OsmReader::take(const osmium::Way& way) {
     }
     Way& kept = ways_[way.id()];
     kept = {};
-    for (const osmium::NodeRef& node : way.nodes())
-        kept.nodes.push_back(node.ref());
+    for (const osmium::NodeRef& node : way.nodes()) {
+        kept.nodes.push_back(corner_of_way(node));
+        if (node.location().valid()) places_[kept.nodes.back()] = {node.location().lon(), node.location().lat()};
+    }
     const OutlineUse use = outline_use(tags_of_object(way.tags()), settings_, UnnamedOutline::nothing);
     if (use.kind != OutlineUse::Kind::none) kept.use = use;
 }
@@ -194,6 +205,12 @@ Outlines OsmReader::outlines() {
     return std::move(found_);
 }
 
+/// What to do about elements of Overpass that libosmium refuses; empty for other mistakes.
+std::string_view overpass_remedy(std::string_view what) {
+    const bool within = what.ends_with("inside <member> allowed") || what.ends_with(">: center");
+    return within ? "; ask Overpass for \"out body; >; out skel qt;\"" : "";
+}
+
 /// The first line of what libosmium says.
 std::string first_line(std::string_view what) {
     std::string line(what.substr(0, what.find_first_of("\r\n")));
@@ -221,7 +238,10 @@ Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std:
     try {
         reader.read(bytes, std::string(format));
     } catch (const osmium::xml_error& error) {
-        return fail(ErrorCode::input, fmt::format("{}:{}: {}", name, error.line, first_line(error.what())));
+        // Of elements in the wrong place libosmium tells no line.
+        const std::string line = error.line > 0 ? fmt::format(":{}", error.line) : "";
+        return fail(ErrorCode::input,
+                    fmt::format("{}{}: {}{}", name, line, first_line(error.what()), overpass_remedy(error.what())));
     } catch (const std::exception& error) {
         return fail(ErrorCode::input, fmt::format("{}: damaged or cut: {}", name, first_line(error.what())));
     }

@@ -210,7 +210,7 @@ void add_outline_warnings(CityFile& file, std::size_t without_height, const City
                                             without_height, file.buildings, settings.default_height));
     if (file.dropped > 0)
         file.warnings.push_back(
-            fmt::format("{} outlines without area or with wrong corners were left out", file.dropped));
+            fmt::format("{} outlines without area or with wrong or missing corners were left out", file.dropped));
 }
 
 }  // namespace
@@ -240,7 +240,11 @@ Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::s
     file.dropped = read.dropped;
     file.warnings = std::move(read.warnings);
     const PlaceOnEarth::Extent extent = extent_of(read.outlines, read.system);
-    if (extent.empty()) return fail(ErrorCode::input, fmt::format("{}: no outline of a building or wood", name));
+    if (extent.empty())
+        return fail(ErrorCode::input,
+                    read.dropped == 0 ? fmt::format("{}: no outline of a building or wood", name)
+                                      : fmt::format("{}: the corners of all {} outlines are wrong or not in the file",
+                                                    name, read.dropped));
     const auto place = PlaceOnEarth::make(read.system, extent, std::nullopt, settings);
     if (!place) return fail(place.error().code, fmt::format("{}: {}", name, place.error().message));
     file.model.origin = place->origin();

@@ -47,7 +47,7 @@ struct Outline {
 struct Outlines {
     std::vector<Outline> outlines;
     ReferenceSystem system;
-    std::size_t dropped = 0;  ///< outlines without area or with wrong corners
+    std::size_t dropped = 0;  ///< outlines without area or with wrong or missing corners
     std::vector<std::string> warnings;
 };
 

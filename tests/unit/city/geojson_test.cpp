@@ -282,6 +282,7 @@ TEST(GeoJson, RefusesWithOneClearLine) {
                 HasSubstr("town.geojson:2:13: the text ends"));
     EXPECT_THAT(geojson_refusal("{\"type\" \"Feature\"}"), HasSubstr("town.geojson:1:"));
     EXPECT_THAT(geojson_refusal(R"({"type":"Topology"})"), HasSubstr("\"Topology\""));
+    EXPECT_THAT(geojson_refusal(R"({"version":0.6,"elements":[]})"), HasSubstr("ask it for [out:xml]"));
     EXPECT_THAT(geojson_refusal(R"({"type":"FeatureCollection","features":3})"), HasSubstr("\"features\""));
     EXPECT_THAT(geojson_refusal(collection("")), HasSubstr("no outline"));
     EXPECT_THAT(geojson_refusal("[1e999]"), HasSubstr("number"));

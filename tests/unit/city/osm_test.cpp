@@ -187,6 +187,45 @@ TEST(OpenStreetMap, DropsOpenAndCutOutlinesAndSaysSo) {
     EXPECT_THAT(file->warnings, ::testing::ElementsAre(HasSubstr("2 outlines")));
 }
 
+TEST(OpenStreetMap, TakesPlacesWithinWays) {
+    const std::array<std::string, 4> places{R"(lat="50" lon="10")", R"(lat="50" lon="10.001")",
+                                            R"(lat="50.001" lon="10.001")", R"(lat="50.001" lon="10")"};
+    const std::string tags = osm_tags({{"building", "yes"}, {"height", "10"}});
+    for (const bool numbered : {true, false}) {
+        const auto corners = [&](std::initializer_list<int> which) {
+            std::string text;
+            for (const int i : which)
+                text += fmt::format("<nd {} {}/>", numbered ? fmt::format("ref='{}'", i + 1) : "",
+                                    places.at(static_cast<std::size_t>(i)));
+            return text;
+        };
+        const auto file = read_osm(
+            "<osm version='0.6'><way id='1'><bounds minlat='50' minlon='10' maxlat='50.001' "
+            "maxlon='10.001'/>" +
+            corners({0, 1, 2, 3, 0}) + tags + "</way></osm>");
+        ASSERT_TRUE(file) << file.error().message;
+        EXPECT_NEAR(roof_area(file->model), square_area(0.001), 0.5);
+        const auto joined =
+            read_osm("<osm version='0.6'><way id='1'>" + corners({0, 1, 2}) + "</way><way id='2'>" +
+                     corners({2, 3, 0}) + "</way><relation id='1'><member type='way' ref='1' role='outer'/>" +
+                     "<member type='way' ref='2' role='outer'/>" + osm_tags({{"type", "multipolygon"}}) + tags +
+                     "</relation></osm>");
+        ASSERT_TRUE(joined) << joined.error().message;
+        EXPECT_NEAR(roof_area(joined->model), square_area(0.001), 0.5);
+    }
+}
+
+TEST(OpenStreetMap, SaysWhatToAskOverpassFor) {
+    EXPECT_THAT(osm_refusal("<osm version='0.6'><relation id='1'><member type='way' ref='1' role=''><nd lat='1' "
+                            "lon='2'/></member></relation></osm>"),
+                ::testing::AllOf(StartsWith("town.osm: "), HasSubstr("ask Overpass for \"out body;")));
+    EXPECT_THAT(osm_refusal("<osm version='0.6'><way id='1'><center lat='1' lon='2'/></way></osm>"),
+                HasSubstr("ask Overpass for"));
+    EXPECT_THAT(
+        osm_refusal("<osm version='0.6'>" + osm_way(1, {1, 2, 3, 1}, osm_tags({{"building", "yes"}})) + "</osm>"),
+        HasSubstr("the corners of all 1 outlines are wrong or not in the file"));
+}
+
 TEST(OpenStreetMap, RefusesWithOneClearLine) {
     EXPECT_THAT(osm_refusal(""), HasSubstr("empty"));
     EXPECT_THAT(osm_refusal("<osm version='0.6'>\n<node"), HasSubstr("town.osm:2"));
@@ -233,8 +272,8 @@ std::string pbf_block(const std::string& type, const std::string& content) {
     return std::string(3, '\0') + static_cast<char>(header.size()) + header + blob;
 }
 
-/// A house of four nodes, 0.001° wide, and one way. Places count in 100 nanodegrees.
-std::string small_pbf() {
+/// A house of four nodes, 0.001° wide, and one way. Places count in 100 nanodegrees, and may stand in the way alone.
+std::string small_pbf(bool within_way = false) {
     const std::string strings = bytes_field(1, "") + bytes_field(1, "building") + bytes_field(1, "yes") +
                                 bytes_field(1, "height") + bytes_field(1, "25");
     std::string nodes;
@@ -245,11 +284,18 @@ std::string small_pbf() {
     for (std::size_t i = 0; i < 4; ++i)
         nodes += bytes_field(1, number_field(1, zigzag(static_cast<std::int64_t>(i) + 1)) +
                                     number_field(8, zigzag(places[i][0])) + number_field(9, zigzag(places[i][1])));
-    const std::string way = number_field(1, 1) + bytes_field(2, packed({1, 3})) + bytes_field(3, packed({2, 4})) +
-                            bytes_field(8, packed({zigzag(1), zigzag(1), zigzag(1), zigzag(1), zigzag(-3)}));
-    const std::string header = bytes_field(4, "OsmSchema-V0.6");
+    std::string way = number_field(1, 1) + bytes_field(2, packed({1, 3})) + bytes_field(3, packed({2, 4})) +
+                      bytes_field(8, packed({zigzag(1), zigzag(1), zigzag(1), zigzag(1), zigzag(-3)}));
+    std::string header = bytes_field(4, "OsmSchema-V0.6");
+    if (within_way) {
+        way += bytes_field(9, packed({zigzag(500'000'000), 0, zigzag(10'000), 0, zigzag(-10'000)})) +
+               bytes_field(10, packed({zigzag(100'000'000), zigzag(10'000), 0, zigzag(-10'000), 0}));
+        header += bytes_field(5, "LocationsOnWays");
+        nodes.clear();
+    }
+    const std::string group = nodes.empty() ? "" : bytes_field(2, nodes);
     return pbf_block("OSMHeader", header) +
-           pbf_block("OSMData", bytes_field(1, strings) + bytes_field(2, nodes) + bytes_field(2, bytes_field(3, way)));
+           pbf_block("OSMData", bytes_field(1, strings) + group + bytes_field(2, bytes_field(3, way)));
 }
 
 TEST(OpenStreetMap, ReadsPbfWholeAndRefusesItCut) {
@@ -263,6 +309,12 @@ TEST(OpenStreetMap, ReadsPbfWholeAndRefusesItCut) {
     EXPECT_NEAR(roof_area(file->model), square_area(0.001), 0.5);
     for (std::size_t size = 1; size < bytes.size(); size += 7)
         osm_refusal(bytes.substr(0, size), "osm.pbf");
+}
+
+TEST(OpenStreetMap, TakesPlacesWithinWaysOfPbf) {
+    const auto file = parse_osm(small_pbf(true), "osm.pbf", "town.osm", {});
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_NEAR(roof_area(file->model), square_area(0.001), 0.5);
 }
 
 TEST(OpenStreetMap, TellsWhereAPbfIsCut) {
