@@ -62,7 +62,7 @@ const std::vector<ObjectSurface>* best_surfaces(const CityObject& object) {
     if (object.levels.empty() || object.object_class == ObjectClass::ignored) return nullptr;
     const auto& [level, surfaces] = *object.levels.rbegin();
     const bool useful = level >= 10 || object.object_class != ObjectClass::construction;
-    return useful && !surfaces.empty() ? &surfaces : nullptr;
+    return useful ? &surfaces : nullptr;
 }
 
 int best_level(const CityObject& object) { return best_surfaces(object) ? object.levels.rbegin()->first : -1; }
@@ -222,6 +222,22 @@ std::vector<bool> replaced_objects(const std::vector<CityObject>& objects) {
     return replaced;
 }
 
+/// The warning of constructions that are told by level 0 alone, as wholes and parts; empty without any.
+std::string told_by_outlines(const std::vector<CityObject>& objects) {
+    std::vector<bool> outline(objects.size()), told(objects.size());
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        const std::size_t whole = objects[i].parent.value_or(i);
+        if (best_surfaces(objects[i])) told[whole] = true;
+        if (objects[i].object_class == ObjectClass::construction && !objects[i].levels.empty()) outline[whole] = true;
+    }
+    std::size_t alone = 0;
+    for (std::size_t i = 0; i < objects.size(); ++i)
+        alone += outline[i] && !told[i] ? 1 : 0;
+    if (alone == 0) return {};
+    return fmt::format(
+        "{} buildings or other constructions are told by their outlines alone (level 0) and were left out", alone);
+}
+
 PlaceOnEarth::Extent extent_of(const std::vector<CityObject>& objects) {
     PlaceOnEarth::Extent extent;
     for (const CityObject& object : objects)
@@ -342,7 +358,11 @@ Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std:
     const ReferenceSystem system = settle_system(read, file.warnings);
     lay_shapes(read.objects, system.kind);
     const auto extent = extent_of(read.objects);
-    if (extent.empty()) return fail(ErrorCode::input, fmt::format("{}: no surface that could be used", name));
+    const std::string outlines = told_by_outlines(read.objects);
+    if (extent.empty())
+        return fail(ErrorCode::input,
+                    fmt::format("{}: {}", name, outlines.empty() ? "no surface that could be used" : outlines));
+    if (!outlines.empty()) file.warnings.push_back(outlines);
     const double ground = ground_level(read.objects);
     const auto place = PlaceOnEarth::make(system, extent, ground, settings);
     if (!place) return fail(place.error().code, fmt::format("{}: {}: {}", name, system.name, place.error().message));

@@ -46,9 +46,9 @@ struct ObjectSurface {
 /// Surfaces by level of detail, times ten: "2.2" is 22.
 struct CityObject {
     ObjectClass object_class = ObjectClass::construction;
-    std::optional<std::size_t> parent;  ///< of a part of a building, in the list of objects
-    bool building = false;              ///< counts as one
-    std::map<int, std::vector<ObjectSurface>> levels;
+    std::optional<std::size_t> parent;                 ///< of a part of a building, in the list of objects
+    bool building = false;                             ///< counts as one
+    std::map<int, std::vector<ObjectSurface>> levels;  ///< none is empty
 };
 
 /// A file's objects, and what could not be read of them.
@@ -59,10 +59,10 @@ struct CityObjects {
     std::vector<std::string> warnings;
 };
 
-/// Takes the highest level of detail of each object, places it and makes triangles: level 0 alone and floor plates
-/// are left out; parts replace their whole where they tell as much. Surfaces without a use are roofs when they rise by
-/// less than 60°, else walls; lowest level ones of a construction are its floor. Beside ones that are told walls or
-/// roofs `unknown` ones are the same once more, as a solid, and are left out.
+/// Takes the highest level of detail of each object, places it and makes triangles: level 0 alone, which a warning
+/// counts, and floor plates are left out; parts replace their whole where they tell as much. Surfaces without a use are
+/// roofs when they rise by less than 60°, else walls; lowest level ones of a construction are its floor. Beside ones
+/// that are told walls or roofs `unknown` ones are the same once more, as a solid, and are left out.
 Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std::string_view name,
                                  const CityFileSettings& settings);
 

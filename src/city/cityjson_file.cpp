@@ -141,6 +141,7 @@ void CityJsonReader::read_geometry(CityObject& object, const json& geometry) {
     } else {
         return;  // points and lines
     }
+    if (surfaces.empty()) return;  // a level without any would hide the one below
     judge_untold(surfaces);
     auto& of_level = object.levels[std::max(level, 0)];
     of_level.insert(of_level.end(), std::make_move_iterator(surfaces.begin()), std::make_move_iterator(surfaces.end()));

@@ -84,6 +84,32 @@ TEST(CityJson, JudgesSurfacesWithoutAKnownTypeAmongToldOnesBySlope) {
     EXPECT_DOUBLE_EQ(area_of(beside->model), 500) << "a solid beside its own told surfaces";
 }
 
+TEST(CityJson, TakesTheLevelBelowOneWithoutSurfaces) {
+    for (const std::string_view boundaries : {"[]", "[[[0,1,99]]]"}) {
+        const auto file = read_cityjson(cube_file(fmt::format(
+            R"("a":{{"type":"Building","geometry":[{},{{"type":"MultiSurface","lod":"2","boundaries":{}}}]}})",
+            solid("\"1\""), boundaries)));
+        ASSERT_TRUE(file) << file.error().message;
+        EXPECT_DOUBLE_EQ(area_of(file->model), 500) << boundaries;
+    }
+}
+
+TEST(CityJson, CountsWhatIsToldByItsOutlineAlone) {
+    const std::string outline = R"({"type":"MultiSurface","lod":"0","boundaries":[[[0,1,2,3]]]})";
+    const std::string houses = fmt::format(
+        R"("a":{{"type":"Building","geometry":[{0}]}},"b":{{"type":"Building","geometry":[{0}]}},
+        "c":{{"type":"BuildingPart","parents":["b"],"geometry":[{0}]}})",
+        outline);
+    EXPECT_THAT(cityjson_refusal(cube_file(houses)),
+                HasSubstr("2 buildings or other constructions are told by their outlines alone"));
+    const auto file = read_cityjson(cube_file(houses + fmt::format(R"(,"d":{{"type":"Building","geometry":[{}]}},
+        "e":{{"type":"BuildingPart","parents":["d"],"geometry":[{}]}})",
+                                                                   outline, solid("\"1\""))));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->buildings, 1u);
+    EXPECT_THAT(file->warnings, ::testing::Contains(HasSubstr("2 buildings or other constructions")));
+}
+
 TEST(CityJson, PartsReplaceTheirWhole) {
     const std::string objects = fmt::format(
         R"("a":{{"type":"Building","children":["b"],"geometry":[{}]}},"b":{{"type":"BuildingPart","parents":["a"],"geometry":[{}]}})",
