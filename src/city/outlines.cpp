@@ -86,15 +86,24 @@ private:
     std::vector<std::size_t> wide_;
 };
 
-/// True for each outline whose parts cover at least half of it.
-std::vector<bool> outlines_of_parts(const std::vector<Outline>& outlines) {
+/// What a part does not tell is that of the building it lies in.
+void inherit(OutlineUse& part, const OutlineUse& whole) {
+    if (!part.top && whole.top && *whole.top > part.base) part.top = whole.top;
+    if (part.material.empty()) part.material = whole.material;
+}
+
+/// Lets parts inherit. @returns true for each outline whose parts cover at least half of it
+std::vector<bool> outlines_of_parts(std::vector<Outline>& outlines) {
     std::vector<double> covered(outlines.size());
     const BuildingGrid grid(outlines);
-    for (const Outline& outline : outlines) {
+    for (Outline& outline : outlines) {
         if (outline.use.kind != Kind::part) continue;
         const Inner inner = inner_of(outline.footprint);
         if (inner.area <= 0 || inner.point.cwiseAbs().maxCoeff() > 1e8) continue;
-        if (const auto whole = grid.around(inner.point)) covered[*whole] += inner.area;
+        const auto whole = grid.around(inner.point);
+        if (!whole) continue;
+        covered[*whole] += inner.area;
+        inherit(outline.use, outlines[*whole].use);
     }
     std::vector<bool> replaced(outlines.size());
     for (std::size_t i = 0; i < outlines.size(); ++i)

@@ -57,8 +57,9 @@ void turn_longitudes(Footprint& footprint, LongitudeTurn& turn);
 bool inside_ring(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& place);
 
 /// Places outlines and raises houses on them: the ground is level with the origin. Parts that cover at least half of a
-/// building's outline replace it. Wide woods become several prisms, so that they follow the Earth. Buildings without a
-/// height are `settings.default_height` tall, woods 12 m, of which the lowest quarter are trunks.
+/// building's outline replace it; what they do not tell of height and material is the building's. Wide woods become
+/// several prisms, so that they follow the Earth. Buildings without a height are `settings.default_height` tall, woods
+/// 12 m, of which the lowest quarter are trunks.
 Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::string_view name,
                                   const CityFileSettings& settings);
 

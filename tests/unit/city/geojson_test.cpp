@@ -264,6 +264,22 @@ TEST(GeoJson, PartsReplaceTheirBuilding) {
     EXPECT_EQ(kept->buildings, 2u);
 }
 
+TEST(GeoJson, PartsInheritWhatTheyDoNotTell) {
+    const std::string whole = feature(R"({"building":"yes","height":50,"building:material":"glass"})", square(0.001));
+    const auto file = read_geojson(
+        collection(feature(R"({"building:part":"yes","roof:shape":"gabled"})", square(0.00099)) + "," + whole));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->buildings, 1u);
+    EXPECT_TRUE(file->warnings.empty());
+    EXPECT_NEAR(highest_of(file->model).z(), 50, 0.1);
+    EXPECT_EQ(file->model.materials.at(file->model.triangles.front().material), "glass");
+    const auto above =
+        read_geojson(collection(whole + "," + feature(R"({"building:part":"yes","min_height":60})", square(0.0001))));
+    ASSERT_TRUE(above) << above.error().message;
+    EXPECT_EQ(above->buildings, 2u) << "one that begins above its building is as tall as a level";
+    EXPECT_NEAR(highest_of(above->model).z(), 63, 0.1);
+}
+
 TEST(GeoJson, DropsWhatIsNoPolygonAndSaysSo) {
     const auto file = read_geojson(
         collection(feature(R"({"height":9})", square(0.001)) + "," +
