@@ -207,7 +207,9 @@ bool ObjectBuilder::add_plants(const std::vector<ObjectSurface>& surfaces, bool 
     return true;
 }
 
-/// True for each object that is not shown: what parts tell better, and parts that tell less than their whole.
+/// True for each object that is not shown: what parts tell better, and parts that tell less than their whole. Of the
+/// same level a whole tells its main part (OGC 12-019, 10.3), beside which the others stand; where it repeats them,
+/// facets lie in each other, which blocks and reflects as one of them does.
 std::vector<bool> replaced_objects(const std::vector<CityObject>& objects) {
     std::vector<int> parts(objects.size(), -1);
     for (const CityObject& object : objects)
@@ -215,7 +217,7 @@ std::vector<bool> replaced_objects(const std::vector<CityObject>& objects) {
     std::vector<bool> replaced(objects.size());
     for (std::size_t i = 0; i < objects.size(); ++i) {
         const int own = best_level(objects[i]);
-        replaced[i] = own < 0 || parts[i] >= own;
+        replaced[i] = own < 0 || parts[i] > own;
         if (objects[i].parent && best_level(objects[*objects[i].parent]) > parts[*objects[i].parent])
             replaced[i] = true;
     }

@@ -60,9 +60,10 @@ struct CityObjects {
 };
 
 /// Takes the highest level of detail of each object, places it and makes triangles: level 0 alone, which a warning
-/// counts, and floor plates are left out; parts replace their whole where they tell as much. Surfaces without a use are
-/// roofs when they rise by less than 60°, else walls; lowest level ones of a construction are its floor. Beside ones
-/// that are told walls or roofs `unknown` ones are the same once more, as a solid, and are left out.
+/// counts, and floor plates are left out; parts replace their whole where they tell more, and stand beside it where
+/// they tell as much. Surfaces without a use are roofs when they rise by less than 60°, else walls; lowest level ones
+/// of a construction are its floor. Beside ones that are told walls or roofs `unknown` ones are the same once more, as
+/// a solid, and are left out.
 Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std::string_view name,
                                  const CityFileSettings& settings);
 

@@ -120,6 +120,18 @@ TEST(CityJson, PartsReplaceTheirWhole) {
     EXPECT_EQ(file->buildings, 1u);
 }
 
+TEST(CityJson, PartsOfTheSameLevelStandBesideTheirWhole) {
+    const auto wall = [](std::string_view corners) {
+        return fmt::format(R"([{{"type":"MultiSurface","lod":"2","boundaries":[[{}]]}}])", corners);
+    };
+    const auto file = read_cityjson(cube_file(fmt::format(
+        R"("a":{{"type":"Building","geometry":{}}},"b":{{"type":"BuildingPart","parents":["a"],"geometry":{}}})",
+        wall("[0,1,5,4]"), wall("[2,3,7,6]"))));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_DOUBLE_EQ(area_of(file->model), 200);
+    EXPECT_EQ(file->buildings, 1u);
+}
+
 TEST(CityJson, ReadsTerrainTreesAndTheRoomsOfNobody) {
     const std::string flat = R"({"type":"CompositeSurface","lod":1,"boundaries":[[[0,1,2,3]]]})";
     const auto file = read_cityjson(cube_file(fmt::format(

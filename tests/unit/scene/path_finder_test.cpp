@@ -35,6 +35,25 @@ TEST(PathFinder, FindsTheOnePathOverAWall) {
     EXPECT_LT((found[0].paths[0].arrival - mirrored).norm(), 1e-9);
 }
 
+TEST(PathFinder, AWallThatIsThereTwiceReflectsOnce) {
+    for (std::uint8_t material = 0; material < 2; ++material) {
+        CityModel city = empty_scene_city();
+        city.materials = {"concrete", "glass"};
+        add_wall(city, {30, -500}, {30, 500}, 0, 200);
+        const std::size_t once = city.triangles.size();
+        add_wall(city, {30, -500}, {30, 500}, 0, 200);
+        for (std::size_t i = once; i < city.triangles.size(); ++i)
+            city.triangles[i].material = material;
+        const Eigen::Vector3d antenna(0, 0, 1.5), direction = heading(40, 160);
+        const auto found =
+            paths_at(city, antenna, {satellite_at(7, antenna, direction, infinitely_far)}, search_of_everything());
+        ASSERT_THAT(found, SizeIs(1));
+        EXPECT_TRUE(found[0].line_of_sight);
+        ASSERT_THAT(found[0].paths, SizeIs(1)) << static_cast<int>(material);
+        EXPECT_NEAR(found[0].paths[0].excess, 2 * 30 * -direction.x(), 1e-6);
+    }
+}
+
 TEST(PathFinder, FollowsTheSphericalWaveOfASatellite) {
     CityModel city = empty_scene_city();
     add_wall(city, {300, -5000}, {300, 5000}, 0, 2000);
