@@ -59,10 +59,35 @@ OutlineTags tags_of(const json& properties) {
     return tags;
 }
 
+/// Takes a text between quotes off the front, and what stands before it; a backslash stands before quotes and
+/// backslashes within. @returns false when there is none
+bool take_quoted(std::string_view& text, std::string& word) {
+    word.clear();
+    for (std::size_t i = std::min(text.find('"'), text.size()) + 1; i < text.size(); ++i) {
+        if (text[i] == '"') {
+            text.remove_prefix(i + 1);
+            return true;
+        }
+        if (text[i] == '\\' && ++i == text.size()) break;
+        word += text[i];
+    }
+    return false;
+}
+
+/// Tags in one text as GDAL writes those of OpenStreetMap that have no column (PostgreSQL manual, "hstore"):
+/// "height"=>"21","name"=>"…".
+OutlineTags tags_of_hstore(std::string_view text) {
+    OutlineTags tags;
+    for (std::string key, value; take_quoted(text, key) && take_quoted(text, value);)
+        if (!value.empty()) tags.emplace(lowered_text(key), value);
+    return tags;
+}
+
 OutlineTags tags_of_feature(const json& feature) {
     const json& properties = member(feature, "properties");
     OutlineTags tags = tags_of(properties);
     tags.merge(tags_of(member(properties, "tags")));
+    tags.merge(tags_of_hstore(text_member(properties, "other_tags")));
     return tags;
 }
 

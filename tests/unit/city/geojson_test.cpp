@@ -174,6 +174,19 @@ TEST(GeoJson, AHeightThatTellsNothingHidesNoOther) {
     EXPECT_EQ(top_of(R"({"height":0,"levels":0})"), 9);
 }
 
+TEST(GeoJson, ReadsTheOtherTagsOfGdal) {
+    const auto top_of = [](std::string_view others) {
+        const auto file = read_geojson(
+            collection(feature(fmt::format(R"({{"building":"yes","other_tags":"{}"}})", others), square(0.001))));
+        EXPECT_TRUE(file) << file.error().message;
+        return file ? std::round(100 * highest_of(file->model).z()) / 100 : 0;
+    };
+    EXPECT_EQ(top_of(R"(\"building:levels\"=>\"6\",\"name\"=>\"the \\\"tower\\\", \\\\\",\"height\"=>\"21\")"), 21);
+    EXPECT_EQ(top_of(R"(\"building:levels\"=>\"6\")"), 18);
+    for (const std::string_view cut : {"", R"(\")", R"(\"height\"=>)", R"(\"height\"=>\"21)", R"(\"height\"=>\"21\\)"})
+        EXPECT_EQ(top_of(cut), 9) << cut;
+}
+
 TEST(GeoJson, ReadsThePropertiesOfOverture) {
     const auto file = read_geojson(
         collection(feature(R"({"num_floors":10,"roof_height":2.5,"is_underground":false})", square(0.001)) + "," +
