@@ -141,6 +141,13 @@ constexpr std::array<CityEnding, 16> city_endings{{{".obj", parse_named<parse_ob
                                                    {".tgz", parse_named<parse_mitsuba_archive>},
                                                    {".cityjson", parse_named<parse_cityjson>}}};
 
+/// Whether a file is a Mitsuba scene by its name. Hidden ones are none: macOS puts "._town.xml" beside "town.xml" in
+/// archives and on foreign disks.
+bool names_scene(std::string_view path) {
+    const std::string_view file = path.substr(path.rfind('/') + 1);
+    return !file.starts_with('.') && lowered_text(file).ends_with(".xml");
+}
+
 Result<CityFile> read_by_ending(const fs::path& path, const CityFileSettings& settings) {
     std::string name = lowered_text(path.filename().string());
     if (name.ends_with(".gz")) name.resize(name.size() - 3);
@@ -169,7 +176,7 @@ Result<CityFile> parse_mitsuba_archive(std::string_view bytes, std::string_view 
     std::string scene;
     std::size_t scenes = 0;
     for (const auto& [member, content] : *members)
-        if (lowered_text(member).ends_with(".xml") && scenes++ == 0) scene = member;
+        if (names_scene(member) && scenes++ == 0) scene = member;
     if (scenes != 1)
         return fail(ErrorCode::input, fmt::format("{}: holds {} .xml files; expected one Mitsuba scene", name, scenes));
     const std::string folder = scene.substr(0, scene.rfind('/') + 1);
@@ -188,7 +195,7 @@ Result<fs::path> file_of_city(const fs::path& path) {
     if (!fs::is_directory(path, error)) return path;
     std::vector<fs::path> scenes;
     for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
-        if (lowered_text(entry->path().extension().string()) == ".xml") scenes.push_back(entry->path());
+        if (names_scene(entry->path().filename().string())) scenes.push_back(entry->path());
     if (error) return fail(ErrorCode::outside, fmt::format("{}: {}", path.string(), error.message()));
     if (scenes.size() != 1)
         return fail(ErrorCode::input,

@@ -139,6 +139,13 @@ TEST(MitsubaScene, RefusesDamagedArchives) {
     }
 }
 
+TEST(MitsubaScene, PassesOverWhatMacOsPutsIntoArchives) {
+    const auto file =
+        read_archive(member("town/._town.xml", "not XML") + archive(scene(shape("a", "meshes/wall.ply", "front"))));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->model.triangles.size(), 2U);
+}
+
 TEST(MitsubaScene, ReadsLongNames) {
     const std::string folder(150, 'd');
     const std::string xml = scene(shape("a", "wall.ply", "front"));
@@ -162,6 +169,7 @@ TEST(MitsubaScene, IsReadFromAFolderAndByItsName) {
                 })),
                 HasSubstr("wall.ply"));
     std::ofstream(folder / "meshes/wall.ply") << wall_ply;
+    std::ofstream(folder / "._town.xml") << "not XML";
     for (const fs::path& path : {folder, folder / "town.xml"}) {
         const auto file = read_city(path, {});
         ASSERT_TRUE(file) << file.error().message;
