@@ -51,7 +51,7 @@ private:
     OsmDeletions deletions_;
     std::unordered_map<osmium::object_id_type, Eigen::Vector2d> places_;
     std::map<osmium::object_id_type, Way> ways_;
-    std::vector<Area> areas_;
+    std::map<osmium::object_id_type, Area> areas_;
     Outlines found_;
 };
 
@@ -92,6 +92,7 @@ void OsmReader::take(const osmium::Way& way) {
 }
 
 void OsmReader::take(const osmium::Relation& relation) {
+    areas_.erase(relation.id());
     if (!is_there(relation, deletions_.relations)) return;
     const OutlineTags tags = tags_of_object(relation.tags());
     const auto type = tags.find("type");
@@ -102,7 +103,7 @@ void OsmReader::take(const osmium::Relation& relation) {
     for (const osmium::RelationMember& one : relation.members())
         if (one.type() == osmium::item_type::way)
             (std::string_view(one.role()) == "inner" ? area.inner : area.outer).push_back(one.ref());
-    areas_.push_back(std::move(area));
+    areas_[relation.id()] = std::move(area);
 }
 
 void OsmReader::read(std::string_view bytes, const std::string& format) {
@@ -200,7 +201,7 @@ Outlines OsmReader::outlines() {
         else
             ++found_.dropped;
     }
-    for (const Area& area : areas_)
+    for (const auto& [id, area] : areas_)
         add_area(area);
     return std::move(found_);
 }

@@ -124,6 +124,23 @@ TEST(OpenStreetMap, BuildsNothingThatIsDeleted) {
     EXPECT_EQ(changed->buildings, 2U);
 }
 
+TEST(OpenStreetMap, TakesTheLastVersionOfAMultipolygon) {
+    const auto version = [](int number, std::string_view more, std::string_view height) {
+        return fmt::format(R"(<relation id="1" version="{}" {}><member type="way" ref="1" role="outer"/>)", number,
+                           more) +
+               osm_tags({{"type", "multipolygon"}, {"building", "yes"}, {"height", height}}) + "</relation>";
+    };
+    const std::string kept = osm_way(2, {5, 6, 7, 8, 5}, osm_tags({{"building", "yes"}, {"height", "5"}}));
+    const std::string ways = osm_way(1, {1, 2, 3, 4, 1}) + kept;
+    const auto changed = read_osm(osm_file(ways + version(1, "", "30") + version(2, "", "20")));
+    ASSERT_TRUE(changed) << changed.error().message;
+    EXPECT_EQ(changed->buildings, 2U);
+    EXPECT_NEAR(highest_of(changed->model).z(), 20, 0.01);
+    const auto deleted = read_osm(osm_file(ways + version(1, "", "30") + version(2, "visible='false'", "20")));
+    ASSERT_TRUE(deleted) << deleted.error().message;
+    EXPECT_EQ(deleted->buildings, 1U);
+}
+
 TEST(OpenStreetMap, BuildsAcrossThe180thMeridian) {
     const auto file = read_osm(
         R"(<osm version="0.6"><node id="1" lat="-16.8" lon="179.9999"/><node id="2" lat="-16.8" lon="-179.9999"/>
