@@ -77,6 +77,14 @@ TEST(TurnedContent, GoesOnWithTheSunPastItsInstant) {
               vertical_content(maps, pierced(0, -60), last.time));
 }
 
+TEST(HeldContent, IsThatOfTheLastMapAfterIt) {
+    const IonosphereMaps maps = open_globe();
+    const GpsTime between = midnight + std::chrono::minutes(30), after = maps.maps.back().time + std::chrono::hours(4);
+    EXPECT_EQ(held_content(maps, pierced(0, -100), between), vertical_content(maps, pierced(0, -100), between));
+    EXPECT_NEAR(held_content(maps, pierced(0, -60), after)->value(), 23, 1e-6);
+    EXPECT_FALSE(held_content({}, pierced(0, -60), after));
+}
+
 TEST(VerticalContent, HasNothingOutsideItsTime) {
     const IonosphereMaps maps = open_globe();
     EXPECT_FALSE(vertical_content(maps, pierced(0, 0), midnight - std::chrono::seconds(1)));
