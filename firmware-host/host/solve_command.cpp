@@ -58,6 +58,9 @@ std::string solved_row(const Fix& fix, bool velocity_known) {
                              fix.clock_bias.value());
 }
 
+// That of an observation whose file does not tell it.
+constexpr DbHz untold_cn0{0};
+
 NavigationParameters parameters_of(const SolveOptions& options) {
     NavigationParameters p;
     p.corrections.ionosphere = options.ionosphere == "none"        ? IonosphereCorrection::none
@@ -69,13 +72,16 @@ NavigationParameters parameters_of(const SolveOptions& options) {
     p.corrections.relative_humidity = options.humidity;
     p.corrections.default_ionosphere = true;
     p.filter.kind = options.filter == "none" ? FilterKind::none : FilterKind::smoothed;
+    // Files of orbits hold every record: none has to be heard from its satellite first.
+    p.data.decoding_cn0 = untold_cn0;
+    p.ephemeris_collection = Seconds(0);
     return p;
 }
 
 ReceiverSettings settings_of(const SolveOptions& options) {
     ReceiverSettings settings;
     settings.elevation_mask = Angle::degrees(options.mask_deg);
-    settings.minimum_cn0 = DbHz(0);  // a file may not tell it
+    settings.minimum_cn0 = untold_cn0;
     settings.dynamic_model = DynamicModel::airborne_4g;
     return settings;
 }

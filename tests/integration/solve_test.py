@@ -34,11 +34,11 @@ class Solve(unittest.TestCase):
         skyloop("simulate", scenario, "--board", "ublox-f9p", "--duration", 5, "--out", cls.folder)
         cls.nav = ["--nav", cls.folder / "navigation.rnx"]
 
-    def rewrite(self, change):
-        """A folder with the observations as `change` leaves their lines."""
+    def rewrite(self, change, run=None):
+        """A folder with the observations of a run, the common one by default, as `change` leaves their lines."""
         temporary = open_folder()
         self.addCleanup(temporary.cleanup)
-        lines = (self.folder / "observations.rnx").read_text(encoding="ascii").splitlines(keepends=True)
+        lines = ((run or self.folder) / "observations.rnx").read_text(encoding="ascii").splitlines(keepends=True)
         folder = pathlib.Path(temporary.name)
         (folder / "observations.rnx").write_text("".join(map(change, lines)), encoding="ascii")
         return folder
@@ -92,6 +92,21 @@ class Solve(unittest.TestCase):
         self.assertNotIn("no observations", text)
         _, text = solved(other, *self.nav, "--systems", "gps,galileo")
         self.assertIn("no observations of galileo", text)
+
+    def test_files_without_strengths_are_solved_beyond_their_first_records(self):
+        hours = self.folder / "hours"
+        skyloop("simulate", self.folder / "moves.toml", "--board", "ublox-f9p", "--rate", 0.02, "--duration", 3 * 3600, "--out", hours)
+
+        def without_strengths(line):
+            if "OBS TYPES" in line:
+                return re.sub(r" S(?=\d)", " X", line)
+            if re.match(r"[A-Z]\d\d", line):
+                return re.sub(r"(\.\d{3}.)\d", r"\1 ", line)
+            return line
+
+        rows, _ = solved(self.rewrite(without_strengths, hours), "--nav", hours / "navigation.rnx")
+        self.assertGreater(len(rows), 200)
+        self.assertEqual({row["fix_type"] for row in rows}, {"3d"})
 
     def test_orbits_of_another_day_are_told_of(self):
         path = self.folder / "other_day.sp3"
