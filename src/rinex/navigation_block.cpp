@@ -54,7 +54,9 @@ std::optional<KlobucharCoefficients>& klobuchar_of(BroadcastIonosphere& ionosphe
 }  // namespace
 
 BlockHead block_head(std::string_view line) {
-    return {trimmed(columns(line, 2, 4)), parse_satellite(columns(line, 6, 3)), trimmed(columns(line, 10, 4))};
+    const std::string_view sender = columns(line, 6, 3);
+    return {trimmed(columns(line, 2, 4)), sender.empty() ? std::nullopt : constellation_from_letter(sender.front()),
+            parse_satellite(sender), trimmed(columns(line, 10, 4))};
 }
 
 std::optional<NavigationMessage> message_of_block(const BlockHead& head) {
@@ -66,12 +68,11 @@ std::optional<NavigationMessage> message_of_block(const BlockHead& head) {
 }
 
 bool is_read_ionosphere(const BlockHead& head) {
-    if (head.type != "ION" || !head.satellite) return false;
-    const Constellation system = head.satellite->constellation;
-    if (head.message == "IFNV") return system == Constellation::galileo;
-    if (head.message == "D1D2") return system == Constellation::beidou;
-    return head.message == "LNAV" &&
-           (system == Constellation::gps || system == Constellation::qzss || system == Constellation::navic);
+    if (head.type != "ION") return false;
+    if (head.message == "IFNV") return head.system == Constellation::galileo;
+    if (head.message == "D1D2") return head.system == Constellation::beidou;
+    return head.message == "LNAV" && (head.system == Constellation::gps || head.system == Constellation::qzss ||
+                                      head.system == Constellation::navic);
 }
 
 bool take_ionosphere(const BlockHead& head, std::span<const Line> lines, BroadcastIonosphere& ionosphere) {
@@ -82,7 +83,7 @@ bool take_ionosphere(const BlockHead& head, std::span<const Line> lines, Broadca
     }
     const auto v = block_fields<8>(lines);
     if (!v) return false;
-    auto& target = klobuchar_of(ionosphere, head.satellite->constellation);
+    auto& target = klobuchar_of(ionosphere, *head.system);
     const KlobucharCoefficients told{{(*v)[0], (*v)[1], (*v)[2], (*v)[3]}, {(*v)[4], (*v)[5], (*v)[6], (*v)[7]}};
     if (!target && told != KlobucharCoefficients{}) target = told;
     return true;

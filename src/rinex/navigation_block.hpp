@@ -10,9 +10,10 @@
 
 namespace skyloop::rinex {
 
-/// "> EPH G02 LNAV".
+/// "> EPH G02 LNAV"; of coefficients of a whole system "> ION G   LNAV", too.
 struct BlockHead {
     std::string_view type;  ///< "EPH", "ION", "STO", "EOP"
+    std::optional<Constellation> system;
     std::optional<SatelliteId> satellite;
     std::string_view message;  ///< "LNAV", "INAV", "D1D2", …
 };

@@ -286,6 +286,26 @@ TEST(NavigationSystems, ReadsTheBlocksOfVersionFour) {
                 HasSubstr("found only messages of other kinds (1 'CNAV'); expected ephemerides of LNAV"));
 }
 
+// Coefficients are a system's, whichever satellite sent them; GNSS-SDR's files name no satellite.
+TEST(NavigationSystems, ReadsIonospheresOfSystemsWithoutASatellite) {
+    const std::string epoch = "    2024 03 05 02 00 00";
+    const auto klobuchar = [&](double first) {
+        return epoch + field(first) + field(2e-8) + field(-6e-8) + "\n    " + field(-1e-7) + field(8e4) + field(9e4) +
+               field(-6e4) + "\n    " + field(-5e5) + field(0) + "\n";
+    };
+    const NavigationFile file =
+        systems_of(header_v3("4.00") + "> ION G   LNAV\n" + klobuchar(1e-8) + "> ION C   D1D2\n" + klobuchar(3e-8) +
+                   "> ION E   IFNV\n" + epoch + field(120.75) + field(-0.19) + field(-7e-4) + "\n    " + field(0) +
+                   "\n" + "> EPH G05 LNAV\n" + kepler_text("G05"));
+    ASSERT_TRUE(file.ionosphere.gps && file.ionosphere.beidou && file.ionosphere.galileo);
+    EXPECT_EQ(file.ionosphere.gps->alpha[0], 1e-8);
+    EXPECT_EQ(file.ionosphere.beidou->alpha[0], 3e-8);
+    EXPECT_EQ((*file.ionosphere.galileo)[0], 120.75);
+    EXPECT_THAT(file.warnings, IsEmpty());
+    EXPECT_THAT(refusal_of(header_v3("4.00") + "> EPH G   LNAV\n" + kepler_text("G05")),
+                HasSubstr("expected a block header such as '> EPH G02 LNAV'"));
+}
+
 TEST(NavigationSystems, CountsDamagedBlocks) {
     const NavigationFile file =
         systems_of(header_v3("4.00") + "> EPH G05 LNAV\n" + kepler_text("G05") + "> STO GPUT LNAV\n    x\n" +
