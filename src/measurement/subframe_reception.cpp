@@ -7,6 +7,7 @@
 #include "skyloop/gnss/broadcast_glonass.hpp"
 #include "skyloop/gnss/broadcast_inav.hpp"
 #include "skyloop/gnss/broadcast_lnav.hpp"
+#include "warned_broadcast.hpp"
 
 namespace skyloop {
 namespace {
@@ -134,6 +135,7 @@ std::vector<Subframe> SubframeReception::receive(const Observations& observation
         tracked_since_.clear();
     }
     follow(observations, time);
+    const WarnedBroadcast broadcast(sent, observations);
     std::vector<Subframe> result;
     if (last_) {
         // Every message ends with a whole second of GPS time.
@@ -142,11 +144,11 @@ std::vector<Subframe> SubframeReception::receive(const Observations& observation
             if (end + travel_time <= *last_) continue;
             for (const auto& [tracked, since] : tracked_since_) {
                 if (end - length_of(tracked.first.constellation) + travel_time < since) continue;
-                auto received = message(tracked, sent, end);
+                auto received = message(tracked, broadcast, end);
                 if (!received) continue;
                 const auto length = record_length(tracked.first.constellation, tracked.second, end, leap_seconds_);
                 if (length && end - *length + travel_time >= since)
-                    received->record = sent.ephemeris(tracked.first, end);
+                    received->record = broadcast.ephemeris(tracked.first, end);
                 result.push_back(std::move(*received));
             }
         }

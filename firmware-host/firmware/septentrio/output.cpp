@@ -182,7 +182,7 @@ NavigationState without(const std::set<SatelliteId>& satellites, NavigationState
 
 RecordIssue issue_of(const Ephemeris& record) {
     const auto* kepler = std::get_if<KeplerEphemeris>(&record);
-    return {toe_of(record), iode_of(record), kepler == nullptr ? 0 : kepler->iodc};
+    return {toe_of(record), iode_of(record), kepler == nullptr ? 0 : kepler->iodc, is_healthy(record)};
 }
 
 std::vector<Bytes> due_messages(const SeptentrioState& receiver, const ReportContext& context) {

@@ -14,10 +14,11 @@
 
 namespace skyloop::firmware {
 
-/// A record as its satellite numbers it: which one it is.
+/// A record as its satellite numbers it: which one it is; and its health, which may change without a new number.
 struct RecordIssue {
     GpsTime toe;
     int iode = 0, iodc = 0;
+    bool healthy = true;
     bool operator==(const RecordIssue&) const = default;
 };
 

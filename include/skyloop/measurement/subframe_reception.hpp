@@ -16,7 +16,8 @@ namespace skyloop {
 
 /// Hands out what tracked satellites have sent since the epoch before: GPS and QZSS L1 C/A subframes of 6 s, Galileo
 /// E1-B and E5b-I pairs of pages of 2 s, BeiDou D1 subframes 1 to 3 of 6 s, GLONASS strings 1 to 5 of 2 s on L1. What
-/// no record tells is not sent: BeiDou's almanacs and D2, GLONASS' almanacs, SBAS.
+/// no record tells is not sent: BeiDou's almanacs and D2, GLONASS' almanacs, SBAS. Satellites that are called unhealthy
+/// send so in their ephemerides, in GPS's and QZSS's almanacs and in the records that become whole.
 ///
 /// A message counts when it ended between two epochs and its signal had its code locked at all epochs since it began.
 /// Ends are taken in GPS time at the satellite; a way of 70 ms brings those of the last tenth of a second into the next

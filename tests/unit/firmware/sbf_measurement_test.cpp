@@ -8,6 +8,7 @@
 #include "firmware/messages/sbf_measurement_messages.hpp"
 #include "firmware/messages/sbf_parts.hpp"
 #include "firmware/septentrio/modes.hpp"
+#include "firmware/septentrio/output.hpp"
 #include "sample_epochs.hpp"
 #include "skyloop/gnss/broadcast_lnav.hpp"
 #include "skyloop/gnss/constants.hpp"
@@ -175,6 +176,28 @@ TEST(SbfNavigation, WordsOfASubframeAreUprightWithTheirParity) {
     EXPECT_NEAR(nav->orbit.m_0, 1.25 / 3.14159265358979, 1e-12) << "semicircles";
     EXPECT_EQ(nav->orbit.toe, page->time.tow / 1000);
     EXPECT_EQ(nav->toe_week, nav->time.wnc % 1024);
+}
+
+TEST(SbfNavigation, ARecordComesAgainWhenItsHealthChanges) {
+    const BoardProfile board = sample_board(NmeaVersion::v4_0, {Constellation::gps});
+    NavigationState state = measuring_state();
+    KeplerEphemeris record;
+    record.satellite = gps_measured;
+    record.toe = record.toc = state.epoch.fix.time;
+    record.sqrt_a = 5153.7;
+    SeptentrioState receiver;
+    const auto blocks_with_health = [&](int health) {
+        record.health = health;
+        state.epoch.fix.time += std::chrono::seconds(30);
+        state.epoch.subframes = {{gps_measured, Signal::l1, state.epoch.fix.time, 0, {}, record}};
+        follow_epoch(receiver, board, state);
+        return receiver.new_records.size();
+    };
+    EXPECT_EQ(blocks_with_health(0), 1u);
+    EXPECT_EQ(blocks_with_health(0), 0u);
+    EXPECT_EQ(blocks_with_health(0b111111), 1u);
+    EXPECT_EQ(blocks_with_health(0b111111), 0u);
+    EXPECT_EQ(blocks_with_health(0), 1u);
 }
 
 TEST(SbfNavigation, PagesAreRowsOfBits) {

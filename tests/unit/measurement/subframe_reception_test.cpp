@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 #include "skyloop/gnss/broadcast_lnav.hpp"
 #include "support/four_systems.hpp"
@@ -78,6 +79,40 @@ TEST(SubframeReception, ARecordIsWholeWithItsLastPart) {
     ASSERT_EQ((whole[{galileo_sent, Signal::l1}].size()), 1U);
     EXPECT_GE((whole[{galileo_sent, Signal::l1}][0]), 33) << "half a minute of words";
     EXPECT_FALSE((whole[{glonass_sent, Signal::g1}].empty()));
+}
+
+TEST(SubframeReception, SatellitesThatAreCalledUnhealthySendIt) {
+    const test::FourSystems sent;
+    SubframeReception sound, warned;
+    std::set<std::pair<SatelliteId, Signal>> changed;
+    std::set<SatelliteId> unhealthy;
+    constexpr int last_call = 65;
+    for (int i = 0; i <= last_call + 40; ++i) {
+        const GpsTime now = frame_start + std::chrono::milliseconds(1000 * i + 100);
+        Observations calls = of_all(now);
+        for (Observation& o : calls.signals)
+            o.called_unhealthy = i <= last_call;
+        const auto usual = sound.receive(of_all(now), sent, now), received = warned.receive(calls, sent, now);
+        ASSERT_EQ(received.size(), usual.size());
+        for (std::size_t k = 0; k < received.size(); ++k) {
+            const Subframe& s = received[k];
+            if (i > last_call) {
+                EXPECT_EQ(s.words, usual[k].words);
+            }
+            if (s.words != usual[k].words) changed.insert({s.satellite, s.signal});
+            if (s.record && !is_healthy(*s.record)) unhealthy.insert(s.satellite);
+            if (s.record) {
+                EXPECT_EQ(is_healthy(*s.record), i > last_call);
+            }
+            if (s.satellite != gps_sent || (s.words[1] >> 8 & 7) != 1 || i > last_call) continue;
+            auto record = std::get<KeplerEphemeris>(*sent.ephemeris(gps_sent, s.end));
+            record.health = 0b111111;
+            const LnavWords expected = lnav_ephemeris_subframe(record, 1, s.end);
+            EXPECT_EQ(s.words, std::vector<std::uint32_t>(expected.begin(), expected.end()));
+        }
+    }
+    EXPECT_EQ(changed.size(), 5u) << "of each signal";
+    EXPECT_EQ(unhealthy, (std::set{gps_sent, galileo_sent, beidou_sent, glonass_sent}));
 }
 
 TEST(SubframeReception, DoesNotDependOnTheRate) {
