@@ -49,10 +49,18 @@ struct KeplerEphemeris {
     int health = 0;             ///< the system's own bits; see healthy()
     double accuracy_m = 0;      ///< user range or signal-in-space accuracy, m; negative: unknown
     double fit_interval_h = 0;  ///< of QZSS a flag: 1 is more than two hours (RINEX 3.05, table A12)
-    /// No bit is set; of Galileo, of the signal that carries the message: E1-B (I/NAV) or E5a (F/NAV), RINEX 3.05,
-    /// table A8. The last bit of QZSS is about L1C/B, which nobody here tracks and the satellites send unhealthy for
-    /// years (IS-QZSS-PNT-004, SV health).
+    /// False where the user range accuracy has index 15, above the 6144 m of index 14: no accuracy is predicted
+    /// (IS-GPS-200, 20.3.3.3.1.3; QZSS, NavIC and BeiDou likewise), and the satellite is not used (MODELS.md A.6).
+    /// Almanacs tell none, and Galileo's signal-in-space accuracy has no such meaning.
+    [[nodiscard]] bool accuracy_predicted() const {
+        if (message == NavigationMessage::almanac || satellite.constellation == Constellation::galileo) return true;
+        return accuracy_m >= 0 && accuracy_m <= 6144;
+    }
+    /// An accuracy is predicted, and no bit is set; of Galileo, of the signal that carries the message: E1-B (I/NAV) or
+    /// E5a (F/NAV), RINEX 3.05, table A8. The last bit of QZSS is about L1C/B, which nobody here tracks and the
+    /// satellites send unhealthy for years (IS-QZSS-PNT-004, SV health).
     [[nodiscard]] bool healthy() const {
+        if (!accuracy_predicted()) return false;
         if (satellite.constellation == Constellation::qzss) return (health & ~1) == 0;
         if (satellite.constellation != Constellation::galileo || message == NavigationMessage::almanac)
             return health == 0;

@@ -84,6 +84,20 @@ TEST(NavigationData, ForwardRulePassesOverUnhealthyRecords) {
     EXPECT_FALSE(data.ephemeris(g15, monday - 1ns));
 }
 
+TEST(NavigationData, RecordsWithoutAPredictedAccuracyAreUnhealthy) {
+    auto later = plain_record(monday + 1h);
+    const auto served = [&](double accuracy_m) {
+        later.accuracy_m = accuracy_m;
+        const NavigationData data = data_of({plain_record(monday), later}, EphemerisRule::forward);
+        return toe_of(*data.ephemeris(g15, monday + 90min));
+    };
+    EXPECT_EQ(served(6144), monday + 1h);
+    EXPECT_EQ(served(8192), monday);
+    EXPECT_EQ(served(-1), monday);
+    later.message = NavigationMessage::almanac;
+    EXPECT_TRUE(later.healthy());
+}
+
 TEST(NavigationData, NearestRuleKeepsUnhealthyRecords) {
     auto unhealthy = plain_record(monday + 1h);
     unhealthy.health = 63;

@@ -156,6 +156,13 @@ TEST(RealNavigationFiles, CarryUnhealthyFlags) {
             named.insert(to_string(satellite_of(e)));
     EXPECT_THAT(named, ::testing::IsSupersetOf({"E14", "E18", "J07", "R25"}));
     EXPECT_LT(named.size(), 20u) << ::testing::PrintToString(named);
+
+    // Of index 15 is the user range accuracy of 20 records; the clock of the one of 00:36 is 32 m off.
+    const SatelliteId i02{Constellation::navic, 2};
+    const auto without_accuracy = std::count_if(day->records.begin(), day->records.end(), [&](const Ephemeris& e) {
+        return satellite_of(e) == i02 && !is_healthy(e) && std::get<KeplerEphemeris>(e).health == 0;
+    });
+    EXPECT_EQ(without_accuracy, 20);
 }
 
 // In one merged day records of GLONASS bear the orbits and clocks of the satellite on the opposite side of the plane,
