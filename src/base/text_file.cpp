@@ -9,9 +9,13 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <string_view>
 
 namespace skyloop {
 namespace {
+
+// With which files of Unix compress (.Z) begin, as archives keep RINEX 2; zlib does not unpack them.
+constexpr std::string_view compress_magic = "\x1f\x9d";
 
 // Owns a zlib reader; zlib passes plain files through unchanged.
 class GzipReader {
@@ -29,6 +33,21 @@ public:
 private:
     gzFile file_;
 };
+
+// Of all that a reader gave, what only its end or its beginning tells.
+Result<void> check_unpacked(std::string_view text, const GzipReader& reader, std::string_view name) {
+    // gzread reports a stream that ends early only through its error state.
+    int code = Z_OK;
+    gzerror(reader.get(), &code);
+    if (code == Z_BUF_ERROR)
+        return fail(ErrorCode::input,
+                    fmt::format("{}: gzip data ends early, after {} bytes of text", name, text.size()));
+    if (text.starts_with(compress_magic))
+        return fail(ErrorCode::input, fmt::format("{}: found data packed by Unix compress (.Z); expected plain text or "
+                                                  "gzip; gunzip unpacks both",
+                                                  name));
+    return {};
+}
 
 }  // namespace
 
@@ -64,12 +83,7 @@ Result<std::string> read_text_file(const std::filesystem::path& path, std::size_
                         fmt::format("{}: has more than {} bytes of text, the most that is read", name, max_size));
         if (got == 0) break;
     }
-    // gzread reports a stream that ends early only through its error state.
-    int code = Z_OK;
-    gzerror(reader.get(), &code);
-    if (code == Z_BUF_ERROR)
-        return fail(ErrorCode::input,
-                    fmt::format("{}: gzip data ends early, after {} bytes of text", name, text.size()));
+    if (const auto checked = check_unpacked(text, reader, name); !checked) return fail(checked.error());
     return text;
 }
 

@@ -83,6 +83,11 @@ TEST_F(ReadTextFile, GzipCutOffAnywhereIsRefused) {
     }
 }
 
+TEST_F(ReadTextFile, FilesOfUnixCompressAreNamedAsSuch) {
+    const fs::path path = write("brdc0010.17n.Z", "\x1f\x9d\x90 RINEX");
+    expect_error(read_text_file(path), ErrorCode::input, "packed by Unix compress (.Z)", path);
+}
+
 TEST_F(ReadTextFile, WhatIsNotAFileIsRefused) {
     const fs::path missing = folder() / "missing.txt";
     expect_error(read_text_file(missing), ErrorCode::outside, "No such file", missing);
