@@ -73,7 +73,7 @@ Result<std::optional<Eigen::Quaterniond>> unit_quaternion(const FeedJson& statem
     if (!*q) return std::nullopt;
     if (std::abs((*q)->norm() - 1) > most_off)
         return statement_mistake(fmt::format("'{}' has the length {:.3f}; expected 1", key, (*q)->norm()));
-    return Eigen::Quaterniond((**q)(0), (**q)(1), (**q)(2), (**q)(3));
+    return Eigen::Quaterniond((**q)(0), (**q)(1), (**q)(2), (**q)(3)).normalized();
 }
 
 // Body (forward, right, down) to north, east, down of the frame that the source counts in.

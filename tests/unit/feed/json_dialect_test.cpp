@@ -65,6 +65,8 @@ TEST(JsonDialect, TurnsEveryFrameOfVelocity) {
     EXPECT_TRUE(velocity_enu(json_truth(R"("vel_enu":[4,3,1])")).isApprox(expected, 1e-9));
     // Looking east: forward is east, right is south.
     EXPECT_TRUE(velocity_enu(json_truth(R"("vel_frd":[4,-3,-1],"rpy_deg":[0,0,90])")).isApprox(expected, 1e-9));
+    EXPECT_TRUE(velocity_enu(json_truth(R"("vel_frd":[4,-3,-1],"q":[0.735,0,0,0.735])")).isApprox(expected, 1e-9))
+        << "a quaternion that is 4 % too long turns and does not stretch";
     EXPECT_TRUE(json_truth(R"("vel_ecef":[1,2,3])").velocity->vector().isApprox(Eigen::Vector3d(1, 2, 3)));
     EXPECT_TRUE(munich.to_enu(Displacement<Ecef>(*json_truth(R"("acc_ned":[0,0,-2])").acceleration))
                     .vector()
