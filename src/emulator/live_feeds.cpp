@@ -61,9 +61,9 @@ struct LiveFeeds::Source {
     LiveSettings settings;  // of the first that named it
     std::unique_ptr<TruthFeed> feed;
     std::vector<std::shared_ptr<LivePath>> paths;
-    bool waited_for = false;     // somebody has no place without it
-    std::uint64_t messages = 0;  // at the last look
-    std::int64_t heard_ns = 0;   // when they had become more
+    bool waited_for = false;       // somebody has no place without it
+    std::uint64_t statements = 0;  // at the last look
+    std::int64_t heard_ns = 0;     // when they had become more, or the source waited for us
     bool lost = false;
     int times_lost = 0;
     std::string outage;                    // the fault that its silence has begun; empty: none
@@ -187,20 +187,19 @@ std::vector<Command> LiveFeeds::pump(GpsTime now, std::optional<std::int64_t> du
 // By the wall clock: a source that leads stops the run's own.
 void LiveFeeds::look_for_silence(Source& source, std::vector<Command>& commands) {
     const std::int64_t now_ns = steady_clock_ns();
-    const std::uint64_t messages = source.feed->counts().samples;
-    if (messages != source.messages) {
-        source.messages = messages;
-        source.heard_ns = now_ns;
-        if (!source.lost) return;
+    const FeedCounts counts = source.feed->counts();
+    if (counts.statements != source.statements || source.feed->is_waited_on()) source.heard_ns = now_ns;
+    source.statements = counts.statements;
+    const double silent_s = static_cast<double>(now_ns - source.heard_ns) * 1e-9;
+    const bool over = source.feed->ended();
+    const bool speaks = !over && silent_s < source.settings.lost_after.value();
+    if (source.lost && speaks) {
         source.lost = false;
         news_.push_back(fmt::format("{}: heard again", source.feed->description()));
         if (source.settings.when_lost == LostSource::pause) commands.push_back(plain_command(CommandVerb::resume));
-        return;
     }
-    const double silent_s = static_cast<double>(now_ns - source.heard_ns) * 1e-9;
-    const bool over = source.feed->ended();
-    // What has never spoken is waited for, not lost.
-    if (source.lost || messages == 0 || (!over && silent_s < source.settings.lost_after.value())) return;
+    // What has never told a place is waited for, not lost.
+    if (source.lost || speaks || counts.samples == 0) return;
     source.lost = true;
     ++source.times_lost;
     static constexpr std::array<std::string_view, 4> consequences{"the vehicle stands still", "the signals are gone",

@@ -28,6 +28,7 @@ FeedHearer::Heard FeedHearer::hear(std::uint64_t speaker, ByteSpan bytes, std::i
 
 void FeedHearer::keep(FeedNews news, std::uint64_t speaker, std::int64_t received_ns) {
     desk_.tallies.samples += news.samples.size();
+    desk_.tallies.statements += news.samples.size() + news.others;
     desk_.tallies.lost += news.lost;
     if (!news.remark.empty()) tell(FeedNewsDesk::Kind::other, std::move(news.remark));
     if (news.refused > 0) {

@@ -70,8 +70,8 @@ private:
 
 /// FeedCounts, from two threads.
 struct FeedTallies {
-    std::atomic<std::uint64_t> messages{0}, bytes{0}, samples{0}, refused{0}, strangers{0}, overflowed{0},
-        dropped_by_kernel{0}, restarts{0}, lost{0};
+    std::atomic<std::uint64_t> messages{0}, bytes{0}, samples{0}, statements{0}, refused{0}, strangers{0},
+        overflowed{0}, dropped_by_kernel{0}, restarts{0}, lost{0};
 };
 
 /// What a feed's thread and the loop share.

@@ -36,6 +36,8 @@ public:
     std::vector<FeedStep> steps_done_before();
     /// Steps that wait while the run cannot begin.
     std::vector<FeedStep> skip_steps();
+    /// Some have not been given yet.
+    [[nodiscard]] bool any_step() const { return !steps_.empty(); }
 
     [[nodiscard]] bool ended() const { return ended_; }
     [[nodiscard]] bool paused() const { return paused_; }

@@ -76,10 +76,14 @@ private:
     }
 
     void take_line(FeedNews& news, std::int64_t received_ns) {
+        const std::size_t samples = news.samples.size();
         const auto statement = read_statement(line_);
         const auto taken =
             statement ? take_statement(*statement, news, received_ns) : Result<void>(fail(statement.error()));
-        if (!taken) refuse(news, taken.error().message, received_ns);
+        if (!taken)
+            refuse(news, taken.error().message, received_ns);
+        else if (news.samples.size() == samples)
+            ++news.others;
     }
 
     void refuse(FeedNews& news, const std::string& why, std::int64_t received_ns) {

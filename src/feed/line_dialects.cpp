@@ -40,6 +40,7 @@ public:
     // @return whether the line says something new
     bool look(Nanoseconds time, FeedNews& news) {
         const bool stands = last_ && *last_ == time;
+        if (stands) ++news.others;
         if (stands != paused_ && last_) news.paused = stands;
         paused_ = stands;
         last_ = time;

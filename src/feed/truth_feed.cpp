@@ -70,14 +70,16 @@ void TruthFeed::skip_steps() {
         impl_->worker_.post(step, 0);
 }
 
+bool TruthFeed::is_waited_on() const { return impl_->paths_.any_step(); }
+
 bool TruthFeed::ended() const { return impl_->paths_.ended(); }
 
 bool TruthFeed::paused() const { return impl_->paths_.paused(); }
 
 FeedCounts TruthFeed::counts() const {
     const FeedTallies& t = impl_->desk_.tallies;
-    return {t.messages,          t.bytes,    t.samples, t.refused, t.strangers, t.overflowed,
-            t.dropped_by_kernel, t.restarts, t.lost};
+    return {t.messages,  t.bytes,      t.samples,           t.statements, t.refused,
+            t.strangers, t.overflowed, t.dropped_by_kernel, t.restarts,   t.lost};
 }
 
 const SourceClock& TruthFeed::clock() const { return impl_->paths_.clock(); }

@@ -32,6 +32,7 @@ struct FeedNews {
     std::vector<FeedMilestone> steps{};  ///< lock-step: how far the run may go on
     std::optional<bool> paused{};        ///< the source's clock stands still, or goes on
     bool ended = false;                  ///< the source says goodbye
+    std::size_t others = 0;              ///< statements that were understood and are no samples: the source is there
     std::size_t refused = 0;             ///< statements that were whole and could not be used
     std::string refusal{};               ///< why, of the first of them, a sentence
     std::uint64_t lost = 0;              ///< statements that the source counted and that have not come

@@ -54,6 +54,7 @@ struct FeedCounts {
     std::uint64_t messages = 0;  ///< datagrams, or pieces of a stream
     std::uint64_t bytes = 0;
     std::uint64_t samples = 0;
+    std::uint64_t statements = 0;         ///< samples, and all else that was understood
     std::uint64_t refused = 0;            ///< whole, and of no use
     std::uint64_t strangers = 0;          ///< datagrams of others than the one that is listened to
     std::uint64_t overflowed = 0;         ///< samples dropped because the loop did not take them
@@ -95,6 +96,8 @@ public:
     /// lock_step, while the run waits for a vehicle's first place: steps so far are answered, there was nothing to do
     /// for them, and the next statement is the start of the run.
     void skip_steps();
+    /// lock_step: a step is not answered yet. The source waits for us, and has nothing to say meanwhile.
+    [[nodiscard]] bool is_waited_on() const;
     /// The source has said that it is over.
     [[nodiscard]] bool ended() const;
     /// True between FeedNews::paused = true and false.

@@ -2,11 +2,11 @@
 #include "skyloop/emulator/live_feeds.hpp"
 
 #include <arpa/inet.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
-#include <cstdio>
 #include <thread>
 
 #include "skyloop/base/steady_clock.hpp"
@@ -22,11 +22,11 @@ using test::emulator_scenario;
 // A source on the same machine, and the run that it flies in.
 class LiveFeedsTest : public testing::Test {
 protected:
-    void open(const std::string& clock) {
+    void open(const std::string& clock, const std::string& lost_after_s = "0.2") {
         scenario_ = emulator_scenario(
             "[run]\nstart = 2024-03-05T12:00:00Z\n[trajectory]\nkind = \"live\"\n"
-            "source = \"udp-json:0\"\nwhen_lost = \"outage\"\nlost_after_s = 0.2\nclock = \"" +
-            clock + "\"\n");
+            "source = \"udp-json:0\"\nwhen_lost = \"outage\"\nlost_after_s = " +
+            lost_after_s + "\nclock = \"" + clock + "\"\n");
         auto feeds = LiveFeeds::open(scenario_, nullptr);
         ASSERT_TRUE(feeds) << feeds.error().message;
         feeds_ = std::move(*feeds);
@@ -39,11 +39,11 @@ protected:
         to.sin_port = htons(static_cast<std::uint16_t>(std::stoi(name.substr(name.rfind(':') + 1))));
         ASSERT_EQ(::connect(source_.value(), reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
     }
-    void say(double t) const {
-        char line[120];
-        const int size = std::snprintf(line, sizeof line, R"({"t":%.3f,"lla":[48,11,500],"h_ref":"ell"})", t);
-        ASSERT_EQ(::send(source_.value(), line, static_cast<std::size_t>(size), 0), size);
+    void say(const std::string& line) const {
+        ASSERT_EQ(::send(source_.value(), line.data(), line.size(), 0), static_cast<ssize_t>(line.size()));
     }
+    void say(double t) const { say(fmt::format(R"({{"t":{:.3f},"lla":[48,11,500],"h_ref":"ell"}})", t)); }
+    void say_step(double t) const { say(fmt::format(R"({{"type":"step","t":{:.3f}}})", t)); }
     // The first command that is asked for at `now`, within two seconds.
     std::optional<Command> command_at(GpsTime now, std::chrono::milliseconds patience = 2s) {
         const auto end = std::chrono::steady_clock::now() + patience;
@@ -99,6 +99,38 @@ TEST_F(LiveFeedsTest, ASecondSilenceBeforeTheEndOfAnOutageGoesOnWithIt) {
     const auto ended = command_at(start_ + 5s);
     ASSERT_TRUE(ended);
     EXPECT_EQ(ended->verb, CommandVerb::stop_fault);
+}
+
+TEST_F(LiveFeedsTest, ASourceThatWaitsForItsStepIsNotSilent) {
+    open("lock_step");
+    say(10);
+    say_step(10.1);
+    ASSERT_TRUE(reaches(start_ + 100ms));
+    EXPECT_FALSE(command_at(start_, 600ms)) << "the step takes longer than silence may";
+    feeds_->rest(0);
+    const auto begun = command_at(start_ + 100ms);
+    ASSERT_TRUE(begun) << "and now it has the word";
+    EXPECT_EQ(begun->verb, CommandVerb::start_fault);
+}
+
+TEST_F(LiveFeedsTest, ASourceThatOnlyStepsIsHeard) {
+    open("lock_step", "0.8");
+    say(10);
+    for (int i = 1; i <= 20; ++i) {
+        say_step(10 + 0.1 * i);
+        ASSERT_TRUE(reaches(start_ + i * 100ms)) << i;
+        feeds_->rest(0);  // up to 50 ms
+        std::this_thread::sleep_for(50ms);
+    }
+}
+
+TEST_F(LiveFeedsTest, ASourceThatOnlyTellsOfItsClockIsHeard) {
+    open("realtime", "0.8");
+    say(10);
+    for (int i = 0; i < 20; ++i) {
+        say(R"({"type":"clock","paused":true})");
+        EXPECT_FALSE(command_at(start_, 80ms)) << i;
+    }
 }
 
 TEST(LiveFeeds, EachVehicleOfASourceHasAPlaceOfItsOwnBefore) {

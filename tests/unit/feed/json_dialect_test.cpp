@@ -143,6 +143,7 @@ TEST(JsonDialect, StepsPausesEndsAndAnswers) {
     const std::string truth = "{\"lla\":[48,11,500],\"h_ref\":\"ell\",\"t\":1}\n";
     const FeedNews news = talk.say(truth + "{\"type\":\"step\",\"t\":1.02}\n" + truth + truth +
                                    "{\"type\":\"step\",\"t_ns\":1040000000}\n{\"type\":\"clock\",\"paused\":true}\n");
+    EXPECT_EQ(news.others, 3u);
     ASSERT_EQ(news.steps.size(), 2u);
     EXPECT_EQ(news.steps[0].until, Nanoseconds(1'020'000'000));
     EXPECT_EQ(news.steps[0].samples, 1u);

@@ -132,6 +132,7 @@ TEST(FlightgearGenericDialect, ATimeThatStandsIsAPause) {
     const FeedNews stands = hear_text(*dialect, generic_line(1));
     EXPECT_EQ(stands.paused, true);
     EXPECT_TRUE(stands.samples.empty());
+    EXPECT_EQ(stands.others, 1u) << "the simulator is there";
     EXPECT_FALSE(hear_text(*dialect, generic_line(1)).paused);
     const FeedNews goes_on = hear_text(*dialect, generic_line(1.1));
     EXPECT_EQ(goes_on.paused, false);
