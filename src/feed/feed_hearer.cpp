@@ -35,16 +35,23 @@ void FeedHearer::keep(FeedNews news, std::uint64_t speaker, std::int64_t receive
         desk_.tallies.refused += news.refused;
         tell(FeedNewsDesk::Kind::refusal, "refused: " + news.refusal);
     }
-    auto step = news.steps.begin();
+    auto aside = news.asides.begin();
     for (std::size_t i = 0; i <= news.samples.size(); ++i) {
-        for (; step != news.steps.end() && step->samples <= i; ++step)
-            items_.emplace_back(FeedStep{step->until, received_ns, speaker});
+        for (; aside != news.asides.end() && aside->samples <= i; ++aside)
+            keep(std::move(*aside), speaker, received_ns);
         if (i < news.samples.size()) items_.emplace_back(std::move(news.samples[i]));
     }
-    for (Command& command : news.commands)
-        items_.emplace_back(std::move(command));
-    if (news.paused) items_.emplace_back(FeedPause{*news.paused});
-    if (news.ended) items_.emplace_back(FeedEnd{});
+}
+
+void FeedHearer::keep(FeedAside aside, std::uint64_t speaker, std::int64_t received_ns) {
+    if (const auto* step = std::get_if<FeedMilestone>(&aside.what))
+        items_.emplace_back(FeedStep{step->until, received_ns, speaker});
+    else if (auto* command = std::get_if<Command>(&aside.what))
+        items_.emplace_back(std::move(*command));
+    else if (const auto* pause = std::get_if<FeedPause>(&aside.what))
+        items_.emplace_back(*pause);
+    else
+        items_.emplace_back(FeedEnd{});
 }
 
 std::vector<Bytes> FeedHearer::say(std::uint64_t speaker) { return of(speaker).say(); }

@@ -39,6 +39,7 @@ public:
 private:
     FeedDialect& of(std::uint64_t speaker);
     void keep(FeedNews news, std::uint64_t speaker, std::int64_t received_ns);
+    void keep(FeedAside aside, std::uint64_t speaker, std::int64_t received_ns);
 
     std::string name_;
     FeedContext context_;

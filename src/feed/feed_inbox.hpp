@@ -11,8 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "skyloop/fault/command.hpp"
-#include "skyloop/trajectory/truth_sample.hpp"
+#include "skyloop/feed/feed_dialect.hpp"
 
 namespace skyloop {
 
@@ -22,10 +21,6 @@ struct FeedStep {
     std::int64_t received_ns = 0;
     std::uint64_t speaker = 0;  ///< who is answered
 };
-struct FeedPause {
-    bool paused = false;
-};
-struct FeedEnd {};
 /// One thing that a source has said, in the order in which it came.
 using FeedItem = std::variant<TruthSample, Command, FeedStep, FeedPause, FeedEnd>;
 

@@ -106,7 +106,7 @@ private:
         if (name == "event") return take_event(statement, news);
         if (name == "step") return take_step(statement, news);
         if (name == "hello") news.answers.push_back(say().front());
-        if (name == "bye") news.ended = true;
+        if (name == "bye") news.add_aside(FeedEnd{});
         if (name == "vis" && !std::exchange(vis_told_, true))
             news.remark = "its lines of type 'vis' (lines of sight of an engine) are not used";
         return {};  // others are of a later version
@@ -168,14 +168,14 @@ private:
         const FeedJson* paused = statement_member(statement, "paused");
         if (paused == nullptr) return {};
         if (!paused->is_boolean()) return fail(ErrorCode::input, "'paused' is neither true nor false");
-        news.paused = paused->get<bool>();
+        news.add_aside(FeedPause{paused->get<bool>()});
         return {};
     }
 
     static Result<void> take_event(const FeedJson& statement, FeedNews& news) {
         auto command = statement_event(statement);
         if (!command) return fail(command.error());
-        news.commands.push_back(std::move(*command));
+        news.add_aside(std::move(*command));
         return {};
     }
 
@@ -183,7 +183,7 @@ private:
         const auto until = statement_time(statement);
         if (!until) return fail(until.error());
         if (!*until) return fail(ErrorCode::input, "the step has no 't'; expected the time until which the run may go");
-        news.steps.push_back({**until, news.samples.size()});
+        news.add_aside(FeedMilestone{**until});
         return {};
     }
 

@@ -41,7 +41,7 @@ public:
     bool look(Nanoseconds time, FeedNews& news) {
         const bool stands = last_ && *last_ == time;
         if (stands) ++news.others;
-        if (stands != paused_ && last_) news.paused = stands;
+        if (stands != paused_ && last_) news.add_aside(FeedPause{stands});
         paused_ = stands;
         last_ = time;
         return !stands;

@@ -183,7 +183,7 @@ private:
     }
 
     void take_paused(bool paused, FeedNews& news) {
-        if (paused != paused_) news.paused = paused;
+        if (paused != paused_) news.add_aside(FeedPause{paused});
         paused_ = paused;
     }
 

@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "skyloop/base/bytes.hpp"
@@ -21,22 +23,35 @@ namespace skyloop {
 /// Lock-step: the run may go on to a time of the source's clock.
 struct FeedMilestone {
     Nanoseconds until{0};
+};
+/// The source's clock stands still, or goes on.
+struct FeedPause {
+    bool paused = false;
+};
+/// The source says goodbye.
+struct FeedEnd {};
+/// What a source says beside its samples; a command is what it asks of the run.
+struct FeedAside {
+    std::variant<Command, FeedMilestone, FeedPause, FeedEnd> what{};
     std::size_t samples = 0;  ///< of FeedNews::samples so many were said before
 };
 
 /// What came of the bytes that a dialect heard.
 struct FeedNews {
     std::vector<TruthSample> samples{};  ///< in the order in which they came
+    std::vector<FeedAside> asides{};     ///< the same
     std::vector<Bytes> answers{};        ///< for the sender
-    std::vector<Command> commands{};     ///< that the source asks of the run, after the samples
-    std::vector<FeedMilestone> steps{};  ///< lock-step: how far the run may go on
-    std::optional<bool> paused{};        ///< the source's clock stands still, or goes on
-    bool ended = false;                  ///< the source says goodbye
     std::size_t others = 0;              ///< statements that were understood and are no samples: the source is there
     std::size_t refused = 0;             ///< statements that were whole and could not be used
     std::string refusal{};               ///< why, of the first of them, a sentence
     std::uint64_t lost = 0;              ///< statements that the source counted and that have not come
     std::string remark{};                ///< what the user should be told, a sentence; once per dialect
+
+    /// Said after all that there is so far.
+    template <class What>
+    void add_aside(What what) {
+        asides.push_back({std::move(what), samples.size()});
+    }
 };
 
 /// How a source's "height above the sea" is meant, which knows no geoid (FEEDS.md 1.15).

@@ -243,5 +243,34 @@ TEST(FeedPaths, StepsBeforeTheFirstPlaceAreAnsweredAndTheRunStartsAfterThem) {
     EXPECT_EQ(feed.paths.steps_done().size(), 1u);
 }
 
+// How much a client asks of the run before its first step is done, and after it.
+struct AskedFor {
+    std::size_t before = 0, after = 0;
+    bool operator==(const AskedFor&) const = default;
+};
+
+AskedFor asked_for(const std::vector<std::string>& pieces) {
+    PathsUnderTest feed(ClockMode::lock_step);
+    FeedHearer hearer("json", FeedContext(), feed.desk);
+    AskedFor asked;
+    for (const std::string& piece : pieces) {
+        hearer.hear(1, to_bytes(piece), paths_start_ns);
+        hearer.flush();
+        asked.before += feed.paths.take(paths_start_ns).size();
+    }
+    EXPECT_EQ(feed.paths.steps_done().size(), 1u);
+    asked.after = feed.paths.take(paths_start_ns).size();
+    return asked;
+}
+
+TEST(FeedPaths, AnEventKeepsItsPlaceAmongStepsHoweverTheNetworkJoinsThem) {
+    const std::string truth = "{\"t\":0,\"lla\":[48,11,500],\"h_ref\":\"ell\"}\n";
+    const std::string event = "{\"type\":\"event\",\"name\":\"pause\"}\n", step = "{\"type\":\"step\",\"t\":0.1}\n";
+    for (const auto& pieces : {std::vector{truth + event + step}, std::vector{truth, event, step}})
+        EXPECT_EQ(asked_for(pieces), (AskedFor{1, 0})) << pieces.size();
+    for (const auto& pieces : {std::vector{truth + step + event}, std::vector{truth, step, event}})
+        EXPECT_EQ(asked_for(pieces), (AskedFor{0, 1})) << pieces.size();
+}
+
 }  // namespace
 }  // namespace skyloop

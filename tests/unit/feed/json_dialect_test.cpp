@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "feed_asides.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/feed/feed_dialect.hpp"
 #include "skyloop/geo/local_frame.hpp"
@@ -144,13 +145,15 @@ TEST(JsonDialect, StepsPausesEndsAndAnswers) {
     const FeedNews news = talk.say(truth + "{\"type\":\"step\",\"t\":1.02}\n" + truth + truth +
                                    "{\"type\":\"step\",\"t_ns\":1040000000}\n{\"type\":\"clock\",\"paused\":true}\n");
     EXPECT_EQ(news.others, 3u);
-    ASSERT_EQ(news.steps.size(), 2u);
-    EXPECT_EQ(news.steps[0].until, Nanoseconds(1'020'000'000));
-    EXPECT_EQ(news.steps[0].samples, 1u);
-    EXPECT_EQ(news.steps[1].samples, 3u);
-    EXPECT_EQ(news.paused, true);
-    EXPECT_EQ(talk.say("{\"type\":\"clock\",\"t\":3,\"paused\":false}\n").paused, false);
-    EXPECT_TRUE(talk.say("{\"type\":\"bye\"}\n").ended);
+    ASSERT_EQ(news.asides.size(), 3u);
+    const auto steps = asides_of<FeedMilestone>(news);
+    ASSERT_EQ(steps.size(), 2u);
+    EXPECT_EQ(steps[0].until, Nanoseconds(1'020'000'000));
+    EXPECT_EQ(news.asides[0].samples, 1u);
+    EXPECT_EQ(news.asides[1].samples, 3u);
+    EXPECT_EQ(pause_told(news), true);
+    EXPECT_EQ(pause_told(talk.say("{\"type\":\"clock\",\"t\":3,\"paused\":false}\n")), false);
+    EXPECT_EQ(asides_of<FeedEnd>(talk.say("{\"type\":\"bye\"}\n")).size(), 1u);
     const auto hello = talk.say("{\"type\":\"hello\"}\n");
     ASSERT_EQ(hello.answers.size(), 1u);
     EXPECT_THAT(to_string(hello.answers[0]), HasSubstr("\"type\":\"hello\""));
@@ -167,21 +170,23 @@ TEST(JsonDialect, AsksForFaultsAndCommands) {
         "{\"type\":\"event\",\"t\":30,\"name\":\"byte_loss\",\"args\":{\"probability\":0.5,\"for_s\":10,\"name\":"
         "\"plug\"}}"
         "\n");
-    ASSERT_EQ(fault.commands.size(), 1u) << fault.refusal;
-    EXPECT_EQ(fault.commands[0].verb, CommandVerb::start_fault);
-    EXPECT_EQ(fault.commands[0].source, "feed");
-    EXPECT_EQ(fault.commands[0].parameters.text("name"), "plug");
-    EXPECT_EQ(fault.commands[0].parameters.number("for_s"), 10);
+    const auto begun = asides_of<Command>(fault);
+    ASSERT_EQ(begun.size(), 1u) << fault.refusal;
+    EXPECT_EQ(begun[0].verb, CommandVerb::start_fault);
+    EXPECT_EQ(begun[0].source, "feed");
+    EXPECT_EQ(begun[0].parameters.text("name"), "plug");
+    EXPECT_EQ(begun[0].parameters.number("for_s"), 10);
     const FeedNews pause = talk.say("{\"type\":\"event\",\"name\":\"pause\"}\n");
-    ASSERT_EQ(pause.commands.size(), 1u) << pause.refusal;
-    EXPECT_EQ(pause.commands[0].verb, CommandVerb::pause);
+    const auto paused = asides_of<Command>(pause);
+    ASSERT_EQ(paused.size(), 1u) << pause.refusal;
+    EXPECT_EQ(paused[0].verb, CommandVerb::pause);
     for (const char* bad : {R"({"type":"event"})", R"({"type":"event","name":"byte_los"})",
                             R"({"type":"event","name":"byte_loss","args":{"probability":7}})",
                             R"({"type":"event","name":"byte_loss","args":[1]})",
                             R"({"type":"event","name":"byte_loss","args":{"probability":{"a":1}}})",
                             R"({"type":"event","name":"note","args":{"text":"a\nb"}})"}) {
         const FeedNews news = talk.say(std::string(bad) + "\n");
-        EXPECT_EQ(news.commands.size(), 0u) << bad;
+        EXPECT_EQ(news.asides.size(), 0u) << bad;
         EXPECT_EQ(news.refused, 1u) << bad;
     }
     EXPECT_THAT(talk.say("{\"type\":\"event\",\"name\":\"pauze\"}\n").refusal, HasSubstr("did you mean 'pause'"));
@@ -240,9 +245,10 @@ TEST(JsonDialect, ReadsTheLinesOfItsDocument) {
     const FeedNews news = talk.say(document->substr(begin, end - begin));
     EXPECT_EQ(news.refused, 0u) << news.refusal;
     EXPECT_EQ(news.samples.size(), 2u);
-    EXPECT_EQ(news.commands.size(), 1u);
-    EXPECT_EQ(news.steps.size(), 1u);
-    EXPECT_TRUE(news.ended && news.paused);
+    EXPECT_EQ(asides_of<Command>(news).size(), 1u);
+    EXPECT_EQ(asides_of<FeedMilestone>(news).size(), 1u);
+    EXPECT_EQ(asides_of<FeedEnd>(news).size(), 1u);
+    EXPECT_EQ(pause_told(news), true);
 }
 
 TEST(JsonDialect, AnswersOneRefusalASecond) {

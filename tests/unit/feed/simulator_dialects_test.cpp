@@ -5,6 +5,7 @@
 
 #include "dialect_bytes.hpp"
 #include "dialect_pose.hpp"
+#include "feed_asides.hpp"
 #include "skyloop/feed/feed_dialect.hpp"
 
 namespace skyloop {
@@ -128,14 +129,14 @@ TEST(FlightgearGenericDialect, ReadsTheLinesOfSkyloopXml) {
 
 TEST(FlightgearGenericDialect, ATimeThatStandsIsAPause) {
     const auto dialect = dialect_named("flightgear-generic");
-    EXPECT_FALSE(hear_text(*dialect, generic_line(1)).paused);
+    EXPECT_FALSE(pause_told(hear_text(*dialect, generic_line(1))));
     const FeedNews stands = hear_text(*dialect, generic_line(1));
-    EXPECT_EQ(stands.paused, true);
+    EXPECT_EQ(pause_told(stands), true);
     EXPECT_TRUE(stands.samples.empty());
     EXPECT_EQ(stands.others, 1u) << "the simulator is there";
-    EXPECT_FALSE(hear_text(*dialect, generic_line(1)).paused);
+    EXPECT_FALSE(pause_told(hear_text(*dialect, generic_line(1))));
     const FeedNews goes_on = hear_text(*dialect, generic_line(1.1));
-    EXPECT_EQ(goes_on.paused, false);
+    EXPECT_EQ(pause_told(goes_on), false);
     EXPECT_EQ(goes_on.samples.size(), 1u);
 }
 

@@ -3,6 +3,7 @@
 
 #include "dialect_bytes.hpp"
 #include "dialect_pose.hpp"
+#include "feed_asides.hpp"
 #include "skyloop/feed/feed_dialect.hpp"
 
 namespace skyloop {
@@ -63,10 +64,10 @@ TEST(XplaneDialect, ItsTimeGoesOnEvenlyAfterDays) {
 
 TEST(XplaneDialect, TellsPauses) {
     const auto dialect = dialect_named("xplane");
-    EXPECT_FALSE(dialect->hear(rref({{2, 0}}), 0).paused);
-    EXPECT_EQ(dialect->hear(rref({{2, 1}}), 0).paused, true);
-    EXPECT_FALSE(dialect->hear(rref({{2, 1}}), 0).paused);
-    EXPECT_EQ(dialect->hear(rref({{2, 0}}), 0).paused, false);
+    EXPECT_FALSE(pause_told(dialect->hear(rref({{2, 0}}), 0)));
+    EXPECT_EQ(pause_told(dialect->hear(rref({{2, 1}}), 0)), true);
+    EXPECT_FALSE(pause_told(dialect->hear(rref({{2, 1}}), 0)));
+    EXPECT_EQ(pause_told(dialect->hear(rref({{2, 0}}), 0)), false);
 }
 
 TEST(XplaneDialect, AsksInBothWaysUntilPosesCome) {
