@@ -43,6 +43,18 @@ FeedSettings feed_settings(const LiveSettings& live, const Geoid* geoid) {
     return settings;
 }
 
+// Where the source is, if it can keep the clock that is asked for.
+Result<FeedAddress> address_of(const LiveSettings& live) {
+    auto address = parse_feed_address(live.source);
+    if (!address) return fail(address.error().code, live.source_told_at + address.error().message);
+    if (live.clock == ClockMode::lock_step && !knows_steps(address->dialect))
+        return fail(ErrorCode::usage,
+                    fmt::format("{}'{}' sends no steps, which clock = \"lock_step\" waits for; expected clock = "
+                                "\"follow\", or a source that steps: udp-json, tcp-json, json-to",
+                                live.source_told_at, live.source));
+    return address;
+}
+
 std::vector<LiveSettings*> live_settings(Scenario& scenario) {
     std::vector<LiveSettings*> wanted;
     // The vehicle that every receiver has left is nobody's.
@@ -108,8 +120,8 @@ Result<LiveFeeds::Source*> LiveFeeds::source_of(const LiveSettings& settings, co
                                     clock_names[static_cast<std::size_t>(settings.clock)]));
         return source.get();
     }
-    const auto address = parse_feed_address(settings.source);
-    if (!address) return fail(address.error().code, settings.source_told_at + address.error().message);
+    const auto address = address_of(settings);
+    if (!address) return fail(address.error());
     const bool leads = settings.clock != ClockMode::realtime;
     if (leads && leader_ != nullptr)
         return fail(ErrorCode::usage,
@@ -150,8 +162,7 @@ Result<std::unique_ptr<LiveFeeds>> LiveFeeds::open(Scenario& scenario, const Geo
 
 Result<void> LiveFeeds::check(Scenario& scenario) {
     for (LiveSettings* live : live_settings(scenario)) {
-        const auto address = parse_feed_address(live->source);
-        if (!address) return fail(address.error().code, live->source_told_at + address.error().message);
+        if (const auto address = address_of(*live); !address) return fail(address.error());
         live->path = std::make_shared<LivePath>(path_settings(*live));
     }
     return {};

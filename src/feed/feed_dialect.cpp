@@ -1,5 +1,8 @@
 #include "skyloop/feed/feed_dialect.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "dialects.hpp"
 #include "json_dialect.hpp"
 
@@ -10,6 +13,7 @@ namespace {
 struct NamedDialect {
     std::string_view name;
     std::unique_ptr<FeedDialect> (*make)(const FeedContext&);
+    bool steps = false;
 };
 
 constexpr NamedDialect dialects[] = {
@@ -19,7 +23,7 @@ constexpr NamedDialect dialects[] = {
     {"flightgear-generic", make_flightgear_generic_dialect},
     {"gpsd", make_gpsd_dialect},
     {"jsbsim", make_jsbsim_dialect},
-    {"json", make_json_dialect},
+    {"json", make_json_dialect, true},
     {"mavlink", make_mavlink_dialect},
     {"nmea", make_nmea_dialect},
     {"px4", make_px4_dialect},
@@ -33,6 +37,11 @@ std::unique_ptr<FeedDialect> make_dialect(std::string_view name, const FeedConte
     for (const NamedDialect& dialect : dialects)
         if (dialect.name == name) return dialect.make(context);
     return nullptr;
+}
+
+bool knows_steps(std::string_view dialect) {
+    return std::any_of(std::begin(dialects), std::end(dialects),
+                       [&](const NamedDialect& known) { return known.name == dialect && known.steps; });
 }
 
 }  // namespace skyloop

@@ -135,7 +135,10 @@ void FeedPaths::place(TruthSample& sample) {
     const auto wanted = vehicles_.find(sample.vehicle);
     const SourceClock::Stamp stamped = stamp(sample);
     note(stamped, sample.received_ns);
-    if (!first_sample_) first_sample_ = stamped.time;
+    if (!first_sample_) {
+        first_sample_ = stamped.time;
+        first_sample_ns_ = sample.received_ns;
+    }
     newest_sample_ = std::max(newest_sample_.value_or(stamped.time), stamped.time);
     if (wanted != vehicles_.end()) add(wanted->second, wanted->first, stamped.time, sample);
     if (!any_ || *first_ != sample.vehicle) return;
@@ -266,7 +269,21 @@ void FeedPaths::look(std::int64_t now_ns) {
         vehicle.silent = true;
         desk_.news.tell(FeedNewsDesk::Kind::vehicle, fmt::format("vehicle '{}' is silent", name.substr(0, 40)), now_ns);
     }
+    look_at_steps(heard_ns, now_ns);
     look_at_rate(now_ns);
+}
+
+// Samples alone bring a run in lock-step nowhere, and nothing else tells why it stands still.
+void FeedPaths::look_at_steps(std::int64_t heard_ns, std::int64_t now_ns) {
+    constexpr std::int64_t patience_ns = 5'000'000'000;
+    if (mode_ != ClockMode::lock_step || newest_step_ || !first_sample_ || steps_missed_) return;
+    if (heard_ns < first_sample_ns_ + patience_ns) return;
+    steps_missed_ = true;
+    desk_.news.tell(
+        FeedNewsDesk::Kind::clock,
+        "it tells where it is and does not step; clock = \"lock_step\" waits for {\"type\":\"step\",\"t\":…}, "
+        "clock = \"follow\" does not",
+        now_ns);
 }
 
 // Once it is known over five seconds, and three looks agree: after a pause or a step it is known over less.

@@ -72,6 +72,7 @@ private:
     SourceClock::Stamp stamp(const TruthSample& sample);
     void note(const SourceClock::Stamp& stamp, std::int64_t now_ns);
     void look(std::int64_t now_ns);
+    void look_at_steps(std::int64_t heard_ns, std::int64_t now_ns);
     void look_at_rate(std::int64_t now_ns);
     void add(Vehicle& vehicle, const std::string& name, GpsTime time, TruthSample& sample);
 
@@ -92,7 +93,9 @@ private:
     std::uint64_t restarts_ = 0;
     std::optional<GpsTime> first_sample_, newest_sample_, newest_step_, answered_;
     std::deque<PendingStep> steps_;
+    std::int64_t first_sample_ns_ = 0;  // when first_sample_ came
     bool ended_ = false, paused_ = false, other_told_ = false;
+    bool steps_missed_ = false;  // has been told
     std::int64_t looked_ns_ = 0;
     std::optional<std::int64_t> first_timed_ns_;  // when the first sample with a time came
     int odd_looks_ = 0;                           // one after the other that saw a rate that is not 1

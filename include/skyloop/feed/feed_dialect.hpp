@@ -92,5 +92,7 @@ public:
 
 /// The dialects by name: "json", "flightgear", … Null for an unknown one.
 std::unique_ptr<FeedDialect> make_dialect(std::string_view name, const FeedContext& context);
+/// Whether its sources can lead a run in lock-step: it knows FeedMilestone.
+bool knows_steps(std::string_view dialect);
 
 }  // namespace skyloop

@@ -162,6 +162,28 @@ delay_s = 2
     EXPECT_EQ(latitude(1), 4);
 }
 
+TEST(LiveFeeds, LockStepNeedsASourceThatSteps) {
+    const auto why_not = [](const std::string& source, const std::string& clock) -> std::string {
+        Scenario scenario =
+            emulator_scenario("[run]\nstart = 2024-03-05T12:00:00Z\n[trajectory]\nkind = \"live\"\nsource = \"" +
+                              source + "\"\nclock = \"" + clock + "\"\n");
+        const auto checked = LiveFeeds::check(scenario);
+        return checked ? "" : checked.error().message;
+    };
+    for (const char* source : {"px4:4560,127.0.0.1:4561", "mavlink-udp", "flightgear", "xplane:127.0.0.1"}) {
+        EXPECT_THAT(why_not(source, "lock_step"), testing::HasSubstr("expected clock = \"follow\"")) << source;
+        EXPECT_EQ(why_not(source, "follow"), "") << source;
+    }
+    for (const char* source : {"udp-json", "tcp-json", "json-to:127.0.0.1:5000"})
+        EXPECT_EQ(why_not(source, "lock_step"), "") << source;
+    Scenario scenario = emulator_scenario(
+        "[run]\nstart = 2024-03-05T12:00:00Z\n[trajectory]\nkind = \"live\"\nsource = \"flightgear:0\"\nclock = "
+        "\"lock_step\"\n");
+    const auto feeds = LiveFeeds::open(scenario, nullptr);
+    ASSERT_FALSE(feeds);
+    EXPECT_EQ(feeds.error().code, ErrorCode::usage);
+}
+
 TEST_F(LiveFeedsTest, WhatASourceAsksForInVainIsTold) {
     open("realtime");
     const auto told_of = [&](const std::string& asks, const std::string& ignored) {

@@ -243,6 +243,24 @@ TEST(FeedPaths, StepsBeforeTheFirstPlaceAreAnsweredAndTheRunStartsAfterThem) {
     EXPECT_EQ(feed.paths.steps_done().size(), 1u);
 }
 
+TEST(FeedPaths, TellsOnceThatASourceInLockStepDoesNotStep) {
+    for (const bool steps : {false, true}) {
+        PathsUnderTest feed(ClockMode::lock_step);
+        std::vector<std::string> told;
+        for (auto t = 0ms; t <= 20s; t += 500ms) {
+            feed.say(of_vehicle("a", t));
+            if (steps) feed.say(FeedStep{t, paths_start_ns, 1});
+            feed.take(paths_start_ns + t.count() * one_ms);
+            feed.paths.steps_done();
+            for (std::string& sentence : feed.news())
+                told.push_back(std::move(sentence));
+            EXPECT_TRUE(told.empty() || t > 4s);
+        }
+        const auto missed = testing::ElementsAre(HasSubstr("does not step"));
+        EXPECT_THAT(told, testing::Conditional(!steps, missed, testing::IsEmpty()));
+    }
+}
+
 // How much a client asks of the run before its first step is done, and after it.
 struct AskedFor {
     std::size_t before = 0, after = 0;
