@@ -92,7 +92,8 @@ bool SourceClock::restarts(std::int64_t source_ns, std::int64_t received_ns) {
         return false;
     }
     const bool back = source_ns < *newest_source_ns_ - restart_back_ns;
-    const bool leap = mode_ != ClockMode::realtime && source_ns > *newest_source_ns_ + restart_forward_ns;
+    // In lock-step a long way is what was asked for, and is gone as fast as the machine can.
+    const bool leap = mode_ == ClockMode::follow && source_ns > *newest_source_ns_ + restart_forward_ns;
     if (!back && !leap) return false;
     first_time_ = *run_time(Nanoseconds(*newest_source_ns_));
     first_source_ns_ = source_ns;

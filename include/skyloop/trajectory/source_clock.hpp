@@ -35,8 +35,8 @@ public:
 
     struct Stamp {
         GpsTime time;
-        /// The source's clock went back by more than a second, or (follow, lock-step) forward by more than a minute: it
-        /// began anew. In follow and lock-step the run goes on from where it was.
+        /// The source's clock went back by more than a second, or (follow) forward by more than a minute: it began
+        /// anew. In follow and lock-step the run goes on from where it was.
         bool restarted = false;
         bool stepped = false;  ///< the way between the clocks was not followed but set anew, beyond 250 ms
     };

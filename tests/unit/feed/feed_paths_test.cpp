@@ -243,6 +243,15 @@ TEST(FeedPaths, StepsBeforeTheFirstPlaceAreAnsweredAndTheRunStartsAfterThem) {
     EXPECT_EQ(feed.paths.steps_done().size(), 1u);
 }
 
+TEST(FeedPaths, AStepOfTwoMinutesIsDoneBeforeItIsAnswered) {
+    PathsUnderTest feed(ClockMode::lock_step);
+    feed.say(of_vehicle("a", 0ms));
+    feed.say(FeedStep{120s, paths_start_ns, 1});
+    feed.take(paths_start_ns);
+    EXPECT_EQ(feed.paths.horizon(), paths_start + 120s);
+    EXPECT_EQ(feed.desk.tallies.restarts, 0u);
+}
+
 TEST(FeedPaths, TellsOnceThatASourceInLockStepDoesNotStep) {
     for (const bool steps : {false, true}) {
         PathsUnderTest feed(ClockMode::lock_step);

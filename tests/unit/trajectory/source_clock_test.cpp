@@ -70,6 +70,14 @@ TEST(SourceClock, GoesOnFromWhereItWasWhenTheSourceBeginsAnew) {
     EXPECT_FALSE(clock.stamp(999s + 100ms, clock_start_ns + 5).restarted) << "overtaken";
 }
 
+TEST(SourceClock, LockStepGoesAnyWayAhead) {
+    SourceClock clock = clock_of(ClockMode::lock_step);
+    clock.stamp(0s, clock_start_ns);
+    const auto far = clock.stamp(3600s, clock_start_ns + 1);
+    EXPECT_FALSE(far.restarted);
+    EXPECT_EQ(far.time, clock_start + 3600s);
+}
+
 TEST(SourceClock, FollowStartsWithAStatementThatHasNoTimeAndGoesOnFromIt) {
     SourceClock clock = clock_of(ClockMode::follow);
     EXPECT_EQ(clock.stamp(std::nullopt, clock_start_ns + 900 * ms).time, clock_start) << "not when the run was begun";
