@@ -5,9 +5,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 
 #include "dialects.hpp"
 #include "motion_filter.hpp"
+#include "skyloop/trajectory/source_clock.hpp"
 #include "source_pose.hpp"
 
 namespace skyloop {
@@ -65,6 +67,30 @@ private:
     std::uint64_t elapsed_us_ = 0;
 };
 
+// The clock of a sender without one, whose packets come at the rate of its physics from the same machine: their number.
+// Arrivals are no clock at 400 Hz and more, as each stall of the machine bunches them; and an ArrivalRhythm takes what
+// stands in a bunch for lost.
+class PacketClock {
+public:
+    // @return when the packet has been sent, but for a delay that is the same for all, ns of the clock of arrivals
+    std::int64_t sent(std::int64_t received_ns) {
+        constexpr std::int64_t learned_ns = 1'000'000'000, silence_ns = 2'000'000'000;
+        if (count_ > 0 && std::abs(received_ns - last_ns_) > silence_ns) *this = PacketClock();
+        last_ns_ = received_ns;
+        if (count_++ == 0) first_ns_ = received_ns;
+        if (!clock_) {
+            if (received_ns - first_ns_ < learned_ns) return received_ns;
+            period_ns_ = (received_ns - first_ns_) / (count_ - 1);
+            clock_.emplace(ClockMode::realtime, GpsTime(), 0);
+        }
+        return (clock_->stamp(Nanoseconds(count_ * period_ns_), received_ns).time - GpsTime()).count();
+    }
+
+private:
+    std::optional<SourceClock> clock_;  // corrects the period, which the first second tells roughly
+    std::int64_t count_ = 0, first_ns_ = 0, last_ns_ = 0, period_ns_ = 0;
+};
+
 class FlightgearDialect : public FeedDialect {
 public:
     explicit FlightgearDialect(const FeedContext& context) : context_(context) {}
@@ -83,16 +109,18 @@ public:
         }
         SourcePose pose = pose_of(bytes);
         const auto time = clock_.read(big_endian<std::uint32_t>(bytes, v24 ? fdm_time_v24 : fdm_time_v25));
+        const std::int64_t sent_ns = packets_.sent(received_ns);
         const bool derive = derives_velocity(pose);
         if (derive) pose.velocity_ned.reset();
         SampleOr sample = sample_of(pose, context_);
-        if (derive && sample) filter_.smooth(*sample, time ? time->count() : received_ns);
+        if (derive && sample) filter_.smooth(*sample, time ? time->count() : sent_ns);
         report_sample(news, std::move(sample), time, received_ns);
         return news;
     }
 
     void reconnected() override {
         clock_ = {};
+        packets_ = {};
         filter_.forget();
         still_ = false;
     }
@@ -123,6 +151,7 @@ private:
 
     FeedContext context_;
     MicrosecondClock clock_;
+    PacketClock packets_;
     MotionFilter filter_{{0.01, 0.2}};  // ArduPilot's latitudes have a grid of 1 cm
     std::optional<Eigen::Vector3d> last_place_;
     bool still_ = false;  // the velocities say so, and are wrong

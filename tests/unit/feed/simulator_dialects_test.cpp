@@ -91,6 +91,28 @@ TEST(FlightgearDialect, ZeroVelocitiesOfAMovingVehicleAreReplaced) {
     EXPECT_NEAR(ned.y(), 0, 0.2);
 }
 
+TEST(FlightgearDialect, StallsThatBunchThePacketsDoNotShakeTheVelocity) {
+    const auto dialect = dialect_named("flightgear");
+    FdmPacket packet;
+    packet.north = packet.east = packet.up = 0;
+    // 25 m/s north; twice a second what was sent within 20 ms comes at once.
+    double stalls_until = 0, worst = 0;
+    for (int i = 0; i < 400 * 8; ++i) {
+        const double seconds = i / 400.0;
+        packet.latitude = std::round((Pose::latitude + 25 * seconds / 111183) * 1e7) / 1e7;
+        if (i % 200 == 199) stalls_until = seconds + 0.02;
+        const auto received_ns = std::llround(std::max(seconds, stalls_until) * 1e9);
+        const FeedNews news = dialect->hear(packet.bytes(), received_ns);
+        ASSERT_EQ(news.samples.size(), 1u);
+        const TruthSample& sample = news.samples[0];
+        if (seconds < 3) continue;
+        ASSERT_TRUE(sample.velocity);
+        const Eigen::Vector3d ned = ned_to_ecef(to_geodetic(sample.position)).conjugate() * sample.velocity->vector();
+        worst = std::max(worst, (ned - Eigen::Vector3d(25, 0, 0)).norm());
+    }
+    EXPECT_LT(worst, 0.3);
+}
+
 TEST(FlightgearDialect, RefusesWhatIsNoPacket) {
     const auto dialect = dialect_named("flightgear");
     FdmPacket packet;
