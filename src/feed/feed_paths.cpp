@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t most_items_at_once = 4096;  // a flood must not hold the loop
 constexpr std::size_t most_arrival_clocks = 256, most_pending_steps = 1024;
+constexpr std::int64_t vehicle_silence_ns = 1'500'000'000;
 
 }  // namespace
 
@@ -51,7 +52,8 @@ std::vector<Command> FeedPaths::take(std::int64_t now_ns) {
     }
     const std::size_t end = std::min(taken_.size(), next_ + most_items_at_once);
     for (; next_ < end && !step_waits(); ++next_)
-        take_item(taken_[next_], commands);
+        take_item(taken_[next_], commands, now_ns);
+    ended_ = ends_ns_ && now_ns >= *ends_ns_;
     look(now_ns);
     return commands;
 }
@@ -75,7 +77,7 @@ void FeedPaths::keep_newest(std::vector<FeedItem>& items) const {
     items = std::move(kept);
 }
 
-void FeedPaths::take_item(FeedItem& item, std::vector<Command>& commands) {
+void FeedPaths::take_item(FeedItem& item, std::vector<Command>& commands, std::int64_t now_ns) {
     if (auto* sample = std::get_if<TruthSample>(&item))
         take_sample(*sample);
     else if (auto* command = std::get_if<Command>(&item))
@@ -85,17 +87,27 @@ void FeedPaths::take_item(FeedItem& item, std::vector<Command>& commands) {
     else if (const auto* pause = std::get_if<FeedPause>(&item))
         paused_ = pause->paused;
     else
-        ended_ = true;
+        take_end(now_ns);
+}
+
+// It is of one sender, and nobody knows which vehicles are his: where several were spoken of, others may go on.
+void FeedPaths::take_end(std::int64_t now_ns) {
+    const bool several = turned_ns_ && now_ns - *turned_ns_ < vehicle_silence_ns;
+    ends_ns_ = now_ns + (several ? vehicle_silence_ns : 0);
 }
 
 void FeedPaths::take_sample(TruthSample& sample) {
-    ended_ = false;
+    ends_ns_.reset();
     if (const auto why = implausible(sample)) {  // it starts no run
         desk_.tallies.refused += 1;
         desk_.news.tell(FeedNewsDesk::Kind::refusal, "refused: " + *why, sample.received_ns);
         return;
     }
-    if (!first_) first_ = sample.vehicle;
+    if (!first_) first_ = spoken_of_ = sample.vehicle;
+    if (sample.vehicle != spoken_of_) {
+        spoken_of_ = sample.vehicle;
+        turned_ns_ = sample.received_ns;
+    }
     if (!is_wanted(sample.vehicle)) return take_unwanted(sample);
     if (mode_ != ClockMode::follow || !waits_ || first_sample_) return place(sample);
     // All that are waited for begin together: else those that are heard later would stand where they are not yet, and
@@ -257,7 +269,7 @@ std::optional<GpsTime> FeedPaths::horizon() const {
 }
 
 void FeedPaths::look(std::int64_t now_ns) {
-    constexpr std::int64_t every_ns = 1'000'000'000, silence_ns = 1'500'000'000;
+    constexpr std::int64_t every_ns = 1'000'000'000;
     if (now_ns < looked_ns_ + every_ns) return;
     looked_ns_ = now_ns;
     std::int64_t heard_ns = 0;
@@ -265,7 +277,7 @@ void FeedPaths::look(std::int64_t now_ns) {
         heard_ns = std::max(heard_ns, vehicle.heard_ns);
     for (auto& [name, vehicle] : vehicles_) {
         // The silence of all of them is the feed's.
-        if (vehicle.heard_ns == 0 || vehicle.silent || heard_ns - vehicle.heard_ns < silence_ns) continue;
+        if (vehicle.heard_ns == 0 || vehicle.silent || heard_ns - vehicle.heard_ns < vehicle_silence_ns) continue;
         vehicle.silent = true;
         desk_.news.tell(FeedNewsDesk::Kind::vehicle, fmt::format("vehicle '{}' is silent", name.substr(0, 40)), now_ns);
     }

@@ -62,7 +62,8 @@ private:
 
     [[nodiscard]] bool step_waits() const;
     void keep_newest(std::vector<FeedItem>& items) const;
-    void take_item(FeedItem& item, std::vector<Command>& commands);
+    void take_item(FeedItem& item, std::vector<Command>& commands, std::int64_t now_ns);
+    void take_end(std::int64_t now_ns);
     void take_sample(TruthSample& sample);
     void take_unwanted(const TruthSample& sample);
     void place(TruthSample& sample);
@@ -84,7 +85,10 @@ private:
     std::map<std::string, Vehicle> vehicles_;  // that somebody wants
     std::shared_ptr<LivePath> any_;            // of the first that is spoken of
     std::optional<std::string> first_;
-    std::vector<TruthSample> begun_with_;  // the newest of each vehicle, until all that are waited for are heard
+    std::string spoken_of_;                  // the vehicle of the newest sample
+    std::optional<std::int64_t> turned_ns_;  // when it was another before
+    std::optional<std::int64_t> ends_ns_;    // when a goodbye counts, unless a sample comes before
+    std::vector<TruthSample> begun_with_;    // the newest of each vehicle, until all that are waited for are heard
     bool begun_ = false, fresh_ = false, waits_ = false;
     GpsTime start_;
     std::int64_t start_ns_ = 0;

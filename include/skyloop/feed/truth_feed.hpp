@@ -98,7 +98,7 @@ public:
     void skip_steps();
     /// lock_step: a step is not answered yet. The source waits for us, and has nothing to say meanwhile.
     [[nodiscard]] bool is_waited_on() const;
-    /// The source has said that it is over.
+    /// The source has said that it is over; where it spoke of several vehicles, none of them has come for 1.5 s since.
     [[nodiscard]] bool ended() const;
     /// True between FeedNews::paused = true and false.
     [[nodiscard]] bool paused() const;

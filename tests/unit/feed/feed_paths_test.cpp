@@ -270,6 +270,35 @@ TEST(FeedPaths, TellsOnceThatASourceInLockStepDoesNotStep) {
     }
 }
 
+TEST(FeedPaths, TheGoodbyeOfOneVehicleIsNotThatOfAnother) {
+    FollowedVehicles feed({"a", "b"});
+    const auto say_goodbye = [&](std::chrono::milliseconds t) {
+        std::vector<FeedItem> items{FeedEnd{}};
+        feed.desk.inbox.put(items);
+        feed.paths.take(paths_start_ns + t.count() * one_ms);
+    };
+    for (auto t = 0ms; t < 1000ms; t += 20ms) {
+        feed.say(of_vehicle("a", t));
+        feed.say(of_vehicle("b", t));
+    }
+    say_goodbye(1000ms);
+    EXPECT_FALSE(feed.paths.ended());
+    for (auto t = 1000ms; t < 3000ms; t += 20ms) {
+        feed.say(of_vehicle("b", t));
+        EXPECT_FALSE(feed.paths.ended());
+    }
+    say_goodbye(3000ms);
+    EXPECT_TRUE(feed.paths.ended()) << "nobody is left";
+    feed.say(of_vehicle("b", 3020ms));
+    feed.say(of_vehicle("a", 3020ms));
+    EXPECT_FALSE(feed.paths.ended());
+    say_goodbye(3040ms);
+    feed.paths.take(paths_start_ns + 4500 * one_ms);
+    EXPECT_FALSE(feed.paths.ended());
+    feed.paths.take(paths_start_ns + 4600 * one_ms);
+    EXPECT_TRUE(feed.paths.ended()) << "it was for both";
+}
+
 // How much a client asks of the run before its first step is done, and after it.
 struct AskedFor {
     std::size_t before = 0, after = 0;
