@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <utility>
 
 #include "skyloop/base/steady_clock.hpp"
 #include "skyloop/fault/checked_command.hpp"
@@ -77,6 +78,7 @@ struct LiveFeeds::Source {
     std::uint64_t statements = 0;  // at the last look
     std::int64_t heard_ns = 0;     // when they had become more, or the source waited for us
     bool lost = false;
+    bool pause_told = false;
     int times_lost = 0;
     std::string outage;                    // the fault that its silence has begun; empty: none
     std::optional<GpsTime> known_at_loss;  // known_until() then
@@ -195,6 +197,19 @@ std::vector<Command> LiveFeeds::pump(GpsTime now, std::optional<std::int64_t> du
     return commands;
 }
 
+// A source that leads takes the run's time with it into its pause. In real time the run goes on, unless it shall pause
+// where it has no truth.
+bool LiveFeeds::halts(Source& source) {
+    if (source.leads() || !source.feed->paused()) return false;
+    if (source.settings.when_lost == LostSource::pause) return true;
+    if (!std::exchange(source.pause_told, true))
+        news_.push_back(
+            fmt::format("{}: has paused; the run goes on, and the vehicle comes to rest farther on: "
+                        "when_lost = \"pause\" and clock = \"follow\" stand still, too",
+                        source.feed->description()));
+    return false;
+}
+
 // By the wall clock: a source that leads stops the run's own.
 void LiveFeeds::look_for_silence(Source& source, std::vector<Command>& commands) {
     const std::int64_t now_ns = steady_clock_ns();
@@ -202,8 +217,8 @@ void LiveFeeds::look_for_silence(Source& source, std::vector<Command>& commands)
     if (counts.statements != source.statements || source.feed->is_waited_on()) source.heard_ns = now_ns;
     source.statements = counts.statements;
     const double silent_s = static_cast<double>(now_ns - source.heard_ns) * 1e-9;
-    const bool over = source.feed->ended();
-    const bool speaks = !over && silent_s < source.settings.lost_after.value();
+    const bool over = source.feed->ended(), halted = halts(source);
+    const bool speaks = !over && !halted && silent_s < source.settings.lost_after.value();
     if (source.lost && speaks) {
         source.lost = false;
         news_.push_back(fmt::format("{}: heard again", source.feed->description()));
@@ -216,7 +231,9 @@ void LiveFeeds::look_for_silence(Source& source, std::vector<Command>& commands)
     static constexpr std::array<std::string_view, 4> consequences{"the vehicle stands still", "the signals are gone",
                                                                   "time stands still", "the run ends"};
     news_.push_back(fmt::format("{}: {}; {}", source.feed->description(),
-                                over ? "has said goodbye" : fmt::format("nothing heard for {:.1f} s", silent_s),
+                                over     ? "has said goodbye"
+                                : halted ? "has paused"
+                                         : fmt::format("nothing heard for {:.1f} s", silent_s),
                                 consequences[static_cast<std::size_t>(source.settings.when_lost)]));
     switch (source.settings.when_lost) {
         case LostSource::hold:

@@ -61,9 +61,16 @@ std::vector<Bytes> FeedHearer::stepped(std::uint64_t speaker, Nanoseconds until,
     return found == dialects_.end() ? std::vector<Bytes>() : found->second->stepped(until, bytes);
 }
 
-void FeedHearer::forget(std::uint64_t speaker) { dialects_.erase(speaker); }
+// A pause ends with the connection that told of it: nobody is left to do so.
+void FeedHearer::forget(std::uint64_t speaker) {
+    dialects_.erase(speaker);
+    items_.emplace_back(FeedPause{false});
+}
 
-void FeedHearer::reconnected(std::uint64_t speaker) { of(speaker).reconnected(); }
+void FeedHearer::reconnected(std::uint64_t speaker) {
+    of(speaker).reconnected();
+    items_.emplace_back(FeedPause{false});
+}
 
 void FeedHearer::flush() {
     const std::size_t dropped = desk_.inbox.put(items_);

@@ -34,22 +34,26 @@ SourcePose pose_of_line(const LineNumbers& numbers, const std::optional<Attitude
     return pose;
 }
 
-// A line of a simulator whose time stands still says that it is paused.
+// A simulator whose time stands still for a while is paused; making up for a stall, FlightGear repeats a line or two.
 class PauseWatch {
 public:
     // @return whether the line says something new
-    bool look(Nanoseconds time, FeedNews& news) {
-        const bool stands = last_ && *last_ == time;
-        if (stands) ++news.others;
-        if (stands != paused_ && last_) news.add_aside(FeedPause{stands});
-        paused_ = stands;
+    bool look(Nanoseconds time, std::int64_t received_ns, FeedNews& news) {
+        constexpr std::int64_t while_ns = 200'000'000;
+        const bool repeats = last_ && *last_ == time;
+        if (repeats) ++news.others;
+        if (!repeats) since_ns_ = received_ns;
         last_ = time;
-        return !stands;
+        const bool stands = received_ns - since_ns_ >= while_ns;
+        if (stands != paused_) news.add_aside(FeedPause{stands});
+        paused_ = stands;
+        return !repeats;
     }
     void forget() { last_.reset(), paused_ = false; }
 
 private:
     std::optional<Nanoseconds> last_;
+    std::int64_t since_ns_ = 0;  // when it was told first
     bool paused_ = false;
 };
 
@@ -70,7 +74,7 @@ protected:
                 std::int64_t received_ns, FeedNews& news) {
         const auto time = source_nanoseconds(numbers[LineColumn::time_s]);
         if (!time) return report_refusal(news, fmt::format("a time of {} s", numbers[LineColumn::time_s]));
-        if (!watch_.look(*time, news)) return;
+        if (!watch_.look(*time, received_ns, news)) return;
         SampleOr sample = sample_of(pose_of_line(numbers, attitude), context());
         if (sample && coarse) filter_.smooth(*sample, time->count());
         report_sample(news, std::move(sample), time, received_ns);

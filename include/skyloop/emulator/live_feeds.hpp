@@ -80,6 +80,7 @@ private:
     struct Source;
     LiveFeeds();
     Result<Source*> source_of(const LiveSettings& settings, const Geoid* geoid);
+    bool halts(Source& source);
     void look_for_silence(Source& source, std::vector<Command>& commands);
     static void end_outage(Source& source, GpsTime now, std::vector<Command>& commands);
 

@@ -22,11 +22,12 @@ using test::emulator_scenario;
 // A source on the same machine, and the run that it flies in.
 class LiveFeedsTest : public testing::Test {
 protected:
-    void open(const std::string& clock, const std::string& lost_after_s = "0.2") {
+    void open(const std::string& clock, const std::string& lost_after_s = "0.2",
+              const std::string& when_lost = "outage") {
         scenario_ = emulator_scenario(
             "[run]\nstart = 2024-03-05T12:00:00Z\n[trajectory]\nkind = \"live\"\n"
-            "source = \"udp-json:0\"\nwhen_lost = \"outage\"\nlost_after_s = " +
-            lost_after_s + "\nclock = \"" + clock + "\"\n");
+            "source = \"udp-json:0\"\nwhen_lost = \"" +
+            when_lost + "\"\nlost_after_s = " + lost_after_s + "\nclock = \"" + clock + "\"\n");
         auto feeds = LiveFeeds::open(scenario_, nullptr);
         ASSERT_TRUE(feeds) << feeds.error().message;
         feeds_ = std::move(*feeds);
@@ -131,6 +132,33 @@ TEST_F(LiveFeedsTest, ASourceThatOnlyTellsOfItsClockIsHeard) {
         say(R"({"type":"clock","paused":true})");
         EXPECT_FALSE(command_at(start_, 80ms)) << i;
     }
+}
+
+TEST_F(LiveFeedsTest, APauseOfTheSourceInRealTimePausesTheRunThatPausesWithoutTruth) {
+    open("realtime", "100", "pause");
+    say(10);
+    say(R"({"type":"clock","paused":true})");
+    const auto halted = command_at(start_);
+    ASSERT_TRUE(halted);
+    EXPECT_EQ(halted->verb, CommandVerb::pause);
+    EXPECT_THAT(feeds_->take_news(), testing::Contains(testing::HasSubstr("has paused; time stands still")));
+    EXPECT_FALSE(command_at(start_, 50ms)) << "once";
+    say(R"({"type":"clock","paused":false})");
+    const auto goes_on = command_at(start_);
+    ASSERT_TRUE(goes_on);
+    EXPECT_EQ(goes_on->verb, CommandVerb::resume);
+}
+
+TEST_F(LiveFeedsTest, APauseOfTheSourceInRealTimeIsToldOnce) {
+    open("realtime", "100");
+    say(10);
+    for (int i = 0; i < 3; ++i) {
+        say(R"({"type":"clock","paused":true})");
+        EXPECT_FALSE(command_at(start_, 100ms));
+        say(R"({"type":"clock","paused":false})");
+        EXPECT_FALSE(command_at(start_, 100ms));
+    }
+    EXPECT_THAT(feeds_->take_news(), testing::ElementsAre(testing::HasSubstr("has paused; the run goes on")));
 }
 
 TEST(LiveFeeds, EachVehicleOfASourceHasAPlaceOfItsOwnBefore) {

@@ -299,6 +299,20 @@ TEST(FeedPaths, TheGoodbyeOfOneVehicleIsNotThatOfAnother) {
     EXPECT_TRUE(feed.paths.ended()) << "it was for both";
 }
 
+TEST(FeedPaths, APauseEndsWithTheConnectionThatToldOfIt) {
+    PathsUnderTest feed(ClockMode::realtime);
+    FeedHearer hearer("json", FeedContext(), feed.desk);
+    const auto is_paused = [&] {
+        hearer.flush();
+        feed.take(paths_start_ns);
+        return feed.paths.paused();
+    };
+    hearer.hear(1, to_bytes("{\"type\":\"clock\",\"paused\":true}\n"), paths_start_ns);
+    EXPECT_TRUE(is_paused());
+    hearer.forget(1);
+    EXPECT_FALSE(is_paused());
+}
+
 // How much a client asks of the run before its first step is done, and after it.
 struct AskedFor {
     std::size_t before = 0, after = 0;

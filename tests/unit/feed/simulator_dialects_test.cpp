@@ -151,13 +151,15 @@ TEST(FlightgearGenericDialect, ReadsTheLinesOfSkyloopXml) {
 
 TEST(FlightgearGenericDialect, ATimeThatStandsIsAPause) {
     const auto dialect = dialect_named("flightgear-generic");
-    EXPECT_FALSE(pause_told(hear_text(*dialect, generic_line(1))));
-    const FeedNews stands = hear_text(*dialect, generic_line(1));
-    EXPECT_EQ(pause_told(stands), true);
-    EXPECT_TRUE(stands.samples.empty());
-    EXPECT_EQ(stands.others, 1u) << "the simulator is there";
-    EXPECT_FALSE(pause_told(hear_text(*dialect, generic_line(1))));
-    const FeedNews goes_on = hear_text(*dialect, generic_line(1.1));
+    constexpr std::int64_t milli_ns = 1'000'000;
+    EXPECT_FALSE(pause_told(hear_text(*dialect, generic_line(1), 0)));
+    const FeedNews repeated = hear_text(*dialect, generic_line(1), milli_ns);
+    EXPECT_FALSE(pause_told(repeated)) << "it makes up for a stall";
+    EXPECT_TRUE(repeated.samples.empty());
+    EXPECT_EQ(repeated.others, 1u) << "the simulator is there";
+    EXPECT_EQ(pause_told(hear_text(*dialect, generic_line(1), 250 * milli_ns)), true);
+    EXPECT_FALSE(pause_told(hear_text(*dialect, generic_line(1), 300 * milli_ns)));
+    const FeedNews goes_on = hear_text(*dialect, generic_line(1.1), 320 * milli_ns);
     EXPECT_EQ(pause_told(goes_on), false);
     EXPECT_EQ(goes_on.samples.size(), 1u);
 }
