@@ -93,6 +93,11 @@ private:
         news.answers.push_back(json_line({{"type", "error"}, {"line", lines_}, {"what", why}}));
     }
 
+    static void remark(FeedNews& news, std::string_view sentence) {
+        if (!news.remark.empty()) news.remark += "; ";
+        news.remark += sentence;
+    }
+
     Result<void> take_statement(const FeedJson& statement, FeedNews& news, std::int64_t received_ns) {
         const auto version = statement_whole(statement, "v");
         if (!version) return fail(version.error());
@@ -108,7 +113,7 @@ private:
         if (name == "hello") news.answers.push_back(say().front());
         if (name == "bye") news.add_aside(FeedEnd{});
         if (name == "vis" && !std::exchange(vis_told_, true))
-            news.remark = "its lines of type 'vis' (lines of sight of an engine) are not used";
+            remark(news, "its lines of type 'vis' (lines of sight of an engine) are not used");
         return {};  // others are of a later version
     }
 
@@ -172,9 +177,13 @@ private:
         return {};
     }
 
-    static Result<void> take_event(const FeedJson& statement, FeedNews& news) {
+    Result<void> take_event(const FeedJson& statement, FeedNews& news) {
         auto command = statement_event(statement);
         if (!command) return fail(command.error());
+        const auto time = statement_time(statement);
+        if (!time) return fail(time.error());
+        if (*time && !std::exchange(event_time_told_, true))
+            remark(news, "its events act when they come; their times are not used");
         news.add_aside(std::move(*command));
         return {};
     }
@@ -190,7 +199,7 @@ private:
     FeedContext context_;
     std::optional<Geodetic> origin_;
     std::string line_;  // what has come of it
-    bool too_long_ = false, vis_told_ = false;
+    bool too_long_ = false, vis_told_ = false, event_time_told_ = false;
     std::uint64_t lines_ = 0;
     std::optional<std::int64_t> answered_ns_;  // when a refusal was
     std::map<std::string, Vehicle> vehicles_;

@@ -45,7 +45,7 @@ struct FeedNews {
     std::size_t refused = 0;             ///< statements that were whole and could not be used
     std::string refusal{};               ///< why, of the first of them, a sentence
     std::uint64_t lost = 0;              ///< statements that the source counted and that have not come
-    std::string remark{};                ///< what the user should be told, a sentence; once per dialect
+    std::string remark{};                ///< what the user should be told, in one line; once per dialect
 
     /// Said after all that there is so far.
     template <class What>

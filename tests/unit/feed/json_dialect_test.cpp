@@ -176,6 +176,11 @@ TEST(JsonDialect, AsksForFaultsAndCommands) {
     EXPECT_EQ(begun[0].source, "feed");
     EXPECT_EQ(begun[0].parameters.text("name"), "plug");
     EXPECT_EQ(begun[0].parameters.number("for_s"), 10);
+    EXPECT_THAT(fault.remark, HasSubstr("act when they come"));
+    EXPECT_EQ(talk.say("{\"type\":\"event\",\"t\":31,\"name\":\"pause\"}\n").remark, "") << "it is told once";
+    EXPECT_EQ(JsonTalk().say("{\"type\":\"event\",\"name\":\"pause\"}\n").remark, "");
+    const FeedNews both = JsonTalk().say("{\"type\":\"vis\"}\n{\"type\":\"event\",\"t\":3,\"name\":\"pause\"}\n");
+    EXPECT_THAT(both.remark, testing::AllOf(HasSubstr("'vis'"), HasSubstr("act when they come")));
     const FeedNews pause = talk.say("{\"type\":\"event\",\"name\":\"pause\"}\n");
     const auto paused = asides_of<Command>(pause);
     ASSERT_EQ(paused.size(), 1u) << pause.refusal;
