@@ -88,11 +88,10 @@ SceneViewpoint viewpoint_at(Geodetic place, bool has_height, const UrbanScene& s
 // height of its ground stays at height 0.
 void place_guessed(JoinedCity& city, const Geodetic& at, bool has_height) {
     const std::string &format = city.formats.front(), &name = city.names.front();
-    const Geodetic &origin = city.model.origin, nowhere{};
-    const bool demo = format == demo_scene_name;
-    if (demo || (origin.latitude == nowhere.latitude && origin.longitude == nowhere.longitude)) {
+    const Geodetic& origin = city.model.origin;
+    if (lies_nowhere(city)) {
         city.model.origin = below_antenna(at);
-        if (!demo)
+        if (format != demo_scene_name)
             city.warnings.push_back(
                 fmt::format("{} does not say where it lies; its origin is taken to be {} m below --at; "
                             "--origin tells another",

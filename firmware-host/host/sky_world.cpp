@@ -35,14 +35,13 @@ Result<World> make_world(const Scenario& asked, const SkyOptions& options, const
     const auto track = load_track(scenario, geoid.get(), start);
     if (!track) return fail(track.error());
     warnings.insert(warnings.end(), track->warnings.begin(), track->warnings.end());
-    const Geodetic place = make_trajectory(scenario.trajectory, start)->at(start).geodetic;
-    auto loaded = load_scene(scenario, place, CityCache{data_folders().cache}, geoid.get());
+    auto loaded = load_scene(scenario, scene_start(scenario, start), CityCache{data_folders().cache}, geoid.get());
     if (!loaded) return fail(loaded.error());
     warnings.insert(warnings.end(), loaded->warnings.begin(), loaded->warnings.end());
     if (loaded->scene) {
         stand_on_ground(scenario, *loaded->scene, options.run.at);
-        const Geodetic start_place = make_trajectory(scenario.trajectory, start)->at(start).geodetic;
-        if (auto doubt = doubt_of_height(*loaded->scene, start_place)) warnings.push_back(std::move(*doubt));
+        if (const auto place = scene_start(scenario, start))
+            if (auto doubt = doubt_of_height(*loaded->scene, *place)) warnings.push_back(std::move(*doubt));
     }
     for (const std::string& warning : warnings)
         messages.warning(warning);

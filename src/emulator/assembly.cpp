@@ -79,11 +79,11 @@ void add_obstacles(std::vector<std::unique_ptr<PropagationEffect>>& effects, con
 
 // What stands around, and what its user should be told of it.
 Result<void> add_scene(const Scenario& scenario, const DataFolders& data, Assembly& assembly) {
-    const Geodetic place = make_trajectory(scenario.trajectory, assembly.start)->at(assembly.start).geodetic;
+    const std::optional<Geodetic> place = scene_start(scenario, assembly.start);
     auto loaded = load_scene(scenario, place, CityCache{data.cache}, assembly.geoid.get());
     if (!loaded) return fail(loaded.error());
-    if (loaded->scene)
-        if (auto doubt = doubt_of_height(*loaded->scene, place)) loaded->warnings.push_back(std::move(*doubt));
+    if (loaded->scene && place)
+        if (auto doubt = doubt_of_height(*loaded->scene, *place)) loaded->warnings.push_back(std::move(*doubt));
     assembly.scene = std::move(*loaded);
     const std::vector<std::string>& warnings = assembly.scene.warnings;
     assembly.warnings.insert(assembly.warnings.end(), warnings.begin(), warnings.end());

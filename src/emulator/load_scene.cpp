@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "skyloop/base/digest.hpp"
+#include "skyloop/emulator/assembly.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/scene/generated_city.hpp"
 #include "skyloop/scene/stand_on_terrain.hpp"
@@ -114,37 +115,59 @@ double distance_to_scene(const Geodetic& place, const UrbanScene& scene) {
 
 constexpr double far_m = 2000;
 
-void warn_of_scene(const UrbanScene& scene, const Geodetic& start, std::vector<std::string>& warnings) {
+void warn_of_scene(const UrbanScene& scene, const std::optional<Geodetic>& start, std::vector<std::string>& warnings) {
     const SceneStatistics& s = scene.statistics();
     if (s.not_finite > 0)
         warnings.push_back(
             fmt::format("scene: {} triangles have a corner that is no number; they are left out", s.not_finite));
-    if (const double distance = distance_to_scene(start, scene); distance > far_m)
+    if (!start) return;
+    if (const double distance = distance_to_scene(*start, scene); distance > far_m)
         warnings.push_back(fmt::format(
             "scene: the antenna starts {:.1f} km away from the scene, whose origin is {:.6f}, {:.6f}; is it the right "
             "place?",
             distance / 1000, scene.frame().origin().latitude.deg(), scene.frame().origin().longitude.deg()));
 }
 
-// Coordinates that say nothing of the Earth lie where the run starts, and so does the ground of outlines without a
-// terrain, which are guesses.
-void warn_of_guessed_origin(const SceneEntry& entry, const JoinedCity& city, std::vector<std::string>& warnings) {
+enum class OpenPlace { nothing, place, ground };
+
+// What a file of a scene without an origin leaves to be guessed by the start of the run.
+OpenPlace left_open_by(const SceneEntry& entry, std::string_view format) {
     constexpr std::array<std::string_view, 4> local{"obj", "ply", "gltf", "mitsuba"};
     constexpr std::array<std::string_view, 3> outlines{"osm", "osm.pbf", "geojson"};
+    if (std::ranges::count(local, format) > 0) return OpenPlace::place;
+    return std::ranges::count(outlines, format) > 0 && entry.terrain.empty() ? OpenPlace::ground : OpenPlace::nothing;
+}
+
+void warn_of_guessed_origin(const SceneEntry& entry, const JoinedCity& city, std::vector<std::string>& warnings) {
     if (entry.reading.origin) return;
     for (std::size_t i = 0; i < city.names.size(); ++i) {
-        const auto is_one_of = [&](const auto& formats) { return std::ranges::count(formats, city.formats[i]) > 0; };
-        if (is_one_of(local))
+        const OpenPlace left_open = left_open_by(entry, city.formats[i]);
+        if (left_open == OpenPlace::place)
             warnings.push_back(
                 fmt::format("scene: {} does not say where it lies; its origin is taken to be {} m below the start of "
                             "the trajectory; scene.origin tells another",
                             city.names[i], antenna_above_scene.value()));
-        else if (is_one_of(outlines) && entry.terrain.empty())
+        else if (left_open == OpenPlace::ground)
             warnings.push_back(fmt::format(
                 "scene: {} does not say how high its ground lies; it is taken to be {} m below the start of "
                 "the trajectory; scene.origin tells another, and scene.terrain its shape",
                 city.names[i], antenna_above_scene.value()));
     }
+}
+
+// Where no start is known there is nothing to guess by.
+Result<void> check_places(const SceneEntry& entry, const JoinedCity& city) {
+    for (std::size_t i = 0; i < city.names.size(); ++i) {
+        const OpenPlace left_open =
+            i == 0 && lies_nowhere(city) ? OpenPlace::place : left_open_by(entry, city.formats[i]);
+        if (left_open == OpenPlace::nothing) continue;
+        return fail(ErrorCode::usage,
+                    fmt::format("{}is missing; {} does not say {}, and a live trajectory without at starts where its "
+                                "source says; expected [latitude, longitude, height]",
+                                entry.origin_told_at, city.names[i],
+                                left_open == OpenPlace::ground ? "how high its ground lies" : "where it lies"));
+    }
+    return {};
 }
 
 // Of the opposite hand, by the antenna of the preset: a telephone's is polarised linearly and hears both alike.
@@ -161,6 +184,19 @@ Decibels hand_rejection(ModernPreset preset) {
 }
 
 }  // namespace
+
+std::optional<Geodetic> scene_start(const Scenario& scenario, GpsTime start) {
+    const bool ridden = std::ranges::any_of(scenario.receivers, [](const ReceiverEntry& r) { return !r.trajectory; });
+    const TrajectorySettings& way = ridden ? scenario.trajectory : trajectory_of(scenario, 0);
+    if (const auto* live = std::get_if<LiveSettings>(&way); live != nullptr && !live->at) return std::nullopt;
+    return make_trajectory(way, start)->at(start).geodetic;
+}
+
+bool lies_nowhere(const JoinedCity& city) {
+    const Geodetic &origin = city.model.origin, nowhere{};
+    return city.formats.front() == demo_scene_name ||
+           (origin.latitude == nowhere.latitude && origin.longitude == nowhere.longitude);
+}
 
 Result<JoinedCity> read_scene_files(const SceneEntry& entry, const std::optional<Geodetic>& start,
                                     const CityCache& cache, const Geoid* geoid) {
@@ -215,12 +251,14 @@ std::string scene_description(const std::vector<std::string>& names, const Urban
                        static_cast<double>(s.memory) * 1e-6);
 }
 
-Result<LoadedScene> load_scene(const Scenario& scenario, const Geodetic& start, const CityCache& cache,
+Result<LoadedScene> load_scene(const Scenario& scenario, const std::optional<Geodetic>& start, const CityCache& cache,
                                const Geoid* geoid) {
     LoadedScene loaded;
     if (!scenario.scene.given()) return loaded;
     auto city = read_scene_files(scenario.scene, start, cache, geoid);
     if (!city) return fail(city.error());
+    if (!scenario.scene.reading.origin && !start)
+        if (const auto placed = check_places(scenario.scene, *city); !placed) return fail(placed.error());
     const SceneSettings settings{SceneSettings().merge_tolerance, scenario.scene.memory_limit_mb << 20};
     auto scene = UrbanScene::build(city->model, settings);
     if (!scene) return fail(scene.error().code, fmt::format("scene: {}", scene.error().message));

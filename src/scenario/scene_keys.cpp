@@ -35,7 +35,6 @@ void read_surface_material(TableReader& table, std::string& material) {
 
 // How coordinates and heights of the files are to be understood.
 void read_file_keys(TableReader& table, CityFileSettings& reading) {
-    reading.origin = table.place("origin");
     if (table.has("axes")) {
         std::string text = "x,y,z";  // stays where the value is no text, which has been told
         table.text("axes", text);
@@ -80,6 +79,8 @@ void read_path_keys(TableReader& table, SceneEntry& scene) {
 
 void read_scene_keys(TableReader& table, SceneEntry& scene, const std::filesystem::path& folder) {
     read_scene_files(table, scene, folder);
+    scene.reading.origin = table.place("origin");
+    scene.origin_told_at = table.told_at("origin");
     read_file_keys(table, scene.reading);
     read_path_keys(table, scene);
 }

@@ -22,6 +22,11 @@ inline Geodetic below_antenna(Geodetic place) {
     return place;
 }
 
+/// Where the antenna of a run starts whose scene has no origin: that of the scenario's own vehicle, or, where nobody
+/// rides on it, of the first receiver's. Nothing for a live vehicle without `at`, which starts where its source says.
+/// @param start of the run; trajectories of files have been loaded by load_track()
+std::optional<Geodetic> scene_start(const Scenario& scenario, GpsTime start);
+
 /// All files of a scene in one frame.
 struct JoinedCity {
     CityModel model;
@@ -41,6 +46,9 @@ struct JoinedCity {
 Result<JoinedCity> read_scene_files(const SceneEntry& entry, const std::optional<Geodetic>& start,
                                     const CityCache& cache, const Geoid* geoid = nullptr);
 
+/// Of files read without an origin and a start: the first one is the demo, or its coordinates say nothing of the Earth.
+bool lies_nowhere(const JoinedCity& city);
+
 /// A scene that receivers share; without one nothing stands around.
 struct LoadedScene {
     std::shared_ptr<const UrbanScene> scene;
@@ -51,8 +59,10 @@ struct LoadedScene {
 };
 
 /// Reads the scene of a scenario and makes it ready for rays. Fails with `input` when it would take more memory than
-/// allowed or nothing is in it, and as read_scene_files().
-Result<LoadedScene> load_scene(const Scenario& scenario, const Geodetic& start, const CityCache& cache,
+/// allowed or nothing is in it, with `usage` when neither its files nor its origin nor a start tell where it lies, and
+/// as read_scene_files().
+/// @param start scene_start()
+Result<LoadedScene> load_scene(const Scenario& scenario, const std::optional<Geodetic>& start, const CityCache& cache,
                                const Geoid* geoid = nullptr);
 
 /// What to say of an antenna that starts more than 20 m below all of a scene, or 300 m above it: mostly its heights

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "skyloop/city/city_file.hpp"
@@ -17,8 +18,9 @@ inline constexpr const char* demo_scene_name = "demo";
 struct SceneEntry {
     std::vector<std::filesystem::path> buildings;  ///< files, or demo_scene_name; joined into one frame
     std::filesystem::path terrain;                 ///< height grid; empty: none
-    /// Without an origin the frame lies where the trajectory starts, antenna_height below it.
+    /// Without an origin the frame lies antenna_above_scene below scene_start() (emulator/load_scene.hpp).
     CityFileSettings reading;
+    std::string origin_told_at = "scene.origin: ";  ///< "FILE:LINE:COLUMN: KEY: ", for messages
 
     std::optional<int> reflections;       ///< most of one path, 1 … 16; nothing: 16, in the modern model 3
     bool roofs_reflect = false;           ///< besides walls

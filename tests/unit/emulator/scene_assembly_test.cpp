@@ -162,6 +162,66 @@ TEST(SceneAssembly, OutlinesStandOnTheTerrain) {
     EXPECT_THAT(written_over.error().message, HasSubstr("this file is read, too, and would be lost"));
 }
 
+// A check opens no source.
+Result<Assembly> checked_live(const std::string& text, const std::string& at = "") {
+    RunMode mode = scene_mode();
+    mode.only_checked = true;
+    return assemble(
+        emulator_scenario("[trajectory]\nkind = \"live\"\nsource = \"udp-json:29990\"\n" + at + "[scene]\n" + text),
+        emulator_data(), mode);
+}
+
+TEST(SceneAssembly, ALiveVehicleThatStartsAnywhereNeedsAnOrigin) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "a.obj") << "v 0 0 0\nv 50 0 0\nv 0 0 20\nf 1 2 3\n";
+    std::ofstream(folder / "town.geojson") << house_on_a_hill;
+    const auto refused = [](const std::string& text) {
+        const auto assembly = checked_live(text);
+        EXPECT_FALSE(assembly) << text;
+        return assembly ? "" : assembly.error().message;
+    };
+    EXPECT_THAT(refused("buildings = \"demo\"\n"),
+                HasSubstr("test.toml:4:1: scene.origin: is missing; demo does not say where it lies"));
+    EXPECT_THAT(refused("buildings = \"" + (folder / "a.obj").string() + "\"\n"),
+                HasSubstr("a.obj does not say where it lies"));
+    EXPECT_THAT(refused("buildings = \"" + (folder / "town.geojson").string() + "\"\n"),
+                HasSubstr("town.geojson does not say how high its ground lies"));
+    const auto placed = checked_live("buildings = \"demo\"\norigin = [47.4, 8.5, 400]\n");
+    ASSERT_TRUE(placed) << placed.error().message;
+    EXPECT_NEAR(placed->scene.scene->frame().origin().latitude.deg(), 47.4, 1e-12);
+    EXPECT_THAT(placed->warnings, Not(Contains(HasSubstr("the antenna starts"))));
+    const auto known = checked_live("buildings = \"demo\"\n", "at = [48, 11, 500]\n");
+    ASSERT_TRUE(known) << known.error().message;
+    EXPECT_NEAR(known->scene.scene->frame().origin().height.above_ellipsoid.value(), 498.5, 1e-9);
+}
+
+TEST(SceneAssembly, WhatLiesOnTheEarthStaysThereForALiveVehicle) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "town.geojson") << house_on_a_hill;
+    std::ofstream(folder / "hill.asc")
+        << "ncols 2\nnrows 2\nxllcorner 10.99\nyllcorner 47.99\ncellsize 0.01\n542 542\n542 542\n";
+    const auto assembly = checked_live(fmt::format("buildings = \"{}\"\nterrain = \"{}\"\n",
+                                                   (folder / "town.geojson").string(), (folder / "hill.asc").string()));
+    ASSERT_TRUE(assembly) << assembly.error().message;
+    EXPECT_NEAR(assembly->scene.scene->frame().origin().latitude.deg(), 48.0001, 1e-4);
+    EXPECT_NEAR(assembly->scene.scene->frame().origin().longitude.deg(), 11.0003, 1e-4);
+    EXPECT_THAT(assembly->warnings, Not(Contains(HasSubstr("the antenna starts"))));
+}
+
+TEST(SceneAssembly, AFleetHasItsSceneWhereTheFirstReceiverStarts) {
+    const std::string fleet =
+        "[[receiver]]\n[receiver.trajectory]\nkind = \"fixed\"\nat = [47.4, 8.5, 500]\n"
+        "[[receiver]]\n[receiver.trajectory]\nkind = \"fixed\"\nat = [47.4, 8.501, 500]\n";
+    const auto assembly = with_scene(demo_text + fleet);
+    ASSERT_TRUE(assembly) << assembly.error().message;
+    EXPECT_NEAR(assembly->scene.scene->frame().origin().latitude.deg(), 47.4, 1e-12);
+    EXPECT_THAT(assembly->warnings, Not(Contains(HasSubstr("away from the scene"))));
+    // Whoever has no way of its own rides on the scenario's.
+    const auto mixed = with_scene(demo_text + fleet + "[[receiver]]\n");
+    ASSERT_TRUE(mixed) << mixed.error().message;
+    EXPECT_NEAR(mixed->scene.scene->frame().origin().latitude.deg(), FixedSettings().at.latitude.deg(), 1e-12);
+}
+
 TEST(SceneAssembly, TheDigestCoversTheFiles) {
     const test::TemporaryFolder folder;
     const auto digest = [&](const char* top) {
