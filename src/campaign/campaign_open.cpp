@@ -6,21 +6,17 @@
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/campaign/campaign_folder.hpp"
 #include "skyloop/campaign/sha256.hpp"
+#include "skyloop/scenario/board_file.hpp"
 #include "skyloop/scenario/scenario_file.hpp"
 
 namespace skyloop {
 namespace {
 
-// As find_board() finds it: a path from where the program runs, or a name. Nothing: there is none.
+// Of a board by its name. One by its path is among the files that the scenario names. Nothing: there is none.
 std::optional<std::string> board_digest(const std::string& board, const DataFolders& data) {
-    std::vector<std::filesystem::path> places;
-    if (board.ends_with(".toml"))
-        places.emplace_back(board);
-    else
-        for (const auto& folder : board_folders(data))
-            places.push_back(folder / "receivers" / (board + ".toml"));
-    for (const auto& place : places)
-        if (const auto text = read_text_file(place)) return sha256_hex(*text);
+    if (is_board_path(board)) return std::nullopt;
+    for (const auto& folder : board_folders(data))
+        if (const auto text = read_text_file(folder / "receivers" / (board + ".toml"))) return sha256_hex(*text);
     return std::nullopt;
 }
 

@@ -28,8 +28,10 @@ Result<firmware::BoardProfile> read_board(std::string_view toml_text, std::strin
     return board;
 }
 
+bool is_board_path(std::string_view name) { return name.ends_with(".toml"); }
+
 std::optional<fs::path> find_board_file(std::string_view name, std::span<const fs::path> directories) {
-    if (name.ends_with(".toml")) return name;
+    if (is_board_path(name)) return name;
     if (name.find('/') != std::string_view::npos) return std::nullopt;
     std::error_code absent;
     for (const fs::path& directory : directories)

@@ -115,7 +115,7 @@ constexpr KeyMeaning run_meanings[] = {
     {"scene", "cache", "keep models that take time to read for the next run"},
     {"", "receiver", "the receivers on the vehicle", "one, an ublox-m8 on a pty"},
     {"receiver", "name", "what messages and `base` call it", "receiver0, receiver1, …"},
-    {"receiver", "board", "a profile of `skyloop boards`"},
+    {"receiver", "board", "a profile of `skyloop boards`, or the path of a board file (`.toml`)"},
     {"receiver", "port",
      "wires: pty[:LINK], serial:DEVICE[@BAUD], usb:VID:PID, hid:VID:PID, usbip:[HOST:]PORT, tcp:[HOST:]PORT, "
      "tcp-connect:HOST:PORT, rfc2217:[HOST:]PORT, file:PATH, -, client:NAME; NAME= before it says which port",

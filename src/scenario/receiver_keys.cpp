@@ -7,6 +7,7 @@
 
 #include "config_items.hpp"
 #include "scenario_keys.hpp"
+#include "skyloop/scenario/board_file.hpp"
 
 namespace skyloop {
 namespace {
@@ -17,8 +18,9 @@ void add_once(std::vector<firmware::NmeaSentence>& sentences, firmware::NmeaSent
     if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end()) sentences.push_back(sentence);
 }
 
-void read_output_keys(TableReader& receiver, ReceiverEntry& entry) {
+void read_output_keys(TableReader& receiver, ReceiverEntry& entry, const std::filesystem::path& folder) {
     receiver.text("board", entry.board);
+    if (is_board_path(entry.board)) entry.board = (folder / entry.board).string();
     receiver.text_or_texts("port", entry.ports);
     receiver.text("power", entry.power);
     for (const char* key : {"board", "port", "power", "config"})
@@ -127,7 +129,7 @@ void read_receivers(TableReader& top, Scenario& scenario, const TrajectoryContex
         if (count++ > 0) scenario.receivers.emplace_back();
         read_name(receiver, scenario);
         ReceiverEntry& entry = scenario.receivers.back();
-        read_output_keys(receiver, entry);
+        read_output_keys(receiver, entry, context.folder);
         read_navigation_keys(receiver, entry);
         read_place_and_power_keys(receiver, entry, context.folder);
         entry.trajectory = read_trajectory_keys(receiver, context, scenario.warnings);

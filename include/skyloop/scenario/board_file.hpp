@@ -18,8 +18,11 @@ namespace skyloop {
 /// Fails with `input`: the sentence names file, line, column and key, what was found and what was expected.
 Result<firmware::BoardProfile> read_board(std::string_view toml_text, std::string_view name);
 
-/// Where the profile of this name lies: `receivers/<name>.toml` in the first of `directories` that has one. A name that
-/// ends in ".toml" is the path of a file. Nothing for an unknown name.
+/// Whether a name is the path of a board's file: it ends in ".toml".
+bool is_board_path(std::string_view name);
+
+/// Where the profile of this name lies: `receivers/<name>.toml` in the first of `directories` that has one; of a
+/// path (is_board_path()) that file. Nothing for an unknown name.
 std::optional<std::filesystem::path> find_board_file(std::string_view name,
                                                      std::span<const std::filesystem::path> directories);
 

@@ -152,8 +152,8 @@ bool choose_model(ModelSettings& settings, std::string_view name);
 
 /// One emulated receiver and its wires.
 struct ReceiverEntry {
-    std::string name;  ///< empty: receiver0, receiver1, …
-    std::string board = "ublox-m8";
+    std::string name;                               ///< empty: receiver0, receiver1, …
+    std::string board = "ublox-m8";                 ///< for find_board(): a name, or the path of a file
     std::vector<std::string> ports;                 ///< URIs, after the name of a port and "=" or alone; empty: one pty
     std::string power;                              ///< URI of the actuator that power_cut switches; empty: none
     std::optional<double> rate_hz;                  ///< nothing: the board's

@@ -94,11 +94,13 @@ TEST_F(CampaignOpen, TheContentOfABoardThatAValueNamesIsInTheKeysOfItsRuns) {
 }
 
 TEST_F(CampaignOpen, TheContentOfABoardThatTheScenarioNamesByItsPathIsInTheKeys) {
-    const auto here = std::filesystem::current_path();
-    write_scenario("[[receiver]]\nboard = \"" + board().lexically_relative(here).string() + "\"\n");
+    const std::string beside = board().lexically_relative(folder_.path()).string();
+    write_scenario("[[receiver]]\nboard = \"" + beside + "\"\n");
     const auto before = keys({});
+    const auto varied_before = keys({"receiver.0.board=" + beside});
     std::ofstream(board(), std::ios::app) << "# another\n";
     EXPECT_NE(keys({}), before);
+    EXPECT_NE(keys({"receiver.0.board=" + beside}), varied_before);
 }
 
 TEST_F(CampaignOpen, AFolderIsNotTakenFromAnotherCampaign) {

@@ -38,6 +38,16 @@ TEST(ScenarioReceivers, PowerAndMemory) {
     EXPECT_EQ(r.start, StartKind::cold);
 }
 
+TEST(ScenarioReceivers, ABoardByItsPathLiesBesideTheScenario) {
+    const auto board = [](const std::string& named) {
+        return scenario_of("[[receiver]]\nboard = \"" + named + "\"\n").receivers[0].board;
+    };
+    EXPECT_EQ(board("mine.toml"), "folder/mine.toml");
+    EXPECT_EQ(board("boards/mine.toml"), "folder/boards/mine.toml");
+    EXPECT_EQ(board("/boards/mine.toml"), "/boards/mine.toml");
+    EXPECT_EQ(board("ublox-m10"), "ublox-m10") << "a name is looked for where boards lie";
+}
+
 TEST(ScenarioReceivers, ItemsOfTheConfigurationByTheirNames) {
     const ReceiverEntry r = scenario_of(
                                 "[[receiver]]\n[receiver.config]\n\"CFG-RATE-MEAS\" = 100\n"
