@@ -168,8 +168,8 @@ public:
     [[nodiscard]] std::string told_at() const { return mistakes_.told_at(table_.source(), path_); }
     /// The path of a file, which has a name. @param folder to which it is relative
     void file_path(std::string_view key, const std::filesystem::path& folder, std::filesystem::path& value);
-    /// Whatever stands there, as faults and commands take it; lists of lists of numbers become one list. Nothing, and a
-    /// mistake, for a table or a list that is neither of numbers nor of texts.
+    /// Whatever stands there, as faults and commands take it; a list of pairs of numbers becomes one list. Nothing, and
+    /// a mistake, for a table or a list that is neither of numbers, pairs of numbers nor texts.
     std::optional<ParameterValue> value(std::string_view key);
     /// What stands there, for a caller that reads it itself; null: nothing. @param type for the catalogue of keys
     const toml::node* node(std::string_view key, KeyType type);

@@ -1,10 +1,24 @@
 // Values of any type, as tables of parameters take them.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "table_reader.hpp"
 
 namespace skyloop {
 namespace {
+
+bool is_pair(const toml::node& item) {
+    const auto* pair = item.as_array();
+    return pair != nullptr && pair->size() == 2 && (*pair)[0].is_number() && (*pair)[1].is_number();
+}
+
+// Of a list of numbers and lists the first entry that is no pair, as the corners of an area are; null: none.
+const toml::node* besides_pairs(const toml::array& list) {
+    if (std::none_of(list.begin(), list.end(), [](const toml::node& item) { return item.is_array(); })) return nullptr;
+    const auto odd = std::find_if_not(list.begin(), list.end(), is_pair);
+    return odd == list.end() ? nullptr : &*odd;
+}
 
 // Adds the numbers of a list, and of lists in it.
 bool append_numbers(const toml::array& list, std::vector<double>& numbers) {
@@ -44,7 +58,15 @@ std::optional<ParameterValue> TableReader::value(std::string_view key) {
     }
     if (const auto* list = node->as_array()) {
         std::vector<double> numbers;
-        if (append_numbers(*list, numbers)) return ParameterValue(numbers);
+        if (append_numbers(*list, numbers)) {
+            const toml::node* odd = besides_pairs(*list);
+            if (odd == nullptr) return ParameterValue(numbers);
+            const auto* group = odd->as_array();
+            mistake_at(*odd, key,
+                       fmt::format("holds {}; expected pairs, each [latitude, longitude]",
+                                   group != nullptr ? fmt::format("a group of {}", group->size()) : "a single number"));
+            return std::nullopt;
+        }
         if (auto texts = all_texts(*list)) return ParameterValue(*texts);
     }
     wrong_type(key, *node, "a number, a text, true or false, or a list of numbers or texts");

@@ -113,6 +113,21 @@ TEST(ScenarioTimeline, MistakesAreToldWhereTheyStand) {
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"refuses_keys\"\nkeys = \"CFG-RATE-MESA\"\n"), HasSubstr("CFG-RATE-MEAS"));
 }
 
+TEST(ScenarioTimeline, CornersOfAnAreaArePairs) {
+    const auto mistakes = [](const std::string& area) {
+        const auto scenario = read_scenario("[[fault]]\nkind = \"outage\"\nwhen_inside = " + area + "\n", "test.toml");
+        return scenario ? std::string() : scenario.error().message;
+    };
+    EXPECT_THAT(mistakes("[[47, 8], [47, 9], [48, 9]]"), IsEmpty());
+    EXPECT_THAT(mistakes("[47, 8, 47, 9, 48, 9]"), IsEmpty());
+    EXPECT_EQ(mistakes("[[47, 8, 0], [47, 9, 0], [48, 9, 0], [48, 8, 0]]"),
+              "test.toml:3:16: fault.when_inside: holds a group of 3; expected pairs, each [latitude, longitude]")
+        << "a height is no longitude of the next corner";
+    EXPECT_THAT(mistakes("[[47, 8], [47, 9, 48, 9]]"),
+                HasSubstr("test.toml:3:25: fault.when_inside: holds a group of 4"));
+    EXPECT_THAT(mistakes("[[47, 8], [47, 9], 48, 9]"), HasSubstr("holds a single number"));
+}
+
 TEST(ScenarioTimeline, SatellitesAndMessagesThatThereCannotBeAreRefused) {
     const auto mistakes = [](std::string_view text) {
         const auto scenario = read_scenario(text, "test.toml");
