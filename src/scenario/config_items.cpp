@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <limits>
 
 #include "firmware/config/config_store.hpp"
 #include "skyloop/base/spelling.hpp"
@@ -28,6 +29,12 @@ std::uint64_t read_value(TableReader& config, const ConfigKey& key) {
         double number = 0;
         config.number(key.name, number);
         return std::bit_cast<std::uint64_t>(number);
+    }
+    if (key.type == ConfigType::r4) {
+        constexpr double most = std::numeric_limits<float>::max();
+        double number = 0;
+        config.number(key.name, number, {-most, most});
+        return std::bit_cast<std::uint32_t>(static_cast<float>(number));
     }
     if (key.type == ConfigType::l && config.is_boolean(key.name)) {
         bool flag = false;

@@ -67,6 +67,19 @@ TEST(ScenarioReceivers, ItemsOfTheConfigurationByTheirNames) {
     EXPECT_THAT(mistakes_of("[[receiver]]\nconfig = 3\n"), HasSubstr("config"));
 }
 
+TEST(ScenarioReceivers, ItemsThatHoldFloatingPointTakeNumbers) {
+    const auto item = [](const std::string& line) {
+        return scenario_of("[[receiver]]\n[receiver.config]\n" + line + "\n").receivers[0].config;
+    };
+    using testing::ElementsAre, testing::Pair;
+    EXPECT_THAT(item("CFG-NAVSPG-USRDAT_DX = 1.5"), ElementsAre(Pair(0x40110064U, 0x3FC00000U)));
+    EXPECT_THAT(item("CFG-NAVSPG-USRDAT_DY = 2"), ElementsAre(Pair(0x40110065U, 0x40000000U)));
+    EXPECT_THAT(item("CFG-NAVSPG-USRDAT_DZ = -3"), ElementsAre(Pair(0x40110066U, 0xC0400000U)));
+    EXPECT_THAT(item("CFG-NAVSPG-USRDAT_FLAT = 0.5"), ElementsAre(Pair(0x50110063U, 0x3FE0000000000000U)));
+    EXPECT_THAT(mistakes_of("[[receiver]]\n[receiver.config]\nCFG-NAVSPG-USRDAT_DX = 1e39\n"),
+                HasSubstr("CFG-NAVSPG-USRDAT_DX: is 1e+39; expected a number from -3.4"));
+}
+
 TEST(ScenarioReceivers, ABaseIsNamedOrCounted) {
     const std::string named =
         "[[receiver]]\nbase = \"rear\"\n[[receiver]]\nname = \"rear\"\n[[receiver]]\nbase = \"receiver0\"";
