@@ -96,11 +96,24 @@ void read_spread(TableReader& table, CampaignSpread& spread) {
                        "says nothing of its values; expected values, uniform, log_uniform, normal or whole");
 }
 
+// A grid takes each value with each, and comes to an end.
+void check_spread_of_grid(TableReader& table, const CampaignParameter& parameter) {
+    if (std::holds_alternative<std::vector<CampaignValue>>(parameter.spread) ||
+        std::holds_alternative<WholeSpread>(parameter.spread))
+        return;
+    for (const char* key : {"uniform", "log_uniform", "normal"})
+        if (table.has(key))
+            table.mistake(key, fmt::format("'{}' has no end of values; expected values or whole in a grid, or another "
+                                           "design",
+                                           parameter.key));
+}
+
 void read_parameter(TableReader& table, CampaignSettings& campaign) {
     CampaignParameter parameter;
     table.needs_one_of({"key"}, "names no key; expected key = \"run.duration_s\"");
     table.text("key", parameter.key);
     read_spread(table, parameter.spread);
+    if (campaign.design == CampaignDesign::grid && !table.recording()) check_spread_of_grid(table, parameter);
     const auto same = [&](const CampaignParameter& other) { return other.key == parameter.key; };
     if (std::any_of(campaign.parameters.begin(), campaign.parameters.end(), same))
         table.mistake("key", fmt::format("'{}' is that of another parameter too; expected it once", parameter.key));
@@ -124,19 +137,13 @@ void read_vehicle(TableReader& table, CampaignSettings& campaign) {
     campaign.vehicle = std::move(vehicle);
 }
 
-// What the design and its parameters say of each other.
+// What the design and the number of its samples say of each other.
 void check_design(TableReader& table, const CampaignSettings& campaign) {
     const bool grid = campaign.design == CampaignDesign::grid;
     if (table.recording()) return;
     if (grid && table.has("samples"))
         table.mistake("samples", "is of designs that draw; expected design = \"random\" or \"latin_hypercube\"");
     if (!grid && !table.has("samples")) table.mistake("design", "draws samples; expected samples = their number");
-    for (const CampaignParameter& parameter : campaign.parameters)
-        if (grid && !std::holds_alternative<std::vector<CampaignValue>>(parameter.spread) &&
-            !std::holds_alternative<WholeSpread>(parameter.spread))
-            table.mistake("parameter", fmt::format("'{}' has no end of values; expected values or whole in a grid, or "
-                                                   "another design",
-                                                   parameter.key));
 }
 
 }  // namespace

@@ -1,4 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "scenario_keys.hpp"
 #include "skyloop/fault/known_names.hpp"
@@ -84,10 +87,40 @@ void read_expectation(TableReader& table, Expectation& expectation) {
     }
 }
 
+// What the rest of a scenario is called.
+struct NamedThings {
+    std::vector<std::string> entries, receivers;
+};
+
+NamedThings named_things(const Scenario& scenario) {
+    NamedThings named;
+    for (const TimelineEntry& entry : timeline_of(scenario))
+        named.entries.push_back(entry.name);
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
+        named.receivers.push_back(receiver_name(scenario, i));
+    return named;
+}
+
+void check_names(TableReader& table, const Expectation& expectation, const NamedThings& named) {
+    if (expectation.sentence)
+        if (const std::string mistake = event_mistake(*expectation.sentence, named.entries); !mistake.empty())
+            table.mistake("what", mistake);
+    const std::string& receiver = expectation.receiver;
+    if (!receiver.empty() &&
+        std::find(named.receivers.begin(), named.receivers.end(), receiver) == named.receivers.end())
+        table.mistake("receiver", fmt::format("'{}' is no receiver of this scenario; expected one of {}", receiver,
+                                              fmt::join(named.receivers, ", ")));
+}
+
 }  // namespace
 
-void read_expectations(TableReader& top, std::vector<Expectation>& list) {
-    top.tables("expect", [&list](TableReader& table) { read_expectation(table, list.emplace_back()); });
+void read_expectations(TableReader& top, Scenario& scenario) {
+    const NamedThings named = named_things(scenario);
+    top.tables("expect", [&](TableReader& table) {
+        Expectation& expectation = scenario.expectations.emplace_back();
+        read_expectation(table, expectation);
+        check_names(table, expectation, named);
+    });
 }
 
 }  // namespace skyloop

@@ -1,16 +1,10 @@
 #include "skyloop/scenario/scenario_file.hpp"
 
-#include <fmt/format.h>
-
-#include <fmt/ranges.h>
-
-#include <algorithm>
 #include <array>
 
 #include "scenario_keys.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/time/utc_time.hpp"
-#include "skyloop/verdict/expectation_sentence.hpp"
 
 namespace skyloop {
 namespace {
@@ -61,25 +55,6 @@ void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesyste
     }
 }
 
-// What only the whole scenario knows of its expectations: its receivers, faults and commands.
-void check_expectations(TableReader& top, const Scenario& scenario) {
-    std::vector<std::string> entries, receivers;
-    for (const TimelineEntry& entry : timeline_of(scenario))
-        entries.push_back(entry.name);
-    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
-        receivers.push_back(receiver_name(scenario, i));
-    for (const Expectation& expectation : scenario.expectations) {
-        const std::string title = fmt::format("[[expect]] '{}': ", expectation.title());
-        if (expectation.sentence)
-            if (const std::string mistake = event_mistake(*expectation.sentence, entries); !mistake.empty())
-                top.mistake("expect", title + mistake);
-        if (!expectation.receiver.empty() &&
-            std::find(receivers.begin(), receivers.end(), expectation.receiver) == receivers.end())
-            top.mistake("expect", fmt::format("{}receiver '{}' is no receiver of this scenario; expected one of {}",
-                                              title, expectation.receiver, fmt::join(receivers, ", ")));
-    }
-}
-
 }  // namespace
 
 void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
@@ -96,8 +71,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     read_receivers(top, scenario, context);
     read_outputs(top, scenario);
     read_timeline(top, scenario);
-    read_expectations(top, scenario.expectations);
-    check_expectations(top, scenario);
+    read_expectations(top, scenario);
     read_campaign(top, scenario.campaign);
 }
 

@@ -49,9 +49,8 @@ void read_scene_keys(TableReader& table, SceneEntry& scene, const std::filesyste
 
 /// Reads every [[fault]] and [[command]] of a scenario's top table, after its receivers.
 void read_timeline(TableReader& top, Scenario& scenario);
-/// Reads every [[expect]] of a scenario's top table. Whether the names of events and receivers are known is not looked
-/// at: event_mistake() and the scenario know that when everything has been read.
-void read_expectations(TableReader& top, std::vector<Expectation>& list);
+/// Reads every [[expect]] of a scenario's top table, after its receivers, faults and commands, which they name.
+void read_expectations(TableReader& top, Scenario& scenario);
 
 /// Reads [campaign] of a scenario's top table.
 void read_campaign(TableReader& top, std::optional<CampaignSettings>& campaign);

@@ -62,6 +62,11 @@ TEST(ScenarioCampaign, SaysWhereAMistakeIs) {
     EXPECT_THAT(campaign_mistake("design = \"random\"\n"), HasSubstr("expected samples = their number"));
     EXPECT_THAT(campaign_mistake("[[campaign.parameter]]\nkey = \"run.speed\"\nuniform = [1, 2]\n"),
                 HasSubstr("'run.speed' has no end of values"));
+    EXPECT_EQ(campaign_mistake("[[campaign.parameter]]\nkey = \"run.duration_s\"\nvalues = [1, 2]\n"
+                               "[[campaign.parameter]]\nkey = \"run.speed\"\nuniform = [1, 2]\n"),
+              "c.toml:7:11: campaign.parameter.uniform: 'run.speed' has no end of values; expected values or whole in "
+              "a grid, or another design")
+        << "at the entry that is wrong";
     EXPECT_THAT(campaign_mistake("[campaign.vehicle]\ntimeout_s = 3\n"), HasSubstr("names no command"));
     EXPECT_THAT(campaign_mistake("[campaign.vehicle]\ncommand = ' '\n"), HasSubstr("command: is empty"));
     EXPECT_THAT(campaign_mistake("[campaign.vehicle]\ncommand = []\n"), HasSubstr("command: is a list"));

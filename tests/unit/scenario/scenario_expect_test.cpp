@@ -93,5 +93,14 @@ TEST(ScenarioExpect, MistakesAreToldWithTheirPlace) {
     EXPECT_THAT(mistakes_of("expect = 3"), HasSubstr("a list of tables, each headed [[expect]]"));
 }
 
+TEST(ScenarioExpect, UnknownNamesAreToldAtTheirEntry) {
+    const std::string healthy = "[[fault]]\nkind = \"outage\"\n[[expect]]\nwhat = \"fix within 9 s of the outage\"\n";
+    EXPECT_THAT(mistakes_of(healthy + "[[expect]]\nwhat = \"no fix within 2 s of the outagee\"\n"),
+                StartsWith("test.toml:6:8: expect.what: no fault or command is called 'outagee', and none is of that "
+                           "kind; did you mean 'outage'?"));
+    EXPECT_EQ(mistakes_of(healthy + "[[expect]]\nwhat = \"fix always\"\nreceiver = \"left\"\n"),
+              "test.toml:7:12: expect.receiver: 'left' is no receiver of this scenario; expected one of receiver0");
+}
+
 }  // namespace
 }  // namespace skyloop
