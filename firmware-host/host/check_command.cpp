@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "run_session.hpp"
+#include "skyloop/campaign/campaign_run.hpp"
 #include "skyloop/fault/planned_events.hpp"
 #include "skyloop/time/utc_time.hpp"
 
@@ -59,6 +60,7 @@ int check(const RunOptions& options) {
     const Messages messages(options.verbosity);
     const auto scenario = scenario_from(options);
     if (!scenario) return messages.error(scenario.error());
+    if (const auto columns = result_columns(*scenario, {}); !columns) return messages.error(columns.error());
     RunMode mode;
     mode.now = wall_clock();
     mode.now_steady_ns = steady_clock_ns();

@@ -142,6 +142,7 @@ Result<void> apply_outputs(const RunOptions& options, Scenario& scenario) {
 
 Result<void> apply_speed(const RunOptions& options, Scenario& scenario) {
     if (options.speed.empty()) return {};
+    scenario.told_at.erase("run.speed");
     if (options.speed == "max") {
         scenario.run.speed = std::numeric_limits<double>::infinity();
         return {};
@@ -306,7 +307,10 @@ Result<Scenario> scenario_from(const RunOptions& options) {
         scenario = std::move(*read);
     }
     if (!options.nav.empty()) scenario.sky.navigation.assign(options.nav.begin(), options.nav.end());
-    scenario.sky.rebase_navigation |= options.rebase_nav;
+    if (options.rebase_nav) {
+        scenario.sky.rebase_navigation = true;
+        scenario.told_at.erase("sky.rebase_navigation");
+    }
     if (!options.scene.empty()) scenario.scene.buildings = {options.scene};
     if (options.seed) scenario.run.seed = *options.seed;
     if (!options.repeat.empty())

@@ -147,6 +147,9 @@ Result<Assembly> checked_assembly(const Scenario& scenario, const DataFolders& d
     Scenario unplaced = scenario;
     for (ReceiverEntry& receiver : unplaced.receivers)
         receiver.told_at.clear();
+    for (auto& [key, place] : unplaced.told_at)
+        place = key + ": ";
+    unplaced.scene.origin_told_at = SceneEntry().origin_told_at;
     for (FaultEntry& fault : unplaced.faults)
         fault.told_at = scenario.name + ": ";
     for (CommandEntry& command : unplaced.commands)

@@ -122,18 +122,18 @@ RunMode campaign_mode(const Scenario& scenario) {
 Result<ResultColumns> result_columns(const Scenario& scenario, const std::vector<std::string>& parameters) {
     ResultColumns columns{parameters, {}, unique_titles(scenario)};
     const auto known = metric_names();
-    const std::vector<std::string> wanted = scenario.campaign ? scenario.campaign->metrics : std::vector<std::string>();
-    for (const std::string& name : wanted) {
+    const CampaignSettings campaign = scenario.campaign.value_or(CampaignSettings{});
+    for (const std::string& name : campaign.metrics) {
         if (std::find(known.begin(), known.end(), name) == known.end())
             return fail(ErrorCode::usage,
-                        fmt::format("{}: campaign.metrics: '{}' is no metric; expected some of {}{}", scenario.name,
-                                    name, fmt::join(known, " "), did_you_mean(name, known)));
+                        fmt::format("{}'{}' is no metric; expected some of {}{}", campaign.metrics_told_at, name,
+                                    fmt::join(known, " "), did_you_mean(name, known)));
         if (std::find(columns.metrics.begin(), columns.metrics.end(), name) != columns.metrics.end())
-            return fail(ErrorCode::usage, fmt::format("{}: campaign.metrics: '{}' is there twice; expected it once",
-                                                      scenario.name, name));
+            return fail(ErrorCode::usage,
+                        fmt::format("{}'{}' is there twice; expected it once", campaign.metrics_told_at, name));
         columns.metrics.push_back(name);
     }
-    if (wanted.empty()) columns.metrics.assign(known.begin(), known.end());
+    if (campaign.metrics.empty()) columns.metrics.assign(known.begin(), known.end());
     return columns;
 }
 

@@ -54,6 +54,7 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> sensor_effects_of(const 
         if (!maps) return fail(maps.error());
         settings.maps = std::move(*maps);
     }
+    settings.tec_source_told_at = told_place(scenario, "atmosphere.tec_source", "atmosphere.tec_source");
     settings.run = span_of_tables(scenario, setup.start);
     return effects_for(*scenario.model.sensor_model, settings);
 }
@@ -103,9 +104,8 @@ Result<std::unique_ptr<LiveFeeds>> open_feeds(Scenario& scenario, const RunMode&
                     "a live trajectory needs time that passes; expected skyloop run, without --speed max");
     if ((*feeds)->leads() && scenario.run.speed != 1)
         return fail(ErrorCode::usage,
-                    fmt::format("the source leads the run's time, and speed = {:g} would, too; expected "
-                                "one of them",
-                                scenario.run.speed));
+                    fmt::format("{}is {:g}, and the live source leads the run's time; expected one of them",
+                                told_place(scenario, "run.speed", "--speed"), scenario.run.speed));
     for (const std::string& source : (*feeds)->descriptions())
         assembly.details.push_back("live trajectory: " + source);
     return feeds;

@@ -116,9 +116,10 @@ Result<LiveFeeds::Source*> LiveFeeds::source_of(const LiveSettings& settings, co
         if (source->settings.source != settings.source) continue;
         if (source->settings.clock != settings.clock)
             return fail(ErrorCode::usage,
-                        fmt::format("trajectory.source \"{}\" is asked for with clock = \"{}\" and with "
-                                    "clock = \"{}\"; expected one of them",
-                                    settings.source, clock_names[static_cast<std::size_t>(source->settings.clock)],
+                        fmt::format("{}\"{}\" is asked for with clock = \"{}\" and with clock = \"{}\"; expected one "
+                                    "of them",
+                                    settings.source_told_at, settings.source,
+                                    clock_names[static_cast<std::size_t>(source->settings.clock)],
                                     clock_names[static_cast<std::size_t>(settings.clock)]));
         return source.get();
     }
@@ -127,9 +128,9 @@ Result<LiveFeeds::Source*> LiveFeeds::source_of(const LiveSettings& settings, co
     const bool leads = settings.clock != ClockMode::realtime;
     if (leads && leader_ != nullptr)
         return fail(ErrorCode::usage,
-                    fmt::format("two sources would lead the run's time, {} and {}; expected clock = \"realtime\" for "
-                                "all but one",
-                                leader_->description(), settings.source));
+                    fmt::format("{}two sources would lead the run's time, {} and {}; expected clock = \"realtime\" "
+                                "for all but one",
+                                settings.source_told_at, leader_->description(), settings.source));
     auto feed = TruthFeed::open(*address, feed_settings(settings, geoid));
     if (!feed) return fail(feed.error());
     auto source = std::make_unique<Source>();
@@ -156,9 +157,9 @@ Result<std::unique_ptr<LiveFeeds>> LiveFeeds::open(Scenario& scenario, const Geo
     }
     if (feeds->leader_ == nullptr && scenario.run.speed != 1)
         return fail(ErrorCode::usage,
-                    fmt::format("a live trajectory with clock = \"realtime\" runs at speed 1, not at {:g}; expected "
+                    fmt::format("{}is {:g}, and a live trajectory with clock = \"realtime\" runs at 1; expected "
                                 "clock = \"follow\" where the source runs at another",
-                                scenario.run.speed));
+                                told_place(scenario, "run.speed", "--speed"), scenario.run.speed));
     return feeds;
 }
 

@@ -189,11 +189,13 @@ void warn_of_early_start(const Scenario& scenario, const NavigationData& data, L
 Result<LoadedNavigation> load_nominal(const Scenario& scenario, GpsTime now) {
     const auto& wanted = scenario.sky.constellations;
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), Constellation::gps) == wanted.end())
-        return fail(
-            ErrorCode::usage,
-            "sky.constellations leaves out gps, but the nominal constellation is GPS; give navigation data with --nav");
+        return fail(ErrorCode::usage, told_place(scenario, "sky.constellations", "sky.constellations") +
+                                          "leaves out gps, but the nominal constellation is GPS; expected navigation "
+                                          "data, by sky.navigation or --nav");
     if (scenario.sky.rebase_navigation)
-        return fail(ErrorCode::usage, "--rebase-nav moves navigation data, but there is none; give it with --nav");
+        return fail(ErrorCode::usage, told_place(scenario, "sky.rebase_navigation", "--rebase-nav") +
+                                          "moves navigation data, but there is none; expected some, by sky.navigation "
+                                          "or --nav");
     LoadedNavigation loaded{std::make_unique<NominalConstellation>(), {}, {}};
     loaded.start = start_of(scenario, std::nullopt, now);
     if (const auto checked = check_end(scenario.run, loaded.start); !checked) return fail(checked.error());

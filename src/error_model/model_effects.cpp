@@ -22,8 +22,9 @@ Result<std::unique_ptr<PropagationEffect>> ionosphere_effect(const EffectSetting
     if (wants_broadcast && s.klobuchar) return std::make_unique<TecIonosphereDelay>(*s.klobuchar);
     if (s.atmosphere.tec_source == TecSource::header)
         return fail(ErrorCode::input,
-                    "the electron content is to come from the navigation header, but the navigation data has no "
-                    "ionosphere coefficients; expected a file that has them, or the source 'automatic' or 'constant'");
+                    s.tec_source_told_at +
+                        "is 'header', and the navigation data has no ionosphere coefficients; expected a file that has "
+                        "them, or 'automatic' or 'constant'");
     return std::make_unique<TecIonosphereDelay>(s.atmosphere.total_electron_content);
 }
 

@@ -169,6 +169,7 @@ void read_campaign(TableReader& top, std::optional<CampaignSettings>& campaign) 
         }
         table.integer("design_seed", settings.design_seed, NumberRange::not_negative());
         table.texts("metrics", settings.metrics);
+        settings.metrics_told_at = table.told_at("metrics");
         table.tables("parameter", [&](TableReader& entry) { read_parameter(entry, settings); });
         table.table("vehicle", [&](TableReader& entry) { read_vehicle(entry, settings); });
         check_design(table, settings);

@@ -1,6 +1,9 @@
 #include "skyloop/scenario/scenario_file.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
+#include <initializer_list>
 
 #include "scenario_keys.hpp"
 #include "skyloop/base/text_file.hpp"
@@ -55,17 +58,36 @@ void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesyste
     }
 }
 
+// What a run may be refused for when it is put together.
+void remember_places(TableReader& table, std::string_view name, std::initializer_list<std::string_view> keys,
+                     ToldPlaces& told_at) {
+    for (const std::string_view key : keys)
+        if (table.has(key)) told_at[fmt::format("{}.{}", name, key)] = table.told_at(key);
+}
+
 }  // namespace
 
+std::string told_place(const Scenario& scenario, std::string_view key, std::string_view otherwise) {
+    const auto place = scenario.told_at.find(key);
+    return place != scenario.told_at.end() ? place->second : fmt::format("{}: ", otherwise);
+}
+
 void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
-    top.table("run", [&](TableReader& t) { read_run_keys(t, scenario.run); });
-    top.table("sky", [&](TableReader& t) { read_sky_keys(t, scenario.sky, folder); });
+    top.table("run", [&](TableReader& t) {
+        read_run_keys(t, scenario.run);
+        remember_places(t, "run", {"speed"}, scenario.told_at);
+    });
+    top.table("sky", [&](TableReader& t) {
+        read_sky_keys(t, scenario.sky, folder);
+        remember_places(t, "sky", {"rebase_navigation", "constellations"}, scenario.told_at);
+    });
     const TrajectoryContext context{read_frame(top), folder};
     if (auto path = read_trajectory_keys(top, context, scenario.warnings)) scenario.trajectory = std::move(*path);
     top.table("model", [&](TableReader& t) { read_model_keys(t, scenario.model, folder); });
     top.table("atmosphere", [&](TableReader& t) {
         read_atmosphere_keys(t, scenario, folder);
         scenario.atmosphere_keys = t.keys();
+        remember_places(t, "atmosphere", {"tec_source"}, scenario.told_at);
     });
     top.table("scene", [&](TableReader& t) { read_scene_keys(t, scenario.scene, folder); });
     read_receivers(top, scenario, context);

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "skyloop/base/result.hpp"
@@ -30,6 +31,7 @@ struct EffectSettings {
     TimeSpan run{};                                  ///< first and last instant of the run, which they must span
     const Geoid* geoid = nullptr;                    ///< must outlive the effects; without one heights stay ellipsoidal
     LeapSeconds leap_seconds = LeapSeconds::announced();
+    std::string tec_source_told_at = "atmosphere.tec_source: ";  ///< "FILE:LINE:COLUMN: KEY: ", for messages
 };
 
 /// The effects of a model in the order of their application; the link budget is the last, and effects of the scene go

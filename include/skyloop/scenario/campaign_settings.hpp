@@ -71,6 +71,7 @@ struct CampaignSettings {
     std::uint64_t design_seed = 1;
     std::vector<CampaignParameter> parameters{};
     std::vector<std::string> metrics{};  ///< names; empty: all
+    std::string metrics_told_at{};       ///< "FILE:LINE:COLUMN: KEY: ", for messages
     std::optional<CampaignVehicle> vehicle{};
 };
 

@@ -41,6 +41,10 @@
 
 namespace skyloop {
 
+/// "FILE:LINE:COLUMN: KEY: " by keys, for what shows only when a run is put together; what an option has given is not
+/// among them.
+using ToldPlaces = std::map<std::string, std::string, std::less<>>;
+
 struct RunSettings {
     std::optional<GpsTime> start;  ///< nothing: now, or the first epoch of the navigation data
     bool start_now = false;
@@ -171,8 +175,7 @@ struct ReceiverEntry {
     std::array<double, 3> antenna_offset{};  ///< forward, right, down from the point that follows the trajectory, m
     std::optional<TrajectorySettings> trajectory{};  ///< of the vehicle it rides on; nothing: the scenario's
     std::optional<std::size_t> base;  ///< the receiver, by its place in the list, that carries the base antenna
-    /// "FILE:LINE:COLUMN: KEY: " of board, port and power, for messages; what an option has given is not among them.
-    std::map<std::string, std::string, std::less<>> told_at{};
+    ToldPlaces told_at{};             ///< of board, port, power and config
 };
 
 /// A fault and when it works.
@@ -210,6 +213,7 @@ struct Scenario {
     std::vector<Expectation> expectations;       ///< what the run is judged by
     std::optional<CampaignSettings> campaign{};  ///< many runs of it; one run passes over them
     std::vector<std::string> warnings;  ///< what a reader should be told, e.g. a level that is too large for a plane
+    ToldPlaces told_at{};  ///< of run.speed, sky.rebase_navigation, sky.constellations and atmosphere.tec_source
 };
 
 /// The timeline of a scenario: its faults, then its commands.
@@ -217,6 +221,9 @@ std::vector<TimelineEntry> timeline_of(const Scenario& scenario);
 
 /// The path of the vehicle that a receiver rides on: its own, or the scenario's.
 const TrajectorySettings& trajectory_of(const Scenario& scenario, std::size_t index);
+
+/// What a sentence about a key of the scenario begins with: its place, or where no file has it `otherwise` and ": ".
+std::string told_place(const Scenario& scenario, std::string_view key, std::string_view otherwise);
 
 /// What messages call a receiver: its name, or receiver0 and so on by its place in the list.
 std::string receiver_name(const Scenario& scenario, std::size_t index);

@@ -103,6 +103,14 @@ TEST_F(CampaignOpen, TheContentOfABoardThatTheScenarioNamesByItsPathIsInTheKeys)
     EXPECT_NE(keys({"receiver.0.board=" + beside}), varied_before);
 }
 
+TEST_F(CampaignOpen, AMetricThatThereIsNotIsToldWhereItStands) {
+    write_scenario("[campaign]\nmetrics = [\"fix_share\", \"fix_shard\"]\n");
+    const auto refused = open({});
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("/c.toml:8:11: campaign.metrics: 'fix_shard' is no metric; expected "
+                                                   "some of"));
+}
+
 TEST_F(CampaignOpen, AFolderIsNotTakenFromAnotherCampaign) {
     const auto out = folder_ / "out";
     ASSERT_TRUE(keep_campaign(out, open({"trajectory.path=a.csv,b.csv"}).value()));

@@ -67,6 +67,15 @@ TEST(Assembly, WhatAKeyIsRefusedForHasItsPlaceInTheFile) {
     EXPECT_THAT(told("[run]\nstart = 2024-03-05T12:00:00Z\n[[fault]]\nkind = \"outage\"\nat_utc = "
                      "2024-03-05T11:00:00Z"),
                 StartsWith("test.toml:3:1: [[fault]] 'outage': at_utc is 2024-03-05T11:00:00.000Z"));
+    EXPECT_THAT(told("[sky]\nrebase_navigation = true"),
+                StartsWith("test.toml:2:21: sky.rebase_navigation: moves navigation data, but there is none"));
+    EXPECT_THAT(told("[sky]\nconstellations = [\"galileo\"]"),
+                StartsWith("test.toml:2:18: sky.constellations: leaves out gps"));
+    const std::string header = "[model]\nname = \"baseline\"\n[atmosphere]\ntec_source = \"header\"\n";
+    for (const char* receivers : {"", "[[receiver]]\n[[receiver]]\n"})
+        EXPECT_THAT(told(header + receivers),
+                    StartsWith("test.toml:4:14: atmosphere.tec_source: is 'header', and the navigation data has no "
+                               "ionosphere coefficients"));
     Scenario by_option = emulator_scenario("[[receiver]]\nboard = \"ublox-m8\"");
     by_option.receivers[0].board = "ublox-m7";
     by_option.receivers[0].told_at.erase("board");

@@ -70,6 +70,26 @@ protected:
     FileDescriptor source_{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
 };
 
+TEST(LiveFeeds, ContradictionsAreToldWhereTheyStand) {
+    const auto refused = [](const std::string& text) {
+        Scenario scenario = emulator_scenario(text);
+        const auto feeds = LiveFeeds::open(scenario, nullptr);
+        return feeds ? "accepted" : feeds.error().message;
+    };
+    const auto receiver = [](const std::string& source, const std::string& clock) {
+        return "[[receiver]]\n[receiver.trajectory]\nkind = \"live\"\nsource = \"" + source + "\"\nclock = \"" + clock +
+               "\"\n";
+    };
+    using testing::StartsWith;
+    EXPECT_THAT(refused(receiver("udp-json:0", "realtime") + receiver("udp-json:0", "follow")),
+                StartsWith("test.toml:9:10: receiver.trajectory.source: \"udp-json:0\" is asked for with clock = "
+                           "\"realtime\" and with clock = \"follow\""));
+    EXPECT_THAT(refused(receiver("udp-json:0", "follow") + receiver("udp-json:127.0.0.1:0", "follow")),
+                StartsWith("test.toml:9:10: receiver.trajectory.source: two sources would lead the run's time, "));
+    EXPECT_THAT(refused("[run]\nspeed = 2\n" + receiver("udp-json:0", "realtime")),
+                StartsWith("test.toml:2:9: run.speed: is 2, and a live trajectory with clock = \"realtime\""));
+}
+
 TEST_F(LiveFeedsTest, AnOutageLastsForTheTimeThatARunThatFollowsHasYetToGo) {
     open("follow");
     say(10);
