@@ -20,11 +20,11 @@ std::string on_one_line(std::string_view sentence) {
     return end < sentence.size() ? line + "..." : line;
 }
 
-void MistakeList::add(const toml::source_region& where, const std::string& sentence) {
+void MistakeList::add(const toml::source_region& where, const std::string& sentence, ErrorCode code) {
     const toml::source_position place = place_of(where, sentence);
     const Change* change = change_of(where, sentence);
     const std::string told = change != nullptr ? change->key + sentence.substr(change->path.size()) : sentence;
-    mistakes_.push_back({place.line, place.column, on_one_line(told + changes_text_)});
+    mistakes_.push_back({place.line, place.column, on_one_line(told + changes_text_), code});
 }
 
 void MistakeList::changed(std::string path, std::string key, const toml::source_region& where,
@@ -52,7 +52,7 @@ std::string MistakeList::told_at(const toml::source_region& where, std::string_v
     return fmt::format("{}:{}:{}: ", file_, place.line, place.column);
 }
 
-std::string MistakeList::text() const {
+Error MistakeList::error() const {
     std::vector<Mistake> sorted = mistakes_;
     std::stable_sort(sorted.begin(), sorted.end(), [](const Mistake& a, const Mistake& b) {
         return std::pair(a.line, a.column) < std::pair(b.line, b.column);
@@ -62,7 +62,9 @@ std::string MistakeList::text() const {
     std::string lines;
     for (const Mistake& m : sorted)
         lines += fmt::format("{}{}:{}:{}: {}", lines.empty() ? "" : "\n", file_, m.line, m.column, m.sentence);
-    return lines;
+    const bool outside = std::all_of(sorted.begin(), sorted.end(),
+                                     [](const Mistake& mistake) { return mistake.code == ErrorCode::outside; });
+    return {outside ? ErrorCode::outside : ErrorCode::input, std::move(lines)};
 }
 
 }  // namespace skyloop

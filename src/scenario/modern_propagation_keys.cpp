@@ -137,7 +137,7 @@ void read_antenna(TableReader& table, ModernSettings& settings, const std::files
     if (pattern)
         p.antenna = std::move(*pattern);
     else
-        table.mistake("antenna_table", pattern.error().message);
+        table.mistake_of_file("antenna_table", pattern.error());
 }
 
 void read_satellite_table(TableReader& table, ModernSettings& settings, const std::filesystem::path& folder) {
@@ -149,7 +149,7 @@ void read_satellite_table(TableReader& table, ModernSettings& settings, const st
     if (pattern)
         settings.propagation.link.satellite_pattern = std::move(*pattern);
     else
-        table.mistake("satellite_table", pattern.error().message);
+        table.mistake_of_file("satellite_table", pattern.error());
 }
 
 void read_received_power(TableReader& table, ModernLinkParameters::ReceivedPower& p) {

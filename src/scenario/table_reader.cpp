@@ -60,6 +60,12 @@ void TableReader::mistake(std::string_view key, const std::string& sentence) {
     mistakes_.add(node ? node->source() : table_.source(), fmt::format("{}: {}", path_of(key), sentence));
 }
 
+void TableReader::mistake_of_file(std::string_view key, const Error& error) {
+    const toml::node* node = table_.get(key);
+    mistakes_.add(node ? node->source() : table_.source(), fmt::format("{}: {}", path_of(key), error.message),
+                  error.code);
+}
+
 std::function<void(std::string_view, const std::string&)> TableReader::mistake_later() const {
     return [table = &table_, path = path_, mistakes = &mistakes_](std::string_view key, const std::string& sentence) {
         const toml::node* node = table->get(key);
@@ -343,7 +349,7 @@ Result<void> read_toml(std::string_view text, const std::string& file, const std
         TableReader top(table, {}, mistakes);
         body(top);
         top.finish();
-        if (!mistakes.empty()) return fail(ErrorCode::input, mistakes.text());
+        if (!mistakes.empty()) return fail(mistakes.error());
         return {};
     } catch (const toml::parse_error& error) {
         const auto where = error.source().begin;

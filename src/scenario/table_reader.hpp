@@ -28,7 +28,8 @@ namespace skyloop {
 class MistakeList {
 public:
     explicit MistakeList(std::string file) : file_(std::move(file)) {}
-    void add(const toml::source_region& where, const std::string& sentence);
+    /// @param code `outside` for what the outside world refused, as a file that cannot be read
+    void add(const toml::source_region& where, const std::string& sentence, ErrorCode code = ErrorCode::input);
     [[nodiscard]] bool empty() const { return mistakes_.empty(); }
     /// A part of the file has been changed since it was parsed: mistakes at `path` ("run.duration_s") are told at
     /// `where`, and begin with `key`, by which whoever changed it called it ("fault.gap.at_s"). @param words that end
@@ -36,13 +37,14 @@ public:
     void changed(std::string path, std::string key, const toml::source_region& where, const std::string& words);
     /// "FILE:LINE:COLUMN: ".
     [[nodiscard]] std::string told_at(const toml::source_region& where, std::string_view key) const;
-    /// All lines, in the order of the file.
-    [[nodiscard]] std::string text() const;
+    /// All lines, in the order of the file; `outside` when nothing is wrong with the file itself, else `input`.
+    [[nodiscard]] Error error() const;
 
 private:
     struct Mistake {
         toml::source_index line, column;
         std::string sentence;
+        ErrorCode code;
         bool operator==(const Mistake&) const = default;
     };
     [[nodiscard]] toml::source_position place_of(const toml::source_region& where, std::string_view sentence) const;
@@ -159,6 +161,8 @@ public:
     /// The caller has dealt with this key itself.
     void has_been_read(std::string_view key) { known_.emplace_back(key); }
     void mistake(std::string_view key, const std::string& sentence);
+    /// A file that the key names is refused.
+    void mistake_of_file(std::string_view key, const Error& error);
     /// mistake() for what shows only when more of the file has been read. Valid while the file is read.
     [[nodiscard]] std::function<void(std::string_view key, const std::string& sentence)> mistake_later() const;
     /// "FILE:LINE:COLUMN: KEY: ", for what shows only when the run is put together; of the table where the key is
@@ -209,7 +213,8 @@ private:
 
 /// Parses TOML and reads its top table with `body`.
 /// @param file its name, for messages
-/// Fails with `input`: one line per mistake, `FILE:LINE:COLUMN: KEY: what was found; what was expected`.
+/// Fails with `input`, or with `outside` where the only mistakes are files named in it that cannot be read: one line
+/// per mistake, `FILE:LINE:COLUMN: KEY: what was found; what was expected`.
 /// @param change what is done to the parsed table before it is read
 Result<void> read_toml(std::string_view text, const std::string& file, const std::function<void(TableReader&)>& body,
                        const std::function<void(toml::table&, MistakeList&)>& change = {});

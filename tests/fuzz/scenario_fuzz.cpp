@@ -56,7 +56,8 @@ void check_mistakes(const std::string& message) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const Result<Scenario> scenario = read_scenario({reinterpret_cast<const char*>(data), size}, "fuzz.toml");
     if (!scenario) {
-        require(scenario.error().code == ErrorCode::input);
+        // A table of an antenna's that is named may not be there.
+        require(scenario.error().code != ErrorCode::usage);
         check_mistakes(scenario.error().message);
         return 0;
     }

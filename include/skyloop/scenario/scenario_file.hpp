@@ -14,7 +14,8 @@ namespace skyloop {
 /// Reads a scenario (INTERFACE.md section 2; every key in docs/scenario.md).
 /// @param text TOML
 /// @param file its name, for messages; paths in the text are relative to its folder
-/// Fails with `input`: one line per mistake, `FILE:LINE:COLUMN: what was found; what was expected`.
+/// Fails with `input`, or with `outside` where the only mistakes are tables of antennas that cannot be read: one line
+/// per mistake, `FILE:LINE:COLUMN: what was found; what was expected`.
 Result<Scenario> read_scenario(std::string_view text, const std::filesystem::path& file);
 Result<Scenario> read_scenario_file(const std::filesystem::path& file);
 

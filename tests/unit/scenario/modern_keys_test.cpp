@@ -158,8 +158,20 @@ TEST(ModernKeys, OfTheLinkAndItsDisturbances) {
         {"scintillation", "evening_width_h", "3", SKYLOOP_PLAIN(propagation.scintillation_model.evening_width_h), 3},
     });
     EXPECT_FALSE(modern_of("[model.modern.link]\nman_made_noise = \"none\"").propagation.link.man_made);
-    EXPECT_THAT(mistakes_of("[model.modern.link]\nantenna_table = \"none.csv\""),
-                testing::AllOf(HasSubstr("test.toml:2:17: model.modern.link.antenna_table: "), HasSubstr("none.csv")));
+}
+
+TEST(ModernKeys, ATableThatCannotBeReadIsNoMistakeOfTheScenario) {
+    for (const std::string key : {"antenna_table", "satellite_table"}) {
+        const auto refused = read_scenario("[model.modern.link]\n" + key + " = \"none.csv\"\n", "test.toml");
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, ErrorCode::outside) << "another day it may be there";
+        EXPECT_THAT(refused.error().message,
+                    testing::AllOf(testing::StartsWith("test.toml:2:"), HasSubstr("model.modern.link." + key + ": "),
+                                   HasSubstr("none.csv")));
+    }
+    EXPECT_THAT(mistakes_of("[run]\nspeed = 0\n[model.modern.link]\nantenna_table = \"none.csv\"\n"),
+                testing::AllOf(HasSubstr("run.speed"), HasSubstr("none.csv")))
+        << "one mistake of its own makes the file a wrong one";
 }
 
 TEST(ModernKeys, TheFilesOfTablesAreKnown) {
