@@ -12,8 +12,6 @@
 namespace skyloop {
 namespace {
 
-std::string default_receiver_name(std::size_t index) { return fmt::format("receiver{}", index); }
-
 void add_once(std::vector<firmware::NmeaSentence>& sentences, firmware::NmeaSentence sentence) {
     if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end()) sentences.push_back(sentence);
 }
@@ -106,6 +104,8 @@ void read_base(TableReader& receiver, std::span<const std::string> names, Scenar
 }
 
 }  // namespace
+
+std::string default_receiver_name(std::size_t index) { return fmt::format("receiver{}", index); }
 
 std::string receiver_name(const Scenario& scenario, std::size_t index) {
     const std::string& name = scenario.receivers.at(index).name;

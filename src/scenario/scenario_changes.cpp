@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <set>
+#include <utility>
 
 #include "campaign_values.hpp"
 #include "scenario_keys.hpp"
@@ -35,31 +37,51 @@ std::optional<std::size_t> entry_with(const toml::array& list, std::string_view 
     return found;
 }
 
-std::optional<std::size_t> place_in_list(const toml::array& list, std::string_view part) {
+// What messages call the entries of a list; those that have no name get one of the program's.
+std::vector<std::string> names_in(const toml::array& list, std::string_view list_name) {
+    std::vector<std::string> names;
+    for (const toml::node& item : list) {
+        const toml::table* entry = item.as_table();
+        std::string name = entry != nullptr ? (*entry)["name"].value_or(std::string()) : std::string();
+        if (name.empty() && list_name == "receiver") name = default_receiver_name(names.size());
+        if (name.empty() && entry != nullptr && (list_name == "fault" || list_name == "command"))
+            name = default_entry_name((*entry)["kind"].value_or(std::string_view()), names);
+        names.push_back(std::move(name));
+    }
+    return names;
+}
+
+// @param list_name what the list is called where it stands: "receiver"
+std::optional<std::size_t> place_in_list(const toml::array& list, std::string_view list_name, std::string_view part) {
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
     if (error == std::errc() && end == part.data() + part.size())
         return index < list.size() ? std::optional(index) : std::nullopt;
     if (const auto named = entry_with(list, "name", part)) return named;
-    return entry_with(list, "kind", part);
+    if (const auto only = entry_with(list, "kind", part)) return only;
+    const std::vector<std::string> names = names_in(list, list_name);
+    const auto called = std::find(names.begin(), names.end(), part);
+    return called != names.end() ? std::optional(static_cast<std::size_t>(called - names.begin())) : std::nullopt;
 }
 
 // The value below `parent` that a part of a key means; a table that is not there is made. Null: there is none.
-toml::node* step_down(toml::node& parent, std::string_view part) {
+// @param name of the parent
+toml::node* step_down(toml::node& parent, std::string_view name, std::string_view part) {
     if (toml::table* table = parent.as_table()) {
         if (!table->contains(part)) table->insert(part, toml::table{});
         return table->get(part);
     }
     toml::array* list = parent.as_array();
-    const auto index = list != nullptr ? place_in_list(*list, part) : std::nullopt;
+    const auto index = list != nullptr ? place_in_list(*list, name, part) : std::nullopt;
     return index ? list->get(*index) : nullptr;
 }
 
-bool put(toml::node& parent, std::string_view part, const toml::node& value) {
+// @param name of the parent
+bool put(toml::node& parent, std::string_view name, std::string_view part, const toml::node& value) {
     if (toml::table* table = parent.as_table())
         return value.visit([&](const auto& concrete) { return table->insert_or_assign(part, concrete), true; });
     toml::array* list = parent.as_array();
-    const auto index = list != nullptr ? place_in_list(*list, part) : std::nullopt;
+    const auto index = list != nullptr ? place_in_list(*list, name, part) : std::nullopt;
     if (!index) return false;
     const auto at = static_cast<std::ptrdiff_t>(*index);
     value.visit([&](const auto& concrete) { list->insert(list->cbegin() + at, concrete); });
@@ -73,8 +95,10 @@ bool is_place(std::string_view part) {
 
 // A list is not made: what its entries would be nobody has said.
 bool lacks_list(const toml::node& parent, std::string_view part, std::string_view next) {
+    static constexpr std::array<std::string_view, 5> lists{"receiver", "output", "fault", "command", "expect"};
     const toml::table* table = parent.as_table();
-    return table != nullptr && is_place(next) && !table->contains(part);
+    if (table == nullptr || table->contains(part)) return false;
+    return is_place(next) || std::find(lists.begin(), lists.end(), part) != lists.end();
 }
 
 // @return how much of the key is not there: "receiver.0"; empty: it is changed
@@ -87,11 +111,12 @@ std::string apply_change(toml::table& table, const ScenarioChange& change) {
     toml::node* parent = &table;
     for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
         if (lacks_list(*parent, parts[i], parts[i + 1])) return until(i + 1);
-        parent = step_down(*parent, parts[i]);
+        parent = step_down(*parent, i > 0 ? parts[i - 1] : "", parts[i]);
         if (parent == nullptr) return until(i);
     }
     bool done = false;
-    with_toml_value(change.value, [&](const toml::node& value) { done = put(*parent, parts.back(), value); });
+    const std::string_view name = parts.size() > 1 ? parts[parts.size() - 2] : "";
+    with_toml_value(change.value, [&](const toml::node& value) { done = put(*parent, name, parts.back(), value); });
     return done ? std::string() : change.key;
 }
 
@@ -99,10 +124,12 @@ std::string apply_change(toml::table& table, const ScenarioChange& change) {
 std::string path_of_change(const toml::table& table, std::string_view key, bool with_places) {
     std::string path;
     const toml::node* node = &table;
+    std::string_view name;  // of the node
     for (const std::string_view part : parts_of(key)) {
+        const std::string_view list_name = std::exchange(name, part);
         const toml::array* list = node != nullptr ? node->as_array() : nullptr;
         if (list != nullptr) {
-            const auto index = place_in_list(*list, part);
+            const auto index = place_in_list(*list, list_name, part);
             node = index ? list->get(*index) : nullptr;
             if (with_places) path += index ? fmt::format(".{}", *index) : fmt::format(".{}", part);
             continue;

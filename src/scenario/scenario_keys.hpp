@@ -38,6 +38,8 @@ struct TrajectoryContext {
     std::filesystem::path folder;     ///< that paths are relative to
 };
 
+/// "receiver1": what messages call a receiver without a name. @param index its place in the list
+std::string default_receiver_name(std::size_t index);
 /// Reads every [[receiver]] of a scenario's top table.
 void read_receivers(TableReader& top, Scenario& scenario, const TrajectoryContext& context);
 
@@ -47,6 +49,9 @@ void read_outputs(TableReader& top, Scenario& scenario);
 /// Reads [scene]. @param folder that paths are relative to
 void read_scene_keys(TableReader& table, SceneEntry& scene, const std::filesystem::path& folder);
 
+/// "jamming", and where that is taken "jamming 2": what messages call a fault or command without a name.
+/// @param before the names of those before it in the list
+std::string default_entry_name(std::string_view kind, std::span<const std::string> before);
 /// Reads every [[fault]] and [[command]] of a scenario's top table, after its receivers.
 void read_timeline(TableReader& top, Scenario& scenario);
 /// Reads every [[expect]] of a scenario's top table, after its receivers, faults and commands, which they name.

@@ -92,16 +92,13 @@ TimelineEntry read_times(TableReader& table, const std::vector<ParameterSpec>& k
     return reading.entry;
 }
 
-// "jamming", and where that is taken "jamming 2".
 template <class Entry>
 void name_entry(TimelineEntry& entry, const std::string& kind, const std::vector<Entry>& others) {
     if (!entry.name.empty()) return;
-    const auto taken = [&](const std::string& name) {
-        return std::any_of(others.begin(), others.end(), [&](const Entry& other) { return other.when.name == name; });
-    };
-    entry.name = kind;
-    for (int number = 2; taken(entry.name); ++number)
-        entry.name = fmt::format("{} {}", kind, number);
+    std::vector<std::string> names;
+    for (const Entry& other : others)
+        names.push_back(other.when.name);
+    entry.name = default_entry_name(kind, names);
 }
 
 std::vector<std::size_t> read_receiver_choice(TableReader& table, const Scenario& scenario) {
@@ -198,6 +195,13 @@ void check_fault_names(const Scenario& scenario, const EntryMistakes& mistakes) 
 }
 
 }  // namespace
+
+std::string default_entry_name(std::string_view kind, std::span<const std::string> before) {
+    std::string name(kind);
+    for (int number = 2; std::find(before.begin(), before.end(), name) != before.end(); ++number)
+        name = fmt::format("{} {}", kind, number);
+    return name;
+}
 
 std::vector<TimelineEntry> timeline_of(const Scenario& scenario) {
     std::vector<TimelineEntry> entries;

@@ -12,8 +12,9 @@
 
 namespace skyloop {
 
-/// A key with another value. Of a list of tables an entry is meant by its place, from 0 on, by its `name`, or by its
-/// `kind` where no other has it: "receiver.0.rate_hz", "fault.outage.for_s". Of a list of values by its place:
+/// A key with another value. Of a list of tables an entry is meant by its place, from 0 on, by its `name`, by its
+/// `kind` where no other has it, or by what messages call it: "receiver.0.rate_hz", "fault.outage.for_s",
+/// "receiver.receiver1.board", "fault.jamming 2.for_s". Of a list of values by its place:
 /// "trajectory.at.2". A key that the file does not have is added.
 struct ScenarioChange {
     std::string key;

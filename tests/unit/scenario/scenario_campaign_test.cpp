@@ -168,6 +168,36 @@ TEST(ScenarioChanges, ReachEveryKindOfPlace) {
     }
 }
 
+TEST(ScenarioChanges, EntriesHaveTheNamesThatMessagesCallThemBy) {
+    const std::string silent = "[[fault]]\nkind = \"receiver_silent\"\nfor_s = 1\n";
+    const std::string text = "[[receiver]]\n[[receiver]]\nname = \"rear\"\n[[receiver]]\n" + silent +
+                             "[[fault]]\nkind = \"outage\"\n" + silent;
+    const auto changed_to = [&](const std::string& key, const std::string& value) {
+        const std::vector<ScenarioChange> changes{{key, parse_campaign_values(value)->at(0)}};
+        return read_changed_scenario(text, "c.toml", changes);
+    };
+    const auto rates = changed_to("receiver.receiver2.rate_hz", "5");
+    ASSERT_TRUE(rates) << rates.error().message;
+    EXPECT_FALSE(rates->receivers.at(0).rate_hz);
+    EXPECT_FALSE(rates->receivers.at(1).rate_hz);
+    EXPECT_EQ(rates->receivers.at(2).rate_hz, 5);
+    EXPECT_FALSE(changed_to("receiver.receiver1.rate_hz", "5")) << "that one is called rear";
+    const auto second = changed_to("fault.receiver_silent 2.for_s", "7");
+    ASSERT_TRUE(second) << second.error().message;
+    EXPECT_EQ(second->faults.at(0).when.length, Seconds(1));
+    EXPECT_EQ(second->faults.at(2).when.length, Seconds(7));
+    EXPECT_EQ(changed_to("fault.receiver_silent.for_s", "7")->faults.at(0).when.length, Seconds(7));
+}
+
+TEST(ScenarioChanges, AListThatIsNotThereIsNotMade) {
+    const std::vector<ScenarioChange> changes{{"fault.gap.for_s", parse_campaign_values("2")->at(0)}};
+    const auto scenario = read_changed_scenario("[run]\nduration_s = 10\n", "c.toml", changes);
+    ASSERT_FALSE(scenario);
+    EXPECT_THAT(scenario.error().message,
+                StartsWith("c.toml:1:1: 'fault.gap.for_s' leads to no key: the scenario has no fault.gap to vary"));
+    EXPECT_THAT(scenario.error().message, Not(HasSubstr("expected a list of tables")));
+}
+
 TEST(ScenarioChanges, AWrongValueIsToldWhereTheFileChangesIt) {
     EXPECT_THAT(change_mistake("fault.first.for_s", "-4"), StartsWith("c.toml:19:7: fault.first.for_s: "));
     EXPECT_THAT(change_mistake("fault.first.for_s", "-4"), HasSubstr("; with fault.first.for_s = -4"));
