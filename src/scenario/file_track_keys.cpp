@@ -23,7 +23,8 @@ void read_vehicle_class(TableReader& table, FileSettings& file) {
 
 }  // namespace
 
-void read_file_track(TableReader& table, const std::filesystem::path& folder, TrajectorySettings& trajectory) {
+void read_file_track(TableReader& table, PlaceReader& places, const std::filesystem::path& folder,
+                     TrajectorySettings& trajectory) {
     static constexpr std::array<std::string_view, 2> clocks{"run", "recorded"};
     FileSettings file;
     file.heading_given = table.has("heading_deg");
@@ -32,7 +33,7 @@ void read_file_track(TableReader& table, const std::filesystem::path& folder, Tr
     table.needs_one_of({"path"}, "kind \"file\" has no path; expected path = \"track.csv\"");
     file.keeps_time = table.choice("time", clocks, clocks[0]).value_or(0) == 1;
     table.quantity("gap_s", file.gap, {1e-3, 1e7});
-    file.origin = table.place("origin");
+    file.origin = places.read(table, "origin");
     table.word("gap", gap_words, file.gap_policy);
     table.quantity("start_delay_s", file.playback.delay, {0, 1e7});
     table.quantity("skip_s", file.playback.skip, {0, 1e9});

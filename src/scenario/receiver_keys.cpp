@@ -71,7 +71,8 @@ void read_place_and_power_keys(TableReader& receiver, ReceiverEntry& entry, cons
     if (const auto offset = receiver.numbers("antenna_offset_m", 3, entry.antenna_offset)) {
         std::copy(offset->begin(), offset->end(), entry.antenna_offset.begin());
         if (std::any_of(offset->begin(), offset->end(), [](double part) { return !(std::abs(part) <= longest_arm_m); }))
-            receiver.mistake("antenna_offset_m", fmt::format("expected numbers from -{0:g} to {0:g}", longest_arm_m));
+            receiver.mistake("antenna_offset_m", fmt::format("is [{0:g}]; expected numbers from -{1:g} to {1:g}",
+                                                             fmt::join(*offset, ", "), longest_arm_m));
     }
 }
 

@@ -27,7 +27,7 @@ constexpr std::array kinds{
     TrajectoryKind{"fixed", [](const KindReading& k) { read_fixed(k.table, k.places, k.trajectory); }},
     TrajectoryKind{"waypoints", [](const KindReading& k) { read_waypoints(k.table, k.places, k.trajectory); }},
     TrajectoryKind{"circle", [](const KindReading& k) { read_circle(k.table, k.places, k.trajectory); }},
-    TrajectoryKind{"file", [](const KindReading& k) { read_file_track(k.table, k.folder, k.trajectory); }},
+    TrajectoryKind{"file", [](const KindReading& k) { read_file_track(k.table, k.places, k.folder, k.trajectory); }},
     TrajectoryKind{"live", [](const KindReading& k) { read_live(k.table, k.places, k.trajectory); }},
 };
 

@@ -87,6 +87,7 @@ void read_waypoint_tables(TableReader& table, const std::function<void(TableRead
 void read_waypoints(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory);
 void read_circle(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory);
 void read_live(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory);
-void read_file_track(TableReader& table, const std::filesystem::path& folder, TrajectorySettings& trajectory);
+void read_file_track(TableReader& table, PlaceReader& places, const std::filesystem::path& folder,
+                     TrajectorySettings& trajectory);
 
 }  // namespace skyloop

@@ -107,7 +107,8 @@ TEST(ScenarioReceivers, NamesAreThereAndDiffer) {
 
 TEST(ScenarioReceivers, LeverArmsAreThreeNumbersOfAVehiclesSize) {
     EXPECT_THAT(mistakes_of("[[receiver]]\nantenna_offset_m = [1, 2]"), HasSubstr("antenna_offset_m"));
-    EXPECT_THAT(mistakes_of("[[receiver]]\nantenna_offset_m = [1, 2, 1001]"), HasSubstr("-1000 to 1000"));
+    EXPECT_THAT(mistakes_of("[[receiver]]\nantenna_offset_m = [1, 2, 1001]"),
+                HasSubstr("antenna_offset_m: is [1, 2, 1001]; expected numbers from -1000 to 1000"));
     EXPECT_THAT(mistakes_of("[[receiver]]\nantenna_offset_m = [nan, 0, 0]"), HasSubstr("antenna_offset_m"));
 }
 

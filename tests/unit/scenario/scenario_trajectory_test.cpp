@@ -45,6 +45,16 @@ TEST(ScenarioTrajectory, APlaceHasTwoOrThreeNumbers) {
     EXPECT_EQ(two.height.above_ellipsoid, Metres(0));
 }
 
+TEST(ScenarioTrajectory, TheOriginOfATrackMayBeAPlaceOfTheLevel) {
+    const Scenario s = scenario_of(std::string(level_at_odessa) +
+                                   "[trajectory]\nkind = \"file\"\npath = \"track.csv\"\norigin_level = [0, 0, 0]\n");
+    const auto& file = std::get<FileSettings>(s.trajectory);
+    ASSERT_TRUE(file.origin);
+    expect_near(from_odessa(*file.origin), {0, 0, 0});
+    EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"file\"\npath = \"track.csv\"\norigin_level = [0, 0, 0]\n"),
+                HasSubstr("trajectory.origin_level: needs a [frame]"));
+}
+
 TEST(ScenarioTrajectory, WaypointsInheritTheSpeedOfTheOneBefore) {
     const Scenario s = scenario_of(R"toml(
 [trajectory]
