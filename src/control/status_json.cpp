@@ -180,8 +180,11 @@ std::uint64_t last_sequence(const std::vector<std::shared_ptr<const Line>>& line
 }  // namespace
 
 std::string status_json(const StatusSnapshot& snapshot, const SeenLines& seen) {
+    const WeekAndTow gps = week_and_tow(snapshot.time);
     Json json{{"sequence", snapshot.sequence},
               {"time_utc", utc_json(snapshot.time)},
+              {"gps_week", gps.week},
+              {"gps_tow_s", gps.tow_seconds()},
               {"elapsed_s", difference(snapshot.time, snapshot.start).value()},
               {"start_utc", utc_json(snapshot.start)},
               {"span_s", since(snapshot.end, snapshot.start)},

@@ -54,6 +54,11 @@ async function everythingIsThere(page) {
     const told = (id) => page.locator(id).innerText();
     assert.match(await told("#error-more"), /^claims [\d.]+ m, HDOP\s[\d.]+$/);
     assert.match(await told("#height-more"), /^claims [\d.]+ m, VDOP\s[\d.]+$/);
+    assert.match(await told("#sky-dop"), /^PDOP [\d.]+$/);
+    // The run begins at 09:00:00 UTC on a Sunday, and GPS counts 18 leap seconds more.
+    const [, week, timeOfWeek] = /^GPS week (\d+), TOW (\d+) s$/.exec(await told("#gps-now"));
+    assert.equal(week, "2408");
+    assert.ok(timeOfWeek >= 32418 && timeOfWeek < 32418 + 900, `a time of week of ${timeOfWeek} s`);
     assert.ok((await page.locator("#sky .sat").count()) >= 6, "satellites in the sky");
     assert.ok((await page.locator("#bars rect").count()) >= 6, "bars of C/N0");
     assert.ok((await page.locator("#sky .sat-blocked, #sky .sat-reflected").count()) >= 1, "a city hides something");

@@ -15,7 +15,8 @@ struct SeenLines {
 };
 
 /// The snapshot as one JSON object without line end. Angles are in degrees, lengths in metres, times of GPS as
-/// "time_utc" and as seconds since the start; what is not known is null.
+/// "time_utc", as "gps_week" (not reduced modulo 1024) with "gps_tow_s", and as seconds since the start; what is not
+/// known is null.
 std::string status_json(const StatusSnapshot& snapshot, const SeenLines& seen = {});
 
 /// The last lines of a snapshot.

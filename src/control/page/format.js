@@ -43,6 +43,11 @@ export function utc(text) {
     return `${text.slice(0, 10)} ${text.slice(11, 19)} UTC`;
 }
 
+/** 2408, 32453.2 -> "GPS week 2408, TOW 32453 s": a time of week as clocks show it, not rounded. */
+export function gpsTime(week, timeOfWeek) {
+    return `GPS week ${week}, TOW ${Math.floor(timeOfWeek)} s`;
+}
+
 /** 0.4 -> "40 %". */
 export function percent(share) {
     return `${Math.round(share * 100)} %`;

@@ -2,7 +2,7 @@
 import { ask, attempt } from "./ask.js";
 import { post } from "./connection.js";
 import { byId, mark, say } from "./dom.js";
-import { clock, utc } from "./format.js";
+import { clock, gpsTime, utc } from "./format.js";
 
 const command = (name, more = {}) => attempt(() => post("/api/commands", { command: name, ...more }));
 
@@ -40,6 +40,7 @@ export class Pace {
         factor.disabled = status.virtual_time;
         if (document.activeElement !== factor) this.showSpeed(factor, status.speed);
         say(byId("now"), utc(status.time_utc));
+        say(byId("gps-now"), gpsTime(status.gps_week, status.gps_tow_s));
         const span = status.span_s === null ? "" : ` of ${clock(status.span_s)}`;
         const pace = status.virtual_time ? ", virtual time" : status.paused ? ", paused" : "";
         say(byId("elapsed"), `${clock(status.elapsed_s)}${span}${pace}`);

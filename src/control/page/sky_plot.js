@@ -1,6 +1,7 @@
 // The sky above the antenna: north up, zenith in the middle, colour by C/N0, shape by how the signal comes.
 import { cn0Class, cn0Classes } from "./appearance.js";
-import { byId, draw, make } from "./dom.js";
+import { byId, draw, make, say } from "./dom.js";
+import { figures } from "./format.js";
 
 const radius = 100;
 const size = 7;
@@ -102,5 +103,7 @@ export function setUpSkyPlot() {
         satellites.replaceChildren(...order.map(satelliteMark));
         const used = receiver.satellites.filter((satellite) => satellite.used).length;
         sky.setAttribute("aria-label", `Sky: ${receiver.satellites.length} satellites, ${used} used`);
+        const { dop } = receiver.fix;
+        say(byId("sky-dop"), dop ? `PDOP ${figures(dop.p, 2)}` : "");
     };
 }

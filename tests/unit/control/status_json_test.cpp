@@ -13,6 +13,8 @@ namespace {
 TEST(StatusJson, TellsTimesPlacesSatellitesAndWires) {
     const auto json = nlohmann::json::parse(status_json(small_snapshot()));
     EXPECT_EQ(json["elapsed_s"], 12.0);
+    EXPECT_EQ(json["gps_week"], 2314);
+    EXPECT_EQ(json["gps_tow_s"], 492812.0);
     EXPECT_EQ(json["title"], "hangar \"three\"");
     EXPECT_TRUE(json["span_s"].is_null());
     const auto& receiver = json["receivers"][0];
