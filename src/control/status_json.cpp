@@ -92,7 +92,7 @@ Json error_json(const EnuError& error) {
     return {{"east_m", error.east.value()}, {"north_m", error.north.value()}, {"up_m", error.up.value()}};
 }
 
-Json receiver_json(const ReceiverStatus& receiver) {
+Json receiver_json(const ReceiverStatus& receiver, GpsTime start) {
     Json satellites = Json::array(), wires = Json::array();
     for (const SatelliteSeen& satellite : receiver.satellites)
         satellites.push_back(satellite_json(satellite));
@@ -102,6 +102,7 @@ Json receiver_json(const ReceiverStatus& receiver) {
             {"board", receiver.board},
             {"rate_hz", receiver.rate_hz},
             {"epochs", receiver.epochs},
+            {"epoch_s", difference(receiver.epoch, start).value()},
             {"truth", place_json(receiver.truth)},
             {"true_speed_mps", receiver.true_speed.value()},
             {"fix", fix_json(receiver)},
@@ -194,7 +195,7 @@ std::string status_json(const StatusSnapshot& snapshot, const SeenLines& seen) {
               {"virtual_time", snapshot.pace.virtual_time}};
     Json receivers = Json::array(), dialogue = Json::array(), events = Json::array();
     for (const ReceiverStatus& receiver : snapshot.receivers)
-        receivers.push_back(receiver_json(receiver));
+        receivers.push_back(receiver_json(receiver, snapshot.start));
     for (const auto& line : snapshot.dialogue)
         if (line->sequence > seen.dialogue) dialogue.push_back(dialogue_json(*line, snapshot.start));
     for (const auto& line : snapshot.events)

@@ -71,7 +71,41 @@ async function everythingIsThere(page) {
     }, id);
     assert.ok((await inked("track")) > 3, "the map is drawn");
     assert.ok((await inked("errors")) > 3, "the errors are drawn");
+    await page.waitForFunction(() => Number(document.getElementById("deviation-count").textContent) >= 10);
+    assert.ok((await inked("deviation")) > 3, "the deviation is drawn");
     await noOverflow(page, laptop.width);
+}
+
+// Five errors of which quantiles and means are known, and what the run shows.
+async function deviationIsTold(page) {
+    const figures = await page.evaluate(async () => {
+        const { deviationFigures } = await import("/deviation.js");
+        return deviationFigures([[3, 4], [0, 1], [-2, 0], [0, -3], [4, 0]].map(([east, north]) => ({ east, north })));
+    });
+    const rounded = Object.fromEntries(Object.entries(figures).map(([name, value]) => [name, Number(value.toFixed(9))]));
+    assert.deepEqual(rounded, { count: 5, cep50: 3, cep95: 4.8, largest: 5, east: 1, north: 0.4 });
+    const label = await page.locator("#deviation").getAttribute("aria-label");
+    assert.match(label, /^Deviation: \d+ fixes, CEP 50 % [\d.]+ k?m, 95 % [\d.]+ k?m$/);
+    for (const id of ["cep50", "cep95", "largest", "east", "north"])
+        assert.match(await page.locator(`#deviation-${id}`).innerText(), /^−?\d.* k?m$/);
+    assert.match(await page.locator("#deviation-ring").innerText(), /^a ring each [\d.]+ k?m$/);
+}
+
+// Snapshots of one epoch are one position; those without a position are none.
+async function historyTakesEpochsOnce(page) {
+    const times = await page.evaluate(async () => {
+        const { History } = await import("/history.js");
+        const history = new History();
+        const add = (time, epoch, error) => history.add(time, { truth: {}, fix: { ok: true }, epoch_s: epoch, error });
+        const error = { east_m: 1, north_m: 2, up_m: 3 };
+        add(0.2, 0, error);
+        add(0.4, 0, error);
+        add(1.0, 1, null);
+        add(2.0, 2, error);
+        add(2.2, 2, error);
+        return [history.positions(0), history.positions(1)].map((list) => list.map((sample) => sample.time));
+    });
+    assert.deepEqual(times, [[0.2, 2], [2]]);
 }
 
 async function dialogueIsFiltered(page) {
@@ -231,6 +265,10 @@ async function phoneFits(browser, url) {
     await page.goto(url);
     await fixIs(page, "fix");
     await noOverflow(page, phone.width);
+    for (const panel of ["deviation-panel"]) {
+        const box = await page.locator(`#${panel}`).boundingBox();
+        assert.ok(box.x >= 0 && box.x + box.width <= phone.width, `${panel} fits`);
+    }
     await keep(page, "phone");
     await page.locator("#nav-verdicts").tap();
     await page.waitForTimeout(800); // it scrolls smoothly
@@ -267,6 +305,8 @@ async function test(browser, run) {
         request.url().startsWith(run.url) || request.url().startsWith("blob:") || mistakes.push(`foreign: ${request.url()}`));
     await page.goto(run.url);
     await everythingIsThere(page);
+    await deviationIsTold(page);
+    await historyTakesEpochsOnce(page);
     await dialogueIsFiltered(page);
     await verdictsStand(page);
     await page.waitForFunction(() => /:3[1-9]|:[45]/.test(document.getElementById("timeline-now").textContent), null,

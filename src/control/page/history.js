@@ -43,11 +43,20 @@ export class History {
             truth: receiver.truth,
             fix: receiver.fix.place ?? null,
             ok: receiver.fix.ok,
+            epoch: receiver.epoch_s,
+            east: error?.east_m ?? null,
+            north: error?.north_m ?? null,
             horizontal: error ? Math.hypot(error.east_m, error.north_m) : null,
             up: error ? Math.abs(error.up_m) : null,
             claimed: receiver.fix.h_acc_m ?? null,
         });
         if (this.samples.length > mostSamples) this.thin();
+    }
+
+    /** Samples with a position from a time on, one of each epoch: snapshots may come faster than those. */
+    positions(from) {
+        return this.samples.filter((sample, index, all) =>
+            sample.time >= from && sample.east !== null && sample.epoch !== all[index - 1]?.epoch);
     }
 
     // Every other one of the older half goes.

@@ -3,6 +3,7 @@ import { watchScheme } from "./appearance.js";
 import { ask, attempt } from "./ask.js";
 import { setUpBars } from "./bars.js";
 import { follow, get, post } from "./connection.js";
+import { Deviation } from "./deviation.js";
 import { Dialogue, setUpEvents } from "./dialogue.js";
 import { byId, make, mark, say } from "./dom.js";
 import { ErrorPlot } from "./error_plot.js";
@@ -41,6 +42,7 @@ const parts = {
     events: setUpEvents(),
     track: new TrackMap(moveTo),
     errors: new ErrorPlot(),
+    deviation: new Deviation(),
     timeline: new Timeline({ stop: (name) => faults.stop(name), start: (name) => faults.start(name) }),
     dialogue: new Dialogue(),
     pace: new Pace(),
@@ -76,6 +78,7 @@ function showReceiver(status) {
     parts.wires(receiver);
     parts.track.show(receiver, historyOf(receiver.name));
     parts.errors.show(historyOf(receiver.name), status.timeline, status.elapsed_s);
+    parts.deviation.show(historyOf(receiver.name), status.elapsed_s);
 }
 
 function show(status) {
@@ -108,6 +111,7 @@ byId("receiver").onchange = (event) => {
 watchScheme(() => {
     parts.track.paint();
     parts.errors.paint();
+    parts.deviation.paint();
 });
 setUpKeys({
     " ": () => parts.pace.toggle(),

@@ -30,6 +30,7 @@ inline StatusSnapshot small_snapshot() {
     ReceiverStatus receiver;
     receiver.name = "front";
     receiver.board = "neo-m8n";
+    receiver.epoch = control_start + std::chrono::seconds(11);
     receiver.truth = Geodetic::degrees(48, 11, 500);
     receiver.fix.type = FixType::fix_3d;
     receiver.fix.position = Geodetic::degrees(48, 11, 502);

@@ -20,6 +20,7 @@ TEST(StatusJson, TellsTimesPlacesSatellitesAndWires) {
     const auto& receiver = json["receivers"][0];
     EXPECT_EQ(receiver["fix"]["type"], "3d");
     EXPECT_NEAR(receiver["fix"]["place"]["height_m"].get<double>(), 502, 1e-9);
+    EXPECT_EQ(receiver["epoch_s"], 11.0);
     EXPECT_EQ(receiver["error"]["up_m"], 2.0);
     EXPECT_EQ(receiver["satellites"][0]["id"], "G07");
     EXPECT_EQ(receiver["satellites"][0]["cn0_dbhz"]["1C"], 44.5);
