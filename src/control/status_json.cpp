@@ -145,17 +145,31 @@ std::string message_text(const DialogueLine& line) {
     return text + "…";
 }
 
+const char* speaker(bool client) { return client ? "client" : "receiver"; }
+
 Json dialogue_json(const DialogueLine& line, GpsTime start) {
     return {{"seq", line.sequence},
             {"t_s", difference(line.time, start).value()},
             {"receiver", line.receiver},
             {"wire", line.wire},
-            {"from", line.from_client ? "client" : "receiver"},
+            {"from", speaker(line.from_client)},
             {"protocol", stream_kind_name(line.kind)},
             {"name", line.name},
             {"bytes", line.size},
             {"hex", hex_text(line.bytes)},
             {"text", message_text(line)}};
+}
+
+Json messages_json(const StatusSnapshot& snapshot) {
+    Json list = Json::array();
+    for (const MessageCount& message : snapshot.messages)
+        list.push_back({{"receiver", message.receiver},
+                        {"wire", message.wire},
+                        {"from", speaker(message.from_client)},
+                        {"protocol", stream_kind_name(message.kind)},
+                        {"name", message.name},
+                        {"count", message.count}});
+    return list;
 }
 
 Json bars_json(const StatusSnapshot& snapshot) {
@@ -209,6 +223,7 @@ std::string status_json(const StatusSnapshot& snapshot, const SeenLines& seen) {
     json["verdicts"] = verdicts_json(snapshot);
     json["events"] = std::move(events);
     json["dialogue"] = std::move(dialogue);
+    json["messages"] = messages_json(snapshot);
     return json_text(json);
 }
 

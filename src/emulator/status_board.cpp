@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "skyloop/emulator/pacer.hpp"
@@ -17,6 +18,12 @@ template <class Line>
 void keep_last(std::deque<std::shared_ptr<const Line>>& lines, Line line, std::size_t most) {
     if (lines.size() >= most) lines.pop_front();
     lines.push_back(std::make_shared<const Line>(std::move(line)));
+}
+
+// What is counted together, of a DialogueLine and of a MessageCount.
+template <class Message>
+auto message_key(const Message& message) {
+    return std::tie(message.receiver, message.wire, message.from_client, message.kind, message.name);
 }
 
 }  // namespace
@@ -121,7 +128,20 @@ void StatusBoard::on_message(const MessageSeen& seen) {
     line.size = seen.bytes.size();
     const ByteSpan kept = seen.bytes.first(std::min(seen.bytes.size(), dialogue_bytes));
     line.bytes.assign(kept.begin(), kept.end());
+    count_message(line);
     keep_last(dialogue_, std::move(line), most_dialogue_lines);
+}
+
+void StatusBoard::count_message(const DialogueLine& line) {
+    const auto less = [](const MessageCount& one, const DialogueLine& other) {
+        return message_key(one) < message_key(other);
+    };
+    auto found = std::lower_bound(messages_.begin(), messages_.end(), line, less);
+    if (found == messages_.end() || message_key(*found) != message_key(line)) {
+        if (messages_.size() >= most_message_counts) return;
+        found = messages_.insert(found, {line.receiver, line.wire, line.from_client, line.kind, line.name, 0});
+    }
+    ++found->count;
 }
 
 void StatusBoard::add_event(GpsTime now, std::string what, std::string text) {
@@ -206,6 +226,7 @@ void StatusBoard::publish(GpsTime now, std::int64_t clock_ns) {
         else
             bar.strength = bar.active ? 1 : 0;
     snapshot->dialogue.assign(dialogue_.begin(), dialogue_.end());
+    snapshot->messages = messages_;
     snapshot->events.assign(events_.begin(), events_.end());
     std::shared_ptr<const StatusSnapshot> next = std::move(snapshot);
     {

@@ -108,6 +108,27 @@ async function historyTakesEpochsOnce(page) {
     assert.deepEqual(times, [[0.2, 2], [2]]);
 }
 
+function messageRow(page, name, from) {
+    return page.locator(`#message-rows .from-${from}`, { has: page.locator("th", { hasText: new RegExp(`^${name}$`) }) });
+}
+
+// What a receiver at 5 Hz says of itself, as far as its wire carries it, and the poll that its client sends once a second.
+async function messagesAreCounted(page) {
+    const number = async (row, index) => Number(await row.locator(".number").nth(index).innerText());
+    const between = (name, from, least, most) => page.waitForFunction((wanted) =>
+        [...document.querySelectorAll(`#message-rows .from-${wanted.from}`)].some((row) => {
+            const rate = Number(row.lastElementChild.textContent);
+            return row.querySelector("th").textContent === wanted.name && rate >= wanted.least && rate <= wanted.most;
+        }), { name, from, least, most });
+    await between("GGA", "receiver", 1, 5.5);
+    await between("MON-VER", "client", 0.5, 1.5);
+    const sentences = messageRow(page, "GGA", "receiver");
+    const before = await number(sentences, 0);
+    await page.waitForTimeout(1500);
+    assert.ok((await number(sentences, 0)) > before, "it goes on counting");
+    assert.ok(await messageRow(page, "MON-VER", "receiver").isVisible(), "the answers have a row of their own");
+}
+
 async function dialogueIsFiltered(page) {
     await page.locator("#dialogue-from").selectOption("client");
     await page.locator("#dialogue .from-client", { hasText: "MON-VER" }).first().waitFor();
@@ -265,7 +286,7 @@ async function phoneFits(browser, url) {
     await page.goto(url);
     await fixIs(page, "fix");
     await noOverflow(page, phone.width);
-    for (const panel of ["deviation-panel"]) {
+    for (const panel of ["deviation-panel", "message-panel"]) {
         const box = await page.locator(`#${panel}`).boundingBox();
         assert.ok(box.x >= 0 && box.x + box.width <= phone.width, `${panel} fits`);
     }
@@ -307,6 +328,7 @@ async function test(browser, run) {
     await everythingIsThere(page);
     await deviationIsTold(page);
     await historyTakesEpochsOnce(page);
+    await messagesAreCounted(page);
     await dialogueIsFiltered(page);
     await verdictsStand(page);
     await page.waitForFunction(() => /:3[1-9]|:[45]/.test(document.getElementById("timeline-now").textContent), null,

@@ -36,8 +36,9 @@ struct StatusSetup {
 /// watches or after an event, one a second otherwise, of real time.
 ///
 /// The loop's thread never waits here: when a reader is just taking the last snapshot, the next one comes later.
-/// Between two snapshots an epoch costs a look at a clock, a message its copy. State: the last messages and events,
-/// what is under way, and each receiver at its last epoch that was looked at.
+/// Between two snapshots an epoch costs a look at a clock, a message its copy and its count. State: the last messages
+/// and events, how many messages of each name came, what is under way, and each receiver at its last epoch that was
+/// looked at.
 class StatusBoard : public RunObserver {
 public:
     /// @param stations of the run, which outlive the board; null: nothing is known of receivers but their epochs
@@ -62,6 +63,8 @@ public:
     [[nodiscard]] int watchers() const { return watchers_.load(std::memory_order_relaxed); }
 
     static constexpr std::size_t most_dialogue_lines = 512, most_events = 256, most_live_bars = 128;
+    /// Names of messages that are counted: clients choose theirs, and without a bound could fill the memory.
+    static constexpr std::size_t most_message_counts = 2048;
 
 private:
     struct Belief {
@@ -74,6 +77,7 @@ private:
     [[nodiscard]] ReceiverStatus& receiver(std::size_t station);
     void take_epoch(const EpochSeen& seen, ReceiverStatus& status) const;
     void take_wires(std::size_t station, ReceiverStatus& status) const;
+    void count_message(const DialogueLine& line);
     void add_event(GpsTime now, std::string what, std::string text);
     TimelineBar& bar_of(const FaultSeen& seen);
     void publish(GpsTime now, std::int64_t clock_ns);
@@ -87,6 +91,7 @@ private:
     std::vector<Belief> beliefs_;
     std::deque<std::shared_ptr<const DialogueLine>> dialogue_;
     std::deque<std::shared_ptr<const EventLine>> events_;
+    std::vector<MessageCount> messages_;  // ascending, as message_key() orders them
     std::uint64_t dialogue_count_ = 0, event_count_ = 0, snapshot_count_ = 0;
     std::int64_t published_at_ = 0;
     bool news_ = false;  // an event that no snapshot has yet

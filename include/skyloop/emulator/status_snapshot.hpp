@@ -87,6 +87,15 @@ struct DialogueLine {
 };
 inline constexpr std::size_t dialogue_bytes = 1024;
 
+/// How many messages of one name went one way over a wire since the start of the run.
+struct MessageCount {
+    std::size_t receiver = 0, wire = 0;
+    bool from_client = true;
+    StreamKind kind = StreamKind::ubx;
+    std::string name;  ///< as of a DialogueLine
+    std::uint64_t count = 0;
+};
+
 /// Something that happened once.
 struct EventLine {
     std::uint64_t sequence = 0;  ///< from 1 on, without gaps
@@ -114,6 +123,7 @@ struct StatusSnapshot {
     std::vector<TimelineBar> timeline;
     std::vector<VerdictStatus> verdicts;
     std::vector<std::shared_ptr<const DialogueLine>> dialogue;  ///< the last ones, ascending
+    std::vector<MessageCount> messages;                         ///< of all that came, by receiver, wire, way and name
     std::vector<std::shared_ptr<const EventLine>> events;       ///< the last ones, ascending
 };
 

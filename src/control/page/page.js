@@ -10,6 +10,7 @@ import { ErrorPlot } from "./error_plot.js";
 import { Faults } from "./faults.js";
 import { History } from "./history.js";
 import { setUpKeys } from "./keyboard.js";
+import { setUpMessages } from "./messages.js";
 import { Pace } from "./pace.js";
 import { setUpSkyPlot } from "./sky_plot.js";
 import { fixState, showState } from "./state.js";
@@ -43,6 +44,7 @@ const parts = {
     track: new TrackMap(moveTo),
     errors: new ErrorPlot(),
     deviation: new Deviation(),
+    messages: setUpMessages(),
     timeline: new Timeline({ stop: (name) => faults.stop(name), start: (name) => faults.start(name) }),
     dialogue: new Dialogue(),
     pace: new Pace(),
@@ -79,6 +81,7 @@ function showReceiver(status) {
     parts.track.show(receiver, historyOf(receiver.name));
     parts.errors.show(historyOf(receiver.name), status.timeline, status.elapsed_s);
     parts.deviation.show(historyOf(receiver.name), status.elapsed_s);
+    parts.messages(status, chosen);
 }
 
 function show(status) {

@@ -1,26 +1,9 @@
 // The wires: what went over them, what did not arrive, what the client believes.
 import { byId, make, mark, say } from "./dom.js";
 import { bytes } from "./format.js";
+import { Rates } from "./rates.js";
 
-const window = 2; // s over which a rate is taken
-
-class Rates {
-    constructor() {
-        this.seen = new Map();
-    }
-
-    /** Bytes a second, by the page's own clock. */
-    of(key, count) {
-        const now = performance.now() / 1000;
-        const past = this.seen.get(key) ?? [];
-        if (past.length && past.at(-1).count > count) past.length = 0; // begun anew
-        past.push({ now, count });
-        while (past.length > 2 && now - past[0].now > window) past.shift();
-        this.seen.set(key, past);
-        const [first] = past;
-        return now - first.now > 0.5 ? (count - first.count) / (now - first.now) : 0;
-    }
-}
+const rateSpan = 2; // s over which a rate is taken
 
 // Of wires that were fine all the time, nothing is told.
 const losses = [
@@ -44,7 +27,7 @@ function wireParts() {
 
 /** Returns the function that shows a receiver's wires. */
 export function setUpWires() {
-    const rates = new Rates();
+    const rates = new Rates(rateSpan);
     let shown = [];
     return (receiver) => {
         const list = byId("wires");
@@ -59,8 +42,8 @@ export function setUpWires() {
             say(parts.state, wire.connected ? "client connected" : "no client");
             mark(parts.state, "state", wire.connected ? "good" : "");
             say(parts.told, [wire.description, wire.baud ? `${wire.baud} bit/s` : null, wire.other_end].filter(Boolean).join(", "));
-            const flow = (name) =>
-                `${bytes(wire[name])}, ${bytes(Math.max(rates.of(`${key} ${name}`, wire[name]), 0))}/s`;
+            const now = performance.now() / 1000; // a wire's bytes leave in real time
+            const flow = (name) => `${bytes(wire[name])}, ${bytes(rates.of(`${key} ${name}`, wire[name], now))}/s`;
             say(parts.out, flow("bytes_out"));
             say(parts.back, flow("bytes_in"));
             const trouble = losses.filter(([name]) => wire[name] > 0).map(([name, text]) => `${bytes(wire[name])} ${text}`);

@@ -57,6 +57,7 @@ inline StatusSnapshot small_snapshot() {
     snapshot.verdicts.push_back({"copes", "no fix within 2 s", "pending", ""});
     for (std::uint64_t i = 1; i <= 100; ++i)
         snapshot.dialogue.push_back(dialogue_line(i));
+    snapshot.messages.push_back({0, 0, true, StreamKind::nmea, "PUBX,41", 100});
     snapshot.events.push_back(
         std::make_shared<const EventLine>(EventLine{3, control_start, "fault begins", "wet plug"}));
     return snapshot;

@@ -47,6 +47,18 @@ TEST(StatusJson, TellsEachLineOnce) {
     EXPECT_EQ(nlohmann::json::parse(recent_status_json(snapshot))["dialogue"].size(), 64U);
 }
 
+TEST(StatusJson, TellsHowManyMessagesThereWereWhateverWasSeen) {
+    const auto json = nlohmann::json::parse(status_json(small_snapshot(), {100, 3}));
+    EXPECT_TRUE(json["dialogue"].empty());
+    ASSERT_EQ(json["messages"].size(), 1U);
+    EXPECT_EQ(json["messages"][0], nlohmann::json({{"receiver", 0},
+                                                   {"wire", 0},
+                                                   {"from", "client"},
+                                                   {"protocol", "nmea"},
+                                                   {"name", "PUBX,41"},
+                                                   {"count", 100}}));
+}
+
 TEST(StatusJson, WritesNullForWhatIsNoNumberAndCannotBeBroken) {
     StatusSnapshot snapshot = small_snapshot();
     snapshot.title = "\xFF\xFE";

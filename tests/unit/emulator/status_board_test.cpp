@@ -118,6 +118,43 @@ TEST(StatusBoard, KeepsTheLastMessagesAndTheirNumbers) {
     EXPECT_EQ(snapshot->dialogue.back()->bytes.size(), dialogue_bytes);
 }
 
+TEST(StatusBoard, CountsMessagesByWireWayAndName) {
+    BoardRig rig;
+    const Bytes bytes(8, 0x55);
+    for (int i = 0; i < 1000; ++i)
+        rig.board.on_message({board_start, 0, 0, false, StreamKind::ubx, "NAV-PVT", bytes});
+    rig.board.on_message({board_start, 0, 0, true, StreamKind::ubx, "MON-VER", bytes});
+    rig.board.on_message({board_start, 0, 1, false, StreamKind::ubx, "NAV-PVT", bytes});
+    rig.board.on_message({board_start, 0, 0, false, StreamKind::ubx, "MON-VER", bytes});
+    rig.board.publish_now(board_start);
+    const auto snapshot = rig.board.latest();
+    ASSERT_EQ(snapshot->messages.size(), 4U);
+    const auto count = [&](std::size_t wire, bool from_client, std::string_view name) {
+        for (const MessageCount& message : snapshot->messages)
+            if (message.wire == wire && message.from_client == from_client && message.name == name)
+                return message.count;
+        return std::uint64_t{0};
+    };
+    EXPECT_EQ(count(0, false, "NAV-PVT"), 1000U) << "those that the dialogue has let go, too";
+    EXPECT_EQ(count(0, true, "MON-VER"), 1U);
+    EXPECT_EQ(count(0, false, "MON-VER"), 1U);
+    EXPECT_EQ(count(1, false, "NAV-PVT"), 1U);
+}
+
+TEST(StatusBoard, CountsABoundedNumberOfNames) {
+    BoardRig rig;
+    const Bytes bytes(8, 0x55);
+    for (std::size_t i = 0; i < StatusBoard::most_message_counts + 100; ++i)
+        rig.board.on_message({board_start, 0, 0, true, StreamKind::nmea, std::to_string(i), bytes});
+    rig.board.on_message({board_start, 0, 0, true, StreamKind::nmea, "0", bytes});
+    rig.board.publish_now(board_start);
+    const auto snapshot = rig.board.latest();
+    const std::vector<MessageCount>& messages = snapshot->messages;
+    ASSERT_EQ(messages.size(), StatusBoard::most_message_counts);
+    EXPECT_EQ(messages.front().name, "0");
+    EXPECT_EQ(messages.front().count, 2U);
+}
+
 TEST(StatusBoard, FollowsFaultsOnTheTimeline) {
     TimelineBar planned;
     planned.name = "outage";
