@@ -192,7 +192,7 @@ Outlines OsmReader::outlines() {
     found_.system = {CoordinateKind::geographic, false, "EPSG:4326", 4326};
     // The border of a wood that is named a wood, too, would fill its clearings.
     std::unordered_set<osmium::object_id_type> borders;
-    for (const Area& area : areas_)
+    for (const auto& [id, area] : areas_)
         if (area.use.kind == OutlineUse::Kind::trees) borders.insert(area.outer.begin(), area.outer.end());
     for (const auto& [id, way] : ways_) {
         if (!way.use || (way.use->kind == OutlineUse::Kind::trees && borders.contains(id))) continue;
