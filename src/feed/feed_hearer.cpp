@@ -48,9 +48,13 @@ void FeedHearer::keep(FeedAside aside, std::uint64_t speaker, std::int64_t recei
         items_.emplace_back(FeedStep{step->until, received_ns, speaker});
     else if (auto* command = std::get_if<Command>(&aside.what))
         items_.emplace_back(std::move(*command));
-    else if (const auto* pause = std::get_if<FeedPause>(&aside.what))
+    else if (const auto* pause = std::get_if<FeedPause>(&aside.what)) {
+        if (pause->paused)
+            paused_.insert(speaker);
+        else
+            paused_.erase(speaker);
         items_.emplace_back(*pause);
-    else
+    } else
         items_.emplace_back(FeedEnd{});
 }
 
@@ -62,14 +66,18 @@ std::vector<Bytes> FeedHearer::stepped(std::uint64_t speaker, Nanoseconds until,
 }
 
 // A pause ends with the connection that told of it: nobody is left to do so.
+void FeedHearer::end_pause(std::uint64_t speaker) {
+    if (paused_.erase(speaker) > 0 && paused_.empty()) items_.emplace_back(FeedPause{false});
+}
+
 void FeedHearer::forget(std::uint64_t speaker) {
     dialects_.erase(speaker);
-    items_.emplace_back(FeedPause{false});
+    end_pause(speaker);
 }
 
 void FeedHearer::reconnected(std::uint64_t speaker) {
     of(speaker).reconnected();
-    items_.emplace_back(FeedPause{false});
+    end_pause(speaker);
 }
 
 void FeedHearer::flush() {

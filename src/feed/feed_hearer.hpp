@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,11 +41,13 @@ private:
     FeedDialect& of(std::uint64_t speaker);
     void keep(FeedNews news, std::uint64_t speaker, std::int64_t received_ns);
     void keep(FeedAside aside, std::uint64_t speaker, std::int64_t received_ns);
+    void end_pause(std::uint64_t speaker);
 
     std::string name_;
     FeedContext context_;
     FeedDesk& desk_;
     std::map<std::uint64_t, std::unique_ptr<FeedDialect>> dialects_;
+    std::set<std::uint64_t> paused_;  ///< the speakers that have told of a pause
     std::vector<FeedItem> items_;
 };
 

@@ -110,7 +110,10 @@ private:
         if (name == "clock") return take_clock(statement, news);
         if (name == "event") return take_event(statement, news);
         if (name == "step") return take_step(statement, news);
-        if (name == "hello") news.answers.push_back(say().front());
+        if (name == "hello") {
+            end_pause(news);
+            news.answers.push_back(say().front());
+        }
         if (name == "bye") news.add_aside(FeedEnd{});
         if (name == "vis" && !std::exchange(vis_told_, true))
             remark(news, "its lines of type 'vis' (lines of sight of an engine) are not used");
@@ -137,6 +140,7 @@ private:
             sample->jump = *reset && vehicle.reset && *reset != vehicle.reset;
             if (*reset) vehicle.reset = *reset;
         }
+        look_whether_time_goes_on(*time, news);
         news.samples.push_back(std::move(*sample));
         return {};
     }
@@ -169,12 +173,28 @@ private:
         return {};
     }
 
-    static Result<void> take_clock(const FeedJson& statement, FeedNews& news) {
+    Result<void> take_clock(const FeedJson& statement, FeedNews& news) {
         const FeedJson* paused = statement_member(statement, "paused");
         if (paused == nullptr) return {};
         if (!paused->is_boolean()) return fail(ErrorCode::input, "'paused' is neither true nor false");
-        news.add_aside(FeedPause{paused->get<bool>()});
+        paused_ = paused->get<bool>();
+        stands_at_.reset();
+        news.add_aside(FeedPause{paused_});
         return {};
+    }
+
+    void end_pause(FeedNews& news) {
+        if (std::exchange(paused_, false)) news.add_aside(FeedPause{false});
+    }
+
+    // A source that was started anew in a pause does not know of it: its time goes on. The first time after the notice
+    // may be that of the instant at which it paused.
+    void look_whether_time_goes_on(const std::optional<Nanoseconds>& time, FeedNews& news) {
+        if (!paused_ || !time) return;
+        if (!stands_at_)
+            stands_at_ = time;
+        else if (*time != *stands_at_)
+            end_pause(news);
     }
 
     Result<void> take_event(const FeedJson& statement, FeedNews& news) {
@@ -199,7 +219,8 @@ private:
     FeedContext context_;
     std::optional<Geodetic> origin_;
     std::string line_;  // what has come of it
-    bool too_long_ = false, vis_told_ = false, event_time_told_ = false;
+    bool too_long_ = false, vis_told_ = false, event_time_told_ = false, paused_ = false;
+    std::optional<Nanoseconds> stands_at_;  // what truth has told since the notice of a pause
     std::uint64_t lines_ = 0;
     std::optional<std::int64_t> answered_ns_;  // when a refusal was
     std::map<std::string, Vehicle> vehicles_;

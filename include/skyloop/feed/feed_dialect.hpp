@@ -41,11 +41,12 @@ struct FeedNews {
     std::vector<TruthSample> samples{};  ///< in the order in which they came
     std::vector<FeedAside> asides{};     ///< the same
     std::vector<Bytes> answers{};        ///< for the sender
-    std::size_t others = 0;              ///< statements that were understood and are no samples: the source is there
-    std::size_t refused = 0;             ///< statements that were whole and could not be used
-    std::string refusal{};               ///< why, of the first of them, a sentence
-    std::uint64_t lost = 0;              ///< statements that the source counted and that have not come
-    std::string remark{};                ///< what the user should be told, in one line; once per dialect
+    std::size_t others =
+        0;  ///< lines that were understood and are no samples, where a dialect has such: the source is there
+    std::size_t refused = 0;  ///< statements that were whole and could not be used
+    std::string refusal{};    ///< why, of the first of them, a sentence
+    std::uint64_t lost = 0;   ///< statements that the source counted and that have not come
+    std::string remark{};     ///< what the user should be told, in one line; once per dialect
 
     /// Said after all that there is so far.
     template <class What>

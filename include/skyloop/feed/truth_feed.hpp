@@ -54,7 +54,7 @@ struct FeedCounts {
     std::uint64_t messages = 0;  ///< datagrams, or pieces of a stream
     std::uint64_t bytes = 0;
     std::uint64_t samples = 0;
-    std::uint64_t statements = 0;         ///< samples, and all else that was understood
+    std::uint64_t statements = 0;         ///< samples, and FeedNews::others
     std::uint64_t refused = 0;            ///< whole, and of no use
     std::uint64_t strangers = 0;          ///< datagrams of others than the one that is listened to
     std::uint64_t overflowed = 0;         ///< samples dropped because the loop did not take them

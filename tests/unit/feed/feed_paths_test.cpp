@@ -309,6 +309,9 @@ TEST(FeedPaths, APauseEndsWithTheConnectionThatToldOfIt) {
     };
     hearer.hear(1, to_bytes("{\"type\":\"clock\",\"paused\":true}\n"), paths_start_ns);
     EXPECT_TRUE(is_paused());
+    hearer.hear(2, to_bytes("{\"type\":\"hello\"}\n"), paths_start_ns);
+    hearer.forget(2);
+    EXPECT_TRUE(is_paused()) << "another's connection";
     hearer.forget(1);
     EXPECT_FALSE(is_paused());
 }

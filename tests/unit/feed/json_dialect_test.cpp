@@ -139,6 +139,20 @@ TEST(JsonDialect, JoinsThePiecesOfAStream) {
     EXPECT_EQ(datagrams.say(line).samples.size(), 1u) << "the next one is whole again";
 }
 
+TEST(JsonDialect, APauseEndsWithASourceThatWasStartedAnew) {
+    JsonTalk talk;
+    const std::string pause = "{\"type\":\"clock\",\"paused\":true}\n";
+    const auto truth = [](const char* t) { return std::string("{\"lla\":[48,11,500],\"h_ref\":\"ell\"") + t + "}\n"; };
+    EXPECT_EQ(pause_told(talk.say(truth(",\"t\":1") + pause)), true);
+    EXPECT_FALSE(pause_told(talk.say(truth(",\"t\":1.02") + truth(",\"t\":1.02") + truth("")))) << "it stands";
+    const FeedNews again = talk.say(truth(",\"t\":0.02"));
+    EXPECT_EQ(pause_told(again), false);
+    EXPECT_EQ(again.asides[0].samples, 0u) << "ahead of the sample";
+    EXPECT_FALSE(pause_told(talk.say(truth(",\"t\":0.04")))) << "told once";
+    EXPECT_EQ(pause_told(talk.say(pause)), true);
+    EXPECT_EQ(pause_told(talk.say("{\"type\":\"hello\"}\n")), false);
+}
+
 TEST(JsonDialect, StepsPausesEndsAndAnswers) {
     JsonTalk talk;
     const std::string truth = "{\"lla\":[48,11,500],\"h_ref\":\"ell\",\"t\":1}\n";
