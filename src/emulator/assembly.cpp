@@ -49,8 +49,8 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> sensor_effects_of(const 
     settings.refraction = scenario.model.refraction;
     settings.klobuchar = setup.navigation->klobuchar();
     settings.geoid = setup.geoid;
-    if (scenario.atmosphere.tec_source == TecSource::ionex) {
-        auto maps = load_ionosphere_maps(scenario.tec_maps);
+    if (const std::filesystem::path file = acting_ionosphere_maps(scenario); !file.empty()) {
+        auto maps = load_ionosphere_maps(file);
         if (!maps) return fail(maps.error());
         settings.maps = std::move(*maps);
     }

@@ -2,24 +2,23 @@
 
 #include <fmt/format.h>
 
+#include "skyloop/error_model/model_effects.hpp"
 #include "skyloop/rinex/ionex_file.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
-namespace {
 
-// The file that delays come from; empty: none.
-std::filesystem::path acting_maps(const Scenario& scenario) {
-    if (scenario.model.sensor_model)
-        return scenario.atmosphere.tec_source == TecSource::ionex ? scenario.tec_maps : std::filesystem::path();
+std::filesystem::path acting_ionosphere_maps(const Scenario& scenario) {
+    if (const auto& model = scenario.model.sensor_model) {
+        const bool take_maps = takes_electron_content(*model) && scenario.atmosphere.tec_source == TecSource::ionex;
+        return take_maps ? scenario.tec_maps : std::filesystem::path();
+    }
     const ModernSettings settings = effective(scenario.model.modern);
     const ModernPropagationParameters& propagation = settings.propagation;
     const bool act =
         propagation.ionosphere_model.model == IonosphereModel::ionex && propagation.ionosphere.factor() != 0;
     return act ? settings.ionosphere_maps : std::filesystem::path();
 }
-
-}  // namespace
 
 Result<std::optional<NamedIonosphereMaps>> load_ionosphere_maps(const std::filesystem::path& file) {
     if (file.empty()) return std::nullopt;
@@ -34,7 +33,7 @@ TimeSpan span_of_tables(const Scenario& scenario, GpsTime start) {
 
 std::optional<std::string> warning_of_last_map(const Scenario& scenario) {
     if (scenario.run.duration) return std::nullopt;
-    const std::filesystem::path file = acting_maps(scenario);
+    const std::filesystem::path file = acting_ionosphere_maps(scenario);
     if (file.empty()) return std::nullopt;
     const auto maps = read_ionex_file(file);
     if (!maps || maps->maps.empty()) return std::nullopt;  // which load_ionosphere_maps() and check_coverage() tell

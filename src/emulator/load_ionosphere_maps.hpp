@@ -11,6 +11,9 @@
 
 namespace skyloop {
 
+/// The IONEX file that a run's delays come from; empty: none.
+std::filesystem::path acting_ionosphere_maps(const Scenario& scenario);
+
 /// Those of an IONEX file; nothing where none is named.
 Result<std::optional<NamedIonosphereMaps>> load_ionosphere_maps(const std::filesystem::path& file);
 

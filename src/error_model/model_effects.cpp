@@ -30,13 +30,17 @@ Result<std::unique_ptr<PropagationEffect>> ionosphere_effect(const EffectSetting
 
 }  // namespace
 
+bool takes_electron_content(ErrorModelKind kind) {
+    return kind == ErrorModelKind::baseline || kind == ErrorModelKind::whole_path;
+}
+
 Result<std::vector<std::unique_ptr<PropagationEffect>>> effects_for(ErrorModelKind kind, const EffectSettings& s) {
     std::vector<std::unique_ptr<PropagationEffect>> effects;
     const bool layered = kind == ErrorModelKind::baseline;
     const bool whole_path = kind == ErrorModelKind::whole_path;
     if (layered) effects.push_back(std::make_unique<LayeredAtmosphereLoss>(s.atmosphere));
     if (whole_path) effects.push_back(std::make_unique<WholePathLoss>(s.whole_path));
-    if (layered || whole_path) {
+    if (takes_electron_content(kind)) {
         auto ionosphere = ionosphere_effect(s);
         if (!ionosphere) return fail(ionosphere.error());
         effects.push_back(std::move(*ionosphere));

@@ -34,6 +34,9 @@ struct EffectSettings {
     std::string tec_source_told_at = "atmosphere.tec_source: ";  ///< "FILE:LINE:COLUMN: KEY: ", for messages
 };
 
+/// Whether a model's ionosphere is that of the electron content of the atmosphere's settings: baseline and whole-path.
+bool takes_electron_content(ErrorModelKind kind);
+
 /// The effects of a model in the order of their application; the link budget is the last, and effects of the scene go
 /// before it.
 ///
