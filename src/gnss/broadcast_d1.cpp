@@ -32,7 +32,7 @@ BitWriter d1_toe_field(const KeplerEphemeris& r) {
 
 void put_d1_clock(BitWriter& bits, const KeplerEphemeris& r, const KlobucharCoefficients& c, GpsTime end) {
     constexpr double delay_step = 1e-10;
-    bits.put(r.health == 0 ? 0 : 1, 1);
+    bits.put(r.health_bits_clear() ? 0 : 1, 1);
     bits.put_signed(r.iodc, 5);
     bits.put_signed(broadcast::accuracy_index(r.accuracy_m), 4);
     bits.put_signed(bdt_week_and_tow(end - std::chrono::seconds(6)).week, 13);

@@ -178,7 +178,7 @@ struct LnavPage {
     }
     [[nodiscard]] std::uint64_t health(int number) const {
         const auto found = record(number);
-        return found && found->healthy() ? 0 : 0b111111;
+        return found && found->health_bits_clear() ? 0 : 0b111111;
     }
     [[nodiscard]] bool of_qzss() const { return system.of == Constellation::qzss; }
     void put_head(BitWriter& bits, std::uint64_t page_id) const {
@@ -224,7 +224,7 @@ BitWriter almanac_page(const LnavPage& page, int number) {
     put_scaled_unsigned(bits, tow_of(reference), 8, almanac_step_s);
     put_semicircles(bits, r.i0 - base.inclination, 16, -19);
     put_semicircles(bits, r.omega_dot, 16, -38);
-    bits.put(r.healthy() ? 0 : 0xFF, 8);
+    bits.put(r.health_bits_clear() ? 0 : 0xFF, 8);
     put_scaled_unsigned(bits, r.sqrt_a, 24, power_of_two(-11));
     put_circle(bits, r.omega0, 24);
     put_circle(bits, r.omega, 24);

@@ -56,11 +56,11 @@ struct KeplerEphemeris {
         if (message == NavigationMessage::almanac || satellite.constellation == Constellation::galileo) return true;
         return accuracy_m >= 0 && accuracy_m <= 6144;
     }
-    /// An accuracy is predicted, and no bit is set; of Galileo, of the signal that carries the message: E1-B (I/NAV) or
+    [[nodiscard]] bool healthy() const { return accuracy_predicted() && health_bits_clear(); }
+    /// No bit is set that says otherwise; of Galileo, of the signal that carries the message: E1-B (I/NAV) or
     /// E5a (F/NAV), RINEX 3.05, table A8. The last bit of QZSS is about L1C/B, which nobody here tracks and the
     /// satellites send unhealthy for years (IS-QZSS-PNT-004, SV health).
-    [[nodiscard]] bool healthy() const {
-        if (!accuracy_predicted()) return false;
+    [[nodiscard]] bool health_bits_clear() const {
         if (satellite.constellation == Constellation::qzss) return (health & ~1) == 0;
         if (satellite.constellation != Constellation::galileo || message == NavigationMessage::almanac)
             return health == 0;

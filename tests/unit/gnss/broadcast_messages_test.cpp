@@ -110,6 +110,7 @@ public:
         r.e = satellite.number == 7 ? 0.0002 : 0.075;
         r.i0 = satellite.number == 7 ? 0.0014 : 0.713;
         r.health = satellite.number == 4 ? 0b100000 : 1;  // L1C/B alone does not count
+        r.accuracy_m = satellite.number == 2 ? 8192 : 2;  // that none is predicted, the index tells beside the health
         return r;
     }
 
