@@ -83,11 +83,15 @@ Concentration read_concentration(TableReader& table, Concentration told = {}) {
         {{"mean", ConcentrationMode::mean},
          {"midpoint", ConcentrationMode::midpoint},
          {"fixed", ConcentrationMode::fixed}}};
+    const bool has_number = table.has("fixed_concentration");
+    if (has_number) told.mode = ConcentrationMode::fixed;
     table.word("concentration", modes, told.mode);
-    if (table.has("fixed_concentration")) {
+    if (has_number) {
         double fixed = 1;
         table.number("fixed_concentration", fixed, {0, 10});
         told.fixed = fixed;
+        if (told.mode != ConcentrationMode::fixed)
+            table.mistake("fixed_concentration", "stands beside another concentration; expected 'fixed'");
     }
     return told;
 }
