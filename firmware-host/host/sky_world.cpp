@@ -22,6 +22,16 @@ void stand_on_ground(Scenario& scenario, const UrbanScene& scene, const std::str
     fixed->at.height = to_geodetic(scene.frame().to_ecef(Position<Enu>(place))).height;
 }
 
+// Where buildings without an origin stood in the run: by its scenario, as they did then; where that does not tell, as
+// with a live trajectory, at the run's first epoch.
+Result<Geodetic> scene_start_of(const CityRun& run, Scenario scenario, const Geoid* geoid) {
+    const auto time = parse_utc(run.start);
+    if (!time) return fail(time.error());
+    const GpsTime start = to_gps_time(*time, LeapSeconds::announced());
+    if (const auto track = load_track(scenario, geoid, start); !track) return fail(track.error());
+    return scene_start(scenario, start).value_or(run.epochs.front().truth);
+}
+
 }  // namespace
 
 Result<World> make_world(const Scenario& asked, const SkyOptions& options, const Messages& messages) {
@@ -56,10 +66,11 @@ int show_city_run(const SkyOptions& options, const Scenario& scenario, const Mes
     const Angle mask = options.mask_deg ? Angle::degrees(*options.mask_deg) : Angle::degrees(5);
     const auto run = read_city_run(options.run_folder, mask);
     if (!run) return messages.error(run.error());
-    // Buildings without an origin stand where the run started, as they did in it.
     std::vector<std::string> unknown_geoid;  // is told by the scene where it matters
     const auto geoid = find_geoid(data_folders(), unknown_geoid);
-    const auto loaded = load_scene(scenario, run->epochs.front().truth, CityCache{data_folders().cache}, geoid.get());
+    const auto started = scene_start_of(*run, scenario, geoid.get());
+    if (!started) return messages.error(started.error());
+    const auto loaded = load_scene(scenario, *started, CityCache{data_folders().cache}, geoid.get());
     if (!loaded) return messages.error(loaded.error());
     for (const std::string& warning : loaded->warnings)
         messages.warning(warning);
