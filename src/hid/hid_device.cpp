@@ -148,6 +148,10 @@ Result<HidDevice> HidDevice::open(const UsbAddress& address) {
     if (through_kernel && *through_kernel) return std::move(**through_kernel);
     // The kernel has the device: its refusal tells more, since libusb is asked only because of it.
     const bool kernel_has_it = !through_kernel && hid_api(HidBackend::hidraw);
+    // Without libusb's library hidraw has the last word: a device that is not plugged in is the likely reason.
+    if (const auto past = hid_api(HidBackend::libusb); through_kernel && !past)
+        return fail(ErrorCode::outside, fmt::format("no HID device {} is plugged in, or it has no hidraw node, and {}",
+                                                    to_string(address), past.error().message));
     auto past_it = open(address, HidBackend::libusb);
     if (!past_it && kernel_has_it) return fail(std::move(through_kernel.error()));
     return past_it;
