@@ -63,7 +63,7 @@ std::optional<ParameterValue> TableReader::value(std::string_view key) {
             if (odd == nullptr) return ParameterValue(numbers);
             const auto* group = odd->as_array();
             mistake_at(*odd, key,
-                       fmt::format("holds {}; expected pairs, each [latitude, longitude]",
+                       fmt::format("holds {}; expected numbers alone, or pairs [latitude, longitude]",
                                    group != nullptr ? fmt::format("a group of {}", group->size()) : "a single number"));
             return std::nullopt;
         }

@@ -120,8 +120,9 @@ TEST(ScenarioTimeline, CornersOfAnAreaArePairs) {
     };
     EXPECT_THAT(mistakes("[[47, 8], [47, 9], [48, 9]]"), IsEmpty());
     EXPECT_THAT(mistakes("[47, 8, 47, 9, 48, 9]"), IsEmpty());
-    EXPECT_EQ(mistakes("[[47, 8, 0], [47, 9, 0], [48, 9, 0], [48, 8, 0]]"),
-              "test.toml:3:16: fault.when_inside: holds a group of 3; expected pairs, each [latitude, longitude]")
+    EXPECT_EQ(
+        mistakes("[[47, 8, 0], [47, 9, 0], [48, 9, 0], [48, 8, 0]]"),
+        "test.toml:3:16: fault.when_inside: holds a group of 3; expected numbers alone, or pairs [latitude, longitude]")
         << "a height is no longitude of the next corner";
     EXPECT_THAT(mistakes("[[47, 8], [47, 9, 48, 9]]"),
                 HasSubstr("test.toml:3:25: fault.when_inside: holds a group of 4"));
