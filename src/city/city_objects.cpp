@@ -234,7 +234,7 @@ std::string told_by_outlines(const std::vector<CityObject>& objects) {
     }
     std::size_t alone = 0;
     for (std::size_t i = 0; i < objects.size(); ++i)
-        alone += outline[i] && !told[i] ? 1 : 0;
+        if (outline[i] && !told[i]) ++alone;
     if (alone == 0) return {};
     return fmt::format(
         "{} buildings or other constructions are told by their outlines alone (level 0) and were left out", alone);
