@@ -172,14 +172,17 @@ double way_into_storm(const StormFront& storm, const SkyDirection& direction) {
     return radius / 1000 * across * std::cos((direction.azimuth - storm.towards).rad());
 }
 
-void storm_over(Arrival& arrival, const StormFront& storm, double strength) {
+void storm_over(Arrival& arrival, const StormFront& storm, const FaultMoment& moment) {
     const double vertical = storm.vertical + storm.gradient * way_into_storm(storm, arrival.direction);
     const double slant = single_layer_mapping(storm_shell, arrival.direction.elevation);
     const double carrier = arrival.signals.empty() ? carrier_frequency_l1 : arrival.signals[0].carrier.value();
     const double ratio = carrier_frequency_l1 / carrier;
     const double added = arrival.iono_delay.value() * (storm.factor - 1) + vertical * slant * ratio * ratio;
+    const Metres before = arrival.iono_delay, wanted = before + Metres(moment.strength * added);
     // There is no less than no ionosphere.
-    arrival.iono_delay = Metres(std::max(arrival.iono_delay.value() + strength * added, 0.0));
+    arrival.iono_delay = std::max(wanted, Metres(0));
+    arrival.false_iono_delay += arrival.iono_delay - before;
+    if (wanted > Metres(0)) arrival.false_iono_rate += MetresPerSecond(moment.strength_rate * added);
 }
 
 FaultKind ionospheric_storm() {
@@ -187,7 +190,7 @@ FaultKind ionospheric_storm() {
     kind.name = "ionospheric_storm";
     kind.effect =
         "The ionosphere delays more than the receiver's broadcast correction knows: positions are off by "
-        "metres, heights most.";
+        "metres, heights most. On a ramp Doppler follows; without one all counts of cycles break.";
     kind.cause = "Geomagnetic storms, as those of October 2003 and May 2024.";
     kind.parameters = {
         number_parameter("tec_factor", 1, 0, 20, "by which the day's electron content is multiplied"),
@@ -204,7 +207,7 @@ FaultKind ionospheric_storm() {
         Fault fault;
         fault.arrivals = [storm](Arrivals& arrivals, const FaultMoment& moment) {
             for (Arrival& arrival : arrivals.satellites)
-                storm_over(arrival, storm, moment.strength);
+                storm_over(arrival, storm, moment);
         };
         return fault;
     };

@@ -24,13 +24,14 @@ std::optional<DbHz> arriving_cn0(const ChannelInput& input, Decibels by_echoes) 
     return DbHz(arrival.cn0->value() + input.signal.relative_power.value() + by_echoes.value());
 }
 
-// What may jump of a range, and how fast it changes when it does not.
+// What may jump of a carrier's path, and how fast it changes when it does not.
 Metres added_path(const Arrival& arrival) {
-    return arrival.excess_path + arrival.signal_in_space_error - arrival.earlier_records.range + arrival.false_range;
+    return arrival.excess_path + arrival.signal_in_space_error - arrival.earlier_records.range + arrival.false_range -
+           arrival.false_iono_delay;
 }
 MetresPerSecond added_rate(const Arrival& arrival) {
     return arrival.excess_rate + arrival.range_rate_error - arrival.earlier_records.range_rate +
-           arrival.false_range_rate;
+           arrival.false_range_rate - arrival.false_iono_rate;
 }
 
 DbHz reported_cn0(DbHz cn0, Decibels resolution) {
@@ -138,7 +139,7 @@ void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& e
 }
 
 // The count of cycles does not survive when another ray is tracked, nor when echoes that outdo it turn the phase over,
-// nor when the satellite's orbit, its clock or a false signal jumps.
+// nor when the satellite's orbit, its clock, a false signal or a storm of the ionosphere jumps.
 bool SignalChannel::path_changed(const ChannelInput& input, const ChannelEpoch& epoch) const {
     const Arrival& arrival = input.arrival;
     if (arrival.line_of_sight != line_of_sight_) return true;
@@ -204,8 +205,9 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
                         arrival.signal_in_space_error.value() + arrival.tropo_delay.value() +
                         arrival.excess_path.value() + arrival.false_range.value();
     const double path_rate = arrival.range_rate.value() + arrival.range_rate_error.value() +
-                             arrival.excess_rate.value() + arrival.false_range_rate.value() +
-                             epoch.clock_drift.value() - speed_of_light * arrival.clock_drift;
+                             arrival.excess_rate.value() + arrival.false_range_rate.value() -
+                             arrival.false_iono_rate.value() * ratio * ratio + epoch.clock_drift.value() -
+                             speed_of_light * arrival.clock_drift;
     const double floor = parameters.multipath_model.floor.value();
 
     Observation result;

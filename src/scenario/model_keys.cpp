@@ -90,8 +90,6 @@ Concentration read_concentration(TableReader& table, Concentration told = {}) {
         double fixed = 1;
         table.number("fixed_concentration", fixed, {0, 10});
         told.fixed = fixed;
-        if (told.mode != ConcentrationMode::fixed)
-            table.mistake("fixed_concentration", "stands beside another concentration; expected 'fixed'");
     }
     return told;
 }

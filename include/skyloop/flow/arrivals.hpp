@@ -59,7 +59,9 @@ struct Arrival {
     bool called_unhealthy = false;     ///< the satellite sends that it is not to be used, whatever its record says
     /// A fault leaves too little of it for a sensor model, which has no loops that could lose it.
     bool cut_off = false;
-    Metres iono_delay;  ///< of the code of the first signal; the carrier is advanced by as much
+    Metres iono_delay;                ///< of the code of the first signal; the carrier is advanced by as much
+    Metres false_iono_delay;          ///< what of that faults have added
+    MetresPerSecond false_iono_rate;  ///< its derivative, along a fault's ramps
     Metres tropo_delay;
     Decibels free_space_loss;
     Decibels gas_loss;

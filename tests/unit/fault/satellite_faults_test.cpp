@@ -132,6 +132,19 @@ TEST(SatelliteFaults, AStormDelaysMoreThanTheReceiverKnows) {
     EXPECT_LT((test::fix_error_enu(run.until(200)) - test::fix_error_enu(clean.until(200))).norm(), 1);
 }
 
+TEST(SatelliteFaults, AStormOnItsRampTellsItsRate) {
+    ArrivalBench bench;
+    for (Arrival& arrival : bench.arrivals.satellites)
+        arrival.iono_delay = Metres(4);
+    FaultMoment moment{bench.truth.time, Seconds(5), 0.5, &bench.truth, &bench.sky};
+    moment.strength_rate = 0.1;
+    signal_fault("ionospheric_storm", {{"tec_factor", 3.}}).arrivals(bench.arrivals, moment);
+    for (const Arrival& arrival : bench.arrivals.satellites) {
+        EXPECT_NEAR(arrival.false_iono_delay.value(), 4, 1e-9);
+        EXPECT_NEAR(arrival.false_iono_rate.value(), 0.8, 1e-9);
+    }
+}
+
 TEST(SatelliteFaults, AStormScalesAndTilts) {
     ArrivalBench bench;
     for (Arrival& arrival : bench.arrivals.satellites)

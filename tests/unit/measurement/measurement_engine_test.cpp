@@ -169,6 +169,27 @@ TEST(MeasurementEngine, ARecordOfAnotherOrbitBreaksTheCount) {
     EXPECT_FALSE(observation_of(run.epoch(arrivals), g07, Signal::l1)->slipped);
 }
 
+// A fault's ionosphere goes against the carrier: by a rate the Doppler tells it, at once it breaks the count.
+TEST(MeasurementEngine, AStormIsCountedWhereItsRateIsToldAndElseBreaksTheCount) {
+    MeasuredRun run(without_errors());
+    Arrivals arrivals = plain_arrivals({g07});
+    Arrival& arrival = arrivals.satellites[0];
+    Observation before = *observation_of(run.epochs(arrivals, 40), g07, Signal::l1);
+    const double calm = before.doppler->value();
+    arrival.false_iono_rate = MetresPerSecond(2);
+    for (int i = 1; i <= 5; ++i) {
+        arrival.iono_delay = arrival.false_iono_delay = Metres(2 * i);
+        const Observation after = *observation_of(run.epoch(arrivals), g07, Signal::l1);
+        EXPECT_FALSE(after.slipped) << i;
+        EXPECT_NEAR(after.doppler->value() - calm, 2 * after.carrier.value() / light, 1e-6);
+        EXPECT_NEAR(*after.carrier_phase - *before.carrier_phase, calm - after.doppler->value(), 1e-5);
+        before = after;
+    }
+    arrival.false_iono_rate = MetresPerSecond(0);
+    arrival.iono_delay = arrival.false_iono_delay = Metres(0);
+    EXPECT_TRUE(observation_of(run.epoch(arrivals), g07, Signal::l1)->slipped);
+}
+
 TEST(MeasurementEngine, MillisecondJumpsKeepTagAndRangesTogether) {
     MeasurementParameters parameters = without_errors();
     parameters.receiver_clock.enabled = true;

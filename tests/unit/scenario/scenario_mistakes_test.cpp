@@ -136,8 +136,6 @@ TEST(ScenarioMistakes, AFixedConcentrationNeedsItsNumber) {
     EXPECT_EQ(mistakes_of(all + layer), "test.toml:3:1: atmosphere.layer.concentration: is 'fixed' " + wanted);
     EXPECT_EQ(mistakes_of(layer + "concentration = \"fixed\""),
               "test.toml:3:17: atmosphere.layer.concentration: is 'fixed' " + wanted);
-    EXPECT_EQ(mistakes_of("[atmosphere]\nconcentration = \"mean\"\n" + number),
-              "test.toml:3:23: atmosphere.fixed_concentration: stands beside another concentration; expected 'fixed'");
     EXPECT_EQ(scenario_of(layer + number).atmosphere.layers.front().concentration, ConcentrationMode::fixed);
     for (const std::string& sound : {all + number, all + number + layer, all + layer + number})
         EXPECT_TRUE(read_scenario(sound, "test.toml")) << sound;
