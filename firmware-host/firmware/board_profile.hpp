@@ -211,6 +211,7 @@ struct BoardProfile {
     std::uint8_t gnss_channels_hardware = 0, gnss_channels_used = 0;
     std::uint8_t gnss_supported = 0,
                  gnss_simultaneous = 0;             ///< of MON-GNSS: bits 0 GPS, 1 GLONASS, 2 BeiDou, 3 Galileo
+    bool comms_output_port = false;                 ///< MON-COMMS tells by which port it leaves
     std::size_t galileo_words = 8;                  ///< of a pair of pages in RXM-SFRBX; a ninth tells nothing
     std::map<std::uint32_t, std::uint64_t> config;  ///< factory values that differ from ConfigKey::default_value
     std::set<std::uint32_t> absent_keys;            ///< items that it does not have

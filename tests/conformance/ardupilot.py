@@ -273,12 +273,16 @@ class ArduPilotKeys(ArduPilot):
         self.check([k for k, _ in found] == sorted((k for k, _ in found), key=lambda k: k & 0xFFFFFFF),
                    "keys in ascending order", [f"{key:08X}" for key, _ in found])
         self.step("CFG-PRT and MON-COMMS every 250 ms")
-        port = self.every(0.25, ubx.frame("CFG-PRT"), "CFG-PRT")
-        self.check(port.payload[0] == UART1, "port 1", port.payload.hex(" "))
+        legacy = self.board.protocol < (40, 0)
+        if legacy:
+            port = self.every(0.25, ubx.frame("CFG-PRT"), "CFG-PRT")
+            self.check(port.payload[0] == UART1, "port 1", port.payload.hex(" "))
         comms = self.every(0.25, ubx.frame("MON-COMMS"), "MON-COMMS").payload
         ports = [struct.unpack_from("<H", comms, 8 + 40 * n)[0] for n in range(comms[1])]
         self.check(len(comms) == 8 + 40 * comms[1] and 0x0100 in ports, "MON-COMMS with a block of port 0100",
                    comms.hex(" "))
+        told = (comms[2] >> 2 & 7) - 1
+        self.check(legacy or told == UART1, "port 1 in bits 2 to 4 of txErrors, where CFG-PRT is not answered", told)
         self.batches()
         self.page_layers()
 

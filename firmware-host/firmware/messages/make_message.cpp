@@ -1,8 +1,16 @@
 #include "firmware/messages/make_message.hpp"
 
 #include "firmware/message_class.hpp"
+#include "skyloop/protocol/ubx_ports.hpp"
 
 namespace skyloop::firmware {
+namespace {
+
+bool differs_by_port(UbxMessageId message) {
+    return message.message_class == class_rtcm || message == MonComms::message_id;
+}
+
+}  // namespace
 
 std::vector<Bytes> make_message(UbxMessageId message, const ReportContext& context) {
     switch (message.message_class) {
@@ -30,7 +38,7 @@ std::vector<Bytes> make_message(UbxMessageId message, const ReportContext& conte
 const std::vector<Bytes>& EpochMessages::of(UbxMessageId message, PortId port,
                                             std::span<const UbxMessageId> following) {
     const auto [entry, is_new] = made_.try_emplace(message);
-    if (!is_new && message.message_class != class_rtcm) return entry->second;
+    if (!is_new && !differs_by_port(message)) return entry->second;
     context_.port = port;
     context_.following = following;
     if (message.message_class != class_nmea && message.message_class != class_pubx)

@@ -21,7 +21,8 @@ class EpochMessages {
 public:
     /// @param context its parts must outlive this
     explicit EpochMessages(const ReportContext& context) : context_(context) {}
-    /// What the port sends. RTCM alone differs by port: a frame tells whether more of the epoch follow.
+    /// What the port sends. RTCM and MON-COMMS alone differ by port: a frame of RTCM tells whether more of the epoch
+    /// follow, MON-COMMS by which port it leaves.
     /// @param following as ReportContext::following; has to outlive this call alone
     const std::vector<Bytes>& of(UbxMessageId message, PortId port, std::span<const UbxMessageId> following);
 

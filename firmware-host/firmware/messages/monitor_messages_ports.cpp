@@ -27,10 +27,13 @@ std::uint16_t comms_port_id(PortId port, const BoardProfile& board) {
 
 MonComms communications(const ReportContext& context) {
     constexpr std::uint8_t nothing = 255, spartn = 6;
+    constexpr unsigned buffer_full = 1u << 1, output_port_shift = 2;  // 1 DDC, 2 UART1, …
     MonComms m;
     m.prot_ids = {0, 1, 5, is_high_precision(context.board) ? spartn : nothing};
+    unsigned errors = 0;
+    if (context.board.comms_output_port) errors |= (static_cast<unsigned>(context.port) + 1) << output_port_shift;
     for (const PortStatus& port : context.ports) {
-        if (port.transmit_full) m.tx_errors = 2;
+        if (port.transmit_full) errors |= buffer_full;
         if (port.bytes_out == 0 && port.bytes_in == 0) continue;
         MonCommsItem item;
         item.port_id = comms_port_id(port.id, context.board);
@@ -44,6 +47,7 @@ MonComms communications(const ReportContext& context) {
         item.skipped = port.skipped;
         m.ports.push_back(item);
     }
+    m.tx_errors = static_cast<std::uint8_t>(errors);
     return m;
 }
 

@@ -40,8 +40,9 @@ struct MonCommsItem {
 /// MON-COMMS: ports (RECEIVER.md 3.2).
 struct MonComms {
     static constexpr UbxMessageId message_id{0x0A, 0x36};
-    std::uint8_t version = 0;    ///< 0
-    std::uint8_t tx_errors = 0;  ///< bits: 0 memory, 1 transmit buffer full, 2-4 port of this message on new firmware
+    std::uint8_t version = 0;  ///< 0
+    std::uint8_t tx_errors =
+        0;  ///< bits: 0 memory, 1 transmit buffer full, 2-4 one more than this message's port on new firmware
     std::uint8_t reserved0 = 0;
     std::array<std::uint8_t, 4> prot_ids{};  ///< 0 UBX, 1 NMEA, 2 RTCM2, 5 RTCM3, 6 SPARTN, 255 none
     std::vector<MonCommsItem> ports;

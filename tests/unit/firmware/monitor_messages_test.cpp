@@ -93,6 +93,21 @@ TEST(MonHardwareMessages, AreThere) {
     EXPECT_EQ(loud.blocks[0].spectrum[0], calm.blocks[0].spectrum[0]);
 }
 
+// As an X20P does and an F9P does not (RECEIVER.md 3.2).
+TEST(MonPortMessages, NewerFirmwareTellsByWhichPortMonCommsLeaves) {
+    UbxReport f10(10);
+    EXPECT_EQ(f10.report<MonComms>().tx_errors, 0);
+    f10.board.comms_output_port = true;
+    EXPECT_EQ(f10.report<MonComms>().tx_errors, 2 << 2);
+    PortStatus full;
+    full.transmit_full = true;
+    f10.ports = {full};
+    EpochMessages made(f10.context());
+    constexpr std::size_t tx_errors_of_frame = 6 + 2;
+    EXPECT_EQ(made.of(MonComms::message_id, PortId::uart1, {}).at(0).at(tx_errors_of_frame), 2 << 2 | 2);
+    EXPECT_EQ(made.of(MonComms::message_id, PortId::usb, {}).at(0).at(tx_errors_of_frame), 4 << 2 | 2);
+}
+
 TEST(MonPortMessages, CountBytesAndMessages) {
     UbxReport f9 = high_precision();
     PortStatus uart2;

@@ -107,6 +107,7 @@ gnss_channels_hardware = 32
 gnss_channels_used = 31
 gnss_supported = 15
 gnss_simultaneous = 3
+comms_output_port = true
 galileo_words = 9
 [ubx.legacy]
 CFG-PRT = "apply"
@@ -215,6 +216,7 @@ TEST(BoardFileUblox, ReadsMessagesAndConfiguration) {
     EXPECT_EQ(board.gnss_channels_used, 31);
     EXPECT_EQ(board.gnss_supported, 15);
     EXPECT_EQ(board.gnss_simultaneous, 3);
+    EXPECT_TRUE(board.comms_output_port);
     EXPECT_EQ(board.galileo_words, 9U);
     const auto legacy = [&board](std::uint8_t id) { return board.legacy.at({0x06, id}); };
     EXPECT_EQ(board.legacy.size(), 4U);
@@ -436,6 +438,7 @@ TEST(ShippedBoards, TheF10IsAnM10WithL5AndWithoutGlonass) {
     EXPECT_EQ(set_in_ram(f10, {{0x10320001, 1}}), Verdict::acknowledge);
     EXPECT_EQ(set_in_ram(f10, {{0x10310025, 0}}), Verdict::refuse);
     EXPECT_EQ(f10.legacy.size(), 1U);
+    EXPECT_TRUE(f10.comms_output_port && !shipped_board("ublox-f9p").comms_output_port);
 }
 
 // The batches of PX4, INAV, ArduPilot and Betaflight (RECEIVER.md 6.1 to 6.4).
