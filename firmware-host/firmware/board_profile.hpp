@@ -178,6 +178,7 @@ struct BoardProfile {
     std::vector<Constellation> constellations;  ///< enabled at the factory
     bool dual_frequency = false;                ///< tracks the second signal of each system from the factory on
     SecondBand second_band = SecondBand::l2;    ///< where that signal is
+    bool bands_together = false;                ///< refuses one of a system's two bands without the other
     int most_systems = 4;                       ///< of GPS, GLONASS, BeiDou and Galileo that it tracks at once
     /// Sets of items of CFG-SIGNAL that may not all be 1 at once: what its front end cannot receive together.
     std::vector<std::set<std::uint32_t>> signal_conflicts;

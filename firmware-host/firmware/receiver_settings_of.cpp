@@ -137,12 +137,14 @@ ConfigValues initial_config(const BoardProfile& board, const ReceiverOptions& op
     };
     for (const SystemKeys& system : system_keys_of_signals)
         put(system.enable, on(system.constellation));
+    constexpr std::uint32_t beidou_b1i = 0x1031000D, beidou_b1c = 0x1031000F;
+    std::optional<std::uint64_t> factory_b1i;
+    if (const auto found = values.find(beidou_b1i); found != values.end()) factory_b1i = found->second;
     // A system that is off keeps the signals of the factory, with which clients find it when they switch it on.
     for (const SignalKey& signal : signal_keys)
         if (on(signal.signal.constellation)) put(signal.enable, s.signals.contains(signal.signal) ? 1 : 0);
-    // Of the two names of one measured signal a receiver that has both has the older on at the factory.
-    constexpr std::uint32_t beidou_b1i = 0x1031000D, beidou_b1c = 0x1031000F;
-    if (values.contains(beidou_b1i)) put(beidou_b1c, 0);
+    // Of the two names of one measured signal a receiver that has both has one on, as at the factory.
+    if (factory_b1i) put(*factory_b1i != 0 ? beidou_b1c : beidou_b1i, 0);
     return values;
 }
 

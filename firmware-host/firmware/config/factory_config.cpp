@@ -258,6 +258,19 @@ bool is_on(const ConfigValues& values, std::uint32_t key) {
     return found != values.end() && found->second != 0;
 }
 
+bool is_measured(const ConfigValues& values, SystemSignal signal) {
+    return std::any_of(signal_keys.begin(), signal_keys.end(),
+                       [&](const SignalKey& s) { return s.signal == signal && is_on(values, s.enable); });
+}
+
+// A system that is off may have any.
+bool has_half_of_its_bands(const BoardProfile& board, const ConfigValues& values, const SystemKeys& system) {
+    const auto second = second_signal(system.constellation, board.second_band);
+    if (!second || !is_on(values, system.enable)) return false;
+    return is_measured(values, {system.constellation, first_signal(system.constellation)}) !=
+           is_measured(values, {system.constellation, *second});
+}
+
 // QZSS, SBAS and NavIC give no position by themselves: a major system is needed, as CFG-GNSS needs one.
 bool is_signal_plan(const BoardProfile& board, const ConfigValues& values) {
     int major = 0;
@@ -267,6 +280,9 @@ bool is_signal_plan(const BoardProfile& board, const ConfigValues& values) {
         // A system without a signal is not tracked. It is taken: clients change B1I for B1C key by key.
         if (std::any_of(system.first.begin(), system.first.end(), on)) ++major;
     }
+    const auto is_half = [&](const SystemKeys& system) { return has_half_of_its_bands(board, values, system); };
+    if (board.bands_together && std::any_of(system_keys_of_signals.begin(), system_keys_of_signals.end(), is_half))
+        return false;
     const auto is_whole = [&values](const std::set<std::uint32_t>& conflict) {
         return std::all_of(conflict.begin(), conflict.end(), [&](std::uint32_t key) { return is_on(values, key); });
     };

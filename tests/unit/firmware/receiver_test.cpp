@@ -76,6 +76,9 @@ TEST(Receiver, HearsB1cOfBeidou3Alone) {
         EXPECT_TRUE(settings.tracks(meo, Signal::b1i)) << b1c;
         EXPECT_EQ(settings.tracks(beidou_2, Signal::b1i), !b1c);
         EXPECT_EQ(settings.tracks(geo, Signal::b1i), !b1c);
+        ReceiverOptions named{1};  // by a scenario
+        named.settings.signals = {{Constellation::beidou, Signal::b1i}};
+        EXPECT_EQ(Receiver(board, named).settings().tracks(beidou_2, Signal::b1i), !b1c);
     }
 }
 

@@ -86,6 +86,7 @@ bauds = [115200, 9600]
 ports = ["usb", "uart1"]
 [navigation]
 dual_frequency = true
+bands_together = true
 most_systems = 2
 signal_conflicts = ["CFG-SIGNAL-GLO_ENA CFG-SIGNAL-BDS_ENA"]
 least_measurement_period_ms = 40
@@ -187,6 +188,7 @@ TEST(BoardFileUblox, ReadsPortsSignalsAndStyle) {
     EXPECT_THAT(board.bauds, ElementsAre(9600, 115200));
     EXPECT_THAT(board.ports, ElementsAre(PortId::uart1, PortId::usb));
     EXPECT_TRUE(board.dual_frequency);
+    EXPECT_TRUE(board.bands_together);
     EXPECT_EQ(board.most_systems, 2);
     EXPECT_THAT(board.signal_conflicts, ElementsAre(ElementsAre(0x10310022, 0x10310025)));
     EXPECT_EQ(board.least_measurement_period_ms, 40);
@@ -438,6 +440,20 @@ TEST(ShippedBoards, TheF10IsAnM10WithL5AndWithoutGlonass) {
     EXPECT_EQ(set_in_ram(f10, {{0x10320001, 1}}), Verdict::acknowledge);
     EXPECT_EQ(set_in_ram(f10, {{0x10310025, 0}}), Verdict::refuse);
     EXPECT_EQ(f10.legacy.size(), 1U);
+    EXPECT_EQ(factory_of(f10, "CFG-SIGNAL-BDS_B1_ENA"), 0U);
+    EXPECT_EQ(set_in_ram(f10, {{0x1031000D, 1}}), Verdict::refuse) << "B1I, though it has the item";
+    EXPECT_EQ(set_in_ram(f10, {{0x10310022, 0}, {0x1031000D, 0}}), Verdict::acknowledge);
+    // GPS L1 and L5, E1 and E5a, B1C and B2a, QZSS L1 and L5.
+    constexpr std::uint32_t bands[][3] = {{0x1031001F, 0x10310001, 0x10310004},
+                                          {0x10310021, 0x10310007, 0x10310009},
+                                          {0x10310022, 0x1031000F, 0x10310028},
+                                          {0x10310024, 0x10310012, 0x10310017}};
+    for (const auto& [system, upper, lower] : bands) {
+        EXPECT_EQ(set_in_ram(f10, {{upper, 0}}), Verdict::refuse) << upper;
+        EXPECT_EQ(set_in_ram(f10, {{lower, 0}}), Verdict::refuse) << lower;
+        EXPECT_EQ(set_in_ram(f10, {{upper, 0}, {lower, 0}}), Verdict::acknowledge) << system;
+        EXPECT_EQ(set_in_ram(f10, {{system, 0}, {lower, 0}}), Verdict::acknowledge) << system;
+    }
     EXPECT_TRUE(f10.comms_output_port && !shipped_board("ublox-f9p").comms_output_port);
 }
 
