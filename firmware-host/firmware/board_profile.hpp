@@ -206,6 +206,7 @@ struct BoardProfile {
 
     /// What it can send, in the order in which it leaves within an epoch; sentences among it.
     std::vector<UbxMessageId> messages;
+    std::set<UbxMessageId> unsent;                ///< what it has rates for in CFG-MSGOUT and does not send
     std::set<UbxMessageId> polled;                ///< what it answers but does not send by itself
     std::map<UbxMessageId, LegacyAnswer> legacy;  ///< legacy configuration messages that it knows
     std::vector<GnssBlock> gnss_blocks;           ///< of CFG-GNSS

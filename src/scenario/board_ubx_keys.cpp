@@ -112,6 +112,8 @@ void read_board_ubx(TableReader& ubx, BoardProfile& board) {
     board.messages = read_messages(ubx, "messages", sent);
     const auto only_polled = read_messages(ubx, "polled", polled);
     board.polled.insert(only_polled.begin(), only_polled.end());
+    const auto unsent = read_messages(ubx, "unsent", sent);
+    board.unsent.insert(unsent.begin(), unsent.end());
     ubx.table("legacy", [&](TableReader& legacy) { read_legacy(legacy, board); });
     read_gnss_blocks(ubx, board);
     ubx.integer("gnss_channels_hardware", board.gnss_channels_hardware, {0, 255});
@@ -124,7 +126,9 @@ void read_board_ubx(TableReader& ubx, BoardProfile& board) {
 
 void leave_out_rates_of_others(BoardProfile& board) {
     for (const firmware::OutputMessage& message : firmware::output_messages()) {
-        if (std::find(board.messages.begin(), board.messages.end(), message.id) != board.messages.end()) continue;
+        if (std::find(board.messages.begin(), board.messages.end(), message.id) != board.messages.end() ||
+            board.unsent.contains(message.id))
+            continue;
         for (std::uint32_t port = 0; port < firmware::port_count; ++port)
             board.absent_keys.insert(message.i2c_key + port);
     }

@@ -26,6 +26,7 @@ UART1 = 1
 RATES = {"NAV-PVT": 1, "NAV-POSLLH": 0, "NAV-STATUS": 0, "NAV-SOL": 0, "NAV-VELNED": 0, "NAV-TIMEGPS": 5, "NAV-DOP": 1,
          "MON-HW": 5, "MON-HW2": 5, 0x0210: 0, "RXM-RAWX": 0}
 TMODE = 0x20030001
+RAWX = 0x209102A5  # CFG-MSGOUT-UBX_RXM_RAWX_UART1
 M10_KEYS = [(0x10310022, 1), (0x1031000D, 0), (0x1031000F, 1), (0x10310025, 0), (0x10310024, 1), (0x10310012, 1),
             (0x10310014, 1), (0x20110021, 8)]
 
@@ -263,6 +264,9 @@ class ArduPilotKeys(ArduPilot):
     also = ["MON-RF"]
 
     def configure(self):
+        if self.board.name == "ublox-f10":
+            # The driver asks every receiver with one UART for it; M10 is driven by messages, where it may be refused.
+            self.wanted = self.wanted + [(RAWX, 0)]
         self.step("MON-VER every 200 ms")
         version = self.every(0.2, ubx.frame("MON-VER"), "MON-VER")
         version = ubx.mon_ver(version.payload)

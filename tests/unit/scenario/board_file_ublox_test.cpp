@@ -103,6 +103,7 @@ unknown_date_is_1980 = true
 [ubx]
 messages = ["NAV-PVT", "GGA", "PUBX-00", "RTCM-1005"]
 polled = ["MON-VER", "NAV-EOE"]
+unsent = ["RXM-RAWX"]
 gnss_blocks = ["00 08 10 00 01 00 11 01", "060810000000 0103"]
 gnss_channels_hardware = 32
 gnss_channels_used = 31
@@ -208,6 +209,7 @@ TEST(BoardFileUblox, ReadsMessagesAndConfiguration) {
     EXPECT_THAT(board.messages, ElementsAre(UbxMessageId{0x01, 0x07}, UbxMessageId{0xF0, 0x00},
                                             UbxMessageId{0xF1, 0x00}, UbxMessageId{0xF5, 0x05}));
     EXPECT_THAT(board.polled, ElementsAre(UbxMessageId{0x01, 0x61}, UbxMessageId{0x0A, 0x04}));
+    EXPECT_THAT(board.unsent, ElementsAre(UbxMessageId{0x02, 0x15}));
     ASSERT_EQ(board.gnss_blocks.size(), 2U);
     EXPECT_EQ(board.gnss_blocks[0].flags, 0x01110001U);
     EXPECT_EQ(board.gnss_blocks[1].gnss_id, 6);
@@ -241,7 +243,7 @@ TEST(BoardFileUblox, ReadsMessagesAndConfiguration) {
     EXPECT_FALSE(absent("CFG-UART1INPROT-UBX"));
 }
 
-// A rate for what a board cannot send would be taken, and nothing would come.
+// Another rate for what a board cannot send would be taken, and nothing would come.
 TEST(BoardFileUblox, EveryRateThatABoardTakesHasAMessage) {
     for (const auto& entry :
          std::filesystem::directory_iterator(std::string(SKYLOOP_SOURCE_DIR) + "/boards/receivers")) {
@@ -250,7 +252,8 @@ TEST(BoardFileUblox, EveryRateThatABoardTakesHasAMessage) {
         const firmware::ConfigValues items = firmware::factory_config(board);
         for (const firmware::OutputMessage& message : firmware::output_messages())
             for (const PortId port : board.ports)
-                EXPECT_EQ(items.contains(*firmware::rate_key(message.id, port)), sends(board, message.name))
+                EXPECT_EQ(items.contains(*firmware::rate_key(message.id, port)),
+                          sends(board, message.name) || board.unsent.contains(message.id))
                     << board.name << ": " << message.name;
     }
 }
@@ -440,6 +443,9 @@ TEST(ShippedBoards, TheF10IsAnM10WithL5AndWithoutGlonass) {
     EXPECT_EQ(set_in_ram(f10, {{0x10320001, 1}}), Verdict::acknowledge);
     EXPECT_EQ(set_in_ram(f10, {{0x10310025, 0}}), Verdict::refuse);
     EXPECT_EQ(f10.legacy.size(), 1U);
+    for (const char* port : {"I2C", "UART1", "SPI"})
+        EXPECT_EQ(factory_of(f10, std::string("CFG-MSGOUT-UBX_RXM_RAWX_") + port), 0U) << "ArduPilot asks for it";
+    EXPECT_FALSE(sends(f10, "RXM-RAWX"));
     EXPECT_EQ(factory_of(f10, "CFG-SIGNAL-BDS_B1_ENA"), 0U);
     EXPECT_EQ(set_in_ram(f10, {{0x1031000D, 1}}), Verdict::refuse) << "B1I, though it has the item";
     EXPECT_EQ(set_in_ram(f10, {{0x10310022, 0}, {0x1031000D, 0}}), Verdict::acknowledge);
