@@ -208,6 +208,7 @@ void Receiver::Core::boot(const Forgotten& forgotten, GpsTime now, const Boot& h
     busy_until_ = last_answer_ = now;
     forced_speed_.reset();
     told_antenna_.reset();
+    mavlink_sent_ = {};
     const GpsTime awake = advanced(now, how.takes);
     deaf_until_ = awake;
     tracker_.boot(now, how.cause);

@@ -12,6 +12,7 @@
 #include "firmware/correction_input.hpp"
 #include "firmware/firmware_faults.hpp"
 #include "firmware/messages/make_message.hpp"
+#include "firmware/messages/other_protocols.hpp"
 #include "firmware/nmea_commands.hpp"
 #include "firmware/port_unit.hpp"
 #include "firmware/power_save.hpp"
@@ -174,6 +175,7 @@ private:
     std::optional<GpsTime> report_time_;  ///< of the last epoch; nothing: it is not reported
     GpsTime last_answer_{};               ///< planned; later ones do not overtake it
     std::optional<AntennaStatus> told_antenna_;
+    MavlinkSent mavlink_sent_;
     std::optional<Sleep> sleep_;           ///< it is off
     std::optional<Sleep> falling_asleep_;  ///< it will be, when all has left that is to be sent
     GpsTime lies_down_at_{};               ///< when that is looked at next

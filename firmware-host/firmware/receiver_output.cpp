@@ -227,7 +227,7 @@ void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {
         unit.status.transmit_full = false;
         tell_overflow(unit, now);
         if (unit.id == PortId::uart1)
-            send(unit.id, make_protocol_messages(board_.personality, context(unit.id, state)), now);
+            send(unit.id, make_protocol_messages(board_.personality, context(unit.id, state), mavlink_sent_), now);
         if (console_ && port_is_on(store_, unit.id))
             send(unit.id, septentrio_output(console_->state(), context(unit.id, state)), now);
         send(unit.id, messages, now);

@@ -205,7 +205,11 @@ class OtherProtocolsTest(unittest.TestCase):
     def test_mavlink_tells_every_fix(self):
         data, fixes, objects = simulate("mavlink-gps-input", CIRCLE, 10)
         frames = mavlink_messages(data)
-        self.assertEqual([message for _, message, _ in frames], [0, 232] * len(fixes))
+        seconds = [math.floor(float(fix["tow_s"]) - float(fixes[0]["tow_s"]) + 1e-6) for fix in fixes]
+        expected = []
+        for before, second in zip([None] + seconds, seconds):
+            expected += [232] if second == before else [0, 232]
+        self.assertEqual([message for _, message, _ in frames], expected)
         self.assertEqual([(frame[0] - frames[0][0]) % 256 for frame in frames], list(range(len(frames))))
         messages, geoid = read_gps_input(data), undulation()
         self.check_times(messages, fixes)

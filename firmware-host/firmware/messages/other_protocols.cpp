@@ -1,6 +1,8 @@
 #include "firmware/messages/other_protocols.hpp"
 
 #include <chrono>
+#include <cmath>
+#include <utility>
 
 #include "firmware/messages/reported_fix.hpp"
 
@@ -61,13 +63,17 @@ void put_mavlink_position(const Fix& fix, MavlinkGpsInput& to) {
     to.vert_accuracy = static_cast<float>(fix.vertical_accuracy.value());
 }
 
-std::vector<Bytes> mavlink_messages(const NavigationState& state) {
-    // Two frames an epoch, so that the sequence has no gap.
+// A ground station takes a component for alive by a heartbeat a second, whatever the rate of its data.
+std::vector<Bytes> mavlink_messages(const NavigationState& state, MavlinkSent& sent) {
     MavlinkSource source;
-    source.sequence = static_cast<std::uint8_t>(2 * state.epoch_index & 0xFF);
-    std::vector<Bytes> frames{encode_mavlink(source, MavlinkHeartbeat{})};
-    ++source.sequence;
-    frames.push_back(encode_mavlink(source, mavlink_gps_input(state)));
+    std::vector<Bytes> frames;
+    const auto add = [&](const auto& message) {
+        source.sequence = sent.sequence++;
+        frames.push_back(encode_mavlink(source, message));
+    };
+    const auto second = static_cast<std::int64_t>(std::floor(state.since_boot.value()));
+    if (std::exchange(sent.beat_second, second) != second) add(MavlinkHeartbeat{});
+    add(mavlink_gps_input(state));
     return frames;
 }
 
@@ -124,7 +130,7 @@ MavlinkGpsInput mavlink_gps_input(const NavigationState& state) {
     return message;
 }
 
-std::vector<Bytes> make_protocol_messages(Personality personality, const ReportContext& context) {
+std::vector<Bytes> make_protocol_messages(Personality personality, const ReportContext& context, MavlinkSent& sent) {
     const NavigationState& state = context.state;
     switch (personality) {
         case Personality::msp:
@@ -132,7 +138,7 @@ std::vector<Bytes> make_protocol_messages(Personality personality, const ReportC
         case Personality::msp_v1:
             return {encode_msp(msp_set_raw_gps(state))};
         case Personality::mavlink:
-            return mavlink_messages(state);
+            return mavlink_messages(state, sent);
         default:
             return {};
     }

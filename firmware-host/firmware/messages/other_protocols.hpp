@@ -1,6 +1,8 @@
 /// From the receiver's state to the messages of receivers that are no NMEA or UBX ones: MSP, MAVLink and SBF.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "firmware/navigation_state.hpp"
@@ -10,9 +12,16 @@
 
 namespace skyloop::firmware {
 
+/// What a component of MAVLink has sent since its start.
+struct MavlinkSent {
+    std::uint8_t sequence = 0;                  ///< of the next frame
+    std::optional<std::int64_t> beat_second{};  ///< of the receiver's time since its start: of the last HEARTBEAT
+};
+
 /// What a receiver of this personality sends at every epoch, in order: msp MSP2_SENSOR_GPS; msp_v1 MSP_SET_RAW_GPS;
-/// mavlink HEARTBEAT and GPS_INPUT. Nothing for the others; what sbf sends, its streams say (septentrio/output.hpp).
-std::vector<Bytes> make_protocol_messages(Personality personality, const ReportContext& context);
+/// mavlink GPS_INPUT, and HEARTBEAT before the first one of each second. Nothing for the others; what sbf sends, its
+/// streams say (septentrio/output.hpp).
+std::vector<Bytes> make_protocol_messages(Personality personality, const ReportContext& context, MavlinkSent& sent);
 
 /// Its values without a fix: fix type 1, zeros, accuracies 65535, DOP 99.99; week 65535 while time is not known.
 MspSensorGps msp_sensor_gps(const NavigationState& state);

@@ -35,9 +35,10 @@ class OtherProtocols : public testing::Test {
 protected:
     OtherProtocols() { board_.solution_latency = Seconds(0.05); }
     std::vector<Bytes> messages(Personality personality, const NavigationState& state) {
-        return make_protocol_messages(personality, {board_, config_, state});
+        return make_protocol_messages(personality, {board_, config_, state}, sent_);
     }
     SbfPvtGeodetic pvt(const NavigationState& state) { return sbf_pvt_geodetic({board_, config_, state}); }
+    MavlinkSent sent_;
     BoardProfile board_;
     ConfigStore config_{ConfigValues{}};
 };
@@ -166,18 +167,24 @@ TEST_F(OtherProtocols, APairTellsWhereItPoints) {
     EXPECT_TRUE(sbf_other_antenna(state).antennas.empty());
 }
 
-TEST_F(OtherProtocols, MavlinkCountsItsFramesWithoutAGap) {
+TEST_F(OtherProtocols, MavlinkHasAHeartbeatASecondAndCountsItsFramesWithoutAGap) {
+    constexpr std::uint32_t heartbeat = 0, gps_input = 232;
     NavigationState state = navigating();
+    sent_.sequence = 253;
     std::vector<int> sequence;
-    for (int epoch = 126; epoch < 130; ++epoch) {
-        state.epoch_index = static_cast<std::uint64_t>(epoch);
+    std::vector<std::uint32_t> kinds;
+    for (const double since_boot : {3.75, 4.0, 4.25, 4.75, 5.25}) {
+        state.since_boot = Seconds(since_boot);
         for (const Bytes& frame : messages(Personality::mavlink, state)) {
             const auto view = parse_mavlink(frame);
             ASSERT_TRUE(view);
             sequence.push_back(view->source.sequence);
+            kinds.push_back(view->message);
         }
     }
-    EXPECT_EQ(sequence, (std::vector<int>{252, 253, 254, 255, 0, 1, 2, 3}));
+    EXPECT_EQ(kinds,
+              (std::vector{heartbeat, gps_input, heartbeat, gps_input, gps_input, gps_input, heartbeat, gps_input}));
+    EXPECT_EQ(sequence, (std::vector<int>{253, 254, 255, 0, 1, 2, 3, 4}));
 }
 
 TEST_F(OtherProtocols, SbfTellsTheSolution) {
