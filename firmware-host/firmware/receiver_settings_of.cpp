@@ -48,8 +48,9 @@ DynamicModel dynamic_model_of(std::uint64_t number) {
 Nanoseconds navigation_period_of(const ConfigStore& store, const BoardProfile& board) {
     const auto measurement = std::chrono::milliseconds(std::max<std::uint64_t>(1, store.value(key::rate_meas)));
     auto cycles = static_cast<std::int64_t>(std::max<std::uint64_t>(1, store.value(key::rate_nav)));
-    // Periods are whole milliseconds: 56 ms is what 18 Hz are stored as.
-    const auto shortest = std::chrono::milliseconds(std::llround(1000.0 / board.max_rate_hz));
+    // Periods are whole milliseconds. 18 Hz are stored as 56, and asked for as 55 by who leaves the rest of a division
+    // out: that must not be half of the rate.
+    const auto shortest = std::chrono::milliseconds(static_cast<std::int64_t>(std::floor(1000.0 / board.max_rate_hz)));
     while (cycles * measurement < shortest)
         ++cycles;
     return cycles * measurement;

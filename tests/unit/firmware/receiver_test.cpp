@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/config/config_handler.hpp"
 #include "firmware/config/config_keys.hpp"
+#include "firmware/receiver_core.hpp"
 #include "sample_epochs.hpp"
 #include "skyloop/base/random.hpp"
 #include "skyloop/protocol/nmea_sentence.hpp"
@@ -47,6 +49,19 @@ TEST(Receiver, RoundsThePeriodToMillisecondsWithinTheBoardsRate) {
     EXPECT_EQ(period(-4), 500ms);
     EXPECT_EQ(period(std::nan("")), 500ms);
     EXPECT_EQ(period(1e-9), 65535ms);
+}
+
+TEST(Receiver, TakesAPeriodThatLeavesOutTheRestOfADivision) {
+    BoardProfile board = sample_board(NmeaVersion::v4_0, {gps});
+    board.max_rate_hz = 18;
+    const auto period = [&](std::uint64_t measurement_ms) {
+        ConfigStore store(factory_config(board));
+        store.set(in_ram, key::rate_meas, measurement_ms);
+        return settings_of(store, board, {}).navigation_period;
+    };
+    EXPECT_EQ(period(56), 56ms);
+    EXPECT_EQ(period(55), 55ms);
+    EXPECT_EQ(period(50), 100ms);
 }
 
 TEST(Receiver, SolvesWithFewerSatellitesAboveARate) {
