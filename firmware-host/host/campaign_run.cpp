@@ -9,6 +9,7 @@
 #include "campaign_options.hpp"
 #include "data_folders.hpp"
 #include "run_session.hpp"
+#include "skyloop/base/say.hpp"
 #include "skyloop/base/shell_word.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/campaign/campaign_database.hpp"
@@ -61,11 +62,11 @@ public:
         last_ = now;
         const double rate = static_cast<double>(done_) / std::chrono::duration<double>(now - begun_).count();
         const std::uint64_t left = all_ - there_ - done_;
-        fmt::print(stderr, "\r\x1b[K{}/{} runs, {} failed, {:.3g} runs/s, {} left", there_ + done_, all_, failed_, rate,
-                   done_ > 0 ? duration_words(static_cast<double>(left) / rate) : "?");
+        say(fmt::format("\r\x1b[K{}/{} runs, {} failed, {:.3g} runs/s, {} left", there_ + done_, all_, failed_, rate,
+                        done_ > 0 ? duration_words(static_cast<double>(left) / rate) : "?"));
     }
     void clear() const {
-        if (shown_) fmt::print(stderr, "\r\x1b[K");
+        if (shown_) say("\r\x1b[K");
     }
     [[nodiscard]] std::uint64_t failed() const { return failed_; }
 

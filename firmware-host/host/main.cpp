@@ -19,6 +19,7 @@
 #include "help_text.hpp"
 #include "misuse.hpp"
 #include "number_options.hpp"
+#include "skyloop/base/say.hpp"
 #include "skyloop/base/spelling.hpp"
 #include "word_options.hpp"
 
@@ -33,8 +34,8 @@ constexpr std::array<std::string_view, 19> commands{"run",    "simulate",   "sky
 
 // CLI11 does not know which words may be meant; this says it in one line.
 int refuse_command(std::string_view word) {
-    fmt::print(stderr, "skyloop: unknown command '{}'; expected one of {}{}\n", word, fmt::join(commands, " "),
-               skyloop::did_you_mean(word, commands));
+    skyloop::say(fmt::format("skyloop: unknown command '{}'; expected one of {}{}\n", word, fmt::join(commands, " "),
+                             skyloop::did_you_mean(word, commands)));
     return 2;
 }
 
@@ -83,7 +84,7 @@ int run_program(int argc, char** argv) {
         return refuse_command(word);
     try {
         if (const auto misuse = skyloop::host::value_left_out(words)) {
-            fmt::print(stderr, "skyloop: {}\n", *misuse);
+            skyloop::say(fmt::format("skyloop: {}\n", *misuse));
             return 2;
         }
         std::reverse(words.begin(), words.end());  // as CLI11 takes them
@@ -91,7 +92,7 @@ int run_program(int argc, char** argv) {
     } catch (const CLI::Success& wanted) {
         return app.exit(wanted);  // --help and --version
     } catch (const CLI::ParseError& error) {
-        fmt::print(stderr, "skyloop: {}\n", skyloop::host::misuse_text(app, error));
+        skyloop::say(fmt::format("skyloop: {}\n", skyloop::host::misuse_text(app, error)));
         return 2;
     }
     for (std::size_t i = 0; i < commands.size(); ++i)
@@ -102,7 +103,7 @@ int run_program(int argc, char** argv) {
 // What was printed may still wait in a buffer: a full disk shows only when it is written out.
 int with_output_written(int code) {
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-    fmt::print(stderr, "skyloop: standard output: cannot be written: {}\n", std::strerror(errno));
+    skyloop::say(fmt::format("skyloop: standard output: cannot be written: {}\n", std::strerror(errno)));
     return code == 0 ? 1 : code;
 }
 
@@ -115,10 +116,11 @@ int main(int argc, char** argv) {
         std::fputs("skyloop: out of memory\n", stderr);
     } catch (const std::system_error& refused) {
         const bool output = std::ferror(stdout) != 0;
-        fmt::print(stderr, "skyloop: {}\n",
-                   output ? "standard output: cannot be written: " + refused.code().message() : refused.what());
+        skyloop::say(
+            fmt::format("skyloop: {}\n",
+                        output ? "standard output: cannot be written: " + refused.code().message() : refused.what()));
     } catch (const std::exception& broken) {
-        fmt::print(stderr, "skyloop: broken promise inside the program: {}\n", broken.what());
+        skyloop::say(fmt::format("skyloop: broken promise inside the program: {}\n", broken.what()));
     }
     return 1;
 }

@@ -7,6 +7,7 @@
 #include "messages.hpp"
 #include "run_options.hpp"
 #include "run_session.hpp"
+#include "skyloop/base/say.hpp"
 #include "skyloop/base/spared_file.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/emulator/replay.hpp"
@@ -110,7 +111,7 @@ int replay_recording(const ReplayOptions& options) {
     Replay replay(std::move(*parts));
     // Scripts wait for these lines to know the tty: they are said even when quiet.
     for (std::size_t i = 0; i < replay.links().size(); ++i)
-        fmt::print(stderr, "port {}: {}\n", i, replay.links()[i].transport().description());
+        say(fmt::format("port {}: {}\n", i, replay.links()[i].transport().description()));
     messages.detail(fmt::format("priority of the loop: {}", to_string(raise_thread_priority())));
     if (!options.no_wait) replay.await_clients(stop_was_asked);
     replay.play(stop_was_asked);

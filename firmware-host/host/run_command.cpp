@@ -8,6 +8,7 @@
 #include "data_folders.hpp"
 #include "run_session.hpp"
 #include "run_watch.hpp"
+#include "skyloop/base/say.hpp"
 #include "skyloop/base/watchdog_process.hpp"
 #include "skyloop/emulator/deadline_grants.hpp"
 #include "skyloop/time/utc_time.hpp"
@@ -51,12 +52,12 @@ std::unique_ptr<OrphanWatchdog> watch_probes(const Scenario& scenario, const Run
 void say_where(const RunSession& session, const std::vector<Station>& stations, const RunWatch& watch) {
     for (const Station& station : stations)
         for (std::size_t i = 0; i < station.wires().size(); ++i)
-            fmt::print(stderr, "{}: {}\n", session.port_name(station, i),
-                       station.wires()[i].link.transport().description());
-    if (!watch.url().empty()) fmt::print(stderr, "control: {}\n", watch.url());
+            say(fmt::format("{}: {}\n", session.port_name(station, i),
+                            station.wires()[i].link.transport().description()));
+    if (!watch.url().empty()) say(fmt::format("control: {}\n", watch.url()));
     for (std::size_t i = 0; i < watch.outputs().size(); ++i)
-        fmt::print(stderr, "output {}: {}\n", i, watch.outputs()[i]->description());
-    if (!watch.mavlink().empty()) fmt::print(stderr, "mavlink: {}\n", watch.mavlink());
+        say(fmt::format("output {}: {}\n", i, watch.outputs()[i]->description()));
+    if (!watch.mavlink().empty()) say(fmt::format("mavlink: {}\n", watch.mavlink()));
 }
 
 int run_live(const RunOptions& options) {

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "skyloop/actuator/actuator_uri.hpp"
+#include "skyloop/base/say.hpp"
 
 namespace skyloop {
 namespace {
@@ -60,10 +61,10 @@ void restore_ward(const std::string& uri) {
     for (int i = 0; i < tries_to_restore; ++i) {
         if (i > 0) std::this_thread::sleep_for(between_tries);
         const Result<void> done = restore_for_good(uri);
-        if (done) return fmt::print(stderr, "skyloop: power {}: restored, as the run had not done so\n", uri);
+        if (done) return say(fmt::format("skyloop: power {}: restored, as the run had not done so\n", uri));
         reason = done.error().message;
     }
-    fmt::print(stderr, "skyloop: power {}: the run left it cut, and it cannot be restored: {}\n", uri, reason);
+    say(fmt::format("skyloop: power {}: the run left it cut, and it cannot be restored: {}\n", uri, reason));
 }
 
 void watch_over(int socket, const std::vector<std::string>& wards) {

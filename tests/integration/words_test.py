@@ -176,6 +176,18 @@ class WordsTest(unittest.TestCase):
                     process.stdout.close()
                     self.assertEqual((process.stderr.read(), process.wait(timeout=60)), (b"", -signal.SIGPIPE))
 
+    def test_words_that_nobody_reads_end_no_run(self):
+        with open_folder() as folder:
+            command = [SKYLOOP, "simulate", "--start", "2026-01-01T00:00:00Z", "--duration", "5", "--out", f"{folder}/out"]
+            reader, writer = os.pipe()
+            os.close(reader)
+            with open("/dev/full", "wb") as full, open(writer, "wb") as broken:
+                for unheard in (full, broken):
+                    run = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=unheard, timeout=60, check=False)
+                    self.assertEqual(run.returncode, 0)
+                    run = subprocess.run(command, stdout=unheard, stderr=unheard, timeout=60, check=False)
+                    self.assertEqual(run.returncode, 1, "its output was not written")
+
     def test_a_simulation_that_is_stopped_ends_in_order_and_says_so(self):
         with open_folder() as folder:
             command = [SKYLOOP, "simulate", "--start", "2026-01-01T00:00:00Z", "--duration", "1e7", "--out", folder]
