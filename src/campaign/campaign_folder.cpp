@@ -137,8 +137,11 @@ Result<void> keep_campaign(const std::filesystem::path& folder, const OpenedCamp
     const std::string text = plan_text(campaign);
     if (const auto before = read_text_file(path, largest_plan); before && *before == text) return {};
     if (const auto checked = check_folder(folder, campaign); !checked) return fail(checked.error());
-    std::error_code none;
-    std::filesystem::create_directories(folder, none);
+    std::error_code reason;
+    std::filesystem::create_directories(folder, reason);
+    if (reason)
+        return fail(ErrorCode::outside,
+                    fmt::format("{}: cannot be made a folder: {}", folder.string(), reason.message()));
     // Parts on several machines may write it at once.
     return replace_file(path, text);
 }
