@@ -9,6 +9,8 @@
 
 #include "progress.hpp"
 #include "run_watch.hpp"
+#include "skyloop/base/say.hpp"
+#include "skyloop/emulator/load_track.hpp"
 #include "skyloop/emulator/run_summary.hpp"
 #include "skyloop/emulator/wires.hpp"
 #include "skyloop/time/utc_time.hpp"
@@ -17,10 +19,10 @@ namespace skyloop::host {
 namespace {
 
 // The one door between a signal and the loop; a run that is in vain ends by it, too.
-std::atomic<bool> stop_asked{false};
+std::atomic<bool> stop_asked{false}, signalled{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-void ask_to_stop(int) { stop_asked = true; }
+void ask_to_stop(int) { signalled = stop_asked = true; }
 
 }  // namespace
 
@@ -44,6 +46,18 @@ GpsTime wall_clock() {
     return from_posix(duration_cast<Nanoseconds>(system_clock::now().time_since_epoch()), LeapSeconds::announced());
 }
 
+namespace {
+
+// A signal ends a run that has no end of its own as its user does; one that has an end is cut by it, or by being in
+// vain.
+RunEnd end_of(const Scenario& scenario, const Assembly& assembly) {
+    if (!stop_asked) return RunEnd::over;
+    if (!scenario.run.duration) return ends_with_its_path(scenario) ? RunEnd::cut : RunEnd::over;
+    return assembly.emulator->now() < advanced(assembly.start, *scenario.run.duration) ? RunEnd::cut : RunEnd::over;
+}
+
+}  // namespace
+
 RunSession::RunSession(const Messages& messages, Assembly& assembly) : messages_(messages), assembly_(assembly) {
     for (const std::string& detail : assembly.details)
         messages.detail(detail);
@@ -55,7 +69,7 @@ void RunSession::await_feeds() const {
     LiveFeeds* feeds = assembly_.emulator->feeds();
     if (feeds == nullptr) return;
     for (const std::string& source : feeds->descriptions())
-        fmt::print(stderr, "truth: {}\n", source);
+        say(fmt::format("truth: {}\n", source));
     if (feeds->all_heard()) return;
     messages_.info(feeds->waits_for());
     assembly_.emulator->await_feeds(stop_asked);
@@ -66,13 +80,22 @@ void RunSession::await_clients() const {
     assembly_.emulator->await_clients(stop_asked);
 }
 
+// What such a run leaves must not be taken for the whole.
+void RunSession::tell_that_it_was_cut() const {
+    const Seconds done = difference(assembly_.emulator->now(), assembly_.start);
+    messages_.warning(
+        fmt::format("stopped by a signal after {:.3f} s of the run: what is recorded ends there", done.value()));
+}
+
 int RunSession::run(const Scenario& scenario, RunWatch& watch) {
     Emulator& emulator = *assembly_.emulator;
     go(emulator, watch);
     watch.finish_outputs();
     if (Recorder* recorder = emulator.recorder())
         recorder->record_summary(run_summary(scenario, assembly_, SKYLOOP_VERSION, SummaryOf::end));
-    int code = watch.finish(messages_);
+    const RunEnd end = end_of(scenario, assembly_);
+    if (end == RunEnd::cut && signalled) tell_that_it_was_cut();
+    int code = watch.finish(messages_, end);
     for (std::size_t i = 0; i < emulator.stations().size(); ++i)
         for (const std::string& news : wire_news(i))
             messages_.warning(news);

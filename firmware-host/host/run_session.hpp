@@ -37,6 +37,7 @@ private:
     void go(Emulator& emulator, RunWatch& watch);
     // Exit code: 1 where one of them could not be written.
     int tell_outputs(RunWatch& watch) const;
+    void tell_that_it_was_cut() const;
     void tell_counts(const Station& station) const;
     void tell_overload(const Station& station) const;
     void tell_wire(const Station& station, std::size_t wire) const;

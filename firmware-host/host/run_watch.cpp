@@ -183,9 +183,9 @@ void RunWatch::finish_outputs() {
     }
 }
 
-int RunWatch::finish(const Messages& messages) {
+int RunWatch::finish(const Messages& messages, RunEnd end) {
     const GpsTime now = assembly_.emulator->now();
-    if (judge_) verdicts_ = judge_->finish(now);
+    if (judge_) verdicts_ = judge_->finish(now, end);
     if (board_) board_->publish_now(now);
     int code = 0;
     if (verdicts_) code = report(messages, *verdicts_);

@@ -49,7 +49,7 @@ public:
     void finish_outputs();
     /// The run is over: says the verdicts, and leaves verdicts.json and junit.xml in the recording.
     /// @return exit code: 3 where an expectation was not met
-    int finish(const Messages& messages);
+    int finish(const Messages& messages, RunEnd end);
 
 private:
     RunWatch(const Scenario& scenario, Assembly& assembly) : scenario_(scenario), assembly_(assembly) {}

@@ -44,13 +44,6 @@ void plug_in_clients_alone(const RunOptions& options, Scenario& scenario) {
         keep_scripted_clients(scenario);
 }
 
-// A stopped simulation ends in order, with 0 as a stopped run does; what it leaves must not be taken for the whole.
-void tell_that_it_stopped(const Messages& messages, const Assembly& assembly) {
-    const Seconds done = difference(assembly.emulator->now(), assembly.start);
-    messages.warning(
-        fmt::format("stopped by a signal after {:.3f} s of the run: what is recorded ends there", done.value()));
-}
-
 int simulate(const RunOptions& options) {
     const Messages messages(options.verbosity);
     auto scenario = scenario_from(options);
@@ -82,7 +75,6 @@ int simulate(const RunOptions& options) {
     if (!watch) return messages.error(watch.error());
     RunSession session(messages, *assembly);
     const int code = session.run(*scenario, **watch);
-    if (stop_was_asked()) tell_that_it_stopped(messages, *assembly);
     return code;
 }
 

@@ -273,19 +273,28 @@ Finding ExpectationTracker::so_far() const {
     return nothing_open ? summary() : Finding{};
 }
 
-Finding ExpectationTracker::finish(GpsTime now) {
+Finding ExpectationTracker::finish(GpsTime now, RunEnd end) {
     advance(now);
-    if (!finding_) last_until_end(now);
+    if (!finding_) last_until_end(now, end);
     return finding_ ? *finding_ : summary();
 }
 
 // What the end of the run makes of what is still open.
-void ExpectationTracker::last_until_end(GpsTime now) {
+void ExpectationTracker::last_until_end(GpsTime now, RunEnd end) {
     const TimeClause& time = sentence_.time;
     if (is_belief(sentence_.subject.subject) && !ever_seen_)
         return fail(now, "no client told whether it trusts the receiver");
-    if (time.event && !time.event->is_run() && !event_came_) return fail(now, event_never_came());
-    if (stretch_ && (!stretch_->closes || *stretch_->closes <= now)) close(now);
+    const bool cut = end == RunEnd::cut;
+    if (time.event && !time.event->is_run() && !event_came_) {
+        if (!cut) return fail(now, event_never_came());
+        finding_ = Finding{Outcome::undecided,
+                           fmt::format("the run was stopped after {}; until then {}",
+                                       span_text(difference(now, start_)), event_never_came()),
+                           std::nullopt};
+        return;
+    }
+    // What lasts to the end of the run is not over where something else has ended it.
+    if (stretch_ && (stretch_->closes ? *stretch_->closes <= now : !cut)) close(now);
     if (finding_ || (!stretch_ && planned_.empty())) return;
     std::string ended =
         fmt::format("the run ended after {}, before the time was over", span_text(difference(now, start_)));

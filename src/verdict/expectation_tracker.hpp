@@ -37,7 +37,7 @@ public:
     void hear(GpsTime now, std::string_view name);
     /// Something begins or ends; a command does both at once.
     void event(GpsTime now, const FaultSeen& seen);
-    Finding finish(GpsTime now);
+    Finding finish(GpsTime now, RunEnd end);
 
     /// How it stands: failed for good; passed where every stretch that has come was, though another may come;
     /// undecided, without evidence, while one lasts or none has come.
@@ -75,7 +75,7 @@ private:
     void come_true(GpsTime now);
     void fail(GpsTime now, std::string evidence);
     void happen(GpsTime now, bool begins);
-    void last_until_end(GpsTime now);
+    void last_until_end(GpsTime now, RunEnd end);
     [[nodiscard]] Finding summary() const;
     [[nodiscard]] std::string event_never_came() const;
     [[nodiscard]] std::string moment(GpsTime now, const Stretch& stretch) const;

@@ -35,7 +35,7 @@ public:
     bool is_silent(const EpochSeen& seen);
     [[nodiscard]] bool hears() const { return hears_; }
     void happen(const FaultSeen& seen);
-    std::vector<Verdict> finish(GpsTime now);
+    std::vector<Verdict> finish(GpsTime now, RunEnd end);
     [[nodiscard]] std::vector<Verdict> so_far() const;
     void start_probes(GpsTime now);
 
@@ -49,6 +49,7 @@ private:
 
     JudgedRun run_;
     GpsTime now_;
+    RunEnd end_ = RunEnd::over;
     std::vector<Case> cases_;
     std::map<std::size_t, GpsTime> told_at_;  // by station, the last epoch of which the receiver told
     bool has_probes_ = false, hears_ = false;
@@ -121,7 +122,7 @@ Finding Judge::State::probe_finding(Case& one, GpsTime now) {
 Finding Judge::State::common_finding(Case& one, GpsTime now) {
     std::vector<Finding> findings;
     for (Follower& follower : one.followers)
-        findings.push_back(follower.tracker.finish(now));
+        findings.push_back(follower.tracker.finish(now, end_));
     return worst_of(one, findings);
 }
 
@@ -179,8 +180,9 @@ std::vector<Verdict> Judge::State::so_far() const {
     return verdicts;
 }
 
-std::vector<Verdict> Judge::State::finish(GpsTime now) {
+std::vector<Verdict> Judge::State::finish(GpsTime now, RunEnd end) {
     now_ = std::max(now_, now);
+    end_ = end;
     for (Case& one : cases_)
         if (one.probe && !one.probe_over_at && one.probe->is_over()) one.probe_over_at = now_;
     std::vector<Verdict> verdicts;
@@ -239,7 +241,7 @@ void Judge::advance(GpsTime now) { state_->pass(now); }
 
 std::vector<Verdict> Judge::so_far() const { return state_->so_far(); }
 
-std::vector<Verdict> Judge::finish(GpsTime now) { return state_->finish(now); }
+std::vector<Verdict> Judge::finish(GpsTime now, RunEnd end) { return state_->finish(now, end); }
 
 std::string Expectation::title() const {
     if (!name.empty()) return name;

@@ -52,7 +52,8 @@ public:
     /// The run is over: one verdict per expectation, in their order. Probes that still run are killed, and undecided.
     /// Called once; nothing may be observed afterwards. Waits for the ends of killed probes, at most some tenths of a
     /// second.
-    std::vector<Verdict> finish(GpsTime now);
+    /// @param end RunEnd::cut leaves undecided what was to last to the end of the run, or waits for an event
+    std::vector<Verdict> finish(GpsTime now, RunEnd end = RunEnd::over);
 
 private:
     class State;

@@ -11,6 +11,9 @@
 
 namespace skyloop {
 
+/// How a run ends: by itself or because it was asked to, or stopped from outside before the end that it was to have.
+enum class RunEnd { over, cut };
+
 /// How an expectation came out.
 enum class Outcome {
     passed,

@@ -392,6 +392,18 @@ TEST(JudgeTimes, ARunThatEndsFirstLeavesItOpen) {
     EXPECT_EQ(SeenRun("fix from 20 s to 30 s").epochs(1, 9).end(10).outcome, undecided);
 }
 
+TEST(JudgeTimes, ARunThatIsCutLeavesOpenWhatWasToLastToItsEnd) {
+    const Verdict always = SeenRun("fix always").epochs(1, 9).cut(10);
+    EXPECT_EQ(always.outcome, undecided);
+    EXPECT_EQ(always.evidence, "the run ended after 10 s, before the time was over");
+    EXPECT_EQ(SeenRun("no fix never").epochs(1, 9).cut(10).outcome, undecided);
+    EXPECT_EQ(SeenRun("fix always").epochs(1, 4).epochs(5, 9, no_fix).cut(10).outcome, failed) << "whatever comes";
+    EXPECT_EQ(SeenRun("fix within 5 s of the start of run").epochs(1, 9).cut(10).outcome, passed) << "for good";
+    const Verdict outage = SeenRun("no fix within 5 s of the outage").epochs(1, 9).cut(10);
+    EXPECT_EQ(outage.outcome, undecided);
+    EXPECT_EQ(outage.evidence, "the run was stopped after 10 s; until then outage never began");
+}
+
 TEST(JudgeTimes, AReceiverThatMakesNoEpochsHasNoFix) {
     EXPECT_EQ(SeenRun("fix always").epochs(1, 4).end(20).outcome, failed);
     const Verdict lost = SeenRun("no fix within 6 s of outage").epochs(1, 4).begins(4.5, "outage").end(20);

@@ -111,6 +111,8 @@ public:
     /// What is known of the only expectation so far.
     [[nodiscard]] Verdict so_far() const { return judge_.so_far().at(0); }
     Verdict end(double second) { return judge_.finish(at_second(second)).front(); }
+    /// The run was to last longer.
+    Verdict cut(double second) { return judge_.finish(at_second(second), RunEnd::cut).front(); }
     Judge& judge() { return judge_; }
 
 private:
