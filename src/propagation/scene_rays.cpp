@@ -68,7 +68,10 @@ ArrivingRay SceneRays::reflected(const ArrivingSatellite& arriving, const SceneP
     }
     const CircularWave wave = reflected_wave(surfaces, path.arrival, arriving.carrier, settings_.wall_roughness);
     const std::complex<double> heard = heard_by_right_hand(wave, settings_.opposite_hand_rejection);
-    const Decibels crowns = crown_loss(arriving, reflection_points(scene_, path, arriving.observer.position));
+    // Where its rays turn is worked out for trees alone.
+    const Decibels crowns = scene_.foliage().empty()
+                                ? Decibels(0)
+                                : crown_loss(arriving, reflection_points(scene_, path, arriving.observer.position));
     return {path.arrival,
             path.excess,
             path.excess_rate,
