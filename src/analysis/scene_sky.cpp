@@ -5,14 +5,10 @@
 #include <numbers>
 
 #include "skyloop/gnss/earth_turn.hpp"
+#include "skyloop/scene/direction_towards.hpp"
 
 namespace skyloop {
 namespace {
-
-Eigen::Vector3d direction_towards(Angle azimuth, Angle elevation) {
-    const double horizontal = std::cos(elevation.rad());
-    return {horizontal * std::sin(azimuth.rad()), horizontal * std::cos(azimuth.rad()), std::sin(elevation.rad())};
-}
 
 SkyDirection direction_angles(const Eigen::Vector3d& unit) {
     double azimuth = std::atan2(unit.x(), unit.y());

@@ -10,6 +10,7 @@
 
 #include "foliage_tree.hpp"
 #include "plane_merge.hpp"
+#include "skyloop/scene/direction_towards.hpp"
 #include "triangle_tree.hpp"
 
 namespace skyloop {
@@ -319,11 +320,8 @@ bool sees_no_sky(const UrbanScene& scene, const Eigen::Vector3d& place) {
     constexpr int around = 24, lowest = 5, step = 10;  // azimuths; elevations in degrees
     std::vector<SceneRay> rays;
     for (int degrees = lowest; degrees < 90; degrees += step)
-        for (int k = 0; k < around; ++k) {
-            const double elevation = Angle::degrees(degrees).rad(), azimuth = Angle::degrees(360.0 / around * k).rad();
-            const double level = std::cos(elevation);
-            rays.push_back({place, {level * std::sin(azimuth), level * std::cos(azimuth), std::sin(elevation)}});
-        }
+        for (int k = 0; k < around; ++k)
+            rays.push_back({place, direction_towards(Angle::degrees(360.0 / around * k), Angle::degrees(degrees))});
     std::vector<std::uint8_t> answers(rays.size());
     scene.blocked(rays, answers);
     return std::ranges::all_of(answers, [](std::uint8_t blocked) { return blocked != 0; });
