@@ -24,6 +24,14 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only
 
 void ask_to_stop(int) { signalled = stop_asked = true; }
 
+// A signal ends a run that has no end of its own as its user does; one that has an end is cut by it, or by being in
+// vain.
+RunEnd end_of(const Scenario& scenario, const Assembly& assembly) {
+    if (!stop_asked) return RunEnd::over;
+    if (!scenario.run.duration) return ends_with_its_path(scenario) ? RunEnd::cut : RunEnd::over;
+    return assembly.emulator->now() < advanced(assembly.start, *scenario.run.duration) ? RunEnd::cut : RunEnd::over;
+}
+
 }  // namespace
 
 void catch_stop_signals() {
@@ -45,18 +53,6 @@ GpsTime wall_clock() {
     using namespace std::chrono;
     return from_posix(duration_cast<Nanoseconds>(system_clock::now().time_since_epoch()), LeapSeconds::announced());
 }
-
-namespace {
-
-// A signal ends a run that has no end of its own as its user does; one that has an end is cut by it, or by being in
-// vain.
-RunEnd end_of(const Scenario& scenario, const Assembly& assembly) {
-    if (!stop_asked) return RunEnd::over;
-    if (!scenario.run.duration) return ends_with_its_path(scenario) ? RunEnd::cut : RunEnd::over;
-    return assembly.emulator->now() < advanced(assembly.start, *scenario.run.duration) ? RunEnd::cut : RunEnd::over;
-}
-
-}  // namespace
 
 RunSession::RunSession(const Messages& messages, Assembly& assembly) : messages_(messages), assembly_(assembly) {
     for (const std::string& detail : assembly.details)

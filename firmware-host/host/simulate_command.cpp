@@ -74,8 +74,7 @@ int simulate(const RunOptions& options) {
     const auto watch = RunWatch::start(*scenario, *assembly, {}, nobody);
     if (!watch) return messages.error(watch.error());
     RunSession session(messages, *assembly);
-    const int code = session.run(*scenario, **watch);
-    return code;
+    return session.run(*scenario, **watch);
 }
 
 }  // namespace
