@@ -42,7 +42,7 @@ double shown_azimuth(Angle azimuth, double step) {
 }
 
 std::string doppler_cell(const SatelliteInView& satellite, int decimals) {
-    const std::optional<Hertz> doppler = doppler_l1(satellite);
+    const std::optional<Hertz> doppler = first_doppler(satellite);
     return doppler ? fmt::format("{:.{}f}", doppler->value(), decimals) : std::string();
 }
 
@@ -124,7 +124,7 @@ std::string sky_text_heading(const SkyListing& listing, bool with_scene) {
     text += with_scene
                 ? fmt::format("{:<6}{:<15}{:>5}{:>13}{:>11}\n", "used", "arrives", "paths", "reflections", "excess")
                 : "used\n";
-    text += fmt::format("{:<10}{:>9}{:>11}{:>12}{:>13}{:>11}{:>10}", "", "deg", "deg", "km", "m/s", "Hz (L1)", "dB-Hz");
+    text += fmt::format("{:<10}{:>9}{:>11}{:>12}{:>13}{:>11}{:>10}", "", "deg", "deg", "km", "m/s", "Hz", "dB-Hz");
     return text + (with_scene ? fmt::format("{:>62}\n", "m") : "\n");
 }
 
@@ -134,7 +134,7 @@ nlohmann::ordered_json satellite_json(const SkyRow& row) {
     nlohmann::ordered_json json{{"satellite", to_string(s.id)},   {"system", constellation_name(s.id.constellation)},
                                 {"azimuth_deg", s.azimuth.deg()}, {"elevation_deg", s.elevation.deg()},
                                 {"range_m", s.range.value()},     {"range_rate_mps", s.range_rate.value()}};
-    const std::optional<Hertz> doppler = doppler_l1(s);
+    const std::optional<Hertz> doppler = first_doppler(s);
     json["doppler_hz"] = doppler ? nlohmann::ordered_json(doppler->value()) : nlohmann::ordered_json(nullptr);
     json["cn0_dbhz"] = row.cn0 ? nlohmann::ordered_json(row.cn0->value()) : nlohmann::ordered_json(nullptr);
     json["healthy"] = s.healthy;
@@ -173,10 +173,9 @@ SkyListing sky_listing(const TruthState& truth, const SkyView& sky, Angle mask, 
     return listing;
 }
 
-std::optional<Hertz> doppler_l1(const SatelliteInView& satellite) {
-    const Constellation system = satellite.id.constellation;
-    if (system == Constellation::glonass || system == Constellation::navic) return std::nullopt;
-    return Hertz(-satellite.range_rate.value() * carrier_frequency_l1 / speed_of_light);
+std::optional<Hertz> first_doppler(const SatelliteInView& satellite) {
+    if (satellite.signals.empty()) return std::nullopt;
+    return Hertz(-satellite.range_rate.value() * satellite.signals.front().carrier.value() / speed_of_light);
 }
 
 std::string sky_text(const SkyListing& listing) {

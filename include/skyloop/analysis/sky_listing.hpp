@@ -45,8 +45,8 @@ struct SkyExtras {
 /// arrivals or by the city, counts as used.
 SkyListing sky_listing(const TruthState& truth, const SkyView& sky, Angle mask, const SkyExtras& extras = {});
 
-/// Doppler shift of the carrier at 1575.42 MHz, D = −ρ̇ f / c; nothing for a system that has no signal there.
-std::optional<Hertz> doppler_l1(const SatelliteInView& satellite);
+/// Doppler shift of the satellite's first signal, D = −ρ̇ f / c; nothing for a satellite that sends none.
+std::optional<Hertz> first_doppler(const SatelliteInView& satellite);
 
 /// An aligned table with a heading and a DOP line, ending in a newline.
 std::string sky_text(const SkyListing& listing);

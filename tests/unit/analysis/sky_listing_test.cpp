@@ -21,6 +21,8 @@ SatelliteInView seen(SatelliteId id, double azimuth, double elevation) {
     s.range_rate = MetresPerSecond(-500);
     s.toe = to_gps_time(1590, 388800.0);
     s.iode = 42;
+    if (id.constellation == Constellation::gps)
+        s.signals.push_back({Signal::l1, carrier_frequency(Signal::l1), Seconds(0)});
     return s;
 }
 
@@ -79,10 +81,20 @@ TEST(SkyListing, takes_hidden_satellites_and_cn0_from_arrivals_and_use_from_the_
 }
 
 TEST(SkyListing, doppler_is_positive_for_an_approaching_satellite) {
-    const auto doppler = doppler_l1(seen(listed_gps(1), 0, 10));
+    const auto doppler = first_doppler(seen(listed_gps(1), 0, 10));
     ASSERT_TRUE(doppler);
     EXPECT_NEAR(doppler->value(), 2627.52, 0.01);  // 500 m/s / 0.190293673 m
-    EXPECT_FALSE(doppler_l1(seen({Constellation::glonass, 1}, 0, 10)));
+    EXPECT_FALSE(first_doppler(seen({Constellation::glonass, 1}, 0, 10)));
+}
+
+TEST(SkyListing, DopplerIsOfTheSatellitesOwnFirstSignal) {
+    SatelliteInView glonass = seen({Constellation::glonass, 9}, 0, 10);
+    glonass.signals.push_back({Signal::g1, carrier_frequency(Signal::g1, -2), Seconds(0)});
+    glonass.signals.push_back({Signal::g2, carrier_frequency(Signal::g2, -2), Seconds(0)});
+    EXPECT_NEAR(first_doppler(glonass)->value(), 2669.97, 0.01);  // 500 m/s, 1600.875 MHz
+    SatelliteInView beidou = seen({Constellation::beidou, 5}, 0, 10);
+    beidou.signals.push_back({Signal::b1i, carrier_frequency(Signal::b1i), Seconds(0)});
+    EXPECT_NEAR(first_doppler(beidou)->value(), 2603.63, 0.01);  // 500 m/s, 1561.098 MHz
 }
 
 TEST(SkyListing, text_has_a_row_per_satellite_and_a_dop_line) {
