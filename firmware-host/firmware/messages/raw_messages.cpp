@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "firmware/clock_instant.hpp"
+#include "firmware/config/signal_keys.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/satellite_parts.hpp"
 #include "skyloop/gnss/constants.hpp"
@@ -153,6 +154,8 @@ RxmMeasx code_measurements(const ReportContext& context) {
     if (state.time.time) {
         m.gps_tow = m.qzss_tow = tow_ms(time);
         m.bds_tow = tow_ms(time - 14s);
+        if (context.board.identity.generation >= 9 && is_enabled(context.config, Constellation::galileo))
+            m.gal_tow = m.gps_tow;
         m.glo_tow = tow_ms(time + 3h - std::chrono::seconds(state.epoch.fix.leap_seconds));
         const std::uint16_t accuracy = field<std::uint16_t>(state.time.accuracy.value() * 1e3 * 16);
         m.gps_tow_acc = m.glo_tow_acc = m.bds_tow_acc = m.qzss_tow_acc = accuracy;

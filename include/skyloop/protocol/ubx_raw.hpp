@@ -41,10 +41,10 @@ struct RxmMeasx {
     static constexpr UbxMessageId message_id{0x02, 0x14};
     std::uint8_t version = 1;  ///< 1
     std::array<std::uint8_t, 3> reserved0{};
-    std::uint32_t gps_tow = 0;  ///< ms
-    std::uint32_t glo_tow = 0;  ///< ms
-    std::uint32_t bds_tow = 0;  ///< ms
-    std::array<std::uint8_t, 4> reserved1{};
+    std::uint32_t gps_tow = 0;      ///< ms
+    std::uint32_t glo_tow = 0;      ///< ms
+    std::uint32_t bds_tow = 0;      ///< ms
+    std::uint32_t gal_tow = 0;      ///< ms; not in the manuals, seen of a ZED-F9P (HPG 1.11)
     std::uint32_t qzss_tow = 0;     ///< ms
     std::uint16_t gps_tow_acc = 0;  ///< 2^-4 ms
     std::uint16_t glo_tow_acc = 0;  ///< 2^-4 ms
@@ -57,8 +57,8 @@ struct RxmMeasx {
 
     template <class M, class V>
     static void fields(M& m, V& v) {
-        v(m.version, m.reserved0, m.gps_tow, m.glo_tow, m.bds_tow, m.reserved1, m.qzss_tow, m.gps_tow_acc,
-          m.glo_tow_acc, m.bds_tow_acc, m.reserved2, m.qzss_tow_acc);
+        v(m.version, m.reserved0, m.gps_tow, m.glo_tow, m.bds_tow, m.gal_tow, m.qzss_tow, m.gps_tow_acc, m.glo_tow_acc,
+          m.bds_tow_acc, m.reserved2, m.qzss_tow_acc);
         v.count(m.satellites);
         v(m.flags, m.reserved3);
         v.items(m.satellites);

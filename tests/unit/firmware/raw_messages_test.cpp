@@ -145,6 +145,7 @@ TEST(RxmMeasxMessage, HasTheCodePhaseOfTheTravelTime) {
         raw_signal({Constellation::galileo, 4}, Signal::l1, 87.34205 * 299792.458)};
     const auto m = f9.report<RxmMeasx>();
     EXPECT_EQ(m.gps_tow, 218981521u);
+    EXPECT_EQ(m.gal_tow, m.gps_tow);
     EXPECT_EQ(m.bds_tow, 218967521u);
     EXPECT_EQ(m.glo_tow, 218981521u + 10782000u);
     EXPECT_EQ(m.flags, 2);
