@@ -87,9 +87,10 @@ int RunSession::run(const Scenario& scenario, RunWatch& watch) {
     Emulator& emulator = *assembly_.emulator;
     go(emulator, watch);
     watch.finish_outputs();
-    if (Recorder* recorder = emulator.recorder())
-        recorder->record_summary(run_summary(scenario, assembly_, SKYLOOP_VERSION, SummaryOf::end));
     const RunEnd end = end_of(scenario, assembly_);
+    if (Recorder* recorder = emulator.recorder())
+        recorder->record_summary(run_summary(scenario, assembly_, SKYLOOP_VERSION,
+                                             end == RunEnd::cut ? SummaryOf::cut_end : SummaryOf::end));
     if (end == RunEnd::cut && signalled) tell_that_it_was_cut();
     int code = watch.finish(messages_, end);
     for (std::size_t i = 0; i < emulator.stations().size(); ++i)

@@ -148,7 +148,8 @@ std::string run_summary(const Scenario& scenario, const Assembly& assembly, std:
         {"navigation", emulator.simulation().navigation().description()},
         {"start_utc", format_utc(to_utc(assembly.start, LeapSeconds::announced()))},
         {"start_gps_ns", assembly.start.time_since_epoch().count()},
-        {"ended", what == SummaryOf::end},
+        {"ended", what != SummaryOf::beginning},
+        {"cut", what == SummaryOf::cut_end},
         {"simulated_s", difference(emulator.now(), assembly.start).value()},
     };
     if (assembly.scene.scene) summary["scene"] = scene_json(assembly.scene);

@@ -200,6 +200,7 @@ class WordsTest(unittest.TestCase):
             self.assertEqual(process.returncode, 0, told)
             self.assertRegex(told, r"skyloop: warning: stopped by a signal after \d+\.\d{3} s of the run: what is recorded ends there")
             summary = json.loads(pathlib.Path(folder, "run.json").read_text(encoding="utf-8"))
+            self.assertEqual((summary["ended"], summary["cut"]), (True, True))
             self.assertEqual(summary["epochs"], len(fixes.read_text(encoding="ascii").splitlines()) - 1)
 
 

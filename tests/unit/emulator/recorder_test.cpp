@@ -1,6 +1,7 @@
 // What a run leaves behind: tables whose columns hold what their header says.
 #include "skyloop/emulator/recorder.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -281,6 +282,8 @@ TEST(RunSummary, CountsWhatWasRecorded) {
     EXPECT_EQ(summary["version"], "1.2.3");
     EXPECT_EQ(summary["seed"], 9);
     EXPECT_EQ(summary["ended"], true);
+    EXPECT_EQ(summary["cut"], false);
+    EXPECT_EQ(nlohmann::json::parse(run_summary(scenario, *assembly, "1", SummaryOf::cut_end))["cut"], true);
     EXPECT_EQ(nlohmann::json::parse(run_summary(scenario, *assembly, "1", SummaryOf::beginning))["ended"], false);
     EXPECT_EQ(summary["model"], "ideal");
     EXPECT_EQ(summary["board"], "ublox-m8");
