@@ -9,6 +9,7 @@
 #include "completions.hpp"
 #include "manual_pages.hpp"
 #include "messages.hpp"
+#include "skyloop/base/make_folder.hpp"
 
 namespace skyloop::host {
 namespace {
@@ -28,11 +29,7 @@ int write_page(const std::filesystem::path& path, const std::string& text) {
 }
 
 int write_manual_pages(std::span<const CommandRow> commands, const std::filesystem::path& folder) {
-    std::error_code refused;
-    std::filesystem::create_directories(folder, refused);
-    if (refused)
-        return Messages({}).error(
-            {ErrorCode::outside, fmt::format("--out {}: cannot be made: {}", folder.string(), refused.message())});
+    if (const auto made = make_folder(folder); !made) return Messages({}).error(made.error());
     for (const CommandRow& command : commands) {
         const auto path = folder / fmt::format("skyloop-{}.1", command.name);
         if (const int code = write_page(path, manual_page(command, SKYLOOP_VERSION)); code != 0) return code;

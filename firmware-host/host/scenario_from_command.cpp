@@ -8,6 +8,7 @@
 #include "data_folders.hpp"
 #include "messages.hpp"
 #include "run_options.hpp"
+#include "skyloop/base/make_folder.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/emulator/assembly.hpp"
 #include "skyloop/logs/log_events.hpp"
@@ -82,11 +83,7 @@ int make_scenario(const ScenarioFromOptions& options) {
             messages.warning(log->name + ": " + note);
     const std::filesystem::path folder = options.out;
     if (const auto room = find_room(folder, !made->track.empty()); !room) return messages.error(room.error());
-    std::error_code refused;
-    std::filesystem::create_directories(folder, refused);
-    if (refused)
-        return messages.error(
-            {ErrorCode::outside, fmt::format("{}: cannot be made: {}", options.out, refused.message())});
+    if (const auto made_folder = make_folder(folder); !made_folder) return messages.error(made_folder.error());
     if (!made->track.empty())
         if (const auto done = write_whole_file(folder / "track.csv", made->track); !done)
             return messages.error(done.error());

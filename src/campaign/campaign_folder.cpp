@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "skyloop/base/make_folder.hpp"
 #include "skyloop/base/replace_file.hpp"
 #include "skyloop/base/text_file.hpp"
 
@@ -137,11 +138,7 @@ Result<void> keep_campaign(const std::filesystem::path& folder, const OpenedCamp
     const std::string text = plan_text(campaign);
     if (const auto before = read_text_file(path, largest_plan); before && *before == text) return {};
     if (const auto checked = check_folder(folder, campaign); !checked) return fail(checked.error());
-    std::error_code reason;
-    std::filesystem::create_directories(folder, reason);
-    if (reason)
-        return fail(ErrorCode::outside,
-                    fmt::format("{}: cannot be made a folder: {}", folder.string(), reason.message()));
+    if (const auto made = make_folder(folder); !made) return fail(made.error());
     // Parts on several machines may write it at once.
     return replace_file(path, text);
 }

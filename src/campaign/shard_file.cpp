@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "skyloop/base/make_folder.hpp"
 #include "skyloop/base/text_file.hpp"
 
 namespace skyloop {
@@ -107,11 +108,7 @@ Result<void> show_rows(const std::filesystem::path& file, std::string_view text,
 }  // namespace
 
 Result<TableFile> TableFile::open(const std::filesystem::path& path, std::string_view header) {
-    std::error_code reason;
-    std::filesystem::create_directories(path.parent_path(), reason);
-    if (reason)
-        return fail(ErrorCode::outside,
-                    fmt::format("{}: cannot be made: {}", path.parent_path().string(), reason.message()));
+    if (const auto made = make_folder(path.parent_path()); !made) return fail(made.error());
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (descriptor < 0) return table_failure(path, "cannot be opened");
     TableFile file(path, descriptor);

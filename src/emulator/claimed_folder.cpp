@@ -8,15 +8,15 @@
 #include <system_error>
 #include <utility>
 
+#include "skyloop/base/make_folder.hpp"
+
 namespace skyloop {
 
 Result<ClaimedFolder> ClaimedFolder::claim(const std::filesystem::path& path) {
     ClaimedFolder folder;
-    std::error_code reason;
-    folder.made_ = std::filesystem::create_directories(path, reason);
-    if (reason)
-        return fail(ErrorCode::outside,
-                    fmt::format("{}: cannot be made a folder: {}", path.string(), reason.message()));
+    const auto made = make_folder(path);
+    if (!made) return fail(made.error());
+    folder.made_ = *made;
     folder.path_ = path;
     folder.lock_ = FileDescriptor(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     // The system takes the lock back however a program ends. Network file systems may have none; there nothing is held.

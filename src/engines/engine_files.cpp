@@ -1,23 +1,18 @@
 #include "skyloop/engines/engine_files.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <fstream>
 #include <system_error>
 
+#include "skyloop/base/make_folder.hpp"
 #include "skyloop/base/replace_file.hpp"
 
 namespace skyloop {
 
 Result<void> write_engine_file(const std::filesystem::path& path, const std::string& text) {
-    std::error_code reason;
-    std::filesystem::create_directories(path.parent_path(), reason);
-    if (reason)
-        return fail(ErrorCode::outside,
-                    fmt::format("{}: cannot be made: {}", path.parent_path().string(), reason.message()));
+    if (const auto made = make_folder(path.parent_path()); !made) return fail(made.error());
     return replace_file(path, text);
 }
 

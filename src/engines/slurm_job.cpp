@@ -9,6 +9,7 @@
 #include <string_view>
 #include <thread>
 
+#include "skyloop/base/make_folder.hpp"
 #include "skyloop/base/process.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/engines/engine_files.hpp"
@@ -257,10 +258,7 @@ Result<int> Follower::follow() {
 Result<void> write_slurm_files(const EngineTask& task, const SlurmScripts& scripts) {
     const auto folder = slurm_folder(task);
     // Slurm makes no folder for a task's output, and drops the output when there is none.
-    std::error_code reason;
-    std::filesystem::create_directories(folder / "log", reason);
-    if (reason)
-        return fail(ErrorCode::outside, fmt::format("{}: cannot be made: {}", folder.string(), reason.message()));
+    if (const auto made = make_folder(folder / "log"); !made) return fail(made.error());
     if (auto written = write_engine_file(folder / "campaign.sbatch", scripts.shards); !written) return written;
     return write_engine_file(folder / "gather.sbatch", scripts.gather);
 }

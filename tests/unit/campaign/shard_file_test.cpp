@@ -134,7 +134,8 @@ TEST(ShardFile, AFolderThatCannotBeMadeIsNamed) {
     const auto file = TableFile::open(shard_results(folder / "results", {0, 1}), result_header(example_columns));
     ASSERT_FALSE(file);
     EXPECT_EQ(file.error().code, ErrorCode::outside);
-    EXPECT_EQ(file.error().message, (folder / "results").string() + "/shards: cannot be made: Not a directory");
+    EXPECT_EQ(file.error().message,
+              (folder / "results").string() + "/shards: cannot be made a folder: Not a directory");
 }
 
 TEST(ShardFile, OtherColumnsAreRefused) {
