@@ -103,6 +103,11 @@ Result<void> repeat_run(const std::filesystem::path& folder, Scenario& scenario)
     const Json summary = Json::parse(*text, nullptr, false);
     if (!summary.is_object() || !summary.contains("start_gps_ns") || !summary["start_gps_ns"].is_number_integer())
         return fail(ErrorCode::input, fmt::format("{}: expected start_gps_ns", path.string()));
+    if (std::error_code unknown; !std::filesystem::exists(folder / log_name, unknown) && !unknown)
+        return fail(ErrorCode::input,
+                    fmt::format("{}: has no {}, as a run that another program led (skyloop.h); expected a recording of "
+                                "skyloop run or simulate; skyloop replay plays this one",
+                                folder.string(), log_name));
     scenario.run.start = GpsTime(Nanoseconds(summary["start_gps_ns"].get<std::int64_t>()));
     return add_live_commands(folder / log_name, scenario);
 }

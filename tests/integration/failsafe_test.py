@@ -359,6 +359,14 @@ timeout_s = 100
         self.assertEqual(done.returncode, 2)
         self.assertIn("began at another time", done.stderr)
 
+    def test_what_another_program_led_is_not_repeated(self):
+        folder = self.path / "led"
+        skyloop("simulate", self.scenario, "--duration", 2, "--out", folder)
+        (folder / "commands.jsonl").unlink()
+        done = skyloop("simulate", self.scenario, "--duration", 2, "--repeat", folder, "--out", self.path / "again")
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+        self.assertIn("has no commands.jsonl, as a run that another program led", done.stderr)
+
     def test_a_repeat_does_not_write_over_what_it_repeats(self):
         first, link = self.path / "first", self.path / "link"
         skyloop("simulate", self.scenario, "--duration", 3, "--out", first)
