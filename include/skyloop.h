@@ -125,7 +125,8 @@ typedef struct sky_progress {
     uint32_t ports;          ///< of all receivers
     uint64_t epochs;         ///< of all receivers since the start
     int64_t now_ns;          ///< simulated time
-    int64_t next_event_ns;   ///< the next epoch, fault or end of a burst; nothing but single bytes comes before it
+    int64_t next_event_ns;   ///< the next epoch, fault or end of a burst, or look at a wire with a fault or a client of
+                             ///< the scenario's, each ms to 10 ms; nothing but single bytes comes before it
     uint64_t bytes_pending;  ///< that sky_read() would give, on all ports
     uint64_t ports_pending;  ///< bit n: port n has some; ports from 64 on are not shown
 } sky_progress;
@@ -220,7 +221,8 @@ SKY_API int64_t sky_write(sky_emulator* emulator, uint32_t port, const void* byt
 /// both ends hear garbage. @param baud bit/s, 1 … 50 000 000; 0, as at first: always that of the receiver
 SKY_API sky_status sky_set_baud(sky_emulator* emulator, uint32_t port, uint32_t baud);
 
-/// What receiver number `receiver` of the scenario last reported.
+/// What receiver number `receiver` of the scenario last reported; SKY_FIX_NONE once it has been silent for 2 s, as
+/// without power.
 SKY_API sky_status sky_get_fix(sky_emulator* emulator, uint32_t receiver, sky_fix* out);
 
 /// All satellites above a receiver's antenna at its last epoch; before the first, now, with SKY_SAT_HEALTHY as their

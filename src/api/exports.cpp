@@ -1,6 +1,7 @@
 // skyloop.h: the border. Nothing but numbers and the caller's memory crosses it; no exception does.
 #include <algorithm>
 #include <atomic>
+#include <cfenv>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -39,6 +40,19 @@ private:
     bool mine_;
 };
 
+// Embree divides by zero and knows it: a caller's traps for that must not be sprung. Threads that are started meanwhile
+// have none, either.
+class FloatingPointTrapsOff {
+public:
+    FloatingPointTrapsOff() { std::feholdexcept(&before_); }
+    ~FloatingPointTrapsOff() { std::fesetenv(&before_); }
+    FloatingPointTrapsOff(const FloatingPointTrapsOff&) = delete;
+    FloatingPointTrapsOff& operator=(const FloatingPointTrapsOff&) = delete;
+
+private:
+    std::fenv_t before_{};
+};
+
 // The exception that is being handled, as a refusal. Memory may be short: without a sentence then.
 Refusal refusal_of_exception() noexcept {
     Refusal refusal;
@@ -63,6 +77,7 @@ std::int64_t guarded(sky_emulator* emulator, const Call& call) noexcept {
     const Turn turn(*emulator);
     if (!turn.mine()) return SKY_E_BUSY;
     if (emulator->broken != SKY_OK) return emulator->broken;
+    const FloatingPointTrapsOff quiet;
     Refusal refusal;
     try {
         Answer<std::int64_t> answer = call(*emulator->session);
@@ -165,6 +180,7 @@ sky_status sky_create(const sky_create_info* info, sky_emulator** out) {
     if (out != nullptr) *out = nullptr;
     try {
         if (out == nullptr) return room.take({SKY_E_ARG, "out is null"});
+        const skyloop::FloatingPointTrapsOff quiet;
         const auto made = skyloop::created(info);
         if (!made) return room.take(made.error());
         *out = *made;

@@ -7,11 +7,30 @@
 namespace skyloop {
 
 RunWatcher::RunWatcher(StatusSetup setup, const std::vector<Station>& stations, StatusSources sources)
-    : stations_(stations), traces_(stations.size()), board_(std::move(setup), &stations, [&] {
+    : stations_(stations),
+      traces_(stations.size()),
+      reports_(stations.size()),
+      board_(std::move(setup), &stations, [&] {
           constexpr std::int64_t a_while_ns = 10'000'000'000;
           sources.clock = [this] { return clock_ns_ += a_while_ns; };
           return std::move(sources);
       }()) {}
+
+void RunWatcher::on_epoch(const EpochSeen& seen) {
+    traces_[seen.station] = seen.trace;
+    std::optional<Report>& report = reports_[seen.station];
+    if (seen.leaves) {
+        report = Report{seen.reported, seen.trace.truth};
+    } else if (report && difference(seen.trace.truth.time, report->truth.time) >= silent_after) {
+        report->state.epoch.fix.type = FixType::none;
+        report->state.fix_ok = false;
+        report->state.epoch.fix.satellites.clear();
+    }
+}
+
+const Report* RunWatcher::report(std::size_t station) const {
+    return reports_[station] ? &*reports_[station] : nullptr;
+}
 
 void RunWatcher::on_fault(const FaultSeen& seen) {
     faults_.emplace(seen.name);
@@ -26,8 +45,12 @@ void RunWatcher::on_command(const CommandSeen& seen) {
 std::string RunWatcher::status(GpsTime now) {
     if (!std::exchange(stale_, false)) return recent_status_json(*board_.latest());
     for (std::size_t i = 0; i < traces_.size(); ++i)
-        if (traces_[i])
-            board_.on_epoch({traces_[i]->truth.time, i, *traces_[i], stations_[i].receiver().state(), Nanoseconds(0)});
+        if (traces_[i]) {
+            const firmware::NavigationState& told = reports_[i] ? reports_[i]->state : stations_[i].receiver().state();
+            const GpsTime time = traces_[i]->truth.time;
+            board_.on_epoch(
+                {time, i, *traces_[i], told, Nanoseconds(0), reports_[i] ? std::optional(time) : std::nullopt});
+        }
     board_.publish_now(now);
     return recent_status_json(*board_.latest());
 }

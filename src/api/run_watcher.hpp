@@ -11,18 +11,26 @@
 
 namespace skyloop {
 
+/// What a receiver has told its users.
+struct Report {
+    firmware::NavigationState state;
+    TruthState truth;  ///< at its epoch
+};
+
 /// Keeps the last epoch of each receiver and what has happened to the run. Messages on the wires are not looked for.
 class RunWatcher : public RunObserver {
 public:
     /// @param stations outlive it
     RunWatcher(StatusSetup setup, const std::vector<Station>& stations, StatusSources sources);
-    void on_epoch(const EpochSeen& seen) override { traces_[seen.station] = seen.trace; }
+    void on_epoch(const EpochSeen& seen) override;
     void on_fault(const FaultSeen& seen) override;
     void on_command(const CommandSeen& seen) override;
     void on_belief(const BeliefSeen& seen) override { board_.on_belief(seen); }
 
     /// Of the last epoch of a receiver; nothing before the first.
     [[nodiscard]] const std::optional<Trace>& trace(std::size_t station) const { return traces_[station]; }
+    /// The last that a receiver reported, without a fix once that is silent_after ago; null before the first.
+    [[nodiscard]] const Report* report(std::size_t station) const;
     /// The run has been led on: what status() tells is not what it told before.
     void went_on() { stale_ = true; }
     /// recent_status_json() of now; the same text until the run goes on, so that it can be measured and fetched.
@@ -35,6 +43,7 @@ public:
 private:
     const std::vector<Station>& stations_;
     std::vector<std::optional<Trace>> traces_;
+    std::vector<std::optional<Report>> reports_;
     std::set<std::string> faults_;
     std::uint64_t moves_ = 0;
     bool stale_ = true;

@@ -102,6 +102,8 @@ Answer<void> Session::read_scenario_of(const sky_create_info& info) {
     for (std::string& sentence : left_out(scenario_))
         scenario_.warnings.push_back(std::move(sentence));
     scenario_.run.duration.reset();
+    // No threads but those that are asked for: the caller's process may fork, and has its own idea of the processors.
+    scenario_.scene.threads = scenario_.scene.threads.value_or(0);
     if ((info.set & SKY_CREATE_SEED) != 0) scenario_.run.seed = info.seed;
     if (const auto applied = apply_start(info.start_utc, scenario_.run); !applied) return applied;
     start_sim_ns_ = info.start_sim_ns;

@@ -118,18 +118,18 @@ Answer<sky_fix> Session::fix(std::uint32_t receiver) const {
     if (const auto checked = check_receiver(receiver); !checked) return refuse(checked.error());
     const Station& station = assembly_.emulator->stations()[receiver];
     sky_fix told{};
-    const auto& trace = watcher_->trace(receiver);
-    if (!trace) return told;
-    const firmware::NavigationState& state = station.receiver().state();
+    const Report* report = watcher_->report(receiver);
+    if (report == nullptr) return told;
+    const firmware::NavigationState& state = report->state;
     const Fix& fix = state.epoch.fix;
     told.type = fix_type_number(fix.type);
     told.ok = state.fix_ok ? 1 : 0;
     told.satellites_used = static_cast<std::uint8_t>(std::clamp(fix.satellites_used(), 0, 255));
     told.jamming_state = static_cast<std::uint8_t>(std::clamp(state.monitors.jamming_state(), 0, 3));
     told.epochs = station.counts().epochs;
-    told.sim_time_ns = sim_time(trace->truth.time);
+    told.sim_time_ns = sim_time(report->truth.time);
     told.gps_time_ns = fix.time.time_since_epoch().count();
-    if (fix.has_position()) add_position(told, fix, trace->truth);
+    if (fix.has_position()) add_position(told, fix, report->truth);
     return told;
 }
 
@@ -144,16 +144,15 @@ SkyView Session::sky_now(std::uint32_t receiver) const {
 
 Answer<std::vector<sky_sat>> Session::satellites(std::uint32_t receiver) const {
     if (const auto checked = check_receiver(receiver); !checked) return refuse(checked.error());
-    const Station& station = assembly_.emulator->stations()[receiver];
     const auto& trace = watcher_->trace(receiver);
+    const Report* report = watcher_->report(receiver);
     const SkyView view = trace ? trace->sky : sky_now(receiver);
-    const Fix& fix = station.receiver().state().epoch.fix;
     std::vector<sky_sat> told;
     for (std::size_t i = 0; i < view.satellites.size(); ++i) {
         const SatelliteInView& seen = view.satellites[i];
         told.push_back(satellite_of(seen));
         if (!trace) continue;
-        add_reported(told.back(), fix, seen.id);
+        if (report != nullptr) add_reported(told.back(), report->state.epoch.fix, seen.id);
         if (i < trace->arrivals.satellites.size() && trace->arrivals.satellites[i].line_of_sight)
             told.back().flags |= SKY_SAT_SEEN;
     }

@@ -281,7 +281,7 @@ RayTracedSceneSettings scene_effect_settings(const Scenario& scenario, double ep
     settings.search.roofs_reflect = entry.roofs_reflect;
     settings.search.ground_reflects = entry.ground_reflects.value_or(modern);
     settings.search.rays = entry.rays;
-    settings.search.threads = entry.threads;
+    settings.search.threads = entry.threads.value_or(1);
     settings.epochs_per_second = epochs_per_second;
     settings.diffraction = entry.diffraction;
     if (!modern) return settings;

@@ -70,7 +70,11 @@ void read_path_keys(TableReader& table, SceneEntry& scene) {
     table.boolean("diffraction", scene.diffraction);
     table.boolean("foliage", scene.foliage);
     table.integer("rays", scene.rays, {0, 1 << 22});
-    table.integer("threads", scene.threads, {0, 64});
+    if (table.has("threads")) {
+        int threads = 0;
+        table.integer("threads", threads, {0, 64});
+        scene.threads = threads;
+    }
     table.integer("memory_limit_mb", scene.memory_limit_mb, {0, 1 << 24});
     table.boolean("cache", scene.cache);
 }

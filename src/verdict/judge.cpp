@@ -77,10 +77,9 @@ GpsTime Judge::State::pass(GpsTime now) {
 }
 
 bool Judge::State::is_silent(const EpochSeen& seen) {
-    constexpr Seconds stale{2};
     GpsTime& told_at = told_at_.try_emplace(seen.station, run_.start).first->second;
     if (seen.leaves) told_at = now_;
-    return difference(now_, told_at) >= stale;
+    return difference(now_, told_at) >= silent_after;
 }
 
 template <class Look>

@@ -14,6 +14,44 @@ need("cc", "c++", "cmake", "nm", "readelf")
 STRICT = ["-Wall", "-Wextra", "-pedantic", "-Werror"]
 
 
+# A host that traps what Embree does, and lets go of the library while a worker of Embree's may still be at rest in it.
+HOST = r"""
+#include <dlfcn.h>
+#include <fenv.h>
+#include <skyloop.h>
+#include <stdio.h>
+#include <unistd.h>
+
+int main(int count, char** words) {
+    const int traps = FE_DIVBYZERO | FE_INVALID | FE_OVERFLOW;
+    if (count != 3) return 9;
+    feenableexcept(traps);
+    for (int round = 0; round < 3; ++round) {
+        void* library = dlopen(words[1], RTLD_NOW);
+        sky_status (*create)(const sky_create_info*, sky_emulator**);
+        sky_status (*advance)(sky_emulator*, int64_t, sky_progress*);
+        void (*destroy)(sky_emulator*);
+        sky_emulator* emulator = NULL;
+        sky_create_info info = {0};
+        if (library == NULL) return 2;
+        *(void**)&create = dlsym(library, "sky_create");
+        *(void**)&advance = dlsym(library, "sky_advance");
+        *(void**)&destroy = dlsym(library, "sky_destroy");
+        info.struct_size = sizeof info;
+        info.abi_major = SKY_ABI_MAJOR;
+        info.scenario_file = words[2];
+        if (create(&info, &emulator) != SKY_OK) return 3;
+        if (advance(emulator, 3000000000, NULL) != SKY_OK) return 4;
+        destroy(emulator);
+        dlclose(library);
+        usleep(300000);
+    }
+    puts(fegetexcept() == traps ? "traps are as they were" : "traps were changed");
+    return 0;
+}
+"""
+
+
 def setUpModule():
     global INSTALLED
     INSTALLED = Installation()
@@ -96,6 +134,13 @@ class Programs(unittest.TestCase):
         self.assertEqual(flown["epochs"], 6)
         self.assertEqual(flown["fix"]["type"], "3d")
         self.assertGreater(flown["bytes"], 1000)
+
+    def test_a_program_may_unload_it_after_a_city_and_trap_divisions_by_zero(self):
+        (self.folder / "host.c").write_text(HOST, encoding="utf-8")
+        run("cc", *STRICT, "-D_GNU_SOURCE", "-I", INSTALLED.prefix / "include", "host.c", "-o", "host", "-lm", folder=self.folder)
+        city = INSTALLED.one("share/**/demo_city.toml")
+        done = run(self.folder / "host", INSTALLED.library, city, env=INSTALLED.environment())
+        self.assertEqual(done.stdout.decode(), "traps are as they were\n")
 
     def test_says_what_is_wrong_with_a_scenario(self):
         build = self.build("c")

@@ -28,7 +28,7 @@ struct SceneEntry {
     bool diffraction = true;              ///< modern: at edges
     bool foliage = true;                  ///< modern: the scene's own trees
     int rays = 0;                         ///< of a search, of the whole hemisphere; 0: by the epoch rate
-    int threads = 1;                      ///< of each receiver, that search beside the loop; the bytes are the same
+    std::optional<int> threads;           ///< of each receiver, that search beside the loop; nothing: 1, of led runs 0
     std::size_t memory_limit_mb = 4096;   ///< of the scene; 0: none
     bool cache = true;                    ///< of cities that take time to read
 

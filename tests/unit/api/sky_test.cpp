@@ -160,6 +160,27 @@ TEST(LedSky, ReflectionsDisturbAMeasuringReceiver) {
     EXPECT_GT(error_with(true), error_with(false));
 }
 
+TEST(LedSky, ASilentReceiverHasNoFix) {
+    for (const char* fault : {R"("power_cut")", R"("dropped_epochs", "probability": 1)", R"("receiver_silent")"}) {
+        LedRun run(measuring_scenario);
+        run.advance(40 * led_s);
+        (void)run.read();
+        ASSERT_EQ(run.fix().type, SKY_FIX_3D);
+        const std::string command =
+            std::string(R"({"command": "start_fault", "name": "dark", "kind": )") + fault + R"(, "for_s": 20})";
+        ASSERT_EQ(sky_command(run, command.c_str()), SKY_OK) << run.last_error();
+        run.advance(41500 * led_ms);
+        EXPECT_EQ(run.fix().sim_time_ns, 40 * led_s) << fault << ": the last that left";
+        EXPECT_EQ(run.fix().ok, 1) << fault;
+        run.advance(45 * led_s);
+        EXPECT_EQ(run.fix().type, SKY_FIX_NONE) << fault;
+        EXPECT_EQ(run.fix().ok, 0) << fault;
+        EXPECT_EQ(used(run.satellites()), 0) << fault;
+        EXPECT_NE(run.query("status").find(R"("fix":{"type":"none","ok":false)"), std::string::npos)
+            << run.query("status");
+    }
+}
+
 TEST(LedSky, WhatCannotBeIsRefused) {
     LedRun run(measuring_scenario);
     run.advance(0);
