@@ -122,10 +122,11 @@ Result<void> RunWatch::open_control(const WatchOptions& options, CommandQueue& c
     };
     if (judge_)
         sources.verdicts = [this] { return verdict_states(verdicts_ ? *verdicts_ : judge_->so_far(), !verdicts_); };
-    board_ = std::make_unique<StatusBoard>(StatusSetup{scenario_.name, assembly_.start, assembly_.end, planned_bars()},
-                                           &emulator.stations(), sources);
+    StatusSetup setup{scenario_.name, assembly_.start, assembly_.end, planned_bars()};
+    setup.every_epoch = options.live || (emulator.feeds() != nullptr && emulator.feeds()->leads());
+    board_ = std::make_unique<StatusBoard>(std::move(setup), &emulator.stations(), sources);
     emulator.add_observer(board_.get());
-    emulator.on_rest([this](GpsTime now) { board_->look(now); });
+    emulator.on_look([this](GpsTime now) { board_->look(now); });
     const std::string scene = assembly_.scene.scene ? scene_json(*assembly_.scene.scene) : std::string();
     auto server = ControlServer::start(
         *where, {commands, *board_, scene, SKYLOOP_VERSION, receiver_names(emulator), !scenario_.model.sensor_model});

@@ -1,8 +1,11 @@
 #include <array>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/websocket.hpp>
 #include <charconv>
 #include <chrono>
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string_view>
 
@@ -15,6 +18,9 @@ namespace http = boost::beast::http;
 using boost::beast::error_code;
 
 constexpr std::chrono::seconds request_patience{10}, drain_patience{2};
+// A loop that is busy is waited for 0.1 s; then the client is told what was last.
+constexpr std::chrono::milliseconds snapshot_look{2};
+constexpr int most_snapshot_looks = 50;
 constexpr std::size_t most_drained_bytes = std::size_t{32} << 20U;
 
 std::string as_string(boost::beast::string_view text) { return {text.data(), text.size()}; }
@@ -63,7 +69,7 @@ std::optional<double> stream_rate(const ControlRequest& request) {
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
 public:
     HttpSession(ServerCore& core, TcpSocket socket, ClientSlot slot)
-        : core_(core), stream_(std::move(socket)), slot_(std::move(slot)) {}
+        : core_(core), stream_(std::move(socket)), slot_(std::move(slot)), timer_(stream_.get_executor()) {}
 
     void read() {
         parser_.emplace();
@@ -108,8 +114,24 @@ private:
         HttpRequest message = parser_->release();
         const bool keep_alive = message.keep_alive(), head = message.method() == http::verb::head;
         if (boost::beast::websocket::is_upgrade(message)) return upgrade(std::move(message));
-        const ControlRequest request = control_request(std::move(message));
-        write(answer(request, core_.rules, core_.sources(request.path() == "/api/status")), keep_alive, head);
+        request_ = control_request(std::move(message));
+        const bool of_now = request_.path() == "/api/status" || request_.path() == "/api/timeline";
+        if (!of_now || refusal(request_, core_.rules)) return tell(keep_alive, head);
+        await_snapshot(core_.parts.board.ask(), most_snapshot_looks,
+                       [self = shared_from_this(), keep_alive, head] { self->tell(keep_alive, head); });
+    }
+
+    // What the client has asked for before, and has seen done, is in the answer.
+    void await_snapshot(std::uint64_t asked, int looks, const std::function<void()>& then) {
+        if (looks == 0 || core_.parts.board.latest()->answers >= asked) return then();
+        timer_.expires_after(snapshot_look);
+        timer_.async_wait([self = shared_from_this(), asked, looks, then](error_code error) {
+            if (!error) self->await_snapshot(asked, looks - 1, then);
+        });
+    }
+
+    void tell(bool keep_alive, bool head) {
+        write(answer(request_, core_.rules, core_.sources(request_.path() == "/api/status")), keep_alive, head);
     }
 
     void upgrade(HttpRequest message) {
@@ -144,6 +166,8 @@ private:
     ServerCore& core_;
     boost::beast::tcp_stream stream_;
     ClientSlot slot_;
+    boost::asio::steady_timer timer_;
+    ControlRequest request_;
     boost::beast::flat_buffer buffer_{control_header_limit + control_body_limit + 4096};
     std::optional<http::request_parser<http::string_body>> parser_;
     HttpResponse response_;

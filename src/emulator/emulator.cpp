@@ -79,7 +79,7 @@ void Emulator::await_clients(const std::atomic<bool>& stop) {
     parts_.pacer->pause(now_);
     while (!stop && !all_connected()) {
         Pacer::rest();
-        if (rest_) rest_(now_);
+        if (look_) look_(now_);
     }
     parts_.pacer->resume(now_);
 }
@@ -91,7 +91,7 @@ void Emulator::await_feeds(const std::atomic<bool>& stop) {
         Pacer::rest();
         (void)all_connected();  // a host on the wire must be answered while time rests
         hear_feeds();
-        if (rest_) rest_(now_);
+        if (look_) look_(now_);
     }
     parts_.pacer->resume(now_);
 }
@@ -117,14 +117,14 @@ void Emulator::advance_to(GpsTime end, const std::atomic<bool>& stop, LastInstan
             Pacer::rest();
             (void)all_connected();  // a host on the wire must be answered while time rests
             direct();
-            if (rest_) rest_(now_);
+            if (look_) look_(now_);
             continue;
         }
         const GpsTime next = next_instant(end);
         if (!may_go_to(next)) {
             (void)all_connected();
             direct();
-            if (rest_) rest_(now_);
+            if (look_) look_(now_);
             continue;
         }
         const auto lateness = parts_.pacer->wait_until(next);
@@ -136,6 +136,7 @@ void Emulator::advance_to(GpsTime end, const std::atomic<bool>& stop, LastInstan
         direct();
         take_in(time);
         if (now_ < end || last == LastInstant::included) run_epochs(*lateness);
+        if (look_) look_(now_);
         if (recording_failed()) break;
     }
 }

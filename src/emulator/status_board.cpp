@@ -13,6 +13,8 @@ namespace skyloop {
 namespace {
 
 constexpr std::int64_t watched_interval_ns = 100'000'000, unwatched_interval_ns = 1'000'000'000;
+// Who has asked or commanded asks again soon.
+constexpr std::int64_t followed_ns = 2'000'000'000;
 
 template <class Line>
 void keep_last(std::deque<std::shared_ptr<const Line>>& lines, Line line, std::size_t most) {
@@ -40,23 +42,43 @@ StatusBoard::StatusBoard(StatusSetup setup, const std::vector<Station>* stations
 
 std::int64_t StatusBoard::clock() const { return sources_.clock ? sources_.clock() : steady_clock_ns(); }
 
-std::int64_t StatusBoard::interval() const {
-    return watchers() > 0 || news_ ? watched_interval_ns : unwatched_interval_ns;
+std::int64_t StatusBoard::interval(std::int64_t clock_ns) const {
+    const bool watched = watchers() > 0 || news_ || clock_ns < followed_until_;
+    return watched ? watched_interval_ns : unwatched_interval_ns;
+}
+
+// Of the epochs between two snapshots nobody sees any but the last; a fast run need not pay for them.
+bool StatusBoard::is_wanted(const EpochSeen& seen, std::int64_t clock_ns) const {
+    return setup_.every_epoch || stepping_ || clock_ns - taken_at_[seen.station] >= interval(clock_ns) * 9 / 10;
 }
 
 ReceiverStatus& StatusBoard::receiver(std::size_t station) {
     if (station >= receivers_.size()) {
         receivers_.resize(station + 1);
         taken_at_.resize(station + 1, 0);
+        told_at_.resize(station + 1, setup_.start);
     }
     return receivers_[station];
 }
 
 void StatusBoard::take_epoch(const EpochSeen& seen, ReceiverStatus& status) const {
-    const Fix& fix = seen.reported.epoch.fix;
     status.epoch = seen.now;
     status.truth = seen.trace.truth.geodetic;
     status.true_speed = seen.trace.arrivals.antenna_speed;
+    status.interference =
+        std::max(seen.trace.epoch.front_end.interference, seen.trace.epoch.front_end.lower_interference);
+    status.lateness = seen.lateness;
+    status.satellites = satellites_seen(seen);
+    if (seen.leaves) return take_report(seen, status);
+    if (difference(seen.now, told_at_[seen.station]) < silent_after) return;
+    status.fix.type = FixType::none;
+    status.fix_ok = false;
+    status.satellites_used = 0;
+    status.error.reset();
+}
+
+void StatusBoard::take_report(const EpochSeen& seen, ReceiverStatus& status) const {
+    const Fix& fix = seen.reported.epoch.fix;
     std::vector<SatelliteStatus> none;
     status.fix = fix;
     status.fix.satellites.swap(none);
@@ -66,10 +88,6 @@ void StatusBoard::take_epoch(const EpochSeen& seen, ReceiverStatus& status) cons
     if (fix.has_position()) status.error = enu_error(seen.trace.truth, fix);
     status.jamming_state = seen.reported.monitors.jamming_state();
     status.spoofing = static_cast<int>(seen.reported.monitors.spoofing);
-    status.interference =
-        std::max(seen.trace.epoch.front_end.interference, seen.trace.epoch.front_end.lower_interference);
-    status.lateness = seen.lateness;
-    status.satellites = satellites_seen(seen);
 }
 
 void StatusBoard::take_wires(std::size_t station, ReceiverStatus& status) const {
@@ -108,12 +126,12 @@ void StatusBoard::take_wires(std::size_t station, ReceiverStatus& status) const 
 void StatusBoard::on_epoch(const EpochSeen& seen) {
     const std::int64_t clock_ns = clock();
     ReceiverStatus& status = receiver(seen.station);
-    // Of the epochs between two snapshots nobody sees any but the last; a fast run need not pay for them.
-    if (clock_ns - taken_at_[seen.station] >= interval() * 9 / 10) {
+    if (seen.leaves) told_at_[seen.station] = seen.now;
+    if (is_wanted(seen, clock_ns)) {
         take_epoch(seen, status);
         taken_at_[seen.station] = clock_ns;
     }
-    if (clock_ns - published_at_ >= interval()) publish(seen.now, clock_ns);
+    if (clock_ns - published_at_ >= interval(clock_ns)) publish(seen.now, clock_ns);
 }
 
 void StatusBoard::on_message(const MessageSeen& seen) {
@@ -188,6 +206,8 @@ void StatusBoard::on_command(const CommandSeen& seen) {
     if (!seen.command.source.empty()) text += " by " + seen.command.source;
     if (!seen.ignored.empty()) text += fmt::format(", ignored: {}", seen.ignored);
     add_event(seen.now, "command", std::move(text));
+    followed_until_ = clock() + followed_ns;
+    stepping_ = seen.command.verb == CommandVerb::step;
 }
 
 void StatusBoard::on_belief(const BeliefSeen& seen) {
@@ -201,16 +221,24 @@ void StatusBoard::on_belief(const BeliefSeen& seen) {
 
 void StatusBoard::look(GpsTime now) {
     const std::int64_t clock_ns = clock();
-    if (clock_ns - published_at_ >= interval()) publish(now, clock_ns);
+    const bool asked = heard_asks_ != answered_asks_;
+    if (asked) followed_until_ = clock_ns + followed_ns;
+    if ((asked || clock_ns - published_at_ >= interval(clock_ns)) && publish(now, clock_ns))
+        answered_asks_ = heard_asks_;
+    heard_asks_ = asks_;
 }
 
-void StatusBoard::publish_now(GpsTime now) { publish(now, clock()); }
+void StatusBoard::publish_now(GpsTime now) {
+    heard_asks_ = asks_;
+    publish(now, clock());
+}
 
-void StatusBoard::publish(GpsTime now, std::int64_t clock_ns) {
+bool StatusBoard::publish(GpsTime now, std::int64_t clock_ns) {
     for (std::size_t i = 0; i < receivers_.size(); ++i)
         take_wires(i, receivers_[i]);
     auto snapshot = std::make_shared<StatusSnapshot>();
     snapshot->sequence = snapshot_count_ + 1;
+    snapshot->answers = heard_asks_;
     snapshot->time = now;
     snapshot->start = setup_.start;
     snapshot->end = setup_.end;
@@ -231,12 +259,13 @@ void StatusBoard::publish(GpsTime now, std::int64_t clock_ns) {
     std::shared_ptr<const StatusSnapshot> next = std::move(snapshot);
     {
         const std::unique_lock lock(mutex_, std::try_to_lock);
-        if (!lock) return;  // a reader is at it: the next look tries again
+        if (!lock) return false;  // a reader is at it: the next look tries again
         latest_.swap(next);
     }
     ++snapshot_count_;
     news_ = false;
     published_at_ = clock_ns;
+    return true;
 }
 
 std::shared_ptr<const StatusSnapshot> StatusBoard::latest() const {

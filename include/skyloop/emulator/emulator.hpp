@@ -39,8 +39,8 @@ public:
     void replace_director(Director director) { parts_.director = std::move(director); }
     /// Tells an observer what happens; it outlives the run.
     void add_observer(RunObserver* observer) { parts_.director.add_observer(observer); }
-    /// Called again and again while time stands still.
-    void on_rest(std::function<void(GpsTime)> callback) { rest_ = std::move(callback); }
+    /// Called after each instant, and again and again while time stands still.
+    void on_look(std::function<void(GpsTime)> callback) { look_ = std::move(callback); }
     /// Once nothing can refuse this run any more: makes the files of the recordings, in the place of those of a former
     /// run, and lets the wires make room. Fails with `outside`.
     Result<void> begin();
@@ -99,7 +99,7 @@ private:
     std::vector<Dialogue> dialogues_;           // one a station
     std::vector<std::optional<Trace>> traces_;  // of the present instant, one a station
     std::function<void(const Status&)> status_;
-    std::function<void(GpsTime)> rest_;
+    std::function<void(GpsTime)> look_;
 };
 
 /// What programs find in their environment that expectations ask: SKYLOOP_PORT, the path of the first wire or its

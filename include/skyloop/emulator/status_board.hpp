@@ -30,10 +30,12 @@ struct StatusSetup {
     GpsTime start{};
     std::optional<GpsTime> end{};
     std::vector<TimelineBar> timeline{};  ///< what is known of it before the run
+    bool every_epoch = false;             ///< is looked at: the run waits for a clock or a leader anyway
 };
 
 /// Collects what displays show of a run, and publishes it as immutable snapshots: at most ten a second while somebody
-/// watches or after an event, one a second otherwise, of real time.
+/// watches, has asked or commanded in the last seconds or after an event, one a second otherwise, of real time; and one
+/// for who asks, as soon as the loop comes round.
 ///
 /// The loop's thread never waits here: when a reader is just taking the last snapshot, the next one comes later.
 /// Between two snapshots an epoch costs a look at a clock, a message its copy and its count. State: the last messages
@@ -50,13 +52,16 @@ public:
     void on_fault(const FaultSeen& seen) override;
     void on_command(const CommandSeen& seen) override;
     void on_belief(const BeliefSeen& seen) override;
-    /// To be called by the loop where no epoch comes for long, as in a pause: publishes what is due.
+    /// To be called by the loop each time it comes round, in a pause too: publishes what is due or asked for.
     void look(GpsTime now);
     /// The same at once, due or not: at the end of the run.
     void publish_now(GpsTime now);
 
     /// The last snapshot; never null. By any thread.
     [[nodiscard]] std::shared_ptr<const StatusSnapshot> latest() const;
+    /// Asks for a snapshot that has everything that the loop was told before this call: the first whose `answers` is
+    /// not below the number given back. By any thread.
+    [[nodiscard]] std::uint64_t ask() const { return asks_.fetch_add(1) + 1; }
     /// Somebody begins or ceases to watch. By any thread.
     void watch() const { watchers_.fetch_add(1, std::memory_order_relaxed); }
     void unwatch() const { watchers_.fetch_sub(1, std::memory_order_relaxed); }
@@ -73,20 +78,23 @@ private:
         std::string reason;
     };
     [[nodiscard]] std::int64_t clock() const;
-    [[nodiscard]] std::int64_t interval() const;
+    [[nodiscard]] std::int64_t interval(std::int64_t clock_ns) const;
+    [[nodiscard]] bool is_wanted(const EpochSeen& seen, std::int64_t clock_ns) const;
     [[nodiscard]] ReceiverStatus& receiver(std::size_t station);
     void take_epoch(const EpochSeen& seen, ReceiverStatus& status) const;
+    void take_report(const EpochSeen& seen, ReceiverStatus& status) const;
     void take_wires(std::size_t station, ReceiverStatus& status) const;
     void count_message(const DialogueLine& line);
     void add_event(GpsTime now, std::string what, std::string text);
     TimelineBar& bar_of(const FaultSeen& seen);
-    void publish(GpsTime now, std::int64_t clock_ns);
+    bool publish(GpsTime now, std::int64_t clock_ns);
 
     StatusSetup setup_;
     const std::vector<Station>* stations_;
     StatusSources sources_;
     std::vector<ReceiverStatus> receivers_;
     std::vector<std::int64_t> taken_at_;  // of each receiver, by the clock
+    std::vector<GpsTime> told_at_;        // … when it last reported
     std::vector<TimelineBar> bars_;
     std::vector<Belief> beliefs_;
     std::deque<std::shared_ptr<const DialogueLine>> dialogue_;
@@ -94,7 +102,12 @@ private:
     std::vector<MessageCount> messages_;  // ascending, as message_key() orders them
     std::uint64_t dialogue_count_ = 0, event_count_ = 0, snapshot_count_ = 0;
     std::int64_t published_at_ = 0;
-    bool news_ = false;  // an event that no snapshot has yet
+    std::int64_t followed_until_ = 0;  // by the clock, by who has asked or commanded
+    bool news_ = false;                // an event that no snapshot has yet
+    bool stepping_ = false;            // the last command was a step, which ends at an epoch that is wanted
+    // Asked is answered by the look after the next: what the loop was told before has been done by then.
+    std::uint64_t heard_asks_ = 0, answered_asks_ = 0;
+    mutable std::atomic<std::uint64_t> asks_{0};
     mutable std::atomic<int> watchers_{0};
     mutable std::mutex mutex_;  // of latest_; the loop only tries it
     std::shared_ptr<const StatusSnapshot> latest_;

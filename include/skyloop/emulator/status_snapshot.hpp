@@ -41,7 +41,7 @@ struct ReceiverStatus {
     std::uint64_t epochs = 0;
     Geodetic truth;
     MetresPerSecond true_speed;     ///< over the ground
-    Fix fix;                        ///< as reported; its satellites are left out
+    Fix fix;                        ///< as last reported, none after silent_after; its satellites are left out
     bool fix_ok = false;            ///< within the user's limits (gnssFixOK)
     std::optional<EnuError> error;  ///< reported − true, while there is a position
     int satellites_used = 0;
@@ -114,6 +114,7 @@ struct PaceStatus {
 /// Everything at one instant. Immutable once published.
 struct StatusSnapshot {
     std::uint64_t sequence = 0;  ///< grows with each snapshot
+    std::uint64_t answers = 0;   ///< the last StatusBoard::ask() that it is an answer to
     GpsTime time{}, start{};
     std::optional<GpsTime> end;
     int leap_seconds = 18;  ///< GPST − UTC, s

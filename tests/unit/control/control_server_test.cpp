@@ -127,6 +127,29 @@ TEST(ControlServer, AnswersAndQueues) {
     EXPECT_THAT(rig->server->url(), StartsWith("http://127.0.0.1:"));
 }
 
+// As the loop does it: commands first, then the board is looked at.
+TEST(ControlServer, TellsOfWhatWasAcceptedBefore) {
+    const auto rig = std::make_unique<ServerRig>();
+    std::atomic<bool> stop{false};
+    std::thread loop([&] {
+        while (!stop) {
+            for (const Command& command : rig->commands.take())
+                rig->board.on_command({control_start, command.parameters.text("text"), command, {}});
+            rig->board.look(control_start);
+            std::this_thread::sleep_for(3ms);
+        }
+    });
+    for (int i = 0; i < 20; ++i) {
+        const std::string note = "note-" + std::to_string(i);
+        EXPECT_EQ(rig->status({"POST", "/api/commands", {}, R"({"command":"note","text":")" + note + "\"}"}), 202);
+        const auto told = rig->client().ask({"GET", "/api/status"});
+        ASSERT_TRUE(told);
+        EXPECT_THAT(told->body, HasSubstr(note + " by http"));
+    }
+    stop = true;
+    loop.join();
+}
+
 TEST(ControlServer, KnowsBothNamesOfAFaultThatWasBegun) {
     const auto rig = std::make_unique<ServerRig>();
     for (const char* path : {"/api/faults/noise", "/api/faults/noise%202"}) {

@@ -15,15 +15,15 @@ struct BoardRig {
     double strength = 0.25;
     StatusBoard board;
 
-    explicit BoardRig(std::vector<TimelineBar> timeline = {})
-        : board({"test", board_start, std::nullopt, std::move(timeline)}, nullptr, sources()) {}
+    explicit BoardRig(std::vector<TimelineBar> timeline = {}, bool every_epoch = false)
+        : board({"test", board_start, std::nullopt, std::move(timeline), every_epoch}, nullptr, sources()) {}
     StatusSources sources() {
         StatusSources made;
         made.clock = [this] { return clock_ns; };
         made.strength = [this](std::string_view, int, GpsTime) { return strength; };
         return made;
     }
-    void epoch(int index) {
+    void epoch(int index, bool reported_by_it = true) {
         Trace trace;
         trace.truth.geodetic = Geodetic::degrees(48, 11, 500);
         trace.sky.satellites.resize(1);
@@ -40,7 +40,8 @@ struct BoardRig {
         status.cn0 = DbHz(41);
         status.used = true;
         reported.epoch.fix.satellites = {status};
-        board.on_epoch({board_start + std::chrono::milliseconds(100 * index), 0, trace, reported, Nanoseconds(5)});
+        const GpsTime now = board_start + std::chrono::milliseconds(100 * index);
+        board.on_epoch({now, 0, trace, reported, Nanoseconds(5), reported_by_it ? std::optional(now) : std::nullopt});
     }
     [[nodiscard]] std::uint64_t sequence() const { return board.latest()->sequence; }
 };
@@ -61,6 +62,19 @@ TEST(StatusBoard, ShowsAnEpoch) {
     EXPECT_FALSE(receiver.satellites[0].line_of_sight);
     ASSERT_EQ(receiver.satellites[0].signals.size(), 1U);
     EXPECT_EQ(receiver.satellites[0].signals[0].second.value(), 41);
+}
+
+TEST(StatusBoard, ShowsNoFixOfAReceiverThatHasFallenSilent) {
+    BoardRig rig({}, true);
+    rig.epoch(0);
+    for (const auto& [index, type] : {std::pair(19, FixType::fix_3d), std::pair(20, FixType::none)}) {
+        rig.epoch(index, false);
+        rig.board.publish_now(board_start);
+        const ReceiverStatus receiver = rig.board.latest()->receivers[0];
+        EXPECT_EQ(receiver.fix.type, type);
+        EXPECT_EQ(receiver.error.has_value(), type == FixType::fix_3d);
+        EXPECT_EQ(receiver.epoch, board_start + std::chrono::milliseconds(100 * index));
+    }
 }
 
 TEST(StatusBoard, PublishesOnceASecondAndTenTimesWhileWatched) {
@@ -103,6 +117,56 @@ TEST(StatusBoard, ShowsAPausedRunWhenItIsLookedAt) {
     rig.clock_ns += 1'000'000'000;
     rig.board.look(board_start);
     EXPECT_EQ(rig.sequence(), before + 1);
+}
+
+TEST(StatusBoard, AnswersWhoAsksOnceTheLoopHasComeRound) {
+    BoardRig rig;
+    rig.epoch(0);
+    rig.board.look(board_start);
+    const std::uint64_t before = rig.sequence(), asked = rig.board.ask();
+    rig.board.look(board_start);
+    EXPECT_EQ(rig.sequence(), before) << "what waits in the queue may have come behind this instant";
+    rig.board.look(board_start + std::chrono::seconds(7));
+    EXPECT_EQ(rig.sequence(), before + 1);
+    EXPECT_EQ(rig.board.latest()->answers, asked);
+    EXPECT_EQ(rig.board.latest()->time, board_start + std::chrono::seconds(7));
+    rig.board.look(board_start);
+    EXPECT_EQ(rig.sequence(), before + 1);
+    const std::uint64_t at_the_end = rig.board.ask();
+    rig.board.publish_now(board_start);
+    EXPECT_EQ(rig.board.latest()->answers, at_the_end);
+}
+
+TEST(StatusBoard, FollowsForAWhileWhoHasAsked) {
+    BoardRig rig;
+    rig.epoch(0);
+    (void)rig.board.ask();
+    rig.board.look(board_start);
+    rig.board.look(board_start);
+    const auto published = [&rig](int tenths) {
+        const std::uint64_t before = rig.sequence();
+        for (int i = 0; i < tenths; ++i) {
+            rig.clock_ns += 100'000'000;
+            rig.board.look(board_start);
+        }
+        return rig.sequence() - before;
+    };
+    EXPECT_EQ(published(19), 19U);
+    EXPECT_LE(published(30), 4U);
+}
+
+TEST(StatusBoard, ShowsTheEpochAtTheEndOfAStep) {
+    for (const bool every_epoch : {false, true}) {
+        BoardRig rig({}, every_epoch);
+        rig.epoch(0);
+        Command step;
+        step.verb = every_epoch ? CommandVerb::note : CommandVerb::step;
+        rig.board.on_command({board_start, "step", step, {}});
+        for (int i = 1; i <= 50; ++i)
+            rig.epoch(i);
+        rig.board.publish_now(board_start);
+        EXPECT_EQ(rig.board.latest()->receivers[0].epoch, board_start + std::chrono::seconds(5)) << every_epoch;
+    }
 }
 
 TEST(StatusBoard, KeepsTheLastMessagesAndTheirNumbers) {
