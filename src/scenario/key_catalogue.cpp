@@ -33,7 +33,7 @@ struct UnitSuffix {
     std::string_view suffix, unit;
 };
 // Longer ones first where one ends another.
-constexpr std::array<UnitSuffix, 43> unit_suffixes{{{"_m_per_sqrt_h", "m/√h"},
+constexpr std::array<UnitSuffix, 44> unit_suffixes{{{"_m_per_sqrt_h", "m/√h"},
                                                     {"_db_per_km_per_g_m3", "dB/km per g/m³"},
                                                     {"_db_per_km", "dB/km"},
                                                     {"_db_per_m", "dB/m"},
@@ -50,6 +50,7 @@ constexpr std::array<UnitSuffix, 43> unit_suffixes{{{"_m_per_sqrt_h", "m/√h"},
                                                     {"_mm_per_km", "mm/km"},
                                                     {"_mm_h", "mm/h"},
                                                     {"_g_m3", "g/m³"},
+                                                    {"_per_k", "1/K"},
                                                     {"_per_m", "1/m"},
                                                     {"_per_s", "1/s"},
                                                     {"_dbw_hz", "dBW/Hz"},

@@ -30,6 +30,9 @@ void read_clock(TableReader& table, ModernSettings& settings) {
     ReceiverClockParameters& clock = settings.measurement.clock;
     table.number("h0_s", clock.noise.h0, {0, 1e-10});
     table.number("h_minus_2_per_s", clock.noise.h_minus_2, {0, 1e-10});
+    table.quantity("temperature_k", clock.temperature.deviation, {0, 100});
+    table.quantity("temperature_time_s", clock.temperature.correlation_time, {0, 1e6});
+    table.number("frequency_per_k", clock.temperature.per_kelvin, {0, 1e-3});
     table.quantity("bias_m", clock.bias, {-3e8, 3e8});
     table.quantity("drift_mps", clock.drift, {-1e5, 1e5});
     static constexpr std::array<Word<ClockSteering>, 3> steerings{

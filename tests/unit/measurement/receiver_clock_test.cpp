@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "skyloop/gnss/constants.hpp"
 #include "support/oracle_table.hpp"
@@ -54,6 +56,27 @@ TEST(ReceiverClock, HasTheCovarianceOfItsOscillator) {
     EXPECT_NEAR(seen.bias / q.bias, 1, 0.05);
     EXPECT_NEAR(seen.bias_drift / q.bias_drift, 1, 0.05);
     EXPECT_NEAR(seen.drift / q.drift, 1, 0.05);
+}
+
+TEST(ReceiverClock, AtAConstantTemperatureItHasTheAllanVarianceOfItsCoefficients) {
+    const OscillatorNoise noise;
+    ReceiverClock clock({noise, {}, MetresPerSecond(0), ClockSteering::free_running, constant_temperature},
+                        RandomStream(7, "clock"));
+    std::vector<double> phase;  // s, once a second
+    for (int i = 0; i < 100000; ++i) {
+        clock.advance(Seconds(1));
+        phase.push_back(clock.bias().value() / speed_of_light);
+    }
+    for (const std::size_t tau : {1u, 10u, 30u}) {
+        SCOPED_TRACE(tau);
+        const std::size_t count = phase.size() - 2 * tau;
+        double sum = 0;
+        for (std::size_t i = 0; i < count; ++i)
+            sum += std::pow(phase[i + 2 * tau] - 2 * phase[i + tau] + phase[i], 2);
+        const double t = static_cast<double>(tau), seen = sum / (2 * t * t * static_cast<double>(count));
+        const double wanted = noise.h0 / (2 * t) + 2 * std::numbers::pi * std::numbers::pi / 3 * noise.h_minus_2 * t;
+        EXPECT_NEAR(std::sqrt(seen / wanted), 1, 0.06);
+    }
 }
 
 TEST(ReceiverClock, JumpsByWholeMilliseconds) {
