@@ -198,6 +198,7 @@ void StateTracker::keep_level(const ConfigStore& config) {
     fix.position.height.above_ellipsoid = told + fix.geoid_undulation;
     fix.vertical_accuracy = Metres(std::sqrt(static_cast<double>(config.value(key::navspg_constr_altvar)) * 1e-4));
     fix.velocity.down = 0;
+    if (fix.correlation) fix.correlation->part_height();
     // Nothing is solved of the height, so that there is no DOP of it, nor one of all three.
     fix.dop.gdop = fix.dop.pdop = fix.dop.vdop = std::numeric_limits<double>::quiet_NaN();
 }
@@ -342,6 +343,7 @@ void StateTracker::stand_still(const ConfigStore& config) {
     state_.only_place_known = false;
     fix.position = to_geodetic(place->position);
     fix.horizontal_accuracy = fix.vertical_accuracy = place->accuracy;
+    fix.correlation.reset();
     fix.velocity = {};
     fix.speed = MetresPerSecond(0);
 }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <numbers>
 
+#include "local_motion.hpp"
 #include "skyloop/gnss/constants.hpp"
 #include "skyloop/gnss/thin_shell.hpp"
 
@@ -34,10 +36,11 @@ ExpectedError expected_error(const SinglePoint& solution, const AccuracyParamete
         east.add(r, parameters.ionosphere_tilt * delay * away * std::sin(r.direction.azimuth.rad()));
         troposphere.add(r, parameters.troposphere_share * r.troposphere.value());
     }
-    ExpectedError expected{solution.covariance, solution.clock_variance};
+    ExpectedError expected{solution.covariance, solution.clock_variance, solution.position_clock};
     for (const SharedError& e : {ionosphere, north, east, troposphere}) {
         expected.position += e.position * e.position.transpose();
         expected.clock += e.clock * e.clock;
+        expected.position_clock += e.clock * e.position;
     }
     return expected;
 }
@@ -63,8 +66,25 @@ ExpectedError expected_error_left(SinglePoint solution, const NavigationParamete
             r.troposphere = air.troposphere(r.direction.elevation);
     }
     // Better orbits and clocks are less noise; what the satellites share is as large as it is.
-    if (augmented) solution.covariance *= parameters.differential.sbas_scale * parameters.differential.sbas_scale;
+    if (augmented) {
+        solution.covariance *= parameters.differential.sbas_scale * parameters.differential.sbas_scale;
+        solution.position_clock *= parameters.differential.sbas_scale;
+    }
     return expected_error(solution, accuracy);
+}
+
+ErrorCorrelation error_correlation(const ExpectedError& expected, const std::optional<SinglePointVelocity>& velocity,
+                                   const Geodetic& place) {
+    const LocalFrame frame(place);
+    Eigen::Matrix4d covariance;
+    covariance.topLeftCorner<3, 3>() = in_enu(frame, expected.position);
+    covariance.topRightCorner<3, 1>() = frame.to_enu(Displacement<Ecef>(expected.position_clock)).vector();
+    covariance.bottomLeftCorner<1, 3>() = covariance.topRightCorner<3, 1>().transpose();
+    covariance(3, 3) = expected.clock;
+    ErrorCorrelation correlation;
+    correlation.position_clock = correlation_of(covariance);
+    if (velocity) correlation.velocity = correlation_of(in_enu(frame, velocity->covariance));
+    return correlation;
 }
 
 MetresPerSecond told_speed_accuracy(const std::optional<SinglePointVelocity>& velocity,
@@ -72,6 +92,11 @@ MetresPerSecond told_speed_accuracy(const std::optional<SinglePointVelocity>& ve
     constexpr MetresPerSecond not_solved{20};  // as u-blox tells it before the first fix
     if (!velocity) return not_solved;
     return MetresPerSecond(parameters.velocity_scale * std::sqrt(velocity->covariance.trace()));
+}
+
+Angle told_course_accuracy(MetresPerSecond speed, MetresPerSecond speed_accuracy) {
+    const double turn = speed.value() > 0 ? speed_accuracy.value() / speed.value() : std::numbers::pi;
+    return Angle::radians(std::min(turn, std::numbers::pi));
 }
 
 ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, const Dop& dop, DifferentialKind kind,

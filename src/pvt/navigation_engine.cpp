@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "differential.hpp"
@@ -278,8 +277,8 @@ Metres NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& f
     fix.horizontal_accuracy = told.horizontal;
     fix.vertical_accuracy = told.vertical;
     fix.speed_accuracy = told_speed_accuracy(epoch.velocity, parameters_.accuracy);
-    const double turn = fix.speed.value() > 0 ? fix.speed_accuracy.value() / fix.speed.value() : std::numbers::pi;
-    fix.course_accuracy = Angle::radians(std::min(turn, std::numbers::pi));
+    fix.course_accuracy = told_course_accuracy(fix.speed, fix.speed_accuracy);
+    fix.correlation = error_correlation(expected, epoch.velocity, fix.position);
     return Metres(std::sqrt(q(2, 2)));
 }
 

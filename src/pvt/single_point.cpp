@@ -346,6 +346,7 @@ std::optional<SinglePoint> Adjustment::result(bool position_known) {
         s.covariance = *inverse;
     }
     s.clock_variance = 1 / reference.weight + reference.row.dot(s.covariance * reference.row);
+    s.position_clock = -s.covariance * reference.row;
     s.ranges.reserve(work_.size());
     tell_ranges(clocks, s);
     s.redundancy = s.used - unknowns;

@@ -10,6 +10,7 @@
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/navigation_parts.hpp"
+#include "firmware/solution_covariance.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/protocol/ubx_nav.hpp"
 #include "skyloop/protocol/ubx_relative.hpp"
@@ -32,18 +33,25 @@ std::vector<SatelliteStatus> solved_satellites(const Fix& fix) {
     return used;
 }
 
-// Variances and covariances NN, NE, ND, EE, ED, DD. Horizontal and vertical errors count as uncorrelated.
-std::array<float, 6> covariance(double north, double east, double north_east, double down) {
-    return {static_cast<float>(north), static_cast<float>(north_east), 0, static_cast<float>(east), 0,
-            static_cast<float>(down)};
+// Of east, north and up the variances and covariances NN, NE, ND, EE, ED, DD.
+std::array<float, 6> in_ned(const Eigen::Matrix3d& enu) {
+    // Subtracted from 0, which stays without a sign.
+    const double north_down = 0 - enu(1, 2), east_down = 0 - enu(0, 2);
+    return {static_cast<float>(enu(1, 1)), static_cast<float>(enu(0, 1)), static_cast<float>(north_down),
+            static_cast<float>(enu(0, 0)), static_cast<float>(east_down), static_cast<float>(enu(2, 2))};
+}
+
+// Variances of errors that are independent, and alike in all level directions.
+std::array<float, 6> round_covariance(double level, double vertical) {
+    return in_ned(Eigen::Vector3d(level, level, vertical).asDiagonal());
 }
 
 // The accuracies alone, alike in all directions: there is no geometry where satellites are not in the solution.
 void put_round_covariance(const Fix& fix, NavCov& m) {
     const double level = std::pow(fix.horizontal_accuracy.value(), 2) / 2;
     const double speed = std::pow(fix.speed_accuracy.value(), 2) / 3;
-    m.pos_cov = covariance(level, level, 0, std::pow(fix.vertical_accuracy.value(), 2));
-    m.vel_cov = covariance(speed, speed, 0, speed);
+    m.pos_cov = round_covariance(level, std::pow(fix.vertical_accuracy.value(), 2));
+    m.vel_cov = round_covariance(speed, speed);
 }
 
 // Before the first fix captured receivers give 3750 km and 20 m/s, and call it valid.
@@ -53,8 +61,8 @@ NavCov solution_covariance(const ReportContext& context) {
     NavCov m;
     m.i_tow = service_tow(context);
     m.pos_cov_valid = m.vel_cov_valid = 1;
-    m.pos_cov = covariance(unknown_m * unknown_m, unknown_m * unknown_m, 0, unknown_m * unknown_m);
-    m.vel_cov = covariance(unknown_mps * unknown_mps, unknown_mps * unknown_mps, 0, unknown_mps * unknown_mps);
+    m.pos_cov = round_covariance(unknown_m * unknown_m, unknown_m * unknown_m);
+    m.vel_cov = round_covariance(unknown_mps * unknown_mps, unknown_mps * unknown_mps);
     if (!estimates_known(context.state)) return m;
     put_round_covariance(fix, m);
     if (fix.type == FixType::time_only && base_place(context.config, context.state.survey)) {
@@ -63,17 +71,17 @@ NavCov solution_covariance(const ReportContext& context) {
     }
     const std::optional<ErrorEllipse> ellipse = error_ellipse(fix, solved_satellites(fix));
     if (!fix.has_position() || !ellipse) return m;
-    const double north = ellipse->north.value(), east = ellipse->east.value(), up = fix.vertical_accuracy.value();
-    const double major = ellipse->semi_major.value(), minor = ellipse->semi_minor.value();
-    const double across = (major * major - minor * minor) / 2 * std::sin(2 * ellipse->orientation.rad());
-    m.pos_cov = covariance(north * north, east * east, across, up * up);
+    const Eigen::Matrix4d position = position_covariance(fix, *ellipse);
+    m.pos_cov = in_ned(position.topLeftCorner<3, 3>());
+    const double north = ellipse->north.value(), east = ellipse->east.value();
     const double horizontal = std::hypot(north, east);
     if (!(horizontal > 0) || !(fix.dop.pdop > 0)) return m;
     // Velocity is solved with the same geometry: its error splits as that of the position does.
     const double level = fix.speed_accuracy.value() * std::hypot(fix.dop.ndop, fix.dop.edop) / fix.dop.pdop;
     const double scale = level * level / (horizontal * horizontal);
     const double vertical = fix.speed_accuracy.value() * fix.dop.vdop / fix.dop.pdop;
-    m.vel_cov = covariance(north * north * scale, east * east * scale, across * scale, vertical * vertical);
+    const Eigen::Vector3d variances(east * east * scale, north * north * scale, vertical * vertical);
+    m.vel_cov = in_ned(velocity_covariance(fix, variances, position(0, 1) * scale));
     return m;
 }
 

@@ -20,26 +20,31 @@ Eigen::Vector3d along_axes(const NavigationState& state, double east, double nor
 constexpr int element_at[3][3] = {{0, 4, 5}, {4, 1, 7}, {5, 7, 2}};
 constexpr int clock_at = 3, with_clock_at[3] = {6, 8, 9};
 
-// North, east, up as x, y, z; nothing where one of them is unknown. The clock is taken to be independent.
+// North, east, up as x, y, z; nothing where one of them is unknown.
 SbfCovariance turned(const SbfCovariance& geodetic, const NavigationState& state) {
     const auto nothing = static_cast<float>(sbf_nothing);
     Eigen::Matrix3d local, axes;
-    for (int row = 0; row < 3; ++row)
+    Eigen::Vector3d local_with_clock;
+    for (int row = 0; row < 3; ++row) {
+        local_with_clock(row) = geodetic[static_cast<std::size_t>(with_clock_at[row])];
         for (int column = 0; column < 3; ++column) {
             const float element = geodetic[static_cast<std::size_t>(element_at[row][column])];
             if (element == nothing) return no_sbf_covariance;
             local(row, column) = element;
         }
+    }
     axes.col(0) = along_axes(state, 0, 1, 0);
     axes.col(1) = along_axes(state, 1, 0, 0);
     axes.col(2) = along_axes(state, 0, 0, 1);
     const Eigen::Matrix3d result = axes * local * axes.transpose();
+    const Eigen::Vector3d with_clock = axes * local_with_clock;
     SbfCovariance cartesian = no_sbf_covariance;
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column)
             cartesian[static_cast<std::size_t>(element_at[row][column])] = static_cast<float>(result(row, column));
         const auto index = static_cast<std::size_t>(with_clock_at[row]);
-        cartesian[index] = geodetic[clock_at] == nothing ? nothing : 0;
+        // Added to 0, which stays without a sign.
+        cartesian[index] = geodetic[clock_at] == nothing ? nothing : 0 + static_cast<float>(with_clock(row));
     }
     cartesian[clock_at] = geodetic[clock_at];
     return cartesian;

@@ -7,6 +7,7 @@
 #include "firmware/messages/other_protocols.hpp"
 #include "firmware/messages/reported_fix.hpp"
 #include "firmware/messages/sbf_parts.hpp"
+#include "firmware/solution_covariance.hpp"
 #include "skyloop/gnss/constants.hpp"
 
 namespace skyloop::firmware {
@@ -47,7 +48,22 @@ std::vector<SatelliteStatus> sbf_used(const Fix& fix) {
     return used;
 }
 
-float sbf_square(double value) { return static_cast<float>(value * value); }
+// Of east, north, up and clock the variances of north, east, up and clock, and the covariances in SBF's order.
+SbfCovariance sbf_covariance(const Eigen::Matrix4d& enu_clock) {
+    constexpr Eigen::Index elements[][2] = {{1, 1}, {0, 0}, {2, 2}, {3, 3}, {1, 0},
+                                            {1, 2}, {1, 3}, {0, 2}, {0, 3}, {2, 3}};
+    SbfCovariance covariance;
+    std::transform(std::begin(elements), std::end(elements), covariance.begin(),
+                   [&](const auto& at) { return static_cast<float>(enu_clock(at[0], at[1])); });
+    return covariance;
+}
+
+constexpr std::array<std::size_t, 4> sbf_of_height{2, 5, 7, 9}, sbf_of_clock{3, 6, 8, 9};
+
+void say_nothing_of(const std::array<std::size_t, 4>& elements, SbfCovariance& covariance) {
+    for (const std::size_t element : elements)
+        covariance[element] = static_cast<float>(sbf_nothing);
+}
 
 // @param solved there is a solution that uses satellites
 SbfChannel sbf_channel(const SatelliteStatus& satellite, std::uint8_t svid, bool solved) {
@@ -88,16 +104,8 @@ SbfPosCovGeodetic sbf_position_covariance(const NavigationState& state) {
     const Fix& fix = state.epoch.fix;
     const auto ellipse = error_ellipse(fix, sbf_used(fix));
     if (!has_solution(state) || !ellipse) return block;
-    const double a = ellipse->semi_major.value(), b = ellipse->semi_minor.value();
-    block.covariance = {};
-    block.covariance[0] = sbf_square(ellipse->north.value());
-    block.covariance[1] = sbf_square(ellipse->east.value());
-    block.covariance[2] = sbf_square(fix.vertical_accuracy.value());
-    block.covariance[3] = sbf_square(fix.time_accuracy.value());
-    block.covariance[4] = static_cast<float>((a * a - b * b) / 2 * std::sin(2 * ellipse->orientation.rad()));
-    if (fix.type == FixType::fix_2d)
-        for (const std::size_t up : {2u, 5u, 7u, 9u})
-            block.covariance[up] = static_cast<float>(sbf_nothing);
+    block.covariance = sbf_covariance(position_covariance(fix, *ellipse));
+    if (fix.type == FixType::fix_2d) say_nothing_of(sbf_of_height, block.covariance);
     return block;
 }
 
@@ -108,13 +116,13 @@ SbfVelCovGeodetic sbf_velocity_covariance(const NavigationState& state) {
     const double all = std::hypot(fix.dop.ndop, fix.dop.edop, flat ? 0 : fix.dop.vdop);
     if (!has_solution(state) || !(all > 0)) return block;
     const double one = fix.speed_accuracy.value() / all;
-    block.covariance[0] = sbf_square(one * fix.dop.ndop);
-    block.covariance[1] = sbf_square(one * fix.dop.edop);
-    block.covariance[4] = 0;
+    const Eigen::Vector3d deviations = one * Eigen::Vector3d(fix.dop.edop, fix.dop.ndop, flat ? 0 : fix.dop.vdop);
+    Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+    covariance.topLeftCorner<3, 3>() = velocity_covariance(fix, deviations.cwiseAbs2(), 0);
+    block.covariance = sbf_covariance(covariance);
     // Of the drift nothing is known; nor of what stands still in two dimensions.
-    if (flat) return block;
-    block.covariance[2] = sbf_square(one * fix.dop.vdop);
-    block.covariance[5] = block.covariance[7] = 0;
+    say_nothing_of(sbf_of_clock, block.covariance);
+    if (flat) say_nothing_of(sbf_of_height, block.covariance);
     return block;
 }
 

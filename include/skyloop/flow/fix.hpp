@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "skyloop/flow/error_correlation.hpp"
 #include "skyloop/geo/geodetic.hpp"
 #include "skyloop/gnss/dop.hpp"
 #include "skyloop/gnss/satellite.hpp"
@@ -68,13 +69,14 @@ struct Fix {
     Dop dop;
     Metres horizontal_accuracy;  ///< 1 σ estimate, horizontal
     Metres vertical_accuracy;
-    MetresPerSecond speed_accuracy;           ///< 1 σ estimate
-    Angle course_accuracy;                    ///< 1 σ estimate
-    Metres time_accuracy;                     ///< 1 σ estimate, times the speed of light
-    Metres clock_bias;                        ///< receiver clock − GPST as solved
-    MetresPerSecond clock_drift;              ///< of it
-    std::vector<SatelliteStatus> satellites;  ///< all that the receiver knows of, ascending
-    bool withheld = false;                    ///< no fix, as what was solved lies beyond the dynamic model's limits
+    MetresPerSecond speed_accuracy;                 ///< 1 σ estimate
+    Angle course_accuracy;                          ///< 1 σ estimate
+    Metres time_accuracy;                           ///< 1 σ estimate, times the speed of light
+    std::optional<ErrorCorrelation> correlation{};  ///< of the errors that the accuracies are of; nothing: not known
+    Metres clock_bias;                              ///< receiver clock − GPST as solved
+    MetresPerSecond clock_drift;                    ///< of it
+    std::vector<SatelliteStatus> satellites;        ///< all that the receiver knows of, ascending
+    bool withheld = false;  ///< no fix, as what was solved lies beyond the dynamic model's limits
 
     [[nodiscard]] bool has_position() const { return type != FixType::none && type != FixType::time_only; }
     [[nodiscard]] int satellites_used() const {

@@ -3,15 +3,17 @@
 
 #include <Eigen/Core>
 
+#include "skyloop/flow/error_correlation.hpp"
 #include "skyloop/pvt/navigation_parameters.hpp"
 #include "skyloop/pvt/single_point.hpp"
 
 namespace skyloop {
 
-/// Variances of a solution.
+/// Covariance of a solution.
 struct ExpectedError {
-    Eigen::Matrix3d position = Eigen::Matrix3d::Zero();  ///< ECEF, m²
-    double clock = 0;                                    ///< of the reference clock, m²
+    Eigen::Matrix3d position = Eigen::Matrix3d::Zero();        ///< ECEF, m²
+    double clock = 0;                                          ///< of the reference clock, m²
+    Eigen::Vector3d position_clock = Eigen::Vector3d::Zero();  ///< of the one with the other, ECEF, m²
 };
 
 /// The formal covariance, which is that of noise by the weights and independent between satellites, and beside it that
@@ -30,9 +32,16 @@ bool leaves_delays(const NavigationParameters& parameters);
 ExpectedError expected_error_left(SinglePoint solution, const NavigationParameters& parameters,
                                   const SiteCorrections& air);
 
+/// How these errors go together at the place of the solution, and those of its velocity, if it has one.
+ErrorCorrelation error_correlation(const ExpectedError& expected, const std::optional<SinglePointVelocity>& velocity,
+                                   const Geodetic& place);
+
 /// What a receiver tells of its velocity, 1 σ; 20 m/s where the epoch has none.
 MetresPerSecond told_speed_accuracy(const std::optional<SinglePointVelocity>& velocity,
                                     const AccuracyParameters& parameters);
+
+/// What it tells of its course, 1 σ: the angle that such an error is of the speed, at most half a turn.
+Angle told_course_accuracy(MetresPerSecond speed, MetresPerSecond speed_accuracy);
 
 /// What a receiver tells of its position, 1 σ.
 struct ToldAccuracy {

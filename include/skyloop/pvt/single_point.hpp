@@ -64,10 +64,11 @@ struct RangeOutcome {
 /// A solved epoch.
 struct SinglePoint {
     Position<Ecef> position;
-    std::array<std::optional<Metres>, clock_count> clocks;  ///< receiver clock − that of the system
-    std::size_t reference = 0;                              ///< the first clock that was solved
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();   ///< of the position, ECEF, m²
-    double clock_variance = 0;                              ///< of the reference clock, m²
+    std::array<std::optional<Metres>, clock_count> clocks;     ///< receiver clock − that of the system
+    std::size_t reference = 0;                                 ///< the first clock that was solved
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();      ///< of the position, ECEF, m²
+    double clock_variance = 0;                                 ///< of the reference clock, m²
+    Eigen::Vector3d position_clock = Eigen::Vector3d::Zero();  ///< covariance of the two, ECEF, m²
     Dop dop;
     std::vector<RangeOutcome> ranges;  ///< in the order of the equations
     int used = 0;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "synthetic_sky.hpp"
@@ -78,8 +79,50 @@ TEST(ExpectedError, HoldsWhatAWrongIonosphereDoesToPositionAndClock) {
     EXPECT_GT(d.norm(), 0.3);
     const Matrix3d shared = expected.position - before.covariance;
     EXPECT_LT((shared - d * d.transpose()).norm(), 0.02 * d.squaredNorm());
-    EXPECT_NEAR(std::sqrt(expected.clock - before.clock_variance), std::abs((after.clock() - before.clock()).value()),
-                0.01);
+    const double clock = (after.clock() - before.clock()).value();
+    EXPECT_NEAR(std::sqrt(expected.clock - before.clock_variance), std::abs(clock), 0.01);
+    EXPECT_LT((expected.position_clock - before.position_clock - clock * d).norm(), 0.05 * std::abs(clock) * d.norm());
+}
+
+TEST(ExpectedError, HoldsWhatNoiseDoesToPositionAndClockTogether) {
+    const SinglePoint point = CorrectedEpoch().solved();
+    Vector3d together = Vector3d::Zero();
+    for (const RangeOutcome& r : point.ranges)
+        together += r.variance * r.clock_gain * r.position_gain;
+    EXPECT_GT(together.norm(), 0.01);
+    EXPECT_LT((point.position_clock - together).norm(), 1e-9);
+}
+
+// Satellites are above: a height that is wrong one way makes every range longer, as a clock does.
+TEST(ExpectedError, HeightAndClockGoTogether) {
+    const SinglePoint point = CorrectedEpoch().solved();
+    const SinglePointVelocity velocity{{}, {}, Vector3d(1, 4, 9).asDiagonal()};
+    const ErrorCorrelation correlation =
+        error_correlation(expected_error(point, AccuracyParameters()), velocity, to_geodetic(point.position));
+    const Eigen::Matrix4d& position = correlation.position_clock;
+    EXPECT_EQ(position.diagonal(), Eigen::Vector4d::Ones());
+    EXPECT_EQ(position, position.transpose().eval());
+    EXPECT_GT(position(2, 3), 0.7);
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(position).eigenvalues().minCoeff(), 0);
+    EXPECT_EQ(correlation.velocity.diagonal(), Vector3d::Ones());
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix3d>(correlation.velocity).eigenvalues().minCoeff(), 0);
+    EXPECT_EQ(error_correlation({}, std::nullopt, to_geodetic(point.position)).velocity, Matrix3d::Identity());
+}
+
+// What corrections have made smaller keeps its sign, and the whole stays a covariance.
+TEST(ExpectedError, OfAnAugmentationIsACovariance) {
+    const SinglePoint point = CorrectedEpoch().solved();
+    NavigationParameters parameters;
+    parameters.accuracy = nothing_shared;
+    parameters.differential.kind = DifferentialKind::sbas;
+    parameters.differential.sbas_left = 0;
+    const RangeCorrections air({.default_ionosphere = true}, {});
+    const ExpectedError expected =
+        expected_error_left(point, parameters, air.at(to_geodetic(point.position), test::sample_time));
+    Eigen::Matrix4d all;
+    all << expected.position, expected.position_clock, expected.position_clock.transpose(), expected.clock;
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(all).eigenvalues().minCoeff(), 0);
+    EXPECT_LT((expected.position_clock - 0.5 * point.position_clock).norm(), 1e-9);
 }
 
 TEST(ExpectedError, ATiltMovesThePositionSideways) {

@@ -384,6 +384,9 @@ TEST(NavigationEngine, CoastsThenGivesUpThenReturns) {
         EXPECT_EQ(fix.time, now.time);
         if (fix.type != FixType::none) {
             EXPECT_LT(error_of(fix, now), 1e-5);
+            ASSERT_TRUE(fix.correlation);
+            EXPECT_GT(fix.correlation->position_clock(2, 3), 0.5);
+            EXPECT_NE(fix.correlation->velocity(0, 1), 0);
         }
         if (s == 9) accuracy = fix.horizontal_accuracy;
         if (s == 11) {
