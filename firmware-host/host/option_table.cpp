@@ -32,6 +32,7 @@ std::vector<ValueRule> option_rules() {
         {"--axes", "", "EAST,NORTH,UP", text},
         {"--board", "", "NAME", board},
         {"--control", "", "[HOST:]PORT", text},
+        {"--file-origin", "", "X,Y,Z", text},
         {"--grid", "", "WEST,SOUTH,EAST,NORTH", text},
         {"--mavlink", "", "ADDRESS", uri},
         {"--model", "", "NAME", words, model_words()},

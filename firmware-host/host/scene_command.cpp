@@ -2,6 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -24,7 +26,7 @@ namespace skyloop::host {
 namespace {
 
 struct SceneOptions {
-    std::string file, at, origin, axes, svg, sky_svg;
+    std::string file, at, origin, file_origin, axes, svg, sky_svg;
     double unit_m = 1;
     bool json = false;
     Verbosity verbosity;
@@ -46,6 +48,22 @@ struct SceneReport {
     std::optional<SceneViewpoint> viewpoint;
 };
 
+// X,Y,Z of the file.
+Result<Eigen::Vector3d> parse_file_origin(const std::string& text) {
+    Eigen::Vector3d place;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (Eigen::Index i = 0; i < 3; ++i) {
+        const auto [rest, error] = std::from_chars(at, end, place[i]);
+        const bool ends = i == 2 ? rest == end : rest != end && *rest == ',';
+        if (error != std::errc() || !std::isfinite(place[i]) || !ends)
+            return fail(ErrorCode::usage,
+                        fmt::format("--file-origin {}: expected X,Y,Z of the file, such as 392118,5820064,35", text));
+        if (i < 2) at = rest + 1;
+    }
+    return place;
+}
+
 Result<SceneEntry> scene_entry(const SceneOptions& options) {
     SceneEntry entry;
     entry.buildings = {options.file};
@@ -57,6 +75,11 @@ Result<SceneEntry> scene_entry(const SceneOptions& options) {
         const auto origin = parse_place(options.origin, "--origin");
         if (!origin) return fail(origin.error());
         entry.reading.origin = *origin;
+    }
+    if (!options.file_origin.empty()) {
+        const auto place = parse_file_origin(options.file_origin);
+        if (!place) return fail(place.error());
+        entry.reading.file_origin = *place;
     }
     if (!options.axes.empty()) {
         const auto axes = FileAxes::parse(options.axes);
@@ -264,6 +287,8 @@ Action add_scene_command(CLI::App& app) {
     command->add_option("--at", options->at,
                         "A place in it: LAT,LON[,HEIGHT]; without a height 1.5 m above the ground");
     command->add_option("--origin", options->origin, "Where the origin of its coordinates lies: LAT,LON[,HEIGHT]");
+    command->add_option("--file-origin", options->file_origin,
+                        "Which place of a mesh lies at the origin, in units and axes of the file: X,Y,Z");
     command->add_option("--axes", options->axes, "Axes of the file for east, north and up: x,y,z; Unreal: y,x,z");
     command->add_option("--unit-m", options->unit_m, "Metres of one unit of the file, default 1");
     command->add_option("--svg", options->svg, "File for a top view");

@@ -25,6 +25,7 @@ std::uint64_t cache_key(std::uint64_t source, const CityFileSettings& s) {
     if (s.origin)
         text += fmt::format(" at {} {} {}", s.origin->latitude.rad(), s.origin->longitude.rad(),
                             s.origin->height.above_ellipsoid.value());
+    text += fmt::format(" less {} {} {}", s.file_origin.x(), s.file_origin.y(), s.file_origin.z());
     text += fmt::format(" heights {} {}", static_cast<int>(s.heights), s.geoid != nullptr);
     if (s.origin_is_guess) text += " guessed";
     if (s.anchor)

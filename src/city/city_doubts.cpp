@@ -60,8 +60,8 @@ std::vector<std::string> doubts_about(const CityModel& city) {
     const Eigen::Vector3d middle = (extent.lowest + extent.highest) / 2;
     if (const double away = middle.head<2>().norm(); away > 50'000)
         doubts.push_back(
-            fmt::format("the middle of the city is {:.0f} km from its origin; are its coordinates those of a "
-                        "map, which no origin belongs to?",
+            fmt::format("the middle of the city is {:.0f} km from its origin; are its coordinates those of a map? "
+                        "scene.file_origin tells which of a mesh lie at the origin",
                         away / 1000));
     if (extent.triangles[0] == 0 && extent.triangles[1] > 0)
         doubts.emplace_back("the city has roofs but no wall; nothing reflects where only walls do");

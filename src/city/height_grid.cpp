@@ -54,6 +54,8 @@ public:
         if (file_.dropped > 0)
             file_.warnings.push_back(
                 fmt::format("{}: {} heights are no numbers and were left out", name_, file_.dropped));
+        if (settings_.file_origin != Eigen::Vector3d::Zero() && !settings_.anchor)
+            file_.warnings.push_back(fmt::format("{}: {}", name_, file_origin_unused));
         if (settings_.axes)
             file_.warnings.push_back(fmt::format("{}: axes mean nothing for a height grid, north is up there", name_));
         return std::move(file_);

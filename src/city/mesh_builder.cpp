@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "city_text.hpp"
+#include "place_on_earth.hpp"
 #include "skyloop/base/lowered_text.hpp"
 #include "skyloop/city/footprint.hpp"
 
@@ -54,6 +55,7 @@ MeshBuilder::MeshBuilder(const CityFileSettings& settings, std::string_view name
         turn(i, axes.axis[which]) = axes.sign[which] * settings.metres_per_unit;
     }
     to_city_.linear() = turn;
+    to_city_.translate(-settings.file_origin);
     placement_ = to_city_;
     model_.origin = settings.origin.value_or(Geodetic{});
     model_.materials = {settings.material};
@@ -224,6 +226,10 @@ Result<CityFile> MeshBuilder::finish(std::string format) {
     find_ground();
     CityFile file;
     file.format = std::move(format);
+    // Height grids of the same map lie beside the mesh.
+    const Eigen::Vector3d at_origin = -to_city_.translation();
+    if (at_origin.head<2>().cwiseAbs().maxCoeff() > farthest_local)
+        file.anchor = MapAnchor{"unnamed", false, at_origin.x(), at_origin.y(), at_origin.z()};
     file.dropped = not_finite_ + without_area_ + shapes_;
     file.warnings = std::move(warnings_);
     file.model = std::move(model_);

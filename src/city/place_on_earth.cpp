@@ -50,6 +50,7 @@ std::vector<std::string> PlaceOnEarth::unused_settings(const ReferenceSystem& sy
                                                        const CityFileSettings& settings) {
     std::vector<std::string> warnings;
     if (settings.axes) warnings.emplace_back("axes mean nothing for this format, east and north are told by it");
+    if (settings.file_origin != Eigen::Vector3d::Zero()) warnings.emplace_back(file_origin_unused);
     if (settings.metres_per_unit != 1 && lies_on_earth(system))
         warnings.emplace_back("the length of a unit means nothing for places on the Earth and heights in metres");
     return warnings;

@@ -26,6 +26,10 @@ private:
 /// Numbers farther from 0, 0 are places in a map projection, not metres from an origin.
 constexpr double farthest_local = 100'000;
 
+/// The warning of a format that is no mesh.
+inline constexpr const char* file_origin_unused =
+    "file_origin means nothing for this format; it tells which place of a mesh lies at the origin";
+
 /// Takes coordinates of a file to metres east, north and up.
 ///
 /// Geographic places lie in the tangent frame at `settings.origin`, else at the middle of the extent and the `ground`

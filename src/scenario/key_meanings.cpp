@@ -96,6 +96,8 @@ constexpr KeyMeaning run_meanings[] = {
     {"scene", "terrain", "height grid (.asc) that becomes ground", "none"},
     {"scene", "origin", "of the files' frame: latitude, longitude, height",
      "1.5 m below the start, where that is known"},
+    {"scene", "file_origin",
+     "x, y, z of a mesh that lie at the origin, in units and axes of the file; for coordinates of a map"},
     {"scene", "axes", "the file's axes that point east, north and up: \"x,y,z\", \"x,-z,y\", \"y,x,z\"",
      "as the format says"},
     {"scene", "heights", "what the heights of files on the Earth count from",

@@ -35,6 +35,8 @@ void read_surface_material(TableReader& table, std::string& material) {
 
 // How coordinates and heights of the files are to be understood.
 void read_file_keys(TableReader& table, CityFileSettings& reading) {
+    if (const auto place = table.numbers("file_origin", 3, {reading.file_origin.data(), 3}))
+        reading.file_origin = Eigen::Map<const Eigen::Vector3d>(place->data());
     if (table.has("axes")) {
         std::string text = "x,y,z";  // stays where the value is no text, which has been told
         table.text("axes", text);

@@ -95,6 +95,20 @@ class SceneTest(unittest.TestCase):
             self.assertAlmostEqual(told["origin"][2], 98.5, delta=0.01)
             self.assertIn("walls.obj does not say where it lies", answer.stderr)
 
+    def test_a_model_in_the_coordinates_of_a_map_lies_by_its_own_origin(self):
+        with open_folder() as folder:
+            walls = pathlib.Path(folder, "walls.obj")
+            walls.write_text("v 392118 5820074 35\nv 392168 5820074 35\nv 392168 5820074 55\nv 392118 5820074 55\nf 1 2 3 4\n",
+                             encoding="ascii")
+            answer = skyloop("scene", walls, "--origin", "52.52,13.41,74.5", "--file-origin", "392118,5820064,35", "--json")
+            told = json.loads(answer.stdout)
+            self.assertAlmostEqual(told["lowest_m"][1], 10, delta=0.001)
+            self.assertAlmostEqual(told["highest_m"][2], 20, delta=0.001)
+            self.assertEqual(answer.stderr, "")
+            wrong = skyloop("scene", walls, "--file-origin", "392118,5820064", check=False)
+            self.assertEqual(wrong.returncode, 2)
+            self.assertIn("expected X,Y,Z of the file", wrong.stderr)
+
     def test_check_reads_the_scene(self):
         self.assertIn("scene       demo, ", skyloop("check", "--scene", "demo").stdout)
 

@@ -49,7 +49,9 @@ struct CityFileSettings {
     bool origin_is_guess = false;     ///< for what warnings say
     std::optional<MapAnchor> anchor;  ///< of a file of the same scene that was read before, beside which this one lies
     CityHeights heights = CityHeights::as_told;
-    const Geoid* geoid = nullptr;             ///< without one heights above the sea are taken as they stand
+    const Geoid* geoid = nullptr;  ///< without one heights above the sea are taken as they stand
+    /// Which place of a mesh lies at the frame's origin, in units and axes of the file: meshes in coordinates of a map.
+    Eigen::Vector3d file_origin = Eigen::Vector3d::Zero();
     std::optional<FileAxes> axes;             ///< absent: as the format says
     double metres_per_unit = 1;               ///< 0.01 for levels in centimetres
     std::string material = "concrete";        ///< of triangles of which the file tells none
@@ -73,7 +75,7 @@ struct CityFile {
     std::size_t dropped = 0;                ///< facets or footprints that could not be used
     std::vector<std::string> warnings;      ///< one clear line each: what was dropped and why, doubtful units
     std::vector<CityCompanion> companions;  ///< in the order of their names
-    std::optional<MapAnchor> anchor;        ///< of files in a map projection
+    std::optional<MapAnchor> anchor;        ///< of files in a map projection, and of meshes whose file_origin is such
 };
 
 /// Reads a city by the ending of its name: .obj .ply .gltf .glb .geojson .json (CityJSON or GeoJSON) .jsonl

@@ -49,6 +49,9 @@ TEST_F(CityCacheTest, AnotherSourceOrOtherSettingsAreReadAgain) {
     centimetres.metres_per_unit = 0.5;
     EXPECT_FALSE(read(centimetres).from_cache);
     EXPECT_FALSE(read().from_cache) << "the other settings took the place";
+    CityFileSettings elsewhere;
+    elsewhere.file_origin = {10, 0, 0};
+    EXPECT_FALSE(read(elsewhere).from_cache);
     put("a.obj", "v 0 0 0\nv 20 0 0\nv 0 0 21\nf 1 2 3\n");
     const CityReading changed = read();
     EXPECT_FALSE(changed.from_cache);

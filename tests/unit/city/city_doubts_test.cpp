@@ -8,6 +8,7 @@
 namespace skyloop::city_doubts_test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -36,7 +37,7 @@ TEST(DoubtsAbout, TellsOfUnitsThatCannotBe) {
 
 TEST(DoubtsAbout, TellsOfCoordinatesFarFromTheOrigin) {
     EXPECT_THAT(doubts_about(house(500, 40, {691'000, 5'334'000, 500})),
-                Contains(HasSubstr("5379 km from its origin")));
+                Contains(AllOf(HasSubstr("5379 km from its origin"), HasSubstr("scene.file_origin"))));
 }
 
 TEST(DoubtsAbout, TellsOfMissingWallsAndOfDeepOnes) {

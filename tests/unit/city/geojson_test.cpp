@@ -246,10 +246,12 @@ TEST(GeoJson, KnowsDegreesByTheirSystemOrTheirNumbers) {
 TEST(GeoJson, SaysWhichSettingsMeanNothing) {
     CityFileSettings settings;
     settings.axes = FileAxes{};
+    settings.file_origin = {1, 2, 3};
     settings.metres_per_unit = 0.01;
     const auto file = read_geojson(feature(R"({"height":5})", square(0.001)), settings);
     ASSERT_TRUE(file);
-    EXPECT_THAT(file->warnings, ::testing::ElementsAre(HasSubstr("axes mean nothing"), HasSubstr("length of a unit")));
+    EXPECT_THAT(file->warnings, ::testing::ElementsAre(HasSubstr("axes mean nothing"), HasSubstr("file_origin means"),
+                                                       HasSubstr("length of a unit")));
 }
 
 TEST(GeoJson, ScalesWebMercator) {

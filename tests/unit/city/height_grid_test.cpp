@@ -89,6 +89,23 @@ TEST(HeightGrid, LiesBesideTheCityOfItsMap) {
     EXPECT_THAT(alone->warnings, ::testing::Contains(HasSubstr("coordinates are projected (unnamed)")));
 }
 
+TEST(HeightGrid, LiesBesideTheMeshOfItsMap) {
+    CityFileSettings settings;
+    settings.origin = Geodetic::degrees(48.1374, 11.5755, 600);
+    settings.file_origin = {691'603, 5'334'780, 515};
+    const auto mesh =
+        parse_obj("v 691600 5334780 515\nv 691620 5334780 515\nv 691600 5334780 535\nf 1 2 3\n", "a.obj", settings);
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    const std::string text = "ncols 2\nnrows 2\nxllcenter 691590\nyllcenter 5334770\ncellsize 10\n520 521 520 520";
+    EXPECT_THAT(read_grid(text, settings).value().warnings,
+                ::testing::Contains(HasSubstr("file_origin means nothing")));
+    settings.anchor = mesh->anchor;
+    const auto grid = read_grid(text, settings);
+    ASSERT_TRUE(grid) << grid.error().message;
+    EXPECT_NEAR((test::highest_of(grid->model) - Eigen::Vector3d(-3, 0, 6)).norm(), 0, 1e-6);
+    EXPECT_THAT(grid->warnings, ::testing::Not(::testing::Contains(HasSubstr("file_origin"))));
+}
+
 TEST(HeightGrid, PlacesDegreesOnTheGlobe) {
     const std::string text =
         "ncols 3\nnrows 3\nxllcenter 30.73\nyllcenter 46.47\ncellsize 0.001\n50 50 50\n50 50 50\n50 50 50\n";

@@ -115,6 +115,33 @@ TEST(ObjFile, TurnsAxesAndUnits) {
     EXPECT_EQ(test::highest_of(model->model), Eigen::Vector3d(5, 7, 30));
 }
 
+TEST(ObjFile, LiesByItsOriginInTheCoordinatesOfAMap) {
+    CityFileSettings utm;
+    utm.file_origin = {392'118, 5'820'064, 35};
+    const auto town = read_obj(box(392'108, 5'820'054, 20, 120), utm);
+    ASSERT_TRUE(town) << town.error().message;
+    EXPECT_NEAR((test::highest_of(town->model) - Eigen::Vector3d(-10, -10, 85)).norm(), 0, 1e-6);
+    EXPECT_TRUE(doubts_about(town->model).empty());
+    ASSERT_TRUE(town->anchor) << "height grids of the map lie beside it";
+    EXPECT_FALSE(town->anchor->named);
+    EXPECT_NEAR(town->anchor->east, 392'118, 1e-6);
+    EXPECT_NEAR(town->anchor->level.value_or(0), 35, 1e-9);
+
+    CityFileSettings feet;  // of a plane with x north, by its own units and axes
+    feet.axes = FileAxes::parse("y,x,z").value();
+    feet.metres_per_unit = 0.3048;
+    feet.file_origin = {640'000, 200'100, 0};
+    const auto plane = read_obj(box(640'010, 200'000, 10, 400), feet);
+    ASSERT_TRUE(plane) << plane.error().message;
+    EXPECT_NEAR((test::highest_of(plane->model) - Eigen::Vector3d(-30.48, 3.048, 121.92)).norm(), 0, 1e-6);
+
+    CityFileSettings beside;
+    beside.file_origin = {100, 50, 0};
+    const auto local = read_obj(box(0, 0, 20, 120), beside);
+    ASSERT_TRUE(local) << local.error().message;
+    EXPECT_FALSE(local->anchor) << "such a number is of no map";
+}
+
 TEST(ObjFile, CountsWhatCannotBeUsedWithOneWarning) {
     const auto file = read_obj(
         "v 0 0 0\nv 10 0 0\nv 0 0 10\nv nan 0 0\nv 0 inf 0\nv 1e999 0 0\nv 1e-999 0 0\nv 1e200 0 0\n"

@@ -29,6 +29,7 @@ TEST(ScenarioScene, EveryKeyLandsInItsField) {
     ASSERT_TRUE(scene.reading.origin);
     EXPECT_NEAR(scene.reading.origin->latitude.deg(), 48.5, 1e-12);
     EXPECT_EQ(scene.reading.origin->height.above_ellipsoid, Metres(520));
+    EXPECT_EQ(scene.reading.file_origin, Eigen::Vector3d(100, -2.5, 3e6));
     ASSERT_TRUE(scene.reading.axes);
     EXPECT_THAT(scene.reading.axes->axis, ElementsAre(1, 0, 2));
     EXPECT_EQ(scene.reading.heights, CityHeights::sea_level);
@@ -65,6 +66,8 @@ TEST(ScenarioScene, MistakesAreToldWithTheirPlace) {
                 HasSubstr("scene.reflections: is 17; expected a whole number from 1 to 16"));
     EXPECT_THAT(mistakes_of("[scene]\nbuildings = \"demo\"\nreflectoins = 2"), HasSubstr("did you mean 'reflections'"));
     EXPECT_THAT(mistakes_of("[scene]\nbuildings = \"demo\"\norigin = [91, 0, 0]"), HasSubstr("latitude is 91"));
+    EXPECT_THAT(mistakes_of("[scene]\nbuildings = \"demo\"\nfile_origin = [1, 2]"),
+                HasSubstr("scene.file_origin: has 2 numbers; expected 3"));
 }
 
 }  // namespace

@@ -144,6 +144,7 @@ density_g_m3 = 1.125
 buildings = ["a.obj", "demo"]
 terrain = "hills.asc"
 origin = [48.5, 11.5, 520]
+file_origin = [100, -2.5, 3e6]
 axes = "y,x,z"
 heights = "sea_level"
 unit_m = 0.01
