@@ -255,7 +255,8 @@ Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::s
                                       : fmt::format("{}: the corners of all {} outlines are wrong or not in the file",
                                                     name, read.dropped));
     const auto place = PlaceOnEarth::make(read.system, extent, std::nullopt, settings);
-    if (!place) return fail(place.error().code, fmt::format("{}: {}", name, place.error().message));
+    if (!place)
+        return fail(place.error().code, fmt::format("{}: {}: {}", name, read.system.name, place.error().message));
     file.model.origin = place->origin();
     file.anchor = place->anchor();
     // Outlines have no heights that could count from elsewhere.

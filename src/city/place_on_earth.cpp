@@ -82,7 +82,8 @@ Result<PlaceOnEarth> PlaceOnEarth::make(const ReferenceSystem& system, const Ext
     }
     place.origin_ = settings.origin.value_or(Geodetic{});
     place.metres_per_unit_ = settings.metres_per_unit;
-    if (system.kind == CoordinateKind::projected) place.lay_map(system, extent, ground, settings);
+    if (system.kind == CoordinateKind::projected)
+        if (const auto laid = place.lay_map(system, extent, ground, settings); !laid) return fail(laid.error());
     return place;
 }
 
@@ -103,8 +104,8 @@ void PlaceOnEarth::set_origin(double latitude_deg, double longitude_deg, std::op
     frame_.emplace(origin_);
 }
 
-void PlaceOnEarth::lay_map(const ReferenceSystem& system, const Extent& extent, std::optional<double> ground,
-                           const CityFileSettings& settings) {
+Result<void> PlaceOnEarth::lay_map(const ReferenceSystem& system, const Extent& extent, std::optional<double> ground,
+                                   const CityFileSettings& settings) {
     const Eigen::Vector2d middle = extent.middle();
     anchor_ = MapAnchor{system.name, system.named, middle.x(), middle.y(), ground};
     // Files that name no map are taken to be of that of the others.
@@ -116,11 +117,17 @@ void PlaceOnEarth::lay_map(const ReferenceSystem& system, const Extent& extent, 
     ground_ = anchor_->level.value_or(0);
     const auto known = reference_system(anchor_->system);
     if (known && known->code) projection_ = MapProjection::of_epsg(*known->code);
-    if (!projection_) return;
+    if (!projection_) return {};
+    if (!projection_->reaches({middle.x(), middle.y()}))
+        return fail(ErrorCode::input,
+                    fmt::format("no place of this map lies {:.0f} m east and {:.0f} m north, where the "
+                                "middle of the file is; are its coordinates of another?",
+                                middle.x(), middle.y()));
     count_heights(*known, settings);
     metres_per_unit_ = 1;
     const EarthPlace place = projection_->on_earth({middle.x(), middle.y()});
     set_origin(place.latitude.deg(), place.longitude.deg(), ground_, settings);
+    return {};
 }
 
 std::string PlaceOnEarth::doubt_of_map(const CityFileSettings& settings) const {

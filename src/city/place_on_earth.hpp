@@ -54,7 +54,7 @@ public:
         [[nodiscard]] bool is_of_degrees() const;
     };
 
-    /// Fails with `input` when geographic coordinates are no degrees.
+    /// Fails with `input` when geographic coordinates are no degrees, and those of a map lie beyond it.
     static Result<PlaceOnEarth> make(const ReferenceSystem& system, const Extent& extent, std::optional<double> ground,
                                      const CityFileSettings& settings);
     /// What of the settings means nothing for a file, as warnings.
@@ -79,8 +79,8 @@ private:
     void count_heights(const ReferenceSystem& system, const CityFileSettings& settings);
     void set_origin(double latitude_deg, double longitude_deg, std::optional<double> ground,
                     const CityFileSettings& settings);
-    void lay_map(const ReferenceSystem& system, const Extent& extent, std::optional<double> ground,
-                 const CityFileSettings& settings);
+    Result<void> lay_map(const ReferenceSystem& system, const Extent& extent, std::optional<double> ground,
+                         const CityFileSettings& settings);
 
     Geodetic origin_;
     double ground_ = 0;           ///< of the file's heights, at the level of the origin

@@ -185,6 +185,17 @@ TEST(CityGml, TakesLinkedShapesAndCountsImplicitGeometriesThatItCannotUse) {
     EXPECT_THAT(round->warnings, ::testing::ElementsAre(HasSubstr("1 implicit geometries")));
 }
 
+TEST(CityGml, TakesTheZoneOffEastingsAndRefusesThoseBeyondTheMap) {
+    for (const std::string_view system : {"urn:adv:crs:ETRS89_UTM33*DE_DHHN2016_NH", "EPSG:25833", "EPSG:5650"}) {
+        const auto file = read_citygml(gml_file(square_roof(33392068.4866, 5820014.6749, 20), system));
+        ASSERT_TRUE(file) << file.error().message;
+        EXPECT_NEAR(file->model.origin.latitude.deg(), 52.52, 1e-8) << system;
+        EXPECT_NEAR(file->model.origin.longitude.deg(), 13.41, 1e-8) << system;
+    }
+    EXPECT_THAT(citygml_refusal(gml_file(square_roof(32392068, 5820014, 20), "EPSG:25833")),
+                HasSubstr("EPSG:25833: no place of this map lies 32392118 m east and 5820064 m north"));
+}
+
 TEST(CityGml, FilesOfOneMapLieBesideEachOther) {
     for (const std::string_view system : {"EPSG:28992", "EPSG:25832", "our own"}) {
         const auto first = read_citygml(gml_file(square_roof(691550, 5334730, 20), system));

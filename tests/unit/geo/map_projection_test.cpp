@@ -16,6 +16,9 @@ TEST(MapProjection, TakesPlacesOfTheMapToTheEarth) {
     for (const MappedPlace& p : {MappedPlace{25832, 691603.0320, 5334780.0309, 48.1374, 11.5755},
                                  {32632, 691603.0320, 5334780.0309, 48.1374, 11.5755},
                                  {5555, 691603.0320, 5334780.0309, 48.1374, 11.5755},
+                                 {4647, 32691603.0320, 5334780.0309, 48.1374, 11.5755},
+                                 {25832, 32691603.0320, 5334780.0309, 48.1374, 11.5755},
+                                 {5650, 33392118.4866, 5820064.6749, 52.52, 13.41},
                                  {7856, 334900.5697, 6252288.7529, -33.8568, 151.2153},
                                  {32756, 334900.5697, 6252288.7529, -33.8568, 151.2153},
                                  {2154, 648289.2745, 6863983.7035, 48.8738, 2.2950},
@@ -26,6 +29,17 @@ TEST(MapProjection, TakesPlacesOfTheMapToTheEarth) {
         EXPECT_NEAR(place.latitude.deg(), p.latitude, 2e-9) << p.code;
         EXPECT_NEAR(place.longitude.deg(), p.longitude, 2e-9) << p.code;
     }
+}
+
+TEST(MapProjection, ReachesBeyondTheZoneButNotAroundTheEarth) {
+    const auto utm = MapProjection::of_epsg(25833);
+    ASSERT_TRUE(utm);
+    for (const double east : {-50e3, 392e3, 1.1e6, 33.392e6})
+        EXPECT_TRUE(utm->reaches({east, 5.82e6})) << east;
+    // Of zone 32, and of Gauss and Krueger's third.
+    for (const double east : {32.692e6, 3.392e6, -3e6})
+        EXPECT_FALSE(utm->reaches({east, 5.82e6})) << east;
+    EXPECT_FALSE(utm->reaches({392e3, 33.4e6})) << "north and east exchanged";
 }
 
 TEST(MapProjection, KnowsNoOthers) {
