@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 
+#include "convex_hull.hpp"
 #include "skyloop/base/middle.hpp"
 #include "skyloop/city/footprint.hpp"
 
@@ -81,38 +82,6 @@ double ground_level(const std::vector<CityObject>& objects) {
     std::vector<double>& heights = feet.empty() ? all : feet;
     if (heights.empty()) return 0;
     return middle_of(heights);
-}
-
-/// The convex hull, anticlockwise (Andrew 1979).
-std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
-    const auto before = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-        return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-    };
-    std::sort(points.begin(), points.end(), before);
-    std::vector<Eigen::Vector2d> hull;
-    for (int half = 0; half < 2; ++half) {
-        const std::size_t start = hull.size();
-        for (const Eigen::Vector2d& p : points) {
-            while (hull.size() >= start + 2) {
-                const Eigen::Vector2d u = hull.back() - hull[hull.size() - 2], v = p - hull.back();
-                if (u.x() * v.y() - u.y() * v.x() > 0) break;
-                hull.pop_back();
-            }
-            hull.push_back(p);
-        }
-        if (!hull.empty()) hull.pop_back();
-        std::reverse(points.begin(), points.end());
-    }
-    return hull;
-}
-
-double hull_area(const std::vector<Eigen::Vector2d>& ring) {
-    double sum = 0;
-    for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-        const Eigen::Vector2d a = ring[i] - ring[0], b = ring[i + 1] - ring[0];
-        sum += a.x() * b.y() - a.y() * b.x();
-    }
-    return std::abs(sum) / 2;
 }
 
 /// Makes triangles and trees of objects.
@@ -265,19 +234,32 @@ void change_points(std::vector<CityObject>& objects, Change change) {
             }
 }
 
+void exchange_axes(std::vector<CityObject>& objects) {
+    change_points(objects, [](Eigen::Vector3d& point) { std::swap(point.x(), point.y()); });
+}
+
+PlaceOnEarth::Extent exchanged(PlaceOnEarth::Extent extent) {
+    std::swap(extent.lowest.x(), extent.lowest.y());
+    std::swap(extent.highest.x(), extent.highest.y());
+    return extent;
+}
+
 /// Whether numbers are degrees though their system is none that is known, by themselves. Those of EPSG stand in its
 /// order, latitude first, others with the longitude first unless that is too great for a latitude.
 bool turn_out_to_be_degrees(std::vector<CityObject>& objects, const ReferenceSystem& system) {
-    PlaceOnEarth::Extent extent = extent_of(objects);
-    const auto swap_axes = [](Eigen::Vector3d& point) { std::swap(point.x(), point.y()); };
-    if (system.code || (std::abs(extent.middle().y()) > 90 && std::abs(extent.middle().x()) <= 90)) {
-        std::swap(extent.lowest.x(), extent.lowest.y());
-        std::swap(extent.highest.x(), extent.highest.y());
-        if (!extent.is_of_degrees()) return false;
-        change_points(objects, swap_axes);
-        return true;
-    }
-    return extent.is_of_degrees();
+    const PlaceOnEarth::Extent extent = extent_of(objects);
+    const bool exchange = system.code || (std::abs(extent.middle().y()) > 90 && std::abs(extent.middle().x()) <= 90);
+    if (!(exchange ? exchanged(extent) : extent).is_of_degrees()) return false;
+    if (exchange) exchange_axes(objects);
+    return true;
+}
+
+/// Degrees that stand against the order of their system, where it shows: a longitude that is no latitude.
+bool turn_out_to_be_exchanged(std::vector<CityObject>& objects) {
+    const PlaceOnEarth::Extent extent = extent_of(objects);
+    if (extent.on_globe() || !exchanged(extent).fits_degrees()) return false;
+    exchange_axes(objects);
+    return true;
 }
 
 /// The system of what was read; longitudes lie together afterwards.
@@ -290,6 +272,9 @@ ReferenceSystem settle_system(CityObjects& read, std::vector<std::string>& warni
         system.kind = CoordinateKind::geographic;
     }
     if (system.kind == CoordinateKind::geographic) {
+        if (turn_out_to_be_exchanged(read.objects))
+            warnings.push_back(fmt::format("coordinates ({}) stand {} first, against their system", system.name,
+                                           system.latitude_first ? "longitude" : "latitude"));
         LongitudeTurn turn;
         change_points(read.objects, [&](Eigen::Vector3d& point) { point.x() = turn(point.x()); });
     }

@@ -69,6 +69,11 @@ Result<PlaceOnEarth> PlaceOnEarth::make(const ReferenceSystem& system, const Ext
     PlaceOnEarth place;
     place.count_heights(system, settings);
     if (system.kind == CoordinateKind::geographic) {
+        if (!extent.on_globe())
+            return fail(ErrorCode::input,
+                        fmt::format("expected degrees on the globe, found longitudes {:.6g} … {:.6g} and latitudes "
+                                    "{:.6g} … {:.6g}",
+                                    extent.lowest.x(), extent.highest.x(), extent.lowest.y(), extent.highest.y()));
         if (!extent.fits_degrees())
             return fail(ErrorCode::input,
                         fmt::format("expected longitudes and latitudes within {} degrees of each other, found {:.6g} … "

@@ -195,6 +195,33 @@ TEST(CityJson, KnowsDegreesByTheirSystemOrTheirNumbers) {
     EXPECT_THAT(unnamed->warnings, ::testing::Contains(HasSubstr("degrees of WGS-84, longitude first")));
 }
 
+/// A wall by three corners in three dimensions of WGS 84, latitude first (EPSG:4979).
+std::string wall_file(std::string_view vertices) {
+    return fmt::format(
+        R"({{"type":"CityJSON","version":"1.0","metadata":{{"referenceSystem":"urn:ogc:def:crs:EPSG::4979"}},
+        "CityObjects":{{"a":{{"type":"Building","geometry":[{{"type":"MultiSurface","lod":"2",
+        "boundaries":[[[0,1,2]]]}}]}}}},"vertices":[{}]}})",
+        vertices);
+}
+
+TEST(CityJson, ExchangesAxesOnlyWhereALongitudeIsNoLatitude) {
+    const auto right = read_cityjson(wall_file("[40.015,-105.27,1600],[40.015,-105.2698,1600],[40.015,-105.27,1630]"));
+    ASSERT_TRUE(right) << right.error().message;
+    EXPECT_THAT(right->warnings, ::testing::IsEmpty());
+    const auto against =
+        read_cityjson(wall_file("[-105.27,40.015,1600],[-105.2698,40.015,1600],[-105.27,40.015,1630]"));
+    ASSERT_TRUE(against) << against.error().message;
+    EXPECT_THAT(against->warnings, ::testing::ElementsAre(HasSubstr("(EPSG:4979) stand longitude first")));
+    EXPECT_NEAR(against->model.origin.latitude.deg(), 40.015, 1e-9);
+    EXPECT_NEAR(against->model.origin.longitude.deg(), -105.2699, 1e-9);
+    EXPECT_EQ(against->model.vertices, right->model.vertices);
+    const auto ambiguous = read_cityjson(wall_file("[13.41,52.52,50],[13.4102,52.52,50],[13.41,52.52,80]"));
+    ASSERT_TRUE(ambiguous) << ambiguous.error().message;
+    EXPECT_NEAR(ambiguous->model.origin.latitude.deg(), 13.4101, 1e-9) << "as its system says";
+    EXPECT_THAT(cityjson_refusal(wall_file("[-105,200,0],[-105,200.001,0],[-105,200,9]")),
+                HasSubstr("found longitudes 200 … 200.001 and latitudes -105 … -105"));
+}
+
 TEST(CityJson, DropsWrongCornersAndSaysSo) {
     const auto file = read_cityjson(cube_file(R"("a":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"2",
         "boundaries":[[[0,1,5,4]],[[0,1,99]],[[0,-1,2]],[["a",1,2]],[[0,1]],[[0,0,0]],7]}]})"));
