@@ -8,49 +8,20 @@
 #include <span>
 #include <string_view>
 
-#include "skyloop/base/middle.hpp"
-#include "skyloop/trajectory/track.hpp"
+#include "track_order.hpp"
 
 namespace skyloop {
 namespace {
 
-using TrackRows = std::vector<TrackRow>;
-
-// More than a clock is ever set back by while it counts on: the source began anew.
-constexpr Nanoseconds new_beginning = std::chrono::seconds(2);
-
-// Of a row from the origin of its times, and of a whole track: sums and differences of such times are times, too.
-constexpr Nanoseconds longest_time = std::chrono::hours(24 * 365 * 70);
-
-// What cleaning has left out or changed, and where it did so first.
-struct Touched {
-    std::size_t count = 0;
-    std::string first_line;
-    void add(const TrackRow& row) {
-        if (count++ == 0 && row.line > 0) first_line = fmt::format(", first in line {}", row.line);
-    }
-    void tell(Track& track, std::string_view what) const {
-        if (count > 0) track.notes.push_back(fmt::format("{} {}{}", count, what, first_line));
-    }
-};
-
 double seconds_from(const TrackRow& from, const TrackRow& to) { return to_seconds(to.time - from.time).value(); }
-
-Nanoseconds median_step(const TrackRows& rows) {
-    std::vector<Nanoseconds> steps;
-    for (std::size_t i = 1; i < rows.size(); ++i)
-        if (rows[i].time > rows[i - 1].time) steps.push_back(rows[i].time - rows[i - 1].time);
-    if (steps.empty()) return std::chrono::seconds(1);
-    return middle_of(steps);
-}
 
 // Coordinates that are no place, and velocities that are none.
 void leave_out_what_is_no_number(Track& track) {
     // From below the deepest ground to far above the satellites.
     constexpr double nearest_m = 6.3e6, furthest_m = 1e8;
-    Touched no_place, no_time, no_velocity;
+    TouchedRows no_place, no_time, no_velocity;
     std::erase_if(track.points, [&](const TrackRow& row) {
-        if (row.time < -longest_time || row.time > longest_time) return no_time.add(row), true;
+        if (row.time < -longest_track_time || row.time > longest_track_time) return no_time.add(row), true;
         const double distance = row.position.vector().norm();
         const bool bad = !(distance >= nearest_m && distance <= furthest_m);
         if (bad) no_place.add(row);
@@ -64,123 +35,6 @@ void leave_out_what_is_no_number(Track& track) {
     no_time.tell(track, "rows have a time further than 70 years from the others' and were left out");
     no_place.tell(track, "rows have no place on the Earth and were left out");
     no_velocity.tell(track, "rows have a velocity that is no number, which was left out");
-}
-
-// Some programs write the newest row first. Where the way begins anew is told by the later one of two rows.
-void turn_round_what_falls(Track& track) {
-    TrackRows& rows = track.points;
-    constexpr std::size_t fewest = 3;
-    const auto goes_on = [](const TrackRow& a, const TrackRow& b) { return b.time > a.time; };
-    if (rows.size() < fewest || std::adjacent_find(rows.begin(), rows.end(), goes_on) != rows.end() ||
-        rows.front().time == rows.back().time)
-        return;
-    std::reverse(rows.begin(), rows.end());
-    for (std::size_t i = rows.size() - 1; i > 0; --i)
-        rows[i].jump = rows[i - 1].jump;
-    rows.front().jump = false;
-    track.notes.emplace_back("the rows stand newest first and were turned round");
-}
-
-// Whether the first row alone stands before a part that goes on earlier and does not say that it begins anew.
-bool first_ran_ahead(const std::vector<TrackRows>& parts) {
-    constexpr std::size_t fewest_behind = 3;
-    return parts.size() > 1 && parts[0].size() == 1 && parts[1].size() >= fewest_behind && !parts[1].front().jump;
-}
-
-// Where the source began anew: the first rows of parts whose times go back by more than two seconds. A single stamp
-// that ran ahead is left out.
-std::vector<TrackRows> parts_of(Track& track) {
-    Touched ahead;
-    std::vector<TrackRows> parts;
-    for (TrackRow& row : track.points) {
-        if (parts.empty()) parts.emplace_back();
-        TrackRows& part = parts.back();
-        if (part.empty() || row.time >= part.back().time - new_beginning) {
-            part.push_back(std::move(row));
-        } else if (part.size() >= 2 && row.time > part[part.size() - 2].time) {
-            ahead.add(part.back());
-            part.back() = std::move(row);
-        } else {
-            parts.push_back({std::move(row)});
-        }
-    }
-    if (first_ran_ahead(parts)) {
-        ahead.add(parts.front().front());
-        parts.erase(parts.begin());
-    }
-    ahead.tell(track, "rows have a time that ran ahead and were left out");
-    return parts;
-}
-
-struct PartSpan {
-    Nanoseconds from, to;
-};
-
-PartSpan span_of(const TrackRows& part) {
-    const auto [first, last] = std::minmax_element(
-        part.begin(), part.end(), [](const TrackRow& a, const TrackRow& b) { return a.time < b.time; });
-    return {first->time, last->time};
-}
-
-// Whether the parts fill times of their own, in whatever order; then they are put in order. A part that began by a jump
-// was no piece of the one before: wherever it stands now, no way leads from one to the next.
-bool put_in_order(std::vector<TrackRows>& parts) {
-    std::vector<TrackRows> sorted = parts;
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [](const TrackRows& a, const TrackRows& b) { return span_of(a).from < span_of(b).from; });
-    for (std::size_t i = 1; i < sorted.size(); ++i)
-        if (span_of(sorted[i]).from <= span_of(sorted[i - 1]).to) return false;
-    const bool apart =
-        std::any_of(parts.begin() + 1, parts.end(), [](const TrackRows& part) { return part.front().jump; });
-    parts = std::move(sorted);
-    for (TrackRows& part : parts)
-        if (apart) part.front().jump = true;
-    parts.front().front().jump = false;
-    return true;
-}
-
-// Rows in one order of time, but for what goes back by less than a new beginning.
-void join_parts(Track& track) {
-    std::vector<TrackRows> parts = parts_of(track);
-    const Nanoseconds step = parts.empty() ? Nanoseconds(0) : median_step(parts.front());
-    const bool of_one_clock = parts.size() > 1 && track.origin && put_in_order(parts);
-    if (of_one_clock)
-        track.notes.push_back(
-            fmt::format("{} parts do not follow each other in time; they were put in its order", parts.size()));
-    Touched beginnings, too_late;
-    TrackRows rows;
-    for (TrackRows& part : parts) {
-        if (!rows.empty() && rows.back().time - rows.front().time > longest_time) {
-            too_late.add(part.front());
-            continue;
-        }
-        if (!rows.empty() && !of_one_clock) {
-            beginnings.add(part.front());
-            part.front().jump = true;
-            const Nanoseconds shift = span_of(rows).to + step - span_of(part).from;
-            for (TrackRow& row : part)
-                row.time += shift;
-        }
-        rows.insert(rows.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
-    }
-    track.points = std::move(rows);
-    too_late.tell(track, "parts of a track longer than 70 years were left out");
-    beginnings.tell(track,
-                    "times the time goes back by more than 2 s: a new beginning, which follows at once, by a jump");
-}
-
-void leave_out_backward(Track& track) {
-    Touched backward;
-    TrackRows kept;
-    kept.reserve(track.points.size());
-    for (TrackRow& row : track.points) {
-        if (kept.empty() || row.time >= kept.back().time)
-            kept.push_back(std::move(row));
-        else
-            backward.add(row);
-    }
-    track.points = std::move(kept);
-    backward.tell(track, "rows go back in time and were left out");
 }
 
 std::size_t end_of_equal(const TrackRows& rows, std::size_t begin) {
@@ -225,7 +79,7 @@ void spread_coarse_stamps(Track& track) {
 void leave_out_repeated(Track& track) {
     // What a path of 140 years, counted in doubles of seconds, can still tell apart.
     constexpr Nanoseconds nearest = std::chrono::microseconds(1);
-    Touched repeated;
+    TouchedRows repeated;
     TrackRows kept;
     kept.reserve(track.points.size());
     for (TrackRow& row : track.points) {
@@ -257,7 +111,7 @@ bool is_leap(const TrackRows& rows, std::size_t to, double ordinary_mps) {
 // A single row far away is an error; rows that stay there are a jump (FEEDS.md 1.14).
 void find_teleports(Track& track) {
     TrackRows& rows = track.points;
-    Touched lone, jumps;
+    TouchedRows lone, jumps;
     std::vector<bool> left_out(rows.size(), false);
     for (std::size_t i = 1; i + 1 < rows.size(); ++i) {
         if (rows[i].jump || rows[i + 1].jump || left_out[i - 1]) continue;
@@ -338,9 +192,7 @@ void leave_out_gaps(Track& track, std::span<const TrackGap> gaps, Seconds longes
 
 Result<std::vector<TrackGap>> clean_track(Track& track, Seconds gap, GapPolicy policy) {
     leave_out_what_is_no_number(track);
-    turn_round_what_falls(track);
-    join_parts(track);
-    leave_out_backward(track);
+    put_rows_in_order(track);
     if (stamps_are_coarse(track.points)) spread_coarse_stamps(track);
     leave_out_repeated(track);
     if (track.points.size() < 2)

@@ -71,13 +71,14 @@ enum class GapPolicy {
 };
 
 /// Puts the rows in order of time and in order at all (FEEDS.md 1.14). Left out: rows without a place, rows that go
-/// back in time by 2 s or less, single rows whose time ran ahead or that lie far from both neighbours, and of equal
-/// times all but the last row. Where three rows or more share a time at different places, the rows are spread over the
-/// step of the stamps. Times that go back further are a new beginning: where all parts have a time of their own (and an
-/// origin), they are put in its order; else each part follows the one before at once, by a jump. A path that leaps and
-/// stays there jumps. Rows whose times only fall are turned round. Stretches longer than `gap` become what `policy`
-/// says. All of it is told in the notes, with counts. Fails with `input`, and the notes, when fewer than two rows are
-/// left.
+/// back in time by 2 s or less, single rows whose time ran ahead or fell back or that lie far from both neighbours, and
+/// of equal times all but the last row. Where three rows or more share a time at different places, the rows are spread
+/// over the step of the stamps. Rows with dates (an origin) are of one clock and keep their times: rows that came late,
+/// by their places, and parts that go back further are put in its order, and a few rows of before the date was known
+/// are left out. Without an origin times that go back further are a new beginning: each part follows the one before at
+/// once, by a jump. A path that leaps and stays there jumps. Rows whose times only fall are turned round. Stretches
+/// longer than `gap` become what `policy` says. All of it is told in the notes, with counts. Fails with `input`, and
+/// the notes, when fewer than two rows are left.
 /// @returns the gaps that are to be bridged
 Result<std::vector<TrackGap>> clean_track(Track& track, Seconds gap, GapPolicy policy = GapPolicy::bridge);
 

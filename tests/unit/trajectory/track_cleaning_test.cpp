@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -97,6 +98,61 @@ TEST(TrackCleaning, ARefusalSaysWhyRowsWereLeftOut) {
                                                    "7 epochs without a fix were left out; 2 rows repeat the time"));
 }
 
+// What came late stands with its own time where its place lies between those of its neighbours; with a wrong time
+// nowhere.
+TEST(TrackCleaning, ALateRowKeepsItsTimeAndAWrongTimeCostsItsRow) {
+    const std::vector<double> whole = evenly(0, 20, 1);
+    std::vector<double> wrong = whole;
+    wrong[8] = -3592, wrong[12] = 6.5, wrong[15] = 10;
+    Track track = stamped(wrong);
+    track.origin = recorded_start;
+    ASSERT_TRUE(clean_track(track, Seconds(100)).has_value());
+    EXPECT_THAT(times_of(track), ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 9, 10, 11, 13, 14, 16, 17, 18, 19, 20));
+    EXPECT_THAT(jumps_of(track), ElementsAre());
+    EXPECT_THAT(track.notes,
+                ElementsAre(HasSubstr("3 rows have a time that fell back and were left out, first in line 9")));
+
+    Track late = stamped(whole);
+    late.origin = recorded_start;
+    const std::vector<TrackRow> in_order = late.points;
+    std::rotate(late.points.begin() + 5, late.points.begin() + 7, late.points.begin() + 12);  // 5 and 6 behind 11
+    ASSERT_TRUE(clean_track(late, Seconds(100)).has_value());
+    EXPECT_EQ(times_of(late), whole);
+    for (std::size_t i = 0; i < in_order.size(); ++i)
+        EXPECT_EQ((late.points[i].position - in_order[i].position).length().value(), 0) << i;
+    EXPECT_THAT(late.notes, ElementsAre(HasSubstr("2 rows do not stand where their time belongs and were put in its "
+                                                  "order, first in line 6")));
+}
+
+TEST(TrackCleaning, ManyRowsThatCameLateAreOfTheSameClock) {
+    Track track = stamped(evenly(0, 30, 1));
+    track.origin = recorded_start;
+    std::rotate(track.points.begin() + 5, track.points.begin() + 15, track.points.begin() + 25);
+    ASSERT_TRUE(clean_track(track, Seconds(100)).has_value());
+    EXPECT_EQ(times_of(track), evenly(0, 30, 1));
+    EXPECT_THAT(jumps_of(track), ElementsAre());
+    EXPECT_THAT(track.notes, ElementsAre(HasSubstr("2 parts do not follow each other in time")));
+}
+
+TEST(TrackCleaning, ALastDateThatFellBackAndDatesOfLongBeforeAreLeftOut) {
+    Track track = stamped({-6.2e8, -6.2e8 + 1, -6.2e8 + 2, 3, 4, 5, 6, 7, 8, -3600});
+    track.origin = recorded_start;
+    ASSERT_TRUE(clean_track(track, Seconds(100)).has_value());
+    EXPECT_THAT(times_of(track), ElementsAre(3, 4, 5, 6, 7, 8));
+    EXPECT_THAT(track.notes, ElementsAre(HasSubstr("3 rows have a time long before all others and were left out"),
+                                         HasSubstr("1 rows have a time that fell back")));
+}
+
+// A clock that counts from its start may begin anew, but a single row that the next one goes on from begins nothing.
+TEST(TrackCleaning, ALoneRowThatFellBackIsNoBeginning) {
+    Track track = stamped({100, 101, 102, 5, 104, 105, 6, 7, 8});
+    ASSERT_TRUE(clean_track(track, Seconds(100)).has_value());
+    EXPECT_THAT(times_of(track), ElementsAre(100, 101, 102, 104, 105, 106, 107, 108));
+    EXPECT_THAT(jumps_of(track), ElementsAre(5u));
+    EXPECT_THAT(track.notes, ElementsAre(HasSubstr("1 times the time goes back by more than 2 s"),
+                                         HasSubstr("1 rows have a time that fell back and were left out")));
+}
+
 TEST(TrackCleaning, AFirstTimeThatRanAheadIsLeftOut) {
     Track track = stamped({100, 5, 6, 7, 8});
     track.origin = recorded_start;
@@ -163,8 +219,8 @@ TEST(TrackCleaning, TimesBeyondAnyTrackAreLeftOut) {
     ASSERT_TRUE(clean_track(track, Seconds(10)).has_value());
     EXPECT_THAT(times_of(track), ElementsAre(0, 2, 4));
     EXPECT_THAT(track.notes, ElementsAre(HasSubstr("2 rows have a time further than 70 years")));
-    // Forty years, again and again.
-    Track long_one = stamped({0, 1.26e9, 0, 1.26e9, 0, 1.26e9, 0, 1.26e9, 0, 1.26e9, 0, 1.26e9});
+    // Forty years, again and again, each time a little less.
+    Track long_one = stamped({0, 1.26e9, 0, 1.25e9, 0, 1.24e9, 0, 1.23e9, 0, 1.22e9, 0, 1.21e9});
     ASSERT_TRUE(clean_track(long_one, Seconds(5e9)).has_value());
     EXPECT_LT(times_of(long_one).back(), 5e9);
 }
