@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <type_traits>
 
@@ -73,17 +72,6 @@ FixType fix_type_of_mode(NmeaMode mode) {
         default:
             return FixType::fix_3d;
     }
-}
-
-// Days of the calendar: one with a leap second is longer than the others.
-UtcTime midnight_of(const NmeaDate& date, int days_later) {
-    namespace chrono = std::chrono;
-    const chrono::sys_days there =
-        chrono::sys_days(chrono::year(date.year) / chrono::month(date.month) / chrono::day(date.day)) +
-        chrono::days(days_later);
-    const chrono::year_month_day day(there);
-    return {
-        static_cast<int>(day.year()), static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()), 0, 0, 0, 0};
 }
 
 }  // namespace
@@ -314,7 +302,7 @@ bool NmeaEpochs::date_rows() {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         Row& row = rows_[i];
         if (row.date) date = *row.date, days_of_date = days[i];
-        const UtcTime midnight = midnight_of(date, days[i] - days_of_date);
+        const UtcTime midnight = midnight_of({date.year, date.month, date.day}, days[i] - days_of_date);
         row.epoch.time = advanced(to_gps_time(midnight, LeapSeconds::announced()), Seconds(row.seconds));
     }
     return true;

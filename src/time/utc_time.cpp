@@ -268,6 +268,11 @@ UtcTime utc_of_local(const UtcTime& local, int minutes) {
             local.nanosecond};
 }
 
+UtcTime midnight_of(const UtcTime& day, int days_later) {
+    constexpr int minutes_of_day = 24 * 60;
+    return utc_of_local({day.year, day.month, day.day, 0, 0, 0, 0}, -days_later * minutes_of_day);
+}
+
 std::string format_utc(const UtcTime& utc, int decimals) {
     std::string text = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}", utc.year, utc.month, utc.day, utc.hour,
                                    utc.minute, utc.second);

@@ -57,6 +57,12 @@ std::optional<double> igc_altitude(std::string_view text) {
     return negative ? -static_cast<double>(*metres) : static_cast<double>(*metres);
 }
 
+// Midnight some days after a date, GPS time; without a date after the first day.
+Nanoseconds midnight_after(const std::optional<UtcTime>& date, int days) {
+    if (!date) return days * Nanoseconds(std::chrono::hours(24));
+    return to_gps_time(midnight_of(*date, days), LeapSeconds::announced()).time_since_epoch();
+}
+
 // FAI/IGC data file standard: technical specification for GNSS flight recorders, appendix A (FEEDS.md 1.10).
 class IgcReader {
 public:
@@ -66,7 +72,7 @@ public:
 private:
     struct Fix {
         TextRow row;
-        std::optional<Nanoseconds> midnight;  // of the last date before it
+        std::optional<UtcTime> date;  // the last one before it
         Nanoseconds of_day{0};
         bool valid = false;
         std::optional<double> gnss_m, pressure_m;
@@ -88,7 +94,7 @@ private:
     std::vector<Fix> fixes_;
     IgcField decimals_, latitude_digits_, longitude_digits_;
     Datum datum_ = Datum::untold;
-    std::optional<Nanoseconds> midnight_;  // of the last date; nothing: none yet
+    std::optional<UtcTime> date_;  // the last one; nothing: none yet
     bool any_valid_ = false, any_gnss_height_ = false;
 };
 
@@ -122,9 +128,8 @@ void IgcReader::take_date(std::string_view line) {
                year = igc_digits(line.substr(at + 4, 2));
     if (!day || !month || !year) return;
     const int full = static_cast<int>(*year) + (*year < 80 ? 2000 : 1900);
-    const auto midnight = utc_since_1980({full, *month, *day, 0, 0, 0, 0});
-    if (!midnight) return;
-    midnight_ = midnight;
+    const UtcTime date{full, *month, *day, 0, 0, 0, 0};
+    if (is_calendar_time(date)) date_ = date;
 }
 
 // "I023636TDS3738LAD": a count, then each first and last column, from 1, and a code.
@@ -170,12 +175,11 @@ void IgcReader::date_fixes() {
         if (!is_kept(fix)) continue;
         const bool somewhere = fix.row.latitude_deg != 0 || fix.row.longitude_deg != 0;
         int its_days = days;
-        if (before && before->midnight != fix.midnight)
+        if (before && before->date != fix.date)
             its_days = 0;
         else if (before && before->of_day - fix.of_day > half_day)
             its_days = std::min(days + 1, most_days);
-        fix.row.time =
-            fix.midnight.value_or(Nanoseconds(0)) + its_days * Nanoseconds(std::chrono::hours(24)) + fix.of_day;
+        fix.row.time = midnight_after(fix.date, its_days) + fix.of_day;
         if (!somewhere) continue;  // which is left out
         days = its_days;
         before = &fix;
@@ -192,7 +196,7 @@ void IgcReader::take_fix(std::string_view line, std::size_t number) {
     const auto time = time_of_day(line);
     if (!time) return track_.leave_out("are damaged", number);
     fix.of_day = *time;
-    fix.midnight = midnight_;
+    fix.date = date_;
     fix.row.latitude_deg = line[14] == 'S' ? -*latitude : *latitude;
     fix.row.longitude_deg = line[23] == 'W' ? -*longitude : *longitude;
     fix.valid = line[24] == 'A';
@@ -228,7 +232,7 @@ Result<void> IgcReader::add_fixes() {
 
 void IgcReader::add_notes() {
     if (fixes_.empty()) return;
-    if (!midnight_) {
+    if (!date_) {
         track_.count_from_start();
         track_.note("no HFDTE record says the date; times count from midnight");
     }

@@ -86,6 +86,9 @@ std::optional<int> zone_minutes(std::string_view text);
 /// The same instant in UTC. The second stays, so that a leap second does.
 /// @param local of a calendar that has its day @param minutes east of UTC
 UtcTime utc_of_local(const UtcTime& local, int minutes);
+/// Midnight of a day of the calendar, some days later or earlier: one with a leap second is longer than the others.
+/// @param day of a calendar that has it; its time of day does not count
+UtcTime midnight_of(const UtcTime& day, int days_later);
 /// ISO 8601 with `decimals` (0 … 9) digits of fraction, cut off and not rounded as a clock shows them, and a final Z.
 std::string format_utc(const UtcTime& utc, int decimals = 3);
 

@@ -264,6 +264,12 @@ TEST(FormatUtc, CutsAndDoesNotRound) {
     EXPECT_EQ(format_utc({2024, 3, 5, 0, 0, 0, 7'000'000}, 2), "2024-03-05T00:00:00.00Z");
 }
 
+TEST(UtcTime, FindsMidnightsByTheCalendar) {
+    EXPECT_EQ(midnight_of({2016, 12, 31, 23, 59, 60, 5}, 1), (UtcTime{2017, 1, 1, 0, 0, 0, 0}));
+    EXPECT_EQ(midnight_of({2024, 3, 1, 12, 0, 0, 0}, -1), (UtcTime{2024, 2, 29, 0, 0, 0, 0}));
+    EXPECT_EQ(midnight_of({2024, 3, 1, 12, 0, 0, 0}, 0), (UtcTime{2024, 3, 1, 0, 0, 0, 0}));
+}
+
 TEST(UtcTime, OrdersByTime) {
     EXPECT_LT((UtcTime{2024, 3, 5, 1, 2, 3, 4}), (UtcTime{2024, 3, 5, 1, 2, 3, 5}));
     EXPECT_LT((UtcTime{2024, 3, 5, 23, 59, 59, 0}), (UtcTime{2024, 3, 6, 0, 0, 0, 0}));

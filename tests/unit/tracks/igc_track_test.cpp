@@ -47,6 +47,16 @@ TEST(IgcTrack, CountsOnOverMidnightAndTakesBothFormsOfTheDate) {
     EXPECT_EQ(utc_of(track, 1), "2024-01-01T00:00:00.000Z");
 }
 
+TEST(IgcTrack, ADayWithALeapSecondIsLonger) {
+    const std::string place = "4730000N00815000EA0048000500\n";
+    const Track track =
+        track_of("HFDTE311216\nHFALG:GEO\nB235959" + place + "B235960" + place + "B000000" + place + "B000001" + place);
+    ASSERT_EQ(track.points.size(), 4u);
+    EXPECT_EQ(utc_of(track, 1), "2016-12-31T23:59:60.000Z");
+    EXPECT_EQ(utc_of(track, 2), "2017-01-01T00:00:00.000Z");
+    EXPECT_EQ(track.points[3].time - track.points[0].time, std::chrono::seconds(3));
+}
+
 TEST(IgcTrack, WhatIsLeftOutMovesNoDate) {
     const std::string place = "4730000N00815000EA0048000500\n";
     const Track track = track_of(igc_head + "B140000" + place + "B0000000000000N00000000EV0000000000\n" +
