@@ -250,7 +250,7 @@ constexpr auto ubx_listing_table = std::to_array<UbxListing>({
     listed<TimVrfy, "tow_s*1e-3 tow_fraction_ns delta_ms delta_ns week flags -reserved">,
     listed<MgaAck, "type version info_code id payload_start">,
     listed_version<SecSig1, "version -reserved jamming_flags -reserved spoofing_flags -reserved", 1>,
-    listed_version<SecSig2, "version flags -reserved centre_frequencies", 2>,
+    listed_version<SecSig2, "version flags -reserved bands[centre_khz jammed]", 2>,
     listed<SecSiglog, "version -reserved events[age_s*1e-3 detection event -reserved]">,
     listed<EsfStatus, "tow_s*1e-3 version -reserved fusion_mode -reserved sensors[status1 status2 rate_hz faults]">,
     listed<HnrPvt,

@@ -116,12 +116,9 @@ std::vector<Bytes> signal_security(const ReportContext& context) {
     SecSig2 m;
     const int jamming = std::clamp(monitors.jamming_state(), 0, jamming_warning);
     m.sig_sec_flags = static_cast<std::uint8_t>((jam_flags & 1) | jamming << 1 | 8 | spoofing << 4);
-    m.centre_frequencies = {1575420, 1227600, 1207140};
-    constexpr std::uint32_t jammed = 1u << 24;
-    if (monitors.upper.jamming_state >= jamming_warning) m.centre_frequencies[0] |= jammed;
-    if (monitors.lower.jamming_state >= jamming_warning)
-        for (std::size_t i = 1; i < m.centre_frequencies.size(); ++i)
-            m.centre_frequencies[i] |= jammed;
+    const std::uint8_t upper = monitors.upper.jamming_state >= jamming_warning ? 1 : 0;
+    const std::uint8_t lower = monitors.lower.jamming_state >= jamming_warning ? 1 : 0;
+    m.bands = {{1575420, upper}, {1227600, lower}, {1207140, lower}};
     return ubx_frames_of(m);
 }
 

@@ -4,7 +4,8 @@
 /// `v(m.a, m.b, …)` for numbers (little-endian; U1 … U8, I1 … I4, R4, R8, X1 …) and std::arrays of them,
 /// `v.count(m.items)` for a U1 that counts what `v.items(m.items)` later writes, `v.rest(m.items, least, most)` for
 /// what fills the payload, `v.if_present(m.optional)` for a tail that older firmware leaves out and
-/// `v.sized(m.value, bytes)` for an integer whose size another field gives. UBX, MSP, MAVLink and SBF use it.
+/// `v.sized(m.value, bytes)` for an integer of three bytes, or whose size another field gives. UBX, MSP, MAVLink and
+/// SBF use it.
 #pragma once
 
 #include <algorithm>

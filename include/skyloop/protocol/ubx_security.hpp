@@ -30,6 +30,18 @@ struct SecSig1 {
     }
 };
 
+/// One band of SEC-SIG version 2.
+struct SecSigBand {
+    std::uint64_t centre = 0;  ///< kHz, 24 bits
+    std::uint8_t jammed = 0;   ///< bits: 0 jammed
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v.sized(m.centre, 3);
+        v(m.jammed);
+    }
+};
+
 /// SEC-SIG version 2: jamming by band, and spoofing (RECEIVER.md 3.2).
 struct SecSig2 {
     static constexpr UbxMessageId message_id{0x27, 0x09};
@@ -37,13 +49,13 @@ struct SecSig2 {
     std::uint8_t sig_sec_flags =
         0;  ///< bits: 0 jamming detection on, 1-2 jamming state, 3 spoofing detection on, 4-6 spoofing state
     std::uint8_t reserved0 = 0;
-    std::vector<std::uint32_t> centre_frequencies;  ///< bits: 0-23 kHz, 24 jammed
+    std::vector<SecSigBand> bands;
 
     template <class M, class V>
     static void fields(M& m, V& v) {
         v(m.version, m.sig_sec_flags, m.reserved0);
-        v.count(m.centre_frequencies);
-        v.items(m.centre_frequencies);
+        v.count(m.bands);
+        v.items(m.bands);
     }
 };
 

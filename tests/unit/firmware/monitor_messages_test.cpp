@@ -170,7 +170,14 @@ TEST(SecSigMessage, TellsJammingAndSpoofing) {
     EXPECT_EQ(m10.report<SecSiglog>().events.size(), 2u);
     m10.board.identity.hardware = "000B0000";
     EXPECT_EQ(m10.report<SecSig2>().sig_sec_flags, 0x2D);
-    EXPECT_EQ(m10.report<SecSig2>().centre_frequencies[0], 1575420u | 1u << 24);
+    const SecSig2 by_band = m10.report<SecSig2>();
+    ASSERT_EQ(by_band.bands.size(), 3u);
+    EXPECT_EQ(by_band.bands[0].centre, 1575420u);
+    EXPECT_EQ(by_band.bands[0].jammed, 1);
+    EXPECT_EQ(by_band.bands[1].jammed, 0);
+    // Bits 0 to 23 the frequency, kHz, bit 24 jammed (RECEIVER.md 3.2).
+    const Bytes payload = encode_payload(by_band);
+    EXPECT_EQ(payload[4] | payload[5] << 8 | payload[6] << 16 | payload[7] << 24, 1575420 | 1 << 24);
     m10.state.monitors = {{1, 14, 4200, 69}, {}, AntennaStatus::ok, 1, SpoofingIndication::none};
     EXPECT_TRUE(m10.report<SecSiglog>().events.empty());
 }

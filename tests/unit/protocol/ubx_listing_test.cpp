@@ -49,9 +49,10 @@ TEST(UbxListing, TheVersionTellsTheFormsOfSecSigApart) {
     EXPECT_EQ(listing_of(old), "UBX SEC-SIG version=1 jamming_flags=3 spoofing_flags=0");
     SecSig2 modern;
     modern.sig_sec_flags = 9;
-    modern.centre_frequencies = {1575420, 1227600};
+    modern.bands = {{1575420, 1}, {1227600, 0}};
     EXPECT_EQ(encode_payload(modern).size(), encode_payload(old).size());
-    EXPECT_EQ(listing_of(modern), "UBX SEC-SIG version=2 flags=9 centre_frequencies=[1575420 1227600]");
+    EXPECT_EQ(listing_of(modern),
+              "UBX SEC-SIG version=2 flags=9 bands=[{centre_khz=1575420 jammed=1} {centre_khz=1227600 jammed=0}]");
 }
 
 TEST(UbxListing, ScalesNeedNotBePowersOfTen) {

@@ -59,7 +59,7 @@ TEST(UbxMessages, HaveTheSizesOfTheirBlocks) {
     EXPECT_EQ(wire_size(MonComms{.ports = {2, MonCommsItem{}}}), 8u + 40 * 2);
     EXPECT_EQ(wire_size(MonIo{.ports = {2, MonIoItem{}}}), 20u * 2);
     EXPECT_EQ(wire_size(MonPatch{.patches = {2, MonPatchItem{}}}), 4u + 16 * 2);
-    EXPECT_EQ(wire_size(SecSig2{.centre_frequencies = {1575420, 1227600}}), 4u + 4 * 2);
+    EXPECT_EQ(wire_size(SecSig2{.bands = {2, SecSigBand{}}}), 4u + 4 * 2);
     EXPECT_EQ(wire_size(SecSiglog{.events = {2, SecSiglogItem{}}}), 8u + 8 * 2);
 }
 
