@@ -15,7 +15,7 @@ std::size_t places_in(const ReceiverLog& log) {
         log.epochs.begin(), log.epochs.end(), [](const LogEpoch& epoch) { return epoch.place && !epoch.is_lost(); }));
 }
 
-// UBX, which tells more, unless a few polled messages stand in a log of NMEA. It is told.
+// UBX, which tells more, unless a few polled messages stand in a log of NMEA, or NMEA alone tells a date. It is told.
 Result<ReceiverLog> log_of_more(UbxEpochs& ubx, NmeaEpochs& nmea, const std::string& name) {
     constexpr std::size_t many_more = 2;
     const bool solves = ubx.has_solutions();
@@ -28,7 +28,8 @@ Result<ReceiverLog> log_of_more(UbxEpochs& ubx, NmeaEpochs& nmea, const std::str
     }
     if (!of_nmea) return of_ubx;
     const std::size_t ubx_places = places_in(of_ubx), nmea_places = places_in(*of_nmea);
-    const bool take_nmea = nmea_places > many_more * ubx_places;
+    const bool dates_it = of_nmea->dated && !of_ubx.dated && nmea_places > 0;
+    const bool take_nmea = dates_it || nmea_places > many_more * ubx_places;
     ReceiverLog& taken = take_nmea ? *of_nmea : of_ubx;
     if (take_nmea && !of_ubx.board.empty()) taken.receiver = of_ubx.receiver, taken.board = of_ubx.board;
     if (take_nmea || nmea_places > ubx_places)
@@ -43,7 +44,7 @@ Result<ReceiverLog> log_of_more(UbxEpochs& ubx, NmeaEpochs& nmea, const std::str
 Result<ReceiverLog> read_stream_log(ByteSpan bytes, const std::string& name, const LogReading& reading) {
     constexpr std::size_t chunk = 65536;
     StreamSplitter splitter;
-    UbxEpochs ubx;
+    UbxEpochs ubx(reading);
     NmeaEpochs nmea(reading);
     const auto take = [&](const std::vector<StreamPiece>& pieces) {
         for (const StreamPiece& piece : pieces) {

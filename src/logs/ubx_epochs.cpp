@@ -1,6 +1,7 @@
 #include "ubx_epochs.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "skyloop/protocol/nmea_satellites.hpp"
 #include "skyloop/protocol/ubx_inertial.hpp"
@@ -218,44 +219,42 @@ void UbxEpochs::take_version(const UbxFrameView& frame) {
     log_.board = board_of_version(text_of(version->hw_version), texts);
 }
 
-std::optional<std::int64_t> UbxEpochs::week_of_epoch() {
-    if (epoch_->week)
-        week_ = epoch_->week;
-    else if (week_ && epoch_->itow_ms + ubx_week_ms / 2 < last_itow_ms_)
-        ++*week_;
+// Receivers that do not know the week say 0.
+void UbxEpochs::count_week() {
+    if (epoch_->week) {
+        week_told_ = *epoch_->week > 0;
+        week_ = week_told_ ? *epoch_->week : 0;
+    } else if (epoch_->itow_ms + ubx_week_ms / 2 < last_itow_ms_) {
+        ++week_;
+    }
     last_itow_ms_ = epoch_->itow_ms;
-    return week_;
 }
 
 void UbxEpochs::finish_epoch() {
     if (!epoch_) return;
-    const auto week = week_of_epoch();
+    count_week();
     const bool with_place = epoch_->precise || epoch_->pvt || epoch_->llh || epoch_->sol;
     const bool told = epoch_->of_pvt || epoch_->of_sol || epoch_->of_status;
     if (epoch_->solution || with_place || told) {
         ++solutions_;
-        if (!week || *week <= 0) {
-            ++undated_;
-        } else {
-            LogEpoch done;
-            done.time = to_gps_time({*week, std::chrono::milliseconds(epoch_->itow_ms)});
-            done.place = epoch_->precise ? epoch_->precise
-                         : epoch_->pvt   ? epoch_->pvt
-                         : epoch_->llh   ? epoch_->llh
-                                         : epoch_->sol;
-            done.type = epoch_->of_pvt   ? *epoch_->of_pvt
-                        : epoch_->of_sol ? *epoch_->of_sol
-                                         : epoch_->of_status.value_or(with_place ? FixType::fix_3d : FixType::none);
-            if (!done.is_lost() && !done.place) ++placeless_;
-            if (done.type == FixType::none || done.type == FixType::time_only) done.place.reset();
-            if (done.place) done.velocity = epoch_->velocity, done.attitude = epoch_->attitude;
-            done.satellites_used = epoch_->used;
-            done.horizontal_accuracy = epoch_->h_acc;
-            done.vertical_accuracy = epoch_->v_acc;
-            done.lists_satellites = epoch_->lists;
-            done.satellites = std::move(epoch_->satellites);
-            log_.epochs.push_back(std::move(done));
-        }
+        LogEpoch done;
+        done.time = to_gps_time({week_, std::chrono::milliseconds(epoch_->itow_ms)});
+        done.place = epoch_->precise ? epoch_->precise
+                     : epoch_->pvt   ? epoch_->pvt
+                     : epoch_->llh   ? epoch_->llh
+                                     : epoch_->sol;
+        done.type = epoch_->of_pvt   ? *epoch_->of_pvt
+                    : epoch_->of_sol ? *epoch_->of_sol
+                                     : epoch_->of_status.value_or(with_place ? FixType::fix_3d : FixType::none);
+        done.satellites_used = epoch_->used;
+        done.horizontal_accuracy = epoch_->h_acc;
+        done.vertical_accuracy = epoch_->v_acc;
+        done.lists_satellites = epoch_->lists;
+        done.satellites = std::move(epoch_->satellites);
+        if (!done.is_lost() && !done.place) ++placeless_;
+        if (done.type == FixType::none || done.type == FixType::time_only) done.place.reset();
+        if (done.place) done.velocity = epoch_->velocity, done.attitude = epoch_->attitude;
+        (week_told_ ? log_.epochs : weekless_).push_back(std::move(done));
     }
     epoch_.reset();
 }
@@ -263,7 +262,9 @@ void UbxEpochs::finish_epoch() {
 ReceiverLog UbxEpochs::finish() {
     finish_epoch();
     log_.format = "UBX";
-    add_note(log_, undated_, "epochs before the receiver knew the week were left out");
+    log_.dated = !for_track_ || !log_.epochs.empty();
+    if (!log_.dated) log_.epochs = std::exchange(weekless_, {});
+    add_note(log_, weekless_.size(), "epochs before the receiver knew the week were left out");
     add_note(log_, senseless_, "messages of a wrong length or time of week were left out");
     add_note(log_, placeless_, "epochs have a fix and no sensible place");
     return std::move(log_);

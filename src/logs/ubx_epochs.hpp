@@ -7,9 +7,10 @@
 namespace skyloop {
 
 /// Takes frames one after the other. Messages of one time of week are one epoch; its week is the one they say, or the
-/// one counted on from the epoch before.
+/// one counted on from the epoch before. Where none says a week, a track counts from the beginning of its first one.
 class UbxEpochs {
 public:
+    explicit UbxEpochs(const LogReading& reading) : for_track_(reading.for_track) {}
     void take(const UbxFrameView& frame);
     /// Everything, as a log; finish_log() has not been called on it.
     ReceiverLog finish();
@@ -36,13 +37,16 @@ private:
     void take_version(const UbxFrameView& frame);
     Epoch& epoch_at(std::uint32_t itow_ms);
     void finish_epoch();
-    std::optional<std::int64_t> week_of_epoch();
+    void count_week();
 
+    bool for_track_;
     ReceiverLog log_;
+    std::vector<LogEpoch> weekless_;
     std::optional<Epoch> epoch_;
-    std::optional<std::int64_t> week_;
+    std::int64_t week_ = 0;  // counted from the first epoch on until one is told
+    bool week_told_ = false;
     std::uint32_t last_itow_ms_ = 0;
-    std::size_t solutions_ = 0, undated_ = 0, senseless_ = 0, placeless_ = 0;
+    std::size_t solutions_ = 0, senseless_ = 0, placeless_ = 0;
 };
 
 }  // namespace skyloop

@@ -36,8 +36,11 @@ Result<Track> read_ubx_track(const TrackFile& file) {
     Track track;
     track.name = file.name;
     track.format = log->format;
-    track.origin = GpsTime{};
     track.notes = std::move(log->notes);
+    if (log->dated)
+        track.origin = GpsTime{};
+    else
+        track.notes.emplace_back("no week in it (no NAV-PVT, NAV-SOL or NAV-TIMEGPS); times count from its first week");
     std::size_t placeless = 0, standing = 0, reckoned = 0, flat = 0;
     for (const LogEpoch& epoch : log->epochs) {
         if (!epoch.place) {

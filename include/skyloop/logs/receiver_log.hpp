@@ -57,7 +57,7 @@ struct ReceiverLog {
     std::string receiver;  ///< what the log says of the receiver; may be empty
     std::string board;     ///< the profile that this suggests; empty: none
     std::vector<LogEpoch> epochs;
-    bool dated = true;               ///< false: no date in it, and the first epoch is of the day 1980-01-06
+    bool dated = true;               ///< false: no date in it, and the first epoch is of the day, or week, 1980-01-06
     std::vector<std::string> notes;  ///< what was left out and why, a sentence each
 };
 
@@ -65,8 +65,8 @@ struct ReceiverLog {
 struct LogReading {
     const Geoid* geoid = nullptr;  ///< for heights above sea level where the log does not tell the undulation
     std::size_t receiver = 0;      ///< of several in one log, from 0
-    /// The way alone is wanted: NMEA without a date is read too, no note tells of heights, and UBX and NMEA epochs are
-    /// not put in order, which clean_track() does.
+    /// The way alone is wanted: NMEA without a date and UBX without a week are read too, no note tells of heights, and
+    /// UBX and NMEA epochs are not put in order, which clean_track() does.
     bool for_track = false;
 };
 
