@@ -23,6 +23,18 @@ std::optional<std::size_t> binary_byte(std::string_view head) {
     return at == head.end() ? std::nullopt : std::optional(static_cast<std::size_t>(at - head.begin()));
 }
 
+// Flexible and Interoperable Data Transfer protocol, "FIT File Header": data type, bytes 8 to 11.
+bool is_fit(std::string_view head) { return head.size() >= 12 && head.substr(8, 4) == ".FIT"; }
+
+// RFC 7946; writers put "type" first or last.
+bool is_geojson(std::string_view head) {
+    constexpr std::array<std::string_view, 4> words{"\"FeatureCollection\"", "\"Feature\"", "\"LineString\"",
+                                                    "\"coordinates\""};
+    return trimmed_cell(head).starts_with('{') && std::any_of(words.begin(), words.end(), [&](std::string_view word) {
+               return head.find(word) != std::string_view::npos;
+           });
+}
+
 bool is_rinex(std::string_view head) {
     constexpr std::size_t label_column = 60;
     const std::string_view line = head.substr(0, head.find_first_of("\r\n"));
@@ -51,9 +63,14 @@ bool has_unchecked_sentences(std::string_view head) {
 // What the file is, and what was expected; empty: a table, for all that is known.
 std::string what_it_is(std::string_view head) {
     if (is_utf16(head)) return "is text in UTF-16; expected UTF-8, which iconv -f UTF-16 -t UTF-8 makes of it";
+    if (is_fit(head))
+        return "is a FIT file; expected GPX or KML, which gpsbabel makes of it: " + gpsbabel_command("garmin_fit");
     if (const auto at = binary_byte(head))
         return fmt::format("is not text (byte {:#04x} at offset {}) and no log that is known; expected a track",
                            static_cast<unsigned char>(head[*at]), *at);
+    if (is_geojson(head))
+        return "is GeoJSON; expected GPX or KML. gpsbabel makes a route of it, without times and heights: " +
+               gpsbabel_command("geojson");
     if (is_rinex(head)) return "is a RINEX file, which holds no track; skyloop solve makes fixes of RINEX observations";
     if (has_unchecked_sentences(head))
         return "holds NMEA sentences without a checksum, which are not read; expected …*hh behind each";
@@ -63,6 +80,10 @@ std::string what_it_is(std::string_view head) {
 }
 
 }  // namespace
+
+std::string gpsbabel_command(std::string_view format) {
+    return fmt::format("gpsbabel -t -i {} -f FILE -o gpx,gpxver=1.0 -F track.gpx", format);
+}
 
 bool is_other_file(const TrackFile& file) { return !what_it_is(file.text.substr(0, other_looked_at)).empty(); }
 

@@ -38,10 +38,10 @@ bool is_kmz(const TrackFile& file) { return file.text.starts_with("PK\x03\x04");
 bool is_other_xml(const TrackFile& file) { return !xml_root_name(file.text).empty(); }
 
 Result<Track> refuse_xml(const TrackFile& file) {
-    return fail(ErrorCode::input,
-                fmt::format("{}: XML whose root is <{}>; expected <gpx> or <kml>, which gpsbabel makes of most others: "
-                            "gpsbabel -t -i FORMAT -f FILE -o gpx,gpxver=1.0 -F track.gpx",
-                            file.name, one_line_of(std::string(xml_root_name(file.text)))));
+    return fail(
+        ErrorCode::input,
+        fmt::format("{}: XML whose root is <{}>; expected <gpx> or <kml>, which gpsbabel makes of most others: {}",
+                    file.name, one_line_of(std::string(xml_root_name(file.text))), gpsbabel_command("FORMAT")));
 }
 
 constexpr TrackFormat formats[] = {

@@ -40,5 +40,7 @@ Result<Track> refuse_flight_log(const TrackFile& file);
 // A file that is known to hold no track, whatever a reader of tables would find in it.
 bool is_other_file(const TrackFile& file);
 Result<Track> refuse_other_file(const TrackFile& file);
+// How a track of another format becomes one that is read. @param format as gpsbabel calls it
+std::string gpsbabel_command(std::string_view format);
 
 }  // namespace skyloop

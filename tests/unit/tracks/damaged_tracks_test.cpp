@@ -76,6 +76,13 @@ TEST(DamagedTracks, FilesThatAreNoTracksAreRefusedByWhatTheyAre) {
     EXPECT_THAT(refused({"\xFF\xFEt\0_\0s\0", 8}), testing::HasSubstr("UTF-16"));
     EXPECT_THAT(refused({"t_s,\0\1", 6}), testing::HasSubstr("is not text (byte 0x00 at offset 4)"));
     EXPECT_THAT(refused("t_s,lat_deg,lon_deg,h_ell_m\r0,47,8,500\r"), testing::HasSubstr("end in CR alone"));
+    EXPECT_THAT(refused({"\x0E\x10\x11\x08\xDD\x05\0\0.FIT\xCD\xD0", 14}),
+                testing::HasSubstr("is a FIT file; expected GPX or KML, which gpsbabel makes of it: gpsbabel -t -i "
+                                   "garmin_fit -f FILE -o gpx,gpxver=1.0 -F track.gpx"));
+    for (const char* const geojson :
+         {R"({"type": "Feature", "properties": {"coordTimes": ["2024-03-05T12:00:00Z"]}, "geometry": {}})",
+          "{\n\"features\": [{\"geometry\": {\"coordinates\": [[8.5, 47.5, 500]]"})
+        EXPECT_THAT(refused(geojson), testing::HasSubstr("is GeoJSON")) << geojson;
 }
 
 TEST(DamagedTracks, AMarkOfTheByteOrderIsPassedOver) {
