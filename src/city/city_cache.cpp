@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int meaning_version = 13;  // of what readers make of a file; one more when any of them makes something else
+constexpr int meaning_version = 14;  // of what readers make of a file; one more when any of them makes something else
 
 std::uint64_t cache_key(std::uint64_t source, const CityFileSettings& s) {
     std::string text = fmt::format("{} {:016x} {} {} {} {} {}", meaning_version, source, s.metres_per_unit, s.material,

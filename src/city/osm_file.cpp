@@ -8,7 +8,6 @@
 #include <osmium/osm/way.hpp>
 #include <osmium/thread/pool.hpp>
 #include <unordered_map>
-#include <unordered_set>
 
 #include "city_text.hpp"
 #include "osm_text.hpp"
@@ -45,6 +44,7 @@ private:
     [[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> ring_of(const NodeList& nodes) const;
     [[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> rings_of(
         const std::vector<osmium::object_id_type>& members);
+    void drop_repeating_borders();
     void add_area(const Area& area);
 
     const CityFileSettings& settings_;
@@ -174,6 +174,34 @@ std::vector<std::vector<Eigen::Vector2d>> OsmReader::rings_of(const std::vector<
     return rings;
 }
 
+/// Whether a border would fill what its area leaves open: the clearings of a wood, the courtyards of a building as
+/// tall.
+bool repeats(const OutlineUse& border, const OutlineUse& area, bool with_courtyards) {
+    if (border.kind != area.kind) return false;
+    if (area.kind == OutlineUse::Kind::trees) return true;
+    return with_courtyards && border.base == area.base && border.canopy == area.canopy &&
+           (!border.top || !area.top || *border.top == *area.top);
+}
+
+/// Tags on a multipolygon's outer way that say again what its relation says are a known mistake of mappers
+/// (osmlab/fixing-polygons-in-osm, issue 38).
+void OsmReader::drop_repeating_borders() {
+    std::size_t buildings = 0;
+    for (auto& [id, area] : areas_)
+        for (const auto member : area.outer) {
+            const auto border = ways_.find(member);
+            if (border == ways_.end() || !border->second.use) continue;
+            if (!repeats(*border->second.use, area.use, !area.inner.empty())) continue;
+            inherit(area.use, *border->second.use);
+            border->second.use.reset();
+            if (area.use.kind != OutlineUse::Kind::trees) ++buildings;
+        }
+    if (buildings > 0)
+        found_.warnings.push_back(fmt::format(
+            "{} outer ways repeat the building of their multipolygon: left out, so that its courtyards stay open",
+            buildings));
+}
+
 void OsmReader::add_area(const Area& area) {
     const auto outers = rings_of(area.outer);
     auto inners = rings_of(area.inner);
@@ -190,12 +218,9 @@ void OsmReader::add_area(const Area& area) {
 
 Outlines OsmReader::outlines() {
     found_.system = {CoordinateKind::geographic, false, "EPSG:4326", 4326};
-    // The border of a wood that is named a wood, too, would fill its clearings.
-    std::unordered_set<osmium::object_id_type> borders;
-    for (const auto& [id, area] : areas_)
-        if (area.use.kind == OutlineUse::Kind::trees) borders.insert(area.outer.begin(), area.outer.end());
+    drop_repeating_borders();
     for (const auto& [id, way] : ways_) {
-        if (!way.use || (way.use->kind == OutlineUse::Kind::trees && borders.contains(id))) continue;
+        if (!way.use) continue;
         if (auto ring = ring_of(way.nodes))
             found_.outlines.push_back({{std::move(*ring), {}}, *way.use});
         else

@@ -86,12 +86,6 @@ private:
     std::vector<std::size_t> wide_;
 };
 
-/// What a part does not tell is that of the building it lies in.
-void inherit(OutlineUse& part, const OutlineUse& whole) {
-    if (!part.top && whole.top && *whole.top > part.base) part.top = whole.top;
-    if (part.material.empty()) part.material = whole.material;
-}
-
 /// Lets parts inherit. @returns true for each outline whose parts cover at least half of it
 std::vector<bool> outlines_of_parts(std::vector<Outline>& outlines) {
     std::vector<double> covered(outlines.size());
@@ -223,6 +217,11 @@ void add_outline_warnings(CityFile& file, std::size_t without_height, const City
 }
 
 }  // namespace
+
+void inherit(OutlineUse& use, const OutlineUse& from) {
+    if (!use.top && from.top && *from.top > use.base) use.top = from.top;
+    if (use.material.empty()) use.material = from.material;
+}
 
 void turn_longitudes(Footprint& footprint, LongitudeTurn& turn) {
     for (Eigen::Vector2d& point : footprint.outer)

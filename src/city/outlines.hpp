@@ -30,6 +30,8 @@ enum class UnnamedOutline {
     house        ///< a building unless the tags are of another thing and tell no height
 };
 OutlineUse outline_use(const OutlineTags& tags, const CityFileSettings& settings, UnnamedOutline unnamed);
+/// Of what an outline does not tell takes what another does: a part from its building, an area from its border.
+void inherit(OutlineUse& use, const OutlineUse& from);
 /// True when tags tell buildings from other things.
 bool tells_buildings(const OutlineTags& tags);
 

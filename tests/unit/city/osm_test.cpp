@@ -193,6 +193,32 @@ TEST(OpenStreetMap, ABorderThatIsNamedAWoodTooKeepsTheGladesOpen) {
     EXPECT_EQ(lake->model.foliage[0].ring.size(), 4u) << "of another thing the border says nothing";
 }
 
+TEST(OpenStreetMap, ABorderThatIsNamedTheSameBuildingKeepsTheCourtyardOpen) {
+    const auto read = [](std::string_view tags_of_way, std::string_view tags_of_relation) {
+        auto file = read_osm(osm_file(
+            osm_way(1, {1, 2, 3, 4, 1}, std::string(tags_of_way) + osm_tags({{"building", "yes"}})) +
+            osm_way(3, {5, 6, 7, 8, 5}) +
+            R"(<relation id="1"><member type="way" ref="1" role="outer"/><member type="way" ref="3" role="inner"/>)" +
+            osm_tags({{"type", "multipolygon"}, {"building", "yes"}}) + std::string(tags_of_relation) + "</relation>"));
+        EXPECT_TRUE(file) << file.error().message;
+        return file ? std::move(*file) : CityFile{};
+    };
+    const std::string tall = osm_tags({{"height", "18"}}), brick = osm_tags({{"building:material", "brick"}});
+    for (const auto& [way, relation] : {std::pair(tall, tall), std::pair(tall, brick), std::pair(brick, tall)}) {
+        const CityFile file = read(way, relation);
+        EXPECT_EQ(file.buildings, 1U);
+        EXPECT_NEAR(roof_area(file.model), square_area(0.001) - square_area(0.0005), 0.5);
+        EXPECT_NEAR(highest_of(file.model).z(), 18, 0.01);
+        EXPECT_THAT(file.warnings, ::testing::ElementsAre(HasSubstr("1 outer ways repeat the building")));
+    }
+    EXPECT_EQ(read(brick, tall).model.materials.back(), "brick");
+    for (const char* other : {"5", "30"}) {
+        const CityFile plinth = read(osm_tags({{"height", other}}), tall);
+        EXPECT_EQ(plinth.buildings, 2U) << "a house of its own";
+        EXPECT_THAT(plinth.warnings, ::testing::IsEmpty());
+    }
+}
+
 TEST(OpenStreetMap, DropsOpenAndCutOutlinesAndSaysSo) {
     const auto building = osm_tags({{"building", "yes"}, {"height", "10"}});
     const auto file = read_osm(osm_file(osm_way(1, {1, 2, 3, 4, 1}, building) + osm_way(2, {1, 2, 3, 4}, building) +
