@@ -25,11 +25,17 @@ SvgPoint sky_point(Angle azimuth, Angle elevation) {
     return {sky_centre.x + r * std::sin(azimuth.rad()), sky_centre.y - r * std::cos(azimuth.rad())};
 }
 
-// Radius of a mark: 20 dB-Hz and less is small, 50 and more is large, unknown is in between.
-double mark_radius(const std::optional<DbHz>& cn0) {
+bool tells_cn0(const std::vector<SkyPlotSatellite>& satellites) {
+    return std::any_of(satellites.begin(), satellites.end(),
+                       [](const SkyPlotSatellite& s) { return s.cn0.has_value(); });
+}
+
+// Radius of a mark: 20 dB-Hz and less is small, 50 and more is large. Of a satellite without a C/N0 nothing arrives
+// where others have one; where none has, all are in between.
+double mark_radius(const std::optional<DbHz>& cn0, bool with_cn0) {
     constexpr double smallest = 4.5;
     constexpr double largest = 9.5;
-    if (!cn0) return 7;
+    if (!cn0) return with_cn0 ? smallest : 7;
     return smallest + (largest - smallest) * std::clamp((cn0->value() - 20) / 30, 0.0, 1.0);
 }
 
@@ -156,16 +162,17 @@ std::string satellite_tooltip(const SkyPlotSatellite& s) {
 }
 
 void draw_satellites(SvgDocument& svg, const std::vector<SkyPlotSatellite>& satellites) {
+    const bool with_cn0 = tells_cn0(satellites);
     LabelPlacement labels;
     labels.keep_inside(sky_centre, sky_plot_radius + 4);
     for (const SkyPlotSatellite& s : satellites) {
-        const double r = mark_radius(s.cn0);
+        const double r = mark_radius(s.cn0, with_cn0);
         const SvgPoint p = sky_point(s.azimuth, s.elevation);
         labels.block({p.x - r, p.y - r, 2 * r, 2 * r});
         draw_trail(svg, s);
     }
     for (const SkyPlotSatellite& s : satellites) {
-        const double r = mark_radius(s.cn0);
+        const double r = mark_radius(s.cn0, with_cn0);
         const SvgPoint p = sky_point(s.azimuth, s.elevation);
         const std::string name = to_string(s.id);
         svg.begin_group("satellite", satellite_tooltip(s));
@@ -234,7 +241,7 @@ void draw_state_legend(SvgDocument& svg, bool with_cn0) {
     row.label("unhealthy", 2 * radius);
     if (!with_cn0) return;
     for (const double cn0 : {20.0, 35.0, 50.0}) {
-        const double r = mark_radius(DbHz(cn0));
+        const double r = mark_radius(DbHz(cn0), with_cn0);
         svg.circle(row.mark_place(r), r, {.fill = style::unhealthy});
         row.label(cn0 < 50 ? fmt::format("{:.0f}", cn0) : fmt::format("{:.0f} dB-Hz", cn0), 2 * r);
     }
@@ -244,8 +251,7 @@ void draw_legend(SvgDocument& svg, const SkyPlot& plot, const std::vector<SkyPlo
     if (shows_buildings_alone(plot)) return;
     svg.begin_group("legend");
     draw_system_legend(svg, plot, satellites);
-    draw_state_legend(svg, std::any_of(satellites.begin(), satellites.end(),
-                                       [](const SkyPlotSatellite& s) { return s.cn0.has_value(); }));
+    draw_state_legend(svg, tells_cn0(satellites));
     svg.end_group();
 }
 

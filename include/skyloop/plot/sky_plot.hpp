@@ -16,7 +16,7 @@ struct SkyPlotSatellite {
     SatelliteId id;
     Angle azimuth;
     Angle elevation;
-    std::optional<DbHz> cn0;               ///< the size of the mark
+    std::optional<DbHz> cn0;               ///< the size of the mark: the smallest where others alone have one
     bool used = true;                      ///< a full mark, else a hollow one
     bool healthy = true;                   ///< else grey and crossed out
     std::optional<Reception> reception{};  ///< in a city: decides the colour

@@ -102,6 +102,15 @@ TEST(SkyPlot, a_stronger_signal_is_a_larger_mark) {
     EXPECT_THAT(sky_plot_svg(plot), HasSubstr(place + " r=\"9.5\""));
 }
 
+TEST(SkyPlot, a_satellite_without_a_signal_is_the_smallest_mark) {
+    SkyPlot plot = empty_sky();
+    plot.satellites = {drawn(1, 90, 45), drawn(2, 270, 45)};
+    const std::string silent = mark_at(sky_plot_centre_x + sky_plot_radius / 2, sky_plot_centre_y);
+    EXPECT_THAT(sky_plot_svg(plot), HasSubstr(silent + " r=\"7\"")) << "no size tells of a C/N0";
+    plot.satellites[1].cn0 = DbHz(25);
+    EXPECT_THAT(sky_plot_svg(plot), HasSubstr(silent + " r=\"4.5\""));
+}
+
 TEST(SkyPlot, leaves_out_what_is_below_the_horizon_or_not_a_number) {
     SkyPlot plot = empty_sky();
     plot.satellites = {drawn(1, 90, -0.1), drawn(2, std::numeric_limits<double>::quiet_NaN(), 10),
