@@ -50,7 +50,9 @@ Result<World> make_world(const Scenario& asked, const SkyOptions& options, const
     warnings.insert(warnings.end(), loaded->warnings.begin(), loaded->warnings.end());
     if (loaded->scene) {
         stand_on_ground(scenario, *loaded->scene, options.run.at);
-        if (const auto place = scene_start(scenario, start))
+        // The antennas of a map stand on the ground, wherever the trajectory starts.
+        const bool map = !options.grid.empty();
+        if (const auto place = scene_start(scenario, start); place && !map)
             if (auto doubt = doubt_of_height(*loaded->scene, *place)) warnings.push_back(std::move(*doubt));
     }
     for (const std::string& warning : warnings)

@@ -79,6 +79,15 @@ class Maps(unittest.TestCase):
         for show in ("los", "satellites", "hdop", "fix", "error"):
             xml.fromstring(skyloop("sky", *GRID, "--grid-size", 6, "--format", "svg", "--show", show).stdout)
 
+    def test_have_no_antenna_at_a_doubtful_height(self):
+        with open_folder() as folder:
+            walls = pathlib.Path(folder, "walls.obj")
+            walls.write_text("v 0 10 503\nv 50 10 503\nv 50 10 523\nv 0 10 523\nf 1 2 3 4\n", encoding="ascii")
+            doubt = "below the lowest point of the scene"
+            here = ["--scene", walls, *GRID[4:], "--format", "csv"]
+            self.assertIn(doubt, skyloop("sky", "--at", "46.4775,30.7326,0", *here).stderr)
+            self.assertNotIn(doubt, skyloop("sky", *GRID[:2], "--grid-size", 3, *here).stderr)
+
     def test_refuse_what_cannot_be(self):
         for arguments, word in [(["--grid", "1,2,3"], "found 3 values"),
                                 (["--grid", "0,0,1,1", "--step", 0.5], "at most 100 km"),
