@@ -147,9 +147,10 @@ std::string PlaceOnEarth::doubt_of_map(const CityFileSettings& settings) const {
     const std::string_view origin =
         settings.origin ? settings.origin_is_guess ? ", which is a guess," : " as given" : "";
     const bool told = settings.origin && !settings.origin_is_guess;
+    const bool beside = settings.anchor && settings.anchor->system == anchor_->system;
     return fmt::format("coordinates are projected ({}): the frame's origin{} is at {:.3f}, {:.3f}, {:.3f} of the {}{}",
                        anchor_->system, origin, anchor_->east, anchor_->north, ground_,
-                       settings.anchor ? "map, as for the file before" : "file",
+                       beside ? "map, as for the file before" : "file",
                        told ? "" : "; its place on Earth is not known: give an origin");
 }
 

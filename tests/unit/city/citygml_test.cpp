@@ -211,6 +211,20 @@ TEST(CityGml, FilesOfOneMapLieBesideEachOther) {
     }
 }
 
+TEST(CityGml, AFileOfAnotherMapIsNotSaidToLieBesideTheFirst) {
+    const auto first = read_citygml(gml_file(square_roof(691550, 5334730, 20), "EPSG:28992"));
+    ASSERT_TRUE(first) << first.error().message;
+    CityFileSettings beside;
+    beside.origin = first->model.origin;
+    beside.anchor = first->anchor;
+    for (const auto& [system, of] :
+         {std::pair("EPSG:28992", "of the map, as for the file before"), std::pair("EPSG:31468", "of the file")}) {
+        const auto second = read_citygml(gml_file(square_roof(692150, 5334730, 27), system), beside);
+        ASSERT_TRUE(second) << second.error().message;
+        EXPECT_THAT(second->warnings, ::testing::Contains(::testing::AllOf(HasSubstr(system), HasSubstr(of))));
+    }
+}
+
 /// The grid that the build made; where the machine has no proj-data there is none.
 class CityHeightsTest : public ::testing::Test {
 protected:
