@@ -85,9 +85,9 @@ Result<CityFile> parse_xml(std::string_view text, const fs::path& path, const Ci
                             name, shown(root)));
 }
 
-// True when a "type" of the document is CityJSON or CityJSONFeature.
-bool is_cityjson(std::string_view text) {
-    constexpr std::string_view value = "\"CityJSON";
+// True when the text of a "type" of the document begins so.
+bool tells_type(std::string_view text, std::string_view beginning) {
+    const std::string value = fmt::format("\"{}", beginning);
     for (std::size_t at = text.find(value); at != std::string_view::npos; at = text.find(value, at + 1)) {
         const std::string_view before = text.substr(0, at);
         const std::size_t colon = before.find_last_not_of(" \t\r\n");
@@ -96,6 +96,13 @@ bool is_cityjson(std::string_view text) {
         if (key != std::string_view::npos && before.substr(0, key + 1).ends_with("\"type\"")) return true;
     }
     return false;
+}
+
+// True when a second line begins a value of its own and there are features: a text sequence.
+bool is_cityjson_sequence(std::string_view text) {
+    const std::string_view further = text.substr(std::min(text.find('\n'), text.size()));
+    const std::size_t begin = further.find_first_not_of(" \t\r\n\x1E");
+    return begin != std::string_view::npos && further[begin] == '{' && tells_type(further, "CityJSONFeature");
 }
 
 using Parser = Result<CityFile> (*)(std::string_view, const fs::path&, const CityFileSettings&);
@@ -114,8 +121,12 @@ Result<CityFile> parse_gltf_file(std::string_view bytes, const fs::path& path, c
     return with_companions(
         parse_gltf_with(bytes, path.string(), settings, files_of_folder(path.parent_path(), opened, settings)), opened);
 }
+Result<CityFile> parse_any_cityjson(std::string_view text, const fs::path& path, const CityFileSettings& settings) {
+    return (is_cityjson_sequence(text) ? parse_cityjson_sequence : parse_cityjson)(text, path.string(), settings);
+}
 Result<CityFile> parse_any_json(std::string_view text, const fs::path& path, const CityFileSettings& settings) {
-    return (is_cityjson(text) ? parse_cityjson : parse_geojson)(text, path.string(), settings);
+    return tells_type(text, "CityJSON") ? parse_any_cityjson(text, path, settings)
+                                        : parse_geojson(text, path.string(), settings);
 }
 Result<CityFile> parse_osm_xml(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
     return parse_osm(bytes, "osm", path.string(), settings);
@@ -129,7 +140,7 @@ constexpr std::array<CityEnding, 16> city_endings{{{".obj", parse_named<parse_ob
                                                    {".gltf", parse_gltf_file},
                                                    {".glb", parse_gltf_file},
                                                    {".geojson", parse_named<parse_geojson>},
-                                                   {".city.json", parse_named<parse_cityjson>},
+                                                   {".city.json", parse_any_cityjson},
                                                    {".json", parse_any_json},
                                                    {".jsonl", parse_named<parse_cityjson_sequence>},
                                                    {".osm", parse_osm_xml},
@@ -139,7 +150,7 @@ constexpr std::array<CityEnding, 16> city_endings{{{".obj", parse_named<parse_ob
                                                    {".asc", parse_named<parse_height_grid>},
                                                    {".tar", parse_named<parse_mitsuba_archive>},
                                                    {".tgz", parse_named<parse_mitsuba_archive>},
-                                                   {".cityjson", parse_named<parse_cityjson>}}};
+                                                   {".cityjson", parse_any_cityjson}}};
 
 /// Whether a file is a Mitsuba scene by its name. Hidden ones are none: macOS puts "._town.xml" beside "town.xml" in
 /// archives and on foreign disks.

@@ -78,10 +78,10 @@ struct CityFile {
     std::optional<MapAnchor> anchor;        ///< of files in a map projection, and of meshes whose file_origin is such
 };
 
-/// Reads a city by the ending of its name: .obj .ply .gltf .glb .geojson .json (CityJSON or GeoJSON) .jsonl
-/// (CityJSONSeq) .osm .pbf .gml (CityGML) .xml (Mitsuba scene, with the .ply it names; CityGML; OpenStreetMap) .asc
-/// (height grid), each also as .gz; a folder, .tar or .tar.gz with one Mitsuba scene. Files that a scene or a .gltf
-/// names are read from its own folder alone. What doubts_about() says is among the warnings.
+/// Reads a city by the ending of its name: .obj .ply .gltf .glb .geojson .json (CityJSON, CityJSONSeq or
+/// GeoJSON) .jsonl (CityJSONSeq) .osm .pbf .gml (CityGML) .xml (Mitsuba scene, with the .ply it names; CityGML;
+/// OpenStreetMap) .asc (height grid), each also as .gz; a folder, .tar or .tar.gz with one Mitsuba scene. Files that a
+/// scene or a .gltf names are read from its own folder alone. What doubts_about() says is among the warnings.
 ///
 /// Fails with `outside` when it cannot be opened, with `input` and FILE:LINE or the place when it is damaged, cut or
 /// empty.

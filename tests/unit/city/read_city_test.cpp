@@ -82,6 +82,25 @@ TEST_F(ReadCity, ReadsABufferBesideAGltfButNoneElsewhere) {
     EXPECT_THAT(refusal(read_city(put("b.gltf", with("../the%20wall.bin")), {})), HasSubstr("inside the folder"));
 }
 
+TEST_F(ReadCity, TellsATextSequenceFromACityJsonWhateverItsEnding) {
+    const std::string head = R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],"translate":[0,0,0]},)";
+    const std::string house =
+        R"("CityObjects":{"a":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2]]]}]}},)"
+        R"("vertices":[[0,0,0],[20,0,0],[0,0,20]]})";
+    const std::string sequence =
+        head + R"("CityObjects":{},"vertices":[]})" + "\n" + R"({"type":"CityJSONFeature","id":"a",)" + house + "\n";
+    for (const char* name : {"a.json", "a.city.json", "a.cityjson", "a.city.jsonl"}) {
+        const auto file = read_city(put(name, sequence), {});
+        ASSERT_TRUE(file) << file.error().message;
+        EXPECT_EQ(file->buildings, 1U) << name;
+    }
+    for (const char* name : {"b.json", "b.city.json"}) {
+        const auto file = read_city(put(name, head + "\n" + house + "\n"), {});
+        ASSERT_TRUE(file) << file.error().message;
+        EXPECT_EQ(file->buildings, 1U) << name;
+    }
+}
+
 // Counts of the data's own list, munich.tar.gz and its kin.
 void expect_real(const fs::path& path, std::size_t triangles) {
     const auto file = read_city(path, {});
