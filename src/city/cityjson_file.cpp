@@ -219,7 +219,7 @@ void CityJsonSequence::add(CityObjects part) {
 }
 
 Result<void> CityJsonSequence::take_line(std::string_view line, const std::string& where) {
-    auto root = parse_json(line, where);
+    auto root = parse_json(line, where, JsonText::line);
     if (!root) return fail(root.error());
     const std::string_view expected = begun_ ? "CityJSONFeature" : "CityJSON", type = text_member(*root, "type");
     if (type != expected)

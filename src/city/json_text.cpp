@@ -10,11 +10,12 @@ namespace {
 
 constexpr int deepest_nesting = 100;
 
-std::string line_and_column(std::string_view text, std::size_t offset) {
+std::string place_in(std::string_view text, std::size_t offset, JsonText extent) {
     const std::string_view before = text.substr(0, std::min(offset, text.size()));
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     const auto start = before.rfind('\n');
-    return fmt::format("{}:{}", line, before.size() - (start == std::string_view::npos ? 0 : start + 1) + 1);
+    const std::size_t column = before.size() - (start == std::string_view::npos ? 0 : start + 1) + 1;
+    return extent == JsonText::line ? fmt::format("{}", column) : fmt::format("{}:{}", line, column);
 }
 
 /// Where brackets nest too deep, npos where they do not.
@@ -39,17 +40,17 @@ std::size_t too_deep_at(std::string_view text) {
 
 }  // namespace
 
-Result<nlohmann::json> parse_json(std::string_view text, std::string_view name) {
+Result<nlohmann::json> parse_json(std::string_view text, std::string_view name, JsonText extent) {
     const std::size_t deep = too_deep_at(text);
     if (deep != std::string_view::npos)
         return fail(ErrorCode::input, fmt::format("{}:{}: nested deeper than {} levels", name,
-                                                  line_and_column(text, deep), deepest_nesting));
+                                                  place_in(text, deep, extent), deepest_nesting));
     try {
         return nlohmann::json::parse(text.begin(), text.end());
     } catch (const nlohmann::json::parse_error& error) {
         const std::size_t at = error.byte > 0 ? error.byte - 1 : 0;
         const char* what = at >= text.size() ? "the text ends within a value" : "this is no JSON";
-        return fail(ErrorCode::input, fmt::format("{}:{}: {}", name, line_and_column(text, at), what));
+        return fail(ErrorCode::input, fmt::format("{}:{}: {}", name, place_in(text, at, extent), what));
     } catch (const nlohmann::json::exception&) {
         return fail(ErrorCode::input, fmt::format("{}: a number is larger than any can be", name));
     }

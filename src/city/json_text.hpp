@@ -8,8 +8,12 @@
 
 namespace skyloop {
 
-/// Fails with `input` and "NAME:LINE:COLUMN: …" for what is no JSON, is cut, or nests deeper than a hundred levels.
-Result<nlohmann::json> parse_json(std::string_view text, std::string_view name);
+/// What a name is of.
+enum class JsonText { file, line };
+
+/// Fails with `input` and "NAME:LINE:COLUMN: …" for what is no JSON, is cut, or nests deeper than a hundred levels;
+/// "NAME:COLUMN: …" where the name is that of a line.
+Result<nlohmann::json> parse_json(std::string_view text, std::string_view name, JsonText extent = JsonText::file);
 
 /// A member of an object; null when it has none or is no object.
 const nlohmann::json& member(const nlohmann::json& value, const char* key);

@@ -252,7 +252,7 @@ TEST(CityJson, ReadsTextSequences) {
     for (const auto& [text, why] :
          {std::pair(head + "{\"type\":\"CityJSON\"}", ":2: \"type\" is \"CityJSON\", expected \"CityJSONFeature\""),
           std::pair(feature(0), ":1: \"type\" is \"CityJSONFeature\", expected \"CityJSON\""),
-          std::pair(head + "{", ":2:"), std::pair(std::string(), ": no line")}) {
+          std::pair(head + "{", ":2:2: the text ends within a value"), std::pair(std::string(), ": no line")}) {
         const auto refused = parse_cityjson_sequence(text, "town.city.jsonl", {});
         ASSERT_FALSE(refused);
         EXPECT_THAT(refused.error().message, StartsWith(std::string("town.city.jsonl") + why));
