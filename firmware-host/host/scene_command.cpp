@@ -248,7 +248,7 @@ Result<void> write_pictures(const SceneOptions& options, const SceneReport& repo
     if (options.sky_svg.empty()) return {};
     SkyPlot plot;
     plot.place = report.viewpoint->place;
-    plot.title = fmt::format("{}: the sky at {}", report.city.names.front(), place_text(report.viewpoint->place));
+    plot.title = report.city.names.front();
     plot.obstruction = report.viewpoint->mask;
     return write_whole_file(options.sky_svg, sky_plot_svg(plot));
 }

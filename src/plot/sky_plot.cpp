@@ -43,18 +43,21 @@ std::string coordinate_text(Angle angle, char positive, char negative) {
     return fmt::format("{:.5f}° {}", std::abs(angle.deg()), angle.deg() < 0 ? negative : positive);
 }
 
-std::string sky_title(const SkyPlot& plot) {
-    if (!plot.title.empty()) return plot.title;
+std::string sky_place(const SkyPlot& plot) {
     return fmt::format("Sky at {}, {}, {:.0f} m", coordinate_text(plot.place.latitude, 'N', 'S'),
                        coordinate_text(plot.place.longitude, 'E', 'W'), plot.place.height.above_ellipsoid.value());
 }
+
+std::string sky_title(const SkyPlot& plot) { return plot.title.empty() ? sky_place(plot) : plot.title; }
 
 // A picture of buildings alone: no satellite was asked for, at no time.
 bool shows_buildings_alone(const SkyPlot& plot) { return plot.obstruction && plot.satellites.empty(); }
 
 std::string sky_subtitle(const SkyPlot& plot, std::size_t seen) {
-    if (shows_buildings_alone(plot))
-        return fmt::format("{:.0f} % of the sky is open", 100 * plot.obstruction->open_share());
+    if (shows_buildings_alone(plot)) {
+        const std::string place = plot.title.empty() ? "" : sky_place(plot) + "   ·   ";
+        return fmt::format("{}{:.0f} % of the sky is open", place, 100 * plot.obstruction->open_share());
+    }
     const auto used =
         std::count_if(plot.satellites.begin(), plot.satellites.end(), [](const SkyPlotSatellite& s) { return s.used; });
     std::string time = format_utc(to_utc(plot.time, LeapSeconds::announced()), 0);

@@ -30,7 +30,7 @@ struct SkyPlot {
     std::optional<Angle> mask;  ///< a dashed circle
     std::optional<Dop> dop;
     std::vector<SkyPlotSatellite> satellites;
-    std::string title;                     ///< empty: made from the place
+    std::string title;  ///< empty: the place, which else stands below it where there are buildings alone
     std::optional<SkyMask> obstruction{};  ///< what buildings hide, filled
 };
 

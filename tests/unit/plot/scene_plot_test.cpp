@@ -76,6 +76,10 @@ TEST(SkyPlotInACity, fills_what_buildings_hide_and_colours_by_reception) {
     EXPECT_THAT(open, HasSubstr("100 % of the sky is open"));
     EXPECT_THAT(open, Not(HasSubstr("#c3cad3")));
     EXPECT_THAT(open, Not(testing::AnyOf(HasSubstr("above the horizon"), HasSubstr("unhealthy"), HasSubstr("UTC"))));
+    plot.title = "town.obj";
+    const std::string named = sky_plot_svg(plot);
+    EXPECT_THAT(named, testing::AllOf(HasSubstr(">town.obj</text>"), HasSubstr(">Sky at "),
+                                      HasSubstr(" m   ·   100 % of the sky is open</text>")));
     // From azimuth 90° to 91° the lowest half is hidden, with a gap of 10° in it.
     for (int elevation = 0; elevation < 45; ++elevation)
         plot.obstruction->blocked[static_cast<std::size_t>(90 * SkyMask::elevations + elevation)] =
