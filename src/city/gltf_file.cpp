@@ -18,12 +18,17 @@ constexpr int deepest_node = 64;
 class GltfReader {
 public:
     GltfReader(GltfDocument document, std::string_view name, const CityFileSettings& settings)
-        : document_(std::move(document)), builder_(settings, name, "x,-z,y") {}
+        : document_(std::move(document)), builder_(settings, name, "x,-z,y"), name_(name) {}
 
     Result<CityFile> read() {
         visited_.assign(document_.list("nodes").size(), false);
         for (const std::uint64_t root : roots())
             if (auto done = add_node(root, Eigen::Affine3d::Identity(), 0); !done) return fail(std::move(done.error()));
+        if (instanced_ > 0)
+            builder_.warn(
+                fmt::format("{}: {} nodes stand in many places by EXT_mesh_gpu_instancing, which is not read: each "
+                            "stands once",
+                            name_, instanced_));
         return builder_.finish("gltf");
     }
 
@@ -54,6 +59,12 @@ private:
         for (const json& child : *found)
             if (child.is_number_unsigned()) children.push_back(child.get<std::uint64_t>());
         return children;
+    }
+
+    // Whether other places than the node's own are told; readers may leave the extension aside, unless it is required.
+    static bool is_instanced(const json& node) {
+        const auto found = node.is_object() ? node.find("extensions") : node.end();
+        return found != node.end() && found->contains("EXT_mesh_gpu_instancing");
     }
 
     // Section 3.5.3: a matrix by columns, or translation, rotation and scale.
@@ -87,8 +98,10 @@ private:
         const auto own = transform_of(node, index);
         if (!own) return fail(own.error());
         const Eigen::Affine3d placed = parent * *own;
-        if (const auto mesh = gltf_index(node, "mesh"))
+        if (const auto mesh = gltf_index(node, "mesh")) {
+            if (is_instanced(node)) ++instanced_;
             if (auto done = add_mesh(*mesh, placed, gltf_text(node, "name")); !done) return done;
+        }
         for (const std::uint64_t child : children_of(node))
             if (auto done = add_node(child, placed, depth + 1); !done) return done;
         return {};
@@ -160,7 +173,9 @@ private:
 
     GltfDocument document_;
     MeshBuilder builder_;
+    std::string_view name_;
     std::vector<bool> visited_;
+    std::size_t instanced_ = 0;  ///< nodes
 };
 
 }  // namespace

@@ -115,6 +115,18 @@ TEST(GltfFile, PlacesNodes) {
         EXPECT_LT((same->model.vertices[i] - file->model.vertices[i]).norm(), 1e-9) << i;
 }
 
+TEST(GltfFile, SaysThatInstancesAreNotRead) {
+    const auto file =
+        read_gltf(embedded(R"(,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0}}})"));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_DOUBLE_EQ(test::area_of(file->model), 2);
+    EXPECT_THAT(file->warnings, ::testing::ElementsAre(
+                                    HasSubstr("city.gltf: 1 nodes stand in many places by EXT_mesh_gpu_instancing")));
+    const auto other = read_gltf(embedded(R"(,"extensions":{"KHR_node_visibility":{"visible":true}})"));
+    ASSERT_TRUE(other) << other.error().message;
+    EXPECT_THAT(other->warnings, ::testing::IsEmpty());
+}
+
 TEST(GltfFile, TakesGroundFromTheNameOfANode) {
     // Lying down: a quarter turn about x.
     const std::string lying = ",\"rotation\":[0.7071067811865476,0,0,0.7071067811865476]";
