@@ -47,9 +47,15 @@ std::string last_words(const ProcessOutcome& outcome) {
     return line;
 }
 
+// What a shell says of a program that it cannot find or run (IEEE Std 1003.1, Shell Command Language, 2.8.2).
+bool was_not_run(const ProcessOutcome& outcome) {
+    constexpr int not_executable = 126, not_found = 127;
+    return !outcome.timed_out && (outcome.exit_code == not_executable || outcome.exit_code == not_found);
+}
+
 }  // namespace
 
-Verdict vehicle_verdict(const ProcessOutcome& outcome, Seconds timeout) {
+Result<Verdict> vehicle_verdict(const ProcessOutcome& outcome, Seconds timeout) {
     Verdict verdict{"vehicle", "exit code 0", Outcome::failed, {}, {}};
     if (outcome.timed_out) {
         verdict.evidence = fmt::format("did not end within {:g} s", timeout.value());
@@ -61,6 +67,7 @@ Verdict vehicle_verdict(const ProcessOutcome& outcome, Seconds timeout) {
     }
     const std::string words = verdict.outcome == Outcome::passed ? std::string() : last_words(outcome);
     if (!words.empty()) verdict.evidence += ": " + words;
+    if (was_not_run(outcome)) return fail(ErrorCode::outside, "vehicle: was not run: it " + verdict.evidence);
     return verdict;
 }
 
