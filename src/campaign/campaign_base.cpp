@@ -9,6 +9,7 @@
 
 #include "skyloop/campaign/campaign_plan.hpp"
 #include "skyloop/campaign/sha256.hpp"
+#include "vehicle_files.hpp"
 
 namespace skyloop {
 namespace {
@@ -25,6 +26,22 @@ Result<void> add_file_content(Sha256& digest, const std::filesystem::path& file)
         return {};
     }
     return fail(ErrorCode::outside, fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+}
+
+Result<void> add_named_content(Sha256& digest, const std::string& name, const std::filesystem::path& path) {
+    const auto content = content_digest(path);
+    if (!content) return fail(content.error());
+    digest.add(fmt::format("file {} {}\n", name, *content));
+    return {};
+}
+
+Result<void> add_vehicle(Sha256& digest, const CampaignVehicle& vehicle, const std::filesystem::path& folder) {
+    digest.add(fmt::format("vehicle {}\ntimeout_s {}\n", vehicle.command, vehicle.timeout.value()));
+    for (const std::string& name : files_of_command(vehicle.command))
+        if (const auto added = add_named_content(digest, name, name); !added) return added;
+    for (const std::string& name : vehicle.files)
+        if (const auto added = add_named_content(digest, name, folder / name); !added) return added;
+    return {};
 }
 
 }  // namespace
@@ -52,18 +69,14 @@ Result<std::string> content_digest(const std::filesystem::path& path) {
 Result<std::string> campaign_base_digest(const CampaignBase& base, const CampaignSettings& campaign) {
     Sha256 digest;
     digest.add(fmt::format("skyloop campaign, form 1\nversion {}\n{}", base.version, base.content.keys));
-    for (const std::string& name : base.content.files) {
-        const auto content = content_digest(base.folder / name);
-        if (!content) return fail(content.error());
-        digest.add(fmt::format("file {} {}\n", name, *content));
-    }
+    for (const std::string& name : base.content.files)
+        if (const auto added = add_named_content(digest, name, base.folder / name); !added) return fail(added.error());
     for (const auto& [name, other] : base.more)
         digest.add(fmt::format("{} {}\n", name, other));
     for (const std::string& metric : campaign.metrics)
         digest.add(fmt::format("metric {}\n", metric));
     if (campaign.vehicle)
-        digest.add(
-            fmt::format("vehicle {}\ntimeout_s {}\n", campaign.vehicle->command, campaign.vehicle->timeout.value()));
+        if (const auto added = add_vehicle(digest, *campaign.vehicle, base.folder); !added) return fail(added.error());
     return digest.hex();
 }
 

@@ -130,6 +130,7 @@ void read_vehicle(TableReader& table, CampaignSettings& campaign) {
     table.text("command", vehicle.command);
     if (table.has("command") && vehicle.command.find_first_not_of(" \t\r\n") == std::string::npos && !table.recording())
         table.mistake("command", "is empty; expected a program, such as \"./sitl {pty}\"");
+    table.texts("files", vehicle.files);
     if (table.has("timeout_s")) {
         vehicle.timeout = Seconds(1);
         table.quantity("timeout_s", vehicle.timeout, {0.1, longest_vehicle_s});

@@ -40,6 +40,8 @@ constexpr KeyMeaning run_meanings[] = {
     {"campaign.parameter", "whole", "whole numbers from the first to the second", "none"},
     {"campaign", "vehicle", "a program that is tested, in real time"},
     {"campaign.vehicle", "command", "for /bin/sh; `{pty}`, `{seed}` and `{number}` are replaced", "none"},
+    {"campaign.vehicle", "files", "what the program loads: its runs are done anew when one of these has changed",
+     "none"},
     {"campaign.vehicle", "timeout_s", "how long it may run", "length of the run and 10"},
     {"", "frame", "where the coordinates of a game level lie on the Earth"},
     {"frame", "origin", "of the level: latitude, longitude, height"},

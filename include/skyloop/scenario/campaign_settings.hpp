@@ -57,8 +57,9 @@ enum class CampaignDesign {
 
 /// A program that is the device under test of a run in real time.
 struct CampaignVehicle {
-    std::string command;  ///< for /bin/sh; {pty}, {seed} and {number} are replaced
-    Seconds timeout{0};   ///< since its start; 0: the length of the run and ten seconds more
+    std::string command;               ///< for /bin/sh; {pty}, {seed} and {number} are replaced
+    std::vector<std::string> files{};  ///< what it loads; relative to the scenario
+    Seconds timeout{0};                ///< since its start; 0: the length of the run and ten seconds more
 };
 
 struct CampaignSettings {

@@ -103,6 +103,25 @@ TEST_F(CampaignOpen, TheContentOfABoardThatTheScenarioNamesByItsPathIsInTheKeys)
     EXPECT_NE(keys({"receiver.0.board=" + beside}), varied_before);
 }
 
+TEST_F(CampaignOpen, TheContentOfAVehicleAndOfWhatItLoadsIsInTheKeys) {
+    const std::string program = (folder_ / "sitl").string();
+    write_text(program, "one");
+    write_text(folder_ / "sitl.parm", "1");
+    write_scenario("[campaign.vehicle]\ncommand = \"" + program + " {pty}\"\nfiles = [\"sitl.parm\"]\n");
+    const auto before = keys({});
+    EXPECT_EQ(keys({}), before);
+    write_text(program, "two");
+    const auto rebuilt = keys({});
+    EXPECT_NE(rebuilt, before);
+    write_text(folder_ / "sitl.parm", "2");
+    EXPECT_NE(keys({}), rebuilt);
+    std::filesystem::remove(folder_ / "sitl.parm");
+    const auto absent = open({});
+    ASSERT_FALSE(absent);
+    EXPECT_EQ(absent.error().code, ErrorCode::outside);
+    EXPECT_THAT(absent.error().message, HasSubstr("sitl.parm: cannot be read: No such file"));
+}
+
 TEST_F(CampaignOpen, AMetricThatThereIsNotIsToldWhereItStands) {
     write_scenario("[campaign]\nmetrics = [\"fix_share\", \"fix_shard\"]\n");
     const auto refused = open({});

@@ -38,6 +38,7 @@ key = "model.name"
 values = ["ideal", "modern"]
 [campaign.vehicle]
 command = "true {pty}"
+files = ["sitl.parm"]
 timeout_s = 3
 )",
                                         "c.toml");
@@ -49,6 +50,7 @@ timeout_s = 3
     EXPECT_EQ(std::get<LogUniformSpread>(campaign.parameters.at(0).spread).most, 10);
     EXPECT_EQ(std::get<0>(campaign.parameters.at(1).spread).at(1).shown, "modern");
     EXPECT_EQ(campaign.vehicle.value().timeout, Seconds(3));
+    EXPECT_EQ(campaign.vehicle->files, std::vector<std::string>{"sitl.parm"});
     EXPECT_FALSE(read_scenario("", "c.toml")->campaign);
 }
 

@@ -1,0 +1,31 @@
+#include "../../../src/campaign/vehicle_files.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "unit/transport/temporary_folder.hpp"
+
+namespace skyloop {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+TEST(VehicleFiles, AreTheWordsOfACommandThatNameThem) {
+    const test::TemporaryFolder folder;
+    for (const char* name : {"sitl", "my sim.py", "log"})
+        std::ofstream(folder / name) << "x";
+    const std::string at = folder.path().string() + "/";
+    EXPECT_THAT(files_of_command(at + "sitl {pty}"), ElementsAre(at + "sitl"));
+    EXPECT_THAT(files_of_command("cd /;python3 '" + at + "my sim.py' --seed={seed}&&" + at + "sitl"),
+                ElementsAre(at + "my sim.py", at + "sitl"));
+    EXPECT_THAT(files_of_command(at + "my\\ sim.py<\"" + at + "log\""), ElementsAre(at + "my sim.py", at + "log"));
+    EXPECT_THAT(files_of_command(at + "sitl >" + at + "log 2>> " + at + "log"), ElementsAre(at + "sitl"))
+        << "what it writes is none of it";
+    EXPECT_THAT(files_of_command("sitl " + at + "absent " + folder.path().string() + " /dev/null"), IsEmpty());
+}
+
+}  // namespace
+}  // namespace skyloop
