@@ -22,6 +22,7 @@ struct CampaignOptions {
     std::optional<double> run_limit_s;
     EngineOptions engine;
     std::string page;        // of the report; empty: in the campaign's folder
+    std::string junit;       // of the report, for build servers; empty: none
     std::size_t worst = 10;  // runs that the report names for each metric
     Verbosity verbosity;
 };

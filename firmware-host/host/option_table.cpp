@@ -34,6 +34,7 @@ std::vector<ValueRule> option_rules() {
         {"--control", "", "[HOST:]PORT", text},
         {"--file-origin", "", "X,Y,Z", text},
         {"--grid", "", "WEST,SOUTH,EAST,NORTH", text},
+        {"--junit", "", "FILE", file},
         {"--mavlink", "", "ADDRESS", uri},
         {"--model", "", "NAME", words, model_words()},
         {"--nav", "", "FILE", file},

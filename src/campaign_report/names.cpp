@@ -92,6 +92,26 @@ std::optional<std::string> replay_command(const CampaignResults& results, const 
                        options.empty() ? "" : " ", options, run.number, run.number);
 }
 
+std::string parameters_of(const CampaignResults& results, std::size_t run) {
+    std::string text;
+    for (const ReportedParameter& parameter : results.parameters)
+        if (parameter.values[run]) text += (text.empty() ? "" : ", ") + parameter.name + " = " + *parameter.values[run];
+    return text;
+}
+
+std::string failures_of(const CampaignResults& results, std::size_t run) {
+    if (results.runs[run].status == RunStatus::error)
+        return results.runs[run].error.empty() ? "came to no end" : "error: " + results.runs[run].error;
+    std::string text;
+    for (const ReportedVerdict& verdict : results.verdicts)
+        if (verdict.passed[run] == false) {
+            text += text.empty() ? "" : "; ";
+            text += verdict.name;
+            if (!verdict.details[run].empty()) text += ": " + verdict.details[run];
+        }
+    return text.empty() ? "failed" : text;
+}
+
 std::string figure_text(double value) {
     if (value == 0) return "0";
     constexpr double smallest_plain = 1e-4, largest_plain = 1e7;

@@ -29,6 +29,11 @@ std::string verdict_name(const CampaignResults& results, const VerdictSummary& v
 /// quoted name would break the line.
 std::optional<std::string> replay_command(const CampaignResults& results, const GatheredRun& run);
 
+/// What a run was given: "noise = 0.5, board = ublox-m9"; its length has no bound.
+std::string parameters_of(const CampaignResults& results, std::size_t run);
+/// Why a run did not pass: the verdicts that it failed, with what they said, or its error; its length has no bound.
+std::string failures_of(const CampaignResults& results, std::size_t run);
+
 /// A number with four significant digits.
 std::string figure_text(double value);
 /// A share in percent; "100 %" and "0 %" only when it is.

@@ -26,31 +26,14 @@ std::string effect_row(const std::string& name, const std::vector<Effect>& effec
     return row + "</tr>\n";
 }
 
-// The verdicts that a run failed, with what they said.
-std::string failures_of(const CampaignResults& results, std::size_t run) {
-    if (results.runs[run].status == RunStatus::error)
-        return results.runs[run].error.empty() ? "came to no end" : "error: " + results.runs[run].error;
-    std::string text;
-    for (const ReportedVerdict& verdict : results.verdicts)
-        if (verdict.passed[run] == false) {
-            text += text.empty() ? "" : "; ";
-            text += verdict.name;
-            if (!verdict.details[run].empty()) text += ": " + verdict.details[run];
-        }
-    return text.empty() ? "failed" : text;
-}
-
 }  // namespace
 
 std::string run_row(const CampaignResults& results, std::size_t run, const std::string& value) {
-    std::string parameters;
-    for (const ReportedParameter& parameter : results.parameters)
-        if (parameter.values[run])
-            parameters += (parameters.empty() ? "" : ", ") + parameter.name + " = " + *parameter.values[run];
     const auto command = replay_command(results, results.runs[run]);
     return fmt::format(
         "<tr>{}{}<td>{}</td><td>{}</td><td>{}</td></tr>\n", number_cell(fmt::format("{}", results.runs[run].number)),
-        number_cell(fmt::format("{}", results.runs[run].seed)), page_text(value, 300), page_text(parameters, 300),
+        number_cell(fmt::format("{}", results.runs[run].seed)), page_text(value, 300),
+        page_text(parameters_of(results, run), 300),
         // Never cut: half a command would run something else.
         command ? "<code class=\"command\">" + page_text(*command, command->size()) + "</code>" : std::string("–"));
 }

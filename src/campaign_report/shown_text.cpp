@@ -5,10 +5,11 @@
 namespace skyloop {
 namespace {
 
-// C0, DEL and C1: a terminal obeys them.
-bool is_control(std::string_view character) {
+// C0, DEL and C1, which a terminal obeys, and the two that XML 1.0 does not have (section 2.2): U+FFFE, U+FFFF.
+bool is_not_shown(std::string_view character) {
     const auto first = static_cast<unsigned char>(character[0]);
     if (character.size() == 1) return first < 0x20 || first == 0x7F;
+    if (character == "\xEF\xBF\xBE" || character == "\xEF\xBF\xBF") return true;
     return first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
 }
 
@@ -19,7 +20,7 @@ std::string shown_text(std::string_view text, std::size_t most) {
     for (std::size_t characters = 0; !text.empty(); ++characters) {
         if (characters == most) return shown + "…";
         const std::size_t length = utf8_length(text);
-        if (length == 0 || is_control(text.substr(0, length)))
+        if (length == 0 || is_not_shown(text.substr(0, length)))
             shown += '?';
         else
             shown += text.substr(0, length);

@@ -16,16 +16,25 @@ bool is_kept_by_campaign(const std::filesystem::path& file, const std::filesyste
     return inside == "campaign.json" || inside == "campaign.sqlite" || (!inside.empty() && *inside.begin() == "shards");
 }
 
-Result<void> check_targets(const std::filesystem::path& folder, const WrittenCampaignReport& report) {
+Result<void> check_targets(const std::filesystem::path& folder, const WrittenCampaignReport& report,
+                           const std::filesystem::path& junit) {
     if (report.json == report.html)
         return fail(
             ErrorCode::usage,
             fmt::format("{}: a page does not end in .json; expected a name such as report.html", report.html.string()));
+    if (junit == report.html || junit == report.json)
+        return fail(ErrorCode::usage, fmt::format("--junit {}: is the page or its numbers; expected a name such as "
+                                                  "junit.xml",
+                                                  junit.string()));
     for (const std::filesystem::path* file : {&report.html, &report.json})
         if (is_kept_by_campaign(*file, folder))
             return fail(ErrorCode::usage, fmt::format("--out {}: {} is the campaign's own; expected a name such as "
                                                       "report.html",
                                                       report.html.string(), file->string()));
+    if (!junit.empty() && is_kept_by_campaign(junit, folder))
+        return fail(
+            ErrorCode::usage,
+            fmt::format("--junit {}: is the campaign's own; expected a name such as junit.xml", junit.string()));
     return {};
 }
 
@@ -46,7 +55,7 @@ Result<WrittenCampaignReport> write_campaign_report(const std::filesystem::path&
     written.html = options.html.empty() ? folder / "report.html" : options.html;
     written.json = written.html;
     written.json.replace_extension(".json");
-    if (const auto targets = check_targets(folder, written); !targets) return fail(targets.error());
+    if (const auto targets = check_targets(folder, written, options.junit); !targets) return fail(targets.error());
     written.outdated = is_outdated(folder / "campaign.sqlite", folder / "shards");
     const auto results = read_campaign_results(folder / "campaign.sqlite");
     if (!results) return fail(results.error());
@@ -60,6 +69,9 @@ Result<WrittenCampaignReport> write_campaign_report(const std::filesystem::path&
         written.json.clear();
     else if (const auto kept = replace_file(written.json, campaign_report_json(*results, summary)); !kept)
         return fail(kept.error());
+    if (!options.junit.empty())
+        if (const auto kept = replace_file(options.junit, campaign_report_junit(*results, summary)); !kept)
+            return fail(kept.error());
     return written;
 }
 

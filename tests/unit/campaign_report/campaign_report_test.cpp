@@ -78,6 +78,52 @@ TEST(CampaignReport, RunsWithAVehicleAreNotReplayed) {
     EXPECT_EQ(report.html.find("skyloop campaign replay"), std::string::npos);
 }
 
+TEST(CampaignReport, TellsABuildServerOfEachRun) {
+    const SmallDatabase database(std::string(test::campaign_schema) + test::three_runs);
+    const auto file = database.folder() / "junit.xml";
+    ASSERT_TRUE(write_campaign_report(database.folder(), {{}, 1, file}));
+    const std::string junit = test::bytes_of(file);
+    EXPECT_EQ(page_fault(junit), "");
+    EXPECT_THAT(junit, HasSubstr("<testsuite name=\"three\" tests=\"4\" failures=\"1\" errors=\"1\" "));
+    EXPECT_THAT(junit, HasSubstr("<testcase classname=\"three\" name=\"run 0, seed 10, noise = 0.5\" time=\"0\"/>"));
+    EXPECT_THAT(junit,
+                HasSubstr("name=\"run 2, seed 12, noise = 1.5\" time=\"0\">\n"
+                          "      <failure type=\"failed\" message=\"near: it was 9 m\">near: it was 9 m\n"
+                          "replay: skyloop campaign replay &#39;a b.toml&#39; --number 2 --out run-2</failure>"));
+    EXPECT_THAT(junit, HasSubstr("<error type=\"missing\" message=\"1 of 4 planned runs have no result\">"));
+    EXPECT_THAT(junit, HasSubstr("<property name=\"runs_left_out\" value=\"0\"/>"));
+}
+
+TEST(CampaignReport, TellsABuildServerOfAnErrorWithoutMarkupOfItsOwn) {
+    const SmallDatabase database(std::string(test::campaign_schema) +
+                                 "CREATE TABLE error(key TEXT, message TEXT);"
+                                 "INSERT INTO run VALUES ('a', 0, 1, 'error');"
+                                 "INSERT INTO error VALUES ('a', ']]> <b> & \x1b \xEF\xBF\xBF');");
+    const auto results = read_campaign_results(database.path());
+    ASSERT_TRUE(results) << results.error().message;
+    const std::string junit = campaign_report_junit(*results, summarise(*results, 0));
+    EXPECT_EQ(page_fault(junit), "");
+    EXPECT_THAT(junit, HasSubstr("<error type=\"error\" message=\"error: ]]&gt; &lt;b&gt; &amp; ? ?\">"));
+    EXPECT_THAT(junit, HasSubstr(" tests=\"1\" failures=\"0\" errors=\"1\" "));
+}
+
+TEST(CampaignReport, TellsABuildServerFirstOfWhatFailedWhereThereIsTooMuch) {
+    std::string statements = test::campaign_schema;
+    for (std::size_t i = 0; i < most_junit_runs + 2; ++i) {
+        const std::string n = std::to_string(i);
+        statements += "INSERT INTO run VALUES ('k" + n + "', " + n + ", 1, '" +
+                      (i < most_junit_runs ? "passed" : "failed") + "');";
+    }
+    const SmallDatabase database(statements);
+    const auto results = read_campaign_results(database.path());
+    ASSERT_TRUE(results) << results.error().message;
+    const std::string junit = campaign_report_junit(*results, summarise(*results, 0));
+    EXPECT_THAT(junit, HasSubstr("<property name=\"runs_left_out\" value=\"2\"/>"));
+    EXPECT_THAT(junit, HasSubstr(" tests=\"10000\" failures=\"2\" errors=\"0\" "));
+    EXPECT_THAT(junit, HasSubstr("name=\"run 10001, seed 1\""));
+    EXPECT_THAT(junit, Not(HasSubstr("name=\"run 9998, seed 1\"")));
+}
+
 TEST(CampaignReport, NamesAsManyWorstRunsAsAreWanted) {
     EXPECT_EQ(nlohmann::json::parse(written_with(test::three_runs, 2).json)["metrics"][0]["worst"].size(), 2u);
     EXPECT_EQ(nlohmann::json::parse(written_with(test::three_runs, 0).json)["metrics"][0]["worst"].size(), 0u);
@@ -160,6 +206,12 @@ TEST(CampaignReport, TakesNothingOfTheCampaignsPlace) {
         ASSERT_FALSE(refused) << page;
         EXPECT_EQ(refused.error().code, ErrorCode::usage);
         EXPECT_THAT(refused.error().message, HasSubstr("the campaign's own"));
+    }
+    for (const char* junit : {"campaign.sqlite", "shards/junit.xml", "report.html", "report.json"}) {
+        const auto refused = write_campaign_report(folder, {{}, 1, folder / junit});
+        ASSERT_FALSE(refused) << junit;
+        EXPECT_EQ(refused.error().code, ErrorCode::usage);
+        EXPECT_THAT(refused.error().message, testing::StartsWith("--junit "));
     }
     const auto taken = write_campaign_report(folder, {folder / "campaign-report.html", 1});
     ASSERT_TRUE(taken);
