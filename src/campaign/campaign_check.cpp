@@ -102,7 +102,7 @@ private:
             const std::string told = place_of_parameter(source.text, source.file, parameter.key) + ": ";
             if (!error.message.starts_with(told)) continue;
             const std::string sentence = error.message.substr(told.size());
-            if (!sentence.starts_with(parameter.key) && !sentence.starts_with("'" + parameter.key)) continue;
+            if (!speaks_of(sentence, parameter.key)) continue;
             error.message = fmt::format("{}: {}", place_of_varied(source, parameter.key), sentence);
             return error;
         }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "skyloop/scenario/scenario_changes.hpp"
 #include "table_reader.hpp"
 
 namespace skyloop {
@@ -44,6 +45,8 @@ const MistakeList::Change* MistakeList::change_of(const toml::source_region& whe
 toml::source_position MistakeList::place_of(const toml::source_region& where, std::string_view sentence) const {
     if (where.begin.line > 0) return where.begin;
     if (const Change* change = change_of(where, sentence)) return change->place;
+    for (const Change& change : changes_)
+        if (speaks_of(sentence, change.path)) return change.place;
     return changes_.empty() ? toml::source_position{1, 1} : changes_.front().place;
 }
 

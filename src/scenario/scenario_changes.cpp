@@ -235,6 +235,12 @@ Result<Scenario> read_changed_scenario(std::string_view text, const std::filesys
     return scenario;
 }
 
+bool speaks_of(std::string_view sentence, std::string_view key) {
+    if (sentence.starts_with('[') || sentence.starts_with('\'')) sentence.remove_prefix(1);
+    const std::string_view named = sentence.substr(0, sentence.find_first_of(":]'"));
+    return sentence.starts_with(key) || (!named.empty() && key.starts_with(fmt::format("{}.", named)));
+}
+
 Result<ScenarioContent> scenario_content(std::string_view text, const std::filesystem::path& file) {
     ContentWalk walk(file.parent_path());
     const auto read = read_toml(

@@ -346,6 +346,8 @@ Result<void> read_toml(std::string_view text, const std::string& file, const std
         toml::table table = toml::parse(text, file);
         MistakeList mistakes(file);
         if (change) change(table, mistakes);
+        // What could not be changed is not what was to be read.
+        if (!mistakes.empty()) return fail(mistakes.error());
         TableReader top(table, {}, mistakes);
         body(top);
         top.finish();

@@ -26,6 +26,10 @@ struct ScenarioChange {
 Result<Scenario> read_changed_scenario(std::string_view text, const std::filesystem::path& file,
                                        std::span<const ScenarioChange> changes);
 
+/// Whether a sentence about a scenario is one about a key, or about a table that holds it: of "foo.bar" it is
+/// "foo.bar: is …", "'foo.bar' leads …", "foo: unknown key" and "[foo] has …".
+bool speaks_of(std::string_view sentence, std::string_view key);
+
 /// What is in a scenario, whatever its comments, order and layout.
 struct ScenarioContent {
     std::string keys;  ///< a line a key, sorted: `run.duration_s = 60`; without [campaign] and run.seed

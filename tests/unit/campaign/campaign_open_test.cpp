@@ -226,6 +226,11 @@ TEST_F(CampaignOpen, AnOptionIsBlamedForItsValuesWhereTheFileHasOthers) {
                 testing::StartsWith("--vary fault.gap.for_s: fault.gap.for_s: is -1; expected a number"));
 }
 
+TEST_F(CampaignOpen, AnOptionIsBlamedForATableThatThereIsNot) {
+    EXPECT_THAT(check_mistake(open({"run.speed=1", "foo.bar=1"})),
+                testing::StartsWith("--vary foo.bar: foo: unknown key"));
+}
+
 TEST_F(CampaignOpen, TwoNamesOfOneKeyAreRefused) {
     const std::string faults =
         "[[fault]]\nname = \"gap\"\nkind = \"outage\"\nat_s = 1\nfor_s = 1\n[campaign]\n"

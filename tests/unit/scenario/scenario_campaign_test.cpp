@@ -216,6 +216,23 @@ TEST(ScenarioChanges, AWrongValueIsToldWhereTheFileChangesIt) {
     EXPECT_THAT(change_mistake("run", "1"), HasSubstr("is a whole number; expected a table"));
 }
 
+TEST(ScenarioChanges, AMistakeIsToldOnceAndAtTheParameterThatMadeIt) {
+    const auto mistake_of = [](const std::string& key) {
+        const std::string text =
+            "[run]\nduration_s = 1\n[campaign]\n[[campaign.parameter]]\nkey = \"run.speed\"\n"
+            "values = [1]\n[[campaign.parameter]]\nkey = \"" +
+            key + "\"\nvalues = [1]\n";
+        const auto one = parse_campaign_values("1")->at(0);
+        const std::vector<ScenarioChange> changes{{"run.speed", one}, {key, one}};
+        const auto scenario = read_changed_scenario(text, "c.toml", changes);
+        return scenario ? "none" : scenario.error().message;
+    };
+    EXPECT_THAT(mistake_of("trajectory.at.2"), StartsWith("c.toml:8:7: 'trajectory.at.2' leads to no key: "));
+    EXPECT_THAT(mistake_of("trajectory.at.2"), Not(HasSubstr("\n")));
+    EXPECT_THAT(mistake_of("foo.bar"), StartsWith("c.toml:8:7: foo: unknown key"));
+    EXPECT_THAT(mistake_of("trajectory.smooth"), HasSubstr("c.toml:8:7: [trajectory] has no kind"));
+}
+
 TEST(ScenarioContent, IsTheSameWhateverTheLayout) {
     const auto keys = [](const std::string& text) { return scenario_content(text, "c.toml").value().keys; };
     EXPECT_EQ(keys("[run]\nspeed=1.50\nduration_s = 7 # long\n"), keys("run = {duration_s=7, speed=1.5}"));
