@@ -11,6 +11,7 @@
 #include "run_session.hpp"
 #include "skyloop/base/say.hpp"
 #include "skyloop/base/shell_word.hpp"
+#include "skyloop/base/terminal_text.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/campaign/campaign_database.hpp"
 #include "skyloop/campaign/campaign_worker.hpp"
@@ -227,7 +228,7 @@ int tell_gathered(const Messages& messages, const std::filesystem::path& folder)
     print_missing(counts->missing);
     fmt::print("duplicates   {}\nof other plans {}\n", counts->duplicates, counts->foreign);
     for (const auto& [name, count] : counts->failed_verdicts)
-        fmt::print("not met      {} of {} runs: {}\n", count, counts->done(), name);
+        fmt::print("not met      {} of {} runs: {}\n", count, counts->done(), on_a_terminal(name));
     fmt::print("database     {}\n", (folder / "campaign.sqlite").string());
     if (!counts->missing.empty()) return 1;
     return counts->failed + counts->errors > 0 ? failed_runs_code : 0;

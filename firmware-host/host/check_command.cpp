@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "run_session.hpp"
+#include "skyloop/base/terminal_text.hpp"
 #include "skyloop/campaign/campaign_run.hpp"
 #include "skyloop/fault/planned_events.hpp"
 #include "skyloop/time/utc_time.hpp"
@@ -32,7 +33,7 @@ void print_timeline(const Scenario& scenario, const Assembly& assembly) {
     for (const std::string& line : timeline_text(entries, run))
         fmt::print("  {}\n", line);
     for (const Expectation& expectation : scenario.expectations)
-        fmt::print("expect      {}\n", expectation.title());
+        fmt::print("expect      {}\n", on_a_terminal(expectation.title()));
 }
 
 void print_plan(const Scenario& scenario, const Assembly& assembly) {

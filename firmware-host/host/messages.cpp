@@ -6,7 +6,24 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "skyloop/base/terminal_text.hpp"
+
 namespace skyloop::host {
+namespace {
+
+// What files say is in messages, too; their own lines stay lines.
+std::string lines_on_a_terminal(std::string_view text) {
+    std::string lines;
+    for (;;) {
+        const std::size_t end = text.find('\n');
+        lines += on_a_terminal(text.substr(0, end));
+        if (end == std::string_view::npos) return lines;
+        lines += '\n';
+        text.remove_prefix(end + 1);
+    }
+}
+
+}  // namespace
 
 Messages::Messages(Verbosity verbosity)
     : verbosity_(verbosity),
@@ -26,9 +43,10 @@ void Messages::say(int level, const std::string& text) const {
         const nlohmann::json line{{"level", name}, {"message", text}};
         logger_->log(weight, "{}", line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     } else if (weight >= spdlog::level::warn) {
-        logger_->log(weight, "skyloop: {}{}", weight == spdlog::level::warn ? "warning: " : "", text);
+        logger_->log(weight, "skyloop: {}{}", weight == spdlog::level::warn ? "warning: " : "",
+                     lines_on_a_terminal(text));
     } else {
-        logger_->log(weight, "{}", text);
+        logger_->log(weight, "{}", lines_on_a_terminal(text));
     }
     logger_->flush();
 }

@@ -241,6 +241,24 @@ def test_mistakes(folder):
     assert "other columns" in other, other
 
 
+def test_titles_are_shown_and_not_obeyed(folder):
+    path = folder / "titles.toml"
+    path.write_text("""
+[run]
+start = 2024-03-05T12:00:00Z
+duration_s = 5
+[campaign]
+seeds = 1
+[[expect]]
+name = "a\\u001b[31mred\\u0007"
+what = "horizontal error below 0.0001 m always"
+""")
+    checked = subprocess.run([SKYLOOP, "check", path], capture_output=True, text=True, timeout=60, check=True)
+    done = campaign(path, "--out", folder / "titles", expected=(3,))
+    for said in (checked.stdout, done.stdout, done.stderr):
+        assert "\x1b" not in said and "\x07" not in said and "a\\u001b[31mred\\u0007" in said, said
+
+
 def write_vehicle_scenario(path, seeds, command):
     """Runs of 20 s, each with a program of its own."""
     path.write_text(f"""
@@ -294,7 +312,7 @@ def main():
     with open_folder() as name:
         folder = pathlib.Path(name)
         for test in (test_plan, test_same_bytes, test_database, test_replay, test_shards, test_kills, test_stop,
-                     test_mistakes, test_vehicle, test_a_probe_beside_a_vehicle_finds_the_port,
+                     test_mistakes, test_titles_are_shown_and_not_obeyed, test_vehicle, test_a_probe_beside_a_vehicle_finds_the_port,
                      test_a_killed_worker_takes_its_vehicle_along):
             began = time.monotonic()
             test(folder)
