@@ -183,9 +183,9 @@ void add_engine_options(CLI::App& command, EngineOptions& options) {
     const auto add_for = [&](std::string_view one, const char* name, auto& value, std::string_view meaning) {
         CLI::Option* option = add(name, value, fmt::format("{}: {}", one, meaning).c_str());
         return option->check([&options, one](const std::string&) {
-            return options.name == one
-                       ? std::string()
-                       : fmt::format("an option of --engine {}; this is --engine {}", one, options.name);
+            if (options.name == one) return std::string();
+            const std::string found = options.name.empty() ? "expected that, too" : "this is --engine " + options.name;
+            return fmt::format("an option of --engine {}; {}", one, found);
         });
     };
     add_for("slurm", "--partition", options.partition, "the partition");

@@ -227,6 +227,7 @@ def test_mistakes(folder):
             (["--vary", "trajectory.kind=file"], "trajectory"),
             (["--engine", "slurm", "--shard", "0/3"], "--shard excludes --engine"),
             (["--engine", "slurm", "--image", "x"], "--image: an option of --engine kubernetes; this is --engine slurm"),
+            (["--image", "x"], "--image: an option of --engine kubernetes; expected that, too"),
             (["--engine", "kubernetes", "--jobs", 4], "a shard does one run at a time; expected --parallelism"),
             (["--partition", "x", "--engine", "parallel"], "--partition: an option of --engine slurm; this is"),
     ]:
