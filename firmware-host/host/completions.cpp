@@ -151,14 +151,30 @@ _skyloop_reply()
 )";
 
 constexpr std::string_view bash_middle = R"(
-# The line is read anew: bash has cut its words at ':' and '='.
+# The line is read anew: bash has cut its words at ':' and '='. They are offered without quotes; readline puts them back.
 _skyloop()
 {
     local line=${COMP_LINE:0:COMP_POINT} command='' options='' valued='' head='' cur prev i position=1 first=2
+    local quote='' char word=''
     local -a words
-    read -ra words <<<"$line"
-    [[ $line == *[[:space:]] ]] && words+=('')
-    cur=${words[-1]}
+    for ((i = 0; i < ${#line}; i++)); do
+        char=${line:i:1}
+        if [[ -n $quote && $char == "$quote" ]]; then
+            quote=''
+        elif [[ -z $quote && ($char == "'" || $char == '"') ]]; then
+            quote=$char
+        elif [[ $quote != "'" && $char == "\\" ]]; then
+            ((i++))
+            word+=${line:i:1}
+        elif [[ -z $quote && $char == [[:space:]] ]]; then
+            [[ -n $word ]] && words+=("$word")
+            word=''
+        else
+            word+=$char
+        fi
+    done
+    words+=("$word")
+    cur=$word
     if ((${#words[@]} <= 2)); then
         COMPREPLY=()
 )";

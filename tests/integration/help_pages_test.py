@@ -174,6 +174,9 @@ class Bash(unittest.TestCase):
     def test_files_and_folders(self):
         self.assertEqual(self.complete("skyloop run fl"), ["flight.toml"])
         self.assertEqual(self.complete("skyloop check --quiet tw"), ["two words.toml"])
+        for begun in (r"two\ ", r"two\ w", "'two w", '"two w', "--quiet 'two w"):
+            self.assertEqual(self.complete(f"skyloop check {begun}"), ["two words.toml"], begun)
+        self.assertEqual(self.complete(r"skyloop check two\ words.toml --mod"), ["--model"])
         self.assertEqual(self.complete("skyloop simulate --out s"), ["sub"])
         self.assertEqual(self.complete("skyloop run --scene de"), ["demo"])
         self.assertEqual(self.complete("skyloop run --at fl"), [])
