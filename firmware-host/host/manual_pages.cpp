@@ -144,6 +144,8 @@ std::string manual_page(const CommandRow& command, std::string_view version) {
                     roff_text(upper), version);
     page += ".SH NAME\n" + fmt::format("skyloop\\-{} \\- {}\n", roff_text(command.name), roff_text(command.meaning));
     page += ".SH SYNOPSIS\n" + synopsis(command);
+    for (const CommandRow& row : command.subcommands)
+        page += ".br\n" + synopsis(row);
     if (!command.usage.empty()) page += ".SH USAGE\n.nf\n" + roff_lines(command.usage) + ".fi\n";
     if (const std::string words = entries(command, true); !words.empty()) page += ".SH ARGUMENTS\n" + words;
     page += ".SH OPTIONS\n" + entries(command, false) + subcommands(command);

@@ -66,6 +66,12 @@ class ManualPages(unittest.TestCase):
                 with self.subTest(name, option=option):
                     self.assertIn(f"\\fB{option}\\fR", section)
 
+    def test_a_synopsis_has_the_subcommands(self):
+        for name in subcommands():
+            page = (self.man / f"skyloop-{name.split()[0]}.1").read_text()
+            synopsis = page.split(".SH SYNOPSIS")[1].split(".SH")[0]
+            self.assertIn(f".br\n\\fBskyloop {name}\\fR ", synopsis, name)
+
     def test_groff_has_nothing_to_say(self):
         need("groff")
         for page in [*sorted(self.man.iterdir()), *sorted((ROOT / "tools/man").glob("*.1"))]:
