@@ -30,7 +30,8 @@ void FeedHearer::keep(FeedNews news, std::uint64_t speaker, std::int64_t receive
     desk_.tallies.samples += news.samples.size();
     desk_.tallies.statements += news.samples.size() + news.others;
     desk_.tallies.lost += news.lost;
-    if (!news.remark.empty()) tell(FeedNewsDesk::Kind::other, std::move(news.remark));
+    if (!news.remark.empty() && !remarks_.contains(news.remark) && desk_.news.tell_once(news.remark))
+        remarks_.insert(std::move(news.remark));
     if (news.refused > 0) {
         desk_.tallies.refused += news.refused;
         tell(FeedNewsDesk::Kind::refusal, "refused: " + news.refusal);

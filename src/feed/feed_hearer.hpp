@@ -48,6 +48,7 @@ private:
     FeedDesk& desk_;
     std::map<std::uint64_t, std::unique_ptr<FeedDialect>> dialects_;
     std::set<std::uint64_t> paused_;  ///< the speakers that have told of a pause
+    std::set<std::string> remarks_;   ///< that have been told: speakers of one kind have the same
     std::vector<FeedItem> items_;
 };
 

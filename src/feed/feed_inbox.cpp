@@ -45,16 +45,22 @@ bool FeedInbox::wait(std::chrono::nanoseconds longest) {
 
 void FeedNewsDesk::tell(Kind kind, std::string sentence, std::int64_t now_ns) {
     constexpr std::int64_t distance_ns = 5'000'000'000;
-    constexpr std::size_t most = 64;
     const std::lock_guard lock(mutex_);
     Limit& limit = limits_[static_cast<std::size_t>(kind)];
-    if ((limit.any && now_ns - limit.told_ns < distance_ns) || waiting_.size() >= most) {
+    if ((limit.any && now_ns - limit.told_ns < distance_ns) || waiting_.size() >= most_waiting) {
         ++limit.kept_back;
         return;
     }
     if (limit.kept_back > 0) sentence += fmt::format(" (and {} times before)", limit.kept_back);
     limit = {now_ns, 0, true};
     waiting_.push_back(std::move(sentence));
+}
+
+bool FeedNewsDesk::tell_once(std::string sentence) {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.size() >= most_waiting) return false;
+    waiting_.push_back(std::move(sentence));
+    return true;
 }
 
 std::vector<std::string> FeedNewsDesk::take() {

@@ -42,13 +42,16 @@ private:
     std::vector<FeedItem> waiting_;
 };
 
-/// Sentences for the user. A source that misbehaves must not flood him: of each kind one in five seconds, at most 64
-/// that wait.
+/// Sentences for the user. A source that misbehaves must not flood him: of each kind one in five seconds, beside those
+/// that are said once, and at most 64 that wait.
 class FeedNewsDesk {
 public:
     enum class Kind { connection, refusal, drop, jump, clock, vehicle, other };
     /// @param sentence what happened; where it had to be kept back before, their number is added
     void tell(Kind kind, std::string sentence, std::int64_t now_ns);
+    /// A sentence that is said once in a run: what was told before it does not keep it back.
+    /// @return whether it was taken; else it may be told again
+    bool tell_once(std::string sentence);
     /// Never waits: gives nothing while another thread tells.
     std::vector<std::string> take();
 
@@ -58,6 +61,8 @@ private:
         std::uint64_t kept_back = 0;
         bool any = false;
     };
+    static constexpr std::size_t most_waiting = 64;
+
     std::mutex mutex_;
     Limit limits_[7];
     std::vector<std::string> waiting_;

@@ -136,11 +136,9 @@ bool FeedPaths::all_have_begun() const {
 void FeedPaths::take_unwanted(const TruthSample& sample) {
     const bool starts = mode_ == ClockMode::realtime || (mode_ == ClockMode::lock_step && !waits_);
     if (starts || first_sample_) note(stamp(sample), sample.received_ns);
-    if (std::exchange(other_told_, true)) return;
-    desk_.news.tell(
-        FeedNewsDesk::Kind::vehicle,
-        fmt::format("it also speaks of vehicle '{}', which nobody has asked for", sample.vehicle.substr(0, 40)),
-        sample.received_ns);
+    if (other_told_) return;
+    other_told_ = desk_.news.tell_once(
+        fmt::format("it also speaks of vehicle '{}', which nobody has asked for", sample.vehicle.substr(0, 40)));
 }
 
 void FeedPaths::place(TruthSample& sample) {
@@ -281,21 +279,18 @@ void FeedPaths::look(std::int64_t now_ns) {
         vehicle.silent = true;
         desk_.news.tell(FeedNewsDesk::Kind::vehicle, fmt::format("vehicle '{}' is silent", name.substr(0, 40)), now_ns);
     }
-    look_at_steps(heard_ns, now_ns);
+    look_at_steps(heard_ns);
     look_at_rate(now_ns);
 }
 
 // Samples alone bring a run in lock-step nowhere, and nothing else tells why it stands still.
-void FeedPaths::look_at_steps(std::int64_t heard_ns, std::int64_t now_ns) {
+void FeedPaths::look_at_steps(std::int64_t heard_ns) {
     constexpr std::int64_t patience_ns = 5'000'000'000;
     if (mode_ != ClockMode::lock_step || newest_step_ || !first_sample_ || steps_missed_) return;
     if (heard_ns < first_sample_ns_ + patience_ns) return;
-    steps_missed_ = true;
-    desk_.news.tell(
-        FeedNewsDesk::Kind::clock,
+    steps_missed_ = desk_.news.tell_once(
         "it tells where it is and does not step; clock = \"lock_step\" waits for {\"type\":\"step\",\"t\":…}, "
-        "clock = \"follow\" does not",
-        now_ns);
+        "clock = \"follow\" does not");
 }
 
 // Once it is known over five seconds, and three looks agree: after a pause or a step it is known over less.
@@ -308,11 +303,8 @@ void FeedPaths::look_at_rate(std::int64_t now_ns) {
     const auto rate = clock_.rate();
     odd_looks_ = rate && *rate > 0 && std::abs(*rate - 1) > odd_rate ? odd_looks_ + 1 : 0;
     if (odd_looks_ < enough) return;
-    rate_told_ = true;
-    desk_.news.tell(
-        FeedNewsDesk::Kind::clock,
-        fmt::format("the source runs at {:.2f} of real time; expected 1; clock = \"follow\" keeps its time", *rate),
-        now_ns);
+    rate_told_ = desk_.news.tell_once(
+        fmt::format("the source runs at {:.2f} of real time; expected 1; clock = \"follow\" keeps its time", *rate));
 }
 
 }  // namespace skyloop

@@ -73,7 +73,7 @@ private:
     SourceClock::Stamp stamp(const TruthSample& sample);
     void note(const SourceClock::Stamp& stamp, std::int64_t now_ns);
     void look(std::int64_t now_ns);
-    void look_at_steps(std::int64_t heard_ns, std::int64_t now_ns);
+    void look_at_steps(std::int64_t heard_ns);
     void look_at_rate(std::int64_t now_ns);
     void add(Vehicle& vehicle, const std::string& name, GpsTime time, TruthSample& sample);
 

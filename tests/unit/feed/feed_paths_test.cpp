@@ -78,6 +78,40 @@ TEST(FeedPaths, TellsOnceThatASourceDoesNotKeepRealTime) {
     }
 }
 
+TEST(FeedPaths, TellsTheRateOfASourceWhoseClockHasJustStepped) {
+    constexpr double rate = 0.9;
+    PathsUnderTest feed(ClockMode::realtime);
+    std::vector<std::string> told;
+    for (int i = 0; i < 10 * 50; ++i) {
+        TruthSample sample = told_at(0.02 * i);
+        sample.source_time = 100s + i * 20ms + (i > 200 ? 5s : 0s);  // 4.5 s after the start
+        sample.received_ns = paths_start_ns + std::llround(20 * i / rate * one_ms);
+        const std::int64_t now_ns = sample.received_ns;
+        feed.say(std::move(sample));
+        feed.paths.set_run(paths_start + Nanoseconds(now_ns - paths_start_ns), now_ns);
+        feed.take(now_ns);
+        for (std::string& sentence : feed.news())
+            told.push_back(std::move(sentence));
+    }
+    EXPECT_THAT(told, testing::Contains(HasSubstr("clock stepped")));
+    EXPECT_THAT(told, testing::Contains(HasSubstr("runs at 0.90 of real time")).Times(1));
+}
+
+TEST(FeedNewsDesk, WhatIsSaidOnceIsKeptBackByAFullDeskAlone) {
+    FeedNewsDesk desk;
+    desk.tell(FeedNewsDesk::Kind::clock, "first", 0);
+    desk.tell(FeedNewsDesk::Kind::clock, "too soon", one_ms);
+    EXPECT_TRUE(desk.tell_once("once"));
+    EXPECT_THAT(desk.take(), testing::ElementsAre("first", "once"));
+    desk.tell(FeedNewsDesk::Kind::clock, "later", 6000 * one_ms);
+    EXPECT_THAT(desk.take(), testing::ElementsAre("later (and 1 times before)"));
+    for (int i = 0; i < 64; ++i)
+        EXPECT_TRUE(desk.tell_once("many"));
+    EXPECT_FALSE(desk.tell_once("too many"));
+    EXPECT_EQ(desk.take().size(), 64u);
+    EXPECT_TRUE(desk.tell_once("again"));
+}
+
 // The largest error of the path's velocity against the source's own, m/s: asked a little late, so that the samples on
 // both sides are there, from `from_s` on.
 double velocity_error_mps(double scatter_ms, double lost, double from_s, unsigned seed) {
