@@ -8,6 +8,7 @@
 
 #include "json_statement.hpp"
 #include "skyloop/trajectory/live_path.hpp"
+#include "source_pose.hpp"
 
 namespace skyloop {
 namespace {
@@ -93,11 +94,6 @@ private:
         news.answers.push_back(json_line({{"type", "error"}, {"line", lines_}, {"what", why}}));
     }
 
-    static void remark(FeedNews& news, std::string_view sentence) {
-        if (!news.remark.empty()) news.remark += "; ";
-        news.remark += sentence;
-    }
-
     Result<void> take_statement(const FeedJson& statement, FeedNews& news, std::int64_t received_ns) {
         const auto version = statement_whole(statement, "v");
         if (!version) return fail(version.error());
@@ -116,7 +112,7 @@ private:
         }
         if (name == "bye") news.add_aside(FeedEnd{});
         if (name == "vis" && !std::exchange(vis_told_, true))
-            remark(news, "its lines of type 'vis' (lines of sight of an engine) are not used");
+            report_remark(news, "its lines of type 'vis' (lines of sight of an engine) are not used");
         return {};  // others are of a later version
     }
 
@@ -203,7 +199,7 @@ private:
         const auto time = statement_time(statement);
         if (!time) return fail(time.error());
         if (*time && !std::exchange(event_time_told_, true))
-            remark(news, "its events act when they come; their times are not used");
+            report_remark(news, "its events act when they come; their times are not used");
         news.add_aside(std::move(*command));
         return {};
     }

@@ -4,7 +4,9 @@
 
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "dialects.hpp"
@@ -23,6 +25,30 @@ void report_broken_frames(MavlinkStream& stream, FeedNews& news) {
     for (std::size_t left = stream.take_broken(); left > 0; --left)
         report_refusal(news, "a MAVLink frame with a wrong checksum or unknown flags");
 }
+
+// Looks whether a link that is busy tells places: what has never told one is waited for, and the user must know why. An
+// autopilot is asked for its estimate after three seconds.
+class PlaceWatch {
+public:
+    // @param places the messages that would tell one
+    explicit PlaceWatch(std::string_view places) : places_(places) {}
+
+    void heard_place() { over_ = true; }
+    // After what came at once. @param frames all so far
+    void look(std::uint64_t frames, std::int64_t received_ns, FeedNews& news) {
+        constexpr std::int64_t patience_ns = 5'000'000'000;
+        if (over_ || frames == 0) return;
+        if (!first_ns_) first_ns_ = received_ns;
+        if (received_ns - *first_ns_ < patience_ns) return;
+        over_ = true;
+        report_remark(news, fmt::format("{} messages, and none of them tells a place ({})", frames, places_));
+    }
+
+private:
+    std::string_view places_;
+    std::optional<std::int64_t> first_ns_;  // when messages began
+    bool over_ = false;
+};
 
 // Vehicles count from their own starts or from 1970, the run has one clock for all of a source: the later ones are
 // moved, by when their first message came, onto the clock of the first. Those that count from 1970, as it does, are on
@@ -76,6 +102,7 @@ public:
         FeedNews news;
         stream_.feed(bytes, [&](const MavlinkFrameView& frame) { take(frame, received_ns, news); });
         report_broken_frames(stream_, news);
+        places_.look(stream_.frames(), received_ns, news);
         return news;
     }
 
@@ -109,6 +136,7 @@ private:
         if (frame.message == MavlinkHeartbeat::message_id) return meet(frame, vehicle, news);
         auto sample = vehicle.truth.take(frame, received_ns);
         if (!sample) return;
+        places_.heard_place();
         if (!*sample) return report_refusal(news, fmt::format("vehicle {}: {}", system, sample->error()));
         (*sample)->vehicle = std::to_string(system);
         (*sample)->source_time = clock_.common(system, (*sample)->source_time, received_ns);
@@ -156,6 +184,8 @@ private:
 
     FeedContext context_;
     MavlinkStream stream_;
+    PlaceWatch places_{
+        "HIL_STATE_QUATERNION, SIM_STATE, ODOMETRY, GLOBAL_POSITION_INT; LOCAL_POSITION_NED with an origin"};
     FleetClock clock_;
     std::map<std::uint8_t, Vehicle> vehicles_;  // by system: at most 254
     std::uint8_t sequence_ = 0;
@@ -171,6 +201,7 @@ public:
         FeedNews news;
         stream_.feed(bytes, [&](const MavlinkFrameView& frame) {
             if (frame.message != MavlinkHilStateQuaternion::message_id) return;
+            places_.heard_place();
             if (auto sample = truth_.take(frame, received_ns)) {
                 if (*sample)
                     news.samples.push_back(std::move(**sample));
@@ -179,6 +210,7 @@ public:
             }
         });
         report_broken_frames(stream_, news);
+        places_.look(stream_.frames(), received_ns, news);
         return news;
     }
     void reconnected() override { stream_.clear(); }
@@ -186,6 +218,7 @@ public:
 private:
     MavlinkVehicleTruth truth_;
     MavlinkStream stream_;
+    PlaceWatch places_{"HIL_STATE_QUATERNION"};
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include "skyloop/protocol/mavlink.hpp"
@@ -26,12 +27,16 @@ public:
             const auto size = mavlink_frame_size(rest);
             if (!size || *size > rest.size()) break;
             const auto frame = parse_mavlink(rest.first(*size));
+            const bool whole = frame || is_passed_over(rest, *size);
+            if (whole) ++frames_;
             if (frame) take(*frame);
-            at += frame || is_passed_over(rest, *size) ? *size : 1;
+            at += whole ? *size : 1;
         }
         pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(at));
     }
     void clear() { pending_.clear(); }
+    // Whole frames so far, of messages that are not known, too.
+    [[nodiscard]] std::uint64_t frames() const { return frames_; }
     // Frames of known messages with a wrong checksum or flags that are not known, since this was asked.
     std::size_t take_broken() { return std::exchange(broken_, 0); }
 
@@ -45,6 +50,7 @@ private:
     }
 
     Bytes pending_;
+    std::uint64_t frames_ = 0;
     std::size_t broken_ = 0;
 };
 

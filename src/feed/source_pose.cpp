@@ -110,6 +110,11 @@ void report_refusal(FeedNews& news, std::string why) {
     if (news.refused++ == 0) news.refusal = std::move(why);
 }
 
+void report_remark(FeedNews& news, std::string_view sentence) {
+    if (!news.remark.empty()) news.remark += "; ";
+    news.remark += sentence;
+}
+
 std::optional<double> source_number(std::string_view text) {
     constexpr std::string_view blanks = " \t\r";
     const std::size_t first = text.find_first_not_of(blanks);

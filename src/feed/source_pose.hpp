@@ -51,6 +51,8 @@ std::optional<Nanoseconds> source_nanoseconds(double seconds);
 // Adds a sample that came at `received_ns`, or counts why it is none.
 void report_sample(FeedNews& news, SampleOr sample, std::optional<Nanoseconds> source_time, std::int64_t received_ns);
 void report_refusal(FeedNews& news, std::string why);
+// Adds what the user should be told.
+void report_remark(FeedNews& news, std::string_view sentence);
 
 // A number of a text, blanks around it left out; nothing when anything else is there or it is not finite.
 std::optional<double> source_number(std::string_view text);

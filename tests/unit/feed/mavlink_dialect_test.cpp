@@ -1,8 +1,10 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "dialect_bytes.hpp"
 #include "dialect_pose.hpp"
+#include "mavlink_frames.hpp"
 #include "skyloop/feed/feed_dialect.hpp"
 
 namespace skyloop {
@@ -10,73 +12,6 @@ namespace {
 
 using testing::HasSubstr;
 using Pose = NorthEastClimb;
-
-std::int64_t e7(double degrees) { return std::llround(degrees * 1e7); }
-void put_q(HandBytes& payload) {
-    for (const double part : Pose::quaternion())
-        payload.f32(part);
-}
-
-// Offsets by FEEDS.md 3.6.
-Bytes hil_state(std::uint64_t time_us, std::uint8_t system = 1, int version = 2, std::int64_t speed_east = 400) {
-    HandBytes payload;
-    payload.u64(time_us);
-    put_q(payload);
-    payload.f32s({0.1, 0.2, 0.3}).i32(e7(Pose::latitude)).i32(e7(Pose::longitude)).i32(510000);
-    payload.i16(300).i16(speed_east).i16(-200).i16(5).i16(5).i16(100).i16(200).i16(-1000);
-    EXPECT_EQ(payload.bytes().size(), 64u);
-    return hand_mavlink(115, 4, payload.bytes(), system, version);
-}
-
-Bytes sim_state(double latitude_float, double longitude_float, bool integers) {
-    HandBytes payload;
-    put_q(payload);
-    payload.f32s({9, 9, 9, 1, 2, -9.8, 0.1, 0.2, 0.3, latitude_float, longitude_float, 510, 0, 0, 3, 4, -2});
-    if (integers) payload.i32(e7(Pose::latitude)).i32(e7(Pose::longitude));
-    return hand_mavlink(108, 32, payload.bytes());
-}
-
-Bytes global_position(std::uint32_t boot_ms, std::uint8_t system = 1, std::int64_t latitude = e7(Pose::latitude)) {
-    HandBytes payload;
-    payload.i32(boot_ms).i32(latitude).i32(e7(Pose::longitude)).i32(510000).i32(10000);
-    payload.i16(300).i16(400).i16(-200).i16(5313);
-    return hand_mavlink(33, 104, payload.bytes(), system);
-}
-
-Bytes attitude_quaternion() {
-    HandBytes payload;
-    payload.i32(1000);
-    put_q(payload);
-    payload.f32s({0.1, 0.2, 0.3});
-    return hand_mavlink(31, 246, payload.bytes());
-}
-
-Bytes attitude_angles() {
-    HandBytes payload;
-    const auto rad = [](double degrees) { return Angle::degrees(degrees).rad(); };
-    payload.i32(1000).f32s({rad(Pose::roll), rad(Pose::pitch), rad(Pose::yaw), 0.1, 0.2, 0.3});
-    return hand_mavlink(30, 39, payload.bytes(), 1, 1);
-}
-
-Bytes hand_heartbeat(std::uint8_t by, std::uint8_t system = 1) {
-    HandBytes payload;
-    payload.i32(0).u8(2).u8(by).u8(0).u8(4).u8(3);
-    return hand_mavlink(0, 50, payload.bytes(), system);
-}
-
-Bytes origin_message(double latitude, double longitude, std::int64_t msl_mm) {
-    HandBytes payload;
-    payload.i32(e7(latitude)).i32(e7(longitude)).i32(msl_mm);
-    return hand_mavlink(49, 39, payload.bytes());
-}
-
-Bytes local_position(double north, double down) {
-    HandBytes payload;
-    payload.i32(2000).f32s({north, 0, down, 3, 4, -2});
-    return hand_mavlink(32, 185, payload.bytes());
-}
-
-const PoseTolerance mavlink_tolerance{1e-7, 1e-3, 1e-3, 1e-3, 1e-6, true, true};
 
 TEST(MavlinkDialect, ReadsHilStateOfBothVersions) {
     for (const int version : {1, 2}) {
@@ -379,6 +314,31 @@ TEST(Px4Dialect, ReadsTheSimulatorAndNeverSpeaks) {
     expect_pose(news.samples[0], mavlink_tolerance);
     EXPECT_EQ(news.samples[0].source_time, Nanoseconds(123'456'000));
     EXPECT_TRUE(dialect->hear(global_position(5), 0).samples.empty());
+}
+
+// The remarks on messages that come each second for eight.
+std::vector<std::string> remarks_on(std::string_view name, const std::vector<Bytes>& frames) {
+    const auto dialect = dialect_named(name);
+    std::vector<std::string> told;
+    for (std::int64_t second = 0; second <= 8; ++second)
+        for (const Bytes& frame : frames) {
+            const FeedNews news = dialect->hear(frame, second * 1'000'000'000);
+            if (!news.remark.empty()) told.push_back(fmt::format("{} s: {}", second, news.remark));
+        }
+    return told;
+}
+
+TEST(MavlinkDialect, TellsOnceThatALinkIsBusyAndTellsNoPlace) {
+    const Bytes sensor = hand_mavlink(107, 108, Bytes(64, 1)), receiver = hand_mavlink(113, 124, Bytes(36, 1));
+    EXPECT_THAT(remarks_on("px4", {sensor, receiver}),
+                testing::ElementsAre("5 s: 11 messages, and none of them tells a place (HIL_STATE_QUATERNION)"));
+    const auto none = testing::ElementsAre(
+        testing::AllOf(HasSubstr("5 s: 6 messages, and none of them tells a place"), HasSubstr("SIM_STATE")));
+    EXPECT_THAT(remarks_on("mavlink", {hand_heartbeat(3)}), none);
+    EXPECT_THAT(remarks_on("mavlink", {local_position(100, -10)}), none);
+    EXPECT_THAT(remarks_on("px4", {sensor, hil_state(1)}), testing::IsEmpty());
+    EXPECT_THAT(remarks_on("mavlink", {hand_heartbeat(3), global_position(1)}), testing::IsEmpty());
+    EXPECT_THAT(remarks_on("mavlink", {to_bytes("not MAVLink at all")}), testing::IsEmpty());
 }
 
 }  // namespace
