@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "skyloop/base/units.hpp"
+#include "skyloop/time/gps_time.hpp"
 
 namespace skyloop {
 

@@ -137,6 +137,10 @@ private:
         auto sample = vehicle.truth.take(frame, received_ns);
         if (!sample) return;
         places_.heard_place();
+        if (vehicle.truth.is_coarse() && !std::exchange(coarse_told_, true))
+            report_remark(news,
+                          "SIM_STATE without lat_int and lon_int: its places lie on a grid of up to 1.4 m and are "
+                          "smoothed; MAVLink 2 of newer senders has them");
         if (!*sample) return report_refusal(news, fmt::format("vehicle {}: {}", system, sample->error()));
         (*sample)->vehicle = std::to_string(system);
         (*sample)->source_time = clock_.common(system, (*sample)->source_time, received_ns);
@@ -189,6 +193,7 @@ private:
     FleetClock clock_;
     std::map<std::uint8_t, Vehicle> vehicles_;  // by system: at most 254
     std::uint8_t sequence_ = 0;
+    bool coarse_told_ = false;
 };
 
 // Between PX4 and its simulator nobody else may speak: the simulator's HIL_STATE_QUATERNION is read, its clock is

@@ -41,6 +41,8 @@ SourcePose pose_of_integers(const Message& message) {
     return pose;
 }
 
+bool has_integers(const MavlinkSimState& message) { return message.lat_int != 0 || message.lon_int != 0; }
+
 std::optional<Attitude> attitude_of_floats(const std::array<float, 4>& q) {
     return attitude_of_quaternion(q[0], q[1], q[2], q[3]);
 }
@@ -102,13 +104,23 @@ std::optional<SampleOr> MavlinkVehicleTruth::take(const MavlinkFrameView& frame,
     }
 }
 
-// It has no time of its own. Its arrivals, evened out, are laid on the clock of the vehicle's other messages.
+// It has no time of its own. Its arrivals, evened out, are laid on the clock of the vehicle's other messages. Steps on
+// the grid of its floats, of up to 1.4 m, tell nothing of time; they are smoothed.
 std::optional<SampleOr> MavlinkVehicleTruth::take_sim_state(const MavlinkFrameView& frame, std::int64_t received_ns) {
-    SampleOr sample = of_sim_state(decode_mavlink<MavlinkSimState>(frame.payload));
+    const auto message = decode_mavlink<MavlinkSimState>(frame.payload);
+    SampleOr sample = of_sim_state(message);
     if (!sample) return sample;
-    const auto step = sim_state_ ? own_step(*sim_state_, *sample) : std::nullopt;
-    sim_state_ = *sample;
-    const auto time = boot_.at(sim_rhythm_.evened(received_ns, step));
+    const bool coarse = !has_integers(message);
+    const auto step = sim_state_ && !coarse ? own_step(*sim_state_, *sample) : std::nullopt;
+    const std::int64_t evened_ns = sim_rhythm_.evened(received_ns, step);
+    const auto time = boot_.at(evened_ns);
+    if (coarse) {
+        is_coarse_ = true;
+        sim_state_.reset();
+        coarse_filter_.smooth(*sample, time ? time->count() : evened_ns);
+    } else {
+        sim_state_ = *sample;
+    }
     return add(MavlinkTruthKind::sim_state, std::move(sample), time, received_ns);
 }
 
@@ -138,11 +150,11 @@ SampleOr MavlinkVehicleTruth::of_hil_state(const MavlinkHilStateQuaternion& mess
 // ArduPilot puts 1e7 times the degrees into the floats; the integers, where they are, are better anyway.
 SampleOr MavlinkVehicleTruth::of_sim_state(const MavlinkSimState& message) const {
     SourcePose pose;
-    const bool has_integers = message.lat_int != 0 || message.lon_int != 0;
+    const bool integers = has_integers(message);
     const bool scaled = std::abs(message.lat) > 90 || std::abs(message.lon) > 360;
     const double unit = scaled ? 1e-7 : 1;
-    pose.latitude_deg = has_integers ? message.lat_int * 1e-7 : double{message.lat} * unit;
-    pose.longitude_deg = has_integers ? message.lon_int * 1e-7 : double{message.lon} * unit;
+    pose.latitude_deg = integers ? message.lat_int * 1e-7 : double{message.lat} * unit;
+    pose.longitude_deg = integers ? message.lon_int * 1e-7 : double{message.lon} * unit;
     pose.height_m = message.alt;
     pose.velocity_ned = Eigen::Vector3d(message.vn, message.ve, message.vd);
     pose.attitude = attitude_of_floats(message.q);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "boot_clock.hpp"
+#include "motion_filter.hpp"
 #include "skyloop/protocol/mavlink_vehicle.hpp"
 #include "skyloop/trajectory/arrival_rhythm.hpp"
 #include "source_pose.hpp"
@@ -16,7 +17,7 @@ enum class MavlinkTruthKind { none, global_position, local_position, odometry, s
 
 // One vehicle. Of the kinds of messages that it sends the best one counts; a worse one again when that has been silent
 // for two seconds. Attitudes of messages of their own are added to the next place within half a second. SIM_STATE,
-// which has no time, is laid on the clock of those that have one.
+// which has no time, is laid on the clock of those that have one; without its integers it is coarse, and smoothed.
 class MavlinkVehicleTruth {
 public:
     explicit MavlinkVehicleTruth(const FeedContext& context) : context_(context) {}
@@ -27,6 +28,8 @@ public:
     void set_autopilot(std::uint8_t autopilot) { autopilot_ = autopilot; }
     // The best kind that gave a sample since this was asked.
     MavlinkTruthKind take_heard();
+    // Whether a SIM_STATE has told its place by floats alone.
+    [[nodiscard]] bool is_coarse() const { return is_coarse_; }
 
 private:
     bool counts(MavlinkTruthKind kind, std::int64_t received_ns) const;
@@ -54,7 +57,9 @@ private:
     std::optional<std::uint8_t> reset_counter_;
     BootClock boot_;
     ArrivalRhythm sim_rhythm_;
-    std::optional<TruthSample> sim_state_;  // the last one
+    std::optional<TruthSample> sim_state_;  // the last one that had integers
+    MotionFilter coarse_filter_{{0.5, 0.05}};
+    bool is_coarse_ = false;
 };
 
 }  // namespace skyloop

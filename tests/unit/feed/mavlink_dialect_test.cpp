@@ -43,6 +43,30 @@ TEST(MavlinkDialect, ReadsSimStateInDegreesAndInArdupilotsUnit) {
     EXPECT_FALSE(read(sim_state(Pose::latitude, Pose::longitude, false)).source_time);
 }
 
+// East of SITL's own home, where the floats have steps of 1.16 m.
+TEST(MavlinkDialect, SmoothsSimStateWithoutIntegersAndTellsSoOnce) {
+    constexpr double latitude = -35.363262, longitude = 149.165237, speed_mps = 3;
+    const Geodetic home = Geodetic::degrees(latitude, longitude, 510);
+    const Eigen::Vector3d east = ned_to_ecef(home).toRotationMatrix().col(1);
+    const double metres_per_degree =
+        (to_ecef(Geodetic::degrees(latitude, longitude + 1e-3, 510)) - to_ecef(home)).vector().dot(east) * 1e3;
+    const auto dialect = dialect_named("mavlink");
+    double worst_m = 0;
+    for (int i = 0; i < 500; ++i) {
+        const double east_m = speed_mps * 0.02 * i;
+        const Bytes frame =
+            sim_state(latitude * 1e7, (longitude + east_m / metres_per_degree) * 1e7, false, {0, speed_mps, 0});
+        const FeedNews news = dialect->hear(frame, std::int64_t{i} * 20'000'000);
+        ASSERT_EQ(news.samples.size(), 1u) << news.refusal;
+        EXPECT_EQ(news.remark.find("SIM_STATE without lat_int") == 0, i == 0);
+        const double told_m = (news.samples[0].position - to_ecef(home)).vector().dot(east);
+        if (i > 100) worst_m = std::max(worst_m, std::abs(told_m - east_m));
+        EXPECT_NEAR(news.samples[0].velocity->vector().dot(east), speed_mps, 0.1);
+    }
+    EXPECT_LT(worst_m, 0.1);
+    EXPECT_EQ(dialect_named("mavlink")->hear(sim_state(Pose::latitude, Pose::longitude, true), 0).remark, "");
+}
+
 // SITL: SIM_STATE 50 times a second, GLOBAL_POSITION_INT four times, at a speed that need not be ours.
 TEST(MavlinkDialect, LaysSimStateOnTheClockOfTheVehiclesOtherMessages) {
     constexpr std::int64_t ms = 1'000'000;

@@ -1,6 +1,7 @@
 // The pose that every dialect must read the same, in messages of MAVLink made by hand.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -26,10 +27,12 @@ inline Bytes hil_state(std::uint64_t time_us, std::uint8_t system = 1, int versi
     return hand_mavlink(115, 4, payload.bytes(), system, version);
 }
 
-inline Bytes sim_state(double latitude_float, double longitude_float, bool integers) {
+inline Bytes sim_state(double latitude_float, double longitude_float, bool integers,
+                       const std::array<double, 3>& ned = {3, 4, -2}) {
     HandBytes payload;
     put_q(payload);
-    payload.f32s({9, 9, 9, 1, 2, -9.8, 0.1, 0.2, 0.3, latitude_float, longitude_float, 510, 0, 0, 3, 4, -2});
+    payload.f32s(
+        {9, 9, 9, 1, 2, -9.8, 0.1, 0.2, 0.3, latitude_float, longitude_float, 510, 0, 0, ned[0], ned[1], ned[2]});
     if (integers) payload.i32(e7(NorthEastClimb::latitude)).i32(e7(NorthEastClimb::longitude));
     return hand_mavlink(108, 32, payload.bytes());
 }
