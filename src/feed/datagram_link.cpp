@@ -159,7 +159,9 @@ public:
 
 private:
     bool is_the_one(const FeedPeer& from, std::int64_t now_ns) {
-        constexpr std::int64_t silence_ns = 5'000'000'000;  // after it, another may take its place
+        // After it, another may take its place: a program that was started again speaks from another port. ArduPilot's
+        // SITL repeats itself each second while no physics answers.
+        constexpr std::int64_t silence_ns = 2'000'000'000;
         if (peer_ && !(*peer_ == from) && now_ns < heard_ns_ + silence_ns) return false;
         peer_ = from;
         heard_ns_ = now_ns;

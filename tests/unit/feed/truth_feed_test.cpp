@@ -284,6 +284,14 @@ TEST(TruthFeed, RelaysDatagramsUnmodifiedAndHearsOneSide) {
     ASSERT_TRUE(pump_until(**feed, [&] { return any->counts().samples == 1 && (*feed)->counts().strangers == 1; }));
     EXPECT_EQ((*feed)->counts().refused, 0u) << "the other direction is not heard";
     EXPECT_EQ(stranger.hear(50), "");
+    // The first one is gone: an autopilot that was started again comes from another port.
+    const std::int64_t gone_ns = steady_clock_ns();
+    std::string taken;
+    while (taken.empty() && steady_clock_ns() < gone_ns + 4'000'000'000) {
+        stranger.say("begun anew");
+        taken = simulator.hear(100);
+    }
+    EXPECT_EQ(taken, "begun anew");
 }
 
 TEST(TruthFeed, RelaysStreamsUnmodifiedUntilOneEndGoes) {
