@@ -157,7 +157,7 @@ private:
         for (; !body.empty(); body = body.subspan(size)) {
             const auto reference = decode_payload<XplaneReference>(body.first(size));
             if (reference->index == time_reference) take_time(reference->value, received_ns);
-            if (reference->index == paused_reference) take_paused(reference->value != 0, news);
+            if (reference->index == paused_reference) take_paused(reference->value != 0, received_ns, news);
         }
     }
 
@@ -182,8 +182,10 @@ private:
         return to_nanoseconds(Seconds(grid_s / 2));
     }
 
-    void take_paused(bool paused, FeedNews& news) {
+    void take_paused(bool paused, std::int64_t received_ns, FeedNews& news) {
         if (paused != paused_) news.add_aside(FeedPause{paused});
+        // The time that was said held until now.
+        if (paused_ && !paused && time_) time_->received_ns = received_ns;
         paused_ = paused;
     }
 

@@ -70,6 +70,24 @@ TEST(XplaneDialect, TellsPauses) {
     EXPECT_EQ(pause_told(dialect->hear(rref({{2, 0}}), 0)), false);
 }
 
+TEST(XplaneDialect, ItsTimeGoesOnAfterAPauseFromWhereItStood) {
+    constexpr std::int64_t ms = 1'000'000;
+    for (const bool flag_first : {false, true}) {
+        const auto dialect = dialect_named("xplane");
+        const auto time_ms = [&](std::int64_t at_ms) {
+            return dialect->hear(rpos(), at_ms * ms).samples.at(0).source_time->count() / ms;
+        };
+        dialect->hear(rref({{1, 100}, {2, 0}}), 0);
+        dialect->hear(rref({{1, 100}, {2, 1}}), 20 * ms);
+        EXPECT_EQ(time_ms(3000), 100'000);
+        // The flag falls a frame before the time moves.
+        dialect->hear(flag_first ? rref({{2, 0}, {1, 100}}) : rref({{1, 100}, {2, 0}}), 3000 * ms);
+        EXPECT_EQ(time_ms(3005), 100'005);
+        dialect->hear(rref({{1, 100.25}, {2, 0}}), 3250 * ms);
+        EXPECT_NEAR(static_cast<double>(time_ms(3250)), 100'250, 1);
+    }
+}
+
 TEST(XplaneDialect, AsksInBothWaysUntilPosesCome) {
     FeedContext context;
     context.rate_hz = 40;
