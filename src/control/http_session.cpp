@@ -18,9 +18,7 @@ namespace http = boost::beast::http;
 using boost::beast::error_code;
 
 constexpr std::chrono::seconds request_patience{10}, drain_patience{2};
-// A loop that is busy is waited for 0.1 s; then the client is told what was last.
 constexpr std::chrono::milliseconds snapshot_look{2};
-constexpr int most_snapshot_looks = 50;
 constexpr std::size_t most_drained_bytes = std::size_t{32} << 20U;
 
 std::string as_string(boost::beast::string_view text) { return {text.data(), text.size()}; }
@@ -117,7 +115,7 @@ private:
         request_ = control_request(std::move(message));
         const bool of_now = request_.path() == "/api/status" || request_.path() == "/api/timeline";
         if (!of_now || refusal(request_, core_.rules)) return tell(keep_alive, head);
-        await_snapshot(core_.parts.board.ask(), most_snapshot_looks,
+        await_snapshot(core_.parts.board.ask(), core_.most_snapshot_looks,
                        [self = shared_from_this(), keep_alive, head] { self->tell(keep_alive, head); });
     }
 

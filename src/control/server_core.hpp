@@ -30,6 +30,7 @@ struct ServerCore {
     ControlParts parts;
     AccessRules rules;
     int clients = 0, refused_clients = 0;
+    int most_snapshot_looks = 50;  ///< each after 2 ms, for an answer of now; then a client is told what was last
     std::uint64_t status_sequence = 0;
     std::string status_text;  ///< of that snapshot
     std::uint16_t port = 0;
