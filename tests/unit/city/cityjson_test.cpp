@@ -270,7 +270,7 @@ TEST(CityJson, RefusesWithOneClearLine) {
     EXPECT_THAT(cityjson_refusal(cube_file("")), HasSubstr("no surface"));
     EXPECT_THAT(cityjson_refusal(
                     cube_file(fmt::format(R"("a":{{"type":"Building","geometry":[{}]}})", solid("1")), "EPSG:4326")),
-                HasSubstr("longitudes and latitudes"));
+                HasSubstr("expected degrees on the globe, found longitudes 2000"));
 }
 
 TEST(CityJson, ReadsDelft) {
