@@ -79,9 +79,11 @@ private:
 
 // The part of a campaign that this process leads.
 class CampaignLeader {
+    using LeaderClock = std::chrono::steady_clock;
+
 public:
     CampaignLeader(const Messages& messages, const CampaignOptions& options, const OpenedCampaign& campaign)
-        : messages_(messages), options_(options), campaign_(campaign) {}
+        : messages_(messages), options_(options), campaign_(campaign), files_(campaign.files) {}
 
     int run(const Shard& shard) {
         // First of all: what is there may be of another campaign.
@@ -150,8 +152,13 @@ private:
         return failed_before_ + progress.failed() > 0 ? failed_runs_code : 0;
     }
     Result<JobFate> take(const JobOutcome& outcome, TableFile& results, TableFile& log, CampaignProgress& progress) {
+        const auto began = LeaderClock::now() - std::chrono::duration_cast<LeaderClock::duration>(
+                                                    std::chrono::duration<double>(outcome.seconds));
+        if (const auto same = look_at_files(); !same) return fail(same.error());
         const PlannedRun run = campaign_.plan.run(outcome.job);
         const ResultColumns& columns = campaign_.setup.columns;
+        if (began < written_at_)
+            return take_loss(run, outcome, {ErrorCode::outside, written_ + " was written while it ran"}, log);
         const auto result = outcome.answer.empty() ? Result<RunResult>(fail(ErrorCode::outside, outcome.death))
                                                    : worker_answer(outcome.answer, columns);
         if (!result) return take_loss(run, outcome, result.error(), log);
@@ -167,6 +174,15 @@ private:
             tell_replay(run.number);
         }
         return JobFate::done;
+    }
+    // What was written with the same content may have held another one in between.
+    Result<void> look_at_files() {
+        const auto written = files_.find_written();
+        if (!written) return fail(written.error());
+        if (!*written) return {};
+        written_ = (*written)->string();
+        written_at_ = LeaderClock::now();
+        return {};
     }
     // Once: how any of them is seen again.
     void tell_replay(std::uint64_t number) {
@@ -194,6 +210,9 @@ private:
     const Messages& messages_;
     const CampaignOptions& options_;
     const OpenedCampaign& campaign_;
+    KeyedFiles files_;
+    std::string written_{};                 // of them the last that was
+    LeaderClock::time_point written_at_{};  // when that was seen
     std::vector<std::uint64_t> missing_;
     std::uint64_t there_ = 0, failed_before_ = 0, given_up_ = 0;
     bool replay_told_ = false;

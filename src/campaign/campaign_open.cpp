@@ -5,7 +5,6 @@
 #include "campaign_check.hpp"
 #include "skyloop/base/text_file.hpp"
 #include "skyloop/campaign/campaign_folder.hpp"
-#include "skyloop/campaign/sha256.hpp"
 #include "skyloop/scenario/board_file.hpp"
 #include "skyloop/scenario/scenario_file.hpp"
 
@@ -13,38 +12,40 @@ namespace skyloop {
 namespace {
 
 // Of a board by its name. One by its path is among the files that the scenario names. Nothing: there is none.
-std::optional<std::string> board_digest(const std::string& board, const DataFolders& data) {
+std::optional<std::string> board_digest(const std::string& board, const DataFolders& data, KeyedFiles& files) {
     if (is_board_path(board)) return std::nullopt;
     for (const auto& folder : board_folders(data))
-        if (const auto text = read_text_file(folder / "receivers" / (board + ".toml"))) return sha256_hex(*text);
+        if (const auto digest = files.digest(folder / "receivers" / (board + ".toml"))) return *digest;
     return std::nullopt;
 }
 
-void add_boards(const Scenario& scenario, const DataFolders& data, CampaignBase& base) {
+void add_boards(const Scenario& scenario, const DataFolders& data, CampaignBase& base, KeyedFiles& files) {
     for (const ReceiverEntry& receiver : scenario.receivers)
-        if (const auto digest = board_digest(receiver.board, data)) base.more["board " + receiver.board] = *digest;
+        if (const auto digest = board_digest(receiver.board, data, files))
+            base.more["board " + receiver.board] = *digest;
 }
 
 // A line for each file and board that a value of a parameter names.
-Result<std::string> content_of_value(const CampaignRequest& request, const ScenarioChange& change) {
+Result<std::string> content_of_value(const CampaignRequest& request, const ScenarioChange& change, KeyedFiles& files) {
     std::string content;
     for (const std::string& name : files_of_change(change, request.scenario)) {
-        const auto digest = content_digest(request.scenario.parent_path() / name);
+        const auto digest = files.digest(request.scenario.parent_path() / name);
         if (!digest) return fail(digest.error());
         content += fmt::format("file {} {}\n", name, *digest);
     }
     if (change.key.ends_with(".board"))
-        if (const auto digest = board_digest(change.value.shown, request.data))
+        if (const auto digest = board_digest(change.value.shown, request.data, files))
             content += fmt::format("board {} {}\n", change.value.shown, *digest);
     return content;
 }
 
-Result<ValueContents> contents_of_values(const CampaignRequest& request, const CampaignSettings& settings) {
+Result<ValueContents> contents_of_values(const CampaignRequest& request, const CampaignSettings& settings,
+                                         KeyedFiles& files) {
     ValueContents contents;
     for (const CampaignParameter& parameter : settings.parameters) {
         const auto* values = std::get_if<std::vector<CampaignValue>>(&parameter.spread);
         for (std::size_t i = 0; values != nullptr && i < values->size(); ++i) {
-            const auto content = content_of_value(request, {parameter.key, (*values)[i]});
+            const auto content = content_of_value(request, {parameter.key, (*values)[i]}, files);
             if (!content) return fail(content.error());
             if (!content->empty()) contents[fmt::format("{} = {}", parameter.key, (*values)[i].toml)] = *content;
         }
@@ -85,17 +86,17 @@ Result<Scenario> base_scenario(const CampaignRequest& request, const std::string
 }
 
 Result<std::string> digest_of_base(const CampaignRequest& request, const std::string& text, const Scenario& scenario,
-                                   std::vector<std::string>& warnings) {
+                                   std::vector<std::string>& warnings, KeyedFiles& files) {
     auto content = scenario_content(text, request.scenario);
     if (!content) return fail(content.error());
     const auto assembly = checked_assembly(scenario, request.data);
     if (!assembly) return fail(assembly.error());
     CampaignBase base{request.version, std::move(*content), request.scenario.parent_path(), {}};
     warnings.insert(warnings.end(), assembly->warnings.begin(), assembly->warnings.end());
-    add_boards(scenario, request.data, base);
+    add_boards(scenario, request.data, base, files);
     base.more["geoid"] = assembly->geoid ? "EGM96" : "none";
     if (assembly->scene.digest != 0) base.more["scene"] = fmt::format("{:016x}", assembly->scene.digest);
-    return campaign_base_digest(base, *scenario.campaign);
+    return campaign_base_digest(base, *scenario.campaign, files);
 }
 
 std::vector<std::string> options_of(const CampaignRequest& request) {
@@ -119,9 +120,10 @@ Result<OpenedCampaign> open_campaign(const CampaignRequest& request) {
     const std::vector<std::string> options = options_of(request);
     if (const auto once = check_parameter_keys({*text, request.scenario, options}, settings); !once)
         return fail(once.error());
-    const auto digest = digest_of_base(request, *text, *scenario, warnings);
+    KeyedFiles files;
+    const auto digest = digest_of_base(request, *text, *scenario, warnings, files);
     if (!digest) return fail(digest.error());
-    auto contents = contents_of_values(request, settings);
+    auto contents = contents_of_values(request, settings, files);
     if (!contents) return fail(contents.error());
     auto plan = CampaignPlan::make(settings, *digest, std::move(*contents));
     if (!plan) return fail(plan.error().code, fmt::format("{}: {}", request.scenario.string(), plan.error().message));
@@ -133,7 +135,8 @@ Result<OpenedCampaign> open_campaign(const CampaignRequest& request) {
                           options,
                           request.version,
                           std::move(warnings),
-                          settings.vehicle ? settings.vehicle->command : std::string()};
+                          settings.vehicle ? settings.vehicle->command : std::string(),
+                          std::move(files)};
 }
 
 }  // namespace skyloop

@@ -302,6 +302,28 @@ def test_vehicle(folder):
     assert "1 passed, 1 failed" in said and "not met      1 of 2 runs: vehicle" in said, said
 
 
+def test_a_file_that_changes_meanwhile(folder):
+    """The vehicle writes the track in run 1: what was done before stays, and no row is of another track."""
+    track = folder / "track.csv"
+    track.write_text("time_s,lat_deg,lon_deg,height_m\n0,47,8,400\n30,47.001,8,400\n")
+
+    def write(name, command):
+        path = write_vehicle_scenario(folder / f"{name}.toml", 3, f"cd '{folder}' && {command}")
+        path.write_text(path.read_text() + '[trajectory]\nkind = "file"\npath = "track.csv"\n')
+        return path
+
+    touched = write("touched", "test $SKYLOOP_RUN != 1 || test -e once || touch once track.csv")
+    assert "3 passed" in campaign(touched, "--out", folder / "touched", "--jobs", 1).stdout
+    with open(folder / "touched/shards/0-of-1.log.csv", encoding="utf-8") as file:
+        rows = [(row["number"], row["outcome"]) for row in csv.DictReader(file)]
+    assert rows == [("0", "passed"), ("1", "lost"), ("2", "passed"), ("1", "passed")], rows
+    changed = write("changed", "test $SKYLOOP_RUN != 1 || test -e twice || { touch twice; echo 40,47.002,8,400 >>track.csv; }")
+    said = campaign(changed, "--out", folder / "changed", "--jobs", 1, expected=(1,)).stderr
+    assert f"{track}: has changed since the campaign began; what was done before is kept" in said, said
+    assert len(keys_in(folder / "changed")) == 1
+    assert "of other plans 1" in campaign(changed, "--out", folder / "changed").stdout
+
+
 def test_a_probe_beside_a_vehicle_finds_the_port(folder):
     path = write_vehicle_scenario(folder / "probe.toml", 1, "sleep 4")
     probe = json.dumps(["sh", "-c", 'test -c "$SKYLOOP_PORT"'])
@@ -313,8 +335,8 @@ def main():
     with open_folder() as name:
         folder = pathlib.Path(name)
         for test in (test_plan, test_same_bytes, test_database, test_replay, test_shards, test_kills, test_stop,
-                     test_mistakes, test_titles_are_shown_and_not_obeyed, test_vehicle, test_a_probe_beside_a_vehicle_finds_the_port,
-                     test_a_killed_worker_takes_its_vehicle_along):
+                     test_mistakes, test_titles_are_shown_and_not_obeyed, test_vehicle, test_a_file_that_changes_meanwhile,
+                     test_a_probe_beside_a_vehicle_finds_the_port, test_a_killed_worker_takes_its_vehicle_along):
             began = time.monotonic()
             test(folder)
             print(f"{test.__name__}: {time.monotonic() - began:.1f} s")

@@ -33,6 +33,7 @@ struct OpenedCampaign {
     std::string version;
     std::vector<std::string> warnings{};  ///< of its run without changes, for people
     std::string vehicle{};                ///< command of its vehicle; empty: it has none
+    KeyedFiles files{};                   ///< whose content is in the keys of its runs
 };
 
 /// Reads the scenario and everything that its run reads, without changes. A file without [campaign] is a campaign of

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "skyloop/base/result.hpp"
+#include "skyloop/campaign/keyed_files.hpp"
 #include "skyloop/scenario/campaign_settings.hpp"
 #include "skyloop/scenario/scenario_changes.hpp"
 
@@ -74,9 +75,6 @@ private:
     std::vector<std::vector<double>> samples_{};  // a list a parameter, of designs that draw
 };
 
-/// SHA-256 of a file's content; of a folder, of all files in it, by name. Fails with `outside` when one cannot be read.
-Result<std::string> content_digest(const std::filesystem::path& path);
-
 /// What all runs of a campaign have in common, as 64 hexadecimal digits of SHA-256: the program's version, what the
 /// scenario says apart from [campaign] and its seed, the content of the files that it names, the digests in `more`
 /// (of the boards, of cities, whether there is a geoid), and of [campaign] what decides a run's result: metrics and
@@ -87,7 +85,8 @@ struct CampaignBase {
     std::filesystem::path folder{};             ///< that the files' names are relative to
     std::map<std::string, std::string> more{};  ///< name and digest
 };
+/// @param files looks after those that are named
 /// Fails with `outside` when a file cannot be read.
-Result<std::string> campaign_base_digest(const CampaignBase& base, const CampaignSettings& campaign);
+Result<std::string> campaign_base_digest(const CampaignBase& base, const CampaignSettings& campaign, KeyedFiles& files);
 
 }  // namespace skyloop

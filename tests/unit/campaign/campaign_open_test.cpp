@@ -93,6 +93,26 @@ TEST_F(CampaignOpen, TheContentOfABoardThatAValueNamesIsInTheKeysOfItsRuns) {
     EXPECT_NE(keys(by_path), path_before);
 }
 
+TEST_F(CampaignOpen, WhatIsInTheKeysIsLookedAfter) {
+    write_text(folder_ / "sitl", "#!/bin/sh\n");
+    write_text(folder_ / "p.parm", "GPS_TYPE 1\n");
+    write_scenario(
+        "[trajectory]\nkind = \"file\"\npath = \"a.csv\"\n[[receiver]]\nboard = \"mine\"\n"
+        "[campaign.vehicle]\nfiles = [\"p.parm\"]\ncommand = \"" +
+        (folder_ / "sitl").string() + "\"\n");
+    auto campaign = open({"trajectory.path=a.csv,b.csv"});
+    ASSERT_TRUE(campaign) << campaign.error().message;
+    EXPECT_EQ(campaign->files.find_written(), std::nullopt);
+    for (const auto& file : {folder_ / "a.csv", folder_ / "b.csv", board(), folder_ / "sitl", folder_ / "p.parm"}) {
+        const auto size = std::filesystem::file_size(file);
+        std::ofstream(file, std::ios::app) << "\n";
+        const auto changed = campaign->files.find_written();
+        ASSERT_FALSE(changed) << file;
+        EXPECT_THAT(changed.error().message, testing::StartsWith(file.string() + ": has changed"));
+        std::filesystem::resize_file(file, size);
+    }
+}
+
 TEST_F(CampaignOpen, TheContentOfABoardThatTheScenarioNamesByItsPathIsInTheKeys) {
     const std::string beside = board().lexically_relative(folder_.path()).string();
     write_scenario("[[receiver]]\nboard = \"" + beside + "\"\n");
