@@ -94,7 +94,9 @@ public:
         if (stop_was_asked()) return told_stopped(messages_);
         for (const std::string& warning : *warnings)
             messages_.warning(warning);
-        if (const auto kept = keep_campaign(options_.out, campaign_); !kept) return messages_.error(kept.error());
+        auto held = keep_campaign(options_.out, campaign_);
+        if (!held) return messages_.error(held.error());
+        held_ = std::move(*held);
         auto results = TableFile::open(shard_results(options_.out, shard), result_header(campaign_.setup.columns));
         if (!results) return messages_.error(results.error());
         auto log = TableFile::open(shard_log(options_.out, shard), log_header);
@@ -210,6 +212,7 @@ private:
     const Messages& messages_;
     const CampaignOptions& options_;
     const OpenedCampaign& campaign_;
+    FileDescriptor held_{};  // the plan, until what came of it is gathered
     KeyedFiles files_;
     std::string written_{};                 // of them the last that was
     LeaderClock::time_point written_at_{};  // when that was seen
@@ -271,7 +274,9 @@ int run_campaign(const CampaignOptions& options) {
     const int code = leader.run(*shard);
     // A part leaves gathering to whoever has all of them.
     if (shard->count > 1 || (code != 0 && code != failed_runs_code)) return code;
-    return tell_gathered(messages, options.out);
+    const int gathered = tell_gathered(messages, options.out);
+    // Where nothing holds the plan, another may stand there by now; that its runs passed says nothing of these.
+    return gathered != 0 ? gathered : code;
 }
 
 }  // namespace skyloop::host

@@ -1,8 +1,11 @@
 #include "skyloop/campaign/campaign_folder.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/file.h>
 
+#include <cerrno>
 #include <nlohmann/json.hpp>
 
 #include "skyloop/base/make_folder.hpp"
@@ -15,6 +18,8 @@ namespace {
 using PlanJson = nlohmann::ordered_json;
 
 constexpr std::string_view plan_name = "campaign.json";
+// Beside the plan, which is replaced: a lock on it would be one on a file that is no more.
+constexpr std::string_view lock_name = "campaign.lock";
 constexpr std::size_t largest_plan = std::size_t{1} << 30;
 
 // A line a run: a plan of a million can be looked at.
@@ -116,6 +121,35 @@ std::string difference_of(const ResultColumns& there, const ResultColumns& asked
     return {};
 }
 
+// What parts of a campaign must agree on: its columns and its runs, whose keys have all that decides their results. By
+// which name the scenario goes is another thing on another machine.
+std::string_view runs_in(std::string_view plan) {
+    const std::size_t begin = plan.find("\n \"parameters\": ");
+    return begin == std::string_view::npos ? plan : plan.substr(begin);
+}
+
+// Whether it is held so now. Network file systems may have no locks; there nobody is in the way.
+bool lock_plan(const FileDescriptor& file, int how) {
+    int failed = 0;
+    do
+        failed = ::flock(file.value(), how);
+    while (failed != 0 && errno == EINTR);
+    return failed == 0 || errno != EWOULDBLOCK;
+}
+
+// Whether the plan stands there already. Fails as check_folder() does.
+Result<bool> is_kept(const std::filesystem::path& folder, const OpenedCampaign& campaign, std::string_view text) {
+    if (const auto there = read_text_file(folder / plan_name, largest_plan); there && *there == text) return true;
+    if (const auto checked = check_folder(folder, campaign); !checked) return fail(checked.error());
+    return false;
+}
+
+Result<void> put_plan(const std::filesystem::path& folder, const OpenedCampaign& campaign, std::string_view text) {
+    const auto kept = is_kept(folder, campaign, text);
+    if (!kept) return fail(kept.error());
+    return *kept ? Result<void>() : replace_file(folder / plan_name, text);
+}
+
 }  // namespace
 
 Result<void> check_folder(const std::filesystem::path& folder, const OpenedCampaign& campaign) {
@@ -133,14 +167,27 @@ Result<void> check_folder(const std::filesystem::path& folder, const OpenedCampa
                                               path.string(), difference));
 }
 
-Result<void> keep_campaign(const std::filesystem::path& folder, const OpenedCampaign& campaign) {
+Result<FileDescriptor> keep_campaign(const std::filesystem::path& folder, const OpenedCampaign& campaign) {
     const std::filesystem::path path = folder / plan_name;
     const std::string text = plan_text(campaign);
-    if (const auto before = read_text_file(path, largest_plan); before && *before == text) return {};
-    if (const auto checked = check_folder(folder, campaign); !checked) return fail(checked.error());
+    // Also before the lock, so that nothing is made in a folder of another campaign.
+    if (const auto ours = is_kept(folder, campaign, text); !ours) return fail(ours.error());
     if (const auto made = make_folder(folder); !made) return fail(made.error());
-    // Parts on several machines may write it at once.
-    return replace_file(path, text);
+    FileDescriptor hold(::open((folder / lock_name).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
+    while (true) {
+        const bool alone = lock_plan(hold, LOCK_EX | LOCK_NB);
+        if (alone)
+            if (const auto put = put_plan(folder, campaign, text); !put) return fail(put.error());
+        // Others get in before it is shared: what holds is the plan that is there then.
+        lock_plan(hold, LOCK_SH);
+        const auto held = read_text_file(path, largest_plan);
+        if (!held) return fail(held.error());
+        if (runs_in(*held) == runs_in(text)) return hold;
+        if (!alone)
+            return fail(ErrorCode::input, fmt::format("{}: a campaign with another plan is running there; expected a "
+                                                      "folder of its own, or the end of that one",
+                                                      path.string()));
+    }
 }
 
 Result<KeptCampaign> parse_kept_campaign(std::string_view text, const std::string& name) {

@@ -302,6 +302,39 @@ def test_vehicle(folder):
     assert "1 passed, 1 failed" in said and "not met      1 of 2 runs: vehicle" in said, said
 
 
+def test_a_folder_that_is_in_use(folder):
+    """Another campaign is refused while one runs; its own parts and gathering are not."""
+    path = write_vehicle_scenario(folder / "held.toml", 2,
+                                  f"cd '{folder}'; touch held.begun; until test -e held.over; do sleep 0.1; done; false")
+    other = write_vehicle_scenario(folder / "other.toml", 1, "true")
+    out = folder / "held"
+
+    def begin(*options):
+        return subprocess.Popen([SKYLOOP, "campaign", path, "--out", out, "--jobs", "2", "--quiet", *options],
+                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    def wait_for(file):
+        end = time.monotonic() + 30
+        while not file.exists():
+            assert time.monotonic() < end, f"{file} is not there"
+            time.sleep(0.05)
+
+    leader = begin()
+    try:
+        wait_for(folder / "held.begun")
+        said = campaign(other, "--out", out, expected=(2,)).stderr
+        assert "campaign.json: a campaign with another plan is running there" in said, said
+        assert "missing      2" in campaign("gather", out, expected=(1,)).stdout
+        part = begin("--shard", "1/2")
+        wait_for(out / "shards/1-of-2.csv")
+        assert leader.poll() is None, "it was over before the part began"
+    finally:
+        (folder / "held.over").touch()
+        code = leader.wait(timeout=60)
+    assert (code, part.wait(timeout=60)) == (3, 3)
+    assert "1 passed" in campaign(other, "--out", out).stdout
+
+
 def test_a_file_that_changes_meanwhile(folder):
     """The vehicle writes the track in run 1: what was done before stays, and no row is of another track."""
     track = folder / "track.csv"
@@ -335,7 +368,7 @@ def main():
     with open_folder() as name:
         folder = pathlib.Path(name)
         for test in (test_plan, test_same_bytes, test_database, test_replay, test_shards, test_kills, test_stop,
-                     test_mistakes, test_titles_are_shown_and_not_obeyed, test_vehicle, test_a_file_that_changes_meanwhile,
+                     test_mistakes, test_titles_are_shown_and_not_obeyed, test_vehicle, test_a_folder_that_is_in_use, test_a_file_that_changes_meanwhile,
                      test_a_probe_beside_a_vehicle_finds_the_port, test_a_killed_worker_takes_its_vehicle_along):
             began = time.monotonic()
             test(folder)

@@ -12,6 +12,7 @@
 #include "skyloop/campaign/campaign_plan.hpp"
 #include "skyloop/campaign/campaign_run.hpp"
 #include "skyloop/emulator/data_folders.hpp"
+#include "skyloop/transport/file_descriptor.hpp"
 
 namespace skyloop {
 
@@ -60,8 +61,10 @@ struct KeptCampaign {
 /// one, with other parameters, metrics or expectations, or none of ours.
 Result<void> check_folder(const std::filesystem::path& folder, const OpenedCampaign& campaign);
 /// Writes DIR/campaign.json, under another name first. Nothing is written where it is the same already, or where
-/// check_folder() fails.
-Result<void> keep_campaign(const std::filesystem::path& folder, const OpenedCampaign& campaign);
+/// check_folder() fails; nor where somebody holds one with the same runs, on whose machine the scenario may have
+/// another name. Fails with `input` where somebody holds one with other runs.
+/// @return holds it against other plans as long as it is open; where a file system has no locks nothing is held
+Result<FileDescriptor> keep_campaign(const std::filesystem::path& folder, const OpenedCampaign& campaign);
 /// Fails with `outside` where there is none, with `input` where it is not understood.
 Result<KeptCampaign> kept_campaign(const std::filesystem::path& folder);
 /// The same from its text. @param name of the file, for messages

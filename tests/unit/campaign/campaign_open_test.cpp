@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <future>
 
 #include "skyloop/campaign/campaign_folder.hpp"
 #include "unit/transport/temporary_folder.hpp"
@@ -170,6 +171,45 @@ TEST_F(CampaignOpen, AFolderIsNotTakenFromAnotherCampaign) {
     EXPECT_EQ(kept_campaign(out)->runs.size(), 1U);
     write_text(out / "campaign.json", "mine");
     EXPECT_THAT(keep_campaign(out, open({}).value()).error().message, HasSubstr("or a folder without one"));
+}
+
+TEST_F(CampaignOpen, APlanThatIsInUseIsNotReplaced) {
+    const auto out = folder_ / "out";
+    write_scenario("[campaign]\nseeds = 3\n");
+    const auto campaign = open({});
+    auto first = keep_campaign(out, *campaign);
+    ASSERT_TRUE(first) << first.error().message;
+    auto second = keep_campaign(out, *campaign);
+    EXPECT_TRUE(second) << "parts of it run beside each other";
+    OpenedCampaign elsewhere = *campaign;
+    elsewhere.setup.file = "/mnt/c.toml";
+    EXPECT_TRUE(keep_campaign(out, elsewhere)) << "on another machine, too";
+    EXPECT_EQ(kept_campaign(out)->scenario, campaign->setup.file.string());
+
+    write_scenario("[campaign]\nseeds = 2\n");
+    const auto fewer = open({});
+    for (int holders = 2; holders > 0; --holders) {
+        const auto refused = keep_campaign(out, *fewer);
+        ASSERT_FALSE(refused) << holders;
+        EXPECT_EQ(refused.error().code, ErrorCode::input);
+        EXPECT_THAT(refused.error().message, HasSubstr("campaign.json: a campaign with another plan is running there"));
+        EXPECT_EQ(kept_campaign(out)->runs.size(), 3U);
+        (holders == 2 ? first : second) = FileDescriptor();
+    }
+    EXPECT_TRUE(keep_campaign(out, *fewer)) << "nobody is at it any more";
+    EXPECT_EQ(kept_campaign(out)->runs.size(), 2U);
+}
+
+TEST_F(CampaignOpen, PartsThatBeginAtOnceAllKeepTheirPlan) {
+    write_scenario("[campaign]\nseeds = 300\n");
+    const auto campaign = open({});
+    std::vector<std::future<bool>> parts;
+    for (int i = 0; i < 8; ++i)
+        parts.push_back(
+            std::async(std::launch::async, [&] { return keep_campaign(folder_ / "out", *campaign).has_value(); }));
+    for (auto& part : parts)
+        EXPECT_TRUE(part.get());
+    EXPECT_EQ(kept_campaign(folder_ / "out")->runs.size(), 300U);
 }
 
 std::string check_mistake(const Result<OpenedCampaign>& campaign) {
