@@ -16,7 +16,7 @@ Result<void> add_named_content(Sha256& digest, const std::string& name, const Re
 Result<void> add_vehicle(Sha256& digest, const CampaignVehicle& vehicle, const std::filesystem::path& folder,
                          KeyedFiles& files) {
     digest.add(fmt::format("vehicle {}\ntimeout_s {}\n", vehicle.command, vehicle.timeout.value()));
-    for (const std::string& name : files_of_command(vehicle.command))
+    for (const std::string& name : programs_of_command(vehicle.command))
         if (const auto added = add_named_content(digest, name, files.digest(name)); !added) return added;
     for (const std::string& name : vehicle.files)
         if (const auto added = add_named_content(digest, name, files.digest(folder / name)); !added) return added;

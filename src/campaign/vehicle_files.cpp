@@ -1,6 +1,9 @@
 #include "vehicle_files.hpp"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <fstream>
 
 namespace skyloop {
 namespace {
@@ -37,15 +40,27 @@ std::vector<std::string> words_read_in(std::string_view command) {
     return words;
 }
 
+bool is_program(const std::filesystem::path& file) {
+    constexpr std::array<std::string_view, 3> endings{".py", ".sh", ".lua"};
+    using std::filesystem::perms;
+    std::error_code none;
+    const auto status = std::filesystem::status(file, none);
+    if (!std::filesystem::is_regular_file(status)) return false;
+    if ((status.permissions() & (perms::owner_exec | perms::group_exec | perms::others_exec)) != perms::none)
+        return true;
+    if (std::find(endings.begin(), endings.end(), file.extension().string()) != endings.end()) return true;
+    std::array<char, 2> first{};
+    std::ifstream(file, std::ios::binary).read(first.data(), first.size());
+    return first == std::array<char, 2>{'#', '!'};
+}
+
 }  // namespace
 
-std::vector<std::string> files_of_command(std::string_view command) {
-    std::vector<std::string> files = words_read_in(command);
-    std::erase_if(files, [](const std::string& word) {
-        std::error_code none;
-        return word.find('/') == std::string::npos || !std::filesystem::is_regular_file(word, none);
-    });
-    return files;
+std::vector<std::string> programs_of_command(std::string_view command) {
+    std::vector<std::string> programs = words_read_in(command);
+    std::erase_if(programs,
+                  [](const std::string& word) { return word.find('/') == std::string::npos || !is_program(word); });
+    return programs;
 }
 
 }  // namespace skyloop

@@ -126,12 +126,12 @@ TEST_F(CampaignOpen, TheContentOfABoardThatTheScenarioNamesByItsPathIsInTheKeys)
 
 TEST_F(CampaignOpen, TheContentOfAVehicleAndOfWhatItLoadsIsInTheKeys) {
     const std::string program = (folder_ / "sitl").string();
-    write_text(program, "one");
+    write_text(program, "#!one");
     write_text(folder_ / "sitl.parm", "1");
     write_scenario("[campaign.vehicle]\ncommand = \"" + program + " {pty}\"\nfiles = [\"sitl.parm\"]\n");
     const auto before = keys({});
     EXPECT_EQ(keys({}), before);
-    write_text(program, "two");
+    write_text(program, "#!two");
     const auto rebuilt = keys({});
     EXPECT_NE(rebuilt, before);
     write_text(folder_ / "sitl.parm", "2");
