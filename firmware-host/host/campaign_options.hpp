@@ -15,8 +15,8 @@ namespace skyloop::host {
 
 /// What was typed.
 struct CampaignOptions {
-    std::string scenario, out, shard = "0/1", key;
-    std::optional<std::string> seeds;
+    std::string scenario, out, key;
+    std::optional<std::string> seeds, shard;
     std::vector<std::string> vary;
     std::optional<std::uint64_t> number, jobs;
     std::optional<double> run_limit_s;

@@ -262,7 +262,7 @@ int run_campaign(const CampaignOptions& options) {
         return messages.error({ErrorCode::usage,
                                "expected skyloop campaign SCENARIO --out DIR; see skyloop campaign "
                                "--help"});
-    const auto shard = parse_shard(options.shard);
+    const auto shard = parse_shard(options.shard.value_or("0/1"));
     if (!shard) return messages.error(shard.error());
     catch_stop_signals();
     const auto campaign = open_campaign(campaign_request(options));
@@ -272,8 +272,8 @@ int run_campaign(const CampaignOptions& options) {
     if (!options.engine.name.empty()) return hand_over(options, *campaign, messages);
     CampaignLeader leader(messages, options, *campaign);
     const int code = leader.run(*shard);
-    // A part leaves gathering to whoever has all of them.
-    if (shard->count > 1 || (code != 0 && code != failed_runs_code)) return code;
+    // A part, be it the only one, leaves gathering to whoever has all of them.
+    if (options.shard || (code != 0 && code != failed_runs_code)) return code;
     const int gathered = tell_gathered(messages, options.out);
     // Where nothing holds the plan, another may stand there by now; that its runs passed says nothing of these.
     return gathered != 0 ? gathered : code;

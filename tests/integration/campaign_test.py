@@ -148,6 +148,8 @@ def test_shards(folder):
     assert "missing      0" in campaign("gather", folder / "parts", expected=(3,)).stdout
     assert len(keys_in(folder / "parts")) == RUNS, "each run once"
     assert digest(folder / "parts/campaign.sqlite") == digest(folder / "undisturbed/campaign.sqlite")
+    only = campaign(scenario, "--out", folder / "only", "--seeds", 1, "--shard", "0/1", "--quiet", expected=(3,))
+    assert not only.stdout and not (folder / "only/campaign.sqlite").exists(), "the only part is one, too"
 
 
 def start(scenario, out):
