@@ -9,6 +9,7 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
     const auto before = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
         return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
     };
+    std::erase_if(points, [](const Eigen::Vector2d& p) { return !p.allFinite(); });  // they have no order
     std::sort(points.begin(), points.end(), before);
     std::vector<Eigen::Vector2d> hull;
     for (int half = 0; half < 2; ++half) {

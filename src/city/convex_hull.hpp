@@ -7,6 +7,7 @@
 namespace skyloop {
 
 /// The convex hull, anticlockwise (Andrew 1979); fewer than three corners where the points have no area.
+/// Points without a place are left out.
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points);
 
 /// The area of a convex ring, in the square of its unit.
