@@ -13,6 +13,8 @@
 
 namespace skyloop::test {
 
+inline constexpr auto passed = Outcome::passed, failed = Outcome::failed, undecided = Outcome::undecided;
+
 inline constexpr GpsTime run_start{std::chrono::seconds(1'400'000'000)};
 
 inline GpsTime at_second(double second) { return advanced(run_start, Seconds(second)); }
