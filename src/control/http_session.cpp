@@ -5,7 +5,6 @@
 #include <charconv>
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string_view>
 
@@ -110,26 +109,26 @@ private:
             return;
         }
         HttpRequest message = parser_->release();
-        const bool keep_alive = message.keep_alive(), head = message.method() == http::verb::head;
         if (boost::beast::websocket::is_upgrade(message)) return upgrade(std::move(message));
+        keep_alive_ = message.keep_alive();
         request_ = control_request(std::move(message));
         const bool of_now = request_.path() == "/api/status" || request_.path() == "/api/timeline";
-        if (!of_now || refusal(request_, core_.rules)) return tell(keep_alive, head);
-        await_snapshot(core_.parts.board.ask(), core_.most_snapshot_looks,
-                       [self = shared_from_this(), keep_alive, head] { self->tell(keep_alive, head); });
+        if (!of_now || refusal(request_, core_.rules)) return tell();
+        tell_of_now(core_.parts.board.ask(), core_.most_snapshot_looks);
     }
 
     // What the client has asked for before, and has seen done, is in the answer.
-    void await_snapshot(std::uint64_t asked, int looks, const std::function<void()>& then) {
-        if (looks == 0 || core_.parts.board.latest()->answers >= asked) return then();
+    void tell_of_now(std::uint64_t asked, int looks) {
+        if (looks == 0 || core_.parts.board.latest()->answers >= asked) return tell();
         timer_.expires_after(snapshot_look);
-        timer_.async_wait([self = shared_from_this(), asked, looks, then](error_code error) {
-            if (!error) self->await_snapshot(asked, looks - 1, then);
+        timer_.async_wait([self = shared_from_this(), asked, looks](error_code error) {
+            if (!error) self->tell_of_now(asked, looks - 1);
         });
     }
 
-    void tell(bool keep_alive, bool head) {
-        write(answer(request_, core_.rules, core_.sources(request_.path() == "/api/status")), keep_alive, head);
+    void tell() {
+        write(answer(request_, core_.rules, core_.sources(request_.path() == "/api/status")), keep_alive_,
+              request_.method == "HEAD");
     }
 
     void upgrade(HttpRequest message) {
@@ -166,6 +165,7 @@ private:
     ClientSlot slot_;
     boost::asio::steady_timer timer_;
     ControlRequest request_;
+    bool keep_alive_ = false;
     boost::beast::flat_buffer buffer_{control_header_limit + control_body_limit + 4096};
     std::optional<http::request_parser<http::string_body>> parser_;
     HttpResponse response_;
