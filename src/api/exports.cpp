@@ -40,8 +40,8 @@ private:
     bool mine_;
 };
 
-// Embree divides by zero and knows it: a caller's traps for that must not be sprung. Threads that are started meanwhile
-// have none, either.
+// Embree computes what traps of the floating-point unit are for, and needs none of it: a caller's must not be sprung.
+// Threads that are started meanwhile have none, either.
 class FloatingPointTrapsOff {
 public:
     FloatingPointTrapsOff() { std::feholdexcept(&before_); }

@@ -78,7 +78,7 @@ private:
 /// What all runs of a campaign have in common, as 64 hexadecimal digits of SHA-256: the program's version, what the
 /// scenario says apart from [campaign] and its seed, the content of the files that it names, the digests in `more`
 /// (of the boards, of cities, whether there is a geoid), and of [campaign] what decides a run's result: metrics and
-/// vehicle, with the content of the files that its command names and of those that it loads.
+/// vehicle, with the content of the programs that its command names and of the files that it loads.
 struct CampaignBase {
     std::string version;
     ScenarioContent content;
