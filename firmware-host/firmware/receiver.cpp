@@ -39,6 +39,8 @@ const ReceiverCounters& Receiver::counters() const { return core_->counters(); }
 const BoardProfile& Receiver::board() const { return core_->board(); }
 const NavigationState& Receiver::state() const { return core_->state(); }
 
+std::shared_ptr<const NavigationState> Receiver::kept_state() const { return core_->kept_state(); }
+
 std::optional<GpsTime> Receiver::report_time() const { return core_->report_time(); }
 std::string Receiver::persistent_text() const { return core_->store().persistent_text(); }
 Result<void> Receiver::configure(const std::map<std::uint32_t, std::uint64_t>& items) {

@@ -92,6 +92,8 @@ public:
     [[nodiscard]] const BoardProfile& board() const;
     /// What it reported last, as edited.
     [[nodiscard]] const NavigationState& state() const;
+    /// The same, for who looks at it after the next epoch.
+    [[nodiscard]] std::shared_ptr<const NavigationState> kept_state() const;
     /// When the messages of the last epoch begin to leave; nothing when none do: it starts, is mute or does not
     /// navigate.
     [[nodiscard]] std::optional<GpsTime> report_time() const;

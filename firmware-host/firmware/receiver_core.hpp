@@ -47,6 +47,7 @@ public:
     [[nodiscard]] const ReceiverSettings& settings() const { return settings_; }
     [[nodiscard]] const ReceiverCounters& counters() const { return counters_; }
     [[nodiscard]] const NavigationState& state() const { return *reported_; }
+    [[nodiscard]] std::shared_ptr<const NavigationState> kept_state() const { return reported_; }
     [[nodiscard]] std::optional<GpsTime> report_time() const { return report_time_; }
     [[nodiscard]] std::optional<GpsTime> next_change() const;
 

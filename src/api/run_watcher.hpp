@@ -1,6 +1,7 @@
 /// What a led run remembers of itself, for those who ask.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -13,8 +14,9 @@ namespace skyloop {
 
 /// What a receiver has told its users.
 struct Report {
-    firmware::NavigationState state;
-    TruthState truth;  ///< at its epoch
+    std::shared_ptr<const firmware::NavigationState> state;
+    TruthState truth;      ///< at its epoch
+    bool expired = false;  ///< silent_after ago: the state is without a fix
 };
 
 /// Keeps the last epoch of each receiver and what has happened to the run. Messages on the wires are not looked for.
@@ -44,6 +46,7 @@ private:
     const std::vector<Station>& stations_;
     std::vector<std::optional<Trace>> traces_;
     std::vector<std::optional<Report>> reports_;
+    SilenceWatch silence_;
     std::set<std::string> faults_;
     std::uint64_t moves_ = 0;
     bool stale_ = true;

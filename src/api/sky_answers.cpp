@@ -120,7 +120,7 @@ Answer<sky_fix> Session::fix(std::uint32_t receiver) const {
     sky_fix told{};
     const Report* report = watcher_->report(receiver);
     if (report == nullptr) return told;
-    const firmware::NavigationState& state = report->state;
+    const firmware::NavigationState& state = *report->state;
     const Fix& fix = state.epoch.fix;
     told.type = fix_type_number(fix.type);
     told.ok = state.fix_ok ? 1 : 0;
@@ -152,7 +152,7 @@ Answer<std::vector<sky_sat>> Session::satellites(std::uint32_t receiver) const {
         const SatelliteInView& seen = view.satellites[i];
         told.push_back(satellite_of(seen));
         if (!trace) continue;
-        if (report != nullptr) add_reported(told.back(), report->state.epoch.fix, seen.id);
+        if (report != nullptr) add_reported(told.back(), report->state->epoch.fix, seen.id);
         if (i < trace->arrivals.satellites.size() && trace->arrivals.satellites[i].line_of_sight)
             told.back().flags |= SKY_SAT_SEEN;
     }

@@ -31,7 +31,11 @@ auto message_key(const Message& message) {
 }  // namespace
 
 StatusBoard::StatusBoard(StatusSetup setup, const std::vector<Station>* stations, StatusSources sources)
-    : setup_(std::move(setup)), stations_(stations), sources_(std::move(sources)), bars_(setup_.timeline) {
+    : setup_(std::move(setup)),
+      stations_(stations),
+      sources_(std::move(sources)),
+      silence_(setup_.start),
+      bars_(setup_.timeline) {
     for (std::size_t i = 0; stations_ != nullptr && i < stations_->size(); ++i) {
         take_wires(i, receiver(i));
         taken_at_[i] = 0;
@@ -56,12 +60,11 @@ ReceiverStatus& StatusBoard::receiver(std::size_t station) {
     if (station >= receivers_.size()) {
         receivers_.resize(station + 1);
         taken_at_.resize(station + 1, 0);
-        told_at_.resize(station + 1, setup_.start);
     }
     return receivers_[station];
 }
 
-void StatusBoard::take_epoch(const EpochSeen& seen, ReceiverStatus& status) const {
+void StatusBoard::take_epoch(const EpochSeen& seen, bool silent, ReceiverStatus& status) const {
     status.epoch = seen.now;
     status.truth = seen.trace.truth.geodetic;
     status.true_speed = seen.trace.arrivals.antenna_speed;
@@ -70,7 +73,7 @@ void StatusBoard::take_epoch(const EpochSeen& seen, ReceiverStatus& status) cons
     status.lateness = seen.lateness;
     status.satellites = satellites_seen(seen);
     if (seen.leaves) return take_report(seen, status);
-    if (difference(seen.now, told_at_[seen.station]) < silent_after) return;
+    if (!silent) return;
     status.fix.type = FixType::none;
     status.fix_ok = false;
     status.satellites_used = 0;
@@ -126,9 +129,9 @@ void StatusBoard::take_wires(std::size_t station, ReceiverStatus& status) const 
 void StatusBoard::on_epoch(const EpochSeen& seen) {
     const std::int64_t clock_ns = clock();
     ReceiverStatus& status = receiver(seen.station);
-    if (seen.leaves) told_at_[seen.station] = seen.now;
+    const bool silent = silence_.is_silent(seen, seen.now);
     if (is_wanted(seen, clock_ns)) {
-        take_epoch(seen, status);
+        take_epoch(seen, silent, status);
         taken_at_[seen.station] = clock_ns;
     }
     if (clock_ns - published_at_ >= interval(clock_ns)) publish(seen.now, clock_ns);

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "expectation_tracker.hpp"
 #include "probe_run.hpp"
+#include "skyloop/fault/silence_watch.hpp"
 #include "skyloop/verdict/expectation_sentence.hpp"
 
 namespace skyloop {
@@ -30,9 +30,7 @@ public:
     GpsTime pass(GpsTime now);
     template <class Look>
     void at_station(std::size_t station, const Look& look);
-    // Whether nothing has been told of this epoch, nor of those before it for so long that nobody takes the last one
-    // for the present.
-    bool is_silent(const EpochSeen& seen);
+    bool is_silent(const EpochSeen& seen) { return silence_.is_silent(seen, now_); }
     [[nodiscard]] bool hears() const { return hears_; }
     void happen(const FaultSeen& seen);
     std::vector<Verdict> finish(GpsTime now, RunEnd end);
@@ -51,11 +49,12 @@ private:
     GpsTime now_;
     RunEnd end_ = RunEnd::over;
     std::vector<Case> cases_;
-    std::map<std::size_t, GpsTime> told_at_;  // by station, the last epoch of which the receiver told
+    SilenceWatch silence_;
     bool has_probes_ = false, hears_ = false;
 };
 
-Judge::State::State(std::vector<Expectation> expectations, JudgedRun run) : run_(std::move(run)), now_(run_.start) {
+Judge::State::State(std::vector<Expectation> expectations, JudgedRun run)
+    : run_(std::move(run)), now_(run_.start), silence_(run_.start) {
     for (Expectation& expectation : expectations) {
         Case one{std::move(expectation)};
         has_probes_ = has_probes_ || one.expectation.probe;
@@ -74,12 +73,6 @@ GpsTime Judge::State::pass(GpsTime now) {
             follower.tracker.advance(now_);
     if (has_probes_ && run_.live) start_probes(now_);
     return now_;
-}
-
-bool Judge::State::is_silent(const EpochSeen& seen) {
-    GpsTime& told_at = told_at_.try_emplace(seen.station, run_.start).first->second;
-    if (seen.leaves) told_at = now_;
-    return difference(now_, told_at) >= silent_after;
 }
 
 template <class Look>

@@ -11,7 +11,7 @@
 
 #include "skyloop/emulator/station.hpp"
 #include "skyloop/emulator/status_snapshot.hpp"
-#include "skyloop/fault/run_observer.hpp"
+#include "skyloop/fault/silence_watch.hpp"
 
 namespace skyloop {
 
@@ -81,7 +81,7 @@ private:
     [[nodiscard]] std::int64_t interval(std::int64_t clock_ns) const;
     [[nodiscard]] bool is_wanted(const EpochSeen& seen, std::int64_t clock_ns) const;
     [[nodiscard]] ReceiverStatus& receiver(std::size_t station);
-    void take_epoch(const EpochSeen& seen, ReceiverStatus& status) const;
+    void take_epoch(const EpochSeen& seen, bool silent, ReceiverStatus& status) const;
     void take_report(const EpochSeen& seen, ReceiverStatus& status) const;
     void take_wires(std::size_t station, ReceiverStatus& status) const;
     void count_message(const DialogueLine& line);
@@ -94,7 +94,7 @@ private:
     StatusSources sources_;
     std::vector<ReceiverStatus> receivers_;
     std::vector<std::int64_t> taken_at_;  // of each receiver, by the clock
-    std::vector<GpsTime> told_at_;        // … when it last reported
+    SilenceWatch silence_;
     std::vector<TimelineBar> bars_;
     std::vector<Belief> beliefs_;
     std::deque<std::shared_ptr<const DialogueLine>> dialogue_;

@@ -15,9 +15,6 @@
 
 namespace skyloop {
 
-/// A receiver that has reported no epoch for so long tells its users nothing: what it said before is no fix of now.
-inline constexpr Seconds silent_after{2};
-
 /// An epoch of one receiver, after its firmware has seen it. Valid during the call.
 struct EpochSeen {
     GpsTime now;
