@@ -78,7 +78,7 @@ struct UtmCodes {
     int first_code, last_code, first_zone;
     bool south = false;
 };
-constexpr std::array<UtmCodes, 19> utm_codes{{
+constexpr std::array<UtmCodes, 20> utm_codes{{
     {32601, 32660, 1, false},  {32701, 32760, 1, true},   // WGS 84
     {25828, 25838, 28, false}, {26901, 26923, 1, false},  // ETRS89, NAD83
     {6328, 6329, 59, false},   {6330, 6348, 1, false},    // NAD83(2011)
@@ -88,7 +88,8 @@ constexpr std::array<UtmCodes, 19> utm_codes{{
     {2955, 2957, 11, false},   {3158, 3160, 14, false},   // NAD83(CSRS)
     {2958, 2962, 17, false},   {5554, 5556, 31, false},   // NAD83(CSRS), ETRS89 with DHHN92 heights
     {5971, 5976, 31, false},                              // ETRS89 with NN2000 heights
-    {4647, 4647, 32, false},   {5650, 5650, 33, false},   // ETRS89 with the zone before eastings (zE-N)
+    {5649, 5649, 31, false},   {4647, 4647, 32, false},   // ETRS89 with the zone before eastings (zE-N)
+    {5650, 5650, 33, false},
 }};
 
 }  // namespace
