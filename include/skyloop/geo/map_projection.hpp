@@ -20,9 +20,9 @@ struct EarthPlace {
 /// more than a metre or two are none: without the shift of the datum they would lie a hundred metres aside.
 class MapProjection {
 public:
-    /// UTM on WGS 84 (326xx, 327xx), ETRS89 (258xx; 4647, 5649 and 5650 with the zone before eastings), NAD83 (269xx, 63xx),
-    /// SIRGAS 2000 (319xx), GDA94 and GDA2020 (MGA), TM35FIN (3067), Lambert-93 (2154, 9793, 9794) and Web Mercator
-    /// (3857), and compounds of these with heights. Absent for any other code.
+    /// UTM on WGS 84 (326xx, 327xx), ETRS89 (258xx; 4647, 5649 and 5650 with the zone before eastings), NAD83 (269xx,
+    /// 63xx), SIRGAS 2000 (319xx), GDA94 and GDA2020 (MGA), TM35FIN (3067), Lambert-93 (2154, 9793, 9794) and Web
+    /// Mercator (3857), and compounds of these with heights. Absent for any other code.
     static std::optional<MapProjection> of_epsg(int code);
 
     /// Eastings of UTM may have the zone before them: 32691603 is 691603 in zone 32.
