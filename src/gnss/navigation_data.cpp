@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "skyloop/gnss/constants.hpp"
+#include "skyloop/gnss/orbit.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
@@ -205,10 +206,15 @@ KeplerEphemeris moved_by_days(const KeplerEphemeris& record, std::int64_t days) 
 Ephemeris moved_by_days(const Ephemeris& record, std::int64_t days) {
     if (const auto* kepler = std::get_if<KeplerEphemeris>(&record)) return moved_by_days(*kepler, days);
     Ephemeris moved = record;
-    // State vectors are Earth-fixed: only their time moves. That of GLONASS is a whole quarter of an hour of UTC, and
-    // must stay one where leap seconds came between.
-    if (auto* glonass = std::get_if<GlonassEphemeris>(&moved)) glonass->toe = moved_in_utc(glonass->toe, days);
+    // State vectors are Earth-fixed: only their time moves.
     if (auto* sbas = std::get_if<SbasEphemeris>(&moved)) sbas->toe += days * one_day;
+    if (auto* glonass = std::get_if<GlonassEphemeris>(&moved)) {
+        glonass->toe += days * one_day;
+        // That of GLONASS is a whole quarter of an hour of UTC, and must stay one where leap seconds came between. The
+        // orbit stays where days of GPS time bring it, beside those of the other systems.
+        const GpsTime quarter = moved_in_utc(toe_of(record), days);
+        if (quarter != glonass->toe) return carried_to(moved, quarter);
+    }
     return moved;
 }
 

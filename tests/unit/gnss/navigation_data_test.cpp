@@ -239,6 +239,25 @@ TEST(Rebase, KeepsTheQuarterHoursOfGlonass) {
     EXPECT_EQ(moved_to(0), (UtcTime{2009, 4, 1, 12, 15, 0}));
 }
 
+// Three leap seconds came between 2009 and 2026, one at the end of 2016: records of either side of it go on in one
+// orbit.
+TEST(Rebase, KeepsGlonassOrbitsWhereLeapSecondsCome) {
+    const LeapSeconds& leap = LeapSeconds::announced();
+    GlonassEphemeris record = glonass_record(to_gps_time(UtcTime{2009, 4, 1, 12, 15, 0}, leap));
+    record.clock_drift = 1e-11;
+    EXPECT_LT(displacement_by_move(record, 6239), 0.01);
+    EXPECT_LT(displacement_by_move(record, -3622), 0.01);
+    const auto moved = std::get<GlonassEphemeris>(moved_by_days(Ephemeris(record), 6239));
+    EXPECT_NEAR(moved.clock_bias, 3e-11, 1e-20) << "three seconds after the record's time";
+
+    const GpsTime day_before = to_gps_time(UtcTime{2016, 12, 30, 23, 45, 0}, leap);
+    const Ephemeris first = glonass_record(day_before);
+    const Ephemeris second = carried_to(first, day_before + 30min);
+    const GpsTime between = day_before + std::chrono::days(1) + 15min;
+    const auto at = [&](const Ephemeris& r) { return satellite_state(moved_by_days(r, 1), between).position; };
+    EXPECT_LT((at(first) - at(second)).length().value(), 0.01);
+}
+
 TEST(Rebase, KeepsTimeOfDayAndClock) {
     KeplerEphemeris record = plain_record(to_gps_time(1590, 345584.0));
     record.toc = record.toe - 16s;
