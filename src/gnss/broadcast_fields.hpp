@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "skyloop/base/bit_field.hpp"
+#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::broadcast {
 
@@ -48,5 +49,14 @@ inline void put_semicircles(BitWriter& bits, double radians, int width, int expo
 
 /// URA and URAI by the upper bounds of IS-GPS-200, 20.3.3.3.1.3, which BeiDou has taken over (B1I ICD 3.0, 5.2.4.5).
 int accuracy_index(double metres);
+
+/// The last or next change of the leap seconds, as GPS (IS-GPS-200, 20.3.3.5.2.4) and Galileo (OS SIS ICD 2.0, 5.1.7)
+/// announce it.
+struct LeapChange {
+    std::uint64_t week = 0;  ///< WN_LSF, of GPS; Galileo's, 1024 fewer, has the same lowest 8 bits
+    std::uint64_t day = 1;   ///< DN, at whose end it comes: 1 Sunday … 7
+    int offset = 0;          ///< Δt_LSF, after it, s
+};
+LeapChange leap_change(const LeapSeconds& leap_seconds, GpsTime time);
 
 }  // namespace skyloop::broadcast

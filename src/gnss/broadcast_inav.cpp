@@ -93,15 +93,15 @@ struct InavFields {
         time();
     }
     void sixth() {
-        const int offset = data.leap_seconds.offset(start);
+        const broadcast::LeapChange change = broadcast::leap_change(data.leap_seconds, start);
         constexpr double hour = 3600;
         bits.put(0, 32 + 24);  // Galileo's time is UTC but for whole seconds
-        bits.put_signed(offset, 8);
+        bits.put_signed(data.leap_seconds.offset(start), 8);
         put_scaled_unsigned(bits, std::floor(gst_tow(start) / hour), 8, 1);
         bits.put(gst_week(start), 8);
-        bits.put(gst_week(start), 8);  // no change of the leap seconds ahead
-        bits.put(1, 3);
-        bits.put_signed(offset, 8);
+        bits.put(change.week, 8);
+        bits.put(change.day, 3);
+        bits.put_signed(change.offset, 8);
         put_scaled_unsigned(bits, gst_tow(start), 20, 1);
     }
     void spare() {

@@ -16,6 +16,19 @@ int broadcast::accuracy_index(double metres) {
     return 15;
 }
 
+broadcast::LeapChange broadcast::leap_change(const LeapSeconds& leap_seconds, GpsTime time) {
+    const LeapSeconds::Step* chosen = nullptr;
+    for (const LeapSeconds::Step& step : leap_seconds.steps()) {
+        // One that is to come is announced half a year before.
+        if (step.from - time > std::chrono::hours(24 * 183)) break;
+        chosen = &step;
+    }
+    if (chosen == nullptr) return {static_cast<std::uint64_t>(week_and_tow(time).week), 1, leap_seconds.offset(time)};
+    const WeekAndTow before = week_and_tow(chosen->from - std::chrono::seconds(60));
+    const auto day = static_cast<std::uint64_t>(before.tow / std::chrono::hours(24)) + 1;
+    return {static_cast<std::uint64_t>(before.week), day, chosen->offset};
+}
+
 namespace {
 
 using broadcast::power_of_two;
@@ -263,26 +276,6 @@ BitWriter second_health_page(const LnavPage& page) {
     return bits;
 }
 
-// The last or next change of the leap seconds: the day at whose end it comes, 1 Sunday … 7, and the offset after it.
-struct LeapChange {
-    std::uint64_t week = 0, day = 1;
-    int offset = 0;
-};
-
-LeapChange leap_change(const LeapSeconds& leap_seconds, GpsTime time) {
-    const auto& steps = leap_seconds.steps();
-    const LeapSeconds::Step* chosen = nullptr;
-    for (const LeapSeconds::Step& step : steps) {
-        // One that is to come is announced half a year before.
-        if (step.from - time > std::chrono::hours(24 * 183)) break;
-        chosen = &step;
-    }
-    if (chosen == nullptr) return {week_bits(time), 1, leap_seconds.offset(time)};
-    const WeekAndTow before = week_and_tow(chosen->from - std::chrono::seconds(60));
-    const auto day = static_cast<std::uint64_t>(before.tow / std::chrono::hours(24)) + 1;
-    return {static_cast<std::uint64_t>(before.week), day, chosen->offset};
-}
-
 // Page 18 of subframe 4; without coefficients zeros, as satellites of old sent.
 BitWriter ionosphere_page(const LnavPage& page) {
     KlobucharCoefficients c{};
@@ -290,7 +283,7 @@ BitWriter ionosphere_page(const LnavPage& page) {
         const BroadcastIonosphere& known = page.system.source->ionosphere();
         c = (page.of_qzss() ? known.qzss : known.gps).value_or(c);
     }
-    const LeapChange change = leap_change(page.system.leap_seconds, page.time);
+    const broadcast::LeapChange change = broadcast::leap_change(page.system.leap_seconds, page.time);
     BitWriter bits;
     page.put_head(bits, 56);
     constexpr std::array<int, 4> alpha_exponents{-30, -27, -24, -24}, beta_exponents{11, 14, 16, 16};

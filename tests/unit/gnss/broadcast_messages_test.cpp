@@ -291,6 +291,34 @@ TEST(BroadcastInav, WordsOverTheTurnOfAWeek) {
     EXPECT_EQ(inav_word_ending(Signal::e5b, to_gps_time(2300, 2.0)), 1);
 }
 
+// A field of a word, which lies across the border of the pages: even bits 2 … 113, then odd ones from 2 on.
+std::uint32_t inav_field(const InavWords& pages, int first, int width) {
+    std::uint32_t value = 0;
+    for (int place = first; place < first + width; ++place) {
+        const int at = place < 112 ? place + 2 : place - 112 + 128 + 2;
+        value = value << 1 | (pages[static_cast<std::size_t>(at / 32)] >> (31 - at % 32) & 1);
+    }
+    return value;
+}
+
+// Δt_LS, WN_LSF, DN and Δt_LSF of word 6 (OS SIS ICD 2.0, table 45): the leap second of Saturday 2016-12-31, in GST
+// week 905, is announced half a year before and told of ever after.
+TEST(BroadcastInav, AnnouncesLeapSeconds) {
+    const BroadcastIonosphere none;
+    const KeplerEphemeris record;
+    const auto told = [&](const UtcTime& when) {
+        const GpsTime end = to_gps_time(when, LeapSeconds::announced());
+        const InavWords pages = inav_pages({record, none, LeapSeconds::announced()}, 6, end);
+        std::vector<std::uint32_t> fields;
+        for (const auto& [first, width] : {std::pair(62, 8), std::pair(86, 8), std::pair(94, 3), std::pair(97, 8)})
+            fields.push_back(inav_field(pages, first, width));
+        return fields;
+    };
+    EXPECT_EQ(told({2016, 12, 1, 0, 0, 0}), (std::vector<std::uint32_t>{17, 905 % 256, 7, 18}));
+    EXPECT_EQ(told({2024, 3, 1, 0, 0, 0}), (std::vector<std::uint32_t>{18, 905 % 256, 7, 18}));
+    EXPECT_EQ(told({2016, 5, 1, 0, 0, 0}), (std::vector<std::uint32_t>{17, 1851 - 1024 - 768, 3, 17}));
+}
+
 // As a ZED-F9P in Besançon received them: the times of the words on E1-B are odd, word 5 at 25 s of 30, word 6 at 5 s.
 TEST(BroadcastInav, TimesOfE1AreOdd) {
     const BroadcastIonosphere none;
@@ -301,15 +329,7 @@ TEST(BroadcastInav, TimesOfE1AreOdd) {
         const std::optional<int> word = inav_word_ending(Signal::l1, end);
         if (word != 5 && word != 6) continue;
         const InavWords pages = inav_pages({record, none, LeapSeconds::announced()}, *word, end);
-        // Both have their time across the border of the pages: even bits 2 … 113, then odd ones from 2 on.
-        const auto bit = [&pages](int place) {
-            const int at = place < 112 ? place + 2 : place - 112 + 128 + 2;
-            return pages[static_cast<std::size_t>(at / 32)] >> (31 - at % 32) & 1;
-        };
-        const int first = *word == 5 ? 85 : 105;
-        std::uint32_t tow = 0;
-        for (int i = 0; i < 20; ++i)
-            tow = tow << 1 | bit(first + i);
+        const std::uint32_t tow = inav_field(pages, *word == 5 ? 85 : 105, 20);
         EXPECT_EQ(tow % 30, *word == 5 ? 25u : 5u);
         ++told;
     }
