@@ -20,6 +20,8 @@ using namespace std::chrono_literals;
 constexpr std::uint32_t tp_period = 0x40050002, tp_period_lock = 0x40050003, tp_frequency = 0x40050024,
                         tp_frequency_lock = 0x40050025, tp_pulse_def = 0x20050023, tp_enabled = 0x10050007,
                         tp_use_locked = 0x10050009, tp_time_grid = 0x2005000C;
+// Values of CFG-TP-TIMEGRID; 1 is GPS.
+constexpr std::uint64_t grid_utc = 0, grid_glonass = 2, grid_beidou = 3, grid_galileo = 4;
 // Step of the oscillator by which a pulse can be moved: RECEIVER.md 4.9 has errors of ±15 ns.
 constexpr double pulse_step_ns = 30;
 constexpr std::int64_t ns_per_second = 1'000'000'000;
@@ -210,18 +212,26 @@ struct PulseRate {
     std::int64_t hertz = 0;
 };
 
-// Pulses lie on a grid of UTC or GPS time, and are counted in GPS time, which goes on evenly over leap seconds. Those
-// of a frequency, whatever their period, begin anew with each second. The receiver's own clock is a bit before or after
-// the epoch that it means.
+// Pulses lie on a grid of UTC or a system's time, and are counted in GPS time, which goes on evenly over leap seconds.
+// Those of a frequency, whatever their period, begin anew with each second. The receiver's own clock is a bit before or
+// after the epoch that it means.
 struct PulseGrid {
     GpsTime epoch;
     PulseRate rate;
     std::uint64_t base = 0;              ///< 0 UTC, 1 GPS, 2 GLONASS, 3 BeiDou, 4 Galileo
     std::optional<LeapSeconds> leaps{};  ///< of a grid of UTC: those that the receiver counts by
 
-    // By how much the grid's time is behind GPS time.
+    // By how much the grid's time is behind GPS time. GLONASS counts UTC, three hours ahead.
     [[nodiscard]] Nanoseconds behind(GpsTime time) const {
-        return leaps ? std::chrono::seconds(leaps->offset(time)) : Nanoseconds(0);
+        if (base == grid_beidou) return 14s;
+        const Nanoseconds of_utc = leaps ? std::chrono::seconds(leaps->offset(time)) : Nanoseconds(0);
+        return base == grid_glonass ? of_utc - 3h : of_utc;
+    }
+    // Week and time of week by the grid's time.
+    [[nodiscard]] WeekAndTow stamp(GpsTime time) const {
+        if (base == grid_beidou) return bdt_week_and_tow(time);
+        if (base == grid_galileo) return gst_week_and_tow(time);
+        return week_and_tow(time - behind(time));
     }
     // Where the grid lies at `time`. Leap seconds are whole ones, which leave that of a frequency in its place.
     [[nodiscard]] Nanoseconds offset(GpsTime time) const {
@@ -259,14 +269,12 @@ PulseRate pulse_rate(const ReportContext& context) {
 
 // Nothing: there are no pulses.
 std::optional<PulseGrid> pulse_grid(const ReportContext& context) {
-    constexpr std::uint64_t utc = 0, glonass = 2;
     const ReportedTime reported = reported_time(context);
     const PulseRate rate = pulse_rate(context);
     if (rate.period <= Nanoseconds(0) && rate.hertz == 0) return std::nullopt;
     const std::uint64_t base = context.config.value(tp_time_grid);
     PulseGrid grid{std::chrono::round<std::chrono::milliseconds>(reported.time), rate, base};
-    // GLONASS counts UTC, by hours ahead.
-    if (base == utc || base == glonass) grid.leaps = counted_leap_seconds(reported);
+    if (base == grid_utc || base == grid_glonass) grid.leaps = counted_leap_seconds(reported);
     return grid;
 }
 
@@ -280,7 +288,7 @@ std::uint8_t reference_of(std::uint64_t base) {
 TimTp next_pulse(const ReportContext& context, const PulseGrid& grid) {
     const NavigationState& state = context.state;
     const GpsTime pulse = grid.next();
-    const WeekAndTow value = week_and_tow(pulse - grid.behind(pulse));
+    const WeekAndTow value = grid.stamp(pulse);
     const Nanoseconds sub_ms = value.tow % 1ms;
     TimTp m;
     m.tow_ms = static_cast<std::uint32_t>(value.tow / 1ms);
@@ -288,8 +296,8 @@ TimTp next_pulse(const ReportContext& context, const PulseGrid& grid) {
     m.week = week_field<std::uint16_t>(state, value);
     const bool known = state.epoch.fix.type != FixType::none;
     const int unknown = context.board.identity.generation > 8 ? 0x30 : 0x10;
-    m.flags =
-        static_cast<std::uint8_t>((grid.base == 0 ? 1 : 0) | (state.time.leap_seconds ? 2 : 0) | (known ? 8 : unknown));
+    m.flags = static_cast<std::uint8_t>((grid.base == grid_utc ? 1 : 0) | (state.time.leap_seconds ? 2 : 0) |
+                                        (known ? 8 : unknown));
     if (known)
         m.q_err = field<std::int32_t>(
             std::remainder(state.epoch.fix.clock_bias.value() / speed_of_light * 1e9, pulse_step_ns) * 1e3);

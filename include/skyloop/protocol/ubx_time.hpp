@@ -65,7 +65,7 @@ struct NavClock {
     }
 };
 
-/// TIM-TP: the time of the next pulse.
+/// TIM-TP: the time of the next pulse, by the time base that the pulses are aligned to.
 struct TimTp {
     static constexpr UbxMessageId message_id{0x0D, 0x01};
     std::uint32_t tow_ms = 0;      ///< ms

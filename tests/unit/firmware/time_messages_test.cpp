@@ -231,6 +231,28 @@ TEST(TimTpMessage, NamesTheNextPulse) {
     EXPECT_EQ(m8.report<TimTp>().q_err, 0);
 }
 
+// 12:49:24 UTC of 2024-03-05 by each time base: BDT is 14 s behind GPS time, GLONASS three hours ahead of UTC.
+TEST(TimTpMessage, NamesThePulseByTheTimeOfItsGrid) {
+    constexpr std::uint32_t grid = 0x2005000C;
+    UbxReport m8(8);
+    struct Expected {
+        std::uint64_t base;
+        std::uint32_t tow_ms;
+        std::uint16_t week;
+    };
+    for (const Expected& e :
+         {Expected{0, 218'964'000, 2304}, Expected{1, 218'982'000, 2304}, Expected{2, 218'964'000 + 10'800'000, 2304},
+          Expected{3, 218'968'000, 2304 - 1356}, Expected{4, 218'982'000, 2304 - 1024}}) {
+        m8.config.set(in_ram, grid, e.base);
+        EXPECT_EQ(m8.report<TimTp>().tow_ms, e.tow_ms) << e.base;
+        EXPECT_EQ(m8.report<TimTp>().week, e.week) << e.base;
+    }
+    // Pulses of 4 s lie on whole multiples of the grid's own seconds.
+    m8.config.set(in_ram, grid, 3);
+    m8.config.set(in_ram, 0x40050003, 4'000'000);
+    EXPECT_EQ(m8.report<TimTp>().tow_ms, 218'968'000U);
+}
+
 TEST(TimTpMessage, CountsAndNamesEachPulseOfALeapSecond) {
     UbxReport m8(8, "2016-12-31T23:59:58Z");
     const GpsTime first = m8.state.epoch.fix.time;
