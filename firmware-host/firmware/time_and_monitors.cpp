@@ -31,8 +31,8 @@ struct UtcPage {
     [[nodiscard]] std::int64_t pages_until(GpsTime t) const {
         constexpr std::int64_t week_s = 604'800;
         const double tow = week_and_tow(t).tow_seconds();
-        // A cycle that the end of the week cuts begins anew with it.
-        const std::int64_t pages_a_week = (week_s + cycle_s - 1) / cycle_s;
+        // A cycle that the end of the week cuts begins anew with it, and has its page only where that ends before.
+        const std::int64_t pages_a_week = (week_s - end_s) / cycle_s + 1;
         return week_and_tow(t).week * pages_a_week +
                static_cast<std::int64_t>(
                    std::floor((tow - static_cast<double>(end_s)) / static_cast<double>(cycle_s))) +

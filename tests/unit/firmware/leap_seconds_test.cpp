@@ -54,6 +54,16 @@ TEST(LeapSecondsOfAStart, ComeOfGlonassAndBeidouToo) {
     }
 }
 
+// The last cycle of 12.5 min of GPS's week is cut after 300 s and has no page 18. From 23:59:18 GPST on a Saturday, the
+// first one ends 534 s into the next week.
+TEST(LeapSecondsOfAStart, DoNotComeWithTheTurnOfAWeek) {
+    ColdReceiver r({gps});
+    r.fix.time = to_gps_time(UtcTime{2024, 3, 9, 23, 59, 0}, LeapSeconds::announced());
+    r.start(Forgotten::by_mask(0xFFFF));
+    EXPECT_FALSE(r.step(42 + 533).leap_seconds);
+    EXPECT_TRUE(r.step().leap_seconds);
+}
+
 TEST(LeapSecondsOfAStart, AreCountedFromTheirOwnSystem) {
     ColdReceiver r({gps, galileo});
     const std::vector<SatelliteStatus> both = r.fix.satellites;
