@@ -67,7 +67,9 @@ public:
         eph_.health = fields_.whole({6, 1, "the health", 0, 65535, false});
         system_fields();
         const double toe_tow = fields_.number({3, 0, "the toe", 0, static_cast<double>(seconds_per_week), true});
-        const double week = fields_.number({5, 2, "the week", 0, 1e5, false});
+        // Those of BeiDou, where a record was moved to before 2006, are negative.
+        const double first_week = beidou() ? -static_cast<double>(bdt_first_week) : 0;
+        const double week = fields_.number({5, 2, "the week", first_week, 1e5, false});
         eph_.toc = fields_.epoch();
         if (!fields_.defect()) reference_time(toe_tow, week);
         if (fields_.defect()) return tl::make_unexpected(*fields_.defect());

@@ -127,8 +127,9 @@ float semicircles(double radians) { return static_cast<float>(radians * per_semi
 std::uint32_t whole_seconds(const WeekAndTow& stamp) {
     return static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::seconds>(stamp.tow).count());
 }
+// A system's weeks before its first one are negative.
 std::uint16_t week_of(const WeekAndTow& stamp, std::int64_t modulus) {
-    return static_cast<std::uint16_t>(stamp.week % modulus);
+    return static_cast<std::uint16_t>((stamp.week % modulus + modulus) % modulus);
 }
 
 // The times of BeiDou's records are those of its own week.

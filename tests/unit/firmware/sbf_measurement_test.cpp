@@ -200,6 +200,21 @@ TEST(SbfNavigation, ARecordComesAgainWhenItsHealthChanges) {
     EXPECT_EQ(blocks_with_health(0), 1u);
 }
 
+// BeiDou's week 0 began in 2006: the weeks before are counted modulo 8192, as its satellites' 13 bits do.
+TEST(SbfNavigation, WeeksOfBeidouBefore2006AreCountedModulo8192) {
+    NavigationState state = measuring_state();
+    KeplerEphemeris record;
+    record.satellite = {Constellation::beidou, 30};
+    record.message = NavigationMessage::d1;
+    record.toe = record.toc = gps_calendar_time(2005, 6, 1, 12, 0, 14);
+    const Subframe subframe{record.satellite, Signal::b1i, record.toe, 0, {}, record};
+    const auto nav = decode_sbf<SbfBdsNav>(parse_sbf(sbf_record_block(subframe, state))->body);
+    ASSERT_TRUE(nav);
+    EXPECT_EQ(nav->week, 8192 - 31);
+    EXPECT_EQ(nav->toe_week, 8192 - 31);
+    EXPECT_EQ(nav->toc_week, 8192 - 31);
+}
+
 TEST(SbfNavigation, PagesAreRowsOfBits) {
     NavigationState state = measuring_state();
     // Even and odd page of 120 bits: of the even one the last six are its tail.

@@ -184,6 +184,19 @@ TEST(NavigationWriter, LosesNothingOfTheNextCentury) {
     EXPECT_TRUE(same_ephemeris(record, again->records[0])) << navigation_record_text(again->records[0]);
 }
 
+// Moved to a day before the first week of BeiDou's time, which then counts backwards.
+TEST(NavigationWriter, LosesNothingOfBeidouBefore2006) {
+    KeplerEphemeris record = kepler(Constellation::beidou, 30, NavigationMessage::d1);
+    record.toc = record.toe = gps_calendar_time(2005, 6, 1, 12, 0, 14);
+    const std::vector<Ephemeris> records{record};
+    const std::string text = navigation_text(records, {});
+    EXPECT_NE(text.find("-3.100000000000D+01"), std::string::npos) << text;
+    const auto again = read_navigation(text, "a.nav");
+    ASSERT_TRUE(again) << again.error().message;
+    ASSERT_EQ(again->records.size(), 1u);
+    EXPECT_TRUE(same_ephemeris(record, again->records[0])) << navigation_record_text(again->records[0]);
+}
+
 TEST(NavigationWriter, LosesNothingOfMadeUpRecords) {
     std::vector<Ephemeris> records{kepler(Constellation::gps, 7, NavigationMessage::lnav),
                                    kepler(Constellation::qzss, 2, NavigationMessage::lnav),
