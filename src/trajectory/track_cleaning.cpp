@@ -7,6 +7,7 @@
 #include <iterator>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "track_order.hpp"
 
@@ -15,13 +16,41 @@ namespace {
 
 double seconds_from(const TrackRow& from, const TrackRow& to) { return to_seconds(to.time - from.time).value(); }
 
+// Of the row in the middle of a track with dates, which count from 1980. Others count from their own start.
+Nanoseconds middle_time(const Track& track) {
+    if (!track.origin || track.points.empty()) return Nanoseconds(0);
+    std::vector<Nanoseconds> times;
+    times.reserve(track.points.size());
+    for (const TrackRow& row : track.points)
+        times.push_back(row.time);
+    const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+    std::nth_element(times.begin(), middle, times.end());
+    return *middle;
+}
+
+// Times that lie far from the others'. Dates beyond what times may be count from the middle of the track on.
+void leave_out_what_is_no_time(Track& track) {
+    const Nanoseconds middle = middle_time(track);
+    TouchedRows no_time;
+    std::erase_if(track.points, [&](const TrackRow& row) {
+        const double away_s = to_seconds(row.time).value() - to_seconds(middle).value();
+        const bool bad = std::abs(away_s) > to_seconds(longest_track_time).value();
+        if (bad) no_time.add(row);
+        return bad;
+    });
+    no_time.tell(track, "rows have a time further than 70 years from the others' and were left out");
+    if (middle <= longest_track_time) return;
+    *track.origin += middle;
+    for (TrackRow& row : track.points)
+        row.time -= middle;
+}
+
 // Coordinates that are no place, and velocities that are none.
 void leave_out_what_is_no_number(Track& track) {
     // From below the deepest ground to far above the satellites.
     constexpr double nearest_m = 6.3e6, furthest_m = 1e8;
-    TouchedRows no_place, no_time, no_velocity;
+    TouchedRows no_place, no_velocity;
     std::erase_if(track.points, [&](const TrackRow& row) {
-        if (row.time < -longest_track_time || row.time > longest_track_time) return no_time.add(row), true;
         const double distance = row.position.vector().norm();
         const bool bad = !(distance >= nearest_m && distance <= furthest_m);
         if (bad) no_place.add(row);
@@ -32,7 +61,6 @@ void leave_out_what_is_no_number(Track& track) {
         no_velocity.add(row);
         row.velocity.reset();
     }
-    no_time.tell(track, "rows have a time further than 70 years from the others' and were left out");
     no_place.tell(track, "rows have no place on the Earth and were left out");
     no_velocity.tell(track, "rows have a velocity that is no number, which was left out");
 }
@@ -191,6 +219,7 @@ void leave_out_gaps(Track& track, std::span<const TrackGap> gaps, Seconds longes
 }  // namespace
 
 Result<std::vector<TrackGap>> clean_track(Track& track, Seconds gap, GapPolicy policy) {
+    leave_out_what_is_no_time(track);
     leave_out_what_is_no_number(track);
     put_rows_in_order(track);
     if (stamps_are_coarse(track.points)) spread_coarse_stamps(track);

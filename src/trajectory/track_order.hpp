@@ -13,8 +13,8 @@ namespace skyloop {
 
 using TrackRows = std::vector<TrackRow>;
 
-// Of a row from the origin of its times, and of a whole track without dates: sums and differences of such times are
-// times, too.
+// Of a row from the others or the origin of its times, and of a whole track without dates: sums and differences of such
+// times are times, too.
 inline constexpr Nanoseconds longest_track_time = std::chrono::hours(24 * 365 * 70);
 
 // What cleaning has left out or changed, and where it did so first.

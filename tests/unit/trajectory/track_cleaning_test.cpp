@@ -225,6 +225,25 @@ TEST(TrackCleaning, TimesBeyondAnyTrackAreLeftOut) {
     EXPECT_LT(times_of(long_one).back(), 5e9);
 }
 
+TEST(TrackCleaning, DatesOfTheNextHundredYearsAreTimes) {
+    for (const double since_1980 : {0.0, 1.4e9, 2.2e9, 2.26e9, 6.9e9}) {  // 1980, 2024, 2049, 2051, 2198
+        Track track = stamped({0, 1, 2, 3, 4});
+        track.origin = GpsTime{};
+        for (TrackRow& row : track.points)
+            row.time += to_nanoseconds(Seconds(since_1980));
+        ASSERT_TRUE(clean_track(track, Seconds(10)).has_value()) << since_1980;
+        ASSERT_EQ(track.points.size(), 5u) << since_1980;
+        EXPECT_EQ(*track.origin + track.points[1].time, GpsTime(to_nanoseconds(Seconds(since_1980 + 1))));
+        EXPECT_TRUE(track.notes.empty()) << since_1980;
+    }
+    // One row of before the recorder knew the date.
+    Track track = stamped({0, 2.26e9, 2.26e9 + 1, 2.26e9 + 2, 2.26e9 + 3});
+    track.origin = GpsTime{};
+    ASSERT_TRUE(clean_track(track, Seconds(10)).has_value());
+    EXPECT_EQ(track.points.size(), 4u);
+    EXPECT_THAT(track.notes, ElementsAre(HasSubstr("1 rows have a time further than 70 years")));
+}
+
 TEST(TrackCleaning, EachPolicyOfGaps) {
     const std::vector<double> times{0, 1, 2, 3, 103, 104, 105};
     const auto cleaned = [&](GapPolicy policy, std::size_t gaps) {
