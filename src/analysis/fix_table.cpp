@@ -98,7 +98,8 @@ Result<std::optional<GpsTime>> row_time(const TableRow& row, const FixColumns& c
         if (!week) return fail(week.error());
         const Result<double> tow = cell_number(row, *columns.tow, "time of week");
         if (!tow) return fail(tow.error());
-        if (*week < 0 || *week > 9999 || *tow < 0 || *tow > static_cast<double>(seconds_per_week))
+        if (*week < 0 || *week > static_cast<double>(last_gps_week) || *tow < 0 ||
+            *tow > static_cast<double>(seconds_per_week))
             return fail(row.error(fmt::format("GPS week {} and time of week {} s are out of range", *week, *tow)));
         dated = true;
         return to_gps_time(static_cast<std::int64_t>(*week), *tow);

@@ -86,7 +86,8 @@ std::optional<GpsTime> week_time(PosRow& row, PosClock clock) {
     const std::optional<double> week = row.number("GPS week");
     const std::optional<double> tow = row.number("time of week");
     if (!week || !tow) return std::nullopt;
-    if (*week < 0 || *week > 9999 || *tow < 0 || *tow > static_cast<double>(seconds_per_week)) {
+    if (*week < 0 || *week > static_cast<double>(last_gps_week) || *tow < 0 ||
+        *tow > static_cast<double>(seconds_per_week)) {
         row.fail_with(fmt::format("GPS week {} and time of week {} s are out of range", *week, *tow));
         return std::nullopt;
     }

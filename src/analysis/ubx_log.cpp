@@ -197,8 +197,7 @@ void UbxLogReader::take_sol(const UbxFrame& frame) {
 }
 
 void UbxLogReader::take_week(std::int64_t week) {
-    constexpr std::int64_t last_week = 9999;
-    if (week >= 0 && week <= last_week) epoch_->week = week;
+    if (week >= 0 && week <= last_gps_week) epoch_->week = week;
 }
 
 // NAV-SAT and NAV-SVINFO have blocks of one size; C/N0 and elevation stand elsewhere in them.

@@ -24,7 +24,7 @@ namespace {
 using enum TrackQuantity;
 
 // Whole seconds beyond which a time is none: the year 2261, the end of GpsTime, less a margin.
-constexpr double latest_s = 9e9;
+constexpr double latest_s = 9e9, latest_week = 11400;
 
 class TrackTable {
 public:
@@ -210,9 +210,9 @@ Result<std::optional<Nanoseconds>> TrackTable::gps_time() {
     if (!week) return fail(week.error());
     if (!seconds) return fail(seconds.error());
     if (!*week || !*seconds) return std::nullopt;
-    if (**week < 0 || **week > 10000 || **week != std::floor(**week) || std::abs(**seconds) > latest_s / 10)
-        return refusal(fmt::format("gps_week is '{}' and tow_s '{}'; expected a week of 0 to 10000 and seconds in it",
-                                   cell(gps_week), cell(tow)));
+    if (**week < 0 || **week > latest_week || **week != std::floor(**week) || std::abs(**seconds) > latest_s / 10)
+        return refusal(fmt::format("gps_week is '{}' and tow_s '{}'; expected a week of 0 to {} and seconds in it",
+                                   cell(gps_week), cell(tow), latest_week));
     return skyloop::to_gps_time(static_cast<std::int64_t>(**week), **seconds).time_since_epoch();
 }
 

@@ -23,6 +23,9 @@ using Nanoseconds = std::chrono::nanoseconds;
 
 inline constexpr std::int64_t seconds_per_day = 86400;
 inline constexpr std::int64_t seconds_per_week = 604800;
+/// The last one whose every instant is a GpsTime, with a week to spare: 15249, of 2272.
+inline constexpr std::int64_t last_gps_week =
+    GpsTime::max().time_since_epoch() / std::chrono::seconds(seconds_per_week) - 1;
 
 /// A GPS week, never reduced modulo 1024, and the time of week.
 struct WeekAndTow {

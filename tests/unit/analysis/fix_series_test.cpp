@@ -65,6 +65,16 @@ TEST(FixSeries, reads_our_fixes_table_with_truth_and_missing_fixes) {
     EXPECT_TRUE(series->samples[1].truth);
 }
 
+TEST(FixSeries, reads_weeks_of_the_next_centuries) {
+    std::string row = fix_row;
+    row.replace(row.find(",1590,"), 6, ",11450,");
+    const auto series = parse_fix_series(fixes_header + row, "fixes.csv");
+    ASSERT_TRUE(series) << series.error().message;
+    EXPECT_EQ(series->samples[0].time, to_gps_time(11450, 388815.0));
+    row.replace(row.find(",11450,"), 7, ",15250,");
+    EXPECT_THAT(message_of(fixes_header + row), HasSubstr("GPS week 15250"));
+}
+
 TEST(FixSeries, finds_columns_by_name_in_any_order_and_style) {
     const auto series = parse_fix_series(
         "\xEF\xBB\xBF\"Speed\";\"Altitude (m)\"; Longitude ;LATITUDE;time\n"
