@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "firmware/messages/reported_fix.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/time/utc_time.hpp"
 
@@ -86,7 +87,7 @@ Json fix_json(const EpochRecord::Report& report) {
     const Fix& fix = report.fix;
     Json json{{"type", fix_type_name(fix.type)},
               {"ok", report.fix_ok},
-              {"time_utc", utc_text(fix.time, LeapSeconds::believed(fix.time, fix.leap_seconds))},
+              {"time_utc", utc_text(fix.time, report.leap_seconds)},
               {"leap_seconds", fix.leap_seconds},
               {"satellites_used", report.satellites_used},
               {"jamming_state", report.jamming_state},
@@ -145,6 +146,7 @@ EpochRecord record_epoch(const EpochSeen& seen, std::string receiver, std::uint6
     report.fix.satellites.clear();
     report.fix_ok = state.fix_ok;
     report.course = state.course;
+    report.leap_seconds = firmware::reported_leap_seconds(state);
     report.jamming_state = state.monitors.jamming_state();
     report.spoofing = static_cast<int>(state.monitors.spoofing);
     return record;

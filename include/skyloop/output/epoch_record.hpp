@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "skyloop/fault/epoch_views.hpp"
+#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
 
@@ -22,8 +23,9 @@ struct EpochRecord {
         int satellites_used = 0;
         bool fix_ok = false;
         std::optional<Angle> course{};
-        int jamming_state = 0;  ///< 0 unknown, 1 ok, 2 warning, 3 critical
-        int spoofing = 0;       ///< 0 unknown, 1 none, 2 indicated, 3 several indications
+        LeapSeconds leap_seconds = LeapSeconds::announced();  ///< by which it counts UTC
+        int jamming_state = 0;                                ///< 0 unknown, 1 ok, 2 warning, 3 critical
+        int spoofing = 0;                                     ///< 0 unknown, 1 none, 2 indicated, 3 several indications
     };
     std::optional<Report> report{};
     std::vector<SatelliteSeen> satellites;

@@ -51,6 +51,18 @@ TEST(EpochLine, TellsTruthFixErrorAndSatellites) {
     EXPECT_EQ(satellite["used"], true);
 }
 
+// By its own leap second, which nobody has announced, as its messages do.
+TEST(EpochLine, CountsTheLeapSecondOfAFault) {
+    SampleEpoch epoch;
+    const GpsTime midnight = to_gps_time(*parse_utc("2024-03-06T00:00:00Z"), LeapSeconds::announced());
+    epoch.state.leap_event = firmware::LeapEvent{midnight + std::chrono::seconds(1), 18, 19};
+    epoch.state.epoch.fix.time = midnight;
+    EXPECT_EQ(line_of(epoch)["fix"]["time_utc"], "2024-03-05T23:59:60.000Z");
+    epoch.state.epoch.fix.time += std::chrono::seconds(1);
+    epoch.state.epoch.fix.leap_seconds = 19;
+    EXPECT_EQ(line_of(epoch)["fix"]["time_utc"], "2024-03-06T00:00:00.000Z");
+}
+
 TEST(EpochLine, TellsHowTheVehicleStands) {
     SampleEpoch epoch;
     epoch.trace.truth.orientation =
