@@ -51,7 +51,7 @@ Result<Fault> make_leap_second_event(const Parameters& parameters, const FaultCo
                                             before + change};
             }
             state.leap_event = event;
-            if (fix.time >= event->at) fix.leap_seconds += change;
+            if (fix.time >= event->at) fix.leap_seconds = event->after;
         });
 }
 

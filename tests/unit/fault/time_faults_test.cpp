@@ -61,6 +61,19 @@ TEST(TimeFaults, CountsALeapSecondAtTheEndOfTheDay) {
     expect_true_time(bench);
 }
 
+// Where one was announced for that day, it is the same one.
+TEST(TimeFaults, CountsAnAnnouncedLeapSecondOnce) {
+    ReceiverBench bench("2016-12-31T23:59:55Z");
+    bench.begin("leap_second_event");
+    bench.wait(5);
+    EXPECT_EQ(bench.last<NavPvt>().second, 60);
+    EXPECT_EQ(bench.last<NavTimegps>().leap_s, 17);
+    bench.fix().leap_seconds = 18;
+    EXPECT_EQ(bench.next().second, 0);
+    EXPECT_EQ(bench.last<NavTimegps>().leap_s, 18);
+    EXPECT_EQ(bench.last<NavTimels>().curr_ls, 18);
+}
+
 TEST(TimeFaults, LeavesASecondOutAtTheEndOfTheDay) {
     ReceiverBench bench("2024-03-05T23:59:55Z");
     bench.begin("leap_second_event", {{"change", std::string("deleted")}});
