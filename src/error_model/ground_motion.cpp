@@ -3,7 +3,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "skyloop/geo/local_frame.hpp"
+
 namespace skyloop {
+namespace {
+
+// Within 11 km of a pole a step is no longer short against the circle of latitude.
+bool is_near_pole(const Geodetic& place) { return std::abs(place.latitude.deg()) > 89.9; }
+
+}  // namespace
 
 GroundMotion ground_motion(const VelocityNed& velocity) {
     double course = std::atan2(velocity.east, velocity.north);
@@ -29,6 +37,11 @@ GroundMotion motion_between(const TimedPosition& before, const TimedPosition& af
     velocity.north = (radii.meridian + height) * (b.latitude - a.latitude).rad() / dt;
     velocity.east = (radii.prime_vertical + height) * std::cos(latitude.rad()) * d_longitude / dt;
     velocity.down = -(h_b - h_a) / dt;
+    if (is_near_pole(a) || is_near_pole(b)) {
+        const Displacement<Enu> way = LocalFrame(b).to_enu(to_ecef(b) - to_ecef(a));
+        velocity.north = way.vector().y() / dt;
+        velocity.east = way.vector().x() / dt;
+    }
     return ground_motion(velocity);
 }
 

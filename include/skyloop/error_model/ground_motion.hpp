@@ -24,7 +24,8 @@ struct GroundMotion {
 GroundMotion ground_motion(const VelocityNed& velocity);
 
 /// Differences of geodetic coordinates over time, with the radii of curvature at the mean latitude and height
-/// (MODELS.md 3.10). No motion when no time passes.
+/// (MODELS.md 3.10). Beyond 89.9° of latitude, where longitudes lose their meaning, the straight way in the local frame
+/// of `after`. No motion when no time passes.
 GroundMotion motion_between(const TimedPosition& before, const TimedPosition& after);
 
 /// The motion of a series of fixes, each against the one before. The first fix, and the first after a gap, has nothing

@@ -38,6 +38,17 @@ TEST(MotionBetween, CrossesTheAntimeridianTheShortWay) {
     EXPECT_NEAR(motion.course.deg(), 90, 1e-9);
 }
 
+// Five metres on either side: there are 111 694 m to a degree of the meridian.
+TEST(MotionBetween, CrossesAPoleTheShortWay) {
+    constexpr double five_metres = 5 / 111694.0;
+    for (const double pole : {90.0, -90.0}) {
+        const double latitude = pole - std::copysign(five_metres, pole);
+        const GroundMotion motion = motion_between(timed(0, latitude, 10, 100), timed(1, latitude, -170, 100));
+        EXPECT_NEAR(motion.speed.value(), 10, 1e-3);
+        EXPECT_NEAR(std::remainder(motion.course.deg() - (pole > 0 ? 180 : 0), 360), 0, 1e-6);
+    }
+}
+
 TEST(MotionBetween, NoTimeNoMotion) {
     const GroundMotion motion = motion_between(timed(5, 10, 20, 0), timed(5, 11, 20, 0));
     EXPECT_EQ(motion.speed.value(), 0);
