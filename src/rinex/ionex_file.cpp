@@ -178,8 +178,8 @@ private:
                                                                  day, parts[3], minute, second))
                                          : Result<UtcTime>(fail(ErrorCode::input, ""));
         if (!utc) return wrong(in_quotes(columns(line_, 0, 36)), "year, month, day, hour, minute and second");
-        map.time = to_gps_time(*utc, leap_seconds_);
-        if (hour == 24) map.time += std::chrono::seconds(seconds_per_day);
+        // A day may have a leap second.
+        map.time = to_gps_time(hour == 24 ? midnight_of(*utc, 1) : *utc, leap_seconds_);
         if (!result_.maps.empty() && map.time <= result_.maps.back().time)
             return wrong(in_quotes(columns(line_, 0, 36)), "an epoch after that of the map before");
         return true;

@@ -96,6 +96,16 @@ TEST(Ionex, ReadsGridEpochAndValues) {
     EXPECT_NEAR(value->value(), 2.5, 1e-12);
 }
 
+TEST(Ionex, EndsADayAfterItsLeapSecond) {
+    const auto maps = read_ionex(ionex_head() + ionex_map("  2016    12    31    22     0     0") +
+                                     ionex_map("  2016    12    31    24     0     0") + headed("", "END OF FILE"),
+                                 "a.16i");
+    ASSERT_TRUE(maps) << maps.error().message;
+    ASSERT_EQ(maps->maps.size(), 2u);
+    EXPECT_EQ(format_utc(to_utc(maps->maps[1].time, LeapSeconds::announced()), 0), "2017-01-01T00:00:00Z");
+    EXPECT_EQ(maps->maps[1].time - maps->maps[0].time, std::chrono::seconds(2 * 3600 + 1));
+}
+
 TEST(Ionex, SaysWhatIsWrongAndWhere) {
     EXPECT_THAT(ionex_error(""), HasSubstr("a.17i:1: found ''; expected the line IONEX VERSION / TYPE"));
     EXPECT_THAT(ionex_error(ionex_head()), HasSubstr("a.17i:8: found the end of the text; expected END OF FILE"));
