@@ -13,12 +13,12 @@ Geodetic Geodetic::degrees(double latitude, double longitude, double height_m) {
 
 tl::expected<Geodetic, std::string> place_from_degrees(double latitude, double longitude, double height_m) {
     if (!(std::abs(latitude) <= 90))
-        return tl::make_unexpected(fmt::format("latitude is {:g}; expected -90 to 90 degrees", latitude));
+        return tl::make_unexpected(fmt::format("latitude is {}; expected -90 to 90 degrees", latitude));
     if (!(std::abs(longitude) <= 360))
-        return tl::make_unexpected(fmt::format("longitude is {:g}; expected -360 to 360 degrees", longitude));
+        return tl::make_unexpected(fmt::format("longitude is {}; expected -360 to 360 degrees", longitude));
     if (!(height_m >= -1e4 && height_m <= 1e7))
         return tl::make_unexpected(
-            fmt::format("height is {:g}; expected metres above the ellipsoid, -10 000 to 10 000 000", height_m));
+            fmt::format("height is {}; expected metres above the ellipsoid, -10 000 to 10 000 000", height_m));
     return Geodetic::degrees(latitude, std::remainder(longitude, 360), height_m);
 }
 

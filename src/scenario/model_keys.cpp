@@ -116,7 +116,7 @@ void read_layers(TableReader& atmosphere, AtmosphereParameters& p) {
         own.give(layer);
         if (layer.top <= layer.base)
             table.mistake_here(
-                fmt::format("top_m is {:g}; expected more than base_m, {:g}", layer.top.value(), layer.base.value()));
+                fmt::format("top_m is {}; expected more than base_m, {}", layer.top.value(), layer.base.value()));
         p.layers.push_back(layer);
     });
     if (of_all.mode && !atmosphere.has("layer")) {

@@ -138,6 +138,7 @@ TEST(MslHeight, IsHeightMinusUndulation) {
 TEST(PlaceFromDegrees, TakesPlacesOfTheEarthOnly) {
     EXPECT_NEAR(place_from_degrees(-90, 350, 10).value().longitude.deg(), -10, 1e-12);
     EXPECT_EQ(place_from_degrees(90.1, 0, 0).error(), "latitude is 90.1; expected -90 to 90 degrees");
+    EXPECT_EQ(place_from_degrees(90.0000001, 0, 0).error(), "latitude is 90.0000001; expected -90 to 90 degrees");
     EXPECT_EQ(place_from_degrees(0, -361, 0).error(), "longitude is -361; expected -360 to 360 degrees");
     EXPECT_FALSE(place_from_degrees(0, 0, 1.1e7));
     EXPECT_FALSE(place_from_degrees(0, 0, -1.1e4));

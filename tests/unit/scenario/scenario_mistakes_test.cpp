@@ -69,7 +69,7 @@ TEST(ScenarioMistakes, PlacesSayWhatIsWrongWithThem) {
     const auto place = [](const std::string& at) { return mistakes_of("[trajectory]\nkind = \"fixed\"\nat = " + at); };
     EXPECT_EQ(place("[91, 0, 0]"), "test.toml:3:6: trajectory.at: latitude is 91; expected -90 to 90 degrees");
     EXPECT_THAT(place("[0, 361, 0]"), HasSubstr("longitude is 361; expected -360 to 360 degrees"));
-    EXPECT_THAT(place("[0, 0, 1e8]"), HasSubstr("height is 1e+08; expected metres above the ellipsoid"));
+    EXPECT_THAT(place("[0, 0, 1e8]"), HasSubstr("height is 100000000; expected metres above the ellipsoid"));
     EXPECT_THAT(place("[0, 0, -1e5]"), HasSubstr("height is -100000"));
     EXPECT_THAT(place("[1]"), HasSubstr("has 1 numbers; expected latitude and longitude, or both and a height"));
     EXPECT_THAT(place("[1, 2, 3, 4]"), HasSubstr("has 4 numbers; expected latitude and longitude"));
