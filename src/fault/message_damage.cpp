@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "skyloop/protocol/mavlink.hpp"
+#include "skyloop/protocol/msp.hpp"
 #include "skyloop/protocol/ubx_frame.hpp"
 
 namespace skyloop {
@@ -18,7 +20,7 @@ constexpr Nanoseconds longest_message = std::chrono::seconds(1);
 constexpr Nanoseconds longest_lateness = std::chrono::seconds(2);
 constexpr double longest_pause_s = 1e9;
 
-constexpr StreamProtocols wire_protocols{true, true, true, false, false, true};
+constexpr StreamProtocols wire_protocols{true, true, true, true, true, true};
 
 constexpr std::size_t rtcm3_payload_at = 3;  // RTCM 10403.3, section 4.2
 constexpr std::size_t sbf_payload_at = 8;    // after sync, CRC, ID and length
@@ -36,6 +38,15 @@ void turn_bit_from(Bytes& message, std::size_t first, RandomStream& random) {
     if (first >= message.size()) return;
     const std::size_t at = first + drawn_index(random, message.size() - first);
     message[at] = static_cast<std::uint8_t>(message[at] ^ (1U << drawn_index(random, 8)));
+}
+
+// Behind the head, which says where the frame ends, as far as the checksum: it does not cover a signature.
+void turn_bit_of_mavlink(Bytes& frame, RandomStream& random) {
+    const std::size_t head = frame[0] == mavlink_v1_start ? mavlink_v1_head_size : mavlink_v2_head_size;
+    const Bytes signature(frame.begin() + static_cast<std::ptrdiff_t>(head + frame[1] + mavlink_crc_size), frame.end());
+    frame.resize(frame.size() - signature.size());
+    turn_bit_from(frame, head, random);
+    frame.insert(frame.end(), signature.begin(), signature.end());
 }
 
 // The sentence stays one line of printable characters, so that only its checksum tells.
@@ -66,9 +77,11 @@ void spoil_checksum(Bytes& message, StreamKind kind, RandomStream& random) {
             return turn_bit_from(message, sbf_payload_at, random);
         case StreamKind::nmea:
             return turn_bit_of_sentence(message, random);
-        case StreamKind::noise:
         case StreamKind::msp:
+            return turn_bit_from(message, message[1] == 'M' ? msp_v1_head_size : msp_v2_head_size, random);
         case StreamKind::mavlink:
+            return turn_bit_of_mavlink(message, random);
+        case StreamKind::noise:
         case StreamKind::command:
             return;
     }

@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "skyloop/base/random.hpp"
+#include "skyloop/protocol/mavlink.hpp"
+#include "skyloop/protocol/msp.hpp"
 #include "wire_stream.hpp"
 
 namespace skyloop {
@@ -132,6 +134,58 @@ TEST(WireDamage, SpoilsChecksumsAndNothingElse) {
     EXPECT_EQ(static_cast<int>(client.messages.size()), count - spoilt);
     EXPECT_GT(client.counts.bad[static_cast<std::size_t>(StreamKind::ubx)], 100U);
     EXPECT_GT(client.counts.bad[static_cast<std::size_t>(StreamKind::nmea)], 100U);
+}
+
+// Frames of MSP and MAVLink in both versions, one of them signed.
+std::vector<Bytes> autopilot_frames() {
+    Bytes signed_frame = encode_mavlink({}, MavlinkGpsInput{});
+    signed_frame[2] = 1;  // MAVLINK_IFLAG_SIGNED
+    signed_frame.resize(signed_frame.size() - mavlink_crc_size);
+    const std::uint8_t extra = MavlinkGpsInput::crc_extra;
+    const std::uint16_t crc = crc16_x25({&extra, 1}, crc16_x25(ByteSpan(signed_frame).subspan(1)));
+    signed_frame.push_back(static_cast<std::uint8_t>(crc & 0xFF));
+    signed_frame.push_back(static_cast<std::uint8_t>(crc >> 8));
+    signed_frame.resize(signed_frame.size() + mavlink_signature_size, 0x5A);
+    return {encode_mavlink({}, MavlinkGpsInput{}), encode_mavlink_v1({}, 0, encode_payload(MavlinkHeartbeat{})),
+            std::move(signed_frame), encode_msp(MspSensorGps{}), encode_msp(MspSetRawGps{})};
+}
+
+StreamCounts autopilot_counts(ByteSpan stream) {
+    StreamSplitter splitter(StreamProtocols{false, false, false, true, true, false});
+    splitter.feed(stream);
+    splitter.finish();
+    return splitter.counts();
+}
+
+TEST(WireDamage, SpoilsTheChecksumsOfMspAndMavlink) {
+    const std::vector<Bytes> frames = autopilot_frames();
+    for (const Bytes& frame : frames) {
+        const StreamCounts whole = autopilot_counts(frame);
+        EXPECT_EQ(whole.skipped, 0U);
+        for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+            const Bytes heard =
+                passed_through(damaged_direction([](WireDirection& d) { d.checksum_errors = 1; }), frame, seed);
+            ASSERT_EQ(heard.size(), frame.size());
+            const StreamCounts counts = autopilot_counts(heard);
+            const auto of = static_cast<std::size_t>(frame[0] == '$' ? StreamKind::msp : StreamKind::mavlink);
+            EXPECT_EQ(counts.frames[of], 0U) << "seed " << seed;
+            EXPECT_GE(counts.bad[of], 1U) << "seed " << seed;  // the frame stands
+        }
+    }
+}
+
+TEST(WireDamage, DamagesMessagesOfMspAndMavlinkAsTheyCome) {
+    for (const Bytes& frame : autopilot_frames()) {
+        WireDamage wire(1, "wire");
+        wire.set(damaged_direction([](WireDirection& d) { d.duplication = 1; }), wire_start);
+        wire.put(frame, wire_start);
+        Bytes twice = frame;
+        append_bytes(twice, frame);
+        EXPECT_EQ(wire.take(wire_start), twice);  // a message is not held until others follow
+        wire.set(damaged_direction([](WireDirection& d) { d.truncation = 1; }), wire_start);
+        wire.put(frame, wire_start);
+        EXPECT_LT(wire.take(wire_start).size(), frame.size());
+    }
 }
 
 TEST(WireDamage, CutsTheEndsOfMessages) {
