@@ -205,7 +205,7 @@ void Receiver::Core::boot(const Forgotten& forgotten, GpsTime now, const Boot& h
         unit.totals = totals;
     }
     values_.cancel();
-    busy_until_ = last_answer_ = now;
+    busy_until_ = last_answer_ = last_burst_ = now;
     forced_speed_.reset();
     told_antenna_.reset();
     mavlink_sent_ = {};

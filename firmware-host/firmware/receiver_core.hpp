@@ -168,11 +168,11 @@ private:
     Nanoseconds configured_period_{0};  ///< of navigation; saving power has its own
     ReceiverCounters counters_;
     RandomStream latency_noise_;
-    std::uint64_t revision_ = 0;  ///< of the store, as adopted
-    GpsTime busy_until_{};        ///< commands are worked off one by one
-    GpsTime deaf_until_{};        ///< the receiver boots: input is lost
-    GpsTime silent_until_{};      ///< no epoch is reported
-    GpsTime last_burst_{};
+    std::uint64_t revision_ = 0;          ///< of the store, as adopted
+    GpsTime busy_until_{};                ///< commands are worked off one by one
+    GpsTime deaf_until_{};                ///< the receiver boots: input is lost
+    GpsTime silent_until_{};              ///< no epoch is reported
+    GpsTime last_burst_{};                ///< since it started; later ones do not overtake it
     std::optional<GpsTime> report_time_;  ///< of the last epoch; nothing: it is not reported
     GpsTime last_answer_{};               ///< planned; later ones do not overtake it
     std::optional<AntennaStatus> told_antenna_;

@@ -172,6 +172,19 @@ TEST(FirmwareFaults, KeepsAnswersInOrderWhenTheirDelayEnds) {
     EXPECT_EQ(r.bytes[2], version_poll.message_class);
 }
 
+TEST(FirmwareFaults, ForgetsTheLatencyOfBeforeWhenItRestarts) {
+    BrokenReceiver r;
+    r.set(0x20910007, 1, 7);
+    FirmwareFaults slow;
+    slow.solution_delay = Seconds(30);
+    r.receiver.set_faults(slow);
+    r.wait(3s);
+    r.receiver.set_faults({});
+    r.receiver.happen(Reboot{}, r.now);
+    r.wait(5s);
+    EXPECT_GE(r.solutions().size(), 3U) << "what waited is lost, and nothing waits for it";
+}
+
 TEST(FirmwareFaults, LeavesSentencesThatItRefusesAlone) {
     BrokenReceiver r;
     FirmwareFaults faults;
