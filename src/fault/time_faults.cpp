@@ -16,12 +16,25 @@ using firmware::NavigationState;
 
 constexpr std::int64_t weeks_of_rollover = 1024;
 
+// Satellites tell the week of a leap second in eight bits (WNLSF; IS-GPS-200, 20.3.3.5.2.4): it is the one nearest to
+// the time that the receiver believes. Whichever fault came first, its count of leap seconds follows from these two.
+void count_by_leap_event(NavigationState& state) {
+    if (!state.leap_event) return;
+    Fix& fix = state.epoch.fix;
+    firmware::LeapEvent& event = *state.leap_event;
+    constexpr double cycle_s = 256.0 * static_cast<double>(seconds_per_week);
+    const auto cycles = static_cast<std::int64_t>(std::round(difference(fix.time, event.at).value() / cycle_s));
+    event.at += std::chrono::seconds(cycles * 256 * seconds_per_week);
+    fix.leap_seconds = fix.time >= event.at ? event.after : event.before;
+}
+
 // Times before 1980 cannot be told: the reports stay at the beginning of GPS time.
 void shift_time(NavigationState& state, Nanoseconds by) {
     Fix& fix = state.epoch.fix;
     fix.time = std::max(GpsTime{}, fix.time + by);
     GpsTime& measured = state.epoch.observations.receive_time;
     measured = std::max(GpsTime{}, measured + by);
+    count_by_leap_event(state);
 }
 
 Result<Fault> make_leap_second_wrong(const Parameters& parameters, const FaultContext&) {
@@ -42,17 +55,16 @@ GpsTime end_of_utc_day(GpsTime time, int leap_seconds) {
 
 Result<Fault> make_leap_second_event(const Parameters& parameters, const FaultContext&) {
     const int change = parameters.text("change") == "deleted" ? -1 : 1;
-    return fault_of_report(
-        [change, event = std::optional<firmware::LeapEvent>()](NavigationState& state, const FaultMoment&) mutable {
-            Fix& fix = state.epoch.fix;
-            if (!event) {
-                const int before = fix.leap_seconds;
-                event = firmware::LeapEvent{end_of_utc_day(fix.time, before) + std::chrono::seconds(change), before,
-                                            before + change};
-            }
-            state.leap_event = event;
-            if (fix.time >= event->at) fix.leap_seconds = event->after;
-        });
+    return fault_of_report([change, event = std::optional<firmware::LeapEvent>()](NavigationState& state,
+                                                                                  const FaultMoment& moment) mutable {
+        if (!event) {
+            const int before = state.epoch.fix.leap_seconds;
+            event = firmware::LeapEvent{end_of_utc_day(moment.now, before) + std::chrono::seconds(change), before,
+                                        before + change};
+        }
+        state.leap_event = event;
+        count_by_leap_event(state);
+    });
 }
 
 Result<Fault> make_week_rollover(const Parameters& parameters, const FaultContext&) {
@@ -74,7 +86,7 @@ Result<Fault> make_time_step(const Parameters& parameters, const FaultContext&) 
     });
 }
 
-// The time of an epoch, counted from the first one of the fault.
+// The true time of an epoch, counted from the first one of the fault: what is reported may be wrong by other faults.
 class FirstTime {
 public:
     Seconds until(GpsTime time) {
@@ -89,7 +101,7 @@ private:
 Result<Fault> make_time_backwards(const Parameters& parameters, const FaultContext&) {
     return fault_of_report([rate = parameters.number("rate"), first = FirstTime()](NavigationState& state,
                                                                                    const FaultMoment& moment) mutable {
-        const Seconds since = first.until(state.epoch.fix.time);
+        const Seconds since = first.until(moment.now);
         shift_time(state, to_nanoseconds(since * (-(1 + rate) * moment.strength)));
     });
 }
@@ -97,7 +109,7 @@ Result<Fault> make_time_backwards(const Parameters& parameters, const FaultConte
 Result<Fault> make_time_drift(const Parameters& parameters, const FaultContext&) {
     return fault_of_report([ppm = parameters.number("ppm"), first = FirstTime()](NavigationState& state,
                                                                                  const FaultMoment& moment) mutable {
-        const Seconds since = first.until(state.epoch.fix.time);
+        const Seconds since = first.until(moment.now);
         shift_time(state, to_nanoseconds(since * (ppm * 1e-6 * moment.strength)));
     });
 }

@@ -7,6 +7,7 @@
 namespace skyloop {
 namespace {
 
+using namespace std::chrono_literals;
 using fault_test::Given;
 using fault_test::make_fault;
 using fault_test::ReceiverBench;
@@ -153,6 +154,63 @@ TEST(TimeFaults, DriftsAway) {
     const NavPvt first = bench.next(), second = bench.next();
     EXPECT_EQ(second.i_tow, first.i_tow + 1010);
     expect_true_time(bench);
+}
+
+// What is reported at an instant, with these faults under way.
+firmware::NavigationState reported_with(const std::vector<Fault*>& faults, GpsTime now) {
+    firmware::NavigationState state;
+    state.epoch.fix.time = now;
+    state.epoch.fix.leap_seconds = 18;
+    for (Fault* fault : faults)
+        fault->report(state, {now, Seconds(1), 1, nullptr, nullptr});
+    return state;
+}
+
+GpsTime instant(const char* utc) { return to_gps_time(*parse_utc(utc), LeapSeconds::announced()); }
+
+TEST(TimeFaults, RunBackwardsFromTheTrueTimeBesideOthers) {
+    const GpsTime start = instant("2024-03-05T12:00:00Z");
+    const std::map<std::string, Nanoseconds> others{{"time_step", 3600s}, {"week_rollover", -1024s * seconds_per_week}};
+    for (const auto& [kind, shift] : others) {
+        auto other = make_fault(kind, {}), backwards = make_fault("time_backwards", {});
+        ASSERT_TRUE(other && backwards);
+        for (int second = 0; second < 6; ++second) {
+            const GpsTime now = start + std::chrono::seconds(second);
+            const GpsTime right = start - std::chrono::seconds(second);
+            if (second < 3)
+                EXPECT_EQ(reported_with({&*other, &*backwards}, now).epoch.fix.time, right + shift) << kind;
+            else
+                EXPECT_EQ(reported_with({&*backwards}, now).epoch.fix.time, right) << kind << " has ended";
+        }
+    }
+}
+
+TEST(TimeFaults, AddUp) {
+    const GpsTime start = instant("2024-03-05T12:00:00Z");
+    auto one = make_fault("time_backwards", {}), other = make_fault("time_backwards", {});
+    auto drift = make_fault("time_drift", {{"ppm", 500'000.0}});
+    ASSERT_TRUE(one && other && drift);
+    for (int second = 0; second < 4; ++second)
+        EXPECT_EQ(reported_with({&*one, &*other, &*drift}, start + std::chrono::seconds(second)).epoch.fix.time,
+                  start - second * 2500ms);  // 1 − 2 − 2 + 0.5
+}
+
+TEST(TimeFaults, CountALeapSecondThroughARolloverInEitherOrder) {
+    const GpsTime start = instant("2024-03-05T23:59:57Z");
+    for (const bool rollover_first : {true, false})
+        for (const int rollover_ends : {2, 10}) {
+            auto rollover = make_fault("week_rollover", {}), event = make_fault("leap_second_event", {});
+            ASSERT_TRUE(rollover && event);
+            std::vector<Fault*> faults{&*rollover, &*event};
+            if (!rollover_first) std::swap(faults[0], faults[1]);
+            for (int second = 0; second < 7; ++second) {
+                if (second == rollover_ends) faults = {&*event};
+                const auto state = reported_with(faults, start + std::chrono::seconds(second));
+                EXPECT_EQ(state.epoch.fix.leap_seconds, second < 4 ? 18 : 19);
+                ASSERT_TRUE(state.leap_event);
+                EXPECT_EQ(state.leap_event->at - state.epoch.fix.time, std::chrono::seconds(4 - second));
+            }
+        }
 }
 
 TEST(TimeFaults, DoesNotKnowTheDate) {
