@@ -37,34 +37,37 @@ void shift_time(NavigationState& state, Nanoseconds by) {
     count_by_leap_event(state);
 }
 
+// Its UTC days end by the same count, one that a leap second waits for among them.
 Result<Fault> make_leap_second_wrong(const Parameters& parameters, const FaultContext&) {
     const auto error = static_cast<int>(parameters.number("error_s"));
     const bool declared_valid = parameters.flag("declared_valid");
     return fault_of_report([error, declared_valid](NavigationState& state, const FaultMoment&) {
         state.epoch.fix.leap_seconds += error;
         state.time.leap_seconds = declared_valid;
+        if (!state.leap_event) return;
+        state.leap_event->at += std::chrono::seconds(error);
+        state.leap_event->before += error;
+        state.leap_event->after += error;
+        count_by_leap_event(state);
     });
 }
 
-// The end of the UTC day, as a count of GPS time with the offset of before.
+// The end of the UTC day, as a count of UTC without leap seconds. @param leap_seconds GPST − UTC, s
 GpsTime end_of_utc_day(GpsTime time, int leap_seconds) {
     const auto day = std::chrono::hours(24);
     const Nanoseconds utc = time.time_since_epoch() - std::chrono::seconds(leap_seconds);
-    return GpsTime((utc / day + 1) * day + std::chrono::seconds(leap_seconds));
+    return GpsTime((utc / day + 1) * day);
 }
 
 Result<Fault> make_leap_second_event(const Parameters& parameters, const FaultContext&) {
     const int change = parameters.text("change") == "deleted" ? -1 : 1;
-    return fault_of_report([change, event = std::optional<firmware::LeapEvent>()](NavigationState& state,
-                                                                                  const FaultMoment& moment) mutable {
-        if (!event) {
-            const int before = state.epoch.fix.leap_seconds;
-            event = firmware::LeapEvent{end_of_utc_day(moment.now, before) + std::chrono::seconds(change), before,
-                                        before + change};
-        }
-        state.leap_event = event;
-        count_by_leap_event(state);
-    });
+    return fault_of_report(
+        [change, day_ends = std::optional<GpsTime>()](NavigationState& state, const FaultMoment& moment) mutable {
+            const int before = state.epoch.fix.leap_seconds, after = before + change;
+            if (!day_ends) day_ends = end_of_utc_day(moment.now, before);
+            state.leap_event = firmware::LeapEvent{*day_ends + std::chrono::seconds(after), before, after};
+            count_by_leap_event(state);
+        });
 }
 
 Result<Fault> make_week_rollover(const Parameters& parameters, const FaultContext&) {

@@ -1,6 +1,7 @@
 // Each fault of time in the client's bytes, and its end.
 #include <gtest/gtest.h>
 
+#include "firmware/messages/field_values.hpp"
 #include "receiver_bench.hpp"
 #include "skyloop/protocol/ubx_time.hpp"
 
@@ -211,6 +212,28 @@ TEST(TimeFaults, CountALeapSecondThroughARolloverInEitherOrder) {
                 EXPECT_EQ(state.leap_event->at - state.epoch.fix.time, std::chrono::seconds(4 - second));
             }
         }
+}
+
+// Two leap seconds too few: UTC is ahead, and its day ends as much earlier.
+TEST(TimeFaults, BelieveAWrongNumberOfLeapSecondsAroundALeapSecondInEitherOrder) {
+    const GpsTime start = instant("2024-03-05T23:59:55Z");
+    for (const bool wrong_first : {true, false}) {
+        auto wrong = make_fault("leap_second_wrong", {}), event = make_fault("leap_second_event", {});
+        ASSERT_TRUE(wrong && event);
+        std::vector<Fault*> faults{&*event};
+        std::vector<int> seconds, counts;
+        for (int second = 0; second < 8; ++second) {
+            if (second == 1) faults.insert(wrong_first ? faults.begin() : faults.end(), &*wrong);
+            if (second == 6) faults = {&*event};
+            const auto state = reported_with(faults, start + std::chrono::seconds(second));
+            const Fix& fix = state.epoch.fix;
+            const firmware::ReportedTime told{fix.time, fix.leap_seconds, state.leap_event};
+            seconds.push_back(static_cast<int>(to_utc(fix.time, firmware::counted_leap_seconds(told)).second));
+            counts.push_back(fix.leap_seconds);
+        }
+        EXPECT_EQ(seconds, (std::vector<int>{55, 58, 59, 60, 0, 1, 0, 1}));
+        EXPECT_EQ(counts, (std::vector<int>{18, 16, 16, 16, 17, 17, 19, 19}));
+    }
 }
 
 TEST(TimeFaults, DoesNotKnowTheDate) {
