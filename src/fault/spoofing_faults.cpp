@@ -33,6 +33,12 @@ struct FalseStory {
     RangeAndRate clock;  // of all ranges alike
 };
 
+// What grows with the strength of a fault changes along its ramps, too: phase and Doppler have to agree.
+RangeAndRate along_ramps(const RangeAndRate& full, const FaultMoment& moment) {
+    return {full.range * moment.strength,
+            full.rate * moment.strength + MetresPerSecond(full.range.value() * moment.strength_rate)};
+}
+
 void tell(Arrivals& arrivals, const FaultMoment& moment, const SignalSelector& selector, const FalseStory& story,
           Decibels advantage) {
     for (std::size_t i = 0; i < arrivals.satellites.size(); ++i) {
@@ -64,9 +70,10 @@ public:
         const double whole = way_->distance.value();
         const double part = whole > 0 ? way_->after(pulling).value() / whole : 0;
         const Eigen::Vector3d offset = goal * (part * moment.strength);
-        const double drifted = drift_ * std::max(pulling.value(), 0.0) * moment.strength;
+        const double drifted = drift_ * std::max(pulling.value(), 0.0);  // at full strength
+        const double drifts = pulling.value() > 0 ? drift_ : 0;
         FalseStory story{{moment.truth->position + Displacement<Ecef>(offset), moment.truth->velocity}, {}};
-        story.clock = {Metres(drifted), MetresPerSecond(pulling.value() > 0 ? drift_ * moment.strength : 0)};
+        story.clock = along_ramps({Metres(drifted), MetresPerSecond(drifts)}, moment);
         const double passed = last_ ? difference(moment.now, last_at_).value() : 0;
         if (passed > 0)
             story.antenna.velocity = Velocity<Ecef>(moment.truth->velocity.vector() + (offset - *last_) / passed);
@@ -157,18 +164,20 @@ Result<Fault> make_meaconing(const Parameters& parameters, const FaultContext&) 
                                                                                          const FaultMoment& moment) {
         if (!knows_the_sky(moment, arrivals)) return;
         const TruthState& truth = *moment.truth;
-        FalseStory story{{truth.position, truth.velocity}, {delay * moment.strength, {}}};
+        FalseStory story{{truth.position, truth.velocity}, {}};
+        RangeAndRate late{delay, {}};
         // What is heard is the sky of the rebroadcaster's antenna, which stands; the way from it adds to all alike.
         if (place) {
             const Displacement<Ecef> way = place->seen_from(truth) - truth.position;
-            story.antenna = {truth.position + way * moment.strength,
-                             Velocity<Ecef>((1 - moment.strength) * truth.velocity.vector())};
-            story.clock.range += way.length() * moment.strength;
+            story.antenna = {
+                truth.position + way * moment.strength,
+                Velocity<Ecef>((1 - moment.strength) * truth.velocity.vector() + moment.strength_rate * way.vector())};
+            late.range += way.length();
             // It grows as the receiver goes away from the repeater.
-            const double growth =
-                way.length() > Metres(0) ? -truth.velocity.vector().dot(way.vector().normalized()) : 0;
-            story.clock.rate += MetresPerSecond(growth * moment.strength);
+            late.rate =
+                MetresPerSecond(way.length() > Metres(0) ? -truth.velocity.vector().dot(way.vector().normalized()) : 0);
         }
+        story.clock = along_ramps(late, moment);
         tell(arrivals, moment, selector, story, advantage * moment.strength);
     };
     fault.epoch = detected_after(parameters);
@@ -203,10 +212,12 @@ Result<Fault> make_spoof_satellite(const Parameters& parameters, const FaultCont
     fault.arrivals = [chosen = std::move(*chosen), step = step.value_or(0), ramp = ramp.value_or(0), advantage](
                          Arrivals& arrivals, const FaultMoment& moment) mutable {
         chosen.choose(arrivals);
+        const RangeAndRate added =
+            along_ramps({Metres(step + ramp * moment.since_start.value()), MetresPerSecond(ramp)}, moment);
         for (Arrival& arrival : arrivals.satellites) {
             if (arrival.paths == 0 || !chosen.has(arrival.id)) continue;
-            arrival.false_range += Metres(moment.strength * (step + ramp * moment.since_start.value()));
-            arrival.false_range_rate += MetresPerSecond(moment.strength * ramp);
+            arrival.false_range += added.range;
+            arrival.false_range_rate += added.rate;
             capture(arrival, advantage * moment.strength);
         }
     };

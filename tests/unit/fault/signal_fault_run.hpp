@@ -50,10 +50,10 @@ inline std::string refusal_of(std::string_view name, const FaultValues& values) 
 
 inline const GpsTime signal_fault_start = to_gps_time(2300, 200000);
 
-/// A fault of the run, and when it works, s after the start.
+/// A fault of the run, when it works, s after the start, and for how long it grows, s.
 struct TimedFault {
     Fault fault;
-    double from = 0, to = 1e9;
+    double from = 0, to = 1e9, ramp_in = 0;
 };
 
 /// A receiver of the modern profile with faults.
@@ -69,7 +69,9 @@ public:
         if (made) effects_ = std::move(*made);
     }
 
-    void add(Fault fault, double from, double to = 1e9) { faults_.push_back({std::move(fault), from, to}); }
+    void add(Fault fault, double from, double to = 1e9, double ramp_in = 0) {
+        faults_.push_back({std::move(fault), from, to, ramp_in});
+    }
     ReceiverSettings& settings() { return receiver_; }
 
     /// The epoch so many seconds after the start; they ascend.
@@ -117,6 +119,10 @@ private:
             if (since_start < timed.from || since_start >= timed.to || !(timed.fault.*which)) continue;
             FaultMoment moment{trace.truth.time, Seconds(since_start - timed.from), 1, &trace.truth, &trace.sky,
                                &lost_cycles_};
+            if (moment.since_start.value() < timed.ramp_in) {
+                moment.strength = moment.since_start.value() / timed.ramp_in;
+                moment.strength_rate = 1 / timed.ramp_in;
+            }
             (timed.fault.*which)(value, moment);
         }
     }

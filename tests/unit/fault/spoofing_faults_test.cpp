@@ -173,6 +173,36 @@ TEST(SpoofingFaults, AJumpBreaksTheCountOfCyclesOnce) {
     EXPECT_EQ(slips(31), 0);
 }
 
+// Along a ramp the Doppler is that of the ranges, so that the count of cycles goes on.
+TEST(SpoofingFaults, DopplerFollowsTheRangesAlongRamps) {
+    const std::vector<std::pair<const char*, test::FaultValues>> stories{
+        {"spoof_satellite", {{"step_m", 100.}, {"ramp_mps", 2.}, {"satellite_count", 3.}}},
+        {"meaconing", {{"delay_us", 1.}}},
+        {"meaconing", {{"rebroadcast_at", Numbers{46.4900, 30.7326, 80.}}}},
+        {"spoof_takeover", {{"time_drift_ns_per_s", 20.}, {"aligned_s", 0.}}}};
+    for (const auto& [name, values] : stories) {
+        FaultyRun run = faulty_run_at_rest(false);
+        run.add(test::signal_fault(name, values), 30, 1e9, 10);
+        std::vector<Observation> before = run.until(31).epoch.observations.signals;
+        int compared = 0;
+        for (int t = 32; t < 40; ++t) {
+            const std::vector<Observation> now = run.until(t).epoch.observations.signals;
+            for (const Observation& o : now)
+                for (const Observation& last : before) {
+                    if (!(o.satellite == last.satellite) || o.signal != last.signal) continue;
+                    ASSERT_TRUE(o.pseudorange && o.doppler);
+                    const double wavelength = speed_of_light / o.carrier.value();
+                    const double by_doppler = -wavelength * (*o.doppler + *last.doppler).value() / 2;
+                    EXPECT_NEAR((*o.pseudorange - *last.pseudorange).value(), by_doppler, 0.5) << name << " " << t;
+                    EXPECT_FALSE(o.slipped) << name << " " << t;
+                    ++compared;
+                }
+            before = now;
+        }
+        EXPECT_GT(compared, 80) << name;
+    }
+}
+
 TEST(SpoofingFaults, ABaseStationDoesNotSeeFalseRangesButSeesASatellitesClock) {
     const auto corrections = [](const char* name, const test::FaultValues& values) {
         FaultyRun run = faulty_run_at_rest(false);
