@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "skyloop/fault/command.hpp"
 #include "skyloop/fault/planned_events.hpp"
@@ -12,61 +15,75 @@ namespace {
 
 constexpr std::size_t most_events_looked_at = 10'000;  // what comes every millisecond comes for ever
 
-// What is known of an entry before the run.
-struct KnownEntry {
-    std::string name, kind;
-    bool open = false;                        // it depends on what the run will bring
-    int begun = 0;                            // by the end of the run
-    std::optional<GpsTime> begins{}, ends{};  // the first time
+// What is known of the timeline before the run.
+struct KnownTimeline {
+    struct Entry {
+        std::string name, kind;
+        bool open = false;     // it depends on what the run will bring
+        bool command = false;  // it ends as it begins
+        [[nodiscard]] bool is_called(const std::string& by) const { return name == by || kind == by; }
+    };
+    std::vector<Entry> entries;
+    std::vector<TimelineEvent> events;  // by the end of the run
 };
 
-std::vector<KnownEntry> known_entries(const Scenario& scenario, GpsTime start, GpsTime end) {
+KnownTimeline known_timeline(const Scenario& scenario, GpsTime start, GpsTime end) {
     const std::vector<TimelineEntry> entries = timeline_of(scenario);
     const std::vector<bool> open = hang_on_the_run(entries);
-    std::vector<KnownEntry> known(entries.size());
+    KnownTimeline known;
     for (std::size_t i = 0; i < entries.size(); ++i) {
-        known[i].name = entries[i].name;
-        known[i].kind = i < scenario.faults.size()
-                            ? scenario.faults[i].kind
-                            : command_name(scenario.commands[i - scenario.faults.size()].command.verb);
-        known[i].open = open[i];
+        const bool command = i >= scenario.faults.size();
+        known.entries.push_back(
+            {entries[i].name,
+             command ? std::string(command_name(scenario.commands[i - scenario.faults.size()].command.verb))
+                     : scenario.faults[i].kind,
+             open[i], command});
     }
-    for (const TimelineEvent& event : planned_events(entries, {start, end, scenario.run.seed}, most_events_looked_at)) {
-        KnownEntry& entry = known[event.entry];
-        auto& first = event.begins ? entry.begins : entry.ends;
-        if (!first) first = event.time;
-        entry.begun += event.begins ? 1 : 0;
-    }
+    known.events = planned_events(entries, {start, end, scenario.run.seed}, most_events_looked_at);
     return known;
 }
 
-// Why the event of a sentence does not come; empty: it does, or may. @param at its first time, where that is known
-std::string why_no_event(const EventReference& event, const std::vector<KnownEntry>& known,
-                         std::optional<GpsTime>& at) {
+// The occurrence that a sentence names, or the first of all; counted as the judge does, as they begin, over all entries
+// that the name fits.
+struct Occurrence {
+    std::optional<GpsTime> begins{}, ends{};
+};
+
+Occurrence occurrence_of(const EventReference& event, const KnownTimeline& known) {
+    Occurrence found;
+    std::map<std::pair<std::size_t, int>, int> numbers;  // by entry and its own count
     int begun = 0;
-    for (const KnownEntry& entry : known) {
-        if (entry.name != event.name && entry.kind != event.name) continue;
-        if (entry.open) return at.reset(), "";
-        begun += entry.begun;
-        const auto& first = event.end ? entry.ends : entry.begins;
-        if (first && (!at || *first < *at)) at = first;
+    for (const TimelineEvent& e : known.events) {
+        const KnownTimeline::Entry& entry = known.entries[e.entry];
+        if (!entry.is_called(event.name)) continue;
+        int& number = numbers[{e.entry, e.occurrence}];
+        if (e.begins) number = ++begun;
+        if (event.occurrence && *event.occurrence != number) continue;
+        if (e.begins && !found.begins) found.begins = e.time;
+        if ((!e.begins || entry.command) && !found.ends) found.ends = e.time;
     }
-    if (begun < event.occurrence.value_or(1))
-        return fmt::format("'{}{}' does not begin before the run ends", event.name,
-                           event.occurrence ? fmt::format("#{}", *event.occurrence) : "");
-    if (!at) return fmt::format("'{}' does not end before the run does", event.name);
-    if (event.occurrence.value_or(1) > 1) at.reset();  // a later time than the first
-    return {};
+    return found;
+}
+
+// Why the event of a sentence does not come; empty: it does, or may. @param at its first time, where that is known
+std::string why_no_event(const EventReference& event, const KnownTimeline& known, std::optional<GpsTime>& at) {
+    at.reset();
+    for (const KnownTimeline::Entry& entry : known.entries)
+        if (entry.open && entry.is_called(event.name)) return "";
+    const Occurrence occurrence = occurrence_of(event, known);
+    at = event.end ? occurrence.ends : occurrence.begins;
+    if (at) return "";
+    const std::string name = event.name + (event.occurrence ? fmt::format("#{}", *event.occurrence) : std::string());
+    return occurrence.begins ? fmt::format("'{}' does not end before the run does", name)
+                             : fmt::format("'{}' does not begin before the run ends", name);
 }
 
 // Why a sentence cannot be decided by the end, or may not be; empty: it can.
-std::string why_too_late(const TimeClause& time, const std::vector<KnownEntry>& known, GpsTime start, GpsTime end) {
+std::string why_too_late(const TimeClause& time, const KnownTimeline& known, GpsTime start, GpsTime end) {
     std::optional<GpsTime> origin = start;
     if (time.event && time.event->is_run()) {
         if (time.event->end) return {};
     } else if (time.event) {
-        origin.reset();
-        if (time.rule == TimeRule::until_event) return {};  // it holds until the end where nothing comes
         if (std::string why = why_no_event(*time.event, known, origin); !why.empty()) return "cannot be met: " + why;
     }
     if (!origin) return {};
@@ -102,7 +119,7 @@ std::string why_no_time(const Probe& probe, double speed, double length) {
 }  // namespace
 
 std::vector<std::string> expectation_warnings(const Scenario& scenario, GpsTime start, GpsTime end) {
-    const std::vector<KnownEntry> known = known_entries(scenario, start, end);
+    const KnownTimeline known = known_timeline(scenario, start, end);
     std::vector<std::string> warnings;
     for (const Expectation& expectation : scenario.expectations) {
         std::string why;

@@ -51,9 +51,22 @@ bool ExpectationTracker::strict_silence() const {
 
 bool ExpectationTracker::is_named(const FaultSeen& seen) const {
     const auto& event = sentence_.time.event;
-    if (!event || event->is_run()) return false;
-    if (event->occurrence && *event->occurrence != seen.occurrence) return false;
-    return event->name == seen.name || event->name == seen.kind;
+    return event && !event->is_run() && (event->name == seen.name || event->name == seen.kind);
+}
+
+// Occurrences are counted as they begin, whichever entry they are of; what ends is what has begun. 0: it has not.
+int ExpectationTracker::number_of(const FaultSeen& seen) {
+    if (seen.begins) {
+        not_ended_.push_back({std::string(seen.name), seen.occurrence, ++begun_});
+        return begun_;
+    }
+    const auto begun = std::find_if(not_ended_.begin(), not_ended_.end(), [&](const Begun& b) {
+        return b.entry == seen.name && b.of_entry == seen.occurrence;
+    });
+    if (begun == not_ended_.end()) return 0;
+    const int number = begun->number;
+    not_ended_.erase(begun);
+    return number;
 }
 
 void ExpectationTracker::plan_at_start() {
@@ -246,7 +259,10 @@ void ExpectationTracker::fail(GpsTime now, std::string evidence) {
 }
 
 void ExpectationTracker::event(GpsTime now, const FaultSeen& seen) {
-    if (!finding_ && is_named(seen)) happen(now, seen.begins);
+    if (finding_ || !is_named(seen)) return;
+    const std::optional<int> wanted = sentence_.time.event->occurrence;
+    const int number = number_of(seen);
+    if (!wanted || *wanted == number) happen(now, seen.begins);
 }
 
 void ExpectationTracker::happen(GpsTime now, bool begins) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "skyloop/verdict/expectation.hpp"
 #include "skyloop/verdict/verdict.hpp"
@@ -54,6 +55,10 @@ private:
         GpsTime origin{};                 // of the event, for the evidence
         bool instant = false;             // looked at once
     };
+    struct Begun {
+        std::string entry;
+        int of_entry = 1, number = 1;  // counted of this entry alone, and of all that the event's name fits
+    };
     struct Turn {  // the value changes by itself
         GpsTime at{};
         bool to = false;
@@ -62,6 +67,7 @@ private:
     [[nodiscard]] bool once() const;
     [[nodiscard]] bool strict_silence() const;
     [[nodiscard]] bool is_named(const FaultSeen& seen) const;
+    int number_of(const FaultSeen& seen);
     [[nodiscard]] std::optional<GpsTime> next_step() const;
     void step(GpsTime now);
     void plan_at_start();
@@ -89,6 +95,8 @@ private:
     std::optional<Stretch> stretch_;  // that is open
     std::deque<Stretch> planned_;     // ascending
     int under_way_ = 0;               // occurrences of the event
+    int begun_ = 0;                   // of all that the event's name fits
+    std::vector<Begun> not_ended_;    // of them
     bool event_came_ = false, looked_at_ = false, ever_seen_ = false;
     std::uint64_t stretches_ = 0, seen_ = 0, came_true_ = 0;
     std::uint64_t waiting_ = 0;  // stretches that have opened since the open one, and are fulfilled with it

@@ -266,6 +266,44 @@ after = "stall"
         EXPECT_THAT(warnings_of(fmt::format("what = \"{}\"", met)), IsEmpty()) << met;
 }
 
+// As the judge does.
+TEST(ScenarioTimeline, EventsOfExpectationsAreCountedOverAllThatTheirNameFits) {
+    const GpsTime start = to_gps_time(*parse_utc("2024-03-05T12:00:00Z"), LeapSeconds::announced());
+    const auto warnings_of = [&](const std::string& what) {
+        const Scenario scenario = scenario_of(R"toml(
+[[fault]]
+kind = "outage"
+name = "tunnel"
+at_s = 5
+for_s = 3
+[[fault]]
+kind = "outage"
+name = "bridge"
+at_s = 15
+[[fault]]
+kind = "freeze"
+at_s = 90
+[[command]]
+kind = "reboot"
+at_s = 5
+[[expect]]
+what = ")toml" + what + "\"\n");
+        std::vector<std::string> warnings;
+        for (const std::string& warning : timeline_warnings(scenario, start, advanced(start, Seconds(60))))
+            if (warning.starts_with("[[expect]]")) warnings.push_back(warning);
+        return warnings;
+    };
+    for (const char* met : {"no fix within 2 s of outage#2", "fix within 2 s of the end of outage#1",
+                            "3d fix within 8 s of the end of reboot", "fix until the end of tunnel"})
+        EXPECT_THAT(warnings_of(met), IsEmpty()) << met;
+    EXPECT_THAT(warnings_of("no fix within 2 s of outage#3"), ElementsAre(HasSubstr("'outage#3' does not begin")));
+    EXPECT_THAT(warnings_of("fix within 2 s of the end of outage#2"),
+                ElementsAre(HasSubstr("'outage#2' does not end before the run does")));
+    EXPECT_THAT(warnings_of("fix within 50 s of outage#2"), ElementsAre(HasSubstr("it has until 65 s after")));
+    EXPECT_THAT(warnings_of("fix until the end of bridge"), ElementsAre(HasSubstr("'bridge' does not end")));
+    EXPECT_THAT(warnings_of("fix until freeze"), ElementsAre(HasSubstr("'freeze' does not begin")));
+}
+
 TEST(ScenarioTimeline, CommandsFindTheFaultsThatTheyName) {
     const auto commanded = [](std::string_view command) {
         return mistakes_of(fmt::format("[[fault]]\nkind = \"jamming\"\nj_to_s_db = 30\n[[command]]\n{}", command));

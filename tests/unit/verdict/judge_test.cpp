@@ -82,6 +82,31 @@ TEST(JudgeTimes, EachOccurrenceHasToBeAnswered) {
     EXPECT_EQ(only.begins(10, "outage", 1).client(10.4, "CFG-RST").begins(20, "outage", 2).end(30).outcome, passed);
 }
 
+TEST(JudgeTimes, OccurrencesAreCountedOverAllThatTheNameFits) {
+    const auto two_outages = [](std::string_view what) {
+        return SeenRun(what)
+            .begins(5, "tunnel")
+            .epoch(6)
+            .begins(10, "bridge")
+            .epoch(11, no_fix)
+            .ends(12, "bridge")
+            .epoch(13)
+            .ends(20, "tunnel")
+            .epoch(21, no_fix)
+            .end(30)
+            .outcome;
+    };
+    EXPECT_EQ(two_outages("no fix within 2 s of outage#1"), failed);
+    EXPECT_EQ(two_outages("no fix within 2 s of outage#2"), passed);
+    EXPECT_EQ(two_outages("no fix within 2 s of outage#3"), failed) << "it never began";
+    EXPECT_EQ(two_outages("no fix within 2 s of bridge#1"), passed);
+    EXPECT_EQ(two_outages("no fix within 2 s of the end of outage#1"), passed);
+    EXPECT_EQ(two_outages("no fix within 2 s of the end of outage#2"), failed);
+    SeenRun again("fix within 2 s of reboot#2");
+    again.command(5, "reboot", CommandVerb::reboot).epoch(6, no_fix).command(10, "reboot", CommandVerb::reboot);
+    EXPECT_EQ(again.epoch(11).end(20).outcome, passed);
+}
+
 TEST(JudgeTimes, TheEndOfAnEventIsAnEventToo) {
     const std::string_view what = "fix within 3 s of the end of the outage";
     EXPECT_EQ(SeenRun(what).begins(5, "outage").epoch(6).ends(10, "outage").epoch(12).end(20).outcome, passed);
