@@ -69,6 +69,9 @@ struct MonitorStatus {
     SpoofingIndication spoofing = SpoofingIndication::unknown;
     /// MON-HW and MON-RF say "unknown" whatever `jamming_state` is, and SEC-SIG alone tells it (F9 HPG 1.50 and later).
     bool jamming_hidden = false;
+    bool told_elsewhere = false;  ///< the board has SEC-SIG or Septentrio's RFStatus, which nothing hides
+    /// As messages of the board can tell it.
+    [[nodiscard]] int told_jamming_state() const { return jamming_hidden && !told_elsewhere ? 0 : jamming_state(); }
 };
 
 /// How far a receiver that saves power has come; the numbers are those of NAV-PVT psmState.

@@ -125,7 +125,7 @@ Answer<sky_fix> Session::fix(std::uint32_t receiver) const {
     told.type = fix_type_number(fix.type);
     told.ok = state.fix_ok ? 1 : 0;
     told.satellites_used = static_cast<std::uint8_t>(std::clamp(fix.satellites_used(), 0, 255));
-    told.jamming_state = static_cast<std::uint8_t>(std::clamp(state.monitors.jamming_state(), 0, 3));
+    told.jamming_state = static_cast<std::uint8_t>(std::clamp(state.monitors.told_jamming_state(), 0, 3));
     told.epochs = station.counts().epochs;
     told.sim_time_ns = sim_time(report->truth.time);
     told.gps_time_ns = fix.time.time_since_epoch().count();

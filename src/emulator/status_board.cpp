@@ -89,7 +89,7 @@ void StatusBoard::take_report(const EpochSeen& seen, ReceiverStatus& status) con
     status.satellites_used = fix.satellites_used();
     status.error.reset();
     if (fix.has_position()) status.error = enu_error(seen.trace.truth, fix);
-    status.jamming_state = seen.reported.monitors.jamming_state();
+    status.jamming_state = seen.reported.monitors.told_jamming_state();
     status.spoofing = static_cast<int>(seen.reported.monitors.spoofing);
 }
 

@@ -147,7 +147,7 @@ EpochRecord record_epoch(const EpochSeen& seen, std::string receiver, std::uint6
     report.fix_ok = state.fix_ok;
     report.course = state.course;
     report.leap_seconds = firmware::reported_leap_seconds(state);
-    report.jamming_state = state.monitors.jamming_state();
+    report.jamming_state = state.monitors.told_jamming_state();
     report.spoofing = static_cast<int>(state.monitors.spoofing);
     return record;
 }

@@ -129,7 +129,7 @@ Reading read_epoch(const SubjectClause& subject, const EpochSeen& seen) {
         case ExpectedSubject::fix_type:
             return {is_of_type(subject, reported), std::nullopt, fix_word(reported)};
         case ExpectedSubject::jamming_flagged: {
-            const bool flagged = reported.monitors.jamming_state() >= 2;  // 2 warning, 3 critical
+            const bool flagged = reported.monitors.told_jamming_state() >= 2;  // 2 warning, 3 critical
             return {flagged, std::nullopt, flagged ? "flagged" : "not flagged"};
         }
         case ExpectedSubject::spoofing_flagged: {

@@ -201,6 +201,27 @@ TEST(FirmwareFaults, LeavesSentencesThatItRefusesAlone) {
     EXPECT_FALSE(r.bytes.empty()) << "GGA comes";
 }
 
+TEST(FirmwareFaults, HidesJammingWhereNoOtherMessageTellsIt) {
+    for (const bool has_sec_sig : {false, true}) {
+        BoardProfile board = sample_ublox();
+        board.quirks.default_interference_monitor = true;
+        if (has_sec_sig) board.messages.push_back({0x27, 0x09});
+        Receiver receiver(board, {});
+        Epoch epoch{sample_fix("2024-03-05T12:00:00Z", 47, 8, 500)};
+        epoch.front_end.interference = Decibels(20);
+        receiver.start(epoch.fix.time);
+        for (const bool hidden : {false, true}) {
+            FirmwareFaults faults;
+            faults.jamming_hidden = hidden;
+            receiver.set_faults(faults);
+            epoch.fix.time += 1s;
+            receiver.on_epoch(epoch, {});
+            EXPECT_GE(receiver.state().monitors.jamming_state(), 2);
+            EXPECT_EQ(receiver.state().monitors.told_jamming_state() >= 2, has_sec_sig || !hidden);
+        }
+    }
+}
+
 // Dates and times of week stay.
 TEST(FirmwareFaults, CountsWeeksApartInEveryMessageThatHasThem) {
     UbxReport r(9, "2024-03-10T00:00:00Z");  // time of week 18 s in GPS time, 4 s in BeiDou time

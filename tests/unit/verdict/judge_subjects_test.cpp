@@ -88,6 +88,10 @@ TEST(JudgeSubjects, FlagsAreThoseOfTheMonitors) {
     EXPECT_EQ(after_one_epoch("jamming flagged", fix), passed);
     EXPECT_EQ(after_one_epoch("spoofing flagged", fix), passed);
     EXPECT_EQ(after_one_epoch("spoofing flagged", {}), failed);
+    fix.jamming_hidden = true;
+    EXPECT_EQ(after_one_epoch("jamming flagged", fix), failed) << "MON-HW says nothing, and there is no SEC-SIG";
+    fix.jamming_told_elsewhere = true;
+    EXPECT_EQ(after_one_epoch("jamming flagged", fix), passed);
 }
 
 TEST(JudgeSubjects, MessagesGoByDirectionAndName) {

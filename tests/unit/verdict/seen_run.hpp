@@ -39,6 +39,7 @@ struct SeenFix {
     SpoofingIndication spoofing = SpoofingIndication::none;
     bool valid = true;
     bool told = true;  ///< its messages leave
+    bool jamming_hidden = false, jamming_told_elsewhere = false;
 };
 
 /// Tells a judge of one sentence what happens; times are seconds of the run.
@@ -55,6 +56,8 @@ public:
         firmware::NavigationState state;
         state.fix_ok = fix.valid;
         state.monitors.upper.jamming_state = fix.jamming;
+        state.monitors.jamming_hidden = fix.jamming_hidden;
+        state.monitors.told_elsewhere = fix.jamming_told_elsewhere;
         state.monitors.spoofing = fix.spoofing;
         Fix& reported = state.epoch.fix;
         reported.type = fix.type;
