@@ -79,7 +79,7 @@ void Station::follow_faults(GpsTime now) {
     faults_act_ = !faults_.empty();
     parts_.receiver.set_faults(faults_.firmware(now));
     WireConditions conditions = faults_.wire(now);
-    if (!parts_.repeated.empty()) conditions.to_receiver.garbage_per_s = 0;  // it was heard, and is heard again
+    if (!parts_.repeated.empty()) conditions.to_receiver.garbage.clear();  // it was heard, and is heard again
     for (FaultyWire& wire : faulty_wires_)
         wire.set(conditions, now);
     for (Wire& wire : parts_.wires)

@@ -25,6 +25,14 @@ constexpr StreamProtocols wire_protocols{true, true, true, true, true, true};
 constexpr std::size_t rtcm3_payload_at = 3;  // RTCM 10403.3, section 4.2
 constexpr std::size_t sbf_payload_at = 8;    // after sync, CRC, ID and length
 
+// Of all sources.
+double bursts_per_s(const WireDirection& direction) {
+    double sum = 0;
+    for (const GarbageBursts& bursts : direction.garbage)
+        sum += bursts.per_s;
+    return sum;
+}
+
 // A character that may stand within a sentence (NMEA 0183, 5.1: those reserved for other things are not).
 bool is_sentence_character(std::uint8_t c) {
     return c >= 0x20 && c <= 0x7E && std::string_view("$*!\\^~").find(static_cast<char>(c)) == std::string_view::npos;
@@ -89,7 +97,7 @@ void spoil_checksum(Bytes& message, StreamKind kind, RandomStream& random) {
 
 MessageDamage::MessageDamage(std::uint64_t seed, std::string_view stream) : splitter_(wire_protocols) {
     for (const std::string_view of : {"checksum", "place", "truncation", "merging", "duplication", "reordering",
-                                      "garbage", "garbage content", "jitter"})
+                                      "garbage", "garbage content", "jitter", "garbage source"})
         random_.emplace_back(seed, std::string(stream) + "." + std::string(of));
     threshold_ = next_threshold();
 }
@@ -105,15 +113,15 @@ bool MessageDamage::happens(double probability, Draw draw) {
 std::size_t MessageDamage::place_within(std::size_t size) { return 1 + drawn_index(random_[places], size - 1); }
 
 void MessageDamage::set(const WireDirection& direction, GpsTime now, std::vector<TimedBytes>& out) {
-    integral_ += direction_.garbage_per_s * difference(now, integrated_to_).value();
+    integral_ += bursts_per_s(direction_) * difference(now, integrated_to_).value();
     integrated_to_ = now;
     direction_ = direction;
     active_ = direction.checksum_errors > 0 || direction.truncation > 0 || direction.merging > 0 ||
-              direction.duplication > 0 || direction.reordering > 0 || direction.garbage_per_s > 0 ||
+              direction.duplication > 0 || direction.reordering > 0 || !direction.garbage.empty() ||
               direction.jitter.value() > 0;
-    if (direction.garbage_per_s <= 0) {
+    if (direction.garbage.empty()) {
         integral_ = 0;
-        bursts_due_ = 0;
+        bursts_due_.clear();
     }
     if (direction.merging <= 0) head_is_missing_ = false;
     if (direction.reordering <= 0) emit_late(now, out);
@@ -133,7 +141,7 @@ void MessageDamage::clear() {
     flush({}, lost);
     late_.clear();
     head_is_missing_ = false;
-    bursts_due_ = 0;
+    bursts_due_.clear();
 }
 
 void MessageDamage::put(ByteSpan bytes, GpsTime now, std::vector<TimedBytes>& out) {
@@ -154,8 +162,8 @@ void MessageDamage::decide(StreamPiece piece, GpsTime now, std::vector<TimedByte
         emit(std::move(piece.bytes), now, out);
     else
         damage(std::move(piece), now, out);
-    for (; bursts_due_ > 0; --bursts_due_)
-        emit_garbage(now, out);
+    for (const int bytes : std::exchange(bursts_due_, {}))
+        emit_garbage(bytes, now, out);
 }
 
 void MessageDamage::forget_arrivals(std::size_t count) {
@@ -220,8 +228,16 @@ void MessageDamage::emit_late(GpsTime now, std::vector<TimedBytes>& out) {
     if (!late_.empty()) emit(std::exchange(late_, {}), now, out);
 }
 
-void MessageDamage::emit_garbage(GpsTime now, std::vector<TimedBytes>& out) {
-    Bytes burst(static_cast<std::size_t>(direction_.garbage_bytes));
+// Poisson processes together are one, each of whose bursts is of a source by its share of the rate.
+int MessageDamage::drawn_burst() {
+    double left = random_[sources].uniform() * bursts_per_s(direction_);
+    for (const GarbageBursts& bursts : direction_.garbage)
+        if ((left -= bursts.per_s) < 0) return bursts.bytes;
+    return direction_.garbage.back().bytes;
+}
+
+void MessageDamage::emit_garbage(int bytes, GpsTime now, std::vector<TimedBytes>& out) {
+    Bytes burst(static_cast<std::size_t>(bytes));
     for (std::uint8_t& byte : burst)
         byte = static_cast<std::uint8_t>(random_[contents].bits() >> 56);
     counts_.bytes_inserted += burst.size();
@@ -240,8 +256,8 @@ std::optional<GpsTime> MessageDamage::patience_ends() const {
 }
 
 std::optional<GpsTime> MessageDamage::garbage_at() const {
-    if (direction_.garbage_per_s <= 0) return std::nullopt;
-    const double pause = std::max(0.0, (threshold_ - integral_) / direction_.garbage_per_s);
+    if (direction_.garbage.empty()) return std::nullopt;
+    const double pause = std::max(0.0, (threshold_ - integral_) / bursts_per_s(direction_));
     return advanced(integrated_to_, Seconds(std::min(pause, longest_pause_s)));
 }
 
@@ -249,10 +265,11 @@ void MessageDamage::garbage_happens(GpsTime at, std::vector<TimedBytes>& out) {
     integral_ = 0;
     integrated_to_ = at;
     threshold_ = next_threshold();
+    const int bytes = drawn_burst();
     if (undecided_ > 0)
-        ++bursts_due_;
+        bursts_due_.push_back(bytes);
     else
-        emit_garbage(at, out);
+        emit_garbage(bytes, at, out);
 }
 
 void MessageDamage::advance(GpsTime now, std::vector<TimedBytes>& out) {

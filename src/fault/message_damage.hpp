@@ -61,7 +61,8 @@ private:
         orders,
         garbages,
         contents,
-        jitters
+        jitters,
+        sources
     };
     struct Arrival {
         GpsTime time;
@@ -74,7 +75,8 @@ private:
     void cut(Bytes& message);
     void emit(Bytes bytes, GpsTime now, std::vector<TimedBytes>& out);
     void emit_late(GpsTime now, std::vector<TimedBytes>& out);
-    void emit_garbage(GpsTime now, std::vector<TimedBytes>& out);
+    void emit_garbage(int bytes, GpsTime now, std::vector<TimedBytes>& out);
+    int drawn_burst();
     void give_up_waiting(GpsTime now, std::vector<TimedBytes>& out);
     void flush(GpsTime now, std::vector<TimedBytes>& out);
     [[nodiscard]] std::optional<GpsTime> patience_ends() const;
@@ -96,7 +98,7 @@ private:
     // Garbage is a Poisson process: it comes when its rate, integrated over time, has reached a threshold.
     double integral_ = 0, threshold_ = 0;
     GpsTime integrated_to_{};
-    int bursts_due_ = 0;
+    std::vector<int> bursts_due_;  // bytes of each
     WireDamageCounts counts_;
 };
 

@@ -22,15 +22,26 @@ double probability_of(double value) { return std::isfinite(value) ? std::clamp(v
 
 double amount_of(double value, double most) { return std::isfinite(value) ? std::clamp(value, 0.0, most) : 0; }
 
+// All sources together have no more bursts than a single one may.
+void make_sensible(std::vector<GarbageBursts>& garbage) {
+    double sum = 0;
+    for (GarbageBursts& bursts : garbage) {
+        bursts = {amount_of(bursts.per_s, most_bursts_per_s), std::clamp(bursts.bytes, 0, most_burst_bytes)};
+        if (bursts.bytes == 0) bursts.per_s = 0;
+        sum += bursts.per_s;
+    }
+    std::erase_if(garbage, [](const GarbageBursts& bursts) { return bursts.per_s <= 0; });
+    if (sum <= most_bursts_per_s) return;
+    for (GarbageBursts& bursts : garbage)
+        bursts.per_s *= most_bursts_per_s / sum;
+}
+
 WireDirection sensible(WireDirection direction) {
     for (double* probability :
          {&direction.byte_loss, &direction.bit_errors, &direction.checksum_errors, &direction.truncation,
           &direction.merging, &direction.duplication, &direction.reordering})
         *probability = probability_of(*probability);
-    direction.garbage_per_s = amount_of(direction.garbage_per_s, most_bursts_per_s);
-    direction.garbage_bytes = std::clamp(direction.garbage_bytes, 0, most_burst_bytes);
-    if (direction.garbage_bytes == 0) direction.garbage_per_s = 0;
-    if (direction.garbage_per_s <= 0) direction.garbage_bytes = 0;
+    make_sensible(direction.garbage);
     direction.delay = Seconds(amount_of(direction.delay.value(), longest_held_s));
     direction.jitter = Seconds(amount_of(direction.jitter.value(), longest_held_s));
     if (direction.bytes_per_s && !std::isfinite(*direction.bytes_per_s)) direction.bytes_per_s.reset();

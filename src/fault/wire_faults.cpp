@@ -50,8 +50,7 @@ Result<Fault> make_garbage(const Parameters& parameters, const FaultContext&) {
     const double rate = parameters.number("bursts_per_s");
     const int bytes = static_cast<int>(parameters.number("burst_bytes"));
     return worsened(parameters, [rate, bytes](WireDirection& direction, const FaultMoment& moment) {
-        direction.garbage_per_s += rate * moment.strength;
-        direction.garbage_bytes = std::max(direction.garbage_bytes, bytes);
+        direction.garbage.push_back({rate * moment.strength, bytes});
     });
 }
 

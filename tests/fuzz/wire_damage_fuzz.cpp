@@ -27,8 +27,8 @@ WireDirection read_direction(FuzzInput& input) {
     for (unsigned i = 0; i < std::size(probabilities); ++i)
         if (named(i)) *probabilities[i] = input.number(1);
     if (named(7)) {
-        direction.garbage_per_s = input.number(50);
-        direction.garbage_bytes = input.byte() - 2;
+        const double bursts_per_s = input.number(50);
+        direction.garbage = {{bursts_per_s, input.byte() - 2}};
     }
     if (named(8)) direction.delay = Seconds(input.number(3));
     if (named(9)) direction.jitter = Seconds(input.number(1));

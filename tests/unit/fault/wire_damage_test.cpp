@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "skyloop/base/random.hpp"
@@ -40,8 +41,7 @@ std::vector<WireDirection> single_damages() {
             damaged_direction([](WireDirection& d) { d.duplication = 0.4; }),
             damaged_direction([](WireDirection& d) { d.reordering = 0.4; }),
             damaged_direction([](WireDirection& d) {
-                d.garbage_per_s = 5;
-                d.garbage_bytes = 11;
+                d.garbage = {{5, 11}};
             }),
             damaged_direction([](WireDirection& d) { d.delay = Seconds(0.73); }),
             damaged_direction([](WireDirection& d) { d.jitter = Seconds(0.2); }),
@@ -55,8 +55,7 @@ WireDirection everything_wrong() {
     all.byte_loss = 0.01;
     all.bit_errors = 0.002;
     all.checksum_errors = all.truncation = all.merging = all.duplication = all.reordering = 0.2;
-    all.garbage_per_s = 4;
-    all.garbage_bytes = 7;
+    all.garbage = {{4, 7}};
     all.delay = Seconds(0.05);
     all.jitter = Seconds(0.03);
     all.bytes_per_s = 700;
@@ -265,11 +264,7 @@ TEST(WireDamage, SendsAMessageAfterTheNextOne) {
 
 TEST(WireDamage, PutsGarbageBetweenMessagesOnly) {
     WireDamage wire(1, "wire");
-    wire.set(damaged_direction([](WireDirection& d) {
-                 d.garbage_per_s = 4;
-                 d.garbage_bytes = 5;
-             }),
-             wire_start);
+    wire.set(damaged_direction([](WireDirection& d) { d.garbage = {{4, 5}}; }), wire_start);
     // Each message takes 60 ms of every 100 ms, in two halves.
     Bytes heard;
     for (int i = 0; i < 1000; ++i) {
@@ -293,6 +288,17 @@ TEST(WireDamage, PutsGarbageBetweenMessagesOnly) {
         from = static_cast<std::size_t>(at - heard.begin()) + message.size();
     }
     EXPECT_EQ(found, 1000U);
+}
+
+TEST(WireDamage, EachSourceOfGarbageHasBurstsOfItsOwnLength) {
+    WireDamage wire(1, "wire");
+    wire.set(damaged_direction([](WireDirection& d) { d.garbage = {{3, 4}, {1, 40}}; }), wire_start);
+    std::map<std::size_t, int> bursts;  // by length
+    for (auto next = wire.next_at(); next && *next < wire_time(500); next = wire.next_at())
+        ++bursts[wire.take(*next).size()];
+    EXPECT_EQ(bursts.size(), 2U);
+    EXPECT_NEAR(bursts[4], 1500, 240);  // 6 sigma
+    EXPECT_NEAR(bursts[40], 500, 135);
 }
 
 TEST(WireDamage, DelaysEveryByte) {
@@ -549,8 +555,8 @@ TEST(WireDamage, TakesNonsenseAsNone) {
     for (const double nonsense : {nan, -1.0, -infinite}) {
         WireDirection direction;
         direction.byte_loss = direction.bit_errors = direction.checksum_errors = direction.truncation = nonsense;
-        direction.merging = direction.duplication = direction.reordering = direction.garbage_per_s = nonsense;
-        direction.garbage_bytes = -5;
+        direction.merging = direction.duplication = direction.reordering = nonsense;
+        direction.garbage = {{nonsense, -5}, {nonsense, 5}, {4, -5}};
         direction.delay = direction.jitter = Seconds(nonsense);
         EXPECT_EQ(passed_through(direction, stream), stream);
     }

@@ -239,8 +239,7 @@ TEST(WireFaults, CombineWithEachOther) {
     EXPECT_EQ(conditions.to_client.bytes_per_s, 400);
     add("inserted_garbage", {{"bursts_per_s", 2.0}, {"burst_bytes", 30.0}});
     add("inserted_garbage", {{"bursts_per_s", 3.0}, {"burst_bytes", 20.0}});
-    EXPECT_DOUBLE_EQ(conditions.to_client.garbage_per_s, 5);
-    EXPECT_EQ(conditions.to_client.garbage_bytes, 30);
+    EXPECT_EQ(conditions.to_client.garbage, (std::vector<GarbageBursts>{{2, 30}, {3, 20}}));
     EXPECT_EQ(conditions.to_receiver, WireDirection{});
 }
 
