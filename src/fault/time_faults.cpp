@@ -59,13 +59,19 @@ GpsTime end_of_utc_day(GpsTime time, int leap_seconds) {
     return GpsTime((utc / day + 1) * day);
 }
 
+// A leap second of the IERS at the end of the same day is the one that this tells of, not another.
 Result<Fault> make_leap_second_event(const Parameters& parameters, const FaultContext&) {
     const int change = parameters.text("change") == "deleted" ? -1 : 1;
+    struct Day {
+        GpsTime end;  ///< by end_of_utc_day()
+        int announced = 0;
+    };
     return fault_of_report(
-        [change, day_ends = std::optional<GpsTime>()](NavigationState& state, const FaultMoment& moment) mutable {
-            const int before = state.epoch.fix.leap_seconds, after = before + change;
-            if (!day_ends) day_ends = end_of_utc_day(moment.now, before);
-            state.leap_event = firmware::LeapEvent{*day_ends + std::chrono::seconds(after), before, after};
+        [change, day = std::optional<Day>()](NavigationState& state, const FaultMoment& moment) mutable {
+            const int announced = LeapSeconds::announced().offset(moment.now), believed = state.epoch.fix.leap_seconds;
+            if (!day) day = Day{end_of_utc_day(moment.now, believed), announced};
+            const int before = believed - (announced - day->announced), after = before + change;
+            state.leap_event = firmware::LeapEvent{day->end + std::chrono::seconds(after), before, after};
             count_by_leap_event(state);
         });
 }
