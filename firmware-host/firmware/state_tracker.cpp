@@ -106,9 +106,13 @@ void StateTracker::start(GpsTime now, const Forgotten& forgotten, bool running) 
     }
     last_fix_ = place_of(keeps_place ? last_fix_ : Fix());
     started_ = running ? std::nullopt : std::optional(now);
-    start_kind_ = forgotten.kind();
-    state_.time.time = state_.time.date = running || !forgotten.rtc;
-    state_.time.leap_seconds = running || (!forgotten.rtc && !forgotten.utc);
+    if (running)
+        acquired_at_.reset();
+    else
+        begin_acquisition(now, forgotten.kind());
+    state_.time.time = running || (before.time.time && !forgotten.rtc);
+    state_.time.date = running || (before.time.date && !forgotten.rtc);
+    state_.time.leap_seconds = running || (before.time.leap_seconds && !forgotten.rtc && !forgotten.utc);
     if (state_.time.leap_seconds) state_.time.leap_source = before.time.leap_source;
     state_.time.confirmed = running;
     // A clock that ran on a crystal alone since the last fix.
@@ -160,16 +164,25 @@ const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStor
     return state_;
 }
 
+Seconds StateTracker::acquisition_time(StartKind kind) const {
+    const Timing& t = board_.timing;
+    return kind == StartKind::cold ? t.cold_start : kind == StartKind::warm ? t.warm_start : t.hot_start;
+}
+
+// What the receiver has not found out yet it does not know after a start that forgets nothing either: that start does
+// not come to a fix before the unfinished one would have.
+void StateTracker::begin_acquisition(GpsTime now, StartKind kind) {
+    const bool unfinished = acquired_at_ && !first_fix_;
+    const GpsTime own = advanced(now, acquisition_time(kind));
+    acquired_at_ = unfinished ? std::max(own, *acquired_at_) : own;
+    start_kind_ = unfinished ? std::min(start_kind_, kind) : kind;
+}
+
 // Models that measure nothing have a solution from the first epoch on: the time of acquisition is the board's.
 void StateTracker::acquire() {
     Fix& fix = state_.epoch.fix;
-    if (measured_ || !started_) return;
-    const Timing& t = board_.timing;
-    const Seconds to_fix = start_kind_ == StartKind::cold   ? t.cold_start
-                           : start_kind_ == StartKind::warm ? t.warm_start
-                                                            : t.hot_start;
+    if (measured_ || !acquired_at_ || fix.time >= *acquired_at_) return;
     const double elapsed = state_.since_start.value();
-    if (elapsed >= to_fix.value()) return;
     fix.type = FixType::none;
     const double first = start_kind_ == StartKind::cold   ? first_satellite_cold
                          : start_kind_ == StartKind::warm ? first_satellite_warm

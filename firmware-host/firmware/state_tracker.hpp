@@ -26,9 +26,13 @@ struct Forgotten {
 /// State: what was reported before, and since when what is so. Times of update() never go back but with a restart.
 class StateTracker {
 public:
-    explicit StateTracker(const BoardProfile& board) : board_(board) {}
+    /// What it knew before its first start is not simulated: the time, and all of it.
+    explicit StateTracker(const BoardProfile& board) : board_(board) {
+        state_.time.time = state_.time.date = state_.time.leap_seconds = true;
+    }
 
-    /// The receiver starts, with what it has not forgotten. @param running it has been on for long, and knows all
+    /// The receiver starts, with what it knew and has not forgotten. An earlier start that has not come to a fix yet
+    /// and had forgotten more goes on beneath. @param running it has been on for long, and knows all
     void start(GpsTime now, const Forgotten& forgotten, bool running = false);
     /// The whole receiver starts, navigation with it: to be followed by start().
     void boot(GpsTime now, BootCause cause = BootCause::power) {
@@ -49,6 +53,8 @@ private:
     void keep_level(const ConfigStore& config);
     [[nodiscard]] bool hears_too_little(const ConfigStore& config) const;
     void keep_within_limits(const ConfigStore& config);
+    [[nodiscard]] Seconds acquisition_time(StartKind kind) const;
+    void begin_acquisition(GpsTime now, StartKind kind);
     void acquire();
     void coast(const Fix& before);
     void hold(const ConfigStore& config);
@@ -65,7 +71,9 @@ private:
     std::optional<GpsTime> started_;  ///< nothing: long ago
     std::optional<GpsTime> booted_;   ///< nothing: long ago, and there was no epoch yet
     BootCause boot_cause_ = BootCause::power;
-    StartKind start_kind_ = StartKind::hot;
+    StartKind start_kind_ = StartKind::hot;  ///< the coldest since the last fix
+    /// Models that measure nothing have a fix from then on; nothing: from the first epoch on.
+    std::optional<GpsTime> acquired_at_;
     bool measured_ = false;                           ///< the model acquires satellites itself
     std::map<Constellation, GpsTime> first_tracked_;  ///< since the start
     std::optional<GpsTime> first_fix_;

@@ -26,21 +26,17 @@ ReceivedRecords::ReceivedRecords(const NavigationSource& sent, const NavigationP
     : sent_(sent), collection_(parameters.ephemeris_collection), data_(parameters.data) {}
 
 void ReceivedRecords::restart(StartKind kind, GpsTime time) {
-    const bool knew_everything = kind == StartKind::hot && !satellites_.empty();
     for (auto& [id, memory] : satellites_) {
         memory.heard_since.reset();
         if (kind != StartKind::hot) memory.record.reset();
     }
-    // What a receiver knew before its first start is not simulated: hot means all that is sent at that time.
-    all_known_ = kind == StartKind::hot && !knew_everything;
-    if (kind == StartKind::cold) {
-        time_known_ = false;
-        almanac_kept_ = false;
-        almanac_since_ = time;
-    } else if (kind == StartKind::warm || all_known_) {
-        time_known_ = true;
-        almanac_kept_ = true;
-    }
+    // What a receiver knew before its first start is not simulated: hot means all that is sent at that time. Of a later
+    // start it means what has been received until then.
+    if (kind != StartKind::hot) all_known_ = false;
+    if (kind != StartKind::cold) return;
+    time_known_ = false;
+    almanac_kept_ = false;
+    almanac_since_ = time;
 }
 
 void ReceivedRecords::listen(const Observations& observations, GpsTime time) {

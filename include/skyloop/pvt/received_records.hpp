@@ -22,13 +22,13 @@ public:
     /// @param sent what the satellites send; outlives this
     ReceivedRecords(const NavigationSource& sent, const NavigationParameters& parameters);
 
-    /// Forgets what a start of this kind forgets.
+    /// Forgets what a start of this kind forgets. Before the first one it knew everything.
     void restart(StartKind kind, GpsTime time);
     /// Listens to the satellites of one epoch. A satellite's record is known once its data has been heard for
     /// ephemeris_collection; from then on a new one is taken up as soon as it is sent, while the satellite is heard.
     /// @param time true time as well as the receiver can tell
     void listen(const Observations& observations, GpsTime time);
-    /// The receiver knows what time it is: it did not start cold, or has received a record.
+    /// The receiver knows what time it is: it has not started cold, or has received a record since.
     [[nodiscard]] bool time_known() const { return time_known_; }
     [[nodiscard]] bool almanac_known(GpsTime time) const;
     /// The received record; nothing once it is older than its kind lasts.
@@ -51,7 +51,7 @@ private:
     DataParameters data_;
     std::map<SatelliteId, Memory> satellites_;
     bool time_known_ = true;
-    bool all_known_ = true;  // of a hot start, until the first epoch
+    bool all_known_ = true;  // before the first start, and until the first epoch if that is a hot one
     bool almanac_kept_ = true;
     std::optional<GpsTime> almanac_since_;  // of a cold start: heard from then on
 };

@@ -166,6 +166,30 @@ TEST(NavigationEngine, ForgetsAtARestartAndNotAtAHotOne) {
         EXPECT_TRUE(s.cn0);
 }
 
+TEST(NavigationEngine, KnowsAfterARestartNoMoreThanItHadReceived) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    for (const StartKind later_start : {StartKind::hot, StartKind::warm}) {
+        NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
+        ReceiverSettings settings;
+        settings.start = StartKind::cold;
+        const auto fix_at = [&](int s) {
+            Observations observations = measure(sky, later(receiver_at(antenna, sample_time), s));
+            if (s < 3) observations.signals.clear();
+            return engine.solve(observations, settings);
+        };
+        for (int s = 0; s < 3; ++s)
+            EXPECT_EQ(fix_at(s).type, FixType::none);
+        settings.start = later_start;
+        settings.restarts = 1;
+        for (int s = 3; s < 24; ++s)
+            EXPECT_EQ(fix_at(s).type, FixType::none) << s;
+        EXPECT_EQ(fix_at(24).type, FixType::fix_3d);
+        settings.start = StartKind::hot;
+        settings.restarts = 2;
+        EXPECT_EQ(fix_at(25).type, FixType::fix_3d) << "it has received them since";
+    }
+}
+
 TEST(NavigationEngine, CannotReadTheDataOfWeakSignals) {
     const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
     NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
