@@ -24,7 +24,18 @@ MovingBase::MovingBase(std::uint64_t seed, const BaselineAccuracy& accuracy)
       fixed_(axes(accuracy.fixed, seed, "fixed")),
       floating_(axes(accuracy.floating, seed, "float")) {}
 
+// The ambiguities are searched anew.
 void MovingBase::lose() { both_since_.reset(); }
+
+void MovingBase::hold(const Trace& rover) {
+    const bool old = last_ && difference(rover.truth.time, *last_) > accuracy_.held_without_base;
+    if (old || !has_own_fix(rover.epoch.fix)) lose();
+}
+
+std::optional<FixType> MovingBase::fix_type() const {
+    if (!last_ || !both_since_) return std::nullopt;
+    return difference(*last_, *both_since_) >= accuracy_.time_to_fix ? FixType::rtk_fixed : FixType::rtk_float;
+}
 
 std::optional<RelativePosition> MovingBase::relate(const Trace& base, const Trace& rover) {
     const GpsTime now = rover.truth.time;
@@ -41,7 +52,7 @@ std::optional<RelativePosition> MovingBase::relate(const Trace& base, const Trac
 
     const Displacement<Enu> truth = LocalFrame(base.truth.geodetic).to_enu(rover.truth.position - base.truth.position);
     RelativePosition relative;
-    relative.fixed = difference(now, *both_since_) >= accuracy_.time_to_fix;
+    relative.fixed = fix_type() == FixType::rtk_fixed;
     const GaussMarkovParameters& parameters = relative.fixed ? accuracy_.fixed : accuracy_.floating;
     const auto& errors = relative.fixed ? fixed_ : floating_;
     const double deviation = parameters.sigma + accuracy_.per_length * truth.length().value();

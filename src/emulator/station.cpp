@@ -192,11 +192,12 @@ Trace Station::observe() {
 
 void Station::relate(Trace& trace, const Trace* base) {
     if (!parts_.moving_base) return;
-    if (!base) return parts_.moving_base->lose();
-    trace.epoch.relative = parts_.moving_base->relate(*base, trace);
+    if (base)
+        trace.epoch.relative = parts_.moving_base->relate(*base, trace);
+    else
+        parts_.moving_base->hold(trace);
     // The vector is exact, the place is only as good as the base's own: its accuracies stay.
-    if (trace.epoch.relative)
-        trace.epoch.fix.type = trace.epoch.relative->fixed ? FixType::rtk_fixed : FixType::rtk_float;
+    trace.epoch.fix.type = parts_.moving_base->fix_type().value_or(trace.epoch.fix.type);
 }
 
 void Station::report(const Trace& trace, Nanoseconds lateness, bool safe) {

@@ -78,7 +78,7 @@ public:
     /// What is true, measured and solved at the epoch that is due.
     Trace observe();
     /// Adds the vector from the base antenna, and the type of fix that it makes.
-    /// @param base of the same instant, or null when the base has none
+    /// @param base of the same instant; null: the base has no epoch then, and the type of fix of its last one stays
     void relate(Trace& trace, const Trace* base);
     /// Hands the epoch to receiver and recording.
     /// @param safe flushes the recording, so that a killed run keeps it

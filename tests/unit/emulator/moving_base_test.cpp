@@ -60,8 +60,34 @@ TEST(MovingBase, IsFloatUntilBothHaveHadAFixForLong) {
     EXPECT_EQ(fixed_at(8, FixType::dead_reckoning, FixType::fix_3d), "none") << "nothing was measured";
     EXPECT_EQ(fixed_at(9, FixType::fix_3d, FixType::fix_3d), "float") << "searched anew";
     EXPECT_EQ(fixed_at(14, FixType::fix_3d, FixType::fix_3d), "fixed");
-    pair.lose();
-    EXPECT_EQ(fixed_at(15, FixType::fix_3d, FixType::fix_3d), "float");
+}
+
+// Five epochs of the rover to one of its base.
+TEST(MovingBase, HoldsTheFixBetweenEpochsOfASlowerBase) {
+    MovingBase pair(1);
+    const auto rover_at = [](double second, FixType type = FixType::fix_3d) {
+        Trace trace = antenna_trace({1, 0, 0}, 0, type);
+        trace.truth.time = advanced(pair_start, Seconds(second));
+        return trace;
+    };
+    const auto last_until = [&](double second) {
+        pair.hold(rover_at(second));
+        return pair.fix_type();
+    };
+    EXPECT_EQ(last_until(-0.2), std::nullopt);
+    for (int second = 0; second < 10; ++second) {
+        const auto relative = pair.relate(antenna_trace(at_base, second), rover_at(second));
+        ASSERT_TRUE(relative);
+        EXPECT_EQ(relative->fixed, second >= 5) << second;
+        const FixType expected = second < 5 ? FixType::rtk_float : FixType::rtk_fixed;
+        for (const double later : {0.0, 0.2, 0.4, 0.6, 0.8})
+            EXPECT_EQ(last_until(second + later), expected) << second + later;
+    }
+    EXPECT_EQ(last_until(19), FixType::rtk_fixed);
+    EXPECT_EQ(last_until(19.2), std::nullopt) << "10 s after the base's last epoch";
+    EXPECT_FALSE(pair.relate(antenna_trace(at_base, 20), rover_at(20))->fixed);
+    pair.hold(rover_at(20.2, FixType::dead_reckoning));
+    EXPECT_EQ(pair.fix_type(), std::nullopt) << "no fix of its own";
 }
 
 TEST(MovingBase, LongVectorsAreLessAccurate) {

@@ -225,8 +225,12 @@ TEST(Stations, ThereIsNoVectorWithoutAnEpochOfTheBase) {
     Assembly assembly = stations_assembly(two_receivers + "base = \"front\"\nrate_hz = 2\n");
     auto traces = traces_of(assembly);
     ASSERT_EQ(traces[1].size(), 60U);
-    for (const Trace& trace : traces[1])
+    for (std::size_t i = 0; i < traces[1].size(); ++i) {
+        const Trace& trace = traces[1][i];
         EXPECT_EQ(trace.epoch.relative.has_value(), trace.truth.time.time_since_epoch() % 1s == 0ns);
+        EXPECT_EQ(trace.epoch.fix.type, i < 10 ? FixType::rtk_float : FixType::rtk_fixed)
+            << i << ": the last one stays";
+    }
 }
 
 TEST(Stations, EachWireHearsItsOwnPort) {
