@@ -57,7 +57,7 @@ const SettingGroup& group_of(std::string_view name) {
 
 bool names_system(const std::vector<std::string>& words, const SystemName& system) {
     return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
-        const bool satellite = word.size() == 3 && word[0] == system.letter && word[1] >= '0' && word[1] <= '9';
+        const bool satellite = word.size() >= 3 && word[0] == system.letter && word[1] >= '0' && word[1] <= '9';
         return satellite || same_word(word, system.name) || same_word(word, "all");
     });
 }
@@ -206,19 +206,25 @@ std::string SeptentrioConsole::act_on_receiver(const Command& command, CommandOu
     const auto done = [&](std::string_view name) {
         return told(':', command.line, {fmt::format("{}, {}", name, fmt::join(command.arguments, ", "))});
     };
+    const auto wrong = [&](std::string_view name, std::initializer_list<std::string_view> arguments) {
+        return wrong_argument(name, arguments, command.arguments);
+    };
     const std::string first = command.argument(0), second = command.argument(1);
     if (command.is("eccf", "exeCopyConfigFile")) {
+        if (const auto why = wrong("CopyConfigFile", {"Source", "Target"}); !why.empty()) return refused(why);
         if (!same_word(second, "Boot")) return done("CopyConfigFile");
         speeds_saved_ = same_word(first, "Current");
         at_start_ = speeds_saved_ ? state_.settings : factory_;
         return done("CopyConfigFile");
     }
     if (command.is("emd", "exeManageDisk")) {
+        if (const auto why = wrong("ManageDisk", {"Disk", "Action"}); !why.empty()) return refused(why);
         if (same_word(second, "Mount")) state_.disk_mounted = true;
         if (same_word(second, "Unmount")) state_.disk_mounted = false;
         return done("ManageDisk");
     }
     if (command.is("erst", "exeResetReceiver")) {
+        if (const auto why = wrong("ResetReceiver", {"Level", "EraseMemory"}); !why.empty()) return refused(why);
         outcome.restart = start_after(second);
         return done("ResetReceiver");
     }

@@ -32,6 +32,10 @@ constexpr NumberRule number_rules[] = {
     {"StaticPosGeodetic", "Altitude", -1e3, 3e4, 4}, {"StaticPosCartesian", "X", -8e6, 8e6, 4},
     {"StaticPosCartesian", "Y", -8e6, 8e6, 4},       {"StaticPosCartesian", "Z", -8e6, 8e6, 4},
     {"RTCMv3Interval", "Interval", 0.1, 600, -1},    {"RTCMv3Formatting", "ReferenceID", 0, 4095, 0},
+    {"AntennaOffset", "DeltaE", -1e3, 1e3, 4},       {"AntennaOffset", "DeltaN", -1e3, 1e3, 4},
+    {"AntennaOffset", "DeltaU", -1e3, 1e3, 4},       {"AntennaOffset", "SetupID", 0, 255, 0},
+    {"PPSParameters", "Delay", -1e6, 1e6, 2},        {"PPSParameters", "MaxSyncAge", 0, 3600, 0},
+    {"PPSParameters", "PulseWidth", 1e-3, 1e3, 6},
 };
 
 const NumberRule* rule_of(std::string_view group, std::string_view argument) {
@@ -56,18 +60,70 @@ std::optional<std::string> spelled(WordKind kind, std::string_view word) {
 }
 
 // The words that a value can have, where they are known here.
+struct WordRule {
+    std::string_view group, argument;  // group empty: of any
+    WordKind kind;
+};
+constexpr WordRule word_rules[] = {
+    {"COMSettings", "Rate", WordKind::line_speed},
+    {"COMSettings", "DataBits", WordKind::data_bits},
+    {"COMSettings", "Parity", WordKind::parity},
+    {"COMSettings", "StopBits", WordKind::stop_bits},
+    {"COMSettings", "FlowControl", WordKind::flow_control},
+    {"DataInOut", "Input", WordKind::input},
+    {"DataInOut", "Output", WordKind::output},
+    {"DataInOut", "Show", WordKind::shown},
+    {"NMEATalkerID", "TalkerID", WordKind::talker},
+    {"PVTMode", "Mode", WordKind::pvt_mode},
+    {"PVTMode", "RoverMode", WordKind::rover_mode},
+    {"PVTMode", "StaticPosition", WordKind::place},
+    {"", "Datum", WordKind::datum},
+    {"RTCMv3Output", "Messages", WordKind::correction},
+    {"RTCMv3Formatting", "Signals", WordKind::signal},
+    {"NtpClient", "Mode", WordKind::on_off},
+    {"ReceiverDynamics", "Level", WordKind::level},
+    {"ReceiverDynamics", "Motion", WordKind::motion},
+    {"SatelliteTracking", "Satellite", WordKind::system},
+    {"SatelliteUsage", "Satellite", WordKind::system},
+    {"SignalTracking", "Signal", WordKind::signal},
+    {"SignalUsage", "PVT", WordKind::signal},
+    {"SignalUsage", "NavData", WordKind::signal},
+    {"HealthMask", "Mask", WordKind::on_off},
+    {"PPSParameters", "Interval", WordKind::pulse_interval},
+    {"PPSParameters", "Polarity", WordKind::polarity},
+    {"PPSParameters", "TimeScale", WordKind::time_scale},
+    {"EventParameters", "Polarity", WordKind::polarity},
+    {"ResetReceiver", "Level", WordKind::reset_level},
+    {"ResetReceiver", "EraseMemory", WordKind::erased_memory},
+    {"CopyConfigFile", "Source", WordKind::configuration},
+    {"CopyConfigFile", "Target", WordKind::kept_configuration},
+    {"ManageDisk", "Disk", WordKind::disk},
+    {"ManageDisk", "Action", WordKind::disk_action},
+};
+
 std::optional<WordKind> kind_of(std::string_view group, std::string_view argument) {
-    if (group == "COMSettings" && argument == "Rate") return WordKind::line_speed;
-    if (group == "PVTMode" && argument == "Mode") return WordKind::pvt_mode;
-    if (group == "PVTMode" && argument == "RoverMode") return WordKind::rover_mode;
-    if (group == "PVTMode") return WordKind::place;
-    if (argument == "Datum") return WordKind::datum;
-    if (group == "RTCMv3Output") return WordKind::correction;
-    if (group == "RTCMv3Formatting" && argument == "Signals") return WordKind::signal;
-    if (group == "NtpClient" && argument == "Mode") return WordKind::on_off;
-    if (group == "ReceiverDynamics") return argument == "Level" ? WordKind::level : WordKind::motion;
-    if (group == "SignalTracking" || group == "SignalUsage") return WordKind::signal;
-    return std::nullopt;
+    const auto* const found = std::find_if(std::begin(word_rules), std::end(word_rules), [&](const WordRule& rule) {
+        return (rule.group.empty() || rule.group == group) && rule.argument == argument;
+    });
+    return found == std::end(word_rules) ? std::nullopt : std::optional(found->kind);
+}
+
+// G05, S120: as the guide numbers satellites.
+struct SatelliteNumbers {
+    char letter;
+    int least, most;
+};
+constexpr SatelliteNumbers satellite_numbers[] = {{'G', 1, 32}, {'R', 1, 30}, {'E', 1, 36}, {'S', 120, 158},
+                                                  {'C', 1, 63}, {'J', 1, 10}, {'I', 1, 14}};
+
+std::optional<std::string> spelled_satellite(std::string word) {
+    if (word.size() != 3 && word.size() != 4) return std::nullopt;
+    if (word.front() >= 'a' && word.front() <= 'z') word.front() = static_cast<char>(word.front() - 'a' + 'A');
+    const auto number = whole_number(std::string_view(word).substr(1));
+    const bool known = std::any_of(std::begin(satellite_numbers), std::end(satellite_numbers), [&](const auto& s) {
+        return number && s.letter == word.front() && *number >= s.least && *number <= s.most;
+    });
+    return known ? std::optional(word) : std::nullopt;
 }
 
 // One word of a value in the maker's spelling; nothing when it cannot be. What is not known here is taken as it is.
@@ -84,7 +140,9 @@ std::optional<std::string> checked_word(std::string_view group, std::string_view
     if (group == "ElevationMask" && !is_angle(word)) return std::nullopt;
     if (const NumberRule* rule = rule_of(group, argument)) return checked_number(*rule, word);
     const auto kind = kind_of(group, argument);
-    return kind ? spelled(*kind, word) : std::optional(word);
+    if (!kind) return word;
+    const auto known = spelled(*kind, word);
+    return !known && kind == WordKind::system ? spelled_satellite(word) : known;
 }
 
 // MSM4 and its like stand for the messages of all systems, and are told as these.
@@ -124,6 +182,23 @@ std::optional<double> decimal_number(std::string_view text) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
     return value;
+}
+
+std::string wrong_argument(std::string_view command, std::initializer_list<std::string_view> names,
+                           const std::vector<std::string>& arguments) {
+    const auto wrong = [&](std::string_view name) {
+        return fmt::format("exe{}: Argument '{}' is invalid!", command, name);
+    };
+    if (arguments.size() > names.size()) return wrong(arguments[names.size()]);
+    std::size_t i = 0;
+    for (const std::string_view name : names) {
+        const std::string given = i < arguments.size() ? arguments[i] : "";
+        ++i;
+        if (given.empty() && name == "EraseMemory") continue;
+        for (const std::string& word : split_words(given, '+'))
+            if (!checked_word(command, name, word)) return wrong(name);
+    }
+    return {};
 }
 
 std::vector<std::string> split_words(std::string_view text, char separator) {

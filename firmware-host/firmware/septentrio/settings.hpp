@@ -2,6 +2,7 @@
 /// firmware 4.14, sections 3.1.3 and 3.2).
 #pragma once
 
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
@@ -37,6 +38,11 @@ private:
 
     Values values_;  ///< by "SBFOutput, Stream1"
 };
+
+/// What is wrong with the arguments of `exeCOMMAND`: "exeManageDisk: Argument 'Disk' is invalid!"; empty: nothing.
+/// EraseMemory alone may be left out. @param names of the arguments, in their order
+std::string wrong_argument(std::string_view command, std::initializer_list<std::string_view> names,
+                           const std::vector<std::string>& arguments);
 
 /// A number with or without decimals; nothing for what is none.
 std::optional<double> decimal_number(std::string_view text);

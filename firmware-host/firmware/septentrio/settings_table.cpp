@@ -127,7 +127,7 @@ constexpr std::string_view sentences =
     "GGA RMC GLL GNS GRS GSA GST GSV VTG ZDA HDT ALM DTM GBS HRP LLQ RBP RBV ROT SNC TFM TXTbase AVR GGK HEA LLK PUMRD "
     "THS VLW";
 constexpr std::string_view intervals =
-    "off OnChange msec10 msec20 msec40 msec50 msec100 msec200 msec500 sec1 sec2 sec5 sec10 sec15 sec30 sec60 min2 min5 "
+    "off OnChange msec20 msec40 msec50 msec100 msec200 msec500 sec1 sec2 sec5 sec10 sec15 sec30 sec60 min2 min5 "
     "min10 min15 min30 min60";
 constexpr std::string_view output_ports =
     "none COM1 COM2 USB1 USB2 IPS1 IPS2 IPS3 IP10 IP11 IP12 IP13 IP14 IP15 IP16 IP17 NTR1 NTR2 NTR3 DSK1";
@@ -151,40 +151,55 @@ constexpr std::string_view correction_messages =
     "RTCM1125 RTCM1126 RTCM1127 RTCM1131 RTCM1132 RTCM1133 RTCM1134 RTCM1135 RTCM1136 RTCM1137 RTCM1230 MSM1 MSM2 MSM3 "
     "MSM4 MSM5 MSM6 MSM7 all";
 
+// Of inputs and outputs all that the guides of mosaic, AsteRx and PolaRx5 know.
+constexpr std::string_view input_formats =
+    "auto none CMD RTCMv2 RTCMv3 RTCMV CMRv2 DC1 DC2 ASCIIIN LBandBeam1 LBandBeam2 SPARTN SBF NMEA ExtSensor MTI IMU "
+    "DMI";
+constexpr std::string_view output_formats =
+    "none RTCMv2 RTCMv3 CMRv2 SBF NMEA ASCIIDisplay DC1 DC2 BINEX LBandBeam1 LBandBeam2 SPARTN all";
+constexpr std::string_view pulse_intervals =
+    "off msec10 msec20 msec50 msec100 msec200 msec250 msec500 sec1 sec2 sec4 sec5 sec10 sec30 sec60";
+
+constexpr std::pair<WordKind, std::string_view> words_of_kinds[] = {
+    {WordKind::block, blocks},
+    {WordKind::block_group, group_names},
+    {WordKind::sentence, sentences},
+    {WordKind::interval, intervals},
+    {WordKind::port, output_ports},
+    {WordKind::line_speed, line_speeds},
+    {WordKind::pvt_mode, "Rover Static"},
+    {WordKind::rover_mode, "StandAlone SBAS DGNSS DGPS RTKFloat RTKFixed RTK PPP all"},
+    {WordKind::level, "Max High Moderate Low"},
+    {WordKind::motion, "Static Quasistatic Pedestrian Automotive RaceCar HeavyMachinery UAV Unlimited EarthquakeMon"},
+    {WordKind::signal, signal_words},
+    {WordKind::place, reference_places},
+    {WordKind::datum, "WGS84 ETRS89 NAD83 NAD83_PA NAD83_MA GDA94 GDA2020 User1 User2 Other"},
+    {WordKind::correction, correction_messages},
+    {WordKind::on_off, "on off"},
+    {WordKind::system, "GPS GLONASS GALILEO SBAS BEIDOU QZSS NAVIC none all"},
+    {WordKind::input, input_formats},
+    {WordKind::output, output_formats},
+    {WordKind::shown, "(on) (off) (waiting)"},
+    {WordKind::data_bits, "bits7 bits8"},
+    {WordKind::parity, "No Even Odd"},
+    {WordKind::stop_bits, "bit1 bit2"},
+    {WordKind::flow_control, "none off RTS|CTS"},
+    {WordKind::pulse_interval, pulse_intervals},
+    {WordKind::polarity, "Low2High High2Low"},
+    {WordKind::time_scale, "GPS Galileo BeiDou GLONASS UTC RxClock"},
+    {WordKind::reset_level, "Soft Hard Upgrade"},
+    {WordKind::erased_memory, "none Config PVTData SatData BaseStations WiFiAccess all"},
+    {WordKind::configuration, "Current Boot User1 User2 RxDefault"},
+    {WordKind::kept_configuration, "Current Boot User1 User2"},
+    {WordKind::disk, "DSK1"},
+    {WordKind::disk_action, "Mount Unmount Format"},
+    {WordKind::talker, "auto GP GL GN"},
+};
+
 std::string_view words_of(WordKind kind) {
-    switch (kind) {
-        case WordKind::block:
-            return blocks;
-        case WordKind::block_group:
-            return group_names;
-        case WordKind::sentence:
-            return sentences;
-        case WordKind::interval:
-            return intervals;
-        case WordKind::port:
-            return output_ports;
-        case WordKind::line_speed:
-            return line_speeds;
-        case WordKind::pvt_mode:
-            return "Rover Static";
-        case WordKind::rover_mode:
-            return "StandAlone SBAS DGNSS DGPS RTKFloat RTKFixed RTK PPP all";
-        case WordKind::level:
-            return "Max High Moderate Low";
-        case WordKind::motion:
-            return "Static Quasistatic Pedestrian Automotive RaceCar HeavyMachinery UAV Unlimited EarthquakeMon";
-        case WordKind::signal:
-            return signal_words;
-        case WordKind::place:
-            return reference_places;
-        case WordKind::datum:
-            return "WGS84 ETRS89 NAD83 NAD83_PA NAD83_MA GDA94 GDA2020 User1 User2 Other";
-        case WordKind::correction:
-            return correction_messages;
-        case WordKind::on_off:
-            return "on off";
-    }
-    return {};
+    const auto* const found = std::find_if(std::begin(words_of_kinds), std::end(words_of_kinds),
+                                           [&](const auto& words) { return words.first == kind; });
+    return found == std::end(words_of_kinds) ? std::string_view() : found->second;
 }
 
 }  // namespace

@@ -38,7 +38,25 @@ enum class WordKind {
     place,  ///< of PVTMode's reference position
     datum,
     correction,  ///< message of RTCM 3, and groups of them
-    on_off
+    on_off,
+    system,  ///< and single satellites: G05, S120
+    input,
+    output,
+    shown,
+    data_bits,
+    parity,
+    stop_bits,
+    flow_control,
+    pulse_interval,
+    polarity,
+    time_scale,
+    reset_level,
+    erased_memory,
+    configuration,  ///< that is copied from
+    kept_configuration,
+    disk,
+    disk_action,
+    talker
 };
 /// The maker's spelling of a word, whatever case the user wrote it in; nothing when there is no such word.
 std::optional<std::string_view> known_word(WordKind kind, std::string_view word);

@@ -90,6 +90,67 @@ TEST_F(Console, RefusesWhatItDoesNotHaveAndChangesNothing) {
     EXPECT_THAT(say("gso,Stream1"), HasSubstr(std::string(default_blocks) + ", OnChange"));
 }
 
+TEST_F(Console, RefusesWordsThatThereAreNot) {
+    const std::pair<const char*, const char*> wrong[] = {
+        {"sst, GPS+GALLILEO", "SatelliteTracking: Argument 'Satellite'"},
+        {"ssu, FOO", "SatelliteUsage: Argument 'Satellite'"},
+        {"sst, G33", "SatelliteTracking: Argument 'Satellite'"},
+        {"sdio, COM1, , FOO", "DataInOut: Argument 'Output'"},
+        {"sdio, COM1, nonsense", "DataInOut: Argument 'Input'"},
+        {"scs, COM1, baud115200, bits9", "COMSettings: Argument 'DataBits'"},
+        {"scs, COM1, baud115200, bits8, Maybe", "COMSettings: Argument 'Parity'"},
+        {"scs, COM1, baud115200, bits8, No, bit7", "COMSettings: Argument 'StopBits'"},
+        {"scs, COM1, baud115200, bits8, No, bit1, flow", "COMSettings: Argument 'FlowControl'"},
+        {"sao, Main, abc, 0, 0", "AntennaOffset: Argument 'DeltaE'"},
+        {"sao, Main, 0, 0, 1000.1", "AntennaOffset: Argument 'DeltaU'"},
+        {"snti, XX", "NMEATalkerID: Argument 'TalkerID'"},
+        {"shm, Tracking, maybe", "HealthMask: Argument 'Mask'"},
+        {"spps, furlong1", "PPSParameters: Argument 'Interval'"},
+        {"erst, Bogus, none", "exeResetReceiver: Argument 'Level'"},
+        {"erst, Soft, none+everything", "exeResetReceiver: Argument 'EraseMemory'"},
+        {"exeResetReceiver", "exeResetReceiver: Argument 'Level'"},
+        {"eccf, Foo, Boot", "exeCopyConfigFile: Argument 'Source'"},
+        {"eccf, Current, RxDefault", "exeCopyConfigFile: Argument 'Target'"},
+        {"emd, DSK9, Mount", "exeManageDisk: Argument 'Disk'"},
+        {"emd, DSK1, Explode", "exeManageDisk: Argument 'Action'"},
+        {"emd, DSK1, Unmount, now", "exeManageDisk: Argument 'now'"}};
+    for (const auto& [line, why] : wrong) {
+        EXPECT_EQ(say(line), std::string("$R? ") + why + " is invalid!\r\nCOM1>") << line;
+        EXPECT_FALSE(outcome_.restart) << line;
+    }
+    EXPECT_THAT(say("gst"), HasSubstr("  SatelliteTracking, GPS+GALILEO\r\n"));
+    EXPECT_TRUE(console_.state().disk_mounted);
+}
+
+TEST_F(Console, TakesWhatDriversSay) {
+    for (const char* line : {"sst, All",
+                             "sst, -s120+G05",
+                             "ssu, GPS+GLONASS+GALILEO+SBAS+BEIDOU",
+                             "sdio,COM1,Auto,SBF",
+                             "sdio, USB1, RTCMv3, +NMEA",
+                             "sdio, NTR1, auto, none",
+                             "sdio,all,CMD,none",
+                             "sdio, COM1, auto, SBF+NMEA",
+                             "scs,COM1,baud230400,bits8,No,bit1,none",
+                             "scs, COM1, baud115200, bits8, No, bit1, off",
+                             "scs, COM1, baud115200, bits8, No, bit1, RTS|CTS",
+                             "sao, Main, 0, 0, 0, \"Unknown\", Unknown",
+                             "spps, sec1, Low2High, 0.00, GPS, 60, 5.000000",
+                             "spps, msec10, , , UTC",
+                             "shm, all, off",
+                             "emd, DSK1, Unmount",
+                             "emd,DSK1,Mount",
+                             "eccf,RxDefault,Boot",
+                             "eccf, RxDefault, Current",
+                             "erst,soft,config",
+                             "erst, Hard"}) {
+        say("SSSSSSSSSS");
+        EXPECT_THAT(say(line), StartsWith("$R: ")) << line;
+    }
+    EXPECT_THAT(say("gao, Main"),
+                HasSubstr("  AntennaOffset, Main, 0.0000, 0.0000, 0.0000, \"Unknown\", Unknown, 0\r\n"));
+}
+
 TEST_F(Console, KeepsPlacesOfReferenceStations) {
     EXPECT_EQ(say("setStaticPosGeodetic, Geodetic1, 47.000000, 8.000000, 400.000000"),
               "$R: setStaticPosGeodetic, Geodetic1, 47.000000, 8.000000, 400.000000\r\n"
@@ -177,8 +238,11 @@ TEST_F(Console, SolvesAsOftenAsItsStreamsNeed) {
     EXPECT_EQ(period(), own);
     say("sso,Stream1,COM1,DOP,sec10");
     EXPECT_EQ(period(), 1000U) << "a solution each second at least";
-    say("sso,Stream1,COM1,DOP,msec10");
-    EXPECT_EQ(period(), 20U) << "no faster than the board";
+    say("sso,Stream1,COM1,DOP,msec20");
+    EXPECT_EQ(period(), 20U);
+    EXPECT_EQ(say("sso,Stream1,COM1,DOP,msec10"), "$R? SBFOutput: Argument 'Interval' is invalid!\r\nCOM1>")
+        << "no faster than the board";
+    EXPECT_EQ(period(), 20U);
 }
 
 TEST_F(Console, SaysWhatIsTrackedAndHowItMoves) {
