@@ -36,11 +36,12 @@ inline bool since_4_10(const NmeaFormat& format) { return format.version >= Nmea
 inline double in_knots(MetresPerSecond speed) { return speed.value() * 3600.0 / 1852.0; }
 inline double in_kmh(MetresPerSecond speed) { return speed.value() * 3.6; }
 
-/// The text with as many coordinate digits as 82 characters hold, where the format asks for that.
+/// The text with as many of its decimals as 82 characters hold, where the format asks for that.
+/// @param make_text the whole sentence with so many decimals
 template <class MakeText>
-std::string within_limit(const NmeaFormat& format, MakeText make_text) {
-    std::string text = make_text(format.coordinate_decimals);
-    for (int decimals = format.coordinate_decimals; format.limit_82 && text.size() > longest_sentence && decimals > 0;)
+std::string within_limit(const NmeaFormat& format, int decimals, MakeText make_text) {
+    std::string text = make_text(decimals);
+    while (format.limit_82 && text.size() > longest_sentence && decimals > 0)
         text = make_text(--decimals);
     return text;
 }

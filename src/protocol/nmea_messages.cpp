@@ -123,7 +123,8 @@ std::string encode(const Vtg& m, const NmeaFormat& format) {
 }
 
 std::string encode(const Gga& m, const NmeaFormat& format) {
-    return within_limit(format, [&](int decimals) { return gga_text(m, format, decimals); });
+    return within_limit(format, format.coordinate_decimals,
+                        [&](int decimals) { return gga_text(m, format, decimals); });
 }
 
 std::string encode(const Gsa& m, const NmeaFormat& format) {

@@ -36,6 +36,18 @@ std::string gns_text(const Gns& m, const NmeaFormat& format, int coordinate_deci
     return s.finish();
 }
 
+std::string grs_text(const Grs& m, const NmeaFormat& format, int decimals) {
+    Sentence s(m.talker + "GRS");
+    add_time(s, m.time, format);
+    s.number(m.mode);
+    const std::size_t shown = std::min(m.residuals.size(), grs_slots);
+    for (std::size_t i = 0; i < shown; ++i)
+        add_metres(s, m.residuals[i], decimals);
+    s.empty(static_cast<int>(grs_slots - shown));
+    add_system_and_signal(s, m.system_id, m.signal_id, format);
+    return s.finish();
+}
+
 // Up to six digits, of which one at least: "0.0", "0.08".
 std::string offset_text(double value) {
     std::string text = fixed_decimals(value, 6);
@@ -48,7 +60,8 @@ std::string offset_text(double value) {
 }  // namespace
 
 std::string encode(const Gns& m, const NmeaFormat& format) {
-    return within_limit(format, [&](int decimals) { return gns_text(m, format, decimals); });
+    return within_limit(format, format.coordinate_decimals,
+                        [&](int decimals) { return gns_text(m, format, decimals); });
 }
 
 std::string encode(const Gbs& m, const NmeaFormat& format) {
@@ -68,15 +81,7 @@ std::string encode(const Gbs& m, const NmeaFormat& format) {
 }
 
 std::string encode(const Grs& m, const NmeaFormat& format) {
-    Sentence s(m.talker + "GRS");
-    add_time(s, m.time, format);
-    s.number(m.mode);
-    const std::size_t shown = std::min(m.residuals.size(), grs_slots);
-    for (std::size_t i = 0; i < shown; ++i)
-        add_metres(s, m.residuals[i], 1);
-    s.empty(static_cast<int>(grs_slots - shown));
-    add_system_and_signal(s, m.system_id, m.signal_id, format);
-    return s.finish();
+    return within_limit(format, 1, [&](int decimals) { return grs_text(m, format, decimals); });
 }
 
 std::string encode(const Dtm& m, const NmeaFormat&) {

@@ -18,7 +18,7 @@ struct NmeaFormat {
     int time_decimals = 2;
     int coordinate_decimals = 5;  ///< of the minutes of latitude and longitude
     int altitude_decimals = 1;
-    bool limit_82 = true;  ///< GGA and GNS give up coordinate digits rather than exceed 82 characters
+    bool limit_82 = true;  ///< GGA, GNS and GRS give up decimals rather than exceed 82 characters
     // Where makers differ (RECEIVER.md 5.8 to 5.10); the defaults are u-blox's.
     int speed_decimals = 3;          ///< of RMC and VTG
     int course_decimals = 2;         ///< of RMC and VTG

@@ -68,6 +68,21 @@ TEST(Supplements, FollowTheirVersion) {
                 StartsWith("$GPDTM,999,,0.08,S,0.07,E,-47.7,W84*"));
 }
 
+TEST(Supplements, GrsLosesDecimalsRatherThanExceed82Characters) {
+    Grs grs;
+    grs.time = NmeaTime{22, 37, 45, 0};
+    grs.residuals.assign(12, Metres(-12.3));
+    grs.system_id = 3;
+    grs.signal_id = 7;
+    EXPECT_GT(encode(grs, of_4_11).size(), 82U);
+    NmeaFormat limited = of_4_11;
+    limited.limit_82 = true;
+    EXPECT_EQ(encode(grs, limited),
+              Sentence("GNGRS,223745.00,1,-12,-12,-12,-12,-12,-12,-12,-12,-12,-12,-12,-12,3,7").finish());
+    grs.residuals.resize(6);
+    EXPECT_EQ(encode(grs, limited), encode(grs, of_4_11)) << "there is room";
+}
+
 TEST(Supplements, GnsLosesDecimalsRatherThanExceed82Characters) {
     Gns gns;
     gns.time = NmeaTime{1, 2, 3, 0};
