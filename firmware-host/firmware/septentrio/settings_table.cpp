@@ -156,7 +156,7 @@ constexpr std::string_view input_formats =
     "auto none CMD RTCMv2 RTCMv3 RTCMV CMRv2 DC1 DC2 ASCIIIN LBandBeam1 LBandBeam2 SPARTN SBF NMEA ExtSensor MTI IMU "
     "DMI";
 constexpr std::string_view output_formats =
-    "none RTCMv2 RTCMv3 CMRv2 SBF NMEA ASCIIDisplay DC1 DC2 BINEX LBandBeam1 LBandBeam2 SPARTN all";
+    "none RTCMv2 RTCMv3 RTCMV CMRv2 SBF NMEA ASCIIDisplay DC1 DC2 BINEX Encapsulate LBandBeam1 LBandBeam2 SPARTN all";
 constexpr std::string_view pulse_intervals =
     "off msec10 msec20 msec50 msec100 msec200 msec250 msec500 sec1 sec2 sec4 sec5 sec10 sec30 sec60";
 
