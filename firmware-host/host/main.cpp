@@ -1,6 +1,8 @@
 /// skyloop: a GNSS receiver that is not there.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -100,6 +102,14 @@ int run_program(int argc, char** argv) {
     return 2;
 }
 
+// A stream that the caller closed (2>&-) is a number that the next file or terminal opened would take: what is said to
+// people would be in a receiver's bytes. Each is held against its use, so that reading 0 and writing 1 still fail.
+void occupy_closed_streams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF)
+            (void)::open("/dev/null", stream == STDOUT_FILENO ? O_RDONLY : O_WRONLY);  // the lowest number free
+}
+
 // What was printed may still wait in a buffer: a full disk shows only when it is written out.
 int with_output_written(int code) {
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
@@ -110,6 +120,7 @@ int with_output_written(int code) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    occupy_closed_streams();
     try {
         return with_output_written(run_program(argc, argv));
     } catch (const std::bad_alloc&) {

@@ -216,6 +216,27 @@ class CommandLineTest(unittest.TestCase):
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("standard output", done.stderr)
 
+    def test_what_is_said_stays_out_of_files_where_streams_are_closed(self):
+        def recorded(folder, streams):
+            wire = pathlib.Path(folder, "wire.out")
+            command = [SKYLOOP, "simulate", "--duration", "3", "--start", "2026-01-01T00:00:00Z", "--port", f"file:{wire}",
+                       "--out", pathlib.Path(folder, "run")]
+            subprocess.run(["sh", "-c", f'exec "$@" {streams}', "sh", *command], stderr=subprocess.DEVNULL, timeout=120,
+                           check=True)
+            files = [wire, *(pathlib.Path(folder, "run", name) for name in ("port0.out", "fixes.csv", "satellites.csv"))]
+            return [file.read_bytes() for file in files]
+
+        with open_folder() as folder:
+            expected = recorded(folder, "")
+            for streams in ("2>&-", "<&- 2>&-", "<&- >&- 2>&-"):
+                with self.subTest(streams):
+                    self.assertEqual(recorded(folder, streams), expected)
+        for command, streams, said in (("sky", ">&-", "standard output: cannot be written: Bad file descriptor"),
+                                       ("decode -", "<&-", "standard input: cannot be read: Bad file descriptor")):
+            done = subprocess.run(["sh", "-c", f'exec "$0" {command} {streams}', SKYLOOP], stderr=subprocess.PIPE,
+                                  stdout=subprocess.DEVNULL, text=True, timeout=120, check=False)
+            self.assertEqual((done.returncode, said in done.stderr), (1, True), done.stderr)
+
     def test_a_run_that_nobody_hears_any_more_ends(self):
         def goes_on_without_reader(*options):
             command = [SKYLOOP, "run", "--model", "ideal", "--rate", "5", "--port", "-", *map(str, options)]
