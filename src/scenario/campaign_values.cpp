@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "parsed_toml.hpp"
 #include "skyloop/scenario/scenario_changes.hpp"
 
 namespace skyloop {
@@ -54,7 +55,7 @@ std::optional<std::string> list_text(const toml::array& list) {
 // Values with commas between, as an array; or words.
 std::optional<std::vector<CampaignValue>> as_array(std::string_view text) {
     try {
-        const toml::table table = toml::parse(std::string_view(fmt::format("v = [{}\n]", text)));
+        const toml::table table = parsed_toml(fmt::format("v = [{}\n]", text));
         const toml::array* list = table.size() == 1 ? table["v"].as_array() : nullptr;
         if (list == nullptr) return std::nullopt;
         std::vector<CampaignValue> values;
@@ -114,7 +115,7 @@ CampaignValue campaign_value(double number) { return {floating_text(number), flo
 CampaignValue campaign_value(std::int64_t number) { return {fmt::format("{}", number), fmt::format("{}", number)}; }
 
 void with_toml_value(const CampaignValue& value, const std::function<void(const toml::node&)>& use) {
-    const toml::table table = toml::parse(std::string_view("v = " + value.toml));
+    const toml::table table = parsed_toml("v = " + value.toml);
     use(*table.get("v"));
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "campaign_values.hpp"
+#include "parsed_toml.hpp"
 #include "scenario_keys.hpp"
 
 namespace skyloop {
@@ -107,7 +108,7 @@ std::string apply_change(toml::table& table, const ScenarioChange& change) {
     const auto until = [&](std::size_t last) {
         return fmt::format("{}", fmt::join(parts.data(), &parts[last] + 1, "."));
     };
-    if (std::find(parts.begin(), parts.end(), "") != parts.end()) return change.key;
+    if (parts.size() > most_key_parts || std::find(parts.begin(), parts.end(), "") != parts.end()) return change.key;
     toml::node* parent = &table;
     for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
         if (lacks_list(*parent, parts[i], parts[i + 1])) return until(i + 1);
@@ -256,7 +257,7 @@ Result<ScenarioContent> scenario_content(std::string_view text, const std::files
 
 std::string place_of_key(std::string_view text, std::string_view key) {
     try {
-        return path_of_change(toml::parse(text), key, true);
+        return path_of_change(parsed_toml(text), key, true);
     } catch (const toml::parse_error&) {
         return std::string(key);
     }
@@ -264,7 +265,7 @@ std::string place_of_key(std::string_view text, std::string_view key) {
 
 std::string place_of_parameter(std::string_view text, const std::filesystem::path& file, std::string_view key) {
     try {
-        const toml::source_position place = place_of_parameter(toml::parse(text), key).begin;
+        const toml::source_position place = place_of_parameter(parsed_toml(text), key).begin;
         return fmt::format("{}:{}:{}", file.string(), place.line, place.column);
     } catch (const toml::parse_error&) {
         return file.string();

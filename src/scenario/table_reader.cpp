@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "parsed_toml.hpp"
 #include "skyloop/base/spelling.hpp"
 
 namespace skyloop {
@@ -343,7 +344,7 @@ void TableReader::finish() {
 Result<void> read_toml(std::string_view text, const std::string& file, const std::function<void(TableReader&)>& body,
                        const std::function<void(toml::table&, MistakeList&)>& change) {
     try {
-        toml::table table = toml::parse(text, file);
+        toml::table table = parsed_toml(text, file);
         MistakeList mistakes(file);
         if (change) change(table, mistakes);
         // What could not be changed is not what was to be read.

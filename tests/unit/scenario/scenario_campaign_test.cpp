@@ -200,6 +200,18 @@ TEST(ScenarioChanges, AListThatIsNotThereIsNotMade) {
     EXPECT_THAT(scenario.error().message, Not(HasSubstr("expected a list of tables")));
 }
 
+TEST(ScenarioChanges, AKeyTooDeepForTheStackLeadsToNone) {
+    std::string key = "run";
+    for (int i = 0; i < 200000; ++i)
+        key += ".a";
+    const std::vector<ScenarioChange> changes{{key, parse_campaign_values("2")->at(0)}};
+    const auto scenario = read_changed_scenario("[run]\nduration_s = 10\n", "c.toml", changes);
+    ASSERT_FALSE(scenario);
+    EXPECT_THAT(scenario.error().message, StartsWith("c.toml:1:1: 'run.a.a.a."));
+    EXPECT_EQ(place_of_key("[" + key + "]", "run.seed"), "run.seed");
+    EXPECT_EQ(place_of_parameter("[" + key + "]", "c.toml", "run.seed"), "c.toml");
+}
+
 TEST(ScenarioChanges, AWrongValueIsToldWhereTheFileChangesIt) {
     EXPECT_THAT(change_mistake("fault.first.for_s", "-4"), StartsWith("c.toml:19:7: fault.first.for_s: "));
     EXPECT_THAT(change_mistake("fault.first.for_s", "-4"), HasSubstr("; with fault.first.for_s = -4"));

@@ -205,5 +205,32 @@ TEST(ScenarioMistakes, WhatIsNoTomlHasItsPlaceToo) {
     EXPECT_THAT(mistakes_of("a = \"\xff\xfe\""), StartsWith("test.toml:1:"));
 }
 
+std::string dotted(std::size_t parts) {
+    std::string key = "a";
+    while (--parts > 0)
+        key += ".a";
+    return key;
+}
+
+TEST(ScenarioMistakes, KeysTooDeepForTheStackAreRefused) {
+    const std::string told = "the key has more than 256 parts; expected at most 256";
+    EXPECT_EQ(mistakes_of("[" + dotted(200000) + "]"), "test.toml:1:513: " + told);
+    EXPECT_EQ(mistakes_of("# x\n" + dotted(200000) + " = 1"), "test.toml:2:512: " + told);
+    EXPECT_EQ(mistakes_of("a = {" + dotted(200) + " = [{" + dotted(200) + " = 1}]}"), "test.toml:1:523: " + told);
+    EXPECT_EQ(mistakes_of(dotted(256) + " = 1.5\n[b]\n" + dotted(256) + " = [1.5]\n"),
+              "test.toml:1:1: a: unknown key\ntest.toml:2:2: b: unknown key");
+}
+
+TEST(ScenarioMistakes, DotsOfTextsNumbersAndCommentsAreNoKeys) {
+    const std::string dots(1000, '.');
+    std::string numbers = "1.5";
+    for (int i = 0; i < 1000; ++i)
+        numbers += ", [1.5, 2.5]";
+    for (const std::string& value :
+         {'"' + dots + '"', "'" + dots + "'", "\"\"\"\n" + dots + R"(\"""""")", "'''\n" + dots + "''''",
+          "[" + numbers + "]", "1 # " + dots, "{\"" + dots + "\" = 1.5}"})
+        EXPECT_EQ(mistakes_of("xyzzy = " + value), "test.toml:1:1: xyzzy: unknown key");
+}
+
 }  // namespace
 }  // namespace skyloop
