@@ -73,6 +73,9 @@ FileDescriptor claim_of(const fs::path& link) {
     return claim;
 }
 
+// As a run that died has left its link: what it led to is gone, or is another program's by now.
+bool leads_to_pty(const fs::path& target) { return target.string().starts_with("/dev/pts/"); }
+
 }  // namespace
 
 Result<std::unique_ptr<PtyTransport>> PtyTransport::open(const std::optional<fs::path>& link) {
@@ -107,6 +110,11 @@ Result<void> PtyTransport::publish(const fs::path& link) {
     if (fs::exists(there) && !fs::is_symlink(there))
         return fail(ErrorCode::outside,
                     fmt::format("{}: is there already and is not a symbolic link; it is left alone", link.string()));
+    const fs::path other = fs::is_symlink(there) ? fs::read_symlink(target, error) : fs::path();
+    if (fs::is_symlink(there) && !leads_to_pty(other))
+        return fail(ErrorCode::outside,
+                    fmt::format("{}: is a link to {}, which is no pseudo-terminal; it is left alone", link.string(),
+                                other.string()));
     if (!fs::is_directory(target.parent_path(), error))
         return fail(ErrorCode::outside,
                     fmt::format("{}: the folder {} does not exist", link.string(), target.parent_path().string()));

@@ -20,8 +20,9 @@ namespace skyloop {
 class PtyTransport : public Transport {
 public:
     /// A terminal in raw mode, 8N1, that every user may open.
-    /// @param link where to publish it: a symbolic link, made in one step, that replaces another symbolic link but no
-    ///        other file, nor a link that a terminal of a living program is published under. Its folder must exist.
+    /// @param link where to publish it: a symbolic link, made in one step, that replaces another one to a
+    ///        pseudo-terminal but no other file, nor a link that a terminal of a living program is published under. Its
+    ///        folder must exist.
     ///        Removed at the end if it still leads here.
     /// Fails with `outside` when the link is another's, or the system refuses.
     static Result<std::unique_ptr<PtyTransport>> open(const std::optional<std::filesystem::path>& link = std::nullopt);

@@ -215,7 +215,7 @@ TEST(PtyLink, LeadsToTheTerminalAndGoesWithIt) {
     EXPECT_TRUE(fs::is_empty(folder / ""));
 }
 
-TEST(PtyLink, ReplacesAnotherLinkAndLeavesAForeignOne) {
+TEST(PtyLink, ReplacesALinkLeftBehindAndLeavesAForeignOne) {
     const test::TemporaryFolder folder;
     fs::create_symlink("/dev/pts/no-longer-there", folder / "gps0");
     auto pty = PtyTransport::open(folder / "gps0");
@@ -266,6 +266,16 @@ TEST(PtyLink, RefusesOtherFilesAndMissingFolders) {
     EXPECT_EQ(file.error().code, ErrorCode::outside);
     EXPECT_THAT(file.error().message, HasSubstr("precious: is there already and is not a symbolic link"));
     EXPECT_EQ(fs::file_size(folder / "precious"), 4U);
+    for (const char* target : {"precious", "/dev/ttyUSB7", "/no/such/file"}) {
+        fs::create_symlink(target, folder / "kept");
+        const auto link = PtyTransport::open(folder / "kept");
+        ASSERT_FALSE(link) << target;
+        EXPECT_EQ(link.error().code, ErrorCode::outside);
+        EXPECT_THAT(link.error().message,
+                    HasSubstr(std::string("kept: is a link to ") + target + ", which is no pseudo"));
+        EXPECT_EQ(fs::read_symlink(folder / "kept"), target);
+        fs::remove(folder / "kept");
+    }
     const auto directory = PtyTransport::open(folder / "");
     EXPECT_FALSE(directory);
     const auto missing = PtyTransport::open(folder / "none/gps0");
