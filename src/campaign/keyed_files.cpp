@@ -31,6 +31,9 @@ Result<std::vector<std::filesystem::path>> files_at(const std::filesystem::path&
 
 // Adds the content of one file.
 Result<void> add_file_content(Sha256& digest, const std::filesystem::path& file) {
+    std::error_code none;  // a device may have no end, and a fifo waits for a peer; what is not there is told below
+    if (std::filesystem::exists(file, none) && !std::filesystem::is_regular_file(file, none))
+        return fail(ErrorCode::outside, fmt::format("{}: is not a regular file", file.string()));
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(std::fopen(file.c_str(), "rb"), &std::fclose);
     std::array<char, 65536> piece{};
     while (opened) {

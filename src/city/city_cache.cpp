@@ -77,6 +77,9 @@ double steady_seconds() {
 }  // namespace
 
 Result<std::uint64_t> digest_of_file(const fs::path& path) {
+    std::error_code unknown;  // nothing is opened that may have no end, or wait for a peer
+    if (!fs::is_regular_file(path, unknown))
+        return fail(ErrorCode::outside, fmt::format("{}: is not a regular file", path.string()));
     std::ifstream stream(path, std::ios::binary);
     std::string block(std::size_t{1} << 20, '\0');
     std::uint64_t digest = fnv1a_64("");

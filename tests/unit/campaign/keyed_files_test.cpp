@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -42,6 +43,15 @@ TEST_F(KeyedFilesTest, TheDigestIsThatOfTheContent) {
     EXPECT_EQ(absent.error().code, ErrorCode::outside);
     EXPECT_THAT(absent.error().message, testing::EndsWith("/absent.csv: cannot be read: No such file or directory"));
     EXPECT_EQ(files_.find_written(), std::nullopt) << "what could not be read is not looked after";
+}
+
+TEST_F(KeyedFilesTest, WhatIsNoFileIsNotWaitedFor) {
+    ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+    for (const fs::path& path : {folder_ / "pipe", fs::path("/dev/zero")}) {
+        const auto digest = files_.digest(path);
+        ASSERT_FALSE(digest);
+        EXPECT_EQ(digest.error().message, path.string() + ": is not a regular file");
+    }
 }
 
 TEST_F(KeyedFilesTest, AnotherContentIsToldByTheNameOfItsFile) {

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -114,6 +115,17 @@ TEST_F(CityCacheTest, AMissingSourceIsToldByItsNameThoughItWasKept) {
     ASSERT_FALSE(missing);
     EXPECT_EQ(missing.error().code, ErrorCode::outside);
     EXPECT_THAT(missing.error().message, ::testing::HasSubstr("a.obj"));
+}
+
+TEST_F(CityCacheTest, WhatIsNoFileIsNotWaitedFor) {
+    ASSERT_EQ(::mkfifo((folder_ / "pipe.obj").c_str(), 0600), 0);
+    fs::create_symlink("/dev/zero", folder_ / "zero.obj");
+    for (const char* name : {"pipe.obj", "zero.obj"}) {
+        const auto reading = read_city(folder_ / name, {}, cache());
+        ASSERT_FALSE(reading) << name;
+        EXPECT_EQ(reading.error().code, ErrorCode::outside);
+        EXPECT_THAT(reading.error().message, testing::EndsWith(std::string(name) + ": is not a regular file"));
+    }
 }
 
 TEST(CityEncoding, NoByteCanBeChangedOrLeftOut) {
