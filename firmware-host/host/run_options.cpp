@@ -109,8 +109,10 @@ Result<void> apply_model(const RunOptions& options, Scenario& scenario) {
 
 Result<void> apply_receiver(const RunOptions& options, Scenario& scenario) {
     ReceiverEntry& first = scenario.receivers.front();
-    const std::array<std::pair<const char*, bool>, 3> given{
-        {{"board", !options.board.empty()}, {"port", !options.ports.empty()}, {"power", !options.power.empty()}}};
+    const std::array<std::pair<const char*, bool>, 4> given{{{"board", !options.board.empty()},
+                                                             {"port", !options.ports.empty()},
+                                                             {"power", !options.power.empty()},
+                                                             {"state_file", !options.state.empty()}}};
     for (const auto& [key, by_option] : given)
         if (by_option) first.told_at.erase(key);
     if (!options.board.empty()) first.board = options.board;

@@ -58,13 +58,27 @@ std::error_code put_in_place(const std::filesystem::path& path, std::string_view
     return reason;
 }
 
+tl::unexpected<Error> not_written(const std::filesystem::path& path, const std::error_code& reason) {
+    return fail(ErrorCode::outside, fmt::format("{}: cannot be written: {}", path.string(), reason.message()));
+}
+
 }  // namespace
 
 Result<void> replace_file(const std::filesystem::path& path, std::string_view content) {
     const std::filesystem::path file = end_of_links(path);
     const std::error_code reason = is_replaceable(file) ? put_in_place(file, content) : write_file(file, 0, content);
     if (!reason) return {};
-    return fail(ErrorCode::outside, fmt::format("{}: cannot be written: {}", path.string(), reason.message()));
+    return not_written(path, reason);
+}
+
+Result<void> check_replaceable(const std::filesystem::path& path) {
+    const std::filesystem::path file = end_of_links(path);
+    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    // With "/" behind it, so that a file is no folder.
+    const bool can =
+        is_replaceable(file) ? ::access((folder / "").c_str(), W_OK | X_OK) == 0 : ::access(file.c_str(), W_OK) == 0;
+    if (can) return {};
+    return not_written(path, last_error());
 }
 
 }  // namespace skyloop

@@ -184,6 +184,8 @@ Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& 
     // Before anything is opened that another run may be using, too.
     for (std::size_t i = 0; i < plans.size() && shared.mode.record; ++i)
         if (const auto added = add_recorder(plans[i].parts, shared, i); !added) return fail(added.error());
+    for (std::size_t i = 0; i < plans.size(); ++i)
+        if (const auto checked = check_state(plans[i].parts, shared, i); !checked) return fail(checked.error());
     for (std::size_t i = 0; i < plans.size() && shared.mode.open_ports; ++i)
         if (i == 0 || !shared.mode.first_ports_only)
             if (const auto plugged = plug_in(plans[i], shared, i); !plugged) return fail(plugged.error());

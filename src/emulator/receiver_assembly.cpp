@@ -9,6 +9,7 @@
 #include "rinex_recording.hpp"
 #include "skyloop/actuator/actuator_uri.hpp"
 #include "skyloop/base/digest.hpp"
+#include "skyloop/base/replace_file.hpp"
 #include "skyloop/client/open_client.hpp"
 #include "skyloop/scenario/board_file.hpp"
 #include "skyloop/transport/open_transport.hpp"
@@ -174,7 +175,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     std::optional<StateFile> state;
     if (!entry.state_file.empty()) {
         auto opened = StateFile::open(entry.state_file);
-        if (!opened) return fail(opened.error());
+        if (!opened) return fail(at_key("state_file", opened.error(), entry));
         state = std::move(*opened);
     }
     const firmware::ReceiverOptions options{entry.rate_hz.value_or(0), receiver_settings(scenario, *board, index),
@@ -242,6 +243,13 @@ Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::si
     if (!power) return fail(of_receiver(power.error(), shared.scenario, index));
     station.parts.power = std::move(*power);
     return {};
+}
+
+Result<void> check_state(const Station::Parts& parts, const SharedParts& shared, std::size_t index) {
+    const auto replaceable = parts.state ? check_replaceable(parts.state->path()) : Result<void>();
+    if (replaceable) return {};
+    const Error refused = at_key("state_file", replaceable.error(), shared.scenario.receivers.at(index));
+    return fail(of_named_receiver(refused, shared.scenario, index));
 }
 
 Result<void> add_recorder(Station::Parts& parts, const SharedParts& shared, std::size_t index) {

@@ -33,6 +33,8 @@ struct PlannedStation {
 Result<PlannedStation> plan_station(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings);
 /// Opens its wires and, against the clock, its actuator.
 Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::size_t index);
+/// What it is to save at the end of the run can be saved. Asked once its recording has a folder, where it may lie.
+Result<void> check_state(const Station::Parts& parts, const SharedParts& shared, std::size_t index);
 /// Claims the folder of its recording: the first receiver's is the folder itself, the others' are receiver1 and so on.
 Result<void> add_recorder(Station::Parts& parts, const SharedParts& shared, std::size_t index);
 

@@ -13,4 +13,8 @@ namespace skyloop {
 /// written to. Fails with `outside`; then the old file stands as it was, and nothing is left beside it.
 Result<void> replace_file(const std::filesystem::path& path, std::string_view content);
 
+/// Whether replace_file() can be done, as far as its folder tells, for who writes much later. Fails as that does;
+/// changes nothing.
+Result<void> check_replaceable(const std::filesystem::path& path);
+
 }  // namespace skyloop

@@ -175,7 +175,7 @@ struct ReceiverEntry {
     std::array<double, 3> antenna_offset{};  ///< forward, right, down from the point that follows the trajectory, m
     std::optional<TrajectorySettings> trajectory{};  ///< of the vehicle it rides on; nothing: the scenario's
     std::optional<std::size_t> base;  ///< the receiver, by its place in the list, that carries the base antenna
-    ToldPlaces told_at{};             ///< of board, port, power and config
+    ToldPlaces told_at{};             ///< of board, port, power, config and state_file
 };
 
 /// A fault and when it works.

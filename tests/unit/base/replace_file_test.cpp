@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 #include <thread>
 #include <vector>
 
@@ -73,6 +74,21 @@ TEST(ReplaceFile, WritesToDevicesAndPipes) {
     ::close(reader);
     EXPECT_EQ(heard, "text");
     EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("pipe"));
+}
+
+TEST(CheckReplaceable, TellsBeforehandWhatWritingWouldTell) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "file") << "text";
+    std::filesystem::create_symlink("missing/b", folder / "link");
+    for (const char* name : {"missing/a", "file/a", "link"}) {
+        const auto checked = check_replaceable(folder / name);
+        ASSERT_FALSE(checked) << name;
+        EXPECT_EQ(checked.error().code, ErrorCode::outside);
+        EXPECT_EQ(checked.error().message, replace_file(folder / name, "text").error().message);
+    }
+    for (const std::filesystem::path& path : {folder / "file", folder / "new", std::filesystem::path("/dev/null")})
+        EXPECT_TRUE(check_replaceable(path)) << path;
+    EXPECT_THAT(names_in(folder.path()), testing::UnorderedElementsAre("file", "link"));
 }
 
 TEST(ReplaceFile, OfManyWhoWriteAtOnceOneWins) {

@@ -196,6 +196,21 @@ TEST(Assembly, AWireDoesNotTakeThePlaceOfWhatIsRepeated) {
                     HasSubstr("this file is read, too, and would be lost"));
 }
 
+TEST(Assembly, WhatAReceiverSavesHasAFolder) {
+    const test::TemporaryFolder folder;
+    const auto receiver = [&](const char* file) {
+        return "[[receiver]]\nstate_file = \"" + (folder / file).string() + "\"";
+    };
+    const Error refused = refusal(receiver("run/m8.state"));
+    EXPECT_EQ(refused.code, ErrorCode::outside);
+    EXPECT_THAT(refused.message, HasSubstr(":14: receiver.state_file: " + (folder / "run/m8.state").string() +
+                                           ": cannot be written: No such file or directory"));
+    RunMode mode = virtual_mode();
+    mode.record = folder / "run";
+    EXPECT_TRUE(assembled(receiver("run/m8.state"), mode).emulator) << "that of the recording is made";
+    EXPECT_TRUE(assembled(receiver("m8.state")).emulator);
+}
+
 TEST(Assembly, PortsAreOpenedOnlyWhenAskedFor) {
     const test::TemporaryFolder folder;
     const std::string receiver = "[[receiver]]\nport = \"file:" + (folder / "out.nmea").string() + "\"";
