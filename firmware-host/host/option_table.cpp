@@ -19,10 +19,8 @@ std::vector<std::string> model_words() {
 }
 
 std::vector<std::string> vehicle_words() {
-    std::vector<std::string> names;
-    for (const VehicleTraits& traits : vehicle_classes())
-        names.emplace_back(traits.name);
-    return names;
+    const auto names = track_vehicle_names();
+    return {names.begin(), names.end()};
 }
 
 std::vector<ValueRule> option_rules() {

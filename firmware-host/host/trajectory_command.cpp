@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
-#include <span>
 
 #include "commands.hpp"
 #include "data_folders.hpp"
@@ -40,9 +39,7 @@ struct OpenedPath {
 
 Result<std::optional<VehicleClass>> chosen_vehicle(const std::string& name) {
     if (name.empty()) return std::optional<VehicleClass>();
-    std::vector<std::string_view> names;
-    for (const VehicleTraits& traits : std::span(vehicle_classes()).first(track_vehicle_count))
-        names.push_back(traits.name);
+    const auto names = track_vehicle_names();
     if (std::find(names.begin(), names.end(), name) != names.end()) return vehicle_class_named(name);
     return fail(ErrorCode::usage, fmt::format("--vehicle {}: expected one of {}{}", name, fmt::join(names, " "),
                                               did_you_mean(name, names)));

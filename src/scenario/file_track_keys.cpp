@@ -15,10 +15,8 @@ constexpr std::array<Word<Smoothing>, 3> smooth_words{
     {{"none", Smoothing::none}, {"noise", Smoothing::noise}, {"sensor", Smoothing::sensor}}};
 
 void read_vehicle_class(TableReader& table, FileSettings& file) {
-    std::array<std::string_view, track_vehicle_count> names;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        names[i] = vehicle_classes()[i].name;
-    if (const auto index = table.choice("vehicle", names)) file.vehicle = static_cast<VehicleClass>(*index);
+    if (const auto index = table.choice("vehicle", track_vehicle_names()))
+        file.vehicle = static_cast<VehicleClass>(*index);
 }
 
 }  // namespace

@@ -22,6 +22,13 @@ const std::array<VehicleTraits, vehicle_class_count>& vehicle_classes() {
     return classes;
 }
 
+std::array<std::string_view, track_vehicle_count> track_vehicle_names() {
+    std::array<std::string_view, track_vehicle_count> names;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        names[i] = vehicle_classes()[i].name;
+    return names;
+}
+
 const VehicleTraits& traits_of(VehicleClass vehicle) { return vehicle_classes()[static_cast<std::size_t>(vehicle)]; }
 
 std::optional<VehicleClass> vehicle_class_named(std::string_view name) {

@@ -88,6 +88,10 @@ class TrajectoryTest(unittest.TestCase):
         exceeded = self.listing(self.track, "--vehicle", "pedestrian")["exceeded"]
         self.assertEqual([(limit["of"], limit["what"]) for limit in exceeded], [("pedestrian", "speed")])
         self.refused("trajectory", self.track, "--vehicle", "plan", says="did you mean")
+        told = skyloop("trajectory", "--help").stdout
+        for vehicle in ("balloon", "rocket"):
+            self.refused("trajectory", self.track, "--vehicle", vehicle, says="expected one of fixed pedestrian car")
+            self.assertNotIn(vehicle, told)
 
     def test_options_of_which_nothing_comes_are_refused(self):
         self.refused("trajectory", self.track, "--speed", "10", says="--speed: ")

@@ -30,6 +30,8 @@ inline constexpr std::size_t track_vehicle_count = 7;
 
 /// In the order of VehicleClass.
 const std::array<VehicleTraits, vehicle_class_count>& vehicle_classes();
+/// What people call the first of them, those of tracks.
+std::array<std::string_view, track_vehicle_count> track_vehicle_names();
 const VehicleTraits& traits_of(VehicleClass vehicle);
 /// The class of that name; nothing: there is none.
 std::optional<VehicleClass> vehicle_class_named(std::string_view name);
