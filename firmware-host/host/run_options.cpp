@@ -91,9 +91,9 @@ Result<void> apply_start(const RunOptions& options, RunSettings& run) {
 Result<void> apply_time(const RunOptions& options, Scenario& scenario) {
     if (const auto applied = apply_start(options, scenario.run); !applied) return applied;
     if (options.duration) {
-        if (!(*options.duration > 0 && *options.duration < 3.2e9))
-            return fail(ErrorCode::usage,
-                        fmt::format("--duration {}: expected a number of seconds above 0", *options.duration));
+        if (!(*options.duration > 0 && *options.duration <= longest_run_s))
+            return fail(ErrorCode::usage, fmt::format("--duration {}: expected a number above 0, up to {}",
+                                                      *options.duration, longest_run_s));
         scenario.run.duration = Seconds(*options.duration);
     }
     return {};

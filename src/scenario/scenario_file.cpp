@@ -12,8 +12,6 @@
 namespace skyloop {
 namespace {
 
-constexpr double most_years_s = 100 * 366.0 * 86400;  // a run's span stays far inside 64-bit nanoseconds
-
 void read_run_keys(TableReader& run, RunSettings& settings) {
     const auto start = run.utc("start");
     if (start == "now") {
@@ -27,7 +25,7 @@ void read_run_keys(TableReader& run, RunSettings& settings) {
     }
     if (run.has("duration_s")) {
         double duration = 1;
-        run.number("duration_s", duration, {std::numeric_limits<double>::min(), most_years_s});
+        run.number("duration_s", duration, {std::numeric_limits<double>::min(), longest_run_s});
         settings.duration = Seconds(duration);
     }
     run.integer("seed", settings.seed, NumberRange::not_negative());

@@ -40,6 +40,8 @@ MISUSES = [
     (["run", "--start", "2024-02-30T00:00:00Z"], 2, ["2024-02-30"]),
     (["run", "--duration", "-1"], 2, ["--duration -1"]),
     (["run", "--duration", "nan"], 2, ["--duration"]),
+    (["run", "--duration", "1e20"], 2, ["--duration 1e+20: expected a number above 0, up to 3162240000"]),
+    (["check", "--duration", "3162240001"], 2, ["--duration 3162240001: expected a number above 0, up to 3162240000"]),
     (["check", "--start", "2199-12-31T00:00:00Z", "--duration", "3e9"], 2, ["2199-12-31", "2269"]),
     (["run", "--rate", "0"], 2, ["--rate 0"]),
     (["run", "--speed", "fast"], 2, ["--speed fast"]),

@@ -45,6 +45,9 @@ namespace skyloop {
 /// among them.
 using ToldPlaces = std::map<std::string, std::string, std::less<>>;
 
+/// Seconds; with it a run's span stays far inside 64-bit nanoseconds.
+inline constexpr double longest_run_s = 100 * 366.0 * 86400;
+
 struct RunSettings {
     std::optional<GpsTime> start;  ///< nothing: now, or the first epoch of the navigation data
     bool start_now = false;
