@@ -138,13 +138,20 @@ std::unique_ptr<Pacer> make_pacer(const RunMode& mode, GpsTime start, double spe
     return std::make_unique<RealtimePacer>(start, start == mode.now ? mode.now_steady_ns : steady_clock_ns(), speed);
 }
 
+// With the place of its key in the scenario's file, unless an option gave it.
+WireEnd told_end(WireEnd end, const ReceiverEntry& entry, std::string_view key) {
+    if (const auto place = entry.told_at.find(key); place != entry.told_at.end()) end.told_at = place->second;
+    return end;
+}
+
 std::vector<WireEnd> ends_of(const std::vector<PlannedStation>& plans, const Scenario& scenario) {
     std::vector<WireEnd> ends;
     for (std::size_t i = 0; i < plans.size(); ++i) {
+        const ReceiverEntry& entry = scenario.receivers[i];
+        const std::string name = receiver_name(scenario, i);
         for (const WireRequest& wire : plans[i].wires)
-            ends.push_back(end_of_wire(fmt::format("port of '{}'", receiver_name(scenario, i)), wire.uri));
-        ends.push_back(
-            end_of_power(fmt::format("power of '{}'", receiver_name(scenario, i)), scenario.receivers[i].power));
+            ends.push_back(told_end(end_of_wire(fmt::format("port of '{}'", name), wire.uri), entry, "port"));
+        ends.push_back(told_end(end_of_power(fmt::format("power of '{}'", name), entry.power), entry, "power"));
     }
     for (const OutputSettings& output : scenario.outputs)
         ends.push_back(end_of_output(output));
@@ -175,9 +182,11 @@ Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& 
     const SparedFiles spared_files = spared_files_of(shared);
     if (const auto spared = spare_inputs_and_recording(ends, spared_files, shared.mode.record); !spared)
         return fail(spared.error());
-    for (std::size_t i = 0; i < plans.size(); ++i)
-        ends.push_back(end_of_state(fmt::format("state_file of '{}'", receiver_name(shared.scenario, i)),
-                                    shared.scenario.receivers[i].state_file));
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+        const ReceiverEntry& entry = shared.scenario.receivers[i];
+        const std::string owner = fmt::format("state_file of '{}'", receiver_name(shared.scenario, i));
+        ends.push_back(told_end(end_of_state(owner, entry.state_file), entry, "state_file"));
+    }
     if (const auto apart = check_ends(ends); !apart) return fail(apart.error());
     if (shared.mode.record)
         if (const auto spared = spare_inputs(spared_files, *shared.mode.record); !spared) return fail(spared.error());

@@ -68,7 +68,7 @@ Result<void> spare_inputs_and_recording(const std::vector<WireEnd>& ends, const 
     };
     for (const WireEnd& end : ends) {
         if (end.place.empty() || end.place == "-") continue;
-        const std::string writer = fmt::format("{} '{}'", end.owner, end.uri);
+        const std::string writer = fmt::format("{}{} '{}'", end.told_at, end.owner, end.uri);
         if (const auto spared = check_spares(writer, end.place, spared_files.inputs); !spared) return spared;
         if (is_recorded_name(fs::path(end.place).filename().string()) && recorded(end.place))
             return fail(ErrorCode::usage,

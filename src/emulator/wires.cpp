@@ -101,8 +101,9 @@ Result<void> check_ends(const std::vector<WireEnd>& ends) {
     for (std::size_t i = 0; i < ends.size(); ++i)
         for (std::size_t k = 0; k < i; ++k)
             if (!ends[i].place.empty() && ends[i].place == ends[k].place)
-                return fail(ErrorCode::usage, fmt::format("{} '{}' is where {} '{}' goes; expected another place",
-                                                          ends[i].owner, ends[i].uri, ends[k].owner, ends[k].uri));
+                return fail(ErrorCode::usage,
+                            fmt::format("{}{} '{}' is where {} '{}' goes; expected another place", ends[i].told_at,
+                                        ends[i].owner, ends[i].uri, ends[k].owner, ends[k].uri));
     return {};
 }
 

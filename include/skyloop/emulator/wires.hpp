@@ -35,9 +35,10 @@ Result<std::vector<WireRequest>> wires_of(const ReceiverEntry& entry, const firm
 
 /// A place at which bytes come out, and what messages call whose it is.
 struct WireEnd {
-    std::string owner;  ///< "port of 'rover'"
-    std::string uri;    ///< as it was written
-    std::string place;  ///< a path, or a port that is listened at; empty: it is free or may be shared
+    std::string owner;      ///< "port of 'rover'"
+    std::string uri;        ///< as it was written
+    std::string place;      ///< a path, or a port that is listened at; empty: it is free or may be shared
+    std::string told_at{};  ///< "FILE:LINE:COLUMN: KEY: ", for messages; empty: no key of a file
 };
 WireEnd end_of_wire(const std::string& owner, const std::string& uri);
 /// An actuator: a modem line has its device for itself.

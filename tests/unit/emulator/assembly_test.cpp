@@ -345,8 +345,8 @@ TEST(Assembly, TwoEndsAtOnePlaceAreRefused) {
         return refusal("[[receiver]]\nport = \"" + a + "\"\n[[receiver]]\nport = \"" + b + "\"").message;
     };
     EXPECT_EQ(two("pty:/tmp/gps", "pty:/tmp/gps"),
-              "port of 'receiver1' 'pty:/tmp/gps' is where port of 'receiver0' 'pty:/tmp/gps' goes; expected another "
-              "place");
+              "test.toml:4:8: receiver.port: port of 'receiver1' 'pty:/tmp/gps' is where port of 'receiver0' "
+              "'pty:/tmp/gps' goes; expected another place");
     EXPECT_THAT(two("file:a.bin", "file:./b/../a.bin"), HasSubstr("expected another place"));
     EXPECT_THAT(two("tcp:2000", "rfc2217:2000"), HasSubstr("expected another place"));
     EXPECT_THAT(two("-", "-"), HasSubstr("expected another place"));
