@@ -64,6 +64,16 @@ void tell(TableReader& table, const std::vector<ParameterMistake>& mistakes) {
             table.mistake(mistake.name, mistake.sentence);
 }
 
+// What making a fault of its parameters is refused for. A sentence about one of the table's keys begins with it:
+// "satellites: 'G99' is no satellite", "messages names nothing".
+void tell_refusal(TableReader& table, const std::string& sentence) {
+    const std::string key = sentence.substr(0, sentence.find_first_of(": "));
+    const std::vector<std::string> keys = table.keys();
+    if (std::find(keys.begin(), keys.end(), key) == keys.end()) return table.mistake_here(sentence);
+    const std::size_t rest = sentence.find_first_not_of(": ", key.size());
+    table.mistake(key, rest < sentence.size() ? sentence.substr(rest) : std::string());
+}
+
 // Unknown keys suggest those of the timeline too.
 CheckedParameters own_parameters(TableReader& table, const std::vector<ParameterSpec>& own,
                                  const std::vector<ParameterSpec>& timeline, const GivenValues& given) {
@@ -130,7 +140,7 @@ void read_fault(TableReader& table, Scenario& scenario) {
         tell(table, ramp_mistakes(*kind, Parameters(given.timeline)));
         const auto made = kind->make(entry.parameters, {1, "check"});
         if (!made && own.mistakes.empty())
-            table.mistake_here(made.error().message);
+            tell_refusal(table, made.error().message);
         else if (made && made->pace && entry.receivers.size() < scenario.receivers.size())
             table.mistake("receiver", fmt::format("stands beside kind = \"{}\", and the receivers of a run have one "
                                                   "clock; expected no 'receiver'",

@@ -135,7 +135,10 @@ TEST(ScenarioTimeline, SatellitesAndMessagesThatThereCannotBeAreRefused) {
         return scenario ? std::string() : scenario.error().message;
     };
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nsatellites = [\"G07\", \"G99\"]\n"),
-                HasSubstr("satellites: 'G99' is no satellite; expected G01 to G63 of GPS"));
+                HasSubstr("test.toml:3:14: fault.satellites: 'G99' is no satellite; expected G01 to G63 of GPS"));
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nsatellites = [\"X1\"]\n"),
+                HasSubstr("test.toml:3:14: fault.satellites: has 'X1'; expected a system's letter and two digits"));
+    EXPECT_THAT(mistakes("[[fault]]\nkind = \"jamming\"\n"), HasSubstr("test.toml:1:1: [fault] no jammer is told"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nsatellites = [\"S19\"]\n"), HasSubstr("S20 to S58 of SBAS"));
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nsatellites = [\"R24\", \"E36\", \"C63\"]\n"), IsEmpty());
     EXPECT_THAT(mistakes("[[fault]]\nkind = \"outage\"\nwhen_client_sends = \"NONSENSE\"\n"),
