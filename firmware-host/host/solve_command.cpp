@@ -228,7 +228,8 @@ int solve_file(const SolveOptions& options) {
     // Heights above the ellipsoid are taken for those above the sea, as other solvers do.
     NavigationEngine engine(parameters_of(options), {orbits.broadcast.get(), nullptr, LeapSeconds::announced(),
                                                      transmitters ? &*transmitters : nullptr});
-    auto out = options.out.empty() ? OutputFile::standard_output() : OutputFile::create(options.out);
+    auto out =
+        options.out.empty() || options.out == "-" ? OutputFile::standard_output() : OutputFile::create(options.out);
     if (!out) return messages.error(out.error());
     const SolvedCounts counts = solve_epochs(*file, engine, options, *orbits.broadcast, *out);
     out->flush();
@@ -247,7 +248,7 @@ Action add_solve_command(CLI::App& app) {
         ->required();
     command->add_option("--nav", options->nav, "RINEX navigation file; repeatable")->allow_extra_args(false);
     command->add_option("--sp3", options->sp3, "Precise orbits and clocks in place of the broadcast ones");
-    command->add_option("--out", options->out, "Where the fixes go, as CSV; default: standard output");
+    command->add_option("--out", options->out, "Where the fixes go, as CSV; default and -: standard output");
     command->add_option("--systems", options->systems, "Only these: gps galileo beidou glonass qzss sbas navic")
         ->delimiter(',')
         ->check(CLI::IsMember(std::vector<std::string>(constellation_names.begin(), constellation_names.end())));

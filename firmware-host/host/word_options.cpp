@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,9 +15,20 @@
 namespace skyloop::host {
 namespace {
 
-CLI::Validator some_text(const std::string& expected, bool options_too) {
-    const auto read = [expected, options_too](const std::string& text) {
+// Whether the option names what is written. Of these only solve's fixes may go to standard output, where the others
+// would be among what the command says.
+bool names_output(const OptionRow& row, std::string_view command) {
+    static constexpr std::array<std::string_view, 6> outputs{"--junit",   "--out",   "--record",
+                                                             "--sky-svg", "--state", "--svg"};
+    return !row.positional() && command != "solve" &&
+           std::find(outputs.begin(), outputs.end(), row.names.front()) != outputs.end();
+}
+
+CLI::Validator some_text(const std::string& expected, bool options_too, bool output) {
+    const auto read = [expected, options_too, output](const std::string& text) {
         if (text.empty()) return fmt::format("''; expected {}", expected);
+        if (text == "-" && output)
+            return fmt::format("'-' is not standard output here; expected {}, or ./- for that name", expected);
         if (text.starts_with("--") && !options_too)
             return fmt::format("'{}' is an option; expected {}", text, expected);
         return std::string();
@@ -42,7 +54,7 @@ void check_words_of(CLI::App& command, const std::string& name) {
         if (row.kind == ValueKind::words && type.find('{') != std::string::npos)
             option->transform(one_of(row.words));
         else
-            option->transform(some_text(row.value, option->check_lname("sbatch-option")));
+            option->transform(some_text(row.value, option->check_lname("sbatch-option"), names_output(row, name)));
     }
     for (CLI::App* below : command.get_subcommands(nullptr))
         check_words_of(*below, name.empty() ? below->get_name() : name + " " + below->get_name());

@@ -78,6 +78,7 @@ class Solve(unittest.TestCase):
         # What reads such tables knows that an empty cell tells nothing.
         path = still / "solved.csv"
         solved(still, *self.nav, "--out", path)
+        self.assertEqual(skyloop("solve", still / "observations.rnx", *self.nav, "--out", "-").stdout, path.read_text())
         track = skyloop("trajectory", path).stdout
         self.assertIn("velocity: by the places of the rows", " ".join(track.split()))
         self.assertIn("5 fixes", skyloop("compare", path, path).stdout)

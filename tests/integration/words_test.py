@@ -21,6 +21,13 @@ MISUSES = [
     (["check", "--nav", ""], "skyloop: --nav: ''; expected FILE; see skyloop check --help"),
     (["check", "--model", ""], "skyloop: --model: ''; expected NAME; see skyloop check --help"),
     (["check", "--state", ""], "skyloop: --state: ''; expected FILE; see skyloop check --help"),
+    # Standard output is where a command says what it has to say.
+    (["scene", "demo", "--svg", "-"],
+     "skyloop: --svg: '-' is not standard output here; expected FILE, or ./- for that name; see skyloop scene --help"),
+    (["simulate", "--duration", "1", "--out", "-"],
+     "skyloop: --out: '-' is not standard output here; expected DIR, or ./- for that name; see skyloop simulate --help"),
+    (["check", "--state", "-"],
+     "skyloop: --state: '-' is not standard output here; expected FILE, or ./- for that name; see skyloop check --help"),
     (["check", ""], "skyloop: SCENARIO: ''; expected SCENARIO; see skyloop check --help"),
     (["simulate", "--duration", "1", "--out", ""], "skyloop: --out: ''; expected DIR; see skyloop simulate --help"),
     (["run", "--scene=", "s.toml"], "skyloop: --scene: a value is missing behind '='"),
