@@ -35,6 +35,16 @@ struct ReceiverOptions {
     bool power_up = false;        ///< it is switched on at the start; otherwise it has been on for long
 };
 
+/// First settings that a receiver would refuse itself.
+struct RefusedOptions {
+    std::optional<std::uint32_t> item;  ///< that is out of range; nothing: its systems do not go together
+    std::string reason;
+};
+
+/// What a u-blox receiver that begins so would refuse of its own settings: it judges all of them with every change, so
+/// that no client could change any. Nothing when it takes them, and of receivers of other makers.
+std::optional<RefusedOptions> refused_options(const BoardProfile& board, const ReceiverOptions& options);
+
 /// One receiver with all its ports.
 ///
 /// What a client configures acts as on the real one: on the messages, the speeds, and through settings() on measurement

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -147,6 +149,20 @@ ConfigValues initial_config(const BoardProfile& board, const ReceiverOptions& op
     // Of the two names of one measured signal a receiver that has both has one on, as at the factory.
     if (factory_b1i) put(*factory_b1i != 0 ? beidou_b1c : beidou_b1i, 0);
     return values;
+}
+
+std::optional<RefusedOptions> refused_options(const BoardProfile& board, const ReceiverOptions& options) {
+    if (board.personality != Personality::ublox) return std::nullopt;
+    const ConfigValues values = initial_config(board, options);
+    for (const auto& [key, value] : values)
+        if (!is_in_range(board, key, value))
+            return RefusedOptions{key, fmt::format("{} is {}, which {} itself would refuse", find_config_key(key)->name,
+                                                   value, board.name)};
+    if (is_consistent(board, values)) return std::nullopt;
+    return RefusedOptions{std::nullopt,
+                          board.name +
+                              " itself would refuse these systems: none that gives a position, too many, or "
+                              "signals that exclude each other"};
 }
 
 }  // namespace skyloop::firmware

@@ -123,6 +123,7 @@ Result<void> apply_receiver(const RunOptions& options, Scenario& scenario) {
         if (!(*options.rate >= 0.01 && *options.rate <= 100))
             return fail(ErrorCode::usage, fmt::format("--rate {}: expected 0.01 to 100 Hz", *options.rate));
         first.rate_hz = options.rate;
+        first.told_at.erase("rate_hz");
     }
     return {};
 }

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <optional>
 
+#include "firmware/config/config_keys.hpp"
 #include "recorded_files.hpp"
 #include "rinex_recording.hpp"
 #include "skyloop/actuator/actuator_uri.hpp"
@@ -111,6 +112,16 @@ Error at_key(std::string_view key, Error error, const ReceiverEntry& entry) {
     return error;
 }
 
+// The keys of the scenario that change what the board begins with, judged as the board's file is.
+Result<void> check_options(const firmware::BoardProfile& board, const firmware::ReceiverOptions& options,
+                           const ReceiverEntry& entry) {
+    const auto refused = firmware::refused_options(board, options);
+    if (!refused) return {};
+    std::string_view key = entry.constellations.empty() ? "dual_frequency" : "constellations";
+    if (refused->item) key = *refused->item == firmware::key::uart1_baudrate ? "baud" : "rate_hz";
+    return fail(at_key(key, {ErrorCode::usage, refused->reason}, entry));
+}
+
 // What is known of the actuator before it is opened.
 Result<void> check_power(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings) {
     const std::vector<ReceiverEntry>& receivers = shared.scenario.receivers;
@@ -182,6 +193,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
                                             receiver_seed(scenario.run.seed, index), entry.power_up};
     warn_of_missing_usb(*wires, *board, warnings);
     warn_of_untracked(scenario, *board, options.settings, warnings);
+    if (const auto checked = check_options(*board, options, entry); !checked) return fail(checked.error());
     firmware::Receiver receiver(std::move(*board), options);
     if (entry.rate_hz) warn_of_rate(*entry.rate_hz, receiver, warnings);
     if (const auto configured = receiver.configure(entry.config); !configured)

@@ -21,7 +21,8 @@ void read_output_keys(TableReader& receiver, ReceiverEntry& entry, const std::fi
     if (is_board_path(entry.board)) entry.board = (folder / entry.board).string();
     receiver.text_or_texts("port", entry.ports);
     receiver.text("power", entry.power);
-    for (const char* key : {"board", "port", "power", "config", "state_file"})
+    for (const char* key :
+         {"board", "port", "power", "config", "state_file", "rate_hz", "baud", "constellations", "dual_frequency"})
         entry.told_at[key] = receiver.told_at(key);
     if (receiver.has("rate_hz")) {
         double rate = 1;

@@ -74,7 +74,7 @@ def true_position(row):
 
 def scenario(**parts):
     """A minute without errors over one place; `parts` replaces any of it."""
-    values = {"duration": 60, "sky": "", "model": 'errors = "none"', "receiver": "",
+    values = {"duration": 60, "sky": "", "model": 'errors = "none"', "board": "ublox-m9", "receiver": "",
               "trajectory": f'kind = "fixed"\nat = [{PLACE[0]}, {PLACE[1]}, {PLACE[2]}]'} | parts
     return """[run]
 start = {start}
@@ -88,6 +88,7 @@ navigation = {navigation}
 name = "modern"
 {model}
 [[receiver]]
+board = "{board}"
 constellations = {constellations}
 {receiver}
 """.format(**values)
@@ -175,7 +176,7 @@ class Rnx2rtkpTest(unittest.TestCase):
 
     def test_navics_group_delay_is_that_of_s_band(self):
         self.check(DAY_2023, ("gps", "navic"), self.SHARE_AT_REST, start="2023-01-01T12:40:00Z",
-                   trajectory='kind = "fixed"\nat = [15, 85, 100]', receiver='board = "septentrio-sbf"')
+                   trajectory='kind = "fixed"\nat = [15, 85, 100]', board="septentrio-sbf")
 
     def test_without_errors_on_the_move(self):
         for systems in SETS:

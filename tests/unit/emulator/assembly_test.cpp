@@ -55,6 +55,33 @@ TEST(Assembly, UnknownBoardsAreUsageErrors) {
     EXPECT_THAT(board.message, HasSubstr("board 'ublox-m7' is not known"));
 }
 
+TEST(Assembly, KeysThatLeaveAReceiverThatRefusesEverySettingAreRefused) {
+    const auto told = [](const std::string& board, const std::string& keys) {
+        return refusal("[[receiver]]\nboard = \"" + board + "\"\n" + keys).message;
+    };
+    const auto four = "constellations = [\"gps\", \"galileo\", \"beidou\", \"glonass\"]";
+    const auto systems = [](const std::string& board) {
+        return StartsWith("test.toml:3:18: receiver.constellations: " + board + " itself would refuse these systems");
+    };
+    EXPECT_THAT(told("ublox-m8", four), systems("ublox-m8"));
+    EXPECT_THAT(told("ublox-m10", four), systems("ublox-m10"));
+    EXPECT_THAT(told("ublox-m8", "constellations = [\"gps\", \"glonass\", \"beidou\"]"), systems("ublox-m8"));
+    EXPECT_THAT(told("ublox-m8", "constellations = [\"sbas\"]"), systems("ublox-m8"));
+    EXPECT_EQ(told("ublox-m8", "baud = 921600"),
+              "test.toml:3:8: receiver.baud: CFG-UART1-BAUDRATE is 921600, which ublox-m8 itself would refuse");
+    EXPECT_THAT(told("ublox-m9", "baud = 1000000"), StartsWith("test.toml:3:8: receiver.baud: "));
+    EXPECT_EQ(refusal("[[receiver]]\nbaud = 921600").code, ErrorCode::usage);
+    for (const auto* board : {"ublox-m9", "ublox-f9p", "septentrio-sbf", "nmea-generic"})
+        EXPECT_EQ(told(board, four), "accepted") << board;
+    EXPECT_EQ(told("ublox-m8", "constellations = [\"gps\", \"galileo\", \"glonass\"]"), "accepted");
+    EXPECT_EQ(told("ublox-m8", "baud = 460800"), "accepted");
+    EXPECT_EQ(told("nmea-generic", "baud = 1000000"), "accepted") << "of a maker whose speeds are not known";
+    for (const auto* board : {"ublox-6", "ublox-m8", "ublox-m9", "ublox-m10", "ublox-f10", "ublox-f9p"})
+        for (const auto* keys : {"rate_hz = 100", "dual_frequency = true", "static_hold_mps = 100",
+                                 "dynamic_model = \"airborne-4g\"", "constellations = [\"gps\"]"})
+            EXPECT_EQ(told(board, keys), "accepted") << board << ": " << keys;
+}
+
 TEST(Assembly, WhatAKeyIsRefusedForHasItsPlaceInTheFile) {
     const auto told = [](const std::string& text) { return refusal(text).message; };
     EXPECT_THAT(told("[[receiver]]\nboard = \"ublox-m7\""),

@@ -26,7 +26,8 @@ using test::FourSystems;
 using test::TemporaryFolder;
 
 constexpr const char* receiver_of_four =
-    "[[receiver]]\nconstellations = [\"gps\", \"galileo\", \"beidou\", \"glonass\"]\ndual_frequency = true\n";
+    "[[receiver]]\nboard = \"ublox-m9\"\nconstellations = [\"gps\", \"galileo\", \"beidou\", "
+    "\"glonass\"]\ndual_frequency = true\n";
 
 class ModernRecording : public testing::Test {
 protected:
@@ -108,7 +109,7 @@ TEST_F(ModernRecording, ObservationsReadBackAreThoseOfTheReceiver) {
     EXPECT_EQ(file->skipped, SkippedObservations{});
     EXPECT_EQ(file->interval, Seconds(1));
     EXPECT_EQ(file->leap_seconds, 18);
-    EXPECT_EQ(file->receiver.substr(0, 8), "ublox-m8");
+    EXPECT_EQ(file->receiver.substr(0, 8), "ublox-m9");
     ASSERT_TRUE(file->approximate_position);
     EXPECT_LT((*file->approximate_position - traces[0].truth.position).length().value(), 1e-3);
     ASSERT_EQ(file->epochs.size(), traces.size());
