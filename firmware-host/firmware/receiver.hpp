@@ -113,7 +113,8 @@ public:
     /// none in battery-backed memory. To be called before start(). Fails with `usage` for a board of another maker, an
     /// item that the receiver does not have, a value that it would refuse, and values that it would refuse together.
     Result<void> configure(const std::map<std::uint32_t, std::uint64_t>& items);
-    /// Takes `ReceiverOptions::stored`. Fails with `input` for a text that is none; @param name for the message
+    /// Takes a persistent_text(). Fails with `input` for a text that is none, an item that the receiver does not have
+    /// and, of a u-blox receiver, values that it would refuse alone or together; @param name for the message
     Result<void> restore(const std::string& text, const std::string& name);
 
 private:

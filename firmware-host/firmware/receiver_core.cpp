@@ -34,6 +34,11 @@ std::vector<PortUnit> make_units(const BoardProfile& board, const ConfigStore& s
     return units;
 }
 
+std::string do_not_go_together(const BoardProfile& board) {
+    return "these items do not go together: " + board.name +
+           " would refuse them, as no system that gives a position, too many, or signals that exclude each other";
+}
+
 }  // namespace
 
 Receiver::Core::Core(BoardProfile board, const ReceiverOptions& options)
@@ -84,17 +89,23 @@ Result<void> Receiver::Core::configure(const std::map<std::uint32_t, std::uint64
                         fmt::format("{} is {}, which {} itself would refuse", name, value, board_.name));
         after.set(has_flash(board_) ? in_flash : in_battery, id, value);
     }
-    if (spoils_start(board_, store_, after))
-        return fail(ErrorCode::usage, "these items do not go together: " + board_.name +
-                                          " would refuse them, as no system that gives a position, too many, or "
-                                          "signals that exclude each other");
+    if (spoils_start(board_, store_, after)) return fail(ErrorCode::usage, do_not_go_together(board_));
     store_ = std::move(after);
     begin_as_stored();
     return {};
 }
 
 Result<void> Receiver::Core::restore(const std::string& text, const std::string& name) {
-    if (auto restored = store_.restore(text, name); !restored) return restored;
+    ConfigStore after = store_;
+    // Settings that a u-blox receiver would refuse, it would go on to refuse with every later one.
+    const bool judges = board_.personality == Personality::ublox;
+    const auto allows = [&](std::uint32_t key, std::uint64_t value) {
+        return !judges || is_in_range(board_, key, value);
+    };
+    if (auto restored = after.restore(text, name, allows); !restored) return restored;
+    if (judges && spoils_start(board_, store_, after))
+        return fail(ErrorCode::input, name + ": " + do_not_go_together(board_));
+    store_ = std::move(after);
     begin_as_stored();
     return {};
 }

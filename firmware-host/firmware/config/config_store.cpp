@@ -29,7 +29,8 @@ struct StoredLine {
 };
 
 // One line "battery CFG-RATE-MEAS 200"; a failure says what is wrong with it.
-tl::expected<StoredLine, std::string> parse_stored_line(std::string_view line, const ConfigValues& known) {
+tl::expected<StoredLine, std::string> parse_stored_line(std::string_view line, const ConfigValues& known,
+                                                        const ConfigStore::Judge& allows) {
     const std::string_view layer = next_word(line), name = next_word(line), number = next_word(line);
     if (layer != "battery" && layer != "flash")
         return tl::make_unexpected("layer '" + std::string(layer) + "'; expected battery or flash");
@@ -43,6 +44,9 @@ tl::expected<StoredLine, std::string> parse_stored_line(std::string_view line, c
         return tl::make_unexpected(std::string(name) + " is '" + std::string(number) +
                                    "'; expected a whole number of " + std::to_string(config_value_size(key->id)) +
                                    " bytes");
+    if (allows && !allows(key->id, stored.value))
+        return tl::make_unexpected(std::string(name) + " is " + std::string(number) +
+                                   ", which this receiver itself would refuse");
     if (!next_word(line).empty()) return tl::make_unexpected("text after the value of " + std::string(name));
     return stored;
 }
@@ -142,14 +146,14 @@ std::string ConfigStore::persistent_text() const {
     return text;
 }
 
-Result<void> ConfigStore::restore(std::string_view text, std::string_view name) {
+Result<void> ConfigStore::restore(std::string_view text, std::string_view name, const Judge& allows) {
     ConfigValues battery, flash;
     for (int number = 1; !text.empty(); ++number) {
         const std::size_t end = std::min(text.find('\n'), text.size());
         const std::string_view line = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
         if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-        const auto stored = parse_stored_line(line, factory_);
+        const auto stored = parse_stored_line(line, factory_, allows);
         if (!stored)
             return fail(ErrorCode::input, std::string(name) + ":" + std::to_string(number) + ": " + stored.error());
         (stored->flash ? flash : battery)[stored->key] = stored->value;

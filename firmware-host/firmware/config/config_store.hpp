@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -64,8 +65,10 @@ public:
 
     /// Battery-backed layer and flash as text, a line "layer CFG-NAME value" each, to outlive the process.
     [[nodiscard]] std::string persistent_text() const;
-    /// Takes them from such a text, then reload()s. Fails with `input`, naming the line.
-    Result<void> restore(std::string_view text, std::string_view name);
+    /// Whether an item may have a value.
+    using Judge = std::function<bool(std::uint32_t key, std::uint64_t value)>;
+    /// Takes them from such a text, then reload()s. Fails with `input`, naming the line. @param allows none: any value
+    Result<void> restore(std::string_view text, std::string_view name, const Judge& allows = {});
 
 private:
     ConfigValues factory_, ram_, battery_, flash_;

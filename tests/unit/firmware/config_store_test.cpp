@@ -138,6 +138,18 @@ TEST(ConfigStore, RefusesATextThatIsNoneOfItsOwnAndKeepsWhatItHas) {
     EXPECT_THAT(refusal("flash CFG-RATE-MEAS 1 2"), HasSubstr("text after the value"));
 }
 
+TEST(ConfigStore, RefusesWhatItsJudgeDoesNotAllow) {
+    ConfigStore store = small_store();
+    const auto allows = [](std::uint32_t key, std::uint64_t value) { return key != period_item || value >= 100; };
+    const auto read = store.restore("flash CFG-RATE-MEAS 100\nbattery CFG-RATE-MEAS 99", "state.txt", allows);
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().code, ErrorCode::input);
+    EXPECT_EQ(read.error().message, "state.txt:2: CFG-RATE-MEAS is 99, which this receiver itself would refuse");
+    EXPECT_EQ(store.stored(ConfigLayer::flash, period_item), std::nullopt);
+    EXPECT_TRUE(store.restore("flash CFG-RATE-MEAS 100", "state.txt", allows));
+    EXPECT_EQ(store.value(period_item), 100U);
+}
+
 // Whatever is done to the layers, RAM holds every item of the factory, a start gives battery over flash over factory,
 // and the text restores both layers.
 TEST(ConfigStore, LayersKeepTheirLawsUnderAnyOperations) {

@@ -51,6 +51,27 @@ TEST(Receiver, RoundsThePeriodToMillisecondsWithinTheBoardsRate) {
     EXPECT_EQ(period(1e-9), 65535ms);
 }
 
+// With them it would refuse every setting from then on.
+TEST(Receiver, RefusesStoredSettingsThatItWouldRefuse) {
+    Receiver receiver(sample_ublox());
+    const auto refusal = [&](const std::string& text) {
+        const auto restored = receiver.restore(text, "state");
+        return restored ? std::string("taken") : restored.error().message;
+    };
+    EXPECT_EQ(refusal("flash CFG-RATE-MEAS 500\nflash CFG-NAVSPG-DYNMODEL 99\n"),
+              "state:2: CFG-NAVSPG-DYNMODEL is 99, which this receiver itself would refuse");
+    EXPECT_THAT(refusal("battery CFG-SIGNAL-GPS_ENA 0\nbattery CFG-SIGNAL-GAL_ENA 0\nbattery CFG-SIGNAL-BDS_ENA 0\n"
+                        "battery CFG-SIGNAL-GLO_ENA 0\n"),
+                testing::AllOf(StartsWith("state: "), testing::HasSubstr("do not go together")));
+    EXPECT_EQ(receiver.settings().navigation_period, 1s) << "nothing of a refused text is taken";
+    EXPECT_EQ(refusal("flash CFG-RATE-MEAS 500\n"), "taken");
+
+    BoardProfile board = sample_ublox();
+    board.personality = Personality::mtk;
+    Receiver other(std::move(board));
+    EXPECT_TRUE(other.restore("flash CFG-NAVSPG-DYNMODEL 99\n", "state")) << "ranges are of u-blox";
+}
+
 TEST(Receiver, TakesAPeriodThatLeavesOutTheRestOfADivision) {
     BoardProfile board = sample_board(NmeaVersion::v4_0, {gps});
     board.max_rate_hz = 18;
