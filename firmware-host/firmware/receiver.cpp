@@ -47,5 +47,8 @@ Result<void> Receiver::configure(const std::map<std::uint32_t, std::uint64_t>& i
     return core_->configure(items);
 }
 Result<void> Receiver::restore(const std::string& text, const std::string& name) { return core_->restore(text, name); }
+void Receiver::remember(const Geodetic& position, Metres geoid_undulation) {
+    core_->remember(position, geoid_undulation);
+}
 
 }  // namespace skyloop::firmware

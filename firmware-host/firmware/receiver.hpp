@@ -116,6 +116,8 @@ public:
     /// Takes a persistent_text(). Fails with `input` for a text that is none, an item that the receiver does not have
     /// and, of a u-blox receiver, values that it would refuse alone or together; @param name for the message
     Result<void> restore(const std::string& text, const std::string& name);
+    /// Where it was when it was last on, which a warm or hot start() knows. To be called before that.
+    void remember(const Geodetic& position, Metres geoid_undulation);
 
 private:
     class Core;

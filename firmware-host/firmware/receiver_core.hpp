@@ -40,6 +40,7 @@ public:
     [[nodiscard]] const PortUnit* unit(PortId port) const { return find_unit(units_, port); }
     Result<void> configure(const std::map<std::uint32_t, std::uint64_t>& items);
     Result<void> restore(const std::string& text, const std::string& name);
+    void remember(const Geodetic& position, Metres undulation) { tracker_.remember(position, undulation); }
 
     [[nodiscard]] const Outbox& outbox() const { return outbox_; }
     [[nodiscard]] const ConfigStore& store() const { return store_; }

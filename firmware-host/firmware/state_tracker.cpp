@@ -105,6 +105,7 @@ void StateTracker::start(GpsTime now, const Forgotten& forgotten, bool running) 
         state_.position_known = state_.only_place_known = before.position_known;
     }
     last_fix_ = place_of(keeps_place ? last_fix_ : Fix());
+    if (state_.position_known) state_.epoch.fix = last_fix_;  // for polls before the first epoch
     started_ = running ? std::nullopt : std::optional(now);
     if (running)
         acquired_at_.reset();

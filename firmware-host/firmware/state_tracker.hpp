@@ -31,6 +31,12 @@ public:
         state_.time.time = state_.time.date = state_.time.leap_seconds = true;
     }
 
+    /// Where it was when it was last on: for the next start().
+    void remember(const Geodetic& position, Metres geoid_undulation) {
+        last_fix_.position = position;
+        last_fix_.geoid_undulation = geoid_undulation;
+        state_.ever_had_fix = state_.position_known = true;
+    }
     /// The receiver starts, with what it knew and has not forgotten. An earlier start that has not come to a fix yet
     /// and had forgotten more goes on beneath. @param running it has been on for long, and knows all
     void start(GpsTime now, const Forgotten& forgotten, bool running = false);

@@ -270,12 +270,13 @@ Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSet
             ? sensor_effects_of(scenario, setup)
             : modern_effects_of(scenario, *setup.navigation, {setup.geoid, setup.start, setup.data, setup.gas_losses});
     if (!effects) return fail(effects.error());
+    auto path = make_antenna_path(scenario, setup);
+    const auto last_place = place_before_start(scenario, setup.receiver, path->at(setup.start));
     FixMaker fix_maker = scenario.model.sensor_model ? FixMaker(make_error_model(error_model_settings(scenario, setup)))
-                                                     : FixMaker(measuring_receiver(scenario, setup));
+                                                     : FixMaker(measuring_receiver(scenario, setup, last_place));
     const RayTracedScene* city = add_city(*effects, scenario, setup);
     add_obstacles(*effects, setup);
-    return Simulation(
-        {make_antenna_path(scenario, setup), setup.navigation, std::move(*effects), std::move(fix_maker), city});
+    return Simulation({std::move(path), setup.navigation, std::move(*effects), std::move(fix_maker), city});
 }
 
 Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation,

@@ -49,4 +49,12 @@ std::unique_ptr<Trajectory> make_antenna_path(const Scenario& scenario, std::siz
     return std::make_unique<LeverArm>(std::move(vehicle), offset, heading);
 }
 
+std::optional<Geodetic> place_before_start(const Scenario& scenario, std::size_t receiver, const TruthState& now) {
+    const ReceiverEntry& entry = scenario.receivers.at(receiver);
+    if (entry.start == StartKind::cold || (entry.start == StartKind::hot && !entry.power_up)) return std::nullopt;
+    const auto* live = std::get_if<LiveSettings>(&trajectory_of(scenario, receiver));
+    if (live != nullptr && !live->at) return std::nullopt;
+    return now.geodetic;
+}
+
 }  // namespace skyloop

@@ -43,14 +43,17 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
     return modern_effects(settings.propagation, context);
 }
 
-MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationSetup& setup) {
+MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationSetup& setup,
+                                     const std::optional<Geodetic>& last_place) {
     ModernSettings settings = effective(scenario.model.modern);
     // Satellites broadcast an ionosphere even where the navigation data has lost it or there is none.
     settings.navigation.corrections.default_ionosphere = true;
     settings.navigation.ephemeris_collection =
         settings.ephemeris_collection.value_or(std::max(setup.warm_start - warm_search, Seconds(0)));
+    NavigationKnowledge knowledge{setup.navigation.get(), setup.geoid, LeapSeconds::announced()};
+    if (last_place) knowledge.last_place = to_ecef(*last_place);
     return {MeasurementEngine(settings.measurement, receiver_seed(scenario.run.seed, setup.receiver)),
-            NavigationEngine(settings.navigation, {setup.navigation.get(), setup.geoid, LeapSeconds::announced()})};
+            NavigationEngine(settings.navigation, knowledge)};
 }
 
 }  // namespace skyloop

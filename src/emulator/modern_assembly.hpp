@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "skyloop/emulator/assembly.hpp"
@@ -22,7 +23,8 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
                                                                           const NavigationSource& navigation,
                                                                           const WorldData& world);
 
-/// The receiver's own part. Navigation and geoid outlive it.
-MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationSetup& setup);
+/// The receiver's own part. Navigation and geoid outlive it. @param last_place of place_before_start()
+MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationSetup& setup,
+                                     const std::optional<Geodetic>& last_place);
 
 }  // namespace skyloop

@@ -175,6 +175,15 @@ SimulationSetup simulation_setup(const SharedParts& shared, std::size_t index, c
             shared.gas_losses};
 }
 
+void remember_place(const SharedParts& shared, std::size_t index, const Simulation& simulation,
+                    firmware::Receiver& receiver) {
+    const auto place = place_before_start(shared.scenario, index, simulation.truth_at(shared.start));
+    if (!place) return;
+    const Metres undulation =
+        shared.geoid != nullptr ? shared.geoid->undulation(place->latitude, place->longitude) : Metres(0);
+    receiver.remember(*place, undulation);
+}
+
 Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings) {
     const Scenario& scenario = shared.scenario;
     const ReceiverEntry& entry = scenario.receivers.at(index);
@@ -203,6 +212,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
             return fail(restored.error());
     auto simulation = make_simulation(scenario, simulation_setup(shared, index, receiver));
     if (!simulation) return fail(simulation.error());
+    remember_place(shared, index, *simulation, receiver);
     Station::Parts parts{std::move(*simulation), std::move(receiver), {}, {}};
     parts.name = receiver_name(scenario, index);
     parts.seed = receiver_seed(scenario.run.seed, index);

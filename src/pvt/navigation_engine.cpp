@@ -53,7 +53,8 @@ public:
           monitor_(parameters.integrity),
           smoother_(parameters.filter.code_smoothing),
           filter_(parameters.filter),
-          report_(*knowledge.broadcast, received_) {}
+          report_(*knowledge.broadcast, received_),
+          position_(knowledge.last_place) {}
 
     Fix solve(const Observations& observations, const ReceiverSettings& settings);
     [[nodiscard]] bool velocity_known() const { return velocity_known_; }

@@ -101,6 +101,10 @@ std::unique_ptr<Trajectory> make_antenna_path(const Scenario& scenario, const Si
 /// The same on a vehicle that goes another way than the scenario says.
 std::unique_ptr<Trajectory> make_antenna_path(const Scenario& scenario, std::size_t receiver,
                                               std::unique_ptr<Trajectory> vehicle);
+/// Where a receiver was when it was last on, which it knows at a warm start of the run and at a hot one of `power_up`:
+/// where it is. Nothing at other starts, of which one has been on for long, and where a live source is yet to tell.
+/// @param now the truth at the start
+std::optional<Geodetic> place_before_start(const Scenario& scenario, std::size_t receiver, const TruthState& now);
 
 /// What the simulation of one antenna needs besides the scenario.
 struct SimulationSetup {

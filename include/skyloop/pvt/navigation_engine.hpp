@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "skyloop/flow/fix.hpp"
 #include "skyloop/flow/observations.hpp"
 #include "skyloop/flow/receiver_settings.hpp"
+#include "skyloop/geo/geodetic.hpp"
 #include "skyloop/geo/geoid.hpp"
 #include "skyloop/gnss/navigation_source.hpp"
 #include "skyloop/pvt/navigation_parameters.hpp"
@@ -20,6 +22,8 @@ struct NavigationKnowledge {
     const Geoid* geoid = nullptr;                 ///< may be absent
     LeapSeconds leap_seconds = LeapSeconds::announced();
     TransmitterSource* transmitters = nullptr;  ///< orbits and clocks in place of those of the records; may be absent
+    /// Where it was when it was last on, which a start knows that is not cold; nothing: it has never been on.
+    std::optional<Position<Ecef>> last_place{};
 };
 
 /// Solves position, velocity and time, watches the residuals, and smooths.

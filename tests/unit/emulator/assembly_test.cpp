@@ -413,6 +413,21 @@ TEST(Assembly, AFaultThatWillShowNothingIsAWarning) {
     EXPECT_THAT(told("\"clock_drift\""), HasSubstr("in virtual time nothing does"));
 }
 
+TEST(Assembly, AWarmStartKnowsWhereItIs) {
+    for (const char* keys : {"start = \"warm\"", "start = \"warm\"\npower_up = true", "power_up = true"}) {
+        const Assembly run = assembled("[[receiver]]\n" + std::string(keys));
+        const firmware::NavigationState& state = run.emulator->receiver().state();
+        EXPECT_TRUE(state.position_known && state.ever_had_fix && state.only_place_known) << keys;
+        const TruthState truth = run.emulator->simulation().truth_at(run.start);
+        EXPECT_LT((to_ecef(state.epoch.fix.position) - truth.position).length().value(), 1e-3) << keys;
+        EXPECT_FALSE(state.epoch.fix.has_position()) << "but not yet as a fix";
+    }
+    for (const char* keys : {"start = \"cold\"", "start = \"cold\"\npower_up = true"}) {
+        const Assembly run = assembled("[[receiver]]\n" + std::string(keys));
+        EXPECT_FALSE(run.emulator->receiver().state().position_known) << keys;
+    }
+}
+
 TEST(Assembly, OnlyTheModernModelMeasures) {
     for (const std::string_view name : model_names())
         EXPECT_EQ(assembled("[model]\nname = \"" + std::string(name) + "\"").emulator->simulation().measures(),

@@ -51,6 +51,25 @@ TEST(Receiver, RoundsThePeriodToMillisecondsWithinTheBoardsRate) {
     EXPECT_EQ(period(1e-9), 65535ms);
 }
 
+TEST(Receiver, RemembersItsPlaceUnlessItStartsCold) {
+    const auto started = [](StartKind kind) {
+        ReceiverOptions options;
+        options.settings.start = kind;
+        Receiver receiver(sample_ublox(), options);
+        receiver.remember(Geodetic::degrees(47, 8, 500), Metres(48));
+        receiver.start(epoch_at(0, 1s).fix.time);
+        return receiver.kept_state();
+    };
+    const auto warm = started(StartKind::warm);
+    EXPECT_TRUE(warm->ever_had_fix && warm->position_known && warm->only_place_known);
+    EXPECT_EQ(warm->epoch.fix.position.latitude, Angle::degrees(47));
+    EXPECT_EQ(warm->epoch.fix.geoid_undulation, Metres(48));
+    EXPECT_EQ(warm->epoch.fix.type, FixType::none);
+    const auto cold = started(StartKind::cold);
+    EXPECT_FALSE(cold->ever_had_fix || cold->position_known);
+    EXPECT_EQ(cold->epoch.fix.position.latitude, Angle());
+}
+
 // With them it would refuse every setting from then on.
 TEST(Receiver, RefusesStoredSettingsThatItWouldRefuse) {
     Receiver receiver(sample_ublox());

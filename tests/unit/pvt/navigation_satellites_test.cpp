@@ -146,6 +146,25 @@ TEST(NavigationEngine, HearsTheSatellitesBeforeItUsesThem) {
     }
 }
 
+TEST(NavigationEngine, LooksUpTheSkyOverItsLastPlaceUnlessItStartsCold) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, {Constellation::gps});
+    const TrueReceiver now = receiver_at(antenna, sample_time);
+    NavigationKnowledge knowledge{&sky};
+    knowledge.last_place = Position<Ecef>(now.position);
+    for (const StartKind start : {StartKind::warm, StartKind::cold}) {
+        NavigationEngine engine(plain(FilterKind::smoothed), knowledge);
+        ReceiverSettings settings;
+        settings.start = start;
+        const Fix fix = engine.solve(measure(sky, now), settings);
+        EXPECT_EQ(fix.type, FixType::none) << "the records are still to come";
+        ASSERT_FALSE(fix.satellites.empty());
+        for (const SatelliteStatus& s : fix.satellites) {
+            if (!s.cn0) continue;
+            EXPECT_EQ(s.elevation > Angle(), start == StartKind::warm) << to_string(s.id);
+        }
+    }
+}
+
 TEST(NavigationEngine, ForgetsAtARestartAndNotAtAHotOne) {
     const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
     NavigationEngine engine(plain(FilterKind::smoothed), {&sky});
