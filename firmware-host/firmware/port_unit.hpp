@@ -18,13 +18,6 @@
 
 namespace skyloop::firmware {
 
-/// Finds what clients send: UBX, sentences and RTCM 3.
-inline StreamSplitter command_splitter() {
-    StreamProtocols protocols;
-    protocols.impatient = true;
-    return StreamSplitter(protocols);
-}
-
 /// The periodic messages that the configuration lets out of a port.
 struct ConfiguredMessages {
     struct Message {
@@ -42,11 +35,13 @@ struct PortUnit {
     }
     PortId id;
     Port transmit;
-    StreamSplitter splitter = command_splitter();
+    StreamSplitter splitter{};  ///< finds what clients send: UBX, sentences and RTCM 3
     CommandLineReader command_line{};
     PortStatus status;
     PortTotals totals{};
     GpsTime last_input{};
+    /// Since when something that is not yet whole holds back something whole inside it, and when it gives way to that.
+    std::optional<GpsTime> held_since{}, gives_way_at{};
     std::uint32_t configured_baud = 0;  ///< to which it has been told to go
     ConfiguredMessages configured;
     std::optional<std::int64_t> told_pulse{};  ///< of the last TIM-TP

@@ -63,6 +63,8 @@ private:
 
     // Input.
     void give_up_unfinished(PortUnit& unit, GpsTime now);
+    void hold_back(PortUnit& unit, GpsTime now);
+    void give_way(PortUnit& unit, GpsTime now);
     void work_off(PortUnit& unit, const std::vector<StreamPiece>& pieces, GpsTime now);
     void dispatch(PortUnit& unit, const StreamPiece& piece, GpsTime now);
     void dispatch_ubx(PortUnit& unit, ByteSpan frame, GpsTime now);

@@ -163,24 +163,31 @@ std::vector<StreamPiece> StreamSplitter::feed(ByteSpan bytes) {
         const std::size_t portion = std::min(bytes.size(), splitter_ubx_limit);
         pending_.insert(pending_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(portion));
         bytes = bytes.subspan(portion);
-        search(false, pieces);
+        search({false, protocols_.impatient}, pieces);
     }
+    return pieces;
+}
+
+std::vector<StreamPiece> StreamSplitter::give_way() {
+    std::vector<StreamPiece> pieces;
+    search({false, true}, pieces);
     return pieces;
 }
 
 std::vector<StreamPiece> StreamSplitter::finish() {
     std::vector<StreamPiece> pieces;
-    search(true, pieces);
+    search({true, false}, pieces);
     flush_noise(pieces);
     return pieces;
 }
 
-void StreamSplitter::search(bool at_end, std::vector<StreamPiece>& pieces) {
+void StreamSplitter::search(Unfinished unfinished, std::vector<StreamPiece>& pieces) {
     const ByteSpan bytes(pending_);
     std::size_t at = 0;
     while (at < bytes.size()) {
         const Candidate found = piece_at(bytes.subspan(at), protocols_);
-        if (found.verdict == Candidate::Verdict::unfinished && !at_end && !is_overtaken(bytes.subspan(at))) break;
+        const bool waits = !unfinished.is_nothing && !(unfinished.gives_way && holds_whole_in(bytes.subspan(at)));
+        if (found.verdict == Candidate::Verdict::unfinished && waits) break;
         if (found.verdict == Candidate::Verdict::bad) {
             ++counts_.bad[index_of(found.kind)];
             if (found.kind == StreamKind::nmea && !ends_in_checksum(bytes.subspan(at))) ++counts_.unchecked;
@@ -200,9 +207,10 @@ void StreamSplitter::search(bool at_end, std::vector<StreamPiece>& pieces) {
     pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
+bool StreamSplitter::holds_whole() const { return holds_whole_in(pending_); }
+
 // Whether a whole UBX frame or sentence stands behind the first byte of something unfinished.
-bool StreamSplitter::is_overtaken(ByteSpan unfinished) const {
-    if (!protocols_.impatient) return false;
+bool StreamSplitter::holds_whole_in(ByteSpan unfinished) const {
     for (std::size_t i = 1; i < unfinished.size(); ++i) {
         const Candidate inner = piece_at(unfinished.subspan(i), protocols_);
         if (inner.verdict == Candidate::Verdict::whole && inner.kind != StreamKind::rtcm3) return true;

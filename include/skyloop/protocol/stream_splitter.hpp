@@ -28,8 +28,8 @@ inline constexpr std::size_t stream_kind_count = 8;
 struct StreamProtocols {
     bool ubx = true, nmea = true, rtcm3 = true;
     bool msp = false, mavlink = false, sbf = false;
-    /// What is not yet whole is given up as soon as a whole UBX frame or sentence stands inside it. For receivers: a
-    /// false beginning must not swallow the commands that follow, and no client sends one frame inside another.
+    /// What is not yet whole is given up as soon as a whole UBX frame or sentence stands inside it, as by give_way().
+    /// For who knows no time, and would rather lose a frame that holds another than wait for a false beginning.
     bool impatient = false;
 };
 
@@ -68,11 +68,21 @@ public:
     std::vector<StreamPiece> feed(ByteSpan bytes);
     /// Decides what is left as if nothing followed: at the end, or after a silence that a frame does not have.
     std::vector<StreamPiece> finish();
+    /// Whether a whole UBX frame or sentence stands inside something that is not yet whole: either its payload, or what
+    /// follows a false beginning.
+    [[nodiscard]] bool holds_whole() const;
+    /// Decides for the latter: the pieces that then come out.
+    std::vector<StreamPiece> give_way();
     [[nodiscard]] const StreamCounts& counts() const { return counts_; }
 
 private:
-    void search(bool at_end, std::vector<StreamPiece>& pieces);
-    [[nodiscard]] bool is_overtaken(ByteSpan unfinished) const;
+    // What becomes of something that is not yet whole.
+    struct Unfinished {
+        bool is_nothing = false;  // nothing follows
+        bool gives_way = false;   // to something whole inside it
+    };
+    void search(Unfinished unfinished, std::vector<StreamPiece>& pieces);
+    [[nodiscard]] bool holds_whole_in(ByteSpan unfinished) const;
     void keep_noise(std::uint8_t byte, std::vector<StreamPiece>& pieces);
     void flush_noise(std::vector<StreamPiece>& pieces);
 

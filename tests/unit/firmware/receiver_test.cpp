@@ -12,6 +12,8 @@
 #include "sample_epochs.hpp"
 #include "skyloop/base/random.hpp"
 #include "skyloop/protocol/nmea_sentence.hpp"
+#include "skyloop/protocol/stream_splitter.hpp"
+#include "skyloop/protocol/ubx_frame.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -34,6 +36,73 @@ Epoch epoch_at(int index, Nanoseconds period) {
     fix.time += index * period;
     add_satellites(fix, gps, 1, 12);
     return {fix};
+}
+
+constexpr UbxMessageId mon_ver_poll{0x0A, 0x04}, refusal_id{0x05, 0x00};
+
+std::size_t frames_of(UbxMessageId id, ByteSpan bytes) {
+    std::size_t count = 0;
+    for (const StreamPiece& piece : StreamSplitter().feed(bytes))
+        count += piece.kind == StreamKind::ubx && parse_frame(piece.bytes)->id == id ? 1 : 0;
+    return count;
+}
+
+// A u-blox receiver that has been on for long, and what a client writes to it and hears of it.
+struct Asked {
+    Asked() { receiver.start(now); }
+    void write(ByteSpan bytes) { receiver.input(PortId::uart1, bytes, now); }
+    void wait(Nanoseconds length) {
+        now += length;
+        const Bytes sent = sent_by(receiver, now);
+        heard.insert(heard.end(), sent.begin(), sent.end());
+    }
+    Receiver receiver{sample_ublox()};
+    GpsTime now = epoch_at(0, 1s).fix.time;
+    Bytes heard;
+};
+
+// RECEIVER.md 1.3: only what fails its checksum is searched once more.
+TEST(Receiver, ExecutesAFrameThatHoldsAnotherAndNotThatOne) {
+    Asked asked;
+    Bytes payload{0, 0, 0, 0};  // of CFG-VALGET; keys that no receiver has
+    const Bytes poll = encode_frame(mon_ver_poll, {});
+    payload.insert(payload.end(), poll.begin(), poll.end());
+    for (const std::uint8_t byte : encode_frame(UbxMessageId{0x06, 0x8B}, payload)) {
+        asked.write(ByteSpan(&byte, 1));
+        asked.wait(1ms);
+    }
+    asked.wait(3s);
+    EXPECT_EQ(frames_of(refusal_id, asked.heard), 1U);
+    EXPECT_EQ(frames_of(mon_ver_poll, asked.heard), 0U);
+}
+
+TEST(Receiver, IsHeldByAFalseBeginningForAMomentOnly) {
+    const Bytes false_beginning{0xB5, 0x62, 0x06, 0x8A, 0x00, 0x08};  // of 2048 bytes
+    const Bytes poll = encode_frame(mon_ver_poll, {});
+    Asked waiting;
+    waiting.write(false_beginning);
+    waiting.write(poll);
+    waiting.wait(99ms);
+    EXPECT_EQ(frames_of(mon_ver_poll, waiting.heard), 0U);
+    waiting.wait(100ms);
+    EXPECT_EQ(frames_of(mon_ver_poll, waiting.heard), 1U);
+
+    Asked hurrying;  // never silent for so long
+    hurrying.write(false_beginning);
+    for (int k = 0; k < 26; ++k) {
+        hurrying.write(poll);
+        hurrying.wait(50ms);
+        if (k == 18) {
+            EXPECT_EQ(frames_of(mon_ver_poll, hurrying.heard), 0U);
+        }
+    }
+    EXPECT_GE(frames_of(mon_ver_poll, hurrying.heard), 5U);
+
+    Asked late;  // looked at seldom: its answer was due all the same
+    late.write(false_beginning);
+    late.write(poll);
+    late.wait(10s);
+    EXPECT_EQ(frames_of(mon_ver_poll, late.heard), 1U);
 }
 
 TEST(Receiver, RoundsThePeriodToMillisecondsWithinTheBoardsRate) {

@@ -94,6 +94,26 @@ TEST(StreamSplitter, DoesNotCareHowTheStreamIsCut) {
         EXPECT_EQ(split(stream, step), whole) << step;
 }
 
+// RECEIVER.md 1.3: what is whole is not searched once more.
+TEST(StreamSplitter, AFrameThatHoldsAnotherIsOneFrame) {
+    const Bytes sentence = to_bytes("$PUBX,04*37\r\n");
+    const Bytes outer = encode_frame(UbxMessageId{0x06, 0x34}, sentence);
+    for (const std::size_t step : {1u, 5u, 100u})
+        EXPECT_EQ(split(outer, step), (std::vector<StreamPiece>{{StreamKind::ubx, outer}})) << step;
+    StreamSplitter splitter;
+    EXPECT_TRUE(splitter.feed(ByteSpan(outer).first(6 + sentence.size() - 1)).empty());
+    EXPECT_FALSE(splitter.holds_whole());
+    EXPECT_TRUE(splitter.feed(ByteSpan(outer).subspan(6 + sentence.size() - 1, 1)).empty());
+    EXPECT_TRUE(splitter.holds_whole());
+    EXPECT_EQ(splitter.give_way(),
+              (std::vector<StreamPiece>{{StreamKind::noise, Bytes(outer.begin(), outer.begin() + 6)},
+                                        {StreamKind::nmea, sentence}}))
+        << "for who knows better: a false beginning";
+    EXPECT_FALSE(splitter.holds_whole());
+    StreamSplitter impatient(StreamProtocols{.impatient = true});
+    EXPECT_EQ(impatient.feed(ByteSpan(outer).first(6 + sentence.size())).size(), 2U);
+}
+
 template <class Message>
 bool returns(const UbxFrameView& frame, bool& known) {
     if (frame.id != Message::message_id) return false;
