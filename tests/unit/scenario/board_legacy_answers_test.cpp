@@ -74,6 +74,15 @@ TEST(BoardLegacyAnswers, OfM10) {
     EXPECT_EQ(factory_answer("ublox-m10", 0x31).size(), 32U);
 }
 
+// ArduPilot's 3DR-Ublox.txt; RECEIVER.md 2.4.
+TEST(BoardLegacyAnswers, OfM8AndUblox6HaveTheirSecondUartOff) {
+    const Bytes off{2, 0, 0, 0, 0xC0, 8, 0, 0, 0x80, 0x25, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    EXPECT_EQ(factory_answer("ublox-m8", 0x00, {2}), off);
+    EXPECT_EQ(factory_answer("ublox-6", 0x00, {2}), off);
+    Bytes on{2, 0, 0, 0, 0xC0, 8, 0, 0, 0, 0x96, 0, 0, 0x23, 0, 3, 0, 0, 0, 0, 0};
+    EXPECT_EQ(factory_answer("ublox-m9", 0x00, {2}), on);
+}
+
 TEST(BoardLegacyAnswers, OfUblox6HaveTheShortFormOfCfgNmea) {
     EXPECT_EQ(factory_answer("ublox-6", 0x17), (Bytes{0, 0x23, 0, 2}));
 }
