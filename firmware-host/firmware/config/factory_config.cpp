@@ -151,16 +151,18 @@ struct AllowedRange {
     std::int64_t least, most;
 };
 
+constexpr std::uint32_t time_grid_1 = 0x2005000C, time_grid_2 = 0x20050017;  // CFG-TP-TIMEGRID_TP1, _TP2
+
 // Enumerations of the F9 interface description HPG 1.32, section 6.9; those of M8 lie within (RECEIVER.md 3.3, 3.5.1).
 constexpr AllowedRange allowed_ranges[] = {
     {key::tmode_mode, 0, 2},                                          // disabled, survey-in, fixed
     {legacy_key::tmode_pos_type, 0, 1},                               // CFG-TMODE-POS_TYPE: ECEF, LLH
     {legacy_key::tmode_geodetic, -900'000'000, 900'000'000},          // CFG-TMODE-LAT, 1e-7°
     {legacy_key::tmode_geodetic + 1, -1'800'000'000, 1'800'000'000},  // CFG-TMODE-LON
-    {0x2005000C, 0, 5},                                               // CFG-TP-TIMEGRID_TP1: UTC and five systems
-    {0x2005000C, 15, 15},                                             // local
-    {0x20050017, 0, 5},                                               // CFG-TP-TIMEGRID_TP2
-    {0x20050017, 15, 15},
+    {time_grid_1, 0, 5},                                              // UTC and five systems
+    {time_grid_1, 15, 15},                                            // local
+    {time_grid_2, 0, 5},
+    {time_grid_2, 15, 15},
     {0x20050023, 0, 1},                       // CFG-TP-PULSE_DEF: period, frequency
     {0x20050030, 0, 1},                       // CFG-TP-PULSE_LENGTH_DEF: ratio, length
     {0x20090009, 0, 2},                       // CFG-RTCM-DF003_IN_FILTER: disabled, relaxed, strict
@@ -233,6 +235,10 @@ std::optional<bool> is_in_range_of_board(const BoardProfile& board, std::uint32_
     // a wrist came with protocol 18.
     constexpr int newest_with_nmea_2 = 6, first_with_wrist = 8;
     constexpr std::uint64_t wrist = 9;
+    // Up to protocol 18 time has four systems: GPS, GLONASS, BeiDou and Galileo (M8 interface description, UBX-CFG-RATE
+    // and UBX-CFG-TP5).
+    constexpr int first_with_navic_time = 9;
+    constexpr std::uint64_t navic_time = 5;
     switch (key) {
         case key::rate_meas:
             return value >= static_cast<std::uint64_t>(board.least_measurement_period_ms);
@@ -247,6 +253,11 @@ std::optional<bool> is_in_range_of_board(const BoardProfile& board, std::uint32_
             return value == 21 || value == 23 || value == number_of(board.nmea_version);
         case key::navspg_dynmodel:
             if (value == wrist && board.identity.generation < first_with_wrist) return false;
+            return std::nullopt;
+        case key::rate_timeref:
+        case time_grid_1:
+        case time_grid_2:
+            if (value == navic_time && board.identity.generation < first_with_navic_time) return false;
             return std::nullopt;
         default:
             return std::nullopt;

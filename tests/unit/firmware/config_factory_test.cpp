@@ -137,6 +137,12 @@ TEST(ConfigRange, IsThatOfTheBoard) {
         EXPECT_TRUE(is_in_range(other, key::navspg_dynmodel, 8));
         EXPECT_EQ(is_in_range(other, key::navspg_dynmodel, 9), generation == 8) << "a wrist";
     }
+    for (const std::uint32_t reference : {key::rate_timeref, 0x2005000CU, 0x20050017U})
+        for (const int generation : {8, 9}) {
+            other.identity.generation = generation;
+            EXPECT_TRUE(is_in_range(other, reference, 4));
+            EXPECT_EQ(is_in_range(other, reference, 5), generation == 9) << "NavIC's time";
+        }
     other.identity.generation = 6;
     other.nmea_version = NmeaVersion::v4_0;
     EXPECT_TRUE(is_in_range(other, key::nmea_protver, 40)) << "as its factory has it";
