@@ -24,6 +24,7 @@ struct TimedPart {
     SpeedProfile profile;
     QuinticPiece corner;
     double heading = 0, turned = 0, turning_s = 0;  // by how much, how long
+    bool follows_course = true;                     // round a corner; else it looks where it did
 };
 
 class FlyThroughShape : public LocalShape {
@@ -50,7 +51,7 @@ LocalMotion FlyThroughShape::at(double t) const {
     LocalMotion m;
     if (part.kind == TimedPart::Kind::corner) {
         m = part.corner.at(inside);
-        m.heading = std::atan2(m.velocity.x(), m.velocity.y());
+        m.heading = part.follows_course ? std::atan2(m.velocity.x(), m.velocity.y()) : part.heading;
         return m;
     }
     m.position = part.from;
@@ -127,6 +128,8 @@ void FlyThroughPlanner::measure_corners() {
         corner.half_sine = (out.direction - in.direction).norm() / 2;
         corner.angle = 2 * std::asin(std::min(1.0, corner.half_sine));
         if (wish_.waypoints[i].hold > 0 || corner.angle > sharpest_cut || in.has_course != out.has_course) continue;
+        // Seen from above it may turn further than in space: on steep legs it would turn round within an instant.
+        if (std::abs(std::remainder(out.heading - in.heading, 2 * std::numbers::pi)) > sharpest_cut) continue;
         const double speed = std::min(in.limits.speed, out.limits.speed);
         corner.speed = speed;
         // At least a fifth of a second, so that faint corners do not become knocks.
@@ -188,6 +191,7 @@ std::shared_ptr<const LocalShape> FlyThroughPlanner::lay_out(const std::vector<d
         out.position = wish_.waypoints[i + 1].place + corners_[i + 1].cut * legs_[i + 1].direction;
         out.velocity = speeds[i + 1] * legs_[i + 1].direction;
         part.kind = TimedPart::Kind::corner;
+        part.follows_course = leg.has_course;
         part.seconds = 2 * corners_[i + 1].cut / speeds[i + 1];
         part.corner = QuinticPiece(in, out, part.seconds);
         shape->add(part);

@@ -33,7 +33,8 @@ struct WaypointWish {
 ///
 /// Multirotors, rovers and pedestrians go straight in space; before a corner they leave the one leg and join the next
 /// on a curve of the fifth degree, at the speed that the lateral acceleration and the jerk allow there; they stop at a
-/// corner that is sharper than 150° or where a leg is steeper than 80°, and turn where they stand (FEEDS.md 2.2).
+/// corner that is sharper than 150°, in space or from above, or where a leg is steeper than 80°, and turn where they
+/// stand; on such legs they look where they did (FEEDS.md 2.2).
 ///
 /// Planes, boats and cars go round corners on a clothoid, an arc and a clothoid, slower where the turn does not fit
 /// otherwise; their height changes smoothly from waypoint to waypoint, over the way on the ground, along which their
