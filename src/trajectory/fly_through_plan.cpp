@@ -13,8 +13,7 @@ namespace skyloop {
 namespace {
 
 constexpr double sharpest_cut = 150 * std::numbers::pi / 180;
-constexpr double least_horizontal = 0.17;                   // of a leg's direction: 80° of slope
-constexpr double turns_on_the_spot = std::numbers::pi / 2;  // rad/s
+constexpr double least_horizontal = 0.17;  // of a leg's direction: 80° of slope
 
 // A part of the way in time: standing and turning, straight ahead, or round a corner.
 struct TimedPart {

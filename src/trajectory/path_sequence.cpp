@@ -8,6 +8,7 @@
 
 #include "quintic_piece.hpp"
 #include "smooth_step.hpp"
+#include "waypoint_parts.hpp"
 
 namespace skyloop {
 namespace {
@@ -33,15 +34,18 @@ private:
     QuinticPiece piece_;
 };
 
-bool keeps_limits(const QuinticPiece& piece, const SpeedLimits& limits) {
+bool keeps_limits(const BlendShape& blend, const SpeedLimits& limits) {
     constexpr int samples = 64;
-    Eigen::Vector3d before = piece.at(0).acceleration;
+    const double step = blend.duration() / samples;
+    LocalMotion before = blend.at(0);
     for (int i = 1; i <= samples; ++i) {
-        const LocalMotion m = piece.at(piece.seconds() * i / samples);
-        const double jerk = (m.acceleration - before).norm() * samples / piece.seconds();
-        if (m.velocity.norm() > limits.speed || m.acceleration.norm() > limits.acceleration || jerk > limits.jerk)
+        const LocalMotion m = blend.at(blend.duration() * i / samples);
+        const double jerk = (m.acceleration - before.acceleration).norm() / step;
+        const double turn = std::abs(m.heading - before.heading) / step;
+        if (m.velocity.norm() > limits.speed || m.acceleration.norm() > limits.acceleration || jerk > limits.jerk ||
+            turn > turns_on_the_spot)
             return false;
-        before = m.acceleration;
+        before = m;
     }
     return true;
 }
@@ -54,7 +58,7 @@ double blend_seconds(const LocalMotion& from, const LocalMotion& to, const Speed
     allowed.speed = slack * std::max({limits.speed, from.velocity.norm(), to.velocity.norm()});
     allowed.acceleration = slack * std::max({limits.acceleration, from.acceleration.norm(), to.acceleration.norm()});
     for (double seconds = shortest_s; seconds < longest_s; seconds *= longer)
-        if (keeps_limits(QuinticPiece(from, to, seconds), allowed)) return seconds;
+        if (keeps_limits(BlendShape(from, to, seconds), allowed)) return seconds;
     return 0;
 }
 

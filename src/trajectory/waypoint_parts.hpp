@@ -1,6 +1,7 @@
 // The two ways of going through waypoints, and what they share.
 #pragma once
 
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct SpeedSection {
 void make_speeds_reachable(const std::vector<SpeedSection>& sections, std::vector<double>& stations);
 
 inline constexpr double shortest_leg_m = 1e-3;
+inline constexpr double turns_on_the_spot = std::numbers::pi / 2;  // at most, rad/s
 
 // A leg as the turn at one of its ends finds it, m.
 struct LegOfTurn {

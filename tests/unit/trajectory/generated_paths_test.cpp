@@ -245,5 +245,17 @@ TEST(PathSequence, ALoopGoesBackToItsBeginning) {
     test::expect_path_laws(*plan->shape, 500, 15);
 }
 
+// It comes back to where it began, and looks the other way.
+TEST(PathSequence, ALoopTurnsOnTheSpotNoFasterThanAtAWaypoint) {
+    GeneratedPath path;
+    WaypointWish wish;
+    wish.waypoints = {{{0, 0, 0}, 5, 0}, {{0, 33, 0}, 5, 0}, {{0, 0, 0}, 5, 0}};
+    path.steps.push_back({wish, LocalShape::endless});
+    path.loop = true;
+    const auto plan = plan_generated(path, 1);
+    ASSERT_TRUE(plan) << plan.error();
+    EXPECT_LT(test::fastest_yaw(*plan->shape, 100), right_angle * 1.01) << "90° a second";
+}
+
 }  // namespace
 }  // namespace skyloop

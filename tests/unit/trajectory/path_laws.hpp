@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "skyloop/trajectory/local_shape.hpp"
@@ -64,6 +65,16 @@ inline PathExtremes expect_path_laws(const LocalShape& shape, double horizon, do
     for (double t = 0; t < 86400; t += 97.3)
         expect_finite(shape.at(t), t);
     return most;
+}
+
+/// The fastest change of where it looks, rad/s.
+inline double fastest_yaw(const LocalShape& shape, double horizon) {
+    constexpr double step_s = 1e-3;
+    double most = 0;
+    for (double t = 0; t < std::min(horizon, shape.duration()); t += step_s)
+        most = std::max(
+            most, std::abs(std::remainder(shape.at(t + step_s).heading - shape.at(t).heading, 2 * std::numbers::pi)));
+    return most / step_s;
 }
 
 }  // namespace skyloop::test

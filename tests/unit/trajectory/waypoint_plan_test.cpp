@@ -96,27 +96,17 @@ TEST(WaypointPlan, AMultirotorRisesTurnsAndComesBack) {
     EXPECT_LT(passes_at(*plan.shape, {0, 0, 30}), 0.05);
 }
 
-// The largest change of where it looks, rad/s.
-double fastest_yaw(const LocalShape& shape) {
-    constexpr double step_s = 1e-3;
-    double most = 0;
-    for (double t = 0; t < shape.duration(); t += step_s)
-        most = std::max(
-            most, std::abs(std::remainder(shape.at(t + step_s).heading - shape.at(t).heading, 2 * std::numbers::pi)));
-    return most / step_s;
-}
-
 TEST(WaypointPlan, AMultirotorDoesNotTurnRoundAtOnceOnSteepLegs) {
     constexpr double fastest = std::numbers::pi / 2 * 1.001;  // 90° a second, standing
     // Nearly upright, with a faint corner half way up.
     const PathPlan upright =
         planned(wish_of(VehicleClass::multirotor, {{0, 0, 0}, {0, 0.011, 30}, {0.0075, 0, 60}, {60, 0, 60}}));
-    EXPECT_LT(fastest_yaw(*upright.shape), fastest);
+    EXPECT_LT(test::fastest_yaw(*upright.shape, 1e6), fastest);
     EXPECT_EQ(upright.shape->at(0).heading, 0);
     EXPECT_NEAR(upright.shape->at(1e6).heading, std::numbers::pi / 2, 1e-9);
     // 76° up to the north, and on to the south: 28° in space, 180° seen from above.
     const PathPlan back = planned(wish_of(VehicleClass::multirotor, {{0, 0, 0}, {0, 10, 40}, {0, 0, 80}}));
-    EXPECT_LT(fastest_yaw(*back.shape), fastest);
+    EXPECT_LT(test::fastest_yaw(*back.shape, 1e6), fastest);
     EXPECT_LT(passes_at(*back.shape, {0, 10, 40}), 0.05) << "it stops where it turns round";
 }
 
