@@ -62,6 +62,7 @@ void StepReader::read(TableReader& table) {
     }
     whole_ = whole_ && wish;
     if (wish) step.wish = *wish;
+    step.vehicle = vehicle.kind;
     path_.steps.push_back(std::move(step));
 }
 

@@ -50,9 +50,19 @@ bool keeps_limits(const BlendShape& blend, const SpeedLimits& limits) {
     return true;
 }
 
+// What is joined, and as what it stands before and after.
+struct Joint {
+    LocalMotion from, to;
+    VehicleClass leaves, enters;
+};
+
 // The shortest of a row of times, each a tenth longer than the one before, in which the limits are kept; 0: none.
-double blend_seconds(const LocalMotion& from, const LocalMotion& to, const SpeedLimits& limits) {
-    constexpr double shortest_s = 0.5, longest_s = 1e5, longer = 1.1, slack = 1.02;
+double blend_seconds(const Joint& joint, const SpeedLimits& limits) {
+    const auto& [from, to, leaves, enters] = joint;
+    // A rocket lies down on its belly by 90°, at the pace of a turn on the spot.
+    constexpr double as_it_is_s = 0.5, other_vehicle_s = 2;
+    const double shortest_s = leaves == enters ? as_it_is_s : other_vehicle_s;
+    constexpr double longest_s = 1e5, longer = 1.1, slack = 1.02;
     // What comes faster than the limits is let go at the pace it has.
     SpeedLimits allowed = limits;
     allowed.speed = slack * std::max({limits.speed, from.velocity.norm(), to.velocity.norm()});
@@ -64,8 +74,8 @@ double blend_seconds(const LocalMotion& from, const LocalMotion& to, const Speed
 
 class SequenceShape : public LocalShape {
 public:
-    void add(std::shared_ptr<const LocalShape> shape, double seconds) {
-        parts_.push_back({ends_, std::move(shape)});
+    void add(std::shared_ptr<const LocalShape> shape, double seconds, VehicleClass from, VehicleClass to) {
+        parts_.push_back({ends_, seconds, std::move(shape), from, to});
         ends_ += seconds;
     }
     void repeat() { repeats_ = true; }
@@ -74,19 +84,34 @@ public:
         return ends_;
     }
     [[nodiscard]] LocalMotion at(double t) const override {
-        if (repeats_ && t > ends_) t = std::fmod(t, ends_);
-        t = std::clamp(t, 0.0, ends_);
-        const auto after = std::upper_bound(parts_.begin() + 1, parts_.end(), t,
-                                            [](double value, const Part& part) { return value < part.begins; });
-        const Part& part = *std::prev(after);
+        t = within(t);
+        const Part& part = part_at(t);
         return part.shape->at(t - part.begins);
+    }
+    [[nodiscard]] std::optional<Standing> standing(double t) const override {
+        t = within(t);
+        const Part& part = part_at(t);
+        const bool changes = part.from != part.to;
+        return Standing{part.from, part.to, changes ? smooth_step((t - part.begins) / part.seconds).value : 0};
     }
 
 private:
     struct Part {
-        double begins;
+        double begins, seconds;
         std::shared_ptr<const LocalShape> shape;
+        VehicleClass from, to;
     };
+    [[nodiscard]] double within(double t) const {
+        if (repeats_ && t > ends_) t = std::fmod(t, ends_);
+        return std::clamp(t, 0.0, ends_);
+    }
+    // t: as of within()
+    [[nodiscard]] const Part& part_at(double t) const {
+        const auto after = std::upper_bound(parts_.begin() + 1, parts_.end(), t,
+                                            [](double value, const Part& part) { return value < part.begins; });
+        return *std::prev(after);
+    }
+
     std::vector<Part> parts_;
     double ends_ = 0;
     bool repeats_ = false;
@@ -118,7 +143,7 @@ private:
     [[nodiscard]] double seconds(std::size_t i) const {
         return std::min(steps_[i].seconds, steps_[i].shape->duration());
     }
-    std::string add_blend(const LocalMotion& from, const LocalMotion& to, const std::string& where);
+    std::string add_blend(const Joint& joint, const std::string& where);
     std::string leave(std::size_t i);
 
     const std::vector<SequenceStep>& steps_;
@@ -129,14 +154,15 @@ private:
 };
 
 // A mistake when there is no way, else nothing.
-std::string SequencePlanner::add_blend(const LocalMotion& from, const LocalMotion& to, const std::string& where) {
-    if (alike(from, to)) return {};
-    const double seconds = blend_seconds(from, to, limits_);
+std::string SequencePlanner::add_blend(const Joint& joint, const std::string& where) {
+    const auto& [from, to, leaves, enters] = joint;
+    if (leaves == enters && alike(from, to)) return {};
+    const double seconds = blend_seconds(joint, limits_);
     const double way = (to.position - from.position).norm();
     if (seconds == 0)
         return fmt::format("{}no way of {:.0f} m keeps the limits of {:g} m/s, {:g} m/s² and {:g} m/s³", where, way,
                            limits_.speed, limits_.acceleration, limits_.jerk);
-    shape_->add(std::make_shared<BlendShape>(from, to, seconds), seconds);
+    shape_->add(std::make_shared<BlendShape>(from, to, seconds), seconds, leaves, enters);
     notes_.push_back(fmt::format("{}joined by a curve of {:.1f} s over {:.1f} m", where, seconds, way));
     return {};
 }
@@ -144,11 +170,14 @@ std::string SequencePlanner::add_blend(const LocalMotion& from, const LocalMotio
 // From the end of step i on.
 std::string SequencePlanner::leave(std::size_t i) {
     const LocalMotion end = steps_[i].shape->at(seconds(i));
+    const VehicleClass vehicle = steps_[i].vehicle;
     const bool last = i + 1 == steps_.size();
     if (last && !loop_)
-        return add_blend(end, rest_after(end, limits_), fmt::format("step {} is left before its end: ", i + 1));
+        return add_blend({end, rest_after(end, limits_), vehicle, vehicle},
+                         fmt::format("step {} is left before its end: ", i + 1));
     const std::size_t next = last ? 0 : i + 1;
-    return add_blend(end, steps_[next].shape->at(0), fmt::format("from step {} to {}: ", i + 1, next + 1));
+    return add_blend({end, steps_[next].shape->at(0), vehicle, steps_[next].vehicle},
+                     fmt::format("from step {} to {}: ", i + 1, next + 1));
 }
 
 PathPlanResult SequencePlanner::plan() {
@@ -156,7 +185,7 @@ PathPlanResult SequencePlanner::plan() {
         const bool finite = std::isfinite(seconds(i));
         if (!finite && (loop_ || i + 1 < steps_.size()))
             return tl::unexpected(fmt::format("step {} has no end; expected duration_s or laps", i + 1));
-        shape_->add(steps_[i].shape, seconds(i));
+        shape_->add(steps_[i].shape, seconds(i), steps_[i].vehicle, steps_[i].vehicle);
         if (!finite) break;
         if (const std::string mistake = leave(i); !mistake.empty()) return tl::unexpected(mistake);
     }

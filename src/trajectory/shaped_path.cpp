@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "skyloop/trajectory/vehicle_attitude.hpp"
 #include "smooth_step.hpp"
 
 namespace skyloop {
@@ -25,6 +24,13 @@ double ShapedPath::middle_of_window(double t) const {
     return t - half_window_s * (1 - begun) + half_window_s * (1 - ends);
 }
 
+Attitude ShapedPath::in_motion(double t, const VehicleMotion& motion) const {
+    const Standing standing = shape_->standing(t).value_or(Standing{vehicle_, vehicle_, 0});
+    const Attitude from = attitude_of_vehicle(standing.from, motion);
+    if (standing.from == standing.to) return from;
+    return Attitude(from.body_to_ned().slerp(standing.part, attitude_of_vehicle(standing.to, motion).body_to_ned()));
+}
+
 // The mean over two windows, one after the other: the second difference of the places. One window would leave the
 // turn rate with corners, since accelerations go up and down in straight lines (FEEDS.md 1.13.4: 0.3 to 0.5 s).
 Attitude ShapedPath::attitude(double t, const LocalMotion& now, Angle north) const {
@@ -35,7 +41,7 @@ Attitude ShapedPath::attitude(double t, const LocalMotion& now, Angle north) con
                            shape_->at(middle - half_window_s).position) /
                           (half_window_s * half_window_s);
     motion.heading = Angle::radians(now.heading);
-    const Attitude in_plane = attitude_of_vehicle(vehicle_, motion);
+    const Attitude in_plane = in_motion(t, motion);
     const Attitude leaning = Attitude::roll_pitch_yaw(Angle::radians(now.roll), Angle::radians(now.pitch), {});
     return Attitude(Attitude::roll_pitch_yaw({}, {}, north).body_to_ned() * in_plane.body_to_ned() *
                     leaning.body_to_ned());

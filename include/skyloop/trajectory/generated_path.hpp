@@ -25,11 +25,12 @@ PathPlanResult plan_path(const PathWish& wish, std::uint64_t seed);
 struct GeneratedPath {
     struct Step {
         PathWish wish{};
-        double seconds = LocalShape::endless;  ///< after which the next one takes over
+        double seconds = LocalShape::endless;   ///< after which the next one takes over
+        std::optional<VehicleClass> vehicle{};  ///< as which it is gone; nothing: that of the path
     };
     Geodetic origin{};                    ///< of the plane on which the wishes lie
     std::vector<Step> steps{};            ///< at least one
-    VehicleLimits vehicle{};              ///< its attitude, and the limits of what joins the steps
+    VehicleLimits vehicle{};              ///< the limits of what joins the steps; its attitude, where a step has no own
     bool loop = false;                    ///< begins anew when it has ended
     Seconds start_delay{0};               ///< stands at its beginning for so long
     std::optional<std::uint64_t> seed{};  ///< of its dice; nothing: the run's

@@ -4,9 +4,12 @@
 #include <Eigen/Core>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
+
+#include "skyloop/trajectory/vehicle_class.hpp"
 
 namespace skyloop {
 
@@ -21,6 +24,12 @@ struct LocalMotion {
     double pitch = 0;    ///< the same, nose up, rad
 };
 
+/// As what stands the one that goes a path: as a vehicle of one class, or between two of them.
+struct Standing {
+    VehicleClass from = VehicleClass::multirotor, to = VehicleClass::multirotor;
+    double part = 0;  ///< 0: as `from`, 1: as `to`
+};
+
 /// A path as a pure function of time. Its acceleration is continuous and its velocity is the slope of its position. It
 /// begins at rest, and ends at rest if it ends.
 class LocalShape {
@@ -31,6 +40,8 @@ public:
     [[nodiscard]] virtual LocalMotion at(double t) const = 0;
     /// s; `endless` for a path without an end
     [[nodiscard]] virtual double duration() const = 0;
+    /// Nothing: as the vehicle of the whole path. @param t as of at()
+    [[nodiscard]] virtual std::optional<Standing> standing(double /*t*/) const { return std::nullopt; }
 };
 
 /// What came of the wish for a path.

@@ -6,6 +6,7 @@
 #include "skyloop/trajectory/geodesic_plane.hpp"
 #include "skyloop/trajectory/trajectory.hpp"
 #include "skyloop/trajectory/vehicle.hpp"
+#include "skyloop/trajectory/vehicle_attitude.hpp"
 
 namespace skyloop {
 
@@ -15,12 +16,14 @@ namespace skyloop {
 class ShapedPath : public Trajectory {
 public:
     /// @param start when the shape begins
+    /// @param vehicle which stands where the shape does not tell
     ShapedPath(GpsTime start, const GeodesicPlane& plane, std::shared_ptr<const LocalShape> shape, VehicleClass vehicle)
         : start_(start), plane_(plane), shape_(std::move(shape)), vehicle_(vehicle) {}
     [[nodiscard]] TruthState at(GpsTime time) const override;
     [[nodiscard]] const LocalShape& shape() const { return *shape_; }
 
 private:
+    [[nodiscard]] Attitude in_motion(double t, const VehicleMotion& motion) const;
     [[nodiscard]] double middle_of_window(double t) const;
     [[nodiscard]] Attitude attitude(double t, const LocalMotion& now, Angle north) const;
 

@@ -123,6 +123,19 @@ TEST(ScenarioPaths, ASequenceHasItsSteps) {
     EXPECT_LT(path.shape->at(1e5).position.head<2>().norm(), 1e-6) << "it ends where it began";
 }
 
+TEST(ScenarioPaths, AStepHasItsOwnVehicle) {
+    const GeneratedSettings path = generated_of(
+        "[trajectory]\nkind = \"sequence\"\nvehicle = \"rover\"\n"
+        "[[trajectory.step]]\nkind = \"rocket\"\nat = [28, -80, 3]\npreset = \"rocket_1km\"\n"
+        "[[trajectory.step]]\nkind = \"orbit\"\ncentre = [28, -80, 3]\nradius_m = 90\nlaps = 1\n"
+        "[[trajectory.step]]\nkind = \"drive\"\ncentre = [28, -80, 3]\n");
+    ASSERT_EQ(path.path.steps.size(), 3U);
+    EXPECT_EQ(path.path.steps[0].vehicle, VehicleClass::rocket);
+    EXPECT_EQ(path.path.steps[1].vehicle, VehicleClass::rover);
+    EXPECT_EQ(path.path.steps[2].vehicle, VehicleClass::car);
+    EXPECT_EQ(path.path.vehicle.kind, VehicleClass::rover);
+}
+
 TEST(ScenarioPaths, TellsWhatCannotBe) {
     EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"orbit\""), HasSubstr("has no place; expected centre = [latitude"));
     EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"orbit\"\ncentre = [47, 8]\nvehicle = \"plane\"\nradius_m = 5"),

@@ -9,6 +9,7 @@
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/trajectory/closed_paths.hpp"
 #include "skyloop/trajectory/flight_profiles.hpp"
+#include "skyloop/trajectory/generated_path.hpp"
 #include "skyloop/trajectory/waypoint_plan.hpp"
 
 namespace skyloop {
@@ -162,6 +163,50 @@ TEST(ShapedPath, ARocketStandsOnItsTail) {
     const Eigen::Vector3d nose = state.orientation->attitude.body_to_ned() * Eigen::Vector3d::UnitX();
     EXPECT_NEAR(nose.z(), -1, 1e-9);
     expect_consistent_states(path, 2);
+}
+
+double nose_up_of(const Trajectory& path, double t) {
+    return -(state_of(path, t).orientation->attitude.body_to_ned() * Eigen::Vector3d::UnitX()).z();
+}
+
+TEST(ShapedPath, AStepStandsAsItsOwnVehicle) {
+    const GeodesicPlane plane(Geodetic::degrees(28, -80, 3));
+    GeneratedPath sequence;
+    sequence.steps.push_back({RocketWish{}, LocalShape::endless, VehicleClass::rocket});
+    const auto alone = plan_generated(sequence, 1);
+    ASSERT_TRUE(alone) << alone.error();
+    EXPECT_NEAR(nose_up_of(ShapedPath(shaped_start, plane, alone->shape, sequence.vehicle.kind), 2), 1, 1e-9);
+    HoverWish hover;
+    hover.place = {30, 0, 20};
+    sequence.steps.push_back({hover, 20});
+    const auto plan = plan_generated(sequence, 1);
+    ASSERT_TRUE(plan) << plan.error();
+    const ShapedPath path(shaped_start, plane, plan->shape, sequence.vehicle.kind);
+    const double end = plan->shape->duration(), landed = alone->shape->duration();
+    EXPECT_NEAR(nose_up_of(path, landed), 1, 1e-9) << "the rocket stands on its tail";
+    EXPECT_LT(std::abs(nose_up_of(path, end - 10)), 0.5) << "the multirotor does not";
+    constexpr double step_s = 0.02, fastest = 3;  // rad/s
+    Eigen::Quaterniond before = state_of(path, landed - 1).orientation->attitude.body_to_ned();
+    for (double t = landed - 1 + step_s; t < end; t += step_s) {
+        const Eigen::Quaterniond now = state_of(path, t).orientation->attitude.body_to_ned();
+        ASSERT_LT(before.angularDistance(now), fastest * step_s) << t;
+        before = now;
+    }
+}
+
+TEST(ShapedPath, AnotherVehicleAtTheSamePlaceTakesItsTime) {
+    GeneratedPath sequence;
+    sequence.steps.push_back({RocketWish{}, LocalShape::endless, VehicleClass::rocket});
+    sequence.steps.push_back({HoverWish{}, 10});
+    const auto plan = plan_generated(sequence, 1);
+    ASSERT_TRUE(plan) << plan.error();
+    const auto rocket = plan_rocket({});
+    ASSERT_TRUE(rocket) << rocket.error();
+    const auto standing = plan->shape->standing(rocket->shape->duration() + 1);
+    ASSERT_TRUE(standing);
+    EXPECT_EQ(standing->from, VehicleClass::rocket);
+    EXPECT_EQ(standing->to, VehicleClass::multirotor);
+    EXPECT_NEAR(standing->part, 0.5, 1e-9) << "half of two seconds";
 }
 
 }  // namespace
