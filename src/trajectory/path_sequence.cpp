@@ -13,28 +13,57 @@
 namespace skyloop {
 namespace {
 
-// Between two paths. Roll, pitch and heading go over smoothly.
+// How an angle changes where a path is left; rad/s, rad/s².
+struct AngleChange {
+    double rate = 0, bend = 0;
+};
+struct AngleChanges {
+    AngleChange heading, roll, pitch;
+};
+
+AngleChange angle_change(const LocalShape& shape, double t, double LocalMotion::*angle) {
+    constexpr double step_s = 1e-3;
+    const double now = shape.at(t).*angle;
+    const double before = std::remainder(now - shape.at(t - step_s).*angle, 2 * std::numbers::pi),
+                 after = std::remainder(shape.at(t + step_s).*angle - now, 2 * std::numbers::pi);
+    return {(before + after) / (2 * step_s), (after - before) / (step_s * step_s)};
+}
+
+// By what an angle that was left in its motion goes on, until that is lost. t: s
+double coasted_angle(const AngleChange& left, double t, double seconds) {
+    constexpr double longest_s = 4;  // a longer joint would swing it far out of its way, and back
+    const double over = std::min(seconds, longest_s), u = std::min(t / over, 1.0), v = 1 - u;
+    // Of the fifth degree, with a rate and an acceleration of one at the beginning, and at rest in the end.
+    const double by_rate = u * v * v * v * (1 + 3 * u), by_bend = u * u * v * v * v / 2;
+    return over * (by_rate * left.rate + over * by_bend * left.bend);
+}
+
+// Between two paths, of which the next begins at rest. Roll, pitch and heading go over smoothly.
 class BlendShape : public LocalShape {
 public:
-    BlendShape(const LocalMotion& from, const LocalMotion& to, double seconds)
-        : from_(from), to_(to), piece_(from, to, seconds) {}
+    BlendShape(const LocalMotion& from, const LocalMotion& to, const AngleChanges& left, double seconds)
+        : from_(from), to_(to), left_(left), piece_(from, to, seconds) {}
     [[nodiscard]] double duration() const override { return piece_.seconds(); }
     [[nodiscard]] LocalMotion at(double t) const override {
         const double inside = std::clamp(t, 0.0, duration());
         LocalMotion m = piece_.at(inside);
         const double part = smooth_step(inside / duration()).value;
-        m.heading = from_.heading + part * std::remainder(to_.heading - from_.heading, 2 * std::numbers::pi);
-        m.roll = from_.roll + part * (to_.roll - from_.roll);
-        m.pitch = from_.pitch + part * (to_.pitch - from_.pitch);
+        const auto coasted = [&](const AngleChange& left) { return coasted_angle(left, inside, duration()); };
+        m.heading = from_.heading + part * std::remainder(to_.heading - from_.heading, 2 * std::numbers::pi) +
+                    coasted(left_.heading);
+        m.roll = from_.roll + part * (to_.roll - from_.roll) + coasted(left_.roll);
+        m.pitch = from_.pitch + part * (to_.pitch - from_.pitch) + coasted(left_.pitch);
         return m;
     }
 
 private:
     LocalMotion from_, to_;
+    AngleChanges left_;
     QuinticPiece piece_;
 };
 
-bool keeps_limits(const BlendShape& blend, const SpeedLimits& limits) {
+// turn: at most, rad/s
+bool keeps_limits(const BlendShape& blend, const SpeedLimits& limits, double most_turn) {
     constexpr int samples = 64;
     const double step = blend.duration() / samples;
     LocalMotion before = blend.at(0);
@@ -43,7 +72,7 @@ bool keeps_limits(const BlendShape& blend, const SpeedLimits& limits) {
         const double jerk = (m.acceleration - before.acceleration).norm() / step;
         const double turn = std::abs(m.heading - before.heading) / step;
         if (m.velocity.norm() > limits.speed || m.acceleration.norm() > limits.acceleration || jerk > limits.jerk ||
-            turn > turns_on_the_spot)
+            turn > most_turn)
             return false;
         before = m;
     }
@@ -53,12 +82,13 @@ bool keeps_limits(const BlendShape& blend, const SpeedLimits& limits) {
 // What is joined, and as what it stands before and after.
 struct Joint {
     LocalMotion from, to;
+    AngleChanges left;  // how `from` turns
     VehicleClass leaves, enters;
 };
 
 // The shortest of a row of times, each a tenth longer than the one before, in which the limits are kept; 0: none.
 double blend_seconds(const Joint& joint, const SpeedLimits& limits) {
-    const auto& [from, to, leaves, enters] = joint;
+    const auto& [from, to, left, leaves, enters] = joint;
     // A rocket lies down on its belly by 90°, at the pace of a turn on the spot.
     constexpr double as_it_is_s = 0.5, other_vehicle_s = 2;
     const double shortest_s = leaves == enters ? as_it_is_s : other_vehicle_s;
@@ -67,8 +97,9 @@ double blend_seconds(const Joint& joint, const SpeedLimits& limits) {
     SpeedLimits allowed = limits;
     allowed.speed = slack * std::max({limits.speed, from.velocity.norm(), to.velocity.norm()});
     allowed.acceleration = slack * std::max({limits.acceleration, from.acceleration.norm(), to.acceleration.norm()});
+    const double turn = std::max(turns_on_the_spot, slack * std::abs(left.heading.rate));
     for (double seconds = shortest_s; seconds < longest_s; seconds *= longer)
-        if (keeps_limits(BlendShape(from, to, seconds), allowed)) return seconds;
+        if (keeps_limits(BlendShape(from, to, left, seconds), allowed, turn)) return seconds;
     return 0;
 }
 
@@ -121,7 +152,8 @@ bool alike(const LocalMotion& a, const LocalMotion& b) {
     constexpr double near_m = 1e-6, near_rad = 1e-9;
     return (a.position - b.position).norm() < near_m && (a.velocity - b.velocity).norm() < near_m &&
            (a.acceleration - b.acceleration).norm() < near_m &&
-           std::abs(std::remainder(a.heading - b.heading, 2 * std::numbers::pi)) < near_rad;
+           std::abs(std::remainder(a.heading - b.heading, 2 * std::numbers::pi)) < near_rad &&
+           std::abs(a.roll - b.roll) < near_rad && std::abs(a.pitch - b.pitch) < near_rad;
 }
 
 // Where a path that is left in the middle of its motion comes to rest.
@@ -144,6 +176,7 @@ private:
         return std::min(steps_[i].seconds, steps_[i].shape->duration());
     }
     std::string add_blend(const Joint& joint, const std::string& where);
+    [[nodiscard]] AngleChanges turns_when_left(std::size_t i) const;
     std::string leave(std::size_t i);
 
     const std::vector<SequenceStep>& steps_;
@@ -155,28 +188,38 @@ private:
 
 // A mistake when there is no way, else nothing.
 std::string SequencePlanner::add_blend(const Joint& joint, const std::string& where) {
-    const auto& [from, to, leaves, enters] = joint;
+    const auto& [from, to, left, leaves, enters] = joint;
     if (leaves == enters && alike(from, to)) return {};
     const double seconds = blend_seconds(joint, limits_);
     const double way = (to.position - from.position).norm();
     if (seconds == 0)
         return fmt::format("{}no way of {:.0f} m keeps the limits of {:g} m/s, {:g} m/s² and {:g} m/s³", where, way,
                            limits_.speed, limits_.acceleration, limits_.jerk);
-    shape_->add(std::make_shared<BlendShape>(from, to, seconds), seconds, leaves, enters);
+    shape_->add(std::make_shared<BlendShape>(from, to, left, seconds), seconds, leaves, enters);
     notes_.push_back(fmt::format("{}joined by a curve of {:.1f} s over {:.1f} m", where, seconds, way));
     return {};
+}
+
+// A path that has ended is at rest.
+AngleChanges SequencePlanner::turns_when_left(std::size_t i) const {
+    const LocalShape& shape = *steps_[i].shape;
+    const double t = seconds(i);
+    if (t >= shape.duration()) return {};
+    return {angle_change(shape, t, &LocalMotion::heading), angle_change(shape, t, &LocalMotion::roll),
+            angle_change(shape, t, &LocalMotion::pitch)};
 }
 
 // From the end of step i on.
 std::string SequencePlanner::leave(std::size_t i) {
     const LocalMotion end = steps_[i].shape->at(seconds(i));
     const VehicleClass vehicle = steps_[i].vehicle;
+    const AngleChanges turns = turns_when_left(i);
     const bool last = i + 1 == steps_.size();
     if (last && !loop_)
-        return add_blend({end, rest_after(end, limits_), vehicle, vehicle},
+        return add_blend({end, rest_after(end, limits_), turns, vehicle, vehicle},
                          fmt::format("step {} is left before its end: ", i + 1));
     const std::size_t next = last ? 0 : i + 1;
-    return add_blend({end, steps_[next].shape->at(0), vehicle, steps_[next].vehicle},
+    return add_blend({end, steps_[next].shape->at(0), turns, vehicle, steps_[next].vehicle},
                      fmt::format("from step {} to {}: ", i + 1, next + 1));
 }
 

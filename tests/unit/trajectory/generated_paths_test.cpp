@@ -245,6 +245,38 @@ TEST(PathSequence, ALoopGoesBackToItsBeginning) {
     test::expect_path_laws(*plan->shape, 500, 15);
 }
 
+// The sharpest change of an angle's rate, rad/s².
+double sharpest_change(const LocalShape& shape, double LocalMotion::*angle, double end) {
+    constexpr double step_s = 1e-3;
+    double most = 0;
+    for (double t = step_s; t < end; t += step_s) {
+        const double now = shape.at(t).*angle;
+        const double before = std::remainder(now - shape.at(t - step_s).*angle, 2 * std::numbers::pi),
+                     after = std::remainder(shape.at(t + step_s).*angle - now, 2 * std::numbers::pi);
+        most = std::max(most, std::abs(after - before) / (step_s * step_s));
+    }
+    return most;
+}
+
+TEST(PathSequence, LeavesATurnAndASwellWithoutAStepOfItsTurnRate) {
+    GeneratedPath path;
+    path.vehicle = usual_limits(VehicleClass::multirotor);
+    path.steps.push_back({OrbitWish{lap_of(VehicleClass::multirotor, 8, 0), 35, 0, false, 0}, 33.3});
+    HoverWish hover;
+    hover.place = {100, -50, 70};
+    path.steps.push_back({hover, 5});
+    const auto orbit = plan_generated(path, 1);
+    ASSERT_TRUE(orbit) << orbit.error();
+    EXPECT_NEAR(orbit->shape->at(33.31).heading - orbit->shape->at(33.3).heading, 0.01 * 8 / 35, 1e-4);
+    EXPECT_LT(sharpest_change(*orbit->shape, &LocalMotion::heading, orbit->shape->duration()), 3);
+    path.steps[0] = {FloatWish{}, 20};
+    path.steps[1] = {HoverWish{}, 5};
+    const auto swell = plan_generated(path, 1);
+    ASSERT_TRUE(swell) << swell.error();
+    for (double LocalMotion::*angle : {&LocalMotion::heading, &LocalMotion::roll, &LocalMotion::pitch})
+        EXPECT_LT(sharpest_change(*swell->shape, angle, swell->shape->duration()), 5);
+}
+
 // It comes back to where it began, and looks the other way.
 TEST(PathSequence, ALoopTurnsOnTheSpotNoFasterThanAtAWaypoint) {
     GeneratedPath path;
