@@ -176,6 +176,7 @@ private:
         return std::min(steps_[i].seconds, steps_[i].shape->duration());
     }
     std::string add_blend(const Joint& joint, const std::string& where);
+    std::string join(const Joint& joint, const std::string& from_to);
     [[nodiscard]] AngleChanges turns_when_left(std::size_t i) const;
     std::string leave(std::size_t i);
 
@@ -193,11 +194,24 @@ std::string SequencePlanner::add_blend(const Joint& joint, const std::string& wh
     const double seconds = blend_seconds(joint, limits_);
     const double way = (to.position - from.position).norm();
     if (seconds == 0)
-        return fmt::format("{}no way of {:.0f} m keeps the limits of {:g} m/s, {:g} m/s² and {:g} m/s³", where, way,
-                           limits_.speed, limits_.acceleration, limits_.jerk);
+        return fmt::format(
+            "{}no way of {:.0f} m keeps the limits of {:g} m/s, {:g} m/s² and {:g} m/s³; expected a step that "
+            "ends by itself (laps), or higher limits",
+            where, way, limits_.speed, limits_.acceleration, limits_.jerk);
     shape_->add(std::make_shared<BlendShape>(from, to, left, seconds), seconds, leaves, enters);
     notes_.push_back(fmt::format("{}joined by a curve of {:.1f} s over {:.1f} m", where, seconds, way));
     return {};
+}
+
+// By one curve, or by one to a stop and another one from there: who leaves a circle away from where the next path
+// begins would swing out too fast.
+std::string SequencePlanner::join(const Joint& joint, const std::string& from_to) {
+    const std::string mistake = add_blend(joint, from_to + ": ");
+    if (mistake.empty() || joint.from.velocity.norm() == 0) return mistake;
+    const LocalMotion rest = rest_after(joint.from, limits_);
+    if (!add_blend({joint.from, rest, joint.left, joint.leaves, joint.leaves}, from_to + ", to a stop: ").empty())
+        return mistake;
+    return add_blend({rest, joint.to, {}, joint.leaves, joint.enters}, from_to + ", from the stop on: ");
 }
 
 // A path that has ended is at rest.
@@ -219,8 +233,8 @@ std::string SequencePlanner::leave(std::size_t i) {
         return add_blend({end, rest_after(end, limits_), turns, vehicle, vehicle},
                          fmt::format("step {} is left before its end: ", i + 1));
     const std::size_t next = last ? 0 : i + 1;
-    return add_blend({end, steps_[next].shape->at(0), turns, vehicle, steps_[next].vehicle},
-                     fmt::format("from step {} to {}: ", i + 1, next + 1));
+    return join({end, steps_[next].shape->at(0), turns, vehicle, steps_[next].vehicle},
+                fmt::format("from step {} to {}", i + 1, next + 1));
 }
 
 PathPlanResult SequencePlanner::plan() {

@@ -17,9 +17,9 @@ struct SequenceStep {
 };
 
 /// From the end of each path a curve of the fifth degree leads to the beginning of the next, as long as its speed,
-/// acceleration and jerk need it and a turn of at most 90° a second; each is told. Position, velocity and acceleration
-/// are continuous (FEEDS.md 2.6), as are heading, roll and pitch with both derivatives. Each step's vehicle stands as
-/// such; it becomes the next one on the curve between.
+/// acceleration and jerk need it and a turn of at most 90° a second; each is told. Where one curve does not keep the
+/// limits, it stops on its way. Position, velocity and acceleration are continuous (FEEDS.md 2.6), as are heading, roll
+/// and pitch with both derivatives. Each step's vehicle stands as such; it becomes the next one on the curve between.
 /// @param loop after the last path comes the first one again
 /// No plan: a path without an end that is not the last one; no curve within the limits.
 PathPlanResult plan_sequence(const std::vector<SequenceStep>& steps, const SpeedLimits& limits, bool loop);

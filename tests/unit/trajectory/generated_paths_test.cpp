@@ -245,6 +245,24 @@ TEST(PathSequence, ALoopGoesBackToItsBeginning) {
     test::expect_path_laws(*plan->shape, 500, 15);
 }
 
+// On the far side of its circle, away from the place and at full speed.
+TEST(PathSequence, StopsFirstWhereNoOneCurveKeepsTheLimits) {
+    GeneratedPath path;
+    path.vehicle = usual_limits(VehicleClass::multirotor);
+    path.vehicle.along.speed = 8;
+    path.steps.push_back({OrbitWish{lap_of(VehicleClass::multirotor, 8, 0), 35, 0, false, 0}, 60});
+    HoverWish hover;
+    hover.place = {100, 105, 70};
+    path.steps.push_back({hover, 5});
+    const auto plan = plan_generated(path, 1);
+    ASSERT_TRUE(plan) << plan.error();
+    ASSERT_GE(plan->notes.size(), 2U);
+    EXPECT_THAT(plan->notes[0], HasSubstr("from step 1 to 2, to a stop: joined by a curve of"));
+    EXPECT_THAT(plan->notes[1], HasSubstr("from step 1 to 2, from the stop on: joined by a curve of"));
+    const auto most = test::expect_path_laws(*plan->shape, 1e6, 15);
+    EXPECT_LE(most.speed, 8 * 1.03);
+}
+
 // The sharpest change of an angle's rate, rad/s².
 double sharpest_change(const LocalShape& shape, double LocalMotion::*angle, double end) {
     constexpr double step_s = 1e-3;
