@@ -62,7 +62,7 @@ void StepReader::read(TableReader& table) {
     }
     whole_ = whole_ && wish;
     if (wish) step.wish = *wish;
-    step.vehicle = vehicle.kind;
+    step.vehicle = vehicle;
     path_.steps.push_back(std::move(step));
 }
 

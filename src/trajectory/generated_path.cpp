@@ -49,13 +49,13 @@ PathPlanResult plan_generated(const GeneratedPath& path, std::uint64_t run_seed)
         for (const std::string& note : plan->notes)
             notes.push_back(which + note);
         if (!plan->summary.empty()) summary += (summary.empty() ? "" : "; ") + which + plan->summary;
-        steps.push_back(
-            {std::move(plan->shape), path.steps[i].seconds, path.steps[i].vehicle.value_or(path.vehicle.kind)});
+        steps.push_back({std::move(plan->shape), path.steps[i].seconds, path.steps[i].vehicle.value_or(path.vehicle)});
     }
-    const bool whole = single && !std::isfinite(path.steps[0].seconds) && steps.front().vehicle == path.vehicle.kind;
+    const bool whole =
+        single && !std::isfinite(path.steps[0].seconds) && steps.front().vehicle.kind == path.vehicle.kind;
     if (whole && !(path.loop && std::isfinite(steps[0].shape->duration())))
         return PathPlan{steps[0].shape, notes, summary};
-    auto joined = plan_sequence(steps, path.vehicle.along, path.loop);
+    auto joined = plan_sequence(steps, path.vehicle, path.loop);
     if (!joined) return joined;
     joined->notes.insert(joined->notes.begin(), notes.begin(), notes.end());
     joined->summary = summary;

@@ -8,6 +8,7 @@
 
 #include "quintic_piece.hpp"
 #include "smooth_step.hpp"
+#include "steered_joint.hpp"
 #include "waypoint_parts.hpp"
 
 namespace skyloop {
@@ -62,8 +63,13 @@ private:
     QuinticPiece piece_;
 };
 
-// turn: at most, rad/s
-bool keeps_limits(const BlendShape& blend, const SpeedLimits& limits, double most_turn) {
+struct BlendLimits {
+    SpeedLimits along;
+    double climb, sink;  // m/s
+    double turn;         // rad/s
+};
+
+bool keeps_limits(const BlendShape& blend, const BlendLimits& limits) {
     constexpr int samples = 64;
     const double step = blend.duration() / samples;
     LocalMotion before = blend.at(0);
@@ -71,9 +77,10 @@ bool keeps_limits(const BlendShape& blend, const SpeedLimits& limits, double mos
         const LocalMotion m = blend.at(blend.duration() * i / samples);
         const double jerk = (m.acceleration - before.acceleration).norm() / step;
         const double turn = std::abs(m.heading - before.heading) / step;
-        if (m.velocity.norm() > limits.speed || m.acceleration.norm() > limits.acceleration || jerk > limits.jerk ||
-            turn > most_turn)
+        if (m.velocity.norm() > limits.along.speed || m.acceleration.norm() > limits.along.acceleration ||
+            jerk > limits.along.jerk || turn > limits.turn)
             return false;
+        if (m.velocity.z() > limits.climb || -m.velocity.z() > limits.sink) return false;
         before = m;
     }
     return true;
@@ -84,22 +91,46 @@ struct Joint {
     LocalMotion from, to;
     AngleChanges left;  // how `from` turns
     VehicleClass leaves, enters;
+    VehicleLimits vehicle;  // by whose limits
 };
 
+// What comes faster than the limits is let go at the pace it has.
+BlendLimits limits_of(const Joint& joint) {
+    constexpr double slack = 1.02, pushed_s = 1;
+    const auto& [from, to, left, leaves, enters, vehicle] = joint;
+    // Waves and gusts that push it up or down when it is left do so for a while.
+    const double pushed = std::abs(from.acceleration.z()) * pushed_s;
+    const double rises = std::max(from.velocity.z(), to.velocity.z()) + pushed,
+                 falls = std::max(-from.velocity.z(), -to.velocity.z()) + pushed;
+    BlendLimits limits{vehicle.along, 0, 0, 0};
+    limits.along.speed = slack * std::max({vehicle.along.speed, from.velocity.norm(), to.velocity.norm()});
+    limits.along.acceleration =
+        slack * std::max({vehicle.along.acceleration, from.acceleration.norm(), to.acceleration.norm()});
+    limits.climb = slack * std::max(vehicle.climb, rises);
+    limits.sink = slack * std::max(vehicle.sink, falls);
+    limits.turn = std::max(turns_on_the_spot, slack * std::abs(left.heading.rate));
+    return limits;
+}
+
+// What it sways up and down when it is left does not count.
+bool is_too_steep(const Joint& joint) {
+    constexpr double upright = 85 * std::numbers::pi / 180, little_m = 1, sways_s = 5;
+    if (joint.vehicle.steepest >= upright) return false;
+    const Eigen::Vector3d way = joint.to.position - joint.from.position;
+    const double swayed = little_m + sways_s * std::abs(joint.from.velocity.z());
+    return std::abs(way.z()) > swayed + std::tan(joint.vehicle.steepest) * way.head<2>().norm();
+}
+
 // The shortest of a row of times, each a tenth longer than the one before, in which the limits are kept; 0: none.
-double blend_seconds(const Joint& joint, const SpeedLimits& limits) {
-    const auto& [from, to, left, leaves, enters] = joint;
+double blend_seconds(const Joint& joint) {
     // A rocket lies down on its belly by 90°, at the pace of a turn on the spot.
     constexpr double as_it_is_s = 0.5, other_vehicle_s = 2;
-    const double shortest_s = leaves == enters ? as_it_is_s : other_vehicle_s;
-    constexpr double longest_s = 1e5, longer = 1.1, slack = 1.02;
-    // What comes faster than the limits is let go at the pace it has.
-    SpeedLimits allowed = limits;
-    allowed.speed = slack * std::max({limits.speed, from.velocity.norm(), to.velocity.norm()});
-    allowed.acceleration = slack * std::max({limits.acceleration, from.acceleration.norm(), to.acceleration.norm()});
-    const double turn = std::max(turns_on_the_spot, slack * std::abs(left.heading.rate));
+    const double shortest_s = joint.leaves == joint.enters ? as_it_is_s : other_vehicle_s;
+    constexpr double longest_s = 1e5, longer = 1.1;
+    if (is_too_steep(joint)) return 0;
+    const BlendLimits limits = limits_of(joint);
     for (double seconds = shortest_s; seconds < longest_s; seconds *= longer)
-        if (keeps_limits(BlendShape(from, to, left, seconds), allowed, turn)) return seconds;
+        if (keeps_limits(BlendShape(joint.from, joint.to, joint.left, seconds), limits)) return seconds;
     return 0;
 }
 
@@ -165,10 +196,23 @@ LocalMotion rest_after(const LocalMotion& moving, const SpeedLimits& limits) {
     return rest;
 }
 
+bool rests_level(const LocalMotion& m) {
+    constexpr double still = 1e-6, level = 1e-9;
+    return m.velocity.norm() < still && m.acceleration.norm() < still && std::abs(m.roll) < level &&
+           std::abs(m.pitch) < level;
+}
+
+// So little that nobody steers for it.
+bool is_nudge(const LocalMotion& from, const LocalMotion& to) {
+    constexpr double little_m = 1, little_turn = 10 * std::numbers::pi / 180;
+    return (to.position - from.position).norm() < little_m &&
+           std::abs(std::remainder(to.heading - from.heading, 2 * std::numbers::pi)) < little_turn;
+}
+
 class SequencePlanner {
 public:
-    SequencePlanner(const std::vector<SequenceStep>& steps, const SpeedLimits& limits, bool loop)
-        : steps_(steps), limits_(limits), loop_(loop) {}
+    SequencePlanner(const std::vector<SequenceStep>& steps, const VehicleLimits& vehicle, bool loop)
+        : steps_(steps), vehicle_(vehicle), loop_(loop) {}
     PathPlanResult plan();
 
 private:
@@ -177,11 +221,13 @@ private:
     }
     std::string add_blend(const Joint& joint, const std::string& where);
     std::string join(const Joint& joint, const std::string& from_to);
+    std::string steer(const Joint& joint, const std::string& from_to);
+    [[nodiscard]] const VehicleLimits& vehicle_between(const SequenceStep& left, const SequenceStep& entered) const;
     [[nodiscard]] AngleChanges turns_when_left(std::size_t i) const;
     std::string leave(std::size_t i);
 
     const std::vector<SequenceStep>& steps_;
-    SpeedLimits limits_;
+    VehicleLimits vehicle_;
     bool loop_;
     std::shared_ptr<SequenceShape> shape_ = std::make_shared<SequenceShape>();
     std::vector<std::string> notes_;
@@ -189,15 +235,16 @@ private:
 
 // A mistake when there is no way, else nothing.
 std::string SequencePlanner::add_blend(const Joint& joint, const std::string& where) {
-    const auto& [from, to, left, leaves, enters] = joint;
+    const auto& [from, to, left, leaves, enters, vehicle] = joint;
     if (leaves == enters && alike(from, to)) return {};
-    const double seconds = blend_seconds(joint, limits_);
+    const double seconds = blend_seconds(joint);
     const double way = (to.position - from.position).norm();
     if (seconds == 0)
         return fmt::format(
-            "{}no way of {:.0f} m keeps the limits of {:g} m/s, {:g} m/s² and {:g} m/s³; expected a step that "
-            "ends by itself (laps), or higher limits",
-            where, way, limits_.speed, limits_.acceleration, limits_.jerk);
+            "{}no way of {:.0f} m keeps the limits of {:g} m/s, {:g} m/s², {:g} m/s³ and a slope of {:.0f}°; expected "
+            "a step that ends by itself (laps), a way less steep, or higher limits",
+            where, way, vehicle.along.speed, vehicle.along.acceleration, vehicle.along.jerk,
+            vehicle.steepest * 180 / std::numbers::pi);
     shape_->add(std::make_shared<BlendShape>(from, to, left, seconds), seconds, leaves, enters);
     notes_.push_back(fmt::format("{}joined by a curve of {:.1f} s over {:.1f} m", where, seconds, way));
     return {};
@@ -206,12 +253,49 @@ std::string SequencePlanner::add_blend(const Joint& joint, const std::string& wh
 // By one curve, or by one to a stop and another one from there: who leaves a circle away from where the next path
 // begins would swing out too fast.
 std::string SequencePlanner::join(const Joint& joint, const std::string& from_to) {
+    if (joint.vehicle.is_steered()) return steer(joint, from_to);
     const std::string mistake = add_blend(joint, from_to + ": ");
     if (mistake.empty() || joint.from.velocity.norm() == 0) return mistake;
-    const LocalMotion rest = rest_after(joint.from, limits_);
-    if (!add_blend({joint.from, rest, joint.left, joint.leaves, joint.leaves}, from_to + ", to a stop: ").empty())
-        return mistake;
-    return add_blend({rest, joint.to, {}, joint.leaves, joint.enters}, from_to + ", from the stop on: ");
+    Joint stop = joint, on = joint;
+    stop.to = on.from = rest_after(joint.from, joint.vehicle.along);
+    stop.enters = joint.leaves, on.left = {};
+    if (!add_blend(stop, from_to + ", to a stop: ").empty()) return mistake;
+    return add_blend(on, from_to + ", from the stop on: ");
+}
+
+// Planes, boats and cars come to rest and go round corners to where the next path begins: they neither slide sideways
+// nor turn where they stand.
+std::string SequencePlanner::steer(const Joint& joint, const std::string& from_to) {
+    if (joint.leaves == joint.enters && alike(joint.from, joint.to)) return {};
+    Joint stop = joint, on = joint;
+    stop.enters = joint.leaves, on.left = {};
+    if (!rests_level(joint.from)) {
+        on.from = rest_after(joint.from, joint.vehicle.along);
+        on.from.roll = on.from.pitch = 0;
+        stop.to = on.from;
+        if (std::string mistake = add_blend(stop, from_to + ", to a stop: "); !mistake.empty()) return mistake;
+    }
+    if (is_nudge(on.from, on.to)) return add_blend(on, from_to + ": ");
+    const auto way = steered_joint(on.from, on.to, joint.vehicle);
+    if (!way)
+        return fmt::format(
+            "{}: a {}, which does not turn where it stands, finds no way of {:.0f} m, {:+.0f} m of height and a turn "
+            "of "
+            "{:.0f}°; expected a step with waypoints that lead there, or places further apart or less steep",
+            from_to, vehicle_name(joint.vehicle.kind), (on.to.position - on.from.position).head<2>().norm(),
+            on.to.position.z() - on.from.position.z(),
+            std::abs(std::remainder(on.to.heading - on.from.heading, 2 * std::numbers::pi)) * 180 / std::numbers::pi);
+    shape_->add(way, way->duration(), joint.leaves, joint.enters);
+    notes_.push_back(fmt::format("{}: joined by a way round corners of {:.1f} s", from_to, way->duration()));
+    on.from = way->at(way->duration());
+    on.leaves = joint.enters;
+    return add_blend(on, from_to + ", to its lean: ");
+}
+
+// That of the sequence, unless both steps are another one's.
+const VehicleLimits& SequencePlanner::vehicle_between(const SequenceStep& left, const SequenceStep& entered) const {
+    const bool own = left.vehicle.kind == entered.vehicle.kind && left.vehicle.kind != vehicle_.kind;
+    return own ? left.vehicle : vehicle_;
 }
 
 // A path that has ended is at rest.
@@ -226,15 +310,18 @@ AngleChanges SequencePlanner::turns_when_left(std::size_t i) const {
 // From the end of step i on.
 std::string SequencePlanner::leave(std::size_t i) {
     const LocalMotion end = steps_[i].shape->at(seconds(i));
-    const VehicleClass vehicle = steps_[i].vehicle;
-    const AngleChanges turns = turns_when_left(i);
     const bool last = i + 1 == steps_.size();
-    if (last && !loop_)
-        return add_blend({end, rest_after(end, limits_), turns, vehicle, vehicle},
-                         fmt::format("step {} is left before its end: ", i + 1));
     const std::size_t next = last ? 0 : i + 1;
-    return join({end, steps_[next].shape->at(0), turns, vehicle, steps_[next].vehicle},
-                fmt::format("from step {} to {}", i + 1, next + 1));
+    const SequenceStep& step = steps_[i];
+    Joint joint{end, end, turns_when_left(i), step.vehicle.kind, step.vehicle.kind, vehicle_between(step, step)};
+    if (last && !loop_) {
+        joint.to = rest_after(end, joint.vehicle.along);
+        return add_blend(joint, fmt::format("step {} is left before its end: ", i + 1));
+    }
+    joint.to = steps_[next].shape->at(0);
+    joint.enters = steps_[next].vehicle.kind;
+    joint.vehicle = vehicle_between(step, steps_[next]);
+    return join(joint, fmt::format("from step {} to {}", i + 1, next + 1));
 }
 
 PathPlanResult SequencePlanner::plan() {
@@ -242,7 +329,7 @@ PathPlanResult SequencePlanner::plan() {
         const bool finite = std::isfinite(seconds(i));
         if (!finite && (loop_ || i + 1 < steps_.size()))
             return tl::unexpected(fmt::format("step {} has no end; expected duration_s or laps", i + 1));
-        shape_->add(steps_[i].shape, seconds(i), steps_[i].vehicle, steps_[i].vehicle);
+        shape_->add(steps_[i].shape, seconds(i), steps_[i].vehicle.kind, steps_[i].vehicle.kind);
         if (!finite) break;
         if (const std::string mistake = leave(i); !mistake.empty()) return tl::unexpected(mistake);
     }
@@ -252,9 +339,9 @@ PathPlanResult SequencePlanner::plan() {
 
 }  // namespace
 
-PathPlanResult plan_sequence(const std::vector<SequenceStep>& steps, const SpeedLimits& limits, bool loop) {
+PathPlanResult plan_sequence(const std::vector<SequenceStep>& steps, const VehicleLimits& vehicle, bool loop) {
     if (steps.empty()) return tl::unexpected(std::string("has no steps; expected one or more"));
-    return SequencePlanner(steps, limits, loop).plan();
+    return SequencePlanner(steps, vehicle, loop).plan();
 }
 
 }  // namespace skyloop

@@ -25,8 +25,8 @@ PathPlanResult plan_path(const PathWish& wish, std::uint64_t seed);
 struct GeneratedPath {
     struct Step {
         PathWish wish{};
-        double seconds = LocalShape::endless;   ///< after which the next one takes over
-        std::optional<VehicleClass> vehicle{};  ///< as which it is gone; nothing: that of the path
+        double seconds = LocalShape::endless;    ///< after which the next one takes over
+        std::optional<VehicleLimits> vehicle{};  ///< which goes it; nothing: that of the path
     };
     Geodetic origin{};                    ///< of the plane on which the wishes lie
     std::vector<Step> steps{};            ///< at least one

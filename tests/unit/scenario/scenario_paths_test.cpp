@@ -130,9 +130,9 @@ TEST(ScenarioPaths, AStepHasItsOwnVehicle) {
         "[[trajectory.step]]\nkind = \"orbit\"\ncentre = [28, -80, 3]\nradius_m = 90\nlaps = 1\n"
         "[[trajectory.step]]\nkind = \"drive\"\ncentre = [28, -80, 3]\n");
     ASSERT_EQ(path.path.steps.size(), 3U);
-    EXPECT_EQ(path.path.steps[0].vehicle, VehicleClass::rocket);
-    EXPECT_EQ(path.path.steps[1].vehicle, VehicleClass::rover);
-    EXPECT_EQ(path.path.steps[2].vehicle, VehicleClass::car);
+    EXPECT_EQ(path.path.steps[0].vehicle->kind, VehicleClass::rocket);
+    EXPECT_EQ(path.path.steps[1].vehicle->kind, VehicleClass::rover);
+    EXPECT_EQ(path.path.steps[2].vehicle->kind, VehicleClass::car);
     EXPECT_EQ(path.path.vehicle.kind, VehicleClass::rover);
 }
 

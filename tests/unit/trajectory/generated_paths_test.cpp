@@ -245,6 +245,73 @@ TEST(PathSequence, ALoopGoesBackToItsBeginning) {
     test::expect_path_laws(*plan->shape, 500, 15);
 }
 
+TEST(PathSequence, JointsKeepClimbAndSink) {
+    GeneratedPath path;
+    path.vehicle = usual_limits(VehicleClass::multirotor);
+    HoverWish hover;
+    hover.place = {0, 0, 700};
+    path.steps.push_back({hover, 10});
+    hover.place.z() = 500;
+    path.steps.push_back({hover, 10});
+    path.loop = true;
+    const auto plan = plan_generated(path, 1);
+    ASSERT_TRUE(plan) << plan.error();
+    const auto most = test::expect_path_laws(*plan->shape, 1000, 15);
+    EXPECT_LE(most.sink, 3 * 1.03);
+    EXPECT_LE(most.climb, 5 * 1.03);
+    path.vehicle = usual_limits(VehicleClass::rover);
+    EXPECT_THAT(plan_generated(path, 1).error(), HasSubstr("a slope of 30°"));
+}
+
+// How far from where it looks it goes, rad.
+double widest_drift(const LocalShape& shape, double horizon) {
+    double most = 0;
+    for (double t = 0; t < std::min(horizon, shape.duration()); t += 0.05) {
+        const LocalMotion m = shape.at(t);
+        if (m.velocity.head<2>().norm() < 0.5) continue;
+        const double course = std::atan2(m.velocity.x(), m.velocity.y());
+        most = std::max(most, std::abs(std::remainder(course - m.heading, 2 * std::numbers::pi)));
+    }
+    return most;
+}
+
+TEST(PathSequence, PlanesAndCarsGoRoundCornersToTheNextStep) {
+    GeneratedPath flight;
+    flight.vehicle = usual_limits(VehicleClass::plane);
+    OrbitWish orbit{lap_of(VehicleClass::plane, 20, 1), 100, 0, false, 0};
+    orbit.lap.centre.z() = 900;
+    flight.steps.push_back({orbit, LocalShape::endless});
+    orbit.lap.centre += Eigen::Vector3d(0, 110, -400);
+    flight.steps.push_back({orbit, LocalShape::endless});
+    const auto plane = plan_generated(flight, 1);
+    ASSERT_TRUE(plane) << plane.error();
+    EXPECT_THAT(plane->notes.at(0), HasSubstr("from step 1 to 2: joined by a way round corners of"));
+    EXPECT_LE(test::expect_path_laws(*plane->shape, 1e6, 30).sink, 4.001);
+    EXPECT_LT(widest_drift(*plane->shape, 1e6), 0.01);
+    GeneratedPath drive;
+    drive.vehicle = usual_limits(VehicleClass::car);
+    WaypointWish wish;
+    wish.vehicle = drive.vehicle;
+    wish.waypoints = {{{0, 0, 0}, 14, 0}, {{0, 200, 0}, 14, 0}, {{200, 200, 0}, 14, 0}};
+    drive.steps.push_back({wish, LocalShape::endless});
+    drive.loop = true;
+    const auto car = plan_generated(drive, 1);
+    ASSERT_TRUE(car) << car.error();
+    test::expect_path_laws(*car->shape, 300, 20);
+    EXPECT_LT(widest_drift(*car->shape, 300), 0.01);
+}
+
+TEST(PathSequence, SaysWhereACarCannotGoRound) {
+    GeneratedPath path;
+    path.vehicle = usual_limits(VehicleClass::car);
+    OrbitWish orbit{lap_of(VehicleClass::car, 8, 1), 30, 0, false, 0};
+    path.steps.push_back({orbit, LocalShape::endless});
+    orbit.lap.centre.z() += 5000;
+    path.steps.push_back({orbit, LocalShape::endless});
+    EXPECT_THAT(plan_generated(path, 1).error(),
+                HasSubstr("from step 1 to 2: a car, which does not turn where it stands, finds no way of 0 m"));
+}
+
 // On the far side of its circle, away from the place and at full speed.
 TEST(PathSequence, StopsFirstWhereNoOneCurveKeepsTheLimits) {
     GeneratedPath path;

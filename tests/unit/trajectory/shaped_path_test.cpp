@@ -172,7 +172,7 @@ double nose_up_of(const Trajectory& path, double t) {
 TEST(ShapedPath, AStepStandsAsItsOwnVehicle) {
     const GeodesicPlane plane(Geodetic::degrees(28, -80, 3));
     GeneratedPath sequence;
-    sequence.steps.push_back({RocketWish{}, LocalShape::endless, VehicleClass::rocket});
+    sequence.steps.push_back({RocketWish{}, LocalShape::endless, usual_limits(VehicleClass::rocket)});
     const auto alone = plan_generated(sequence, 1);
     ASSERT_TRUE(alone) << alone.error();
     EXPECT_NEAR(nose_up_of(ShapedPath(shaped_start, plane, alone->shape, sequence.vehicle.kind), 2), 1, 1e-9);
@@ -196,7 +196,7 @@ TEST(ShapedPath, AStepStandsAsItsOwnVehicle) {
 
 TEST(ShapedPath, AnotherVehicleAtTheSamePlaceTakesItsTime) {
     GeneratedPath sequence;
-    sequence.steps.push_back({RocketWish{}, LocalShape::endless, VehicleClass::rocket});
+    sequence.steps.push_back({RocketWish{}, LocalShape::endless, usual_limits(VehicleClass::rocket)});
     sequence.steps.push_back({HoverWish{}, 10});
     const auto plan = plan_generated(sequence, 1);
     ASSERT_TRUE(plan) << plan.error();
