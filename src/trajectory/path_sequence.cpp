@@ -45,6 +45,8 @@ public:
     BlendShape(const LocalMotion& from, const LocalMotion& to, const AngleChanges& left, double seconds)
         : from_(from), to_(to), left_(left), piece_(from, to, seconds) {}
     [[nodiscard]] double duration() const override { return piece_.seconds(); }
+    [[nodiscard]] const LocalMotion& from() const { return from_; }
+    [[nodiscard]] const LocalMotion& to() const { return to_; }
     [[nodiscard]] LocalMotion at(double t) const override {
         const double inside = std::clamp(t, 0.0, duration());
         LocalMotion m = piece_.at(inside);
@@ -67,6 +69,7 @@ struct BlendLimits {
     SpeedLimits along;
     double climb, sink;  // m/s
     double turn;         // rad/s
+    double aside;        // of the straight way, m
 };
 
 bool keeps_limits(const BlendShape& blend, const BlendLimits& limits) {
@@ -81,6 +84,7 @@ bool keeps_limits(const BlendShape& blend, const BlendLimits& limits) {
             jerk > limits.along.jerk || turn > limits.turn)
             return false;
         if (m.velocity.z() > limits.climb || -m.velocity.z() > limits.sink) return false;
+        if (distance_from_leg(m.position, blend.from().position, blend.to().position) > limits.aside) return false;
         before = m;
     }
     return true;
@@ -96,18 +100,21 @@ struct Joint {
 
 // What comes faster than the limits is let go at the pace it has.
 BlendLimits limits_of(const Joint& joint) {
-    constexpr double slack = 1.02, pushed_s = 1;
+    constexpr double slack = 1.02, pushed_s = 1, least_aside_m = 10;
     const auto& [from, to, left, leaves, enters, vehicle] = joint;
     // Waves and gusts that push it up or down when it is left do so for a while.
     const double pushed = std::abs(from.acceleration.z()) * pushed_s;
     const double rises = std::max(from.velocity.z(), to.velocity.z()) + pushed,
                  falls = std::max(-from.velocity.z(), -to.velocity.z()) + pushed;
-    BlendLimits limits{vehicle.along, 0, 0, 0};
+    BlendLimits limits{vehicle.along, 0, 0, 0, 0};
     limits.along.speed = slack * std::max({vehicle.along.speed, from.velocity.norm(), to.velocity.norm()});
     limits.along.acceleration =
         slack * std::max({vehicle.along.acceleration, from.acceleration.norm(), to.acceleration.norm()});
     limits.climb = slack * std::max(vehicle.climb, rises);
     limits.sink = slack * std::max(vehicle.sink, falls);
+    // The acceleration of a gust, kept over a long way, would lead far round.
+    limits.aside = least_aside_m + (to.position - from.position).norm() / 3 +
+                   from.velocity.norm() * speed_change_time(from.velocity.norm(), vehicle.along);
     limits.turn = std::max(turns_on_the_spot, slack * std::abs(left.heading.rate));
     return limits;
 }

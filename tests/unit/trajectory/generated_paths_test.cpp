@@ -259,6 +259,8 @@ TEST(PathSequence, JointsKeepClimbAndSink) {
     const auto most = test::expect_path_laws(*plan->shape, 1000, 15);
     EXPECT_LE(most.sink, 3 * 1.03);
     EXPECT_LE(most.climb, 5 * 1.03);
+    for (double t = 0; t < 400; t += 0.5)
+        EXPECT_LT(plan->shape->at(t).position.head<2>().norm(), 80) << "down and up, not far round: " << t;
     path.vehicle = usual_limits(VehicleClass::rover);
     EXPECT_THAT(plan_generated(path, 1).error(), HasSubstr("a slope of 30°"));
 }
