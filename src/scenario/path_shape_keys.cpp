@@ -211,12 +211,11 @@ constexpr auto names_of_shapes = [] {
 
 std::optional<Eigen::Vector3d> on_plane(TableReader& table, const GeodesicPlane& plane, std::string_view key,
                                         const Geodetic& place) {
-    constexpr double farthest_m = 1e6;
     const Eigen::Vector3d local = plane.to_local(place);
     const double distance = local.head<2>().norm();
-    if (distance <= farthest_m) return local;
+    if (distance <= GeodesicPlane::farthest_m) return local;
     table.mistake(key, fmt::format("lies {:.0f} km from the first place of the path; expected at most {:.0f}",
-                                   distance / 1000, farthest_m / 1000));
+                                   distance / 1000, GeodesicPlane::farthest_m / 1000));
     return std::nullopt;
 }
 

@@ -6,6 +6,7 @@
 
 #include "knot_curve.hpp"
 #include "skyloop/trajectory/flight_profiles.hpp"
+#include "skyloop/trajectory/geodesic_plane.hpp"
 #include "smooth_step.hpp"
 
 namespace skyloop {
@@ -114,6 +115,13 @@ PathPlanResult BalloonFlight::fly() {
         if (position_.z() >= wish_.burst && std::isinf(burst_at_)) burst_at_ = t_;
         const LocalMotion now = motion();
         curve->add(t_, now);
+        // From the origin of its plane, the first place of the path, as places are.
+        if (position_.head<2>().norm() > GeodesicPlane::farthest_m)
+            return tl::unexpected(
+                fmt::format("the wind takes the balloon {:.0f} km away, farther than which no path leads, after {:.0f} "
+                            "s at {:.0f} m; "
+                            "expected less wind, a lower burst, or a faster ascent or descent",
+                            GeodesicPlane::farthest_m / 1000, t_, position_.z()));
         if (t_ > burst_at_ + burst_s && position_.z() - ground <= landing_s / 2 * std::abs(now.velocity.z())) break;
     }
     const LocalMotion last = curve->end();

@@ -43,7 +43,7 @@ struct BalloonWish {
     double descent = 6;            ///< at sea level, m/s
     std::vector<WindLayer> winds;  ///< ascending; empty: the usual ones
 };
-/// No plan: it bursts below the ground.
+/// No plan: it bursts below the ground, or the wind takes it 1000 km away.
 PathPlanResult plan_balloon(const BalloonWish& wish);
 
 /// Settings with a name: "rocket_1km", "rocket_30km_M3"; false for another one, which changes nothing.

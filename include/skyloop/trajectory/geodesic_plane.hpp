@@ -14,6 +14,7 @@ namespace skyloop {
 /// across such a line is too long on the plane by s²/6R²: 0.04 % at 300 km.
 class GeodesicPlane {
 public:
+    static constexpr double farthest_m = 1e6;  ///< from the origin, that a path may lead
     explicit GeodesicPlane(const Geodetic& origin) : origin_(origin) {}
     [[nodiscard]] const Geodetic& origin() const { return origin_; }
 

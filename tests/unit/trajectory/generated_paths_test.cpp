@@ -168,6 +168,10 @@ TEST(BalloonPlan, RisesBurstsAndLands) {
     const auto lower = shape_of(wish);
     EXPECT_NEAR(lower->duration() - (30000 / 5.0 + 2.5), 2161.7, 5);
     EXPECT_THAT(refusal_of(BalloonWish{{0, 0, 3000}, 0, 5, 2000, 6, {}}), HasSubstr("bursts at 2000 m"));
+    // 8000 s up and 1841 s down.
+    EXPECT_THAT(refusal_of(BalloonWish{{0, 0, 0}, 0, 2.5, 20000, 6, {{0, 120, right_angle}}}),
+                HasSubstr("1000 km away"));
+    EXPECT_TRUE(plan_path(BalloonWish{{0, 0, 0}, 0, 2.5, 20000, 6, {{0, 80, right_angle}}}, 1));
 }
 
 DriveWish drive_of(std::uint64_t seed) {
