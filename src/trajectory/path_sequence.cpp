@@ -110,6 +110,9 @@ BlendLimits limits_of(const Joint& joint) {
     limits.along.speed = slack * std::max({vehicle.along.speed, from.velocity.norm(), to.velocity.norm()});
     limits.along.acceleration =
         slack * std::max({vehicle.along.acceleration, from.acceleration.norm(), to.acceleration.norm()});
+    // A turn that is left ends as others do: as fast as its lateral acceleration comes and goes.
+    if (vehicle.turn_ramp > 0)
+        limits.along.jerk = std::max(vehicle.along.jerk, steepest_of_smooth_step * vehicle.lateral / vehicle.turn_ramp);
     limits.climb = slack * std::max(vehicle.climb, rises);
     limits.sink = slack * std::max(vehicle.sink, falls);
     // The acceleration of a gust, kept over a long way, would lead far round.
@@ -130,7 +133,7 @@ bool is_too_steep(const Joint& joint) {
 
 // The shortest of a row of times, each a tenth longer than the one before, in which the limits are kept; 0: none.
 double blend_seconds(const Joint& joint) {
-    // A rocket lies down on its belly by 90°, at the pace of a turn on the spot.
+    // A rocket lies down by 90°, at the pace of a turn on the spot.
     constexpr double as_it_is_s = 0.5, other_vehicle_s = 2;
     const double shortest_s = joint.leaves == joint.enters ? as_it_is_s : other_vehicle_s;
     constexpr double longest_s = 1e5, longer = 1.1;
@@ -287,8 +290,7 @@ std::string SequencePlanner::steer(const Joint& joint, const std::string& from_t
     if (!way)
         return fmt::format(
             "{}: a {}, which does not turn where it stands, finds no way of {:.0f} m, {:+.0f} m of height and a turn "
-            "of "
-            "{:.0f}°; expected a step with waypoints that lead there, or places further apart or less steep",
+            "of {:.0f}°; expected a step with waypoints that lead there, or places further apart or less steep",
             from_to, vehicle_name(joint.vehicle.kind), (on.to.position - on.from.position).head<2>().norm(),
             on.to.position.z() - on.from.position.z(),
             std::abs(std::remainder(on.to.heading - on.from.heading, 2 * std::numbers::pi)) * 180 / std::numbers::pi);

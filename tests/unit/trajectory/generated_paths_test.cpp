@@ -307,6 +307,17 @@ TEST(PathSequence, PlanesAndCarsGoRoundCornersToTheNextStep) {
     EXPECT_LT(widest_drift(*car->shape, 300), 0.01);
 }
 
+// The jerk along its way, 1 m/s³, is less than that with which its turn ends.
+TEST(PathSequence, APlaneLeavesItsCircle) {
+    GeneratedPath path;
+    path.vehicle = usual_limits(VehicleClass::plane);
+    path.steps.push_back({OrbitWish{lap_of(VehicleClass::plane, 20, 0), 100, 0, false, 0}, 60});
+    const auto plan = plan_generated(path, 1);
+    ASSERT_TRUE(plan) << plan.error();
+    EXPECT_THAT(plan->notes.at(0), HasSubstr("step 1 is left before its end: joined by a curve of"));
+    EXPECT_LE(test::expect_path_laws(*plan->shape, 1e6, 30).speed, 20 * 1.03);
+}
+
 TEST(PathSequence, SaysWhereACarCannotGoRound) {
     GeneratedPath path;
     path.vehicle = usual_limits(VehicleClass::car);
