@@ -37,6 +37,7 @@ struct FirmwareFaults {
 struct Reboot {
     StartKind kind = StartKind::hot;
     bool banner = true;
+    bool loses_battery = false;  ///< the battery-backed memory was without supply, too: what it held is lost
 };
 /// Its navigation starts anew; configuration, ports and texts stay.
 struct RestartNavigation {

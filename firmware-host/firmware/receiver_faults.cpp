@@ -29,7 +29,10 @@ UbxMessageId sentence_id(const SentenceView& sentence) {
 }
 
 void Receiver::Core::happen(const ReceiverEvent& event, GpsTime now) {
-    std::visit(Overloaded{[&](const Reboot& e) { reboot(Forgotten::of(e.kind), now, BootCause::power, e.banner); },
+    std::visit(Overloaded{[&](const Reboot& e) {
+                              if (e.loses_battery) store_.clear(in_battery);
+                              reboot(Forgotten::of(e.kind), now, BootCause::power, e.banner);
+                          },
                           [&](const RestartNavigation& e) {
                               restart_navigation(Forgotten::of(e.kind), now, board_.timing.signal_restart);
                           },

@@ -114,6 +114,8 @@ Result<Fault> make_power_cut(const Parameters& parameters, const FaultContext&) 
     };
     firmware::Reboot reboot;
     reboot.kind = firmware::start_kind(parameters.text("start")).value_or(StartKind::cold);
+    // Whoever has kept clock or ephemerides has a backup supply, and with it the settings kept there.
+    reboot.loses_battery = reboot.kind == StartKind::cold;
     fault.at_end.emplace_back(reboot);
     return fault;
 }
@@ -234,7 +236,8 @@ void add_broken_wires(std::vector<FaultKind>& kinds) {
                   "`power` of its [[receiver]], is switched too.",
                   "A brown-out of the supply rail, a tripped fuse or a bad crimp of the supply lead.",
                   {word_parameter("start", "cold", {"hot", "warm", "cold"},
-                                  "how it starts afterwards: cold without a backup battery")},
+                                  "how it starts afterwards: cold without a backup battery, and "
+                                  "settings saved in battery-backed memory are lost then, those in flash are not")},
                   make_power_cut));
     kinds.push_back(wire_kind(
         "speed_mismatch",

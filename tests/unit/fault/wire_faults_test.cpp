@@ -267,6 +267,16 @@ TEST(WireFaults, APowerCutSilencesTheReceiverAndRestartsIt) {
     ASSERT_NE(reboot, nullptr);
     EXPECT_EQ(reboot->kind, StartKind::warm);
     EXPECT_TRUE(reboot->banner);
+    EXPECT_FALSE(reboot->loses_battery) << "what it still knows the battery has kept, and settings with it";
+}
+
+TEST(WireFaults, APowerCutWithoutABatteryLosesWhatItKept) {
+    const Fault fault = wire_fault("power_cut");
+    ASSERT_EQ(fault.at_end.size(), 1U);
+    const auto* reboot = std::get_if<firmware::Reboot>(&fault.at_end[0]);
+    ASSERT_NE(reboot, nullptr);
+    EXPECT_EQ(reboot->kind, StartKind::cold);
+    EXPECT_TRUE(reboot->loses_battery);
 }
 
 }  // namespace

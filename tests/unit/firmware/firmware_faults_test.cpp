@@ -132,6 +132,18 @@ TEST(FirmwareFaults, ForgetsEveryLayer) {
     EXPECT_EQ(r.receiver.settings().navigation_period, 1s) << "nothing was stored either";
 }
 
+TEST(FirmwareFaults, LosesWithTheBatteryWhatItKeptAndNotWhatIsInFlash) {
+    BrokenReceiver r;
+    r.set(0x30210001, 200, 3);  // CFG-RATE-MEAS, RAM and battery
+    r.set(0x20110021, 8, 5);    // CFG-NAVSPG-DYNMODEL, RAM and flash
+    r.wait(1s);
+    r.receiver.happen(Reboot{StartKind::cold, true}, r.now);
+    EXPECT_EQ(r.receiver.settings().navigation_period, 200ms) << "cold, and with a battery";
+    r.receiver.happen(Reboot{StartKind::cold, true, true}, r.now);
+    EXPECT_EQ(r.receiver.settings().navigation_period, 1s);
+    EXPECT_EQ(r.receiver.persistent_text(), "flash CFG-NAVSPG-DYNMODEL 8\n");
+}
+
 TEST(FirmwareFaults, GivesTheSpeedOfBeforeBackOnceAndNotOverAReboot) {
     BrokenReceiver r;
     const auto baud = [&] {
