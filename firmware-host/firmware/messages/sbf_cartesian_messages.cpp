@@ -50,13 +50,6 @@ SbfCovariance turned(const SbfCovariance& geodetic, const NavigationState& state
     return cartesian;
 }
 
-// East, north and up of a far base are its own.
-Eigen::Vector3d base_to_rover(const NavigationState& state, const SbfBaseVector& line) {
-    if (state.epoch.relative || !state.corrections.base)
-        return along_axes(state, line.delta_east, line.delta_north, line.delta_up);
-    return to_ecef(state.epoch.fix.position).vector() - state.corrections.base->vector();
-}
-
 }  // namespace
 
 SbfPvtCartesian sbf_pvt_cartesian(const ReportContext& context) {
@@ -110,7 +103,7 @@ SbfBaseVectorCart sbf_base_vector_cartesian(const NavigationState& state) {
     SbfBaseVectorCart block;
     block.time = from.time;
     for (const SbfBaseVector& line : from.bases) {
-        const Eigen::Vector3d delta = base_to_rover(state, line);
+        const Eigen::Vector3d delta = along_axes(state, line.delta_east, line.delta_north, line.delta_up);
         SbfBaseVectorXyz base;
         base.num_sv = line.num_sv;
         base.error = line.error;

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double sbf_degrees = 180.0 / std::numbers::pi;
 
+// From the rover to the base, in the rover's east, north and up (mosaic-X5 reference guide, BaseVectorGeod: the base
+// "as seen from the rover").
 struct BaseLine {
     double east = 0, north = 0, up = 0;
     bool moving = false;
@@ -19,12 +21,12 @@ struct BaseLine {
 std::optional<BaseLine> base_line(const NavigationState& state) {
     if (state.epoch.relative) {
         const RelativePosition& r = *state.epoch.relative;
-        return BaseLine{r.east_m, r.north_m, -r.down_m, r.base_moves};
+        // Taken from 0, which stays without a sign.
+        return BaseLine{0 - r.east_m, 0 - r.north_m, r.down_m, r.base_moves};
     }
     if (!state.corrections.base || state.corrections.state == CorrectionState::none) return std::nullopt;
-    const Position<Enu> rover =
-        LocalFrame(to_geodetic(*state.corrections.base)).to_enu(to_ecef(state.epoch.fix.position));
-    return BaseLine{rover.vector().x(), rover.vector().y(), rover.vector().z(), false};
+    const Position<Enu> base = LocalFrame(state.epoch.fix.position).to_enu(*state.corrections.base);
+    return BaseLine{base.vector().x(), base.vector().y(), base.vector().z(), false};
 }
 
 // Modes of a moving base are 3 more than those of one that stands (7 fixed, 8 float).
@@ -95,14 +97,14 @@ SbfBaseVectorGeod sbf_base_vector(const NavigationState& state) {
     base.delta_up = line->up;
     const VelocityNed& v = state.epoch.fix.velocity;
     if (!line->moving) {
-        base.vel_east = static_cast<float>(v.east);
-        base.vel_north = static_cast<float>(v.north);
-        base.vel_up = static_cast<float>(-v.down);
+        base.vel_east = static_cast<float>(0 - v.east);
+        base.vel_north = static_cast<float>(0 - v.north);
+        base.vel_up = static_cast<float>(v.down);
     }
     const double horizontal = std::hypot(line->east, line->north);
-    const double azimuth = std::atan2(-line->east, -line->north) * sbf_degrees;
+    const double azimuth = std::atan2(line->east, line->north) * sbf_degrees;
     base.azimuth = static_cast<std::uint16_t>(std::lround((azimuth < 0 ? azimuth + 360 : azimuth) * 100) % 36000);
-    base.elevation = field<std::int16_t>(std::atan2(-line->up, horizontal) * sbf_degrees * 100);
+    base.elevation = field<std::int16_t>(std::atan2(line->up, horizontal) * sbf_degrees * 100);
     if (state.corrections.station) base.reference_id = sbf_u2(*state.corrections.station);
     if (state.corrections.age) base.corr_age = sbf_u2(state.corrections.age->value() * 100);
     base.signal_info = sbf_signal_info(state);

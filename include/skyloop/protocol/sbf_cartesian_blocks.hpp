@@ -94,8 +94,8 @@ struct SbfBaseVectorXyz {
     std::uint8_t error = 0;
     std::uint8_t mode = 0;
     std::uint8_t misc = 0;
-    double delta_x = sbf_nothing, delta_y = sbf_nothing, delta_z = sbf_nothing;  ///< m, rover minus base
-    float vel_x = static_cast<float>(sbf_nothing);                               ///< m/s
+    double delta_x = sbf_nothing, delta_y = sbf_nothing, delta_z = sbf_nothing;  ///< m, from rover to base
+    float vel_x = static_cast<float>(sbf_nothing);  ///< m/s, of the base with respect to the rover
     float vel_y = static_cast<float>(sbf_nothing);
     float vel_z = static_cast<float>(sbf_nothing);
     std::uint16_t azimuth = 0xFFFF;   ///< 0.01 deg, of the base

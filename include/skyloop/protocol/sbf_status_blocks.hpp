@@ -41,8 +41,8 @@ struct SbfBaseVector {
     std::uint8_t error = 0;  ///< as of PVTGeodetic
     std::uint8_t mode = 0;   ///< the same
     std::uint8_t misc = 0;   ///< bit 0: of antenna phase centres
-    double delta_east = sbf_nothing, delta_north = sbf_nothing, delta_up = sbf_nothing;  ///< m, rover minus base
-    float vel_east = static_cast<float>(sbf_nothing);                                    ///< m/s
+    double delta_east = sbf_nothing, delta_north = sbf_nothing, delta_up = sbf_nothing;  ///< m, from rover to base
+    float vel_east = static_cast<float>(sbf_nothing);  ///< m/s, of the base with respect to the rover
     float vel_north = static_cast<float>(sbf_nothing);
     float vel_up = static_cast<float>(sbf_nothing);
     std::uint16_t azimuth = 0xFFFF;   ///< 0.01 deg, of the base

@@ -2,14 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "firmware/config/config_handler.hpp"
 #include "firmware/messages/sbf_cartesian_messages.hpp"
 #include "firmware/messages/sbf_measurement_messages.hpp"
 #include "firmware/messages/sbf_parts.hpp"
+#include "firmware/messages/sbf_status_messages.hpp"
 #include "firmware/septentrio/modes.hpp"
 #include "firmware/septentrio/output.hpp"
 #include "sample_epochs.hpp"
+#include "skyloop/geo/geodetic.hpp"
 #include "skyloop/gnss/broadcast_lnav.hpp"
 #include "skyloop/gnss/constants.hpp"
 #include "skyloop/protocol/sbf_navigation_blocks.hpp"
@@ -259,6 +262,28 @@ TEST(SbfCartesian, IsTheGeodeticSolutionAlongOtherAxes) {
     state.fix_ok = false;
     EXPECT_EQ(sbf_pvt_cartesian({board, store, state}).x, sbf_nothing);
     EXPECT_EQ(sbf_position_covariance_cartesian(state).covariance, no_sbf_covariance);
+}
+
+TEST(SbfCartesian, ABaseLineLeadsToTheBaseAsSeenFromTheRover) {
+    NavigationState state = measuring_state();
+    state.corrections.state = CorrectionState::rtk_fixed;
+    state.corrections.base = to_ecef(Geodetic::degrees(47, 8.2, 600));
+    state.epoch.fix.velocity = {3, -4, -1};  // north, east, down
+    const SbfBaseVector line = sbf_base_vector(state).bases.at(0);
+    EXPECT_GT(line.delta_east, 15000);
+    EXPECT_NEAR(line.azimuth * 0.01, std::atan2(line.delta_east, line.delta_north) * 180 / std::numbers::pi, 0.006);
+    EXPECT_EQ(line.vel_east, 4) << "of the base with respect to the rover";
+    EXPECT_EQ(line.vel_north, -3);
+    EXPECT_EQ(line.vel_up, -1);
+    const SbfBaseVectorXyz cartesian = sbf_base_vector_cartesian(state).bases.at(0);
+    const Eigen::Vector3d to_base = state.corrections.base->vector() - to_ecef(state.epoch.fix.position).vector();
+    EXPECT_NEAR(cartesian.delta_x, to_base.x(), 1e-6);
+    EXPECT_NEAR(cartesian.delta_y, to_base.y(), 1e-6);
+    EXPECT_NEAR(cartesian.delta_z, to_base.z(), 1e-6);
+    const float speed = std::hypot(cartesian.vel_x, cartesian.vel_y, cartesian.vel_z);
+    EXPECT_NEAR(speed, std::sqrt(26), 1e-5);
+    // Away from the rover's own motion.
+    EXPECT_LT(static_cast<double>(cartesian.vel_z), -1.0);
 }
 
 TEST(SeptentrioModes, AllowAsMuchAsTheUserWants) {

@@ -324,8 +324,8 @@ TEST(SbfStatus, APairHasABaseLineAndACovariance) {
     state.epoch.relative = RelativePosition{0, 2, -1, Metres(0.02)};
     const SbfBaseVectorGeod block = sbf_base_vector(state);
     ASSERT_EQ(block.bases.size(), 1U);
-    EXPECT_EQ(block.bases[0].delta_east, 2);
-    EXPECT_EQ(block.bases[0].delta_up, 1);
+    EXPECT_EQ(block.bases[0].delta_east, -2) << "from the rover to the base";
+    EXPECT_EQ(block.bases[0].delta_up, -1);
     EXPECT_EQ(block.bases[0].mode, 7);
     EXPECT_EQ(block.bases[0].azimuth, 27000) << "the base is in the west";
     EXPECT_EQ(block.bases[0].elevation, -2657);
@@ -341,7 +341,7 @@ TEST(SbfStatus, CorrectionsHaveTheBaseLineOfTheirStation) {
     state.epoch.fix.type = FixType::rtk_fixed;
     const SbfBaseVectorGeod block = sbf_base_vector(state);
     ASSERT_EQ(block.bases.size(), 1U);
-    EXPECT_NEAR(block.bases[0].delta_up, 100, 1e-6);
+    EXPECT_NEAR(block.bases[0].delta_up, -100, 1e-6);
     EXPECT_EQ(block.bases[0].mode, 4);
     EXPECT_EQ(block.bases[0].reference_id, 12);
     EXPECT_EQ(block.bases[0].corr_age, 80);
