@@ -9,6 +9,8 @@ namespace skyloop::firmware {
 namespace {
 
 constexpr Seconds silence_before_another{10};
+// What RXM-RTCM and RXM-COR tell of messages without a station.
+constexpr std::uint16_t no_station = 0xFFFF;
 
 // Observations that a high-precision receiver takes (ZED-F9P interface description HPG 1.32, section 4.2.1).
 bool is_observation(int number) {
@@ -28,7 +30,7 @@ RxmRtcm rtcm_report(const Rtcm3Message& message, Use use) {
     RxmRtcm m;
     m.flags = use == Use::damaged ? 1 : use == Use::used ? 2 << 1 : 1 << 1;
     m.sub_type = static_cast<std::uint16_t>(message.subtype);
-    m.ref_station = static_cast<std::uint16_t>(message.station.value_or(0));
+    m.ref_station = static_cast<std::uint16_t>(message.station.value_or(no_station));
     m.msg_type = static_cast<std::uint16_t>(message.number);
     return m;
 }
@@ -36,12 +38,11 @@ RxmRtcm rtcm_report(const Rtcm3Message& message, Use use) {
 // RTCM 3 is never encrypted; of a damaged frame nothing more is known than what it began like.
 RxmCor correction_report(const Rtcm3Message& message, Use use, bool known) {
     constexpr std::uint32_t rtcm3 = 1, error_free = 1, erroneous = 2, unused = 1, in_use = 2, not_encrypted = 1;
-    constexpr std::uint32_t no_stream = 0xFFFF;
     constexpr int with_subtype = 4072;
     RxmCor m;
     m.status_info = rtcm3 | (use == Use::damaged ? erroneous : error_free) << 5 |
                     (use == Use::used ? in_use : unused) << 7 |
-                    (message.station ? static_cast<std::uint32_t>(*message.station) : no_stream) << 9;
+                    static_cast<std::uint32_t>(message.station.value_or(no_station)) << 9;
     if (use == Use::damaged) return m;
     m.status_info |= not_encrypted << 28;
     if (message.number == 0) return m;  // too short to have a kind

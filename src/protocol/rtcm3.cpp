@@ -13,22 +13,10 @@ constexpr std::size_t rtcm3_head_bytes = 3, rtcm3_tail_bytes = 3, rtcm3_most_pay
 constexpr int station_1005 = 1005, station_1006 = 1006, biases_1230 = 1230, ublox_4072 = 4072;
 constexpr int rtcm3_most_cells = 64;
 
-// Ephemerides have a satellite where others have a station.
+// Ephemerides have a satellite where others have a station, network and space state messages an epoch or a network.
 bool begins_with_station(int number) {
-    switch (number) {
-        case 1019:
-        case 1020:
-        case 1041:
-        case 1042:
-        case 1043:
-        case 1044:
-        case 1045:
-        case 1046:
-        case ublox_4072:
-            return false;
-        default:
-            return number >= 1001;
-    }
+    const auto within = [number](int first, int last) { return number >= first && number <= last; };
+    return within(1001, 1013) || number == 1029 || within(1032, 1035) || msm_kind(number) || number == biases_1230;
 }
 
 void put_rtcm3_begin(BitWriter& bits, int number, int station) {
@@ -55,7 +43,12 @@ std::optional<Rtcm3Message> parse_rtcm3(ByteSpan frame) {
     const int second = static_cast<int>(bits.get(12));
     if (!bits.ok()) return std::nullopt;
     if (begins_with_station(message.number)) message.station = second;
-    if (message.number == ublox_4072) message.subtype = second;
+    if (message.number == ublox_4072) {
+        message.subtype = second;
+        // Nobody tells its layout; where a real ZED-F9T, whose station is 0, has zeros.
+        const int third = static_cast<int>(bits.get(12));
+        if (bits.ok()) message.station = third;
+    }
     return message;
 }
 

@@ -14,7 +14,7 @@ namespace skyloop {
 /// One checked message; the payload lives as long as the frame.
 struct Rtcm3Message {
     int number = 0;              ///< DF002, 0 … 4095
-    std::optional<int> station;  ///< DF003, of messages that begin with it
+    std::optional<int> station;  ///< DF003, of messages that begin with it and of 4072
     int subtype = 0;             ///< of u-blox's 4072
     ByteSpan payload;
 };

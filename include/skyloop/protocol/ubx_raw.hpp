@@ -71,7 +71,7 @@ struct RxmRtcm {
     std::uint8_t version = 2;  ///< 2
     std::uint8_t flags = 0;    ///< bits: 0 CRC failed, 1-2: 0 unknown, 1 not used, 2 used
     std::uint16_t sub_type = 0;
-    std::uint16_t ref_station = 0;  ///< DF003
+    std::uint16_t ref_station = 0;  ///< DF003, or 0xFFFF
     std::uint16_t msg_type = 0;     ///< 1077
 
     template <class M, class V>

@@ -44,8 +44,17 @@ TEST(CorrectionInput, AnswersEveryMessage) {
               encode_frame({0x02, 0x32}, Bytes{2, 2, 0, 0, 7, 0, 0x2F, 0x04}));
     // 4072.1: the subtype stands where the station does.
     EXPECT_EQ(input.take(encode_rtcm3(Bytes{0xFE, 0x80, 0x01}), power_on).rtcm,
+              encode_frame({0x02, 0x32}, Bytes{2, 4, 1, 0, 0xFF, 0xFF, 0xE8, 0x0F}));
+    // A real one goes on with the station, 0.
+    EXPECT_EQ(input.take(encode_rtcm3(Bytes{0xFE, 0x80, 0x01, 0x00, 0x00, 0x00, 0x15}), power_on).rtcm,
               encode_frame({0x02, 0x32}, Bytes{2, 4, 1, 0, 0, 0, 0xE8, 0x0F}));
-    EXPECT_EQ(input.take(encode_rtcm3({}), power_on).rtcm, encode_frame({0x02, 0x32}, Bytes{2, 2, 0, 0, 0, 0, 0, 0}));
+    // An ephemeris and a space state have no station.
+    EXPECT_EQ(input.take(encode_rtcm3(Bytes{0x3F, 0xB0, 0x50, 0, 0}), power_on).rtcm,
+              encode_frame({0x02, 0x32}, Bytes{2, 2, 0, 0, 0xFF, 0xFF, 0xFB, 0x03}));
+    EXPECT_EQ(input.take(encode_rtcm3(Bytes{0x42, 0x40, 0x50, 0, 0}), power_on).rtcm,
+              encode_frame({0x02, 0x32}, Bytes{2, 2, 0, 0, 0xFF, 0xFF, 0x24, 0x04}));
+    EXPECT_EQ(input.take(encode_rtcm3({}), power_on).rtcm,
+              encode_frame({0x02, 0x32}, Bytes{2, 2, 0, 0, 0xFF, 0xFF, 0, 0}));
 }
 
 // RXM-COR: version 1, no Eb/N0, and of the status: protocol, errors, use, station, and what of the rest is valid.
@@ -74,7 +83,8 @@ TEST(CorrectionInput, TellsTheStatusOfEveryMessage) {
 }
 
 TEST(CorrectionInput, TellsOfADamagedFrame) {
-    EXPECT_EQ(CorrectionInput::answer_to_damaged().rtcm, encode_frame({0x02, 0x32}, Bytes{2, 1, 0, 0, 0, 0, 0, 0}));
+    EXPECT_EQ(CorrectionInput::answer_to_damaged().rtcm,
+              encode_frame({0x02, 0x32}, Bytes{2, 1, 0, 0, 0xFF, 0xFF, 0, 0}));
 }
 
 TEST(CorrectionInput, NeedsObservationsAndPositionOfOneStation) {

@@ -129,6 +129,19 @@ TEST(Rtcm3, EphemeridesHaveNoStation) {
     EXPECT_FALSE(message->station);
 }
 
+TEST(Rtcm3, StationsStandWhereTheMessageHasThem) {
+    const auto station_of = [](int number) {
+        const auto first = static_cast<std::uint8_t>(number >> 4), second = static_cast<std::uint8_t>(number << 4);
+        const Bytes frame = encode_rtcm3(Bytes{first, static_cast<std::uint8_t>(second | 1), 0x23, 0x45, 0x60});
+        return parse_rtcm3(frame)->station;
+    };
+    for (const int number : {1002, 1006, 1012, 1033, 1077, 1127, 1137, 1230})
+        EXPECT_EQ(station_of(number), 0x123) << number;
+    for (const int number : {1014, 1019, 1020, 1042, 1046, 1060, 1078, 1242, 4050, 4076})
+        EXPECT_FALSE(station_of(number)) << number;
+    EXPECT_EQ(station_of(4072), 0x456) << "behind the subtype";
+}
+
 TEST(Rtcm3, HeadersOfARealBase) {
     SKYLOOP_REQUIRE_SHARED(path, "serial/ublox-zed-f9t-rtcm3.log");
     const auto log = read_text_file(path);
