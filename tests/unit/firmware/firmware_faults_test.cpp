@@ -144,6 +144,19 @@ TEST(FirmwareFaults, LosesWithTheBatteryWhatItKeptAndNotWhatIsInFlash) {
     EXPECT_EQ(r.receiver.persistent_text(), "flash CFG-NAVSPG-DYNMODEL 8\n");
 }
 
+TEST(FirmwareFaults, LosesWithTheBatteryWhatItsUserHadSavedOnlyWithoutFlash) {
+    for (const bool flash : {true, false}) {
+        BoardProfile board = sample_ublox();
+        if (!flash) board.identity.software = "ROM SPG 5.10 (7b202e)";
+        Receiver receiver(board, {});
+        ASSERT_TRUE(receiver.configure({{0x30210001, 200}}));
+        const GpsTime now = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500).time;
+        receiver.start(now);
+        receiver.happen(Reboot{StartKind::cold, true, true}, now);
+        EXPECT_EQ(receiver.settings().navigation_period, flash ? 200ms : 1s);
+    }
+}
+
 TEST(FirmwareFaults, GivesTheSpeedOfBeforeBackOnceAndNotOverAReboot) {
     BrokenReceiver r;
     const auto baud = [&] {
