@@ -114,7 +114,8 @@ public:
     /// item that the receiver does not have, a value that it would refuse, and values that it would refuse together.
     Result<void> configure(const std::map<std::uint32_t, std::uint64_t>& items);
     /// Takes a persistent_text(). Fails with `input` for a text that is none, an item that the receiver does not have
-    /// and, of a u-blox receiver, values that it would refuse alone or together; @param name for the message
+    /// and, of a u-blox receiver, values that it would refuse alone or together, and flash that it does not have;
+    /// @param name for the message
     Result<void> restore(const std::string& text, const std::string& name);
     /// Where it was when it was last on, which a warm or hot start() knows. To be called before that.
     void remember(const Geodetic& position, Metres geoid_undulation);

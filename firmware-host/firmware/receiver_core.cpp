@@ -102,7 +102,8 @@ Result<void> Receiver::Core::restore(const std::string& text, const std::string&
     const auto allows = [&](std::uint32_t key, std::uint64_t value) {
         return !judges || is_in_range(board_, key, value);
     };
-    if (auto restored = after.restore(text, name, allows); !restored) return restored;
+    const ConfigLayers layers = judges && !has_flash(board_) ? in_battery : in_battery | in_flash;
+    if (auto restored = after.restore(text, name, allows, layers); !restored) return restored;
     if (judges && spoils_start(board_, store_, after))
         return fail(ErrorCode::input, name + ": " + do_not_go_together(board_));
     store_ = std::move(after);

@@ -30,10 +30,12 @@ struct StoredLine {
 
 // One line "battery CFG-RATE-MEAS 200"; a failure says what is wrong with it.
 tl::expected<StoredLine, std::string> parse_stored_line(std::string_view line, const ConfigValues& known,
-                                                        const ConfigStore::Judge& allows) {
+                                                        const ConfigStore::Judge& allows, ConfigLayers layers) {
     const std::string_view layer = next_word(line), name = next_word(line), number = next_word(line);
     if (layer != "battery" && layer != "flash")
         return tl::make_unexpected("layer '" + std::string(layer) + "'; expected battery or flash");
+    if (((layer == "flash" ? in_flash : in_battery) & layers) == 0)
+        return tl::make_unexpected("layer '" + std::string(layer) + "', which this receiver does not have");
     const ConfigKey* key = find_config_key(name);
     if (key == nullptr || !holds(known, key->id))
         return tl::make_unexpected("'" + std::string(name) + "' is no configuration item of this receiver");
@@ -146,14 +148,15 @@ std::string ConfigStore::persistent_text() const {
     return text;
 }
 
-Result<void> ConfigStore::restore(std::string_view text, std::string_view name, const Judge& allows) {
+Result<void> ConfigStore::restore(std::string_view text, std::string_view name, const Judge& allows,
+                                  ConfigLayers layers) {
     ConfigValues battery, flash;
     for (int number = 1; !text.empty(); ++number) {
         const std::size_t end = std::min(text.find('\n'), text.size());
         const std::string_view line = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
         if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-        const auto stored = parse_stored_line(line, factory_, allows);
+        const auto stored = parse_stored_line(line, factory_, allows, layers);
         if (!stored)
             return fail(ErrorCode::input, std::string(name) + ":" + std::to_string(number) + ": " + stored.error());
         (stored->flash ? flash : battery)[stored->key] = stored->value;

@@ -68,7 +68,9 @@ public:
     /// Whether an item may have a value.
     using Judge = std::function<bool(std::uint32_t key, std::uint64_t value)>;
     /// Takes them from such a text, then reload()s. Fails with `input`, naming the line. @param allows none: any value
-    Result<void> restore(std::string_view text, std::string_view name, const Judge& allows = {});
+    /// @param layers those that the receiver has
+    Result<void> restore(std::string_view text, std::string_view name, const Judge& allows = {},
+                         ConfigLayers layers = in_battery | in_flash);
 
 private:
     ConfigValues factory_, ram_, battery_, flash_;

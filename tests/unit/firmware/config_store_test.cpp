@@ -150,6 +150,16 @@ TEST(ConfigStore, RefusesWhatItsJudgeDoesNotAllow) {
     EXPECT_EQ(store.value(period_item), 100U);
 }
 
+TEST(ConfigStore, RefusesALayerThatTheReceiverDoesNotHave) {
+    ConfigStore store = small_store();
+    const auto read = store.restore("battery CFG-RATE-MEAS 100\nflash CFG-RATE-MEAS 200", "state.txt", {}, in_battery);
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().message, "state.txt:2: layer 'flash', which this receiver does not have");
+    EXPECT_EQ(store.value(period_item), 1000U);
+    EXPECT_TRUE(store.restore("battery CFG-RATE-MEAS 100", "state.txt", {}, in_battery));
+    EXPECT_EQ(store.value(period_item), 100U);
+}
+
 // Whatever is done to the layers, RAM holds every item of the factory, a start gives battery over flash over factory,
 // and the text restores both layers.
 TEST(ConfigStore, LayersKeepTheirLawsUnderAnyOperations) {

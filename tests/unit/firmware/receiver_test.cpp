@@ -155,6 +155,12 @@ TEST(Receiver, RefusesStoredSettingsThatItWouldRefuse) {
     EXPECT_EQ(refusal("flash CFG-RATE-MEAS 500\n"), "taken");
 
     BoardProfile board = sample_ublox();
+    board.identity.software = "ROM SPG 5.10 (7b202e)";
+    Receiver without_flash(board);
+    EXPECT_EQ(without_flash.restore("battery CFG-RATE-MEAS 500\nflash CFG-RATE-NAV 2\n", "state").error().message,
+              "state:2: layer 'flash', which this receiver does not have");
+    EXPECT_TRUE(without_flash.restore("battery CFG-RATE-MEAS 500\n", "state"));
+
     board.personality = Personality::mtk;
     Receiver other(std::move(board));
     EXPECT_TRUE(other.restore("flash CFG-NAVSPG-DYNMODEL 99\n", "state")) << "ranges are of u-blox";
