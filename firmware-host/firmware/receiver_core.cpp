@@ -154,6 +154,7 @@ void Receiver::Core::restart_navigation(const Forgotten& forgotten, GpsTime now,
     ++settings_.restarts;
     corrections_.reset();
     settings_.corrections = CorrectionState::none;
+    if (forgotten.rtc) told_time_ = false;
     tracker_.start(now, forgotten);
     power_.restart(!forgotten.ephemerides);
     follow_power();

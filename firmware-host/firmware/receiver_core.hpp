@@ -178,6 +178,7 @@ private:
     GpsTime last_burst_{};                ///< since it started; later ones do not overtake it
     std::optional<GpsTime> report_time_;  ///< of the last epoch; nothing: it is not reported
     GpsTime last_answer_{};               ///< planned; later ones do not overtake it
+    bool told_time_ = false;              ///< by assistance, and not forgotten since
     std::optional<AntennaStatus> told_antenna_;
     MavlinkSent mavlink_sent_;
     std::optional<Sleep> sleep_;           ///< it is off

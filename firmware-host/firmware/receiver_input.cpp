@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "firmware/assistance.hpp"
 #include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/receiver_core.hpp"
@@ -216,15 +217,20 @@ void Receiver::Core::command(PortUnit& unit, const UbxFrameView& frame, GpsTime 
     reply(unit, {std::move(answers), std::nullopt, Seconds(0), frame.id}, now);
 }
 
-// Assistance is taken and, where the client wants to know, acknowledged (MGA-ACK-DATA0, type 1: it will be used). The
-// satellites themselves tell the receiver all it needs.
+// Assistance is taken and, where the client wants to know, acknowledged. The satellites themselves tell the receiver
+// all it needs; of a time that it is told it remembers that it was, as what follows is judged by that.
 void Receiver::Core::assist(PortUnit& unit, const UbxFrameView& frame, GpsTime now) {
-    constexpr UbxMessageId mga_ack{0x13, 0x60};
-    constexpr std::uint8_t accepted = 1;
+    const TimeKnowledge& known = tracker_.state().time;
+    const AssistanceInfo info = judge_assistance(frame, told_time_ || (known.time && known.date));
+    if (info == AssistanceInfo::accepted && tells_time(frame)) told_time_ = true;
     if (!store_.flag(key::navspg_ackaiding)) return;
-    Bytes payload{accepted, 0, 0, frame.id.id, 0, 0, 0, 0};
-    std::copy_n(frame.payload.begin(), std::min<std::size_t>(4, frame.payload.size()), payload.begin() + 4);
-    reply(unit, {{encode_frame(mga_ack, payload)}, std::nullopt, Seconds(0), frame.id}, now);
+    MgaAck answer;
+    answer.type = info == AssistanceInfo::accepted ? 1 : 0;
+    answer.info_code = static_cast<std::uint8_t>(info);
+    answer.msg_id = frame.id.id;
+    std::copy_n(frame.payload.begin(), std::min(answer.payload_start.size(), frame.payload.size()),
+                answer.payload_start.begin());
+    reply(unit, {{encode_frame(answer)}, std::nullopt, Seconds(0), frame.id}, now);
 }
 
 // UPD-SOS: there is no backup, and none is made; to clear it is easily done.
