@@ -15,6 +15,12 @@ namespace {
 
 struct SatelliteColumns {
     std::size_t time = 0, elevation = 0, cn0 = 0, count = 0;
+    std::optional<std::size_t> pseudorange;
+
+    // C/N0 stands in the table for all that arrives.
+    [[nodiscard]] bool tracked(const LineCells& cells) const {
+        return !cells[cn0].empty() && !(pseudorange && cells[*pseudorange].empty());
+    }
 };
 
 std::optional<SatelliteColumns> satellite_columns(const LineCells& names) {
@@ -26,6 +32,8 @@ std::optional<SatelliteColumns> satellite_columns(const LineCells& names) {
         if (found == names.end()) return std::nullopt;
         *column = static_cast<std::size_t>(found - names.begin());
     }
+    const auto pseudorange = std::find(names.begin(), names.end(), "pseudorange_m");
+    if (pseudorange != names.end()) columns.pseudorange = static_cast<std::size_t>(pseudorange - names.begin());
     return columns;
 }
 
@@ -66,7 +74,7 @@ Result<std::vector<DatedSignal>> parse_satellites_table(std::string_view text, c
         if (cells.size() == 1 && cells.front().empty()) continue;
         if (cells.size() != columns->count)
             return refusal(line, fmt::format("found {} cells, expected {}", cells.size(), columns->count));
-        if (cells[columns->cn0].empty()) continue;
+        if (!columns->tracked(cells)) continue;
         const std::optional<double> elevation = cell_value(cells[columns->elevation]);
         const std::optional<double> cn0 = cell_value(cells[columns->cn0]);
         if (!elevation || !cn0 || !std::isfinite(*elevation) || !std::isfinite(*cn0))

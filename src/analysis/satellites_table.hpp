@@ -16,8 +16,9 @@ struct DatedSignal {
     SignalReport report;
 };
 
-/// Reads the columns time_utc, elevation_deg and cn0_dbhz of a table (INTERFACE.md, section 3). Rows without C/N0 are
-/// satellites that are not tracked, and are left out.
+/// Reads the columns time_utc, elevation_deg and cn0_dbhz of a table (INTERFACE.md, section 3). Rows without C/N0, or
+/// without pseudorange_m where the table has that column, are satellites that are not tracked, and are left out as they
+/// are out of receivers' logs.
 Result<std::vector<DatedSignal>> parse_satellites_table(std::string_view text, const std::string& name);
 
 /// Where `fixes` is a file fixes.csv or fixes.csv.gz, adds what the satellites.csv (or .gz) in its folder tells to

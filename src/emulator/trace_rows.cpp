@@ -97,8 +97,9 @@ std::optional<double> measured_pseudorange(const Trace& trace, SatelliteId id) {
     return o->pseudorange->value();
 }
 
-std::optional<double> ideal_pseudorange(const SatelliteInView& sky, const Arrival& arrival) {
-    if (arrival.paths == 0) return std::nullopt;
+std::optional<double> ideal_pseudorange(const SatelliteInView& sky, const Arrival& arrival,
+                                        const SatelliteStatus* status) {
+    if (arrival.paths == 0 || !status || !status->cn0) return std::nullopt;  // not tracked
     const double clock = speed_of_light * (sky.clock_bias.value() - sky.group_delay().value());
     return sky.range.value() - clock + arrival.iono_delay.value() + arrival.tropo_delay.value() +
            arrival.excess_path.value();
@@ -153,7 +154,7 @@ std::string satellite_rows(const Trace& trace) {
         const SatelliteStatus* status = find_status(trace.epoch.fix.satellites, sky.id);
         rows.text(time).text(to_string(sky.id));
         append_arrival(rows, sky, arrival);
-        rows.number(trace.measures ? measured_pseudorange(trace, sky.id) : ideal_pseudorange(sky, arrival), 4);
+        rows.number(trace.measures ? measured_pseudorange(trace, sky.id) : ideal_pseudorange(sky, arrival, status), 4);
         rows.text(status && status->used ? "1" : "0");
         const SignalTerms* terms = find_first_signal(trace.measurement.signals, sky.id);
         append_errors(rows, arrival, terms);

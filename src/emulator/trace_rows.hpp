@@ -26,7 +26,8 @@ std::string fix_row(const Trace& trace);
 
 /// The rows of satellites.csv of one epoch. Delays and errors are those of the satellite's first signal.
 /// `pseudorange_m` is what the receiver measured; sensor models that add errors to the truth measure nothing, and there
-/// it is what a receiver with a perfect clock and no noise would measure through the applied delays.
+/// it is what a receiver with a perfect clock and no noise would measure through the applied delays. Without it a
+/// satellite is not tracked: nothing measures its first signal, or a sensor model reports no C/N0 of it.
 std::string satellite_rows(const Trace& trace);
 
 }  // namespace skyloop

@@ -343,6 +343,14 @@ TEST(FixSeries, signal_strengths_come_from_the_satellites_table_beside_fixes) {
     EXPECT_EQ(first.bin(3).n(), 2u);
     EXPECT_DOUBLE_EQ(first.bin(3).mean(), 45);
     EXPECT_DOUBLE_EQ(first.bin(3).std(), std::sqrt(2.0));
+    // G02 arrives and is not tracked.
+    std::ofstream(folder / "satellites.csv") << "time_utc,satellite,elevation_deg,cn0_dbhz,pseudorange_m,used\n"
+                                                "2010-07-01T12:00:00.000Z,G01,35.0,44,21000000.0,0\n"
+                                                "2010-07-01T12:00:00.000Z,G02,39.9,46,,0\n";
+    const auto tracked = read_fix_series(folder / "fixes.csv");
+    ASSERT_TRUE(tracked) << tracked.error().message;
+    EXPECT_EQ(tracked->signal_strength().bin(3).n(), 1u);
+    EXPECT_DOUBLE_EQ(tracked->signal_strength().bin(3).mean(), 44);
     std::ofstream(folder / "satellites.csv") << "time_utc,elevation_deg,cn0_dbhz\n2010-07-01T12:00:00Z,low,44\n";
     const auto broken = read_fix_series(folder / "fixes.csv");
     ASSERT_TRUE(broken) << broken.error().message;

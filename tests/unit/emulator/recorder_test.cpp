@@ -187,6 +187,14 @@ TEST(Recorder, AReceiverThatMeasuresHasNoPseudorangeOfWhatItDoesNotTrack) {
     EXPECT_EQ(row_of(tables_of({trace}).second, 1)["pseudorange_m"], "");
 }
 
+TEST(Recorder, WhatASensorModelDoesNotReportHasNoPseudorange) {
+    Trace trace = recorded_trace();
+    trace.epoch.fix.satellites[0].cn0.reset();
+    auto row = row_of(tables_of({trace}).second, 1);
+    EXPECT_EQ(row["cn0_dbhz"], "41.25") << "it arrives all the same";
+    EXPECT_EQ(row["pseudorange_m"], "");
+}
+
 TEST(Recorder, TheTimesOfBytesFollowTheBytes) {
     const TemporaryFolder folder;
     const GpsTime start = to_gps_time(2304, 0);
