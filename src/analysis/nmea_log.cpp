@@ -6,10 +6,12 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "fix_table.hpp"
 #include "skyloop/protocol/nmea_decode.hpp"
+#include "skyloop/protocol/nmea_satellites.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
@@ -92,6 +94,31 @@ std::optional<FixSentence> fix_sentence(const NmeaMessage& message) {
     return std::nullopt;
 }
 
+// One satellite of a GSV sentence. Since version 4.10 each of its signals has a list of its own.
+struct ListedSignal {
+    std::optional<Constellation> system;  // nothing: a number that no system has
+    int signal_id = 0;                    // 0: not told
+    SignalReport report;
+};
+
+// The signal of each system that tells its C/N0: the open one on L1 where the log has it, else the first by number, as
+// BeiDou's B1C of receivers without B1I.
+class FirstSignals {
+public:
+    void add(const ListedSignal& signal) {
+        if (signal.signal_id == 0) return;
+        const int on_l1 = signal.system ? nmea_system(*signal.system, NmeaVersion::v4_11).l1_signal_id : 1;
+        int& first = ids_.try_emplace(signal.system, signal.signal_id).first->second;
+        if (first != on_l1) first = signal.signal_id == on_l1 ? on_l1 : std::min(first, signal.signal_id);
+    }
+    [[nodiscard]] bool holds(const ListedSignal& signal) const {
+        return signal.signal_id == 0 || ids_.at(signal.system) == signal.signal_id;
+    }
+
+private:
+    std::map<std::optional<Constellation>, int> ids_;
+};
+
 // Takes a log line by line and keeps what the next one needs.
 class NmeaLogReader {
 public:
@@ -104,6 +131,8 @@ private:
     void take_fix(const FixSentence& said);
     bool is_of_last_epoch(const FixSentence& said) const;
     bool take_satellites(std::string_view sentence);
+    void take_signals(const Gsv& gsv);
+    void tell_signals();
     void finish_epoch();
     void take_rmc(const Rmc& rmc);
     void date_samples();
@@ -115,12 +144,14 @@ private:
     std::size_t damaged_ = 0, without_checksum_ = 0, damaged_of_satellites_ = 0, senseless_ = 0;
     std::string first_senseless_;             // and where it stands
     int listed_used_ = 0;                     // by the GSA sentences of the last sample
-    std::vector<SignalReport> before_first_;  // before the first sample
-    // For each sample its time of day, the number of dates said before it, and what its position lacks.
+    std::vector<ListedSignal> before_first_;  // before the first sample
+    FirstSignals first_signals_;
+    // For each sample its time of day, the number of dates said before it, what its position lacks, and its signals.
     struct Epoch {
         std::optional<double> seconds;
         std::size_t dates_before = 0;
         bool without_altitude = false, without_separation = false;
+        std::vector<ListedSignal> signals{};
     };
     std::vector<Epoch> epochs_;
     std::vector<std::string> sources_;  // of the last sample
@@ -137,6 +168,7 @@ FixSeries NmeaLogReader::read(std::string_view text) {
     }
     finish_epoch();
     date_samples();
+    tell_signals();
     add_warnings();
     return std::move(series_);
 }
@@ -183,12 +215,26 @@ bool NmeaLogReader::take_satellites(std::string_view sentence) {
         decode_nmea(sentence.substr(0, star == std::string_view::npos ? star : star + 3));
     if (!message) return false;
     if (const auto* gsa = std::get_if<Gsa>(&*message)) listed_used_ += static_cast<int>(gsa->satellites.size());
-    std::vector<SignalReport>& signals = series_.samples.empty() ? before_first_ : series_.samples.back().signals;
-    if (const auto* gsv = std::get_if<Gsv>(&*message))
-        for (const GsvSatellite& satellite : gsv->satellites)
-            if (satellite.elevation_deg && satellite.cn0_dbhz)
-                signals.push_back({Angle::degrees(*satellite.elevation_deg), DbHz(*satellite.cn0_dbhz)});
+    if (const auto* gsv = std::get_if<Gsv>(&*message)) take_signals(*gsv);
     return true;
+}
+
+void NmeaLogReader::take_signals(const Gsv& gsv) {
+    std::vector<ListedSignal>& signals = epochs_.empty() ? before_first_ : epochs_.back().signals;
+    for (const GsvSatellite& satellite : gsv.satellites) {
+        if (!satellite.elevation_deg || !satellite.cn0_dbhz) continue;
+        const auto id = satellite_from_nmea(satellite.number.value_or(0), gsv.talker);
+        signals.push_back({id ? std::optional(id->constellation) : std::nullopt, gsv.signal_id.value_or(0),
+                           SignalReport{Angle::degrees(*satellite.elevation_deg), DbHz(*satellite.cn0_dbhz)}});
+        first_signals_.add(signals.back());
+    }
+}
+
+// A satellite counts once, with the first signal of its system: the others differ from it in power by design.
+void NmeaLogReader::tell_signals() {
+    for (std::size_t i = 0; i < epochs_.size(); ++i)
+        for (const ListedSignal& signal : epochs_[i].signals)
+            if (first_signals_.holds(signal)) series_.samples[i].signals.push_back(signal.report);
 }
 
 // GGA of older versions shows at most 12 satellites; GSA of all systems together tell more.
@@ -226,16 +272,15 @@ void NmeaLogReader::take_fix(const FixSentence& said) {
     if (!is_of_last_epoch(said)) {
         finish_epoch();
         sources_ = {said.source};
-        sample.signals = std::exchange(before_first_, {});
+        epoch.signals = std::exchange(before_first_, {});
         series_.samples.push_back(std::move(sample));
-        epochs_.push_back(epoch);
+        epochs_.push_back(std::move(epoch));
         return;
     }
     sources_.push_back(said.source);
     FixSample& last = series_.samples.back();
     if (!epochs_.back().seconds) epochs_.back().seconds = said.seconds;
     if (std::pair(last.has_fix, last.satellites_used) >= std::pair(sample.has_fix, sample.satellites_used)) return;
-    sample.signals = std::move(last.signals);
     last = std::move(sample);
     epochs_.back().without_altitude = epoch.without_altitude;
     epochs_.back().without_separation = epoch.without_separation;

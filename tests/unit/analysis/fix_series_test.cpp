@@ -322,6 +322,30 @@ TEST(FixSeries, nmea_tells_satellites_used_and_signal_strengths) {
     EXPECT_THAT(rest->warnings, ElementsAre(HasSubstr("1 damaged GSA or GSV sentences")));
 }
 
+// GSV of version 4.10 and later lists a satellite with each of its signals.
+TEST(FixSeries, nmea_signal_strengths_are_of_one_signal_of_each_system) {
+    const std::string gga = nmea("GNGGA,120000.00,4628.650,N,03043.956,E,1,12,1.0,50.5,M,30.5,M,,");
+    const auto of = [&](const std::string& satellites) {
+        const auto series = parse_fix_series(satellites + gga + satellites, "log.nmea");
+        EXPECT_TRUE(series) << series.error().message;
+        return series ? series->signal_strength().bin(4) : RunningStatistics();
+    };
+    const std::string l1 = nmea("GPGSV,1,1,02,01,42,090,44,02,43,000,46,1");
+    const std::string others = nmea("GPGSV,1,1,02,01,42,090,20,02,43,000,22,8") + nmea("GAGSV,1,1,01,05,42,090,21,2") +
+                               nmea("GLGSV,1,1,01,65,42,090,23,3") + nmea("GBGSV,1,1,01,21,42,090,24,B");
+    const std::string first =
+        nmea("GAGSV,1,1,01,05,42,090,45,7") + nmea("GLGSV,1,1,01,65,42,090,45,1") + nmea("GBGSV,1,1,01,21,42,090,45,1");
+    EXPECT_EQ(of(others + l1 + first).n(), 10u);
+    EXPECT_NEAR(of(others + l1 + first).mean(), 45, 1e-9);
+    // BeiDou without B1I, and lists that tell no signal.
+    const std::string b1c = nmea("GBGSV,1,1,01,21,42,090,41,3") + nmea("GBGSV,1,1,01,21,42,090,47,5");
+    EXPECT_EQ(of(b1c).n(), 2u);
+    EXPECT_NEAR(of(b1c).mean(), 41, 1e-9);
+    const std::string untold = nmea("GPGSV,1,1,01,03,42,090,40") + nmea("GPGSV,1,1,01,04,42,090,42,0");
+    EXPECT_EQ(of(l1 + untold).n(), 8u);
+    EXPECT_NEAR(of(l1 + untold).mean(), 43, 1e-9);
+}
+
 // The folder of a run: fixes.csv and beside it satellites.csv.
 TEST(FixSeries, signal_strengths_come_from_the_satellites_table_beside_fixes) {
     const std::filesystem::path folder = testing::TempDir() + "fix_series_run";
