@@ -154,11 +154,7 @@ QuantityStatistics quantity_statistics(const FixSeries& series, const FixTimes& 
     QuantityStatistics q;
     q.figures = sample_statistics(values).value_or(SampleStatistics{});
     const TimeCorrelation correlation(times, values);
-    if (correlation.has_gaps()) {
-        if (const auto lag = correlation.time_to_1_e()) q.correlation_samples = *lag / times.step;
-    } else {
-        q.correlation_samples = correlation_length(values);
-    }
+    if (const auto lag = correlation.time_to_1_e()) q.correlation_samples = *lag / times.step;
     if (q.correlation_samples && series.interval) q.correlation_time = *series.interval * *q.correlation_samples;
     q.epoch_noise = correlation.epoch_noise();
     for (std::size_t i = 0; i < correlation_lags.size(); ++i)

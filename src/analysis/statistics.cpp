@@ -113,31 +113,20 @@ PositionErrors position_errors(const FixSeries& series, const std::optional<Geod
 }
 
 // By the Wiener–Khinchin theorem: the sums over all lags cost no more than two Fourier transforms.
-std::vector<double> autocorrelation(std::span<const double> values, std::size_t max_lag) {
-    const std::optional<SampleStatistics> s = sample_statistics(values);
-    if (!s || s->n < 2 || !(s->max > s->min)) return {};
+std::vector<double> lagged_products(std::span<const double> values, std::size_t max_lag) {
     std::size_t size = 1;
     while (size < 2 * values.size())
         size <<= 1;
     Spectrum a(size);
-    for (std::size_t i = 0; i < values.size(); ++i)
-        a[i] = values[i] - s->mean;
+    std::copy(values.begin(), values.end(), a.begin());
     transform(a);
     for (std::complex<double>& bin : a)
         bin = std::norm(bin);
     transform(a);
-    std::vector<double> result(std::min(max_lag + 1, values.size()));
-    for (std::size_t lag = 0; lag < result.size(); ++lag)
-        result[lag] = a[lag].real() / a[0].real();
-    return result;
-}
-
-std::optional<double> correlation_length(std::span<const double> values) {
-    constexpr double level = 1 / std::numbers::e;
-    const std::vector<double> r = autocorrelation(values, values.size() / 2);
-    for (std::size_t lag = 1; lag < r.size(); ++lag)
-        if (r[lag] <= level) return static_cast<double>(lag - 1) + (r[lag - 1] - level) / (r[lag - 1] - r[lag]);
-    return std::nullopt;
+    std::vector<double> sums(std::min(max_lag + 1, values.size()));
+    for (std::size_t lag = 0; lag < sums.size(); ++lag)
+        sums[lag] = a[lag].real() / static_cast<double>(size);
+    return sums;
 }
 
 std::optional<ComparisonPercent> comparison_percent(const SampleStatistics& candidate,

@@ -30,14 +30,29 @@ TimeCorrelation::TimeCorrelation(const FixTimes& times, std::span<const double> 
     points_.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
         points_.push_back({times.at[i], values[i] - statistics->mean});
-        variance_ += points_.back().value * points_.back().value / static_cast<double>(count);
+        squares_ += points_.back().value * points_.back().value;
     }
+    // What rounding leaves about the mean of constant values is no variance.
+    if (!statistics || !(statistics->max > statistics->min)) squares_ = 0;
     std::stable_sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) { return a.time < b.time; });
+}
+
+bool TimeCorrelation::enough(std::size_t pairs) const {
+    constexpr std::size_t least_share = 4;
+    return pairs > 0 && pairs * least_share >= points_.size();
+}
+
+// `rows` are those of the whole record. Without gaps they are the values, the pairs all that it has, and the scale
+// is 1.
+double TimeCorrelation::correlation(double products, std::size_t pairs, double lag_steps, double rows) const {
+    const double scale = (rows - lag_steps) * static_cast<double>(points_.size()) / (rows * static_cast<double>(pairs));
+    // The few pairs that gaps leave may all be of the largest values.
+    return std::clamp(products / squares_ * scale, -1.0, 1.0);
 }
 
 std::optional<LaggedCorrelation> TimeCorrelation::at_lag(double lag) const {
     const double slack = step_ / 2 * (1 + 1e-9);
-    if (!(lag > step_ / 2) || !(variance_ > 0)) return std::nullopt;
+    if (!(lag > step_ / 2) || !(squares_ > 0)) return std::nullopt;
     LaggedCorrelation result;
     double sum = 0;
     std::size_t j = 0;
@@ -50,30 +65,78 @@ std::optional<LaggedCorrelation> TimeCorrelation::at_lag(double lag) const {
         sum += point.value * points_[j].value;
         ++result.pairs;
     }
-    constexpr std::size_t least_share = 4;
-    if (result.pairs == 0 || result.pairs * least_share < points_.size()) return std::nullopt;
-    result.value = sum / static_cast<double>(result.pairs) / variance_;
+    if (!enough(result.pairs)) return std::nullopt;
+    const double rows = (points_.back().time - points_.front().time) / step_ + 1;
+    result.value = correlation(sum, result.pairs, lag / step_, rows);
     return result;
+}
+
+// From the point before, one where no row is missing.
+std::size_t TimeCorrelation::steps_before(std::size_t i) const {
+    constexpr double most = 1e15;
+    if (i == 0) return 0;
+    const double apart = points_[i].time - points_[i - 1].time;
+    return std::abs(apart - step_) <= step_ / 2 ? 1
+                                                : static_cast<std::size_t>(std::llround(std::min(apart / step_, most)));
 }
 
 bool TimeCorrelation::has_gaps() const {
     for (std::size_t i = 1; i < points_.size(); ++i)
-        if (std::abs(points_[i].time - points_[i - 1].time - step_) > step_ / 2) return true;
+        if (steps_before(i) != 1) return true;
     return false;
+}
+
+// Of a row for each step, when pauses longer than any lag are cut to one that no pair spans.
+std::size_t TimeCorrelation::places(std::size_t longest_lag) const {
+    std::size_t count = 1;
+    for (std::size_t i = 1; i < points_.size(); ++i)
+        count += std::min(steps_before(i), longest_lag + 1);
+    return count;
+}
+
+// Half of the series, or what does not take much more memory than it.
+std::size_t TimeCorrelation::longest_lag() const {
+    constexpr std::size_t places_per_value = 4, always_affordable = std::size_t{1} << 18;
+    const std::size_t most = std::max(places_per_value * points_.size(), always_affordable);
+    std::size_t lag = points_.size() / 2;
+    while (lag > 1 && places(lag) > most)
+        lag /= 2;
+    return lag;
+}
+
+std::vector<LaggedCorrelation> TimeCorrelation::at_whole_steps() const {
+    const std::size_t longest = longest_lag();
+    std::vector<double> values(places(longest)), counts(values.size());
+    std::size_t place = 0;
+    double rows = 1;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+        place += std::min(steps_before(i), longest + 1);
+        rows += static_cast<double>(steps_before(i));
+        values[place] += points_[i].value;
+        counts[place] += 1;
+    }
+    const std::vector<double> products = lagged_products(values, longest);
+    const std::vector<double> pairs = has_gaps() ? lagged_products(counts, longest) : std::vector<double>();
+    std::vector<LaggedCorrelation> all(products.size(), {1, points_.size()});
+    for (std::size_t k = 1; k < all.size(); ++k) {
+        // Counts, but for the rounding of the transforms.
+        all[k].pairs = pairs.empty() ? points_.size() - k : static_cast<std::size_t>(std::max(pairs[k], 0.0) + 0.5);
+        if (all[k].pairs > 0) all[k].value = correlation(products[k], all[k].pairs, static_cast<double>(k), rows);
+    }
+    return all;
 }
 
 std::optional<double> TimeCorrelation::time_to_1_e() const {
     constexpr double level = 1 / std::numbers::e;
-    constexpr std::size_t steps_per_doubling = 32;
-    double lag_before = 0, value_before = 1;
-    for (std::size_t k = 1; k <= points_.size() / 2; k += std::max<std::size_t>(1, k / steps_per_doubling)) {
-        const double lag = static_cast<double>(k) * step_;
-        const std::optional<LaggedCorrelation> r = at_lag(lag);
-        if (!r) continue;
-        if (r->value <= level)
-            return lag_before + (lag - lag_before) * (value_before - level) / (value_before - r->value);
-        lag_before = lag;
-        value_before = r->value;
+    if (!(squares_ > 0)) return std::nullopt;
+    const std::vector<LaggedCorrelation> r = at_whole_steps();
+    std::size_t before = 0;
+    for (std::size_t k = 1; k < r.size(); ++k) {
+        if (!enough(r[k].pairs)) continue;
+        if (r[k].value <= level)
+            return step_ * (static_cast<double>(before) + static_cast<double>(k - before) * (r[before].value - level) /
+                                                              (r[before].value - r[k].value));
+        before = k;
     }
     return std::nullopt;
 }
@@ -81,8 +144,7 @@ std::optional<double> TimeCorrelation::time_to_1_e() const {
 std::optional<double> TimeCorrelation::epoch_noise() const {
     std::vector<double> differences;
     for (std::size_t i = 1; i < points_.size(); ++i)
-        if (std::abs(points_[i].time - points_[i - 1].time - step_) <= step_ / 2)
-            differences.push_back(points_[i].value - points_[i - 1].value);
+        if (steps_before(i) == 1) differences.push_back(points_[i].value - points_[i - 1].value);
     if (differences.size() < 2) return std::nullopt;
     return sample_statistics(differences)->std / std::numbers::sqrt2;
 }

@@ -1,4 +1,4 @@
-/// Statistics of position errors: moments, radial errors, time correlation and the article's comparison figure.
+/// Statistics of position errors: moments, radial errors, lagged products and the article's comparison figure.
 #pragma once
 
 #include <cstddef>
@@ -51,13 +51,8 @@ struct PositionErrors {
 /// about the mean of the series itself.
 PositionErrors position_errors(const FixSeries& series, const std::optional<Geodetic>& point = std::nullopt);
 
-/// The autocorrelation of `values` about their mean at lags 0 … max_lag, normalised to 1 at lag 0 (biased estimator,
-/// divisor n at each lag). Empty for fewer than two values or a constant series.
-std::vector<double> autocorrelation(std::span<const double> values, std::size_t max_lag);
-
-/// The lag, in samples and interpolated, at which the autocorrelation first falls to 1/e; nothing when it does not
-/// within half of the series.
-std::optional<double> correlation_length(std::span<const double> values);
+/// For each lag of 0 … max_lag, as far as there are values, the sum of the products of all values so many places apart.
+std::vector<double> lagged_products(std::span<const double> values, std::size_t max_lag);
 
 /// How far a candidate's error statistics are from a reference's (MODELS.md section 4, D-17):
 /// D = 50 % · (|mean_c − mean_r| / |mean_r| + |std_c − std_r| / std_r).

@@ -31,21 +31,26 @@ struct LaggedCorrelation {
 };
 
 /// The times and errors of one series, ready for any lag. Values are taken about their mean.
+///
+/// The estimator is the biased one of time series (Box and Jenkins, Time Series Analysis, 2.1): the sum of the products
+/// of all pairs at a lag over the sum of all squares. Where rows are missing the sum is scaled to that of the whole
+/// record: by the pairs that it would have over those that there are, and by the share of its rows that there are.
+/// It stays within −1 … 1.
 class TimeCorrelation {
 public:
     /// @param values one for each of `times.at`
     TimeCorrelation(const FixTimes& times, std::span<const double> values);
 
-    /// The mean product of all pairs whose difference in time is `lag` within half a step, over the variance. Nothing
-    /// when the lag is shorter than half a step, fewer than a quarter of the values have a partner, or the values are
-    /// constant.
+    /// Of all pairs whose difference in time is `lag` within half a step. Nothing when the lag is shorter than half a
+    /// step, fewer than a quarter of the values have a partner, or the values are constant.
     [[nodiscard]] std::optional<LaggedCorrelation> at_lag(double lag) const;
 
     /// True where neighbours in time are not one step apart within half a step.
     [[nodiscard]] bool has_gaps() const;
 
-    /// The lag at which the correlation first falls to 1/e, interpolated; nothing when it does not within half of the
-    /// series. Lags are tried in steps that grow to a 32nd of the lag.
+    /// The lag at which the correlation first falls to 1/e, interpolated, in the unit of the times; nothing when it
+    /// does not within half as many steps as there are values, or fewer where the gaps are many and long. Neighbours
+    /// one step apart within half a step count as one step apart; lags with too few pairs for at_lag() are passed over.
     [[nodiscard]] std::optional<double> time_to_1_e() const;
 
     /// The standard deviation of the differences of neighbours one step apart, over √2: the error of an epoch that its
@@ -56,9 +61,16 @@ private:
     struct Point {
         double time = 0, value = 0;
     };
+    [[nodiscard]] std::size_t steps_before(std::size_t i) const;
+    [[nodiscard]] std::size_t places(std::size_t longest_lag) const;
+    [[nodiscard]] std::size_t longest_lag() const;
+    [[nodiscard]] std::vector<LaggedCorrelation> at_whole_steps() const;
+    [[nodiscard]] bool enough(std::size_t pairs) const;
+    [[nodiscard]] double correlation(double products, std::size_t pairs, double lag_steps, double rows) const;
+
     std::vector<Point> points_;  // ascending in time
     double step_ = 1;
-    double variance_ = 0;  // divisor n
+    double squares_ = 0;  // their sum; 0: the values are constant
 };
 
 }  // namespace skyloop

@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
-#include "skyloop/base/random.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "support/oracle_table.hpp"
 
@@ -18,16 +16,6 @@ std::vector<double> numbers_of(const std::string& text) {
     std::vector<double> values;
     for (double v = 0; in >> v;)
         values.push_back(v);
-    return values;
-}
-
-// A first-order Gauss-Markov series: its autocorrelation is phi^lag.
-std::vector<double> markov_series(std::size_t n, double phi) {
-    RandomStream random(7, "statistics test");
-    std::vector<double> values;
-    double v = 0;
-    for (std::size_t i = 0; i < n; ++i)
-        values.push_back(v = phi * v + random.normal());
     return values;
 }
 
@@ -116,33 +104,18 @@ TEST(Statistics, the_own_mean_of_many_equal_fixes_is_where_they_are) {
     EXPECT_LT(errors->max, rounding_dust_m / 100);
 }
 
-TEST(Statistics, autocorrelation_equals_the_sum_over_pairs) {
-    const std::vector<double> values{1, 4, 2, 5, 3, 8, 6};
-    const std::vector<double> r = autocorrelation(values, 4);
-    ASSERT_EQ(r.size(), 5u);
-    const double mean = sample_statistics(values)->mean;
-    const auto covariance = [&](std::size_t lag) {
+TEST(Statistics, lagged_products_equal_the_sums_over_pairs) {
+    const std::vector<double> values{1, -4, 2, 5, 3, 8, 6};
+    const std::vector<double> sums = lagged_products(values, 4);
+    ASSERT_EQ(sums.size(), 5u);
+    for (std::size_t lag = 0; lag < sums.size(); ++lag) {
         double sum = 0;
         for (std::size_t i = 0; i + lag < values.size(); ++i)
-            sum += (values[i] - mean) * (values[i + lag] - mean);
-        return sum;
-    };
-    for (std::size_t lag = 0; lag < r.size(); ++lag)
-        EXPECT_NEAR(r[lag], covariance(lag) / covariance(0), 1e-12) << lag;
-    EXPECT_EQ(autocorrelation(values, 100).size(), values.size());
-    EXPECT_TRUE(autocorrelation(std::vector<double>{2, 2, 2}, 2).empty());
-    EXPECT_TRUE(autocorrelation(std::vector<double>{2}, 2).empty());
-}
-
-TEST(Statistics, correlation_length_is_that_of_the_process) {
-    // phi = exp(-1/20): 1/e after 20 samples; white noise falls below 1/e within the first.
-    const auto length = correlation_length(markov_series(200000, std::exp(-1.0 / 20)));
-    ASSERT_TRUE(length);
-    EXPECT_NEAR(*length, 20, 2);
-    const auto white = correlation_length(markov_series(5000, 0));
-    ASSERT_TRUE(white);
-    EXPECT_NEAR(*white, 1 - 1 / std::numbers::e, 0.05);
-    EXPECT_FALSE(correlation_length(std::vector<double>{1, 1, 1, 1}));
+            sum += values[i] * values[i + lag];
+        EXPECT_NEAR(sums[lag], sum, 1e-12) << lag;
+    }
+    EXPECT_EQ(lagged_products(values, 100).size(), values.size());
+    EXPECT_TRUE(lagged_products({}, 2).empty());
 }
 
 TEST(Statistics, percentage_warns_of_a_signed_mean_near_zero_and_refuses_zero) {
