@@ -20,8 +20,20 @@ constexpr std::array<std::string_view, 5> longitude_names{"longitude", "lon", "l
 constexpr std::array<std::string_view, 10> height_names{
     "height", "ellipsoidal_height", "h_ell", "altitude", "alt", "hgt", "h", "alt_msl", "altitude_msl", "gps_alt"};
 constexpr std::array<std::string_view, 6> date_names{"time_utc", "utc", "time", "timestamp", "datetime", "date_time"};
-constexpr std::array<std::string_view, 4> count_names{"t", "time", "elapsed_time", "unix"};
+constexpr std::array<std::string_view, 5> count_names{"t", "time", "timestamp", "elapsed_time", "unix"};
+// Words of names that tell a time, known or not.
+constexpr std::array<std::string_view, 10> time_words{"t",    "time", "timestamp", "datetime", "date",
+                                                      "unix", "utc",  "tow",       "itow",     "epoch"};
 constexpr std::array<std::string_view, 4> used_names{"satellites_used", "num_sv", "numsv", "nsat"};
+
+bool tells_time(std::string_view name) {
+    while (!name.empty()) {
+        const std::string_view word = name.substr(0, name.find('_'));
+        if (std::find(time_words.begin(), time_words.end(), word) != time_words.end()) return true;
+        name.remove_prefix(std::min(word.size() + 1, name.size()));
+    }
+    return false;
+}
 
 class FixHeader {
 public:
@@ -61,6 +73,14 @@ public:
             return dates;
         }
         return with_unit_behind(count_names, Measured::time);
+    }
+
+    // The columns whose names tell a time, as they are written.
+    std::vector<std::string> times() const {
+        std::vector<std::string> found;
+        for (std::size_t i = 0; i < names_.size(); ++i)
+            if (tells_time(names_[i].name)) found.emplace_back(cells_[i]);
+        return found;
     }
 
     tl::unexpected<std::string> missing(const char* what, FixNames names) const {
@@ -122,6 +142,7 @@ tl::expected<FixColumns, std::string> FixColumns::of(const std::vector<std::stri
     columns.time = header.time();
     columns.week = header.called("gps_week");
     columns.tow = header.called("tow_s");
+    if (!columns.time && !(columns.week && columns.tow)) columns.unread_times = header.times();
     columns.used = header.called(used_names);
     return columns;
 }

@@ -25,6 +25,8 @@ struct FixColumns {
     std::optional<FixColumn> true_latitude, true_longitude, true_height;
     std::optional<FixColumn> fix_type, time, week, tow, used;
     std::string above_sea;  ///< the name of a height that is told to be above the sea; empty: none is
+    /// Of a table without a time: the columns whose names tell one all the same.
+    std::vector<std::string> unread_times;
 
     [[nodiscard]] bool has_truth() const { return true_latitude && true_longitude && true_height; }
 

@@ -192,6 +192,11 @@ void add_table_warnings(FixSeries& series, const FixColumns& columns, const Tabl
         warn(fmt::format("{} rows tell an earlier time than the row before them", back));
     if (!columns.above_sea.empty())
         warn(fmt::format("the heights of {} are above sea level, not above the ellipsoid", columns.above_sea));
+    if (const std::string unread = fmt::format("{}", fmt::join(columns.unread_times, ", ")); !unread.empty())
+        warn(
+            fmt::format("no time is known: {:.80} is not read; expected a column such as time_utc, time, t_s or "
+                        "timestamp_ms, or gps_week and tow_s",
+                        unread));
 }
 
 }  // namespace

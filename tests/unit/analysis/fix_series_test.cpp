@@ -135,6 +135,25 @@ TEST(FixSeries, units_of_columns_count) {
                 AllOf(HasSubstr("a.csv:1:"), HasSubstr("'Altitude (furlongs)' is not known; expected one such as m")));
 }
 
+TEST(FixSeries, a_time_that_is_not_read_is_told) {
+    const auto stamps =
+        parse_fix_series("timestamp_ms,lat,lon,alt\n1700000000000,1,2,3\n1700000000500,1,2,3\n", "d.csv");
+    ASSERT_TRUE(stamps) << stamps.error().message;
+    EXPECT_EQ(stamps->interval, Seconds(0.5));
+    EXPECT_TRUE(stamps->warnings.empty());
+    const auto unread = parse_fix_series("lat,lon,alt,tow_s,GPS Time (fortnights)\n1,2,3,5,6\n1,2,3,6,7\n", "d.csv");
+    ASSERT_TRUE(unread) << unread.error().message;
+    EXPECT_FALSE(unread->interval);
+    EXPECT_THAT(unread->warnings, ElementsAre(AllOf(HasSubstr("d.csv: no time is known: tow_s, GPS Time (fortnights)"),
+                                                    HasSubstr("gps_week and tow_s"))));
+    const auto week = parse_fix_series("gps_week,tow_s,lat,lon,alt,lock_time_s\n2300,5,1,2,3,9\n", "d.csv");
+    ASSERT_TRUE(week) << week.error().message;
+    EXPECT_TRUE(week->warnings.empty());
+    const auto none = parse_fix_series("lat,lon,alt,temperature,status\n1,2,3,20,1\n", "d.csv");
+    ASSERT_TRUE(none) << none.error().message;
+    EXPECT_TRUE(none->warnings.empty());
+}
+
 TEST(FixSeries, tables_that_are_tracks_are_read) {
     const auto track = parse_fix_series("t_s,lat_deg,lon_deg,h_ell_m,vn_mps\n0,47,8,500,0\n1,47,8,501,0\n", "t.csv");
     ASSERT_TRUE(track) << track.error().message;
