@@ -128,6 +128,8 @@ std::optional<std::string> sky_misuse(const SkyOptions& options, const Scenario&
     if (options.step > 0 && options.tracks_h == 0 && options.grid.empty())
         return "--step is that of --tracks or --grid; expected one of them";
     if (options.view == "plan" && !scenario.scene.given()) return "--view plan shows buildings: expected --scene FILE";
+    if (options.all_paths && !scenario.scene.given())
+        return "--all-paths shows reflections off buildings: expected --scene FILE";
     if (options.view == "plan" && options.format != "svg") return "--view plan comes as --format svg";
     return std::nullopt;
 }

@@ -96,6 +96,7 @@ class Maps(unittest.TestCase):
                                 (["--grid", "0,0,.1,.1", "--format", "json"], "csv or svg"),
                                 (["--grid", "0,0,.1,.1", "--duration", 1e6, "--interval", 1], "epochs"),
                                 (["--view", "plan", "--format", "svg"], "--scene"),
+                                (["--all-paths"], "--all-paths shows reflections off buildings: expected --scene"),
                                 (["--run", "/no/such/folder", "--format", "svg"], "/no/such/folder")]:
             done = skyloop("sky", *arguments, check=False)
             self.assertIn(done.returncode, (1, 2), arguments)
