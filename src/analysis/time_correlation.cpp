@@ -44,7 +44,7 @@ bool TimeCorrelation::enough(std::size_t pairs) const {
 
 // `rows` are those of the whole record. Without gaps they are the values, the pairs all that it has, and the scale
 // is 1.
-double TimeCorrelation::correlation(double products, std::size_t pairs, double lag_steps, double rows) const {
+double TimeCorrelation::biased(double products, std::size_t pairs, double lag_steps, double rows) const {
     const double scale = (rows - lag_steps) * static_cast<double>(points_.size()) / (rows * static_cast<double>(pairs));
     // The few pairs that gaps leave may all be of the largest values.
     return std::clamp(products / squares_ * scale, -1.0, 1.0);
@@ -66,8 +66,8 @@ std::optional<LaggedCorrelation> TimeCorrelation::at_lag(double lag) const {
         ++result.pairs;
     }
     if (!enough(result.pairs)) return std::nullopt;
-    const double rows = (points_.back().time - points_.front().time) / step_ + 1;
-    result.value = correlation(sum, result.pairs, lag / step_, rows);
+    const double variance = squares_ / static_cast<double>(points_.size());
+    result.value = std::clamp(sum / static_cast<double>(result.pairs) / variance, -1.0, 1.0);
     return result;
 }
 
@@ -121,7 +121,7 @@ std::vector<LaggedCorrelation> TimeCorrelation::at_whole_steps() const {
     for (std::size_t k = 1; k < all.size(); ++k) {
         // Counts, but for the rounding of the transforms.
         all[k].pairs = pairs.empty() ? points_.size() - k : static_cast<std::size_t>(std::max(pairs[k], 0.0) + 0.5);
-        if (all[k].pairs > 0) all[k].value = correlation(products[k], all[k].pairs, static_cast<double>(k), rows);
+        if (all[k].pairs > 0) all[k].value = biased(products[k], all[k].pairs, static_cast<double>(k), rows);
     }
     return all;
 }

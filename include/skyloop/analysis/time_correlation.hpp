@@ -32,17 +32,19 @@ struct LaggedCorrelation {
 
 /// The times and errors of one series, ready for any lag. Values are taken about their mean.
 ///
-/// The estimator is the biased one of time series (Box and Jenkins, Time Series Analysis, 2.1): the sum of the products
-/// of all pairs at a lag over the sum of all squares. Where rows are missing the sum is scaled to that of the whole
-/// record: by the pairs that it would have over those that there are, and by the share of its rows that there are.
-/// It stays within −1 … 1.
+/// At a lag that is asked for, the mean product of its pairs counts. The time of 1/e is that of the biased estimator of
+/// time series (Box and Jenkins, Time Series Analysis, 2.1), which the few pairs of long lags do not lead astray: the
+/// sum of the products of all pairs at a lag over the sum of all squares. Where rows are missing the sum is scaled to
+/// that of the whole record: by the pairs that it would have over those that there are, and by the share of its rows
+/// that there are.
 class TimeCorrelation {
 public:
     /// @param values one for each of `times.at`
     TimeCorrelation(const FixTimes& times, std::span<const double> values);
 
-    /// Of all pairs whose difference in time is `lag` within half a step. Nothing when the lag is shorter than half a
-    /// step, fewer than a quarter of the values have a partner, or the values are constant.
+    /// The mean product of all pairs whose difference in time is `lag` within half a step, over the variance; at most 1
+    /// either way, which the ends of a drift exceed. Nothing when the lag is shorter than half a step, fewer than a
+    /// quarter of the values have a partner, or the values are constant.
     [[nodiscard]] std::optional<LaggedCorrelation> at_lag(double lag) const;
 
     /// True where neighbours in time are not one step apart within half a step.
@@ -66,7 +68,7 @@ private:
     [[nodiscard]] std::size_t longest_lag() const;
     [[nodiscard]] std::vector<LaggedCorrelation> at_whole_steps() const;
     [[nodiscard]] bool enough(std::size_t pairs) const;
-    [[nodiscard]] double correlation(double products, std::size_t pairs, double lag_steps, double rows) const;
+    [[nodiscard]] double biased(double products, std::size_t pairs, double lag_steps, double rows) const;
 
     std::vector<Point> points_;  // ascending in time
     double step_ = 1;
