@@ -108,23 +108,17 @@ bool Emulator::goes_on(GpsTime end, LastInstant last) const {
 
 void Emulator::advance_to(GpsTime end, const std::atomic<bool>& stop, LastInstant last) {
     // What is wrong from the first instant on is so before the first byte.
-    direct();
-    for (Station& station : parts_.stations)
-        station.follow_faults(now_);
+    direct_stations();
     while (goes_on(end, last) && !stop && !stopped()) {
         hear_feeds();
         if (parts_.pacer->paused()) {
             Pacer::rest();
-            (void)all_connected();  // a host on the wire must be answered while time rests
-            direct();
-            if (look_) look_(now_);
+            stand_by();
             continue;
         }
         const GpsTime next = next_instant(end);
         if (!may_go_to(next)) {
-            (void)all_connected();
-            direct();
-            if (look_) look_(now_);
+            stand_by();
             continue;
         }
         const auto lateness = parts_.pacer->wait_until(next);
@@ -169,6 +163,19 @@ std::uint64_t Emulator::bytes_out() const {
         for (const Wire& wire : station.wires())
             bytes += wire.link.counters().bytes_out;
     return bytes;
+}
+
+// Time rests, and commands do not: what has a plug or a switch in the world outside follows them at once.
+void Emulator::stand_by() {
+    (void)all_connected();  // a host on the wire must be answered while time rests
+    direct_stations();
+    if (look_) look_(now_);
+}
+
+void Emulator::direct_stations() {
+    direct();
+    for (Station& station : parts_.stations)
+        station.follow_faults(now_);
 }
 
 void Emulator::direct() { parts_.director.advance(now_, parts_.stations, *parts_.pacer); }

@@ -86,6 +86,8 @@ private:
     [[nodiscard]] bool all_connected();
     void carry_out(const LoopTime& time);
     void take_in(const LoopTime& time);
+    void stand_by();
+    void direct_stations();
     void direct();
     void hear_feeds();
     [[nodiscard]] bool may_go_to(GpsTime next);

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "skyloop/emulator/run_summary.hpp"
 #include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
@@ -76,6 +78,35 @@ TEST(Power, IsOnAtTheEndOfARunInTheMiddleOfAnOutage) {
     const std::atomic<bool> stop{false};
     assembly->emulator->run_until(advanced(assembly->start, Seconds(2.2)), stop);
     EXPECT_EQ(content_of(a), "on\ncut\non\n");
+}
+
+TEST(Power, FollowsTheFaultsThatBeginAndEndInAPause) {
+    const TemporaryFolder folder;
+    const auto a = folder / "a";
+    CommandQueue live;
+    RunMode mode = against_the_clock();
+    mode.live_commands = &live;
+    auto assembly = assemble(emulator_scenario("[model]\nname = \"ideal\"\n[[command]]\nkind = \"pause\"\nat_s = 0\n"
+                                               "[[fault]]\nkind = \"power_cut\"\nname = \"dark\"\nat_s = 1000\n" +
+                                               receiver_with("a", orders_into(a))),
+                             emulator_data(), mode);
+    ASSERT_TRUE(assembly) << assembly.error().message;
+    const auto ask = [&](CommandVerb verb) {
+        EXPECT_TRUE(live.push({verb, Parameters({{"fault", std::string("dark")}}), {}, "http"}));
+    };
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    std::atomic<bool> stop{false};
+    int orders = 1;  // that have been followed
+    assembly->emulator->on_look([&](GpsTime now) {
+        EXPECT_EQ(now, assembly->start) << "time stands still";
+        const std::string followed = content_of(a);
+        if (orders == 1 && followed == "on\n") ask(CommandVerb::start_fault), ++orders;
+        if (orders == 2 && followed == "on\ncut\n") ask(CommandVerb::stop_fault), ++orders;
+        if (orders == 3 && followed == "on\ncut\non\n") ++orders;
+        stop = orders > 3 || std::chrono::steady_clock::now() > give_up;
+    });
+    assembly->emulator->run_until(GpsTime::max(), stop);
+    EXPECT_EQ(orders, 4) << "cut and restored before the end of the run";
 }
 
 TEST(Power, IsLeftAloneInVirtualTime) {
