@@ -104,8 +104,13 @@ Result<std::unique_ptr<LiveFeeds>> open_feeds(Scenario& scenario, const RunMode&
                     "a live trajectory needs time that passes; expected skyloop run, without --speed max");
     if ((*feeds)->leads() && scenario.run.speed != 1)
         return fail(ErrorCode::usage,
-                    fmt::format("{}is {:g}, and the live source leads the run's time; expected one of them",
-                                told_place(scenario, "run.speed", "--speed"), scenario.run.speed));
+                    fmt::format("{}is {:g}, and {}; expected one of them", told_place(scenario, "run.speed", "--speed"),
+                                scenario.run.speed, (*feeds)->keeps_speed()));
+    for (const CommandEntry& entry : scenario.commands)
+        if (entry.command.verb == CommandVerb::speed && entry.command.source == "scenario" &&
+            entry.command.parameters.number("factor") != 1)
+            assembly.warnings.push_back(
+                fmt::format("[[command]] '{}' will do nothing: {}", entry.when.name, (*feeds)->keeps_speed()));
     for (const std::string& source : (*feeds)->descriptions())
         assembly.details.push_back("live trajectory: " + source);
     return feeds;
@@ -327,7 +332,8 @@ Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const 
     assembly.emulator = std::make_unique<Emulator>(
         Emulator::Parts{std::move(*stations), make_pacer(mode, assembly.start, scenario.run.speed, feeds->get()),
                         Director(Director::Parts{scenario.faults, scenario.commands, assembly.start, scenario.run.seed,
-                                                 scenario.run.speed, mode.live_commands}),
+                                                 scenario.run.speed, mode.live_commands,
+                                                 std::string(*feeds ? (*feeds)->keeps_speed() : "")}),
                         std::move(*feeds)},
         assembly.start);
     return assembly;

@@ -171,6 +171,7 @@ void Director::carry_out(const Command& command, std::string_view name, const Sc
 // A fault that is under way does not begin a second time, what is not cannot end, and what nobody has named does
 // neither.
 std::string Director::ignored_because(const Command& command) const {
+    if (command.verb == CommandVerb::speed && command.parameters.number("factor") != 1) return parts_.keeps_speed;
     const std::string name = command.parameters.text("fault");
     if (command.verb == CommandVerb::stop_fault && faults_to_stop(name).empty())
         return name.empty() ? "no fault is under way" : name + " is not under way";

@@ -156,10 +156,10 @@ Result<std::unique_ptr<LiveFeeds>> LiveFeeds::open(Scenario& scenario, const Geo
         if (!live->at) (*source)->feed->wait_for_all();
     }
     if (feeds->leader_ == nullptr && scenario.run.speed != 1)
-        return fail(ErrorCode::usage,
-                    fmt::format("{}is {:g}, and a live trajectory with clock = \"realtime\" runs at 1; expected "
-                                "clock = \"follow\" where the source runs at another",
-                                told_place(scenario, "run.speed", "--speed"), scenario.run.speed));
+        return fail(
+            ErrorCode::usage,
+            fmt::format("{}is {:g}, and {}; expected clock = \"follow\" where the source runs at another",
+                        told_place(scenario, "run.speed", "--speed"), scenario.run.speed, feeds->keeps_speed()));
     return feeds;
 }
 
@@ -265,6 +265,10 @@ void LiveFeeds::end_outage(Source& source, GpsTime now, std::vector<Command>& co
     source.outage_end.reset();
     commands.push_back(plain_command(CommandVerb::stop_fault));
     commands.back().parameters = Parameters({{"fault", std::exchange(source.outage, {})}});
+}
+
+std::string_view LiveFeeds::keeps_speed() const {
+    return leads() ? "the live source leads the run's time" : "a live trajectory with clock = \"realtime\" runs at 1";
 }
 
 std::optional<GpsTime> LiveFeeds::horizon() const { return leader_->horizon(); }

@@ -31,6 +31,7 @@ public:
         std::uint64_t seed = 1;
         double speed = 1;              ///< simulated seconds per second, of a live run
         CommandQueue* live = nullptr;  ///< may be absent; outlives the director
+        std::string keeps_speed{};     ///< why no command changes the speed; empty: one may
     };
     explicit Director(Parts parts);
 

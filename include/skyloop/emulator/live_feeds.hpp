@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "skyloop/base/result.hpp"
@@ -57,6 +58,8 @@ public:
 
     /// A source leads the run's time.
     [[nodiscard]] bool leads() const { return leader_ != nullptr; }
+    /// Why the run has no speed of its own: "the live source leads the run's time".
+    [[nodiscard]] std::string_view keeps_speed() const;
     /// How far the run may go now; nothing: not at all yet.
     [[nodiscard]] std::optional<GpsTime> horizon() const;
     /// The run has done all up to the horizon: answers the leader, and waits a little while for it.

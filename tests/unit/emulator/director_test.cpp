@@ -48,7 +48,8 @@ struct DirectedRun {
     CommandQueue live;
 };
 
-std::unique_ptr<DirectedRun> directed(const std::string& toml, Nanoseconds tick = 0ns) {
+std::unique_ptr<DirectedRun> directed(const std::string& toml, Nanoseconds tick = 0ns,
+                                      const std::string& keeps_speed = "") {
     const Scenario scenario =
         emulator_scenario("[run]\nstart = 2024-03-05T12:00:00Z\n[model]\nname = \"ideal\"\n" + toml);
     auto made = std::make_unique<DirectedRun>();
@@ -60,6 +61,7 @@ std::unique_ptr<DirectedRun> directed(const std::string& toml, Nanoseconds tick 
     director.commands = scenario.commands;
     director.start = made->run.start;
     director.live = &made->live;
+    director.keeps_speed = keeps_speed;
     made->run.emulator->replace_director(Director(std::move(director)));
     made->run.emulator->add_observer(&made->witness);
     return made;
@@ -269,6 +271,20 @@ TEST(Director, SaysThatVirtualTimeWaitsForNobody) {
     run_for(*run, 3s);
     EXPECT_THAT(run->witness.ignored,
                 ElementsAre("time is virtual, and waits for nobody", "time is virtual, and waits for nobody"));
+}
+
+TEST(Director, SaysThatASourceKeepsTheSpeedOfTheRun) {
+    const std::string commands =
+        "[[command]]\nkind = \"speed\"\nfactor = 2\nat_s = 1\n[[command]]\nkind = \"speed\"\nfactor = 1\nat_s = 2\n";
+    const std::string why = "the live source leads the run's time";
+    const auto led = directed(commands, 10ms, why), own = directed(commands, 10ms);
+    for (const auto* run : {&led, &own})
+        run_for(**run, 1500ms);
+    EXPECT_EQ(led->run.emulator->director().speed(), 1);
+    EXPECT_EQ(own->run.emulator->director().speed(), 2);
+    run_for(*led, 1s);
+    EXPECT_THAT(led->witness.ignored, ElementsAre(why)) << "it runs at 1";
+    EXPECT_THAT(own->witness.ignored, IsEmpty());
 }
 
 TEST(Director, KnowsHowStrongAFaultIs) {

@@ -90,6 +90,35 @@ TEST(LiveFeeds, ContradictionsAreToldWhereTheyStand) {
                 StartsWith("test.toml:2:9: run.speed: is 2, and a live trajectory with clock = \"realtime\""));
 }
 
+// Why nothing comes of commands.
+class Refusals : public RunObserver {
+public:
+    void on_command(const CommandSeen& seen) override { told.emplace_back(seen.ignored); }
+    std::vector<std::string> told;
+};
+
+TEST(LiveFeeds, KeepTheSpeedOfTheRun) {
+    const auto told = [](const std::string& clock) {
+        RunMode mode;
+        mode.now = to_gps_time(2400, 0);
+        mode.now_steady_ns = steady_clock_ns();
+        auto assembly = assemble(
+            emulator_scenario(
+                "[model]\nname = \"ideal\"\n[trajectory]\nkind = \"live\"\nsource = \"udp-json:0\"\nclock = \"" +
+                clock + "\"\n[[receiver]]\nport = \"pty\"\n" + "[[command]]\nkind = \"speed\"\nfactor = 2\nat_s = 0\n"),
+            test::emulator_data(), mode);
+        EXPECT_TRUE(assembly) << assembly.error().message;
+        Refusals refusals;
+        if (!assembly) return refusals.told;
+        EXPECT_THAT(assembly->warnings, testing::Contains(testing::HasSubstr("[[command]] 'speed' will do nothing: ")));
+        assembly->emulator->add_observer(&refusals);
+        assembly->emulator->run_until(GpsTime::max(), std::atomic<bool>{true});
+        return refusals.told;
+    };
+    EXPECT_THAT(told("realtime"), testing::ElementsAre("a live trajectory with clock = \"realtime\" runs at 1"));
+    EXPECT_THAT(told("follow"), testing::ElementsAre("the live source leads the run's time"));
+}
+
 TEST_F(LiveFeedsTest, AnOutageLastsForTheTimeThatARunThatFollowsHasYetToGo) {
     open("follow");
     say(10);
