@@ -97,6 +97,7 @@ void Director::advance(GpsTime now, std::vector<Station>& stations, Pacer& pacer
     }
     if (pause_at_ && now >= *pause_at_) {
         pause_at_.reset();
+        paused_ = true;
         pacer.pause(now);
     }
     const double pace = faulty_pace(stations, now);
@@ -245,19 +246,28 @@ void Director::begin_new_fault(const Command& command, const Scene& scene) {
 }
 
 void Director::set_pace(const Command& command, const Scene& scene) {
+    const bool of_silence = command.source == silence_source;
     switch (command.verb) {
         case CommandVerb::pause:
+            (of_silence ? waits_ : paused_) = true;
             return scene.pacer.pause(scene.now);
         case CommandVerb::resume:
-            pause_at_.reset();
-            return scene.pacer.resume(scene.now);
+            if (!of_silence) pause_at_.reset();
+            return release(of_silence, scene);
         case CommandVerb::step:
             pause_at_ = advanced(scene.now, Seconds(command.parameters.number("seconds")));
-            return scene.pacer.resume(scene.now);
+            return release(false, scene);
         default:
             speed_ = command.parameters.number("factor");
             return scene.pacer.set_speed(speed_ * pace_, scene.now);
     }
+}
+
+// A run stands still until all let it go on that had it stand. Whoever asks for it where nobody else has paused the run
+// does without the live source.
+void Director::release(bool heard, const Scene& scene) {
+    (heard || !paused_ ? waits_ : paused_) = false;
+    if (!paused_ && !waits_) scene.pacer.resume(scene.now);
 }
 
 double Director::strength(std::string_view fault, int occurrence, GpsTime now,

@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::array<std::string_view, 3> clock_names{"realtime", "follow", "lock_step"};
 
-Command plain_command(CommandVerb verb) {
+Command plain_command(CommandVerb verb, std::string_view source = "feed") {
     Command command;
     command.verb = verb;
-    command.source = "feed";
+    command.source = source;
     return command;
 }
 
@@ -91,6 +91,7 @@ struct LiveFeeds::Source {
                std::all_of(paths.begin(), paths.end(), [](const auto& path) { return path->newest().has_value(); });
     }
 
+    [[nodiscard]] bool pauses() const { return settings.when_lost == LostSource::pause; }
     [[nodiscard]] bool leads() const { return settings.clock != ClockMode::realtime; }
 
     [[nodiscard]] std::optional<GpsTime> known_until() const {
@@ -202,13 +203,18 @@ std::vector<Command> LiveFeeds::pump(GpsTime now, std::optional<std::int64_t> du
 // where it has no truth.
 bool LiveFeeds::halts(Source& source) {
     if (source.leads() || !source.feed->paused()) return false;
-    if (source.settings.when_lost == LostSource::pause) return true;
+    if (source.pauses()) return true;
     if (!std::exchange(source.pause_told, true))
         news_.push_back(
             fmt::format("{}: has paused; the run goes on, and the vehicle comes to rest farther on: "
                         "when_lost = \"pause\" and clock = \"follow\" stand still, too",
                         source.feed->description()));
     return false;
+}
+
+// The run stands still for one that is lost.
+bool LiveFeeds::is_waited_for() const {
+    return std::any_of(sources_.begin(), sources_.end(), [](const auto& s) { return s->lost && s->pauses(); });
 }
 
 // By the wall clock: a source that leads stops the run's own.
@@ -223,7 +229,7 @@ void LiveFeeds::look_for_silence(Source& source, std::vector<Command>& commands)
     if (source.lost && speaks) {
         source.lost = false;
         news_.push_back(fmt::format("{}: heard again", source.feed->description()));
-        if (source.settings.when_lost == LostSource::pause) commands.push_back(plain_command(CommandVerb::resume));
+        if (source.pauses() && !is_waited_for()) commands.push_back(plain_command(CommandVerb::resume, silence_source));
     }
     // What has never told a place is waited for, not lost.
     if (source.lost || speaks || counts.samples == 0) return;
@@ -247,7 +253,7 @@ void LiveFeeds::look_for_silence(Source& source, std::vector<Command>& commands)
             return commands.push_back(
                 checked_live_fault({{"kind", std::string("outage")}, {"name", source.outage}}, "feed").value());
         case LostSource::pause:
-            return commands.push_back(plain_command(CommandVerb::pause));
+            return commands.push_back(plain_command(CommandVerb::pause, silence_source));
         case LostSource::stop:
             return commands.push_back(plain_command(CommandVerb::stop));
     }

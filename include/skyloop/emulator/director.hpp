@@ -80,6 +80,7 @@ private:
     void start_or_stop(const Command& command, const Scene& scene);
     void begin_new_fault(const Command& command, const Scene& scene);
     void set_pace(const Command& command, const Scene& scene);
+    void release(bool heard, const Scene& scene);
 
     Parts parts_;
     Timeline timeline_;
@@ -88,8 +89,9 @@ private:
     std::vector<Command> asked_;
     bool hears_ = false;  // a trigger waits for a client's message
     bool stopped_ = false;
-    double speed_ = 1, pace_ = 1;      // the run's own, and what faults make of it
-    std::optional<GpsTime> pause_at_;  // the end of a step
+    bool paused_ = false, waits_ = false;  // by whoever asked for it, and for a live source
+    double speed_ = 1, pace_ = 1;          // the run's own, and what faults make of it
+    std::optional<GpsTime> pause_at_;      // the end of a step
 };
 
 /// It begins a fault that no entry of the scenario describes.

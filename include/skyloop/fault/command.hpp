@@ -36,12 +36,15 @@ struct Command {
     CommandVerb verb = CommandVerb::note;
     Parameters parameters{};
     std::vector<std::string> receivers{};  ///< names; of a live fault there may be several; none: all
-    std::string source{};                  ///< "scenario", "http", "mavlink": for the record
+    std::string source{};                  ///< "scenario", "http", "mavlink", silence_source: for the record
 
     [[nodiscard]] bool is_for(std::string_view receiver) const {
         return receivers.empty() || std::find(receivers.begin(), receivers.end(), receiver) != receivers.end();
     }
 };
+
+/// The source of a pause that lasts while live sources are silent, and of the resume behind it.
+inline constexpr std::string_view silence_source = "silence";
 
 /// A command that can be asked for.
 struct CommandKind {

@@ -287,6 +287,29 @@ TEST(Director, SaysThatASourceKeepsTheSpeedOfTheRun) {
     EXPECT_THAT(own->witness.ignored, IsEmpty());
 }
 
+// Whether time passes after these, in real time.
+bool goes_on_after(const std::vector<std::pair<CommandVerb, std::string_view>>& asked) {
+    const auto run = directed("", 10ms);
+    for (const auto& [verb, source] : asked)
+        EXPECT_TRUE(run->live.push({verb, Parameters(), {}, std::string(source)}));
+    std::atomic<bool> stop{false};
+    int looks = 0;
+    run->run.emulator->on_look([&](GpsTime) { stop = ++looks == 5; });
+    run->run.emulator->run_until(run->run.start + 1s, stop);
+    return run->run.emulator->now() > run->run.start;
+}
+
+TEST(Director, ARunStandsStillForItsSourceAndForWhoHasPausedIt) {
+    constexpr auto pause = CommandVerb::pause, resume = CommandVerb::resume;
+    EXPECT_FALSE(goes_on_after({{pause, silence_source}}));
+    EXPECT_TRUE(goes_on_after({{pause, silence_source}, {resume, silence_source}}));
+    EXPECT_FALSE(goes_on_after({{pause, "http"}, {resume, silence_source}}));
+    EXPECT_FALSE(goes_on_after({{pause, silence_source}, {pause, "http"}, {resume, silence_source}}));
+    EXPECT_FALSE(goes_on_after({{pause, "http"}, {pause, silence_source}, {resume, "http"}}));
+    EXPECT_TRUE(goes_on_after({{pause, "http"}, {pause, silence_source}, {resume, "http"}, {resume, silence_source}}));
+    EXPECT_TRUE(goes_on_after({{pause, silence_source}, {resume, "http"}})) << "without its source, who wants it";
+}
+
 TEST(Director, KnowsHowStrongAFaultIs) {
     const auto run = directed(
         "[[fault]]\nkind = \"position_step\"\nname = \"jump\"\nat_s = 2\nfor_s = 6\nramp_in_s = 4\nramp_out_s = 2\n");

@@ -24,16 +24,23 @@ class LiveFeedsTest : public testing::Test {
 protected:
     void open(const std::string& clock, const std::string& lost_after_s = "0.2",
               const std::string& when_lost = "outage") {
-        scenario_ = emulator_scenario(
-            "[run]\nstart = 2024-03-05T12:00:00Z\n[trajectory]\nkind = \"live\"\n"
+        open_scenario(
+            "[trajectory]\nkind = \"live\"\n"
             "source = \"udp-json:0\"\nwhen_lost = \"" +
             when_lost + "\"\nlost_after_s = " + lost_after_s + "\nclock = \"" + clock + "\"\n");
+    }
+    void open_scenario(const std::string& text) {
+        scenario_ = emulator_scenario("[run]\nstart = 2024-03-05T12:00:00Z\n" + text);
         auto feeds = LiveFeeds::open(scenario_, nullptr);
         ASSERT_TRUE(feeds) << feeds.error().message;
         feeds_ = std::move(*feeds);
         start_ = *scenario_.run.start;
         feeds_->begin(start_, steady_clock_ns());
-        const std::string name = feeds_->descriptions().at(0);
+        point_to(0);
+    }
+    // From now on say() is heard there.
+    void point_to(std::size_t feed) const {
+        const std::string name = feeds_->descriptions().at(feed);
         sockaddr_in to{};
         to.sin_family = AF_INET;
         to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -192,6 +199,31 @@ TEST_F(LiveFeedsTest, APauseOfTheSourceInRealTimePausesTheRunThatPausesWithoutTr
     EXPECT_EQ(halted->verb, CommandVerb::pause);
     EXPECT_THAT(feeds_->take_news(), testing::Contains(testing::HasSubstr("has paused; time stands still")));
     EXPECT_FALSE(command_at(start_, 50ms)) << "once";
+    say(R"({"type":"clock","paused":false})");
+    const auto goes_on = command_at(start_);
+    ASSERT_TRUE(goes_on);
+    EXPECT_EQ(goes_on->verb, CommandVerb::resume);
+    EXPECT_EQ(halted->source, silence_source);
+    EXPECT_EQ(goes_on->source, silence_source);
+}
+
+TEST_F(LiveFeedsTest, ARunThatStandsStillForTwoSourcesWaitsForBoth) {
+    std::string text;
+    for (const char* source : {"udp-json:0", "udp-json:127.0.0.1:0"})
+        text += std::string("[[receiver]]\n[receiver.trajectory]\nkind = \"live\"\nwhen_lost = \"pause\"\n") +
+                "lost_after_s = 100\nsource = \"" + source + "\"\n";
+    open_scenario(text);
+    for (const std::size_t feed : {0u, 1u}) {
+        point_to(feed);
+        say(10);
+        say(R"({"type":"clock","paused":true})");
+        const auto halted = command_at(start_);
+        ASSERT_TRUE(halted);
+        EXPECT_EQ(halted->verb, CommandVerb::pause);
+    }
+    say(R"({"type":"clock","paused":false})");
+    EXPECT_FALSE(command_at(start_, 200ms)) << "the first one still stands";
+    point_to(0);
     say(R"({"type":"clock","paused":false})");
     const auto goes_on = command_at(start_);
     ASSERT_TRUE(goes_on);
