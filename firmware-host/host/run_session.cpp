@@ -211,10 +211,10 @@ void RunSession::tell_feeds() const {
         const auto& [description, clock, counts, paths, rate, age] = report;
         const double mean_ms = age.epochs > 0 ? age.sum_ms / static_cast<double>(age.epochs) : 0;
         messages_.info(fmt::format(
-            "{}: {} samples in {} messages, {} refused, {} late, {} jumps, {} silences{}; at epochs "
+            "{}: {} samples in {} messages, {} lost, {} refused, {} late, {} jumps, {} silences{}; at epochs "
             "the newest was {:.1f} ms old on average, {:.1f} ms at worst",
-            description, counts.samples, counts.messages, counts.refused + paths.refused, paths.late, paths.jumps,
-            paths.holds, rate ? fmt::format(", {:.3f} of its seconds in one of ours", *rate) : "", mean_ms,
+            description, counts.samples, counts.messages, counts.lost, counts.refused + paths.refused, paths.late,
+            paths.jumps, paths.holds, rate ? fmt::format(", {:.3f} of its seconds in one of ours", *rate) : "", mean_ms,
             age.largest_ms));
         if (const std::uint64_t lost = counts.overflowed + counts.dropped_by_kernel; lost > 0)
             messages_.warning(

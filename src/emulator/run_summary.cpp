@@ -87,6 +87,7 @@ Json feeds_json(const LiveFeeds& feeds) {
                        {"strangers", r.counts.strangers},
                        {"overflowed", r.counts.overflowed},
                        {"dropped_by_kernel", r.counts.dropped_by_kernel},
+                       {"lost", r.counts.lost},
                        {"restarts", r.counts.restarts},
                        {"late", r.paths.late},
                        {"jumps", r.paths.jumps},

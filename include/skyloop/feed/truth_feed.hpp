@@ -60,7 +60,7 @@ struct FeedCounts {
     std::uint64_t overflowed = 0;         ///< samples dropped because the loop did not take them
     std::uint64_t dropped_by_kernel = 0;  ///< SO_RXQ_OVFL
     std::uint64_t restarts = 0;           ///< of the source's clock
-    std::uint64_t lost = 0;               ///< statements that the source counted and that have not come
+    std::uint64_t lost = 0;               ///< statements that the source counted and that have not come in their turn
 };
 
 /// A source on a thread of its own: it hears, decodes and answers; the loop takes what has come without waiting.

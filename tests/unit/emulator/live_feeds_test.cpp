@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "skyloop/base/steady_clock.hpp"
+#include "skyloop/emulator/run_summary.hpp"
 #include "skyloop/transport/file_descriptor.hpp"
 #include "support/run_parts.hpp"
 
@@ -36,11 +37,10 @@ protected:
         feeds_ = std::move(*feeds);
         start_ = *scenario_.run.start;
         feeds_->begin(start_, steady_clock_ns());
-        point_to(0);
+        point_to(feeds_->descriptions().at(0));
     }
-    // From now on say() is heard there.
-    void point_to(std::size_t feed) const {
-        const std::string name = feeds_->descriptions().at(feed);
+    // From now on say() is heard there. @param name of a feed
+    void point_to(const std::string& name) const {
         sockaddr_in to{};
         to.sin_family = AF_INET;
         to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -104,16 +104,32 @@ public:
     std::vector<std::string> told;
 };
 
+// Of a scenario. @param clock of its feed
+Result<Assembly> live_assembly(const std::string& clock, const std::string& rest = "") {
+    RunMode mode;
+    mode.now = to_gps_time(2400, 0);
+    mode.now_steady_ns = steady_clock_ns();
+    return assemble(emulator_scenario("[model]\nname = \"ideal\"\n[trajectory]\nkind = \"live\"\n"
+                                      "source = \"udp-json:0\"\nclock = \"" +
+                                      clock + "\"\n[[receiver]]\nport = \"pty\"\n" + rest),
+                    test::emulator_data(), mode);
+}
+
+TEST_F(LiveFeedsTest, WhatASourceHasCountedAndHasNotComeIsToldOf) {
+    const auto assembly = live_assembly("realtime");
+    ASSERT_TRUE(assembly) << assembly.error().message;
+    const LiveFeeds& feeds = *assembly->emulator->feeds();
+    point_to(feeds.descriptions().at(0));
+    for (const int number : {1, 5})
+        say(fmt::format(R"({{"t":{0},"seq":{0},"lla":[48,11,500],"h_ref":"ell"}})", number));
+    for (int i = 0; i < 400 && feeds.reports().at(0).counts.lost < 3; ++i)
+        std::this_thread::sleep_for(5ms);
+    EXPECT_THAT(run_summary(emulator_scenario(""), *assembly, "0"), testing::HasSubstr("\"lost\": 3"));
+}
+
 TEST(LiveFeeds, KeepTheSpeedOfTheRun) {
     const auto told = [](const std::string& clock) {
-        RunMode mode;
-        mode.now = to_gps_time(2400, 0);
-        mode.now_steady_ns = steady_clock_ns();
-        auto assembly = assemble(
-            emulator_scenario(
-                "[model]\nname = \"ideal\"\n[trajectory]\nkind = \"live\"\nsource = \"udp-json:0\"\nclock = \"" +
-                clock + "\"\n[[receiver]]\nport = \"pty\"\n" + "[[command]]\nkind = \"speed\"\nfactor = 2\nat_s = 0\n"),
-            test::emulator_data(), mode);
+        auto assembly = live_assembly(clock, "[[command]]\nkind = \"speed\"\nfactor = 2\nat_s = 0\n");
         EXPECT_TRUE(assembly) << assembly.error().message;
         Refusals refusals;
         if (!assembly) return refusals.told;
@@ -214,7 +230,7 @@ TEST_F(LiveFeedsTest, ARunThatStandsStillForTwoSourcesWaitsForBoth) {
                 "lost_after_s = 100\nsource = \"" + source + "\"\n";
     open_scenario(text);
     for (const std::size_t feed : {0u, 1u}) {
-        point_to(feed);
+        point_to(feeds_->descriptions().at(feed));
         say(10);
         say(R"({"type":"clock","paused":true})");
         const auto halted = command_at(start_);
@@ -223,7 +239,7 @@ TEST_F(LiveFeedsTest, ARunThatStandsStillForTwoSourcesWaitsForBoth) {
     }
     say(R"({"type":"clock","paused":false})");
     EXPECT_FALSE(command_at(start_, 200ms)) << "the first one still stands";
-    point_to(0);
+    point_to(feeds_->descriptions().at(0));
     say(R"({"type":"clock","paused":false})");
     const auto goes_on = command_at(start_);
     ASSERT_TRUE(goes_on);
