@@ -3,6 +3,12 @@
 #include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop {
+namespace {
+
+// Below it a horizontal velocity is what the turn from ECEF to the horizon has left of a vertical one.
+constexpr MetresPerSecond rest{1e-6};
+
+}  // namespace
 
 Fix Ideal::fix(const TruthState& truth, const SkyView& sky, const Arrivals& arrivals) {
     Fix fix = builder_.start(truth, sky, arrivals);
@@ -13,7 +19,8 @@ Fix Ideal::fix(const TruthState& truth, const SkyView& sky, const Arrivals& arri
     const GroundMotion motion = ground_motion({enu.y(), enu.x(), -enu.z()});
     fix.velocity = motion.velocity;
     fix.speed = motion.speed;
-    fix.course = motion.course;
+    if (motion.speed >= rest) course_ = motion.course;
+    fix.course = course_;
     fix.speed_accuracy = MetresPerSecond(0);
     fix.course_accuracy = Angle();
     return fix;

@@ -7,7 +7,9 @@
 namespace skyloop {
 
 /// The fix is the truth, velocity included, with every healthy satellite above the mask, hidden or not (MODELS.md
-/// section 6). Its accuracies are 0.
+/// section 6). Its accuracies are 0. At rest its course is the last one.
+///
+/// State: that course.
 class Ideal : public ErrorModel {
 public:
     explicit Ideal(const SensorContext& context) : builder_(context, {.hidden_too = true}) {}
@@ -15,6 +17,7 @@ public:
 
 private:
     FixBuilder builder_;
+    Angle course_;
 };
 
 }  // namespace skyloop

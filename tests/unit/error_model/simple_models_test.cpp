@@ -51,6 +51,20 @@ TEST(Ideal, IsTheTruthWithItsVelocity) {
     EXPECT_EQ(fix.satellites_used(), 10);
 }
 
+TEST(Ideal, KeepsItsCourseAtRest) {
+    const auto model = make_error_model(settings_of(ErrorModelKind::ideal));
+    const auto course_deg = [&](double since_start, const Velocity<Enu>& velocity) {
+        TruthState truth = test::truth_at(Geodetic::degrees(46.4774, 30.7326, 50), to_gps_time(2111, since_start));
+        truth.velocity = LocalFrame(truth.geodetic).to_ecef(velocity);
+        return model->fix(truth, simple_sky, free_space(simple_sky)).course.deg();
+    };
+    EXPECT_EQ(course_deg(0, {0, 0, 0}), 0) << "it has never had one";
+    EXPECT_NEAR(course_deg(1, {-2, 0, 0}), 270, 1e-9);
+    EXPECT_NEAR(course_deg(2, {0, 0, 0}), 270, 1e-9);
+    EXPECT_NEAR(course_deg(3, {0, 0, 5}), 270, 1e-9) << "it climbs on the spot";
+    EXPECT_NEAR(course_deg(4, {0, -1e-3, 0}), 180, 1e-9);
+}
+
 TEST(Ideal, UsesEverythingAboveTheMaskHiddenOrNot) {
     ErrorModelSettings settings = settings_of(ErrorModelKind::ideal);
     settings.sensor.selection.elevation_mask = Angle::degrees(15);
