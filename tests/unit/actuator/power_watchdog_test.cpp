@@ -56,7 +56,7 @@ TEST(PowerWatchdog, RestoresAfterAKill) {
 TEST(PowerWatchdog, EndsACutThatIsStillUnderWay) {
     const test::TemporaryFolder folder;
     const std::string file = (folder / "state").string();
-    const std::string power = "command:sh -c 'echo begun >>\"$1\"; sleep 1; echo cut >>\"$1\"' - '" + file +
+    const std::string power = "command:sh -c 'echo begun >>\"$1\"; sleep 3; echo cut >>\"$1\"' - '" + file +
                               "'|sh -c 'echo on >>\"$1\"' - '" + file + "'";
     const int by = die_in([&] {
         const auto watchdog = watch({power});
@@ -67,7 +67,7 @@ TEST(PowerWatchdog, EndsACutThatIsStillUnderWay) {
     });
     EXPECT_EQ(by, SIGKILL);
     EXPECT_TRUE(eventually([&] { return text_of(file) == "on\nbegun\non\n"; })) << text_of(file);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1200));  // longer than that cut takes
+    std::this_thread::sleep_for(std::chrono::milliseconds(3200));  // longer than that cut takes
     EXPECT_EQ(text_of(file), "on\nbegun\non\n");
 }
 
