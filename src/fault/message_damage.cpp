@@ -42,19 +42,22 @@ std::size_t drawn_index(RandomStream& random, std::size_t count) {
     return std::min(static_cast<std::size_t>(random.uniform() * static_cast<double>(count)), count - 1);
 }
 
-void turn_bit_from(Bytes& message, std::size_t first, RandomStream& random) {
-    if (first >= message.size()) return;
-    const std::size_t at = first + drawn_index(random, message.size() - first);
+// Of the bytes from `first` on, before `end`.
+void turn_bit_within(Bytes& message, std::size_t first, std::size_t end, RandomStream& random) {
+    if (first >= end) return;
+    const std::size_t at = first + drawn_index(random, end - first);
     message[at] = static_cast<std::uint8_t>(message[at] ^ (1U << drawn_index(random, 8)));
+}
+
+void turn_bit_from(Bytes& message, std::size_t first, RandomStream& random) {
+    turn_bit_within(message, first, message.size(), random);
 }
 
 // Behind the head, which says where the frame ends, as far as the checksum: it does not cover a signature.
 void turn_bit_of_mavlink(Bytes& frame, RandomStream& random) {
     const std::size_t head = frame[0] == mavlink_v1_start ? mavlink_v1_head_size : mavlink_v2_head_size;
-    const Bytes signature(frame.begin() + static_cast<std::ptrdiff_t>(head + frame[1] + mavlink_crc_size), frame.end());
-    frame.resize(frame.size() - signature.size());
-    turn_bit_from(frame, head, random);
-    frame.insert(frame.end(), signature.begin(), signature.end());
+    const std::size_t signature = head + frame[1] + mavlink_crc_size;
+    turn_bit_within(frame, head, std::min(signature, frame.size()), random);
 }
 
 // The sentence stays one line of printable characters, so that only its checksum tells.
