@@ -15,7 +15,7 @@ namespace {
 
 struct SatelliteColumns {
     std::size_t time = 0, elevation = 0, cn0 = 0, count = 0;
-    std::optional<std::size_t> pseudorange;
+    std::optional<std::size_t> pseudorange{};
 
     // C/N0 stands in the table for all that arrives.
     [[nodiscard]] bool tracked(const LineCells& cells) const {
