@@ -33,6 +33,12 @@ struct PortUnit {
     PortUnit(PortId port, std::uint32_t baud, std::uint32_t buffer_bytes) : id(port), transmit(baud, buffer_bytes) {
         status.id = port;
     }
+    /// What came of something that is not yet whole.
+    void forget_input() {
+        splitter = {};
+        held_since.reset();
+        gives_way_at.reset();
+    }
     PortId id;
     Port transmit;
     StreamSplitter splitter{};  ///< finds what clients send: UBX, sentences and RTCM 3

@@ -75,10 +75,10 @@ void Receiver::Core::input(PortId port, ByteSpan bytes, GpsTime now) {
     if (sleep_) return feel(port, now);
     if (now < deaf_until_) return;
     unit->status.bytes_in += bytes.size();
-    if (console_) return read_command_lines(*unit, bytes, now);
     give_up_unfinished(*unit, now);
     give_way(*unit, now);
     unit->last_input = now;
+    if (console_) return read_command_lines(*unit, bytes, now);
     const auto damaged = [&] { return unit->splitter.counts().bad[static_cast<std::size_t>(StreamKind::rtcm3)]; };
     std::uint64_t told = damaged();
     const std::vector<StreamPiece> pieces = unit->splitter.feed(bytes);
@@ -133,7 +133,7 @@ void Receiver::Core::work_off(PortUnit& unit, const std::vector<StreamPiece>& pi
         dispatch(unit, piece, now);
         // What follows was sent at a speed that the port no longer has.
         if (unit.configured_baud != baud || now < deaf_until_) {
-            unit.splitter = {};
+            unit.forget_input();
             return;
         }
     }

@@ -150,7 +150,7 @@ void Receiver::Core::plan_speed_changes(GpsTime at) {
 void Receiver::Core::change_speed(PortId port, GpsTime at) {
     PortUnit& unit = *find_unit(units_, port);
     unit.transmit.set_baud(unit.configured_baud, at);
-    unit.splitter = {};
+    unit.forget_input();
 }
 
 // Messages are made one after the other: one that finds the buffer full waits for its turn, but not until those of the

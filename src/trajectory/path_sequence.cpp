@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "quintic_piece.hpp"
@@ -28,6 +29,13 @@ AngleChange angle_change(const LocalShape& shape, double t, double LocalMotion::
     const double before = std::remainder(now - shape.at(t - step_s).*angle, 2 * std::numbers::pi),
                  after = std::remainder(shape.at(t + step_s).*angle - now, 2 * std::numbers::pi);
     return {(before + after) / (2 * step_s), (after - before) / (step_s * step_s)};
+}
+
+bool is_still(const AngleChanges& left) {
+    constexpr double least_rate = 1e-6, least_bend = 1e-3;  // above what differences leave of none
+    for (const AngleChange& change : {left.heading, left.roll, left.pitch})
+        if (std::abs(change.rate) > least_rate || std::abs(change.bend) > least_bend) return false;
+    return true;
 }
 
 // By what an angle that was left in its motion goes on, until that is lost. t: s
@@ -96,12 +104,13 @@ struct Joint {
     AngleChanges left;  // how `from` turns
     VehicleClass leaves, enters;
     VehicleLimits vehicle;  // by whose limits
+    bool to_stop = false;   // ahead of where it was left, in the middle of its motion
 };
 
 // What comes faster than the limits is let go at the pace it has.
 BlendLimits limits_of(const Joint& joint) {
     constexpr double slack = 1.02, pushed_s = 1, least_aside_m = 10;
-    const auto& [from, to, left, leaves, enters, vehicle] = joint;
+    const auto& [from, to, left, leaves, enters, vehicle, to_stop] = joint;
     // Waves and gusts that push it up or down when it is left do so for a while.
     const double pushed = std::abs(from.acceleration.z()) * pushed_s;
     const double rises = std::max(from.velocity.z(), to.velocity.z()) + pushed,
@@ -119,6 +128,8 @@ BlendLimits limits_of(const Joint& joint) {
     limits.aside = least_aside_m + (to.position - from.position).norm() / 3 +
                    from.velocity.norm() * speed_change_time(from.velocity.norm(), vehicle.along);
     limits.turn = std::max(turns_on_the_spot, slack * std::abs(left.heading.rate));
+    // What pushes it when it is left lasts until it has come to rest.
+    if (to_stop) limits.climb = limits.sink = limits.aside = std::numeric_limits<double>::infinity();
     return limits;
 }
 
@@ -230,6 +241,7 @@ private:
         return std::min(steps_[i].seconds, steps_[i].shape->duration());
     }
     std::string add_blend(const Joint& joint, const std::string& where);
+    std::string add_stop(Joint& joint, const std::string& where);
     std::string join(const Joint& joint, const std::string& from_to);
     std::string steer(const Joint& joint, const std::string& from_to);
     [[nodiscard]] const VehicleLimits& vehicle_between(const SequenceStep& left, const SequenceStep& entered) const;
@@ -245,8 +257,8 @@ private:
 
 // A mistake when there is no way, else nothing.
 std::string SequencePlanner::add_blend(const Joint& joint, const std::string& where) {
-    const auto& [from, to, left, leaves, enters, vehicle] = joint;
-    if (leaves == enters && alike(from, to)) return {};
+    const auto& [from, to, left, leaves, enters, vehicle, to_stop] = joint;
+    if (leaves == enters && is_still(left) && alike(from, to)) return {};
     const double seconds = blend_seconds(joint);
     const double way = (to.position - from.position).norm();
     if (seconds == 0)
@@ -260,6 +272,22 @@ std::string SequencePlanner::add_blend(const Joint& joint, const std::string& wh
     return {};
 }
 
+// To rest ahead of where it is left; nearer or farther where the curve that leads there would be too fast, as out of a
+// narrow circle. @param joint gets its end
+std::string SequencePlanner::add_stop(Joint& joint, const std::string& where) {
+    joint.to_stop = true;
+    joint.enters = joint.leaves;
+    const Eigen::Vector3d ahead = rest_after(joint.from, joint.vehicle.along).position - joint.from.position;
+    std::string mistake;
+    for (const double share : {1.0, 0.5, 0.25, 2.0}) {
+        joint.to.position = joint.from.position + share * ahead;
+        const std::string refused = add_blend(joint, where);
+        if (refused.empty()) return {};
+        if (mistake.empty()) mistake = refused;
+    }
+    return mistake;
+}
+
 // By one curve, or by one to a stop and another one from there: who leaves a circle away from where the next path
 // begins would swing out too fast.
 std::string SequencePlanner::join(const Joint& joint, const std::string& from_to) {
@@ -267,23 +295,23 @@ std::string SequencePlanner::join(const Joint& joint, const std::string& from_to
     const std::string mistake = add_blend(joint, from_to + ": ");
     if (mistake.empty() || joint.from.velocity.norm() == 0) return mistake;
     Joint stop = joint, on = joint;
-    stop.to = on.from = rest_after(joint.from, joint.vehicle.along);
-    stop.enters = joint.leaves, on.left = {};
-    if (!add_blend(stop, from_to + ", to a stop: ").empty()) return mistake;
+    stop.to = rest_after(joint.from, joint.vehicle.along);
+    if (!add_stop(stop, from_to + ", to a stop: ").empty()) return mistake;
+    on.from = stop.to, on.left = {};
     return add_blend(on, from_to + ", from the stop on: ");
 }
 
 // Planes, boats and cars come to rest and go round corners to where the next path begins: they neither slide sideways
 // nor turn where they stand.
 std::string SequencePlanner::steer(const Joint& joint, const std::string& from_to) {
-    if (joint.leaves == joint.enters && alike(joint.from, joint.to)) return {};
+    if (joint.leaves == joint.enters && is_still(joint.left) && alike(joint.from, joint.to)) return {};
     Joint stop = joint, on = joint;
-    stop.enters = joint.leaves, on.left = {};
-    if (!rests_level(joint.from)) {
-        on.from = rest_after(joint.from, joint.vehicle.along);
-        on.from.roll = on.from.pitch = 0;
-        stop.to = on.from;
-        if (std::string mistake = add_blend(stop, from_to + ", to a stop: "); !mistake.empty()) return mistake;
+    on.left = {};
+    if (!rests_level(joint.from) || !is_still(joint.left)) {
+        stop.to = rest_after(joint.from, joint.vehicle.along);
+        stop.to.roll = stop.to.pitch = 0;
+        if (std::string mistake = add_stop(stop, from_to + ", to a stop: "); !mistake.empty()) return mistake;
+        on.from = stop.to;
     }
     if (is_nudge(on.from, on.to)) return add_blend(on, from_to + ": ");
     const auto way = steered_joint(on.from, on.to, joint.vehicle);
@@ -325,7 +353,7 @@ std::string SequencePlanner::leave(std::size_t i) {
     Joint joint{end, end, turns_when_left(i), step.vehicle.kind, step.vehicle.kind, vehicle_between(step, step)};
     if (last && !loop_) {
         joint.to = rest_after(end, joint.vehicle.along);
-        return add_blend(joint, fmt::format("step {} is left before its end: ", i + 1));
+        return add_stop(joint, fmt::format("step {} is left before its end: ", i + 1));
     }
     joint.to = steps_[next].shape->at(0);
     joint.enters = steps_[next].vehicle.kind;

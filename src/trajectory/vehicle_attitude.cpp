@@ -15,22 +15,25 @@ constexpr double in_radians = std::numbers::pi / 180;
 struct AcrossAndAlong {
     double right = 0, up = 0;             // acceleration, m/s²
     double ground_speed = 0, climbs = 0;  // m/s
-    bool backwards = false;
+    double ahead = 1;                     // of the ground speed along the heading; −1: backwards
 };
 
 AcrossAndAlong in_axes_of_heading(const VehicleMotion& motion) {
     const double s = std::sin(motion.heading.rad()), c = std::cos(motion.heading.rad());
-    return {motion.acceleration.x() * c - motion.acceleration.y() * s, motion.acceleration.z(),
-            std::hypot(motion.velocity.x(), motion.velocity.y()), motion.velocity.z(),
-            motion.velocity.x() * s + motion.velocity.y() * c < 0};
+    const double ground_speed = std::hypot(motion.velocity.x(), motion.velocity.y());
+    const double along = motion.velocity.x() * s + motion.velocity.y() * c;
+    return {motion.acceleration.x() * c - motion.acceleration.y() * s, motion.acceleration.z(), ground_speed,
+            motion.velocity.z(), ground_speed > 0 ? along / ground_speed : 1};
 }
 
-// The slope of the way, which standing vehicles do not have: it fades in between no speed and a walking pace.
+// The slope of the way, which standing vehicles do not have: it fades in between no speed and a walking pace. It is
+// that of the nose where it goes ahead within 60°, of the tail where it goes backwards, and goes over from one to the
+// other.
 double slope_of(const AcrossAndAlong& m) {
     constexpr double walking_mps = 1;
     const double speed = std::hypot(m.ground_speed, m.climbs);
     const double slope = smooth_step(speed / walking_mps).value * std::atan2(m.climbs, m.ground_speed);
-    return m.backwards ? -slope : slope;
+    return slope * (2 * smooth_step(std::clamp(m.ahead + 0.5, 0.0, 1.0)).value - 1);
 }
 
 Attitude banked(const AcrossAndAlong& m, const VehicleMotion& motion) {

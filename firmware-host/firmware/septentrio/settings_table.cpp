@@ -127,7 +127,7 @@ constexpr std::string_view sentences =
     "GGA RMC GLL GNS GRS GSA GST GSV VTG ZDA HDT ALM DTM GBS HRP LLQ RBP RBV ROT SNC TFM TXTbase AVR GGK HEA LLK PUMRD "
     "THS VLW";
 constexpr std::string_view intervals =
-    "off OnChange msec20 msec40 msec50 msec100 msec200 msec500 sec1 sec2 sec5 sec10 sec15 sec30 sec60 min2 min5 "
+    "off OnChange msec10 msec20 msec40 msec50 msec100 msec200 msec500 sec1 sec2 sec5 sec10 sec15 sec30 sec60 min2 min5 "
     "min10 min15 min30 min60";
 constexpr std::string_view output_ports =
     "none COM1 COM2 USB1 USB2 IPS1 IPS2 IPS3 IP10 IP11 IP12 IP13 IP14 IP15 IP16 IP17 NTR1 NTR2 NTR3 DSK1";

@@ -379,6 +379,24 @@ TEST(PathSequence, LeavesATurnAndASwellWithoutAStepOfItsTurnRate) {
         EXPECT_LT(sharpest_change(*swell->shape, angle, swell->shape->duration()), 5);
 }
 
+TEST(PathSequence, LeavesATurnOnTheSpotWithoutAStepOfItsTurnRate) {
+    GeneratedPath path;
+    WaypointWish wish;
+    wish.waypoints = {{{0, 0, 0}, 5, 0}, {{0, 33, 0}, 5, 0}, {{0, 0, 0}, 5, 0}};
+    path.steps.push_back({wish, LocalShape::endless});
+    const auto whole = plan_generated(path, 1);
+    ASSERT_TRUE(whole) << whole.error();
+    double turning = 0;
+    while (turning < whole->shape->duration() && std::abs(whole->shape->at(turning).heading) < right_angle)
+        turning += 0.01;
+    ASSERT_LT(whole->shape->at(turning).velocity.norm(), 1e-9);
+    path.steps[0].seconds = turning;
+    const auto cut = plan_generated(path, 1);
+    ASSERT_TRUE(cut) << cut.error();
+    EXPECT_GT(cut->shape->duration(), turning) << "the turn runs out";
+    EXPECT_LT(sharpest_change(*cut->shape, &LocalMotion::heading, cut->shape->duration()), 20);
+}
+
 // It comes back to where it began, and looks the other way.
 TEST(PathSequence, ALoopTurnsOnTheSpotNoFasterThanAtAWaypoint) {
     GeneratedPath path;

@@ -194,6 +194,34 @@ TEST(ShapedPath, AStepStandsAsItsOwnVehicle) {
     }
 }
 
+// It goes uphill, ahead at first and backwards in the end.
+TEST(ShapedPath, ARoverThatTurnsOnItsWayUpTipsOverSmoothly) {
+    const GeodesicPlane plane(Geodetic::degrees(48, 11, 0));
+    GeneratedPath sequence;
+    sequence.vehicle = usual_limits(VehicleClass::rover);
+    HoverWish hover;
+    hover.sway = 0;
+    hover.place.z() = 300;
+    sequence.steps.push_back({hover, 5});
+    hover.place = {74, 33, 315};
+    hover.heading = 3.5;
+    sequence.steps.push_back({hover, 5});
+    const auto plan = plan_generated(sequence, 1);
+    ASSERT_TRUE(plan) << plan.error();
+    const ShapedPath path(shaped_start, plane, plan->shape, sequence.vehicle.kind);
+    constexpr double step_s = 0.01, fastest = 3;  // rad/s
+    double highest = 0, lowest = 0, before = nose_up_of(path, 5);
+    for (double t = 5; t < plan->shape->duration(); t += step_s) {
+        const double now = nose_up_of(path, t);
+        ASSERT_LT(std::abs(now - before), fastest * step_s) << t;
+        highest = std::max(highest, now);
+        lowest = std::min(lowest, now);
+        before = now;
+    }
+    EXPECT_GT(highest, 0.1);
+    EXPECT_LT(lowest, -0.1);
+}
+
 TEST(ShapedPath, AnotherVehicleAtTheSamePlaceTakesItsTime) {
     GeneratedPath sequence;
     sequence.steps.push_back({RocketWish{}, LocalShape::endless, usual_limits(VehicleClass::rocket)});
