@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/board_messages.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/message_class.hpp"
@@ -19,8 +20,7 @@ bool pubx_port_exists(const BoardProfile& board, PortId port) {
 
 // Whether the board can send the message; one that lists nothing can send all.
 bool sends_message(const BoardProfile& board, UbxMessageId message) {
-    return board.messages.empty() || board.polled.contains(message) ||
-           std::find(board.messages.begin(), board.messages.end(), message) != board.messages.end();
+    return board.messages.empty() || knows(board, message);
 }
 
 // PUBX,40,XXX,i2c,uart1,uart2,usb,spi,0: every how many epochs a sentence is sent on each port. Many programs for

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 
+#include "firmware/board_messages.hpp"
 #include "firmware/config/legacy_support.hpp"
 #include "firmware/septentrio/modes.hpp"
+#include "skyloop/protocol/ubx_security.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -59,6 +61,7 @@ Receiver::Core::Core(BoardProfile board, const ReceiverOptions& options)
     report(tracker_.state());
     adopt_settings();
     if (board_.personality == Personality::sbf) console_.emplace(board_, store_);
+    jamming_told_elsewhere_ = console_ || knows(board_, SecSig1::message_id);
     if (!board_.messages.empty()) return;
     for (const std::string_view name : nmea_sentence_names)
         board_.messages.push_back(find_output_message(name)->id);

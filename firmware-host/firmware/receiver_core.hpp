@@ -191,6 +191,7 @@ private:
     };
     std::optional<ForcedSpeed> forced_speed_;
     std::optional<SeptentrioConsole> console_;  ///< of a receiver that has a command line
+    bool jamming_told_elsewhere_ = false;       ///< MonitorStatus::told_elsewhere
 };
 
 /// The id of a client's sentence, for PUBX and the standard polls; 00-00 of others.

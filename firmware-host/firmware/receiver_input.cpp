@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include "firmware/assistance.hpp"
+#include "firmware/board_messages.hpp"
 #include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/receiver_core.hpp"
@@ -195,11 +196,8 @@ ConfigOutcome Receiver::Core::configured(const UbxFrameView& frame, PortId from)
 
 // Everything but configuration: polls, and the few commands of other classes.
 void Receiver::Core::command(PortUnit& unit, const UbxFrameView& frame, GpsTime now) {
-    const auto sends = [&](UbxMessageId id) {
-        return std::find(board_.messages.begin(), board_.messages.end(), id) != board_.messages.end();
-    };
     // A command, though not of class CFG, that is acknowledged (F9 interface description, UBX-NAV-RESETODO).
-    if (frame.id == nav_resetodo && frame.payload.empty() && sends(NavOdo::message_id)) {
+    if (frame.id == nav_resetodo && frame.payload.empty() && sends(board_, NavOdo::message_id)) {
         reset_odometer();
         return reply(unit, {{}, verdict_frame(Verdict::acknowledge, frame.id), Seconds(0), frame.id}, now);
     }
@@ -208,7 +206,7 @@ void Receiver::Core::command(PortUnit& unit, const UbxFrameView& frame, GpsTime 
     // There is no log to work on.
     if (frame.id.message_class == class_log)
         return reply(unit, {{}, verdict_frame(Verdict::refuse, frame.id), Seconds(0), frame.id}, now);
-    if (!board_.polled.contains(frame.id) && !sends(frame.id)) return;
+    if (!knows(board_, frame.id)) return;
     if (frame.id == UpdSos::message_id) return save_on_shutdown(unit, frame, now);
     // Of the messages that are answered none has a poll that selects a part of it.
     if (!frame.payload.empty()) return;

@@ -9,7 +9,6 @@
 #include "firmware/messages/other_protocols.hpp"
 #include "firmware/receiver_core.hpp"
 #include "firmware/septentrio/modes.hpp"
-#include "skyloop/protocol/ubx_security.hpp"
 #include "skyloop/protocol/ubx_time.hpp"
 
 namespace skyloop::firmware {
@@ -22,11 +21,6 @@ constexpr double late_epochs = 0.005, late_by_s = 0.020;
 std::uint32_t protocol_item(UbxMessageId message) {
     if (message.message_class == class_nmea || message.message_class == class_pubx) return protocol_nmea;
     return message.message_class == class_rtcm ? protocol_rtcm3 : protocol_ubx;
-}
-
-bool has_message(const BoardProfile& board, UbxMessageId id) {
-    return board.polled.contains(id) ||
-           std::find(board.messages.begin(), board.messages.end(), id) != board.messages.end();
 }
 
 // By what a ready message begins with.
@@ -205,7 +199,7 @@ void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     const auto state = std::make_shared<NavigationState>(tracker_.update(epoch, store_, corrections));
     state->corrections.state = in_solution(state->epoch.fix, used);
     state->monitors.jamming_hidden = faults_.jamming_hidden;
-    state->monitors.told_elsewhere = console_ || has_message(board_, SecSig1::message_id);
+    state->monitors.told_elsewhere = jamming_told_elsewhere_;
     carry_to_clock_instant(*state);
     const std::optional<PowerSave::Rest> off = settings_.navigating ? power_.update(*state) : std::nullopt;
     state->power_save = power_.state();

@@ -154,10 +154,9 @@ ConfigValues initial_config(const BoardProfile& board, const ReceiverOptions& op
 std::optional<RefusedOptions> refused_options(const BoardProfile& board, const ReceiverOptions& options) {
     if (board.personality != Personality::ublox) return std::nullopt;
     const ConfigValues values = initial_config(board, options);
-    for (const auto& [key, value] : values)
-        if (!is_in_range(board, key, value))
-            return RefusedOptions{key, fmt::format("{} is {}, which {} itself would refuse", find_config_key(key)->name,
-                                                   value, board.name)};
+    if (const auto* item = first_out_of_range(board, values))
+        return RefusedOptions{item->first, fmt::format("{} is {}, which {} itself would refuse",
+                                                       find_config_key(item->first)->name, item->second, board.name)};
     if (is_consistent(board, values)) return std::nullopt;
     return RefusedOptions{std::nullopt,
                           board.name +

@@ -185,10 +185,9 @@ void read_board_sbf(TableReader& sbf, BoardProfile& board) {
 void check_factory_config(TableReader& top, const BoardProfile& board) {
     if (board.personality != Personality::ublox) return;
     const auto factory = firmware::factory_config(board);
-    for (const auto& [key, value] : factory)
-        if (!firmware::is_in_range(board, key, value))
-            return top.mistake_here(fmt::format("gives {} the factory value {}, which the receiver itself would refuse",
-                                                firmware::find_config_key(key)->name, value));
+    if (const auto* item = firmware::first_out_of_range(board, factory))
+        return top.mistake_here(fmt::format("gives {} the factory value {}, which the receiver itself would refuse",
+                                            firmware::find_config_key(item->first)->name, item->second));
     if (!firmware::is_consistent(board, factory))
         top.mistake_here("the factory settings do not go together: systems, signals, antenna supply");
 }

@@ -5,6 +5,7 @@
 
 #include "board_keys.hpp"
 #include "config_items.hpp"
+#include "firmware/board_messages.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/message_names.hpp"
 #include "skyloop/base/spelling.hpp"
@@ -126,9 +127,7 @@ void read_board_ubx(TableReader& ubx, BoardProfile& board) {
 
 void leave_out_rates_of_others(BoardProfile& board) {
     for (const firmware::OutputMessage& message : firmware::output_messages()) {
-        if (std::find(board.messages.begin(), board.messages.end(), message.id) != board.messages.end() ||
-            board.unsent.contains(message.id))
-            continue;
+        if (firmware::sends(board, message.id) || board.unsent.contains(message.id)) continue;
         for (std::uint32_t port = 0; port < firmware::port_count; ++port)
             board.absent_keys.insert(message.i2c_key + port);
     }

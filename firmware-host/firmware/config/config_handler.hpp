@@ -86,5 +86,7 @@ bool is_consistent(const BoardProfile& board, const ConfigValues& ram);
 bool spoils_start(const BoardProfile& board, const ConfigStore& before, const ConfigStore& after);
 /// Whether one value is in the range of its item: enumerations, logicals, the board's speeds and rates.
 bool is_in_range(const BoardProfile& board, std::uint32_t key, std::uint64_t value);
+/// The first item whose value is not; null: all are.
+const ConfigValues::value_type* first_out_of_range(const BoardProfile& board, const ConfigValues& values);
 
 }  // namespace skyloop::firmware

@@ -342,9 +342,14 @@ bool is_in_range(const BoardProfile& board, std::uint32_t key, std::uint64_t val
     return !limited;
 }
 
-bool is_consistent(const BoardProfile& board, const ConfigValues& ram) {
+const ConfigValues::value_type* first_out_of_range(const BoardProfile& board, const ConfigValues& values) {
     const auto in_range = [&board](const auto& item) { return is_in_range(board, item.first, item.second); };
-    if (!std::all_of(ram.begin(), ram.end(), in_range)) return false;
+    const auto found = std::find_if_not(values.begin(), values.end(), in_range);
+    return found == values.end() ? nullptr : &*found;
+}
+
+bool is_consistent(const BoardProfile& board, const ConfigValues& ram) {
+    if (first_out_of_range(board, ram) != nullptr) return false;
     // A supply can only be cut where it is switched (RECEIVER.md 4.4).
     if (is_on(ram, key::ant_power_down) && !is_on(ram, key::ant_voltage_control)) return false;
     return is_signal_plan(board, ram);

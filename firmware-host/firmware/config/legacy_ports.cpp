@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "firmware/board_messages.hpp"
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/legacy_support.hpp"
 #include "skyloop/protocol/ubx_cfg.hpp"
@@ -122,14 +123,6 @@ bool put_port(const LegacyContext& context, LegacyChanges& changes, const CfgPrt
         changes.put(key::out_protocol(port, protocol), (item.out_proto_mask >> bit & 1) != 0);
     changes.put(legacy_key::rtcm2_in(port), (item.in_proto_mask >> rtcm2_bit & 1) != 0);
     return true;
-}
-
-/// Whether CFG-MSG knows a message at all, and whether it can go out periodically.
-bool sends(const BoardProfile& board, UbxMessageId message) {
-    return std::ranges::find(board.messages, message) != board.messages.end();
-}
-bool knows(const BoardProfile& board, UbxMessageId message) {
-    return sends(board, message) || board.polled.contains(message);
 }
 
 ConfigOutcome poll_rates(const LegacyContext& context, UbxMessageId message) {
