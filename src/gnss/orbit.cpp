@@ -13,19 +13,19 @@ namespace {
 
 // What differs between the systems of Kepler-type records.
 struct OrbitConstants {
-    double gravity;                 // m³/s²
-    double rotation;                // rad/s
-    std::chrono::seconds week_lag;  // the system's weeks begin so much after those of GPST
+    double gravity;        // m³/s²
+    double rotation;       // rad/s
+    Nanoseconds week_lag;  // the system's weeks begin so much after those of GPST
 };
 
 OrbitConstants orbit_constants(Constellation constellation) {
     switch (constellation) {
         case Constellation::galileo:
-            return {gravitational_constant_galileo, earth_rotation_rate, std::chrono::seconds(0)};
+            return {gravitational_constant_galileo, earth_rotation_rate, Nanoseconds(0)};
         case Constellation::beidou:
-            return {gravitational_constant_beidou, earth_rotation_rate_beidou, std::chrono::seconds(14)};
+            return {gravitational_constant_beidou, earth_rotation_rate_beidou, bdt_lag};
         default:
-            return {gravitational_constant_gps, earth_rotation_rate, std::chrono::seconds(0)};
+            return {gravitational_constant_gps, earth_rotation_rate, Nanoseconds(0)};
     }
 }
 

@@ -50,10 +50,6 @@ NavigationMessage galileo_message(int sources) {
     return fnav ? NavigationMessage::fnav : NavigationMessage::inav;
 }
 
-// BeiDou's calendar epochs, toe and weeks are those of BDT.
-constexpr std::chrono::seconds bdt_lag{14};
-constexpr std::int64_t bdt_first_week = 1356;
-
 class KeplerReading {
 public:
     KeplerReading(const RecordKind& kind, RecordFields fields) : kind_(kind), fields_(std::move(fields)) {
@@ -73,7 +69,7 @@ public:
         eph_.toc = fields_.epoch();
         if (!fields_.defect()) reference_time(toe_tow, week);
         if (fields_.defect()) return tl::make_unexpected(*fields_.defect());
-        if (beidou()) {
+        if (beidou()) {  // whose calendar epochs, toe and weeks are those of BDT
             eph_.toc += bdt_lag;
             eph_.toe += bdt_lag;
         }

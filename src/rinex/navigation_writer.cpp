@@ -14,8 +14,6 @@ namespace skyloop {
 namespace rinex {
 namespace {
 
-constexpr std::chrono::seconds bdt_behind_gpst{14};
-
 // D19.12 and D12.4: a three-digit exponent would overflow the field, so what is as small as that is 0.
 std::string d_format(double value, int width, int decimals) {
     if (!std::isfinite(value) || std::abs(value) < 1e-90) value = 0;
@@ -68,8 +66,7 @@ SystemLines system_lines_of(const KeplerEphemeris& r, std::int64_t week, double 
 }
 
 std::string text_of(const KeplerEphemeris& r, GpsTime sent) {
-    const Nanoseconds lag =
-        r.satellite.constellation == Constellation::beidou ? Nanoseconds(bdt_behind_gpst) : Nanoseconds(0);
+    const Nanoseconds lag = r.satellite.constellation == Constellation::beidou ? bdt_lag : Nanoseconds(0);
     const WeekAndTow toe = week_and_tow(r.toe - lag);
     const bool beidou = lag.count() != 0;
     const std::int64_t week = beidou ? bdt_week_and_tow(r.toe).week : toe.week;

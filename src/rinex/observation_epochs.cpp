@@ -116,8 +116,7 @@ std::optional<EpochHead> epoch_head(std::string_view line, int major) {
 }
 
 GpsTime epoch_in_gpst(GpsTime written, std::string_view time_system) {
-    constexpr std::chrono::seconds bdt_lag_of_epochs{14};
-    if (time_system == "BDT") return written + bdt_lag_of_epochs;
+    if (time_system == "BDT") return written + bdt_lag;
     if (time_system != "GLO") return written;
     const LeapSeconds& leap = LeapSeconds::announced();
     return written + std::chrono::seconds(leap.offset(written + std::chrono::seconds(leap.offset(written))));

@@ -18,20 +18,20 @@ namespace {
 // GPST less the time of a file, in seconds; UTC needs the table of leap seconds.
 struct FileTimeSystem {
     std::string_view name;
-    int lag_s;
+    Nanoseconds lag;
     bool utc;
 };
 constexpr std::array<FileTimeSystem, 10> file_time_systems{{
-    {"GPS", 0, false},
-    {"GAL", 0, false},
-    {"QZS", 0, false},
-    {"IRN", 0, false},
-    {"ccc", 0, false},  // SP3-a does not tell: GPS
-    {"", 0, false},
-    {"BDT", 14, false},
-    {"TAI", -19, false},
-    {"UTC", 0, true},
-    {"GLO", 0, true},
+    {"GPS", Nanoseconds(0), false},
+    {"GAL", Nanoseconds(0), false},
+    {"QZS", Nanoseconds(0), false},
+    {"IRN", Nanoseconds(0), false},
+    {"ccc", Nanoseconds(0), false},  // SP3-a does not tell: GPS
+    {"", Nanoseconds(0), false},
+    {"BDT", bdt_lag, false},
+    {"TAI", std::chrono::seconds(-19), false},
+    {"UTC", Nanoseconds(0), true},
+    {"GLO", Nanoseconds(0), true},
 }};
 
 class PreciseOrbitReading {
@@ -99,9 +99,9 @@ private:
         GpsTime time = gps_calendar_time(*year, static_cast<unsigned>(*month), static_cast<unsigned>(*day),
                                          static_cast<unsigned>(*hour), static_cast<unsigned>(*minute), *second);
         const LeapSeconds& leap = LeapSeconds::announced();
-        const int lag =
-            time_system_.utc ? leap.offset(time + std::chrono::seconds(leap.offset(time))) : time_system_.lag_s;
-        time += std::chrono::seconds(lag);
+        time += time_system_.utc
+                    ? Nanoseconds(std::chrono::seconds(leap.offset(time + std::chrono::seconds(leap.offset(time)))))
+                    : time_system_.lag;
         if (epochs_ > 0 && time <= time_)
             return failure(line.number, in_quotes(line.text), "an epoch later than the one before");
         if (epochs_ > 0) spacing_ = epochs_ == 1 ? time - time_ : std::min(spacing_, time - time_);

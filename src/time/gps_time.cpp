@@ -8,8 +8,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Nanoseconds week_length = std::chrono::seconds(seconds_per_week);
-constexpr Nanoseconds bdt_lag = 14s;
-constexpr std::int64_t bdt_first_week = 1356;
 constexpr std::int64_t gst_first_week = 1024;
 
 }  // namespace

@@ -223,7 +223,7 @@ struct PulseGrid {
 
     // By how much the grid's time is behind GPS time. GLONASS counts UTC, three hours ahead.
     [[nodiscard]] Nanoseconds behind(GpsTime time) const {
-        if (base == grid_beidou) return 14s;
+        if (base == grid_beidou) return bdt_lag;
         const Nanoseconds of_utc = leaps ? std::chrono::seconds(leaps->offset(time)) : Nanoseconds(0);
         return base == grid_glonass ? of_utc - 3h : of_utc;
     }

@@ -153,7 +153,7 @@ RxmMeasx code_measurements(const ReportContext& context) {
     RxmMeasx m;
     if (state.time.time) {
         m.gps_tow = m.qzss_tow = tow_ms(time);
-        m.bds_tow = tow_ms(time - 14s);
+        m.bds_tow = tow_ms(time - bdt_lag);
         if (context.board.identity.generation >= 9 && is_enabled(context.config, Constellation::galileo))
             m.gal_tow = m.gps_tow;
         m.glo_tow = tow_ms(time + 3h - std::chrono::seconds(state.epoch.fix.leap_seconds));

@@ -61,7 +61,7 @@ GpsTime msm_time(const ReportContext& context) {
 std::uint32_t msm_epoch(Constellation constellation, const ReportContext& context) {
     const auto of_week = [](GpsTime time) { return static_cast<std::uint32_t>(week_and_tow(time).tow / 1ms); };
     const GpsTime time = msm_time(context);
-    if (constellation == Constellation::beidou) return of_week(time - 14s);
+    if (constellation == Constellation::beidou) return of_week(time - bdt_lag);
     if (constellation != Constellation::glonass) return of_week(time);
     constexpr std::uint32_t day_ms = 86'400'000;
     const std::uint32_t moscow = of_week(time + 3h - std::chrono::seconds(context.state.epoch.fix.leap_seconds));

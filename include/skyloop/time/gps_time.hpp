@@ -54,7 +54,12 @@ inline GpsTime advanced(GpsTime time, Seconds span) { return time + to_nanosecon
 /// (MODELS.md 3.1: w = w10 + 1024·round((pivot − w10)/1024)).
 std::int64_t resolve_week(std::int64_t week10, std::int64_t pivot_week);
 
-/// BeiDou time, GPST − 14 s; its week 0 is GPS week 1356.
+/// By how much BeiDou time is behind GPS time (BeiDou ICD B1I 3.0, 3.3: it began with UTC of 2006).
+inline constexpr Nanoseconds bdt_lag = std::chrono::seconds(14);
+/// The GPS week of its week 0.
+inline constexpr std::int64_t bdt_first_week = 1356;
+
+/// BeiDou time, GPST − 14 s.
 WeekAndTow bdt_week_and_tow(GpsTime time);
 /// Galileo system time, equal to GPST to nanoseconds; its week 0 is GPS week 1024.
 WeekAndTow gst_week_and_tow(GpsTime time);
