@@ -81,6 +81,8 @@ Result<SentenceView> parse_sentence(std::string_view line) {
     if (line.ends_with('\n')) line.remove_suffix(1);
     while (line.ends_with('\r'))
         line.remove_suffix(1);
+    while (line.ends_with(' '))
+        line.remove_suffix(1);
     if (!line.starts_with('$') && !line.starts_with('!'))
         return fail(ErrorCode::input, fmt::format("{} does not start with '$'", quoted(line)));
     if (!std::all_of(line.begin(), line.end(), printable))

@@ -50,8 +50,9 @@ struct SentenceView {
     [[nodiscard]] std::string_view field(std::size_t index) const;
 };
 
-/// Reads one line, with or without its line end. Fails with `input` when it does not start with `$` or `!`, has a
-/// character that is not printable, no checksum or a wrong one (either letter case is accepted).
+/// Reads one line, with or without its line end; before that may stand the blanks with which loggers fill up lines.
+/// Fails with `input` when it does not start with `$` or `!`, has a character that is not printable, no checksum or a
+/// wrong one (either letter case is accepted).
 Result<SentenceView> parse_sentence(std::string_view line);
 
 /// Finds sentences in a byte stream with whatever else it carries (RECEIVER.md 1.4).

@@ -56,6 +56,7 @@ TEST(ParseSentence, TakesLowerCaseChecksumsAndProprietarySentences) {
     EXPECT_EQ(sentence->talker(), "P");
     EXPECT_EQ(sentence->formatter(), "UBX");
     ASSERT_TRUE(parse_sentence("$X*58"));
+    EXPECT_TRUE(parse_sentence("$X*58   \r\n")) << "as loggers fill up their lines";
     EXPECT_EQ(parse_sentence("$X*58")->formatter(), "");
 }
 
