@@ -110,6 +110,8 @@ private:
     void force_baud(const ForceBaud& wanted, GpsTime now);
     void change_speeds_at_once(GpsTime now);
 
+    [[nodiscard]] bool holds_forced_speed() const;
+    [[nodiscard]] std::uint32_t wanted_baud(PortId port) const;
     // Output.
     // What messages of now are made from.
     ReportContext context(PortId port);
@@ -191,6 +193,7 @@ private:
     };
     std::optional<ForcedSpeed> forced_speed_;
     std::optional<SeptentrioConsole> console_;  ///< of a receiver that has a command line
+        bool is_setting = true;  ///< the board can be set to it: else its settings keep the one before
     bool jamming_told_elsewhere_ = false;       ///< MonitorStatus::told_elsewhere
 };
 

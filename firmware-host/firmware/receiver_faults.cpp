@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "firmware/config/config_handler.hpp"
+#include "firmware/config/config_keys.hpp"
 #include "firmware/config/message_names.hpp"
 #include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
@@ -52,22 +54,36 @@ void Receiver::Core::forget_configuration(GpsTime now) {
 }
 
 void Receiver::Core::force_baud(const ForceBaud& wanted, GpsTime now) {
-    const auto current = static_cast<std::uint32_t>(store_.value(key::uart1_baudrate));
-    const bool holds = forced_speed_ && forced_speed_->forced == current;
+    const bool holds = holds_forced_speed();
+    if (holds) store_.set(in_ram, key::uart1_baudrate, forced_speed_->before);
     if (wanted.baud == 0) {
-        if (holds) store_.set(in_ram, key::uart1_baudrate, forced_speed_->before);
         forced_speed_.reset();
     } else if (holds || !wanted.given_back) {
-        forced_speed_ = ForcedSpeed{wanted.baud, holds ? forced_speed_->before : current};
-        store_.set(in_ram, key::uart1_baudrate, wanted.baud);
+        const auto before = static_cast<std::uint32_t>(store_.value(key::uart1_baudrate));
+        forced_speed_ = ForcedSpeed{wanted.baud, before, is_in_range(board_, key::uart1_baudrate, wanted.baud)};
+        if (forced_speed_->is_setting) store_.set(in_ram, key::uart1_baudrate, wanted.baud);
     }
     adopt_settings();
     change_speeds_at_once(now);
 }
 
+// Until a client sets another one.
+bool Receiver::Core::holds_forced_speed() const {
+    if (!forced_speed_) return false;
+    return store_.value(key::uart1_baudrate) ==
+           (forced_speed_->is_setting ? forced_speed_->forced : forced_speed_->before);
+}
+
+// By the settings. A forced speed that the board cannot be set to stands in none of them: it would refuse all that it
+// is told, and what it saved.
+std::uint32_t Receiver::Core::wanted_baud(PortId port) const {
+    if (port != PortId::uart1 || !holds_forced_speed()) return configured_baud(store_, port);
+    return std::clamp(forced_speed_->forced, slowest_baud, fastest_baud);
+}
+
 void Receiver::Core::change_speeds_at_once(GpsTime now) {
     for (PortUnit& unit : units_) {
-        const std::uint32_t baud = configured_baud(store_, unit.id);
+        const std::uint32_t baud = wanted_baud(unit.id);
         if (baud == unit.configured_baud) continue;
         unit.configured_baud = baud;
         const PortId port = unit.id;

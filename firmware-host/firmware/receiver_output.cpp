@@ -101,7 +101,7 @@ GpsTime Receiver::Core::answer_time(GpsTime now, Seconds work) {
 void Receiver::Core::reply(PortUnit& unit, Reply out, GpsTime now) {
     const PortId port = unit.id;
     const bool swallowed =
-        board_.quirks.speed_change == SpeedChangeAnswer::lost && configured_baud(store_, port) != unit.configured_baud;
+        board_.quirks.speed_change == SpeedChangeAnswer::lost && wanted_baud(port) != unit.configured_baud;
     if (stays_silent_to(out.to))
         out.answers.clear();
     else if (out.verdict && !swallowed)
@@ -123,13 +123,13 @@ void Receiver::Core::reply(PortUnit& unit, Reply out, GpsTime now) {
 
 bool Receiver::Core::configured_speeds_hold() const {
     return std::all_of(units_.begin(), units_.end(),
-                       [&](const PortUnit& u) { return configured_baud(store_, u.id) == u.configured_baud; });
+                       [&](const PortUnit& u) { return wanted_baud(u.id) == u.configured_baud; });
 }
 
 void Receiver::Core::plan_speed_changes(GpsTime at) {
     const bool drain = board_.quirks.speed_change == SpeedChangeAnswer::at_old_speed;
     for (PortUnit& unit : units_) {
-        const std::uint32_t baud = configured_baud(store_, unit.id);
+        const std::uint32_t baud = wanted_baud(unit.id);
         if (baud == unit.configured_baud) continue;
         unit.configured_baud = baud;
         const PortId port = unit.id;

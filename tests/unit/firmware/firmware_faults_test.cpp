@@ -182,6 +182,39 @@ TEST(FirmwareFaults, GivesTheSpeedOfBeforeBackOnceAndNotOverAReboot) {
     EXPECT_EQ(baud(), 38400U);
 }
 
+TEST(FirmwareFaults, TakesSettingsAtASpeedThatItCannotBeSetTo) {
+    BrokenReceiver r;
+    const auto verdict = [&] {
+        r.wait(500ms);
+        r.bytes.clear();
+        r.set(0x20910007, 1);
+        r.wait(500ms);
+        StreamSplitter splitter;
+        for (const StreamPiece& piece : splitter.feed(r.bytes))
+            if (piece.kind == StreamKind::ubx && piece.bytes[2] == 0x05)
+                return std::string(piece.bytes[3] == 1 ? "ACK" : "NAK");
+        return std::string("none");
+    };
+    r.receiver.happen(ForceBaud{100'000}, r.now);
+    EXPECT_EQ(verdict(), "ACK");
+    EXPECT_EQ(r.receiver.baud(PortId::uart1), 100'000U) << "other settings leave the speed alone";
+    r.receiver.happen(ForceBaud{12'000'000}, r.now);
+    EXPECT_EQ(verdict(), "ACK");
+    EXPECT_EQ(r.receiver.baud(PortId::uart1), 8'000'000U) << "the fastest of any UART";
+    r.set(0x40520001, 9600);
+    r.wait(500ms);
+    EXPECT_EQ(r.receiver.baud(PortId::uart1), 9600U) << "the client has set another";
+    r.receiver.happen(ForceBaud{0}, r.now);
+    r.wait(500ms);
+    EXPECT_EQ(r.receiver.baud(PortId::uart1), 9600U);
+    r.receiver.happen(ForceBaud{2400}, r.now);
+    r.wait(20ms);
+    EXPECT_EQ(r.receiver.baud(PortId::uart1), 2400U);
+    r.receiver.happen(ForceBaud{0}, r.now);
+    r.wait(20ms);
+    EXPECT_EQ(r.receiver.baud(PortId::uart1), 9600U);
+}
+
 TEST(FirmwareFaults, KeepsAnswersInOrderWhenTheirDelayEnds) {
     BrokenReceiver r;
     FirmwareFaults slow;
