@@ -14,7 +14,7 @@
 #include "firmware/port.hpp"
 #include "firmware/receiver.hpp"
 #include "firmware/septentrio/command_line_reader.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
+#include "skyloop/protocol/patient_splitter.hpp"
 
 namespace skyloop::firmware {
 
@@ -34,20 +34,14 @@ struct PortUnit {
         status.id = port;
     }
     /// What came of something that is not yet whole.
-    void forget_input() {
-        splitter = {};
-        held_since.reset();
-        gives_way_at.reset();
-    }
+    void forget_input() { splitter = {}; }
     PortId id;
     Port transmit;
-    StreamSplitter splitter{};  ///< finds what clients send: UBX, sentences and RTCM 3
+    PatientSplitter splitter{};  ///< finds what clients send: UBX, sentences and RTCM 3
     CommandLineReader command_line{};
     PortStatus status;
     PortTotals totals{};
     GpsTime last_input{};
-    /// Since when something that is not yet whole holds back something whole inside it, and when it gives way to that.
-    std::optional<GpsTime> held_since{}, gives_way_at{};
     std::uint32_t configured_baud = 0;  ///< to which it has been told to go
     ConfiguredMessages configured;
     std::optional<std::int64_t> told_pulse{};  ///< of the last TIM-TP

@@ -63,7 +63,7 @@ private:
 
     // Input.
     void give_up_unfinished(PortUnit& unit, GpsTime now);
-    void hold_back(PortUnit& unit, GpsTime now);
+    void plan_to_give_way(const PortUnit& unit);
     void give_way(PortUnit& unit, GpsTime now);
     void work_off(PortUnit& unit, const std::vector<StreamPiece>& pieces, GpsTime now);
     void dispatch(PortUnit& unit, const StreamPiece& piece, GpsTime now);

@@ -21,10 +21,6 @@ using namespace std::chrono_literals;
 
 // A frame that was begun and not ended within this belongs to a client's hunt for the speed.
 constexpr Nanoseconds frame_timeout = 2s;
-// A whole frame inside one that is not yet whole is its payload, or what follows a false beginning. The latter when it
-// goes on no further: a client waits for its answer. And when it goes on for longer than the longest settings take at
-// 9600 baud: clients that never pause must not wait for 8192 bytes, nor those that poll more often than every silence.
-constexpr Nanoseconds silence_of_false_beginning = 100ms, longest_of_false_beginning = 1s;
 
 constexpr UbxMessageId cfg_rst{0x06, 0x04}, cfg_valset{0x06, 0x8A}, cfg_valget{0x06, 0x8B}, cfg_valdel{0x06, 0x8C},
     nav_resetodo{0x01, 0x10};
@@ -82,30 +78,25 @@ void Receiver::Core::input(PortId port, ByteSpan bytes, GpsTime now) {
     if (console_) return read_command_lines(*unit, bytes, now);
     const auto damaged = [&] { return unit->splitter.counts().bad[static_cast<std::size_t>(StreamKind::rtcm3)]; };
     std::uint64_t told = damaged();
-    const std::vector<StreamPiece> pieces = unit->splitter.feed(bytes);
+    const std::vector<StreamPiece> pieces = unit->splitter.feed(bytes, now);
     for (; told < damaged(); ++told)
         if (board_.personality == Personality::ublox && accepts(*unit, StreamKind::rtcm3))
             answer_corrections(CorrectionInput::answer_to_damaged(), now);
     work_off(*unit, pieces, now);
-    hold_back(*unit, now);
+    plan_to_give_way(*unit);
 }
 
 // Planned, so that what comes out does not depend on when one looks.
-void Receiver::Core::hold_back(PortUnit& unit, GpsTime now) {
-    unit.gives_way_at.reset();
-    if (!unit.splitter.holds_whole()) return unit.held_since.reset();
-    if (!unit.held_since) unit.held_since = now;
-    unit.gives_way_at = std::min(now + silence_of_false_beginning, *unit.held_since + longest_of_false_beginning);
-    outbox_.plan(*unit.gives_way_at, [this, port = unit.id](GpsTime t) { give_way(*find_unit(units_, port), t); });
+void Receiver::Core::plan_to_give_way(const PortUnit& unit) {
+    const std::optional<GpsTime> at = unit.splitter.gives_way_at();
+    if (at) outbox_.plan(*at, [this, port = unit.id](GpsTime t) { give_way(*find_unit(units_, port), t); });
 }
 
 void Receiver::Core::give_way(PortUnit& unit, GpsTime now) {
-    if (!unit.gives_way_at || now < *unit.gives_way_at) return;
-    const GpsTime at = *unit.gives_way_at;
-    unit.gives_way_at.reset();
-    unit.held_since.reset();
-    if (sleep_ || at < deaf_until_) return;
-    work_off(unit, unit.splitter.give_way(), at);
+    const std::optional<GpsTime> at = unit.splitter.gives_way_at();
+    if (console_ || !at || now < *at) return;  // a command line takes lines, and nothing inside them
+    const std::vector<StreamPiece> pieces = unit.splitter.give_way();
+    if (!sleep_ && *at >= deaf_until_) work_off(unit, pieces, *at);
 }
 
 void Receiver::Core::give_up_unfinished(PortUnit& unit, GpsTime now) {
@@ -260,7 +251,7 @@ void Receiver::Core::dispatch_sentence(PortUnit& unit, ByteSpan line, GpsTime no
 
 void Receiver::Core::read_command_lines(PortUnit& unit, ByteSpan bytes, GpsTime now) {
     if (!port_is_on(store_, unit.id)) return;
-    for (const StreamPiece& piece : unit.splitter.feed(bytes)) {
+    for (const StreamPiece& piece : unit.splitter.feed(bytes, now)) {
         count_input(unit.status, piece);
         if (piece.kind == StreamKind::rtcm3 && console_->hears_corrections(unit.id))
             corrections_.take(piece.bytes, now, CorrectionLimits::of(store_));

@@ -12,12 +12,8 @@
 namespace skyloop {
 namespace {
 
-StreamSplitter watching_splitter(bool of_client) {
-    StreamProtocols protocols;
-    protocols.impatient = of_client;
-    protocols.msp = protocols.mavlink = protocols.sbf = !of_client;
-    return StreamSplitter(protocols);
-}
+constexpr StreamProtocols client_protocols{};
+constexpr StreamProtocols receiver_protocols{.msp = true, .mavlink = true, .sbf = true};
 
 std::string ubx_name(ByteSpan frame) {
     const auto parsed = parse_frame(frame);
@@ -74,16 +70,14 @@ std::string message_name(StreamKind kind, ByteSpan message) {
 
 Dialogue::Ends& Dialogue::ends(std::size_t wire) {
     while (ends_.size() <= wire)
-        ends_.push_back({watching_splitter(true), watching_splitter(false), {}});
+        ends_.push_back({PatientSplitter(client_protocols), StreamSplitter(receiver_protocols), {}});
     return ends_[wire];
 }
 
 void Dialogue::client_said(std::size_t wire, ByteSpan bytes, GpsTime now) {
     if (!listening_) return;
-    std::vector<StreamPiece> pieces = ends(wire).client.feed(bytes);
-    // What a splitter takes for noise are the lines themselves.
-    if (command_line_) std::erase_if(pieces, is_text);
-    show(wire, true, pieces, now);
+    give_way(wire, now);
+    show(wire, true, ends(wire).client.feed(bytes, now), now);
     if (command_line_) show_commands(wire, bytes, now);
 }
 
@@ -95,11 +89,22 @@ void Dialogue::show_commands(std::size_t wire, ByteSpan bytes, GpsTime now) {
 }
 
 void Dialogue::receiver_said(std::size_t wire, ByteSpan bytes, GpsTime now) {
-    if (listening_) show(wire, false, ends(wire).receiver.feed(bytes), now);
+    if (!listening_) return;
+    give_way(wire, now);
+    show(wire, false, ends(wire).receiver.feed(bytes), now);
+}
+
+// As the receiver does, which has its answer by now.
+void Dialogue::give_way(std::size_t wire, GpsTime now) {
+    PatientSplitter& client = ends(wire).client;
+    const std::optional<GpsTime> at = client.gives_way_at();
+    if (at && *at <= now) show(wire, true, client.give_way(), *at);
 }
 
 void Dialogue::show(std::size_t wire, bool from_client, const std::vector<StreamPiece>& pieces, GpsTime now) {
     for (const StreamPiece& piece : pieces) {
+        // What a splitter takes for noise are the lines themselves.
+        if (from_client && command_line_ && is_text(piece)) continue;
         const std::string name = message_name(piece.kind, piece.bytes);
         listener_.message({now, station_, wire, from_client, piece.kind, name, piece.bytes});
     }

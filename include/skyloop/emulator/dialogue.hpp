@@ -8,6 +8,7 @@
 
 #include "firmware/septentrio/command_line_reader.hpp"
 #include "skyloop/fault/run_observer.hpp"
+#include "skyloop/protocol/patient_splitter.hpp"
 #include "skyloop/transport/transport.hpp"
 
 namespace skyloop {
@@ -39,10 +40,12 @@ public:
 
 private:
     struct Ends {
-        StreamSplitter client, receiver;
+        PatientSplitter client;
+        StreamSplitter receiver;
         firmware::CommandLineReader commands{};  // of the client
     };
     Ends& ends(std::size_t wire);
+    void give_way(std::size_t wire, GpsTime now);
     void show(std::size_t wire, bool from_client, const std::vector<StreamPiece>& pieces, GpsTime now);
     void show_commands(std::size_t wire, ByteSpan bytes, GpsTime now);
 

@@ -6,6 +6,7 @@
 
 #include <atomic>
 
+#include "skyloop/protocol/ubx_frame.hpp"
 #include "support/run_parts.hpp"
 
 namespace skyloop {
@@ -40,6 +41,31 @@ TEST(Dialogue, LinesAreNoiseWhereNobodyTakesThem) {
 
 TEST(Dialogue, WhatIsNoTextOnACommandLineIsNoiseStill) {
     EXPECT_THAT(names_in({std::string(300, '\x80')}, true), testing::Contains("noise"));
+}
+
+TEST(Dialogue, AFrameThatHoldsAnotherIsOneMessageUnlessItEndsThere) {
+    using namespace std::chrono_literals;
+    std::vector<std::string> names;
+    std::vector<GpsTime> times;
+    Dialogue dialogue(0, {[&](const MessageSeen& seen) {
+                              names.emplace_back(seen.name);
+                              times.push_back(seen.now);
+                          },
+                          [](const BeliefSeen&) {}});
+    const Bytes poll = encode_frame(UbxMessageId{0x0A, 0x04}, {}), outer = encode_frame(UbxMessageId{0x06, 0x3E}, poll);
+    GpsTime now{1000s};
+    const ByteSpan begun = ByteSpan(outer).first(outer.size() - 2), rest = ByteSpan(outer).last(2);
+    dialogue.client_said(0, begun, now);
+    dialogue.client_said(0, rest, now + 20ms);
+    EXPECT_THAT(names, ElementsAre("CFG-GNSS"));
+    names.clear();
+    now += 1s;
+    dialogue.client_said(0, begun, now);
+    dialogue.receiver_said(0, to_bytes("x"), now + 50ms);
+    EXPECT_THAT(names, IsEmpty());
+    dialogue.receiver_said(0, to_bytes("x"), now + 120ms);
+    EXPECT_THAT(names, testing::Contains("MON-VER"));
+    EXPECT_EQ(times.back(), now + 100ms);
 }
 
 const std::atomic<bool> dialogue_never_stops{false};
