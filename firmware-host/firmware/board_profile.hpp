@@ -98,6 +98,7 @@ struct PowerAbility {
     bool backup_needs_force = false;  ///< RXM-PMREQ without the flag `force` does nothing
     bool keeps_ram = false;           ///< what is configured in RAM outlives being off
     bool banner = true;               ///< the texts of a start come after being off, too
+    std::vector<std::string> texts;   ///< in place of these; empty: they themselves
     Seconds wake{0.4};                ///< from an edge, or from its time, until it hears
     Seconds acquisition{120};         ///< without a fix, where the user leaves that to the receiver
     Seconds blind_acquisition{15};    ///< the same while it hears no satellite; 0: as long as otherwise

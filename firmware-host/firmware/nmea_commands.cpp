@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/signal_keys.hpp"
@@ -38,6 +39,14 @@ CommandOutcome execute_sentence(const SentenceView& sentence, const BoardProfile
             return execute_pair(sentence, board, store, from);
     }
     return {};
+}
+
+std::optional<int> NumberedCommand::argument(std::size_t i) const { return whole_number(sentence.field(i)); }
+
+void NumberedCommand::answer(const std::string& body) { outcome.answers.push_back(to_bytes(Sentence(body).finish())); }
+
+int least_fix_interval(const BoardProfile& board) {
+    return std::max(board.least_measurement_period_ms, static_cast<int>(std::ceil(1000.0 / board.max_rate_hz - 1e-6)));
 }
 
 std::optional<int> whole_number(std::string_view field) {

@@ -19,6 +19,22 @@ struct CommandOutcome {
     std::vector<Bytes> answers;        ///< whole sentences, in this order
     std::vector<UbxMessageId> polled;  ///< messages to be sent once, after the answers (classes F0, F1)
     std::optional<StartKind> restart;  ///< the receiver starts anew
+    std::optional<bool> positioning;   ///< it goes on tracking and solving, or stops; it answers all the same
+    bool standby = false;              ///< it is off until a byte comes
+};
+
+/// A maker's numbered command while it is answered.
+struct NumberedCommand {
+    const SentenceView& sentence;
+    const BoardProfile& board;
+    ConfigStore& store;
+    PortId from;
+    int number = 0;
+    CommandOutcome outcome{};
+
+    [[nodiscard]] std::optional<int> argument(std::size_t i) const;
+    /// @param body of a sentence, without "$" and checksum
+    void answer(const std::string& body);
 };
 
 /// Executes one checked sentence by the board's personality; what it configures is in the store afterwards, port
@@ -44,6 +60,9 @@ bool set_systems(const BoardProfile& board, ConfigStore& store, ConfigLayers lay
 
 /// The board's version answers that begin with "$" and `prefix`, as sentences.
 std::vector<Bytes> version_answers(const BoardProfile& board, std::string_view prefix);
+
+/// The shortest time between two fixes that the board can be asked for, ms.
+int least_fix_interval(const BoardProfile& board);
 
 /// The number in a field, with nothing after it.
 std::optional<int> whole_number(std::string_view field);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 
 #include "firmware/config/config_handler.hpp"
@@ -18,20 +17,16 @@ constexpr ConfigLayers at_next_start = in_battery;
 
 enum class PairResult { done = 0, in_process = 1, failed = 2, unsupported = 3, busy = 4 };
 
-struct PairCommand {
-    const SentenceView& sentence;
-    const BoardProfile& board;
-    ConfigStore& store;
-    PortId from;
-    int number = 0;
-    CommandOutcome outcome{};
-
-    [[nodiscard]] std::optional<int> argument(std::size_t i) const { return whole_number(sentence.field(i)); }
-    void answer(const std::string& body) { outcome.answers.push_back(to_bytes(Sentence(body).finish())); }
+struct PairCommand : NumberedCommand {
     void acknowledge(PairResult result) { answer(fmt::format("PAIR001,{:03},{}", number, static_cast<int>(result))); }
 };
 
-void accept_pair(PairCommand& c) { c.acknowledge(PairResult::done); }
+// 002 and 003: satellites are tracked, or nothing but commands is heard.
+void switch_positioning(PairCommand& c) {
+    constexpr int on = 2;
+    c.acknowledge(PairResult::done);
+    c.outcome.positioning = c.number == on;
+}
 
 // 004 hot, 005 warm, 006 cold, 007 cold with factory settings. What is stored comes in force with the restart itself,
 // so that its acknowledgement still leaves at the old speed.
@@ -52,9 +47,7 @@ void tell_pair_version(PairCommand& c) {
 void set_fix_interval(PairCommand& c) {
     constexpr int longest = 1000;
     const auto period = c.argument(0);
-    const int least =
-        std::max(c.board.least_measurement_period_ms, static_cast<int>(std::ceil(1000.0 / c.board.max_rate_hz - 1e-6)));
-    if (!period || *period < least || *period > longest ||
+    if (!period || *period < least_fix_interval(c.board) || *period > longest ||
         !is_in_range(c.board, key::rate_meas, static_cast<std::uint64_t>(*period)))
         return c.acknowledge(PairResult::failed);
     c.store.set(pair_layers, key::rate_meas, static_cast<std::uint64_t>(*period));
@@ -174,13 +167,12 @@ struct PairRow {
     int number;
     void (*execute)(PairCommand&);
 };
-// 002 and 003 switch the positioning on and off: taken, without effect.
 constexpr PairRow pair_rows[] = {
-    {2, accept_pair},       {3, accept_pair},          {4, restart_pair},           {5, restart_pair},
-    {6, restart_pair},      {7, restart_pair},         {20, tell_pair_version},     {21, tell_pair_version},
-    {50, set_fix_interval}, {51, tell_fix_interval},   {62, set_sentence_rate},     {63, tell_sentence_rate},
-    {66, set_pair_systems}, {80, set_navigation_mode}, {400, set_pair_corrections}, {410, set_pair_sbas},
-    {513, save_pair},       {864, set_pair_speed},
+    {2, switch_positioning}, {3, switch_positioning},   {4, restart_pair},           {5, restart_pair},
+    {6, restart_pair},       {7, restart_pair},         {20, tell_pair_version},     {21, tell_pair_version},
+    {50, set_fix_interval},  {51, tell_fix_interval},   {62, set_sentence_rate},     {63, tell_sentence_rate},
+    {66, set_pair_systems},  {80, set_navigation_mode}, {400, set_pair_corrections}, {410, set_pair_sbas},
+    {513, save_pair},        {864, set_pair_speed},
 };
 
 }  // namespace
@@ -190,7 +182,7 @@ CommandOutcome execute_pair(const SentenceView& sentence, const BoardProfile& bo
     if (!sentence.address.starts_with(prefix)) return {};
     const auto number = whole_number(sentence.address.substr(prefix.size()));
     if (!number || *number < 0 || *number > 999) return {};
-    PairCommand command{sentence, board, store, from, *number};
+    PairCommand command{{sentence, board, store, from, *number}};
     const auto* row =
         std::find_if(std::begin(pair_rows), std::end(pair_rows), [&](const PairRow& r) { return r.number == *number; });
     if (row == std::end(pair_rows))

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/signal_keys.hpp"
@@ -17,23 +16,21 @@ constexpr ConfigLayers pmtk_layers = in_ram | in_battery;
 
 enum class PmtkFlag { invalid = 0, unsupported = 1, failed = 2, done = 3 };
 
-// One sentence being answered.
-struct PmtkCommand {
-    const SentenceView& sentence;
-    const BoardProfile& board;
-    ConfigStore& store;
-    PortId from;
-    int number = 0;
-    CommandOutcome outcome{};
-
-    [[nodiscard]] std::optional<int> argument(std::size_t i) const { return whole_number(sentence.field(i)); }
-    void answer(const std::string& body) { outcome.answers.push_back(to_bytes(Sentence(body).finish())); }
+struct PmtkCommand : NumberedCommand {
     void acknowledge(PmtkFlag flag, const std::string& more = {}) {
         answer(fmt::format("PMTK001,{},{}{}", number, static_cast<int>(flag), more));
     }
 };
 
 void accept_pmtk(PmtkCommand& c) { c.acknowledge(PmtkFlag::done); }
+
+// 161: stopped (0) or asleep (1), which differ in what they draw.
+void stand_by(PmtkCommand& c) {
+    const auto kind = c.argument(0);
+    if (!kind || *kind < 0 || *kind > 1) return c.acknowledge(PmtkFlag::invalid);
+    c.acknowledge(PmtkFlag::done);
+    c.outcome.standby = true;
+}
 
 // 101 hot, 102 warm, 103 cold, 104 cold with factory settings: no acknowledgement, the start sentences follow.
 void restart_pmtk(PmtkCommand& c) {
@@ -49,9 +46,8 @@ void set_interval(PmtkCommand& c) {
     constexpr int shortest = 100, longest = 10000;
     const auto period = c.argument(0);
     if (!period || *period < shortest || *period > longest) return c.acknowledge(PmtkFlag::invalid);
-    const int least =
-        std::max(c.board.least_measurement_period_ms, static_cast<int>(std::ceil(1000.0 / c.board.max_rate_hz - 1e-6)));
-    if (*period < least || !is_in_range(c.board, key::rate_meas, static_cast<std::uint64_t>(*period)))
+    if (*period < least_fix_interval(c.board) ||
+        !is_in_range(c.board, key::rate_meas, static_cast<std::uint64_t>(*period)))
         return c.acknowledge(PmtkFlag::failed);
     c.store.set(pmtk_layers, key::rate_meas, static_cast<std::uint64_t>(*period));
     c.store.set(pmtk_layers, key::rate_nav, 1);
@@ -183,14 +179,14 @@ struct PmtkRow {
     int number;
     void (*execute)(PmtkCommand&);
 };
-// 161 standby and 869 the receiver's own orbit prediction: taken, without effect.
+// 869, the receiver's own orbit prediction: taken, without effect.
 constexpr PmtkRow pmtk_rows[] = {
     {0, accept_pmtk},
     {101, restart_pmtk},
     {102, restart_pmtk},
     {103, restart_pmtk},
     {104, restart_pmtk},
-    {161, accept_pmtk},
+    {161, stand_by},
     {220, set_interval},
     {251, set_speed},
     {300, set_interval},
@@ -212,7 +208,7 @@ constexpr PmtkRow pmtk_rows[] = {
 
 CommandOutcome execute_pmtk(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store, PortId from) {
     constexpr std::string_view prefix = "PMTK", version = "PQVERNO";
-    PmtkCommand command{sentence, board, store, from};
+    PmtkCommand command{{sentence, board, store, from}};
     if (sentence.address == version && sentence.field(0) == "R") {
         command.outcome.answers = version_answers(board, version);
         return command.outcome;

@@ -189,15 +189,24 @@ void Receiver::Core::reset(std::uint16_t nav_bbr_mask, std::uint8_t mode, GpsTim
     }
 }
 
+void Receiver::Core::switch_navigating(bool on, GpsTime now) {
+    if (on != settings_.navigating) on ? start_navigating(now) : stop_navigating(now);
+}
+
 void Receiver::Core::stop_navigating(GpsTime now) {
     settings_.navigating = false;
-    send_text(notice, "Stopping GNSS", now);
+    tell_of_navigating("Stopping GNSS", now);
 }
 
 void Receiver::Core::start_navigating(GpsTime now) {
     settings_.navigating = true;
-    send_text(notice, "Starting GNSS", now);
+    tell_of_navigating("Starting GNSS", now);
     restart_navigation({}, now, Seconds(0));
+}
+
+// As u-blox words it; others say nothing.
+void Receiver::Core::tell_of_navigating(const char* text, GpsTime now) {
+    if (board_.personality == Personality::ublox) send_text(notice, text, now);
 }
 
 void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now, BootCause cause, bool banner) {
@@ -229,9 +238,8 @@ void Receiver::Core::boot(const Forgotten& forgotten, GpsTime now, const Boot& h
     deaf_until_ = awake;
     tracker_.boot(now, how.cause);
     restart_navigation(forgotten, now, how.takes + board_.timing.first_epoch);
-    // Half a second after it was woken a client may speak to it.
-    const bool deaf = how.cause != BootCause::backup;
-    if (how.banner) outbox_.plan(awake, [this, deaf](GpsTime t) { send_banner(t, deaf); });
+    const bool woken = how.cause == BootCause::backup;
+    if (how.banner) outbox_.plan(awake, [this, woken](GpsTime t) { send_banner(t, woken); });
 }
 
 }  // namespace skyloop::firmware

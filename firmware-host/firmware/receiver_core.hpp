@@ -91,6 +91,7 @@ private:
     void request_backup(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
     void change_power_state(PortUnit& unit, const UbxFrameView& frame, GpsTime now);
     void rest(const PowerSave::Rest& rest, GpsTime from);
+    void stand_by(GpsTime from);
     void fall_asleep(const Sleep& sleep, GpsTime from);
     void plan_lying_down(GpsTime at);
     void lie_down(GpsTime now);
@@ -109,9 +110,9 @@ private:
     void forget_configuration(GpsTime now);
     void force_baud(const ForceBaud& wanted, GpsTime now);
     void change_speeds_at_once(GpsTime now);
-
     [[nodiscard]] bool holds_forced_speed() const;
     [[nodiscard]] std::uint32_t wanted_baud(PortId port) const;
+
     // Output.
     // What messages of now are made from.
     ReportContext context(PortId port);
@@ -141,8 +142,10 @@ private:
     [[nodiscard]] CorrectionState allowed(CorrectionState at_hand) const;
     void apply_changes(GpsTime now);
     void reset(std::uint16_t nav_bbr_mask, std::uint8_t mode, GpsTime now);
+    void switch_navigating(bool on, GpsTime now);
     void stop_navigating(GpsTime now);
     void start_navigating(GpsTime now);
+    void tell_of_navigating(const char* text, GpsTime now);
     /// How it starts anew.
     struct Boot {
         Seconds takes;  ///< until it hears
@@ -153,8 +156,8 @@ private:
     void boot(const Forgotten& forgotten, GpsTime now, const Boot& how);
     void reboot(const Forgotten& forgotten, GpsTime now, BootCause cause, bool banner = true);
     void restart_navigation(const Forgotten& forgotten, GpsTime now, Seconds silence);
-    // @param deaf until it has left
-    void send_banner(GpsTime now, bool deaf);
+    // @param woken it was off, not without power
+    void send_banner(GpsTime now, bool woken);
     void look_at_ports();
 
     BoardProfile board_;
@@ -190,10 +193,10 @@ private:
     /// The speed that ForceBaud gave, and the one before.
     struct ForcedSpeed {
         std::uint32_t forced = 0, before = 0;
+        bool is_setting = true;  ///< the board can be set to it: else its settings keep the one before
     };
     std::optional<ForcedSpeed> forced_speed_;
     std::optional<SeptentrioConsole> console_;  ///< of a receiver that has a command line
-        bool is_setting = true;  ///< the board can be set to it: else its settings keep the one before
     bool jamming_told_elsewhere_ = false;       ///< MonitorStatus::told_elsewhere
 };
 

@@ -274,6 +274,8 @@ void Receiver::Core::carry_out(PortUnit& unit, CommandOutcome outcome, UbxMessag
             outcome.answers.push_back(std::move(answer));
     const bool answered = !outcome.answers.empty() && !stays_silent_to(id);
     reply(unit, {std::move(outcome.answers), std::nullopt, Seconds(0), id}, now);
+    if (outcome.positioning) switch_navigating(*outcome.positioning, now);
+    if (outcome.standby) stand_by(std::max(now, last_answer_));
     if (!outcome.restart) return;
     const Forgotten forgotten = Forgotten::of(*outcome.restart);
     if (!answered) return reboot(forgotten, now, BootCause::software_reset);

@@ -287,12 +287,13 @@ void Receiver::Core::tell_antenna_status(const NavigationState& state, GpsTime n
 }
 
 // What the banner says of the antenna has been told: the state that follows is a change from it.
-void Receiver::Core::send_banner(GpsTime now, bool deaf) {
-    for (const std::string& line : board_.identity.banner) {
+void Receiver::Core::send_banner(GpsTime now, bool woken) {
+    const bool of_waking = woken && !board_.power.texts.empty();
+    for (const std::string& line : of_waking ? board_.power.texts : board_.identity.banner) {
         if (line == antenna_text(AntennaStatus::unknown)) told_antenna_ = AntennaStatus::unknown;
         send_text(level_notice, line, now);
     }
-    if (!deaf) return;
+    if (woken) return;  // half a second after that a client may speak to it
     for (const PortUnit& unit : units_)
         deaf_until_ = std::max(deaf_until_, is_uart(unit.id) ? unit.transmit.drained_at().value_or(now) : now);
 }

@@ -5,6 +5,7 @@
 
 #include "firmware/receiver_core.hpp"
 #include "skyloop/protocol/ubx_cfg_hardware.hpp"
+#include "skyloop/protocol/ubx_mon.hpp"
 #include "skyloop/protocol/ubx_raw.hpp"
 
 namespace skyloop::firmware {
@@ -75,9 +76,10 @@ void Receiver::Core::change_power_state(PortUnit& unit, const UbxFrameView& fram
     reply(unit, {{}, verdict, Seconds(0), frame.id}, now);
     if (!known) return;
     if (asked->state == power_backup) return fall_asleep({.until = {}, .wakes = every_pin}, last_answer_);
-    const bool run = asked->state == power_run;
-    if (run != settings_.navigating) run ? start_navigating(now) : stop_navigating(now);
+    switch_navigating(asked->state == power_run, now);
 }
+
+void Receiver::Core::stand_by(GpsTime from) { fall_asleep({.until = {}, .wakes = every_pin | usb_data}, from); }
 
 void Receiver::Core::rest(const PowerSave::Rest& rest, GpsTime from) {
     fall_asleep({.until = rest.until, .wakes = every_pin | usb_data, .saves_power = true}, from);

@@ -84,6 +84,7 @@ void read_board_power(TableReader& table, firmware::PowerAbility& power) {
     table.boolean("backup_needs_force", power.backup_needs_force);
     table.boolean("keeps_ram", power.keeps_ram);
     table.boolean("banner", power.banner);
+    table.texts("texts", power.texts);
     table.quantity("wake_s", power.wake, {0, 60});
     table.quantity("acquisition_s", power.acquisition, {1, 3600});
     table.quantity("blind_acquisition_s", power.blind_acquisition, {0, 3600});

@@ -1,4 +1,5 @@
 """The scripted clients by the names that the tests have."""
+import adafruit
 import ardupilot
 import betaflight
 import gpsd_probes
@@ -12,6 +13,7 @@ import u_center
 import ubloxcfg
 
 CLIENTS = {
+    "adafruit": adafruit.Adafruit,
     "ardupilot": ardupilot.ArduPilot,
     "ardupilot_keys": ardupilot.ArduPilotKeys,
     "ardupilot_nmea": ardupilot.ArduPilotNmea,

@@ -220,6 +220,9 @@ TEST(PmtkCommands, SetCorrectionsAndSystems) {
     EXPECT_EQ(receiver.config.value(key::mot_speed_threshold), 40U);
     EXPECT_THAT(receiver.answers("PMTK397,9"), ElementsAre(Sentence("PMTK001,397,0").finish()));
     EXPECT_THAT(receiver.answers("PMTK161,0"), ElementsAre(Sentence("PMTK001,161,3").finish()));
+    EXPECT_TRUE(receiver.execute("PMTK161,1").standby);
+    for (const char* wrong : {"PMTK161", "PMTK161,2", "PMTK161,x"})
+        EXPECT_FALSE(receiver.execute(wrong).standby) << wrong;
     EXPECT_THAT(receiver.answers("PMTK869,1,1"), ElementsAre(Sentence("PMTK001,869,3").finish()));
 }
 
@@ -242,6 +245,8 @@ TEST(PmtkCommands, RestartWithoutAnswer) {
 TEST(PairCommands, AnswerAndSet) {
     SampleReceiver receiver = receiver_of(Personality::airoha);
     EXPECT_THAT(receiver.answers("PAIR002"), ElementsAre(Sentence("PAIR001,002,0").finish()));
+    EXPECT_EQ(receiver.execute("PAIR002").positioning, true);
+    EXPECT_EQ(receiver.execute("PAIR003").positioning, false);
     EXPECT_THAT(receiver.answers("PAIR020"),
                 ElementsAre(Sentence("PAIR001,020,0").finish(), Sentence("PAIR020,AG3352,1.2").finish()));
     EXPECT_THAT(receiver.answers("PAIR021"),

@@ -11,6 +11,7 @@
 #include "firmware/config/config_keys.hpp"
 #include "firmware/receiver.hpp"
 #include "sample_epochs.hpp"
+#include "skyloop/protocol/nmea_sentence.hpp"
 #include "skyloop/protocol/stream_splitter.hpp"
 #include "skyloop/protocol/ubx_cfg.hpp"
 #include "skyloop/protocol/ubx_cfg_hardware.hpp"
@@ -397,6 +398,54 @@ TEST(ReceiverPower, DoesNotWakeADeafOne) {
     faults.deaf = true;
     bench.receiver().set_faults(faults);
     EXPECT_FALSE(bench.write(Bytes{0xFF}).wait(1ms).is_on());
+}
+
+BoardProfile command_board(Personality personality) {
+    BoardProfile board = sample_board(NmeaVersion::v2_3, {Constellation::gps});
+    board.personality = personality;
+    board.messages = {{0xF0, 0x00}, {0xF0, 0x04}};
+    board.identity.banner = {"$PMTK011,MTKGPS", "$PMTK010,001", "$PMTK010,002"};
+    board.identity.version_answers = {"$PAIR020,AG3352,1.2"};
+    board.power.texts = {"$PMTK010,002"};
+    board.power.keeps_ram = true;
+    return board;
+}
+
+Bytes command(const std::string& body) { return to_bytes(Sentence(body).finish()); }
+
+// Adafruit's library takes the acknowledgement for the one and PMTK010,002 for the other.
+TEST(ReceiverPower, StandsByOnPmtk161UntilAByteComes) {
+    PowerBench bench(command_board(Personality::mtk));
+    EXPECT_THAT(bench.wait(3s).texts(), HasSubstr("$GPRMC"));
+    bench.write(command("PMTK220,500")).wait(1s).texts();
+    bench.write(command("PMTK161,0")).wait(500ms);
+    EXPECT_THAT(bench.texts(), HasSubstr("$PMTK001,161,3*36\r\n"));
+    EXPECT_FALSE(bench.is_on());
+    EXPECT_EQ(bench.wait(10s).texts(), "");
+    bench.write(to_bytes("\r\n")).wait(3s);
+    const std::string woken = bench.texts();
+    EXPECT_THAT(woken, testing::StartsWith("$PMTK010,002*2D\r\n"));
+    EXPECT_THAT(woken, testing::Not(HasSubstr("PMTK011")));
+    EXPECT_THAT(woken, HasSubstr("$GPRMC"));
+    EXPECT_EQ(bench.receiver().settings().navigation_period, 500ms) << "it keeps its settings";
+    bench.write(command("PMTK161,2")).wait(1s);
+    EXPECT_THAT(bench.texts(), HasSubstr("$PMTK001,161,0"));
+    EXPECT_TRUE(bench.is_on()) << "no such kind";
+}
+
+TEST(ReceiverPower, HearsCommandsWhileAiroha003KeepsItsTrackingOff) {
+    PowerBench bench(command_board(Personality::airoha));
+    EXPECT_THAT(bench.wait(3s).texts(), HasSubstr("$GPRMC"));
+    bench.write(command("PAIR003")).wait(500ms).texts();  // the epoch under way still leaves
+    EXPECT_EQ(bench.wait(5s).texts(), "");
+    bench.write(command("PAIR020")).wait(1s);
+    EXPECT_EQ(bench.texts(), Sentence("PAIR001,020,0").finish() + Sentence("PAIR020,AG3352,1.2").finish());
+    EXPECT_EQ(bench.write(command("PAIR003")).wait(1s).texts(), Sentence("PAIR001,003,0").finish());
+    bench.write(command("PAIR002")).wait(5s);
+    const std::string again = bench.texts();
+    EXPECT_THAT(again, testing::StartsWith(Sentence("PAIR001,002,0").finish()));
+    EXPECT_THAT(again, HasSubstr("$GPRMC"));
+    EXPECT_THAT(again, testing::Not(HasSubstr("TXT")));
 }
 
 TEST(ReceiverPower, GivesTheSameBytesHoweverOftenItIsLookedAt) {

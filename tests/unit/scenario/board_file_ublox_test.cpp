@@ -133,6 +133,7 @@ backup = true
 backup_needs_force = true
 keeps_ram = true
 banner = false
+texts = ["$AWAKE"]
 wake_s = 0.1
 acquisition_s = 60
 blind_acquisition_s = 9
@@ -143,6 +144,7 @@ download_s = 18
     ASSERT_TRUE(board) << board.error().message;
     const firmware::PowerAbility& p = board->power;
     EXPECT_TRUE(p.save_modes && p.backup && p.backup_needs_force && p.keeps_ram && !p.banner);
+    EXPECT_THAT(p.texts, ElementsAre("$AWAKE"));
     const std::vector<Seconds> times{p.wake, p.acquisition, p.blind_acquisition, p.search_margin, p.download};
     EXPECT_EQ(times, (std::vector<Seconds>{Seconds(0.1), Seconds(60), Seconds(9), Seconds(2), Seconds(18)}));
     EXPECT_THAT(ublox_refusal("personality = \"ublox\"\n[power]\nwake_s = -1\n"), HasSubstr("test.toml:3"));
