@@ -176,11 +176,12 @@ struct BoardProfile {
     std::vector<std::uint32_t>
         bauds;  ///< that it can be set to, ascending; empty: all from slowest_baud to fastest_baud
 
-    std::vector<Constellation> constellations;  ///< enabled at the factory
-    bool dual_frequency = false;                ///< tracks the second signal of each system from the factory on
-    SecondBand second_band = SecondBand::l2;    ///< where that signal is
-    bool bands_together = false;                ///< refuses one of a system's two bands without the other
-    int most_systems = 4;                       ///< of GPS, GLONASS, BeiDou and Galileo that it tracks at once
+    std::vector<Constellation> constellations;    ///< enabled at the factory
+    bool dual_frequency = false;                  ///< tracks the second signal of each system from the factory on
+    SecondBand second_band = SecondBand::l2;      ///< where that signal is
+    bool bands_together = false;                  ///< refuses one of a system's two bands without the other
+    std::vector<Constellation> first_band_alone;  ///< systems that then go with the first of them all the same
+    int most_systems = 4;                         ///< of GPS, GLONASS, BeiDou and Galileo that it tracks at once
     /// Sets of items of CFG-SIGNAL that may not all be 1 at once: what its front end cannot receive together.
     std::vector<std::set<std::uint32_t>> signal_conflicts;
     double default_rate_hz = 1;

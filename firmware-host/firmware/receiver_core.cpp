@@ -14,8 +14,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int notice = 2;
-
 // CFG-RST resetMode (u-blox M8 interface description, 32.11.28).
 enum ResetMode : std::uint8_t {
     reset_hardware = 0,
@@ -206,7 +204,7 @@ void Receiver::Core::start_navigating(GpsTime now) {
 
 // As u-blox words it; others say nothing.
 void Receiver::Core::tell_of_navigating(const char* text, GpsTime now) {
-    if (board_.personality == Personality::ublox) send_text(notice, text, now);
+    if (board_.personality == Personality::ublox) send_text(text_notice, text, now);
 }
 
 void Receiver::Core::reboot(const Forgotten& forgotten, GpsTime now, BootCause cause, bool banner) {

@@ -166,6 +166,8 @@ void Receiver::Core::configure(PortUnit& unit, const UbxFrameView& frame, GpsTim
     if (frame.id == CfgPwr::message_id && takes(board_, frame.id)) return change_power_state(unit, frame, now);
     const ConfigOutcome outcome = configured(frame, unit.id);
     apply_changes(now);
+    for (const std::string& warning : outcome.warnings)
+        send_text(text_warning, warning, now);
     reply(unit, {outcome.answers, verdict_frame(outcome.verdict, frame.id), outcome.work, frame.id}, now);
 }
 

@@ -14,8 +14,6 @@
 namespace skyloop::firmware {
 namespace {
 
-constexpr int level_error = 0, level_notice = 2;
-
 constexpr double late_epochs = 0.005, late_by_s = 0.020;
 
 std::uint32_t protocol_item(UbxMessageId message) {
@@ -241,7 +239,7 @@ void Receiver::Core::tell_overflow(PortUnit& unit, GpsTime now) {
     if (!unit.overflow_untold) return;
     unit.overflow_untold = false;
     if (board_.quirks.overflow_notice)
-        send(unit.id, make_text_message(level_error, "txbuf alloc", context(unit.id, *reported_)), now);
+        send(unit.id, make_text_message(text_error, "txbuf alloc", context(unit.id, *reported_)), now);
 }
 
 // A receiver has hundreds of messages and sends a few: the others are not looked up again each epoch.
@@ -282,7 +280,7 @@ std::vector<ByteSpan> Receiver::Core::due_messages(PortUnit& unit, const Navigat
 
 void Receiver::Core::tell_antenna_status(const NavigationState& state, GpsTime now) {
     const AntennaStatus status = state.monitors.antenna;
-    if (told_antenna_ && *told_antenna_ != status) send_text(level_notice, std::string(antenna_text(status)), now);
+    if (told_antenna_ && *told_antenna_ != status) send_text(text_notice, std::string(antenna_text(status)), now);
     told_antenna_ = status;
 }
 
@@ -291,7 +289,7 @@ void Receiver::Core::send_banner(GpsTime now, bool woken) {
     const bool of_waking = woken && !board_.power.texts.empty();
     for (const std::string& line : of_waking ? board_.power.texts : board_.identity.banner) {
         if (line == antenna_text(AntennaStatus::unknown)) told_antenna_ = AntennaStatus::unknown;
-        send_text(level_notice, line, now);
+        send_text(text_notice, line, now);
     }
     if (woken) return;  // half a second after that a client may speak to it
     for (const PortUnit& unit : units_)

@@ -95,8 +95,8 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     read_campaign(top, scenario.campaign);
 }
 
-void read_constellation_list(TableReader& table, std::vector<Constellation>& constellations) {
-    const auto found = table.choices("constellations", constellation_names);
+void read_constellation_list(TableReader& table, std::vector<Constellation>& constellations, const char* key) {
+    const auto found = table.choices(key, constellation_names);
     if (!found) return;
     constellations.clear();
     for (const std::size_t index : *found)

@@ -25,6 +25,7 @@ struct ConfigOutcome {
     std::vector<Bytes> answers;  ///< whole frames
     Verdict verdict = Verdict::refuse;
     Seconds work{0};  ///< that the receiver needs before it answers, over its usual delay (flash, restart of tracking)
+    std::vector<std::string> warnings{};  ///< texts that say why it refuses
 };
 
 /// CFG-VALSET, CFG-VALGET and CFG-VALDEL with their transactions (RECEIVER.md 3.4, 4.4).
@@ -49,6 +50,7 @@ private:
     /// Does now what a message asks for, or adds it to a transaction.
     ConfigOutcome take(std::uint8_t transaction, Change change);
     ConfigOutcome apply(const Change& change);
+    [[nodiscard]] ConfigOutcome refused_in_ram(const ConfigValues& ram) const;
     /// False, and nothing is forgotten, when that would spoil the next start.
     bool erase(const Change& change);
     /// The items that a wildcard means, or the one of this id; nothing when there is none.
@@ -82,6 +84,8 @@ ConfigValues factory_config(const BoardProfile& board);
 /// Whether values may stand together in RAM: each in its range, at least one major system enabled, a signal plan that
 /// the board can track (RECEIVER.md 4.4).
 bool is_consistent(const BoardProfile& board, const ConfigValues& ram);
+/// The last of these: bands that go together, signals that exclude each other, the number of systems.
+bool is_signal_plan(const BoardProfile& board, const ConfigValues& values);
 /// Whether what is kept could not stand together at the next start, and did before.
 bool spoils_start(const BoardProfile& board, const ConfigStore& before, const ConfigStore& after);
 /// Whether one value is in the range of its item: enumerations, logicals, the board's speeds and rates.

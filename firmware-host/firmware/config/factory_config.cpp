@@ -278,27 +278,11 @@ bool is_measured(const ConfigValues& values, SystemSignal signal) {
 bool has_half_of_its_bands(const BoardProfile& board, const ConfigValues& values, const SystemKeys& system) {
     const auto second = second_signal(system.constellation, board.second_band);
     if (!second || !is_on(values, system.enable)) return false;
-    return is_measured(values, {system.constellation, first_signal(system.constellation)}) !=
-           is_measured(values, {system.constellation, *second});
-}
-
-// QZSS, SBAS and NavIC give no position by themselves: a major system is needed, as CFG-GNSS needs one.
-bool is_signal_plan(const BoardProfile& board, const ConfigValues& values) {
-    int major = 0;
-    for (const SystemKeys& system : system_keys_of_signals) {
-        if (!system.is_major || !is_on(values, system.enable)) continue;
-        const auto on = [&values](std::uint32_t key) { return key != 0 && is_on(values, key); };
-        // A system without a signal is not tracked. It is taken: clients change B1I for B1C key by key.
-        if (std::any_of(system.first.begin(), system.first.end(), on)) ++major;
-    }
-    const auto is_half = [&](const SystemKeys& system) { return has_half_of_its_bands(board, values, system); };
-    if (board.bands_together && std::any_of(system_keys_of_signals.begin(), system_keys_of_signals.end(), is_half))
-        return false;
-    const auto is_whole = [&values](const std::set<std::uint32_t>& conflict) {
-        return std::all_of(conflict.begin(), conflict.end(), [&](std::uint32_t key) { return is_on(values, key); });
-    };
-    return major > 0 && major <= board.most_systems &&
-           std::none_of(board.signal_conflicts.begin(), board.signal_conflicts.end(), is_whole);
+    const bool first_on = is_measured(values, {system.constellation, first_signal(system.constellation)});
+    const bool second_on = is_measured(values, {system.constellation, *second});
+    const auto& alone = board.first_band_alone;
+    const bool does_alone = std::find(alone.begin(), alone.end(), system.constellation) != alone.end();
+    return first_on != second_on && !(first_on && does_alone);
 }
 
 }  // namespace
@@ -346,6 +330,25 @@ const ConfigValues::value_type* first_out_of_range(const BoardProfile& board, co
     const auto in_range = [&board](const auto& item) { return is_in_range(board, item.first, item.second); };
     const auto found = std::find_if_not(values.begin(), values.end(), in_range);
     return found == values.end() ? nullptr : &*found;
+}
+
+// QZSS, SBAS and NavIC give no position by themselves: a major system is needed, as CFG-GNSS needs one.
+bool is_signal_plan(const BoardProfile& board, const ConfigValues& values) {
+    int major = 0;
+    for (const SystemKeys& system : system_keys_of_signals) {
+        if (!system.is_major || !is_on(values, system.enable)) continue;
+        const auto on = [&values](std::uint32_t key) { return key != 0 && is_on(values, key); };
+        // A system without a signal is not tracked. It is taken: clients change B1I for B1C key by key.
+        if (std::any_of(system.first.begin(), system.first.end(), on)) ++major;
+    }
+    const auto is_half = [&](const SystemKeys& system) { return has_half_of_its_bands(board, values, system); };
+    if (board.bands_together && std::any_of(system_keys_of_signals.begin(), system_keys_of_signals.end(), is_half))
+        return false;
+    const auto is_whole = [&values](const std::set<std::uint32_t>& conflict) {
+        return std::all_of(conflict.begin(), conflict.end(), [&](std::uint32_t key) { return is_on(values, key); });
+    };
+    return major > 0 && major <= board.most_systems &&
+           std::none_of(board.signal_conflicts.begin(), board.signal_conflicts.end(), is_whole);
 }
 
 bool is_consistent(const BoardProfile& board, const ConfigValues& ram) {

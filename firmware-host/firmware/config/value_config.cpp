@@ -147,6 +147,13 @@ bool ValueConfig::erase(const Change& change) {
     return true;
 }
 
+// As a ZED-F9P and an EVK-M101 word it (boards/README.md).
+ConfigOutcome ValueConfig::refused_in_ram(const ConfigValues& ram) const {
+    ConfigOutcome outcome = refused();
+    if (!is_signal_plan(board_, ram)) outcome.warnings = {"inv sig cfg", "bad cfg RAM"};
+    return outcome;
+}
+
 ConfigOutcome ValueConfig::apply(const Change& change) {
     if (is_locked(change.items)) return refused();
     ConfigOutcome outcome = verdict(Verdict::acknowledge);
@@ -155,7 +162,7 @@ ConfigOutcome ValueConfig::apply(const Change& change) {
     ConfigValues ram = store_.values(ConfigLayer::ram);
     for (const auto& [key, value] : change.items)
         ram[key] = value;
-    if ((change.layers & in_ram) && !is_consistent(board_, ram)) return refused();
+    if ((change.layers & in_ram) && !is_consistent(board_, ram)) return refused_in_ram(ram);
     if (change.layers & (in_battery | in_flash)) {
         ConfigStore after = store_;
         for (const auto& [key, value] : change.items)

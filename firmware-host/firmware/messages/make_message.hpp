@@ -47,8 +47,11 @@ std::vector<Bytes> make_monitor_message(UbxMessageId message, const ReportContex
 /// Nothing before time is known, for a system without observations and for 1006, 4072.0 and 4072.1.
 std::vector<Bytes> make_rtcm_message(UbxMessageId message, const ReportContext& context);
 
-/// A text for people: level 0 error, 1 warning, 2 notice, 3 test, 4 debug, 7 user; as NMEA TXT and as UBX INF, by what
-/// the port's configuration lets through. A text that begins with "$" is a whole sentence, without checksum.
+/// Levels of texts for people, as NMEA TXT numbers them; 3 are tests.
+inline constexpr int text_error = 0, text_warning = 1, text_notice = 2, text_debug = 4, text_user = 7;
+/// A text for people, as NMEA TXT and as UBX INF, by what the port's configuration lets through. A text that begins
+/// with
+/// "$" is a whole sentence, without checksum.
 std::vector<Bytes> make_text_message(int level, const std::string& text, const ReportContext& context);
 
 }  // namespace skyloop::firmware

@@ -6,7 +6,6 @@
 namespace skyloop::firmware {
 namespace {
 
-constexpr int text_debug = 4, text_user = 7;
 constexpr std::uint32_t ubx_protocol = 1, nmea_protocol = 2;
 
 // CFG-INFMSG has a bit for each level but that of the user, which always passes.

@@ -176,6 +176,28 @@ TEST(ConfigConsistency, NeedsASystemWithASignal) {
     EXPECT_TRUE(is_consistent(board, ram));
 }
 
+TEST(ConfigConsistency, LetsSomeSystemsGoWithTheirFirstBandAlone) {
+    constexpr std::uint32_t gps_l2c = 0x10310003, beidou_b1i = 0x1031000D, beidou_b2i = 0x1031000E;
+    BoardProfile board = whole_board();
+    board.dual_frequency = true;
+    const ConfigValues both = factory_config(board);
+    const auto stands = [&](ConfigValues changes) {
+        ConfigValues ram = both;
+        ram[beidou_item] = 1;
+        for (const auto& [key, value] : changes)
+            ram[key] = value;
+        return is_consistent(board, ram);
+    };
+    EXPECT_TRUE(stands({{gps_l2c, 0}}));
+    board.bands_together = true;
+    board.first_band_alone = {Constellation::beidou};
+    EXPECT_TRUE(stands({}));
+    EXPECT_FALSE(stands({{gps_l2c, 0}}));
+    EXPECT_TRUE(stands({{gps_l2c, 0}, {gps_item, 0}})) << "a system that is off";
+    EXPECT_TRUE(stands({{beidou_b2i, 0}}));
+    EXPECT_FALSE(stands({{beidou_b1i, 0}}));
+}
+
 TEST(ConfigConsistency, KnowsWhatTheFrontEndCannotDo) {
     BoardProfile board = whole_board();
     ConfigValues ram = factory_config(board);

@@ -503,6 +503,19 @@ TEST(ReceiverCommands, HearsASystemThatIsSwitchedOnAlone) {
     EXPECT_EQ(bench.frames(mon_gnss)[0].payload[3], 3) << "Galileo without a signal is not heard, and not announced";
 }
 
+TEST(ReceiverCommands, SaysThatItCannotFollowAPlanOfSignals) {
+    constexpr std::uint32_t gps_alone = 0x1031001F, galileo_alone = 0x10310021;
+    Bench bench(sample_ublox());
+    bench.send(valset({{gps_alone, 0}, {galileo_alone, 0}})).wait(500ms);
+    const std::string said = bench.text();
+    EXPECT_THAT(said, HasSubstr("TXT,01,01,01,inv sig cfg*"));
+    EXPECT_THAT(said, HasSubstr("TXT,01,01,01,bad cfg RAM*"));
+    EXPECT_EQ(bench.frames(nak_id).size(), 1U);
+    bench.forget();
+    bench.send(valset({{0x20110021, 99}})).wait(500ms);
+    EXPECT_EQ(bench.text().find("cfg"), std::string::npos) << "no such dynamic model, but the plan is good";
+}
+
 // Of signals that a board has no items for (`dual_frequency` of the scenario) its client cannot speak.
 TEST(ReceiverCommands, KeepsTheScenariosSecondSignalsWhenSystemsAreSwitched) {
     constexpr std::uint32_t glonass_alone = 0x10310025, galileo_alone = 0x10310021, gps_l2c = 0x10310003,

@@ -87,6 +87,7 @@ ports = ["usb", "uart1"]
 [navigation]
 dual_frequency = true
 bands_together = true
+first_band_alone = ["beidou"]
 most_systems = 2
 signal_conflicts = ["CFG-SIGNAL-GLO_ENA CFG-SIGNAL-BDS_ENA"]
 least_measurement_period_ms = 40
@@ -192,6 +193,7 @@ TEST(BoardFileUblox, ReadsPortsSignalsAndStyle) {
     EXPECT_THAT(board.ports, ElementsAre(PortId::uart1, PortId::usb));
     EXPECT_TRUE(board.dual_frequency);
     EXPECT_TRUE(board.bands_together);
+    EXPECT_THAT(board.first_band_alone, ElementsAre(Constellation::beidou));
     EXPECT_EQ(board.most_systems, 2);
     EXPECT_THAT(board.signal_conflicts, ElementsAre(ElementsAre(0x10310022, 0x10310025)));
     EXPECT_EQ(board.least_measurement_period_ms, 40);
