@@ -15,7 +15,7 @@ namespace skyloop {
 namespace rinex {
 namespace {
 
-// GPST less the time of a file, in seconds; UTC needs the table of leap seconds.
+// GPST less the time of a file; UTC needs the table of leap seconds.
 struct FileTimeSystem {
     std::string_view name;
     Nanoseconds lag;

@@ -49,8 +49,7 @@ std::vector<Bytes> make_rtcm_message(UbxMessageId message, const ReportContext& 
 
 /// Levels of texts for people, as NMEA TXT numbers them; 3 are tests.
 inline constexpr int text_error = 0, text_warning = 1, text_notice = 2, text_debug = 4, text_user = 7;
-/// A text for people, as NMEA TXT and as UBX INF, by what the port's configuration lets through. A text that begins
-/// with
+/// A text for people, as NMEA TXT and as UBX INF, by what the port's configuration lets through. One that begins with
 /// "$" is a whole sentence, without checksum.
 std::vector<Bytes> make_text_message(int level, const std::string& text, const ReportContext& context);
 

@@ -104,7 +104,7 @@ NavTimeqzss time_qzss(const ReportContext& context) {
 }
 
 NavTimebds time_beidou(const ReportContext& context) {
-    constexpr int ahead_of_gps_leaps = 14;
+    constexpr int ahead_of_gps_leaps = bdt_lag / 1s;
     const GpsTime time = reported_time(context).time;
     const WholeSeconds now = whole_seconds(time, bdt_week_and_tow);
     return {epoch_time(time).i_tow,

@@ -14,11 +14,11 @@ bool passes(std::uint64_t mask, int level) { return level == text_user || (mask 
 Bytes inf_frame(int level, const std::string& text) {
     const std::vector<char> characters(text.begin(), text.end());
     switch (level) {
-        case 0:
+        case text_error:
             return encode_frame(InfError{characters});
-        case 1:
+        case text_warning:
             return encode_frame(InfWarning{characters});
-        case 2:
+        case text_notice:
             return encode_frame(InfNotice{characters});
         case 3:
             return encode_frame(InfTest{characters});

@@ -17,7 +17,7 @@ public:
     PatientSplitter() = default;
     explicit PatientSplitter(StreamProtocols protocols) : splitter_(protocols) {}
 
-    /// The pieces that `bytes` completes. What was to give way before them is asked for first.
+    /// The pieces that `bytes` completes. Where the time of give_way() has come it is called first.
     std::vector<StreamPiece> feed(ByteSpan bytes, GpsTime now);
     /// When a beginning counts as false unless more bytes come; nothing while there is none.
     [[nodiscard]] std::optional<GpsTime> gives_way_at() const { return gives_way_at_; }
