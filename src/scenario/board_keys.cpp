@@ -147,11 +147,11 @@ void read_board_usb(TableReader& usb, BoardProfile& board) {
 }
 
 void read_board_navigation(TableReader& navigation, BoardProfile& board) {
-    read_constellation_list(navigation, board.constellations);
+    read_constellation_list(navigation, "constellations", board.constellations);
     navigation.boolean("dual_frequency", board.dual_frequency);
     navigation.word("second_band", second_band_words, board.second_band);
     navigation.boolean("bands_together", board.bands_together);
-    read_constellation_list(navigation, board.first_band_alone, "first_band_alone");
+    read_constellation_list(navigation, "first_band_alone", board.first_band_alone);
     navigation.integer("most_systems", board.most_systems, {1, 4});
     read_signal_conflicts(navigation, board);
     navigation.number("max_rate_hz", board.max_rate_hz, {0.1, 100});

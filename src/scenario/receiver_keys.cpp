@@ -41,7 +41,7 @@ void read_output_keys(TableReader& receiver, ReceiverEntry& entry, const std::fi
 
 void read_navigation_keys(TableReader& receiver, ReceiverEntry& entry) {
     receiver.named_values("config", [&](TableReader& config) { entry.config = read_config_items(config); });
-    read_constellation_list(receiver, entry.constellations);
+    read_constellation_list(receiver, "constellations", entry.constellations);
     receiver.boolean("dual_frequency", entry.dual_frequency);
     static constexpr std::array<Word<StartKind>, 3> starts{
         {{"hot", StartKind::hot}, {"warm", StartKind::warm}, {"cold", StartKind::cold}}};

@@ -40,7 +40,7 @@ void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesyste
         settings.navigation.push_back(folder / file);
     }
     sky.boolean("rebase_navigation", settings.rebase_navigation);
-    read_constellation_list(sky, settings.constellations);
+    read_constellation_list(sky, "constellations", settings.constellations);
     if (sky.has("elevation_mask_deg")) {
         double mask = 5;
         sky.number("elevation_mask_deg", mask, {0, 90});
@@ -95,7 +95,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     read_campaign(top, scenario.campaign);
 }
 
-void read_constellation_list(TableReader& table, std::vector<Constellation>& constellations, const char* key) {
+void read_constellation_list(TableReader& table, const char* key, std::vector<Constellation>& constellations) {
     const auto found = table.choices(key, constellation_names);
     if (!found) return;
     constellations.clear();

@@ -24,8 +24,7 @@ void read_model_keys(TableReader& model, ModelSettings& settings, const std::fil
 void read_atmosphere_keys(TableReader& atmosphere, Scenario& scenario, const std::filesystem::path& folder);
 
 /// Reads a list of systems, as `constellations` of a scenario's [sky] or a board's [navigation].
-void read_constellation_list(TableReader& table, std::vector<Constellation>& constellations,
-                             const char* key = "constellations");
+void read_constellation_list(TableReader& table, const char* key, std::vector<Constellation>& constellations);
 
 /// Of `export_limits`, of boards and receivers.
 inline constexpr std::array<Word<firmware::ExportLimits>, 3> export_limit_words{

@@ -14,9 +14,11 @@ NAME = re.compile(r"[A-Za-z0-9_]+(?:-[A-Za-z0-9_]+)*")
 
 
 def keys_read(source):
-    """Names of the keys that this C++ text reads: literals passed to a TableReader, and places, which come in two frames."""
+    """Names of the keys that this C++ text reads: literals passed to a TableReader, lists of systems, and places, which come in
+    two frames."""
     code = COMMENT.sub("", source)
     keys = set(re.findall(rf'\.(?:{READERS})\(\s*"([^"]+)"', code))
+    keys |= set(re.findall(r'\bread_constellation_list\(\s*\w+\s*,\s*"([^"]+)"', code))
     for place in re.findall(r'\bplaces\.read\(\s*\w+\s*,\s*"([^"]+)"', code):
         keys |= {place, f"{place}_level"}
     return keys
@@ -72,11 +74,12 @@ class Extraction(unittest.TestCase):
             "long_line_m", y, {0, 1});
         model.table("layers", [&](TableReader& t) { t.boolean("on", b); });
         if (const auto at = places.read(row, "at")) {}
+        read_constellation_list(t, "systems", s);
         static constexpr std::array<Word<Kind>, 1> kinds{{{"narrow-band", Kind::narrow}}};
         return {{"rain", &p.rain}};'''
 
     def test_keys(self):
-        self.assertEqual(keys_read(self.CODE), {"wide", "long_line_m", "layers", "on", "at", "at_level"})
+        self.assertEqual(keys_read(self.CODE), {"wide", "long_line_m", "layers", "on", "at", "at_level", "systems"})
 
     def test_words(self):
         self.assertEqual(words_read(self.CODE), {"narrow-band", "rain"})
