@@ -4,10 +4,13 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <optional>
+
+#include "chunked_body.hpp"
 
 namespace skyloop {
 namespace {
@@ -84,6 +87,23 @@ ClientRequest client_request(const ControlOptions& options, const ControlRequest
     return message;
 }
 
+using AnswerParser = boost::beast::http::response_parser<boost::beast::http::string_body>;
+
+ClientConnection::ErrorCode read_answer(ClientConnection& connection, AnswerParser& parser) {
+    namespace http = boost::beast::http;
+    auto& stream = connection.stream;
+    auto& buffer = connection.buffer;
+    auto error = connection.wait([&](auto done) { http::async_read_header(stream, buffer, parser, done); });
+    if (error) return error;
+    if (const std::size_t missing = bytes_before_body(parser, buffer.size()); missing > 0) {
+        error =
+            connection.wait([&](auto done) { boost::asio::async_read(stream, buffer.prepare(missing), done); }, false);
+        if (error) return error;
+        buffer.commit(missing);
+    }
+    return connection.wait([&](auto done) { http::async_read(stream, buffer, parser, done); }, false);
+}
+
 // What a stream was refused with.
 tl::unexpected<Error> refused_stream(const boost::beast::websocket::response_type& response) {
     return fail(ErrorCode::outside,
@@ -98,10 +118,9 @@ Result<ControlResponse> ControlClient::ask(const ControlRequest& request) const 
     const ClientRequest message = client_request(options_, request);
     auto error = connection.wait([&](auto done) { boost::beast::http::async_write(connection.stream, message, done); });
     // One who refuses early may stop reading; the answer may be there all the same.
-    boost::beast::http::response_parser<boost::beast::http::string_body> parser;
+    AnswerParser parser;
     parser.body_limit(longest_answer);
-    error = connection.wait(
-        [&](auto done) { boost::beast::http::async_read(connection.stream, connection.buffer, parser, done); });
+    error = read_answer(connection, parser);
     if (error) return connection.failure(error);
     ControlResponse response;
     response.status = static_cast<int>(parser.get().result_int());

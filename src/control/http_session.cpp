@@ -1,4 +1,5 @@
 #include <array>
+#include <boost/asio/read.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/websocket.hpp>
@@ -8,6 +9,7 @@
 #include <optional>
 #include <string_view>
 
+#include "chunked_body.hpp"
 #include "server_core.hpp"
 
 namespace skyloop {
@@ -99,6 +101,17 @@ private:
     }
 
     void read_body() {
+        const std::size_t missing = bytes_before_body(*parser_, buffer_.size());
+        if (missing == 0) return read_rest();
+        boost::asio::async_read(stream_, buffer_.prepare(missing),
+                                [self = shared_from_this()](error_code error, std::size_t bytes) {
+                                    self->buffer_.commit(bytes);
+                                    if (error) return self->on_read(error, bytes);
+                                    self->read_rest();
+                                });
+    }
+
+    void read_rest() {
         http::async_read(stream_, buffer_, *parser_,
                          boost::beast::bind_front_handler(&HttpSession::on_read, shared_from_this()));
     }

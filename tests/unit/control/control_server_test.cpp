@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -57,6 +58,8 @@ public:
         address.sin_family = AF_INET;
         address.sin_port = htons(port);
         address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        const int at_once = 1;
+        ::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
         EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
     }
     RawClient(const RawClient&) = delete;
@@ -203,6 +206,26 @@ TEST(ControlServer, RefusesWhatIsTooLargeOrNoRequest) {
     const std::string told = noise.read_all();
     EXPECT_THAT(told, StartsWith("HTTP/1.1 400 "));
     EXPECT_THAT(told, HasSubstr("{\"error\":"));
+    EXPECT_EQ(rig.status({"GET", "/api/status"}), 200);
+}
+
+TEST(ControlServer, ReadsABodyInChunksByteByByte) {
+    const ServerRig rig;
+    const std::string head =
+        "POST /api/commands HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\nConnection: close\r\n"
+        "Transfer-Encoding: chunked\r\n\r\n";
+    const auto answer = [&](std::string_view body) {
+        RawClient client(rig.server->port());
+        client.send(head);
+        for (const char byte : body) {
+            std::this_thread::sleep_for(2ms);  // or they come as one
+            client.send(std::string(1, byte));
+        }
+        return client.read_all();
+    };
+    EXPECT_THAT(answer("13\r\n{\"command\":\"pause\"}\r\n0\r\n\r\n"), StartsWith("HTTP/1.1 202 "));
+    EXPECT_THAT(answer("0\r\n\r\n"), StartsWith("HTTP/1.1 422 "));
+    EXPECT_THAT(answer("0\r\nx: 1\r\n\r\n"), StartsWith("HTTP/1.1 422 "));
     EXPECT_EQ(rig.status({"GET", "/api/status"}), 200);
 }
 
