@@ -36,7 +36,7 @@ struct DigitWriter {
     }
 };
 
-void append_digits(std::string& text, std::uint64_t number, int decimals) {
+void append_digits(std::string& text, bool negative, std::uint64_t number, int decimals) {
     std::array<char, 24> digits;
     char* const end = digits.data() + digits.size();
     DigitWriter writer{end, number};
@@ -47,6 +47,7 @@ void append_digits(std::string& text, std::uint64_t number, int decimals) {
     while (writer.number >= 10)
         writer.put_pair();
     if (writer.number > 0 || writer.first == end || *writer.first == '.') writer.put();
+    if (negative) *--writer.first = '-';
     text.append(writer.first, end);
 }
 
@@ -57,11 +58,11 @@ void append_fixed(std::string& text, double value, int decimals) {
     // The product is off by at most 2^-53 of itself: further than that from a tie it rounds as the exact one would.
     constexpr double exact_below = 1LL << 52, doubt = 1.0 / (1LL << 52);
     if (scaled < exact_below) {
-        const double whole = std::floor(scaled), rest = scaled - whole;
-        if (std::abs(rest - 0.5) > scaled * doubt) {
-            if (std::signbit(value)) text.push_back('-');
-            return append_digits(text, static_cast<std::uint64_t>(whole) + (rest > 0.5 ? 1 : 0), decimals);
-        }
+        const auto whole = static_cast<std::int64_t>(scaled);  // an instruction, where std::floor would be a call
+        const double rest = scaled - static_cast<double>(whole);
+        if (std::abs(rest - 0.5) > scaled * doubt)
+            return append_digits(text, std::signbit(value), static_cast<std::uint64_t>(whole) + (rest > 0.5 ? 1 : 0),
+                                 decimals);
     }
     std::array<char, 400> longest;  // 309 digits stand before the point
     const auto end =

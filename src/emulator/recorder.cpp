@@ -1,7 +1,10 @@
 #include "skyloop/emulator/recorder.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
+#include <initializer_list>
+#include <iterator>
 #include <system_error>
 
 #include "rinex_recording.hpp"
@@ -91,8 +94,10 @@ void Recorder::record(const Trace& trace, const NavigationSource& broadcast) {
 void Recorder::record_output(ByteSpan bytes, const LoopTime& time, std::size_t wire) {
     if (bytes.empty()) return;
     PortFiles& port = ports_.at(wire);
-    port.times.write(fmt::format("{} {} {} {}\n", time.monotonic_ns, time.now.time_since_epoch().count(), port.offset,
-                                 bytes.size()));
+    fmt::memory_buffer line;
+    fmt::format_to(std::back_inserter(line), FMT_COMPILE("{} {} {} {}\n"), time.monotonic_ns,
+                   time.now.time_since_epoch().count(), port.offset, bytes.size());
+    port.times.write(std::string_view(line.data(), line.size()));
     port.out.write(bytes);
     port.offset += bytes.size();
 }
@@ -118,14 +123,6 @@ void Recorder::record_summary(const std::string& content) {
     summary_failure_ = replaced ? std::nullopt : std::optional(replaced.error());
 }
 
-std::vector<const OutputFile*> Recorder::files() const {
-    std::vector<const OutputFile*> files{&fixes_, &satellites_};
-    for (const PortFiles& port : ports_)
-        files.insert(files.end(), {&port.out, &port.in, &port.times, &port.in_times});
-    if (rinex_) files.insert(files.end(), {&rinex_->observations(), &rinex_->navigation()});
-    return files;
-}
-
 void Recorder::flush() {
     fixes_.flush();
     satellites_.flush();
@@ -140,8 +137,17 @@ void Recorder::flush() {
 }
 
 std::optional<Error> Recorder::failure() const {
-    for (const OutputFile* file : files())
-        if (file->failure()) return file->failure();
+    // Asked for at each instant of a run: nothing is collected first.
+    const auto first_of = [](std::initializer_list<const OutputFile*> files) -> const std::optional<Error>* {
+        for (const OutputFile* file : files)
+            if (file->failure()) return &file->failure();
+        return nullptr;
+    };
+    if (const auto* failure = first_of({&fixes_, &satellites_})) return *failure;
+    for (const PortFiles& port : ports_)
+        if (const auto* failure = first_of({&port.out, &port.in, &port.times, &port.in_times})) return *failure;
+    if (rinex_)
+        if (const auto* failure = first_of({&rinex_->observations(), &rinex_->navigation()})) return *failure;
     return summary_failure_;
 }
 

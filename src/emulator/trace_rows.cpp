@@ -22,6 +22,7 @@ std::string utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds:
 // Fields of a file of comma-separated values, some of which have a row for each satellite and epoch of a run.
 class CsvRows {
 public:
+    explicit CsvRows(std::size_t usual_length) { text_.reserve(usual_length); }
     CsvRows& text(std::string_view field) {
         text_.append(field);
         text_.push_back(',');
@@ -133,7 +134,8 @@ std::string fix_row(const Trace& trace) {
     const Fix& fix = trace.epoch.fix;
     const Geodetic& truth = trace.truth.geodetic;
     const WeekAndTow gps = week_and_tow(trace.truth.time);
-    CsvRows row;
+    constexpr std::size_t usual_length = 500;
+    CsvRows row(usual_length);
     row.text(utc_text(trace.truth.time)).whole(gps.week).number(gps.tow_seconds(), 3);
     row.number(truth.latitude.deg(), 9).number(truth.longitude.deg(), 9);
     row.number(truth.height.above_ellipsoid.value(), 4);
@@ -147,7 +149,8 @@ std::string fix_row(const Trace& trace) {
 
 std::string satellite_rows(const Trace& trace) {
     const std::string time = utc_text(trace.truth.time);
-    CsvRows rows;
+    constexpr std::size_t usual_length = 250;  // of a row
+    CsvRows rows(usual_length * trace.sky.satellites.size());
     for (std::size_t i = 0; i < trace.sky.satellites.size(); ++i) {
         const SatelliteInView& sky = trace.sky.satellites[i];
         const Arrival& arrival = trace.arrivals.satellites[i];

@@ -77,7 +77,7 @@ std::string course_text(Angle course, int decimals) {
 }
 
 std::string date_text(const NmeaDate& date) {
-    return fmt::format("{:02}{:02}{:02}", date.day, date.month, date.year % 100);
+    return fmt::format(FMT_COMPILE("{:02}{:02}{:02}"), date.day, date.month, date.year % 100);
 }
 
 std::string deviation_text(Metres deviation) {

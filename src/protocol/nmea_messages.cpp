@@ -145,7 +145,7 @@ std::string encode(const Gsv& m, const NmeaFormat& format) {
     s.number(m.pages).number(m.page).number(m.satellites_in_view, 2);
     for (std::size_t i = 0; i < std::min(m.satellites.size(), gsv_slots); ++i) {
         const GsvSatellite& satellite = m.satellites[i];
-        s.text(satellite.number ? fmt::format("{:02}", *satellite.number) : "");
+        satellite.number ? s.number(*satellite.number, 2) : s.empty(1);
         add_clamped(s, satellite.elevation_deg, 90, 2);
         add_clamped(s, satellite.azimuth_deg ? std::optional(*satellite.azimuth_deg % 360) : std::nullopt, 359, 3);
         add_clamped(s, satellite.cn0_dbhz, 99, 2);

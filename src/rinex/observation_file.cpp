@@ -1,5 +1,6 @@
 #include "skyloop/rinex/observation_file.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -174,8 +175,8 @@ std::string ObservationWriter::epoch(const Observations& observations) const {
     finish_row();
     const rinex::EpochText time(observations.receive_time);
     const UtcTime& c = time.calendar;
-    return fmt::format("> {:04} {:02} {:02} {:02} {:02} {}  0{:3}\n", c.year, c.month, c.day, c.hour, c.minute,
-                       time.second, satellites) +
+    return fmt::format(FMT_COMPILE("> {:04} {:02} {:02} {:02} {:02} {}  0{:3}\n"), c.year, c.month, c.day, c.hour,
+                       c.minute, time.second, satellites) +
            rows;
 }
 

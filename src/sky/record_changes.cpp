@@ -76,7 +76,8 @@ void RecordChanges::follow(Satellite& satellite, const Ephemeris& record, const 
         const GpsTime start = now - change_length;
         satellite = {start, source.ephemeris(satellite_of(record), start), {}, std::nullopt};
     }
-    if (!followed || !is_same_record(*satellite.record, record))
+    // What served at both ends served in between.
+    if (!satellite.record || !is_same_record(*satellite.record, record))
         find_changes(satellite, satellite_of(record), source, now);
     satellite.looked = now;
     std::erase_if(satellite.changes, [now](const Change& change) { return now - change.time >= change_length; });

@@ -1,5 +1,6 @@
 #include "skyloop/time/utc_time.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -274,9 +275,10 @@ UtcTime midnight_of(const UtcTime& day, int days_later) {
 }
 
 std::string format_utc(const UtcTime& utc, int decimals) {
-    std::string text = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}", utc.year, utc.month, utc.day, utc.hour,
-                                   utc.minute, utc.second);
-    if (decimals > 0) text += fmt::format(".{:09}", utc.nanosecond).substr(0, static_cast<std::size_t>(decimals) + 1);
+    std::string text = fmt::format(FMT_COMPILE("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}"), utc.year, utc.month, utc.day,
+                                   utc.hour, utc.minute, utc.second);
+    if (decimals > 0)
+        text += fmt::format(FMT_COMPILE(".{:09}"), utc.nanosecond).substr(0, static_cast<std::size_t>(decimals) + 1);
     return text + "Z";
 }
 

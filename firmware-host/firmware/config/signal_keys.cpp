@@ -31,8 +31,9 @@ std::vector<Constellation> enabled_systems(const ConfigStore& config) {
 }
 
 bool is_enabled(const ConfigStore& config, Constellation system) {
-    const std::vector<Constellation> systems = enabled_systems(config);
-    return std::find(systems.begin(), systems.end(), system) != systems.end();
+    return std::any_of(system_keys_of_signals.begin(), system_keys_of_signals.end(), [&](const SystemKeys& s) {
+        return s.constellation == system && config.flag(s.enable) && has_signal_on(config, system);
+    });
 }
 
 }  // namespace skyloop::firmware

@@ -64,7 +64,6 @@ private:
     [[nodiscard]] std::filesystem::path port_file(std::size_t wire, std::string_view extension) const;
     Result<void> create_ports(std::size_t wires);
     void remove_ports_from(std::size_t wire);  // of a former run with more wires
-    [[nodiscard]] std::vector<const OutputFile*> files() const;
 
     ClaimedFolder folder_;
     OutputFile fixes_, satellites_;
