@@ -16,8 +16,6 @@ bool on_earth(const Geodetic& place) {
            std::isfinite(place.height.above_ellipsoid.value());
 }
 
-bool is_one_line(std::string_view text) { return !text.empty() && text.find('\n') == std::string_view::npos; }
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

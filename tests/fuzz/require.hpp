@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdlib>
+#include <string_view>
 
 namespace skyloop {
 
@@ -9,5 +10,8 @@ namespace skyloop {
 inline void require(bool promise) {
     if (!promise) std::abort();
 }
+
+/// As an error or a warning is.
+inline bool is_one_line(std::string_view text) { return !text.empty() && text.find('\n') == std::string_view::npos; }
 
 }  // namespace skyloop

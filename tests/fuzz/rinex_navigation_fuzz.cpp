@@ -13,9 +13,8 @@
 
 namespace {
 
+using skyloop::is_one_line;
 using skyloop::require;
-
-bool one_line(std::string_view message) { return !message.empty() && message.find('\n') == std::string_view::npos; }
 
 void check_records(const skyloop::NavigationFile& file) {
     require(!file.records.empty());
@@ -35,15 +34,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     Result<NavigationFile> file = read_navigation(text, "fuzz.nav");
     if (!file) {
-        require(file.error().code == ErrorCode::input && one_line(file.error().message));
+        require(file.error().code == ErrorCode::input && is_one_line(file.error().message));
         return 0;
     }
     for (const std::string& warning : file->warnings)
-        require(one_line(warning));
+        require(is_one_line(warning));
     check_records(*file);
 
     for (const DroppedRecord& dropped : drop_foreign_records(file->records))
-        require(one_line(dropped.reason));
+        require(is_one_line(dropped.reason));
     const GpsTime time = toe_of(file->records.front());
     const NavigationData orbits(file->records, file->ionosphere, "fuzz.nav");
     require(orbits.record_count() <= file->records.size());

@@ -12,8 +12,6 @@ namespace {
 
 using namespace skyloop;
 
-bool one_line(std::string_view message) { return !message.empty() && message.find('\n') == std::string_view::npos; }
-
 void check_observation(const Observation& o) {
     require(o.pseudorange || o.carrier_phase || o.doppler);
     require(!o.pseudorange || std::isfinite(o.pseudorange->value()));
@@ -56,12 +54,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     const Result<ObservationFile> file = read_observations(text, "fuzz.obs");
     if (!file) {
-        require(file.error().code == ErrorCode::input && one_line(file.error().message));
+        require(file.error().code == ErrorCode::input && is_one_line(file.error().message));
         return 0;
     }
     require(!file->epochs.empty());
     for (const std::string& warning : file->warnings)
-        require(one_line(warning));
+        require(is_one_line(warning));
     const Observations* before = nullptr;
     for (const Observations& epoch : file->epochs) {
         require(!before || before->receive_time < epoch.receive_time);
