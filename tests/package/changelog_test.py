@@ -31,6 +31,11 @@ class Changelog(unittest.TestCase):
         self.assertLessEqual(max(len(line) for line in made.splitlines() if " " in line.strip() and line[:4] != " -- "), 80)
         self.assertEqual(made, make(ROOT / "CHANGELOG.md").stdout)
 
+    def test_no_word_stands_twice(self):
+        """lintian takes that for a slip, which only the tests of packages would tell."""
+        made = make(ROOT / "CHANGELOG.md").stdout
+        self.assertEqual([found[0] for found in re.finditer(r"\b(\w+)\s+\1\b", made)], [])
+
     def test_debian_reads_it(self):
         if shutil.which("dpkg-parsechangelog") is None:
             self.skipTest("dpkg-dev is not installed")
