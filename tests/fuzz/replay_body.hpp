@@ -3,13 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <string_view>
-#include <vector>
 
-struct ReplayBody {
-    std::string_view name;
-    int (*run)(const std::uint8_t* data, std::size_t size);
-};
+using ReplayBody = int (*)(const std::uint8_t* data, std::size_t size);
 
-// All of them; replay.cmake writes the list.
-const std::vector<ReplayBody>& replay_bodies();
+// By name. Each adds itself before main(): see replay_body.cpp.in.
+std::map<std::string_view, ReplayBody>& replay_bodies();

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <string_view>
 #include <vector>
 
 #include "replay_body.hpp"
@@ -25,13 +24,16 @@ std::vector<fs::path> corpus_files(const fs::path& folder) {
 
 }  // namespace
 
+std::map<std::string_view, ReplayBody>& replay_bodies() {
+    static std::map<std::string_view, ReplayBody> bodies;
+    return bodies;
+}
+
 int main(int argc, char** argv) {
-    const std::string_view name = argc > 1 ? argv[1] : "";
-    const auto body = std::find_if(replay_bodies().begin(), replay_bodies().end(),
-                                   [&](const ReplayBody& each) { return each.name == name; });
+    const char* const name = argc > 1 ? argv[1] : "";
+    const auto body = replay_bodies().find(name);
     if (body == replay_bodies().end()) {
-        std::fprintf(stderr, "fuzz_replay: found '%s'; expected the name of a fuzz body and folders\n",
-                     argc > 1 ? argv[1] : "");
+        std::fprintf(stderr, "fuzz_replay: found '%s'; expected the name of a fuzz body and folders\n", name);
         return 2;
     }
     std::size_t count = 0;
@@ -40,7 +42,7 @@ int main(int argc, char** argv) {
             std::ifstream file(path, std::ios::binary);
             const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
             const std::vector<std::uint8_t> input(bytes.begin(), bytes.end());
-            body->run(input.data(), input.size());
+            body->second(input.data(), input.size());
             ++count;
         }
     }

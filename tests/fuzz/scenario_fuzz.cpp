@@ -71,6 +71,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const CloudDeck& cloud : scenario->atmosphere.clouds)
         require(cloud.top > cloud.base && cloud.density_g_m3 >= 0);
     for (const std::string& warning : scenario->warnings)
-        require(!warning.empty() && warning.find('\n') == std::string::npos);
+        require(is_one_line(warning));
     return 0;
 }
