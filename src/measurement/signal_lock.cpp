@@ -48,7 +48,12 @@ void SignalLock::search(const AcquisitionParameters& parameters, const SignalSig
         found_at_.reset();
         return;
     }
-    if (!found_at_) found_at_ = advanced(now, remembered ? parameters.reacquisition : search_time(parameters, sight));
+    if (!found_at_) {
+        Seconds takes = remembered ? parameters.reacquisition : search_time(parameters, sight);
+        // What has been lost for longer is not found sooner.
+        if (lost_at_) takes = std::max(takes, parameters.reacquisition);
+        found_at_ = advanced(now, takes);
+    }
     if (now < *found_at_) return;
     code_since_ = now;
     found_at_.reset();

@@ -140,7 +140,7 @@ constexpr KeyMeaning modern_meanings[] = {
     {"model.modern.acquisition", "loss_threshold_dbhz", "C/N0 below which lock is lost"},
     {"model.modern.acquisition", "phase_threshold_dbhz", "C/N0 from which the carrier's phase is locked"},
     {"model.modern.acquisition", "loss_after_s", "below the threshold for so long, lock is lost"},
-    {"model.modern.acquisition", "reacquisition_s", "of a signal lost less than a minute ago"},
+    {"model.modern.acquisition", "reacquisition_s", "of a signal lost less than a minute ago; later it takes no less"},
     {"model.modern.acquisition", "hot_search_s", "longest search of a hot start"},
     {"model.modern.acquisition", "warm_search_s", "longest search of a warm start"},
     {"model.modern.acquisition", "cold_search_s", "longest search of a cold start"},

@@ -16,7 +16,7 @@ struct AcquisitionParameters {
     DbHz warm_threshold{28};  ///< when time, place and almanac are; of hot starts and reacquisition too
     DbHz loss_threshold{22};  ///< below it for `loss_after`, lock is lost; at once when the signal no longer arrives
     Seconds loss_after{0.5};
-    Seconds reacquisition{1};  ///< of a signal that was lost within `reacquisition_memory`
+    Seconds reacquisition{1};  ///< of a signal lost within `reacquisition_memory`; at least, of one lost before
     Seconds reacquisition_memory{60};
     Seconds hot_search{0};  ///< of a hot start, and of a satellite's second signals when its first is locked
     Seconds warm_search{6};

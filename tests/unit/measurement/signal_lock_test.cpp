@@ -1,6 +1,7 @@
 // When signals are found, kept and lost, seen through the engine.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <set>
@@ -134,9 +135,22 @@ TEST(SignalLock, LossAndReacquisitionTakeTheirTime) {
         }
         EXPECT_NEAR(difference(lost_at, weak_from).value(), timing.until_lost, 1e-9);
         EXPECT_EQ(run.seconds_until_tracked(plain_arrivals({g07}, 27.9), g07), std::nullopt);
-        EXPECT_EQ(run.seconds_until_tracked(plain_arrivals({g07}), g07), 0.0) << "forgotten: a hot search";
+        EXPECT_NEAR(run.seconds_until_tracked(plain_arrivals({g07}), g07).value_or(-1), 1, 1e-9);
         run.epochs(Arrivals{}, 1);
         EXPECT_NEAR(run.seconds_until_tracked(plain_arrivals({g07}), g07).value_or(-1), 1, 1e-9);
+    }
+}
+
+// Whatever kind of search follows when the loss is forgotten: a hot one has no minimum of its own.
+TEST(SignalLock, ALongLossIsNotFoundSoonerThanAShortOne) {
+    double before = 0;
+    for (const int lost_s : {1, 10, 59, 60, 61, 90, 300, 1800}) {
+        MeasuredRun run(without_errors(), 1);
+        run.epochs(plain_arrivals({g07}), 30);
+        run.epochs(Arrivals{}, lost_s);
+        const double takes = run.seconds_until_tracked(plain_arrivals({g07}), g07).value_or(-1);
+        EXPECT_GE(takes, std::max(before, 1.0)) << lost_s << " s";
+        before = takes;
     }
 }
 
