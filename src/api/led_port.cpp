@@ -68,13 +68,13 @@ Bytes LedPort::read() {
     return arrived;
 }
 
-Nanoseconds LedPort::look_every() const {
-    if (coming_.empty()) return Nanoseconds(0);
+std::optional<GpsTime> LedPort::acts_at(GpsTime now) const {
+    if (coming_.empty()) return std::nullopt;
     const Piece& next = coming_.front();
     const GpsTime arrives = next.start + next.byte_time * static_cast<std::int64_t>(next.taken + 1);
     const GpsTime look = last_look(arrives + driver_look - Nanoseconds(1));
     // What has arrived already, and was not asked for, is so at the next look.
-    return std::max(look, last_look(now_) + driver_look) - now_;
+    return std::max(look, last_look(now) + driver_look);
 }
 
 }  // namespace skyloop

@@ -24,7 +24,7 @@ public:
     LineState line() override { return {true, baud_}; }
     void set_receiver_baud(std::uint32_t baud) override { receiver_baud_ = baud; }
     void tell_time(GpsTime now) override { now_ = now; }
-    [[nodiscard]] Nanoseconds look_every() const override;
+    [[nodiscard]] std::optional<GpsTime> acts_at(GpsTime now) const override;
     [[nodiscard]] std::string description() const override { return name_ + " (caller)"; }
 
     /// Moves bytes that have left the receiver into the buffer; gives how many.

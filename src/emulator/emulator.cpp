@@ -52,13 +52,15 @@ GpsTime Emulator::next_instant(GpsTime end) const {
         busy = busy || station.busy();
         wired = wired || !station.wires().empty();
         if (const auto change = station.next_change(now_)) next = std::min(next, std::max(now_, *change));
-        // Whoever keeps the times of messages, or judges by them, wants them as they leave; the clock's own ticks are
-        // as good.
-        if (!parts_.pacer->is_virtual() || !(station.recorder() || parts_.director.wants_messages())) continue;
+        // The clock's own ticks are good enough for clients that have a clock of their own.
+        const bool scripted = station.has_scripted_client();
+        if (!parts_.pacer->is_virtual() && !scripted) continue;
+        if (const auto input = station.next_input(now_)) next = std::min(next, std::max(now_, *input));
+        // Whoever keeps the times of messages, or judges by them, wants them as they leave.
+        if (!scripted && !station.recorder() && !parts_.director.wants_messages()) continue;
         if (const auto output = station.next_output()) next = std::min(next, std::max(now_, *output));
     }
     if (const auto event = parts_.director.next_event()) next = std::min(next, std::max(now_, *event));
-    if (const Nanoseconds often = look_every(); often > no_time) next = std::min(next, now_ + often);
     const Nanoseconds tick = parts_.pacer->tick(busy);
     if (tick > no_time && wired) next = std::min(next, now_ + tick);
     // What the leader has let the run do is done to the end before he is told so.
@@ -179,17 +181,6 @@ void Emulator::direct_stations() {
 }
 
 void Emulator::direct() { parts_.director.advance(now_, parts_.stations, *parts_.pacer); }
-
-// Ends of wires that live in simulated time want to be looked at in virtual time too.
-Nanoseconds Emulator::look_every() const {
-    Nanoseconds shortest = no_time;
-    for (const Station& station : parts_.stations)
-        for (const Wire& wire : station.wires())
-            if (const Nanoseconds every = wire.link.transport().look_every();
-                every > no_time && (shortest == no_time || every < shortest))
-                shortest = every;
-    return shortest;
-}
 
 bool Emulator::recording_failed() const {
     return std::any_of(parts_.stations.begin(), parts_.stations.end(),

@@ -93,24 +93,38 @@ Bytes Link::take_piece(const Piece& piece, PortSpeed speed, std::size_t count) {
     return to_receiver_.pass(bytes);
 }
 
-std::optional<Bytes> Link::receive(PortSpeed speed, GpsTime now) {
-    if (incoming_.empty()) {
-        // The bytes of one write come without a gap; when none are left and none came, the line rests.
-        if (!std::exchange(may_rest_, false)) return std::nullopt;
-        Bytes heard = to_receiver_.idle();
-        counters_.bytes_in += heard.size();
-        return heard.empty() ? std::nullopt : std::optional<Bytes>(std::move(heard));
-    }
-    Piece& piece = incoming_.front();
+Nanoseconds Link::byte_time_of(const Piece& piece, PortSpeed port) {
     // A wire without a speed of its own is as fast as the port.
-    const PortSpeed line_speed = speed ? PortSpeed(piece.speed.value_or(*speed)) : PortSpeed();
+    return byte_time(port ? PortSpeed(piece.speed.value_or(*port)) : PortSpeed());
+}
+
+// The bytes of one write come without a gap; when none are left and none came, the line rests.
+std::optional<Bytes> Link::rest(GpsTime now) {
+    if (!may_rest_ || to_receiver_.resting() || (pace_ == InputPace::line && now < rests_at_)) return std::nullopt;
+    Bytes heard = to_receiver_.idle();
+    counters_.bytes_in += heard.size();
+    return heard;
+}
+
+std::optional<GpsTime> Link::next_arrival(PortSpeed speed) const {
+    if (pace_ == InputPace::at_once) return std::nullopt;
+    if (incoming_.empty()) return to_receiver_.resting() ? std::nullopt : std::optional(rests_at_);
+    const Piece& piece = incoming_.front();
+    return std::max(line_free_, piece.read_at) + byte_time_of(piece, speed);
+}
+
+std::optional<Bytes> Link::receive(PortSpeed speed, GpsTime now) {
+    if (incoming_.empty()) return rest(now);
+    Piece& piece = incoming_.front();
     std::size_t count = speed ? 1 : piece.bytes.size() - piece.taken;
     if (pace_ == InputPace::line) {
+        const Nanoseconds each = byte_time_of(piece, speed);
         const GpsTime begins = std::max(line_free_, piece.read_at);
-        const auto arrived = (now - begins) / byte_time(line_speed);
+        const auto arrived = (now - begins) / each;
         if (now < begins || arrived < 1) return std::nullopt;
         count = std::min(count, static_cast<std::size_t>(arrived));
-        line_free_ = begins + byte_time(line_speed) * static_cast<std::int64_t>(count);
+        line_free_ = begins + each * static_cast<std::int64_t>(count);
+        rests_at_ = line_free_ + each;
     }
     Bytes heard = take_piece(piece, speed, count);
     piece.taken += count;

@@ -159,12 +159,15 @@ Result<std::unique_ptr<PowerSwitch>> power_of(const std::string& uri, const Shar
     return power;
 }
 
-Result<std::unique_ptr<Transport>> open_wire(const WireRequest& wire, const firmware::BoardProfile& board,
-                                             const RunMode& mode, std::size_t index) {
+Result<Link> open_wire(const WireRequest& wire, const firmware::Receiver& receiver, const RunMode& mode,
+                       std::size_t index) {
+    const PortSpeed speed = port_speed(receiver, wire.port);
     if (mode.embedding != nullptr && mode.embedding->open_wire)
-        if (auto led = mode.embedding->open_wire(index, wire)) return led;
-    if (const auto client = client_of_uri(wire.uri)) return open_client(*client);
-    return open_transport(wire.uri, usb_face(board, wire.port));
+        if (auto led = mode.embedding->open_wire(index, wire)) return Link(std::move(led), speed, InputPace::at_once);
+    const auto client = client_of_uri(wire.uri);
+    auto transport = client ? open_client(*client) : open_transport(wire.uri, usb_face(receiver.board(), wire.port));
+    if (!transport) return fail(transport.error());
+    return Link(std::move(*transport), speed, InputPace::line);
 }
 
 SimulationSetup simulation_setup(const SharedParts& shared, std::size_t index, const firmware::Receiver& receiver) {
@@ -250,14 +253,12 @@ Result<PlannedStation> plan_station(const SharedParts& shared, std::size_t index
 
 Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::size_t index) {
     for (const WireRequest& wire : station.wires) {
-        auto transport = open_wire(wire, station.parts.receiver.board(), shared.mode, index);
-        if (!transport) return fail(of_receiver(transport.error(), shared.scenario, index));
-        if (shared.mode.virtual_time) (*transport)->allow_waiting();
-        const InputPace pace = shared.mode.virtual_time ? InputPace::at_once : InputPace::line;
+        auto link = open_wire(wire, station.parts.receiver, shared.mode, index);
+        if (!link) return fail(of_receiver(link.error(), shared.scenario, index));
+        if (shared.mode.virtual_time) link->transport().allow_waiting();
         // The recording stands for a scripted client, which still says what it believes.
         if (shared.mode.repeat && client_of_uri(wire.uri)) station.parts.mute_wires.insert(station.parts.wires.size());
-        station.parts.wires.push_back(
-            {wire.port, Link(std::move(*transport), port_speed(station.parts.receiver, wire.port), pace)});
+        station.parts.wires.push_back({wire.port, std::move(*link)});
     }
     const std::string& uri = shared.scenario.receivers.at(index).power;
     if (uri.empty() || shared.mode.virtual_time) return {};

@@ -36,10 +36,11 @@ bool Station::busy() const {
                        [](const Wire& w) { return w.link.connected() || w.link.input_pending(); });
 }
 
+// A client in simulated time acts on all that has left by now.
 void Station::carry_out(const LoopTime& time, Dialogue* dialogue) {
+    speak(time, dialogue);
     for (Wire& wire : parts_.wires)
         wire.link.look(time.now);
-    speak(time, dialogue);
 }
 
 // Bytes that have crossed a wire by now did so under what was wrong with it before.
@@ -95,12 +96,7 @@ bool Station::hear(std::size_t wire, GpsTime now, Dialogue* dialogue) {
         any = hand_over(wire, faulty.to_receiver(std::move(bytes), now), now, dialogue) || any;
     };
     if (wire < parts_.wires.size()) {
-        auto& [port, link] = parts_.wires[wire];
-        const auto line_speed = [&, port = port] {
-            const PortSpeed own = speed(port);
-            return own && faulty.line_baud() ? faulty.line_baud() : own;
-        };
-        while (auto heard = link.receive(line_speed(), now))
+        while (auto heard = parts_.wires[wire].link.receive(line_speed(wire), now))
             if (!heard->empty()) take(std::move(*heard));
     }
     take({});  // what was held, and garbage, come without a client's doing
@@ -146,8 +142,13 @@ void Station::send_on_wire(std::size_t wire, const std::vector<firmware::Receive
     const std::optional<std::uint32_t> line_baud = faulty_wires_[wire].line_baud();
     for (const firmware::Receiver::Sent& piece : pieces)
         link.send(piece.bytes, speed_of(port, line_baud.value_or(piece.baud)), false);
-    const PortSpeed own = speed(port);
-    link.send({}, own && line_baud ? line_baud : own, at_rest);
+    link.send({}, line_speed(wire), at_rest);
+}
+
+PortSpeed Station::line_speed(std::size_t wire) const {
+    const PortSpeed own = speed(parts_.wires[wire].port);
+    const std::optional<std::uint32_t> line_baud = faulty_wires_[wire].line_baud();
+    return own && line_baud ? line_baud : own;
 }
 
 void Station::happen(const firmware::ReceiverEvent& event, GpsTime now) { parts_.receiver.happen(event, now); }
@@ -176,6 +177,21 @@ std::optional<GpsTime> Station::next_output() const {
     for (std::size_t i = 0; i < faulty_wires_.size(); ++i)
         if (const auto at = parts_.receiver.next_output(port_of(i)); at && (!next || *at < *next)) next = at;
     return next;
+}
+
+std::optional<GpsTime> Station::next_input(GpsTime now) const {
+    std::optional<GpsTime> next;
+    for (std::size_t i = 0; i < parts_.wires.size(); ++i) {
+        const Link& link = parts_.wires[i].link;
+        for (const auto& at : {link.next_arrival(line_speed(i)), link.transport().acts_at(now)})
+            if (at && (!next || *at < *next)) next = at;
+    }
+    return next;
+}
+
+bool Station::has_scripted_client() const {
+    return std::any_of(parts_.wires.begin(), parts_.wires.end(),
+                       [](const Wire& w) { return w.link.transport().acts_at({}).has_value(); });
 }
 
 // What measurement and solution respect is handed to them with each epoch; the loop itself respects the period.

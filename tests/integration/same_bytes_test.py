@@ -1,5 +1,5 @@
 """One scenario with faults gives the same bytes on a pty, a TCP port and in a file, live beside two busy neighbours, as
-`simulate` gives; again and again.
+`simulate` gives; again and again. With a scripted client it does so on every board, at any speed of the run.
 
 SKYLOOP_SAME_BYTES_TIMES is how often, ten times unless it says otherwise.
 """
@@ -12,7 +12,7 @@ import threading
 import unittest
 
 from pty_client_test import open_client
-from session import Emulator, open_folder, skyloop
+from session import SKYLOOP, Emulator, open_folder, skyloop
 from tcp_client_test import connect
 
 TIMES = int(os.environ.get("SKYLOOP_SAME_BYTES_TIMES", "10"))
@@ -62,6 +62,29 @@ kind = "receiver_silent"
 at_s = 18
 for_s = 2
 """
+
+
+# A client that hunts the speed, configures and answers, and faults that make it begin anew.
+CLIENT_SCENARIO = """[run]
+start = 2026-03-01T00:00:00.003Z
+duration_s = 16
+seed = 11
+[model]
+name = "ideal"
+[[receiver]]
+board = "{board}"
+port = "client:{client}"
+[[fault]]
+kind = "reboots"
+start = "cold"
+at_s = 8.0125
+[[fault]]
+kind = "bit_flips"
+at_s = 5
+for_s = 2
+probability = 0.001
+"""
+CLIENTS = ("careful-ubx", "naive-ubx", "careful-nmea", "naive-nmea")
 
 
 class Reader(threading.Thread):
@@ -130,6 +153,45 @@ class SameBytesTest(unittest.TestCase):
                     self.assertGreater(len(data), len(expected) - (4096 if wire == "pty" else 1), wire)
                     self.assertEqual(data, expected[:len(data)], wire)
         print(f"{TIMES} times {len(expected)} bytes, the same on pty, tcp and file")
+
+
+class ScriptedClientTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = open_folder()
+        self.addCleanup(self.folder.cleanup)
+        self.path = pathlib.Path(self.folder.name)
+
+    def bytes_of(self, name, out):
+        return [(self.path / f"{name}-{out}/port0.{way}").read_bytes() for way in ("in", "out")]
+
+    def compare(self, names, speed):
+        """Live runs, a dozen at a time, against those in virtual time."""
+        runs = [subprocess.Popen([SKYLOOP, "run", self.path / f"{name}.toml", "--speed", str(speed), "--record",
+                                  self.path / f"{name}-{speed}"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                 stderr=subprocess.PIPE, text=True) for name in names]
+        for name, run in zip(names, runs):
+            _, log = run.communicate(timeout=60)
+            with self.subTest(name, speed=speed):
+                self.assertEqual(run.returncode, 0, log)
+                self.assertEqual(self.bytes_of(name, speed), self.bytes_of(name, "simulated"))
+
+    def test_every_board_at_any_speed(self):
+        """What both ends send is the same in virtual time, at twenty times and at one and a half times the clock's pace."""
+        boards = [line.split()[0] for line in skyloop("boards").stdout.splitlines() if line and line[0] != " "]
+        self.assertGreaterEqual(len(boards), 12)
+        names = []
+        for board in boards:
+            for client in CLIENTS:
+                name = f"{board}-{client}"
+                (self.path / f"{name}.toml").write_text(CLIENT_SCENARIO.format(board=board, client=client))
+                names.append(name)
+        for name in names:
+            skyloop("simulate", self.path / f"{name}.toml", "--out", self.path / f"{name}-simulated", "--quiet")
+        for speed, some in ((20, names), (1.5, names[::5])):
+            for first in range(0, len(some), 12):
+                self.compare(some[first:first + 12], speed)
+        talked = [name for name in names if self.bytes_of(name, "simulated")[0]]
+        self.assertGreaterEqual(len(talked), len(boards) * 2, "the two clients that speak, on each board")
 
 
 if __name__ == "__main__":

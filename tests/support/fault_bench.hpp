@@ -72,7 +72,9 @@ public:
         next_ask_s_ = std::floor(run_s) + 1.5;
         ask();
     }
-    [[nodiscard]] Nanoseconds look_every() const override { return std::chrono::milliseconds(10); }
+    [[nodiscard]] std::optional<GpsTime> acts_at(GpsTime now) const override {
+        return now + std::chrono::milliseconds(10);
+    }
     [[nodiscard]] std::string description() const override { return "asking client"; }
 
     [[nodiscard]] const std::vector<HeardMessage>& heard() const { return heard_; }

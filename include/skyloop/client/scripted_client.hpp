@@ -13,14 +13,15 @@ namespace skyloop {
 
 /// A client of a receiver: hears its bytes cut into messages, speaks, has a line speed and a belief.
 ///
-/// Its clock is the simulated time; of that it uses differences alone. All that it does depends on what it is told.
+/// Its clock is the simulated time; of that it uses differences alone. It acts at whole multiples of 10 ms, on all that
+/// has arrived by then, so that what it does is the same however often the loop looks at it.
 class ScriptedClient : public Transport {
 public:
     std::size_t write(ByteSpan bytes) final;
     Bytes read() final { return std::exchange(outbox_, {}); }
     LineState line() final { return {true, speed_}; }
     void tell_time(GpsTime now) final;
-    [[nodiscard]] Nanoseconds look_every() const final { return std::chrono::milliseconds(10); }
+    [[nodiscard]] std::optional<GpsTime> acts_at(GpsTime now) const final;
     std::optional<Belief> new_belief() final { return std::exchange(news_, std::nullopt); }
     [[nodiscard]] std::string description() const final { return "client:" + name_; }
 
@@ -46,6 +47,7 @@ protected:
 private:
     std::string name_;
     StreamSplitter splitter_{StreamProtocols{.rtcm3 = false, .impatient = true}};
+    Bytes inbox_;  // arrived since it acted last
     Bytes outbox_;
     std::uint32_t speed_ = 9600;
     GpsTime now_{};

@@ -82,7 +82,6 @@ public:
 private:
     Result<void> begin_recordings();
     [[nodiscard]] GpsTime next_instant(GpsTime end) const;
-    [[nodiscard]] Nanoseconds look_every() const;
     [[nodiscard]] bool all_connected();
     void carry_out(const LoopTime& time);
     void take_in(const LoopTime& time);

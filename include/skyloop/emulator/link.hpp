@@ -26,7 +26,7 @@ using PortSpeed = std::optional<std::uint32_t>;
 
 /// When the bytes of a client reach the receiver.
 enum class InputPace {
-    at_once,  ///< when the loop looks: in virtual time
+    at_once,  ///< when the loop looks: the transport itself has brought them at the speed of the line
     line      ///< one after the other, at the speed of the client's line
 };
 
@@ -49,6 +49,9 @@ public:
     /// when there are no more, an empty piece for bytes of which nothing was heard. A port that has a speed is given
     /// one byte at a time, so that a command in them which changes the speed acts on the very next one.
     std::optional<Bytes> receive(PortSpeed speed, GpsTime now);
+    /// When receive() has something to do next, if nothing more is written: a byte has arrived, or the line has rested
+    /// for the time of one. Nothing where bytes arrive at once.
+    [[nodiscard]] std::optional<GpsTime> next_arrival(PortSpeed speed) const;
 
     /// Pulls the plug, or puts it back: without it neither end hears the other.
     void set_plugged(bool plugged);
@@ -71,6 +74,8 @@ private:
     // What the client's UART makes of the bytes at its own speed.
     Bytes heard_by_client(ByteSpan bytes, std::uint32_t receiver_baud, std::uint32_t client_baud, bool at_rest);
     void tell_speed(PortSpeed speed);
+    static Nanoseconds byte_time_of(const Piece& piece, PortSpeed port);
+    std::optional<Bytes> rest(GpsTime now);
     Bytes take_piece(const Piece& piece, PortSpeed speed, std::size_t count);
 
     std::unique_ptr<Transport> transport_;
@@ -80,6 +85,7 @@ private:
     std::deque<Piece> incoming_;
     std::size_t waiting_ = 0;  // bytes in incoming_
     GpsTime line_free_{};      // when the client's line has carried all that was heard
+    GpsTime rests_at_{};       // when it has rested after that for the time of a byte
     bool may_rest_ = false;    // nothing has come since the last look
     LinkCounters counters_;
     PortSpeed told_;  // to the wire

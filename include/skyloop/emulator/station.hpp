@@ -94,6 +94,10 @@ public:
     [[nodiscard]] std::optional<GpsTime> next_change(GpsTime now) const;
     /// When the next message will have left by a wire, or is made.
     [[nodiscard]] std::optional<GpsTime> next_output() const;
+    /// When a byte of a client will have arrived, or a client in simulated time acts. @param now of the last look
+    [[nodiscard]] std::optional<GpsTime> next_input(GpsTime now) const;
+    /// The other end of a wire lives in simulated time: it must not matter how often it is looked at.
+    [[nodiscard]] bool has_scripted_client() const;
     /// Lets what is wrong now act on receiver and wires; take_in() does so, too.
     void follow_faults(GpsTime now);
     /// Faults of this receiver.
@@ -136,6 +140,7 @@ private:
     void speak(const LoopTime& time, Dialogue* dialogue);
     void send_on_wire(std::size_t wire, const std::vector<firmware::Receiver::Sent>& pieces, bool at_rest);
     [[nodiscard]] firmware::PortId port_of(std::size_t wire) const;
+    [[nodiscard]] PortSpeed line_speed(std::size_t wire) const;
     void follow_settings(GpsTime now);
 
     Parts parts_;

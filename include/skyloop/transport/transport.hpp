@@ -41,8 +41,8 @@ public:
     virtual void set_plugged(bool) {}
     /// The simulated time, before each look at the wire; for other ends that live in it.
     virtual void tell_time(GpsTime) {}
-    /// How often such an end wants to be looked at in virtual time; zero: once an epoch is enough.
-    [[nodiscard]] virtual Nanoseconds look_every() const { return Nanoseconds(0); }
+    /// When such an end acts next, after `now`; nothing for an end that does not live in simulated time, or waits.
+    [[nodiscard]] virtual std::optional<GpsTime> acts_at(GpsTime) const { return std::nullopt; }
     /// What such an end makes of what it hears, once after each change.
     struct Belief {
         bool trusts = false;  ///< it would navigate by this receiver

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "skyloop/transport/memory.hpp"
 
@@ -163,6 +164,36 @@ TEST(Link, HowOftenOneLooksMakesNoDifference) {
     heard += all_heard(often.link, receiver_baud, start + 300ms).size();
     EXPECT_EQ(heard, all_heard(once.link, receiver_baud, start + 300ms).size());
     EXPECT_EQ(heard, 287U);
+}
+
+// Steps from arrival to arrival, as a loop in simulated time does.
+std::vector<Nanoseconds> arrivals(Link& link, GpsTime start) {
+    std::vector<Nanoseconds> times;
+    link.look(start);
+    for (auto next = link.next_arrival(receiver_baud); next; next = link.next_arrival(receiver_baud)) {
+        times.push_back(*next - start);
+        link.look(*next);
+        while (link.receive(receiver_baud, *next)) {
+        }
+    }
+    return times;
+}
+
+TEST(Link, TellsWhenTheNextByteArrives) {
+    const GpsTime start = to_gps_time(2400, 0);
+    JoinedLink same = paced_link(receiver_baud, receiver_baud);
+    same.wire->feed(to_bytes("abc"));
+    EXPECT_EQ(arrivals(same.link, start), (std::vector<Nanoseconds>{1'041'667ns, 2 * 1'041'667ns, 3 * 1'041'667ns}));
+    EXPECT_EQ(same.link.counters().bytes_in, 3U);
+    // At half the speed; what the receiver still waits for after the last byte ends when the line has rested for one
+    // more.
+    JoinedLink slow = paced_link(receiver_baud, 4800);
+    slow.wire->feed(to_bytes("ab"));
+    const std::vector<Nanoseconds> times = arrivals(slow.link, start);
+    ASSERT_GE(times.size(), 2U);
+    EXPECT_EQ(times[1], 2 * 2'083'334ns);
+    EXPECT_LE(times.back(), 3 * 2'083'334ns);
+    EXPECT_EQ(joined_link(receiver_baud).link.next_arrival(receiver_baud), std::nullopt);
 }
 
 TEST(Link, ASpeedChangeInTheMiddleOfAWriteActsOnTheNextByte) {
