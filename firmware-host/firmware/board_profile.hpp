@@ -171,6 +171,9 @@ struct BoardProfile {
 
     std::uint32_t baud = 9600;  ///< of UART1 at the factory
     std::uint32_t transmit_buffer_bytes = 4096;
+    /// In the buffer, up to which the next message of an epoch is generated. Invented: the acknowledgement of an M10 at
+    /// 9600 baud can take "over a second" (PX4-GPSDrivers, src/ubx.cpp).
+    std::uint32_t generated_ahead_bytes = 1024;
     std::vector<PortId> ports{PortId::uart1};
     std::optional<UsbDescription> usb;  ///< nothing: it has no USB of its own
     std::vector<std::uint32_t>
@@ -202,8 +205,8 @@ struct BoardProfile {
     MetresPerSecond course_min_speed{0.1};  ///< slower than this, the course is left empty
     NmeaStyle style;
     std::vector<SentenceRate> sentences;  ///< factory output
-    /// And of a Septentrio, blocks and groups of them; nothing: the usual ones; an empty list: it is silent.
-    std::optional<std::vector<std::string>> sbf_blocks;
+    /// And of a Septentrio, blocks and groups of them; none: it is silent until it is configured.
+    std::vector<std::string> sbf_blocks;
     Seconds solution_latency{0.05};  ///< from the epoch instant to the first byte of its output
 
     /// What it can send, in the order in which it leaves within an epoch; sentences among it.

@@ -22,29 +22,65 @@ std::size_t Port::departed(const Message& message, GpsTime now) const {
     return static_cast<std::size_t>(since.count() * baud_ / nanoseconds_per_byte_at_1_baud);
 }
 
-// The line never rests while a message waits for room. That the room will be there in time can thus be told at once:
-// as much will have left as the line carries until then.
-bool Port::queue(ByteSpan message, GpsTime ready, Nanoseconds patience) {
-    std::size_t waiting = 0;
+std::size_t Port::buffered(GpsTime now) const {
+    std::size_t bytes = 0;
     // The last first: what went before one that has begun has left.
     for (auto m = messages_.rbegin(); m != messages_.rend(); ++m) {
-        waiting += m->bytes.size();
-        if (m->start > ready) continue;
-        waiting -= departed(*m, ready);
-        break;
+        bytes += m->bytes.size() - departed(*m, now);
+        if (m->start <= now) break;
     }
-    const Nanoseconds wait = std::clamp(patience, Nanoseconds(0), longest_wait);
-    const auto carried = static_cast<std::size_t>(wait.count() * baud_ / nanoseconds_per_byte_at_1_baud);
-    const bool fits = message.size() <= buffer_bytes_ && waiting + message.size() <= buffer_bytes_ + carried;
-    if (message.empty() || !fits) return message.empty();
-    const GpsTime start = std::max(ready, line_free_);
-    messages_.push_back({{message.begin(), message.end()}, ready, start, 0});
+    return bytes;
+}
+
+// When so much has left that a message of that length may be generated.
+GpsTime Port::turn_of(std::size_t bytes, GpsTime earliest) const {
+    std::size_t may_stay = generated_ahead_ - std::min(generated_ahead_, bytes);
+    for (auto m = messages_.rbegin(); m != messages_.rend(); ++m) {
+        if (m->bytes.size() > may_stay) return std::max(earliest, m->start + line_time(m->bytes.size() - may_stay));
+        may_stay -= m->bytes.size();
+    }
+    return earliest;
+}
+
+void Port::generate_until(GpsTime now) {
+    while (!turns_.empty()) {
+        const GpsTime at = turn_of(turns_.front().bytes.size(), turns_.front().since);
+        if (at > now) return;
+        enter(std::move(turns_.front().bytes), at);
+        turns_.pop_front();
+    }
+}
+
+void Port::enter(Bytes message, GpsTime at) {
+    const GpsTime start = std::max(at, line_free_);
     line_free_ = start + line_time(message.size());
     pending_ += message.size();
+    messages_.push_back({std::move(message), start, 0});
+}
+
+bool Port::queue(ByteSpan message, GpsTime now) {
+    generate_until(now);
+    if (message.empty()) return true;
+    if (buffered(now) + message.size() > buffer_bytes_) return false;
+    enter({message.begin(), message.end()}, now);
     return true;
 }
 
+bool Port::queue_in_turn(ByteSpan message, GpsTime now) {
+    if (message.size() > buffer_bytes_) return false;
+    if (message.empty()) return true;
+    turns_.push_back({{message.begin(), message.end()}, now});
+    generate_until(now);
+    return true;
+}
+
+std::size_t Port::give_up_turns(GpsTime now) {
+    generate_until(now);
+    return std::erase_if(turns_, [now](const Turn& turn) { return turn.since < now; });
+}
+
 Bytes Port::take(GpsTime now) {
+    generate_until(now);
     Bytes out;
     while (!messages_.empty()) {
         Message& m = messages_.front();
@@ -70,6 +106,7 @@ GpsTime Port::between_bytes(GpsTime now) const {
 }
 
 void Port::set_baud(std::uint32_t baud, GpsTime now) {
+    generate_until(now);
     for (Message& m : messages_) {
         const std::size_t gone = std::max(m.taken, departed(m, now));
         m.bytes.erase(m.bytes.begin(), m.bytes.begin() + static_cast<std::ptrdiff_t>(gone));
@@ -80,20 +117,24 @@ void Port::set_baud(std::uint32_t baud, GpsTime now) {
     line_free_ = now;
     std::erase_if(messages_, [](const Message& m) { return m.bytes.empty(); });
     for (Message& m : messages_) {
-        m.start = std::max(m.ready, line_free_);
+        m.start = line_free_;
         line_free_ = m.start + line_time(m.bytes.size());
     }
 }
 
 void Port::clear() {
     messages_.clear();
+    turns_.clear();
     pending_ = 0;
     line_free_ = {};
 }
 
 std::optional<GpsTime> Port::drained_at() const {
     if (messages_.empty()) return std::nullopt;
-    return line_free_;
+    GpsTime last = line_free_;
+    for (const Turn& turn : turns_)
+        last += line_time(turn.bytes.size());
+    return last;
 }
 
 std::optional<GpsTime> Port::message_ends_at() const {

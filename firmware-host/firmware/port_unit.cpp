@@ -31,33 +31,46 @@ std::uint32_t configured_baud(const ConfigStore& store, PortId port) {
 
 void Outbox::plan(GpsTime at, Action action) { plans_.emplace(at, std::move(action)); }
 
-std::size_t buffered_bytes(const Port& port) { return std::min<std::size_t>(port.pending(), port.buffer_bytes()); }
-
-std::size_t Outbox::queue(PortId port, std::span<const ByteSpan> messages, GpsTime now, Nanoseconds patience) {
+void Outbox::queue(PortId port, std::span<const ByteSpan> messages, GpsTime now) {
     PortUnit* unit = find_unit(units_, port);
-    if (unit == nullptr) return 0;
-    std::size_t queued = 0;
-    for (const ByteSpan message : messages) {
-        if (!unit->transmit.queue(message, now, patience)) {
-            unit->status.transmit_full = unit->overflow_untold = true;
-            ++unit->totals.messages_dropped;
-            unit->totals.dropped_at_baud = unit->transmit.baud();
-            continue;
-        }
-        ++queued;
-        ++unit->totals.messages_out;
-        unit->status.usage_percent =
-            static_cast<int>(100 * buffered_bytes(unit->transmit) / unit->transmit.buffer_bytes());
-        unit->status.peak_usage_percent = std::max(unit->status.peak_usage_percent, unit->status.usage_percent);
+    if (unit == nullptr) return;
+    for (const ByteSpan message : messages)
+        count(*unit, unit->transmit.queue(message, now));
+}
+
+void Outbox::queue_in_turn(PortId port, std::span<const ByteSpan> messages, GpsTime now) {
+    PortUnit* unit = find_unit(units_, port);
+    if (unit == nullptr) return;
+    for (const ByteSpan message : messages)
+        count(*unit, unit->transmit.queue_in_turn(message, now));
+}
+
+void Outbox::give_up_turns(PortUnit& unit, GpsTime now) {
+    const std::size_t given_up = unit.transmit.give_up_turns(now);
+    unit.totals.messages_out -= given_up;
+    for (std::size_t i = 0; i < given_up; ++i)
+        count(unit, false);
+}
+
+void Outbox::count(PortUnit& unit, bool queued) {
+    int usage = 100;
+    if (queued) {
+        ++unit.totals.messages_out;
+        usage = static_cast<int>(100 * unit.transmit.pending() / unit.transmit.buffer_bytes());
+    } else {
+        unit.status.transmit_full = unit.overflowed = true;
+        ++unit.totals.messages_dropped;
+        unit.totals.dropped_at_baud = unit.transmit.baud();
     }
-    unit->status.pending = buffered_bytes(unit->transmit);
-    return queued;
+    unit.status.usage_percent = usage;
+    unit.status.peak_usage_percent = std::max(unit.status.peak_usage_percent, usage);
+    unit.status.pending = unit.transmit.pending();
 }
 
 void Outbox::collect(GpsTime now, std::vector<Receiver::Sent>& sent) {
     for (PortUnit& unit : units_) {
         Bytes bytes = unit.transmit.take(now);
-        unit.status.pending = buffered_bytes(unit.transmit);
+        unit.status.pending = unit.transmit.pending();
         if (bytes.empty()) continue;
         unit.status.bytes_out += bytes.size();
         const auto same = std::find_if(sent.rbegin(), sent.rend(), [&](const auto& s) { return s.port == unit.id; });

@@ -30,7 +30,8 @@ struct ConfiguredMessages {
 
 /// Both directions of one port, and what is counted of them.
 struct PortUnit {
-    PortUnit(PortId port, std::uint32_t baud, std::uint32_t buffer_bytes) : id(port), transmit(baud, buffer_bytes) {
+    PortUnit(PortId port, std::uint32_t baud, const BoardProfile& board)
+        : id(port), transmit(baud, board.transmit_buffer_bytes, board.generated_ahead_bytes), configured_baud(baud) {
         status.id = port;
     }
     /// What came of something that is not yet whole.
@@ -45,11 +46,8 @@ struct PortUnit {
     std::uint32_t configured_baud = 0;  ///< to which it has been told to go
     ConfiguredMessages configured;
     std::optional<std::int64_t> told_pulse{};  ///< of the last TIM-TP
-    bool overflow_untold = false;              ///< messages were lost, and no text has said so
+    bool overflowed = false;                   ///< messages were dropped since the last epoch was reported
 };
-
-/// Bytes in a port's transmit buffer: what waits for room there is not in it.
-std::size_t buffered_bytes(const Port& port);
 
 /// The one of that name, or null.
 /// @param units a vector of PortUnit, constant or not
@@ -75,8 +73,11 @@ public:
 
     /// Something that happens at `at`, or now when that has passed; at the same instant in the order of planning.
     void plan(GpsTime at, Action action);
-    /// Queues whole messages on a port. @param patience of Port::queue() @return how many found room
-    std::size_t queue(PortId port, std::span<const ByteSpan> messages, GpsTime now, Nanoseconds patience);
+    /// Queues whole messages on a port: Port::queue() or Port::queue_in_turn().
+    void queue(PortId port, std::span<const ByteSpan> messages, GpsTime now);
+    void queue_in_turn(PortId port, std::span<const ByteSpan> messages, GpsTime now);
+    /// Drops the messages of an earlier epoch that a port has not generated yet.
+    void give_up_turns(PortUnit& unit, GpsTime now);
     /// Does what is planned until `now`, and gives what has left.
     std::vector<Receiver::Sent> run(GpsTime now);
     [[nodiscard]] std::optional<GpsTime> drained_at() const;
@@ -86,6 +87,7 @@ public:
     void clear();
 
 private:
+    static void count(PortUnit& unit, bool queued);
     void collect(GpsTime now, std::vector<Receiver::Sent>& sent);
 
     std::vector<PortUnit>& units_;

@@ -35,7 +35,7 @@ PortTotals Receiver::port_totals(PortId port) const {
 }
 const ReceiverSettings& Receiver::settings() const { return core_->settings(); }
 const ReceiverSettings& Receiver::settings_at(GpsTime epoch) { return core_->settings_at(epoch); }
-const ReceiverCounters& Receiver::counters() const { return core_->counters(); }
+ReceiverCounters Receiver::counters() const { return core_->counters(); }
 const BoardProfile& Receiver::board() const { return core_->board(); }
 const NavigationState& Receiver::state() const { return core_->state(); }
 

@@ -98,7 +98,7 @@ public:
     [[nodiscard]] const ReceiverSettings& settings() const;
     /// Those that the solution of an epoch is made with: with the corrections that there are by then.
     const ReceiverSettings& settings_at(GpsTime epoch);
-    [[nodiscard]] const ReceiverCounters& counters() const;
+    [[nodiscard]] ReceiverCounters counters() const;
     [[nodiscard]] const BoardProfile& board() const;
     /// What it reported last, as edited.
     [[nodiscard]] const NavigationState& state() const;

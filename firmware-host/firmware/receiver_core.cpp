@@ -26,11 +26,8 @@ enum ResetMode : std::uint8_t {
 
 std::vector<PortUnit> make_units(const BoardProfile& board, const ConfigStore& store) {
     std::vector<PortUnit> units;
-    for (const PortId port : board.ports) {
-        const std::uint32_t baud = configured_baud(store, port);
-        units.emplace_back(port, baud, board.transmit_buffer_bytes);
-        units.back().configured_baud = baud;
-    }
+    for (const PortId port : board.ports)
+        units.emplace_back(port, configured_baud(store, port), board);
     return units;
 }
 
@@ -115,10 +112,8 @@ Result<void> Receiver::Core::restore(const std::string& text, const std::string&
 void Receiver::Core::begin_as_stored() {
     store_.reload();
     if (console_) console_.emplace(board_, store_);
-    for (PortUnit& unit : units_) {
-        unit.configured_baud = configured_baud(store_, unit.id);
-        unit.transmit = Port(unit.configured_baud, board_.transmit_buffer_bytes);
-    }
+    for (PortUnit& unit : units_)
+        unit = PortUnit(unit.id, configured_baud(store_, unit.id), board_);
     adopt_settings();
 }
 
@@ -223,8 +218,7 @@ void Receiver::Core::boot(const Forgotten& forgotten, GpsTime now, const Boot& h
     for (PortUnit& unit : units_) {
         const PortId id = unit.id;
         const PortTotals totals = unit.totals;
-        unit = PortUnit(id, configured_baud(store_, id), board_.transmit_buffer_bytes);
-        unit.configured_baud = unit.transmit.baud();
+        unit = PortUnit(id, configured_baud(store_, id), board_);
         unit.totals = totals;
     }
     values_.cancel();

@@ -46,7 +46,7 @@ public:
     [[nodiscard]] const ConfigStore& store() const { return store_; }
     [[nodiscard]] const BoardProfile& board() const { return board_; }
     [[nodiscard]] const ReceiverSettings& settings() const { return settings_; }
-    [[nodiscard]] const ReceiverCounters& counters() const { return counters_; }
+    [[nodiscard]] ReceiverCounters counters() const;
     [[nodiscard]] const NavigationState& state() const { return *reported_; }
     [[nodiscard]] std::shared_ptr<const NavigationState> kept_state() const { return reported_; }
     [[nodiscard]] std::optional<GpsTime> report_time() const { return report_time_; }
@@ -122,8 +122,8 @@ private:
     [[nodiscard]] bool configured_speeds_hold() const;
     void plan_speed_changes(GpsTime at);
     void change_speed(PortId port, GpsTime at);
-    void send(PortId port, std::span<const ByteSpan> messages, GpsTime now);
     void send(PortId port, const std::vector<Bytes>& messages, GpsTime now);
+    void send_in_turn(PortId port, std::span<const ByteSpan> messages, GpsTime now);
     void send_text(int level, const std::string& text, GpsTime now);
     void send_epoch(const NavigationState& state, GpsTime now);
     void read_configured_messages(PortUnit& unit) const;

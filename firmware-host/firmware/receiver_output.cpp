@@ -69,7 +69,7 @@ CorrectionState in_solution(const Fix& fix, CorrectionState at_most) {
 void Receiver::Core::look_at_ports() {
     statuses_.clear();
     for (PortUnit& unit : units_) {
-        unit.status.pending = buffered_bytes(unit.transmit);
+        unit.status.pending = unit.transmit.pending();
         statuses_.push_back(unit.status);
     }
 }
@@ -145,17 +145,21 @@ void Receiver::Core::change_speed(PortId port, GpsTime at) {
     unit.forget_input();
 }
 
-// Messages are made one after the other: one that finds the buffer full waits for its turn, but not until those of the
-// next epoch come.
-void Receiver::Core::send(PortId port, std::span<const ByteSpan> messages, GpsTime now) {
-    if (faults_.mute) return;
-    const std::size_t queued = outbox_.queue(port, messages, now, settings_.navigation_period);
-    counters_.messages_sent += queued;
-    counters_.messages_dropped += messages.size() - queued;
+void Receiver::Core::send(PortId port, const std::vector<Bytes>& messages, GpsTime now) {
+    if (!faults_.mute) outbox_.queue(port, std::vector<ByteSpan>(messages.begin(), messages.end()), now);
 }
 
-void Receiver::Core::send(PortId port, const std::vector<Bytes>& messages, GpsTime now) {
-    send(port, std::vector<ByteSpan>(messages.begin(), messages.end()), now);
+void Receiver::Core::send_in_turn(PortId port, std::span<const ByteSpan> messages, GpsTime now) {
+    if (!faults_.mute) outbox_.queue_in_turn(port, messages, now);
+}
+
+ReceiverCounters Receiver::Core::counters() const {
+    ReceiverCounters counters = counters_;
+    for (const PortUnit& unit : units_) {
+        counters.messages_sent += unit.totals.messages_out;
+        counters.messages_dropped += unit.totals.messages_dropped;
+    }
+    return counters;
 }
 
 void Receiver::Core::send_text(int level, const std::string& text, GpsTime now) {
@@ -219,26 +223,30 @@ void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
 
 void Receiver::Core::send_epoch(const NavigationState& state, GpsTime now) {
     if (console_) console_->follow(state);
+    for (PortUnit& unit : units_) {
+        outbox_.give_up_turns(unit, now);
+        unit.status.transmit_full = std::exchange(unit.overflowed, false);
+    }
     look_at_ports();
     EpochMessages made(context(PortId::uart1, state));
+    const auto send_all = [&](PortId port, const std::vector<Bytes>& messages) {
+        send_in_turn(port, std::vector<ByteSpan>(messages.begin(), messages.end()), now);
+    };
     for (PortUnit& unit : units_) {
         const std::vector<ByteSpan> messages = due_messages(unit, state, made);
-        unit.status.transmit_full = false;
         tell_overflow(unit, now);
         if (unit.id == PortId::uart1)
-            send(unit.id, make_protocol_messages(board_.personality, context(unit.id, state), mavlink_sent_), now);
+            send_all(unit.id, make_protocol_messages(board_.personality, context(unit.id, state), mavlink_sent_));
         if (console_ && port_is_on(store_, unit.id))
-            send(unit.id, septentrio_output(console_->state(), context(unit.id, state)), now);
-        send(unit.id, messages, now);
+            send_all(unit.id, septentrio_output(console_->state(), context(unit.id, state)));
+        send_in_turn(unit.id, messages, now);
     }
     tell_antenna_status(state, now);
 }
 
 // Before the next epoch's messages, which fill the line again.
 void Receiver::Core::tell_overflow(PortUnit& unit, GpsTime now) {
-    if (!unit.overflow_untold) return;
-    unit.overflow_untold = false;
-    if (board_.quirks.overflow_notice)
+    if (unit.status.transmit_full && board_.quirks.overflow_notice)
         send(unit.id, make_text_message(text_error, "txbuf alloc", context(unit.id, *reported_)), now);
 }
 

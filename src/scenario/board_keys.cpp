@@ -108,6 +108,7 @@ void read_board_quirks(TableReader& table, firmware::Quirks& quirks) {
 void read_board_uart(TableReader& uart, BoardProfile& board) {
     uart.integer("baud", board.baud, speed_range);
     uart.integer("transmit_buffer_bytes", board.transmit_buffer_bytes, {128, 1'048'576});
+    uart.integer("generated_ahead_bytes", board.generated_ahead_bytes, {0, 1'048'576});
     if (const auto speeds = uart.whole_numbers("bauds", speed_range)) {
         for (const std::int64_t speed : *speeds)
             board.bauds.push_back(static_cast<std::uint32_t>(speed));
@@ -170,17 +171,15 @@ void read_board_navigation(TableReader& navigation, BoardProfile& board) {
     navigation.quantity("solution_latency_s", board.solution_latency, {0, 2});
 }
 
-// Blocks and groups, in the maker's spelling. An empty list is not the same as none.
+// Blocks and groups, in the maker's spelling.
 void read_board_sbf(TableReader& sbf, BoardProfile& board) {
-    std::vector<std::string> blocks;
-    sbf.texts("blocks", blocks, 0);
-    for (std::string& name : blocks) {
+    sbf.texts("blocks", board.sbf_blocks, 0);
+    for (std::string& name : board.sbf_blocks) {
         auto known = firmware::known_word(firmware::WordKind::block, name);
         if (!known) known = firmware::known_word(firmware::WordKind::block_group, name);
         if (!known) return sbf.mistake("blocks", fmt::format("has '{}', which is no SBF block or group", name));
         name = *known;
     }
-    if (sbf.has("blocks")) board.sbf_blocks = std::move(blocks);
 }
 
 // A u-blox receiver whose factory settings it would refuse itself could never be configured.

@@ -43,7 +43,7 @@ constexpr UbxMessageId mon_ver_poll{0x0A, 0x04}, refusal_id{0x05, 0x00};
 std::size_t frames_of(UbxMessageId id, ByteSpan bytes) {
     std::size_t count = 0;
     for (const StreamPiece& piece : StreamSplitter().feed(bytes))
-        count += piece.kind == StreamKind::ubx && parse_frame(piece.bytes)->id == id ? 1 : 0;
+        count += piece.kind == StreamKind::ubx && parse_frame(piece.bytes)->id == id ? 1U : 0U;
     return count;
 }
 
