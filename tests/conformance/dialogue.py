@@ -18,6 +18,8 @@ class Client:
     patience = 70.0  # seconds that the whole dialogue may take
     after_power_on = 5.0  # seconds that its user leaves the receiver to start; a flight controller leaves none
     arguments = ()  # more arguments of `skyloop run`
+    scenario = ""  # TOML that the arguments are laid over
+    navigation = ""  # file below the shared navigation data that the run uses; the client is skipped without it
 
     def __init__(self, wire, board):
         self.wire = wire

@@ -22,6 +22,7 @@ class Px4(Client):
     name = "PX4"
     after_power_on = 0.0
     passes = 3
+    speeds = SPEEDS
     by_keys = False
 
     def run(self):
@@ -34,7 +35,7 @@ class Px4(Client):
 
     def find_speed(self):
         """One round over the speeds; True once the receiver acknowledged and both ends have the new speed."""
-        for speed in SPEEDS:
+        for speed in self.speeds:
             self.speed(speed)
             self.pump(0.02)
             self.forget()
@@ -164,6 +165,51 @@ class Px4(Client):
         self.check(all(len(frame.payload) == 92 for frame in frames), "NAV-PVT of 92 bytes", len(frames[0].payload))
         solutions.check_each_epoch(self, items, wanted)
         solutions.check_bursts(self, items, 8, 0.1)
+
+
+class Px4At9600(Px4):
+    """A receiver at 9600 baud that sends the factory's sentences about four systems: found in the first pass."""
+
+    name = "PX4 at 9600 baud"
+    after_power_on = 8.0  # the line has become as busy as it gets
+    passes = 1
+    speeds = SPEEDS[2:] + SPEEDS[:2]
+    scenario = '[sky]\nconstellations = ["gps", "glonass", "galileo", "beidou"]\n[[receiver]]\nbaud = 9600\n'
+    navigation = "BRDC00IGS_R_20240010000_01D_MN.rnx.gz"
+
+
+class Px4Systems(Px4):
+    """With GPS_1_GNSS: one CFG-VALSET for all systems, with QZSS L1S wherever GPS is on (GPSDriverUBX::configureDevice)."""
+
+    name = "PX4 with GPS_1_GNSS"
+    gps, sbas, galileo, beidou, glonass = 1, 2, 4, 8, 16
+    l1s = 0x10310014  # CFG-SIGNAL-QZSS_L1S_ENA
+    masks = (gps, gps | galileo, gps | sbas | galileo, 31, galileo | beidou)
+
+    def configure_by_keys(self):
+        super().configure_by_keys()
+        for mask in self.masks:
+            self.step(f"CFG-VALSET of the systems, mask {mask}")
+            self.send(ubx.valset(self.systems(mask)))
+            # A NEO-M9N has no L1S: it refuses the whole message, and PX4 gives up (PX4-GPSDrivers, pull request 225).
+            wanted = self.board.is_f9p or not mask & self.gps
+            self.check(self.wait_ack("CFG-VALSET", ACK) is wanted, "ACK-ACK" if wanted else "ACK-NAK", "the other one")
+            self.pump(0.6)
+        without_l1s = [(key, value) for key, value in self.systems(31) if key != self.l1s]
+        self.set(ubx.valset(without_l1s), "CFG-VALSET", ACK)
+        self.pump(3)
+
+    def systems(self, mask):
+        bands = self.board.is_f9p
+        gps, galileo, beidou, glonass = (int(bool(mask & bit)) for bit in (self.gps, self.galileo, self.beidou, self.glonass))
+        pairs = [(0x1031001F, gps), (0x10310024, gps)]
+        pairs += [(0x10310012, 1), (self.l1s, 1)] if gps else []
+        if bands:
+            pairs += [(0x10310003, gps)] + ([(0x10310015, 1)] if gps else [])
+        for enable, second, on in ((0x10310021, 0x1031000A, galileo), (0x10310022, 0x1031000E, beidou)):
+            pairs += [(enable, on)] + ([(second, on)] if bands else [])
+        pairs += [(0x10310025, glonass)] + ([(0x10310018, 1)] if glonass else [])
+        return pairs + ([(0x1031001A, glonass)] if bands else [])
 
 
 class Px4Ublox6(Px4):

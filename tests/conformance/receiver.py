@@ -51,10 +51,11 @@ BOARDS = {board.name: board for board in (
 )}
 
 
-def start(board, folder, *arguments, duration=170):
-    """`skyloop run` of a board on a pty in `folder`, standing still at PLACE; it ends by itself."""
-    return Emulator("--board", board.name, "--at", ",".join(map(str, PLACE)), "--start", START, "--duration", duration,
-                    "--port", f"pty:{folder}/gps0", *arguments)
+def start(board, folder, *arguments, duration=170, moving=False):
+    """`skyloop run` of a board on a pty in `folder`, at rest at PLACE unless a scenario among the arguments moves it."""
+    place = () if moving else ("--at", ",".join(map(str, PLACE)))
+    return Emulator("--board", board.name, *place, "--start", START, "--duration", duration, "--port",
+                    f"pty:{folder}/gps0", *arguments)
 
 
 def wait_for_sentences(board, tty):

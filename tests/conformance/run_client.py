@@ -4,6 +4,7 @@ Variants: whole (default), bytes, bursts, garbage: how the client writes. reopen
 receiver that has kept its configuration. restart: a new process after the first, and the same dialogue again.
 """
 import argparse
+import pathlib
 import sys
 import time
 
@@ -30,8 +31,15 @@ def dialogue(kind, board, tty, writes):
 def play(kind, board, variant):
     writes = variant if variant in wire.WRITES else "whole"
     with receiver.open_folder() as folder:
+        arguments = list(kind.arguments)
+        if kind.navigation:
+            arguments += ["--nav", receiver.SHARED / "nav" / kind.navigation, "--rebase-nav"]
+        if kind.scenario:
+            scenario = pathlib.Path(folder) / "scenario.toml"
+            scenario.write_text(kind.scenario, encoding="utf-8")
+            arguments.append(scenario)
         for _ in range(2 if variant == "restart" else 1):
-            with receiver.start(board, folder, *kind.arguments) as emulator:
+            with receiver.start(board, folder, *arguments, moving="[trajectory]" in kind.scenario) as emulator:
                 try:
                     time.sleep(kind.after_power_on)
                     for _ in range(2 if variant == "reopen" else 1):
@@ -53,6 +61,9 @@ def main():
     wire.take_priority()
     if f"{options.board} " not in receiver.skyloop("boards").stdout:
         receiver.skip(f"this skyloop has no board {options.board}")
+    navigation = CLIENTS[options.client].navigation
+    if navigation and not (receiver.SHARED / "nav" / navigation).exists():
+        receiver.skip(f"shared data absent: nav/{navigation}")
     try:
         play(CLIENTS[options.client], receiver.BOARDS[options.board], options.variant)
     except (Failure, ConnectionError) as error:

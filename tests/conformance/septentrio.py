@@ -7,6 +7,7 @@ takes (communication_core.cpp, async_manager.hpp and telegram_handler.cpp): it g
 """
 import math
 import struct
+import time
 
 import receiver
 import sbf
@@ -63,6 +64,8 @@ class Septentrio(Client):
         self.check(abs(height - receiver.PLACE[2]) < 40 and 30 < undulation < 60, "its height", (height, undulation))
         deviations = struct.unpack_from("<fff", [b for b in blocks if b.number == VELOCITY][-1].body, 8)
         self.check(all(0 < d < 4 for d in deviations), "variances of the velocity", deviations)
+
+    def check_state(self, blocks):
         state = struct.unpack_from("<I", [b for b in blocks if b.number == STATUS][-1].body, 12)[0]
         self.check(state & WHEN_SET == WHEN_SET, "week and time of week set", hex(state))
         return state
@@ -92,7 +95,9 @@ class ArduPilotSbf(Septentrio):
         for line in self.lines:
             self.command(line, 1000)
         self.pump(3)  # other systems begin to be tracked
-        state = self.check_solution(self.watch({PVT, DOP, STATUS, VELOCITY, BASE}, 100))
+        blocks = self.watch({PVT, DOP, STATUS, VELOCITY, BASE}, 100)
+        self.check_solution(blocks)
+        state = self.check_state(blocks)
         self.check(state & DISK == DISK, "a disk that is mounted and written", hex(state))
         self.step("a command that there is not")
         self.forget()
@@ -130,6 +135,7 @@ class Px4Septentrio(Septentrio):
         self.pump(3)
         blocks = self.watch(self.blocks, 200)
         self.check_solution(blocks)
+        self.check_state(blocks)
         order = [b.number for b in blocks if b.tow_ms == blocks[len(blocks) // 2].tow_ms]
         self.check(order.index(END) > max(order.index(n) for n in (PVT, VELOCITY, DOP, ATTITUDE, ATTITUDE_COV)),
                    "EndOfPVT behind what it ends", order)
@@ -146,6 +152,58 @@ class Px4Septentrio(Septentrio):
             if self.wait(lambda item: isinstance(item, sbf.Answer) and item.text.startswith("$R: gecm"), self.fast):
                 return
         self.fail("$R: gecm at one of the speeds")
+
+
+class Px4GpsSbf(Septentrio):
+    """PX4's older driver (GPSDriverSBF, of the module gps): all that it reads is text to it, in which it searches for the
+    prompt; the name of its port are the first four characters after a line of its own. One pass."""
+
+    name = "PX4 gps, SBF"
+    scenario = ""
+    blocks = (PVT, VELOCITY, DOP, ATTITUDE, ATTITUDE_COV)
+
+    def run(self):
+        self.speed(115200)
+        self.send(ATTENTION)
+        for port in ("COM1", "COM2", "USB1", "USB2", "USB3", "USB4"):
+            self.told(f"setDataInOut,{port},,-RTCMv3-RTCMv2-CMRv2", needed=False)
+        self.step("the name of the port")
+        self.send(b"\n\r")
+        text = self.text(b">")
+        port = text[:4].decode("latin-1")
+        self.check(port == "COM1", "COM1>", text[:60])
+        for line in (f"setSBFOutput, Stream1, {port}, none, off", f"setCOMSettings, {port}, baud115200",
+                     f"setDataInOut, {port}, Auto, SBF", "setAttitudeOffset, 0.000, 0.000", "setReceiverDynamics, high, UAV",
+                     f"setSBFOutput, Stream1, {port}, PVTGeodetic+VelCovGeodetic+DOP+AttEuler+AttCovEuler, msec100"):
+            self.told(line)
+        self.parser.clear()
+        self.forget()
+        blocks = self.watch(self.blocks, 100)
+        self.check_solution(blocks)
+
+    def text(self, end, seconds=1.0):
+        """What comes until `end` is in it, as a string of C has it."""
+        text, until = b"", time.monotonic() + seconds
+        while end not in text.split(b"\0")[0] and time.monotonic() < until:
+            text += self.wire.read(0.05)[0]
+        return text.split(b"\0")[0]
+
+    def told(self, line, needed=True):
+        """The driver reads for a whole second, whatever comes."""
+        self.step(line)
+        self.send(line.encode() + b"\n")
+        heard, until = b"", time.monotonic() + 1
+        while time.monotonic() < until:
+            heard += self.wire.read(0.05)[0]
+        self.check(b"$R: " in heard.split(b"\0")[0] or not needed, "$R: ", heard[:80])
+
+
+class Px4GpsSbfMoving(Px4GpsSbf):
+    """The same while the vehicle is on its way."""
+
+    name = "PX4 gps, SBF, in motion"
+    scenario = ('[trajectory]\nkind = "circle"\ncentre = [47.397742, 8.545594, 488]\nradius_m = 10\n'
+                'speed_mps = 3\n')
 
 
 class RosSeptentrio(Septentrio):
@@ -200,6 +258,7 @@ class RosSeptentrio(Septentrio):
         sentences = {item.text[:6] for item in items if isinstance(item, sbf.Sentence)}
         self.check({"$GPGGA", "$GPRMC", "$GPGSA", "$GPGSV"} <= sentences, "sentences of talker GP", sentences)
         self.check_solution(blocks)
+        self.check_state(blocks)
         self.check_fields({b.number: b.body for b in blocks})
 
     def check_fields(self, last):

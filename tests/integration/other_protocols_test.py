@@ -9,7 +9,7 @@ import struct
 import unittest
 from collections import namedtuple
 
-from session import open_folder, skyloop
+from session import open_folder, septentrio_that_sends, skyloop
 
 PLACE = (-33.45, -70.66, 520)
 CIRCLE = f"""[trajectory]
@@ -29,6 +29,8 @@ GpsInput = namedtuple("GpsInput", "time tow lat lon alt hdop vdop north east dow
                       "fix_type satellites yaw")
 Pvt = namedtuple("Pvt", "tow week mode error lat lon height undulation north east up course bias drift time_system datum "
                  "satellites wa_corr reference age signals alert bases ppp latency h_acc v_acc misc")
+SBF_BLOCKS = ("PVTGeodetic", "PosCovGeodetic", "VelCovGeodetic", "DOP", "AttEuler", "AuxAntPositions", "EndOfPVT",
+              "ChannelStatus", "ReceiverStatus")
 SBF_ORDER = [4007, 5906, 5908, 4001, 5938, 5942, 5921, 4013, 4014]
 
 
@@ -119,6 +121,8 @@ def simulate(board, scenario, duration, *arguments):
     with open_folder() as folder:
         path = pathlib.Path(folder, "s.toml")
         path.write_text(scenario, encoding="utf-8")
+        if board == "septentrio-sbf":
+            board = septentrio_that_sends(folder, *SBF_BLOCKS)
         skyloop("simulate", path, "--board", board, "--out", folder, "--duration", duration, "--start", START, *arguments)
         data = pathlib.Path(folder, "port0.out").read_bytes()
         with open(pathlib.Path(folder, "fixes.csv"), newline="", encoding="ascii") as table:

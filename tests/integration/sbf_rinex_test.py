@@ -7,16 +7,16 @@ import struct
 import subprocess
 import unittest
 
-from session import ROOT, SHARED, open_folder, skip, skyloop
+from session import SHARED, open_folder, septentrio_that_sends, skip, skyloop
 from rnx2rtkp_test import only_terms, solved, to_ecef
 from subframes_test import KEPLER, STATE, difference, records
 
 NAVIGATION = SHARED / "nav/BRDC00IGS_R_20230010000_01D_MN.rnx.gz"
 PLACE = (48.1, 11.5, 600.0)
 LIGHT = 299792458.0
-OBSERVED = '"Measurements", "PVTGeod", "ReceiverSetup"'
+OBSERVED = ("Measurements", "PVTGeod", "ReceiverSetup")
 # convbin 2.4.3 b34 reads no BeiDou and no GPS subframes, and turns the halves of Galileo's pages round by a bit of their data.
-BY_BITS, DECODED = '"GLORawCA"', '"GPS", "GLO", "GAL", "BDS", "QZS"'
+BY_BITS, DECODED = ("GLORawCA",), ("GPS", "GLO", "GAL", "BDS", "QZS")
 CARRIERS = {"G1": 1575.42e6, "G2": 1227.60e6, "E1": 1575.42e6, "E7": 1207.14e6, "C2": 1561.098e6, "C7": 1207.14e6}
 # The run writes 0.001 m, cycles and Hz; the blocks have 0.001 m and cycles, twice for a further signal, and 0.0001 Hz.
 LARGEST_ERROR_M = 0.02
@@ -71,9 +71,8 @@ def wavelength(satellite, band, channels):
 
 def converted(folder, blocks, model=""):
     """A run whose receiver sends those blocks, and RINEX of them in the folder `found`."""
-    board = (ROOT / "boards/receivers/septentrio-sbf.toml").read_text(encoding="utf-8")
-    (folder / "board.toml").write_text(board + f"\n[sbf]\nblocks = [{blocks}]\n", encoding="utf-8")
-    (folder / "s.toml").write_text(SCENARIO.format(navigation=NAVIGATION, board=folder / "board.toml", model=model,
+    board = septentrio_that_sends(folder, *blocks)
+    (folder / "s.toml").write_text(SCENARIO.format(navigation=NAVIGATION, board=board, model=model,
                                                    place=", ".join(map(str, PLACE))), encoding="utf-8")
     skyloop("simulate", folder / "s.toml", "--out", folder / "run", "--quiet")
     (folder / "found").mkdir()
@@ -139,14 +138,14 @@ class SbfRinex(unittest.TestCase):
         self.assertGreaterEqual(min(counts.values()), 3, counts)
 
     def test_records_by_their_bits_are_those_that_were_broadcast(self):
-        self.check_records(f"{OBSERVED}, {BY_BITS}", "R")
+        self.check_records(OBSERVED + BY_BITS, "R")
 
     def test_decoded_records_are_those_that_were_broadcast(self):
-        self.check_records(f"{OBSERVED}, {DECODED}", "GRE")
+        self.check_records(OBSERVED + DECODED, "GRE")
 
     def test_bits_are_those_of_the_records(self):
         """GPS subframes with their parity (IS-GPS-200, table 20-XIV), I/NAV pages with their CRC, against the blocks decoded."""
-        folder = self.folder('"RawNavBits", "GPS", "GAL"')
+        folder = self.folder(("RawNavBits", "GPS", "GAL"))
         blocks = list(blocks_of((folder / "heard.sbf").read_bytes()))
         records_told = {struct.unpack_from("<B", body, 6)[0]: body for number, body in blocks if number in (5891, 4002)}
         compared = {"gps": 0, "galileo": 0}
@@ -178,7 +177,7 @@ class SbfRinex(unittest.TestCase):
 
     def test_rnx2rtkp_finds_the_antenna(self):
         """Without any cause of an error, to what a millimetre in the ranges leaves."""
-        folder = self.folder(f"{OBSERVED}, {DECODED}", only_terms())
+        folder = self.folder(OBSERVED + DECODED, only_terms())
         truth = to_ecef(*PLACE)
         for systems in (("gps",), ("gps", "galileo")):
             errors = [math.dist(truth, place) for place in solved(folder / "found", systems).values()]

@@ -47,6 +47,14 @@ def open_folder():
     return folder
 
 
+def septentrio_that_sends(folder, *blocks):
+    """A board file in the folder: septentrio-sbf, which sends these blocks from the factory on."""
+    board = (ROOT / "boards/receivers/septentrio-sbf.toml").read_text(encoding="utf-8")
+    path = pathlib.Path(folder, "board.toml")
+    path.write_text(board + f"\n[sbf]\nblocks = {list(blocks)}\n", encoding="utf-8")
+    return path
+
+
 class Emulator:
     """`skyloop run`, or another command that has ports, in the background; `tty` is the path of its first port."""
 

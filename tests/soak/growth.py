@@ -5,7 +5,7 @@ import statistics
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "integration"))
-from session import SKYLOOP, held_by, open_folder, skyloop  # noqa: E402,F401  (for those who import us)
+from session import SKYLOOP, held_by, open_folder, septentrio_that_sends, skyloop  # noqa: E402,F401  (for those who import us)
 
 FEWEST = 9  # looks that tell anything of growth
 SLACK_KB = 2048

@@ -11,7 +11,7 @@ import subprocess
 import time
 import unittest
 
-from growth import SKYLOOP, Growth, open_folder, skyloop
+from growth import SKYLOOP, Growth, open_folder, septentrio_that_sends, skyloop
 
 HOURS = float(os.environ.get("SKYLOOP_SOAK_HOURS", "0.25"))
 SCENARIO = pathlib.Path(__file__).with_name("day.toml")
@@ -66,8 +66,9 @@ def day(board, client):
     """What is wrong with one pair, and a line of what was seen."""
     with open_folder() as name:
         out = pathlib.Path(name, "out")
-        code, said, growth = watched([SKYLOOP, "simulate", str(SCENARIO), "--board", board, "--port", f"client:{client}",
-                                      "--duration", str(HOURS * 3600), "--out", str(out)])
+        profile = septentrio_that_sends(name, "PVTGeodetic", "DOP") if board == "septentrio-sbf" else board
+        code, said, growth = watched([SKYLOOP, "simulate", str(SCENARIO), "--board", str(profile), "--port",
+                                      f"client:{client}", "--duration", str(HOURS * 3600), "--out", str(out)])
         wrong = [] if code == 0 else [f"ended {code}: {said}"]
         if growth.fault():
             wrong.append(growth.fault())

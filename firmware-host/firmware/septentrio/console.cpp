@@ -106,10 +106,9 @@ SeptentrioConsole::SeptentrioConsole(const BoardProfile& board, const ConfigStor
 // The board or a scenario may have it begin in another way than the factory's settings say.
 void SeptentrioConsole::adopt(const ConfigStore& store) {
     SeptentrioSettings& settings = state_.settings;
-    if (board_.sbf_blocks && board_.sbf_blocks->empty())
-        settings.set(group_of("SBFOutput"), {"Stream1", "none", "none", "off"});
-    else if (board_.sbf_blocks)
-        settings.set(group_of("SBFOutput"), {"Stream1", "COM1", fmt::format("{}", fmt::join(*board_.sbf_blocks, "+"))});
+    if (!board_.sbf_blocks.empty())
+        settings.set(group_of("SBFOutput"),
+                     {"Stream1", "COM1", fmt::format("{}", fmt::join(board_.sbf_blocks, "+")), "OnChange"});
     const auto speed = [&](const char* port, std::uint32_t item) {
         settings.set(group_of("COMSettings"), {port, fmt::format("baud{}", store.value(item))});
     };

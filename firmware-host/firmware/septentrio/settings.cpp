@@ -219,7 +219,6 @@ SeptentrioSettings::SeptentrioSettings() {
         for (const std::string& index : split_words(group.indices, ' '))
             values_[key_of(group.name, index)] = defaults;
     }
-    values_["SBFOutput, Stream1"] = {"COM1", std::string(default_blocks), "OnChange"};
 }
 
 const std::vector<std::string>& SeptentrioSettings::values(std::string_view name, std::string_view index) const {

@@ -22,7 +22,7 @@ struct SettingAnswer {
 /// State: every value. Values are in the maker's spelling where this receiver knows the words.
 class SeptentrioSettings {
 public:
-    /// As the factory leaves it, but that the first stream sends default_blocks.
+    /// As the factory leaves it.
     SeptentrioSettings();
 
     /// Values of a group, in the order of its arguments. @param index of the group; empty where it has none

@@ -69,10 +69,6 @@ std::optional<std::uint64_t> interval_ms(std::string_view interval);
 /// "COM1", "USB1": how the receiver calls a port; empty for one that has no command line.
 std::string_view descriptor_of(PortId port);
 
-/// What it sends from the factory on by its first UART. A real one sends nothing until it is told to.
-inline constexpr std::string_view default_blocks =
-    "PVTGeodetic+PosCovGeodetic+VelCovGeodetic+DOP+EndOfPVT+AttEuler+AuxAntPositions+ChannelStatus+ReceiverStatus";
-
 /// Equal but for the case of letters.
 bool same_word(std::string_view a, std::string_view b);
 

@@ -87,7 +87,7 @@ TEST_F(Console, RefusesWhatItDoesNotHaveAndChangesNothing) {
     EXPECT_EQ(say("sem,PVT,95"), "$R? ElevationMask: Argument 'Mask' is invalid!\r\nCOM1>");
     EXPECT_EQ(say("srd,a,b,c"), "$R? ReceiverDynamics: Argument 'c' is invalid!\r\nCOM1>");
     EXPECT_EQ(say("make coffee"), "$R? ASCII commands: Invalid command!\r\nCOM1>");
-    EXPECT_THAT(say("gso,Stream1"), HasSubstr(std::string(default_blocks) + ", OnChange"));
+    EXPECT_THAT(say("gso,Stream1"), HasSubstr("none, none, off"));
 }
 
 TEST_F(Console, RefusesWordsThatThereAreNot) {
@@ -287,10 +287,8 @@ TEST_F(Console, StartsAgainAsSaved) {
     EXPECT_EQ(outcome_.restart, StartKind::cold);
 }
 
-// As a real one does.
 TEST(SilentConsole, SendsNothingUntilItIsToldAndAfterItsFactorySettings) {
-    BoardProfile board = septentrio_board();
-    board.sbf_blocks.emplace();
+    const BoardProfile board = septentrio_board();
     ConfigStore store(factory_config(board));
     SeptentrioConsole console(board, store);
     const auto say = [&](const char* line) {
@@ -419,7 +417,12 @@ protected:
     GpsTime now_ = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500).time;
 };
 
-TEST_F(SeptentrioReceiver, SendsFromTheFactoryOnAndWhatItIsToldAfterwards) {
+TEST_F(SeptentrioReceiver, SendsFromTheFactoryOnWhatItsBoardNames) {
+    BoardProfile board = septentrio_board();
+    board.sbf_blocks = {"PVTGeodetic",     "PosCovGeodetic", "VelCovGeodetic", "DOP",           "AttEuler",
+                        "AuxAntPositions", "EndOfPVT",       "ChannelStatus",  "ReceiverStatus"};
+    receiver_ = Receiver(board, {});
+    receiver_.start(now_);
     const auto first = blocks_in(wait(1010ms));
     ASSERT_GE(first.size(), 9U);
     EXPECT_EQ(std::vector<int>(first.begin(), first.begin() + 9),
@@ -427,6 +430,10 @@ TEST_F(SeptentrioReceiver, SendsFromTheFactoryOnAndWhatItIsToldAfterwards) {
     say("sso,Stream1,COM1,none,off");
     wait(100ms);
     EXPECT_TRUE(blocks_in(wait(1s)).empty());
+}
+
+TEST_F(SeptentrioReceiver, SendsNothingAndThenWhatItIsTold) {
+    EXPECT_TRUE(wait(2s).empty());
     say("sso,Stream1,COM1,Attitude,msec100");
     say("sso,Stream2,COM1,RFStatus+QualityInd,sec1");
     wait(100ms);

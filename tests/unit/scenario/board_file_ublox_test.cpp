@@ -385,6 +385,9 @@ TEST(ShippedBoards, HaveTheFactoryConfigurationOfTheirFirmware) {
     EXPECT_EQ(factory_of(m8, "CFG-SIGNAL-GAL_ENA"), 0U);
     EXPECT_EQ(factory_of(m10, "CFG-SIGNAL-GLO_ENA"), 0U);
     EXPECT_EQ(factory_of(m10, "CFG-SIGNAL-QZSS_L1S_ENA"), 1U);
+    // Dumps of HPG 1.32 and 1.51 have it at 0; a NEO-M9N refuses it (PX4-GPSDrivers, pull request 225).
+    EXPECT_EQ(factory_of(f9p, "CFG-SIGNAL-QZSS_L1S_ENA"), 0U);
+    EXPECT_EQ(factory_of(m9, "CFG-SIGNAL-QZSS_L1S_ENA"), ~std::uint64_t{0}) << "absent";
     EXPECT_EQ(factory_of(m10, "CFG-SIGNAL-BDS_B1C_ENA"), 0U);
     EXPECT_EQ(factory_of(f9p, "CFG-SIGNAL-GPS_L2C_ENA"), 1U);
     EXPECT_EQ(factory_of(f9p, "CFG-NAVSPG-INFIL_MINELEV"), 10U);
