@@ -35,10 +35,10 @@ MavlinkHilGps mavlink_hil_gps(const firmware::NavigationState& state, HilGpsAccu
     message.time_usec = known.time_usec;
     message.fix_type = std::min(known.fix_type, fix_type_3d);
     message.satellites_visible = known.satellites_visible;
-    if (!firmware::has_solution(state)) return message;
     message.lat = known.lat;
     message.lon = known.lon;
-    message.alt = firmware::field<std::int32_t>(firmware::msl_height(fix) * 1000);
+    if (firmware::has_place(state)) message.alt = firmware::field<std::int32_t>(firmware::msl_height(fix) * 1000);
+    if (!firmware::has_solution(state)) return message;
     put_accuracy(fix, accuracy, message);
     message.vel = known_hundredths(fix.speed.value());
     message.vn = firmware::field<std::int16_t>(fix.velocity.north * 100);

@@ -10,16 +10,19 @@ namespace skyloop::firmware {
 namespace {
 
 // GPS_INPUT_IGNORE_FLAGS of common.xml.
-constexpr std::uint16_t ignore_hdop = 2, ignore_vdop = 4, every_ignore_flag = 0xFF;
+constexpr std::uint16_t ignore_alt = 1, ignore_hdop = 2, ignore_vdop = 4, every_ignore_flag = 0xFF;
 
-void put_msp_position(const Fix& fix, MspSensorGps& to) {
+void put_msp_place(const Fix& fix, MspSensorGps& to) {
+    to.longitude = field<std::int32_t>(fix.position.longitude.deg() * 1e7);
+    to.latitude = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
+    to.msl_altitude = field<std::int32_t>(msl_height(fix) * 100);
+}
+
+void put_msp_estimates(const Fix& fix, MspSensorGps& to) {
     to.h_acc = field<std::uint16_t>(fix.horizontal_accuracy.value() * 100);
     to.v_acc = field<std::uint16_t>(fix.vertical_accuracy.value() * 100);
     to.speed_acc = field<std::uint16_t>(fix.speed_accuracy.value() * 100);
     to.dop = fix.dop.hdop > 0 ? field<std::uint16_t>(fix.dop.hdop * 100) : std::uint16_t{9999};
-    to.longitude = field<std::int32_t>(fix.position.longitude.deg() * 1e7);
-    to.latitude = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
-    to.msl_altitude = field<std::int32_t>(msl_height(fix) * 100);
     to.vel_north = field<std::int32_t>(fix.velocity.north * 100);
     to.vel_east = field<std::int32_t>(fix.velocity.east * 100);
     to.vel_down = field<std::int32_t>(fix.velocity.down * 100);
@@ -43,10 +46,14 @@ std::uint64_t posix_microseconds(const Fix& fix) {
     return static_cast<std::uint64_t>(gps_us + (gps_epoch_posix_s - fix.leap_seconds) * 1'000'000);
 }
 
-void put_mavlink_position(const Fix& fix, MavlinkGpsInput& to) {
+void put_mavlink_place(const Fix& fix, MavlinkGpsInput& to) {
     to.lat = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
     to.lon = field<std::int32_t>(fix.position.longitude.deg() * 1e7);
     to.alt = static_cast<float>(msl_height(fix));
+    to.ignore_flags &= static_cast<std::uint16_t>(~ignore_alt);
+}
+
+void put_mavlink_estimates(const Fix& fix, MavlinkGpsInput& to) {
     if (fix.dop.hdop > 0)
         to.hdop = static_cast<float>(fix.dop.hdop);
     else
@@ -89,8 +96,9 @@ MspSensorGps msp_sensor_gps(const NavigationState& state) {
     if (state.time.date) message.gps_week = field<std::uint16_t>(static_cast<double>(stamp.week));
     if (state.time.time) message.ms_tow = whole_milliseconds(stamp);
     if (state.time.time && state.time.date) put_msp_clock(state, message);
+    if (has_place(state)) put_msp_place(fix, message);
     if (!has_solution(state)) return message;
-    put_msp_position(fix, message);
+    put_msp_estimates(fix, message);
     if (state.course) message.course = field<std::uint16_t>(state.course->deg() * 100);
     if (const auto attitude = pair_attitude(state))
         message.true_yaw = field<std::uint16_t>(attitude->heading_deg * 100);
@@ -101,11 +109,12 @@ MspSetRawGps msp_set_raw_gps(const NavigationState& state) {
     const Fix& fix = state.epoch.fix;
     MspSetRawGps message;
     message.satellites = reported_satellites(fix);
-    if (!has_solution(state)) return message;
-    message.fix = 1;
+    if (!has_place(state)) return message;
     message.latitude = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
     message.longitude = field<std::int32_t>(fix.position.longitude.deg() * 1e7);
     message.altitude = field<std::uint16_t>(msl_height(fix));
+    if (!has_solution(state)) return message;
+    message.fix = 1;
     message.speed = field<std::uint16_t>(fix.speed.value() * 100);
     return message;
 }
@@ -120,9 +129,10 @@ MavlinkGpsInput mavlink_gps_input(const NavigationState& state) {
     if (state.time.time) message.time_week_ms = whole_milliseconds(stamp);
     if (state.time.time && state.time.date) message.time_usec = posix_microseconds(fix);
     message.ignore_flags = every_ignore_flag;
+    if (has_place(state)) put_mavlink_place(fix, message);
     if (!has_solution(state)) return message;
     message.ignore_flags = 0;
-    put_mavlink_position(fix, message);
+    put_mavlink_estimates(fix, message);
     if (const auto attitude = pair_attitude(state)) {
         const auto yaw = field<std::uint16_t>(attitude->heading_deg * 100);
         message.yaw = yaw == 0 ? std::uint16_t{36000} : yaw;

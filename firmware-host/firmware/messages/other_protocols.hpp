@@ -23,12 +23,16 @@ struct MavlinkSent {
 /// streams say (septentrio/output.hpp).
 std::vector<Bytes> make_protocol_messages(Personality personality, const ReportContext& context, MavlinkSent& sent);
 
-/// Its values without a fix: fix type 1, zeros, accuracies 65535, DOP 99.99; week 65535 while time is not known.
+/// Its values without a fix: fix type 0, the last position, zeros before the first, velocity 0, accuracies 65535, DOP
+/// 99.99; week 65535 while time is not known. The position stays since the receivers that speak it, ArduPilot's
+/// peripherals, send the last one that they know (Tools/AP_Periph/msp.cpp, send_msp_GPS()), and clients take it as it
+/// comes (Betaflight, src/main/msp/msp.c; INAV, src/main/io/gps_msp.c).
 MspSensorGps msp_sensor_gps(const NavigationState& state);
-/// Its values without a fix: zeros.
+/// Its values without a fix: the last position, zeros before the first, and zeros else.
 MspSetRawGps msp_set_raw_gps(const NavigationState& state);
-/// Its values without a fix: fix type 1, all ignore flags, DOP 65535; times 0 while time is not known. The flag of a
-/// DOP that is not known is set with a fix, too.
+/// Its values without a fix: fix type 1, the last position, zeros before the first, all other ignore flags, DOP 65535;
+/// times 0 while time is not known. Latitude and longitude have no flag, and ArduPilot takes them as they come
+/// (AP_GPS_MAV.cpp). The flag of a DOP that is not known is set with a fix, too.
 MavlinkGpsInput mavlink_gps_input(const NavigationState& state);
 
 /// Their values without a fix: those that mean nothing (sbf_blocks.hpp), with error 1.

@@ -19,6 +19,9 @@ inline bool has_solution(const NavigationState& state) {
     return fix.has_position() && fix.type != FixType::dead_reckoning && state.fix_ok;
 }
 
+/// The position in the fix is one, if an old one: messages without a flag for it go on with the last.
+inline bool has_place(const NavigationState& state) { return has_solution(state) || state.position_known; }
+
 /// As ArduPilot and MAVLink (GPS_FIX_TYPE) number them: 1 none, 2 2D, 3 3D, 4 differential, 5 RTK float, 6 RTK fixed.
 inline std::uint8_t autopilot_fix_type(const NavigationState& state) {
     if (!has_solution(state)) return 1;

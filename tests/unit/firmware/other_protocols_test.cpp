@@ -78,6 +78,32 @@ TEST_F(OtherProtocols, MspWithoutAFixHasNoPosition) {
     EXPECT_EQ(raw.latitude, 0);
 }
 
+// A vehicle whose receiver has lost its fix is not in the Gulf of Guinea: clients take the position whatever the fix
+// type.
+TEST_F(OtherProtocols, TheLastPositionStaysWithoutAFix) {
+    NavigationState lost = navigating();
+    lost.epoch.fix.type = FixType::none;
+    lost.position_known = lost.ever_had_fix = true;
+    const MspSensorGps msp = msp_sensor_gps(lost);
+    EXPECT_EQ(msp.fix_type, 0);
+    EXPECT_EQ(msp.latitude, 464775000);
+    EXPECT_EQ(msp.longitude, -307326000);
+    EXPECT_EQ(msp.msl_altitude, 5563);
+    EXPECT_EQ(msp.h_acc, 0xFFFF);
+    EXPECT_EQ(msp.vel_north, 0);
+    const MspSetRawGps raw = msp_set_raw_gps(lost);
+    EXPECT_EQ(raw.fix, 0);
+    EXPECT_EQ(raw.latitude, 464775000);
+    EXPECT_EQ(raw.altitude, 56);
+    EXPECT_EQ(raw.speed, 0);
+    const MavlinkGpsInput input = mavlink_gps_input(lost);
+    EXPECT_EQ(input.fix_type, 1);
+    EXPECT_EQ(input.lat, 464775000);
+    EXPECT_FLOAT_EQ(input.alt, 55.63F);
+    EXPECT_EQ(input.ignore_flags, 0xFE) << "the altitude is there, the rest is not";
+    EXPECT_EQ(input.hdop, 65535);
+}
+
 TEST_F(OtherProtocols, AnUnknownWeekLeavesTheTimeOfWeek) {
     NavigationState state = navigating();
     const std::uint32_t tow = msp_sensor_gps(state).ms_tow;

@@ -63,5 +63,19 @@ TEST(HilGps, WithoutAFixSaysThatNothingIsKnown) {
     EXPECT_EQ(m.cog, 65535);
 }
 
+TEST(HilGps, WithoutAFixTheLastPositionStays) {
+    SampleEpoch epoch;
+    const MavlinkHilGps before = mavlink_hil_gps(epoch.state, HilGpsAccuracy::px4_cm);
+    epoch.state.epoch.fix.type = FixType::none;
+    epoch.state.position_known = true;
+    const MavlinkHilGps m = mavlink_hil_gps(epoch.state, HilGpsAccuracy::px4_cm);
+    EXPECT_EQ(m.fix_type, 1);
+    EXPECT_EQ(m.lat, before.lat);
+    EXPECT_EQ(m.lon, before.lon);
+    EXPECT_EQ(m.alt, before.alt);
+    EXPECT_NEAR(m.lat, 470000180, 1);
+    EXPECT_EQ(m.eph, 65535);
+}
+
 }  // namespace
 }  // namespace skyloop
