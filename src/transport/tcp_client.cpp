@@ -8,14 +8,14 @@
 #include <cstring>
 #include <utility>
 
-#include "skyloop/base/steady_clock.hpp"
 #include "tcp_socket.hpp"
 
 namespace skyloop {
 namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
-constexpr std::int64_t try_every_ns = second_ns / 2;
+constexpr std::int64_t hurry_ns = 60 * second_ns;  // a program that is started beside this one has come by then
+constexpr std::int64_t hurried_pause_ns = second_ns / 200, pause_ns = second_ns / 2;
 constexpr std::int64_t answer_patience_ns = 5 * second_ns;
 
 }  // namespace
@@ -25,12 +25,12 @@ struct TcpClientTransport::Route {
     const addrinfo* next = nullptr;
 };
 
-TcpClientTransport::TcpClientTransport(TcpAddress address, std::unique_ptr<Route> route)
-    : address_(std::move(address)), route_(std::move(route)) {}
+TcpClientTransport::TcpClientTransport(TcpAddress address, std::unique_ptr<Route> route, Clock clock)
+    : address_(std::move(address)), route_(std::move(route)), clock_(std::move(clock)), alone_since_ns_(clock_()) {}
 
 TcpClientTransport::~TcpClientTransport() = default;
 
-Result<std::unique_ptr<TcpClientTransport>> TcpClientTransport::open(const TcpAddress& address) {
+Result<std::unique_ptr<TcpClientTransport>> TcpClientTransport::open(const TcpAddress& address, Clock clock) {
     if (address.port == 0)
         return fail(ErrorCode::usage, fmt::format("tcp-connect {}: port 0 cannot be called; expected 1 to 65535",
                                                   shown_address(address)));
@@ -38,8 +38,8 @@ Result<std::unique_ptr<TcpClientTransport>> TcpClientTransport::open(const TcpAd
     if (!found) return fail(found.error());
     auto route = std::make_unique<Route>();
     route->all = std::move(*found);
-    std::unique_ptr<TcpClientTransport> wire(new TcpClientTransport(address, std::move(route)));
-    wire->begin_attempt(steady_clock_ns());
+    std::unique_ptr<TcpClientTransport> wire(new TcpClientTransport(address, std::move(route), std::move(clock)));
+    wire->begin_attempt(wire->alone_since_ns_);
     return wire;
 }
 
@@ -70,7 +70,7 @@ void TcpClientTransport::follow_attempt(std::int64_t now_ns) {
 void TcpClientTransport::give_up(int reason) {
     socket_ = FileDescriptor();
     if (!std::exchange(attempted_, true))
-        news_.push_back(fmt::format("{}: {}; it is tried every 0.5 s", shown_address(address_), std::strerror(reason)));
+        news_.push_back(fmt::format("{}: {}; trying again", shown_address(address_), std::strerror(reason)));
 }
 
 void TcpClientTransport::connected() {
@@ -85,8 +85,8 @@ void TcpClientTransport::lose() {
     socket_ = FileDescriptor();
     connected_ = false;
     attempted_ = true;  // the sentence below says what will be done
-    attempt_began_ns_ = steady_clock_ns();
-    news_.push_back(fmt::format("{}: the connection is lost; it is tried every 0.5 s", shown_address(address_)));
+    alone_since_ns_ = attempt_began_ns_ = clock_();
+    news_.push_back(fmt::format("{}: connection lost; trying again", shown_address(address_)));
 }
 
 void TcpClientTransport::follow() {
@@ -94,9 +94,10 @@ void TcpClientTransport::follow() {
         if (receive_available(socket_.value(), unread_) != StreamState::open) lose();
         return;
     }
-    const std::int64_t now_ns = steady_clock_ns();
+    const std::int64_t now_ns = clock_();
     if (socket_.open()) return follow_attempt(now_ns);
-    if (now_ns - attempt_began_ns_ >= try_every_ns) begin_attempt(now_ns);
+    const std::int64_t pause = now_ns - alone_since_ns_ < hurry_ns ? hurried_pause_ns : pause_ns;
+    if (now_ns - attempt_began_ns_ >= pause) begin_attempt(now_ns);
 }
 
 std::size_t TcpClientTransport::write(ByteSpan bytes) {

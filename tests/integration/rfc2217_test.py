@@ -106,7 +106,7 @@ class TcpConnectTest(unittest.TestCase):
                 for _ in range(2):
                     with server.accept()[0] as client:
                         self.assertGreater(read_for(client, 2.5)[0].count(b"GGA"), 0)
-                emulator.said("(the connection is lost; it is tried every 0.5 s)")
+                emulator.said("(connection lost; trying again)")
                 with server.accept()[0] as client:
                     client.sendall(POLL_OF_MON_VER)
                     self.assertIn(POLL_OF_MON_VER[:4], read_for(client, 3)[0])
@@ -116,7 +116,7 @@ class TcpConnectTest(unittest.TestCase):
         with socket.create_server(("127.0.0.1", 0)) as taken:
             number = taken.getsockname()[1]
         with Emulator("--port", f"tcp-connect:127.0.0.1:{number}", "--start", START, "--model", "ideal") as emulator:
-            emulator.said("(Connection refused; it is tried every 0.5 s)")
+            emulator.said("(Connection refused; trying again)")
             with socket.create_server(("127.0.0.1", number)) as server:
                 server.settimeout(10)
                 with server.accept()[0] as client:

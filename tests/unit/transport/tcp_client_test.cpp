@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
+
 #include "tcp_peer.hpp"
 
 namespace skyloop {
@@ -59,7 +61,7 @@ TEST(TcpClientTransport, CallsAgainWhenTheServerHasGone) {
     EXPECT_EQ(wire->write(to_bytes("fresh")), 5U);
     EXPECT_EQ(second.read(5), "fresh") << "and nothing of before";
     EXPECT_EQ(wire->connections(), 2U);
-    EXPECT_THAT(wire->take_news(), ElementsAre(HasSubstr("connected"), HasSubstr("the connection is lost; it is tried"),
+    EXPECT_THAT(wire->take_news(), ElementsAre(HasSubstr("connected"), HasSubstr("connection lost; trying again"),
                                                HasSubstr("connected")));
     EXPECT_TRUE(wire->take_news().empty());
 }
@@ -70,11 +72,52 @@ TEST(TcpClientTransport, WaitsForAServerThatComesLater) {
     EXPECT_TRUE(becomes_true([&] {
         wire->line();
         const auto news = wire->take_news();
-        return news.size() == 1 && news[0].find("Connection refused; it is tried every 0.5 s") != std::string::npos;
+        return news.size() == 1 && news[0].find("Connection refused; trying again") != std::string::npos;
     }));
     const PlayedServer server(port);
     EXPECT_TRUE(becomes_true([&] { return wire->line().connected; }));
     EXPECT_THAT(wire->take_news(), ElementsAre(EndsWith(": connected"))) << "a failure of a row is told once";
+}
+
+// The kernel answers meanwhile; no time passes for the wire.
+bool connects(Transport& wire) {
+    for (int i = 0; i < 20 && !wire.line().connected; ++i)
+        ::usleep(1000);
+    return wire.line().connected;
+}
+
+// Alone for so long, and so much later there is a server: whether it is called at once.
+bool calls_after(std::chrono::nanoseconds alone, std::chrono::nanoseconds pause) {
+    const std::uint16_t port = PlayedServer().port();
+    std::chrono::nanoseconds now{0};
+    const auto wire = std::move(*TcpClientTransport::open({"127.0.0.1", port}, [&] { return now.count(); }));
+    now = alone;
+    EXPECT_FALSE(connects(*wire)) << "nobody is there";
+    const PlayedServer server(port);
+    now += pause;
+    return connects(*wire);
+}
+
+TEST(TcpClientTransport, CallsEveryFewMillisecondsForAMinute) {
+    using namespace std::chrono_literals;
+    EXPECT_TRUE(calls_after(0s, 5ms)) << "a UART of Betaflight's SITL must find somebody at its first byte";
+    EXPECT_TRUE(calls_after(59s, 5ms));
+    EXPECT_FALSE(calls_after(0s, 4ms));
+    EXPECT_FALSE(calls_after(60s, 490ms)) << "then it has come, or comes some time";
+    EXPECT_TRUE(calls_after(60s, 500ms));
+}
+
+TEST(TcpClientTransport, HurriesAgainAfterALostConnection) {
+    using namespace std::chrono_literals;
+    const PlayedServer server;
+    std::chrono::nanoseconds now{0};
+    const auto wire = std::move(*TcpClientTransport::open({"127.0.0.1", server.port()}, [&] { return now.count(); }));
+    EXPECT_TRUE(connects(*wire));
+    now = 1h;  // its server starts anew
+    server.accept().close();
+    EXPECT_TRUE(becomes_true([&] { return !wire->line().connected; }));
+    now += 5ms;
+    EXPECT_TRUE(connects(*wire));
 }
 
 TEST(TcpClientTransport, SurvivesAResetWhileItWrites) {
