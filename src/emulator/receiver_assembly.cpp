@@ -21,7 +21,7 @@ namespace {
 Result<firmware::BoardProfile> board_of(const ReceiverEntry& entry, const DataFolders& data) {
     auto board = find_board(entry.board, board_folders(data));
     if (!board) return fail(board.error());
-    if (entry.baud) board->baud = *entry.baud;
+    if (const auto speed = speed_of_wires(entry); speed || entry.baud) board->baud = speed ? *speed : *entry.baud;
     if (entry.export_limits) board->export_limits = *entry.export_limits;
     if (!entry.constellations.empty()) board->constellations = entry.constellations;
     if (!entry.sentences.empty()) board->sentences.clear();

@@ -137,6 +137,9 @@ Result<WireRequest> parse_wire(std::string_view text, const BoardProfile& board)
     }
     const auto uri = parse_port_uri(wire.uri);
     if (!uri) return fail(uri.error());
+    if (uri->baud && wire.port != PortId::uart1)
+        return fail(ErrorCode::usage, fmt::format("port '{}': {} takes no speed; expected @BAUD at uart1 alone", text,
+                                                  firmware::port_names[static_cast<std::size_t>(wire.port)]));
     const bool has_usb = std::find(board.ports.begin(), board.ports.end(), PortId::usb) != board.ports.end();
     if (uri->kind == WireKind::usbip && !named && has_usb) wire.port = PortId::usb;
     return wire;
@@ -153,6 +156,15 @@ Result<std::vector<WireRequest>> wires_of(const ReceiverEntry& entry, const Boar
     return wires;
 }
 
+std::optional<std::uint32_t> speed_of_wires(const ReceiverEntry& entry) {
+    for (const std::string& text : entry.ports) {
+        const std::size_t name = end_of_name(text);
+        const auto uri = parse_port_uri(name == std::string::npos ? text : text.substr(name + 1));
+        if (uri && uri->baud) return uri->baud;
+    }
+    return std::nullopt;
+}
+
 bool has_scripted_client(const Scenario& scenario) {
     return std::any_of(scenario.receivers.begin(), scenario.receivers.end(), [](const ReceiverEntry& receiver) {
         return std::any_of(receiver.ports.begin(), receiver.ports.end(), leads_to_client);
@@ -161,6 +173,7 @@ bool has_scripted_client(const Scenario& scenario) {
 
 void keep_scripted_clients(Scenario& scenario) {
     for (ReceiverEntry& receiver : scenario.receivers) {
+        if (const auto speed = speed_of_wires(receiver)) receiver.baud = speed;
         std::erase_if(receiver.ports, [](const std::string& port) { return !leads_to_client(port); });
         if (receiver.ports.empty()) receiver.ports = {"file:/dev/null"};
     }

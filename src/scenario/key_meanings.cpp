@@ -123,8 +123,8 @@ constexpr KeyMeaning run_meanings[] = {
     {"receiver", "name", "what messages and `base` call it", "receiver0, receiver1, …"},
     {"receiver", "board", "a profile of `skyloop boards`, or the path of a board file (`.toml`)"},
     {"receiver", "port",
-     "wires: pty[:LINK], serial:DEVICE[@BAUD], usb:VID:PID, hid:VID:PID, usbip:[HOST:]PORT, tcp:[HOST:]PORT, "
-     "tcp-connect:HOST:PORT, rfc2217:[HOST:]PORT, file:PATH, -, client:NAME; NAME= before it says which port",
+     "wires: pty[:LINK], serial:DEVICE[@BAUD], usb:VID:PID, hid:VID:PID, usbip:[HOST:]PORT, tcp:[HOST:]PORT[@BAUD], "
+     "tcp-connect:HOST:PORT[@BAUD], rfc2217:[HOST:]PORT, file:PATH, -, client:NAME; NAME= before it says which port",
      "a pty"},
     {"receiver", "power",
      "the actuator that the fault power_cut switches in a live run: relay:, gpio:, hub:, line: or command: "

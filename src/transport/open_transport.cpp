@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "line_options.hpp"
 #include "skyloop/base/spelling.hpp"
 #include "skyloop/hid/cp2110.hpp"
 #include "skyloop/transport/file.hpp"
@@ -29,8 +30,8 @@ constexpr std::array<Scheme, 9> schemes{
      {"usb", WireKind::usb, "usb:VID:PID[:SERIAL]", "a device"},
      {"hid", WireKind::hid, "hid:VID:PID[:SERIAL]", "a device"},
      {"usbip", WireKind::usbip, "usbip:[HOST:]PORT", "a port"},
-     {"tcp", WireKind::tcp, "tcp:[HOST:]PORT", "a port"},
-     {"tcp-connect", WireKind::tcp_connect, "tcp-connect:HOST:PORT", "a host and its port"},
+     {"tcp", WireKind::tcp, "tcp:[HOST:]PORT[@BAUD]", "a port"},
+     {"tcp-connect", WireKind::tcp_connect, "tcp-connect:HOST:PORT[@BAUD]", "a host and its port"},
      {"rfc2217", WireKind::rfc2217, "rfc2217:[HOST:]PORT", "a port"},
      {"file", WireKind::file, "file:PATH", "a path"}}};
 
@@ -59,6 +60,17 @@ Result<TcpAddress> parse_network(WireKind kind, std::string_view rest) {
     return address;
 }
 
+// A socket has no speed; what stands behind the address is the one that the receiver has been given.
+Result<std::optional<std::uint32_t>> split_speed(std::string_view& address) {
+    const std::size_t at = address.rfind('@');
+    if (at == std::string_view::npos) return std::optional<std::uint32_t>();
+    const std::string_view text = address.substr(at + 1);
+    address = address.substr(0, at);
+    if (const auto baud = read_baud(text)) return baud;
+    return fail(ErrorCode::usage, fmt::format("the speed '{}' is not understood; expected ADDRESS@BAUD, {} to {}", text,
+                                              lowest_baud, highest_baud));
+}
+
 template <class Part>
 Result<void> take(Result<Part> read, Part& part) {
     if (!read) return fail(read.error());
@@ -74,9 +86,11 @@ Result<void> read_rest(std::string_view rest, PortUri& port) {
         case WireKind::usb:
         case WireKind::hid:
             return take(parse_bridge(port.kind, rest), port.bridge);
-        case WireKind::usbip:
         case WireKind::tcp:
         case WireKind::tcp_connect:
+            if (auto baud = take(split_speed(rest), port.baud); !baud) return baud;
+            [[fallthrough]];
+        case WireKind::usbip:
         case WireKind::rfc2217:
             return take(parse_network(port.kind, rest), port.address);
         case WireKind::pty:

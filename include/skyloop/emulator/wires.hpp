@@ -1,7 +1,9 @@
 /// The ports of a receiver and the wires that a scenario plugs into them.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +35,10 @@ Result<WireRequest> parse_wire(std::string_view text, const firmware::BoardProfi
 /// The wires of one receiver, as they were asked for; opens none. Without any in the scenario it is one pty.
 Result<std::vector<WireRequest>> wires_of(const ReceiverEntry& entry, const firmware::BoardProfile& board);
 
+/// The speed behind the address of a network wire, bit/s: UART1 begins at it, as if a client had set it before it was
+/// connected. Nothing where no wire has one.
+std::optional<std::uint32_t> speed_of_wires(const ReceiverEntry& entry);
+
 /// A place at which bytes come out, and what messages call whose it is.
 struct WireEnd {
     std::string owner;      ///< "port of 'rover'"
@@ -53,8 +59,8 @@ Result<void> check_ends(const std::vector<WireEnd>& ends);
 /// Whether a wire leads to a client that lives in simulated time: "client:NAME".
 bool has_scripted_client(const Scenario& scenario);
 
-/// Takes all wires from the receivers but those to scripted clients; a receiver that is left without one writes to
-/// nowhere, where it would get a pty.
+/// Takes all wires from the receivers but those to scripted clients, and leaves the speed_of_wires(); a receiver that
+/// is left without one writes to nowhere, where it would get a pty.
 void keep_scripted_clients(Scenario& scenario);
 
 }  // namespace skyloop

@@ -367,6 +367,18 @@ TEST(Assembly, KeysOfRoutesBesideTimesAreAWarning) {
     EXPECT_THAT(warnings(timed, ""), Not(Contains(told)));
 }
 
+TEST(Assembly, AReceiverBeginsAtTheSpeedBehindTheAddressOfItsWire) {
+    const auto baud = [](const std::string& keys) {
+        return assembled("[[receiver]]\nboard = \"ublox-m10\"\n" + keys)
+            .emulator->receiver()
+            .baud(firmware::PortId::uart1);
+    };
+    EXPECT_EQ(baud("port = \"tcp:0\""), 38400U);
+    EXPECT_EQ(baud("port = \"tcp:0@115200\""), 115200U);
+    EXPECT_EQ(baud("port = \"tcp-connect:127.0.0.1:9@230400\"\nbaud = 9600"), 230400U);
+    EXPECT_EQ(baud("port = [\"pty\", \"uart1=tcp:0@57600\"]"), 57600U);
+}
+
 TEST(Assembly, TwoEndsAtOnePlaceAreRefused) {
     const auto two = [](const std::string& a, const std::string& b) {
         return refusal("[[receiver]]\nport = \"" + a + "\"\n[[receiver]]\nport = \"" + b + "\"").message;

@@ -75,6 +75,28 @@ TEST(Wires, AnUnknownNameListsThePortsOfTheBoard) {
     EXPECT_FALSE(parse_wire("usb=", board));
 }
 
+TEST(Wires, ASpeedBehindANetworkAddressIsWhereTheReceiverBegins) {
+    using firmware::PortId;
+    ReceiverEntry entry;
+    entry.ports = {"pty", "tcp-connect:127.0.0.1:5762@115200"};
+    EXPECT_EQ(speed_of_wires(entry), 115200U);
+    entry.ports = {"uart1=tcp:2000@230400"};
+    EXPECT_EQ(speed_of_wires(entry), 230400U);
+    entry.ports = {"tcp:2000", "serial:/dev/ttyUSB0@9600"};
+    EXPECT_EQ(speed_of_wires(entry), std::nullopt) << "that of a serial line is the line's";
+    const auto board = board_with({PortId::uart1, PortId::uart2, PortId::usb});
+    EXPECT_EQ(parse_wire("tcp:0@9600", board)->port, PortId::uart1);
+    EXPECT_EQ(parse_wire("usb=tcp:0@9600", board).error().message,
+              "port 'usb=tcp:0@9600': usb takes no speed; expected @BAUD at uart1 alone");
+    EXPECT_FALSE(parse_wire("uart2=tcp:0@9600", board));
+    Scenario scenario;
+    scenario.receivers = {entry, entry};
+    scenario.receivers[1].ports = {"tcp:2000@57600"};
+    keep_scripted_clients(scenario);
+    EXPECT_EQ(scenario.receivers[0].baud, std::nullopt);
+    EXPECT_EQ(scenario.receivers[1].baud, 57600U) << "a simulation sends the same bytes";
+}
+
 TEST(Wires, WithoutANameItIsUart1WhereverTheBoardListsIt) {
     using firmware::PortId;
     EXPECT_EQ(default_port(board_with({PortId::i2c, PortId::uart1, PortId::usb})), PortId::uart1);

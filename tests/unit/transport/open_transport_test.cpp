@@ -51,8 +51,8 @@ TEST(OpenTransport, RefusesClearly) {
     EXPECT_THAT(refusal("ptty:gps0").message, HasSubstr("did you mean 'pty'?"));
     EXPECT_EQ(refusal("can:0").message,
               "port 'can:0': no such kind of port; expected pty[:LINK], serial:DEVICE[@BAUD], usb:VID:PID[:SERIAL], "
-              "hid:VID:PID[:SERIAL], usbip:[HOST:]PORT, tcp:[HOST:]PORT, tcp-connect:HOST:PORT, rfc2217:[HOST:]PORT, "
-              "file:PATH, client:NAME or -");
+              "hid:VID:PID[:SERIAL], usbip:[HOST:]PORT, tcp:[HOST:]PORT[@BAUD], tcp-connect:HOST:PORT[@BAUD], "
+              "rfc2217:[HOST:]PORT, file:PATH, client:NAME or -");
     EXPECT_THAT(refusal("gps0").message, HasSubstr("no such kind of port"));
     EXPECT_THAT(refusal("").message, HasSubstr("no such kind of port"));
     EXPECT_THAT(refusal("memory").message, HasSubstr("no such kind of port"));
@@ -64,6 +64,20 @@ TEST(OpenTransport, RefusesClearly) {
                 StartsWith("port 'serial:/dev/ttyS0@quick': line '/dev/ttyS0@quick': the speed 'quick'"));
     EXPECT_EQ(refusal("serial:/dev/no-such-tty").code, ErrorCode::outside);
     EXPECT_EQ(refusal("file:/no/such/folder/x").code, ErrorCode::outside);
+}
+
+TEST(OpenTransport, TakesASpeedBehindTheAddressOfASocket) {
+    const auto speed = [](std::string_view uri) { return parse_port_uri(uri).value().baud; };
+    EXPECT_EQ(speed("tcp:2000"), std::nullopt);
+    EXPECT_EQ(speed("tcp:2000@115200"), 115200U);
+    EXPECT_EQ(speed("tcp:0.0.0.0:2000@9600"), 9600U);
+    EXPECT_EQ(speed("tcp-connect:[::1]:5762@230400"), 230400U);
+    EXPECT_EQ(parse_port_uri("tcp-connect:[::1]:5762@230400")->address.port, 5762);
+    EXPECT_EQ(refusal("tcp:2000@fast").message,
+              "port 'tcp:2000@fast': the speed 'fast' is not understood; expected ADDRESS@BAUD, 50 to 12000000");
+    EXPECT_THAT(refusal("tcp:2000@").message, HasSubstr("the speed ''"));
+    EXPECT_EQ(refusal("rfc2217:2217@9600").code, ErrorCode::usage) << "its client sets the line";
+    EXPECT_EQ(refusal("usbip:3240@9600").code, ErrorCode::usage);
 }
 
 TEST(MemoryTransport, KeepsAndFeedsBytes) {
