@@ -67,6 +67,11 @@ def test_a_port_whose_client_sets_the_line(skyloop_run):
     assert skyloop_run.tty.startswith("127.0.0.1:")
     assert skyloop_run.stop() in (0, 3)
 
+@pytest.mark.skyloop_scenario("met.toml", "--port", "tcp-connect:127.0.0.1:9")
+def test_a_port_that_calls_a_server(skyloop_run):
+    assert skyloop_run.tty == "127.0.0.1:9"
+    assert skyloop_run.stop() in (0, 3)
+
 @pytest.mark.skyloop_scenario("no_such_file.toml")
 def test_without_a_scenario(skyloop_run):
     pass
@@ -123,7 +128,7 @@ class ContinuousIntegrationTest(unittest.TestCase):
         cases = xml.etree.ElementTree.parse(self.path / "pytest.xml").getroot().iter("testcase")
         seen = {case.get("name"): "".join(child.tag + (child.get("message") or "") for child in case) for case in cases}
         for name in ("test_met", "test_evidence", "test_two_ports_and_an_early_end",
-                     "test_a_port_whose_client_sets_the_line"):
+                     "test_a_port_whose_client_sets_the_line", "test_a_port_that_calls_a_server"):
             self.assertEqual(seen[name], "", name + done.stdout)
         self.assertIn("failure", seen["test_that_has_to_fail"])
         self.assertIn("evidence:", seen["test_that_has_to_fail"])

@@ -23,7 +23,7 @@ import time
 import xml.etree.ElementTree
 
 # "port 0: /tmp/gps0 (pty)", "rover: port 1 (uart2): 127.0.0.1:2000 (tcp)", "port 0: 127.0.0.1:2000 (rfc2217)"
-PORT_LINE = re.compile(r"^(?:.+: )?port \d+(?: \(\w+\))?: (.+) \((?:pty|tcp|rfc2217)\)$", re.MULTILINE)
+PORT_LINE = re.compile(r"^(?:.+: )?port \d+(?: \(\w+\))?: (.+) \((?:pty|tcp|tcp-connect|rfc2217)\)$", re.MULTILINE)
 MET, NOT_MET, REFUSED = 0, 3, 2  # exit codes
 
 
@@ -54,8 +54,8 @@ def read_verdicts(path):
 
 
 class SkyloopRun:
-    """A running emulator; `ttys` are its ports in order, each the path of a pty or the address of a server (tcp, rfc2217);
-    `tty` the first."""
+    """A running emulator; `ttys` are its ports in order, each the path of a pty, the address of a server (tcp, rfc2217) or
+    that which skyloop calls (tcp-connect); `tty` the first."""
 
     def __init__(self, scenario, folder, *options, ports=1, patience=60):
         self.folder = pathlib.Path(folder)
