@@ -125,5 +125,27 @@ class Pages(unittest.TestCase):
         self.assertEqual(sorted(names_of_rows(read("docs/output.md")) - names), [], "told, but never written")
 
 
+class LinesForOtherPrograms(unittest.TestCase):
+    """What no test can run, since the programs are not here: forms of it that cannot work."""
+
+    pages = [*sorted((ROOT / "docs").rglob("*.md")), ROOT / "README.md", ROOT / "tools/man/skyloop.1"]
+
+    def test_the_line_of_a_sitl_has_no_speed(self):
+        for page in self.pages:  # ArduPilot, AP_HAL_SITL/UARTDriver.cpp: it holds the line at a speed that stands there
+            self.assertEqual(re.findall(r"uart:/[^\s`\"]*:\d+", page.read_text(encoding="utf-8")), [], page.name)
+
+    def test_betaflights_ports_have_both_forms(self):
+        for page in self.pages:  # betaflight #15573: from 2026.12 on "serial" is read only
+            text = page.read_text(encoding="utf-8")
+            if re.search(r"^serial \d", text, re.MULTILINE) and "Betaflight" in text:
+                self.assertIn("set gps_uart = UART3\nset gps_baud = 115200\n", text, page.name)
+                self.assertIn("set msp_uart_2 = UART2", text, page.name)
+
+    def test_betaflight_listens_at_its_own_port(self):
+        for page in self.pages:  # Betaflight's sitl.c: PORT_STATE is 9003, on all addresses of the machine
+            for to in re.findall(r"betaflight:\d+,127\.0\.0\.1:(\d+)", page.read_text(encoding="utf-8")):
+                self.assertEqual(to, "9003", page.name)
+
+
 if __name__ == "__main__":
     unittest.main()
