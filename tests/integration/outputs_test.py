@@ -203,7 +203,7 @@ class OutputsTest(unittest.TestCase):
                 one.close()
         code = emulator.stop()
         self.assertEqual(code, 0, emulator.log)
-        self.assertIn("the connection is lost", emulator.log)
+        self.assertIn("connection lost; trying again", emulator.log)
 
     def test_a_client_that_stops_to_read_disturbs_neither_the_run_nor_another(self):
         emulator = self.live("--speed", 60, "--duration", 600, "--output", "json-tcp:0")

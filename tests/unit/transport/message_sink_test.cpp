@@ -234,7 +234,7 @@ TEST(WireSink, CallsAServerAndCountsWhatNobodyHeard) {
         send_text(*sink, "lost");
         return sink->counts().unheard > 0;
     }));
-    EXPECT_THAT(sink->take_news(), testing::Contains(HasSubstr("the connection is lost")));
+    EXPECT_THAT(sink->take_news(), testing::Contains(HasSubstr("connection lost; trying again")));
 }
 
 TEST(WireSink, WritesAFile) {
