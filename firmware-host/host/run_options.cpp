@@ -209,7 +209,8 @@ void add_place_options(CLI::App& command, RunOptions& options) {
         ->allow_extra_args(false);
     command.add_flag("--rebase-nav", options.rebase_nav,
                      "Move the navigation data to the start time, keeping its time of day");
-    command.add_option("--start", options.start, "ISO 8601 in UTC, or now");
+    command.add_option("--start", options.start,
+                       "ISO 8601 in UTC, or now; default now, with --nav when four satellites first have orbits");
 }
 
 void add_scene_option(CLI::App& command, RunOptions& options) {

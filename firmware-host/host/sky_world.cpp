@@ -36,7 +36,7 @@ Result<Geodetic> scene_start_of(const CityRun& run, Scenario scenario, const Geo
 
 Result<World> make_world(const Scenario& asked, const SkyOptions& options, const Messages& messages) {
     Scenario scenario = asked;
-    auto navigation = load_navigation(scenario, wall_clock());
+    auto navigation = load_navigation(scenario, wall_clock(), data_folders());
     if (!navigation) return fail(navigation.error());
     auto geoid = find_geoid(data_folders(), navigation->warnings);
     std::vector<std::string> warnings = scenario_warnings(scenario, geoid.get());

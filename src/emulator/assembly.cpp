@@ -299,7 +299,7 @@ std::vector<std::filesystem::path> board_folders(const DataFolders& data) {
 Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const RunMode& mode) {
     Scenario scenario = asked;
     Assembly assembly;
-    auto navigation = load_navigation(scenario, mode.now);
+    auto navigation = load_navigation(scenario, mode.now, data);
     if (!navigation) return fail(navigation.error());
     assembly.geoid = find_geoid(data, navigation->warnings);
     assembly.warnings = scenario_warnings(scenario, assembly.geoid.get());

@@ -14,6 +14,7 @@
 #include "skyloop/gnss/nominal_constellation.hpp"
 #include "skyloop/rinex/almanac_file.hpp"
 #include "skyloop/rinex/navigation_file.hpp"
+#include "skyloop/scenario/board_file.hpp"
 #include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
@@ -122,14 +123,6 @@ EphemerisSelection selection_of(const Scenario& scenario) {
     return {scenario.sky.ephemeris_rule.value_or(own), scenario.sky.ephemeris_validity};
 }
 
-// The instant at which a run begins. @param first_epoch of the data; nothing for orbits at all times
-GpsTime start_of(const Scenario& scenario, std::optional<GpsTime> first_epoch, GpsTime now) {
-    const RunSettings& run = scenario.run;
-    if (run.start) return *run.start;
-    if (run.start_now || scenario.sky.rebase_navigation) return now;
-    return first_epoch.value_or(now);
-}
-
 // Far inside what 64-bit nanoseconds since 1980 can count, which ends in 2272.
 Result<void> check_end(const RunSettings& run, GpsTime start) {
     constexpr double latest_s = 290 * 365.25 * 86400;
@@ -155,35 +148,50 @@ void warn_outside(const Scenario& scenario, const LoadedNavigation& loaded, std:
         loaded.start < span->first || loaded.start > span->last ? "starts outside" : "outlasts", span_text(*span)));
 }
 
-// From when on `count` satellites have orbits.
-std::optional<GpsTime> first_time_of(std::size_t count, const NavigationData& data) {
+// Those that the receivers of the run solve with; SBAS adds to them and is no solution alone. Where a board is not
+// found, which is told when it is opened, all.
+std::set<Constellation> solving_constellations(const Scenario& scenario, const DataFolders& data) {
+    using enum Constellation;
+    std::set<Constellation> solving;
+    for (const ReceiverEntry& entry : scenario.receivers) {
+        std::vector<Constellation> tracked = entry.constellations;
+        if (tracked.empty()) {
+            const auto board = find_board(entry.board, board_folders(data));
+            tracked = board ? board->constellations : std::vector{gps, galileo, beidou, qzss, glonass, navic};
+        }
+        solving.insert(tracked.begin(), tracked.end());
+    }
+    solving.erase(sbas);
+    return solving;
+}
+
+// From the first record on, when four satellites of these systems first have orbits. A record that lies alone before
+// all others would make a run begin where nothing can be solved. Where four never have: the first record.
+std::optional<GpsTime> first_solvable(const NavigationData& data, const std::set<Constellation>& systems) {
+    constexpr std::ptrdiff_t enough = 4;
+    const std::optional<GpsTime> first = data.first_epoch();
+    if (!first) return std::nullopt;
     const bool before_toe = data.selection().rule == EphemerisRule::nearest;
+    std::vector<SatelliteId> satellites = data.satellites();
+    std::erase_if(satellites, [&](SatelliteId id) { return !systems.contains(id.constellation); });
     std::vector<GpsTime> beginnings;
     for (const SatelliteRecords& satellite : data.records())
         for (const Ephemeris& r : satellite.records)
-            beginnings.push_back(toe_of(r) -
-                                 (before_toe ? to_nanoseconds(data.selection().validity_of(r)) : Nanoseconds(0)));
+            beginnings.push_back(std::max(
+                *first, toe_of(r) - (before_toe ? to_nanoseconds(data.selection().validity_of(r)) : Nanoseconds(0))));
     std::sort(beginnings.begin(), beginnings.end());
-    const auto found =
-        std::find_if(beginnings.begin(), beginnings.end(), [&](GpsTime t) { return data.satellites_at(t) >= count; });
-    return found == beginnings.end() ? std::nullopt : std::optional(*found);
+    const auto found = std::find_if(beginnings.begin(), beginnings.end(), [&](GpsTime t) {
+        return std::count_if(satellites.begin(), satellites.end(),
+                             [&](SatelliteId id) { return data.ephemeris(id, t).has_value(); }) >= enough;
+    });
+    return found == beginnings.end() ? first : *found;
 }
 
-// A record that stands alone before all others, as one of SBAS may, makes a run begin where nothing can be solved.
-void warn_of_early_start(const Scenario& scenario, const NavigationData& data, LoadedNavigation& loaded) {
-    constexpr std::size_t enough = 4;
-    const RunSettings& run = scenario.run;
-    if (run.start || run.start_now || scenario.sky.rebase_navigation) return;
-    const std::size_t there = data.satellites_at(loaded.start);
-    if (there >= enough) return;
-    const std::optional<GpsTime> first = first_time_of(enough, data);
-    if (!first || *first <= loaded.start) return;
-    const auto text = [](GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); };
-    loaded.warnings.push_back(
-        fmt::format("the run starts with the first record of the navigation data, at {}, when {} "
-                    "{}; {} have them first at {}: --start moves the run",
-                    text(loaded.start), there, there == 1 ? "satellite has orbits" : "satellites have orbits", enough,
-                    text(*first)));
+// The instant at which a run with these data begins.
+GpsTime start_of(const Scenario& scenario, const NavigationData& data, const DataFolders& folders, GpsTime now) {
+    if (scenario.run.start) return *scenario.run.start;
+    if (scenario.run.start_now || scenario.sky.rebase_navigation) return now;
+    return first_solvable(data, solving_constellations(scenario, folders)).value_or(now);
 }
 
 Result<LoadedNavigation> load_nominal(const Scenario& scenario, GpsTime now) {
@@ -197,7 +205,7 @@ Result<LoadedNavigation> load_nominal(const Scenario& scenario, GpsTime now) {
                                           "moves navigation data, but there is none; expected some, by sky.navigation "
                                           "or --nav");
     LoadedNavigation loaded{std::make_unique<NominalConstellation>(), {}, {}};
-    loaded.start = start_of(scenario, std::nullopt, now);
+    loaded.start = scenario.run.start.value_or(now);
     if (const auto checked = check_end(scenario.run, loaded.start); !checked) return fail(checked.error());
     return loaded;
 }
@@ -211,20 +219,19 @@ Result<NavigationData> read_navigation_files(const Scenario& scenario, GpsTime n
     return NavigationData(all->records, all->ionosphere, all->description, selection_of(scenario));
 }
 
-Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now) {
+Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, const DataFolders& folders) {
     if (scenario.sky.navigation.empty()) return load_nominal(scenario, now);
     LoadedNavigation loaded;
     auto read = read_navigation_files(scenario, scenario.run.start.value_or(now), loaded.warnings);
     if (!read) return fail(read.error());
     NavigationData& data = *read;
-    loaded.start = start_of(scenario, data.first_epoch(), now);
+    loaded.start = start_of(scenario, data, folders, now);
     if (const auto checked = check_end(scenario.run, loaded.start); !checked) return fail(checked.error());
     if (scenario.sky.rebase_navigation) {
         auto moved = rebased(data, loaded.start);
         if (!moved) return fail(moved.error());
         data = std::move(*moved);
     }
-    warn_of_early_start(scenario, data, loaded);
     loaded.source = std::make_unique<NavigationData>(std::move(data));
     warn_outside(scenario, loaded, loaded.warnings);
     return loaded;

@@ -9,7 +9,7 @@ namespace {
 constexpr KeyMeaning run_meanings[] = {
     {"", "run", "when, how long, how fast"},
     {"run", "start", "when the run begins: ISO 8601 in UTC, or \"now\"",
-     "now, or the first epoch of the navigation data"},
+     "now; with navigation data when four satellites first have orbits"},
     {"run", "duration_s", "length of the run", "until stopped"},
     {"run", "seed", "the same scenario, seed and inputs give the same bytes"},
     {"run", "speed", "`skyloop run` only: simulated seconds per second"},

@@ -82,15 +82,17 @@ Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, con
 /// @param scene digest of the files of the scene; 0: there are none
 std::string scenario_digest(const Scenario& scenario, const DataFolders& data, GpsTime start, std::uint64_t scene = 0);
 
-/// Broadcast orbits for a scenario: its files, or the nominal constellation, and when its run begins. Fails with
+/// Broadcast orbits for a scenario: its files, or the nominal constellation, and when its run begins. Without a start
+/// of its own a run with files begins when four satellites that its receivers solve with first have orbits. Fails with
 /// `input` for files that hold nothing to use, with `usage` for settings that contradict each other.
 /// @param now the wall clock, GPST
+/// @param folders where the boards are; one that is not there counts as one that tracks every system
 struct LoadedNavigation {
     std::unique_ptr<NavigationSource> source;
     GpsTime start;  ///< of the run
     std::vector<std::string> warnings;
 };
-Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now);
+Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, const DataFolders& folders = {});
 
 /// The trajectory of a scenario, begun at `start`. That of a file must have been loaded by load_track().
 std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, GpsTime start);

@@ -153,27 +153,47 @@ TEST_F(LoadNavigation, WarnsOnceOfARunOutsideItsData) {
     EXPECT_THAT(warnings("duration_s = 14400"), IsEmpty());
 }
 
-TEST_F(LoadNavigation, WarnsWhereItBeginsBeforeThereIsEnough) {
+TEST_F(LoadNavigation, BeginsWhereFourSatellitesFirstHaveOrbits) {
     KeplerEphemeris early = NominalConstellation().record({Constellation::gps, 1}, data_day - 8h).value();
     early.satellite.number = 32;
     std::ofstream(folder_ / "early.rnx") << nominal_records() << rinex_record(early);
-    const auto warnings = [&](const std::string& more) {
-        return load(emulator_scenario("[sky]\nnavigation = \"" + (folder_ / "early.rnx").string() + "\"\n" + more))
-            .warnings;
+    const auto loaded = [&](const std::string& more) {
+        return load(emulator_scenario("[sky]\nnavigation = \"" + (folder_ / "early.rnx").string() + "\"\n" + more));
     };
-    const auto first = warnings("");
-    ASSERT_THAT(first, SizeIs(1));
-    EXPECT_THAT(first[0], HasSubstr("at 2024-03-04T15:59:42Z, when 1 satellite has orbits; 4 have them first at "
-                                    "2024-03-04T23:59:42Z: --start moves the run"));
-    EXPECT_THAT(warnings("[run]\nstart = 2024-03-05T03:00:00Z\n"), IsEmpty());
-    EXPECT_THAT(warnings("[run]\nstart = 2024-03-04T16:00:00Z\n"), IsEmpty());
+    const LoadedNavigation first = loaded("");
+    EXPECT_EQ(first.start, data_day) << "two hours before the records of 02:00, as long as they serve";
+    EXPECT_THAT(first.warnings, IsEmpty());
+    EXPECT_EQ(loaded(baseline).start, data_day + 2h) << "by the rule that looks back";
+    EXPECT_EQ(loaded("[run]\nstart = 2024-03-04T16:00:00Z\n").start, data_day - 8h + 18s);
     std::vector<std::string> of_files;
     Scenario no_run;
     no_run.sky.navigation = {folder_ / "early.rnx"};
     const auto data = read_navigation_files(no_run, data_day, of_files);
     ASSERT_TRUE(data);
     EXPECT_EQ(data->first_epoch(), data_day - 8h);
-    EXPECT_THAT(of_files, IsEmpty()) << "who only reads the files has no run to be moved";
+    EXPECT_THAT(of_files, IsEmpty());
+}
+
+// Four of QZSS that come before all others are enough for a receiver that tracks them.
+TEST_F(LoadNavigation, BeginsWithSystemsThatItsReceiversSolveWith) {
+    std::string text = nominal_records();
+    for (const int number : {3, 4, 5, 6}) {
+        KeplerEphemeris early = NominalConstellation().record({Constellation::gps, number}, data_day - 8h).value();
+        early.satellite = {Constellation::qzss, number};
+        text += rinex_record(early);
+    }
+    std::ofstream(folder_ / "early.rnx") << text;
+    const auto start = [&](const std::string& more, const DataFolders& folders = {}) {
+        const auto loaded = load_navigation(
+            emulator_scenario("[sky]\nnavigation = \"" + (folder_ / "early.rnx").string() + "\"\n" + more), wall_now,
+            folders);
+        return loaded ? loaded->start : GpsTime{};
+    };
+    EXPECT_EQ(start(""), data_day - 8h);
+    EXPECT_EQ(start("[[receiver]]\nconstellations = [\"gps\", \"qzss\"]\n"), data_day - 8h);
+    EXPECT_EQ(start("[[receiver]]\nconstellations = [\"gps\"]\n"), data_day);
+    EXPECT_EQ(start("[[receiver]]\nconstellations = [\"galileo\"]\n"), data_day - 8h) << "four never have orbits";
+    EXPECT_EQ(start("[[receiver]]\nboard = \"mtk3339\"\n", test::emulator_data()), data_day);
 }
 
 TEST_F(LoadNavigation, RebasingMovesTheDataByWholeDays) {
