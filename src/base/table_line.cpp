@@ -9,9 +9,11 @@ namespace {
 
 // Of the first cell; npos: it is the last one.
 std::size_t end_of_cell(std::string_view line, std::string_view separators) {
+    const std::size_t begin = std::min(line.find_first_not_of(" \t"), line.size());
+    const bool in_quotes = begin < line.size() && line[begin] == '"';
     bool quoted = false;
     for (std::size_t i = 0; i < line.size(); ++i) {
-        if (line[i] == '"') quoted = !quoted;
+        if (in_quotes && line[i] == '"') quoted = !quoted;
         if (!quoted && separators.find(line[i]) != std::string_view::npos) return i;
     }
     return quoted ? line.find_first_of(separators) : std::string_view::npos;

@@ -69,7 +69,8 @@ std::optional<std::size_t> GnssLoggerReader::column(std::string_view meaning) co
 Result<void> GnssLoggerReader::take_fix() {
     TextRow row;
     row.line = table_.line();
-    const auto latitude = table_.number(column("latitude")), longitude = table_.number(column("longitude"));
+    const auto latitude = table_.coordinate(column("latitude"), Coordinate::latitude),
+               longitude = table_.coordinate(column("longitude"), Coordinate::longitude);
     const auto altitude = table_.number(column("altitude")), speed = table_.number(column("speed"));
     const auto bearing = table_.number(column("bearing"));
     Result<std::optional<double>> millis = table_.number(column("unixtime"));

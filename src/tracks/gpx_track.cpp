@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "skyloop/base/lowered_text.hpp"
+#include "skyloop/base/written_place.hpp"
 #include "text_track.hpp"
 #include "xml_tree.hpp"
 
@@ -139,7 +140,8 @@ Result<void> GpxReader::take_time(std::string_view text, TextRow& row) {
 Result<void> GpxReader::take_place(const pugi::xml_node& point, TextRow& row) {
     for (const auto& [name, value] : {std::pair("lat", &row.latitude_deg), std::pair("lon", &row.longitude_deg)}) {
         const std::string_view text = point.attribute(name).value();
-        const auto number = text_number(text);
+        auto number = text_number(text);
+        if (!number) number = written_degrees(text, name[1] == 'a' ? Coordinate::latitude : Coordinate::longitude);
         if (!number)
             return track_.refusal(
                 row.line, fmt::format("{} is '{}'; expected degrees with a decimal point", name, text.substr(0, 40)));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "skyloop/base/written_place.hpp"
 #include "text_track.hpp"
 #include "xml_tree.hpp"
 
@@ -196,7 +197,10 @@ Result<bool> KmlReader::take_coordinates(const std::string& text, std::string_vi
     std::vector<double> numbers;
     for (std::size_t at = text.find_first_not_of(separators); at != std::string::npos;) {
         const std::size_t end = std::min(text.find_first_of(separators, at), text.size());
-        const auto number = text_number(std::string_view(text).substr(at, end - at));
+        const std::string_view piece = std::string_view(text).substr(at, end - at);
+        auto number = text_number(piece);
+        if (!number && numbers.size() < 2)
+            number = written_degrees(piece, numbers.empty() ? Coordinate::longitude : Coordinate::latitude);
         if (!number || numbers.size() == 3)
             return track_.refusal(row.line, fmt::format("the place is '{}'; expected longitude, latitude and altitude, "
                                                         "numbers with a decimal point",

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "skyloop/base/column_name.hpp"
 #include "skyloop/base/lowered_text.hpp"
@@ -36,22 +37,22 @@ private:
 };
 
 // A dialect: its rows one by one.
-using RowTaker = std::function<Result<void>(TextTrack&, const TableCells&)>;
+using RowTaker = std::function<Result<void>(TextTrack&, TableCells&)>;
 
 // Latitude and longitude of columns with these names; false: left out, as one of them is empty.
-bool named_place(TextTrack& track, NamedRow& columns, std::array<std::string_view, 2> names, TextRow& row) {
-    const auto latitude = columns.number(names[0]), longitude = columns.number(names[1]);
-    if (latitude && longitude) {
-        row.latitude_deg = *latitude, row.longitude_deg = *longitude;
-        return true;
-    }
-    if (!columns.fault()) track.leave_out("have no place", row.line);
-    return false;
+Result<bool> named_place(TextTrack& track, TableCells& table, std::array<std::string_view, 2> names, TextRow& row) {
+    const auto place = table.place(names);
+    if (!place) return fail(place.error());
+    if (*place)
+        row.latitude_deg = (**place)[0], row.longitude_deg = (**place)[1];
+    else
+        track.leave_out("have no place", row.line);
+    return place->has_value();
 }
 
 // Garmin G1000 (the file's own lines of units): local time and its offset from UTC; AltGPS, feet above WGS 84; ground
 // track and heading from magnetic north, MagVar their variation, east positive; vertical speed in feet a minute.
-Result<void> take_g1000_row(TextTrack& track, const TableCells& table) {
+Result<void> take_g1000_row(TextTrack& track, TableCells& table) {
     if (auto fits = table.check_width(); !fits) return fits;
     NamedRow columns(table);
     TextRow row;
@@ -65,8 +66,9 @@ Result<void> take_g1000_row(TextTrack& track, const TableCells& table) {
                         "+00:00",
                         date, clock, columns.text("UTCOfst")));
     row.time = time->time.time_since_epoch();
-    if (!named_place(track, columns, {"Latitude", "Longitude"}, row))
-        return columns.fault() ? Result<void>(fail(*columns.fault())) : Result<void>();
+    const auto placed = named_place(track, table, {"Latitude", "Longitude"}, row);
+    if (!placed) return fail(placed.error());
+    if (!*placed) return {};
     row.ellipsoidal_m = columns.number("AltGPS", named_foot);
     if (!row.ellipsoidal_m) row.sea_level_m = columns.number("AltMSL", named_foot);
     row.speed_mps = columns.number("GndSpd", named_knot);
@@ -83,7 +85,7 @@ Result<void> take_g1000_row(TextTrack& track, const TableCells& table) {
 
 // The table of Hazer's gpstool (com-diag-hazer, yodel): TIM, POSIX seconds of the fix; MSL and GEO, metres above sea
 // level and above the ellipsoid; SOG in knots, COG from true north.
-Result<void> take_yodel_row(TextTrack& track, const TableCells& table) {
+Result<void> take_yodel_row(TextTrack& track, TableCells& table) {
     if (auto fits = table.check_width(); !fits) return fits;
     NamedRow columns(table);
     TextRow row;
@@ -93,8 +95,9 @@ Result<void> take_yodel_row(TextTrack& track, const TableCells& table) {
     const auto time = posix_since_1980(columns.text("TIM"));
     if (!time) return table.refusal(fmt::format("TIM is '{:.40}'; expected POSIX seconds", columns.text("TIM")));
     row.time = *time;
-    if (!named_place(track, columns, {"LAT", "LON"}, row))
-        return columns.fault() ? Result<void>(fail(*columns.fault())) : Result<void>();
+    const auto placed = named_place(track, table, {"LAT", "LON"}, row);
+    if (!placed) return fail(placed.error());
+    if (!*placed) return {};
     row.ellipsoidal_m = columns.number("GEO");
     if (!row.ellipsoidal_m) row.sea_level_m = columns.number("MSL");
     row.speed_mps = columns.number("SOG", named_knot);
@@ -139,7 +142,7 @@ UnicsvColumn unicsv_column(const std::vector<std::string>& names, const UnicsvQu
 
 // gpsbabel's unicsv: date and time in UTC in two columns, metres above sea level, m/s. Tables of others that have its
 // names may tell other units behind them.
-Result<void> take_unicsv_row(TextTrack& track, const TableCells& table, const UnicsvColumns& told) {
+Result<void> take_unicsv_row(TextTrack& track, TableCells& table, const UnicsvColumns& told) {
     if (auto fits = table.check_width(); !fits) return fits;
     NamedRow columns(table);
     TextRow row;
@@ -153,8 +156,9 @@ Result<void> take_unicsv_row(TextTrack& track, const TableCells& table, const Un
     if (!time->in_range)
         return track.leave_out("have a time before 1980-01-06 or after 2199", row.line), Result<void>();
     row.time = time->time.time_since_epoch();
-    if (!named_place(track, columns, {"Latitude", "Longitude"}, row))
-        return columns.fault() ? Result<void>(fail(*columns.fault())) : Result<void>();
+    const auto placed = named_place(track, table, {"Latitude", "Longitude"}, row);
+    if (!placed) return fail(placed.error());
+    if (!*placed) return {};
     row.sea_level_m = columns.number(told.altitude.name, told.altitude.scale);
     row.speed_mps = columns.number(told.speed.name, told.speed.scale);
     row.course_deg = columns.number(told.course.name, told.course.scale);
@@ -186,7 +190,7 @@ std::optional<Nanoseconds> posix_nanoseconds(std::string_view text) {
 
 // The ground truth of EuRoC (its README): POSIX nanoseconds, place in a room, m, whose axes it takes z up; the columns
 // that follow are of an inertial sensor with axes of its own.
-Result<void> take_euroc_row(TextTrack& track, const TableCells& table) {
+Result<void> take_euroc_row(TextTrack& track, TableCells& table) {
     TextRow row;
     row.line = table.line();
     const auto time = posix_nanoseconds(table.cell(0));
@@ -223,7 +227,9 @@ std::string_view euroc_names(std::string_view text) {
 }
 
 // A table whose line of names is the first that begins so.
-Result<Track> read_rows(const TrackFile& file, TextTrack& track, const RowTaker& take, std::string_view names_begin) {
+// @param unused names of columns that the dialect does not know
+Result<Track> read_rows(const TrackFile& file, TextTrack& track, const RowTaker& take, std::string_view names_begin,
+                        std::vector<std::string> unused = {}) {
     TableCells table(file, names_begin.empty() ? ',' : separator_in(names_begin), "");
     bool named = false;
     while (table.next()) {
@@ -234,6 +240,9 @@ Result<Track> read_rows(const TrackFile& file, TextTrack& track, const RowTaker&
         }
         if (const auto taken = take(track, table); !taken) return fail(taken.error());
     }
+    if (const auto letters = table.hemispheres().not_understood()) return track.refusal(*letters);
+    for (const std::string& note : table.hemispheres().notes(std::move(unused)))
+        track.note(note);
     return track.finish("rows with a time and a place");
 }
 
@@ -303,9 +312,8 @@ Result<Track> read_unicsv(const TrackFile& file) {
     if (columns.altitude.name.empty() && other != unused.end())
         return track.refusal(
             fmt::format("the column '{:.40}' is not known; expected Altitude, or Altitude (ft)", *other));
-    if (!unused.empty()) track.note(fmt::format("columns without a meaning here: {}", fmt::join(unused, ", ")));
-    const auto take = [&](TextTrack& to, const TableCells& table) { return take_unicsv_row(to, table, columns); };
-    return read_rows(file, track, take, names);
+    const auto take = [&](TextTrack& to, TableCells& table) { return take_unicsv_row(to, table, columns); };
+    return read_rows(file, track, take, names, std::move(unused));
 }
 
 // Whether one of the first lines begins so, letters of either case.

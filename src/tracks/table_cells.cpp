@@ -48,6 +48,29 @@ Result<std::optional<double>> TableCells::number(std::optional<std::size_t> colu
     return refusal(fmt::format("{:.40} is '{:.40}'; expected a number with a decimal point", what, text));
 }
 
+Result<std::optional<double>> TableCells::coordinate(std::optional<std::size_t> column, Coordinate which) const {
+    auto plain = number(column);
+    if (plain) return plain;
+    const auto written = written_degrees(cell(column), which);
+    return written ? written : std::move(plain);
+}
+
+Result<std::optional<std::array<double, 2>>> TableCells::place(std::array<std::string_view, 2> names) {
+    const std::array columns{column(names[0]), column(names[1])};
+    const auto latitude = coordinate(columns[0], Coordinate::latitude),
+               longitude = coordinate(columns[1], Coordinate::longitude);
+    if (!latitude) return fail(latitude.error());
+    if (!longitude) return fail(longitude.error());
+    if (!*latitude || !*longitude) return std::nullopt;
+    if (!places_) {
+        places_ = {*columns[0], *columns[1]};
+        hemispheres_ = HemisphereColumns(names_, *places_);
+    }
+    const auto place = hemispheres_.place(cells_, {**latitude, **longitude}, line());
+    if (!place) return refusal(place.error());
+    return *place;
+}
+
 Result<std::vector<double>> TableCells::numbers(std::size_t first, std::size_t count) const {
     std::vector<double> values;
     for (std::size_t i = first; i < first + count; ++i) {

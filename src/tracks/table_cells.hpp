@@ -1,11 +1,13 @@
 // Rows of tables whose columns a dialect knows by their places or names.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "skyloop/base/written_place.hpp"
 #include "text_track.hpp"
 
 namespace skyloop {
@@ -30,6 +32,12 @@ public:
     [[nodiscard]] std::string_view cell(std::optional<std::size_t> column) const;
     // Nothing for an empty cell and for "nan". Fails with NAME:LINE and the column for any other text.
     Result<std::optional<double>> number(std::optional<std::size_t> column) const;
+    // The same of a latitude or longitude, whose cell may have a letter, minutes and seconds.
+    Result<std::optional<double>> coordinate(std::optional<std::size_t> column, Coordinate which) const;
+    // Latitude and longitude of the columns with these names, by the letters of the row too; nothing where one of them
+    // is absent. All rows of a table are asked with the same names.
+    Result<std::optional<std::array<double, 2>>> place(std::array<std::string_view, 2> names);
+    [[nodiscard]] const HemisphereColumns& hemispheres() const { return hemispheres_; }
     // Cells from `first` on, all of them numbers.
     Result<std::vector<double>> numbers(std::size_t first, std::size_t count) const;
     [[nodiscard]] tl::unexpected<Error> refusal(const std::string& what) const;
@@ -41,6 +49,8 @@ private:
     std::string comments_;
     std::vector<std::string> names_;  // in lower case
     std::vector<std::string_view> cells_;
+    std::optional<std::array<std::size_t, 2>> places_;
+    HemisphereColumns hemispheres_;
 };
 
 // Nanoseconds since 1980 of POSIX seconds written with a fraction, to the digit; nothing outside GPS time.

@@ -1,9 +1,14 @@
 #include "track_cells.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <charconv>
 #include <chrono>
+#include <cmath>
 
 #include "skyloop/base/table_line.hpp"
+#include "skyloop/base/written_place.hpp"
 #include "skyloop/geo/geodetic.hpp"
 #include "skyloop/time/utc_time.hpp"
 
@@ -28,6 +33,25 @@ Result<GpsTime> time_of_utc_cell(std::string_view text) {
     const auto local = parse_utc(zone ? text.substr(0, sign) : text);
     if (!local) return fail(local.error());
     return to_gps_time(utc_of_local(*local, zone.value_or(0)), LeapSeconds::announced());
+}
+
+bool is_absent(std::string_view text) { return text.empty() || text == "nan" || text == "NaN" || text == "NAN"; }
+
+std::optional<std::string> mistake_of_place(const Position<Ecef>& place) {
+    const double radius = place.vector().norm();
+    if (radius > 6.3e6 && radius < 1.7e7) return std::nullopt;
+    return fmt::format("the place lies {:.0f} m from the Earth's centre; expected 6300000 to 17000000", radius);
+}
+
+std::optional<double> number_of_cell(std::string_view text, const TrackColumn& column, TrackQuantity quantity) {
+    const std::string_view plain = text.substr(text.starts_with('+') ? 1 : 0);
+    double value = 0;
+    const auto [end, status] = std::from_chars(plain.data(), plain.data() + plain.size(), value);
+    if (status == std::errc() && end == plain.data() + plain.size())
+        return std::isfinite(value) ? std::optional(value * column.scale) : std::nullopt;
+    const bool latitude = quantity == TrackQuantity::latitude;
+    if (column.scale != 1 || !(latitude || quantity == TrackQuantity::longitude)) return std::nullopt;
+    return written_degrees(text, latitude ? Coordinate::latitude : Coordinate::longitude);
 }
 
 double climb_by_heights(const std::vector<TrackRow>& rows, std::size_t row) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "skyloop/base/table_line.hpp"
+#include "skyloop/base/written_place.hpp"
 #include "skyloop/geo/local_frame.hpp"
 #include "skyloop/time/utc_time.hpp"
 #include "skyloop/trajectory/track_doubts.hpp"
@@ -67,9 +68,6 @@ private:
         const std::size_t index = columns_[quantity]->index;
         return index < cells_.size() ? cells_[index] : std::string_view();
     }
-    [[nodiscard]] static bool absent(std::string_view text) {
-        return text.empty() || text == "nan" || text == "NaN" || text == "NAN";
-    }
 
     const Geoid* geoid_;
     std::optional<LocalFrame> local_;
@@ -81,6 +79,7 @@ private:
     char separator_ = ',';
     bool has_header_ = false;
     TrackColumns columns_;
+    HemisphereColumns hemispheres_;
     TrackDates dates_;
     std::set<std::size_t> level_;  // lines of rows whose velocity has no climb yet
     LineCells cells_;
@@ -101,6 +100,8 @@ Result<Track> TrackTable::read(std::string_view text) {
                     fmt::format("{}: no line with the names of the columns; expected one such as t_s,lat_deg,lon_deg,"
                                 "h_ell_m and rows of numbers",
                                 track_.name));
+    if (const auto letters = hemispheres_.not_understood())
+        return fail(ErrorCode::input, fmt::format("{}: {}", track_.name, *letters));
     doubt(leave_out_zero_places(track_, rows_));
     add_climbs();
     if (columns_.has(speed) && columns_.has(course)) doubt(leave_out_foreign_speeds(track_));
@@ -144,6 +145,9 @@ Result<void> TrackTable::take_header(std::string_view line) {
         track_.origin = GpsTime{};
     has_header_ = true;
     names_ = cells_.size();
+    if (columns_.has(latitude) && columns_.has(longitude))
+        hemispheres_ =
+            HemisphereColumns({cells_.begin(), cells_.end()}, {columns_[latitude]->index, columns_[longitude]->index});
     return {};
 }
 
@@ -170,15 +174,12 @@ Result<void> TrackTable::take_row() {
 
 Result<std::optional<double>> TrackTable::number(TrackQuantity quantity) {
     if (!columns_.has(quantity)) return std::nullopt;
-    std::string_view text = cell(quantity);
-    if (absent(text)) return std::nullopt;
-    if (text.starts_with('+')) text.remove_prefix(1);
-    double value = 0;
-    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-        return refusal(fmt::format("{} is '{}'; expected a number with a decimal point", columns_[quantity]->name,
-                                   cell(quantity).substr(0, 40)));
-    return value * columns_[quantity]->scale;
+    const std::string_view text = cell(quantity);
+    if (is_absent(text)) return std::nullopt;
+    const auto value = number_of_cell(text, *columns_[quantity], quantity);
+    if (value) return value;
+    return refusal(
+        fmt::format("{} is '{:.40}'; expected a number with a decimal point", columns_[quantity]->name, text));
 }
 
 // Nanoseconds of a count: whole counts stay whole, which a double of them would not.
@@ -199,7 +200,7 @@ Result<std::optional<Nanoseconds>> TrackTable::counted_time(TrackQuantity quanti
 
 Result<std::optional<Nanoseconds>> TrackTable::utc_time() {
     const std::string_view text = cell(utc);
-    if (absent(text)) return std::nullopt;
+    if (is_absent(text)) return std::nullopt;
     const auto time = time_of_utc_cell(text);
     if (!time) return refusal(fmt::format("{}: {}", columns_[utc]->name, time.error().message));
     return time->time_since_epoch();
@@ -259,10 +260,7 @@ Result<std::optional<Position<Ecef>>> TrackTable::cartesian_place() {
 }
 
 Result<std::optional<Position<Ecef>>> TrackTable::checked_place(const Position<Ecef>& point) const {
-    const double radius = point.vector().norm();
-    if (!(radius > 6.3e6 && radius < 1.7e7))
-        return refusal(
-            fmt::format("the place lies {:.0f} m from the Earth's centre; expected 6300000 to 17000000", radius));
+    if (const auto mistake = mistake_of_place(point)) return refusal(*mistake);
     return point;
 }
 
@@ -283,7 +281,9 @@ Result<std::optional<Position<Ecef>>> TrackTable::geodetic_place() {
     if (!*ellipsoidal && !geoid_)
         return refusal(
             "a height above sea level alone; expected one above the ellipsoid, the geoid's grid not being there");
-    const auto checked = place_from_degrees(**lat, **lon, ellipsoidal->value_or(msl->value_or(0)));
+    const auto sided = hemispheres_.place(cells_, {**lat, **lon}, line_);
+    if (!sided) return refusal(sided.error());
+    const auto checked = place_from_degrees((*sided)[0], (*sided)[1], ellipsoidal->value_or(msl->value_or(0)));
     if (!checked) return refusal(checked.error());
     Geodetic where = *checked;
     if (!*ellipsoidal)
@@ -386,8 +386,8 @@ void TrackTable::add_notes() {
             "taken from the places");
     for (const std::string& what : columns_.understood())
         track_.notes.push_back(what);
-    if (!columns_.unused().empty())
-        track_.notes.push_back(fmt::format("columns without a meaning here: {}", fmt::join(columns_.unused(), ", ")));
+    for (const std::string& what : hemispheres_.notes(columns_.unused()))
+        track_.notes.push_back(what);
 }
 
 }  // namespace

@@ -17,8 +17,9 @@ std::string_view trimmed_cell(std::string_view text);
 /// Comma, semicolon or tabulator, the first of them that the line has; else a blank.
 char separator_in(std::string_view line);
 
-/// The cells between `separators`, each trimmed_cell(). A separator between double quotes separates nothing; a quote
-/// without its other half is a letter. @param runs several in a row count as one
+/// The cells between `separators`, each trimmed_cell(). In a cell that begins with a double quote a separator between
+/// two of them separates nothing (RFC 4180, section 2); any other quote is a letter, as that of seconds of arc. @param
+/// runs several in a row count as one
 void split_line(std::string_view line, std::string_view separators, bool runs, LineCells& cells);
 
 /// The same at the separator of a table. Where it is a blank, several blanks and tabs count as one, and those around

@@ -17,6 +17,8 @@ LineCells cells_of_table_line(std::string_view line, char separator) {
 TEST(TableLine, IsCutAtSeparatorsThatNoQuotesHold) {
     EXPECT_THAT(cells_of_table_line("a, \"b, c\" ,,d\r", ','), ElementsAre("a", "b, c", "", "d"));
     EXPECT_THAT(cells_of_table_line("5\" of rain,b", ','), ElementsAre("5\" of rain", "b"));
+    EXPECT_THAT(cells_of_table_line("33 54'36\"S,18 24'0\"W,\"a, b\"", ','),
+                ElementsAre("33 54'36\"S", "18 24'0\"W", "a, b"));
     EXPECT_THAT(cells_of_table_line("", ';'), ElementsAre(""));
 }
 

@@ -1,7 +1,9 @@
 // Tables of other programs: each is recognised, and its units, axes, datum and clock are taken as its maker says.
 #include <gmock/gmock.h>
 
+#include "skyloop/base/text_file.hpp"
 #include "skyloop/geo/local_frame.hpp"
+#include "support/oracle_table.hpp"
 #include "track_reading.hpp"
 
 namespace skyloop {
@@ -191,6 +193,85 @@ TEST(TableDialects, TablesLikeUnicsvKeepTheirUnitsAndTellWhatIsNotRead) {
     EXPECT_THAT(track.notes, ElementsAre("columns without a meaning here: battery (%)"));
     EXPECT_THAT(refusal_of_track("Date,Time,Latitude,Longitude,Alt (furlong)\n2024-03-05,12:00:00,47,8,500\n"),
                 HasSubstr("the column 'alt (furlong)' is not known; expected Altitude"));
+}
+
+// Loggers write degrees without a sign and the hemisphere in a column of its own, or behind the number.
+TEST(TableDialects, LettersOfTheHemisphereTurnTheSign) {
+    const Track track = track_of(
+        "INDEX,DATE,TIME,LATITUDE,N/S,LONGITUDE,E/W,ALTITUDE\n1,2024/03/05,12:00:00,33.9,S,18.4,W,100\n"
+        "2,2024/03/05,12:00:01,33.8,N,18.3,E,100\n");
+    ASSERT_EQ(track.points.size(), 2u);
+    EXPECT_NEAR(place_of(track, 0).latitude.deg(), -33.9, 1e-9);
+    EXPECT_NEAR(place_of(track, 0).longitude.deg(), -18.4, 1e-9);
+    EXPECT_NEAR(place_of(track, 1).latitude.deg(), 33.8, 1e-9);
+    EXPECT_THAT(track.notes,
+                ElementsAre("n/s is taken as the hemisphere of latitude", "e/w is taken as the hemisphere of longitude",
+                            "columns without a meaning here: index"));
+    EXPECT_THAT(refusal_of_track("Date,Time,Latitude,N/S,Longitude,E/W\n2024/03/05,12:00:00,33.9,X,18.4,W\n"),
+                HasSubstr("t.txt:2: n/s is 'X'; expected N or S"));
+    EXPECT_THAT(refusal_of_track("Date,Time,Latitude,Longitude,Altitude,side\n2024/03/05,12:00:00,33.9,18.4,100,S\n"),
+                HasSubstr("t.txt: the column 'side' has 'S' (first in line 2), which may be a hemisphere"));
+    for (const std::string place : {"33.9S,18.4W", "S 33.9,W 18.4",
+                                    "33\xC2\xB0"
+                                    "54'0\"S,18\xC2\xB0"
+                                    "24'0\"W",
+                                    "-33 54,-18 24 0"}) {
+        const Track written =
+            track_of("Date,Time,Latitude,Longitude,Altitude\n2024-03-05,12:00:00," + place + ",500\n");
+        EXPECT_NEAR(place_of(written, 0).latitude.deg(), -33.9, 1e-9) << place;
+        EXPECT_NEAR(place_of(written, 0).longitude.deg(), -18.4, 1e-9) << place;
+    }
+    EXPECT_THAT(refusal_of_track("Date,Time,Latitude,Longitude\n2024-03-05,12:00:00,33.9E,18.4\n"),
+                HasSubstr("t.txt:2: latitude is '33.9E'; expected a number"));
+}
+
+TEST(TableDialects, LettersOfTheHemisphereTurnTheSignInOtherTables) {
+    const Track hazer = track_of(
+        "NAM, NUM, FIX, TIM, LAT, LATDIR, LON, LONDIR, MSL\n\"neon\", 1, 3, 1709640000.25, 33.9, S, 18.4W, , 500.0\n");
+    EXPECT_NEAR(place_of(hazer, 0).latitude.deg(), -33.9, 1e-9);
+    EXPECT_NEAR(place_of(hazer, 0).longitude.deg(), -18.4, 1e-9);
+    const Track phone =
+        track_of("# Fix,Provider,Latitude,Longitude,Altitude,UnixTimeMillis\nFix,gps,33.9S,18.4W,548,1709640000000\n");
+    EXPECT_NEAR(place_of(phone, 0).latitude.deg(), -33.9, 1e-9);
+    const Track own =
+        track_of("t_s,lat_deg,lat_dir,lon_deg,lon_dir,h_ell_m\n0,33.9,S,18.4,W,500\n1,33.9,S,18.4,W,500\n", "t.csv");
+    EXPECT_NEAR(place_of(own, 0).latitude.deg(), -33.9, 1e-9);
+    EXPECT_NEAR(place_of(own, 0).longitude.deg(), -18.4, 1e-9);
+    const Track other = track_of(
+        "time;Latitude;NS;Longitude;EW;elevation\n2024-03-05 12:00:00;33\xC2\xB0"
+        "54.0';S;18 24 0;W;500\n",
+        "t.csv");
+    EXPECT_NEAR(place_of(other, 0).latitude.deg(), -33.9, 1e-9);
+    EXPECT_NEAR(place_of(other, 0).longitude.deg(), -18.4, 1e-9);
+    EXPECT_THAT(refusal_of_track("t_s,lat_deg,lon_deg,h_ell_m,side\n0,33.9,18.4,500,W\n", "t.csv"),
+                HasSubstr("t.csv: the column 'side' has 'W' (first in line 2)"));
+    EXPECT_THAT(refusal_of_track("t_s,lat_e7,lon_e7,h_ell_m\n0,339000000S,184000000,500\n", "t.csv"),
+                HasSubstr("t.csv:2: lat_e7 is '339000000S'; expected a number"));
+}
+
+TEST(TableDialects, LettersOfTheHemisphereTurnTheSignInXml) {
+    const Track gpx = track_of(
+        "<gpx><trk><trkseg><trkpt lat=\"33.9S\" lon=\"W 18 "
+        "24\"><time>2024-03-05T12:00:00Z</time></trkpt></trkseg></trk></gpx>",
+        "t.gpx");
+    EXPECT_NEAR(place_of(gpx, 0).latitude.deg(), -33.9, 1e-9);
+    EXPECT_NEAR(place_of(gpx, 0).longitude.deg(), -18.4, 1e-9);
+    const Track kml = track_of(
+        "<kml><Placemark><LineString><coordinates>18.4W,33.9S,100 "
+        "18.5W,33.9S,100</coordinates></LineString></Placemark></kml>",
+        "t.kml");
+    EXPECT_NEAR(place_of(kml, 0).latitude.deg(), -33.9, 1e-9);
+    EXPECT_NEAR(place_of(kml, 0).longitude.deg(), -18.4, 1e-9);
+}
+
+// A logger's file near Cape Town.
+TEST(TableDialects, ALoggersFileLiesInItsHemisphere) {
+    SKYLOOP_REQUIRE_SHARED(path, "reports/b01_hemisphere_unicsv.csv");
+    const auto text = read_text_file(path);
+    ASSERT_TRUE(text);
+    const Track track = track_of(*text, "b01.csv");
+    EXPECT_NEAR(place_of(track, 0).latitude.deg(), -33.9, 1e-9);
+    EXPECT_NEAR(place_of(track, 0).longitude.deg(), -18.4, 1e-9);
 }
 
 // As gpsbabel writes names and comments that hold commas and quotes.
