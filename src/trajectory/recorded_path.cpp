@@ -60,6 +60,7 @@ struct RecordedPath::Builder {
     RecordedPath& path;
     const Track& track;
     std::span<const TrackGap> gaps;
+    double most_mps2;
 
     void add(const TrackKnot& from, const TrackKnot& to) {
         const double h = to.time - from.time;
@@ -74,7 +75,7 @@ struct RecordedPath::Builder {
     }
     void add_bridge(const TrackKnot& from, const TrackKnot& to) {
         TrackKnot before = from;
-        for (const TrackKnot& knot : bridge_of_gap(from, to)) {
+        for (const TrackKnot& knot : bridge_of_gap(from, to, most_mps2)) {
             add(before, knot);
             before = knot;
         }
@@ -120,7 +121,7 @@ struct RecordedPath::Builder {
         for (std::size_t begin = 0, end = 0; begin < knots.size(); begin = end) {
             end = end_of_stretch(begin);
             const auto stretch = std::span(knots).subspan(begin, end - begin);
-            fill_in_motion(stretch);
+            fill_in_motion(stretch, most_mps2);
             if (begin > 0) join(knots[begin - 1], knots[begin], track.points[begin].jump);
             if (begin > 0 && track.points[begin].jump) begins.push_back(knots[begin].time);
             add_stretch(stretch);
@@ -148,7 +149,8 @@ RecordedPath::RecordedPath(const Track& asked, std::span<const TrackGap> gaps, G
     Track track = asked;
     if (settings.smoothing != Smoothing::none)
         report_.smoothing = smooth_track(track, settings.vehicle.value_or(VehicleClass::car), settings.smoothing);
-    const std::vector<double> begins = Builder{*this, track, gaps}.lead_through_rows();
+    const double most_mps2 = settings.vehicle ? traits_of(*settings.vehicle).acceleration_limit : HUGE_VAL;
+    const std::vector<double> begins = Builder{*this, track, gaps, most_mps2}.lead_through_rows();
     for (const TrackRow& row : track.points) {
         report_.rows_with_velocity += row.velocity.has_value();
         report_.rows_with_attitude += row.attitude.has_value();

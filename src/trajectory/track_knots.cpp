@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "skyloop/geo/geodetic.hpp"
@@ -128,6 +129,38 @@ Eigen::Vector3d acceleration_by_velocities(Knots knots, std::size_t at) {
     return coarse + (1 - share(discord, even_mps2)) * (acceleration_by_both(before, here, after) - coarse);
 }
 
+// A change of velocity that every vehicle can make, m/s².
+constexpr double easy_mps2 = 2;
+
+// The velocity and acceleration of the row at an end of a stretch, as far as the steps beside it allow. A polynomial
+// runs out of its rows there, and turns a single leap between two of them into any velocity.
+void bound_end(std::span<TrackKnot> knots, bool last, double most_mps2) {
+    constexpr std::size_t fewest = 4;
+    if (knots.size() < fewest) return;
+    const auto row = [&](std::size_t i) -> TrackKnot& { return knots[last ? knots.size() - 1 - i : i]; };
+    TrackKnot& end = row(0);
+    std::array<Eigen::Vector3d, 3> steps;
+    std::array<double, 3> middles{};  // s from the end
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        steps.at(i) = (row(i + 1).position - row(i).position) / (row(i + 1).time - row(i).time);
+        middles.at(i) = std::abs((row(i + 1).time + row(i).time) / 2 - end.time);
+    }
+    const Eigen::Vector3d first = (steps[1] - steps[0]) / (middles[1] - middles[0]),
+                          second = (steps[2] - steps[1]) / (middles[2] - middles[1]);
+    // What both say, as those of a turn or of a start do and those of a leap do not; with room for what grows.
+    const double agreed = 3 * std::min({first.norm(), second.norm(), (first + second).norm() / 2});
+    const double easy = std::min(easy_mps2, (steps[0].norm() + 1) / (2 * middles[0]));
+    const double most = std::min(most_mps2, std::max(easy, agreed));
+    if (!end.has_velocity) {
+        const Eigen::Vector3d off = end.velocity - steps[0];
+        end.velocity = steps[0] + off * std::min(1.0, most * middles[0] / std::max(off.norm(), 1e-9));
+        for (std::size_t i = 0; i < steps.size(); ++i)
+            end.velocity *=
+                std::min(1.0, (steps.at(i).norm() + most * middles.at(i)) / std::max(end.velocity.norm(), 1e-9));
+    }
+    end.acceleration *= std::min(1.0, most / std::max(end.acceleration.norm(), 1e-9));
+}
+
 // A point of the straight line between two places, at the height between theirs: on a long way the line itself dips
 // below the ground.
 Eigen::Vector3d lifted(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double part) {
@@ -156,7 +189,7 @@ std::vector<TrackKnot> knots_of(const Track& track) {
     return knots;
 }
 
-void fill_in_motion(std::span<TrackKnot> knots) {
+void fill_in_motion(std::span<TrackKnot> knots, double most_mps2) {
     if (knots.size() < 2) return;
     for (std::size_t i = 0; i < knots.size(); ++i) {
         if (knots[i].has_velocity) continue;
@@ -166,14 +199,19 @@ void fill_in_motion(std::span<TrackKnot> knots) {
     }
     for (std::size_t i = 0; i < knots.size(); ++i)
         if (knots[i].has_velocity) knots[i].acceleration = acceleration_by_velocities(knots, i);
+    bound_end(knots, false, most_mps2);
+    bound_end(knots, true, most_mps2);
 }
 
-std::vector<TrackKnot> bridge_of_gap(const TrackKnot& from, const TrackKnot& to) {
+std::vector<TrackKnot> bridge_of_gap(const TrackKnot& from, const TrackKnot& to, double most_mps2) {
     constexpr double longest_change_s = 10, longest_chord_m = 2000;
     const double span = to.time - from.time;
-    const double change = std::min(longest_change_s, span / 3);
-    // The ends of the changes and the velocity between them agree when the velocity changes evenly.
     const Eigen::Vector3d way = to.position - from.position;
+    // A vehicle that hardly got on stops and starts as soon as it can: it would run far out and back otherwise.
+    const double speed = std::max({from.velocity.norm(), to.velocity.norm(), 1e-9});
+    const double needed = std::max(way.norm() / speed, speed / std::min(easy_mps2, most_mps2));
+    const double change = std::min({longest_change_s, span / 3, needed});
+    // The ends of the changes and the velocity between them agree when the velocity changes evenly.
     const Eigen::Vector3d mean = (way - (from.velocity + to.velocity) * (change / 2)) / (span - change);
     const Eigen::Vector3d left = from.position + (from.velocity + mean) * (change / 2);
     const Eigen::Vector3d right = to.position - (to.velocity + mean) * (change / 2);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -135,6 +136,72 @@ TEST(RecordedPath, CrossesGapsWithoutAJump) {
         const auto height = path.at(advanced(recorded_start, Seconds(t))).geodetic.height.above_ellipsoid.value();
         ASSERT_GT(height, 499) << t;
     }
+}
+
+// Metres along the path, and its top speed, m/s.
+struct WayAndSpeed {
+    double way = 0, speed = 0;
+};
+WayAndSpeed measured(const RecordedPath& path) {
+    constexpr double step = 0.01;
+    WayAndSpeed found;
+    for (double t = step; t <= path.duration().value(); t += step) {
+        found.way += (local(path, t) - local(path, t - step)).norm();
+        found.speed = std::max(found.speed, velocity_at(path, t).norm());
+    }
+    return found;
+}
+
+// A walker, 1.5 m/s, stops the recording for 141 s; in the second second after it the receiver finds its place again,
+// 15 m from where it thought it was.
+PathLaw paused_walk() {
+    return [](double t) {
+        const double walked = 1.5 * (t < 100 ? t : t - 140);
+        return Eigen::Vector3d(0, walked + (t > 201.5 ? 15 : 0), 0);
+    };
+}
+
+TEST(RecordedPath, APauseMakesNoWay) {
+    std::vector<double> times = evenly(0, 59, 1);
+    for (const double t : evenly(200, 260, 1))
+        times.push_back(t);
+    for (const bool turned_round : {false, true}) {
+        Track track = track_of(paused_walk(), times, false);
+        if (turned_round)
+            for (TrackRow& row : track.points)
+                row.time = to_nanoseconds(Seconds(260)) - row.time;
+        if (turned_round) std::reverse(track.points.begin(), track.points.end());
+        double rows = 0;
+        for (std::size_t i = 1; i < track.points.size(); ++i)
+            rows += (track.points[i].position - track.points[i - 1].position).length().value();
+        EXPECT_NEAR(rows, 195, 0.5);
+        const auto [way, speed] = measured(path_of(track));
+        EXPECT_LT(way, 1.05 * rows) << turned_round;
+        EXPECT_LT(speed, 2 * 16.5) << "the rows' own leap is one of 16.5 m in a second";
+    }
+}
+
+TEST(RecordedPath, AnEndTakesTheVelocityOfItsStepsAndNotOfALeapBesideThem) {
+    for (const std::size_t leap : {2u, 3u, 4u}) {
+        const PathLaw law = [=](double t) {
+            return Eigen::Vector3d(1.5 * t + (t > static_cast<double>(leap) - 0.5 ? 15 : 0), 0, 0);
+        };
+        Track track = track_of(law, evenly(0, 20, 1), false);
+        EXPECT_NEAR(velocity_at(path_of(track), 0).norm(), 1.5, 1.01) << leap;
+    }
+    // A turn and a start are no leaps.
+    const PathLaw turn = circle_of(60, 20);
+    Track turning = track_of(turn, evenly(0, 20, 1), false);
+    EXPECT_NEAR(velocity_at(path_of(turning), 0).norm(), slope_of(turn, 0).norm(), 0.1);
+    const PathLaw start = [](double t) { return Eigen::Vector3d(2.5 * t * t, 0, 0); };
+    Track starting = track_of(start, evenly(0, 20, 1), false);
+    EXPECT_NEAR(velocity_at(path_of(starting), 0).norm(), 0, 1e-3);
+    // Though what a vehicle cannot do is one.
+    Track walking = track_of(turn, evenly(0, 20, 1), false);
+    ASSERT_TRUE(clean_track(walking, Seconds(10)));
+    const RecordedPath walker(walking, {}, recorded_start, {VehicleClass::fixed, {}, {}});
+    const Eigen::Vector3d step = (turn(1) - turn(0)) / 1;
+    EXPECT_LT((recorded_frame.to_enu(walker.at(recorded_start).velocity).vector() - step).norm(), 0.5);
 }
 
 // After five months a nanosecond is less than half a step of seconds counted in doubles.
