@@ -134,6 +134,8 @@ tl::expected<FixColumns, std::string> FixColumns::of(const std::vector<std::stri
     columns.latitude = **latitude;
     columns.longitude = **longitude;
     columns.height = **height;
+    columns.hemispheres =
+        HemisphereColumns({cells.begin(), cells.end()}, {columns.latitude.index, columns.longitude.index});
     if (header.name(**height).find("msl") != std::string::npos) columns.above_sea = header.cell(**height);
     columns.true_latitude = header.called("true_lat_deg");
     columns.true_longitude = header.called("true_lon_deg");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "skyloop/base/result.hpp"
+#include "skyloop/base/written_place.hpp"
 
 namespace skyloop {
 
@@ -24,7 +25,8 @@ struct FixColumns {
     FixColumn latitude, longitude, height;
     std::optional<FixColumn> true_latitude, true_longitude, true_height;
     std::optional<FixColumn> fix_type, time, week, tow, used;
-    std::string above_sea;  ///< the name of a height that is told to be above the sea; empty: none is
+    HemisphereColumns hemispheres;  ///< of latitude and longitude; no others have such letters
+    std::string above_sea;          ///< the name of a height that is told to be above the sea; empty: none is
     /// Of a table without a time: the columns whose names tell one all the same.
     std::vector<std::string> unread_times;
 

@@ -42,6 +42,35 @@ Result<double> cell_number(const TableRow& row, const FixColumn& column, std::st
     return *value * column.scale;
 }
 
+// Latitude and longitude in degrees, by the letters of the row too.
+Result<std::array<double, 2>> place_of_row(const TableRow& row, FixColumns& columns) {
+    std::array<double, 2> place{};
+    for (const Coordinate which : {Coordinate::latitude, Coordinate::longitude}) {
+        const bool latitude = which == Coordinate::latitude;
+        const FixColumn& column = latitude ? columns.latitude : columns.longitude;
+        const auto written = cell_value(row.cells[column.index]) || column.scale != 1
+                                 ? std::nullopt
+                                 : written_degrees(row.cells[column.index], which);
+        const Result<double> number =
+            written ? *written : cell_number(row, column, latitude ? "latitude" : "longitude");
+        if (!number) return fail(number.error());
+        place.at(static_cast<std::size_t>(which)) = *number;
+    }
+    const auto sided = columns.hemispheres.place(row.cells, place, row.line);
+    if (!sided) return fail(row.error(sided.error()));
+    return *sided;
+}
+
+Result<Geodetic> estimate_at(const TableRow& row, FixColumns& columns) {
+    const auto place = place_of_row(row, columns);
+    if (!place) return fail(place.error());
+    const Result<double> h = cell_number(row, columns.height, "height");
+    if (!h) return fail(h.error());
+    const auto position = checked_position((*place)[0], (*place)[1], *h);
+    if (!position) return fail(row.error(position.error()));
+    return *position;
+}
+
 Result<Geodetic> position_at(const TableRow& row, const FixColumn& latitude, const FixColumn& longitude,
                              const FixColumn& height) {
     const Result<double> lat = cell_number(row, latitude, "latitude");
@@ -127,7 +156,7 @@ Result<std::optional<int>> row_satellites(const TableRow& row, const FixColumns&
     return std::optional<int>(static_cast<int>(*count));
 }
 
-Result<FixSample> read_row(const TableRow& row, const FixColumns& columns, bool& dated, TableCounts& counts) {
+Result<FixSample> read_row(const TableRow& row, FixColumns& columns, bool& dated, TableCounts& counts) {
     if (row.cells.size() != columns.count)
         return fail(row.error(fmt::format("found {} cells, expected {}", row.cells.size(), columns.count)));
     FixSample sample;
@@ -138,7 +167,7 @@ Result<FixSample> read_row(const TableRow& row, const FixColumns& columns, bool&
     if (!has_fix) return fail(has_fix.error());
     sample.has_fix = *has_fix;
     if (sample.has_fix) {
-        const Result<Geodetic> position = position_at(row, columns.latitude, columns.longitude, columns.height);
+        const Result<Geodetic> position = estimate_at(row, columns);
         if (!position) return fail(position.error());
         sample.position = *position;
     }
@@ -190,6 +219,8 @@ void add_table_warnings(FixSeries& series, const FixColumns& columns, const Tabl
                          counts.partial));
     if (const std::size_t back = rows_back_in_time(series.samples); back > 0)
         warn(fmt::format("{} rows tell an earlier time than the row before them", back));
+    for (const std::string& what : columns.hemispheres.notes({}))
+        warn(what);
     if (!columns.above_sea.empty())
         warn(fmt::format("the heights of {} are above sea level, not above the ellipsoid", columns.above_sea));
     if (const std::string unread = fmt::format("{}", fmt::join(columns.unread_times, ", ")); !unread.empty())
@@ -243,6 +274,8 @@ Result<FixSeries> parse_fix_table(std::string_view text, const std::string& name
         if (!sample) return fail(sample.error());
         series.samples.push_back(*sample);
     }
+    if (const auto letters = columns ? columns->hemispheres.not_understood() : std::nullopt)
+        return fail(ErrorCode::input, fmt::format("{}: {}", name, *letters));
     if (columns) add_table_warnings(series, *columns, counts);
     return series;
 }

@@ -135,6 +135,15 @@ TEST(FixSeries, units_of_columns_count) {
                 AllOf(HasSubstr("a.csv:1:"), HasSubstr("'Altitude (furlongs)' is not known; expected one such as m")));
 }
 
+TEST(FixSeries, letters_of_the_hemisphere_turn_the_sign) {
+    const auto series = parse_fix_series("time,lat,N/S,lon,E/W,height\n0,33.9,S,18.4W,,100\n", "a.csv");
+    ASSERT_TRUE(series) << series.error().message;
+    EXPECT_NEAR(series->samples[0].position.latitude.deg(), -33.9, 1e-12);
+    EXPECT_NEAR(series->samples[0].position.longitude.deg(), -18.4, 1e-12);
+    EXPECT_THAT(message_of("lat,lon,height,side\n33.9,18.4,100,S\n"),
+                HasSubstr("a.csv: the column 'side' has 'S' (first in line 2), which may be a hemisphere"));
+}
+
 TEST(FixSeries, a_time_that_is_not_read_is_told) {
     const auto stamps =
         parse_fix_series("timestamp_ms,lat,lon,alt\n1700000000000,1,2,3\n1700000000500,1,2,3\n", "d.csv");
