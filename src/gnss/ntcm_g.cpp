@@ -68,7 +68,7 @@ NtcmGContent ntcm_g_content(const EffectiveIonisation& broadcast, const Geodetic
     const ThinShell shell;
     NtcmGContent content;
     // The model leaves the height of the antenna out.
-    content.pierce = pierce_point(shell, {place.latitude, place.longitude, {}}, direction);
+    content.pierce = published_pierce_point(shell, {place.latitude, place.longitude, {}}, direction);
     content.vertical = ntcm_g_vertical_content(broadcast, content.pierce, when);
     content.slant_factor = modified_single_layer_mapping(shell, direction.elevation);
     content.slant = content.vertical * content.slant_factor;

@@ -39,6 +39,16 @@ PiercePoint pierce_point(const ThinShell& shell, const Geodetic& place, const Sk
             Angle::radians(std::remainder(longitude, 2 * std::numbers::pi))};
 }
 
+PiercePoint published_pierce_point(const ThinShell& shell, const Geodetic& place, const SkyDirection& direction) {
+    PiercePoint point = pierce_point(shell, place, direction);
+    const double full = 2 * std::numbers::pi, half = std::numbers::pi;
+    const double turn = std::remainder((point.longitude - place.longitude).rad(), full);
+    if (std::abs(turn) > half / 2)
+        point.longitude =
+            Angle::radians(std::remainder(place.longitude.rad() + std::copysign(half, turn) - turn, full));
+    return point;
+}
+
 double single_layer_mapping(const ThinShell& shell, Angle elevation, Metres antenna_height) {
     return obliquity(shell_ratio(shell, antenna_height) * std::cos(elevation.rad()));
 }

@@ -30,7 +30,7 @@ Metres beidou_klobuchar_delay(const KlobucharCoefficients& coefficients, const G
                               const SkyDirection& direction, GpsTime time) {
     constexpr ThinShell shell{Metres(6378000), Metres(375000)};
     const Geodetic ground{place.latitude, place.longitude, {}};
-    const PiercePoint pierce = pierce_point(shell, ground, direction);
+    const PiercePoint pierce = published_pierce_point(shell, ground, direction);
     const double latitude = std::abs(pierce.latitude.rad()) / std::numbers::pi;
     double local_time =
         std::fmod(43200 * pierce.longitude.rad() / std::numbers::pi + bdt_week_and_tow(time).tow_seconds(), 86400.0);

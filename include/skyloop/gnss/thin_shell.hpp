@@ -31,6 +31,11 @@ double gradient_arm(Angle elevation, Metres antenna_height = Metres(0));
 /// The pierce point of the ray from `place`, at its height over a sphere.
 PiercePoint pierce_point(const ThinShell& shell, const Geodetic& place, const SkyDirection& direction);
 
+/// The same as receivers compute it: longitude by an arcsine, which leaves a ray that passes over a pole within 90° of
+/// the antenna's longitude (European Commission, NTCM-G Ionospheric Model Description 1.0, equation 26; BDS-SIS-ICD-B1I
+/// 3.0, 5.2.4.7). It differs from pierce_point() beside the poles alone, above latitude 77° for elevations above 10°.
+PiercePoint published_pierce_point(const ThinShell& shell, const Geodetic& place, const SkyDirection& direction);
+
 /// Slant over vertical content of a single layer, 1/√(1 − ((R + h) cos e/(R + H))²), seen from a height h.
 double single_layer_mapping(const ThinShell& shell, Angle elevation, Metres antenna_height = Metres(0));
 /// The same of the modified single layer, which follows an extended profile more closely:

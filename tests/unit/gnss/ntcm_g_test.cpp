@@ -28,6 +28,23 @@ TEST(NtcmG, EveryOracleRow) {
     }
 }
 
+// Rays that pass over the pole: rows of the test table for high solar activity (NTCM-G Ionospheric Model Description
+// 1.0, day 105, receiver at 82.49° N, 62.34° W, 78.11 m). With the longitude of the far side they are 59.6299 and
+// 64.1463 TECU.
+TEST(NtcmG, TakesLongitudesBeyondThePoleAsPublished) {
+    struct Row {
+        double hours, longitude, latitude, height, slant;
+    };
+    const Geodetic place = Geodetic::degrees(82.49, -62.34, 78.11);
+    for (const Row& row : {Row{4, 140.68, 35.85, 19953735.00, 54.6962}, Row{12, 81.09, 35.20, 20278071.03, 65.0500}}) {
+        const LookAngles look =
+            LocalFrame(place).look_angles(to_ecef(Geodetic::degrees(row.latitude, row.longitude, row.height)));
+        const NtcmGContent content = ntcm_g_content({236.831641, -0.39362878, 0.00402826613}, place,
+                                                    {look.azimuth, look.elevation}, {105, row.hours});
+        EXPECT_NEAR(content.slant.value(), row.slant, 0.001) << row.hours;
+    }
+}
+
 TEST(NtcmG, CountsTheDayFromItsCalendar) {
     UtcTime utc;
     utc.year = 2024, utc.month = 3, utc.day = 1, utc.hour = 6, utc.minute = 30;

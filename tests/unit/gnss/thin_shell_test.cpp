@@ -30,6 +30,23 @@ TEST(ThinShell, ARayOverThePoleComesDownOnTheOtherSide) {
     EXPECT_LT(there.latitude.deg(), 90);
 }
 
+TEST(ThinShell, PublishedCorrectionsLeaveARayOverThePoleOnItsSide) {
+    const Geodetic place = Geodetic::degrees(88, 20, 0);
+    for (const double azimuth : {0.0, 30.0, 330.0, 180.0}) {
+        const SkyDirection direction{Angle::degrees(azimuth), Angle::degrees(10)};
+        const PiercePoint there = published_pierce_point({}, place, direction);
+        const double psi = pierce_angle({}, direction.elevation).rad();
+        const double arcsine =
+            std::asin(std::sin(psi) * std::sin(direction.azimuth.rad()) / std::cos(there.latitude.rad()));
+        EXPECT_NEAR(there.longitude.deg(), 20 + Angle::radians(arcsine).deg(), 1e-6) << azimuth;
+        EXPECT_EQ(there.latitude.rad(), pierce_point({}, place, direction).latitude.rad());
+    }
+    const SkyDirection slant{Angle::degrees(70), Angle::degrees(20)};
+    const Geodetic odessa = Geodetic::degrees(46, 179, 0);
+    EXPECT_EQ(published_pierce_point({}, odessa, slant).longitude.rad(),
+              pierce_point({}, odessa, slant).longitude.rad());
+}
+
 TEST(ThinShell, StraightUpIsTheVertical) {
     const SkyDirection zenith{Angle::degrees(123), Angle::degrees(90)};
     const PiercePoint there = pierce_point({}, Geodetic::degrees(-40, 179, 0), zenith);

@@ -116,6 +116,11 @@ TEST(BeidouKlobuchar, HasItsNightAndItsNoonAtTheZenith) {
     // A sixth of the period before the peak the cosine is one half.
     EXPECT_NEAR(beidou_klobuchar_delay(c, greenwich, zenith, advanced(peak, Seconds(-1e5 / 6))).value(),
                 speed_of_light * 15e-9, 1e-9);
+    // As published, a ray over the pole has the local time of its own side.
+    const SkyDirection over_pole{Angle(), Angle::degrees(10)};
+    EXPECT_NEAR(beidou_klobuchar_delay(c, Geodetic::degrees(88, 0, 0), over_pole, peak).value(),
+                speed_of_light * 25e-9 * single_layer_mapping({Metres(6378000), Metres(375000)}, over_pole.elevation),
+                1e-9);
 }
 
 TEST(RangeCorrections, MapsTheZenithTroposphere) {
