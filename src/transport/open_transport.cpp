@@ -42,6 +42,32 @@ std::string offered() {
     return text + "client:NAME or -";
 }
 
+// What is meant by an address without its kind: a device, a port of TCP, the name of a pseudo-terminal. Empty: nobody
+// can tell.
+std::string with_its_scheme(std::string_view text) {
+    constexpr std::string_view digits = "0123456789", devices = "/dev/";
+    const std::size_t colon = text.rfind(':');
+    const std::string_view host = text.substr(0, colon == std::string_view::npos ? 0 : colon);
+    const std::string_view port = text.substr(colon == std::string_view::npos ? 0 : colon + 1);
+    if (text.empty()) return {};
+    if (text.starts_with(devices)) return fmt::format("serial:{}", text);
+    if (text.starts_with("tty")) return fmt::format("serial:{}{}", devices, text);
+    const bool is_port = !port.empty() && port.find_first_not_of(digits) == std::string_view::npos;
+    const bool is_host = host.empty() || host == "localhost" || host.find('.') != std::string_view::npos;
+    if (is_port && is_host) return fmt::format("tcp:{}", host.empty() ? port : text);
+    return colon == std::string_view::npos ? fmt::format("pty:{}", text) : std::string();
+}
+
+Error no_such_kind(std::string_view uri, std::string_view name) {
+    std::array<std::string_view, schemes.size()> names;
+    std::transform(schemes.begin(), schemes.end(), names.begin(), [](const Scheme& known) { return known.name; });
+    const std::string near_by = did_you_mean(name, names), whole = with_its_scheme(uri);
+    const std::string problem = fmt::format("port '{}': no such kind of port", uri);
+    if (near_by.empty() && !whole.empty())
+        return {ErrorCode::usage, fmt::format("{}; did you mean '{}'?", problem, whole)};
+    return {ErrorCode::usage, fmt::format("{}{}; expected {}", problem, near_by, offered())};
+}
+
 // The control model of USB knows no RTS/CTS; a device that has it decides for itself.
 Result<UsbBridgeAddress> parse_bridge(WireKind kind, std::string_view rest) {
     auto bridge = parse_usb_bridge_address(rest);
@@ -124,12 +150,7 @@ Result<PortUri> parse_port_uri(std::string_view uri) {
     const std::string_view name = uri.substr(0, colon);
     const auto scheme =
         std::find_if(schemes.begin(), schemes.end(), [&](const Scheme& known) { return known.name == name; });
-    if (scheme == schemes.end()) {
-        std::array<std::string_view, schemes.size()> names;
-        std::transform(schemes.begin(), schemes.end(), names.begin(), [](const Scheme& known) { return known.name; });
-        return fail(ErrorCode::usage, fmt::format("port '{}': no such kind of port{}; expected {}", uri,
-                                                  did_you_mean(name, names), offered()));
-    }
+    if (scheme == schemes.end()) return fail(no_such_kind(uri, name));
     port.kind = scheme->kind;
     if (colon == std::string_view::npos && port.kind == WireKind::pty) return port;
     const std::string_view rest = colon == std::string_view::npos ? std::string_view() : uri.substr(colon + 1);

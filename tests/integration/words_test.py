@@ -64,8 +64,13 @@ MISUSES = [
     (["faults", "jamming", "--format", "markdown"],
      "skyloop: faults: --format markdown lists all of them; expected text or json beside a NAME"),
     (["boards", "ublox-m88"],
-     "skyloop: board 'ublox-m88' is not known; expected one of airoha-ag33xx, mavlink-gps-input, msp-gps, mtk3339, "
-     "nmea-generic, septentrio-sbf, ublox-6, ublox-f10, ublox-f9p, ublox-m10, ublox-m8, ublox-m9; did you mean 'ublox-m8'?"),
+     "skyloop: board 'ublox-m88' is not known; did you mean 'ublox-m8'?"),
+    (["boards", "NEO-M8N"], "skyloop: board 'NEO-M8N' is not known; did you mean 'ublox-m8'?"),
+    (["check", "--board", "m8"], "skyloop: board 'm8' is not known; did you mean 'ublox-m8'?"),
+    (["run", "--port", "/dev/ttyUSB0"],
+     "skyloop: port '/dev/ttyUSB0': no such kind of port; did you mean 'serial:/dev/ttyUSB0'?"),
+    (["run", "--port", "2000"], "skyloop: port '2000': no such kind of port; did you mean 'tcp:2000'?"),
+    (["run", "--port", "gps0"], "skyloop: port 'gps0': no such kind of port; did you mean 'pty:gps0'?"),
 ]
 
 

@@ -225,14 +225,36 @@ TEST(FindBoard, RefusesUnknownNames) {
     const auto board = find_board("ublox-m88", shipped_boards);
     ASSERT_FALSE(board);
     EXPECT_EQ(board.error().code, ErrorCode::usage);
-    EXPECT_EQ(board.error().message,
-              "board 'ublox-m88' is not known; expected one of airoha-ag33xx, mavlink-gps-input, msp-gps, mtk3339, "
-              "nmea-generic, septentrio-sbf, ublox-6, ublox-f10, ublox-f9p, ublox-m10, ublox-m8, ublox-m9; did you "
-              "mean 'ublox-m8'?");
+    EXPECT_EQ(board.error().message, "board 'ublox-m88' is not known; did you mean 'ublox-m8'?");
+    EXPECT_EQ(find_board("nope", shipped_boards).error().message,
+              "board 'nope' is not known; expected one of airoha-ag33xx, mavlink-gps-input, msp-gps, mtk3339, "
+              "nmea-generic, septentrio-sbf, ublox-6, ublox-f10, ublox-f9p, ublox-m10, ublox-m8, ublox-m9");
     EXPECT_FALSE(find_board("../receivers/ublox-m8", shipped_boards));
     const std::vector<fs::path> nowhere{"/no/such/folder"};
     EXPECT_THAT(find_board("ublox-m8", nowhere).error().message, HasSubstr("searched: /no/such/folder"));
     EXPECT_EQ(find_board("/no/such/file.toml", shipped_boards).error().code, ErrorCode::outside);
+}
+
+TEST(FindBoard, KnowsTheBoardThatAModuleHas) {
+    const std::pair<const char*, const char*> meant[] = {
+        {"m8", "ublox-m8"},           {"M8N", "ublox-m8"},
+        {"NEO-M8N", "ublox-m8"},      {"neo-m8n", "ublox-m8"},
+        {"NEO-M8N-0-10", "ublox-m8"}, {"SAM-M8Q", "ublox-m8"},
+        {"neom8n", "ublox-m8"},       {"u-blox-m8", "ublox-m8"},
+        {"ublox_m9", "ublox-m9"},     {"NEO-M9N", "ublox-m9"},
+        {"m10", "ublox-m10"},         {"MAX-M10S", "ublox-m10"},
+        {"f9p", "ublox-f9p"},         {"ZED-F9P", "ublox-f9p"},
+        {"ZED-F9P-04B", "ublox-f9p"}, {"NEO-F10N", "ublox-f10"},
+        {"DAN-F10N", "ublox-f10"},    {"NEO-6M", "ublox-6"},
+        {"mosaic", "septentrio-sbf"}, {"mosaic-X5", "septentrio-sbf"},
+        {"PA6H", "mtk3339"},          {"MT3339", "mtk3339"},
+        {"AG3335", "airoha-ag33xx"},  {"septentrio", "septentrio-sbf"},
+    };
+    for (const auto& [name, board] : meant)
+        EXPECT_EQ(find_board(name, shipped_boards).error().message,
+                  std::string("board '") + name + "' is not known; did you mean '" + board + "'?");
+    for (const char* unknown : {"nope", "m80", "42", "x", "", "ublox", "NEO"})
+        EXPECT_THAT(find_board(unknown, shipped_boards).error().message, HasSubstr("; expected one of ")) << unknown;
 }
 
 TEST(FindBoard, ReadsAFileByItsPath) {

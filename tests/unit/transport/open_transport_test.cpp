@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "skyloop/transport/memory.hpp"
 #include "temporary_folder.hpp"
 
@@ -53,9 +55,7 @@ TEST(OpenTransport, RefusesClearly) {
               "port 'can:0': no such kind of port; expected pty[:LINK], serial:DEVICE[@BAUD], usb:VID:PID[:SERIAL], "
               "hid:VID:PID[:SERIAL], usbip:[HOST:]PORT, tcp:[HOST:]PORT[@BAUD], tcp-connect:HOST:PORT[@BAUD], "
               "rfc2217:[HOST:]PORT, file:PATH, client:NAME or -");
-    EXPECT_THAT(refusal("gps0").message, HasSubstr("no such kind of port"));
-    EXPECT_THAT(refusal("").message, HasSubstr("no such kind of port"));
-    EXPECT_THAT(refusal("memory").message, HasSubstr("no such kind of port"));
+    EXPECT_THAT(refusal("").message, HasSubstr("no such kind of port; expected pty[:LINK], "));
     EXPECT_THAT(refusal("pty:").message, HasSubstr("a path is missing"));
     EXPECT_THAT(refusal("file").message, HasSubstr("a path is missing"));
     EXPECT_THAT(refusal("file:").message, HasSubstr("a path is missing"));
@@ -78,6 +78,27 @@ TEST(OpenTransport, TakesASpeedBehindTheAddressOfASocket) {
     EXPECT_THAT(refusal("tcp:2000@").message, HasSubstr("the speed ''"));
     EXPECT_EQ(refusal("rfc2217:2217@9600").code, ErrorCode::usage) << "its client sets the line";
     EXPECT_EQ(refusal("usbip:3240@9600").code, ErrorCode::usage);
+}
+
+TEST(OpenTransport, GuessesTheKindOfAnAddressWithoutOne) {
+    const auto guess = [](std::string_view uri) {
+        const std::string message = refusal(uri).message,
+                          start = "port '" + std::string(uri) + "': no such kind of port; ";
+        EXPECT_THAT(message, StartsWith(start));
+        return message.substr(std::min(start.size(), message.size()));
+    };
+    EXPECT_EQ(guess("/dev/ttyUSB0"), "did you mean 'serial:/dev/ttyUSB0'?");
+    EXPECT_EQ(guess("/dev/ttyACM0@115200"), "did you mean 'serial:/dev/ttyACM0@115200'?");
+    EXPECT_EQ(guess("/dev/serial/by-id/usb-FTDI-if00"), "did you mean 'serial:/dev/serial/by-id/usb-FTDI-if00'?");
+    EXPECT_EQ(guess("ttyS1"), "did you mean 'serial:/dev/ttyS1'?");
+    EXPECT_EQ(guess("2000"), "did you mean 'tcp:2000'?");
+    EXPECT_EQ(guess(":2000"), "did you mean 'tcp:2000'?");
+    EXPECT_EQ(guess("localhost:2000"), "did you mean 'tcp:localhost:2000'?");
+    EXPECT_EQ(guess("0.0.0.0:2000"), "did you mean 'tcp:0.0.0.0:2000'?");
+    EXPECT_EQ(guess("gps0"), "did you mean 'pty:gps0'?");
+    EXPECT_EQ(guess("/tmp/gps0"), "did you mean 'pty:/tmp/gps0'?");
+    EXPECT_THAT(guess("udp:5000"), StartsWith("expected pty[:LINK], "));
+    EXPECT_THAT(guess("tpc:2000"), StartsWith("did you mean 'tcp'?"));
 }
 
 TEST(MemoryTransport, KeepsAndFeedsBytes) {
