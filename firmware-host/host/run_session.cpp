@@ -68,7 +68,10 @@ void RunSession::await_feeds() const {
         say(fmt::format("truth: {}\n", source));
     if (feeds->all_heard()) return;
     messages_.info(feeds->waits_for());
-    assembly_.emulator->await_feeds(stop_asked);
+    assembly_.emulator->await_feeds(stop_asked, [&] {
+        for (const std::string& news : feeds->take_news())
+            messages_.warning(news);
+    });
 }
 
 void RunSession::await_clients() const {

@@ -86,13 +86,14 @@ void Emulator::await_clients(const std::atomic<bool>& stop) {
     parts_.pacer->resume(now_);
 }
 
-void Emulator::await_feeds(const std::atomic<bool>& stop) {
+void Emulator::await_feeds(const std::atomic<bool>& stop, const std::function<void()>& meanwhile) {
     if (!parts_.feeds || parts_.feeds->all_heard()) return;
     parts_.pacer->pause(now_);
     while (!stop && !parts_.feeds->all_heard()) {
         Pacer::rest();
         (void)all_connected();  // a host on the wire must be answered while time rests
         hear_feeds();
+        if (meanwhile) meanwhile();
         if (look_) look_(now_);
     }
     parts_.pacer->resume(now_);

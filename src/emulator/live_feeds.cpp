@@ -15,6 +15,8 @@ namespace {
 
 constexpr std::array<std::string_view, 3> clock_names{"realtime", "follow", "lock_step"};
 
+constexpr double longest_without_place_s = 5;
+
 Command plain_command(CommandVerb verb, std::string_view source = "feed") {
     Command command;
     command.verb = verb;
@@ -79,6 +81,8 @@ struct LiveFeeds::Source {
     std::int64_t heard_ns = 0;     // when they had become more, or the source waited for us
     bool lost = false;
     bool pause_told = false;
+    std::int64_t opened_ns = 0;
+    bool no_place_told = false;
     int times_lost = 0;
     std::string outage;                    // the fault that its silence has begun; empty: none
     std::optional<GpsTime> known_at_loss;  // known_until() then
@@ -137,6 +141,7 @@ Result<LiveFeeds::Source*> LiveFeeds::source_of(const LiveSettings& settings, co
     auto source = std::make_unique<Source>();
     source->settings = settings;
     source->feed = std::move(*feed);
+    source->opened_ns = steady_clock_ns();
     if (leads) leader_ = source->feed.get();
     sources_.push_back(std::move(source));
     return sources_.back().get();
@@ -191,6 +196,7 @@ std::vector<Command> LiveFeeds::pump(GpsTime now, std::optional<std::int64_t> du
             else
                 commands.push_back(std::move(command));
         if (source->settings.clock == ClockMode::lock_step && !source->is_known()) source->feed->skip_steps();
+        report_no_place(*source);
         look_for_silence(*source, commands);
         end_outage(*source, now, commands);
         for (std::string& news : source->feed->take_news())
@@ -210,6 +216,21 @@ bool LiveFeeds::halts(Source& source) {
                         "when_lost = \"pause\" and clock = \"follow\" stand still, too",
                         source.feed->description()));
     return false;
+}
+
+// Once: a source that never gives one is misunderstood, or another program.
+void LiveFeeds::report_no_place(Source& source) {
+    const FeedCounts counts = source.feed->counts();
+    const double waited_s = static_cast<double>(steady_clock_ns() - source.opened_ns) * 1e-9;
+    if (source.no_place_told || counts.samples > 0) return;
+    if (waited_s < std::min(source.settings.lost_after.value(), longest_without_place_s)) return;
+    source.no_place_told = true;
+    std::string received = "nothing was received";
+    if (counts.bytes > 0)
+        received = fmt::format("{} bytes in {} messages were received, {} of them refused", counts.bytes,
+                               counts.messages, counts.refused);
+    news_.push_back(
+        fmt::format("{}: no position in the first {:.1f} s: {}", source.feed->description(), waited_s, received));
 }
 
 // The run stands still for one that is lost.

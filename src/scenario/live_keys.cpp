@@ -17,10 +17,10 @@ void read_live(TableReader& table, PlaceReader& places, TrajectorySettings& traj
     live.source_told_at = table.told_at("source");
     table.needs_one_of({"source"}, "kind \"live\" has no source; expected source = \"udp-json:29990\" or another");
     table.text("vehicle_id", live.vehicle);
-    live.at = places.read(table, "at");
+    live.at = table.place("at");
     live.clock = static_cast<ClockMode>(table.choice("clock", clocks, clocks[0]).value_or(0));
     live.sea_is_ellipsoid = table.choice("sea_level", seas, seas[0]).value_or(0) == 1;
-    live.origin = places.read(table, "origin");
+    live.origin = table.place("origin");
     if (const auto map = table.choice("local_map", maps, maps[0]).value_or(0); map > 0)
         live.local_map = local_map_of_name(maps.at(map));
     table.boolean("filtered", live.filtered);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <initializer_list>
 
@@ -63,6 +64,23 @@ void remember_places(TableReader& table, std::string_view name, std::initializer
         if (table.has(key)) told_at[fmt::format("{}.{}", name, key)] = table.told_at(key);
 }
 
+bool is_live(const TrajectorySettings& trajectory) { return std::holds_alternative<LiveSettings>(trajectory); }
+
+// A source gives places on the Earth, or metres of a map of its own.
+void refuse_idle_frame(TableReader& top) {
+    if (top.has("frame"))
+        top.mistake("frame",
+                    "has no effect on a live trajectory; expected no [frame], and trajectory.origin where the "
+                    "source gives local metres");
+}
+
+bool is_all_live(const Scenario& scenario) {
+    const auto& receivers = scenario.receivers;
+    return std::all_of(receivers.begin(), receivers.end(), [&](const ReceiverEntry& receiver) {
+        return is_live(receiver.trajectory.value_or(scenario.trajectory));
+    });
+}
+
 }  // namespace
 
 std::string told_place(const Scenario& scenario, std::string_view key, std::string_view otherwise) {
@@ -89,6 +107,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     });
     top.table("scene", [&](TableReader& t) { read_scene_keys(t, scenario.scene, folder); });
     read_receivers(top, scenario, context);
+    if (is_all_live(scenario)) refuse_idle_frame(top);
     read_outputs(top, scenario);
     read_timeline(top, scenario);
     read_expectations(top, scenario);
@@ -127,6 +146,7 @@ Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& fil
     const auto read = read_toml(*text, file.string(), [&](TableReader& top) {
         if (!top.has("trajectory")) top.mistake_here("no [trajectory] table in this file");
         trajectory = read_trajectory_keys(top, {read_frame(top), file.parent_path()}, warnings);
+        if (trajectory && is_live(*trajectory)) refuse_idle_frame(top);
     });
     if (!read) return fail(read.error());
     return trajectory.value_or(FixedSettings{});

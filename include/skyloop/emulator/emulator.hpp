@@ -47,7 +47,8 @@ public:
     /// Waits until each wire has a client, or until `stop` is true; time begins then, and no byte is lost before.
     void await_clients(const std::atomic<bool>& stop);
     /// Waits until each vehicle that has no place yet is told one, or until `stop` is true; time begins then.
-    void await_feeds(const std::atomic<bool>& stop);
+    /// @param meanwhile called again and again, for what there is to report
+    void await_feeds(const std::atomic<bool>& stop, const std::function<void()>& meanwhile = {});
     /// Runs to `end`, or until `stop` is true, or until a recording fails; advance_to() and finish().
     void run_until(GpsTime end, const std::atomic<bool>& stop);
     /// Whether what is due at the very instant of the end of a stretch belongs to it.

@@ -84,6 +84,7 @@ private:
     LiveFeeds();
     Result<Source*> source_of(const LiveSettings& settings, const Geoid* geoid);
     bool halts(Source& source);
+    void report_no_place(Source& source);
     [[nodiscard]] bool is_waited_for() const;
     void look_for_silence(Source& source, std::vector<Command>& commands);
     static void end_outage(Source& source, GpsTime now, std::vector<Command>& commands);

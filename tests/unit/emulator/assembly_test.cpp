@@ -85,7 +85,7 @@ TEST(Assembly, KeysThatLeaveAReceiverThatRefusesEverySettingAreRefused) {
 TEST(Assembly, WhatAKeyIsRefusedForHasItsPlaceInTheFile) {
     const auto told = [](const std::string& text) { return refusal(text).message; };
     EXPECT_THAT(told("[[receiver]]\nboard = \"ublox-m7\""),
-                StartsWith("test.toml:2:9: receiver.board: board 'ublox-m7' is not known"));
+                StartsWith("test.toml:2:9: receiver.board: board 'ublox-m7' is not known; did you mean "));
     EXPECT_THAT(told("[[receiver]]\n[[receiver]]\nport = \"foo:1\""),
                 StartsWith("test.toml:3:8: receiver.port: port 'foo:1': no such kind of port"));
     EXPECT_THAT(told("[[receiver]]\npower = \"relay:x\""), StartsWith("test.toml:2:9: receiver.power: "));

@@ -258,6 +258,35 @@ TEST_F(LiveFeedsTest, APauseOfTheSourceInRealTimeIsToldOnce) {
     EXPECT_THAT(feeds_->take_news(), testing::ElementsAre(testing::HasSubstr("has paused; the run goes on")));
 }
 
+TEST_F(LiveFeedsTest, ASourceWithoutAPositionIsReportedOnce) {
+    open("realtime", "0.2");
+    EXPECT_FALSE(command_at(start_, 500ms)) << "it is waited for, not lost";
+    EXPECT_THAT(feeds_->take_news(),
+                testing::ElementsAre(testing::AllOf(testing::HasSubstr(": no position in the first 0."),
+                                                    testing::EndsWith(" s: nothing was received"))));
+    say(10);
+    for (int i = 0; i < 400 && feeds_->reports().at(0).counts.samples == 0; ++i)
+        std::this_thread::sleep_for(5ms);
+    EXPECT_FALSE(command_at(start_, 50ms));
+    EXPECT_THAT(feeds_->take_news(), testing::IsEmpty());
+}
+
+TEST_F(LiveFeedsTest, WhatCameWithoutAPositionIsReported) {
+    open("realtime", "0.5");
+    say(R"({"type":"clock","paused":false})");
+    say("no JSON at all\n");
+    EXPECT_FALSE(command_at(start_, 900ms));
+    EXPECT_THAT(feeds_->take_news(),
+                testing::Contains(testing::EndsWith(" s: 46 bytes in 2 messages were received, 1 of them refused")));
+}
+
+TEST_F(LiveFeedsTest, ASourceWithPositionsIsNotReported) {
+    open("realtime", "0.2", "hold");
+    say(10);
+    (void)command_at(start_, 500ms);
+    EXPECT_THAT(feeds_->take_news(), testing::Not(testing::Contains(testing::HasSubstr("no position"))));
+}
+
 TEST(LiveFeeds, EachVehicleOfASourceHasAPlaceOfItsOwnBefore) {
     Scenario scenario = emulator_scenario(R"toml(
 [run]

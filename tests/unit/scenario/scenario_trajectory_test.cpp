@@ -165,6 +165,19 @@ TEST(ScenarioTrajectory, RefusesIncompletePaths) {
     EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"file\"\npath = \"x.csv\"\ngap_s = nan"),
                 HasSubstr("trajectory.gap_s"));
     EXPECT_THAT(mistakes_of("[frame]\nyaw_deg = 3"), HasSubstr("[frame] has no origin"));
+    const std::string live = "kind = \"live\"\nsource = \"udp-json:0\"\n";
+    EXPECT_EQ(mistakes_of("[frame]\norigin = [1, 2, 3]\n[trajectory]\n" + live),
+              "test.toml:1:1: frame: has no effect on a live trajectory; expected no [frame], and trajectory.origin "
+              "where the source gives local metres");
+    EXPECT_THAT(mistakes_of("[frame]\norigin = [1, 2, 3]\n[[receiver]]\n[receiver.trajectory]\n" + live),
+                HasSubstr("frame: has no effect on a live trajectory"));
+    EXPECT_THAT(mistakes_of("[trajectory]\n" + live + "origin_level = [0, 0, 0]\n"),
+                HasSubstr("trajectory.origin_level: unknown key"));
+    EXPECT_EQ(mistakes_of("[frame]\norigin = [1, 2, 3]\n[trajectory]\nkind = \"fixed\"\nat_level = [0, 0, 0]\n"
+                          "[[receiver]]\n[[receiver]]\n[receiver.trajectory]\n" +
+                          live),
+              "accepted")
+        << "the frame is of use to the first receiver";
 }
 
 TEST(ScenarioTrajectory, RefusesTwoPlacesAndALevelWithoutAFrame) {
