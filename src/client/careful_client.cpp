@@ -20,7 +20,10 @@ constexpr std::uint64_t loose_bytes_of_damage = 16;
 
 CarefulClient::CarefulClient(std::string name) : ScriptedClient(std::move(name)), hunt_(usual_speeds(), dwell_time) {}
 
-void CarefulClient::start() { hunt(); }
+void CarefulClient::start() {
+    health_ = HealthChecks(HealthLimits::made_before(now()));
+    hunt();
+}
 
 void CarefulClient::hunt() {
     hunt_.start(now());

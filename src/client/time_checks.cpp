@@ -3,11 +3,12 @@
 #include <cmath>
 
 #include "skyloop/client/health_checks.hpp"
+#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
 namespace {
 
-constexpr double gps_epoch_in_unix_s = 315'964'800;  // 1980-01-06
+constexpr double gps_epoch_in_unix_s = gps_epoch_posix_s;
 constexpr double week_s = 604800;
 constexpr double same_epoch_s = 1e-4;  // UBX tells time of week in milliseconds
 constexpr int repeats_allowed = 2;     // a message that a wire brings twice is no harm
@@ -22,20 +23,35 @@ double clock_seconds(const HeardSolution& s) {
         .value();
 }
 
+// A solution of before a leap second may be heard after it.
+bool has_leap(double told_s, GpsTime heard) {
+    const LeapSeconds& announced = LeapSeconds::announced();
+    return std::abs(told_s - announced.offset(heard)) <= calendar_slack_s ||
+           std::abs(told_s - announced.offset(heard - std::chrono::seconds(1))) <= calendar_slack_s;
+}
+
 std::optional<std::string> doubt_calendar(const HeardSolution& s, const HealthLimits& limits) {
     if (!s.utc_s) return std::nullopt;
+    const int leap_seconds = LeapSeconds::announced().offset(s.heard);
     if (*s.utc_s < limits.oldest_utc_s) return "a date before this client was made";
     if (s.counts_gps_weeks && s.seconds) {
         const double leap = wrapped_difference(*s.seconds, std::fmod(*s.utc_s - gps_epoch_in_unix_s, week_s), week_s);
-        if (std::abs(leap - limits.leap_seconds) > calendar_slack_s)
-            return fmt::format("UTC lies {:.0f} s behind GPS time, not {} s", leap, limits.leap_seconds);
+        if (!has_leap(leap, s.heard))
+            return fmt::format("UTC lies {:.0f} s behind GPS time, not {} s", leap, leap_seconds);
     }
-    if (s.gps_s && std::abs(*s.gps_s - (*s.utc_s - gps_epoch_in_unix_s) - limits.leap_seconds) > limits.time_jump_s)
+    if (s.gps_s && std::abs(*s.gps_s - (*s.utc_s - gps_epoch_in_unix_s) - leap_seconds) > limits.time_jump_s)
         return "week number and date disagree";
     return std::nullopt;
 }
 
 }  // namespace
+
+HealthLimits HealthLimits::made_before(GpsTime switched_on) {
+    constexpr double year_s = 365.25 * 86400;
+    HealthLimits limits;
+    limits.oldest_utc_s = to_seconds(switched_on.time_since_epoch()).value() + gps_epoch_in_unix_s - year_s;
+    return limits;
+}
 
 double wrapped_difference(double a, double b, double wrap) { return std::remainder(a - b, wrap); }
 

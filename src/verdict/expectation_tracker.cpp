@@ -26,7 +26,7 @@ std::string span_text(Seconds span) {
 }
 
 ExpectationTracker::ExpectationTracker(const ExpectedSentence& sentence, GpsTime start)
-    : sentence_(sentence), start_(start) {
+    : sentence_(sentence), start_(start), presence_(sentence) {
     const SubjectClause& subject = sentence_.subject;
     if (is_of_epochs(subject.subject))
         turn_ = Turn{advanced(start, longest_pause), subject.subject == ExpectedSubject::no_fix};
@@ -47,6 +47,11 @@ bool ExpectationTracker::once() const {
 // Where silence has to last all along, the first message breaks it; elsewhere it comes true after a while.
 bool ExpectationTracker::strict_silence() const {
     return is_silence(sentence_.subject.subject) && means_a_stretch(sentence_.time);
+}
+
+// A silence that has to begin within a time: it shows when it has lasted, which may be later.
+bool ExpectationTracker::timely_silence() const {
+    return is_silence(sentence_.subject.subject) && sentence_.time.rule == TimeRule::within;
 }
 
 bool ExpectationTracker::is_named(const FaultSeen& seen) const {
@@ -92,7 +97,8 @@ void ExpectationTracker::plan_at(GpsTime event) {
     const TimeClause& time = sentence_.time;
     const GpsTime from = advanced(event, time.from);
     if (time.rule == TimeRule::at) return plan({from, from, event, true});
-    const auto until = time.until ? std::optional(advanced(event, *time.until)) : std::nullopt;
+    auto until = time.until ? std::optional(advanced(event, *time.until)) : std::nullopt;
+    if (timely_silence()) until = advanced(*until, sentence_.subject.silence);
     plan({from, until, event});
 }
 
@@ -150,6 +156,10 @@ void ExpectationTracker::open(const Stretch& stretch) {
         value_ = true;
         turn_ = Turn{advanced(stretch.opens, *subject.every) + just_after, false};
     }
+    if (timely_silence()) {
+        value_ = false;
+        turn_ = Turn{advanced(stretch.opens, subject.silence), true};
+    }
     // What a client believes or leaves unsaid is true now; the last epoch is of before.
     const bool lasting = is_belief(subject.subject) || (is_silence(subject.subject) && !strict_silence());
     if (lasting && !stretch.instant) judge(stretch.opens, *value_);
@@ -159,6 +169,7 @@ void ExpectationTracker::turn(GpsTime now) {
     value_ = turn_->to;
     turn_.reset();
     if (is_of_epochs(sentence_.subject.subject)) {
+        presence_.note_no_epochs();
         last_number_.reset();
         last_word_ = "no epoch for " + span_text(longest_pause);
     } else {
@@ -169,6 +180,7 @@ void ExpectationTracker::turn(GpsTime now) {
 
 void ExpectationTracker::look(GpsTime now, const Reading& reading) {
     if (finding_) return;
+    presence_.note_reading(reading);
     value_ = reading.holds;
     ever_seen_ = true;
     ++seen_;
@@ -181,6 +193,7 @@ void ExpectationTracker::look(GpsTime now, const Reading& reading) {
 
 void ExpectationTracker::hear(GpsTime now, std::string_view name) {
     if (finding_) return;
+    presence_.note_message();
     ++seen_;
     last_word_ = name;
     const SubjectClause& subject = sentence_.subject;
@@ -193,6 +206,10 @@ void ExpectationTracker::hear(GpsTime now, std::string_view name) {
     if (!strict_silence()) {
         value_ = false;
         turn_ = Turn{advanced(now, subject.silence), true};
+        if (timely_silence() && stretch_ && turn_->at > *stretch_->closes)
+            return fail(now,
+                        fmt::format("did not begin by {}{}",
+                                    moment(advanced(*stretch_->closes, -subject.silence), *stretch_), last_seen()));
     }
     judge(now, false);
 }
@@ -201,7 +218,10 @@ void ExpectationTracker::judge(GpsTime now, bool value) {
     if (!stretch_ || stretch_->instant) return;
     looked_at_ = true;
     const bool right = value != sentence_.time.never;
-    if (right) return once() ? come_true(now) : remember();
+    if (right && !once()) return remember();
+    if (right && !presence_.is_missing()) return come_true(now);
+    // Trust may still come, and be lost; a silence of one who never spoke is over.
+    if (right && timely_silence()) return leave_unshown();
     if (once()) return;
     fail(now, fmt::format("{} {}{}", sentence_.time.never ? "was true" : "did not hold", moment(now, *stretch_),
                           last_seen()));
@@ -209,6 +229,7 @@ void ExpectationTracker::judge(GpsTime now, bool value) {
 
 // Of what holds all along, what is seen while it has to hold is the evidence, not what comes after.
 void ExpectationTracker::remember() {
+    presence_.note_held();
     if (strict_silence() && !sentence_.time.never) {
         right_word_ = "nothing sent";  // the last message was before
         return;
@@ -224,10 +245,11 @@ void ExpectationTracker::remember() {
 }
 
 void ExpectationTracker::come_true(GpsTime now) {
-    const Seconds delay = difference(now, stretch_->origin);
+    const GpsTime since = timely_silence() ? advanced(now, -sentence_.subject.silence) : now;
+    const Seconds delay = difference(since, stretch_->origin);
     if (came_true_ == 0 || delay > slowest_) {
         slowest_ = delay;
-        slowest_moment_ = moment(now, *stretch_) + last_seen();
+        slowest_moment_ = moment(since, *stretch_) + last_seen();
     }
     came_true_ += 1 + std::exchange(waiting_, 0);
     came_true_at_ = now;
@@ -235,10 +257,17 @@ void ExpectationTracker::come_true(GpsTime now) {
     stretch_.reset();
 }
 
+void ExpectationTracker::leave_unshown() {
+    unshown_ = true;
+    waiting_ = 0;
+    stretch_.reset();
+}
+
 // The stretch is over: what had to last and was not looked at within it is as it was before.
 void ExpectationTracker::close(GpsTime now) {
     const Stretch stretch = *stretch_;
     const GpsTime end = stretch.closes.value_or(now);
+    if (once() && presence_.is_missing() && value_.value_or(false)) return leave_unshown();
     // An epoch of before fulfils nothing; that there have been none for long does, since it is still so.
     if (!looked_at_ && once() && is_of_epochs(sentence_.subject.subject) && turn_)
         return fail(end, fmt::format("did not come true by {}: no epoch came in that time", moment(end, stretch)));
@@ -285,8 +314,9 @@ void ExpectationTracker::happen(GpsTime now, bool begins) {
 
 Finding ExpectationTracker::so_far() const {
     if (finding_) return *finding_;
-    const bool nothing_open = stretches_ > 0 && !stretch_ && planned_.empty();
-    return nothing_open ? summary() : Finding{};
+    if (stretches_ == 0 || stretch_ || !planned_.empty()) return {};
+    Finding finding = summary();
+    return finding.outcome == Outcome::undecided ? Finding{} : finding;
 }
 
 Finding ExpectationTracker::finish(GpsTime now, RunEnd end) {
@@ -319,6 +349,8 @@ void ExpectationTracker::last_until_end(GpsTime now, RunEnd end) {
 }
 
 Finding ExpectationTracker::summary() const {
+    if (unshown_ || (!once() && presence_.is_missing()))
+        return {Outcome::undecided, std::string(presence_.why_missing()), std::nullopt};
     if (once()) {
         const std::string often = came_true_ > 1 ? fmt::format(" {} times, at the latest", came_true_) : "";
         return {Outcome::passed, fmt::format("came true{} {}", often, slowest_moment_), came_true_at_};

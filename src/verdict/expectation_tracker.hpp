@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "presence_watch.hpp"
 #include "skyloop/verdict/expectation.hpp"
 #include "skyloop/verdict/verdict.hpp"
 #include "subject_view.hpp"
@@ -36,6 +37,8 @@ public:
     void look(GpsTime now, const Reading& reading);
     /// A message that the subject speaks of. @param name of it
     void hear(GpsTime now, std::string_view name);
+    /// Somebody is there: a message of either side, whatever it is, or a belief of a client.
+    void note_sender(bool is_client) { presence_.note_sender(is_client); }
     /// Something begins or ends; a command does both at once.
     void event(GpsTime now, const FaultSeen& seen);
     Finding finish(GpsTime now, RunEnd end);
@@ -66,6 +69,7 @@ private:
     // Whether the value has to come true once.
     [[nodiscard]] bool once() const;
     [[nodiscard]] bool strict_silence() const;
+    [[nodiscard]] bool timely_silence() const;
     [[nodiscard]] bool is_named(const FaultSeen& seen) const;
     int number_of(const FaultSeen& seen);
     [[nodiscard]] std::optional<GpsTime> next_step() const;
@@ -79,6 +83,7 @@ private:
     void judge(GpsTime now, bool value);
     void remember();
     void come_true(GpsTime now);
+    void leave_unshown();
     void fail(GpsTime now, std::string evidence);
     void happen(GpsTime now, bool begins);
     void last_until_end(GpsTime now, RunEnd end);
@@ -90,6 +95,7 @@ private:
 
     ExpectedSentence sentence_;
     GpsTime start_;
+    PresenceWatch presence_;
     std::optional<bool> value_;       // of the subject, before `never` turns it
     std::optional<Turn> turn_;        // to come
     std::optional<Stretch> stretch_;  // that is open
@@ -98,6 +104,7 @@ private:
     int begun_ = 0;                   // of all that the event's name fits
     std::vector<Begun> not_ended_;    // of them
     bool event_came_ = false, looked_at_ = false, ever_seen_ = false;
+    bool unshown_ = false;  // a stretch in which what came true is no evidence
     std::uint64_t stretches_ = 0, seen_ = 0, came_true_ = 0;
     std::uint64_t waiting_ = 0;  // stretches that have opened since the open one, and are fulfilled with it
     Seconds slowest_{0};

@@ -202,6 +202,7 @@ void Judge::on_epoch(const EpochSeen& seen) {
 void Judge::on_message(const MessageSeen& seen) {
     const GpsTime now = state_->pass(seen.now);
     state_->at_station(seen.station, [&](ExpectationTracker& tracker) {
+        if (seen.kind != StreamKind::noise) tracker.note_sender(seen.from_client);
         if (speaks_of(tracker.subject(), seen)) tracker.hear(now, seen.name);
     });
 }
@@ -224,6 +225,7 @@ void Judge::on_belief(const BeliefSeen& seen) {
     const GpsTime now = state_->pass(seen.now);
     state_->at_station(seen.station, [&](ExpectationTracker& tracker) {
         const ExpectedSubject subject = tracker.subject().subject;
+        tracker.note_sender(true);
         if (is_belief(subject))
             tracker.look(now, {seen.trusts == (subject == ExpectedSubject::client_trusts), std::nullopt, seen.reason});
     });

@@ -142,7 +142,7 @@ Reading read_epoch(const SubjectClause& subject, const EpochSeen& seen) {
 }
 
 Reading read_silence(const SubjectClause& subject) {
-    return {subject.subject == ExpectedSubject::no_fix, std::nullopt, "nothing is reported"};
+    return {subject.subject == ExpectedSubject::no_fix, std::nullopt, "nothing is reported", false};
 }
 
 bool is_reconfiguration(const MessageSeen& seen) {

@@ -15,6 +15,7 @@ struct Reading {
     bool holds = false;
     std::optional<double> number{};  ///< in the unit of the subject
     std::string_view word{};         ///< where there is no number: "3d fix"
+    bool reported = true;            ///< false: the receiver reports nothing, and the subject is judged by that
 };
 
 /// Whether the subject is read from epochs.

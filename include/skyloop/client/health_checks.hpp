@@ -11,21 +11,23 @@ namespace skyloop {
 
 /// Limits of a careful client. The sources are the defaults of autopilots' own checks.
 struct HealthLimits {
-    int satellites = 6;                   ///< at least: PX4 EKF2_REQ_NSATS 6, ArduPilot EKF3 6
-    double horizontal_accuracy_m = 5;     ///< ArduPilot EKF3 calcGpsGoodToAlign(): hAcc 5 m; PX4 EKF2_REQ_EPH 3 m
-    double vertical_accuracy_m = 7.5;     ///< ArduPilot EKF3: vAcc 7.5 m; PX4 EKF2_REQ_EPV 5 m
-    double speed_accuracy_mps = 1;        ///< ArduPilot EKF3: sAcc 1 m/s; PX4 EKF2_REQ_SACC 0.5 m/s
-    double hdop = 2.5;                    ///< ArduPilot EKF3: HDOP 2.5; PX4 EKF2_REQ_PDOP 2.5
-    double time_jump_s = 1;               ///< against the client's clock
-    double late_s = 0.3;                  ///< ArduPilot counts more than 245 ms as delayed
-    double early_s = 0.1;                 ///< time of the receiver that gains on the client's
-    double settled_s = 10;                ///< after which a time that jumped and then went on evenly is taken
-    double consistency_window_s = 10;     ///< ArduPilot EKF3 posRetryTimeUseVel: 10 s until a far position is taken
-    double acceleration_mps2 = 40;        ///< 4 g, the dynamic model that autopilots ask for ("airborne < 4 g")
-    double frozen_s = 3;                  ///< the same place …
-    double frozen_speed_mps = 1;          ///< … at more than this speed
-    double oldest_utc_s = 1'704'067'200;  ///< 2024-01-01, when the client was made
-    int leap_seconds = 18;                ///< GPS − UTC (IERS Bulletin C, since 2017)
+    int satellites = 6;                ///< at least: PX4 EKF2_REQ_NSATS 6, ArduPilot EKF3 6
+    double horizontal_accuracy_m = 5;  ///< ArduPilot EKF3 calcGpsGoodToAlign(): hAcc 5 m; PX4 EKF2_REQ_EPH 3 m
+    double vertical_accuracy_m = 7.5;  ///< ArduPilot EKF3: vAcc 7.5 m; PX4 EKF2_REQ_EPV 5 m
+    double speed_accuracy_mps = 1;     ///< ArduPilot EKF3: sAcc 1 m/s; PX4 EKF2_REQ_SACC 0.5 m/s
+    double hdop = 2.5;                 ///< ArduPilot EKF3: HDOP 2.5; PX4 EKF2_REQ_PDOP 2.5
+    double time_jump_s = 1;            ///< against the client's clock
+    double late_s = 0.3;               ///< ArduPilot counts more than 245 ms as delayed
+    double early_s = 0.1;              ///< time of the receiver that gains on the client's
+    double settled_s = 10;             ///< after which a time that jumped and then went on evenly is taken
+    double consistency_window_s = 10;  ///< ArduPilot EKF3 posRetryTimeUseVel: 10 s until a far position is taken
+    double acceleration_mps2 = 40;     ///< 4 g, the dynamic model that autopilots ask for ("airborne < 4 g")
+    double frozen_s = 3;               ///< the same place …
+    double frozen_speed_mps = 1;       ///< … at more than this speed
+    double oldest_utc_s = 0;           ///< when the client was made, since 1970
+
+    /// Those of a client that was made a year before it is switched on.
+    static HealthLimits made_before(GpsTime switched_on);
 };
 
 /// Is it a fix, of enough satellites, of enough accuracy, at a place at all? Nothing: no doubt.

@@ -10,7 +10,7 @@ namespace skyloop {
 
 /// A solution as a client hears it. Angles are in degrees, as on the wire.
 struct HeardSolution {
-    GpsTime heard{};         ///< by the client's own clock; only differences of it are used
+    GpsTime heard{};         ///< by the client's own clock
     bool valid = false;      ///< the receiver says that this is a fix
     bool has_place = false;  ///< a latitude and a longitude were told
     bool three_dimensional = false;

@@ -13,8 +13,9 @@ namespace skyloop {
 
 /// A client of a receiver: hears its bytes cut into messages, speaks, has a line speed and a belief.
 ///
-/// Its clock is the simulated time; of that it uses differences alone. It acts at whole multiples of 10 ms, on all that
-/// has arrived by then, so that what it does is the same however often the loop looks at it.
+/// Its clock is the simulated time; of that it uses differences, and the date for what was known of calendars then. It
+/// acts at whole multiples of 10 ms, on all that has arrived by then, so that what it does is the same however often the
+/// loop looks at it.
 class ScriptedClient : public Transport {
 public:
     std::size_t write(ByteSpan bytes) final;

@@ -23,10 +23,11 @@ namespace skyloop::test {
 
 inline const GpsTime bench_start = to_gps_time(2407, 100000);
 
-/// What a sound receiver would say at `now`, moving north at 10 m/s.
+/// What a sound receiver would say at `now`, moving north at 10 m/s since bench_start's time of the day.
 struct BenchSolution {
     explicit BenchSolution(GpsTime now) {
-        const double since = difference(now, bench_start).value();
+        constexpr Nanoseconds day = std::chrono::hours(24);
+        const double since = to_seconds(((now - bench_start) % day + day) % day).value();
         const UtcTime utc = to_utc(now, LeapSeconds::announced());
         pvt.i_tow = static_cast<std::uint32_t>(week_and_tow(now).tow.count() / 1'000'000);
         pvt.year = static_cast<std::uint16_t>(utc.year);
@@ -56,7 +57,7 @@ struct BenchSolution {
 /// The client and its clock, which looks every 10 ms as the emulator does.
 class ClientBench {
 public:
-    explicit ClientBench(std::string_view name) {
+    explicit ClientBench(std::string_view name, GpsTime start = bench_start) : now(start) {
         auto opened = open_client(name);
         EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
         client = std::move(*opened);
@@ -103,7 +104,7 @@ public:
     [[nodiscard]] std::uint32_t speed() { return client->line().baud.value_or(0); }
 
     std::unique_ptr<Transport> client;
-    GpsTime now = bench_start;
+    GpsTime now;
     std::vector<Transport::Belief> beliefs;
     std::vector<StreamPiece> heard;
 

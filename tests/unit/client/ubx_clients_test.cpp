@@ -109,6 +109,32 @@ const WrongSolution wrong_solutions[] = {
 INSTANTIATE_TEST_SUITE_P(Each, CarefulUbxDoubts, ::testing::ValuesIn(wrong_solutions),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
+// Runs of any year: what a client knows of dates is of its own time.
+TEST(CarefulUbxDates, FollowTheRun) {
+    for (const int week : {1600, 1915, 2045, 2407, 2900}) {
+        ClientBench bench("careful-ubx", to_gps_time(week, 100000));
+        BenchReceiver receiver(bench);
+        receiver.run(seconds(15));
+        EXPECT_TRUE(bench.trusts()) << week << ": " << bench.reason();
+        receiver.edit = [](NavPvt& p) { p.year = static_cast<std::uint16_t>(p.year - 2); };
+        receiver.run(seconds(2));
+        EXPECT_FALSE(bench.trusts()) << week;
+        EXPECT_NE(bench.beliefs.back().reason.find("date before"), std::string::npos) << bench.reason();
+    }
+}
+
+// The leap second at the end of 2016, which makes 17 s of difference 18.
+TEST(CarefulUbxDates, FollowALeapSecond) {
+    const GpsTime leap = to_gps_time(1930, 18);
+    ClientBench bench("careful-ubx", leap - seconds(16));
+    BenchReceiver receiver(bench);
+    receiver.run(seconds(14));
+    ASSERT_TRUE(bench.trusts()) << bench.reason();
+    const std::size_t before = bench.beliefs.size();
+    receiver.run(seconds(10));
+    EXPECT_EQ(bench.beliefs.size(), before) << bench.reason();
+}
+
 TEST_F(CarefulUbx, DoubtsLateSolutions) {
     int late_ms = 0;  // a line that carries less than is sent: each solution comes later than the one before
     receiver.edit = [&](NavPvt& p) {
