@@ -59,6 +59,6 @@ class Installation:
         return self.one("lib*/**/libskyloop.so.0")
 
     def environment(self):
-        """For programs that are linked against it, and pkg-config."""
-        return {"LD_LIBRARY_PATH": str(self.library.parent), "SKYLOOP_DATA_DIR": "",
+        """For pkg-config, and programs that find the library without help."""
+        return {"SKYLOOP_DATA_DIR": "",
                 "PKG_CONFIG_PATH": str(self.one("lib*/**/skyloop.pc").parent)}

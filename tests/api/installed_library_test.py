@@ -5,6 +5,7 @@ import os
 import pathlib
 import re
 import shlex
+import shutil
 import tempfile
 import unittest
 
@@ -117,6 +118,22 @@ class Programs(unittest.TestCase):
         by_pkg_config = self.fly(self.folder / "fly")
         by_package = self.fly(self.build("c") / "fly")
         self.assertEqual(by_pkg_config, by_package)
+
+    def test_the_lines_of_the_page_start_what_they_build(self):
+        need("pkg-config")
+        page = (ROOT / "docs/c_api.md").read_text(encoding="utf-8")
+        lines = re.search(r"api/installed_library runs these lines -->\n```sh\n(.*?)```", page, re.DOTALL)[1]
+        for example in ("c/fly.c", "python/skyloop_ctypes.py"):
+            shutil.copy(EXAMPLES / example, self.folder)
+        place = self.folder / "opt"
+        place.symlink_to(INSTALLED.prefix)
+        libraries = INSTALLED.library.parent.relative_to(INSTALLED.prefix)
+        told = lines.replace("/opt/skyloop/lib/", f"{place}/{libraries}/")
+        self.assertNotIn("/opt/skyloop", told)
+        done = run("sh", "-e", "-c", told, folder=self.folder, env={"SKYLOOP_DATA_DIR": "", "PYTHONDONTWRITEBYTECODE": "1"})
+        self.assertIn(b"11 epochs, fix 3", done.stderr)
+        self.assertEqual(json.loads(done.stdout)["epochs"], 11)
+        self.assertGreater((self.folder / "port0.ubx").stat().st_size, 1000)
 
     def test_a_plugin_in_cpp(self):
         done = run(self.build("engine") / "engine_demo", folder=self.folder, env=INSTALLED.environment())
