@@ -226,9 +226,8 @@ void LiveFeeds::report_no_place(Source& source) {
     if (waited_s < std::min(source.settings.lost_after.value(), longest_without_place_s)) return;
     source.no_place_told = true;
     std::string received = "nothing was received";
-    if (counts.bytes > 0)
-        received = fmt::format("{} bytes in {} messages were received, {} of them refused", counts.bytes,
-                               counts.messages, counts.refused);
+    if (counts.bytes > 0) received = fmt::format("{} bytes were received, none of them a position", counts.bytes);
+    if (counts.refused > 0) received += fmt::format("; {} messages were refused", counts.refused);
     news_.push_back(
         fmt::format("{}: no position in the first {:.1f} s: {}", source.feed->description(), waited_s, received));
 }

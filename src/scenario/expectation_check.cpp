@@ -78,6 +78,15 @@ std::string why_no_event(const EventReference& event, const KnownTimeline& known
                              : fmt::format("'{}' does not begin before the run ends", name);
 }
 
+// A silence that begins in time shows when it has lasted.
+TimeClause watched(const ExpectedSentence& sentence) {
+    TimeClause time = sentence.time;
+    const ExpectedSubject subject = sentence.subject.subject;
+    const bool silence = subject == ExpectedSubject::client_silent || subject == ExpectedSubject::receiver_silent;
+    if (silence && time.rule == TimeRule::within) time.until = *time.until + sentence.subject.silence;
+    return time;
+}
+
 // Why a sentence cannot be decided by the end, or may not be; empty: it can.
 std::string why_too_late(const TimeClause& time, const KnownTimeline& known, GpsTime start, GpsTime end) {
     std::optional<GpsTime> origin = start;
@@ -123,7 +132,7 @@ std::vector<std::string> expectation_warnings(const Scenario& scenario, GpsTime 
     std::vector<std::string> warnings;
     for (const Expectation& expectation : scenario.expectations) {
         std::string why;
-        if (expectation.sentence) why = why_too_late(expectation.sentence->time, known, start, end);
+        if (expectation.sentence) why = why_too_late(watched(*expectation.sentence), known, start, end);
         if (expectation.probe)
             why = why_no_time(*expectation.probe, scenario.run.speed, difference(end, start).value());
         if (!why.empty()) warnings.push_back(fmt::format("[[expect]] '{}' {}", expectation.title(), why));

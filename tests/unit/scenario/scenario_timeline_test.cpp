@@ -263,6 +263,8 @@ after = "stall"
     EXPECT_THAT(warnings_of("what = \"fix within 300 s of outage\""),
                 ElementsAre("[[expect]] 'fix within 300 s of outage' may stay undecided: it has until 320 s after the "
                             "start of the run, which ends after 60 s"));
+    EXPECT_THAT(warnings_of("what = \"receiver silent within 39 s of outage\""),
+                ElementsAre(HasSubstr("it has until 61 s after")));
     for (const char* met : {"fix at 60 s", "fix from 50 s to 60 s", "no fix throughout outage",
                             "fix within 40 s of outage", "no fix within 2 s of stall",
                             "no fix within 2 s of the end of hangs", "fix always", "fix until outage", "no fix never"})
