@@ -18,7 +18,7 @@ enum class RunEnd { over, cut };
 enum class Outcome {
     passed,
     failed,
-    undecided,  ///< the run ended too soon to tell
+    undecided,  ///< the run ended too soon to tell, or showed no evidence
     not_run     ///< a probe in virtual time
 };
 /// As reports have them: "passed", "failed", "undecided", "not run".
