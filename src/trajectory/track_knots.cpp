@@ -204,12 +204,12 @@ void fill_in_motion(std::span<TrackKnot> knots, double most_mps2) {
 }
 
 std::vector<TrackKnot> bridge_of_gap(const TrackKnot& from, const TrackKnot& to, double most_mps2) {
-    constexpr double longest_change_s = 10, longest_chord_m = 2000;
+    constexpr double shortest_change_s = 0.1, longest_change_s = 10, longest_chord_m = 2000;
     const double span = to.time - from.time;
     const Eigen::Vector3d way = to.position - from.position;
     // A vehicle that hardly got on stops and starts as soon as it can: it would run far out and back otherwise.
     const double speed = std::max({from.velocity.norm(), to.velocity.norm(), 1e-9});
-    const double needed = std::max(way.norm() / speed, speed / std::min(easy_mps2, most_mps2));
+    const double needed = std::max({way.norm() / speed, speed / std::min(easy_mps2, most_mps2), shortest_change_s});
     const double change = std::min({longest_change_s, span / 3, needed});
     // The ends of the changes and the velocity between them agree when the velocity changes evenly.
     const Eigen::Vector3d mean = (way - (from.velocity + to.velocity) * (change / 2)) / (span - change);

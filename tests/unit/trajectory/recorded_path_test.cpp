@@ -217,6 +217,14 @@ TEST(RecordedPath, IsFiniteAfterMonths) {
     EXPECT_NEAR((local(path, long_s + 2) - circle_of(60, 20)(long_s + 2)).norm(), 0, 1e-3);
 }
 
+TEST(RecordedPath, IsFiniteAtRestOverYears) {
+    constexpr double years_s = 2.3e8;
+    const PathLaw rest = [](double) { return Eigen::Vector3d(0, 0, 0); };
+    const RecordedPath path = path_of(track_of(rest, {0, years_s}, false));
+    for (const double t : {0.0, years_s / 20, years_s / 2, years_s})
+        EXPECT_LT(velocity_at(path, t).norm(), 1e-6) << t;
+}
+
 TEST(CleanTrack, TakesRowsWithinAMicrosecondForRepeated) {
     Track track = track_of(circle_of(60, 20), {0, 1, 1 + 4e-7, 2, 2 + 2e-6}, false);
     ASSERT_TRUE(clean_track(track, Seconds(10)));
